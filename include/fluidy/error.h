@@ -1,0 +1,34 @@
+/* What can go wrong, and the export mark of the public functions. */
+#ifndef FLUIDY_ERROR_H
+#define FLUIDY_ERROR_H
+
+#include <glib.h>
+
+#if defined(__GNUC__)
+#define FL_API __attribute__((visibility("default")))
+#else
+#define FL_API
+#endif
+
+G_BEGIN_DECLS
+
+/** The domain of every error the library makes itself; a library below may add its own domain. */
+#define FL_ERROR fl_error_quark()
+FL_API GQuark fl_error_quark(void);
+
+/** Codes tell callers what to do next; the message tells people what happened. */
+typedef enum FlError {
+    FL_ERROR_USAGE,       /**< an option, a parameter or a config file is wrong: exit status 2 */
+    FL_ERROR_INPUT,       /**< an SVG, mask or flow file is missing or broken */
+    FL_ERROR_STYLE,       /**< a style is missing or broken */
+    FL_ERROR_OUTPUT,      /**< a file cannot be written */
+    FL_ERROR_EXISTS,      /**< a file that is not ours would be overwritten */
+    FL_ERROR_LIMIT,       /**< a file asks for more than the limits allow */
+    FL_ERROR_NO_MEMORY,   /**< memory could not be had */
+    FL_ERROR_CHANGED,     /**< the state of an earlier run does not fit this one */
+    FL_ERROR_INTERRUPTED, /**< stopped on request; run again to resume: exit status 75 */
+} FlError;
+
+G_END_DECLS
+
+#endif

@@ -1,0 +1,14 @@
+/* libfluidy: paints SVG frame sequences with moving paint. This header includes all others. */
+#ifndef FLUIDY_FLUIDY_H
+#define FLUIDY_FLUIDY_H
+
+#include <fluidy/error.h>
+
+G_BEGIN_DECLS
+
+/** The library's version, such as "0.1.0"; static storage. */
+FL_API const char *fl_version(void);
+
+G_END_DECLS
+
+#endif

@@ -1,0 +1,29 @@
+/* Frame-sized buffers: an allocation that fails is an error, not an abort. */
+#ifndef FLUIDY_BASE_ALLOC_H
+#define FLUIDY_BASE_ALLOC_H
+
+#include <fluidy/error.h>
+#include <stdlib.h>
+
+/**
+ * count zeroed elements of element_bytes, aligned to 64 bytes; to be freed with free().
+ *
+ * Returns: NULL with FL_ERROR_NO_MEMORY set, which names `what`.
+ */
+static inline void *fl_alloc(size_t count, size_t element_bytes, const char *what, GError **error)
+{
+    size_t bytes = 0;
+    void *memory = NULL;
+    if (__builtin_mul_overflow(count, element_bytes, &bytes) || bytes > SIZE_MAX - 64 ||
+        !(memory = aligned_alloc(64, (bytes + 64) / 64 * 64)))
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                    "not enough memory for %s (%zu elements of %zu bytes)", what, count,
+                    element_bytes);
+    else
+        __builtin_memset(memory, 0, bytes);
+    return memory;
+}
+
+/** g_autofree frees with g_free(), which is free() since GLib 2.46; so both fit fl_alloc(). */
+
+#endif

@@ -1,0 +1,25 @@
+/* A temporary file of numbered blocks, for what a long film needs but memory should not hold. */
+#ifndef FLUIDY_BASE_SPILL_H
+#define FLUIDY_BASE_SPILL_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+/** Blocks are deflated at level 1 and kept in an unlinked file in $TMPDIR: nothing is left behind. */
+typedef struct FlSpill FlSpill;
+
+/** Room for blocks 0 … n_blocks - 1. Returns: NULL with FL_ERROR_OUTPUT set. */
+FlSpill *fl_spill_new(size_t n_blocks, GError **error);
+
+void fl_spill_free(FlSpill *spill); // NULL is fine
+
+/** Stores a block; a block stored again replaces the first. One thread at a time. */
+bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, GError **error);
+
+/** Reads a block of exactly `bytes` bytes, as stored. Several threads may read. */
+bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSpill, fl_spill_free)
+
+#endif

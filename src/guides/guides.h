@@ -1,0 +1,74 @@
+/* The guides of a mask sequence: distance, flow, direction and extents of motion [F21 §3.1–3.3]. */
+#ifndef FLUIDY_GUIDES_GUIDES_H
+#define FLUIDY_GUIDES_GUIDES_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** How the guides are made; every length is in level-0 pixels. */
+typedef struct FlGuideParams {
+    float flow_sigma_frames; // temporal Gaussian on the flow, cut at 3 sigma [F21 App. A]; 0: none
+    float dist_sigma_frames; // temporal Gaussian on the distance, the thesis' way [P21 §4.1]; 0: none
+    float still_px;          // slower than this the direction is the outward normal's; px/frame
+    float flow_limit;        // a contour moves at most this share of the larger side in one frame
+} FlGuideParams;
+
+/**
+ * The guides of one frame. All planes are row-major, width * height, without padding.
+ *
+ * Directions are angles of 256 steps a turn, 0 along +x, 64 along +y (down), and are defined
+ * inside the mask, still pixels included. Flow, angle and extents are 0 outside the mask.
+ */
+typedef struct FlGuides {
+    int width, height;
+    uint8_t *mask;    // coverage 0..255; a pixel is inside from FL_INSIDE on
+    float *distance;  // signed distance to the contour, px, positive inside, everywhere defined
+    float *flow;      // interleaved u, v: px per frame, 2 * width * height
+    uint8_t *angle;   // direction of the flow
+    float *ext_plus;  // |sum of the flow since the pixel was last outside the mask|, px
+    float *ext_minus; // the same, summed from the end of the sequence
+} FlGuides;
+
+#define FL_INSIDE 128
+
+/** A mask sequence, and its flow where somebody gives it. */
+typedef struct FlGuideSource {
+    int width, height, n_frames;
+    /** Writes frame's coverage, width * height bytes. May be called several times for a frame. */
+    bool (*mask)(void *data, int frame, uint8_t *coverage, GError **error);
+    /** Writes frame's flow, 2 * width * height floats; NULL: constructed from the masks. */
+    bool (*flow)(void *data, int frame, float *flow, GError **error);
+    void *data;
+} FlGuideSource;
+
+/** The guides of a whole sequence. Its memory does not grow with the number of frames (FlSpill). */
+typedef struct FlGuideSequence FlGuideSequence;
+
+/** Reads the whole sequence once. `source` is copied; its data must stay until _free. */
+FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuideParams *params,
+                                       GError **error);
+
+void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
+
+/** Fills `guides`, which the caller made with fl_guides_init() in the sequence's size. */
+bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
+                           GError **error);
+
+bool fl_guides_init(FlGuides *guides, int width, int height, GError **error);
+void fl_guides_clear(FlGuides *guides);
+
+/**
+ * The shape guide of a mask: Gaussian blur of its coverage, sigma = border_px / 3, cut at border_px
+ * [F21 §3.1]. In 0..1; pixels beyond the frame count as their nearest pixel in it.
+ */
+bool fl_shape_blur(const uint8_t *mask, int width, int height, float border_px, float *shape,
+                   GError **error);
+
+/** The thesis' shape guide min(distance / border_px, 1), not below 0 [P21 §3.4]. */
+void fl_shape_ramp(const float *distance, int width, int height, float border_px, float *shape);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlGuideSequence, fl_guide_sequence_free)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlGuides, fl_guides_clear)
+
+#endif
