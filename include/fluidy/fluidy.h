@@ -3,6 +3,7 @@
 #define FLUIDY_FLUIDY_H
 
 #include <fluidy/error.h>
+#include <fluidy/params.h>
 
 G_BEGIN_DECLS
 

@@ -1,0 +1,66 @@
+/* The parameters of the synthesis: names, units, ranges and defaults, for programs and people. */
+#ifndef FLUIDY_PARAMS_H
+#define FLUIDY_PARAMS_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+
+G_BEGIN_DECLS
+
+typedef enum FlParamType {
+    FL_PARAM_INT,
+    FL_PARAM_FLOAT,
+    FL_PARAM_BOOL, /**< written on or off; true, yes, 1, false, no, 0 are read as well */
+    FL_PARAM_LIST, /**< one to eight integers with commas between, such as "6,4" */
+} FlParamType;
+
+/** What is known of a parameter; all strings are static. */
+typedef struct FlParamInfo {
+    const char *name; /**< with dashes, as on the command line and in config files: "w-temp" */
+    FlParamType type;
+    const char *unit;                /**< "px", "frames", …; "" for a plain number */
+    double min, max;                 /**< inclusive; of each item for a list; 0 and 1 for a bool */
+    const char *preset_default;      /**< the default, as fl_params_set() reads it */
+    const char *preset_fluidymation; /**< as published by Fluidymation, 2021, table 1 */
+    const char *preset_thesis;       /**< as published by the thesis behind it, 2021, section 4.5 */
+    const char *help;                /**< one line, no full stop */
+} FlParamInfo;
+
+FL_API int fl_param_count(void);
+
+/** index is 0 … fl_param_count() - 1; the order is the documentation's. */
+FL_API const FlParamInfo *fl_param_info(int index);
+
+/** Returns: the index of the parameter of this name; -1 if there is none. '_' is read as '-'. */
+FL_API int fl_param_find(const char *name);
+
+/** A value for each parameter. */
+typedef struct FlParams FlParams;
+
+/** Returns: the defaults, to be freed with fl_params_free(). */
+FL_API FlParams *fl_params_new(void);
+
+FL_API FlParams *fl_params_copy(const FlParams *params);
+
+FL_API void fl_params_free(FlParams *params); // NULL is fine
+
+/** Sets all parameters to a preset: "default", "fluidymation" or "thesis". FL_ERROR_USAGE. */
+FL_API bool fl_params_preset(FlParams *params, const char *preset, GError **error);
+
+/**
+ * Sets one parameter from text; decimal point is '.', whatever the locale.
+ *
+ * Returns: false with FL_ERROR_USAGE, which names the parameter, the text and the range or the
+ * nearest known name; params is then unchanged.
+ */
+FL_API bool fl_params_set(FlParams *params, const char *name, const char *value, GError **error);
+
+/** Returns: the value as fl_params_set() reads it, to be freed with g_free(); NULL: no such name.
+ */
+FL_API char *fl_params_get(const FlParams *params, const char *name);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlParams, fl_params_free)
+
+G_END_DECLS
+
+#endif

@@ -1,0 +1,54 @@
+#include "base/suggest.h"
+
+#include <glib.h>
+#include <limits.h>
+#include <string.h>
+
+#define LONGEST 63
+
+static char folded(char c)
+{
+    return c == '_' ? '-' : g_ascii_tolower(c);
+}
+
+/* The optimal string alignment distance: three rows of the usual table suffice. */
+int fl_edit_distance(const char *a, const char *b)
+{
+    const size_t a_bytes = strlen(a), b_bytes = strlen(b);
+    if (a_bytes > LONGEST || b_bytes > LONGEST)
+        return INT_MAX;
+    int rows[3][LONGEST + 1] = {0};
+    int *before = rows[0], *above = rows[1], *row = rows[2];
+    for (size_t j = 0; j <= b_bytes; j++)
+        above[j] = (int)j;
+    for (size_t i = 1; i <= a_bytes; i++) {
+        row[0] = (int)i;
+        for (size_t j = 1; j <= b_bytes; j++) {
+            const char ca = folded(a[i - 1]), cb = folded(b[j - 1]);
+            row[j] = MIN(MIN(above[j], row[j - 1]) + 1, above[j - 1] + (ca != cb));
+            if (i > 1 && j > 1 && ca == folded(b[j - 2]) && folded(a[i - 2]) == cb)
+                row[j] = MIN(row[j], before[j - 2] + 1);
+        }
+        int *const spare = before;
+        before = above, above = row, row = spare;
+    }
+    return above[b_bytes];
+}
+
+const char *fl_suggest(const char *word, const char *const *words)
+{
+    const char *nearest = NULL;
+    int least = INT_MAX;
+    for (; *words; words++) {
+        const int distance = fl_edit_distance(word, *words);
+        if (distance < least && distance <= MAX(1, (int)strlen(*words) / 3))
+            least = distance, nearest = *words;
+    }
+    return nearest;
+}
+
+char *fl_did_you_mean(const char *word, const char *const *words)
+{
+    const char *nearest = fl_suggest(word, words);
+    return nearest ? g_strdup_printf("; did you mean “%s”?", nearest) : g_strdup("");
+}

@@ -1,0 +1,27 @@
+/* "Did you mean": the known word that is nearest to one that was mistyped. */
+#ifndef FLUIDY_BASE_SUGGEST_H
+#define FLUIDY_BASE_SUGGEST_H
+
+/**
+ * Letters to insert, delete, replace or swap with their neighbour to turn `a` into `b`.
+ *
+ * Case does not count, and '-' equals '_'. Bytes are letters. Each word may have 63 at most; a
+ * longer one is far from everything (INT_MAX).
+ */
+int fl_edit_distance(const char *a, const char *b);
+
+/**
+ * The word of the NULL-terminated list `words` that is nearest to `word`, the first of equals.
+ *
+ * Returns: an element of `words`; NULL if every one differs in more than a third of its letters.
+ */
+const char *fl_suggest(const char *word, const char *const *words);
+
+/**
+ * The tail of an error message: "; did you mean “w-temp”?", or "" when nothing is near.
+ *
+ * Returns: to be freed with g_free(); never NULL.
+ */
+char *fl_did_you_mean(const char *word, const char *const *words);
+
+#endif

@@ -1,0 +1,303 @@
+#include "params/params.h"
+
+#include "base/suggest.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+enum {
+#define FL_PARAM(type, field, ...) PARAM_##field,
+#include "params/params.def"
+#undef FL_PARAM
+    N_PARAMS
+};
+
+static const size_t offsets[N_PARAMS] = {
+#define FL_PARAM(type, field, ...) offsetof(FlParams, field),
+#include "params/params.def"
+#undef FL_PARAM
+};
+
+/* A list stands in params.def as a string; numbers stand there as themselves. */
+#define TEXT_INT(value) #value
+#define TEXT_FLOAT(value) #value
+#define TEXT_BOOL(value) ((value) ? "on" : "off")
+#define TEXT_LIST(value) value
+
+static FlParamInfo infos[N_PARAMS] = {
+#define FL_PARAM(type, field, unit, min, max, preset_default, fluidymation, thesis, help)          \
+    {#field,                                                                                       \
+     FL_PARAM_##type,                                                                              \
+     unit,                                                                                         \
+     min,                                                                                          \
+     max,                                                                                          \
+     TEXT_##type(preset_default),                                                                  \
+     TEXT_##type(fluidymation),                                                                    \
+     TEXT_##type(thesis),                                                                          \
+     help},
+#include "params/params.def"
+#undef FL_PARAM
+};
+
+static const char *names[N_PARAMS + 1];
+
+const char *const fl_preset_names[] = {"default", "fluidymation", "thesis", NULL};
+
+/* The preprocessor knows fields only; the options have dashes. */
+static const FlParamInfo *table(void)
+{
+    static gsize ready;
+    if (g_once_init_enter(&ready)) {
+        for (int i = 0; i < N_PARAMS; i++) {
+            g_autofree char *name = g_strdelimit(g_strdup(infos[i].name), "_", '-');
+            infos[i].name = names[i] = g_intern_string(name);
+        }
+        g_once_init_leave(&ready, 1);
+    }
+    return infos;
+}
+
+int fl_param_count(void)
+{
+    return N_PARAMS;
+}
+
+const FlParamInfo *fl_param_info(int index)
+{
+    g_assert(index >= 0 && index < N_PARAMS);
+    return &table()[index];
+}
+
+const char *const *fl_param_names(void)
+{
+    table();
+    return names;
+}
+
+int fl_param_find(const char *name)
+{
+    g_autofree char *dashed = g_strdelimit(g_strdup(name), "_", '-');
+    for (int i = 0; i < N_PARAMS; i++)
+        if (strcmp(table()[i].name, dashed) == 0)
+            return i;
+    return -1;
+}
+
+/** A value of any type, before it is known to fit. */
+typedef union Value {
+    int i;
+    float f;
+    bool b;
+    FlIntList list;
+} Value;
+
+static bool parse_number(const char *text, double *number)
+{
+    char *end = NULL;
+    errno = 0;
+    *number = g_ascii_strtod(text, &end);
+    return end != text && *end == '\0' && isfinite(*number);
+}
+
+static bool parse_integer(const char *text, const FlParamInfo *info, int *number)
+{
+    double value = 0;
+    if (!parse_number(text, &value) || value != floor(value) || value < info->min ||
+        value > info->max)
+        return false;
+    *number = (int)value;
+    return true;
+}
+
+static bool parse_bool(const char *text, bool *value)
+{
+    static const char *const words[] = {"off", "on", "false", "true", "no", "yes", "0", "1"};
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+        if (g_ascii_strcasecmp(text, words[i]) == 0) {
+            *value = i % 2;
+            return true;
+        }
+    return false;
+}
+
+static bool parse_list(const char *text, const FlParamInfo *info, FlIntList *list)
+{
+    g_auto(GStrv) items = g_strsplit(text, ",", -1);
+    const guint n = g_strv_length(items);
+    if (n < 1 || n > FL_LIST_LONGEST)
+        return false;
+    *list = (FlIntList){.n = (int)n};
+    for (guint i = 0; i < n; i++)
+        if (!parse_integer(g_strstrip(items[i]), info, &list->value[i]))
+            return false;
+    return true;
+}
+
+static bool parse(const FlParamInfo *info, const char *text, Value *value)
+{
+    double number = 0;
+    switch (info->type) {
+    case FL_PARAM_INT:
+        return parse_integer(text, info, &value->i);
+    case FL_PARAM_FLOAT:
+        if (!parse_number(text, &number) || number < info->min || number > info->max)
+            return false;
+        value->f = (float)number;
+        return true;
+    case FL_PARAM_BOOL:
+        return parse_bool(text, &value->b);
+    case FL_PARAM_LIST:
+        return parse_list(text, info, &value->list);
+    }
+    g_assert_not_reached();
+}
+
+/** "an integer from 0 to 1000 frames", for messages. */
+static char *expectation(const FlParamInfo *info)
+{
+    static const char *const kinds[] = {"an integer", "a number", "on or off",
+                                        "one to eight integers with commas between, each"};
+    if (info->type == FL_PARAM_BOOL)
+        return g_strdup(kinds[info->type]);
+    return g_strdup_printf("%s from %g to %g%s%s", kinds[info->type], info->min, info->max,
+                           *info->unit ? " " : "", info->unit);
+}
+
+static bool read_value(const char *name, const char *text, int *index, Value *value, GError **error)
+{
+    *index = fl_param_find(name);
+    if (*index < 0) {
+        g_autofree char *hint = fl_did_you_mean(name, fl_param_names());
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no parameter “%s”%s", name, hint);
+        return false;
+    }
+    const FlParamInfo *info = fl_param_info(*index);
+    if (!parse(info, text, value)) {
+        g_autofree char *expected = expectation(info);
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not %s", info->name, text,
+                    expected);
+        return false;
+    }
+    return true;
+}
+
+bool fl_params_check(const char *name, const char *value, GError **error)
+{
+    int index = 0;
+    Value parsed;
+    return read_value(name, value, &index, &parsed, error);
+}
+
+static void store(FlParams *params, int index, const Value *value)
+{
+    void *const field = (char *)params + offsets[index];
+    switch (infos[index].type) {
+    case FL_PARAM_INT:
+        *(int *)field = value->i;
+        break;
+    case FL_PARAM_FLOAT:
+        *(float *)field = value->f;
+        break;
+    case FL_PARAM_BOOL:
+        *(bool *)field = value->b;
+        break;
+    case FL_PARAM_LIST:
+        *(FlIntList *)field = value->list;
+        break;
+    }
+}
+
+bool fl_params_set(FlParams *params, const char *name, const char *value, GError **error)
+{
+    int index = 0;
+    Value parsed;
+    if (!read_value(name, value, &index, &parsed, error))
+        return false;
+    store(params, index, &parsed);
+    return true;
+}
+
+static char *list_text(const FlIntList *list)
+{
+    GString *text = g_string_new(NULL);
+    for (int i = 0; i < list->n; i++)
+        g_string_append_printf(text, "%s%d", i ? "," : "", list->value[i]);
+    return g_string_free(text, FALSE);
+}
+
+char *fl_params_get(const FlParams *params, const char *name)
+{
+    const int index = fl_param_find(name);
+    if (index < 0)
+        return NULL;
+    const void *const field = (const char *)params + offsets[index];
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    switch (infos[index].type) {
+    case FL_PARAM_INT:
+        return g_strdup_printf("%d", *(const int *)field);
+    case FL_PARAM_FLOAT: // nine digits give a float back
+        return g_strdup(g_ascii_formatd(text, sizeof text, "%.9g", *(const float *)field));
+    case FL_PARAM_BOOL:
+        return g_strdup(*(const bool *)field ? "on" : "off");
+    case FL_PARAM_LIST:
+        return list_text(field);
+    }
+    g_assert_not_reached();
+}
+
+static const char *preset_text(const FlParamInfo *info, int preset)
+{
+    const char *const texts[] = {info->preset_default, info->preset_fluidymation,
+                                 info->preset_thesis};
+    return texts[preset];
+}
+
+static void set_preset(FlParams *params, int preset)
+{
+    for (int i = 0; i < N_PARAMS; i++) {
+        Value value;
+        const FlParamInfo *info = fl_param_info(i);
+        if (!parse(info, preset_text(info, preset), &value))
+            g_error("params.def: %s: the %s value is out of range", info->name,
+                    fl_preset_names[preset]);
+        store(params, i, &value);
+    }
+}
+
+void fl_params_defaults(FlParams *params)
+{
+    set_preset(params, 0);
+}
+
+bool fl_params_preset(FlParams *params, const char *preset, GError **error)
+{
+    for (int i = 0; fl_preset_names[i]; i++)
+        if (strcmp(fl_preset_names[i], preset) == 0) {
+            set_preset(params, i);
+            return true;
+        }
+    g_autofree char *hint = fl_did_you_mean(preset, fl_preset_names);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "there is no preset “%s”; the presets are default, fluidymation, thesis%s", preset,
+                hint);
+    return false;
+}
+
+FlParams *fl_params_new(void)
+{
+    FlParams *params = g_new0(FlParams, 1);
+    fl_params_defaults(params);
+    return params;
+}
+
+FlParams *fl_params_copy(const FlParams *params)
+{
+    return g_memdup2(params, sizeof *params);
+}
+
+void fl_params_free(FlParams *params)
+{
+    g_free(params);
+}

@@ -1,0 +1,44 @@
+/* The parameters of the synthesis as a plain struct, made from params.def. */
+#ifndef FLUIDY_PARAMS_PARAMS_H
+#define FLUIDY_PARAMS_PARAMS_H
+
+#include <fluidy/params.h>
+
+#define FL_LIST_LONGEST 8
+
+/** A value per pyramid level, the coarsest first; the last goes for all finer levels. n >= 1. */
+typedef struct FlIntList {
+    int n;
+    int value[FL_LIST_LONGEST];
+} FlIntList;
+
+#define FL_C_TYPE_INT int
+#define FL_C_TYPE_FLOAT float
+#define FL_C_TYPE_BOOL bool
+#define FL_C_TYPE_LIST FlIntList
+
+/** Fields, units and ranges are those of params.def. */
+struct FlParams {
+#define FL_PARAM(type, field, ...) FL_C_TYPE_##type field;
+#include "params/params.def"
+#undef FL_PARAM
+};
+
+void fl_params_defaults(FlParams *params);
+
+/** The value for a level `from_coarsest` steps finer than the coarsest; >= 0. */
+static inline int fl_list_at(const FlIntList *list, int from_coarsest)
+{
+    return list->value[from_coarsest < list->n ? from_coarsest : list->n - 1];
+}
+
+/** Checks a value without keeping it. Errors as fl_params_set(). */
+bool fl_params_check(const char *name, const char *value, GError **error);
+
+/** The names of all parameters, NULL-terminated; static storage. For suggestions. */
+const char *const *fl_param_names(void);
+
+/** The names of the presets, NULL-terminated; static storage. */
+extern const char *const fl_preset_names[];
+
+#endif
