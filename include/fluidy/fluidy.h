@@ -4,6 +4,7 @@
 
 #include <fluidy/error.h>
 #include <fluidy/params.h>
+#include <fluidy/render.h>
 
 G_BEGIN_DECLS
 

@@ -1,9 +1,8 @@
 #include "params/params.h"
 
 #include "base/suggest.h"
+#include "params/text.h"
 
-#include <errno.h>
-#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -93,35 +92,6 @@ typedef union Value {
     FlIntList list;
 } Value;
 
-static bool parse_number(const char *text, double *number)
-{
-    char *end = NULL;
-    errno = 0;
-    *number = g_ascii_strtod(text, &end);
-    return end != text && *end == '\0' && isfinite(*number);
-}
-
-static bool parse_integer(const char *text, const FlParamInfo *info, int *number)
-{
-    double value = 0;
-    if (!parse_number(text, &value) || value != floor(value) || value < info->min ||
-        value > info->max)
-        return false;
-    *number = (int)value;
-    return true;
-}
-
-static bool parse_bool(const char *text, bool *value)
-{
-    static const char *const words[] = {"off", "on", "false", "true", "no", "yes", "0", "1"};
-    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
-        if (g_ascii_strcasecmp(text, words[i]) == 0) {
-            *value = i % 2;
-            return true;
-        }
-    return false;
-}
-
 static bool parse_list(const char *text, const FlParamInfo *info, FlIntList *list)
 {
     g_auto(GStrv) items = g_strsplit(text, ",", -1);
@@ -130,7 +100,7 @@ static bool parse_list(const char *text, const FlParamInfo *info, FlIntList *lis
         return false;
     *list = (FlIntList){.n = (int)n};
     for (guint i = 0; i < n; i++)
-        if (!parse_integer(g_strstrip(items[i]), info, &list->value[i]))
+        if (!fl_text_integer(g_strstrip(items[i]), info->min, info->max, &list->value[i]))
             return false;
     return true;
 }
@@ -140,14 +110,14 @@ static bool parse(const FlParamInfo *info, const char *text, Value *value)
     double number = 0;
     switch (info->type) {
     case FL_PARAM_INT:
-        return parse_integer(text, info, &value->i);
+        return fl_text_integer(text, info->min, info->max, &value->i);
     case FL_PARAM_FLOAT:
-        if (!parse_number(text, &number) || number < info->min || number > info->max)
+        if (!fl_text_number(text, &number) || number < info->min || number > info->max)
             return false;
         value->f = (float)number;
         return true;
     case FL_PARAM_BOOL:
-        return parse_bool(text, &value->b);
+        return fl_text_bool(text, &value->b);
     case FL_PARAM_LIST:
         return parse_list(text, info, &value->list);
     }

@@ -1,0 +1,117 @@
+/* Paint a drawing: the whole job, from SVG frames to painted frames. */
+#ifndef FLUIDY_RENDER_H
+#define FLUIDY_RENDER_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+G_BEGIN_DECLS
+
+/** What to do about a gap in the frame numbers. */
+typedef enum FlMissing {
+    FL_MISSING_UNSET, /**< as the config says, else as FL_MISSING_ERROR */
+    FL_MISSING_ERROR, /**< FL_ERROR_INPUT, which lists them */
+    FL_MISSING_HOLD,  /**< the frame before stands still */
+    FL_MISSING_SKIP,  /**< no output for them */
+} FlMissing;
+
+/** What makes leaves of different frames one region. */
+typedef enum FlRegionKey {
+    FL_KEY_UNSET, /**< as the config says, else as FL_KEY_AUTO */
+    FL_KEY_AUTO,  /**< the layer label without frame numbers, and the paint; else by overlap */
+    FL_KEY_FILL,  /**< the computed paint alone */
+    FL_KEY_ID,    /**< the leaf's id */
+    FL_KEY_CLASS, /**< the leaf's class */
+    FL_KEY_LABEL, /**< the layer label alone */
+    FL_KEY_TREE,  /**< the place in the document tree */
+} FlRegionKey;
+
+/** What to do about output files that exist. */
+typedef enum FlOverwrite {
+    FL_OVERWRITE_REFUSE, /**< FL_ERROR_EXISTS before anything is painted */
+    FL_OVERWRITE_YES,    /**< replace them, each at the moment its successor is whole */
+    FL_OVERWRITE_KEEP,   /**< leave them; write only those that are not there */
+} FlOverwrite;
+
+/** What a region is painted with; everything not set is as the config says, else the default. */
+typedef struct FlSetting {
+    const char *region; /**< a region's name; NULL: every region */
+    const char *name;   /**< a key of a [region] section: "style", "tint", "w-temp", … */
+    const char *value;  /**< as in a config file; paths are relative to the working directory */
+} FlSetting;
+
+/** How far a render is. */
+typedef struct FlProgress {
+    const char *stage;  /**< "read", "guides", "paint", "compose"; static */
+    const char *region; /**< the region's name; NULL: all of them */
+    int region_index;   /**< from 0; -1: all of them */
+    int n_regions;      /**< that are painted; 0: not known yet */
+    int frame;          /**< the frame's number, as in its file name */
+    int done, total;    /**< frames of this stage and region; total 0: not known yet */
+    double share;       /**< of the whole render, 0..1 */
+    double elapsed_s;   /**< seconds since the start */
+    double frame_s;     /**< seconds that the last frame of this stage took; 0: none yet */
+    double remaining_s; /**< estimate for the rest; negative: not known yet */
+} FlProgress;
+
+/**
+ * Everything a render is told. A zeroed struct asks for all defaults; inputs are required.
+ * What is not said here is as the config says.
+ *
+ * Strings belong to the caller and must stay until fl_render() returns. Paths and patterns are
+ * relative to the working directory. A pattern has one frame number, written %d, %04d or ####.
+ */
+typedef struct FlRenderOptions {
+    /* What is read. */
+    const char *const
+        *inputs;        /**< NULL-terminated list of patterns, globs, SVG files or one folder */
+    const char *frames; /**< "1001-1096", "1-96x2", "1,5,9"; NULL: all that are found */
+    FlMissing missing;
+    const char *canvas; /**< "WxH" or "WxH+X+Y" in px, for SVGs without a size; NULL: theirs */
+    const char *flow;   /**< pattern of flow files; may hold {region}; NULL: made from the masks */
+    FlRegionKey key;
+    bool strict; /**< a warning about an SVG is an error: FL_ERROR_INPUT */
+
+    /* How it is painted. */
+    const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: none */
+    const FlSetting *settings; /**< win over the config's; in this order, the last wins */
+    size_t n_settings;
+    const char *only_region; /**< paint this one alone, over nothing; NULL: all */
+    uint64_t seed; /**< same input, options and seed: same bytes; 0: the config's, else 1 */
+
+    /* What is written. */
+    const char *output; /**< pattern; NULL: the config's, else "fluidy/NAME_%04d.png", NAME from the
+                           input */
+    const char *layers; /**< pattern with {region}: one RGBA file per region too; NULL: none */
+    const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
+    int width, height;      /**< px; 0: from the other, by the drawing's aspect; both 0: scale */
+    double scale;           /**< px of output per px of the drawing; 0: 1 */
+    double dpi;             /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
+    double fps;             /**< frames per second of the film, for the exemplar's speed; 0: 24 */
+    FlOverwrite overwrite;
+    const char *stats; /**< JSON lines about every frame, region and level; NULL: none */
+    const char
+        *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: none */
+
+    /* How it runs. */
+    int threads; /**< 0: one per processor. The bytes do not depend on it */
+    /** Called after every frame of a stage, from the calling thread; false stops the render with
+     *  FL_ERROR_INTERRUPTED. NULL: nothing is called. */
+    bool (*progress)(const FlProgress *progress, void *data);
+    /** Called with one line about something odd in the input; the message has no line feed. */
+    void (*warning)(const char *message, void *data);
+    void *data; /**< handed to progress and warning */
+} FlRenderOptions;
+
+/**
+ * Renders. Files appear whole, under their final name, one after the other.
+ *
+ * Returns: false with an error of FL_ERROR; the frames written so far stay.
+ */
+FL_API bool fl_render(const FlRenderOptions *options, GError **error);
+
+G_END_DECLS
+
+#endif

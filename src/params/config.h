@@ -1,0 +1,65 @@
+/* The config file of a film, fluidy-svg.conf(5): rules that say which leaves are painted how. */
+#ifndef FLUIDY_PARAMS_CONFIG_H
+#define FLUIDY_PARAMS_CONFIG_H
+
+#include "params/treatment.h"
+#include <fluidy/render.h>
+
+/**
+ * A [region NAME] section. It holds for a leaf if every list that is not NULL has an item for it.
+ *
+ * Lists are NULL-terminated; items are globs of * and ? and [], compared without case. A fill or
+ * stroke is "#rrggbb", "any", "none", "gradient", "image" or a glob.
+ */
+typedef struct FlRule {
+    char *name;   // of the section; unique in the file
+    int line;     // of the section, from 1
+    char **match; // the region's own name or its layer label
+    char **match_fill, **match_stroke;
+    char **match_id, **match_class, **match_label;
+    char **match_layer;  // any of the names in the leaf's label path
+    int match_tolerance; // levels per channel that a fill or stroke may be off, 0..255
+    FlWishes wishes;
+} FlRule;
+
+/** A config in memory. Rules are in the order of the file: the first that holds for a leaf wins. */
+typedef struct FlConfig {
+    char *path;                                           // for messages; NULL: no file
+    char *background, *canvas, *frames, *output, *layers; // of [project]; NULL: not said
+    double fps;                                           // 0: not said
+    int64_t seed;                                         // -1: not said
+    int missing, key;                                     // FlMissing, FlRegionKey; -1: not said
+    FlWishes defaults;                                    // of [defaults]
+    int n_rules;
+    FlRule *rules;
+} FlConfig;
+
+/**
+ * Reads a file; path NULL gives a config that says nothing.
+ *
+ * Returns: to be freed with fl_config_free(); NULL with FL_ERROR_USAGE (or FL_ERROR_INPUT, if the
+ * file cannot be read), which names file, line, what was wrong and what was expected.
+ */
+FlConfig *fl_config_load(const char *path, GError **error);
+
+void fl_config_free(FlConfig *config); // NULL is fine
+
+/**
+ * Fills `options` where it says nothing with what [project] says, else with the default; output
+ * stays NULL if neither says one. The strings stay the config's.
+ */
+void fl_config_complete(const FlConfig *config, FlRenderOptions *options);
+
+/**
+ * Decides how a region is painted: defaults, then [defaults], then the rule, then the options'
+ * settings for every region, then those for this one.
+ *
+ * rule is an index into config->rules; -1: none holds. `treatment` is not initialised before.
+ * Returns: false with FL_ERROR_USAGE about an option's setting; nothing is then to be cleared.
+ */
+bool fl_config_treatment(const FlConfig *config, int rule, const char *region,
+                         const FlRenderOptions *options, FlTreatment *treatment, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlConfig, fl_config_free)
+
+#endif

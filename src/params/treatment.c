@@ -1,0 +1,202 @@
+#include "params/treatment.h"
+
+#include "base/suggest.h"
+#include "params/text.h"
+
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef enum Kind { CHOICE, BOOL, INT, STYLE, TINT, NAME } Kind;
+
+static const struct Setting {
+    const char *field;
+    Kind kind;
+    size_t offset;
+    const char *form, *preset;
+} settings[] = {
+#define FL_SETTING(type, field, form, preset, help)                                                \
+    {#field, type, offsetof(FlTreatment, field), form, preset},
+#include "params/settings.def"
+#undef FL_SETTING
+};
+
+/* Words that are keys as well, but no field of their own. */
+static const char *const other_keys[] = {"preset", "scale"};
+
+const char *const *fl_treatment_keys(void)
+{
+    static const char **keys;
+    static gsize ready;
+    if (g_once_init_enter(&ready)) {
+        const int n_params = fl_param_count();
+        keys =
+            g_new0(const char *, G_N_ELEMENTS(settings) + G_N_ELEMENTS(other_keys) + n_params + 1);
+        int n = 0;
+        for (size_t i = 0; i < G_N_ELEMENTS(settings); i++) {
+            g_autofree char *key = g_strdelimit(g_strdup(settings[i].field), "_", '-');
+            keys[n++] = g_intern_string(key);
+        }
+        for (size_t i = 0; i < G_N_ELEMENTS(other_keys); i++)
+            keys[n++] = other_keys[i];
+        for (int i = 0; i < n_params; i++)
+            keys[n++] = fl_param_info(i)->name;
+        g_once_init_leave(&ready, 1);
+    }
+    return keys;
+}
+
+static const struct Setting *find_setting(const char *key)
+{
+    g_autofree char *field = g_strdelimit(g_strdup(key), "-", '_');
+    for (size_t i = 0; i < G_N_ELEMENTS(settings); i++)
+        if (strcmp(settings[i].field, field) == 0)
+            return &settings[i];
+    return NULL;
+}
+
+static void replace_string(char **field, char *value)
+{
+    g_free(*field);
+    *field = value;
+}
+
+/* A name stays a name, unless there is a folder of that name beside the config. */
+static char *style_path(const char *value, const char *folder)
+{
+    if (!*value)
+        return NULL;
+    if (!folder || g_path_is_absolute(value))
+        return g_strdup(value);
+    g_autofree char *path = g_build_filename(folder, value, NULL);
+    const bool is_path = strchr(value, '/') || g_file_test(path, G_FILE_TEST_IS_DIR);
+    return is_path ? g_steal_pointer(&path) : g_strdup(value);
+}
+
+static bool set_tint(FlTint *tint, const char *value)
+{
+    int mode = 0;
+    if (fl_text_choice(value, "fill|keep", &mode)) {
+        *tint = (FlTint){.mode = mode ? FL_TINT_KEEP : FL_TINT_FILL};
+        return true;
+    }
+    if (!fl_text_colour(value, tint->rgb))
+        return false;
+    tint->mode = FL_TINT_COLOUR;
+    return true;
+}
+
+static bool set_int(int *field, const char *form, const char *value)
+{
+    int min = 0, max = 0;
+    return sscanf(form, "%d-%d", &min, &max) == 2 && fl_text_integer(value, min, max, field);
+}
+
+static bool store(FlTreatment *treatment, const struct Setting *setting, const char *value,
+                  const char *folder)
+{
+    void *const field = (char *)treatment + setting->offset;
+    switch (setting->kind) {
+    case CHOICE:
+        return fl_text_choice(value, setting->form, field);
+    case BOOL:
+        return fl_text_bool(value, field);
+    case INT:
+        return set_int(field, setting->form, value);
+    case TINT:
+        return set_tint(field, value);
+    case STYLE:
+        replace_string(field, style_path(value, folder));
+        return true;
+    case NAME:
+        replace_string(field, *value ? g_strdup(value) : NULL);
+        return true;
+    }
+    g_assert_not_reached();
+}
+
+/* "knockout or glaze", "fill, keep or #RRGGBB", "1 to 1000", with the nearest word if there is one.
+ */
+static void set_form_error(const struct Setting *setting, const char *value, GError **error)
+{
+    g_autofree char *name = g_strdelimit(g_strdup(setting->field), "_", '-');
+    g_auto(GStrv) words = g_strsplit(setting->form, setting->kind == INT ? "-" : "|", -1);
+    const guint n = g_strv_length(words);
+    g_autofree char *hint =
+        setting->kind == INT ? g_strdup("") : fl_did_you_mean(value, (const char *const *)words);
+    g_autofree char *last = g_steal_pointer(&words[n - 1]);
+    g_autofree char *others = g_strjoinv(", ", words);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not %s%s %s %s%s", name, value,
+                setting->kind == INT ? "an integer from " : "", others,
+                setting->kind == INT ? "to" : "or", last, hint);
+}
+
+static bool is_scale(const char *key)
+{
+    return strcmp(key, "scale") == 0;
+}
+
+bool fl_treatment_set(FlTreatment *treatment, const char *key, const char *value,
+                      const char *folder, GError **error)
+{
+    if (strcmp(key, "preset") == 0)
+        return fl_params_preset(&treatment->params, value, error);
+    const struct Setting *setting = find_setting(key);
+    if (setting) {
+        const bool fits = store(treatment, setting, value, folder);
+        if (!fits)
+            set_form_error(setting, value, error);
+        return fits;
+    }
+    if (is_scale(key) || fl_param_find(key) >= 0)
+        return fl_params_set(&treatment->params, is_scale(key) ? "style-scale" : key, value, error);
+    g_autofree char *hint = fl_did_you_mean(key, fl_treatment_keys());
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no key “%s”%s", key, hint);
+    return false;
+}
+
+void fl_treatment_init(FlTreatment *treatment)
+{
+    *treatment = (FlTreatment){0};
+    fl_params_defaults(&treatment->params);
+    for (size_t i = 0; i < G_N_ELEMENTS(settings); i++)
+        if (!store(treatment, &settings[i], settings[i].preset, NULL))
+            g_error("settings.def: %s: the default is not one of its values", settings[i].field);
+}
+
+void fl_treatment_clear(FlTreatment *treatment)
+{
+    g_clear_pointer(&treatment->style, g_free);
+    g_clear_pointer(&treatment->merge_with, g_free);
+}
+
+bool fl_wishes_add(FlWishes *wishes, const char *key, const char *value, GError **error)
+{
+    g_auto(FlTreatment) trial;
+    fl_treatment_init(&trial);
+    if (!fl_treatment_set(&trial, key, value, wishes->folder, error))
+        return false;
+    wishes->wish = g_renew(FlWish, wishes->wish, wishes->n + 1);
+    wishes->wish[wishes->n++] = (FlWish){g_strdup(key), g_strdup(value)};
+    return true;
+}
+
+void fl_wishes_clear(FlWishes *wishes)
+{
+    for (int i = 0; i < wishes->n; i++) {
+        g_free(wishes->wish[i].key);
+        g_free(wishes->wish[i].value);
+    }
+    g_free(wishes->wish);
+    g_free(wishes->folder);
+    *wishes = (FlWishes){0};
+}
+
+void fl_wishes_apply(const FlWishes *wishes, FlTreatment *treatment)
+{
+    for (int presets = 1; presets >= 0; presets--)
+        for (int i = 0; i < wishes->n; i++)
+            if ((strcmp(wishes->wish[i].key, "preset") == 0) == presets)
+                fl_treatment_set(treatment, wishes->wish[i].key, wishes->wish[i].value,
+                                 wishes->folder, NULL);
+}

@@ -1,0 +1,74 @@
+/* How a region is treated: what the config and the command line say of it, and what that comes to.
+ */
+#ifndef FLUIDY_PARAMS_TREATMENT_H
+#define FLUIDY_PARAMS_TREATMENT_H
+
+#include "params/params.h"
+#include <stdint.h>
+
+typedef enum FlDetail { FL_DETAIL_DRAFT, FL_DETAIL_NORMAL, FL_DETAIL_FINE } FlDetail;
+
+/** What a region does to the regions below it. */
+typedef enum FlStacking { FL_STACKING_KNOCKOUT, FL_STACKING_GLAZE } FlStacking;
+
+/** What becomes of the drawing's strokes. */
+typedef enum FlStroke { FL_STROKE_KEEP, FL_STROKE_PAINT, FL_STROKE_DROP } FlStroke;
+
+typedef struct FlTint {
+    enum { FL_TINT_FILL, FL_TINT_KEEP, FL_TINT_COLOUR } mode;
+    uint8_t rgb[3]; // of FL_TINT_COLOUR
+} FlTint;
+
+/** How one region is painted, everything decided. */
+typedef struct FlTreatment {
+    char *style; // a name or a path; NULL: nobody said
+    FlTint tint;
+    FlDetail detail;
+    FlStacking stacking;
+    FlStroke stroke;
+    int hold; // frames, 1..1000
+    bool reverse;
+    bool passthrough;
+    char *merge_with; // another region's name; NULL: none
+    FlParams params;
+} FlTreatment;
+
+void fl_treatment_init(FlTreatment *treatment); // the defaults
+void fl_treatment_clear(FlTreatment *treatment);
+
+/**
+ * Sets one thing from text: a key of settings.def or params.def, or "preset". "scale" is read as
+ * style-scale.
+ *
+ * A relative path of a style is taken from `folder`; NULL: the working directory.
+ * Returns: false with FL_ERROR_USAGE; the treatment is then unchanged.
+ */
+bool fl_treatment_set(FlTreatment *treatment, const char *key, const char *value,
+                      const char *folder, GError **error);
+
+/** All keys that fl_treatment_set() knows, NULL-terminated; static storage. */
+const char *const *fl_treatment_keys(void);
+
+/** What is said of a region: keys and values in the order of the file, known to be right. */
+typedef struct FlWish {
+    char *key, *value;
+} FlWish;
+
+typedef struct FlWishes {
+    int n;
+    FlWish *wish;
+    char *folder; // relative paths start here; NULL: the working directory
+} FlWishes;
+
+/** Adds a copy; a key said twice keeps its last value. Errors as fl_treatment_set(). */
+bool fl_wishes_add(FlWishes *wishes, const char *key, const char *value, GError **error);
+
+void fl_wishes_clear(FlWishes *wishes);
+
+/** Applies them all, a preset first. They were checked when they were added. */
+void fl_wishes_apply(const FlWishes *wishes, FlTreatment *treatment);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlTreatment, fl_treatment_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlWishes, fl_wishes_clear)
+
+#endif
