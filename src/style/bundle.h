@@ -14,19 +14,23 @@ typedef enum FlMedium {
 
 /** A style in memory. Frames follow each other without padding, rows from the top. */
 typedef struct FlStyle {
-    char *name;          // the folder's name, or style.ini's
-    char *path;          // the folder
+    char *name; // the folder's name, or style.ini's
+    char *path; // the folder
     char *author, *licence;
     int width, height, n_frames;
-    float fps;           // frames per second, > 0
-    float border_px;     // width of the boundary region b [F21 §3.1], px of the style, > 0
-    float scale;         // px of the target per px of the style that suits it, > 0
-    uint8_t paper[3];    // sRGB of the bare paper
+    float fps;        // frames per second, > 0
+    float border_px;  // width of the boundary region b [F21 §3.1], px of the style, > 0
+    float scale;      // px of the target per px of the style that suits it, > 0
+    uint8_t paper[3]; // sRGB of the bare paper
     FlMedium medium;
-    uint8_t *rgb;        // n_frames * height * width * 3, sRGB
-    uint8_t *mask;       // n_frames * height * width, coverage 0..255
-    float *flow;         // n_frames * height * width * 2, px per frame; NULL: construct it
+    uint8_t *rgb;     // n_frames * height * width * 3, sRGB
+    uint8_t *mask;    // n_frames * height * width, coverage 0..255
+    float *flow;      // n_frames * height * width * 2, px per frame; NULL: construct it
+    unsigned guessed; // FlGuess bits (manifest.h): what the folder does not say itself
 } FlStyle;
+
+/** Pixels of all frames together that a style may have: 64 frames of 800x600. */
+#define FL_STYLE_MAX_PIXELS (64 * 800 * 600)
 
 /** Reads a folder. Returns: NULL with FL_ERROR_STYLE, naming the file and what was expected. */
 FlStyle *fl_style_load(const char *folder, GError **error);

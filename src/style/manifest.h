@@ -1,0 +1,33 @@
+/* style.ini: what the artist says about a style, with the line it is said on. */
+#ifndef FLUIDY_STYLE_MANIFEST_H
+#define FLUIDY_STYLE_MANIFEST_H
+
+#include "style/bundle.h"
+
+/** Values that style.ini did not give and that have to be found from the pictures. */
+typedef enum FlGuess {
+    FL_GUESS_BORDER = 1 << 0,
+    FL_GUESS_PAPER = 1 << 1,
+    FL_GUESS_MASK = 1 << 2,
+    FL_GUESS_FLOW = 1 << 3,
+    FL_GUESS_FPS = 1 << 4,
+} FlGuess;
+
+/**
+ * Reads the [style] section of the key file at `path` into the fields it names, and takes what is
+ * given out of style->guessed.
+ *
+ * Returns: false with FL_ERROR_STYLE set: file, line, what was wrong and what was expected.
+ */
+bool fl_manifest_read(FlStyle *style, const char *path, GError **error);
+
+/** The text of a style.ini that says what the style holds. Guessed values are left out. */
+char *fl_manifest_text(const FlStyle *style);
+
+/** Reads #rgb or #rrggbb. */
+bool fl_colour_parse(const char *text, uint8_t rgb[3]);
+
+/** Reads all of `text` as a finite number with a decimal point, in any locale. */
+bool fl_number_parse(const char *text, double *value);
+
+#endif

@@ -1,0 +1,165 @@
+#include "style/picture.h"
+
+#include "base/alloc.h"
+
+#include <errno.h>
+#include <math.h>
+#include <png.h>
+#include <stdio.h>
+#include <string.h>
+
+FlPicture *fl_picture_new(int width, int height, GError **error)
+{
+    if (width < 1 || height < 1 || (int64_t)width * height > FL_PICTURE_MAX_PIXELS) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                    "a picture of %dx%d pixels: expected 1 to %d million pixels", width, height,
+                    FL_PICTURE_MAX_PIXELS / 1000000);
+        return NULL;
+    }
+    uint8_t *rgba = fl_alloc((size_t)width * height, 4, "a picture", error);
+    if (!rgba)
+        return NULL;
+    FlPicture *picture = g_new(FlPicture, 1);
+    *picture = (FlPicture){width, height, rgba};
+    return picture;
+}
+
+void fl_picture_free(FlPicture *picture)
+{
+    if (!picture)
+        return;
+    free(picture->rgba);
+    g_free(picture);
+}
+
+FlPicture *fl_picture_read_png(const char *path, GError **error)
+{
+    png_image png = {.version = PNG_IMAGE_VERSION};
+    if (!png_image_begin_read_from_file(&png, path)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as a PNG picture: %s",
+                    path, png.message);
+        return NULL;
+    }
+    png.format = PNG_FORMAT_RGBA;
+    png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB; // else 16-bit files without gAMA count as linear
+    g_autoptr(FlPicture) picture = png.width > INT32_MAX || png.height > INT32_MAX
+                                       ? NULL
+                                       : fl_picture_new((int)png.width, (int)png.height, error);
+    if (!picture)
+        g_prefix_error(error, "%s: ", path);
+    else if (!png_image_finish_read(&png, NULL, picture->rgba, 0, NULL)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: a damaged PNG picture: %s", path,
+                    png.message);
+        g_clear_pointer(&picture, fl_picture_free);
+    }
+    png_image_free(&png);
+    return g_steal_pointer(&picture);
+}
+
+bool fl_png_write(const char *path, const uint8_t *data, int width, int height, int channels,
+                  GError **error)
+{
+    const png_uint_32 formats[] = {0, PNG_FORMAT_GRAY, 0, PNG_FORMAT_RGB, PNG_FORMAT_RGBA};
+    png_image png = {.version = PNG_IMAGE_VERSION,
+                     .width = (png_uint_32)width,
+                     .height = (png_uint_32)height,
+                     .format = formats[channels]};
+    // Filters and level as the library's own default: the file is written once and kept.
+    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
+    g_autofree uint8_t *file = g_try_malloc(bytes);
+    if (!file || !png_image_write_to_memory(&png, file, &bytes, 0, data, 0, NULL)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot make the PNG picture: %s", path,
+                    file ? png.message : "not enough memory");
+        return false;
+    }
+    g_autoptr(GError) below = NULL;
+    if (!g_file_set_contents_full(path, (const char *)file, (gssize)bytes,
+                                  G_FILE_SET_CONTENTS_CONSISTENT | G_FILE_SET_CONTENTS_DURABLE,
+                                  0644, &below)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
+                    below->message);
+        return false;
+    }
+    return true;
+}
+
+FlPicture *fl_picture_crop(const FlPicture *picture, int x, int y, int width, int height,
+                           GError **error)
+{
+    g_assert(x >= 0 && y >= 0 && width <= picture->width - x && height <= picture->height - y);
+    g_autoptr(FlPicture) part = fl_picture_new(width, height, error);
+    for (int row = 0; part && row < height; row++)
+        memcpy(part->rgba + (size_t)row * width * 4,
+               picture->rgba + ((size_t)(y + row) * picture->width + x) * 4, (size_t)width * 4);
+    return g_steal_pointer(&part);
+}
+
+/* The samples that make one output sample along an axis: at most `count` from `first` on. */
+typedef struct Taps {
+    int first, count;
+    float *weight;
+} Taps;
+
+/* A tent as wide as the coarser of the two grids: area means when smaller, bilinear when larger. */
+static void make_taps(Taps *taps, int from, int to)
+{
+    const double step = (double)from / to, radius = step > 1 ? step : 1;
+    for (int i = 0; i < to; i++) {
+        const double centre = (i + 0.5) * step - 0.5;
+        const int first = MAX(0, (int)ceil(centre - radius));
+        const int last = MIN(from - 1, (int)floor(centre + radius));
+        double sum = 0;
+        taps[i] = (Taps){first, last - first + 1, g_new(float, last - first + 1)};
+        for (int j = first; j <= last; j++)
+            sum += 1 - fabs(j - centre) / radius;
+        for (int j = first; j <= last; j++)
+            taps[i].weight[j - first] = (float)((1 - fabs(j - centre) / radius) / sum);
+    }
+}
+
+static void free_taps(Taps *taps, int n)
+{
+    for (int i = 0; i < n; i++)
+        g_free(taps[i].weight);
+    g_free(taps);
+}
+
+/* Colours are weighted by alpha, so that transparent pixels lend no colour. */
+static void sum_row(float *sum, const uint8_t *row, const Taps *columns, int width, float weight)
+{
+    for (int x = 0; x < width; x++)
+        for (int j = 0; j < columns[x].count; j++) {
+            const uint8_t *p = row + (size_t)(columns[x].first + j) * 4;
+            const float alpha = weight * columns[x].weight[j] * p[3];
+            for (int c = 0; c < 3; c++)
+                sum[4 * x + c] += alpha * p[c];
+            sum[4 * x + 3] += alpha;
+        }
+}
+
+FlPicture *fl_picture_resize(const FlPicture *picture, int width, int height, GError **error)
+{
+    g_autoptr(FlPicture) resized = fl_picture_new(width, height, error);
+    g_autofree float *sum = resized ? fl_alloc(width, 4 * sizeof(float), "a row", error) : NULL;
+    if (!sum)
+        return NULL;
+    Taps *columns = g_new(Taps, width), *rows = g_new(Taps, height);
+    make_taps(columns, picture->width, width);
+    make_taps(rows, picture->height, height);
+    for (int y = 0; y < height; y++) {
+        uint8_t *out = resized->rgba + (size_t)y * width * 4;
+        memset(sum, 0, (size_t)width * 4 * sizeof(float));
+        for (int j = 0; j < rows[y].count; j++)
+            sum_row(sum, picture->rgba + (size_t)(rows[y].first + j) * picture->width * 4, columns,
+                    width, rows[y].weight[j]);
+        for (int x = 0; x < width; x++, out += 4) {
+            const float alpha = sum[4 * x + 3];
+            for (int c = 0; c < 3; c++)
+                out[c] = alpha > 0 ? (uint8_t)(sum[4 * x + c] / alpha + 0.5f) : 0;
+            out[3] = (uint8_t)(alpha + 0.5f);
+        }
+    }
+    free_taps(columns, width);
+    free_taps(rows, height);
+    return g_steal_pointer(&resized);
+}

@@ -1,0 +1,46 @@
+/* A picture in memory, and PNG files in and out. */
+#ifndef FLUIDY_STYLE_PICTURE_H
+#define FLUIDY_STYLE_PICTURE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** Pixels of one picture that may be read; a larger file is FL_ERROR_LIMIT. */
+#define FL_PICTURE_MAX_PIXELS (100 * 1000 * 1000)
+
+/** Straight sRGBA, 8 bits a channel, rows from the top without padding. */
+typedef struct FlPicture {
+    int width, height; // pixels, >= 1
+    uint8_t *rgba;     // height * width * 4
+} FlPicture;
+
+/** A transparent black picture. Returns: NULL with FL_ERROR_NO_MEMORY, or FL_ERROR_LIMIT. */
+FlPicture *fl_picture_new(int width, int height, GError **error);
+
+/**
+ * Reads a PNG file of any kind: 8 or 16 bit, grey, palette, with or without alpha.
+ *
+ * Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT set, naming the file.
+ */
+FlPicture *fl_picture_read_png(const char *path, GError **error);
+
+/**
+ * Writes `channels` (1 grey, 3 sRGB, 4 sRGBA) interleaved bytes as a PNG file: a temporary name
+ * first, synced and renamed. Returns: false with FL_ERROR_OUTPUT set, naming the file.
+ */
+bool fl_png_write(const char *path, const uint8_t *data, int width, int height, int channels,
+                  GError **error);
+
+/** The part of a picture from column x, row y on; it must lie within the picture. */
+FlPicture *fl_picture_crop(const FlPicture *picture, int x, int y, int width, int height,
+                           GError **error);
+
+/** The picture in another size: means of areas when smaller, bilinear when larger. */
+FlPicture *fl_picture_resize(const FlPicture *picture, int width, int height, GError **error);
+
+void fl_picture_free(FlPicture *picture); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPicture, fl_picture_free)
+
+#endif
