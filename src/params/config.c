@@ -138,8 +138,11 @@ static bool set_fps(Reader *reader, const char *value, GError **error)
 
 static bool set_seed(Reader *reader, const char *value, GError **error)
 {
-    return g_ascii_string_to_unsigned(value, 10, 1, G_MAXUINT64, &reader->config->seed, NULL) ||
-           usage(error, "seed: “%s” is not an integer from 1 on", value);
+    guint64 seed = 0;
+    if (!g_ascii_string_to_unsigned(value, 10, 1, G_MAXUINT64, &seed, NULL))
+        return usage(error, "seed: “%s” is not an integer from 1 on", value);
+    reader->config->seed = seed;
+    return true;
 }
 
 static bool set_missing(Reader *reader, const char *value, GError **error)
@@ -226,7 +229,7 @@ static bool unknown_key(const char *section, const char *key, bool matches, GErr
     for (size_t i = 0; matches && i < G_N_ELEMENTS(match_keys); i++)
         g_ptr_array_add(known, (gpointer)match_keys[i].key);
     if (matches)
-        g_ptr_array_add(known, "match-tolerance");
+        g_ptr_array_add(known, (gpointer) "match-tolerance");
     g_ptr_array_add(known, NULL);
     g_autofree char *hint = fl_did_you_mean(key, (const char *const *)known->pdata);
     return usage(error, "[%s] has no key “%s”%s", section, key, hint);

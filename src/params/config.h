@@ -27,9 +27,10 @@ typedef struct FlConfig {
     char *path;                                           // for messages; NULL: no file
     char *background, *canvas, *frames, *output, *layers; // of [project]; NULL: not said
     double fps;                                           // 0: not said
-    int64_t seed;                                         // -1: not said
-    int missing, key;                                     // FlMissing, FlRegionKey; -1: not said
-    FlWishes defaults;                                    // of [defaults]
+    uint64_t seed;                                        // 0: not said
+    FlMissing missing;
+    FlRegionKey key;
+    FlWishes defaults; // of [defaults]
     int n_rules;
     FlRule *rules;
 } FlConfig;

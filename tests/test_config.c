@@ -1,0 +1,166 @@
+/* The config file: what it says, and what it says about its mistakes. */
+#include "params/config.h"
+
+#include <glib/gstdio.h>
+#include <string.h>
+
+static char *folder; // of this run's files
+
+static char *write_config(const char *text)
+{
+    char *path = g_build_filename(folder, "shot.conf", NULL);
+    g_assert_true(g_file_set_contents(path, text, -1, NULL));
+    return path;
+}
+
+static FlConfig *load(const char *text)
+{
+    g_autofree char *path = write_config(text);
+    g_autoptr(GError) error = NULL;
+    FlConfig *config = fl_config_load(path, &error);
+    g_assert_no_error(error);
+    return config;
+}
+
+/* Every mistake is reported with the file's name, its line and what was expected. */
+static void a_mistake_is_named_with_file_and_line(void)
+{
+    static const struct {
+        const char *text, *message; // without the file's name
+    } cases[] = {
+        {"x = 1", ":1: “x” stands above the first section; [project], [defaults] or [region NAME] "
+                  "must come first"},
+        {"[projcet]", ":1: there is no section [projcet]; did you mean “project”?"},
+        {"[hair]", ":1: there is no section [hair]; sections are [project], [defaults] and [region "
+                   "NAME]"},
+        {"[region]", ":1: a region section needs a name: [region NAME]"},
+        {"[project", ":1: “[project” is not a section: “]” must end it"},
+        {"[project]\nversion = 2", ":2: version: “2” is not 1, the only version there is"},
+        {"[project]\nbakground = none", ":2: [project] has no key “bakground”; did you mean "
+                                        "“background”?"},
+        {"[project]\nbackground = #12", ":2: background: “#12” is not a colour #RRGGBB"},
+        {"[project]\nfps = 0", ":2: fps: “0” is not a number above 0, 1000 at most"},
+        {"[project]\nseed = -3", ":2: seed: “-3” is not an integer from 1 on"},
+        {"[project]\nmissing = drop", ":2: missing: “drop” is not error, hold or skip"},
+        {"[defaults]\n\n# styles\nstyel = 01", ":4: [defaults] has no key “styel”; did you mean "
+                                               "“style”?"},
+        {"[defaults]\nstyle 01", ":2: “style 01” is neither “[section]” nor “key = value”"},
+        {"[defaults]\nstyle =", ":2: style: the value is missing"},
+        {"[defaults]\nmatch = *", ":2: [defaults] has no key “match”"},
+        {"[defaults]\nw-temp = 2000", ":2: w-temp: “2000” is not a number from 0 to 1000"},
+        {"[defaults]\nw-temp = 2\nw-temp = 3", ":3: w-temp was said already in this section"},
+        {"[defaults]\n[defaults]", ":2: [defaults] was there already"},
+        {"[region a]\nmatch = *\n[region b]\n[region a]", ":4: [region a] was there already, in "
+                                                          "line 1"},
+        {"[region a]\nmatch-fil = #fff", ":2: [region] has no key “match-fil”; did you mean "
+                                         "“match-fill”?"},
+        {"[region a]\nmatch-fill = #ff", ":2: match-fill: “#ff” is not a colour #RRGGBB"},
+        {"[region a]\nmatch-id = ;", ":2: match-id: a name or a glob is missing; * matches all"},
+        {"[region a]\nmatch-tolerance = 256", ":2: match-tolerance: “256” is not an integer from 0 "
+                                              "to 255 levels"},
+        {"[region a]\nstacking = glase", ":2: stacking: “glase” is not knockout or glaze; did you "
+                                         "mean “glaze”?"},
+        {"[region a]\ntint = blue", ":2: tint: “blue” is not fill, keep or #RRGGBB"},
+        {"[region a]\nhold = 0", ":2: hold: “0” is not an integer from 1 to 1000"},
+        {"[region a]\npreset = thesi", ":2: there is no preset “thesi”; the presets are default, "
+                                       "fluidymation, thesis; did you mean “thesis”?"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *path = write_config(cases[i].text);
+        g_autofree char *expected = g_strconcat(path, cases[i].message, NULL);
+        g_autoptr(GError) error = NULL;
+        g_assert_null(fl_config_load(path, &error));
+        g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+        g_assert_cmpstr(error->message, ==, expected);
+    }
+}
+
+static void a_file_that_cannot_be_read_is_named(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_null(fl_config_load("/nowhere/shot.conf", &error));
+    g_assert_true(g_str_has_prefix(error->message, "/nowhere/shot.conf: cannot read the file: "));
+    g_clear_error(&error);
+    g_autofree char *path = write_config("[project]\nbackground = \xff\xfe");
+    g_assert_null(fl_config_load(path, &error));
+    g_assert_true(g_str_has_suffix(error->message, ": the file is not UTF-8 text"));
+}
+
+static void the_example_of_the_manual_is_read(void)
+{
+    g_autoptr(FlConfig) config = load("\xef\xbb\xbf[project]\r\nversion = 1\r\n"
+                                      "background = paper.png\n[defaults]\nstyle = 01\n"
+                                      "[region hair]\nmatch-layer = Character\n"
+                                      "match-fill = #3b2a1a; #2e1f12;\nstyle = paints/05\n"
+                                      "tint = #3b2a1a\nborder = 24\n"
+                                      "[ region line-art ]\nmatch-stroke = any\nmatch-fill = none\n"
+                                      "passthrough = true\n");
+    g_autofree char *paper = g_build_filename(folder, "paper.png", NULL);
+    g_assert_cmpstr(config->background, ==, paper);
+    g_assert_cmpint(config->n_rules, ==, 2);
+    const FlRule *hair = &config->rules[0];
+    g_assert_cmpstr(hair->name, ==, "hair");
+    g_assert_cmpint(hair->line, ==, 6);
+    g_assert_cmpstr(hair->match_layer[0], ==, "Character");
+    g_assert_cmpuint(g_strv_length(hair->match_fill), ==, 2);
+    g_assert_cmpstr(hair->match_fill[1], ==, "#2e1f12");
+    g_assert_null(hair->match_id);
+    g_assert_cmpstr(config->rules[1].name, ==, "line-art");
+}
+
+static void later_words_win_and_a_preset_goes_first(void)
+{
+    g_autoptr(FlConfig) config = load("[defaults]\nstyle = 02\nw-temp = 7\n"
+                                      "[region hair]\nw-temp = 3\nstyle = ./mine\n"
+                                      "[region skin]\nw-uni = 9\npreset = thesis\n");
+    const FlSetting settings[] = {{"hair", "w-dir", "5"}, {NULL, "hold", "2"}};
+    const FlRenderOptions options = {.settings = settings, .n_settings = 2};
+
+    g_auto(FlTreatment) hair = {0}, skin = {0}, other = {0};
+    g_assert_true(fl_config_treatment(config, 0, "hair", &options, &hair, NULL));
+    g_assert_true(fl_config_treatment(config, 1, "skin", &options, &skin, NULL));
+    g_assert_true(fl_config_treatment(config, -1, "sky", &options, &other, NULL));
+
+    g_autofree char *mine = g_build_filename(folder, "./mine", NULL);
+    g_assert_cmpstr(hair.style, ==, mine);
+    g_assert_cmpfloat(hair.params.w_temp, ==, 3);
+    g_assert_cmpfloat(hair.params.w_dir, ==, 5);
+    g_assert_cmpint(hair.hold, ==, 2);
+    g_assert_cmpstr(skin.style, ==, "02");
+    g_assert_cmpfloat(skin.params.w_temp, ==, 1); // the preset sets all, the default's 7 as well
+    g_assert_cmpfloat(skin.params.w_uni, ==, 9);
+    g_assert_cmpfloat(other.params.w_temp, ==, 7);
+    g_assert_cmpint(other.hold, ==, 2);
+}
+
+static void the_options_win_over_the_project(void)
+{
+    g_autoptr(FlConfig) config = load("[project]\nfps = 12\nseed = 5\nmissing = hold\nkey = id\n"
+                                      "background = #ffffff\n");
+    FlRenderOptions options = {.fps = 30, .missing = FL_MISSING_ERROR};
+    fl_config_complete(config, &options);
+    g_assert_cmpfloat(options.fps, ==, 30);
+    g_assert_cmpint(options.missing, ==, FL_MISSING_ERROR);
+    g_assert_cmpuint(options.seed, ==, 5);
+    g_assert_cmpint(options.key, ==, FL_KEY_ID);
+    g_assert_cmpstr(options.background, ==, "#ffffff");
+    g_assert_null(options.output);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    folder = g_dir_make_tmp("fluidy-config-XXXXXX", NULL);
+#define CASE(test) g_test_add_func("/config/" #test, test)
+    CASE(a_mistake_is_named_with_file_and_line);
+    CASE(a_file_that_cannot_be_read_is_named);
+    CASE(the_example_of_the_manual_is_read);
+    CASE(later_words_win_and_a_preset_goes_first);
+    CASE(the_options_win_over_the_project);
+    const int status = g_test_run();
+    g_autofree char *path = g_build_filename(folder, "shot.conf", NULL);
+    g_unlink(path);
+    g_rmdir(folder);
+    g_free(folder);
+    return status;
+}
