@@ -102,7 +102,10 @@ typedef struct FlRenderOptions {
     bool (*progress)(const FlProgress *progress, void *data);
     /** Called with one line about something odd in the input; the message has no line feed. */
     void (*warning)(const char *message, void *data);
-    void *data; /**< handed to progress and warning */
+    /** Called with one line about what was done, such as where the frames are. */
+    void (*note)(const char *message, void *data);
+    bool verbose; /**< notes about decisions as well: which style, size and flow a region got */
+    void *data;   /**< handed to progress, warning and note */
 } FlRenderOptions;
 
 /**

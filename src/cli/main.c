@@ -1,9 +1,102 @@
 /* fluidy-svg: words and exit codes only; the work is in the library. */
-#include <fluidy/fluidy.h>
+#include "args.h"
+#include "progress.h"
+
+#include <locale.h>
+#include <signal.h>
 #include <stdio.h>
 
-int main(void)
+enum { DONE = 0, FAILURE = 1, USAGE = 2, INTERRUPTED = 75 };
+
+static volatile sig_atomic_t stop;
+
+/* The first signal asks; a second one finds the default action again. */
+static void on_signal(int number)
 {
-    printf("fluidy-svg %s\n", fl_version());
-    return 0;
+    stop = 1;
+    signal(number, SIG_DFL);
+}
+
+typedef struct Voice {
+    FlMeter meter;
+    bool quiet;
+} Voice;
+
+static bool show_progress(const FlProgress *progress, void *data)
+{
+    Voice *voice = data;
+    fl_meter_show(&voice->meter, progress);
+    return !stop;
+}
+
+static void show_warning(const char *message, void *data)
+{
+    Voice *voice = data;
+    if (voice->quiet)
+        return;
+    fl_meter_hide(&voice->meter);
+    fprintf(stderr, "fluidy-svg: warning: %s\n", message);
+}
+
+static void show_note(const char *message, void *data)
+{
+    Voice *voice = data;
+    if (voice->quiet)
+        return;
+    fl_meter_hide(&voice->meter);
+    fprintf(stderr, "fluidy-svg: %s\n", message);
+}
+
+/* One line, whatever the library below wrote. */
+static int fail(const GError *error)
+{
+    g_autofree char *line = g_strstrip(g_strdup(error->message));
+    fprintf(stderr, "fluidy-svg: %s\n", g_strdelimit(line, "\r\n", ' '));
+    if (g_error_matches(error, FL_ERROR, FL_ERROR_INTERRUPTED))
+        return INTERRUPTED;
+    const bool usage =
+        error->domain == G_OPTION_ERROR || g_error_matches(error, FL_ERROR, FL_ERROR_USAGE);
+    return usage ? USAGE : FAILURE;
+}
+
+static int render(FlArgs *args)
+{
+    Voice voice = {.quiet = args->quiet};
+    fl_meter_init(&voice.meter, args->quiet ? FL_PROGRESS_NONE : args->progress, stderr);
+    args->render.progress = show_progress;
+    args->render.warning = show_warning;
+    args->render.note = show_note;
+    args->render.data = &voice;
+    signal(SIGINT, on_signal);
+    signal(SIGTERM, on_signal);
+    g_autoptr(GError) error = NULL;
+    const bool fine = fl_render(&args->render, &error);
+    fl_meter_hide(&voice.meter);
+    return fine ? DONE : fail(error);
+}
+
+static int print(const char *text)
+{
+    const bool written = fputs(text, stdout) >= 0 && fflush(stdout) == 0;
+    return written ? DONE : FAILURE;
+}
+
+static int run(FlArgs *args)
+{
+    if (args->task == FL_TASK_RENDER)
+        return render(args);
+    g_autofree char *text = args->task == FL_TASK_VERSION
+                                ? g_strdup_printf("fluidy-svg %s\n", fl_version())
+                                : fl_args_help(args->task == FL_TASK_HELP_ALL);
+    return print(text);
+}
+
+int main(int argc, char **argv)
+{
+    setlocale(LC_CTYPE, "");
+    FlArgs args;
+    g_autoptr(GError) error = NULL;
+    const int status = fl_args_parse(&args, argc, argv, &error) ? run(&args) : fail(error);
+    fl_args_clear(&args);
+    return status;
 }

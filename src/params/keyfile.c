@@ -1,19 +1,22 @@
 #include "params/keyfile.h"
 
-#include <gio/gio.h>
+#include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #define LARGEST_BYTES (1 << 20)
 
 static char *load(const char *path, GError **error)
 {
-    g_autoptr(GFile) file = g_file_new_for_path(path);
-    g_autoptr(GFileInputStream) stream = g_file_read(file, NULL, error);
-    g_autofree char *text = g_malloc(LARGEST_BYTES + 1);
-    gsize bytes = 0;
-    if (!stream || !g_input_stream_read_all(G_INPUT_STREAM(stream), text, LARGEST_BYTES + 1, &bytes,
-                                            NULL, error)) {
-        g_prefix_error(error, "%s: cannot read the file: ", path);
+    g_autofree char *text = g_malloc(LARGEST_BYTES + 2);
+    FILE *file = fopen(path, "rbe");
+    const size_t bytes = file ? fread(text, 1, LARGEST_BYTES + 1, file) : 0;
+    const int problem = !file || ferror(file) ? errno : 0;
+    if (file)
+        fclose(file);
+    if (problem) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read the file: %s", path,
+                    g_strerror(problem));
         return NULL;
     }
     if (bytes > LARGEST_BYTES) {

@@ -1,0 +1,341 @@
+#include "args.h"
+
+#include "base/suggest.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+/* An option whose value is a number in FlArgs; the range is inclusive. */
+static const struct Number {
+    const char *name;
+    size_t offset;
+    enum { AS_INT, AS_DOUBLE, AS_UINT64 } type;
+    double min, max;
+    const char *unit;
+} numbers[] = {
+    {"--width", offsetof(FlArgs, render.width), AS_INT, 1, 32767, " px"},
+    {"--height", offsetof(FlArgs, render.height), AS_INT, 1, 32767, " px"},
+    {"--scale", offsetof(FlArgs, render.scale), AS_DOUBLE, 0.001, 1000, ""},
+    {"--dpi", offsetof(FlArgs, render.dpi), AS_DOUBLE, 1, 100000, " px per inch"},
+    {"--fps", offsetof(FlArgs, render.fps), AS_DOUBLE, 0.01, 1000, " frames per second"},
+    {"--seed", offsetof(FlArgs, render.seed), AS_UINT64, 1, 9007199254740991.0, ""},
+    {"--threads", offsetof(FlArgs, render.threads), AS_INT, 1, 1024, ""},
+};
+
+/* An option whose value is a word; the words have the values first, first + 1, … of an enum. */
+static const struct Choice {
+    const char *name;
+    size_t offset;
+    int first;
+    const char *words[8];
+} choices[] = {
+    {"--missing", offsetof(FlArgs, render.missing), FL_MISSING_ERROR, {"error", "hold", "skip"}},
+    {"--key",
+     offsetof(FlArgs, render.key),
+     FL_KEY_AUTO,
+     {"auto", "fill", "id", "class", "label", "tree"}},
+    {"--progress",
+     offsetof(FlArgs, progress),
+     FL_PROGRESS_AUTO,
+     {"auto", "bar", "plain", "json", "none"}},
+};
+
+static const struct Path {
+    const char *name;
+    size_t offset;
+} paths[] = {
+    {"--config", offsetof(FlArgs, render.config)},
+    {"--frames", offsetof(FlArgs, render.frames)},
+    {"--canvas", offsetof(FlArgs, render.canvas)},
+    {"--flow", offsetof(FlArgs, render.flow)},
+    {"--output", offsetof(FlArgs, render.output)},
+    {"--layers", offsetof(FlArgs, render.layers)},
+    {"--background", offsetof(FlArgs, render.background)},
+    {"--region", offsetof(FlArgs, render.only_region)},
+    {"--stats", offsetof(FlArgs, render.stats)},
+    {"--dump", offsetof(FlArgs, render.dump)},
+};
+
+/* GOption hands a short option to its callback as "-W": these are the long ones. */
+static const char *const shorts[][2] = {
+    {"-s", "--style"}, {"-c", "--config"}, {"-f", "--frames"},     {"-o", "--output"},
+    {"-W", "--width"}, {"-H", "--height"}, {"-b", "--background"}, {"-j", "--threads"},
+};
+
+static const char *long_name(const char *name)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(shorts); i++)
+        if (strcmp(shorts[i][0], name) == 0)
+            return shorts[i][1];
+    return name;
+}
+
+static const char *keep(FlArgs *args, const char *text)
+{
+    char *copy = g_strdup(text);
+    g_ptr_array_add(args->strings, copy);
+    return copy;
+}
+
+static gboolean read_number(const char *name, const char *value, gpointer data, GError **error)
+{
+    const struct Number *n = numbers;
+    while (strcmp(n->name, long_name(name)) != 0)
+        n++;
+    char *end = NULL;
+    const double number = g_ascii_strtod(value, &end);
+    const bool whole = n->type == AS_DOUBLE || number == floor(number);
+    if (end == value || *end || !(number >= n->min && number <= n->max) || !whole) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not %s from %g to %.16g%s", name,
+                    value, n->type == AS_DOUBLE ? "a number" : "an integer", n->min, n->max,
+                    n->unit);
+        return FALSE;
+    }
+    void *const field = (char *)data + n->offset;
+    if (n->type == AS_INT)
+        *(int *)field = (int)number;
+    else if (n->type == AS_DOUBLE)
+        *(double *)field = number;
+    else
+        *(uint64_t *)field = (uint64_t)number;
+    return TRUE;
+}
+
+static gboolean read_choice(const char *name, const char *value, gpointer data, GError **error)
+{
+    const struct Choice *c = choices;
+    while (strcmp(c->name, name) != 0)
+        c++;
+    for (int i = 0; c->words[i]; i++)
+        if (strcmp(c->words[i], value) == 0) {
+            *(int *)((char *)data + c->offset) = c->first + i;
+            return TRUE;
+        }
+    g_autofree char *words = g_strjoinv(", ", (char **)c->words);
+    g_autofree char *hint = fl_did_you_mean(value, c->words);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not one of %s%s", name, value, words,
+                hint);
+    return FALSE;
+}
+
+static gboolean read_path(const char *name, const char *value, gpointer data, GError **error)
+{
+    const struct Path *p = paths;
+    while (strcmp(p->name, long_name(name)) != 0)
+        p++;
+    if (!*value) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: the value is missing", name);
+        return FALSE;
+    }
+    *(const char **)((char *)data + p->offset) = keep(data, value);
+    return TRUE;
+}
+
+/* What a [region] section could say as well; the library checks it, as it checks the config. */
+static gboolean read_setting(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    const FlSetting setting = {.name = keep(args, long_name(name) + 2), .value = keep(args, value)};
+    g_array_append_val(args->settings, setting);
+    return TRUE;
+}
+
+static gboolean read_flag(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    static const struct {
+        const char *name;
+        FlTask task;
+    } tasks[] = {
+        {"-h", FL_TASK_HELP},    {"--help", FL_TASK_HELP},       {"--help-all", FL_TASK_HELP_ALL},
+        {"-V", FL_TASK_VERSION}, {"--version", FL_TASK_VERSION},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(tasks); i++)
+        if (strcmp(tasks[i].name, name) == 0)
+            args->task = tasks[i].task;
+    if (strcmp(name, "-q") == 0 || strcmp(name, "--quiet") == 0)
+        args->quiet = true;
+    if (strcmp(name, "-v") == 0 || strcmp(name, "--verbose") == 0)
+        args->render.verbose = true;
+    if (strcmp(name, "--strict") == 0)
+        args->render.strict = true;
+    return TRUE;
+}
+
+static gboolean read_overwrite(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    const FlOverwrite wanted =
+        strcmp(name, "--no-clobber") == 0 ? FL_OVERWRITE_KEEP : FL_OVERWRITE_YES;
+    if (args->render.overwrite != FL_OVERWRITE_REFUSE && args->render.overwrite != wanted) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "--overwrite and --no-clobber contradict each other");
+        return FALSE;
+    }
+    args->render.overwrite = wanted;
+    return TRUE;
+}
+
+/* ---- the options ------------------------------------------------------------------------- */
+
+#define VALUE(reader) 0, G_OPTION_ARG_CALLBACK, (gpointer)(reader)
+#define FLAG(reader) G_OPTION_FLAG_NO_ARG, G_OPTION_ARG_CALLBACK, (gpointer)(reader)
+#define PLACE(reader) G_OPTION_FLAG_FILENAME, G_OPTION_ARG_CALLBACK, (gpointer)(reader)
+
+static const GOptionEntry common[] = {
+    {"style", 's', PLACE(read_setting), "paint every region with this exemplar", "NAME|DIR"},
+    {"config", 'c', PLACE(read_path), "which region is painted how", "FILE"},
+    {"frames", 'f', VALUE(read_path), "such as 1001-1096, 1-96x2 or 1,5,9 (all)", "RANGE"},
+    {"output", 'o', PLACE(read_path), "painted frames (fluidy/NAME_%04d.png)", "PATTERN"},
+    {"layers", 0, PLACE(read_path), "also one file per {region} and frame", "PATTERN"},
+    {"width", 'W', VALUE(read_number), "width of the output, aspect kept", "PX"},
+    {"height", 'H', VALUE(read_number), "height of the output, aspect kept", "PX"},
+    {"scale", 0, VALUE(read_number), "output pixels per drawing pixel (1)", "FACTOR"},
+    {"background", 'b', PLACE(read_path), "#RRGGBB, none or an image (the paper)", "COLOUR|FILE"},
+    {"fps", 0, VALUE(read_number), "frames per second of the film (24)", "RATE"},
+    {"hold", 0, VALUE(read_setting), "paint every n-th frame; 2: on twos (1)", "N"},
+    {"detail", 0, VALUE(read_setting), "draft, normal or fine (normal)", "WORD"},
+    {"tint", 0, VALUE(read_setting), "fill, keep or #RRGGBB (fill)", "TINT"},
+    {"region", 0, VALUE(read_path), "paint this region alone", "NAME"},
+    {"seed", 0, VALUE(read_number), "same seed, same bytes (1)", "N"},
+    {"overwrite", 'y', FLAG(read_overwrite), "replace files that exist", NULL},
+    {"no-clobber", 0, FLAG(read_overwrite), "keep files that exist, write the others", NULL},
+    {"threads", 'j', VALUE(read_number), "(one per processor)", "N"},
+    {"quiet", 'q', FLAG(read_flag), "errors only", NULL},
+    {"verbose", 'v', FLAG(read_flag), "say what is being done", NULL},
+    {"help", 'h', FLAG(read_flag), "this page", NULL},
+    {"help-all", 0, FLAG(read_flag), "all options", NULL},
+    {"version", 'V', FLAG(read_flag), "name and version", NULL},
+    {NULL},
+};
+
+static const GOptionEntry more[] = {
+    {"missing", 0, VALUE(read_choice), "a gap in the numbers: error, hold or skip (error)", "WORD"},
+    {"canvas", 0, VALUE(read_path), "size of drawings that have none", "WxH[+X+Y]"},
+    {"dpi", 0, VALUE(read_number), "pixels per inch of drawings sized in mm or in (96)", "N"},
+    {"key", 0, VALUE(read_choice),
+     "what makes leaves one region: auto, fill, id, class, label or tree (auto)", "WORD"},
+    {"strict", 0, FLAG(read_flag), "a warning about a drawing is an error", NULL},
+    {"stacking", 0, VALUE(read_setting), "knockout or glaze what lies below (knockout)", "WORD"},
+    {"stroke", 0, VALUE(read_setting), "keep, paint or drop line art (keep)", "WORD"},
+    {"flow", 0, PLACE(read_path), "flow fields instead of those made from the masks", "PATTERN"},
+    {"stats", 0, PLACE(read_path), "JSON lines about every frame, region and level", "FILE"},
+    {"dump", 0, PLACE(read_path), "guides and fields as pictures and raw data", "DIR"},
+    {"progress", 0, VALUE(read_choice), "auto, bar, plain, json or none (auto)", "WORD"},
+    {"preset", 0, VALUE(read_setting),
+     "set all of the parameters below: default, fluidymation or thesis (default)", "WORD"},
+    {NULL},
+};
+
+static char *parameter_help(const FlParamInfo *info)
+{
+    if (info->type == FL_PARAM_BOOL)
+        return g_strdup_printf("%s (%s)", info->help, info->preset_default);
+    return g_strdup_printf("%s (%s; %g to %g%s%s)", info->help, info->preset_default, info->min,
+                           info->max, *info->unit ? " " : "", info->unit);
+}
+
+/* One entry per line of params.def; the strings live as long as the program. */
+static const GOptionEntry *parameter_entries(void)
+{
+    static const char *const values[] = {"N", "X", "on|off", "N,…"};
+    static GOptionEntry *entries;
+    if (entries)
+        return entries;
+    entries = g_new0(GOptionEntry, fl_param_count() + 1);
+    for (int i = 0; i < fl_param_count(); i++) {
+        const FlParamInfo *info = fl_param_info(i);
+        entries[i] = (GOptionEntry){info->name, 0, VALUE(read_setting),
+                                    g_intern_string(parameter_help(info)), values[info->type]};
+    }
+    return entries;
+}
+
+static void add_group(GOptionContext *context, const char *title, const GOptionEntry *entries,
+                      FlArgs *args, bool main)
+{
+    GOptionGroup *group = g_option_group_new(title, title, title, args, NULL);
+    g_option_group_add_entries(group, entries);
+    if (main)
+        g_option_context_set_main_group(context, group);
+    else
+        g_option_context_add_group(context, group);
+}
+
+static GOptionContext *new_context(FlArgs *args)
+{
+    GOptionContext *context = g_option_context_new("INPUT…");
+    g_option_context_set_help_enabled(context, FALSE);
+    g_option_context_set_summary(
+        context, "Paints SVG frames with moving paint. INPUT is walk_%04d.svg, walk_####.svg, a\n"
+                 "quoted glob, a folder or files. --help-all lists more options.");
+    add_group(context, "Options:", common, args, true);
+    add_group(context, "More options:", more, args, false);
+    add_group(context, "Parameters of the synthesis:", parameter_entries(), args, false);
+    return context;
+}
+
+char *fl_args_help(bool all)
+{
+    g_autoptr(GOptionContext) context = new_context(NULL);
+    return g_option_context_get_help(context, !all, NULL);
+}
+
+/* ---- reading ------------------------------------------------------------------------------ */
+
+/* The option that nobody knows: the word of its message that starts with a dash. */
+static void improve_unknown(GError **error)
+{
+    const char *word = strstr((*error)->message, " -");
+    if (!word)
+        return;
+    g_autofree char *unknown = g_strdup(word + 1);
+    *strchrnul(unknown, '=') = '\0';
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    const GOptionEntry *const groups[] = {common, more, parameter_entries()};
+    for (size_t i = 0; i < G_N_ELEMENTS(groups); i++)
+        for (const GOptionEntry *e = groups[i]; e->long_name; e++)
+            g_ptr_array_add(names, (gpointer)e->long_name);
+    g_ptr_array_add(names, NULL);
+    const char *near =
+        fl_suggest(unknown + strspn(unknown, "-"), (const char *const *)names->pdata);
+    g_clear_error(error);
+    if (near)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no option %s; did you mean --%s?",
+                    unknown, near);
+    else
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "there is no option %s; see fluidy-svg --help-all", unknown);
+}
+
+bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
+{
+    *args = (FlArgs){.settings = g_array_new(FALSE, TRUE, sizeof(FlSetting)),
+                     .strings = g_ptr_array_new_with_free_func(g_free)};
+    g_autoptr(GOptionContext) context = new_context(args);
+    args->inputs = g_strdupv(argv); // GOption takes out what it knows
+    GError *problem = NULL;
+    if (!g_option_context_parse_strv(context, &args->inputs, &problem)) {
+        if (g_error_matches(problem, G_OPTION_ERROR, G_OPTION_ERROR_UNKNOWN_OPTION))
+            improve_unknown(&problem);
+        g_propagate_error(error, problem);
+        return false;
+    }
+    args->render.inputs = (const char *const *)args->inputs + 1;
+    args->render.settings = &g_array_index(args->settings, FlSetting, 0);
+    args->render.n_settings = args->settings->len;
+    if (args->task == FL_TASK_RENDER && !args->render.inputs[0]) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "no input; expected SVG frames such as walk_%%04d.svg (see --help)");
+        return false;
+    }
+    return true;
+}
+
+void fl_args_clear(FlArgs *args)
+{
+    g_strfreev(args->inputs);
+    g_array_unref(args->settings);
+    g_ptr_array_unref(args->strings);
+}

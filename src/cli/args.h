@@ -1,0 +1,45 @@
+/* The command line of fluidy-svg as a struct. */
+#ifndef FLUIDY_CLI_ARGS_H
+#define FLUIDY_CLI_ARGS_H
+
+#include <fluidy/fluidy.h>
+
+typedef enum FlTask {
+    FL_TASK_RENDER,
+    FL_TASK_HELP,
+    FL_TASK_HELP_ALL,
+    FL_TASK_VERSION,
+} FlTask;
+
+typedef enum FlProgressMode {
+    FL_PROGRESS_AUTO, // a bar on a terminal, else plain
+    FL_PROGRESS_BAR,
+    FL_PROGRESS_PLAIN,
+    FL_PROGRESS_JSON,
+    FL_PROGRESS_NONE,
+} FlProgressMode;
+
+typedef struct FlArgs {
+    FlTask task;
+    FlRenderOptions render; // its strings belong to this struct
+    FlProgressMode progress;
+    bool quiet; // no warnings, notes or progress
+    char **inputs;
+    GArray *settings;   // FlSetting
+    GPtrArray *strings; // whatever else is owned
+} FlArgs;
+
+/**
+ * Reads the command line. `args` is not initialised before; clear it in any case.
+ *
+ * Returns: false with FL_ERROR_USAGE or G_OPTION_ERROR, one line with a suggestion where one is
+ * near.
+ */
+bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error);
+
+void fl_args_clear(FlArgs *args);
+
+/** The text of --help, or of --help-all; to be freed with g_free(). */
+char *fl_args_help(bool all);
+
+#endif

@@ -1,0 +1,26 @@
+/* How far the render is, on standard error. */
+#ifndef FLUIDY_CLI_PROGRESS_H
+#define FLUIDY_CLI_PROGRESS_H
+
+#include "args.h"
+#include <stdio.h>
+
+typedef struct FlMeter {
+    FILE *stream;
+    FlProgressMode mode; // never FL_PROGRESS_AUTO
+    bool colour;
+    int bar_columns;   // of the bar that stands on the terminal; 0: none does
+    double shown_s;    // when the last was shown, seconds since the start
+    const char *stage; // of the last shown
+    int region_index;
+} FlMeter;
+
+/** Looks at the terminal and $NO_COLOR. */
+void fl_meter_init(FlMeter *meter, FlProgressMode mode, FILE *stream);
+
+void fl_meter_show(FlMeter *meter, const FlProgress *progress);
+
+/** Takes the bar away, so that something else can be printed. */
+void fl_meter_hide(FlMeter *meter);
+
+#endif
