@@ -9,9 +9,10 @@
 /** How the guides are made; every length is in level-0 pixels. */
 typedef struct FlGuideParams {
     float flow_sigma_frames; // temporal Gaussian on the flow, cut at 3 sigma [F21 App. A]; 0: none
-    float dist_sigma_frames; // temporal Gaussian on the distance, the thesis' way [P21 §4.1]; 0: none
-    float still_px;          // slower than this the direction is the outward normal's; px/frame
-    float flow_limit;        // a contour moves at most this share of the larger side in one frame
+    float
+        dist_sigma_frames; // temporal Gaussian on the distance, the thesis' way [P21 §4.1]; 0: none
+    float still_px;        // slower than this the direction is the outward normal's; px/frame
+    float flow_limit;      // a contour moves at most this share of the larger side in one frame
 } FlGuideParams;
 
 /**

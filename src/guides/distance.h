@@ -1,0 +1,24 @@
+/* Sub-pixel signed distance from antialiased coverage. */
+#ifndef FLUIDY_GUIDES_DISTANCE_H
+#define FLUIDY_GUIDES_DISTANCE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/**
+ * Signed distance to the contour in px, positive inside, in linear time.
+ *
+ * The contour is the line at which an edge with this coverage must lie; between full and empty
+ * neighbours it is the border of the pixel, half a pixel off the centres. Beyond the frame the
+ * picture is taken to go on as at its edge, so that frame edges are no contours. Where there is no
+ * contour at all, the distance is width + height, positive where all is inside.
+ *
+ * mask and distance are width * height, row-major; width and height are 1 … 32767. A pixel is
+ * inside from FL_INSIDE on and has a distance >= 0 then, else <= 0.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GError **error);
+
+#endif

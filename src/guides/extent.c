@@ -1,0 +1,87 @@
+#include "guides/extent.h"
+
+#include "guides/guides.h"
+#include <math.h>
+#include <string.h>
+
+enum { SUM_LIMIT = 1 << 30 };
+
+struct FlExtent {
+    int width;
+    FlBox box;    // outside it the sum is 0
+    int32_t *sum; // interleaved, of the frame
+};
+
+int32_t fl_flow_to_fixed(float px)
+{
+    const float clamped = CLAMP(px, -1e5f, 1e5f) * FL_FLOW_ONE;
+    return (int32_t)(clamped < 0.0f ? clamped - 0.5f : clamped + 0.5f);
+}
+
+FlExtent *fl_extent_new(int frame_width, int frame_height, GError **error)
+{
+    g_autoptr(FlExtent) extent = g_new(FlExtent, 1);
+    *extent = (FlExtent){.width = frame_width};
+    extent->sum = g_try_new0(int32_t, 2 * (size_t)frame_width * frame_height);
+    if (extent->sum)
+        return g_steal_pointer(&extent);
+    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                "not enough memory for the motion extents of %dx%d pixels", frame_width,
+                frame_height);
+    return NULL;
+}
+
+void fl_extent_free(FlExtent *extent)
+{
+    if (!extent)
+        return;
+    g_free(extent->sum);
+    g_free(extent);
+}
+
+static bool box_contains(const FlBox *box, int x, int y)
+{
+    return x >= box->x && y >= box->y && x < box->x + box->width && y < box->y + box->height;
+}
+
+/** Empties the sum where the last mask's box is not in the next one's. */
+static void leave_box(FlExtent *extent, const FlBox *next)
+{
+    const FlBox *box = &extent->box;
+    for (int y = box->y; y < box->y + box->height; y++)
+        for (int x = box->x; x < box->x + box->width; x++)
+            if (!box_contains(next, x, y))
+                memset(extent->sum + 2 * (y * (size_t)extent->width + x), 0, 2 * sizeof(int32_t));
+    extent->box = *next;
+}
+
+static int32_t add(int32_t sum, int32_t flow)
+{
+    return CLAMP(sum + flow, -SUM_LIMIT, SUM_LIMIT);
+}
+
+/** sqrt() is correctly rounded, hence the same everywhere. */
+static int32_t norm_of(const int32_t sum[2])
+{
+    const double x = sum[0], y = sum[1];
+    return (int32_t)(sqrt(x * x + y * y) * ((double)FL_EXTENT_ONE / FL_FLOW_ONE) + 0.5);
+}
+
+void fl_extent_step(FlExtent *extent, const FlBox *mask_box, const uint8_t *coverage,
+                    const FlBox *flow_box, const int32_t *flow, int32_t *norm)
+{
+    leave_box(extent, mask_box);
+    for (int y = mask_box->y; y < mask_box->y + mask_box->height; y++)
+        for (int x = mask_box->x; x < mask_box->x + mask_box->width; x++) {
+            int32_t *sum = extent->sum + 2 * (y * (size_t)extent->width + x);
+            if (*coverage++ < FL_INSIDE) {
+                sum[0] = sum[1] = 0;
+            } else if (flow && box_contains(flow_box, x, y)) {
+                const int32_t *f =
+                    flow + 2 * ((y - flow_box->y) * (size_t)flow_box->width + x - flow_box->x);
+                sum[0] = add(sum[0], f[0]);
+                sum[1] = add(sum[1], f[1]);
+            }
+            *norm++ = norm_of(sum);
+        }
+}

@@ -1,0 +1,31 @@
+/* The flow of a mask sequence from the motion of its contour [F21 App. A]. */
+#ifndef FLUIDY_GUIDES_FLOW_H
+#define FLUIDY_GUIDES_FLOW_H
+
+#include "guides/outline.h"
+
+/** One frame with the distance field to take its motion from: its outline's, or a smoothed one. */
+typedef struct FlFlowFrame {
+    const FlOutline *outline; // NULL or empty: nothing is there
+    const float *distance;    // of the frame; unused where nothing is there
+} FlFlowFrame;
+
+/**
+ * Flow of one frame, from the interval before it. A part of the shape that did not exist before, or
+ * not in the same place, takes the interval after it, as the whole first frame does; one that
+ * neither touches stays at rest.
+ *
+ * Where the frame's contour and the other frame's nearest one face opposite ways, the difference of
+ * distances says nothing about normal motion (a thin part has moved by more than its width): these
+ * pixels are left to the diffusion. limit_px bounds the speed. flow is interleaved, 2 * area of the
+ * frame's box. now is not empty; all outlines share one frame size.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set; *moves tells whether any of it is not 0.
+ */
+bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const FlFlowFrame *after,
+                       float limit_px, float *flow, bool *moves, GError **error);
+
+/** Makes outline->normal: outward unit normals on the contour, diffused inward, not normalised. */
+bool fl_outline_normals(FlOutline *outline, GError **error);
+
+#endif

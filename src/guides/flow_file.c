@@ -1,0 +1,126 @@
+#include "guides/flow_file.h"
+
+#include <errno.h>
+#include <gio/gio.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+enum { FLO_HEADER_BYTES = 12 };
+static const float flo_magic = 202021.25f, flo_unknown = 1e9f, most_px = 1e5f;
+
+static bool is_flo(const char *path)
+{
+    return g_str_has_suffix(path, ".flo");
+}
+
+static uint32_t read_u32(const uint8_t *bytes)
+{
+    uint32_t value;
+    memcpy(&value, bytes, sizeof value);
+    return GUINT32_FROM_LE(value);
+}
+
+static void write_u32(uint8_t *bytes, uint32_t value)
+{
+    value = GUINT32_TO_LE(value);
+    memcpy(bytes, &value, sizeof value);
+}
+
+static float float_of_bits(uint32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+
+static uint32_t bits_of_float(float value)
+{
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+static bool check_flo_header(const char *path, const uint8_t *data, size_t bytes, int width,
+                             int height, GError **error)
+{
+    if (bytes < FLO_HEADER_BYTES || float_of_bits(read_u32(data)) != flo_magic) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: not a .flo file: it does not start with PIEH", path);
+        return false;
+    }
+    const int32_t w = (int32_t)read_u32(data + 4), h = (int32_t)read_u32(data + 8);
+    if (w != width || h != height) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: the flow is %dx%d pixels, but the frames are %dx%d", path, w, h, width,
+                    height);
+        return false;
+    }
+    return true;
+}
+
+static bool check_component(const char *path, float value, size_t index, int width, GError **error)
+{
+    if (fabsf(value) <= most_px)
+        return true;
+    const size_t pixel = index / 2;
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                "%s: the flow at column %zu, row %zu is %g, expected a number of at most %g px",
+                path, pixel % width, pixel / width, value, most_px);
+    return false;
+}
+
+bool fl_flow_load(const char *path, int width, int height, float *flow, GError **error)
+{
+    g_autoptr(GError) cause = NULL;
+    g_autoptr(GMappedFile) file = g_mapped_file_new(path, FALSE, &cause);
+    if (!file) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read the flow: %s", path,
+                    cause->message);
+        return false;
+    }
+    const bool flo = is_flo(path);
+    const uint8_t *data = (const uint8_t *)g_mapped_file_get_contents(file);
+    const size_t bytes = g_mapped_file_get_length(file), header = flo ? FLO_HEADER_BYTES : 0;
+    const size_t n = 2 * (size_t)width * height, expected = header + n * sizeof(float);
+    if (flo && !check_flo_header(path, data, bytes, width, height, error))
+        return false;
+    if (bytes != expected) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: the flow has %zu bytes, expected %zu for %dx%d pixels", path, bytes,
+                    expected, width, height);
+        return false;
+    }
+    for (size_t k = 0; k < n; k++) {
+        const float value = float_of_bits(read_u32(data + header + k * sizeof(float)));
+        flow[k] = flo && fabsf(value) > flo_unknown && isfinite(value) ? 0.0f : value;
+        if (!check_component(path, flow[k], k, width, error))
+            return false;
+    }
+    return true;
+}
+
+bool fl_flow_save(const char *path, int width, int height, const float *flow, GError **error)
+{
+    const size_t header = is_flo(path) ? FLO_HEADER_BYTES : 0, n = 2 * (size_t)width * height;
+    g_autofree uint8_t *data = g_try_malloc(header + n * sizeof(float));
+    g_autoptr(GError) cause = NULL;
+    if (!data) {
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to write %s", path);
+        return false;
+    }
+    if (header) {
+        write_u32(data, bits_of_float(flo_magic));
+        write_u32(data + 4, (uint32_t)width);
+        write_u32(data + 8, (uint32_t)height);
+    }
+    for (size_t k = 0; k < n; k++)
+        write_u32(data + header + k * sizeof(float), bits_of_float(flow[k]));
+    if (!g_file_set_contents_full(path, (const char *)data, (gssize)(header + n * sizeof(float)),
+                                  G_FILE_SET_CONTENTS_CONSISTENT, 0666, &cause)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot write the flow: %s", path,
+                    cause->message);
+        return false;
+    }
+    return true;
+}

@@ -1,0 +1,24 @@
+/* Flow fields in files, for whoever has better ones than can be made from masks. */
+#ifndef FLUIDY_GUIDES_FLOW_FILE_H
+#define FLUIDY_GUIDES_FLOW_FILE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+
+/**
+ * Reads a flow field of width * height pixels: interleaved u (right), v (down), px per frame.
+ *
+ * A name that ends in .flo is Middlebury's format: the float 202021.25 ("PIEH"), width and height
+ * as 32-bit integers, then the pairs; components above 1e9 there mean "unknown" and become 0. Any
+ * other name is raw: the pairs alone. All is little-endian, 32-bit floats, row-major.
+ *
+ * Returns: false with FL_ERROR_INPUT set, if the file is missing, has another size or holds a
+ * component that is not a number or beyond 1e5 px; FL_ERROR_NO_MEMORY.
+ */
+bool fl_flow_load(const char *path, int width, int height, float *flow, GError **error);
+
+/** Writes one, in the format that the name asks for, by way of a temporary file. FL_ERROR_OUTPUT.
+ */
+bool fl_flow_save(const char *path, int width, int height, const float *flow, GError **error);
+
+#endif

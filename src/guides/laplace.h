@@ -1,0 +1,28 @@
+/* Laplace's equation inside a shape, by multigrid: how values on the contour spread inward. */
+#ifndef FLUIDY_GUIDES_LAPLACE_H
+#define FLUIDY_GUIDES_LAPLACE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum FlCell {
+    FL_CELL_OUTSIDE,
+    FL_CELL_FREE,  // to be solved
+    FL_CELL_FIXED, // given
+} FlCell;
+
+/**
+ * Fills the free cells with the harmonic field of the fixed ones [F21 App. A, Joh02]; no value
+ * passes through outside cells or the frame, which insulate.
+ *
+ * cell: width * height FlCell. field: interleaved pairs, 2 * width * height; read where fixed,
+ * written everywhere (0 outside). Every component of the result lies between the least and greatest
+ * fixed value. Free cells that no fixed one reaches get values in that range too; give them values
+ * of their own if it matters.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_laplace_solve(const uint8_t *cell, int width, int height, float *field, GError **error);
+
+#endif

@@ -1,0 +1,128 @@
+#include "guides/outline.h"
+
+#include "guides/distance.h"
+#include "guides/guides.h"
+#include <string.h>
+
+/** The smallest box around all pixels that are not 0. */
+static FlBox find_box(const uint8_t *mask, int width, int height)
+{
+    int top = height, bottom = -1, left = width, right = -1;
+    for (int y = 0; y < height; y++) {
+        const uint8_t *row = mask + y * (size_t)width;
+        if (row[0] == 0 && memcmp(row, row + 1, width - 1) == 0)
+            continue;
+        top = MIN(top, y), bottom = y;
+        for (int x = 0; x < left; x++)
+            if (row[x])
+                left = x;
+        for (int x = width - 1; x > right; x--)
+            if (row[x])
+                right = x;
+    }
+    if (bottom < 0)
+        return (FlBox){0, 0, 0, 0};
+    return (FlBox){left, top, right - left + 1, bottom - top + 1};
+}
+
+static bool any_inside(const uint8_t *coverage, size_t n)
+{
+    uint8_t all = 0;
+    for (size_t p = 0; p < n; p++)
+        all |= coverage[p];
+    return all & FL_INSIDE;
+}
+
+FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height, GError **error)
+{
+    g_autoptr(FlOutline) outline = g_new(FlOutline, 1);
+    *outline = (FlOutline){.references = 1,
+                           .frame_width = frame_width,
+                           .frame_height = frame_height,
+                           .box = find_box(mask, frame_width, frame_height)};
+    const FlBox *box = &outline->box;
+    outline->coverage = g_try_malloc(fl_box_area(box) + 1);
+    if (!outline->coverage)
+        goto no_memory;
+    for (int y = 0; y < box->height; y++)
+        memcpy(outline->coverage + y * (size_t)box->width,
+               mask + (box->y + y) * (size_t)frame_width + box->x, box->width);
+    outline->empty = !any_inside(outline->coverage, fl_box_area(box));
+    if (outline->empty)
+        return g_steal_pointer(&outline);
+    outline->distance = g_try_new(float, (size_t)frame_width *frame_height);
+    if (!outline->distance)
+        goto no_memory;
+    if (!fl_distance(mask, frame_width, frame_height, outline->distance, error))
+        return NULL;
+    return g_steal_pointer(&outline);
+no_memory:
+    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a mask of %dx%d pixels",
+                frame_width, frame_height);
+    return NULL;
+}
+
+FlOutline *fl_outline_ref(FlOutline *outline)
+{
+    if (outline)
+        outline->references++;
+    return outline;
+}
+
+void fl_outline_unref(FlOutline *outline)
+{
+    if (!outline || --outline->references > 0)
+        return;
+    g_free(outline->coverage);
+    g_free(outline->distance);
+    g_free(outline->normal);
+    g_free(outline);
+}
+
+bool fl_outline_equal(const FlOutline *outline, const uint8_t *mask)
+{
+    const FlBox box = find_box(mask, outline->frame_width, outline->frame_height);
+    if (memcmp(&box, &outline->box, sizeof box) != 0)
+        return false;
+    for (int y = 0; y < box.height; y++)
+        if (memcmp(outline->coverage + y * (size_t)box.width,
+                   mask + (box.y + y) * (size_t)outline->frame_width + box.x, box.width) != 0)
+            return false;
+    return true;
+}
+
+bool fl_outline_contains(const FlOutline *outline, int x, int y)
+{
+    const int bx = x - outline->box.x, by = y - outline->box.y;
+    return bx >= 0 && by >= 0 && bx < outline->box.width && by < outline->box.height &&
+           outline->coverage[by * (size_t)outline->box.width + bx] >= FL_INSIDE;
+}
+
+bool fl_outline_is_contour(const FlOutline *outline, int x, int y)
+{
+    const int right = outline->frame_width - 1, bottom = outline->frame_height - 1;
+    return fl_outline_contains(outline, x, y) &&
+           ((x > 0 && !fl_outline_contains(outline, x - 1, y)) ||
+            (x < right && !fl_outline_contains(outline, x + 1, y)) ||
+            (y > 0 && !fl_outline_contains(outline, x, y - 1)) ||
+            (y < bottom && !fl_outline_contains(outline, x, y + 1)));
+}
+
+void fl_distance_gradient(const float *distance, int width, int height, int x, int y,
+                          float gradient[2])
+{
+    static const float slope[5] = {-1, -2, 0, 2, 1}, smooth[5] = {1, 4, 6, 4, 1};
+    float gx = 0.0f, gy = 0.0f, span_x = 0.0f, span_y = 0.0f; // spans shrink at the frame's edges
+    for (int j = 0; j < 5; j++) {
+        const int py = CLAMP(y + j - 2, 0, height - 1);
+        span_y += slope[j] * py;
+        span_x += slope[j] * CLAMP(x + j - 2, 0, width - 1);
+        for (int i = 0; i < 5; i++) {
+            const float d = distance[py * (size_t)width + CLAMP(x + i - 2, 0, width - 1)];
+            gx += slope[i] * smooth[j] * d;
+            gy += smooth[i] * slope[j] * d;
+        }
+    }
+    gradient[0] = span_x > 0.0f ? gx / (16.0f * span_x) : 0.0f;
+    gradient[1] = span_y > 0.0f ? gy / (16.0f * span_y) : 0.0f;
+}

@@ -1,0 +1,56 @@
+/* One mask with what the flow needs of it, shared by the frames that look the same. */
+#ifndef FLUIDY_GUIDES_OUTLINE_H
+#define FLUIDY_GUIDES_OUTLINE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/** A rectangle of pixels in a frame. */
+typedef struct FlBox {
+    int x, y, width, height; // width and height are 0 where there is nothing
+} FlBox;
+
+static inline size_t fl_box_area(const FlBox *box)
+{
+    return (size_t)box->width * box->height;
+}
+
+/** A mask in a frame of frame_width * frame_height pixels. Reference-counted, for one thread. */
+typedef struct FlOutline {
+    int references;
+    int frame_width, frame_height;
+    bool empty;        // no pixel is inside; box may still hold faint ones
+    FlBox box;         // of all pixels with coverage
+    uint8_t *coverage; // of the box
+    float *distance;   // of the frame, fl_distance(); NULL if empty
+    float *normal;     // of the box, fl_outline_normals(); NULL until then
+} FlOutline;
+
+/** mask: frame_width * frame_height coverages, copied. NULL with FL_ERROR_NO_MEMORY set. */
+FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height, GError **error);
+
+FlOutline *fl_outline_ref(FlOutline *outline); // NULL is fine, as for _unref
+void fl_outline_unref(FlOutline *outline);
+
+/** Whether the outline is that of this mask. */
+bool fl_outline_equal(const FlOutline *outline, const uint8_t *mask);
+
+/** Whether a pixel of the frame is inside. */
+bool fl_outline_contains(const FlOutline *outline, int x, int y);
+
+/** Whether a pixel is inside and one of its four neighbours in the frame is not. */
+bool fl_outline_is_contour(const FlOutline *outline, int x, int y);
+
+/**
+ * Gradient of a distance field at a pixel, over 5x5 pixels: Sobel's operator of that size, so that
+ * the stairs of a binary mask do not show. Length about 1 beside a straight contour, 0 on a medial
+ * axis.
+ */
+void fl_distance_gradient(const float *distance, int width, int height, int x, int y,
+                          float gradient[2]);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlOutline, fl_outline_unref)
+
+#endif

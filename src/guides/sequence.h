@@ -1,0 +1,47 @@
+/* How the guides of a sequence are kept: shared by the stage that makes them and the one that
+ * reads. */
+#ifndef FLUIDY_GUIDES_SEQUENCE_H
+#define FLUIDY_GUIDES_SEQUENCE_H
+
+#include "base/spill.h"
+#include "guides/guides.h"
+#include "guides/outline.h"
+
+/** What is stored of a frame, cropped to its box. */
+typedef enum FlPlane {
+    FL_PLANE_SHAPE, // coverages, then angles; bytes
+    FL_PLANE_FLOW,  // interleaved, FL_FLOW_ONE a px
+    FL_PLANE_PLUS,  // FL_EXTENT_ONE a px, as is MINUS
+    FL_PLANE_MINUS,
+    FL_N_PLANES,
+} FlPlane;
+
+/** A frame that looks like the one before shares its blocks. */
+typedef struct FlFrameRecord {
+    FlBox box;
+    bool empty;                  // no pixel inside
+    int32_t holder[FL_N_PLANES]; // the frame whose block holds the plane; -1: all 0
+} FlFrameRecord;
+
+struct FlGuideSequence {
+    FlGuideSource source;
+    FlGuideParams params;
+    FlFrameRecord *frames; // source.n_frames
+    FlSpill *spill;        // block of a plane of a frame: FL_N_PLANES * frame + plane
+};
+
+static inline size_t fl_plane_block(int frame, FlPlane plane)
+{
+    return (size_t)frame * FL_N_PLANES + plane;
+}
+
+/** Reads the masks and fills sequence->frames and spill, forwards, all but the extents to come. */
+bool fl_sequence_build(FlGuideSequence *sequence, GError **error);
+
+/** Reads a plane of shape or integers back; the plane must not be all 0. */
+bool fl_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *coverage_angle,
+                       GError **error);
+bool fl_sequence_plane(const FlGuideSequence *sequence, int frame, FlPlane plane, int32_t *values,
+                       GError **error);
+
+#endif
