@@ -1,13 +1,12 @@
 #include "style/bundle.h"
 
-#include "base/alloc.h"
+#include "style/border.h"
 #include "style/extract.h"
 #include "style/find.h"
 #include "style/manifest.h"
-#include "style/picture.h"
+#include "style/paint.h"
 #include "style/series.h"
 
-#include <math.h>
 #include <string.h>
 
 void fl_style_free(FlStyle *style)
@@ -74,37 +73,6 @@ static FlPicture *read_picture(const char *path, GError **error)
     return picture;
 }
 
-/* Room for the frames, once the first has told their size. */
-static bool allocate(FlStyle *style, const FlPicture *first, int n_frames, GError **error)
-{
-    const size_t pixels = (size_t)first->width * first->height * n_frames;
-    if (pixels > FL_STYLE_MAX_PIXELS) {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_LIMIT,
-            "%s: %d frames of %dx%d are %.1f million pixels: expected at most %.1f million; "
-            "fluidy-style import --scale or --step makes it smaller",
-            style->path, n_frames, first->width, first->height, (double)pixels / 1e6,
-            FL_STYLE_MAX_PIXELS / 1e6);
-        return false;
-    }
-    style->width = first->width;
-    style->height = first->height;
-    style->n_frames = n_frames;
-    return (style->rgb = fl_alloc(pixels, 3, "the frames of a style", error)) &&
-           (style->mask = fl_alloc(pixels, 1, "the masks of a style", error));
-}
-
-/* Colours go to rgb, alpha to mask. */
-static void store_frame(FlStyle *style, int frame, const FlPicture *picture)
-{
-    const size_t pixels = (size_t)style->width * style->height;
-    uint8_t *rgb = style->rgb + frame * pixels * 3, *alpha = style->mask + frame * pixels;
-    for (size_t i = 0; i < pixels; i++) {
-        memcpy(rgb + 3 * i, picture->rgba + 4 * i, 3);
-        alpha[i] = picture->rgba[4 * i + 3];
-    }
-}
-
 static FlSeries *read_frames(FlStyle *style, GError **error)
 {
     g_autofree char *folder = g_build_filename(style->path, "frames", NULL);
@@ -115,49 +83,12 @@ static FlSeries *read_frames(FlStyle *style, GError **error)
     g_autoptr(FlSeries) series = only_series(folder, error);
     for (int i = 0; series && i < series->n; i++) {
         g_autoptr(FlPicture) picture = read_picture(series->path[i], error);
-        if (!picture || (i == 0 && !allocate(style, picture, series->n, error)) ||
+        if (!picture || (i == 0 && !fl_style_allocate(style, picture, series->n, error)) ||
             !check_size(picture, style, series->path[i], series->path[0], error))
             return NULL;
-        store_frame(style, i, picture);
+        fl_style_store_frame(style, i, picture);
     }
     return g_steal_pointer(&series);
-}
-
-static size_t all_pixels(const FlStyle *style)
-{
-    return (size_t)style->width * style->height * style->n_frames;
-}
-
-/* Straight alpha, still in the mask, over the paper. */
-static void composite(FlStyle *style)
-{
-    const size_t pixels = all_pixels(style);
-    for (size_t i = 0; i < pixels; i++)
-        for (int c = 0; c < 3; c++) {
-            const int alpha = style->mask[i];
-            const int sum = style->rgb[3 * i + c] * alpha + style->paper[c] * (255 - alpha);
-            style->rgb[3 * i + c] = (uint8_t)((sum + 127) / 255);
-        }
-}
-
-static bool has_alpha(const FlStyle *style)
-{
-    const size_t pixels = all_pixels(style);
-    for (size_t i = 0; i < pixels; i++)
-        if (style->mask[i] != 255)
-            return true;
-    return false;
-}
-
-/* Coverage is the mask's lightness; a transparent pixel of it is outside. */
-static void store_mask(FlStyle *style, int frame, const FlPicture *picture)
-{
-    const size_t pixels = (size_t)style->width * style->height;
-    uint8_t *mask = style->mask + frame * pixels;
-    for (size_t i = 0; i < pixels; i++) {
-        const uint8_t *p = picture->rgba + 4 * i;
-        mask[i] = (uint8_t)(((p[0] + 2 * p[1] + p[2] + 2) / 4 * p[3] + 127) / 255);
-    }
 }
 
 static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frames, GError **error)
@@ -175,7 +106,7 @@ static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frame
         g_autoptr(FlPicture) picture = read_picture(series->path[i], error);
         if (!picture || !check_size(picture, style, series->path[i], frames->path[0], error))
             return false;
-        store_mask(style, i, picture);
+        fl_style_store_mask(style, i, picture);
     }
     style->guessed &= ~(unsigned)FL_GUESS_MASK;
     return true;
@@ -187,12 +118,12 @@ static bool find_masks(FlStyle *style, const FlSeries *frames, GError **error)
 {
     g_autofree char *folder = g_build_filename(style->path, "masks", NULL);
     const FlClip clip = {style->width, style->height, style->n_frames, style->rgb};
-    const bool given = g_file_test(folder, G_FILE_TEST_IS_DIR), alpha = has_alpha(style);
+    const bool given = g_file_test(folder, G_FILE_TEST_IS_DIR), alpha = fl_style_has_alpha(style);
     const bool paper_given = !(style->guessed & FL_GUESS_PAPER);
     if (alpha) {
         if (!paper_given)
             memset(style->paper, 255, 3);
-        composite(style);
+        fl_style_composite(style);
         style->guessed &= ~(unsigned)FL_GUESS_MASK;
     }
     if (given && !read_masks(style, folder, frames, error))
@@ -206,35 +137,6 @@ static bool find_masks(FlStyle *style, const FlSeries *frames, GError **error)
     if (!paper_given)
         fl_paper_estimate(&clip, style->mask, style->paper);
     return true;
-}
-
-/* Every mask empty, or nothing but paper inside of them: neither can paint anything. */
-static bool check_paint(const FlStyle *style, GError **error)
-{
-    const size_t pixels = all_pixels(style);
-    uint64_t inside = 0, painted = 0;
-    for (size_t i = 0; i < pixels; i++) {
-        if (style->mask[i] < 128)
-            continue;
-        inside++;
-        int most = 0;
-        for (int c = 0; c < 3; c++)
-            most = MAX(most, abs(style->rgb[3 * i + c] - style->paper[c]));
-        painted += most >= 4;
-    }
-    g_autofree char *what = NULL;
-    if (inside == 0 && style->guessed & FL_GUESS_MASK)
-        what = g_strdup_printf("no paint found: everything looks like the paper, #%02x%02x%02x; "
-                               "give paper = in style.ini, or a masks folder",
-                               style->paper[0], style->paper[1], style->paper[2]);
-    else if (inside == 0)
-        what = g_strdup("every mask is empty: expected white where the paint is");
-    else if (painted * 50 < inside && style->medium == FL_MEDIUM_TRANSPARENT)
-        what = g_strdup_printf("there is no paint under the masks: %.1f %% of their pixels differ "
-                               "from the paper, #%02x%02x%02x",
-                               100.0 * (double)painted / (double)inside, style->paper[0],
-                               style->paper[1], style->paper[2]);
-    return !what || broken(error, style->path, what);
 }
 
 static FlStyle *new_style(const char *folder)
@@ -261,9 +163,11 @@ FlStyle *fl_style_load(const char *folder, GError **error)
     if (g_file_test(manifest, G_FILE_TEST_EXISTS) && !fl_manifest_read(style, manifest, error))
         return NULL;
     g_autoptr(FlSeries) frames = read_frames(style, error);
-    if (!frames || !find_masks(style, frames, error) || !check_paint(style, error))
+    if (!frames || !find_masks(style, frames, error) || !fl_style_check_paint(style, error))
         return NULL;
-    if (style->guessed & FL_GUESS_BORDER) // the paper's 30 px of 400x222 [F21 table 1], halved
-        style->border_px = (float)MIN(style->width, style->height) / 15;
+    const FlClip clip = {style->width, style->height, style->n_frames, style->rgb};
+    if (style->guessed & FL_GUESS_BORDER &&
+        !fl_border_estimate(&clip, style->mask, &style->border_px, error))
+        return NULL;
     return g_steal_pointer(&style);
 }
