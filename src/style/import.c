@@ -72,8 +72,6 @@ static void set_facts(Import *import, const FlSource *source)
     style->licence = g_strdup(how->licence);
     style->fps = rate > 0 ? (float)CLAMP(rate, 0.01, 1000) : 25;
     style->scale = 1;
-    if (!how->licence)
-        note(import, "no licence is given; --licence keeps it with the style");
 }
 
 static bool take_pictures(FlStyle *style, GPtrArray *pictures, GError **error)
@@ -212,16 +210,26 @@ static void flatten(Import *import)
         note(import, "the light varied by %.0f levels over the paper; it is made even", range);
 }
 
+/* Paper is light and hardly coloured; anything else is more likely to be paint. */
+static bool is_like_paper(const uint8_t paper[3])
+{
+    const int lightest = MAX(paper[0], MAX(paper[1], paper[2]));
+    const int darkest = MIN(paper[0], MIN(paper[1], paper[2]));
+    return lightest >= 150 && lightest - darkest <= 70;
+}
+
 /* The masks follow from the paper and the paper from the masks, so each step finds both again. */
 static bool improve(Import *import, GError **error)
 {
     const FlStyleImport *how = import->how;
     if (!find_paint(import, error))
         return false;
-    if (how->stabilise && !how->whole && import->style->n_frames > 1 &&
+    if (how->whole || (!how->paper && !is_like_paper(import->style->paper)))
+        return true; // nothing to go by
+    if (how->stabilise && import->style->n_frames > 1 &&
         (!hold_still(import, error) || !find_paint(import, error)))
         return false;
-    if (how->flatten && !how->whole) {
+    if (how->flatten) {
         flatten(import);
         return find_paint(import, error);
     }
@@ -245,20 +253,28 @@ static bool find_border(Import *import, GError **error)
 
 static void add_warnings(const Import *import)
 {
+    const FlStyleImport *how = import->how;
     const FlStyle *style = import->style;
     const size_t pixels = (size_t)style->width * style->height;
-    const double first = fl_mask_share(style->mask, style->width, style->height);
-    const double last =
-        fl_mask_share(style->mask + (style->n_frames - 1) * pixels, style->width, style->height);
+    const uint8_t *masks = style->mask, *last_mask = masks + (style->n_frames - 1) * pixels;
+    const double first = fl_mask_share(masks, style->width, style->height);
+    const double last = fl_mask_share(last_mask, style->width, style->height);
     note(import, "paint fills %.0f %% of the first frame and %.0f %% of the last", 100 * first,
          100 * last);
     if (style->n_frames == 1)
         note(import, "warning: there is only one frame, so the paint will not flow");
     else if (fabs(last - first) < 0.01)
         note(import, "warning: the paint hardly grows, so it will not flow");
-    if (import->how->whole && !import->how->paper)
+    if (how->whole && !how->paper)
         note(import, "warning: the colour of the paper is not known and taken as white; --paper "
                      "gives it");
+    if (!how->whole && !how->paper && !is_like_paper(style->paper))
+        note(import,
+             "warning: #%02x%02x%02x is not like paper; --paper gives the right colour, --whole "
+             "says that paint fills the whole frame",
+             style->paper[0], style->paper[1], style->paper[2]);
+    if (!how->licence)
+        note(import, "warning: no licence is given; --licence keeps it with the style");
 }
 
 bool fl_style_import(const FlStyleImport *how, GPtrArray *notes, GError **error)

@@ -19,7 +19,7 @@ static double gain_at(const FlPlate *plate, const double term[TERMS], int c)
     double gain = 0;
     for (int i = 0; i < TERMS; i++)
         gain += plate->gain[c][i] * term[i];
-    return CLAMP(gain, 0.67, 1.5); // the polynomial is no guide far from bare paper
+    return CLAMP(gain, plate->low[c], plate->high[c]);
 }
 
 float fl_plate_at(const FlPlate *plate, int x, int y, int c)
@@ -49,6 +49,7 @@ float fl_plate_range(const FlPlate *plate)
 /* Normal equations of the least squares for the three channels, which share the matrix. */
 typedef struct Fit {
     double matrix[TERMS][TERMS], right[3][TERMS];
+    double low[3], high[3]; // of the gains before this round
     size_t n;
     uint32_t residual[256]; // histogram of the largest channel's, for the next round's limit
 } Fit;
@@ -56,11 +57,17 @@ typedef struct Fit {
 static void add_sample(Fit *fit, const FlPlate *plate, const double term[TERMS], const uint8_t *rgb,
                        double limit)
 {
-    double most = 0;
-    for (int c = 0; c < 3; c++)
-        most = MAX(most, fabs(rgb[c] - plate->paper[c] * gain_at(plate, term, c)));
+    double most = 0, gain[3];
+    for (int c = 0; c < 3; c++) {
+        gain[c] = gain_at(plate, term, c);
+        most = MAX(most, fabs(rgb[c] - plate->paper[c] * gain[c]));
+    }
     if (most > limit)
         return;
+    for (int c = 0; c < 3; c++) {
+        fit->low[c] = fit->n ? MIN(fit->low[c], gain[c]) : gain[c];
+        fit->high[c] = fit->n ? MAX(fit->high[c], gain[c]) : gain[c];
+    }
     fit->n++;
     fit->residual[(int)MIN(most, 255)]++;
     for (int i = 0; i < TERMS; i++) {
@@ -124,8 +131,11 @@ static double next_limit(const Fit *fit)
 static void set_even(FlPlate *plate)
 {
     memset(plate->gain, 0, sizeof plate->gain);
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3; c++) {
         plate->gain[c][0] = 1;
+        plate->low[c] = 0.67; // light that falls off more is no light
+        plate->high[c] = 1.5;
+    }
 }
 
 void fl_plate_fit(FlPlate *plate, const FlClip *clip, const uint8_t *mask, const uint8_t paper[3])
@@ -135,6 +145,7 @@ void fl_plate_fit(FlPlate *plate, const FlClip *clip, const uint8_t *mask, const
     memcpy(plate->paper, paper, 3);
     set_even(plate);
     double limit = WIDEST;
+    Fit last = {0}; // the last round only asks which gains there are at bare places
     for (int round = 0; round < ROUNDS; round++) {
         Fit fit = {0};
         add_samples(&fit, plate, clip, mask, limit);
@@ -142,9 +153,14 @@ void fl_plate_fit(FlPlate *plate, const FlClip *clip, const uint8_t *mask, const
             set_even(plate);
             return;
         }
-        solve(&fit, plate);
+        if (round < ROUNDS - 1)
+            solve(&fit, plate);
         limit = next_limit(&fit);
+        memcpy(last.low, fit.low, sizeof last.low);
+        memcpy(last.high, fit.high, sizeof last.high);
     }
+    memcpy(plate->low, last.low, sizeof plate->low);
+    memcpy(plate->high, last.high, sizeof plate->high);
 }
 
 /* The median of paper over plate in the bare part of a frame, as a gain; 1 if too little is bare.

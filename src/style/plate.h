@@ -7,8 +7,9 @@
 /** Light that falls off smoothly: a polynomial of degree two over the frame for each channel. */
 typedef struct FlPlate {
     int width, height;
-    uint8_t paper[3];  // the paper where the gain is 1
-    double gain[3][6]; // of 1, u, v, u², uv, v²; u and v run from -1 to 1 over the frame
+    uint8_t paper[3];       // the paper where the gain is 1
+    double gain[3][6];      // of 1, u, v, u², uv, v²; u and v run from -1 to 1 over the frame
+    double low[3], high[3]; // the gains at bare places; under paint it is never beyond them
 } FlPlate;
 
 /**
@@ -17,7 +18,7 @@ typedef struct FlPlate {
  */
 void fl_plate_fit(FlPlate *plate, const FlClip *clip, const uint8_t *mask, const uint8_t paper[3]);
 
-/** What bare paper shows at a pixel in channel c, in levels; at most a third off the paper. */
+/** What bare paper shows, or would show, at a pixel in channel c, in levels. */
 float fl_plate_at(const FlPlate *plate, int x, int y, int c);
 
 /** The difference of the lightest and darkest point of the plate, in levels. */

@@ -11,6 +11,13 @@ enum { REACH = 8, MARGIN = REACH + 2, LEAST_PIXELS = 500, NEWTON_STEPS = 12 };
  */
 static const double CLEARLY_NEARER = 0.8;
 
+/* The least mean squared slope of the bare paper to go by, (levels per px)^2: below it is only
+ * noise. */
+static const double LEAST_TEXTURE = 0.25;
+
+/* So far may the shifts of two halves of the paper differ, px: else it is no camera that moves. */
+static const float AGREE_PX = 0.35f;
+
 static bool read_luma(const FlClip *clip, int frame, float *luma, GError **error)
 {
     const size_t pixels = (size_t)clip->width * clip->height;
@@ -115,6 +122,46 @@ static FlShift refine(const Pair *pair, FlShift shift)
     return shift;
 }
 
+/* Sorts the places by a checkerboard of 32 px. Returns: how many lie on its white squares. */
+static size_t sort_by_square(uint32_t *place, size_t n, int width)
+{
+    size_t white = 0;
+    for (size_t i = 0; i < n; i++)
+        if ((place[i] % width / 32 + place[i] / width / 32) % 2 == 0) {
+            const uint32_t swapped = place[white];
+            place[white++] = place[i];
+            place[i] = swapped;
+        }
+    return white;
+}
+
+static bool has_texture(const Pair *pair)
+{
+    double sum = 0;
+    for (size_t i = 0; i < pair->n; i++) {
+        const float *p = pair->first + pair->place[i];
+        const double gx = 0.5 * (p[1] - p[-1]), gy = 0.5 * (p[pair->width] - p[-pair->width]);
+        sum += gx * gx + gy * gy;
+    }
+    return pair->n >= LEAST_PIXELS && sum >= LEAST_TEXTURE * (double)pair->n;
+}
+
+/* The shift of the current frame, near that of the frame before; none if there is doubt. */
+static FlShift find_shift(const Pair *pair, size_t n_white, FlShift before)
+{
+    const FlShift none = {0, 0};
+    Pair white = *pair, black = *pair;
+    white.n = n_white;
+    black.place += n_white;
+    black.n -= n_white;
+    const FlShift coarse = walk(pair, before), found = refine(pair, coarse);
+    const FlShift a = refine(&white, coarse), b = refine(&black, coarse);
+    const bool agree = hypotf(a.x - b.x, a.y - b.y) < AGREE_PX;
+    const bool nearer =
+        squared_difference(pair, found) < CLEARLY_NEARER * squared_difference(pair, none);
+    return agree && nearer ? found : none;
+}
+
 bool fl_shake_estimate(const FlClip *clip, const uint8_t *mask, FlShift *shift, GError **error)
 {
     const size_t pixels = (size_t)clip->width * clip->height;
@@ -125,15 +172,14 @@ bool fl_shake_estimate(const FlClip *clip, const uint8_t *mask, FlShift *shift, 
     if (!first || !current || !place || !painted || !read_luma(clip, 0, first, error))
         return false;
     const size_t n = find_bare(clip, mask, painted, place);
+    const size_t n_white = sort_by_square(place, n, clip->width);
     const Pair pair = {first, current, clip->width, place, n};
     memset(shift, 0, clip->n_frames * sizeof *shift);
-    for (int frame = 1; frame < clip->n_frames && n >= LEAST_PIXELS; frame++) {
+    const bool possible = has_texture(&pair);
+    for (int frame = 1; frame < clip->n_frames && possible; frame++) {
         if (!read_luma(clip, frame, current, error))
             return false;
-        const FlShift found = refine(&pair, walk(&pair, shift[frame - 1]));
-        if (squared_difference(&pair, found) <
-            CLEARLY_NEARER * squared_difference(&pair, (FlShift){0, 0}))
-            shift[frame] = found;
+        shift[frame] = find_shift(&pair, n_white, shift[frame - 1]);
     }
     return true;
 }
