@@ -1,35 +1,13 @@
 #include "style/border.h"
 
 #include "base/alloc.h"
+#include "guides/distance.h"
+#include "guides/guides.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { DEEPEST = 255, SIDE = 3, CORNER = 4 }; // a chamfer of 3 and 4 is within 8 % of the distance
-
-/* Depth below the outline in thirds of a pixel; what lies beyond the frame is no outline. */
-static void measure_depth(const uint8_t *mask, int width, int height, uint16_t *depth)
-{
-    const uint16_t far = SIDE * DEEPEST;
-    for (int pass = 0; pass < 2; pass++)
-        for (int j = 0; j < height; j++)
-            for (int i = 0; i < width; i++) {
-                const int x = pass ? width - 1 - i : i, y = pass ? height - 1 - j : j;
-                const int back = pass ? 1 : -1;
-                const size_t p = (size_t)y * width + x;
-                const uint16_t *row = depth + (ptrdiff_t)back * width;
-                int least = mask[p] < 128 ? 0 : pass ? depth[p] : far;
-                if (i > 0)
-                    least = MIN(least, depth[(ptrdiff_t)p + back] + SIDE);
-                if (j > 0)
-                    least = MIN(least, row[p] + SIDE);
-                if (j > 0 && i > 0)
-                    least = MIN(least, row[(ptrdiff_t)p + back] + CORNER);
-                if (j > 0 && i < width - 1)
-                    least = MIN(least, row[(ptrdiff_t)p - back] + CORNER);
-                depth[p] = (uint16_t)least;
-            }
-}
+enum { DEEPEST = 255 };
 
 /* Sums of colour by depth in whole pixels, of all frames together. */
 typedef struct Profile {
@@ -37,12 +15,13 @@ typedef struct Profile {
     uint64_t n[DEEPEST + 1];
 } Profile;
 
-static void add_frame(Profile *profile, const uint8_t *rgb, const uint16_t *depth, size_t pixels)
+static void add_frame(Profile *profile, const uint8_t *rgb, const uint8_t *mask, const float *depth,
+                      size_t pixels)
 {
     for (size_t i = 0; i < pixels; i++) {
-        if (depth[i] == 0)
+        if (mask[i] < FL_INSIDE)
             continue;
-        const int d = MIN(depth[i] / SIDE, DEEPEST);
+        const int d = (int)MIN(depth[i], DEEPEST);
         profile->n[d]++;
         for (int c = 0; c < 3; c++)
             profile->sum[d][c] += rgb[3 * i + c];
@@ -102,13 +81,14 @@ static float settled_depth(const Profile *profile, int shorter_side)
 bool fl_border_estimate(const FlClip *clip, const uint8_t *mask, float *border_px, GError **error)
 {
     const size_t pixels = (size_t)clip->width * clip->height;
-    g_autofree uint16_t *depth = fl_alloc(pixels, sizeof(uint16_t), "a distance map", error);
+    g_autofree float *depth = fl_alloc(pixels, sizeof(float), "a distance map", error);
     g_autofree Profile *profile = fl_alloc(1, sizeof(Profile), "a profile", error);
     if (!depth || !profile)
         return false;
     for (int frame = 0; frame < clip->n_frames; frame++) {
-        measure_depth(mask + frame * pixels, clip->width, clip->height, depth);
-        add_frame(profile, clip->rgb + frame * pixels * 3, depth, pixels);
+        if (!fl_distance(mask + frame * pixels, clip->width, clip->height, depth, error))
+            return false;
+        add_frame(profile, clip->rgb + frame * pixels * 3, mask + frame * pixels, depth, pixels);
     }
     *border_px = settled_depth(profile, MIN(clip->width, clip->height));
     return true;

@@ -1,5 +1,7 @@
 #include "style/bundle.h"
 
+#include "base/alloc.h"
+#include "guides/flow_file.h"
 #include "style/border.h"
 #include "style/extract.h"
 #include "style/find.h"
@@ -29,17 +31,19 @@ static bool broken(GError **error, const char *path, const char *what)
     return false;
 }
 
-/* The folder's only series of PNG files without gaps, such as frames/0001.png ... */
-static FlSeries *only_series(const char *folder, GError **error)
+/* The folder's only series of files with this ending, without gaps, such as frames/0001.png ... */
+static FlSeries *only_series(const char *folder, const char *ending, GError **error)
 {
-    const char *const png[] = {".png", NULL};
-    g_autoptr(GPtrArray) all = fl_series_in_folder(folder, png, error);
+    const char *const endings[] = {ending, NULL};
+    g_autoptr(GPtrArray) all = fl_series_in_folder(folder, endings, error);
     if (!all)
         return NULL;
     if (all->len == 0) {
-        broken(error, folder,
-               "no numbered PNG files: expected 0001.png, 0002.png ... "
-               "(fluidy-style import makes a style of other pictures and of videos)");
+        g_autofree char *what = g_strdup_printf(
+            "no numbered %s files: expected 0001%s, 0002%s … (fluidy-style import makes a style of "
+            "other pictures and of videos)",
+            ending, ending, ending);
+        broken(error, folder, what);
         return NULL;
     }
     if (all->len > 1) {
@@ -80,7 +84,7 @@ static FlSeries *read_frames(FlStyle *style, GError **error)
         broken(error, folder, "no such folder: a style has its pictures there");
         return NULL;
     }
-    g_autoptr(FlSeries) series = only_series(folder, error);
+    g_autoptr(FlSeries) series = only_series(folder, ".png", error);
     for (int i = 0; series && i < series->n; i++) {
         g_autoptr(FlPicture) picture = read_picture(series->path[i], error);
         if (!picture || (i == 0 && !fl_style_allocate(style, picture, series->n, error)) ||
@@ -93,7 +97,7 @@ static FlSeries *read_frames(FlStyle *style, GError **error)
 
 static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frames, GError **error)
 {
-    g_autoptr(FlSeries) series = only_series(folder, error);
+    g_autoptr(FlSeries) series = only_series(folder, ".png", error);
     if (!series)
         return false;
     if (series->n != frames->n) {
@@ -139,6 +143,31 @@ static bool find_masks(FlStyle *style, const FlSeries *frames, GError **error)
     return true;
 }
 
+/* One field for each frame; the last one, to a frame that does not exist, may be left out. */
+static bool read_flow(FlStyle *style, const char *folder, GError **error)
+{
+    g_autoptr(FlSeries) series = only_series(folder, ".flo", error);
+    const size_t pixels = (size_t)style->width * style->height;
+    const int least = MAX(1, style->n_frames - 1);
+    if (!series)
+        return false;
+    if (series->n < least || series->n > style->n_frames) {
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
+                    "%s: %d flow fields for %d frames: expected one for each frame", folder,
+                    series->n, style->n_frames);
+        return false;
+    }
+    style->flow = fl_alloc(pixels * style->n_frames, 2 * sizeof(float), "the flow", error);
+    for (int i = 0; i < style->n_frames; i++) {
+        const char *path = series->path[MIN(i, series->n - 1)];
+        if (!style->flow ||
+            !fl_flow_load(path, style->width, style->height, style->flow + 2 * i * pixels, error))
+            return false;
+    }
+    style->guessed &= ~(unsigned)FL_GUESS_FLOW;
+    return true;
+}
+
 static FlStyle *new_style(const char *folder)
 {
     FlStyle *style = g_new0(FlStyle, 1);
@@ -164,6 +193,9 @@ FlStyle *fl_style_load(const char *folder, GError **error)
         return NULL;
     g_autoptr(FlSeries) frames = read_frames(style, error);
     if (!frames || !find_masks(style, frames, error) || !fl_style_check_paint(style, error))
+        return NULL;
+    g_autofree char *flow = g_build_filename(folder, "flow", NULL);
+    if (g_file_test(flow, G_FILE_TEST_IS_DIR) && !read_flow(style, flow, error))
         return NULL;
     const FlClip clip = {style->width, style->height, style->n_frames, style->rgb};
     if (style->guessed & FL_GUESS_BORDER &&

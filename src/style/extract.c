@@ -1,6 +1,7 @@
 #include "style/extract.h"
 
 #include "base/alloc.h"
+#include "guides/gauss.h"
 #include "style/plate.h"
 
 #include <math.h>
@@ -13,7 +14,7 @@ static const float MARGIN_CUT = 0.4f;   // below one half: the mask reaches half
 static const float FAINTEST = 5;        // a smaller difference from the paper is never paint
 static const float NOISES = 4;          // nor is less than so many times the paper's own unrest
 static const float SHARPNESS = 6;       // a strong edge, smoothed, is cut at a sixth of its middle
-static const double KEEP_SHARE = 0.02;  // of the largest part: smaller parts are specks
+static const double KEEP_SHARE = 0.04;  // of the largest part: smaller parts are specks
 static const double HOLE_SHARE = 0.005; // of the largest part: smaller holes are grain
 
 bool fl_blur_plane(float *plane, int width, int height, float sigma, GError **error)
@@ -24,8 +25,9 @@ bool fl_blur_plane(float *plane, int width, int height, float sigma, GError **er
     if (!kernel || !line)
         return false;
     float sum = 0;
+    fl_gauss_weights(kernel, radius, sigma);
     for (int i = radius; i >= 0; i--)
-        sum += (i ? 2 : 1) * (kernel[i] = expf(-0.5f * i * i / (sigma * sigma)));
+        sum += (i ? 2 : 1) * kernel[i];
     for (int pass = 0; pass < 2; pass++) {
         const int lines = pass ? width : height, length = pass ? height : width;
         const ptrdiff_t step = pass ? width : 1, next = pass ? 1 : width;
