@@ -21,7 +21,8 @@ static void draw(uint8_t *rgb, int t, double lamp, bool marks, double dx, double
             const double u = x - dx, v = y - dy, d = hypot(u - 80, v - 50) - 14 - 3 * t;
             const double share = CLAMP(0.5 - d, 0, 1), edge = d > -6 ? 1 : 0.5;
             const double grain = 3 * sin(u * 1.1) * sin(v * 0.9);
-            const double pencil = marks && (fabs(u - 20) < 1.2 || fabs(v - 90) < 1.2) ? 60 : 0;
+            const double pencil =
+                marks * 60 * (exp(-(u - 20) * (u - 20)) + exp(-(v - 84) * (v - 84)));
             const double light = 1 - lamp * x / WIDTH;
             for (int c = 0; c < 3; c++) {
                 const double paint = (c + 1) * 45 * edge * share;
