@@ -3,6 +3,7 @@
 #define FLUIDY_BASE_ALLOC_H
 
 #include <fluidy/error.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 /**
