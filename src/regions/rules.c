@@ -17,7 +17,7 @@ static bool parse_hex(const char *digits, uint8_t rgb[3])
     return true;
 }
 
-bool fl_colour_parse(const char *text, uint8_t rgb[3])
+bool fl_css_colour(const char *text, uint8_t rgb[3])
 {
     static const struct {
         const char *name;
@@ -58,7 +58,7 @@ static bool check_colours(const FlRegionRule *rule, const char *key, const char 
 {
     uint8_t rgb[3];
     for (int i = 0; list && list[i]; i++)
-        if (!is_paint_word(list[i]) && !fl_colour_parse(list[i], rgb)) {
+        if (!is_paint_word(list[i]) && !fl_css_colour(list[i], rgb)) {
             g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                         "region %s: %s = %s: expected #rrggbb, a colour's name, any, none, "
                         "gradient or image",
@@ -105,7 +105,7 @@ static bool matches_paint(const char *const *list, const FlRegionRule *rule,
             : strcmp(list[i], "any") == 0 ? has && mine
                                           : mine && strcmp(list[i], subject->paint) == 0)
             return true;
-        if (mine && subject->paint[0] == '#' && fl_colour_parse(list[i], rgb) &&
+        if (mine && subject->paint[0] == '#' && fl_css_colour(list[i], rgb) &&
             fl_colour_difference(rgb, subject->rgb) <= tolerance)
             return true;
     }

@@ -53,6 +53,6 @@ bool fl_rules_check(const FlRegionRule *rules, int n, GError **error);
 int fl_rules_match(const FlRegionRule *rules, int n, const FlRuleSubject *subject);
 
 /** Reads "#rgb", "#rrggbb", "rgb(1, 2, 3)" and CSS' sixteen old names. */
-bool fl_colour_parse(const char *text, uint8_t rgb[3]);
+bool fl_css_colour(const char *text, uint8_t rgb[3]);
 
 #endif
