@@ -20,6 +20,8 @@ typedef struct Seed {
     int32_t next_to[8]; // seeds of the pixels around it; -1: no more
 } Seed;
 
+enum { NEAR_PX = 32 }; // within it a distance is as exact as the contour
+
 typedef struct Work {
     int width, height;
     const uint8_t *mask;
@@ -265,9 +267,16 @@ static float squared_distance(const Seed *seed, int x, int y)
     return across * across + (aside > 0.0f ? aside * aside : 0.0f);
 }
 
-/** From a seed along the contour to the one that is nearest to the pixel. */
-static float descend(const Seed *seeds, const Seed *seed, int x, int y, float best)
+/** From the best of a pixel's own seed and others along the contour, as long as it gets nearer. */
+static float search_near(const Seed *seeds, int32_t own, const int32_t others[4], int x, int y,
+                         float best)
 {
+    const Seed *seed = &seeds[own];
+    for (int k = 0; k < 4; k++) {
+        const float d = others[k] != own ? squared_distance(&seeds[others[k]], x, y) : best;
+        if (d < best)
+            best = d, seed = &seeds[others[k]];
+    }
     while (seed) {
         const Seed *better = NULL;
         for (int k = 0; k < 8 && seed->next_to[k] >= 0; k++) {
@@ -280,7 +289,10 @@ static float descend(const Seed *seeds, const Seed *seed, int x, int y, float be
     return best;
 }
 
-/** Step 4 for one row. */
+/**
+ * Step 4 for one row. Far from the contour the first seed will do: its piece is at most 0.3 px
+ * farther than the nearest.
+ */
 static void measure_row(const Work *work, int y, float *distance)
 {
     const int w = work->width;
@@ -288,16 +300,13 @@ static void measure_row(const Work *work, int y, float *distance)
     const int32_t *up = y > 0 ? row - w : row, *down = y < work->height - 1 ? row + w : row;
     const Seed *seeds = (const Seed *)(void *)work->seeds->data;
     for (int x = 0; x < w; x++) {
-        const int32_t others[4] = {up[x], down[x], row[x > 0 ? x - 1 : x],
-                                   row[x < w - 1 ? x + 1 : x]};
-        int32_t nearest = row[x];
-        float best = squared_distance(&seeds[nearest], x, y);
-        for (int k = 0; k < 4; k++) {
-            const float d = others[k] != row[x] ? squared_distance(&seeds[others[k]], x, y) : best;
-            if (d < best)
-                best = d, nearest = others[k];
+        float best = squared_distance(&seeds[row[x]], x, y);
+        if (best < NEAR_PX * NEAR_PX) {
+            const int32_t others[4] = {up[x], down[x], row[x > 0 ? x - 1 : x],
+                                       row[x < w - 1 ? x + 1 : x]};
+            best = search_near(seeds, row[x], others, x, y, best);
         }
-        const float d = sqrtf(descend(seeds, &seeds[nearest], x, y, best));
+        const float d = sqrtf(best);
         distance[x] = work->mask[y * (size_t)w + x] >= FL_INSIDE ? d : -d;
     }
 }
