@@ -106,7 +106,7 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
     *moves = false;
     for (size_t k = 0; k < 2 * n && !*moves; k++)
         *moves = flow[k] != 0.0f;
-    return !*moves || fl_laplace_solve(cell, box->width, box->height, flow, error);
+    return !*moves || fl_laplace_solve(cell, box->width, box->height, 2, flow, error);
 }
 
 bool fl_outline_normals(FlOutline *outline, GError **error)
@@ -135,7 +135,7 @@ bool fl_outline_normals(FlOutline *outline, GError **error)
             normal[2 * p] = -g[0] / norm;
             normal[2 * p + 1] = -g[1] / norm;
         }
-    if (!fl_laplace_solve(cell, box->width, box->height, normal, error))
+    if (!fl_laplace_solve(cell, box->width, box->height, 0, normal, error))
         return false;
     g_free(outline->normal);
     outline->normal = g_steal_pointer(&normal);
