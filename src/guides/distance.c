@@ -134,14 +134,10 @@ static bool border_seed(const Work *work, int x, int y, Seed *seed)
     }
     if (n == 0)
         return false;
-    *seed = (Seed){x, y, .half = 0.5f};
-    if (sx == 0 && sy == 0)
-        return true;
-    const float norm = sx && sy ? 0.70710678f : 1.0f, inward = own ? -norm : norm;
-    const float offset = 0.5f * norm * norm; // along (sx, sy): half of the way to the neighbours
-    seed->x += offset * sx, seed->y += offset * sy;
-    seed->nx = inward * sx, seed->ny = inward * sy;
-    seed->half = 0.5f / norm;
+    if (sx != 0)
+        sy = 0; // a corner: the pixels beside it have its other border
+    const float inward = own ? -1.0f : 1.0f;
+    *seed = (Seed){x + 0.5f * sx, y + 0.5f * sy, inward * sx, inward * sy, .half = 0.5f};
     return true;
 }
 
