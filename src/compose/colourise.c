@@ -1,0 +1,124 @@
+#include "compose/colourise.h"
+#include "compose/blend.h"
+#include "compose/density.h"
+
+#include <string.h>
+
+/*
+ * A fill's channel is at least this level. A channel of 0 has no density, and near it all contrast
+ * drowns in black; real black paint is no darker. Pure black moves by less than 2 in CIEDE2000.
+ */
+#define FLOOR 12
+
+/** Opaque paint is opaque from this amount on. */
+#define OPAQUE_AMOUNT (FL_AMOUNT_ONE / 2)
+
+/** What an amount of paint looks like: straight RGBA. */
+typedef struct Paint {
+    uint8_t rgba[4];
+} Paint;
+
+/** The density of a channel of the paper; it is never quite black. */
+static int32_t base_of(uint8_t paper)
+{
+    return fl_density(MAX(paper, 1));
+}
+
+/** The density of a channel of the fill beyond that of the paper. */
+static int32_t step_of(uint8_t fill, uint8_t paper)
+{
+    return fl_density(MAX(fill, MIN(FLOOR, MAX(paper, 1)))) - base_of(paper);
+}
+
+/** The level of paper of density `base` with `amount` times a density `step` on it. */
+static uint8_t painted_level(int32_t base, int32_t step, int amount)
+{
+    const int32_t density = base + (int32_t)((int64_t)step * amount / FL_AMOUNT_ONE);
+    return (uint8_t)((fl_density_level(density) + 128) >> 8);
+}
+
+static int opacity_of(FlMedium medium, int amount)
+{
+    return medium == FL_MEDIUM_OPAQUE ? MIN(amount, OPAQUE_AMOUNT) * 255 / OPAQUE_AMOUNT : 0;
+}
+
+/** One fill for the whole region: what every amount looks like is known beforehand. */
+static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+                        const uint8_t *painted, const uint8_t *coverage, int width, FlBox box,
+                        uint8_t *rgba)
+{
+    g_autofree Paint *look = g_new(Paint, FL_AMOUNTS);
+    int32_t base[3], step[3];
+    for (int c = 0; c < 3; c++)
+        base[c] = base_of(how->paper[c]), step[c] = step_of(how->fill[c], how->paper[c]);
+    for (int i = 0; i < FL_AMOUNTS; i++) {
+        const int amount = fl_ink_toned(ink, i, how->tone);
+        uint8_t colour[3];
+        for (int c = 0; c < 3; c++)
+            colour[c] = painted_level(base[c], step[c], amount);
+        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), look[i].rgba);
+    }
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const size_t i = (size_t)(box.y + y) * width + box.x + x;
+            if (coverage[i])
+                memcpy(rgba + 4 * ((size_t)y * box.width + x),
+                       look[fl_ink_amount(ink, painted + 3 * i)].rgba, 4);
+        }
+}
+
+/** The colour of pixel i where it differs from pixel to pixel. */
+static void mix_pixel(const FlInk *ink, const FlColouring *how, const uint8_t *painted, size_t i,
+                      int amount, uint8_t colour[3])
+{
+    for (int c = 0; c < 3; c++) {
+        const bool keep = how->tint == FL_TINT_KEEP;
+        const int32_t step = keep ? step_of(painted[3 * i + c], ink->paper[c])
+                                  : step_of(how->picture[4 * i + c], how->paper[c]);
+        colour[c] = painted_level(base_of(how->paper[c]), step, keep ? FL_AMOUNT_ONE : amount);
+    }
+}
+
+static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+                          const uint8_t *painted, const uint8_t *coverage, int width, FlBox box,
+                          uint8_t *rgba)
+{
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const size_t i = (size_t)(box.y + y) * width + box.x + x;
+            if (!coverage[i])
+                continue;
+            uint8_t colour[3];
+            const int amount = fl_ink_toned(ink, fl_ink_amount(ink, painted + 3 * i), how->tone);
+            mix_pixel(ink, how, painted, i, amount, colour);
+            uint8_t *to = rgba + 4 * ((size_t)y * box.width + x);
+            fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), to);
+        }
+}
+
+void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
+                  const uint8_t *coverage, int width, FlBox box, uint8_t *rgba)
+{
+    FlScale scale;
+    fl_scale_init(&scale, how->linear);
+    memset(rgba, 0, fl_box_pixels(box) * 4);
+    if (how->tint != FL_TINT_KEEP && !how->picture)
+        colour_flat(ink, how, &scale, painted, coverage, width, box, rgba);
+    else
+        colour_pixels(ink, how, &scale, painted, coverage, width, box, rgba);
+}
+
+void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
+                        int width, FlBox box, uint8_t *rgba)
+{
+    memset(rgba, 0, fl_box_pixels(box) * 4);
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const size_t i = (size_t)(box.y + y) * width + box.x + x;
+            uint8_t *to = rgba + 4 * ((size_t)y * box.width + x);
+            if (!coverage[i])
+                continue;
+            memcpy(to, picture ? picture + 4 * i : flat, 3);
+            to[3] = 255;
+        }
+}

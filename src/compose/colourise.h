@@ -1,0 +1,48 @@
+/* Colourising: from the exemplar's paint to paint in the drawing's own colours. */
+#ifndef FLUIDY_COMPOSE_COLOURISE_H
+#define FLUIDY_COMPOSE_COLOURISE_H
+
+#include "compose/box.h"
+#include "compose/ink.h"
+
+/** Where the colour comes from. */
+typedef enum FlTint {
+    FL_TINT_FILL, // the drawing's fill or any other: the picture if there is one, else the flat one
+    FL_TINT_KEEP, // the exemplar's own colours
+} FlTint;
+
+/**
+ * How one region of one frame is coloured.
+ *
+ * An amount a of paint has the colour P (F/P)^a per channel, for fill F and paper P: paper at 0,
+ * the fill at 1, darker than the fill above. The law holds for sRGB levels as well as for linear
+ * light, since a power of both sides is the same law.
+ */
+typedef struct FlColouring {
+    FlTint tint;
+    uint8_t fill[3];        // the flat colour
+    const uint8_t *picture; // a whole frame of straight RGBA, whose alpha is not read; or NULL
+    uint8_t paper[3];       // the output's paper
+    FlMedium medium;        // opaque paint hides what is below where it is half its median or more
+    bool linear;            // the layers will be blended in linear light
+    int tone;               // of fl_ink_tone(); FL_TONE_ONE: as in the exemplar
+} FlColouring;
+
+/**
+ * Colours the pixels of a box.
+ *
+ * painted is width * height * 3 sRGB and coverage width * height, whole frames; both are read where
+ * coverage is nonzero only. rgba, box.width * box.height * 4, becomes straight RGBA: the paint
+ * alone, without the coverage. Its alpha is the least with which the colour over the paper is the
+ * painted colour, so that thin paint is transparent over any other background too (opaque paint has
+ * more). Pixels without coverage become 0.
+ */
+void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
+                  const uint8_t *coverage, int width, FlBox box, uint8_t *rgba);
+
+/** What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.
+ */
+void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
+                        int width, FlBox box, uint8_t *rgba);
+
+#endif

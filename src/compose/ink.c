@@ -1,0 +1,153 @@
+#include "compose/ink.h"
+#include "compose/density.h"
+
+#include <string.h>
+
+#define INSIDE 128
+
+/*
+ * Exemplars of paint that pools reach six times their median. Such cores would turn any fill into
+ * its darkest shade, so where the exemplar's 98th percentile exceeds PEAK amounts above one bend
+ * towards an end such that this percentile arrives at PEAK. The spread of log density keeps more
+ * than 80 % of the exemplar's, because most of it lies below the median.
+ */
+#define PEAK (FL_AMOUNT_ONE * 3)
+#define PEAK_PERCENT 98
+
+/** Amounts and the number of pixels that have each. */
+typedef struct Histogram {
+    uint32_t count[FL_AMOUNTS];
+    uint64_t total;
+} Histogram;
+
+/** The amount below which `percent` of the pixels lie, at least 1. */
+static int percentile(const Histogram *h, int percent)
+{
+    const uint64_t rank = h->total * (uint64_t)percent / 100;
+    uint64_t below = 0;
+    int amount = 0;
+    while (amount < FL_AMOUNTS - 1 && below + h->count[amount] <= rank)
+        below += h->count[amount++];
+    return MAX(amount, 1);
+}
+
+static uint8_t median_level(const uint8_t *rgb, const uint8_t *mask, size_t n, int channel)
+{
+    size_t count[256] = {0}, total = 0, below = 0;
+    for (size_t i = 0; i < n; i++)
+        if (mask[i] >= INSIDE)
+            count[rgb[3 * i + channel]]++, total++;
+    int level = 0;
+    while (level < 255 && below + count[level] <= total / 2)
+        below += count[level++];
+    return (uint8_t)level;
+}
+
+/** Sets the levels' parts so that a colour of density `median` has amount `one`. */
+static void set_parts(FlInk *ink, const int32_t median[3], int one)
+{
+    int64_t square = 0;
+    for (int c = 0; c < 3; c++)
+        square += (int64_t)median[c] * median[c];
+    for (int c = 0; c < 3; c++)
+        for (int s = 0; s < 256; s++) {
+            const int64_t d = fl_density((uint8_t)s) - fl_density(ink->paper[c]);
+            ink->part[c][s] = (int32_t)(d * median[c] * one / square);
+        }
+}
+
+static void count_amounts(const FlInk *ink, const uint8_t *rgb, const uint8_t *mask, size_t n,
+                          Histogram *h)
+{
+    memset(h, 0, sizeof *h);
+    for (size_t i = 0; i < n; i++)
+        if (mask[i] >= INSIDE)
+            h->count[fl_ink_amount(ink, rgb + 3 * i)]++, h->total++;
+}
+
+static int32_t shoulder_for(int peak)
+{
+    const int excess = peak - FL_AMOUNT_ONE, wanted = PEAK - FL_AMOUNT_ONE;
+    return excess > wanted ? (int32_t)((int64_t)wanted * excess / (excess - wanted)) : 0;
+}
+
+FlInk *fl_ink_new(const uint8_t paper[3], const uint8_t *rgb, const uint8_t *mask, size_t n_pixels,
+                  GError **error)
+{
+    g_autoptr(FlInk) ink = g_new0(FlInk, 1);
+    g_autofree Histogram *h = g_new0(Histogram, 1);
+    int32_t median[3];
+    int64_t square = 0;
+    memcpy(ink->paper, paper, 3);
+    for (int c = 0; c < 3; c++) {
+        median[c] = fl_density(median_level(rgb, mask, n_pixels, c)) - fl_density(paper[c]);
+        square += (int64_t)median[c] * median[c];
+    }
+    const int64_t least = FL_DENSITY_ONE / 50; // 1.4 % of light: about three levels
+    if (square < least * least) {
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
+                    "the paint inside the masks has the paper's colour #%02x%02x%02x; expected "
+                    "paint that differs from it",
+                    paper[0], paper[1], paper[2]);
+        return NULL;
+    }
+    set_parts(ink, median, FL_AMOUNT_ONE * 256);
+    count_amounts(ink, rgb, mask, n_pixels, h);
+    /* The median of the projections is not the projection of the channels' medians. */
+    const int one = FL_AMOUNT_ONE * FL_AMOUNT_ONE / percentile(h, 50);
+    set_parts(ink, median, CLAMP(one, FL_AMOUNT_ONE / 4, FL_AMOUNT_ONE * 4) * 256);
+    count_amounts(ink, rgb, mask, n_pixels, h);
+    ink->shoulder = shoulder_for(percentile(h, PEAK_PERCENT));
+    return g_steal_pointer(&ink);
+}
+
+FlInk *fl_ink_of_style(const FlStyle *style, GError **error)
+{
+    const size_t n = (size_t)style->n_frames * (size_t)style->height * (size_t)style->width;
+    FlInk *ink = fl_ink_new(style->paper, style->rgb, style->mask, n, error);
+    if (!ink)
+        g_prefix_error(error, "%s: ", style->path);
+    return ink;
+}
+
+void fl_ink_free(FlInk *ink)
+{
+    g_free(ink);
+}
+
+/** Inside the shape and at least `margin` px away from its contour along both axes. */
+static bool is_inner(const uint8_t *coverage, int width, int height, int x, int y, int margin)
+{
+    const uint8_t *at = coverage + (size_t)y * width + x;
+    return *at == 255 && (x < margin || at[-margin] == 255) &&
+           (x >= width - margin || at[margin] == 255) &&
+           (y < margin || at[-(ptrdiff_t)margin * width] == 255) &&
+           (y >= height - margin || at[(ptrdiff_t)margin * width] == 255);
+}
+
+int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
+                int height)
+{
+    enum { MARGIN_PX = 2, ENOUGH = 64 };
+    g_autofree Histogram *h = g_new0(Histogram, 1);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            if (is_inner(coverage, width, height, x, y, MARGIN_PX)) {
+                h->count[fl_ink_amount(ink, painted + 3 * ((size_t)y * width + x))]++;
+                h->total++;
+            }
+    if (h->total == 0)
+        return FL_TONE_ONE;
+    const int tone = FL_TONE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
+    const int sure = (int)MIN(h->total, ENOUGH);
+    return (CLAMP(tone, FL_TONE_MIN, FL_TONE_MAX) * sure + FL_TONE_ONE * (ENOUGH - sure)) / ENOUGH;
+}
+
+int fl_ink_toned(const FlInk *ink, int amount, int tone)
+{
+    int64_t toned = (int64_t)amount * tone / FL_TONE_ONE;
+    const int64_t excess = toned - FL_AMOUNT_ONE;
+    if (excess > 0 && ink->shoulder > 0)
+        toned = FL_AMOUNT_ONE + excess * ink->shoulder / (excess + ink->shoulder);
+    return (int)MIN(toned, FL_AMOUNTS - 1);
+}

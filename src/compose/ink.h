@@ -1,0 +1,72 @@
+/* The ink of a style: how much paint a colour of the exemplar stands for. */
+#ifndef FLUIDY_COMPOSE_INK_H
+#define FLUIDY_COMPOSE_INK_H
+
+#include "style/bundle.h"
+
+/**
+ * Amounts of paint are fixed point, FL_AMOUNT_ONE to the unit; the exemplar's median interior has
+ * amount one. Amounts are 0 … FL_AMOUNTS - 1: bare paper to eight times the median.
+ */
+#define FL_AMOUNT_ONE 1024
+#define FL_AMOUNTS 8192
+
+/** A tone scales amounts; FL_TONE_ONE leaves them as they are. */
+#define FL_TONE_ONE 4096
+#define FL_TONE_MIN (FL_TONE_ONE / 4)
+#define FL_TONE_MAX (FL_TONE_ONE * 8)
+
+/**
+ * What is known of a style's paint.
+ *
+ * The density of a colour S on paper P is -log(S/P) per channel. It is reduced to one number by
+ * projecting it on the median interior density v of the exemplar, (D·v) / (v·v): the least-squares
+ * estimate of how much of the style's typical paint lies there. Weights by luminance would nearly
+ * ignore a yellow paint, whose texture is all in blue, and see the paper's noise instead.
+ */
+typedef struct FlInk {
+    uint8_t paper[3];     // sRGB of the exemplar's bare paper
+    int32_t part[3][256]; // amount * 256 that a level of a channel adds
+    int32_t shoulder;     // amounts above one end at one plus this (FL_AMOUNT_ONE); 0: no end
+} FlInk;
+
+/**
+ * Learns the ink from pixels of the exemplar: rgb has n_pixels * 3 bytes, mask n_pixels (coverage;
+ * 128 and more is paint).
+ *
+ * Returns: to be freed with fl_ink_free(); NULL with FL_ERROR_STYLE if no paint differs from paper.
+ */
+FlInk *fl_ink_new(const uint8_t paper[3], const uint8_t *rgb, const uint8_t *mask, size_t n_pixels,
+                  GError **error);
+
+/** The same from all frames of a style; messages name it. */
+FlInk *fl_ink_of_style(const FlStyle *style, GError **error);
+
+void fl_ink_free(FlInk *ink); // NULL is fine
+
+/** The amount of paint that a colour stands for, 0 … FL_AMOUNTS - 1. */
+static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
+{
+    const int amount = (ink->part[0][rgb[0]] + ink->part[1][rgb[1]] + ink->part[2][rgb[2]]) >> 8;
+    return amount < 0 ? 0 : amount < FL_AMOUNTS ? amount : FL_AMOUNTS - 1;
+}
+
+/**
+ * The tone that brings a painted region's own median amount to one.
+ *
+ * painted is width * height * 3, coverage width * height, the whole shape. A region takes other
+ * parts of the exemplar than its median (a thin limb is all rim, an early frame all fresh paint),
+ * and without the tone its colour would not be the drawing's. Regions of few inner pixels lean to
+ * FL_TONE_ONE. The tone is a function of this frame alone.
+ *
+ * Returns: FL_TONE_MIN … FL_TONE_MAX.
+ */
+int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
+                int height);
+
+/** The amount after tone and shoulder, 0 … FL_AMOUNTS - 1; rises with amount. */
+int fl_ink_toned(const FlInk *ink, int amount, int tone);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlInk, fl_ink_free)
+
+#endif

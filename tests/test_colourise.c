@@ -1,0 +1,263 @@
+#include "compose/colourise.h"
+#include "compose/density.h"
+#include "delta_e.h"
+#include "style/picture.h"
+
+#include <string.h>
+
+/** A frame of paint from the fixtures. */
+typedef struct Sample {
+    int width, height;
+    uint8_t *rgb, *mask;
+} Sample;
+
+static FlPicture *picture(const char *name, const char *kind)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *file =
+        g_strdup_printf("%s/compose/%s-%s.png", g_getenv("FLUIDY_FIXTURES"), name, kind);
+    FlPicture *read = fl_picture_read_png(file, &error);
+    g_assert_no_error(error);
+    return read;
+}
+
+static Sample sample_load(const char *name)
+{
+    g_autoptr(FlPicture) rgb = picture(name, "rgb");
+    g_autoptr(FlPicture) mask = picture(name, "mask");
+    const size_t n = (size_t)rgb->width * rgb->height;
+    Sample s = {rgb->width, rgb->height, g_malloc(3 * n), g_malloc(n)};
+    for (size_t i = 0; i < n; i++) {
+        memcpy(s.rgb + 3 * i, rgb->rgba + 4 * i, 3);
+        s.mask[i] = mask->rgba[4 * i];
+    }
+    return s;
+}
+
+static void sample_clear(Sample *s)
+{
+    g_free(s->rgb);
+    g_free(s->mask);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Sample, sample_clear)
+
+static const uint8_t drop_paper[3] = {234, 230, 228}, bloom_paper[3] = {233, 216, 187};
+static const uint8_t white[3] = {255, 255, 255};
+
+static FlInk *ink_of(const Sample *s, const uint8_t paper[3])
+{
+    g_autoptr(GError) error = NULL;
+    FlInk *ink = fl_ink_new(paper, s->rgb, s->mask, (size_t)s->width * s->height, &error);
+    g_assert_no_error(error);
+    return ink;
+}
+
+/** Colours a sample and puts it on its paper: to be freed, width * height * 3. */
+static uint8_t *paint(const Sample *s, const FlInk *ink, const FlColouring *how)
+{
+    const FlBox box = {0, 0, s->width, s->height};
+    const size_t n = fl_box_pixels(box);
+    g_autofree uint8_t *rgba = g_malloc(4 * n);
+    uint8_t *rgb = g_malloc(3 * n);
+    fl_colourise(ink, how, s->rgb, s->mask, s->width, box, rgba);
+    for (size_t i = 0; i < 3 * n; i++) {
+        const uint8_t *p = rgba + i / 3 * 4;
+        rgb[i] = (uint8_t)((p[i % 3] * p[3] + how->paper[i % 3] * (255 - p[3]) + 127) / 255);
+    }
+    return rgb;
+}
+
+static int compare_bytes(const void *a, const void *b)
+{
+    return *(const uint8_t *)a - *(const uint8_t *)b;
+}
+
+/** The median of each channel where the coverage is full, 2 px and more from the contour. */
+static void median_colour(const Sample *s, const uint8_t *rgb, uint8_t median[3])
+{
+    g_autofree uint8_t *values = g_malloc((size_t)s->width * s->height);
+    for (int c = 0; c < 3; c++) {
+        size_t n = 0;
+        for (int y = 2; y < s->height - 2; y++)
+            for (int x = 2; x < s->width - 2; x++) {
+                const size_t i = (size_t)y * s->width + x;
+                const size_t row = 2 * (size_t)s->width;
+                if (s->mask[i] == 255 && s->mask[i - 2] == 255 && s->mask[i + 2] == 255 &&
+                    s->mask[i - row] == 255 && s->mask[i + row] == 255)
+                    values[n++] = rgb[3 * i + c];
+            }
+        qsort(values, n, 1, compare_bytes);
+        median[c] = values[n / 2];
+    }
+}
+
+static const uint8_t fills[][3] = {
+    {0, 0, 0},       {255, 255, 255}, {214, 40, 40},   {255, 0, 0},     {0, 0, 255},
+    {0, 255, 0},     {59, 42, 26},    {247, 241, 230}, {128, 128, 128}, {255, 230, 0},
+    {250, 199, 170}, {20, 40, 90},    {120, 200, 240}, {90, 30, 120},
+};
+
+static void the_median_interior_colour_is_the_fill(void)
+{
+    const char *names[] = {"drop-13", "drop-30", "bloom-13", "bloom-30"};
+    for (int k = 0; k < 4; k++) {
+        const uint8_t *paper = k < 2 ? drop_paper : bloom_paper;
+        g_auto(Sample) learned = sample_load(k < 2 ? "drop-30" : "bloom-30");
+        g_auto(Sample) s = sample_load(names[k]);
+        g_autoptr(FlInk) ink = ink_of(&learned, paper);
+        for (size_t f = 0; f < 2 * G_N_ELEMENTS(fills); f++) {
+            const uint8_t *fill = fills[f / 2], *on = f % 2 ? paper : white;
+            FlColouring how = {.tone = fl_ink_tone(ink, s.rgb, s.mask, s.width, s.height)};
+            memcpy(how.fill, fill, 3);
+            memcpy(how.paper, on, 3);
+            g_autofree uint8_t *rgb = paint(&s, ink, &how);
+            uint8_t median[3];
+            median_colour(&s, rgb, median);
+            g_test_message("%s on #%02x%02x%02x: #%02x%02x%02x becomes #%02x%02x%02x, %.2f",
+                           names[k], on[0], on[1], on[2], fill[0], fill[1], fill[2], median[0],
+                           median[1], median[2], delta_e(fill, median));
+            g_assert_cmpfloat(delta_e(fill, median), <=, 3);
+        }
+    }
+}
+
+/** The standard deviation of the logarithm of the density -log(colour / paper) in a channel. */
+static double contrast(const Sample *s, const uint8_t *rgb, const uint8_t *paper, int channel,
+                       double least)
+{
+    double sum = 0, squares = 0, n = 0;
+    for (size_t i = 0; i < (size_t)s->width * s->height; i++) {
+        const double d = -log(MAX(rgb[3 * i + channel], 1) / (double)paper[channel]);
+        if (s->mask[i] < 255)
+            continue;
+        const double l = log(MAX(d, least));
+        sum += l, squares += l * l, n++;
+    }
+    return sqrt(squares / n - sum / n * (sum / n));
+}
+
+static void four_fifths_of_the_contrast_are_kept(void)
+{
+    const struct {
+        const char *name;
+        const uint8_t *paper;
+        int channel; // the one that the paint absorbs most
+    } cases[] = {{"drop-30", drop_paper, 1}, {"bloom-30", bloom_paper, 0}};
+    for (int k = 0; k < 2; k++) {
+        g_auto(Sample) s = sample_load(cases[k].name);
+        g_autoptr(FlInk) ink = ink_of(&s, cases[k].paper);
+        FlColouring how = {.fill = {120, 90, 70}, .paper = {255, 255, 255}, .tone = FL_TONE_ONE};
+        g_autofree uint8_t *rgb = paint(&s, ink, &how);
+        const double had = contrast(&s, s.rgb, cases[k].paper, cases[k].channel, 0.02);
+        const double has = contrast(&s, rgb, white, 2, 0.02);
+        g_test_message("%s: log density deviates by %.3f, was %.3f", cases[k].name, has, had);
+        g_assert_cmpfloat(has, >=, 0.8 * had);
+    }
+}
+
+static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
+{
+    g_auto(Sample) s = sample_load("bloom-30");
+    g_autoptr(FlInk) ink = ink_of(&s, bloom_paper);
+    const uint8_t black[3] = {0, 0, 0};
+    uint8_t painted[4][3], coverage[4] = {255, 255, 255, 0}, rgba[16];
+    memcpy(painted[0], bloom_paper, 3);
+    memcpy(painted[1], white, 3); // brighter than the paper: no paint either
+    memcpy(painted[2], black, 3);
+    memcpy(painted[3], black, 3);
+    FlColouring how = {.fill = {200, 30, 30}, .paper = {255, 255, 255}, .tone = FL_TONE_ONE};
+    fl_colourise(ink, &how, painted[0], coverage, 4, (FlBox){0, 0, 4, 1}, rgba);
+    g_assert_cmpint(rgba[3], ==, 0);
+    g_assert_cmpint(rgba[7], ==, 0);
+    g_assert_cmpint(rgba[11], >=, 250);
+    g_assert_cmpint(rgba[15], ==, 0);
+    for (int medium = 0; medium < 2; medium++) { // white gouache covers, white watercolour does not
+        memset(how.fill, 255, 3);
+        how.medium = medium ? FL_MEDIUM_OPAQUE : FL_MEDIUM_TRANSPARENT;
+        fl_colourise(ink, &how, painted[0], coverage, 4, (FlBox){0, 0, 4, 1}, rgba);
+        g_assert_cmpint(rgba[11], ==, medium ? 255 : 0);
+    }
+}
+
+static void a_picture_of_one_colour_is_as_good_as_a_flat_fill(void)
+{
+    g_auto(Sample) s = sample_load("drop-30");
+    g_autoptr(FlInk) ink = ink_of(&s, drop_paper);
+    const size_t n = (size_t)s.width * s.height;
+    g_autofree uint8_t *picture_rgba = g_malloc(4 * n);
+    FlColouring how = {.fill = {12, 190, 77}, .paper = {250, 248, 240}, .tone = 5000};
+    for (size_t i = 0; i < n; i++)
+        memcpy(picture_rgba + 4 * i, (uint8_t[]){12, 190, 77, 255}, 4);
+    g_autofree uint8_t *flat = paint(&s, ink, &how);
+    how.picture = picture_rgba;
+    g_autofree uint8_t *pixels = paint(&s, ink, &how);
+    g_assert_cmpmem(flat, 3 * n, pixels, 3 * n);
+}
+
+static void the_exemplars_own_colours_are_kept_on_its_own_paper(void)
+{
+    g_auto(Sample) s = sample_load("drop-30");
+    g_autoptr(FlInk) ink = ink_of(&s, drop_paper);
+    FlColouring how = {.tint = FL_TINT_KEEP, .tone = FL_TONE_ONE};
+    memcpy(how.paper, drop_paper, 3);
+    g_autofree uint8_t *rgb = paint(&s, ink, &how);
+    for (size_t i = 0; i < (size_t)s.width * s.height; i++)
+        for (int c = 0; c < 3 && s.mask[i]; c++)
+            g_assert_cmpint(abs(rgb[3 * i + c] - CLAMP(s.rgb[3 * i + c], 12, drop_paper[c])), <=,
+                            s.rgb[3 * i + c] <= drop_paper[c] ? 1 : 255);
+}
+
+static void paint_of_the_papers_colour_is_an_error(void)
+{
+    g_autoptr(GError) error = NULL;
+    const uint8_t rgb[6] = {200, 200, 200, 201, 200, 200}, mask[2] = {255, 255};
+    g_assert_null(fl_ink_new((uint8_t[]){200, 200, 200}, rgb, mask, 2, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_STYLE);
+}
+
+/** How far a value is from the middle between two integers. */
+static double from_tie(double value)
+{
+    return fabs(value - floor(value) - 0.5);
+}
+
+static void no_table_entry_is_near_a_tie(void)
+{
+    double least = 1;
+    for (int s = 1; s < 255; s++)
+        least = fmin(least, from_tie(-log2(s / 255.0) * FL_DENSITY_ONE));
+    for (int d = 64; d < FL_DENSITY_MAX; d += 64)
+        least = fmin(least, from_tie(exp2(-(double)d / FL_DENSITY_ONE) * 255 * 256));
+    for (int s = 1; s < 255; s++)
+        least = fmin(least, from_tie(delta_e_light((uint8_t)s) * 65535));
+    g_test_message("nearest: %g", least);
+    g_assert_cmpfloat(least, >, 1e-6);
+}
+
+static void linear_light_goes_there_and_back(void)
+{
+    for (int s = 0; s < 256; s++)
+        g_assert_cmpint(fl_srgb_from_linear(fl_srgb_to_linear((uint8_t)s)), ==, s);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/colourise/the-median-interior-colour-is-the-fill",
+                    the_median_interior_colour_is_the_fill);
+    g_test_add_func("/colourise/four-fifths-of-the-contrast-are-kept",
+                    four_fifths_of_the_contrast_are_kept);
+    g_test_add_func("/colourise/bare-paper-is-transparent-and-thin-paint-is-thin",
+                    bare_paper_is_transparent_and_thin_paint_is_thin);
+    g_test_add_func("/colourise/a-picture-of-one-colour-is-as-good-as-a-flat-fill",
+                    a_picture_of_one_colour_is_as_good_as_a_flat_fill);
+    g_test_add_func("/colourise/the-exemplars-own-colours-are-kept-on-its-own-paper",
+                    the_exemplars_own_colours_are_kept_on_its_own_paper);
+    g_test_add_func("/colourise/paint-of-the-papers-colour-is-an-error",
+                    paint_of_the_papers_colour_is_an_error);
+    g_test_add_func("/colourise/no-table-entry-is-near-a-tie", no_table_entry_is_near_a_tie);
+    g_test_add_func("/colourise/linear-light-goes-there-and-back",
+                    linear_light_goes_there_and_back);
+    return g_test_run();
+}
