@@ -1,0 +1,240 @@
+#include "compose/layers.h"
+#include "base/alloc.h"
+#include "compose/blend.h"
+#include "compose/matte.h"
+
+#include <string.h>
+
+/** What the layers above take of each pixel of the frame. */
+typedef struct Above {
+    int width, height;
+    uint8_t *area;   // the shapes that knock out, 0..255
+    uint16_t *paint; // the sum of their paint's alpha, 0..65535
+    uint8_t *spread; // a grown shape, if shapes are grown; else NULL
+    uint8_t *seen;   // the visible coverage of the layer at hand
+} Above;
+
+static void above_clear(Above *above)
+{
+    free(above->area);
+    free(above->paint);
+    free(above->spread);
+    free(above->seen);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Above, above_clear)
+
+static bool above_init(Above *above, int width, int height, bool spreads, GError **error)
+{
+    const size_t n = (size_t)width * height;
+    *above = (Above){.width = width, .height = height};
+    return (above->area = fl_alloc(n, 1, "a matte", error)) &&
+           (above->paint = fl_alloc(n, 2, "a matte", error)) &&
+           (above->seen = fl_alloc(n, 1, "a matte", error)) &&
+           (!spreads || (above->spread = fl_alloc(n, 1, "a matte", error)));
+}
+
+static int scaled(int a, int b)
+{
+    return (a * b + 127) / 255;
+}
+
+/**
+ * The stored alpha of paint of alpha `paint` in a pixel where `seen` of 255 belongs to it. Its
+ * share of the final pixel is paint * seen; `over` leaves it 1 - above->paint of its stored alpha.
+ */
+static int stored_alpha(int paint, int seen, int covered, int above)
+{
+    const int left = 65535 - above;
+    if (left < 257) // hidden: the whole shape, for those who move the layers apart
+        return scaled(paint, covered);
+    const int64_t share = (int64_t)paint * seen * 65535 / 255;
+    return (int)MIN((share + left / 2) / left, 255);
+}
+
+static void resolve_rows(const FlLayer *layer, Above *above)
+{
+    const bool knocks = layer->stacking == FL_STACKING_KNOCKOUT;
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < layer->box.height; y++)
+        for (int x = 0; x < layer->box.width; x++) {
+            const size_t i = (size_t)(layer->box.y + y) * above->width + layer->box.x + x;
+            const size_t j = (size_t)y * layer->box.width + x;
+            uint8_t *alpha = layer->rgba + 4 * j + 3;
+            const int paint = scaled(*alpha, layer->alpha);
+            *alpha =
+                (uint8_t)stored_alpha(paint, above->seen[j], layer->coverage[i], above->paint[i]);
+            if (knocks) {
+                above->paint[i] += (uint16_t)((65535 - above->paint[i]) * *alpha / 255);
+                above->area[i] += (uint8_t)scaled(above->seen[j], layer->alpha);
+            }
+        }
+}
+
+static void grow_area(const FlLayer *layer, const FlStackParams *params, Above *above)
+{
+    const size_t n = (size_t)above->width * above->height;
+    fl_matte_spread(layer->coverage, above->width, above->height, layer->box, params->gap_px,
+                    params->feather_px, above->spread);
+    for (size_t i = 0; i < n; i++)
+        above->area[i] = (uint8_t)MAX(above->area[i], scaled(above->spread[i], layer->alpha));
+}
+
+/** Top layer first: what each one shows, and what it takes from those below. */
+static void resolve_occlusion(FlLayer *layers, int n, const FlStackParams *params, Above *above)
+{
+    for (int k = n - 1; k >= 0; k--) {
+        const FlLayer *layer = &layers[k];
+        fl_matte_visible(layer->coverage, above->area, above->width, above->height, layer->box,
+                         above->seen);
+        resolve_rows(layer, above);
+        if (above->spread && layer->stacking == FL_STACKING_KNOCKOUT)
+            grow_area(layer, params, above);
+    }
+}
+
+/** A blended pixel: values times alpha, and 65535 times alpha. */
+typedef struct Sum {
+    uint32_t x[3], a;
+} Sum;
+
+static void sum_over(Sum *sum, const FlScale *scale, const uint8_t *rgba)
+{
+    const uint32_t alpha = rgba[3];
+    for (int c = 0; c < 3; c++)
+        sum->x[c] = (uint32_t)scale->value[rgba[c]] * alpha +
+                    (uint32_t)(((uint64_t)sum->x[c] * (255 - alpha) + 127) / 255);
+    sum->a = 65535 * alpha + (uint32_t)(((uint64_t)sum->a * (255 - alpha) + 127) / 255);
+}
+
+static int32_t sum_value(const Sum *sum, int channel)
+{
+    if (sum->a == 0)
+        return 0;
+    return (int32_t)MIN(((uint64_t)sum->x[channel] * 65535 + sum->a / 2) / sum->a, 65535);
+}
+
+/** Blends the layers' pixels of row y over the sums of that row. */
+static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, Sum *sums)
+{
+    for (int k = 0; k < n; k++) {
+        const FlBox box = layers[k].box;
+        if (y < box.y || y >= box.y + box.height)
+            continue;
+        const uint8_t *row = layers[k].rgba + (size_t)(y - box.y) * box.width * 4;
+        for (int x = 0; x < box.width; x++)
+            if (row[4 * x + 3])
+                sum_over(&sums[box.x + x], scale, row + 4 * x);
+    }
+}
+
+static void sum_backdrop(const FlBackdrop *backdrop, const FlScale *scale, int y, int width,
+                         Sum *sums)
+{
+    memset(sums, 0, (size_t)width * sizeof *sums);
+    for (int x = 0; x < width; x++)
+        sum_over(&sums[x], scale,
+                 backdrop->rgba ? backdrop->rgba + 4 * ((size_t)y * width + x) : backdrop->flat);
+}
+
+/** Lays the density of a glaze over what lies below it: the layer's pixel that does so. */
+static void glaze_pixel(const Sum *below, const FlScale *scale, const uint8_t *paper, uint8_t *rgba)
+{
+    uint8_t under[3], target[3], lifted[4];
+    for (int c = 0; c < 3; c++) {
+        under[c] = fl_scale_level(scale, sum_value(below, c));
+        const int32_t p = scale->value[paper[c]], k = scale->value[rgba[c]];
+        const int thin = fl_scale_level(scale, p + (int64_t)(k - p) * rgba[3] / 255);
+        target[c] = (uint8_t)MIN((under[c] * thin + paper[c] / 2) / MAX(paper[c], 1), 255);
+    }
+    fl_lift(scale, target, under, 0, lifted);
+    memcpy(rgba, lifted, 4);
+}
+
+/** Bottom layer first: gives glazes the colour that is right over what lies below them. */
+static void resolve_glazes(FlLayer *layers, int n, int width, int y, const FlStackParams *params,
+                           const FlScale *scale, Sum *sums)
+{
+    const FlBackdrop paper = {.flat = {params->paper[0], params->paper[1], params->paper[2], 255}};
+    sum_backdrop(&paper, scale, y, width, sums);
+    for (int k = 0; k < n; k++) {
+        const FlBox box = layers[k].box;
+        if (y < box.y || y >= box.y + box.height)
+            continue;
+        uint8_t *row = layers[k].rgba + (size_t)(y - box.y) * box.width * 4;
+        if (layers[k].stacking == FL_STACKING_GLAZE)
+            for (int x = 0; x < box.width; x++)
+                glaze_pixel(&sums[box.x + x], scale, params->paper, row + 4 * x);
+        sum_row(&layers[k], 1, scale, y, sums);
+    }
+}
+
+bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlStackParams *params,
+                       GError **error)
+{
+    g_auto(Above) above = {0};
+    if (!above_init(&above, width, height, params->gap_px > 0 || params->feather_px > 0, error))
+        return false;
+    g_autofree Sum *sums = fl_alloc((size_t)width, sizeof *sums, "a row of pixels", error);
+    if (!sums)
+        return false;
+    resolve_occlusion(layers, n, params, &above);
+    bool glazes = false;
+    for (int k = 0; k < n; k++)
+        glazes |= layers[k].stacking == FL_STACKING_GLAZE;
+    FlScale scale;
+    fl_scale_init(&scale, params->linear);
+    for (int y = 0; glazes && y < height; y++)
+        resolve_glazes(layers, n, width, y, params, &scale, sums);
+    return true;
+}
+
+static void store_row(const Sum *sums, const FlScale *scale, int width, uint8_t *out)
+{
+    for (int x = 0; x < width; x++) {
+        for (int c = 0; c < 3; c++)
+            out[4 * x + c] = sums[x].a ? fl_scale_level(scale, sum_value(&sums[x], c)) : 0;
+        out[4 * x + 3] = (uint8_t)((sums[x].a + 32767) / 65535);
+    }
+}
+
+static void store_row16(const Sum *sums, const FlScale *scale, int width, uint16_t *out)
+{
+    for (int x = 0; x < width; x++) {
+        for (int c = 0; c < 3; c++)
+            out[4 * x + c] = fl_scale_level16(scale, sum_value(&sums[x], c));
+        out[4 * x + 3] = (uint16_t)((sums[x].a + 127) / 255);
+    }
+}
+
+static void compose(const FlLayer *layers, int n, const FlBackdrop *backdrop, int width, int height,
+                    bool linear, uint8_t *out, uint16_t *out16)
+{
+    FlScale scale;
+    fl_scale_init(&scale, linear);
+#pragma omp parallel
+    {
+        g_autofree Sum *sums = g_new(Sum, width);
+#pragma omp for schedule(static)
+        for (int y = 0; y < height; y++) {
+            sum_backdrop(backdrop, &scale, y, width, sums);
+            sum_row(layers, n, &scale, y, sums);
+            if (out)
+                store_row(sums, &scale, width, out + (size_t)y * width * 4);
+            else
+                store_row16(sums, &scale, width, out16 + (size_t)y * width * 4);
+        }
+    }
+}
+
+void fl_layers_compose(const FlLayer *layers, int n, const FlBackdrop *backdrop, int width,
+                       int height, bool linear, uint8_t *out)
+{
+    compose(layers, n, backdrop, width, height, linear, out, NULL);
+}
+
+void fl_layers_compose16(const FlLayer *layers, int n, const FlBackdrop *backdrop, int width,
+                         int height, bool linear, uint16_t *out)
+{
+    compose(layers, n, backdrop, width, height, linear, NULL, out);
+}

@@ -1,0 +1,78 @@
+/* The stack of a frame: what each layer shows, and the layers over the background. */
+#ifndef FLUIDY_COMPOSE_LAYERS_H
+#define FLUIDY_COMPOSE_LAYERS_H
+
+#include "compose/box.h"
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** What an upper layer does to those below it. */
+typedef enum FlStacking {
+    FL_STACKING_KNOCKOUT, // they are not there: paper under the paint
+    FL_STACKING_GLAZE,    // its density adds to theirs, as a wash over dry paint
+} FlStacking;
+
+/** One layer; in arrays the bottom one comes first. */
+typedef struct FlLayer {
+    FlBox box;               // where it may be seen
+    const uint8_t *coverage; // a whole frame's width * height, 0..255, borrowed: the whole shape,
+                             // times the opacity of its fill where that varies
+    uint8_t *rgba;           // box.width * box.height * 4 straight RGBA; owned by the caller
+    uint8_t alpha;           // opacity of the layer, 255 opaque
+    FlStacking stacking;
+} FlLayer;
+
+typedef struct FlStackParams {
+    uint8_t paper[3]; // the output's paper, on which the paint was made
+    bool linear;      // blend in linear light instead of sRGB
+    float gap_px;     // paper left around an upper shape that knocks out; 0 … 32
+    float feather_px; // over which paint fades towards such a shape, beyond the gap; 0 … 32
+} FlStackParams;
+
+/**
+ * Turns paint into layers: rgba comes in as the paint alone, of fl_colourise(), and goes out as the
+ * layer that is stored, straight RGBA with coverage, occlusion and opacity in its alpha.
+ *
+ * A layer is made so that the plain `over` of all layers shows every one of them exactly in the
+ * part of each pixel that is its own: where a neighbour above takes the rest of an edge pixel, the
+ * layer is full below it, so that shared edges show no seam. Where a layer is wholly hidden it
+ * keeps its paint, except that transparent paint above takes away what would shine through.
+ */
+bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlStackParams *params,
+                       GError **error);
+
+/** What lies below the layers: a picture of the frame's size, or one colour; alpha 0: nothing. */
+typedef struct FlBackdrop {
+    const uint8_t *rgba; // width * height * 4 straight RGBA; NULL: flat
+    uint8_t flat[4];
+} FlBackdrop;
+
+/**
+ * The frame, defined by its stored layers, so that they recompose to it bit for bit.
+ *
+ * For every pixel start with A = X[c] = 0. For the backdrop and then each layer, bottom first, with
+ * straight 8-bit colour s[c] and alpha a, and v(s) = 257 s (in linear light: v(s) = light of s in
+ * 0..65535, rounded), all divisions rounding down:
+ *
+ *     X[c] = v(s[c]) a + (X[c] (255 - a) + 127) / 255
+ *     A    = 65535 a   + (A    (255 - a) + 127) / 255
+ *
+ * The frame's alpha is (A + 32767) / 65535. Its colour has the value (65535 X[c] + A / 2) / A, at
+ * most 65535, and the level (value + 128) / 257 (in linear light: the nearest level). A pixel with
+ * A = 0 is 0 in all channels. out is width * height * 4, straight RGBA.
+ */
+void fl_layers_compose(const FlLayer *layers, int n, const FlBackdrop *backdrop, int width,
+                       int height, bool linear, uint8_t *out);
+
+/** The same with 16 bits per channel, native byte order: 0..65535, alpha (A + 127) / 255. */
+void fl_layers_compose16(const FlLayer *layers, int n, const FlBackdrop *backdrop, int width,
+                         int height, bool linear, uint16_t *out);
+
+/**
+ * Spreads colour into transparent pixels near visible ones, whose alpha stays 0: each pixel up to
+ * radius_px away takes the mean of its neighbours one step nearer. Farther pixels become 0.
+ */
+bool fl_layers_bleed(uint8_t *rgba, int width, int height, int radius_px, GError **error);
+
+#endif

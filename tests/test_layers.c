@@ -1,0 +1,273 @@
+#include "base/rng.h"
+#include "compose/layers.h"
+#include "compose/matte.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { W = 48, H = 40, N = W * H };
+
+/** Coverage of the half plane a x + b y < c, antialiased by 16 x 16 samples. */
+static void half_plane(double a, double b, double c, uint8_t *coverage)
+{
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            int n = 0;
+            for (int k = 0; k < 256; k++)
+                n += a * (x + (k % 16 + 0.5) / 16) + b * (y + (k / 16 + 0.5) / 16) < c;
+            coverage[y * W + x] = (uint8_t)(n * 255 / 256);
+        }
+}
+
+static void disc(double cx, double cy, double r, uint8_t *coverage)
+{
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            int n = 0;
+            for (int k = 0; k < 256; k++)
+                n += hypot(x + (k % 16 + 0.5) / 16 - cx, y + (k / 16 + 0.5) / 16 - cy) < r;
+            coverage[y * W + x] = (uint8_t)(n * 255 / 256);
+        }
+}
+
+/** A layer of flat opaque colour. */
+static FlLayer flat_layer(const uint8_t *coverage, uint8_t r, uint8_t g, uint8_t b)
+{
+    FlLayer layer = {.box = {0, 0, W, H}, .coverage = coverage, .alpha = 255};
+    layer.rgba = g_malloc(4 * N);
+    for (int i = 0; i < N; i++)
+        memcpy(layer.rgba + 4 * i, (uint8_t[]){r, g, b, coverage[i] ? 255 : 0}, 4);
+    return layer;
+}
+
+static void layers_clear(FlLayer *layers, int n)
+{
+    for (int k = 0; k < n; k++)
+        g_free(layers[k].rgba);
+}
+
+static void resolve(FlLayer *layers, int n, const FlStackParams *params)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_true(fl_layers_resolve(layers, n, W, H, params, &error));
+    g_assert_no_error(error);
+}
+
+static const FlStackParams plain = {.paper = {255, 255, 255}};
+
+static void neighbours_with_a_common_edge_leave_no_seam(void)
+{
+    for (int turn = 0; turn < 16; turn++) {
+        const double a = cos(turn * 0.41), b = sin(turn * 0.41), c = a * 24.3 + b * 19.7;
+        uint8_t left[N], right[N], out[4 * N];
+        half_plane(a, b, c, left);
+        half_plane(-a, -b, -c, right);
+        FlLayer layers[2] = {flat_layer(left, 100, 100, 100), flat_layer(right, 100, 100, 100)};
+        resolve(layers, 2, &plain);
+        fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
+        for (int i = 0; i < 4 * N; i++)
+            if (i % 4 < 3)
+                g_assert_cmpint(out[i], <=, 103); // paper would shine through: 139 at worst
+        layers_clear(layers, 2);
+    }
+}
+
+static void a_shape_exactly_covered_leaves_no_fringe(void)
+{
+    uint8_t shape[N], out[4 * N];
+    disc(23.3, 19.6, 14.2, shape);
+    FlLayer layers[2] = {flat_layer(shape, 255, 0, 0), flat_layer(shape, 0, 0, 255)};
+    resolve(layers, 2, &plain);
+    fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
+    for (int i = 0; i < N; i++) // blue over white: red and green alike
+        g_assert_cmpint(abs(out[4 * i] - out[4 * i + 1]), <=, 3);
+    layers_clear(layers, 2);
+}
+
+static void a_gap_leaves_paper_around_the_upper_shape(void)
+{
+    uint8_t all[N], shape[N], out[4 * N];
+    memset(all, 255, N);
+    disc(24, 20, 10, shape);
+    FlLayer layers[2] = {flat_layer(all, 0, 0, 0), flat_layer(shape, 0, 0, 0)};
+    FlStackParams params = plain;
+    params.gap_px = 3;
+    resolve(layers, 2, &params);
+    fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
+    g_assert_cmpint(out[4 * (20 * W + 24)], ==, 0);
+    g_assert_cmpint(out[4 * (20 * W + 36)], >=, 245); // 12.5 px from the centre
+    g_assert_cmpint(out[4 * (20 * W + 40)], ==, 0);
+    layers_clear(layers, 2);
+}
+
+static void a_feather_fades_the_lower_paint_smoothly(void)
+{
+    uint8_t all[N], shape[N], out[4 * N];
+    memset(all, 255, N);
+    half_plane(1, 0, 10, shape);
+    FlLayer layers[2] = {flat_layer(all, 0, 0, 0), flat_layer(shape, 0, 0, 0)};
+    FlStackParams params = plain;
+    params.feather_px = 12;
+    resolve(layers, 2, &params);
+    fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
+    for (int x = 11; x < 24; x++)
+        g_assert_cmpint(out[4 * (20 * W + x)], <=, out[4 * (20 * W + x - 1)] + (x == 10 ? 255 : 0));
+    g_assert_cmpint(out[4 * (20 * W + 16)], >, 60);
+    g_assert_cmpint(out[4 * (20 * W + 23)], ==, 0);
+    layers_clear(layers, 2);
+}
+
+static void an_overlay_of_partial_opacity_tints_what_is_below(void)
+{
+    uint8_t all[N], out[4 * N];
+    memset(all, 255, N);
+    FlLayer layers[2] = {flat_layer(all, 200, 100, 0), flat_layer(all, 255, 255, 255)};
+    layers[1].alpha = 51;
+    resolve(layers, 2, &plain);
+    fl_layers_compose(layers, 2, &(FlBackdrop){0}, W, H, false, out);
+    const uint8_t expected[4] = {211, 131, 51, 255};
+    for (int c = 0; c < 4; c++)
+        g_assert_cmpint(abs(out[c] - expected[c]), <=, 1);
+    layers_clear(layers, 2);
+}
+
+static void thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below(void)
+{
+    for (int stacking = 0; stacking < 2; stacking++) {
+        uint8_t all[N], out[4 * N];
+        memset(all, 255, N);
+        FlLayer layers[2] = {flat_layer(all, 255, 255, 0), flat_layer(all, 0, 128, 255)};
+        for (int i = 0; i < N; i++) // #80c0ff on white: cyan-blue of half its density
+            layers[1].rgba[4 * i + 3] = 128;
+        layers[1].stacking = stacking ? FL_STACKING_GLAZE : FL_STACKING_KNOCKOUT;
+        resolve(layers, 2, &plain);
+        fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
+        const uint8_t knocked[3] = {127, 191, 255}, glazed[3] = {127, 191, 0};
+        for (int c = 0; c < 3; c++)
+            g_assert_cmpint(abs(out[c] - (stacking ? glazed : knocked)[c]), <=, 2);
+        layers_clear(layers, 2);
+    }
+}
+
+/** Stacks of random discs of random paint. */
+static void random_layers(FlLayer *layers, uint8_t coverage[][N], int n, uint64_t key)
+{
+    FlRng rng = {key};
+    for (int k = 0; k < n; k++) {
+        disc(fl_rng_below(&rng, W), fl_rng_below(&rng, H), 4 + fl_rng_float(&rng) * 16,
+             coverage[k]);
+        layers[k] = flat_layer(coverage[k], 0, 0, 0);
+        for (int i = 0; i < 4 * N; i++)
+            layers[k].rgba[i] = (uint8_t)fl_rng_u32(&rng);
+        layers[k].alpha = fl_rng_below(&rng, 2) ? 255 : (uint8_t)fl_rng_u32(&rng);
+        layers[k].stacking = fl_rng_below(&rng, 4) ? FL_STACKING_KNOCKOUT : FL_STACKING_GLAZE;
+    }
+}
+
+/** The documented formula, written down once more. */
+static void recompose(const FlLayer *layers, int n, const uint8_t backdrop[4], int i,
+                      uint8_t out[4])
+{
+    uint64_t x[3] = {0}, a = 0;
+    for (int k = -1; k < n; k++) {
+        const uint8_t *s = k < 0 ? backdrop : layers[k].rgba + 4 * i;
+        for (int c = 0; c < 3; c++)
+            x[c] = 257u * s[c] * s[3] + (x[c] * (255 - s[3]) + 127) / 255;
+        a = 65535u * s[3] + (a * (255 - s[3]) + 127) / 255;
+    }
+    memset(out, 0, 4);
+    for (int c = 0; c < 3 && a; c++)
+        out[c] = (uint8_t)((MIN((65535 * x[c] + a / 2) / a, 65535) + 128) / 257);
+    out[3] = (uint8_t)((a + 32767) / 65535);
+}
+
+static void stored_layers_recompose_to_the_frame_bit_for_bit(void)
+{
+    static uint8_t coverage[7][N];
+    for (int trial = 0; trial < 6; trial++) {
+        uint8_t out[4 * N], expected[4];
+        uint8_t backdrop[4] = {250, 240, 230, trial % 2 ? 255 : 0};
+        FlLayer layers[7];
+        random_layers(layers, coverage, 7, (uint64_t)trial);
+        resolve(layers, 7, &plain);
+        FlBackdrop below = {0};
+        memcpy(below.flat, backdrop, 4);
+        fl_layers_compose(layers, 7, &below, W, H, false, out);
+        for (int i = 0; i < N; i++) {
+            recompose(layers, 7, backdrop, i, expected);
+            g_assert_cmpmem(out + 4 * i, 4, expected, 4);
+        }
+        layers_clear(layers, 7);
+    }
+}
+
+static void sixteen_bits_are_the_same_picture(void)
+{
+    static uint8_t coverage[5][N];
+    for (int linear = 0; linear < 2; linear++) {
+        uint8_t out[4 * N];
+        uint16_t deep[4 * N];
+        FlLayer layers[5];
+        FlStackParams params = plain;
+        params.linear = linear;
+        random_layers(layers, coverage, 5, 99);
+        resolve(layers, 5, &params);
+        fl_layers_compose(layers, 5, &(FlBackdrop){0}, W, H, linear, out);
+        fl_layers_compose16(layers, 5, &(FlBackdrop){0}, W, H, linear, deep);
+        for (int i = 0; i < 4 * N; i++)
+            g_assert_cmpint(abs((deep[i] + 128) / 257 - out[i]), <=, linear);
+        layers_clear(layers, 5);
+    }
+}
+
+static void linear_light_blends_brighter(void)
+{
+    uint8_t half[N], out[4 * N];
+    memset(half, 128, N);
+    FlLayer layers[1] = {flat_layer(half, 0, 0, 0)};
+    FlStackParams params = plain;
+    params.linear = true;
+    resolve(layers, 1, &params);
+    fl_layers_compose(layers, 1, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, true, out);
+    g_assert_cmpint(out[0], ==, 187);
+    layers_clear(layers, 1);
+}
+
+static void colour_bleeds_under_transparent_pixels(void)
+{
+    g_autoptr(GError) error = NULL;
+    uint8_t shape[N], out[4 * N];
+    disc(24, 20, 6, shape);
+    FlLayer layers[1] = {flat_layer(shape, 200, 30, 60)};
+    resolve(layers, 1, &plain);
+    fl_layers_compose(layers, 1, &(FlBackdrop){0}, W, H, false, out);
+    g_assert_true(fl_layers_bleed(out, W, H, 4, &error));
+    const uint8_t near[4] = {200, 30, 60, 0}, far[4] = {0};
+    g_assert_cmpmem(out + 4 * (20 * W + 33), 4, near, 4);
+    g_assert_cmpmem(out + 4 * (20 * W + 40), 4, far, 4);
+    layers_clear(layers, 1);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/layers/neighbours-with-a-common-edge-leave-no-seam",
+                    neighbours_with_a_common_edge_leave_no_seam);
+    g_test_add_func("/layers/a-shape-exactly-covered-leaves-no-fringe",
+                    a_shape_exactly_covered_leaves_no_fringe);
+    g_test_add_func("/layers/a-gap-leaves-paper-around-the-upper-shape",
+                    a_gap_leaves_paper_around_the_upper_shape);
+    g_test_add_func("/layers/a-feather-fades-the-lower-paint-smoothly",
+                    a_feather_fades_the_lower_paint_smoothly);
+    g_test_add_func("/layers/an-overlay-of-partial-opacity-tints-what-is-below",
+                    an_overlay_of_partial_opacity_tints_what_is_below);
+    g_test_add_func("/layers/thin-paint-that-knocks-out-shows-paper-and-a-glaze-what-is-below",
+                    thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below);
+    g_test_add_func("/layers/stored-layers-recompose-to-the-frame-bit-for-bit",
+                    stored_layers_recompose_to_the_frame_bit_for_bit);
+    g_test_add_func("/layers/sixteen-bits-are-the-same-picture", sixteen_bits_are_the_same_picture);
+    g_test_add_func("/layers/linear-light-blends-brighter", linear_light_blends_brighter);
+    g_test_add_func("/layers/colour-bleeds-under-transparent-pixels",
+                    colour_bleeds_under_transparent_pixels);
+    return g_test_run();
+}
