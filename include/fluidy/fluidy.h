@@ -5,8 +5,6 @@
 #include <fluidy/error.h>
 #include <fluidy/params.h>
 #include <fluidy/render.h>
-#include <fluidy/style.h>
-#include <fluidy/watercolour.h>
 
 G_BEGIN_DECLS
 

@@ -1,6 +1,3 @@
 #include <fluidy/error.h>
 
-GQuark fl_error_quark(void)
-{
-    return g_quark_from_static_string("fl-error-quark");
-}
+G_DEFINE_QUARK(fl-error, fl_error)

@@ -1,0 +1,53 @@
+/* Files that appear whole or not at all. */
+#ifndef FLUIDY_OUTPUT_ATOMIC_H
+#define FLUIDY_OUTPUT_ATOMIC_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdio.h>
+
+/**
+ * A file that is being written. Until fl_atomic_commit() nothing is seen under its name.
+ *
+ * It has no name at all where the file system can do that, so that even a killed program leaves
+ * nothing behind; else a temporary one in the same folder, which fl_atomic_clear() removes.
+ */
+typedef struct FlAtomic {
+    FILE *stream;    // write here
+    char *path;      // the name to be
+    char *temporary; // NULL: without a name
+    bool overwrite;
+} FlAtomic;
+
+/**
+ * Begins a file, making its folder if need be.
+ *
+ * Returns: false with FL_ERROR_EXISTS if the file exists and overwrite is false, or
+ * FL_ERROR_OUTPUT; then nothing needs to be cleared.
+ */
+bool fl_atomic_open(FlAtomic *file, const char *path, bool overwrite, GError **error);
+
+/**
+ * The same for a program that writes the file itself, to file->temporary; there is no stream.
+ * suffix, such as ".mov", ends the temporary name.
+ */
+bool fl_atomic_reserve(FlAtomic *file, const char *path, bool overwrite, const char *suffix,
+                       GError **error);
+
+/**
+ * Syncs the file and gives it its name. The file needs clearing in any case.
+ *
+ * Returns: false with FL_ERROR_OUTPUT (a full disk, for instance), or FL_ERROR_EXISTS if a file of
+ * that name has appeared meanwhile; the name is then as it was.
+ */
+bool fl_atomic_commit(FlAtomic *file, GError **error);
+
+/** Closes and forgets the file; one that was not committed is gone. */
+void fl_atomic_clear(FlAtomic *file);
+
+/** Sets FL_ERROR_OUTPUT: "path: cannot be written: " and the system's words for errno_value. */
+void fl_output_error(GError **error, const char *path, int errno_value);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlAtomic, fl_atomic_clear)
+
+#endif

@@ -1,0 +1,26 @@
+/* PNG files. */
+#ifndef FLUIDY_OUTPUT_PNG_H
+#define FLUIDY_OUTPUT_PNG_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** A picture to be written as PNG; one of rgba and rgba16 is set. */
+typedef struct FlPng {
+    int width, height;       // pixels, >= 1
+    const uint8_t *rgba;     // width * height * 4 straight sRGBA, 8 bits a channel
+    const uint16_t *rgba16;  // the same, 16 bits, native byte order
+    bool opaque;             // store no alpha
+    bool fast;               // deflate at level 1 instead of 3
+    const char *const *text; // keyword, text, …, NULL; or NULL
+} FlPng;
+
+/**
+ * Writes a file, whole or not at all, making its folder.
+ *
+ * Returns: false with FL_ERROR_OUTPUT, or FL_ERROR_EXISTS if it exists and overwrite is false.
+ */
+bool fl_png_save(const FlPng *png, const char *path, bool overwrite, GError **error);
+
+#endif

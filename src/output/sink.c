@@ -1,0 +1,83 @@
+#include "output/sink.h"
+#include "output/formats.h"
+#include "output/name.h"
+
+#include <string.h>
+
+static const FlSinkFormat *const formats[] = {
+    &fl_sink_png,
+    &fl_sink_png16,
+    NULL,
+};
+
+const FlSinkFormat *const *fl_sink_formats(void)
+{
+    return formats;
+}
+
+static bool has_suffix(const char *path, const char *suffix)
+{
+    const size_t length = strlen(path), end = strlen(suffix);
+    return length > end && g_ascii_strcasecmp(path + length - end, suffix) == 0;
+}
+
+/** "png, png16, …" */
+static char *list_formats(void)
+{
+    g_autoptr(GString) list = g_string_new(NULL);
+    for (int i = 0; formats[i]; i++)
+        g_string_append_printf(list, "%s%s", i ? ", " : "", formats[i]->name);
+    return g_string_free(g_steal_pointer(&list), FALSE);
+}
+
+const FlSinkFormat *fl_sink_format(const char *name, const char *path, GError **error)
+{
+    for (int i = 0; formats[i]; i++)
+        if (name ? strcmp(name, formats[i]->name) == 0
+                 : formats[i]->suffix && has_suffix(path, formats[i]->suffix))
+            return formats[i];
+    g_autofree char *list = list_formats();
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                name ? "%s: an unknown output format; expected one of %s"
+                     : "%s: the end of the name means no output format; expected one of %s",
+                name ? name : path, list);
+    return NULL;
+}
+
+char *fl_sink_file(const FlSinkParams *params, int number, GError **error)
+{
+    return fl_output_name(params->path, number, NULL, error);
+}
+
+FlSink *fl_sink_open(const FlSinkFormat *format, const FlSinkParams *params, GError **error)
+{
+    g_autoptr(FlSink) sink = g_new0(FlSink, 1);
+    sink->format = format;
+    sink->params = *params;
+    sink->params.path = g_strdup(params->path);
+    g_autofree char *name = fl_sink_file(params, 0, error); // a pattern's mistakes show up here
+    if (!name || (format->open && !format->open(sink, error)))
+        return NULL;
+    return g_steal_pointer(&sink);
+}
+
+bool fl_sink_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
+{
+    return sink->format->frame(sink, frame, error);
+}
+
+bool fl_sink_finish(FlSink *sink, GError **error)
+{
+    sink->finished = !sink->format->finish || sink->format->finish(sink, error);
+    return sink->finished;
+}
+
+void fl_sink_free(FlSink *sink)
+{
+    if (!sink)
+        return;
+    if (sink->format->clear)
+        sink->format->clear(sink);
+    g_free((char *)sink->params.path);
+    g_free(sink);
+}

@@ -1,0 +1,198 @@
+#include "output/name.h"
+#include "output/png.h"
+#include "output/sink.h"
+#include "style/picture.h"
+
+#include <glib/gstdio.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { W = 7, H = 5 };
+
+/** A folder for one test, removed with all that is in it (one level deep). */
+typedef struct Scratch {
+    char *folder;
+} Scratch;
+
+static Scratch scratch_new(void)
+{
+    return (Scratch){g_dir_make_tmp("fluidy-sink-XXXXXX", NULL)};
+}
+
+static int count_files(const char *folder)
+{
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
+    int n = 0;
+    while (g_dir_read_name(dir))
+        n++;
+    return n;
+}
+
+static void scratch_clear(Scratch *scratch)
+{
+    g_autoptr(GDir) dir = g_dir_open(scratch->folder, 0, NULL);
+    for (const char *name; (name = g_dir_read_name(dir));) {
+        g_autofree char *path = g_build_filename(scratch->folder, name, NULL);
+        g_remove(path);
+    }
+    g_rmdir(scratch->folder);
+    g_free(scratch->folder);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Scratch, scratch_clear)
+
+static char *in(const Scratch *scratch, const char *name)
+{
+    return g_build_filename(scratch->folder, name, NULL);
+}
+
+static void fill(uint8_t *rgba, int seed)
+{
+    for (int i = 0; i < 4 * W * H; i++)
+        rgba[i] = (uint8_t)(i * 37 + seed * 11);
+}
+
+static void assert_name(const char *pattern, int number, const char *region, const char *expected)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *name = fl_output_name(pattern, number, region, &error);
+    if (expected)
+        g_assert_no_error(error);
+    else
+        g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+    g_assert_cmpstr(name, ==, expected);
+}
+
+static void names_are_made_from_patterns(void)
+{
+    assert_name("out/a_%04d.png", 12, NULL, "out/a_0012.png");
+    assert_name("a.####.png", 12, NULL, "a.0012.png");
+    assert_name("a_%d.png", 12, NULL, "a_12.png");
+    assert_name("a_%02d.png", 1234, NULL, "a_1234.png");
+    assert_name("100%%_#.png", 3, NULL, "100%_3.png");
+    assert_name("take#1_%03d.png", 3, NULL, "take#1_003.png");
+    assert_name("{region}/%04d.png", 3, "hair", "hair/0003.png");
+    assert_name("film.mov", 3, NULL, "film.mov");
+    assert_name("%s.png", 3, NULL, NULL);
+    assert_name("%04d_%04d.png", 3, NULL, NULL);
+    assert_name("%n%n%n", 3, NULL, NULL);
+    assert_name("%", 3, NULL, NULL);
+    assert_name("{region}.png", 3, NULL, NULL);
+    g_assert_true(fl_output_is_pattern("a_%04d.png"));
+    g_assert_true(fl_output_is_pattern("a_#.png"));
+    g_assert_false(fl_output_is_pattern("100%%.png"));
+}
+
+static void a_png_reads_back_as_it_was_written(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = in(&scratch, "new/a.png");
+    g_autofree char *folder = in(&scratch, "new");
+    uint8_t rgba[4 * W * H];
+    fill(rgba, 1);
+    const FlPng png = {.width = W, .height = H, .rgba = rgba};
+    g_assert_true(fl_png_save(&png, path, false, &error));
+    g_assert_no_error(error);
+    g_autoptr(FlPicture) back = fl_picture_read_png(path, &error);
+    g_assert_no_error(error);
+    g_assert_cmpmem(back->rgba, 4 * W * H, rgba, sizeof rgba);
+    g_remove(path);
+    g_rmdir(folder);
+}
+
+static void sixteen_bit_files_keep_all_bits(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = in(&scratch, "a.png");
+    uint16_t rgba[4] = {0x1234, 0xabcd, 0x00ff, 0xffff};
+    const FlPng png = {.width = 1, .height = 1, .rgba16 = rgba, .opaque = true};
+    g_assert_true(fl_png_save(&png, path, false, &error));
+    g_autofree char *data = NULL;
+    size_t length = 0;
+    g_assert_true(g_file_get_contents(path, &data, &length, NULL));
+    g_assert_cmpint(data[24], ==, 16); // IHDR: bit depth, then colour type: RGB
+    g_assert_cmpint(data[25], ==, 2);
+    g_assert_nonnull(memmem(data, length, "sRGB", 4));
+}
+
+static void an_existing_file_is_kept_unless_overwriting_is_allowed(void)
+{
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = in(&scratch, "a.png");
+    uint8_t rgba[4 * W * H] = {0};
+    const FlPng png = {.width = W, .height = H, .rgba = rgba};
+    g_file_set_contents(path, "precious", -1, NULL);
+    for (int overwrite = 0; overwrite < 2; overwrite++) {
+        g_autoptr(GError) error = NULL;
+        g_autofree char *now = NULL;
+        g_assert_cmpint(fl_png_save(&png, path, overwrite, &error), ==, overwrite);
+        g_assert_true(g_file_get_contents(path, &now, NULL, NULL));
+        g_assert_cmpint(strcmp(now, "precious") == 0, ==, !overwrite);
+        if (!overwrite) {
+            g_assert_error(error, FL_ERROR, FL_ERROR_EXISTS);
+            g_assert_nonnull(strstr(error->message, path));
+        }
+        g_assert_cmpint(count_files(scratch.folder), ==, 1);
+    }
+}
+
+static void a_file_that_cannot_be_written_is_an_error_that_names_it(void)
+{
+    const char *const paths[] = {"/proc/nowhere/a.png", "/dev/full/a.png", "/proc/a.png"};
+    uint8_t rgba[4 * W * H] = {0};
+    const FlPng png = {.width = W, .height = H, .rgba = rgba};
+    for (size_t i = 0; i < G_N_ELEMENTS(paths); i++) {
+        g_autoptr(GError) error = NULL;
+        g_assert_false(fl_png_save(&png, paths[i], true, &error));
+        g_assert_error(error, FL_ERROR, FL_ERROR_OUTPUT);
+        g_autofree char *folder = g_path_get_dirname(paths[i]);
+        g_assert_true(g_str_has_prefix(error->message, folder));
+    }
+}
+
+static void a_sink_writes_numbered_files(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *pattern = in(&scratch, "f_%03d.png");
+    const FlSinkFormat *format = fl_sink_format(NULL, pattern, &error);
+    const FlSinkParams params = {.path = pattern, .width = W, .height = H};
+    g_autoptr(FlSink) sink = fl_sink_open(format, &params, &error);
+    g_assert_no_error(error);
+    uint8_t rgba[4 * W * H];
+    for (int k = 8; k < 11; k++) {
+        fill(rgba, k);
+        const FlSinkFrame frame = {.number = k, .rgba = rgba};
+        g_assert_true(fl_sink_frame(sink, &frame, &error));
+    }
+    g_assert_true(fl_sink_finish(sink, &error));
+    g_autofree char *last = in(&scratch, "f_010.png");
+    g_assert_true(g_file_test(last, G_FILE_TEST_EXISTS));
+    g_assert_cmpint(count_files(scratch.folder), ==, 3);
+}
+
+static void an_unknown_format_lists_those_there_are(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_null(fl_sink_format(NULL, "film.xyz", &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+    g_assert_nonnull(strstr(error->message, "png16"));
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/sink/names-are-made-from-patterns", names_are_made_from_patterns);
+    g_test_add_func("/sink/a-png-reads-back-as-it-was-written", a_png_reads_back_as_it_was_written);
+    g_test_add_func("/sink/sixteen-bit-files-keep-all-bits", sixteen_bit_files_keep_all_bits);
+    g_test_add_func("/sink/an-existing-file-is-kept-unless-overwriting-is-allowed",
+                    an_existing_file_is_kept_unless_overwriting_is_allowed);
+    g_test_add_func("/sink/a-file-that-cannot-be-written-is-an-error-that-names-it",
+                    a_file_that_cannot_be_written_is_an_error_that_names_it);
+    g_test_add_func("/sink/a-sink-writes-numbered-files", a_sink_writes_numbered_files);
+    g_test_add_func("/sink/an-unknown-format-lists-those-there-are",
+                    an_unknown_format_lists_those_there_are);
+    return g_test_run();
+}
