@@ -188,6 +188,48 @@ static void a_thin_bar_moves_as_one(void)
         assert_near(g.flow[2 * (24 * W + x)], 3.0, 0.3);
 }
 
+static void leaping_ball(int frame, uint8_t *mask)
+{
+    draw_box(mask, W, 0, 40, W, 8);
+    draw_disc(mask, W, H, 10.0f + 6.0f * frame, 10.0f, 2.5f);
+}
+
+static void a_ball_may_leap_by_more_than_its_size(void)
+{
+    Draw draw = leaping_ball;
+    g_auto(FlGuides) g = {0};
+    g_autoptr(FlGuideSequence) s = sequence_of(&draw, 5, &unsmoothed);
+    for (int frame = 0; frame < 5; frame++) {
+        get(s, frame, &g);
+        assert_near(g.flow[2 * (10 * W + 10 + 6 * frame)], 6.0, 0.01);
+        g_assert_cmpfloat(g.flow[2 * (44 * W + 10)], ==, 0.0f);
+    }
+}
+
+static void binary_disc(int frame, uint8_t *mask)
+{
+    sliding_disc(frame, mask);
+    for (int p = 0; p < W * H; p++)
+        mask[p] = mask[p] >= FL_INSIDE ? 255 : 0;
+}
+
+static void smoothing_brings_out_the_speed_of_binary_masks(void)
+{
+    Draw draw = binary_disc;
+    const FlGuideParams by_flow = {2.0f, 0.0f, 0.05f, 0.1f},
+                        by_distance = {0.0f, 2.0f, 0.05f, 0.1f};
+    g_auto(FlGuides) g = {0};
+    for (int k = 0; k < 2; k++) {
+        g_autoptr(FlGuideSequence) s = sequence_of(&draw, 24, k ? &by_distance : &by_flow);
+        for (int frame = 8; frame < 16; frame++) {
+            get(s, frame, &g);
+            const int middle = (int)(28.0f + 0.3f * frame); // where masks jump by 0 or 1 px
+            assert_near(g.flow[2 * (24 * W + middle + 12)], 0.25, 0.1);
+            assert_near(g.flow[2 * (24 * W + middle - 12)], 0.25, 0.1);
+        }
+    }
+}
+
 static void assert_finite(const FlGuides *g)
 {
     for (int p = 0; p < W * H; p++) {
@@ -333,6 +375,8 @@ int main(int argc, char **argv)
     TEST(extents_start_again_where_a_shape_reappears);
     TEST(a_part_that_flashes_up_stays_at_rest);
     TEST(a_thin_bar_moves_as_one);
+    TEST(a_ball_may_leap_by_more_than_its_size);
+    TEST(smoothing_brings_out_the_speed_of_binary_masks);
     TEST(degenerate_shapes_are_defined);
     TEST(a_frame_of_one_pixel_is_defined);
     TEST(a_given_flow_replaces_the_constructed_one);

@@ -1,3 +1,4 @@
+#include "guides/flow_file.h"
 #include "style/bundle.h"
 #include "style/extract.h"
 #include "style/find.h"
@@ -178,7 +179,7 @@ static void a_damaged_frame_is_named(void)
 static void other_pictures_are_told_to_be_imported(void)
 {
     g_autofree char *folder = new_folder();
-    assert_fails(folder, FL_ERROR_STYLE, "no numbered PNG files");
+    assert_fails(folder, FL_ERROR_STYLE, "no numbered .png files");
     assert_fails("/nowhere/at/all", FL_ERROR_STYLE, "no such folder");
     remove_folder(folder);
 }
@@ -216,6 +217,26 @@ static void alpha_is_the_mask_and_lies_over_the_paper(void)
     g_assert_cmpmem(style->rgb, 3, "\x0a\x14\x1e", 3);
     g_assert_cmpint(style->rgb[3 * 4], ==, (10 * 100 + 200 * 155 + 127) / 255);
     g_assert_cmpmem(style->rgb + 3 * 5, 3, style->paper, 3);
+    remove_folder(folder);
+}
+
+static void flow_fields_are_read_and_the_last_may_be_missing(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *folder = drop_folder();
+    g_autofree char *flow = g_build_filename(folder, "flow", NULL);
+    g_autofree float *field = g_new0(float, WIDTH *HEIGHT * 2);
+    g_mkdir(flow, 0755);
+    for (int t = 1; t < FRAMES; t++) {
+        g_autofree char *path = g_strdup_printf("%s/%04d.flo", flow, t);
+        field[1] = (float)t;
+        g_assert_true(fl_flow_save(path, WIDTH, HEIGHT, field, &error));
+    }
+    g_autoptr(FlStyle) style = fl_style_load(folder, &error);
+    g_assert_no_error(error);
+    for (int t = 0; t < FRAMES; t++)
+        g_assert_cmpfloat(style->flow[2 * t * WIDTH * HEIGHT + 1], ==, MIN(t + 1, FRAMES - 1));
+    g_assert_cmpuint(style->guessed & FL_GUESS_FLOW, ==, 0);
     remove_folder(folder);
 }
 
@@ -275,6 +296,8 @@ int main(int argc, char **argv)
                     empty_masks_and_masks_without_paint_are_errors);
     g_test_add_func("/style/alpha-is-the-mask-and-lies-over-the-paper",
                     alpha_is_the_mask_and_lies_over_the_paper);
+    g_test_add_func("/style/flow-fields-are-read-and-the-last-may-be-missing",
+                    flow_fields_are_read_and_the_last_may_be_missing);
     g_test_add_func("/style/a-clip-over-the-limit-says-how-to-make-it-smaller",
                     a_clip_over_the_limit_says_how_to_make_it_smaller);
     g_test_add_func("/style/a-style-is-found-by-name-in-fluidy-styles",

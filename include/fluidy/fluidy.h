@@ -5,6 +5,8 @@
 #include <fluidy/error.h>
 #include <fluidy/params.h>
 #include <fluidy/render.h>
+#include <fluidy/style.h>
+#include <fluidy/watercolour.h>
 
 G_BEGIN_DECLS
 

@@ -1,3 +1,6 @@
 #include <fluidy/error.h>
 
-G_DEFINE_QUARK(fl-error, fl_error)
+GQuark fl_error_quark(void)
+{
+    return g_quark_from_static_string("fl-error-quark");
+}

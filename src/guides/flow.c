@@ -2,18 +2,41 @@
 
 #include "guides/guides.h"
 #include "guides/laplace.h"
-#include "guides/parts.h"
+#include "guides/trace.h"
 #include <math.h>
 #include <string.h>
 
 static const float least_gradient = 0.25f; // below it a gradient has no direction
 
-/** Which interval a part of the shape takes its motion from. */
-typedef enum Interval { INTERVAL_NONE, INTERVAL_BEFORE, INTERVAL_AFTER } Interval;
+/** The parts of the shape, and where each was and will be. */
+typedef struct Traces {
+    FlParts parts;
+    FlTrace *before, *after; // by part number
+    uint32_t *fixed;         // how many pixels of the part have a velocity
+} Traces;
 
-static bool is_there(const FlFlowFrame *frame)
+static void traces_clear(Traces *traces)
 {
-    return frame->outline && !frame->outline->empty;
+    fl_parts_clear(&traces->parts);
+    g_free(traces->before);
+    g_free(traces->after);
+    g_free(traces->fixed);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Traces, traces_clear)
+
+static bool traces_init(Traces *traces, const FlOutline *now, const FlOutline *before,
+                        const FlOutline *after, float limit_px, GError **error)
+{
+    *traces = (Traces){0};
+    FlParts *parts = &traces->parts;
+    if (!fl_parts_init(parts, now->coverage, now->box.width, now->box.height, error))
+        return false;
+    traces->before = g_new(FlTrace, parts->n_parts + 1);
+    traces->after = g_new(FlTrace, parts->n_parts + 1);
+    traces->fixed = g_new0(uint32_t, parts->n_parts + 1);
+    return fl_trace_parts(now, parts, before, limit_px, traces->before, error) &&
+           fl_trace_parts(now, parts, after, limit_px, traces->after, error);
 }
 
 static float length(const float v[2])
@@ -43,41 +66,39 @@ static bool measure(const FlFlowFrame *now, const FlFlowFrame *other, bool other
     return true;
 }
 
-/** Chooses the interval of every part: does the other frame have a pixel of it? */
-static void choose_intervals(const FlOutline *outline, const FlParts *parts,
-                             const FlFlowFrame *other, Interval interval, uint8_t *chosen)
+/** Velocity of a pixel, if its part and its place on the contour tell one. */
+static bool find_velocity(const FlFlowFrame *now, const FlFlowFrame *before,
+                          const FlFlowFrame *after, const FlTrace *past, const FlTrace *future,
+                          float limit_px, int x, int y, float velocity[2])
 {
-    const FlBox *box = &outline->box;
-    if (!is_there(other))
-        return;
-    for (int y = 0; y < box->height; y++)
-        for (int x = 0; x < box->width; x++) {
-            const int part = parts->part[y * (size_t)box->width + x];
-            if (part > 0 && chosen[part] == INTERVAL_NONE &&
-                fl_outline_contains(other->outline, box->x + x, box->y + y))
-                chosen[part] = interval;
-        }
+    const bool later = past->kind == FL_TRACE_LOST;
+    const FlTrace *trace = later ? future : past;
+    if (trace->kind == FL_TRACE_JUMPS) {
+        velocity[0] = later ? -trace->offset[0] : trace->offset[0];
+        velocity[1] = later ? -trace->offset[1] : trace->offset[1];
+        return true;
+    }
+    return trace->kind == FL_TRACE_OVERLAPS && fl_outline_is_contour(now->outline, x, y) &&
+           measure(now, later ? after : before, later, limit_px, x, y, velocity);
 }
 
-/** Sets the contour pixels that tell a velocity; counts them per part in fixed. */
-static void fix_contour(const FlFlowFrame *now, const FlFlowFrame *before, const FlFlowFrame *after,
-                        float limit_px, const FlParts *parts, const uint8_t *chosen, uint8_t *cell,
-                        float *flow, uint32_t *fixed)
+/** Fixes the pixels that have a velocity, frees the others of the shape. */
+static void fix_velocities(const FlFlowFrame *now, const FlFlowFrame *before,
+                           const FlFlowFrame *after, float limit_px, Traces *traces, uint8_t *cell,
+                           float *flow)
 {
     const FlBox *box = &now->outline->box;
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++) {
             const size_t p = y * (size_t)box->width + x;
-            const int fx = box->x + x, fy = box->y + y, part = parts->part[p];
+            const int part = traces->parts.part[p];
             cell[p] = part > 0 ? FL_CELL_FREE : FL_CELL_OUTSIDE;
-            if (part == 0 || chosen[part] == INTERVAL_NONE ||
-                !fl_outline_is_contour(now->outline, fx, fy))
-                continue;
-            const bool later = chosen[part] == INTERVAL_AFTER;
-            if (!measure(now, later ? after : before, later, limit_px, fx, fy, flow + 2 * p))
-                continue;
-            cell[p] = FL_CELL_FIXED;
-            fixed[part]++;
+            if (part > 0 &&
+                find_velocity(now, before, after, &traces->before[part], &traces->after[part],
+                              limit_px, box->x + x, box->y + y, flow + 2 * p)) {
+                cell[p] = FL_CELL_FIXED;
+                traces->fixed[part]++;
+            }
         }
 }
 
@@ -86,27 +107,24 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
 {
     const FlBox *box = &now->outline->box;
     const size_t n = fl_box_area(box);
-    g_auto(FlParts) parts = {0};
+    g_auto(Traces) traces = {0};
     g_autofree uint8_t *cell = g_try_malloc(n);
     if (!cell) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a flow");
         return false;
     }
-    if (!fl_parts_init(&parts, now->outline->coverage, box->width, box->height, error))
+    if (!traces_init(&traces, now->outline, before->outline, after->outline, limit_px, error))
         return false;
     memset(flow, 0, 2 * n * sizeof *flow);
-    g_autofree uint8_t *chosen = g_new0(uint8_t, parts.n_parts + 1);
-    g_autofree uint32_t *fixed = g_new0(uint32_t, parts.n_parts + 1);
-    choose_intervals(now->outline, &parts, before, INTERVAL_BEFORE, chosen);
-    choose_intervals(now->outline, &parts, after, INTERVAL_AFTER, chosen);
-    fix_contour(now, before, after, limit_px, &parts, chosen, cell, flow, fixed);
-    for (size_t p = 0; p < n; p++) // a part that nothing is known of stays at rest
-        if (parts.part[p] > 0 && fixed[parts.part[p]] == 0)
-            cell[p] = FL_CELL_FIXED;
+    fix_velocities(now, before, after, limit_px, &traces, cell, flow);
     *moves = false;
-    for (size_t k = 0; k < 2 * n && !*moves; k++)
-        *moves = flow[k] != 0.0f;
-    return !*moves || fl_laplace_solve(cell, box->width, box->height, flow, error);
+    for (size_t p = 0; p < n; p++) {
+        const int part = traces.parts.part[p];
+        if (part > 0 && traces.fixed[part] == 0)
+            cell[p] = FL_CELL_FIXED; // a part that nothing is known of stays at rest
+        *moves |= flow[2 * p] != 0.0f || flow[2 * p + 1] != 0.0f;
+    }
+    return !*moves || fl_laplace_solve(cell, box->width, box->height, 2, flow, error);
 }
 
 bool fl_outline_normals(FlOutline *outline, GError **error)
@@ -135,7 +153,7 @@ bool fl_outline_normals(FlOutline *outline, GError **error)
             normal[2 * p] = -g[0] / norm;
             normal[2 * p + 1] = -g[1] / norm;
         }
-    if (!fl_laplace_solve(cell, box->width, box->height, normal, error))
+    if (!fl_laplace_solve(cell, box->width, box->height, 0, normal, error))
         return false;
     g_free(outline->normal);
     outline->normal = g_steal_pointer(&normal);

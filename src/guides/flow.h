@@ -11,9 +11,9 @@ typedef struct FlFlowFrame {
 } FlFlowFrame;
 
 /**
- * Flow of one frame, from the interval before it. A part of the shape that did not exist before, or
- * not in the same place, takes the interval after it, as the whole first frame does; one that
- * neither touches stays at rest.
+ * Flow of one frame, from the interval before it. A part of the shape that is not in the frame
+ * before takes the interval after it, as the whole first frame does; one that is in neither stays
+ * at rest. One that moved by more than its own size has the velocity of its centre.
  *
  * Where the frame's contour and the other frame's nearest one face opposite ways, the difference of
  * distances says nothing about normal motion (a thin part has moved by more than its width): these

@@ -26,7 +26,6 @@ enum {
     MAX_LEVELS = 16,
     SWEEPS_FIRST = 3, // per level on the way up to the finest
     SWEEPS_CYCLE = 2, // after each correction
-    CYCLES = 2,
 };
 
 typedef struct Grid {
@@ -224,19 +223,19 @@ static void store(const Level *level, float *field)
     for (int y = 0; y < level->height; y++)
         for (size_t c = cell_index(level, 0, y), end = c + level->width; c < end; c++)
             for (int k = 0; k < 2 && level->cell[c] == FL_CELL_FIXED; k++) {
-                low[k] = fminf(low[k], level->value[c][k]);
-                high[k] = fmaxf(high[k], level->value[c][k]);
+                low[k] = MIN(low[k], level->value[c][k]);
+                high[k] = MAX(high[k], level->value[c][k]);
             }
     for (int y = 0; y < level->height; y++)
         for (int x = 0; x < level->width; x++) {
             const size_t c = cell_index(level, x, y);
             for (int k = 0; k < 2; k++)
-                *field++ =
-                    level->cell[c] ? fminf(fmaxf(level->value[c][k], low[k]), high[k]) : 0.0f;
+                *field++ = level->cell[c] ? CLAMP(level->value[c][k], low[k], high[k]) : 0.0f;
         }
 }
 
-bool fl_laplace_solve(const uint8_t *cell, int width, int height, float *field, GError **error)
+bool fl_laplace_solve(const uint8_t *cell, int width, int height, int cycles, float *field,
+                      GError **error)
 {
     if (!memchr(cell, FL_CELL_FIXED, (size_t)width * height)) {
         memset(field, 0, 2 * (size_t)width * height * sizeof *field);
@@ -250,7 +249,7 @@ bool fl_laplace_solve(const uint8_t *cell, int width, int height, float *field, 
         for (int sweep = 0; sweep < SWEEPS_FIRST; sweep++)
             relax(&grid.level[l]);
     }
-    for (int cycle = 0; cycle < CYCLES; cycle++)
+    for (int cycle = 0; cycle < cycles; cycle++)
         v_cycle(&grid);
     store(&grid.level[0], field);
     return true;

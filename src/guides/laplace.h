@@ -21,8 +21,12 @@ typedef enum FlCell {
  * fixed value. Free cells that no fixed one reaches get values in that range too; give them values
  * of their own if it matters.
  *
+ * cycles: V-cycles after the first solution, which comes from the coarse levels: 0 where only
+ * smoothness matters, 2 for an error of about 1 % of the range.
+ *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
-bool fl_laplace_solve(const uint8_t *cell, int width, int height, float *field, GError **error);
+bool fl_laplace_solve(const uint8_t *cell, int width, int height, int cycles, float *field,
+                      GError **error);
 
 #endif

@@ -2,9 +2,46 @@
 #ifndef FLUIDY_REGIONS_FILM_H
 #define FLUIDY_REGIONS_FILM_H
 
+#include "frames/sequence.h"
+#include "frames/svg.h"
+#include "frames/warnings.h"
+#include "regions/rules.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
+
+/** What becomes of strokes [DESIGN §4]. */
+typedef enum FlStrokes {
+    FL_STROKES_KEEP,  // drawn over the paint; but painted where the drawing is mostly strokes
+    FL_STROKES_PAINT, // painted, with the fills of the same paint
+    FL_STROKES_DROP,  // left out
+} FlStrokes;
+
+/** What makes leaves one region. */
+typedef enum FlKey {
+    FL_KEY_AUTO,  // label path and paint, followed through changes of the paint
+    FL_KEY_FILL,  // paint alone
+    FL_KEY_ID,    // the leaf's id, without the frame's number
+    FL_KEY_CLASS, // the innermost class attributes
+    FL_KEY_LABEL, // label path alone
+    FL_KEY_TREE,  // place in the document
+} FlKey;
+
+/** How a sequence is read; zero is the default of every field. */
+typedef struct FlFilmOptions {
+    const char *const *inputs; // see fl_sequence_open()
+    int n_inputs;
+    const char *range; // NULL: all frames
+    FlMissing missing;
+    FlCanvas canvas;   // of drawings without a size
+    double dpi;        // 0: 96
+    int width, height; // of the picture, px; 0: as the drawing says; both: what fits in, filled up
+    double scale;      // px per px of the drawing; 0: 1; not together with width or height
+    FlStrokes strokes;
+    FlKey key;
+    const FlRegionRule *rules; // the first that matches wins; used during fl_film_open() only
+    int n_rules;
+} FlFilmOptions;
 
 /** A region: the leaves that are one area of paint through the whole film [DESIGN §4]. */
 typedef struct FlRegion {
@@ -15,18 +52,22 @@ typedef struct FlRegion {
     int first_frame; // index of the first of them
     double area_px;  // mean area over those frames
     int n_leaves;    // most leaves it had in a frame
-    bool paintable;  // false: drawn as it is over the paint (strokes, shading overlays, images)
+    bool paintable;  // false: drawn as it is over the paint (strokes, shading overlays)
+    int rule;        // index of the rule that made it, -1: none
 } FlRegion;
 
 /**
- * One step of a frame's stack, from the bottom up: leaves of one region that follow each other in
- * paint order. A region that lies both below and above another has several runs in a frame.
+ * One step of a frame's stack, from the bottom up: leaves of one region that can be drawn together.
+ * A region that lies both below and above another has several runs in a frame, and so has one whose
+ * leaves differ in colour. Drawing a run over what is below it: colour `rgb`, or that of `picture`,
+ * with opacity coverage * alpha / 255. Runs of regions that are not paintable are drawn just so.
  */
 typedef struct FlRun {
     int region;        // index into the film's regions
     uint8_t *coverage; // width * height, 0..255: the whole shape, hidden parts included
-    uint8_t *picture;  // width * height * 4 straight sRGBA as the SVG draws it; NULL: flat `rgb`
-    uint8_t rgb[3];    // the fill
+    uint8_t *picture;  // width * height * 4 straight sRGBA as the SVG draws it; NULL: flat `rgb`.
+                       // Its A is coverage again, and its colours are defined where A > 0
+    uint8_t rgb[3];    // the fill; of a picture its mean
     uint8_t alpha;     // opacity of the run, 255 opaque; coverage is without it
 } FlRun;
 
@@ -35,13 +76,25 @@ typedef struct FlRuns {
     FlRun *run;
 } FlRuns;
 
+/** A sequence and what is known of it. It holds no pictures: each call reads its file again. */
 typedef struct FlFilm FlFilm;
+
+/**
+ * Reads every frame once and finds the regions.
+ *
+ * warnings may be NULL. Returns: to be freed with fl_film_free(); NULL with FL_ERROR_USAGE,
+ * FL_ERROR_INPUT (which file, which line), FL_ERROR_LIMIT or FL_ERROR_NO_MEMORY.
+ */
+FlFilm *fl_film_open(const FlFilmOptions *options, FlWarnings *warnings, GError **error);
 
 int fl_film_frames(const FlFilm *film);
 int fl_film_width(const FlFilm *film);
 int fl_film_height(const FlFilm *film);
 int fl_film_regions(const FlFilm *film);
 const FlRegion *fl_film_region(const FlFilm *film, int region);
+
+/** What the files' names share, such as "walk"; for naming the output. */
+const char *fl_film_name(const FlFilm *film);
 
 /** The file and the frame number (as in the file's name) of a frame index; for messages. */
 const char *fl_film_file(const FlFilm *film, int frame);
@@ -50,8 +103,26 @@ int fl_film_number(const FlFilm *film, int frame);
 /** Rasterises a frame. Any thread may call it. Returns: to be freed with fl_runs_free(). */
 FlRuns *fl_film_runs(const FlFilm *film, int frame, GError **error);
 
+/**
+ * The whole-shape mask of one region alone: as fl_runs_mask() of fl_film_runs(), but draws only the
+ * region's leaves. coverage is width * height bytes. Any thread may call it.
+ */
+bool fl_film_mask(const FlFilm *film, int frame, int region, uint8_t *coverage, GError **error);
+
 /** The region's whole-shape mask in a frame: the union of its runs' coverage. */
 void fl_runs_mask(const FlRuns *runs, int region, int width, int height, uint8_t *coverage);
+
+/** The frame without paint: the runs over each other, as width * height * 4 straight sRGBA. */
+void fl_runs_flat(const FlRuns *runs, int width, int height, uint8_t *rgba);
+
+/**
+ * A picture that tells regions apart: fl_runs_flat() with a distinct colour for each paintable
+ * region and greys for the others. See fl_region_colour().
+ */
+void fl_runs_map(const FlFilm *film, const FlRuns *runs, uint8_t *rgba);
+
+/** The colour of a region in such a picture, for a legend. */
+void fl_region_colour(const FlFilm *film, int region, uint8_t rgb[3]);
 
 void fl_runs_free(FlRuns *runs); // NULL is fine
 void fl_film_free(FlFilm *film); // NULL is fine

@@ -1,13 +1,14 @@
 #include "style/bundle.h"
 
 #include "base/alloc.h"
+#include "guides/flow_file.h"
+#include "style/border.h"
 #include "style/extract.h"
 #include "style/find.h"
 #include "style/manifest.h"
-#include "style/picture.h"
+#include "style/paint.h"
 #include "style/series.h"
 
-#include <math.h>
 #include <string.h>
 
 void fl_style_free(FlStyle *style)
@@ -30,17 +31,19 @@ static bool broken(GError **error, const char *path, const char *what)
     return false;
 }
 
-/* The folder's only series of PNG files without gaps, such as frames/0001.png ... */
-static FlSeries *only_series(const char *folder, GError **error)
+/* The folder's only series of files with this ending, without gaps, such as frames/0001.png ... */
+static FlSeries *only_series(const char *folder, const char *ending, GError **error)
 {
-    const char *const png[] = {".png", NULL};
-    g_autoptr(GPtrArray) all = fl_series_in_folder(folder, png, error);
+    const char *const endings[] = {ending, NULL};
+    g_autoptr(GPtrArray) all = fl_series_in_folder(folder, endings, error);
     if (!all)
         return NULL;
     if (all->len == 0) {
-        broken(error, folder,
-               "no numbered PNG files: expected 0001.png, 0002.png ... "
-               "(fluidy-style import makes a style of other pictures and of videos)");
+        g_autofree char *what = g_strdup_printf(
+            "no numbered %s files: expected 0001%s, 0002%s … (fluidy-style import makes a style of "
+            "other pictures and of videos)",
+            ending, ending, ending);
+        broken(error, folder, what);
         return NULL;
     }
     if (all->len > 1) {
@@ -74,37 +77,6 @@ static FlPicture *read_picture(const char *path, GError **error)
     return picture;
 }
 
-/* Room for the frames, once the first has told their size. */
-static bool allocate(FlStyle *style, const FlPicture *first, int n_frames, GError **error)
-{
-    const size_t pixels = (size_t)first->width * first->height * n_frames;
-    if (pixels > FL_STYLE_MAX_PIXELS) {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_LIMIT,
-            "%s: %d frames of %dx%d are %.1f million pixels: expected at most %.1f million; "
-            "fluidy-style import --scale or --step makes it smaller",
-            style->path, n_frames, first->width, first->height, (double)pixels / 1e6,
-            FL_STYLE_MAX_PIXELS / 1e6);
-        return false;
-    }
-    style->width = first->width;
-    style->height = first->height;
-    style->n_frames = n_frames;
-    return (style->rgb = fl_alloc(pixels, 3, "the frames of a style", error)) &&
-           (style->mask = fl_alloc(pixels, 1, "the masks of a style", error));
-}
-
-/* Colours go to rgb, alpha to mask. */
-static void store_frame(FlStyle *style, int frame, const FlPicture *picture)
-{
-    const size_t pixels = (size_t)style->width * style->height;
-    uint8_t *rgb = style->rgb + frame * pixels * 3, *alpha = style->mask + frame * pixels;
-    for (size_t i = 0; i < pixels; i++) {
-        memcpy(rgb + 3 * i, picture->rgba + 4 * i, 3);
-        alpha[i] = picture->rgba[4 * i + 3];
-    }
-}
-
 static FlSeries *read_frames(FlStyle *style, GError **error)
 {
     g_autofree char *folder = g_build_filename(style->path, "frames", NULL);
@@ -112,57 +84,20 @@ static FlSeries *read_frames(FlStyle *style, GError **error)
         broken(error, folder, "no such folder: a style has its pictures there");
         return NULL;
     }
-    g_autoptr(FlSeries) series = only_series(folder, error);
+    g_autoptr(FlSeries) series = only_series(folder, ".png", error);
     for (int i = 0; series && i < series->n; i++) {
         g_autoptr(FlPicture) picture = read_picture(series->path[i], error);
-        if (!picture || (i == 0 && !allocate(style, picture, series->n, error)) ||
+        if (!picture || (i == 0 && !fl_style_allocate(style, picture, series->n, error)) ||
             !check_size(picture, style, series->path[i], series->path[0], error))
             return NULL;
-        store_frame(style, i, picture);
+        fl_style_store_frame(style, i, picture);
     }
     return g_steal_pointer(&series);
 }
 
-static size_t all_pixels(const FlStyle *style)
-{
-    return (size_t)style->width * style->height * style->n_frames;
-}
-
-/* Straight alpha, still in the mask, over the paper. */
-static void composite(FlStyle *style)
-{
-    const size_t pixels = all_pixels(style);
-    for (size_t i = 0; i < pixels; i++)
-        for (int c = 0; c < 3; c++) {
-            const int alpha = style->mask[i];
-            const int sum = style->rgb[3 * i + c] * alpha + style->paper[c] * (255 - alpha);
-            style->rgb[3 * i + c] = (uint8_t)((sum + 127) / 255);
-        }
-}
-
-static bool has_alpha(const FlStyle *style)
-{
-    const size_t pixels = all_pixels(style);
-    for (size_t i = 0; i < pixels; i++)
-        if (style->mask[i] != 255)
-            return true;
-    return false;
-}
-
-/* Coverage is the mask's lightness; a transparent pixel of it is outside. */
-static void store_mask(FlStyle *style, int frame, const FlPicture *picture)
-{
-    const size_t pixels = (size_t)style->width * style->height;
-    uint8_t *mask = style->mask + frame * pixels;
-    for (size_t i = 0; i < pixels; i++) {
-        const uint8_t *p = picture->rgba + 4 * i;
-        mask[i] = (uint8_t)(((p[0] + 2 * p[1] + p[2] + 2) / 4 * p[3] + 127) / 255);
-    }
-}
-
 static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frames, GError **error)
 {
-    g_autoptr(FlSeries) series = only_series(folder, error);
+    g_autoptr(FlSeries) series = only_series(folder, ".png", error);
     if (!series)
         return false;
     if (series->n != frames->n) {
@@ -175,7 +110,7 @@ static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frame
         g_autoptr(FlPicture) picture = read_picture(series->path[i], error);
         if (!picture || !check_size(picture, style, series->path[i], frames->path[0], error))
             return false;
-        store_mask(style, i, picture);
+        fl_style_store_mask(style, i, picture);
     }
     style->guessed &= ~(unsigned)FL_GUESS_MASK;
     return true;
@@ -187,12 +122,12 @@ static bool find_masks(FlStyle *style, const FlSeries *frames, GError **error)
 {
     g_autofree char *folder = g_build_filename(style->path, "masks", NULL);
     const FlClip clip = {style->width, style->height, style->n_frames, style->rgb};
-    const bool given = g_file_test(folder, G_FILE_TEST_IS_DIR), alpha = has_alpha(style);
+    const bool given = g_file_test(folder, G_FILE_TEST_IS_DIR), alpha = fl_style_has_alpha(style);
     const bool paper_given = !(style->guessed & FL_GUESS_PAPER);
     if (alpha) {
         if (!paper_given)
             memset(style->paper, 255, 3);
-        composite(style);
+        fl_style_composite(style);
         style->guessed &= ~(unsigned)FL_GUESS_MASK;
     }
     if (given && !read_masks(style, folder, frames, error))
@@ -208,33 +143,29 @@ static bool find_masks(FlStyle *style, const FlSeries *frames, GError **error)
     return true;
 }
 
-/* Every mask empty, or nothing but paper inside of them: neither can paint anything. */
-static bool check_paint(const FlStyle *style, GError **error)
+/* One field for each frame; the last one, to a frame that does not exist, may be left out. */
+static bool read_flow(FlStyle *style, const char *folder, GError **error)
 {
-    const size_t pixels = all_pixels(style);
-    uint64_t inside = 0, painted = 0;
-    for (size_t i = 0; i < pixels; i++) {
-        if (style->mask[i] < 128)
-            continue;
-        inside++;
-        int most = 0;
-        for (int c = 0; c < 3; c++)
-            most = MAX(most, abs(style->rgb[3 * i + c] - style->paper[c]));
-        painted += most >= 4;
+    g_autoptr(FlSeries) series = only_series(folder, ".flo", error);
+    const size_t pixels = (size_t)style->width * style->height;
+    const int least = MAX(1, style->n_frames - 1);
+    if (!series)
+        return false;
+    if (series->n < least || series->n > style->n_frames) {
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
+                    "%s: %d flow fields for %d frames: expected one for each frame", folder,
+                    series->n, style->n_frames);
+        return false;
     }
-    g_autofree char *what = NULL;
-    if (inside == 0 && style->guessed & FL_GUESS_MASK)
-        what = g_strdup_printf("no paint found: everything looks like the paper, #%02x%02x%02x; "
-                               "give paper = in style.ini, or a masks folder",
-                               style->paper[0], style->paper[1], style->paper[2]);
-    else if (inside == 0)
-        what = g_strdup("every mask is empty: expected white where the paint is");
-    else if (painted * 50 < inside && style->medium == FL_MEDIUM_TRANSPARENT)
-        what = g_strdup_printf("there is no paint under the masks: %.1f %% of their pixels differ "
-                               "from the paper, #%02x%02x%02x",
-                               100.0 * (double)painted / (double)inside, style->paper[0],
-                               style->paper[1], style->paper[2]);
-    return !what || broken(error, style->path, what);
+    style->flow = fl_alloc(pixels * style->n_frames, 2 * sizeof(float), "the flow", error);
+    for (int i = 0; i < style->n_frames; i++) {
+        const char *path = series->path[MIN(i, series->n - 1)];
+        if (!style->flow ||
+            !fl_flow_load(path, style->width, style->height, style->flow + 2 * i * pixels, error))
+            return false;
+    }
+    style->guessed &= ~(unsigned)FL_GUESS_FLOW;
+    return true;
 }
 
 static FlStyle *new_style(const char *folder)
@@ -261,9 +192,14 @@ FlStyle *fl_style_load(const char *folder, GError **error)
     if (g_file_test(manifest, G_FILE_TEST_EXISTS) && !fl_manifest_read(style, manifest, error))
         return NULL;
     g_autoptr(FlSeries) frames = read_frames(style, error);
-    if (!frames || !find_masks(style, frames, error) || !check_paint(style, error))
+    if (!frames || !find_masks(style, frames, error) || !fl_style_check_paint(style, error))
         return NULL;
-    if (style->guessed & FL_GUESS_BORDER) // the paper's 30 px of 400x222 [F21 table 1], halved
-        style->border_px = (float)MIN(style->width, style->height) / 15;
+    g_autofree char *flow = g_build_filename(folder, "flow", NULL);
+    if (g_file_test(flow, G_FILE_TEST_IS_DIR) && !read_flow(style, flow, error))
+        return NULL;
+    const FlClip clip = {style->width, style->height, style->n_frames, style->rgb};
+    if (style->guessed & FL_GUESS_BORDER &&
+        !fl_border_estimate(&clip, style->mask, &style->border_px, error))
+        return NULL;
     return g_steal_pointer(&style);
 }

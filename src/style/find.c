@@ -32,7 +32,7 @@ char **fl_style_folders(void)
     return (char **)g_ptr_array_free(folders, FALSE);
 }
 
-gboolean fl_is_style(const char *folder)
+bool fl_is_style(const char *folder)
 {
     g_autofree char *frames = g_build_filename(folder, "frames", NULL);
     return g_file_test(frames, G_FILE_TEST_IS_DIR);
@@ -77,4 +77,40 @@ char *fl_style_find(const char *name, GError **error)
     }
     set_not_found(name, folders, error);
     return NULL;
+}
+
+static void free_entry(void *data)
+{
+    FlStyleEntry *entry = data;
+    g_free(entry->name);
+    g_free(entry->path);
+    g_free(entry);
+}
+
+static int compare_strings(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+GPtrArray *fl_style_list(void)
+{
+    GPtrArray *entries = g_ptr_array_new_with_free_func(free_entry);
+    g_autoptr(GHashTable) seen = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    g_auto(GStrv) folders = fl_style_folders();
+    for (int i = 0; folders[i]; i++) {
+        g_autoptr(GPtrArray) names = g_ptr_array_new_with_free_func(g_free);
+        collect_names(folders[i], names);
+        g_ptr_array_sort(names, compare_strings);
+        for (guint k = 0; k < names->len; k++) {
+            const char *name = g_ptr_array_index(names, k);
+            FlStyleEntry *entry = g_new(FlStyleEntry, 1);
+            *entry = (FlStyleEntry){
+                .name = g_strdup(name),
+                .path = g_build_filename(folders[i], name, NULL),
+                .hidden = !g_hash_table_add(seen, g_strdup(name)),
+            };
+            g_ptr_array_add(entries, entry);
+        }
+    }
+    return entries;
 }

@@ -1,0 +1,87 @@
+/* Styles: the folders of moving paint; finding, importing and checking them. See fluidy-style(5).
+ */
+#ifndef FLUIDY_STYLE_H
+#define FLUIDY_STYLE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+G_BEGIN_DECLS
+
+/** A style that was found. */
+typedef struct FlStyleEntry {
+    char *name;  /**< the folder's name, by which it is asked for */
+    char *path;  /**< the folder */
+    bool hidden; /**< another one of the same name is found before it */
+} FlStyleEntry;
+
+/**
+ * Every style in the folders that are searched, in that order, and by name in each.
+ *
+ * Returns: (element-type FlStyleEntry): to be freed with g_ptr_array_unref(); perhaps empty.
+ */
+FL_API GPtrArray *fl_style_list(void);
+
+/** The folders that are searched for styles, in order; some may not exist. Free with g_strfreev().
+ */
+FL_API char **fl_style_folders(void);
+
+/** How a recording becomes a style. Start from FL_STYLE_IMPORT_DEFAULTS. */
+typedef struct FlStyleImport {
+    const char *source; /**< a video, a still picture, a `%04d` or `####` pattern, or a folder */
+    const char *masks;  /**< pattern, folder or video of masks, white where the paint is; or NULL */
+    const char *folder; /**< the style to write */
+    int first, last; /**< frames to take, by the numbers of the source, a video's from 1; 0: all */
+    int step;        /**< take every step-th of them, >= 1 */
+    int crop[4];     /**< x, y, width, height in px of the source; width 0: everything */
+    double scale;    /**< 0.01 to 4; 0: as it is, or made smaller to 640 px */
+    bool flatten;    /**< take uneven and changing light out */
+    bool stabilise;  /**< take small camera shake out */
+    bool whole;      /**< the paint fills the whole frame: no paper is looked for */
+    bool overwrite;  /**< replace the style that is in `folder` */
+    const char *name, *author, *licence; /**< for style.ini, or NULL */
+    const char *paper;                   /**< "#rrggbb"; NULL: found in the recording */
+    double border_px;                    /**< width of the border; 0: found in the recording */
+    double fps;                          /**< frames per second; 0: the video's, else 25 */
+} FlStyleImport;
+
+#define FL_STYLE_IMPORT_DEFAULTS                                                                   \
+    {                                                                                              \
+        .step = 1, .flatten = true, .stabilise = true                                              \
+    }
+
+/**
+ * Makes a style of a recording. Videos, and pictures other than PNG, are read through the `ffmpeg`
+ * program. The folder appears whole or not at all.
+ *
+ * notes, if not NULL, gets lines (char *) about what was found out, done and is doubtful.
+ *
+ * Returns: false with FL_ERROR_INPUT, _LIMIT, _USAGE, _EXISTS or _OUTPUT set.
+ */
+FL_API bool fl_style_import(const FlStyleImport *import, GPtrArray *notes, GError **error);
+
+/** What fl_style_check() found. */
+typedef struct FlStyleReport {
+    char *text;     /**< the report, lines of plain text */
+    int n_problems; /**< of them, those a painter should look into */
+} FlStyleReport;
+
+/**
+ * Looks at a style, given by name or folder, and says what was understood: sizes, paper, masks,
+ * motion, texture, and problems. Draws it all on a picture sheet if `sheet`, a PNG file, is not
+ * NULL.
+ *
+ * Returns: to be freed with fl_style_report_free(); NULL with FL_ERROR_STYLE, _EXISTS or _OUTPUT
+ * set.
+ */
+FL_API FlStyleReport *fl_style_check(const char *style, const char *sheet, bool overwrite,
+                                     GError **error);
+
+FL_API void fl_style_report_free(FlStyleReport *report); /**< NULL is fine */
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleReport, fl_style_report_free)
+
+G_END_DECLS
+
+#endif

@@ -1,0 +1,29 @@
+/* Paint from first principles: a recipe becomes a style folder. */
+#ifndef FLUIDY_WATERCOLOUR_H
+#define FLUIDY_WATERCOLOUR_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+
+G_BEGIN_DECLS
+
+/** Called after each frame is written, from the caller's thread; frame counts from 1. */
+typedef void (*FlWatercolourProgress)(int frame, int n_frames, void *data);
+
+/**
+ * Runs a recipe and writes what it paints as a style: style.ini, frames/0001.png …, masks/0001.png
+ * ….
+ *
+ * The folder and its subfolders are made when they do not exist; files of the same names are
+ * replaced, others are left alone. The same recipe gives the same bytes on any thread count.
+ * progress may be NULL.
+ *
+ * Returns: false with FL_ERROR_INPUT (the recipe; its file and line are named), FL_ERROR_LIMIT,
+ * FL_ERROR_NO_MEMORY or FL_ERROR_OUTPUT; frames written before the failure stay.
+ */
+FL_API bool fl_watercolour_simulate(const char *recipe_path, const char *output_folder,
+                                    FlWatercolourProgress progress, void *data, GError **error);
+
+G_END_DECLS
+
+#endif

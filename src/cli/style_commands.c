@@ -1,0 +1,143 @@
+#include "style_commands.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static struct Options {
+    char *output, *frames, *crop, *masks, *name, *author, *licence, *paper;
+    double scale, border, fps;
+    gboolean no_flatten, no_stabilise, whole, overwrite, quiet, no_sheet, strict, paths;
+} options;
+
+static const GOptionEntry import_entries[] = {
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "The style to make", "DIR"},
+    {"frames", 'f', 0, G_OPTION_ARG_STRING, &options.frames, "Take these (all)", "A-B[xSTEP]"},
+    {"crop", 'c', 0, G_OPTION_ARG_STRING, &options.crop, "Take this part of the picture",
+     "WxH[+X+Y]"},
+    {"scale", 's', 0, G_OPTION_ARG_DOUBLE, &options.scale,
+     "Make it smaller or larger (1; at most 640 px)", "FACTOR"},
+    {"masks", 'm', 0, G_OPTION_ARG_FILENAME, &options.masks,
+     "Masks, white where the paint is (found)", "SOURCE"},
+    {"paper", 0, 0, G_OPTION_ARG_STRING, &options.paper, "Colour of the paper (found)", "#RRGGBB"},
+    {"border", 0, 0, G_OPTION_ARG_DOUBLE, &options.border, "Width of the border (found)", "PX"},
+    {"fps", 0, 0, G_OPTION_ARG_DOUBLE, &options.fps, "Frames per second (the video's, or 25)", "N"},
+    {"whole", 0, 0, G_OPTION_ARG_NONE, &options.whole, "The paint fills the whole frame", NULL},
+    {"no-flatten", 0, 0, G_OPTION_ARG_NONE, &options.no_flatten, "Leave uneven light", NULL},
+    {"no-stabilise", 0, 0, G_OPTION_ARG_NONE, &options.no_stabilise, "Leave camera shake", NULL},
+    {"name", 0, 0, G_OPTION_ARG_STRING, &options.name, "Name of the style (the folder's)", "TEXT"},
+    {"author", 0, 0, G_OPTION_ARG_STRING, &options.author, "Who made the recording", "TEXT"},
+    {"licence", 0, 0, G_OPTION_ARG_STRING, &options.licence, "Licence of the recording", "TEXT"},
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace a style in DIR", NULL},
+    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "No notes, only errors", NULL},
+    {NULL},
+};
+
+static bool usage(GError **error, const char *what, const char *given)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, what, given);
+    return false;
+}
+
+/* A-B, A-BxSTEP, or one number; numbers are at most nine digits. */
+static bool parse_frames(const char *text, FlStyleImport *import, GError **error)
+{
+    int n[3] = {0, 0, 1}, end = 0;
+    if (!(sscanf(text, "%9d-%9dx%9d%n", &n[0], &n[1], &n[2], &end) == 3 && !text[end]) &&
+        !(sscanf(text, "%9d-%9d%n", &n[0], &n[1], &end) == 2 && !text[end])) {
+        if (sscanf(text, "%9d%n", &n[0], &end) != 1 || text[end])
+            return usage(error, "--frames %s: expected a range such as 10-40 or 10-100x3", text);
+        n[1] = n[0];
+        n[2] = 1;
+    }
+    if (n[0] < 0 || n[1] < n[0] || n[2] < 1)
+        return usage(error, "--frames %s: an empty range", text);
+    import->first = n[0];
+    import->last = n[1];
+    import->step = n[2];
+    return true;
+}
+
+static bool parse_crop(const char *text, int crop[4], GError **error)
+{
+    int end = 0;
+    crop[0] = crop[1] = 0;
+    if ((sscanf(text, "%9dx%9d+%9d+%9d%n", &crop[2], &crop[3], &crop[0], &crop[1], &end) == 4 &&
+         !text[end]) ||
+        (sscanf(text, "%9dx%9d%n", &crop[2], &crop[3], &end) == 2 && !text[end]))
+        if (crop[2] > 0 && crop[3] > 0)
+            return true;
+    return usage(error, "--crop %s: expected a part such as 400x300+20+10", text);
+}
+
+static bool run_import(char **words, GError **error)
+{
+    FlStyleImport import = FL_STYLE_IMPORT_DEFAULTS;
+    if (!words[0] || words[1])
+        return usage(error, "import takes one %s", "video, picture, pattern or folder");
+    if (!options.output)
+        return usage(error, "import needs -o %s, the style to make", "DIR");
+    if ((options.frames && !parse_frames(options.frames, &import, error)) ||
+        (options.crop && !parse_crop(options.crop, import.crop, error)))
+        return false;
+    import.source = words[0];
+    import.folder = options.output;
+    import.masks = options.masks;
+    import.scale = options.scale;
+    import.flatten = !options.no_flatten;
+    import.stabilise = !options.no_stabilise;
+    import.whole = options.whole;
+    import.overwrite = options.overwrite;
+    import.name = options.name;
+    import.author = options.author;
+    import.licence = options.licence;
+    import.paper = options.paper;
+    import.border_px = options.border;
+    import.fps = options.fps;
+    g_autoptr(GPtrArray) notes = g_ptr_array_new_with_free_func(g_free);
+    const bool done = fl_style_import(&import, notes, error);
+    for (guint i = 0; i < notes->len && !options.quiet; i++)
+        fprintf(stderr, "fluidy-style: %s\n", (char *)g_ptr_array_index(notes, i));
+    return done;
+}
+
+static const GOptionEntry list_entries[] = {
+    {"paths", 'p', 0, G_OPTION_ARG_NONE, &options.paths, "Also the folders that are searched",
+     NULL},
+    {NULL},
+};
+
+static bool written(GError **error)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout))
+        return true;
+    g_set_error_literal(error, FL_ERROR, FL_ERROR_OUTPUT, "standard output cannot be written");
+    return false;
+}
+
+static bool run_list(char **words, GError **error)
+{
+    if (words[0])
+        return usage(error, "list takes no arguments, such as %s", words[0]);
+    g_auto(GStrv) folders = fl_style_folders();
+    for (int i = 0; options.paths && folders[i]; i++)
+        printf("# %s%s\n", folders[i],
+               g_file_test(folders[i], G_FILE_TEST_IS_DIR) ? "" : " (not there)");
+    g_autoptr(GPtrArray) entries = fl_style_list();
+    for (guint i = 0; i < entries->len; i++) {
+        const FlStyleEntry *entry = g_ptr_array_index(entries, i);
+        printf("%s\t%s%s\n", entry->name, entry->path,
+               entry->hidden ? "\t(hidden by the one above)" : "");
+    }
+    return written(error);
+}
+
+const FlStyleCommand fl_style_commands[] = {
+    {"import", "SOURCE -o DIR", "make a style of a recording",
+     "SOURCE is a video, a still picture, a pattern such as paint_%04d.png, or a folder of "
+     "numbered\npictures. Masks beside the pictures (mask_0001.png …) and alpha channels are "
+     "kept.\n",
+     import_entries, run_import},
+    {"list", "", "list the styles that are found, and where",
+     "Prints one style a line: name, tab, folder.\n", list_entries, run_list},
+    {NULL},
+};

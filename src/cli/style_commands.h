@@ -1,0 +1,18 @@
+/* The commands of fluidy-style: their options, and what runs them. */
+#ifndef FLUIDY_CLI_STYLE_COMMANDS_H
+#define FLUIDY_CLI_STYLE_COMMANDS_H
+
+#include <fluidy/fluidy.h>
+
+typedef struct FlStyleCommand {
+    const char *name, *arguments, *summary;
+    const char *details;         // printed below the options; may be NULL
+    const GOptionEntry *entries; // parsed before run is called
+    /** words: what is left of the command line, NULL-terminated. False with an error set. */
+    bool (*run)(char **words, GError **error);
+} FlStyleCommand;
+
+/** All of them; one without a name ends the list. */
+extern const FlStyleCommand fl_style_commands[];
+
+#endif

@@ -1,0 +1,99 @@
+/* fluidy-style: words and exit codes only; the work is in the library. */
+#include "style_commands.h"
+
+#include "base/suggest.h"
+
+#include <locale.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { DONE = 0, FAILURE = 1, USAGE = 2 };
+
+/* One line, whatever the library below wrote. */
+static int fail(const GError *error)
+{
+    g_autofree char *line = g_strstrip(g_strdup(error->message));
+    fprintf(stderr, "fluidy-style: %s\n", g_strdelimit(line, "\r\n", ' '));
+    const bool usage =
+        error->domain == G_OPTION_ERROR || g_error_matches(error, FL_ERROR, FL_ERROR_USAGE);
+    return usage ? USAGE : FAILURE;
+}
+
+static int print_help(void)
+{
+    printf("Usage: fluidy-style COMMAND [OPTION…]\n\nMakes, checks and lists styles, the moving "
+           "paint of fluidy-svg.\n\nCommands:\n");
+    for (const FlStyleCommand *c = fl_style_commands; c->name; c++)
+        printf("  %-9s %-24s %s\n", c->name, c->arguments, c->summary);
+    printf(
+        "\nfluidy-style COMMAND --help tells a command's options; fluidy-style -V the version.\n");
+    return fflush(stdout) == 0 ? DONE : FAILURE;
+}
+
+/* Finds the command, or the one that was meant. */
+static const FlStyleCommand *find_command(const char *word, GError **error)
+{
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (const FlStyleCommand *c = fl_style_commands; c->name; c++) {
+        if (strcmp(c->name, word) == 0)
+            return c;
+        g_ptr_array_add(names, (gpointer)c->name);
+    }
+    g_ptr_array_add(names, NULL);
+    g_autofree char *tail = fl_did_you_mean(word, (const char *const *)names->pdata);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no command %s%s (see --help)", word,
+                tail);
+    return NULL;
+}
+
+/* GOption says "Unknown option --scael"; we say what it may have meant. */
+static void improve_unknown(const GOptionEntry *entries, GError **error)
+{
+    const char *word = strrchr((*error)->message, ' ');
+    g_autofree char *unknown = g_strdup(word ? word + 1 : (*error)->message);
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (const GOptionEntry *e = entries; e && e->long_name; e++)
+        g_ptr_array_add(names, (gpointer)e->long_name);
+    g_ptr_array_add(names, NULL);
+    const char *near =
+        fl_suggest(unknown + strspn(unknown, "-"), (const char *const *)names->pdata);
+    g_clear_error(error);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no option %s%s%s%s", unknown,
+                near ? "; did you mean --" : "", near ? near : "", near ? "?" : " (see --help)");
+}
+
+static bool run_command(const FlStyleCommand *command, char **argv, GError **error)
+{
+    g_autofree char *usage = g_strdup_printf("%s — %s", command->arguments, command->summary);
+    g_autoptr(GOptionContext) context = g_option_context_new(usage);
+    g_option_context_add_main_entries(context, command->entries, NULL);
+    if (command->details)
+        g_option_context_set_description(context, command->details);
+    g_auto(GStrv) words = g_strdupv(argv); // GOption takes out what it knows
+    GError *problem = NULL;
+    if (!g_option_context_parse_strv(context, &words, &problem)) {
+        if (g_error_matches(problem, G_OPTION_ERROR, G_OPTION_ERROR_UNKNOWN_OPTION))
+            improve_unknown(command->entries, &problem);
+        g_propagate_error(error, problem);
+        return false;
+    }
+    return command->run(words + 1, error);
+}
+
+int main(int argc, char **argv)
+{
+    setlocale(LC_CTYPE, "");
+    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
+        strcmp(argv[1], "help") == 0)
+        return argc < 2 ? (print_help(), USAGE) : print_help();
+    if (strcmp(argv[1], "--version") == 0 || strcmp(argv[1], "-V") == 0)
+        return printf("fluidy-style %s\n", fl_version()) > 0 ? DONE : FAILURE;
+    g_autoptr(GError) error = NULL;
+    const FlStyleCommand *command = find_command(argv[1], &error);
+    if (!command)
+        return fail(error);
+    g_autofree char *program = g_strdup_printf("fluidy-style %s", command->name);
+    g_set_prgname(program);
+    argv[1] = program;
+    return run_command(command, argv + 1, &error) ? DONE : fail(error);
+}

@@ -1,0 +1,208 @@
+#include "frames/document.h"
+
+#include <errno.h>
+#include <glib/gstdio.h>
+#include <libxml/parser.h>
+#include <string.h>
+#include <zlib.h>
+
+static const char svg_namespace[] = "http://www.w3.org/2000/svg";
+
+bool fl_is(const xmlNode *node, const char *name)
+{
+    return node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0 &&
+           node->ns && strcmp((const char *)node->ns->href, svg_namespace) == 0;
+}
+
+bool fl_is_one_of(const xmlNode *node, const char *const *names)
+{
+    for (int i = 0; names[i]; i++)
+        if (fl_is(node, names[i]))
+            return true;
+    return false;
+}
+
+char *fl_attribute(const xmlNode *node, const char *name)
+{
+    return (char *)xmlGetNoNsProp(node, (const xmlChar *)name);
+}
+
+char *fl_property(const xmlNode *node, const char *name)
+{
+    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    char *value = NULL;
+    if (style && strstr((const char *)style, name)) {
+        g_auto(GStrv) parts = g_strsplit((const char *)style, ";", -1);
+        for (int i = 0; parts[i]; i++) {
+            char *colon = strchr(parts[i], ':');
+            if (!colon)
+                continue;
+            *colon = '\0';
+            if (g_ascii_strcasecmp(g_strstrip(parts[i]), name) == 0) {
+                g_free(value);
+                value = g_strdup(g_strstrip(colon + 1));
+            }
+        }
+    }
+    if (value)
+        return value;
+    g_autoptr(xmlChar) attribute = (xmlChar *)fl_attribute(node, name);
+    return attribute ? g_strstrip(g_strdup((const char *)attribute)) : NULL;
+}
+
+/** Unpacks gzip data; replaces *data. */
+static bool gunzip(const char *path, char **data, gsize *bytes, GError **error)
+{
+    z_stream z = {.next_in = (Bytef *)*data, .avail_in = (uInt)*bytes};
+    GByteArray *out = g_byte_array_new();
+    int status = inflateInit2(&z, 15 + 16);
+    while (status == Z_OK && out->len <= FL_MOST_BYTES) {
+        guint8 block[65536];
+        z.next_out = block;
+        z.avail_out = sizeof block;
+        status = inflate(&z, Z_NO_FLUSH);
+        g_byte_array_append(out, block, sizeof block - z.avail_out);
+        if (status == Z_OK && z.avail_in == 0 && z.avail_out > 0)
+            status = Z_DATA_ERROR; // cut short
+    }
+    inflateEnd(&z);
+    if (status != Z_STREAM_END) {
+        const bool large = out->len > FL_MOST_BYTES;
+        g_set_error(error, FL_ERROR, large ? FL_ERROR_LIMIT : FL_ERROR_INPUT, "%s: %s", path,
+                    large ? "larger than 256 MiB when unpacked" : "damaged gzip data");
+        g_byte_array_unref(out);
+        return false;
+    }
+    g_free(*data);
+    *bytes = out->len;
+    *data = (char *)g_byte_array_free(out, FALSE);
+    return true;
+}
+
+static bool read_bytes(const char *path, char **data, gsize *bytes, GError **error)
+{
+    g_autoptr(GError) reason = NULL;
+    GStatBuf info;
+    if (g_stat(path, &info) == 0 && info.st_size > FL_MOST_BYTES) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: larger than 256 MiB", path);
+        return false;
+    }
+    if (!g_file_get_contents(path, data, bytes, &reason)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", reason->message);
+        return false;
+    }
+    if (*bytes > 2 && (guint8)(*data)[0] == 0x1f && (guint8)(*data)[1] == 0x8b)
+        return gunzip(path, data, bytes, error);
+    return true;
+}
+
+/** Parses; problem gets libxml2's message with its line if the text is no XML. */
+static xmlDoc *parse(const char *data, gsize bytes, const char *path, char **problem)
+{
+    xmlParserCtxt *context = xmlNewParserCtxt();
+    xmlDoc *doc = xmlCtxtReadMemory(context, data, (int)bytes, path, NULL,
+                                    XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING);
+    const xmlError *e = xmlCtxtGetLastError(context);
+    if (!doc && problem)
+        *problem = e && e->message ? g_strdup_printf("line %d: %s", e->line, g_strchomp(e->message))
+                                   : g_strdup("no XML");
+    xmlFreeParserCtxt(context);
+    return doc;
+}
+
+static xmlDoc *parse_leniently(const char *data, gsize bytes, const char *path, int number,
+                               FlWarnings *warnings, GError **error)
+{
+    g_autofree char *problem = NULL;
+    xmlDoc *doc = parse(data, bytes, path, &problem);
+    const char *root = doc ? NULL : g_strstr_len(data, (gssize)bytes, "<svg");
+    if (root)
+        doc = parse(root, bytes - (gsize)(root - data), path, NULL);
+    if (doc && root)
+        fl_warnings_add(warnings, path, number, NULL,
+                        "what stands before <svg> is no XML and is left out (%s)", problem);
+    if (!doc)
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: not well-formed: %s", path, problem);
+    return doc;
+}
+
+/** A prefix without a declaration stops librsvg; libxml2 leaves it in the name. */
+static void declare_prefix(xmlNode *root, const xmlChar *name)
+{
+    const char *colon = strchr((const char *)name, ':');
+    if (!colon)
+        return;
+    g_autofree char *prefix = g_strndup((const char *)name, (gsize)(colon - (const char *)name));
+    g_autofree char *href = g_strdup_printf("urn:undeclared:%s", prefix);
+    if (!xmlSearchNs(root->doc, root, (const xmlChar *)prefix))
+        xmlNewNs(root, (const xmlChar *)href, (const xmlChar *)prefix);
+}
+
+/** Counts the elements below node and declares prefixes. Returns: the count. */
+static int visit(xmlNode *root, xmlNode *node)
+{
+    int n = 1;
+    declare_prefix(root, node->name);
+    for (xmlAttr *a = node->properties; a; a = a->next)
+        if (!a->ns)
+            declare_prefix(root, a->name);
+    for (xmlNode *child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE)
+            n += visit(root, child);
+    return n;
+}
+
+xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error)
+{
+    g_autofree char *data = NULL;
+    gsize bytes = 0;
+    if (!read_bytes(path, &data, &bytes, error))
+        return NULL;
+    g_autoptr(xmlDoc) doc = parse_leniently(data, bytes, path, number, warnings, error);
+    if (!doc)
+        return NULL;
+    xmlNode *root = xmlDocGetRootElement(doc);
+    if (!root || !fl_is(root, "svg")) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: the root is <%s>, expected <svg xmlns=\"%s\">", path,
+                    root ? (const char *)root->name : "", svg_namespace);
+        return NULL;
+    }
+    const int n = visit(root, root);
+    if (n > FL_MOST_ELEMENTS) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: %d elements, at most %d are drawn", path,
+                    n, FL_MOST_ELEMENTS);
+        return NULL;
+    }
+    return g_steal_pointer(&doc);
+}
+
+char *fl_document_text(xmlDoc *doc, size_t *bytes)
+{
+    xmlChar *text = NULL;
+    int n = 0;
+    xmlDocDumpMemoryEnc(doc, &text, &n, "UTF-8");
+    char *copy = g_malloc((gsize)n + 1);
+    memcpy(copy, text, (size_t)n);
+    copy[n] = '\0';
+    xmlFree(text);
+    *bytes = (size_t)n;
+    return copy;
+}
+
+static void collect_ids(xmlNode *node, GHashTable *ids)
+{
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    if (id && !g_hash_table_contains(ids, id))
+        g_hash_table_insert(ids, g_strdup((const char *)id), node);
+    for (xmlNode *child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE)
+            collect_ids(child, ids);
+}
+
+GHashTable *fl_document_ids(xmlDoc *doc)
+{
+    GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    collect_ids(xmlDocGetRootElement(doc), ids);
+    return ids;
+}

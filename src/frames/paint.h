@@ -1,0 +1,54 @@
+/* What a leaf is painted with, read from what librsvg draws: no CSS engine of our own. */
+#ifndef FLUIDY_FRAMES_PAINT_H
+#define FLUIDY_FRAMES_PAINT_H
+
+#include <glib.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum FlPaintKind {
+    FL_PAINT_FLAT,     // one colour
+    FL_PAINT_GRADIENT, // linear or radial
+    FL_PAINT_IMAGE,    // a raster image, a pattern, or the result of a filter
+    FL_PAINT_MIXED,    // several of these
+} FlPaintKind;
+
+/** The parts of a leaf that are drawn apart. */
+typedef enum FlPart {
+    FL_PART_WHOLE,
+    FL_PART_FILL,
+    FL_PART_STROKE,
+} FlPart;
+
+/**
+ * A computed paint. Two are the same paint if their keys are equal: "#rrggbb" for a flat one,
+ * the kind and the stops for a gradient (not its id and not where it lies).
+ */
+typedef struct FlPaint {
+    FlPaintKind kind;
+    uint8_t rgb[3]; // the colour; of a gradient the mean over its stops
+    uint8_t alpha;  // opacity, that of the groups around it included; of a gradient the mean
+    char *key;      // owned
+} FlPaint;
+
+/** A part of a leaf and its paint. */
+typedef struct FlPainted {
+    FlPart part;
+    bool stroke;  // the part consists of strokes only
+    bool blended; // with a blend mode or another operator than OVER
+    FlPaint paint;
+} FlPainted;
+
+#define FL_MOST_PARTS 2
+
+/**
+ * Reads the drawing commands that cairo's script surface wrote for one leaf.
+ *
+ * whole: fill and stroke are not to be taken apart. A leaf whose fill and stroke have the same
+ * opaque paint is one part. Returns: the number of parts, bottom up; 0 if nothing is drawn.
+ */
+int fl_paint_read(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]);
+
+void fl_paint_clear(FlPaint *paint);
+
+#endif

@@ -1,0 +1,213 @@
+#include "frames/svg.h"
+
+#include "frames/lint.h"
+#include "frames/normalise.h"
+#include <cairo-script.h>
+#include <math.h>
+#include <string.h>
+
+#define PROBE_PX 256.0 // size of the page on which paints are read; filters and masks are pixels
+
+struct FlSvg {
+    char *path;
+    double dpi;
+    xmlDoc *doc;
+    char *original; // the text before it was normalised
+    size_t original_bytes;
+    RsvgHandle *handle[3]; // by FlPart; but WHOLE made when first needed
+    FlLeaves *leaves;
+};
+
+static void set_rsvg_error(const FlSvg *svg, const GError *reason, GError **error)
+{
+    g_autofree char *message = g_strchomp(g_strdup(reason ? reason->message : "unknown error"));
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be drawn: %s", svg->path, message);
+}
+
+static RsvgHandle *make_handle(const FlSvg *svg, const char *text, size_t bytes, GError **error)
+{
+    g_autoptr(GError) reason = NULL;
+    g_autoptr(GFile) file = g_file_new_for_path(svg->path);
+    g_autoptr(GInputStream) stream = g_memory_input_stream_new_from_data(text, (gssize)bytes, NULL);
+    RsvgHandle *handle =
+        rsvg_handle_new_from_stream_sync(stream, file, RSVG_HANDLE_FLAGS_NONE, NULL, &reason);
+    if (!handle)
+        set_rsvg_error(svg, reason, error);
+    else
+        rsvg_handle_set_dpi(handle, svg->dpi);
+    return handle;
+}
+
+/** Adds a declaration that wins over the style sheets to the style of every leaf. */
+static void declare_everywhere(const xmlDoc *doc, const FlLeaves *leaves, const char *declaration)
+{
+    g_autoptr(GHashTable) ids = fl_document_ids((xmlDoc *)doc);
+    for (guint i = 0; i < leaves->leaf->len; i++) {
+        xmlNode *node = g_hash_table_lookup(ids, g_array_index(leaves->leaf, FlLeaf, i).id);
+        g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+        g_autofree char *both =
+            g_strdup_printf("%s;%s", style ? (const char *)style : "", declaration);
+        xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)both);
+    }
+}
+
+/** The handle that draws this part of every leaf; a copy of the document without the other. */
+static RsvgHandle *handle_of(FlSvg *svg, FlPart part, GError **error)
+{
+    if (svg->handle[part])
+        return svg->handle[part];
+    g_autoptr(xmlDoc) copy = part == FL_PART_WHOLE ? NULL : xmlCopyDoc(svg->doc, 1);
+    if (copy)
+        declare_everywhere(copy, svg->leaves,
+                           part == FL_PART_FILL ? "stroke:none !important"
+                                                : "fill:none !important");
+    size_t bytes = 0;
+    g_autofree char *text = fl_document_text(copy ? copy : svg->doc, &bytes);
+    svg->handle[part] = make_handle(svg, text, bytes, error);
+    return svg->handle[part];
+}
+
+static void set_number(xmlNode *node, const char *name, double value)
+{
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    g_ascii_dtostr(text, sizeof text, value);
+    xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)text);
+}
+
+static void set_canvas(xmlNode *root, const FlCanvas *canvas)
+{
+    char n[4][G_ASCII_DTOSTR_BUF_SIZE];
+    g_autofree char *box =
+        g_strdup_printf("%s %s %s %s", g_ascii_dtostr(n[0], sizeof n[0], canvas->x),
+                        g_ascii_dtostr(n[1], sizeof n[1], canvas->y),
+                        g_ascii_dtostr(n[2], sizeof n[2], canvas->width),
+                        g_ascii_dtostr(n[3], sizeof n[3], canvas->height));
+    xmlSetProp(root, (const xmlChar *)"viewBox", (const xmlChar *)box);
+    set_number(root, "width", canvas->width);
+    set_number(root, "height", canvas->height);
+}
+
+FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
+                   GError **error)
+{
+    g_autoptr(FlSvg) svg = g_new0(FlSvg, 1);
+    svg->path = g_strdup(path);
+    svg->dpi = options->dpi > 0 ? options->dpi : 96;
+    svg->doc = fl_document_read(path, number, warnings, error);
+    if (!svg->doc)
+        return NULL;
+    if (options->canvas.width > 0)
+        set_canvas(xmlDocGetRootElement(svg->doc), &options->canvas);
+    fl_lint(svg->doc, path, number, warnings);
+    svg->original = fl_document_text(svg->doc, &svg->original_bytes);
+    if (!fl_document_normalise(svg->doc, path, number, warnings, error))
+        return NULL;
+    svg->leaves = fl_leaves_new(svg->doc);
+    return handle_of(svg, FL_PART_WHOLE, error) ? g_steal_pointer(&svg) : NULL;
+}
+
+void fl_svg_free(FlSvg *svg)
+{
+    if (!svg)
+        return;
+    for (int part = 0; part < 3; part++)
+        g_clear_object(&svg->handle[part]);
+    fl_leaves_free(svg->leaves);
+    if (svg->doc)
+        xmlFreeDoc(svg->doc);
+    g_free(svg->original);
+    g_free(svg->path);
+    g_free(svg);
+}
+
+bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error)
+{
+    RsvgHandle *handle = svg->handle[FL_PART_WHOLE];
+    if (rsvg_handle_get_intrinsic_size_in_pixels(handle, width, height) && *width > 0 &&
+        *height > 0)
+        return true;
+    gboolean has_width, has_height, has_box;
+    RsvgLength w, h;
+    RsvgRectangle box = {0};
+    rsvg_handle_get_intrinsic_dimensions(handle, &has_width, &w, &has_height, &h, &has_box, &box);
+    *width = box.width;
+    *height = box.height;
+    if (has_box && box.width > 0 && box.height > 0)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                "%s: the drawing has no size and no viewBox; give one, such as --canvas 1920x1080",
+                svg->path);
+    return false;
+}
+
+const FlLeaves *fl_svg_leaves(const FlSvg *svg)
+{
+    return svg->leaves;
+}
+
+static bool draw_layer(FlSvg *svg, FlPart part, const char *id, cairo_t *cr, double width,
+                       double height, GError **error)
+{
+    g_autoptr(GError) reason = NULL;
+    RsvgHandle *handle = handle_of(svg, part, error);
+    g_autofree char *layer = g_strconcat("#", id, NULL);
+    const RsvgRectangle page = {0, 0, width, height};
+    if (handle && rsvg_handle_render_layer(handle, cr, layer, &page, &reason))
+        return true;
+    if (handle) {
+        set_rsvg_error(svg, reason, error);
+        g_prefix_error(error, "#%s in ", id);
+    }
+    return false;
+}
+
+bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
+                 double height, GError **error)
+{
+    return draw_layer(svg, part, leaf->id, cr, width, height, error);
+}
+
+static cairo_status_t append_script(void *text, const unsigned char *data, unsigned n)
+{
+    g_string_append_len(text, (const char *)data, n);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+/** The commands that draw a leaf, as text; to be freed. */
+static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, GError **error)
+{
+    double width = PROBE_PX, height = PROBE_PX;
+    GString *text = g_string_new(NULL);
+    cairo_device_t *device = cairo_script_create_for_stream(append_script, text);
+    g_autoptr(cairo_surface_t) surface =
+        cairo_script_surface_create(device, CAIRO_CONTENT_COLOR_ALPHA, width, height);
+    cairo_t *cr = cairo_create(surface);
+    const bool drawn = draw_layer(svg, part, leaf->id, cr, width, height, error);
+    cairo_destroy(cr);
+    cairo_surface_finish(surface);
+    cairo_device_finish(device);
+    cairo_device_destroy(device);
+    return g_string_free(text, !drawn);
+}
+
+int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error)
+{
+    g_autofree char *script = script_of(svg, leaf, FL_PART_WHOLE, NULL);
+    if (script)
+        return fl_paint_read(script, leaf->whole, parts);
+    // cairo's script surface refuses to fill a path without an area; such a leaf is its stroke.
+    script = script_of(svg, leaf, FL_PART_STROKE, error);
+    return script ? fl_paint_read(script, leaf->whole, parts) : -1;
+}
+
+bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)
+{
+    g_autoptr(RsvgHandle) handle = make_handle(svg, svg->original, svg->original_bytes, error);
+    g_autoptr(GError) reason = NULL;
+    const RsvgRectangle page = {0, 0, width, height};
+    if (handle && rsvg_handle_render_document(handle, cr, &page, &reason))
+        return true;
+    if (handle)
+        set_rsvg_error(svg, reason, error);
+    return false;
+}

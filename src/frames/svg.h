@@ -1,0 +1,55 @@
+/* One frame: an SVG file, normalised, whose leaves can be drawn one by one. */
+#ifndef FLUIDY_FRAMES_SVG_H
+#define FLUIDY_FRAMES_SVG_H
+
+#include "base/cleanup.h"
+#include "frames/leaves.h"
+#include "frames/paint.h"
+
+/** The page of drawings that do not say their size, in user units. */
+typedef struct FlCanvas {
+    double x, y, width, height; // width 0: as the file says
+} FlCanvas;
+
+typedef struct FlSvgOptions {
+    FlCanvas canvas;
+    double dpi; // of mm, cm, in, pt; 0: 96
+} FlSvgOptions;
+
+/** A frame. It belongs to one thread at a time; different frames may be in different threads. */
+typedef struct FlSvg FlSvg;
+
+/** Reads, normalises and parses. Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT. */
+FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
+                   GError **error);
+
+void fl_svg_free(FlSvg *svg); // NULL is fine
+
+/**
+ * The page in px: width and height of the file, else of its viewBox.
+ * Returns: false with FL_ERROR_INPUT, which asks for --canvas, if it has neither.
+ */
+bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error);
+
+/** The leaves, bottom up; they belong to svg. */
+const FlLeaves *fl_svg_leaves(const FlSvg *svg);
+
+/**
+ * What a leaf is painted with.
+ * Returns: the number of parts, bottom up, 0 if nothing is drawn; -1 with FL_ERROR_INPUT.
+ */
+int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error);
+
+/**
+ * Draws a part of a leaf where it is in the picture, with all that applies to it (clip, mask,
+ * groups). width and height are what the page is scaled to, px.
+ */
+bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
+                 double height, GError **error);
+
+/** Draws the file as it was before it was normalised. */
+bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSvg, fl_svg_free)
+
+#endif

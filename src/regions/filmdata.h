@@ -1,0 +1,31 @@
+/* What a film remembers; private to regions/. */
+#ifndef FLUIDY_REGIONS_FILMDATA_H
+#define FLUIDY_REGIONS_FILMDATA_H
+
+#include "regions/film.h"
+
+/** How one part of a leaf is drawn in one frame. 28 bytes: this is what grows with the film. */
+typedef struct FlStep {
+    int32_t leaf;   // index of the leaf; of a unit -1 - its index
+    int16_t region; // index into the film's regions
+    uint8_t part;   // FlPart
+    uint8_t flat;   // else drawn as a picture
+    uint8_t rgb[3], alpha;
+    float box[4]; // x0, y0, x1, y1 that it lies in, px
+} FlStep;
+
+typedef struct FlFilmFrame {
+    int n;
+    FlStep *step;                   // bottom up
+    double page_width, page_height; // px of the picture
+} FlFilmFrame;
+
+struct FlFilm {
+    FlSequence *sequence;
+    FlSvgOptions svg;
+    int width, height;
+    FlFilmFrame *frame;
+    GArray *regions; // FlRegion
+};
+
+#endif

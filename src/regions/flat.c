@@ -1,0 +1,62 @@
+#include "regions/filmdata.h"
+#include "regions/raster.h"
+#include <string.h>
+
+/** Lays a run over straight RGBA; with a colour of its own if rgb is given. */
+static void lay(const FlRun *run, const uint8_t *rgb, size_t n, uint8_t *rgba)
+{
+    for (size_t p = 0; p < n; p++) {
+        const uint32_t a = (run->coverage[p] * run->alpha + 127) / 255;
+        if (a == 0)
+            continue;
+        uint8_t *out = rgba + 4 * p;
+        const uint8_t *colour = rgb ? rgb : run->picture ? run->picture + 4 * p : run->rgb;
+        const uint32_t rest = out[3] * (255 - a); // weights out of 255 * 255
+        const uint32_t all = 255 * a + rest;
+        for (int c = 0; c < 3; c++)
+            out[c] = (uint8_t)((colour[c] * 255 * a + out[c] * rest + all / 2) / all);
+        out[3] = (uint8_t)((all + 127) / 255);
+    }
+}
+
+void fl_runs_flat(const FlRuns *runs, int width, int height, uint8_t *rgba)
+{
+    const size_t n = (size_t)width * height;
+    memset(rgba, 0, 4 * n);
+    for (int r = 0; r < runs->n; r++)
+        lay(&runs->run[r], NULL, n, rgba);
+}
+
+/** Distinct colours: hues a golden angle apart, in three lightnesses. */
+void fl_region_colour(const FlFilm *film, int region, uint8_t rgb[3])
+{
+    int nth = 0;
+    const bool paintable = fl_film_region(film, region)->paintable;
+    for (int r = 0; r < region; r++)
+        nth += fl_film_region(film, r)->paintable == paintable;
+    if (!paintable) {
+        rgb[0] = rgb[1] = rgb[2] = (uint8_t)(40 + nth * 37 % 120);
+        return;
+    }
+    const double turn = nth * 0.6180339887498949;
+    const double hue = 6 * (turn - (int)turn);
+    const int high = nth % 3 == 1 ? 170 : 240, low = nth % 3 == 2 ? 130 : 40;
+    const int sector = (int)hue;
+    const double part = hue - sector;
+    const int up = low + (int)((high - low) * part), down = high - (up - low);
+    const int table[6][3] = {{high, up, low},   {down, high, low}, {low, high, up},
+                             {low, down, high}, {up, low, high},   {high, low, down}};
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (uint8_t)table[sector % 6][c];
+}
+
+void fl_runs_map(const FlFilm *film, const FlRuns *runs, uint8_t *rgba)
+{
+    const size_t n = (size_t)film->width * film->height;
+    memset(rgba, 0, 4 * n);
+    for (int r = 0; r < runs->n; r++) {
+        uint8_t rgb[3];
+        fl_region_colour(film, runs->run[r].region, rgb);
+        lay(&runs->run[r], rgb, n, rgba);
+    }
+}

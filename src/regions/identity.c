@@ -1,0 +1,228 @@
+#include "regions/identity.h"
+
+#include "regions/tracks.h"
+#include <string.h>
+
+#define SHADE_ALPHA 192  // a fill this opaque or more is no overlay
+#define SHADE_COVERS 0.8 // share of an overlay that lies over other fills
+#define LINE_ART 0.5     // share of the ink from which on strokes are the drawing
+
+/** What is summed over a region, to say what it is. */
+typedef struct Sum {
+    double area, covered, alpha;
+    double best; // area of the paint of the group so far
+} Sum;
+
+typedef struct Work {
+    FlScan *scan;
+    const FlFilmOptions *options;
+    bool paint_strokes;
+    int *label_of;
+    GArray *tracks;
+    int **track_of;
+    int *rule_of; // per track
+    int *twin_of; // per track: the first track whose paints change as its own do
+} Work;
+
+/** Whether strokes are what the drawing consists of: zdog figures, line drawings. */
+static bool is_line_art(const FlScan *scan)
+{
+    double strokes = 0, fills = 0;
+    const double page = (double)scan->width * scan->height;
+    for (int t = 0; t < scan->n_frames; t++)
+        for (guint i = 0; i < scan->frame[t].seen->len; i++) {
+            const FlSeen *s = &g_array_index(scan->frame[t].seen, FlSeen, i);
+            if (s->area_px < 0.95 * page)
+                *(s->stroke ? &strokes : &fills) += s->area_px;
+        }
+    return strokes > LINE_ART * (strokes + fills);
+}
+
+static const char *paint_word(const FlScan *scan, const FlSeen *s)
+{
+    switch (s->kind) {
+    case FL_PAINT_FLAT:
+        return fl_strings_get(&scan->strings, s->paint);
+    case FL_PAINT_GRADIENT:
+        return "gradient";
+    case FL_PAINT_IMAGE:
+        return "image";
+    default:
+        return "mixed";
+    }
+}
+
+/** The first rule that a track matches in any frame. */
+static void match_rules(Work *w)
+{
+    const FlStrings *strings = &w->scan->strings;
+    for (int t = 0; t < w->scan->n_frames && w->options->n_rules > 0; t++)
+        for (guint i = 0; i < w->scan->frame[t].seen->len; i++) {
+            const FlSeen *s = &g_array_index(w->scan->frame[t].seen, FlSeen, i);
+            const FlRuleSubject subject = {
+                .ids = fl_strings_get(strings, s->ids),
+                .classes = fl_strings_get(strings, s->classes),
+                .labels = fl_strings_get(strings, s->labels),
+                .layers = fl_strings_get(strings, s->layers),
+                .stroke = s->stroke,
+                .has_fill = s->has_fill,
+                .has_stroke = s->has_stroke,
+                .paint = paint_word(w->scan, s),
+                .rgb = s->rgb,
+            };
+            const int rule = fl_rules_match(w->options->rules, w->options->n_rules, &subject);
+            int *known = &w->rule_of[w->track_of[t][i]];
+            if (rule >= 0 && (*known < 0 || rule < *known))
+                *known = rule;
+        }
+}
+
+/** Whether two tracks have the same paint in all frames both are in, at least in one. */
+static bool change_alike(const FlTrack *a, const FlTrack *b)
+{
+    int common = 0;
+    for (guint i = 0, j = 0; i < a->paints->len && j < b->paints->len;) {
+        const int *x = &g_array_index(a->paints, int, i), *y = &g_array_index(b->paints, int, j);
+        if (x[0] == y[0] && x[1] != y[1])
+            return false;
+        common += x[0] == y[0];
+        i += x[0] <= y[0] ? 2 : 0;
+        j += y[0] <= x[0] ? 2 : 0;
+    }
+    return common > 0;
+}
+
+static void find_twins(Work *w)
+{
+    for (guint k = 0; k < w->tracks->len; k++) {
+        const FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
+        w->twin_of[k] = (int)k;
+        for (guint j = 0; j < k && track->varies; j++) {
+            const FlTrack *other = &g_array_index(w->tracks, FlTrack, j);
+            if (other->varies && w->twin_of[j] == (int)j &&
+                other->last.stroke == track->last.stroke &&
+                w->label_of[other->last.labels] == w->label_of[track->last.labels] &&
+                change_alike(other, track)) {
+                w->twin_of[k] = (int)j;
+                break;
+            }
+        }
+    }
+}
+
+static bool is_apart(const Work *w, const FlSeen *s)
+{
+    return s->stroke && !w->paint_strokes;
+}
+
+/** What a part's region is known by; equal texts are one region. */
+static char *key_of(const Work *w, const FlSeen *s, int track)
+{
+    const FlTrack *tr = &g_array_index(w->tracks, FlTrack, track);
+    const int label = w->label_of[s->labels];
+    const char *apart = is_apart(w, s) ? "s" : "";
+    if (w->rule_of[track] >= 0) // a rule's name makes the region; other rules of that name join
+        return g_strdup_printf("rule %s", w->options->rules[w->rule_of[track]].name);
+    switch (w->options->key) {
+    case FL_KEY_FILL:
+        return g_strdup_printf("fill %s%d", apart, s->paint);
+    case FL_KEY_ID:
+        return g_strdup_printf("id %s%d", apart, w->label_of[s->name]);
+    case FL_KEY_CLASS:
+        return g_strdup_printf("class %s%d", apart, s->classes);
+    case FL_KEY_LABEL:
+        return g_strdup_printf("label %s%d", apart, label);
+    case FL_KEY_TREE:
+        return g_strdup_printf("tree %s%d", apart, s->tree);
+    default:
+        break;
+    }
+    if (tr->varies)
+        return g_strdup_printf("track %d", w->twin_of[track]);
+    const int place = s->kind == FL_PAINT_MIXED || s->kind == FL_PAINT_IMAGE ? s->tree : 0;
+    return g_strdup_printf("%s%d/%d/%d", apart, label, s->paint, place);
+}
+
+/** Adds a part to its group. */
+static void add_up(const Work *w, const FlSeen *s, FlGroup *group, Sum *sum, GHashTable *areas)
+{
+    const int64_t key = (int64_t)s->region << 32 | s->paint;
+    double *area = g_hash_table_lookup(areas, &key);
+    if (!area) {
+        int64_t *copy = g_new(int64_t, 1);
+        *copy = key;
+        area = g_new0(double, 1);
+        g_hash_table_insert(areas, copy, area);
+    }
+    *area += s->area_px;
+    if (*area > sum->best) {
+        sum->best = *area;
+        group->paint = s->paint;
+        group->kind = s->kind;
+        group->label = w->label_of[s->labels];
+        memcpy(group->rgb, s->rgb, 3);
+    }
+    sum->area += s->area_px;
+    sum->covered += s->covers * s->area_px;
+    sum->alpha = MAX(sum->alpha, s->alpha);
+    group->stroke = group->stroke && is_apart(w, s);
+}
+
+static GArray *gather(Work *w)
+{
+    GArray *groups = g_array_new(FALSE, FALSE, sizeof(FlGroup));
+    g_autoptr(GArray) sums = g_array_new(FALSE, FALSE, sizeof(Sum));
+    g_autoptr(GHashTable) numbers = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    g_autoptr(GHashTable) areas =
+        g_hash_table_new_full(g_int64_hash, g_int64_equal, g_free, g_free);
+    for (int t = 0; t < w->scan->n_frames; t++)
+        for (guint i = 0; i < w->scan->frame[t].seen->len; i++) {
+            FlSeen *s = &g_array_index(w->scan->frame[t].seen, FlSeen, i);
+            const int track = w->track_of[t][i];
+            if (s->stroke && w->options->strokes == FL_STROKES_DROP && w->rule_of[track] < 0)
+                continue;
+            g_autofree char *key = key_of(w, s, track);
+            gpointer number = NULL;
+            if (!g_hash_table_lookup_extended(numbers, key, NULL, &number)) {
+                const FlGroup group = {.rule = w->rule_of[track], .stroke = true};
+                const Sum sum = {0};
+                number = GINT_TO_POINTER(groups->len);
+                g_hash_table_insert(numbers, g_steal_pointer(&key), number);
+                g_array_append_val(groups, group);
+                g_array_append_val(sums, sum);
+            }
+            s->region = GPOINTER_TO_INT(number);
+            add_up(w, s, &g_array_index(groups, FlGroup, s->region),
+                   &g_array_index(sums, Sum, s->region), areas);
+        }
+    for (guint r = 0; r < groups->len; r++) {
+        const Sum *sum = &g_array_index(sums, Sum, r);
+        g_array_index(groups, FlGroup, r).shade =
+            sum->alpha < SHADE_ALPHA && sum->covered >= SHADE_COVERS * sum->area;
+    }
+    return groups;
+}
+
+GArray *fl_identify(FlScan *scan, const FlFilmOptions *options)
+{
+    Work w = {.scan = scan, .options = options};
+    w.paint_strokes = options->strokes == FL_STROKES_PAINT ||
+                      (options->strokes == FL_STROKES_KEEP && is_line_art(scan));
+    w.label_of = fl_clean_labels(scan);
+    w.tracks = fl_follow(scan, w.label_of, &w.track_of);
+    w.rule_of = g_new(int, w.tracks->len + 1);
+    w.twin_of = g_new(int, w.tracks->len + 1);
+    for (guint k = 0; k < w.tracks->len; k++)
+        w.rule_of[k] = -1;
+    match_rules(&w);
+    find_twins(&w);
+    GArray *groups = gather(&w);
+    for (int t = 0; t < scan->n_frames; t++)
+        g_free(w.track_of[t]);
+    g_free(w.track_of);
+    g_free(w.rule_of);
+    g_free(w.twin_of);
+    g_array_unref(w.tracks);
+    g_free(w.label_of);
+    return groups;
+}

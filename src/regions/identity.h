@@ -1,0 +1,28 @@
+/* Which leaves are the same region in every frame. */
+#ifndef FLUIDY_REGIONS_IDENTITY_H
+#define FLUIDY_REGIONS_IDENTITY_H
+
+#include "regions/scan.h"
+
+/** What makes up a region, before it has a name. */
+typedef struct FlGroup {
+    int label;          // label path without frame numbers, a number in FlScan.strings
+    int paint;          // the paint that covers most, likewise
+    int rule;           // -1: none
+    bool stroke, shade; // of strokes that are not painted; a translucent overlay
+    FlPaintKind kind;
+    uint8_t rgb[3];
+} FlGroup;
+
+/**
+ * Sets FlSeen.region of every part; strokes that are dropped get -1.
+ *
+ * Regions are numbered by their first frame, and there bottom up. Returns: an array of FlGroup.
+ */
+GArray *fl_identify(FlScan *scan, const FlFilmOptions *options);
+
+/** For every string that is a list of labels, the same without frame numbers; scan->strings grows.
+ */
+int *fl_clean_labels(FlScan *scan);
+
+#endif

@@ -1,0 +1,85 @@
+#include "regions/raster.h"
+
+#include <string.h>
+
+#define MOST_SIDE 32767 // px; cairo's limit
+
+cairo_surface_t *fl_surface_new(cairo_format_t format, int width, int height, GError **error)
+{
+    if (width < 1 || height < 1 || width > MOST_SIDE || height > MOST_SIDE) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                    "a picture of %d x %d px; expected 1 to %d on each side", width, height,
+                    MOST_SIDE);
+        return NULL;
+    }
+    g_autoptr(cairo_surface_t) surface = cairo_image_surface_create(format, width, height);
+    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS) {
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "a picture of %d x %d px: %s", width,
+                    height, cairo_status_to_string(cairo_surface_status(surface)));
+        return NULL;
+    }
+    return g_steal_pointer(&surface);
+}
+
+static int pixel_bytes(cairo_surface_t *surface)
+{
+    return cairo_image_surface_get_format(surface) == CAIRO_FORMAT_A8 ? 1 : 4;
+}
+
+void fl_surface_wipe(cairo_surface_t *surface, FlBox box)
+{
+    const int stride = cairo_image_surface_get_stride(surface), size = pixel_bytes(surface);
+    cairo_surface_flush(surface);
+    unsigned char *data = cairo_image_surface_get_data(surface);
+    for (int y = box.y0; y < box.y1; y++)
+        memset(data + (size_t)y * stride + box.x0 * size, 0, (size_t)(box.x1 - box.x0) * size);
+    cairo_surface_mark_dirty(surface);
+}
+
+/** The first (step 1) or last (step -1) byte of n that is not 0; n if none. */
+static int find_ink(const unsigned char *row, int n, int step)
+{
+    for (int i = step > 0 ? 0 : n - 1; i >= 0 && i < n; i += step)
+        if (row[i])
+            return i;
+    return n;
+}
+
+/** Whether all n bytes are 0. */
+static bool is_blank(const unsigned char *row, int n)
+{
+    return n == 0 || (row[0] == 0 && memcmp(row, row + 1, (size_t)n - 1) == 0);
+}
+
+FlBox fl_surface_ink(cairo_surface_t *surface, FlBox box)
+{
+    const int stride = cairo_image_surface_get_stride(surface), size = pixel_bytes(surface);
+    cairo_surface_flush(surface);
+    const unsigned char *data = cairo_image_surface_get_data(surface);
+    FlBox ink = {box.x1, box.y1, box.x0, box.y0};
+    const int n = (box.x1 - box.x0) * size;
+    for (int y = box.y0; y < box.y1 && n > 0; y++) {
+        const unsigned char *row = data + (size_t)y * stride + box.x0 * size;
+        if (is_blank(row, n))
+            continue;
+        ink.y0 = ink.y0 < y ? ink.y0 : y;
+        ink.y1 = y + 1;
+        const int first = box.x0 + find_ink(row, n, 1) / size;
+        const int last = box.x0 + find_ink(row, n, -1) / size + 1;
+        ink.x0 = ink.x0 < first ? ink.x0 : first;
+        ink.x1 = ink.x1 > last ? ink.x1 : last;
+    }
+    return ink.y1 > ink.y0 ? ink : (FlBox){0};
+}
+
+FlBox fl_box_and(FlBox a, FlBox b)
+{
+    const FlBox both = {a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0,
+                        a.x1 < b.x1 ? a.x1 : b.x1, a.y1 < b.y1 ? a.y1 : b.y1};
+    return both.x1 > both.x0 && both.y1 > both.y0 ? both : (FlBox){0};
+}
+
+bool fl_boxes_meet(FlBox a, FlBox b)
+{
+    return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}

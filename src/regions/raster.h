@@ -1,0 +1,44 @@
+/* Small work on pictures: what a leaf covers, and drawing over. */
+#ifndef FLUIDY_REGIONS_RASTER_H
+#define FLUIDY_REGIONS_RASTER_H
+
+#include "base/cleanup.h"
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** A rectangle of pixels, x1 and y1 exclusive; empty if x1 <= x0. */
+typedef struct FlBox {
+    int x0, y0, x1, y1;
+} FlBox;
+
+/** A cleared image surface; NULL with FL_ERROR_LIMIT or FL_ERROR_NO_MEMORY. */
+cairo_surface_t *fl_surface_new(cairo_format_t format, int width, int height, GError **error);
+
+/** Clears the pixels of a box. */
+void fl_surface_wipe(cairo_surface_t *surface, FlBox box);
+
+/** The smallest box of all pixels that are not 0, within `box`; A8 or ARGB32. */
+FlBox fl_surface_ink(cairo_surface_t *surface, FlBox box);
+
+FlBox fl_box_and(FlBox a, FlBox b);
+bool fl_boxes_meet(FlBox a, FlBox b);
+
+/** a over b for coverages and opacities 0..255. */
+static inline uint8_t fl_over(uint8_t a, uint8_t b)
+{
+    return (uint8_t)(a + (b * (255 - a) + 127) / 255);
+}
+
+/** Draws colour with opacity o (0..255) over a premultiplied ARGB32 pixel. */
+static inline uint32_t fl_blend(uint32_t below, const uint8_t rgb[3], uint32_t o)
+{
+    const uint32_t rest = 255 - o;
+    uint32_t out = 0;
+    const uint32_t source[4] = {rgb[2] * o, rgb[1] * o, rgb[0] * o, 255 * o};
+    for (int c = 0; c < 4; c++)
+        out |= (source[c] + ((below >> (8 * c)) & 255) * rest + 127) / 255 << (8 * c);
+    return out;
+}
+
+#endif

@@ -1,0 +1,289 @@
+#include "base/alloc.h"
+#include "regions/filmdata.h"
+#include "regions/raster.h"
+#include <math.h>
+#include <string.h>
+
+/*
+ * Steps of the same region and paint go into one run. A step may also join an earlier run if it
+ * meets nothing in between: a board of twenty discs of three colours is a few runs, not sixty.
+ */
+typedef struct Run {
+    int region;
+    bool flat;
+    uint8_t rgb[3], alpha;
+    GArray *steps; // indices
+} Run;
+
+static void run_clear(void *data)
+{
+    g_array_unref(((Run *)data)->steps);
+}
+
+static bool boxes_meet(const float a[4], const float b[4])
+{
+    return a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+}
+
+static bool meets(const Run *run, const FlFilmFrame *frame, const FlStep *step)
+{
+    for (guint i = 0; i < run->steps->len; i++)
+        if (boxes_meet(frame->step[g_array_index(run->steps, int, i)].box, step->box))
+            return true;
+    return false;
+}
+
+/** Whether step can be drawn with run: two translucent shapes only where they do not overlap. */
+static bool fits(const Run *run, const FlFilmFrame *frame, const FlStep *step)
+{
+    if (run->region != step->region || run->flat != step->flat)
+        return false;
+    if (!step->flat)
+        return true;
+    return memcmp(run->rgb, step->rgb, 3) == 0 && run->alpha == step->alpha &&
+           (step->alpha == 255 || !meets(run, frame, step));
+}
+
+/** The runs of a frame; region < 0: all of them. */
+static GArray *plan(const FlFilmFrame *frame, int region)
+{
+    GArray *runs = g_array_new(FALSE, FALSE, sizeof(Run));
+    g_array_set_clear_func(runs, run_clear);
+    for (int i = 0; i < frame->n; i++) {
+        const FlStep *step = &frame->step[i];
+        if (region >= 0 && step->region != region)
+            continue;
+        Run *found = NULL;
+        for (guint r = runs->len; r-- > 0 && !found;) {
+            Run *run = &g_array_index(runs, Run, r);
+            if (fits(run, frame, step))
+                found = run;
+            else if (meets(run, frame, step))
+                break;
+        }
+        if (!found) {
+            const Run run = {step->region,
+                             step->flat,
+                             {step->rgb[0], step->rgb[1], step->rgb[2]},
+                             step->flat ? step->alpha : 255,
+                             g_array_new(FALSE, FALSE, sizeof(int))};
+            g_array_append_val(runs, run);
+            found = &g_array_index(runs, Run, runs->len - 1);
+        }
+        g_array_append_val(found->steps, i);
+    }
+    return runs;
+}
+
+/** A frame opened for drawing. */
+typedef struct Stage {
+    const FlFilm *film;
+    const FlFilmFrame *frame;
+    FlSvg *svg;
+    cairo_surface_t *coverage, *picture; // scratch, blank between runs; picture may be NULL
+} Stage;
+
+static void stage_clear(Stage *stage)
+{
+    fl_svg_free(stage->svg);
+    if (stage->coverage)
+        cairo_surface_destroy(stage->coverage);
+    if (stage->picture)
+        cairo_surface_destroy(stage->picture);
+}
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Stage, stage_clear)
+
+static bool stage_init(Stage *stage, const FlFilm *film, int frame, GError **error)
+{
+    *stage = (Stage){.film = film, .frame = &film->frame[frame]};
+    stage->svg = fl_svg_open(film->sequence->file[frame], film->sequence->number[frame], &film->svg,
+                             NULL, error);
+    if (!stage->svg)
+        return false;
+    stage->coverage = fl_surface_new(CAIRO_FORMAT_A8, film->width, film->height, error);
+    return stage->coverage != NULL;
+}
+
+static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *surface,
+                      GError **error)
+{
+    const FlLeaves *leaves = fl_svg_leaves(stage->svg);
+    const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;
+    const guint index = (guint)(step->leaf >= 0 ? step->leaf : -1 - step->leaf);
+    if (index >= list->len) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "%s: changed while it was being painted",
+                    stage->film->sequence->file[stage->frame - stage->film->frame]);
+        return false;
+    }
+    const FlLeaf *leaf = step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
+                                         : &g_array_index(list, FlUnit, index).leaf;
+    cairo_t *cr = cairo_create(surface);
+    const bool drawn = fl_svg_draw(stage->svg, leaf, (FlPart)step->part, cr,
+                                   stage->frame->page_width, stage->frame->page_height, error);
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    return drawn;
+}
+
+/** The pixels a step can reach. */
+static FlBox step_box(const Stage *stage, const FlStep *step)
+{
+    const FlBox page = {0, 0, stage->film->width, stage->film->height};
+    const FlBox box = {(int)floorf(step->box[0]), (int)floorf(step->box[1]),
+                       (int)ceilf(step->box[2]), (int)ceilf(step->box[3])};
+    return fl_box_and(page, box);
+}
+
+/** Adds one flat step to a coverage, taking its opacity out. */
+static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, GError **error)
+{
+    const int width = stage->film->width;
+    if (!draw_step(stage, step, stage->coverage, error))
+        return false;
+    const FlBox box = step_box(stage, step);
+    const int stride = cairo_image_surface_get_stride(stage->coverage);
+    const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
+    uint8_t solid[256];
+    for (int v = 0; v < 256; v++)
+        solid[v] = (uint8_t)MIN(255, (v * 255 + step->alpha / 2) / MAX(step->alpha, 1));
+    for (int y = box.y0; y < box.y1; y++) {
+        const unsigned char *in = drawn + (size_t)y * stride;
+        uint8_t *out = coverage + (size_t)y * width;
+        for (int x = box.x0; x < box.x1; x++)
+            if (in[x])
+                out[x] = fl_over(solid[in[x]], out[x]);
+    }
+    fl_surface_wipe(stage->coverage, (FlBox){0, 0, width, stage->film->height});
+    return true;
+}
+
+static bool draw_flat(const Stage *stage, const Run *run, uint8_t *coverage, GError **error)
+{
+    for (guint i = 0; i < run->steps->len; i++)
+        if (!add_flat(stage, &stage->frame->step[g_array_index(run->steps, int, i)], coverage,
+                      error))
+            return false;
+    return true;
+}
+
+/** One straight RGBA pixel of a premultiplied one. */
+static inline void straighten(uint32_t pixel, uint8_t out[4])
+{
+    const uint32_t a = pixel >> 24;
+    for (int c = 0; c < 3; c++)
+        out[c] = a ? (uint8_t)MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0;
+    out[3] = (uint8_t)a;
+}
+
+/** Draws the steps of a run on a picture of their own; picture may be NULL. */
+static bool draw_picture(Stage *stage, const Run *run, uint8_t *coverage, uint8_t *picture,
+                         GError **error)
+{
+    const int width = stage->film->width, height = stage->film->height;
+    if (!stage->picture)
+        stage->picture = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+    if (!stage->picture)
+        return false;
+    for (guint i = 0; i < run->steps->len; i++)
+        if (!draw_step(stage, &stage->frame->step[g_array_index(run->steps, int, i)],
+                       stage->picture, error))
+            return false;
+    const int stride = cairo_image_surface_get_stride(stage->picture);
+    const unsigned char *drawn = cairo_image_surface_get_data(stage->picture);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const uint32_t pixel = ((const uint32_t *)(drawn + (size_t)y * stride))[x];
+            const size_t p = (size_t)y * width + x;
+            if (pixel && picture)
+                straighten(pixel, picture + 4 * p);
+            coverage[p] = fl_over((uint8_t)(pixel >> 24), coverage[p]);
+        }
+    fl_surface_wipe(stage->picture, (FlBox){0, 0, width, height});
+    return true;
+}
+
+/** The mean colour of a picture, by its coverage. */
+static void mean_colour(const uint8_t *picture, size_t n, uint8_t rgb[3])
+{
+    uint64_t sum[3] = {0}, weight = 0;
+    for (size_t p = 0; p < n; p++) {
+        for (int c = 0; c < 3; c++)
+            sum[c] += (uint64_t)picture[4 * p + c] * picture[4 * p + 3];
+        weight += picture[4 * p + 3];
+    }
+    for (int c = 0; c < 3; c++)
+        rgb[c] = weight ? (uint8_t)((sum[c] + weight / 2) / weight) : 0;
+}
+
+static bool draw_run(Stage *stage, const Run *run, FlRun *out, GError **error)
+{
+    const size_t n = (size_t)stage->film->width * stage->film->height;
+    *out = (FlRun){.region = run->region, .alpha = run->alpha};
+    memcpy(out->rgb, run->rgb, 3);
+    out->coverage = fl_alloc(n, 1, "the mask of a region", error);
+    if (!out->coverage)
+        return false;
+    if (run->flat)
+        return draw_flat(stage, run, out->coverage, error);
+    out->picture = fl_alloc(n, 4, "the picture of a region", error);
+    if (!out->picture || !draw_picture(stage, run, out->coverage, out->picture, error))
+        return false;
+    mean_colour(out->picture, n, out->rgb);
+    return true;
+}
+
+FlRuns *fl_film_runs(const FlFilm *film, int frame, GError **error)
+{
+    g_assert(frame >= 0 && frame < film->sequence->n);
+    g_auto(Stage) stage = {0};
+    if (!stage_init(&stage, film, frame, error))
+        return NULL;
+    g_autoptr(GArray) runs = plan(stage.frame, -1);
+    g_autoptr(FlRuns) out = g_new0(FlRuns, 1);
+    out->run = g_new0(FlRun, runs->len + 1);
+    for (guint r = 0; r < runs->len; r++) {
+        out->n++;
+        if (!draw_run(&stage, &g_array_index(runs, Run, r), &out->run[r], error))
+            return NULL;
+    }
+    return g_steal_pointer(&out);
+}
+
+bool fl_film_mask(const FlFilm *film, int frame, int region, uint8_t *coverage, GError **error)
+{
+    memset(coverage, 0, (size_t)film->width * film->height);
+    g_autoptr(GArray) runs = plan(&film->frame[frame], region);
+    if (runs->len == 0)
+        return true;
+    g_auto(Stage) stage = {0};
+    if (!stage_init(&stage, film, frame, error))
+        return false;
+    for (guint r = 0; r < runs->len; r++) {
+        const Run *run = &g_array_index(runs, Run, r);
+        if (!(run->flat ? draw_flat(&stage, run, coverage, error)
+                        : draw_picture(&stage, run, coverage, NULL, error)))
+            return false;
+    }
+    return true;
+}
+
+void fl_runs_mask(const FlRuns *runs, int region, int width, int height, uint8_t *coverage)
+{
+    const size_t n = (size_t)width * height;
+    memset(coverage, 0, n);
+    for (int r = 0; r < runs->n; r++)
+        for (size_t p = 0; runs->run[r].region == region && p < n; p++)
+            coverage[p] = fl_over(runs->run[r].coverage[p], coverage[p]);
+}
+
+void fl_runs_free(FlRuns *runs)
+{
+    if (!runs)
+        return;
+    for (int r = 0; r < runs->n; r++) {
+        free(runs->run[r].coverage);
+        free(runs->run[r].picture);
+    }
+    g_free(runs->run);
+    g_free(runs);
+}

@@ -1,0 +1,337 @@
+#include "regions/scan.h"
+
+#include "regions/raster.h"
+#include "regions/selfcheck.h"
+#include <math.h>
+#include <string.h>
+
+#define LOOK_PX 256 // longest side of the small pictures on which a frame is looked over
+
+int fl_strings_add(FlStrings *strings, const char *text)
+{
+    if (!strings->text) {
+        strings->text = g_ptr_array_new_with_free_func(g_free);
+        strings->number = g_hash_table_new(g_str_hash, g_str_equal);
+        fl_strings_add(strings, "");
+    }
+    gpointer known = NULL;
+    if (g_hash_table_lookup_extended(strings->number, text, NULL, &known))
+        return GPOINTER_TO_INT(known);
+    const int number = (int)strings->text->len;
+    char *copy = g_strdup(text);
+    g_ptr_array_add(strings->text, copy);
+    g_hash_table_insert(strings->number, copy, GINT_TO_POINTER(number));
+    return number;
+}
+
+const char *fl_strings_get(const FlStrings *strings, int number)
+{
+    return g_ptr_array_index(strings->text, number);
+}
+
+/** A part being looked at: as FlSeen, but its strings still belong to the frame. */
+typedef struct Look {
+    FlSeen seen;
+    const FlLeaf *leaf;
+    char *paint;
+    FlBox box; // px of the small picture
+} Look;
+
+static void look_clear(void *data)
+{
+    g_free(((Look *)data)->paint);
+}
+
+/** What one thread needs for one frame. */
+typedef struct Frame {
+    FlSvg *svg;
+    double width, height; // of the page in the small picture
+    double factor;        // px of the picture per px of the small one
+    cairo_surface_t *coverage;
+    FlBox all;
+    GArray *looks;
+    FlSelfCheck *check;
+} Frame;
+
+/** Draws a part into the frame's coverage. Returns: its box; the caller wipes it. */
+static bool cover(Frame *f, const FlLeaf *leaf, FlPart part, FlBox *box, GError **error)
+{
+    cairo_t *cr = cairo_create(f->coverage);
+    const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->width, f->height, error);
+    cairo_destroy(cr);
+    *box = fl_surface_ink(f->coverage, f->all);
+    return drawn;
+}
+
+static float sum_of(cairo_surface_t *coverage, FlBox box)
+{
+    const unsigned char *data = cairo_image_surface_get_data(coverage);
+    const int stride = cairo_image_surface_get_stride(coverage);
+    int64_t sum = 0;
+    for (int y = box.y0; y < box.y1; y++)
+        for (int x = box.x0; x < box.x1; x++)
+            sum += data[(size_t)y * stride + x];
+    return sum / 255.0f;
+}
+
+static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warnings, const char *file,
+                    int number, GError **error)
+{
+    FlPainted parts[FL_MOST_PARTS];
+    const int n = fl_svg_paint(f->svg, leaf, parts, error);
+    bool good = n >= 0;
+    for (int i = 0; i < n; i++) {
+        const FlPainted *p = &parts[i];
+        Look look = {.leaf = leaf, .paint = p->paint.key};
+        look.seen = (FlSeen){.leaf = index,
+                             .part = p->part,
+                             .stroke = p->stroke,
+                             .has_fill = n == 2 || !p->stroke,
+                             .has_stroke = n == 2 || p->stroke,
+                             .kind = p->paint.kind,
+                             .alpha = p->paint.alpha,
+                             .region = -1};
+        memcpy(look.seen.rgb, p->paint.rgb, 3);
+        if (p->blended)
+            fl_warnings_add(warnings, file, number, leaf->id,
+                            "its blend mode is left out: it is drawn over what is below it");
+        good = good && cover(f, leaf, p->part, &look.box, error);
+        const float opacity = p->paint.kind == FL_PAINT_FLAT ? MAX(p->paint.alpha, 1) / 255.0f : 1;
+        look.seen.area_px =
+            (float)(sum_of(f->coverage, look.box) / opacity * f->factor * f->factor);
+        fl_surface_wipe(f->coverage, look.box);
+        if (good && look.box.x1 > 0 && p->paint.alpha > 0)
+            g_array_append_val(f->looks, look);
+        else
+            g_free(look.paint);
+    }
+    return good;
+}
+
+/** Whether the parts first … last - 1 can be drawn one by one although they are in a unit. */
+static bool lie_apart(const GArray *looks, guint first, guint last)
+{
+    for (guint i = first; i < last; i++)
+        for (guint j = i + 1; j < last; j++)
+            if (fl_boxes_meet(g_array_index(looks, Look, i).box, g_array_index(looks, Look, j).box))
+                return false;
+    return true;
+}
+
+static bool look_at_leaves(Frame *f, FlWarnings *warnings, const char *file, int number,
+                           GError **error)
+{
+    const FlLeaves *leaves = fl_svg_leaves(f->svg);
+    guint unit = 0;
+    for (guint i = 0; i < leaves->leaf->len; i++) {
+        const guint before = f->looks->len;
+        const FlUnit *u =
+            unit < leaves->unit->len ? &g_array_index(leaves->unit, FlUnit, unit) : NULL;
+        guint end = i + 1;
+        if (u && (guint)u->first == i)
+            end = i + (guint)u->n;
+        else
+            u = NULL;
+        for (; i < end; i++)
+            if (!look_at(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, warnings, file, number,
+                         error))
+                return false;
+        i--;
+        if (!u)
+            continue;
+        if (u->inseparable || !lie_apart(f->looks, before, f->looks->len)) {
+            g_array_set_size(f->looks, before);
+            if (!look_at(f, &u->leaf, -1 - (int)unit, warnings, file, number, error))
+                return false;
+        }
+        unit++;
+    }
+    return true;
+}
+
+/** Stacks the parts once more: how much of each lies over others, and the self-check. */
+static bool stack(Frame *f, GError **error)
+{
+    const float page = (float)(f->width * f->height * f->factor * f->factor);
+    g_autoptr(cairo_surface_t) below = fl_surface_new(CAIRO_FORMAT_A8, f->all.x1, f->all.y1, error);
+    if (!below)
+        return false;
+    unsigned char *under = cairo_image_surface_get_data(below);
+    const unsigned char *mine = cairo_image_surface_get_data(f->coverage);
+    const int stride = cairo_image_surface_get_stride(below);
+    for (guint i = 0; i < f->looks->len; i++) {
+        Look *look = &g_array_index(f->looks, Look, i);
+        FlBox box;
+        if (!cover(f, look->leaf, look->seen.part, &box, error))
+            return false;
+        const bool fills_page = look->seen.area_px > 0.95f * page;
+        int64_t sum = 0, covered = 0;
+        for (int y = box.y0; y < box.y1; y++)
+            for (int x = box.x0; x < box.x1; x++) {
+                const size_t p = (size_t)y * stride + x;
+                sum += mine[p];
+                covered += mine[p] * under[p];
+                if (!fills_page)
+                    under[p] = fl_over(mine[p], under[p]);
+            }
+        look->seen.covers = sum ? (float)covered / (255.0f * sum) : 0;
+        if (!fl_self_check_add(f->check, f->svg, look->leaf, &look->seen, f->coverage, box,
+                               f->width, f->height, error))
+            return false;
+        fl_surface_wipe(f->coverage, box);
+    }
+    return true;
+}
+
+static void keep(FlScan *scan, int t, const Frame *f)
+{
+    FlStrings *s = &scan->strings;
+    GArray *seen = g_array_sized_new(FALSE, FALSE, sizeof(FlSeen), f->looks->len);
+    for (guint i = 0; i < f->looks->len; i++) {
+        const Look *look = &g_array_index(f->looks, Look, i);
+        FlSeen one = look->seen;
+        one.paint = fl_strings_add(s, look->paint);
+        one.name = fl_strings_add(s, look->leaf->name);
+        one.labels = fl_strings_add(s, look->leaf->labels);
+        one.layers = fl_strings_add(s, look->leaf->layers);
+        one.ids = fl_strings_add(s, look->leaf->ids);
+        one.classes = fl_strings_add(s, look->leaf->classes);
+        one.tree = fl_strings_add(s, look->leaf->tree);
+        const int corner[4] = {look->box.x0 - 1, look->box.y0 - 1, look->box.x1 + 1,
+                               look->box.y1 + 1};
+        for (int c = 0; c < 4; c++)
+            one.box[c] = (float)(corner[c] * f->factor);
+        g_array_append_val(seen, one);
+    }
+    scan->frame[t].seen = seen;
+}
+
+static void frame_clear(Frame *f)
+{
+    if (f->looks)
+        g_array_unref(f->looks);
+    fl_svg_free(f->svg);
+    if (f->coverage)
+        cairo_surface_destroy(f->coverage);
+    fl_self_check_free(f->check);
+}
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Frame, frame_clear)
+
+/** Opens a frame and sets its page in the picture. */
+static bool open_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GError **error)
+{
+    const char *file = scan->sequence->file[t];
+    const int number = scan->sequence->number[t];
+    double width, height;
+    f->svg = fl_svg_open(file, number, &scan->svg, warnings, error);
+    if (!f->svg || !fl_svg_size(f->svg, &width, &height, error))
+        return false;
+    FlScanFrame *frame = &scan->frame[t];
+    frame->page_width = width * scan->scale;
+    frame->page_height = height * scan->scale;
+    f->factor = MAX(1, (double)MAX(scan->width, scan->height) / LOOK_PX);
+    f->width = frame->page_width / f->factor;
+    f->height = frame->page_height / f->factor;
+    f->all = (FlBox){0, 0, MAX(1, (int)ceil(scan->width / f->factor)),
+                     MAX(1, (int)ceil(scan->height / f->factor))};
+    f->looks = g_array_new(FALSE, FALSE, sizeof(Look));
+    g_array_set_clear_func(f->looks, look_clear);
+    f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.x1, f->all.y1, error);
+    f->check = f->coverage ? fl_self_check_new(f->all.x1, f->all.y1, error) : NULL;
+    return f->check != NULL;
+}
+
+static bool scan_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GError **error)
+{
+    const char *file = scan->sequence->file[t];
+    const int number = scan->sequence->number[t];
+    if (!open_frame(scan, t, f, warnings, error) ||
+        !look_at_leaves(f, warnings, file, number, error) || !stack(f, error))
+        return false;
+    const FlScanFrame *frame = &scan->frame[t];
+    if (fabs(frame->page_width - scan->page_width) > 0.5 ||
+        fabs(frame->page_height - scan->page_height) > 0.5)
+        fl_warnings_add(warnings, file, number, NULL,
+                        "its page is not as large as the first frame's; it keeps its scale");
+    return fl_self_check_finish(f->check, f->svg, f->width, f->height, file, number, warnings,
+                                error);
+}
+
+/** Decides the size of the picture from the first frame. */
+static bool set_size(FlScan *scan, const FlFilmOptions *o, GError **error)
+{
+    double width, height;
+    g_autoptr(FlSvg) svg =
+        fl_svg_open(scan->sequence->file[0], scan->sequence->number[0], &scan->svg, NULL, error);
+    if (!svg || !fl_svg_size(svg, &width, &height, error))
+        return false;
+    if (o->scale < 0 || o->width < 0 || o->height < 0 ||
+        (o->scale > 0 && (o->width > 0 || o->height > 0))) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "size: expected a width and a height, or a scale, above 0");
+        return false;
+    }
+    scan->scale = o->scale > 0 ? o->scale : 1;
+    if (o->width > 0 || o->height > 0)
+        scan->scale = MIN(o->width > 0 ? o->width / width : INFINITY,
+                          o->height > 0 ? o->height / height : INFINITY);
+    // librsvg's own page sizes carry rounding errors; half a thousandth of a pixel is none.
+    const double w = ceil(width * scan->scale - 5e-4), h = ceil(height * scan->scale - 5e-4);
+    if (!(w <= 32767 && h <= 32767)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                    "%s: a picture of %.0f x %.0f px; at most 32767 on each side can be drawn",
+                    scan->sequence->file[0], w, h);
+        return false;
+    }
+    scan->page_width = width * scan->scale;
+    scan->page_height = height * scan->scale;
+    scan->width = MAX(1, (int)w);
+    scan->height = MAX(1, (int)h);
+    return true;
+}
+
+bool fl_scan_init(FlScan *scan, const FlSequence *sequence, const FlFilmOptions *options,
+                  FlWarnings *warnings, GError **error)
+{
+    *scan = (FlScan){.sequence = sequence,
+                     .svg = {options->canvas, options->dpi},
+                     .n_frames = sequence->n,
+                     .frame = g_new0(FlScanFrame, sequence->n)};
+    fl_strings_add(&scan->strings, "");
+    if (!set_size(scan, options, error))
+        return false;
+    bool good = true;
+#pragma omp parallel for ordered schedule(static, 1)
+    for (int t = 0; t < scan->n_frames; t++) {
+        g_auto(Frame) frame = {0};
+        g_autoptr(FlWarnings) remarks = fl_warnings_new();
+        GError *reason = NULL;
+        const bool scanned = scan_frame(scan, t, &frame, remarks, &reason);
+#pragma omp ordered
+        {
+            if (scanned)
+                keep(scan, t, &frame);
+            if (good)
+                fl_warnings_append(warnings, remarks);
+            if (!scanned && good)
+                g_propagate_error(error, reason);
+            else
+                g_clear_error(&reason);
+            good = good && scanned;
+        }
+    }
+    return good;
+}
+
+void fl_scan_clear(FlScan *scan)
+{
+    for (int t = 0; t < scan->n_frames && scan->frame; t++)
+        if (scan->frame[t].seen)
+            g_array_unref(scan->frame[t].seen);
+    g_free(scan->frame);
+    if (scan->strings.text) {
+        g_hash_table_unref(scan->strings.number);
+        g_ptr_array_unref(scan->strings.text);
+    }
+    *scan = (FlScan){0};
+}

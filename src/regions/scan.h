@@ -1,0 +1,54 @@
+/* One pass over the film: what is drawn in every frame, where, and with which paint. */
+#ifndef FLUIDY_REGIONS_SCAN_H
+#define FLUIDY_REGIONS_SCAN_H
+
+#include "regions/film.h"
+
+/** Strings as numbers, so that they are kept once and compared fast. 0 is "". */
+typedef struct FlStrings {
+    GPtrArray *text;
+    GHashTable *number;
+} FlStrings;
+
+int fl_strings_add(FlStrings *strings, const char *text);
+const char *fl_strings_get(const FlStrings *strings, int number);
+
+/** A part of a leaf, or a unit, as seen in one frame. Strings are numbers in FlScan.strings. */
+typedef struct FlSeen {
+    int leaf; // index of the leaf; of a unit -1 - its index
+    FlPart part;
+    bool stroke;
+    bool has_fill, has_stroke; // of the leaf it is a part of
+    FlPaintKind kind;
+    uint8_t rgb[3], alpha;
+    int paint; // FlPaint.key
+    int name, labels, layers, ids, classes, tree;
+    float box[4];  // x0, y0, x1, y1 of what is drawn, px of the picture; a pixel too wide
+    float area_px; // sum of its coverage
+    float covers;  // share of it that lies over other paint, page-filling ones not counted
+    int region;    // set later; -1: not drawn
+} FlSeen;
+
+typedef struct FlScanFrame {
+    GArray *seen;                   // FlSeen, bottom up
+    double page_width, page_height; // px of the picture
+} FlScanFrame;
+
+typedef struct FlScan {
+    const FlSequence *sequence;
+    FlSvgOptions svg;
+    FlStrings strings;
+    int width, height;              // of the picture, px
+    double page_width, page_height; // of the first frame, px of the picture
+    double scale;                   // px of the picture per px of the drawing
+    int n_frames;
+    FlScanFrame *frame;
+} FlScan;
+
+/** Returns: false with an error, which names the file. warnings may be NULL. */
+bool fl_scan_init(FlScan *scan, const FlSequence *sequence, const FlFilmOptions *options,
+                  FlWarnings *warnings, GError **error);
+
+void fl_scan_clear(FlScan *scan);
+
+#endif

@@ -1,0 +1,16 @@
+/* How wide the border of the paint is: where edge darkening and fringe give way to the interior. */
+#ifndef FLUIDY_STYLE_BORDER_H
+#define FLUIDY_STYLE_BORDER_H
+
+#include "style/extract.h"
+
+/**
+ * The border width b [F21 §3.1], in px: the depth below the outline from which on the mean colour
+ * of all pixels of that depth keeps within a sixth of its whole change. From 3 px to a sixth of the
+ * frame's shorter side; masks without any outline give the latter.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_border_estimate(const FlClip *clip, const uint8_t *mask, float *border_px, GError **error);
+
+#endif

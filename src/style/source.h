@@ -1,0 +1,36 @@
+/* A recording as somebody has it: a video, a still, numbered pictures, a folder of them. */
+#ifndef FLUIDY_STYLE_SOURCE_H
+#define FLUIDY_STYLE_SOURCE_H
+
+#include "style/picture.h"
+#include "style/series.h"
+#include <fluidy/style.h>
+
+typedef struct FlSource {
+    char *path;       // as the user named it
+    FlSeries *series; // numbered pictures, or one still; NULL: a video
+} FlSource;
+
+/**
+ * Finds out what `path` is; no picture is read yet. A folder that holds a second series called
+ * mask..., or `frames` and `masks` folders, gives that as *masks, to be freed too; else *masks is
+ * NULL. `masks` itself may be NULL: then only the series of masks is wanted from such a folder.
+ *
+ * Returns: NULL with FL_ERROR_INPUT set if there is nothing to read, or more than one series.
+ */
+FlSource *fl_source_open(const char *path, FlSource **masks, GError **error);
+
+void fl_source_free(FlSource *source); // NULL is fine
+
+/**
+ * Reads the frames that `how` selects, crops and scales them; all have one size, and together at
+ * most FL_STYLE_MAX_PIXELS. *number gets the number of the first.
+ *
+ * Returns: (element-type FlPicture); NULL with FL_ERROR_INPUT, _USAGE or _LIMIT set.
+ */
+GPtrArray *fl_source_read(const FlSource *source, const FlStyleImport *how, int *number,
+                          GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSource, fl_source_free)
+
+#endif

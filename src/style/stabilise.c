@@ -1,0 +1,230 @@
+#include "style/stabilise.h"
+
+#include "base/alloc.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { REACH = 8, MARGIN = REACH + 2, LEAST_PIXELS = 500, NEWTON_STEPS = 12 };
+
+/* The share of the squared difference from the first frame that may be left for a shift to count.
+ */
+static const double CLEARLY_NEARER = 0.8;
+
+/* The least mean squared slope of the bare paper to go by, (levels per px)^2: below it is only
+ * noise. */
+static const double LEAST_TEXTURE = 0.25;
+
+/* So far may the shifts of two halves of the paper differ, px: else it is no camera that moves. */
+static const float AGREE_PX = 0.35f;
+
+static bool read_luma(const FlClip *clip, int frame, float *luma, GError **error)
+{
+    const size_t pixels = (size_t)clip->width * clip->height;
+    const uint8_t *rgb = clip->rgb + frame * pixels * 3;
+    for (size_t i = 0; i < pixels; i++, rgb += 3)
+        luma[i] = 0.25f * rgb[0] + 0.5f * rgb[1] + 0.25f * rgb[2];
+    return fl_blur_plane(luma, clip->width, clip->height, 1, error);
+}
+
+/* Collects the places that are bare in every frame, 4 px away from paint and MARGIN from the rim.
+ */
+static size_t find_bare(const FlClip *clip, const uint8_t *mask, uint8_t *painted, uint32_t *place)
+{
+    enum { AWAY = 4 };
+    const int width = clip->width, height = clip->height;
+    const size_t pixels = (size_t)width * height;
+    for (int frame = 0; frame < clip->n_frames; frame++)
+        for (size_t i = 0; i < pixels; i++)
+            painted[i] |= mask[frame * pixels + i] > 0;
+    size_t n = 0;
+    for (int y = MARGIN; y < height - MARGIN; y++)
+        for (int x = MARGIN; x < width - MARGIN; x++) {
+            const size_t i = (size_t)y * width + x, away = (size_t)AWAY * width;
+            if (!painted[i] && !painted[i - AWAY] && !painted[i + AWAY] && !painted[i - away] &&
+                !painted[i + away])
+                place[n++] = (uint32_t)i;
+        }
+    return n;
+}
+
+static float sample(const float *luma, int width, size_t place, FlShift shift)
+{
+    const float fx = floorf(shift.x), fy = floorf(shift.y), u = shift.x - fx, v = shift.y - fy;
+    const float *p = luma + (ptrdiff_t)place + (ptrdiff_t)fy * width + (ptrdiff_t)fx;
+    return (1 - v) * ((1 - u) * p[0] + u * p[1]) + v * ((1 - u) * p[width] + u * p[width + 1]);
+}
+
+/* What the two frames are compared on. */
+typedef struct Pair {
+    const float *first, *current;
+    int width;
+    const uint32_t *place; // n of them
+    size_t n;
+} Pair;
+
+static double squared_difference(const Pair *pair, FlShift shift)
+{
+    double sum = 0;
+    for (size_t i = 0; i < pair->n; i++) {
+        const double d =
+            sample(pair->current, pair->width, pair->place[i], shift) - pair->first[pair->place[i]];
+        sum += d * d;
+    }
+    return sum;
+}
+
+/* The best whole-pixel shift, found by walking downhill from `start`: shake is a smooth motion. */
+static FlShift walk(const Pair *pair, FlShift start)
+{
+    FlShift best = {roundf(start.x), roundf(start.y)};
+    double least = squared_difference(pair, best);
+    for (bool moved = true; moved;) {
+        const FlShift centre = best;
+        moved = false;
+        for (int k = 0; k < 25; k++) {
+            const FlShift next = {centre.x + (float)(k % 5 - 2), centre.y + (float)(k / 5 - 2)};
+            if (fabsf(next.x) > REACH || fabsf(next.y) > REACH)
+                continue;
+            const double d = squared_difference(pair, next);
+            if (d < least) {
+                least = d;
+                best = next;
+                moved = true;
+            }
+        }
+    }
+    return best;
+}
+
+/* Gauss and Newton on the squared difference [Lucas and Kanade 1981]. */
+static FlShift refine(const Pair *pair, FlShift shift)
+{
+    const FlShift start = shift;
+    for (int step = 0; step < NEWTON_STEPS; step++) {
+        double xx = 1e-9, xy = 0, yy = 1e-9, xd = 0, yd = 0;
+        for (size_t i = 0; i < pair->n; i++) {
+            const size_t p = pair->place[i];
+            const double d = sample(pair->current, pair->width, p, shift) - pair->first[p];
+            const double gx = 0.5 * (pair->first[p + 1] - pair->first[p - 1]);
+            const double gy = 0.5 * (pair->first[p + pair->width] - pair->first[p - pair->width]);
+            xx += gx * gx, xy += gx * gy, yy += gy * gy;
+            xd += gx * d, yd += gy * d;
+        }
+        const double determinant = xx * yy - xy * xy;
+        if (determinant < 1e-3 * xx * yy) // marks of one direction only
+            return start;
+        shift.x -= (float)((yy * xd - xy * yd) / determinant);
+        shift.y -= (float)((xx * yd - xy * xd) / determinant);
+        if (fabsf(shift.x - start.x) > 1.5f || fabsf(shift.y - start.y) > 1.5f)
+            return start;
+    }
+    return shift;
+}
+
+/* Sorts the places by a checkerboard of 32 px. Returns: how many lie on its white squares. */
+static size_t sort_by_square(uint32_t *place, size_t n, int width)
+{
+    size_t white = 0;
+    for (size_t i = 0; i < n; i++)
+        if ((place[i] % width / 32 + place[i] / width / 32) % 2 == 0) {
+            const uint32_t swapped = place[white];
+            place[white++] = place[i];
+            place[i] = swapped;
+        }
+    return white;
+}
+
+static bool has_texture(const Pair *pair)
+{
+    double sum = 0;
+    for (size_t i = 0; i < pair->n; i++) {
+        const float *p = pair->first + pair->place[i];
+        const double gx = 0.5 * (p[1] - p[-1]), gy = 0.5 * (p[pair->width] - p[-pair->width]);
+        sum += gx * gx + gy * gy;
+    }
+    return pair->n >= LEAST_PIXELS && sum >= LEAST_TEXTURE * (double)pair->n;
+}
+
+/* The shift of the current frame, near that of the frame before; none if there is doubt. */
+static FlShift find_shift(const Pair *pair, size_t n_white, FlShift before)
+{
+    const FlShift none = {0, 0};
+    Pair white = *pair, black = *pair;
+    white.n = n_white;
+    black.place += n_white;
+    black.n -= n_white;
+    const FlShift coarse = walk(pair, before), found = refine(pair, coarse);
+    const FlShift a = refine(&white, coarse), b = refine(&black, coarse);
+    const bool agree = hypotf(a.x - b.x, a.y - b.y) < AGREE_PX;
+    const bool nearer =
+        squared_difference(pair, found) < CLEARLY_NEARER * squared_difference(pair, none);
+    return agree && nearer ? found : none;
+}
+
+bool fl_shake_estimate(const FlClip *clip, const uint8_t *mask, FlShift *shift, GError **error)
+{
+    const size_t pixels = (size_t)clip->width * clip->height;
+    g_autofree float *first = fl_alloc(pixels, sizeof(float), "a frame", error);
+    g_autofree float *current = fl_alloc(pixels, sizeof(float), "a frame", error);
+    g_autofree uint32_t *place = fl_alloc(pixels, sizeof(uint32_t), "a frame", error);
+    g_autofree uint8_t *painted = fl_alloc(pixels, 1, "a frame", error);
+    if (!first || !current || !place || !painted || !read_luma(clip, 0, first, error))
+        return false;
+    const size_t n = find_bare(clip, mask, painted, place);
+    const size_t n_white = sort_by_square(place, n, clip->width);
+    const Pair pair = {first, current, clip->width, place, n};
+    memset(shift, 0, clip->n_frames * sizeof *shift);
+    const bool possible = has_texture(&pair);
+    for (int frame = 1; frame < clip->n_frames && possible; frame++) {
+        if (!read_luma(clip, frame, current, error))
+            return false;
+        shift[frame] = find_shift(&pair, n_white, shift[frame - 1]);
+    }
+    return true;
+}
+
+float fl_shake_extent(const FlShift *shift, int n_frames)
+{
+    float extent = 0;
+    for (int i = 0; i < n_frames; i++)
+        extent = MAX(extent, MAX(fabsf(shift[i].x), fabsf(shift[i].y)));
+    return extent;
+}
+
+/* Catmull and Rom's cubic through four neighbours, u of the way from the second to the third. */
+static void cubic_weights(float u, float weight[4])
+{
+    weight[0] = ((-0.5f * u + 1) * u - 0.5f) * u;
+    weight[1] = (1.5f * u - 2.5f) * u * u + 1;
+    weight[2] = ((-1.5f * u + 2) * u + 0.5f) * u;
+    weight[3] = (0.5f * u - 0.5f) * u * u;
+}
+
+bool fl_shake_undo(uint8_t *plane, int width, int height, int channels, FlShift shift,
+                   GError **error)
+{
+    const size_t bytes = (size_t)width * height * channels;
+    g_autofree uint8_t *copy = fl_alloc(bytes, 1, "a frame", error);
+    if (!copy)
+        return false;
+    memcpy(copy, plane, bytes);
+    const int dx = (int)floorf(shift.x), dy = (int)floorf(shift.y);
+    float along[4], down[4];
+    cubic_weights(shift.x - (float)dx, along);
+    cubic_weights(shift.y - (float)dy, down);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            for (int c = 0; c < channels; c++) {
+                float sum = 0;
+                for (int k = 0; k < 16; k++) {
+                    const int sx = CLAMP(x + dx + k % 4 - 1, 0, width - 1);
+                    const int sy = CLAMP(y + dy + k / 4 - 1, 0, height - 1);
+                    sum +=
+                        along[k % 4] * down[k / 4] * copy[((size_t)sy * width + sx) * channels + c];
+                }
+                plane[((size_t)y * width + x) * channels + c] =
+                    (uint8_t)(CLAMP(sum, 0, 255) + 0.5f);
+            }
+    return true;
+}

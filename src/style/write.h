@@ -1,0 +1,20 @@
+/* Writes a style from memory into a folder. */
+#ifndef FLUIDY_STYLE_WRITE_H
+#define FLUIDY_STYLE_WRITE_H
+
+#include "style/bundle.h"
+
+/**
+ * Writes frames, masks and style.ini; the flow, if there is any, is left out.
+ *
+ * Everything is written beside `folder` first and moved there when it is whole. What else is in the
+ * folder stays. Returns: false with FL_ERROR_EXISTS if the folder has one of these and `overwrite`
+ * is false, else with FL_ERROR_OUTPUT.
+ */
+bool fl_style_write(const FlStyle *style, const char *folder, bool overwrite, GError **error);
+
+/** False with FL_ERROR_EXISTS set if `folder` already holds a style; to be asked before long work.
+ */
+bool fl_style_may_write(const char *folder, bool overwrite, GError **error);
+
+#endif

@@ -1,0 +1,82 @@
+/* The exemplar: a style's frames and guides on every level, packed for the search. Read-only. */
+#ifndef FLUIDY_SYNTH_EXEMPLAR_H
+#define FLUIDY_SYNTH_EXEMPLAR_H
+
+#include "params/params.h"
+#include "style/bundle.h"
+#include "synth/stack.h"
+
+/** Parts of a mask whose patches are matched with each other only [F21 §3.1]. */
+typedef enum FlSegment {
+    FL_SEGMENT_OUTSIDE,
+    FL_SEGMENT_BORDER,   // closer to the contour than the border width b
+    FL_SEGMENT_INTERIOR, // the rest
+    FL_SEGMENTS
+} FlSegment;
+
+#define FL_PAD 4 // pixels around a packed frame, so that rotated patches need no clamping
+#define FL_MAX_LEVELS 12
+
+/** One level. A packed frame has rows of `pitch` pixels; fl_exemplar_at() finds a pixel. */
+typedef struct FlExemplarLevel {
+    int width, height, n_frames; // without padding
+    size_t pitch, frame_pixels;  // padded
+    FlPacked *pixels;
+    float *colour;                // cubic spline coefficients, n_frames * height * width * 3
+    uint32_t *valid[FL_SEGMENTS]; // (t * height + y) * width + x of every pixel of the segment
+    size_t n_valid[FL_SEGMENTS];
+    int32_t (*offsets)[FL_PATCH_PIXELS]; // [FL_ANGLES]: rotated patch offsets in packed pixels
+} FlExemplarLevel;
+
+typedef struct FlExemplar {
+    int n_levels;
+    FlExemplarLevel level[FL_MAX_LEVELS];
+    bool separate; // border and interior are matched separately
+    float border_px;
+    float ext_scale; // 1 / the largest extent, 1/px
+    uint8_t paper[3];
+    // Level 0, n_frames * height * width:
+    float *distance, *ext_plus, *ext_minus; // px
+    uint8_t *mask;
+} FlExemplar;
+
+/**
+ * Packs a style. It has as many levels as its size allows [F21 §3.6], fewer where nothing would
+ * be left of its mask.
+ *
+ * Returns: to be freed with fl_exemplar_free(); NULL with FL_ERROR_STYLE (nothing is painted in it)
+ * or FL_ERROR_NO_MEMORY set.
+ */
+FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error);
+
+void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
+
+/** How params want guides made. */
+FlGuideParams fl_guide_params(const FlParams *params);
+
+/** The shape guide that params ask for: the blurred mask, or the thesis' ramp [F21 §3.1, P21 §3.4].
+ */
+bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border_px, float *shape,
+                    GError **error);
+
+/** floor(log2(smallest side / n)), at least 1. */
+int fl_levels_of(int width, int height);
+
+/** The segment of a pixel; `separate` false makes all of the mask one segment. */
+static inline FlSegment fl_segment_of(bool inside, float distance, float border_px, bool separate)
+{
+    if (!inside)
+        return FL_SEGMENT_OUTSIDE;
+    return separate && distance >= border_px ? FL_SEGMENT_INTERIOR : FL_SEGMENT_BORDER;
+}
+
+/** x and y may lie up to FL_PAD outside. */
+static inline const FlPacked *fl_exemplar_at(const FlExemplarLevel *level, int x, int y, int t)
+{
+    return level->pixels + (size_t)t * level->frame_pixels + (size_t)(y + FL_PAD) * level->pitch +
+           (x + FL_PAD);
+}
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlExemplar, fl_exemplar_free)
+
+#endif

@@ -1,0 +1,74 @@
+/* Nearest-neighbour field: which rotated exemplar patch explains each target patch. */
+#ifndef FLUIDY_SYNTH_NNF_H
+#define FLUIDY_SYNTH_NNF_H
+
+#include "synth/target.h"
+
+/** NNF(q): the centre of the source patch in 1/16 px of its level, its frame, its rotation. */
+typedef struct FlMatch {
+    uint16_t x_16, y_16;
+    int16_t frame; // FL_NO_MATCH: none
+    uint8_t theta; // target offset o is source offset R(-theta) o
+    uint8_t unused;
+} FlMatch;
+
+#define FL_NO_MATCH -1
+
+/** The field of one target level: row-major, width * height. */
+typedef struct FlNnf {
+    int width, height;
+    FlMatch *match;
+} FlNnf;
+
+bool fl_nnf_init(FlNnf *nnf, int width, int height, GError **error); // without any match
+void fl_nnf_clear(FlNnf *nnf);
+
+static inline int fl_match_x(FlMatch m)
+{
+    return (m.x_16 + 8) >> 4;
+}
+
+static inline int fl_match_y(FlMatch m)
+{
+    return (m.y_16 + 8) >> 4;
+}
+
+/** A match moved by a target offset, as if both pixels had the same transformation; may be none. */
+static inline FlMatch fl_match_moved(FlMatch m, int dx, int dy, const FlExemplarLevel *level)
+{
+    int sx, sy;
+    fl_unrotate(m.theta, dx, dy, &sx, &sy);
+    const int x = m.x_16 + sx, y = m.y_16 + sy;
+    if (x < 0 || y < 0 || x > 16 * (level->width - 1) || y > 16 * (level->height - 1))
+        return (FlMatch){.frame = FL_NO_MATCH};
+    m.x_16 = (uint16_t)x, m.y_16 = (uint16_t)y;
+    return m;
+}
+
+/** A random patch of the segment, turned into the target's direction; key decides. */
+FlMatch fl_match_random(const FlExemplarLevel *level, FlSegment segment, uint8_t target_angle,
+                        bool rotate, uint64_t key);
+
+/** Gives every pixel of the target a random match. */
+void fl_nnf_randomise(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel *target,
+                      bool rotate, uint64_t key);
+
+/**
+ * Makes a field valid for a level: each match whose centre is outside its segment goes to the
+ * nearest valid pixel of its frame (within 12 px), else, or where there is none, to a random one.
+ */
+void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel *target,
+                   bool rotate, uint64_t key);
+
+/** The field of the next finer level [F21 §3.6, fig. 6]; pixels without a parent get no match. */
+void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level, FlNnf *fine);
+
+/**
+ * The level-0 field at a coarser level: the mode of the inversely transformed matches in each
+ * window of 2^l pixels [F21 §3.6, fig. 7]; none where the window has none.
+ */
+void fl_nnf_downscale(const FlNnf *full, int l, const FlExemplarLevel *level, FlNnf *coarse);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlNnf, fl_nnf_clear)
+
+#endif

@@ -1,0 +1,63 @@
+/* How often each part of the exemplar is in use: the uniformity term [F21 §3.5]. */
+#ifndef FLUIDY_SYNTH_OCCURRENCE_H
+#define FLUIDY_SYNTH_OCCURRENCE_H
+
+#include "synth/nnf.h"
+
+/*
+ * The paper's map Omega* counts, for every exemplar pixel, the cuboids of n x n x (2r+1) pixels
+ * that cover it, and a patch sums the map over its own n x n pixels: together, matches are counted
+ * under a tent about 2n wide and 4r long. We count matches in cells of 3 x 3 pixels and r+1 frames
+ * and filter the counts with [1 2 1] along each axis, which is that tent to within a cell. Then a
+ * match that changes costs two additions instead of 25 (2r+1), so that the map can be brought up to
+ * date sixteen times per sweep: it must be fresh, or whole areas flee the same patch together.
+ */
+#define FL_CELL 3
+
+typedef struct FlOccurrence {
+    int columns, rows, slices, frames_per_cell;
+    int32_t *count[FL_SEGMENTS];    // matches per cell
+    int32_t *filtered[FL_SEGMENTS]; // the same under the tent, brought up to date by _refresh
+    uint64_t price[FL_SEGMENTS];    // cost of one filtered unit, in 1/65536
+} FlOccurrence;
+
+/** An empty map for a level and a target; w_uni 0 makes every term 0. */
+bool fl_occurrence_init(FlOccurrence *map, const FlExemplarLevel *level,
+                        const FlTargetLevel *target, const FlParams *params,
+                        const FlCostScale *scale, GError **error);
+void fl_occurrence_clear(FlOccurrence *map);
+
+/** Counts a whole field, from nothing, and refreshes. */
+void fl_occurrence_count(FlOccurrence *map, const FlNnf *nnf, const FlTargetLevel *target);
+
+/** Moves one match. Threads may do so at the same time: additions have no order. */
+void fl_occurrence_move(FlOccurrence *map, FlSegment segment, FlMatch from, FlMatch to);
+
+/** Filters the counts again. One thread. */
+void fl_occurrence_refresh(FlOccurrence *map);
+
+static inline size_t fl_occurrence_cell(const FlOccurrence *map, FlMatch m)
+{
+    return ((size_t)(m.frame / map->frames_per_cell) * map->rows + fl_match_y(m) / FL_CELL) *
+               map->columns +
+           fl_match_x(m) / FL_CELL;
+}
+
+/**
+ * The term for a candidate of a pixel whose match is `own`: 1.0 of the paper's energy where the use
+ * is what an even use of the segment would be. The pixel's own use does not count.
+ */
+static inline uint32_t fl_occurrence_cost(const FlOccurrence *map, FlSegment segment,
+                                          FlMatch candidate, FlMatch own)
+{
+    const int dx = abs(fl_match_x(candidate) / FL_CELL - fl_match_x(own) / FL_CELL);
+    const int dy = abs(fl_match_y(candidate) / FL_CELL - fl_match_y(own) / FL_CELL);
+    const int dt = abs(candidate.frame / map->frames_per_cell - own.frame / map->frames_per_cell);
+    const int self = dx < 2 && dy < 2 && dt < 2 ? (2 - dx) * (2 - dy) * (2 - dt) : 0;
+    const int use = map->filtered[segment][fl_occurrence_cell(map, candidate)] - self;
+    return use <= 0 ? 0 : (uint32_t)MIN((uint64_t)use * map->price[segment] >> 16, 1u << 29);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlOccurrence, fl_occurrence_clear)
+
+#endif

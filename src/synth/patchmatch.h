@@ -1,0 +1,39 @@
+/* PatchMatch over frames and rotations [Barnes09, Barnes10; F21 §4]. */
+#ifndef FLUIDY_SYNTH_PATCHMATCH_H
+#define FLUIDY_SYNTH_PATCHMATCH_H
+
+#include "synth/occurrence.h"
+
+/** What a search on one level works with; nothing is owned. */
+typedef struct FlSearch {
+    const FlExemplarLevel *level;
+    const FlTargetLevel *target;
+    const FlParams *params;
+    const FlCostScale *scale;
+    const FlKernels *kernels;
+    FlNnf *nnf;     // in and out; every pixel of the target has a valid match
+    uint32_t *cost; // width * height: cost of the match without uniformity and coherence
+    FlOccurrence *map;
+    uint64_t key; // of the random search
+} FlSearch;
+
+/** Counters of a search. */
+typedef struct FlSearchCounts {
+    uint64_t tried;    // patch distances started
+    uint64_t accepted; // matches that changed
+} FlSearchCounts;
+
+/** Texture, guides and direction of a match: all but uniformity and coherence. */
+uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
+
+/** Fills search->cost for a field; pixels outside get UINT32_MAX. */
+void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost);
+
+/**
+ * Sweeps over the field. Tiles of 8x8 pixels in 16 classes are worked on class by class: tiles of
+ * a class never touch, inside one the scan is sequential, and the occurrence map is refreshed
+ * between classes. So the result does not depend on the number of threads.
+ */
+FlSearchCounts fl_search_run(FlSearch *search, int sweeps);
+
+#endif

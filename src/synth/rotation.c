@@ -1,0 +1,26 @@
+#include "synth/rotation.h"
+
+#include <glib.h>
+#include <math.h>
+
+/* Far pixels differ most between patches, so a bad candidate is given up early. */
+const int8_t fl_patch_offsets[FL_PATCH_PIXELS][2] = {
+    {-2, -2}, {2, 2},  {2, -2}, {-2, 2}, {0, -2}, {0, 2},  {-2, 0}, {2, 0},   {0, 0},
+    {-1, -2}, {1, 2},  {2, -1}, {-2, 1}, {1, -2}, {-1, 2}, {2, 1},  {-2, -1}, {-1, -1},
+    {1, 1},   {1, -1}, {-1, 1}, {0, -1}, {0, 1},  {-1, 0}, {1, 0},
+};
+
+static int16_t turns[FL_ANGLES][2];
+const int16_t (*fl_turns)[2] = turns;
+
+void fl_rotation_init(void)
+{
+    static gsize once;
+    if (!g_once_init_enter(&once))
+        return;
+    for (int a = 0; a < FL_ANGLES; a++) {
+        turns[a][0] = (int16_t)lrint(16384 * cos(a * (2 * G_PI / FL_ANGLES)));
+        turns[a][1] = (int16_t)lrint(16384 * sin(a * (2 * G_PI / FL_ANGLES)));
+    }
+    g_once_init_leave(&once, 1);
+}

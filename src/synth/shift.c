@@ -1,0 +1,64 @@
+#include "synth/shift.h"
+
+/* Scans from the match's frame in steps of `step` for the motion that is nearest to the wanted one;
+ * of equal ones the first, so that paint that rests stays in its frame. */
+FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion_px, bool opposes)
+{
+    const FlExemplarLevel *full = &exemplar->level[0];
+    const size_t frame = (size_t)full->width * full->height;
+    const size_t pixel = (size_t)fl_match_y(match) * full->width + fl_match_x(match);
+    const float *extent = opposes ? exemplar->ext_minus : exemplar->ext_plus;
+    const int step = opposes ? -1 : 1;
+    const float start = extent[match.frame * frame + pixel];
+    float best = motion_px;
+    int best_frame = match.frame;
+    for (int t = match.frame + step; t >= 0 && t < full->n_frames; t += step) {
+        if (exemplar->mask[t * frame + pixel] < FL_INSIDE)
+            break;
+        const float moved = extent[t * frame + pixel] - start;
+        const float miss = moved < motion_px ? motion_px - moved : moved - motion_px;
+        if (miss < best)
+            best = miss, best_frame = t;
+        if (moved > 2 * motion_px + 1)
+            break;
+    }
+    match.frame = (int16_t)best_frame;
+    return match;
+}
+
+static bool opposes(const FlExemplar *exemplar, FlMatch m, uint8_t target_angle)
+{
+    const int source_angle =
+        fl_exemplar_at(&exemplar->level[0], fl_match_x(m), fl_match_y(m), m.frame)->c[FL_CH_ANGLE];
+    const uint8_t turn = (uint8_t)(m.theta + source_angle - target_angle);
+    return turn > 64 && turn < 192;
+}
+
+void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const float *motion, const uint8_t *angle)
+{
+    const size_t pixels = (size_t)nnf->width * nnf->height;
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < pixels; p++) {
+        FlMatch *m = &nnf->match[p];
+        if (m->frame != FL_NO_MATCH)
+            *m = fl_match_shifted(exemplar, *m, motion[p], opposes(exemplar, *m, angle[p]));
+    }
+}
+
+float fl_temporal_weight(const FlExemplar *exemplar, FlMatch shifted, float target_distance_px,
+                         float lower_px, float upper_px)
+{
+    const FlExemplarLevel *full = &exemplar->level[0];
+    const float source =
+        exemplar
+            ->distance[((size_t)shifted.frame * full->height + fl_match_y(shifted)) * full->width +
+                       fl_match_x(shifted)];
+    const float apart =
+        source < target_distance_px ? target_distance_px - source : source - target_distance_px;
+    if (apart <= lower_px)
+        return 1;
+    if (apart >= upper_px)
+        return 0;
+    const float v = (apart - lower_px) / (upper_px - lower_px);
+    return 1 - v * v * (3 - 2 * v);
+}

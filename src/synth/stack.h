@@ -1,0 +1,56 @@
+/* The channels of one frame at one level as float planes, and their pyramid. */
+#ifndef FLUIDY_SYNTH_STACK_H
+#define FLUIDY_SYNTH_STACK_H
+
+#include "guides/guides.h"
+#include "synth/kernels.h"
+
+/** The planes of a stack. A target has no colours of its own. */
+typedef enum FlPlane {
+    FL_PLANE_SHAPE,     // 0 … 1
+    FL_PLANE_EXT_PLUS,  // level-0 px
+    FL_PLANE_EXT_MINUS, // level-0 px
+    FL_PLANE_DISTANCE,  // level-0 px, positive inside
+    FL_PLANE_COS,       // direction of the flow
+    FL_PLANE_SIN,
+    FL_PLANE_INSIDE, // share of the pixel that lies in the mask, 0 … 1
+    FL_PLANE_R,      // 0 … 1
+    FL_PLANE_G,
+    FL_PLANE_B,
+    FL_PLANES
+} FlPlane;
+
+/** Planes are row-major, width * height, without padding. */
+typedef struct FlStack {
+    int width, height;
+    float *plane[FL_PLANES]; // NULL from n_planes on
+    int n_planes;
+} FlStack;
+
+/** A rectangle of a frame, in pixels. */
+typedef struct FlRect {
+    int x, y, width, height;
+} FlRect;
+
+bool fl_stack_init(FlStack *stack, int width, int height, int n_planes, GError **error);
+void fl_stack_clear(FlStack *stack);
+
+/** Copies the rectangle's guides; `shape` is as large as the guides. */
+void fl_stack_fill(FlStack *stack, const FlGuides *guides, const float *shape, FlRect rect);
+
+/** Averages 2x2 pixels; extents and directions count where they lie in the mask. */
+void fl_stack_halve(const FlStack *fine, FlStack *coarse);
+
+/** Direction of the flow at a pixel, in 256 steps. */
+uint8_t fl_stack_angle(const FlStack *stack, size_t pixel);
+
+/** A plane's value as a packed channel: rounded, within 0 … limit. */
+static inline int16_t fl_pack_channel(float value, int limit)
+{
+    const float scaled = value * FL_ONE + 0.5f;
+    return (int16_t)(scaled <= 0 ? 0 : scaled >= limit ? limit : scaled);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlStack, fl_stack_clear)
+
+#endif

@@ -1,0 +1,341 @@
+#include "synth/synth.h"
+
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "synth/shift.h"
+#include "synth/vote.h"
+#include <math.h>
+#include <string.h>
+
+/* What the next frame needs to know of this one; level 0, in `rect`. */
+typedef struct Previous {
+    bool valid;
+    FlRect rect;
+    FlNnf nnf;
+} Previous;
+
+struct FlSynth {
+    const FlExemplar *exemplar;
+    const FlParams *params;
+    FlCostScale scale;
+    FlKernels kernels;
+    int width, height, n_levels;
+    uint64_t key;
+    int frame;
+    Previous previous;
+    FlTarget target; // of the frame in hand; kept until the next for FlSynthView
+    FlNnf nnf[FL_MAX_LEVELS];
+};
+
+FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, int width, int height,
+                      uint64_t seed, GError **error)
+{
+    FlSynth *synth = g_new0(FlSynth, 1);
+    synth->exemplar = exemplar;
+    synth->params = params;
+    synth->width = width, synth->height = height;
+    synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(width, height));
+    synth->key = fl_hash64(seed);
+    fl_cost_scale_init(&synth->scale, params);
+    fl_kernels_init(&synth->kernels, fl_cpu_flags());
+    return synth;
+}
+
+static void clear_frame(FlSynth *synth)
+{
+    for (int l = 0; l < synth->n_levels; l++)
+        fl_nnf_clear(&synth->nnf[l]);
+    fl_target_clear(&synth->target);
+}
+
+void fl_synth_free(FlSynth *synth)
+{
+    if (!synth)
+        return;
+    clear_frame(synth);
+    fl_nnf_clear(&synth->previous.nnf);
+    g_free(synth);
+}
+
+/* The mask's bounding box with room for the coarsest patches, on the coarsest grid. */
+static bool working_rect(const FlSynth *synth, const FlGuides *guides, FlRect *rect)
+{
+    int x0 = synth->width, y0 = synth->height, x1 = -1, y1 = -1;
+    for (int y = 0; y < synth->height; y++)
+        for (int x = 0; x < synth->width; x++)
+            if (guides->mask[(size_t)y * synth->width + x] >= FL_INSIDE) {
+                x0 = MIN(x0, x), x1 = MAX(x1, x);
+                y0 = MIN(y0, y), y1 = MAX(y1, y);
+            }
+    const int grid = 1 << (synth->n_levels - 1), margin = FL_PATCH_RADIUS * grid;
+    x0 = MAX(x0 - margin, 0) / grid * grid, y0 = MAX(y0 - margin, 0) / grid * grid;
+    x1 = MIN(x1 + margin + 1, synth->width), y1 = MIN(y1 + margin + 1, synth->height);
+    *rect = (FlRect){x0, y0, x1 - x0, y1 - y0};
+    return x1 > x0 && y1 > y0 && x1 - x0 <= synth->width;
+}
+
+/* The previous field in the new rectangle, shifted in the exemplar's time. */
+static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *out,
+                             GError **error)
+{
+    const size_t pixels = (size_t)rect.width * rect.height;
+    g_autofree float *motion = fl_alloc(pixels, sizeof(float), "a field", error);
+    g_autofree uint8_t *angle = fl_alloc(pixels, 1, "a field", error);
+    if (!motion || !angle || !fl_nnf_init(out, rect.width, rect.height, error))
+        return false;
+    const Previous *previous = &synth->previous;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t p = (size_t)y * rect.width + x;
+            const size_t full = (size_t)(rect.y + y) * synth->width + rect.x + x;
+            const int px = rect.x + x - previous->rect.x, py = rect.y + y - previous->rect.y;
+            const float u = guides->flow[2 * full], v = guides->flow[2 * full + 1];
+            motion[p] = sqrtf(u * u + v * v);
+            angle[p] = guides->angle[full];
+            if (px >= 0 && py >= 0 && px < previous->rect.width && py < previous->rect.height)
+                out->match[p] = previous->nnf.match[(size_t)py * previous->rect.width + px];
+            if (guides->mask[full] < FL_INSIDE)
+                motion[p] = 0;
+        }
+    fl_nnf_shift(out, synth->exemplar, motion, angle);
+    return true;
+}
+
+/* T_temp and m(q) on every level. */
+static bool make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error)
+{
+    FlTargetLevel *full = &synth->target.level[0];
+    const size_t pixels = (size_t)full->width * full->height;
+    g_autofree uint8_t *voted = fl_alloc(pixels, 1, "a temporal guide", error);
+    if (!voted)
+        return false;
+    fl_vote(shifted, &synth->exemplar->level[0], synth->params->vote_sharpness, full->temporal,
+            voted);
+    const float side = (float)MAX(synth->width, synth->height);
+    const float lower = synth->params->temp_lower * side;
+    const float upper = MAX(synth->params->temp_upper * side, lower + 1e-3f);
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < pixels; p++)
+        if (voted[p] && shifted->match[p].frame != FL_NO_MATCH)
+            full->temporal_weight[p] = fl_temporal_weight(synth->exemplar, shifted->match[p],
+                                                          full->distance[p], lower, upper);
+    fl_target_temporal_pyramid(&synth->target);
+    return true;
+}
+
+/* Where the mode of the previous field costs less than the upscaled match, it takes its place. */
+static bool merge_previous(FlSearch *search, const FlNnf *shifted, int l, GError **error)
+{
+    g_auto(FlNnf) down = {0};
+    const FlNnf *other = shifted;
+    if (l > 0) {
+        if (!fl_nnf_init(&down, search->nnf->width, search->nnf->height, error))
+            return false;
+        fl_nnf_downscale(shifted, l, search->level, &down);
+        other = &down;
+    }
+    const size_t pixels = (size_t)other->width * other->height;
+    for (size_t p = 0; p < pixels; p++) {
+        const FlMatch m = other->match[p];
+        if (m.frame == FL_NO_MATCH || search->target->segment[p] == FL_SEGMENT_OUTSIDE)
+            continue;
+        const FlPacked *centre =
+            fl_exemplar_at(search->level, fl_match_x(m), fl_match_y(m), m.frame);
+        if (centre->c[FL_CH_SEGMENT] != search->target->segment[p])
+            continue;
+        const int x = (int)(p % (size_t)other->width), y = (int)(p / (size_t)other->width);
+        const uint32_t cost = fl_match_cost(search, x, y, m);
+        if (cost < search->cost[p])
+            search->nnf->match[p] = m, search->cost[p] = cost;
+    }
+    return true;
+}
+
+static double mean_energy(const FlSearch *search)
+{
+    uint64_t sum = 0;
+    size_t n = 0;
+    for (size_t p = 0; p < (size_t)search->nnf->width * search->nnf->height; p++)
+        if (search->nnf->match[p].frame != FL_NO_MATCH)
+            sum += search->cost[p], n++;
+    return n > 0 ? (double)sum / search->scale->unit / (double)n : 0;
+}
+
+static void vote_and_blend(const FlSearch *search, FlTargetLevel *target, float w_texture)
+{
+    fl_vote(search->nnf, search->level, search->params->vote_sharpness, target->colour, NULL);
+    fl_target_blend(target, search->params, search->scale, w_texture);
+}
+
+/* The field to start a level with: from the coarser level, from the previous frame, or random. */
+static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l,
+                       const FlNnf *shifted, GError **error)
+{
+    const FlParams *params = synth->params;
+    const bool coarsest = l == synth->n_levels - 1;
+    const uint64_t key = fl_key(search->key, 1);
+    if (!coarsest)
+        fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->nnf);
+    else if (shifted)
+        fl_nnf_downscale(shifted, l, search->level, search->nnf);
+    fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);
+    if (coarsest && !shifted) { // guides alone decide the first guess [P21 §4.2]
+        fl_target_blend(target, params, &synth->scale, 0);
+        fl_occurrence_count(search->map, search->nnf, target);
+        fl_search_costs(search, search->nnf, search->cost);
+        fl_search_run(search, fl_list_at(&params->patchmatch_iterations, 0));
+    }
+    vote_and_blend(search, target, params->w_texture);
+    fl_search_costs(search, search->nnf, search->cost);
+    return coarsest || !shifted || merge_previous(search, shifted, l, error);
+}
+
+/* Search and vote in turn [F21 alg. 2]. */
+static void optimise(FlSearch *search, FlTargetLevel *target, int rounds, int sweeps,
+                     FlLevelStats *stats)
+{
+    const uint64_t key = search->key;
+    for (int round = 0; round < rounds; round++) {
+        search->key = fl_key(key, 2 + (uint64_t)round);
+        fl_occurrence_count(search->map, search->nnf, target);
+        fl_search_costs(search, search->nnf, search->cost);
+        const FlSearchCounts counts = fl_search_run(search, sweeps);
+        stats->counts.tried += counts.tried;
+        stats->counts.accepted += counts.accepted;
+        vote_and_blend(search, target, search->params->w_texture);
+    }
+    search->key = key;
+}
+
+static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
+                      GError **error)
+{
+    const FlParams *params = synth->params;
+    FlTargetLevel *target = &synth->target.level[l];
+    const size_t pixels = (size_t)target->width * target->height;
+    g_autofree uint32_t *cost = fl_alloc(pixels, sizeof *cost, "a field", error);
+    g_auto(FlOccurrence) map = {0};
+    if (!cost || !fl_nnf_init(&synth->nnf[l], target->width, target->height, error) ||
+        !fl_occurrence_init(&map, &synth->exemplar->level[l], target, params, &synth->scale, error))
+        return false;
+    FlSearch search = {.level = &synth->exemplar->level[l],
+                       .target = target,
+                       .params = params,
+                       .scale = &synth->scale,
+                       .kernels = &synth->kernels,
+                       .nnf = &synth->nnf[l],
+                       .cost = cost,
+                       .map = &map,
+                       .key = fl_key(fl_key(synth->key, (uint64_t)synth->frame), (uint64_t)l)};
+    if (!initialise(synth, &search, target, l, shifted, error))
+        return false;
+    *stats = (FlLevelStats){.width = target->width, .height = target->height};
+    stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
+    stats->energy_start = mean_energy(&search);
+    const int from_coarsest = synth->n_levels - 1 - l;
+    stats->rounds =
+        l == 0 ? params->finest_rounds : fl_list_at(&params->opt_iterations, from_coarsest);
+    optimise(&search, target, stats->rounds,
+             l == 0 ? params->finest_sweeps
+                    : fl_list_at(&params->patchmatch_iterations, from_coarsest),
+             stats);
+    if (stats->rounds == 0) // a merged field has not been voted yet
+        vote_and_blend(&search, target, params->w_texture);
+    fl_search_costs(&search, search.nnf, cost);
+    stats->energy = mean_energy(&search);
+    return true;
+}
+
+static uint8_t to_8bit(float value)
+{
+    return (uint8_t)(value * 255 + 0.5f);
+}
+
+static void write_rgb(const FlSynth *synth, uint8_t *rgb)
+{
+    const FlTargetLevel *full = &synth->target.level[0];
+    const FlRect rect = synth->target.rect;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < 3 * rect.width; x++)
+            rgb[3 * ((size_t)(rect.y + y) * synth->width + rect.x) + x] =
+                to_8bit(full->colour[3 * (size_t)y * rect.width + x]);
+}
+
+static void fill_paper(const FlSynth *synth, uint8_t *rgb)
+{
+    for (size_t p = 0; p < (size_t)synth->width * synth->height; p++)
+        memcpy(rgb + 3 * p, synth->exemplar->paper, 3);
+}
+
+/* Paper where no patch votes. */
+static void clear_colours(FlSynth *synth)
+{
+    for (int l = 0; l < synth->target.n_levels; l++) {
+        FlTargetLevel *level = &synth->target.level[l];
+        for (size_t p = 0; p < 3 * (size_t)level->width * level->height; p++)
+            level->colour[p] = synth->exemplar->paper[p % 3] / 255.0f;
+    }
+}
+
+static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *shifted,
+                    GError **error)
+{
+    g_autofree float *shape =
+        fl_alloc((size_t)synth->width * synth->height, sizeof(float), "a guide", error);
+    if (!shape ||
+        !fl_shape_guide(guides, synth->params, synth->exemplar->border_px, shape, error) ||
+        !fl_target_init(&synth->target, guides, shape, rect, synth->n_levels, synth->exemplar,
+                        error))
+        return false;
+    clear_colours(synth);
+    return !synth->previous.valid || (shifted_previous(synth, guides, rect, shifted, error) &&
+                                      make_temporal(synth, shifted, error));
+}
+
+static bool remember(FlSynth *synth, GError **error)
+{
+    const FlNnf *last = &synth->nnf[0];
+    fl_nnf_clear(&synth->previous.nnf);
+    synth->previous.valid = true;
+    synth->previous.rect = synth->target.rect;
+    if (!fl_nnf_init(&synth->previous.nnf, last->width, last->height, error))
+        return false;
+    memcpy(synth->previous.nnf.match, last->match,
+           (size_t)last->width * last->height * sizeof *last->match);
+    return true;
+}
+
+bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
+                    FlSynthView *view, GError **error)
+{
+    FlFrameStats own;
+    stats = stats ? stats : &own;
+    *stats = (FlFrameStats){0};
+    clear_frame(synth);
+    fill_paper(synth, rgb);
+    FlRect rect;
+    if (!working_rect(synth, guides, &rect)) {
+        synth->previous.valid = false;
+        synth->frame++;
+        if (view)
+            *view = (FlSynthView){0};
+        return true;
+    }
+    g_auto(FlNnf) shifted = {0};
+    if (!prepare(synth, guides, rect, &shifted, error))
+        return false;
+    stats->n_levels = synth->n_levels;
+    for (int l = synth->n_levels - 1; l >= 0; l--) {
+        const gint64 start = g_get_monotonic_time();
+        if (!run_level(synth, l, synth->previous.valid ? &shifted : NULL, &stats->level[l], error))
+            return false;
+        stats->level[l].seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+    }
+    write_rgb(synth, rgb);
+    const FlTargetLevel *full = &synth->target.level[0];
+    if (view)
+        *view = (FlSynthView){rect, &synth->nnf[0], synth->previous.valid ? full->temporal : NULL,
+                              synth->previous.valid ? full->temporal_weight : NULL};
+    synth->frame++;
+    return remember(synth, error);
+}

@@ -1,0 +1,49 @@
+/* One region, frame by frame: the optimisation of [F21 App. B]. */
+#ifndef FLUIDY_SYNTH_SYNTH_H
+#define FLUIDY_SYNTH_SYNTH_H
+
+#include "synth/patchmatch.h"
+
+/** What happened on one level; energies are means per pixel in the paper's units. */
+typedef struct FlLevelStats {
+    int width, height, pixels;
+    int rounds;
+    double energy_start, energy; // data terms of the field at the start and at the end
+    double texture, bound, ext, direction, temporal, uniformity; // its terms at the end
+    FlSearchCounts counts;
+    double seconds;
+} FlLevelStats;
+
+typedef struct FlFrameStats {
+    int n_levels;
+    FlLevelStats level[FL_MAX_LEVELS];
+    double seconds_target, seconds_temporal, seconds_search, seconds_vote;
+} FlFrameStats;
+
+/** What a frame was made of, for looking at: valid until the next frame. All level 0, `rect`. */
+typedef struct FlSynthView {
+    FlRect rect;
+    const FlNnf *nnf;
+    const float *temporal, *temporal_weight; // T_temp and m; NULL in a first frame
+} FlSynthView;
+
+/** The painter of one region: it remembers the last frame. */
+typedef struct FlSynth FlSynth;
+
+/** The exemplar and params must outlive it. Frames are width * height. */
+FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, int width, int height,
+                      uint64_t seed, GError **error);
+void fl_synth_free(FlSynth *synth); // NULL is fine
+
+/**
+ * Paints the next frame. rgb: width * height * 3 sRGB, written in the mask and a rim of 2 px, the
+ * style's paper elsewhere. An empty mask makes the next frame a first frame again.
+ *
+ * stats and view may be NULL.
+ */
+bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
+                    FlSynthView *view, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSynth, fl_synth_free)
+
+#endif

@@ -1,0 +1,203 @@
+#include "synth/target.h"
+
+#include "base/alloc.h"
+
+#define TANGENT_CAP 8.0 // |tan| of 83 degrees: steeper is as bad
+
+void fl_cost_scale_init(FlCostScale *scale, const FlParams *params)
+{
+    fl_rotation_init();
+    scale->w_max = MAX(MAX(params->w_texture + params->w_temp, params->w_bound), params->w_ext);
+    scale->w_max = MAX(scale->w_max, 1e-6f);
+    scale->unit = (double)FL_ONE * FL_ONE / scale->w_max;
+    for (int a = 0; a < FL_ANGLES; a++) {
+        const double c = abs(fl_turns[a][0]), s = abs(fl_turns[a][1]);
+        const double tangent = s < TANGENT_CAP * c ? s / c : TANGENT_CAP;
+        scale->direction[a] =
+            (uint32_t)MIN(params->w_dir * FL_PATCH_PIXELS * tangent * scale->unit + 0.5, 1 << 29);
+    }
+}
+
+static bool level_init(FlTargetLevel *level, int width, int height, GError **error)
+{
+    const size_t pixels = (size_t)width * height;
+    *level = (FlTargetLevel){.width = width, .height = height};
+    level->tile_columns = (width + FL_TILE - 1) / FL_TILE;
+    const size_t tiles = (size_t)level->tile_columns * ((height + FL_TILE - 1) / FL_TILE);
+    return (level->segment = fl_alloc(pixels, 1, "a target", error)) &&
+           (level->angle = fl_alloc(pixels, 1, "a target", error)) &&
+           (level->guide = fl_alloc(pixels, sizeof(FlPacked), "a target", error)) &&
+           (level->weight = fl_alloc(pixels, sizeof(FlPacked), "a target", error)) &&
+           (level->colour = fl_alloc(3 * pixels, sizeof(float), "a target", error)) &&
+           (level->temporal = fl_alloc(3 * pixels, sizeof(float), "a target", error)) &&
+           (level->temporal_weight = fl_alloc(pixels, sizeof(float), "a target", error)) &&
+           (level->distance = fl_alloc(pixels, sizeof(float), "a target", error)) &&
+           (level->tiles = fl_alloc(tiles, sizeof(uint32_t), "a target", error));
+}
+
+static void fill_pixel(FlTargetLevel *level, const FlStack *stack, size_t p,
+                       const FlExemplar *exemplar)
+{
+    FlPacked *guide = &level->guide[p];
+    level->distance[p] = stack->plane[FL_PLANE_DISTANCE][p];
+    level->segment[p] =
+        (uint8_t)fl_segment_of(stack->plane[FL_PLANE_INSIDE][p] > 0, level->distance[p],
+                               exemplar->border_px, exemplar->separate);
+    level->angle[p] = fl_stack_angle(stack, p);
+    guide->c[FL_CH_SHAPE] = fl_pack_channel(stack->plane[FL_PLANE_SHAPE][p], FL_ONE);
+    guide->c[FL_CH_EXT_PLUS] =
+        fl_pack_channel(stack->plane[FL_PLANE_EXT_PLUS][p] * exemplar->ext_scale, 2 * FL_ONE);
+    guide->c[FL_CH_EXT_MINUS] =
+        fl_pack_channel(stack->plane[FL_PLANE_EXT_MINUS][p] * exemplar->ext_scale, 2 * FL_ONE);
+}
+
+/* Bit-reversed order of a 4x4 pattern: tiles of consecutive classes are far from each other. */
+static const uint8_t class_of[4][4] = {
+    {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
+
+static bool tile_has_paint(const FlTargetLevel *level, int column, int row)
+{
+    for (int y = row * FL_TILE; y < MIN((row + 1) * FL_TILE, level->height); y++)
+        for (int x = column * FL_TILE; x < MIN((column + 1) * FL_TILE, level->width); x++)
+            if (level->segment[(size_t)y * level->width + x] != FL_SEGMENT_OUTSIDE)
+                return true;
+    return false;
+}
+
+static void list_tiles(FlTargetLevel *level)
+{
+    const int rows = (level->height + FL_TILE - 1) / FL_TILE;
+    int n = 0;
+    for (int c = 0; c < FL_TILE_CLASSES; c++) {
+        level->n_tiles[c] = n; // first of the class; the last entry is the end
+        for (int row = 0; row < rows; row++)
+            for (int column = 0; column < level->tile_columns; column++)
+                if (class_of[row & 3][column & 3] == c && tile_has_paint(level, column, row))
+                    level->tiles[n++] = (uint32_t)(row * level->tile_columns + column);
+    }
+    level->n_tiles[FL_TILE_CLASSES] = n;
+}
+
+static void fill_level(FlTargetLevel *level, const FlStack *stack, const FlExemplar *exemplar)
+{
+    const size_t pixels = (size_t)level->width * level->height;
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < pixels; p++)
+        fill_pixel(level, stack, p, exemplar);
+    for (size_t p = 0; p < pixels; p++)
+        level->n_inside[level->segment[p]]++;
+    list_tiles(level);
+}
+
+bool fl_target_init(FlTarget *target, const FlGuides *guides, const float *shape, FlRect rect,
+                    int n_levels, const FlExemplar *exemplar, GError **error)
+{
+    *target = (FlTarget){.rect = rect, .n_levels = n_levels};
+    g_auto(FlStack) fine = {0};
+    if (!fl_stack_init(&fine, rect.width, rect.height, FL_PLANE_R, error))
+        return false;
+    fl_stack_fill(&fine, guides, shape, rect);
+    for (int l = 0; l < n_levels; l++) {
+        if (l > 0) {
+            FlStack coarse;
+            if (!fl_stack_init(&coarse, (fine.width + 1) / 2, (fine.height + 1) / 2, FL_PLANE_R,
+                               error))
+                return false;
+            fl_stack_halve(&fine, &coarse);
+            fl_stack_clear(&fine);
+            fine = coarse;
+        }
+        if (!level_init(&target->level[l], fine.width, fine.height, error))
+            return false;
+        fill_level(&target->level[l], &fine, exemplar);
+    }
+    return true;
+}
+
+void fl_target_clear(FlTarget *target)
+{
+    for (int l = 0; l < target->n_levels; l++) {
+        FlTargetLevel *level = &target->level[l];
+        free(level->segment);
+        free(level->angle);
+        free(level->guide);
+        free(level->weight);
+        free(level->colour);
+        free(level->temporal);
+        free(level->temporal_weight);
+        free(level->distance);
+        free(level->tiles);
+    }
+    *target = (FlTarget){0};
+}
+
+/* Pixels without T_temp do not count in the colour; they do in the weight. */
+static void halve_temporal(const FlTargetLevel *fine, FlTargetLevel *coarse, int x, int y)
+{
+    const size_t to = (size_t)y * coarse->width + x;
+    float sum[3] = {0}, weight = 0;
+    int n = 0;
+    for (int cy = 2 * y; cy < MIN(2 * y + 2, fine->height); cy++)
+        for (int cx = 2 * x; cx < MIN(2 * x + 2, fine->width); cx++) {
+            const size_t from = (size_t)cy * fine->width + cx;
+            const float m = fine->temporal_weight[from];
+            for (int c = 0; c < 3; c++)
+                sum[c] += m * fine->temporal[3 * from + c];
+            weight += m, n++;
+        }
+    for (int c = 0; c < 3; c++)
+        coarse->temporal[3 * to + c] = weight > 0 ? sum[c] / weight : 0;
+    coarse->temporal_weight[to] = weight / (float)n;
+}
+
+void fl_target_temporal_pyramid(FlTarget *target)
+{
+    for (int l = 1; l < target->n_levels; l++) {
+        FlTargetLevel *coarse = &target->level[l];
+        for (int y = 0; y < coarse->height; y++)
+            for (int x = 0; x < coarse->width; x++)
+                halve_temporal(&target->level[l - 1], coarse, x, y);
+    }
+}
+
+static int16_t quantise_weight(float w, const FlCostScale *scale)
+{
+    return (int16_t)MIN(w / scale->w_max * 32767 + 0.5f, 32767);
+}
+
+void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostScale *scale,
+                     float w_texture)
+{
+    const size_t pixels = (size_t)level->width * level->height;
+    const int16_t w_bound = quantise_weight(params->w_bound, scale);
+    const int16_t w_ext = quantise_weight(params->w_ext, scale);
+#pragma omp parallel for schedule(static)
+    for (size_t p = 0; p < pixels; p++) {
+        const float w_temporal = params->w_temp * level->temporal_weight[p];
+        const float w = w_texture + w_temporal;
+        FlPacked *guide = &level->guide[p], *weight = &level->weight[p];
+        for (int c = 0; c < 3; c++) {
+            const float mean = w > 0 ? (w_texture * level->colour[3 * p + c] +
+                                        w_temporal * level->temporal[3 * p + c]) /
+                                           w
+                                     : 0;
+            guide->c[FL_CH_R + c] = fl_pack_channel(mean, FL_ONE);
+            weight->c[FL_CH_R + c] = quantise_weight(w, scale);
+        }
+        weight->c[FL_CH_SHAPE] = w_bound;
+        weight->c[FL_CH_EXT_PLUS] = weight->c[FL_CH_EXT_MINUS] = w_ext;
+    }
+}
+
+void fl_target_gather(const FlTargetLevel *level, int x, int y, FlPacked *patch, FlPacked *weight)
+{
+    for (int k = 0; k < FL_PATCH_PIXELS; k++) {
+        const int px = x + fl_patch_offsets[k][0], py = y + fl_patch_offsets[k][1];
+        if (px >= 0 && py >= 0 && px < level->width && py < level->height) {
+            patch[k] = level->guide[(size_t)py * level->width + px];
+            weight[k] = level->weight[(size_t)py * level->width + px];
+        } else {
+            patch[k] = weight[k] = (FlPacked){0};
+        }
+    }
+}

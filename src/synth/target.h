@@ -1,0 +1,68 @@
+/* The target: one region of one frame on every level, as the search reads it. */
+#ifndef FLUIDY_SYNTH_TARGET_H
+#define FLUIDY_SYNTH_TARGET_H
+
+#include "synth/exemplar.h"
+
+#define FL_TILE 8          // side of a tile of the search, pixels
+#define FL_TILE_CLASSES 16 // tiles of one class never touch each other
+
+/**
+ * One level. All planes are row-major, width * height.
+ *
+ * `guide` holds shape, extents and the colour that the search compares with: the mean of the
+ * synthesised colour and the temporal guide, weighted as their terms. `weight` holds each
+ * channel's weight, 32767 for the largest of the run (FlCostScale).
+ */
+typedef struct FlTargetLevel {
+    int width, height;
+    uint8_t *segment; // FlSegment
+    uint8_t *angle;   // direction of the flow, 256 steps
+    FlPacked *guide, *weight;
+    float *colour;          // 3 per pixel, 0 … 1: the last vote
+    float *temporal;        // 3 per pixel: T_temp
+    float *temporal_weight; // m(q), 0 … 1; 0 where T_temp is undefined
+    float *distance;        // px of level 0
+    int n_inside[FL_SEGMENTS];
+    uint32_t *tiles; // row * columns + column of the tiles with paint, by class
+    int n_tiles[FL_TILE_CLASSES + 1];
+    int tile_columns;
+} FlTargetLevel;
+
+/** How terms become integer costs: a squared colour difference of 1 costs FL_ONE² / w_max. */
+typedef struct FlCostScale {
+    float w_max;                   // the largest weight a channel can have
+    double unit;                   // cost of 1.0 in the paper's energy
+    uint32_t direction[FL_ANGLES]; // w_dir n² |tan(angle)|, capped
+} FlCostScale;
+
+typedef struct FlTarget {
+    FlRect rect; // part of the frame that is worked on; its corner is a multiple of 2^(levels - 1)
+    int n_levels;
+    FlTargetLevel level[FL_MAX_LEVELS];
+} FlTarget;
+
+void fl_cost_scale_init(FlCostScale *scale, const FlParams *params);
+
+/**
+ * Builds the levels of the rectangle from a frame's guides; `shape` is the whole frame's.
+ * Colours and temporal guide are left empty.
+ */
+bool fl_target_init(FlTarget *target, const FlGuides *guides, const float *shape, FlRect rect,
+                    int n_levels, const FlExemplar *exemplar, GError **error);
+void fl_target_clear(FlTarget *target);
+
+/** Averages T_temp and m of level 0 (set by the caller) down to the other levels. */
+void fl_target_temporal_pyramid(FlTarget *target);
+
+/** Sets colour channels and weights from the last vote and T_temp; w_texture 0 leaves the guides.
+ */
+void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostScale *scale,
+                     float w_texture);
+
+/** Target patch and weights around a pixel, in the order of fl_patch_offsets. */
+void fl_target_gather(const FlTargetLevel *level, int x, int y, FlPacked *patch, FlPacked *weight);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlTarget, fl_target_clear)
+
+#endif

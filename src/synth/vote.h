@@ -1,0 +1,21 @@
+/* From a field to colours: every patch votes for the pixels it covers [WSI07; F21 §3.4]. */
+#ifndef FLUIDY_SYNTH_VOTE_H
+#define FLUIDY_SYNTH_VOTE_H
+
+#include "synth/nnf.h"
+
+/**
+ * Votes for every pixel that a patch covers: the mask and a rim of 2 px around it.
+ *
+ * The patches over a pixel point to places in the exemplar. Those that point to the same place (the
+ * same frame, within 3/4 px) are one opinion: their places are averaged, not their colours, so
+ * a coherent field loses nothing but one interpolation. Opinions are mixed with weights
+ * n^sharpness, n the number of patches behind each; sharpness 1 is the papers' mean.
+ *
+ * colour: 3 floats per pixel, 0 … 1, untouched where nothing votes; voted: nonzero where something
+ * did, may be NULL.
+ */
+void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, float sharpness, float *colour,
+             uint8_t *voted);
+
+#endif

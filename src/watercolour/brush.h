@@ -1,0 +1,28 @@
+/* What is done to the sheet from outside: strokes that give water and pigment for a while. */
+#ifndef FLUIDY_WATERCOLOUR_BRUSH_H
+#define FLUIDY_WATERCOLOUR_BRUSH_H
+
+#include "watercolour/sheet.h"
+
+/** How much of an event reaches the centre of a cell, 0..1, and how loaded the brush is there. */
+typedef struct FlTouch {
+    float cover; // 1 inside the stroke, 0 outside, soft over one px
+    float load;  // factor on the pigment, 1 on the average
+} FlTouch;
+
+FlTouch fl_brush_touch(const FlEvent *event, uint64_t key, float x_px, float y_px);
+
+/** The events of a recipe with their footprints worked out. */
+typedef struct FlBrush FlBrush;
+
+/** Returns: NULL with FL_ERROR_NO_MEMORY set. The recipe must outlive the brush. */
+FlBrush *fl_brush_new(const FlRecipe *recipe, GError **error);
+
+void fl_brush_free(FlBrush *brush); // NULL is fine
+
+/** Does one step of all events that are active between the times before and after, in frames. */
+void fl_brush_apply(const FlBrush *brush, FlSheet *sheet, float before, float after);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlBrush, fl_brush_free)
+
+#endif

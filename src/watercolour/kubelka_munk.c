@@ -1,0 +1,47 @@
+/* Kubelka-Munk in the hyperbolic form, arranged so that K = 0 and S = 0 need no division by 0. */
+#include "watercolour/kubelka_munk.h"
+
+#include <math.h>
+
+/*
+ * With q = sqrt(K (K + 2 S)), D = (S + K) sinh(q x) + q cosh(q x):  R = S sinh(q x) / D, T = q / D.
+ * That is the paper's R = sinh(b S x) / c, T = b / c for a = 1 + K / S, b = sqrt(a a - 1).
+ */
+FlLayer fl_km_layer(double absorption, double scattering, double thickness)
+{
+    const double q = sqrt(absorption * (absorption + 2 * scattering));
+    const double qx = q * thickness;
+    if (qx < 1e-9) {
+        const double sx = scattering * thickness;
+        return (FlLayer){sx / (1 + sx), 1 / (1 + sx)};
+    }
+    if (qx > 300) // sinh and cosh would overflow; nothing comes through
+        return (FlLayer){scattering / (scattering + absorption + q), 0};
+    const double sh = sinh(qx), d = (scattering + absorption) * sh + q * cosh(qx);
+    return (FlLayer){scattering * sh / d, q / d};
+}
+
+FlLayer fl_km_over(FlLayer upper, FlLayer lower)
+{
+    const double between = 1 - upper.reflectance * lower.reflectance;
+    return (FlLayer){upper.reflectance +
+                         upper.transmittance * upper.transmittance * lower.reflectance / between,
+                     upper.transmittance * lower.transmittance / between};
+}
+
+static double acoth(double x)
+{
+    return 0.5 * log((x + 1) / (x - 1));
+}
+
+bool fl_km_from_colours(double over_white, double over_black, double *absorption,
+                        double *scattering)
+{
+    if (!(0 < over_black && over_black < over_white && over_white < 1))
+        return false;
+    const double a = (over_white + (over_black - over_white + 1) / over_black) / 2;
+    const double b = sqrt(a * a - 1);
+    *scattering = acoth((b * b - (a - over_white) * (a - 1)) / (b * (1 - over_white))) / b;
+    *absorption = *scattering * (a - 1);
+    return true;
+}

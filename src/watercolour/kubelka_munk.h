@@ -1,0 +1,32 @@
+/* The colour of a layer of paint on paper [C97 §5]. */
+#ifndef FLUIDY_WATERCOLOUR_KUBELKA_MUNK_H
+#define FLUIDY_WATERCOLOUR_KUBELKA_MUNK_H
+
+#include "watercolour/recipe.h"
+
+/** What a layer sends back and lets through, of light of one channel; 0..1. */
+typedef struct FlLayer {
+    double reflectance, transmittance;
+} FlLayer;
+
+/** A layer of absorption K >= 0, scattering S >= 0 and thickness x >= 0. */
+FlLayer fl_km_layer(double absorption, double scattering, double thickness);
+
+/** The upper layer on the lower one. */
+FlLayer fl_km_over(FlLayer upper, FlLayer lower);
+
+/**
+ * K and S of a pigment that shows `over_white` and `over_black` at thickness 1.
+ *
+ * Returns: false unless 0 < over_black < over_white < 1; nothing is then written.
+ */
+bool fl_km_from_colours(double over_white, double over_black, double *absorption,
+                        double *scattering);
+
+/** The pigments of [C97 fig. 5] by name. Returns: static storage; NULL if there is none. */
+const FlPigment *fl_pigment_find(const char *name);
+
+/** Their names, NULL-terminated; static storage. */
+const char *const *fl_pigment_names(void);
+
+#endif

@@ -1,0 +1,15 @@
+/* Smooth noise as a function of place, with nothing but +, * and a hash: the same bits on any CPU.
+ */
+#ifndef FLUIDY_WATERCOLOUR_NOISE_H
+#define FLUIDY_WATERCOLOUR_NOISE_H
+
+#include <stdint.h>
+
+/** Gradient noise with lattice cells of side 1: mean 0, mostly within -1 … 1, always within -2 … 2.
+ */
+float fl_noise(uint64_t key, float x, float y);
+
+/** A sum of octaves, each of half the size and `gain` times the weight; spread as fl_noise(). */
+float fl_noise_octaves(uint64_t key, float x, float y, int octaves, float gain);
+
+#endif

@@ -1,0 +1,128 @@
+/* Paper from noise and fibres: bumps, hollows, and where water runs easily. Licence-free. */
+#include "base/rng.h"
+#include "watercolour/noise.h"
+#include "watercolour/sheet.h"
+
+#include <math.h>
+
+enum { KEY_BUMPS = 101, KEY_TOOTH, KEY_FIBRES, KEY_PATCHES, KEY_PIN };
+
+static float clamp(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* Bumps as of a felt: two sizes of noise, creased where they cross 0, and a fine tooth over them.
+ */
+static float bump(uint64_t seed, const FlPaper *paper, float x, float y)
+{
+    const float sx = x / (paper->grain_px * paper->stretch), sy = y / paper->grain_px;
+    const float coarse = fl_noise_octaves(fl_key(seed, KEY_BUMPS), sx, sy, 2, 0.5f);
+    const float crease = 1 - 2 * fabsf(fl_noise(fl_key(seed, KEY_TOOTH), sx * 1.7f, sy * 1.7f));
+    const float tooth = fl_noise_octaves(fl_key(seed, KEY_TOOTH), x / 1.6f, y / 1.6f, 2, 0.7f);
+    return 0.5f + 0.30f * coarse + 0.10f * crease + 0.22f * paper->roughness * tooth;
+}
+
+/* One fibre: a line that turns a little all the way, as wide as a px. Turned without sin and cos,
+   whose last bit differs between C libraries. */
+static void draw_fibre(float *grid, int width, int height, FlRng *rng, float length, float scale)
+{
+    float x = fl_rng_float(rng) * width, y = fl_rng_float(rng) * height;
+    float dx = fl_rng_float(rng) - 0.5f, dy = fl_rng_float(rng) - 0.5f;
+    float turn = (fl_rng_float(rng) - 0.5f) * 0.05f;
+    const float strength = 0.4f + 0.6f * fl_rng_float(rng);
+    const int steps = (int)(length * (0.4f + 1.2f * fl_rng_float(rng)));
+    const float radius = 0.5f * scale * (0.6f + 0.6f * fl_rng_float(rng));
+    const int reach = (int)radius + 1;
+    for (int i = 0; i < steps; i++) {
+        const float norm = 1 / sqrtf(dx * dx + dy * dy + 1e-12f);
+        dx *= norm, dy *= norm;
+        x += dx, y += dy;
+        turn = clamp(turn + (fl_rng_float(rng) - 0.5f) * 0.03f, -0.08f, 0.08f);
+        const float turned = dx - turn * dy;
+        dy += turn * dx, dx = turned;
+        for (int j = (int)y - reach; j <= (int)y + reach; j++)
+            for (int k = (int)x - reach; k <= (int)x + reach; k++) {
+                if (j < 0 || k < 0 || j >= height || k >= width)
+                    continue;
+                const float ex = k - x, ey = j - y;
+                const float near = strength * (1 - (ex * ex + ey * ey) / (radius * radius + 1));
+                float *cell = &grid[(size_t)j * width + k];
+                *cell = near > *cell ? near : *cell;
+            }
+    }
+}
+
+static void draw_fibres(FlSheet *sheet, const FlRecipe *recipe, float *grid)
+{
+    const float scale = recipe->oversample;
+    const int n = (int)(recipe->paper.fibres * recipe->width * recipe->height / 100);
+    for (int i = 0; i < n; i++) {
+        FlRng rng = {fl_key(fl_key(recipe->seed, KEY_FIBRES), (uint64_t)i)};
+        draw_fibre(grid, sheet->width, sheet->height, &rng, recipe->paper.fibre_px * scale, scale);
+    }
+}
+
+/* A positive factor from noise, 1 on the average in the logarithm, without exp(). */
+static float factor(float contrast, float noise)
+{
+    const float x = clamp(contrast * noise, -0.97f, 0.97f);
+    return (1 + x) / (1 - x);
+}
+
+/* Permeability of the cells, 0..1: patches of several sizes times fibres. */
+static float openness(const FlRecipe *recipe, float x, float y, float fibre)
+{
+    const FlPaper *paper = &recipe->paper;
+    const float patch = fl_noise_octaves(fl_key(recipe->seed, KEY_PATCHES), x / paper->patch_px,
+                                         y / paper->patch_px, 4, 0.75f);
+    const float base = 1 - paper->fibre_pull * (1 - fibre);
+    return clamp(0.5f * factor(paper->patchiness, patch) * base, 0.002f, 1);
+}
+
+static void make_cells(FlSheet *sheet, const FlRecipe *recipe, const float *fibres, float *open)
+{
+    const FlPaper *paper = &recipe->paper;
+    const float px = 1.0f / recipe->oversample;
+#pragma omp parallel for schedule(static)
+    for (int j = 0; j < sheet->height; j++)
+        for (int i = 0; i < sheet->width; i++) {
+            const size_t at = (size_t)j * sheet->width + i;
+            const float x = i * px, y = j * px;
+            const float h =
+                clamp(bump(recipe->seed, paper, x, y) + 0.12f * fibres[at], 0.02f, 0.98f);
+            const float pin =
+                fl_noise_octaves(fl_key(recipe->seed, KEY_PIN), x / 3, y / 3, 2, 0.8f);
+            sheet->relief[at] = h;
+            sheet->capacity[at] =
+                paper->capacity[0] + h * (paper->capacity[1] - paper->capacity[0]);
+            open[at] = openness(recipe, x, y, fibres[at]);
+            sheet->pin[at] = clamp(recipe->flow.sigma * (1 + 2 * paper->pinning * pin -
+                                                         0.6f * paper->pinning * fibres[at]),
+                                   0.3f * recipe->flow.sigma, 0.85f * sheet->capacity[at]);
+        }
+}
+
+/* A face lets through what both its cells do. */
+static void make_faces(FlSheet *sheet, const float *open)
+{
+    const int width = sheet->width, height = sheet->height;
+    for (int j = 0; j < height; j++)
+        for (int i = 1; i < width; i++) {
+            const float a = open[(size_t)j * width + i - 1], b = open[(size_t)j * width + i];
+            sheet->open_u[(size_t)j * (width + 1) + i] = 2 * a * b / (a + b);
+        }
+    for (int j = 1; j < height; j++)
+        for (int i = 0; i < width; i++) {
+            const float a = open[(size_t)(j - 1) * width + i], b = open[(size_t)j * width + i];
+            sheet->open_v[(size_t)j * width + i] = 2 * a * b / (a + b);
+        }
+}
+
+void fl_sheet_make_paper(FlSheet *sheet, const FlRecipe *recipe)
+{
+    float *fibres = sheet->spare[0], *open = sheet->spare[1];
+    draw_fibres(sheet, recipe, fibres);
+    make_cells(sheet, recipe, fibres, open);
+    make_faces(sheet, open);
+}

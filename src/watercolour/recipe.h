@@ -1,0 +1,97 @@
+/* A recipe: everything that decides what a simulated style looks like, read from a key file. */
+#ifndef FLUIDY_WATERCOLOUR_RECIPE_H
+#define FLUIDY_WATERCOLOUR_RECIPE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#define FL_MAX_PIGMENTS 4
+#define FL_MAX_POINTS 16
+#define FL_MAX_EVENTS 32
+
+/** A pigment [C97 §5, fig. 5]; per unit of thickness. */
+typedef struct FlPigment {
+    const char *name;
+    float absorption[3], scattering[3];   // K and S, > 0, per sRGB channel
+    float density, staining, granulation; // rho, omega > 0, gamma 0..1
+    float diffusion; // how fast it spreads in standing water, cells^2 per step, 0..0.2
+} FlPigment;
+
+/** The sheet. Lengths in px of the finished frames. */
+typedef struct FlPaper {
+    uint8_t colour[3];
+    float grain_px;    // size of the bumps of the surface
+    float roughness;   // how deep the finest bumps are against the coarse ones, 0..1
+    float stretch;     // bumps are longer along x by this factor
+    float fibres;      // fibres per 100 square px
+    float fibre_px;    // their length
+    float fibre_pull;  // how much better water runs along a fibre, 0..0.95
+    float capacity[2]; // cmin, cmax: water that fits between h = 0 and h = 1
+    float patchiness;  // unevenness of the permeability in the large, 0..0.95
+    float patch_px;    // size of its largest patches
+    float pinning;     // how unevenly a dry cell resists wetting, 0..1
+    float shading;     // how much the bumps show in the bare paper, 0..0.2
+} FlPaper;
+
+/** Something done to the sheet: a stroke that is wet for a while. Lengths in px of the frames. */
+typedef struct FlEvent {
+    int n_points;
+    float points[FL_MAX_POINTS][2];  // the polyline that the brush follows
+    float radius, wobble, wobble_px; // of the brush; its outline's unevenness and the size of that
+    float from, until;               // frames; from == until: done once
+    float water;                     // what the brush gives until the paper holds this much, 0..1
+    float rate;                      // share of the missing water given per step, 0..1
+    float load[FL_MAX_PIGMENTS];     // pigment per unit of water, >= 0
+    float deposit[FL_MAX_PIGMENTS];  // pigment laid down at once, per cell, >= 0
+    float streaks, streak_px;        // unevenness of load and deposit, 0..1; its size
+    float pressure;                  // added to the pressure of the shallow water per step
+} FlEvent;
+
+/** Constants of the layers [C97 §4]; rates are per step. See the files of the stages. */
+typedef struct FlFlow {
+    bool shallow; // whether the shallow-water layer moves
+    float viscosity, drag, slope, relaxation, tolerance;
+    int sweeps;
+    float edge_darkening;                // eta
+    float absorb, epsilon, delta, sigma; // capillary: alpha, epsilon, delta, sigma
+    float conduct;                       // share of the largest stable capillary flow, 0..1
+    int mobility;                        // power of the saturation in the capillary flow, 0..4
+    float carry;  // share of its pigment that water in the paper takes along, 0..1
+    float settle; // factor on transfer_pigment's rates
+    float evaporation, rim_evaporation; // water lost per step; and at the rim, per dry side
+    float thickness;                    // display scale of the pigment
+} FlFlow;
+
+/** Dust that crumbles off a dry stroke; see dust.c. */
+typedef struct FlDust {
+    int grains;                      // 0: no dust
+    float speed_px, swirl, swirl_px; // drift per frame; share of it that swirls; size of the swirls
+    float catch_rate;                // how readily the tooth catches a grain, 0..1
+    float weight;                    // thickness of one grain
+} FlDust;
+
+typedef struct FlRecipe {
+    char *name, *author, *licence, *medium, *missing;
+    int width, height, frames; // px
+    int oversample;            // cells per px, 1..3
+    float fps, border, scale;
+    int steps[2], warm_up; // steps before the second and before the last frame; before the first
+    uint64_t seed;
+    float mask_threshold, mask_margin; // thickness that counts as paint; bare rim, px
+    FlPaper paper;
+    FlFlow flow;
+    FlDust dust;
+    int n_pigments, n_events;
+    FlPigment pigments[FL_MAX_PIGMENTS];
+    FlEvent events[FL_MAX_EVENTS];
+} FlRecipe;
+
+/** Reads a recipe. Returns: NULL with FL_ERROR_INPUT, "FILE:LINE: what was wrong". */
+FlRecipe *fl_recipe_load(const char *path, GError **error);
+
+void fl_recipe_free(FlRecipe *recipe); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlRecipe, fl_recipe_free)
+
+#endif

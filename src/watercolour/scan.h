@@ -1,0 +1,31 @@
+/* From the sheet to a picture: Kubelka-Munk colour, mask, PNG files. */
+#ifndef FLUIDY_WATERCOLOUR_SCAN_H
+#define FLUIDY_WATERCOLOUR_SCAN_H
+
+#include "watercolour/sheet.h"
+
+/** One finished frame of width * height px. */
+typedef struct FlScan {
+    int width, height;
+    uint8_t *rgb;  // width * height * 3, sRGB
+    uint8_t *mask; // width * height, coverage
+} FlScan;
+
+/** Returns: NULL with FL_ERROR_NO_MEMORY set. */
+FlScan *fl_scan_new(int width, int height, GError **error);
+
+void fl_scan_free(FlScan *scan); // NULL is fine
+
+/**
+ * Draws the sheet and extracts its mask; a mask only ever grows from that of the picture before,
+ * which scan still holds. Errors: FL_ERROR_NO_MEMORY.
+ */
+bool fl_scan_draw(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe, GError **error);
+
+/** Writes 8-bit samples, 3 or 1 per px, as a well-packed PNG. Errors: FL_ERROR_OUTPUT. */
+bool fl_scan_write_png(const char *path, const uint8_t *samples, int width, int height,
+                       int channels, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlScan, fl_scan_free)
+
+#endif

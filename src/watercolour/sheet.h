@@ -1,0 +1,47 @@
+/* The three layers of [C97 §4] as grids: what a step reads and writes. */
+#ifndef FLUIDY_WATERCOLOUR_SHEET_H
+#define FLUIDY_WATERCOLOUR_SHEET_H
+
+#include "watercolour/recipe.h"
+
+/** Water below this counts as none. */
+#define FL_DRY 1e-4f
+
+/**
+ * A sheet of paper with water and paint on it; cells are squares of side 1.
+ *
+ * Cell grids are row-major, width * height. u has width + 1 faces per row, face i between the cells
+ * i - 1 and i; v has height + 1 rows of width faces, row j between the rows j - 1 and j. Faces on
+ * the rim of the sheet are always 0.
+ */
+typedef struct FlSheet {
+    int width, height, n_pigments;
+    float *relief;                    // h, 0 < h < 1
+    float *capacity;                  // c, of the capillary layer
+    float *pin;                       // how wet a cell must be to wet this one when it is dry
+    float *open_u, *open_v;           // permeability of the faces, 0..1
+    uint8_t *wet;                     // M, 0 or 1
+    float *u, *v;                     // velocity of the shallow water, cells per step
+    float *p;                         // its pressure
+    float *s;                         // water in the paper
+    float *floating[FL_MAX_PIGMENTS]; // g
+    float *settled[FL_MAX_PIGMENTS];  // d
+    float *flux_u, *flux_v;           // what passed the faces in the pass at hand
+    float *spare[3]; // for a pass that reads the previous field and writes a new one;
+                     // as large as u and v
+} FlSheet;
+
+/** A dry sheet with nothing on it. Returns: NULL with FL_ERROR_NO_MEMORY set. */
+FlSheet *fl_sheet_new(int width, int height, int n_pigments, GError **error);
+
+void fl_sheet_free(FlSheet *sheet); // NULL is fine
+
+/** Makes the paper: relief, capacity, pinning, permeability. Depends on the recipe alone. */
+void fl_sheet_make_paper(FlSheet *sheet, const FlRecipe *recipe);
+
+/** The pigment on and in the paper, for conservation checks; summed in a fixed order. */
+double fl_sheet_pigment(const FlSheet *sheet, int pigment);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSheet, fl_sheet_free)
+
+#endif

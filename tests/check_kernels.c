@@ -1,0 +1,109 @@
+/* Every version of every kernel against C: exact equality on noise and on overflow bait. */
+#include "base/rng.h"
+#include "synth/kernels.h"
+#include <glib.h>
+#include <stdbool.h>
+#include <string.h>
+
+#define FIELD 64 // side of the exemplar that is sampled
+
+typedef struct Case {
+    _Alignas(64) FlPacked source[FIELD * FIELD];
+    _Alignas(64) FlPacked target[FL_PATCH_PIXELS + 3], weight[FL_PATCH_PIXELS + 3];
+    int32_t offsets[FL_PATCH_PIXELS];
+} Case;
+
+static void fill(FlPacked *pixels, int n, FlRng *rng, int limit)
+{
+    for (int p = 0; p < n; p++)
+        for (int c = 0; c < FL_CHANNELS; c++)
+            pixels[p].c[c] = (int16_t)fl_rng_below(rng, (uint32_t)limit + 1);
+}
+
+static void make_case(Case *c, uint64_t seed)
+{
+    FlRng rng = {seed};
+    fill(c->source, FIELD * FIELD, &rng, 2 * FL_ONE);
+    fill(c->target, FL_PATCH_PIXELS, &rng, 2 * FL_ONE);
+    fill(c->weight, FL_PATCH_PIXELS, &rng, 32767);
+    for (int p = 0; p < FL_PATCH_PIXELS; p++)
+        c->offsets[p] = (int32_t)fl_rng_below(&rng, 7) * FIELD + (int32_t)fl_rng_below(&rng, 7);
+}
+
+static const unsigned levels[] = {0, FL_CPU_AVX2, FL_CPU_AVX2 | FL_CPU_AVX512, FL_CPU_NEON};
+
+/* A level that the processor lacks must not be run. */
+static bool available(unsigned flags)
+{
+    return (fl_cpu_flags() & flags) == flags;
+}
+
+static void every_version_equals_c_on_noise(void)
+{
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        FlKernels kernels;
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&kernels, levels[v]);
+        for (uint64_t seed = 1; seed <= 2000; seed++) {
+            Case c;
+            make_case(&c, seed);
+            const FlPacked *centre = c.source + seed % 3000;
+            const uint32_t want =
+                fl_patch_distance_c(centre, c.offsets, c.target, c.weight, UINT32_MAX);
+            const uint32_t got =
+                kernels.patch_distance(centre, c.offsets, c.target, c.weight, UINT32_MAX);
+            if (got != want)
+                g_error("%s, seed %" G_GUINT64_FORMAT ": %u, want %u", kernels.name, seed, got, want);
+        }
+    }
+}
+
+static void no_version_overflows_on_extremes(void)
+{
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        FlKernels kernels;
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&kernels, levels[v]);
+        Case c = {0};
+        for (int p = 0; p < FL_PATCH_PIXELS; p++)
+            for (int k = 0; k < FL_CHANNELS; k++)
+                c.target[p].c[k] = 2 * FL_ONE, c.weight[p].c[k] = 32767;
+        const uint32_t got =
+            kernels.patch_distance(c.source, c.offsets, c.target, c.weight, UINT32_MAX);
+        g_assert_cmpuint(got, ==, 25u * 8 * (2 * FL_ONE) * (2 * FL_ONE));
+    }
+}
+
+static void a_limit_never_changes_which_side_of_it_a_distance_is_on(void)
+{
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        FlKernels kernels;
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&kernels, levels[v]);
+        for (uint64_t seed = 1; seed <= 500; seed++) {
+            Case c;
+            make_case(&c, seed);
+            const uint32_t whole =
+                fl_patch_distance_c(c.source, c.offsets, c.target, c.weight, UINT32_MAX);
+            const uint32_t at = kernels.patch_distance(c.source, c.offsets, c.target, c.weight, whole);
+            const uint32_t below =
+                kernels.patch_distance(c.source, c.offsets, c.target, c.weight, whole - 1);
+            g_assert_cmpuint(at, ==, whole);
+            g_assert_cmpuint(below, >, whole - 1);
+        }
+    }
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    fl_rotation_init();
+    g_test_add_func("/kernels/every-version-equals-c-on-noise", every_version_equals_c_on_noise);
+    g_test_add_func("/kernels/no-version-overflows-on-extremes", no_version_overflows_on_extremes);
+    g_test_add_func("/kernels/a-limit-never-changes-which-side-of-it-a-distance-is-on",
+                    a_limit_never_changes_which_side_of_it_a_distance_is_on);
+    return g_test_run();
+}

@@ -1,0 +1,146 @@
+#!/bin/bash
+# What a reader may rely on but no compiler checks. usage: lint.sh SOURCE-DIR BUILD-DIR; speaks TAP.
+set -u
+export LC_ALL=C.UTF-8
+source=$(cd "$1" && pwd)
+build=$(cd "$2" && pwd)
+cd "$source" || exit 1
+n=0
+if ! git rev-parse --git-dir >/dev/null 2>&1; then
+    echo '1..0 # SKIP not a git checkout'
+    exit 0
+fi
+
+# report SENTENCE COMMAND...: the sentence holds if the command prints nothing.
+report() {
+    local sentence=$1 found
+    shift
+    found=$("$@" 2>&1)
+    n=$((n + 1))
+    if [ -z "$found" ]; then
+        echo "ok $n - $sentence"
+    else
+        echo "not ok $n - $sentence"
+        sed 's/^/# /' <<<"$found"
+    fi
+}
+
+skip() {
+    n=$((n + 1))
+    echo "ok $n - $1 # SKIP $2"
+}
+
+# The folders of src, in the order of the data.
+folders=$(sed -n "s/^subdir('\(.*\)').*/\1/p" src/meson.build)
+
+layering() {
+    local folder above=''
+    for folder in $folders; do
+        above="$above $folder"
+        grep -rnoE '#include "[a-z]+/[^"]*"' --include='*.[ch]' "src/$folder" |
+            while IFS= read -r line; do
+                local wanted=${line#*\"}
+                case " $above " in
+                *" ${wanted%%/*} "*) ;;
+                *) echo "$line" ;;
+                esac
+            done
+    done
+}
+
+# The programs use the public headers, params and base only.
+programs_stay_outside() {
+    grep -rnE '#include "[a-z]+/' --include='*.[ch]' src/cli | grep -vE '"(base|params|cli)/'
+}
+
+exported_symbols() {
+    nm -D --defined-only "$build/src/libfluidy.so" | awk '{print $3}' | sed 's/@.*//' | grep -v '^fl_'
+}
+
+header_guards() {
+    local file guard
+    for file in $(git ls-files '*.h'); do
+        case $file in
+        include/*) guard=${file#include/} ;;
+        src/*) guard=fluidy/${file#src/} ;;
+        *) continue ;;
+        esac
+        guard=$(tr 'a-z/.-' 'A-Z___' <<<"$guard")
+        grep -q "^#ifndef $guard\$" "$file" || echo "$file: expected the guard $guard"
+    done
+}
+
+formatting() {
+    git ls-files 'src/*.[ch]' 'include/*.h' man/fill.c | xargs clang-format --dry-run --Werror 2>&1 | grep 'error:' | head -20
+}
+
+foreign_paths() {
+    git grep -nE '/(work|tmp/lib|tmp/wt)/' -- . ':!tests/lint.sh'
+}
+
+pages_are_clean() {
+    mandoc -Tlint "$build"/man/*.[1-9] 2>&1 |
+        grep -vE 'referenced manual not found|outdated mandoc.db'
+}
+
+# Every option of --help-all is in the page, and every option of the page is in --help-all.
+options_are_documented() {
+    local program=$1 page=$2
+    diff <("$program" --help-all | grep -oE '^ +(-[a-zA-Z], )?--[a-z-]+' | grep -oE '\-\-[a-z-]+' |
+        sort -u) \
+        <(grep -oE '^\.It Fl .*' "$page" | grep -oE '(Fl|,) -[a-z][a-z-]+' |
+            sed -E 's/^(Fl|,) -/--/' | sort -u) |
+        sed -n 's/^</not in the page:/p; s/^>/not in --help-all:/p'
+}
+
+help_fits_one_screen() {
+    local program=$1
+    [ "$("$program" --help | wc -l)" -le 40 ] || echo "--help has more than 40 lines"
+    "$program" --help | awk 'length > 80 { print "longer than 80: " $0 }'
+}
+
+# The two commands of the README are what CI runs.
+readme_test_command() {
+    local command
+    command=$(sed -n '/^<!-- tests -->$/,/^```$/p' README.md | grep -vE '^(<!--|```)')
+    [ -n "$command" ] || echo 'README.md has no command after <!-- tests -->'
+    grep -qF 'README.md' .ci/run || echo '.ci/run does not read the command from README.md'
+}
+
+changed_defaults_are_explained() {
+    local name
+    for name in $(awk '/^\.It Fl -/ { name = $3 }
+                       /^default .*, fluidymation / {
+                           split($0, part, /default |, fluidymation |, thesis /)
+                           if (part[2] != part[3]) print name }' "$build/man/fluidy-svg.1"); do
+        sed -n '/^\.Sh DEPARTURES/,/^\.Sh ENV/p' man/fluidy-svg.1.in | grep -qE "^\.It Fl.* $name( |\$)" ||
+            echo "-$name differs from the article; DEPARTURES FROM THE PAPERS does not say why"
+    done
+}
+
+report 'a folder includes headers of itself and the folders above it' layering
+report 'the programs use base, params and public headers only' programs_stay_outside
+report 'every exported symbol starts with fl_' exported_symbols
+report 'include guards are the path' header_guards
+report 'no path of a workplace is committed' foreign_paths
+report '--help fits one screen' help_fits_one_screen "$build/src/cli/fluidy-svg"
+report 'CI runs the test command of the README' readme_test_command
+if command -v clang-format >/dev/null; then
+    report 'the sources are formatted' formatting
+else
+    skip 'the sources are formatted' 'no clang-format'
+fi
+if [ ! -f "$build/man/fluidy-svg.1" ]; then
+    skip 'man pages' 'not built'
+else
+    report 'fluidy-svg(1) has the options of --help-all' \
+        options_are_documented "$build/src/cli/fluidy-svg" "$build/man/fluidy-svg.1"
+    report 'fluidy-svg(1) explains every default that is not the published one' \
+        changed_defaults_are_explained
+    if command -v mandoc >/dev/null; then
+        report 'mandoc finds nothing odd in the man pages' pages_are_clean
+    else
+        skip 'mandoc finds nothing odd in the man pages' 'no mandoc'
+    fi
+fi
+echo "1..$n"

@@ -1,0 +1,127 @@
+#include "base/rng.h"
+#include "synth/synth.h"
+#include "synth/vote.h"
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+#define W 64
+#define H 48
+#define FRAMES 6
+
+/* A disc of noisy paint that grows by a pixel a frame. */
+static FlStyle *growing_disc(void)
+{
+    FlStyle *style = g_new0(FlStyle, 1);
+    *style = (FlStyle){.name = g_strdup("disc"), .path = g_strdup("disc"), .width = W, .height = H,
+                       .n_frames = FRAMES, .fps = 25, .border_px = 6, .scale = 1,
+                       .paper = {250, 250, 250}};
+    style->rgb = g_malloc(3 * W * H * FRAMES);
+    style->mask = g_malloc(W * H * FRAMES);
+    for (int p = 0; p < W * H * FRAMES; p++) {
+        const int t = p / (W * H), y = p / W % H, x = p % W;
+        const double inside = 12 + t - hypot(x - W / 2, y - H / 2);
+        const uint8_t tone = inside > 0 ? (uint8_t)(60 + fl_hash64((uint64_t)(p % (W * H))) % 120) : 250;
+        style->mask[p] = (uint8_t)(CLAMP(inside + 0.5, 0, 1) * 255);
+        memset(style->rgb + 3 * p, tone, 3);
+    }
+    return style;
+}
+
+static bool moving_disc(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    for (int p = 0; p < 48 * 48; p++) {
+        const double inside = 14 - hypot(p % 48 - 22 - frame, p / 48 - 24);
+        coverage[p] = (uint8_t)(CLAMP(inside + 0.5, 0, 1) * 255);
+    }
+    return true;
+}
+
+/* Paints three frames; the third is returned. */
+static uint8_t *painted(int threads)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = growing_disc();
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
+    g_assert_no_error(error);
+    const FlGuideParams how = fl_guide_params(params);
+    const FlGuideSource source = {48, 48, 3, moving_disc, NULL, NULL};
+    g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, &error);
+    g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, 48, 48, 7, &error);
+    g_auto(FlGuides) now = {0};
+    g_assert_true(fl_guides_init(&now, 48, 48, &error));
+    uint8_t *rgb = g_malloc0(3 * 48 * 48);
+    omp_set_num_threads(threads);
+    for (int f = 0; f < 3; f++)
+        g_assert_true(fl_guide_sequence_get(guides, f, &now, &error) &&
+                      fl_synth_frame(synth, &now, rgb, NULL, NULL, &error));
+    return rgb;
+}
+
+static void same_picture_on_any_thread_count(void)
+{
+    g_autofree uint8_t *one = painted(1);
+    for (int threads = 2; threads <= 5; threads++) {
+        g_autofree uint8_t *many = painted(threads);
+        g_assert_cmpmem(many, 3 * 48 * 48, one, 3 * 48 * 48);
+    }
+}
+
+static void the_inside_is_painted_and_the_outside_is_paper(void)
+{
+    g_autofree uint8_t *rgb = painted(2);
+    g_assert_cmpint(rgb[3 * (24 * 48 + 24)], <, 200);
+    g_assert_cmpint(rgb[0], ==, 250);
+}
+
+static void a_coherent_field_votes_back_the_exemplar(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = growing_disc();
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
+    g_auto(FlNnf) nnf = {0};
+    g_assert_true(fl_nnf_init(&nnf, 10, 10, &error));
+    for (int p = 0; p < 100; p++)
+        nnf.match[p] = (FlMatch){.x_16 = (uint16_t)(16 * (27 + p % 10)),
+                                 .y_16 = (uint16_t)(16 * (19 + p / 10)), .frame = 3};
+    float colour[300];
+    fl_vote(&nnf, &exemplar->level[0], 1, colour, NULL);
+    for (int p = 0; p < 100; p++) {
+        const uint8_t want = style->rgb[3 * ((size_t)(3 * H + 19 + p / 10) * W + 27 + p % 10)];
+        g_assert_cmpfloat(fabsf(colour[3 * p] * 255 - want), <, 0.1f);
+    }
+}
+
+static void upscaling_keeps_a_rotated_field_coherent(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = growing_disc();
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
+    g_auto(FlNnf) coarse = {0}, fine = {0};
+    g_assert_true(fl_nnf_init(&coarse, 2, 1, &error) && fl_nnf_init(&fine, 4, 2, &error));
+    const FlMatch first = {.x_16 = 16 * 14, .y_16 = 16 * 12, .frame = 2, .theta = 40};
+    coarse.match[0] = first;
+    coarse.match[1] = fl_match_moved(first, 1, 0, &exemplar->level[1]);
+    fl_nnf_upscale(&coarse, &exemplar->level[0], &fine);
+    for (int x = 0; x < 3; x++) {
+        const FlMatch moved = fl_match_moved(fine.match[x], 1, 0, &exemplar->level[0]);
+        g_assert_cmpint(abs(moved.x_16 - fine.match[x + 1].x_16), <=, 2);
+        g_assert_cmpint(abs(moved.y_16 - fine.match[x + 1].y_16), <=, 2);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/synth/same-picture-on-any-thread-count", same_picture_on_any_thread_count);
+    g_test_add_func("/synth/the-inside-is-painted-and-the-outside-is-paper",
+                    the_inside_is_painted_and_the_outside_is_paper);
+    g_test_add_func("/synth/a-coherent-field-votes-back-the-exemplar",
+                    a_coherent_field_votes_back_the_exemplar);
+    g_test_add_func("/synth/upscaling-keeps-a-rotated-field-coherent",
+                    upscaling_keeps_a_rotated_field_coherent);
+    return g_test_run();
+}
