@@ -10,6 +10,8 @@ typedef struct Walk {
     FlLeaves *leaves;
     GHashTable *taken; // id -> xmlNode, the first of that id
     int unit;          // outermost unit around, -1: none
+    char *masked;      // id of the outermost group around with a mask, NULL: none
+    int turn;          // leaves met in it
     int n_made;        // ids made
 } Walk;
 
@@ -89,8 +91,11 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         g_autofree char *marker = fl_property(node, markers[i]);
         whole = marker && strcmp(marker, "none") != 0;
     }
+    char *id = give_id(w, node);
     return (FlLeaf){
-        .id = give_id(w, node),
+        .id = id,
+        .layer = g_strdup(w->masked ? w->masked : id),
+        .turn = w->masked ? w->turn++ : -1,
         .name = g_strdup(name ? (const char *)name : ""),
         .labels = g_strdup(w->labels->str),
         .layers = g_strdup(w->layers->str),
@@ -136,13 +141,37 @@ static bool is_translucent(const xmlNode *node)
 
 static void walk(Walk *w, xmlNode *node);
 
+/**
+ * Walks a group with a mask. librsvg draws the mask's content only if the group itself, or one
+ * around it, is the layer it renders; its leaves are then shown in turn, the others being
+ * transparent.
+ */
+static void walk_masked(Walk *w, xmlNode *node)
+{
+    w->masked = give_id(w, node);
+    w->turn = 0;
+    const guint first = w->leaves->leaf->len;
+    walk(w, node);
+    if (w->leaves->leaf->len == first + 1)
+        g_array_index(w->leaves->leaf, FlLeaf, first).turn = -1;
+    g_clear_pointer(&w->masked, g_free);
+}
+
+static void walk_group(Walk *w, xmlNode *node)
+{
+    if (!w->masked && is_set(node, "mask"))
+        walk_masked(w, node);
+    else
+        walk(w, node);
+}
+
 /** Walks a group that may have to be drawn as one; it is a unit if it has two leaves or more. */
 static void walk_unit(Walk *w, xmlNode *node, bool inseparable)
 {
     FlLeaves *leaves = w->leaves;
     const int first = (int)leaves->leaf->len;
     w->unit = (int)leaves->unit->len;
-    walk(w, node);
+    walk_group(w, node);
     w->unit = -1;
     const int n = (int)leaves->leaf->len - first;
     if (n < 2) {
@@ -173,7 +202,7 @@ static void walk(Walk *w, xmlNode *node)
                    (inseparable || is_set(child, "mask") || is_translucent(child))) {
             walk_unit(w, child, inseparable);
         } else if (is_container(child)) {
-            walk(w, child);
+            walk_group(w, child);
         }
         cut_back(w, m);
     }
@@ -183,6 +212,7 @@ static void leaf_clear(void *data)
 {
     FlLeaf *leaf = data;
     g_free(leaf->id);
+    g_free(leaf->layer);
     g_free(leaf->name);
     g_free(leaf->labels);
     g_free(leaf->layers);

@@ -11,6 +11,8 @@
  */
 typedef struct FlLeaf {
     char *id;      // in the normalised document, unique
+    char *layer;   // id of what is rendered for it: the outermost group around with a mask, else id
+    int turn;      // its place among the leaves of such a group; -1: it is alone there
     char *name;    // the id the author gave it, or ""
     char *labels;  // what names it and the groups around it: layer labels, telling ids
     char *layers;  // the layers among them; the outermost group if there are none

@@ -343,6 +343,11 @@ int fl_paint_read(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]
     g_auto(GStrv) lines = g_strsplit(script, "\n", -1);
     for (int i = 0; lines[i]; i++)
         read_line(&r, lines[i]);
+    for (guint i = r.ops->len; i-- > 0;) {
+        const Op *op = &g_array_index(r.ops, Op, i);
+        if (op->source.rgba[3] * op->alpha < 1 / 510.0)
+            g_array_remove_index(r.ops, i);
+    }
     const int n = take_apart(r.ops, whole, parts);
     source_clear(&r.next);
     g_array_unref(r.ops);

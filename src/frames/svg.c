@@ -14,7 +14,8 @@ struct FlSvg {
     xmlDoc *doc;
     char *original; // the text before it was normalised
     size_t original_bytes;
-    RsvgHandle *handle[3]; // by FlPart; but WHOLE made when first needed
+    RsvgHandle *handle;   // of the normalised document
+    GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
     FlLeaves *leaves;
 };
 
@@ -38,33 +39,44 @@ static RsvgHandle *make_handle(const FlSvg *svg, const char *text, size_t bytes,
     return handle;
 }
 
-/** Adds a declaration that wins over the style sheets to the style of every leaf. */
-static void declare_everywhere(const xmlDoc *doc, const FlLeaves *leaves, const char *declaration)
+static int variant_key(FlPart part, int turn)
 {
+    return (turn + 1) * 3 + (int)part;
+}
+
+/** Adds declarations that win over the style sheets to the style of the leaves. */
+static void declare(const xmlDoc *doc, const FlLeaves *leaves, FlPart part, int turn)
+{
+    static const char *const parts[] = {"", ";stroke:none !important", ";fill:none !important"};
     g_autoptr(GHashTable) ids = fl_document_ids((xmlDoc *)doc);
     for (guint i = 0; i < leaves->leaf->len; i++) {
-        xmlNode *node = g_hash_table_lookup(ids, g_array_index(leaves->leaf, FlLeaf, i).id);
+        const FlLeaf *leaf = &g_array_index(leaves->leaf, FlLeaf, i);
+        xmlNode *node = g_hash_table_lookup(ids, leaf->id);
         g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
-        g_autofree char *both =
-            g_strdup_printf("%s;%s", style ? (const char *)style : "", declaration);
-        xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)both);
+        const bool hidden = turn >= 0 && leaf->turn >= 0 && leaf->turn != turn;
+        g_autofree char *all = g_strconcat(style ? (const char *)style : "", parts[part],
+                                           hidden ? ";opacity:0 !important" : "", NULL);
+        xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)all);
     }
 }
 
-/** The handle that draws this part of every leaf; a copy of the document without the other. */
-static RsvgHandle *handle_of(FlSvg *svg, FlPart part, GError **error)
+/** The handle that draws this part of the leaves of this turn. */
+static RsvgHandle *handle_of(FlSvg *svg, FlPart part, int turn, GError **error)
 {
-    if (svg->handle[part])
-        return svg->handle[part];
-    g_autoptr(xmlDoc) copy = part == FL_PART_WHOLE ? NULL : xmlCopyDoc(svg->doc, 1);
-    if (copy)
-        declare_everywhere(copy, svg->leaves,
-                           part == FL_PART_FILL ? "stroke:none !important"
-                                                : "fill:none !important");
+    if (part == FL_PART_WHOLE && turn < 0)
+        return svg->handle;
+    gpointer key = GINT_TO_POINTER(variant_key(part, turn));
+    RsvgHandle *handle = g_hash_table_lookup(svg->variants, key);
+    if (handle)
+        return handle;
+    g_autoptr(xmlDoc) copy = xmlCopyDoc(svg->doc, 1);
+    declare(copy, svg->leaves, part, turn);
     size_t bytes = 0;
-    g_autofree char *text = fl_document_text(copy ? copy : svg->doc, &bytes);
-    svg->handle[part] = make_handle(svg, text, bytes, error);
-    return svg->handle[part];
+    g_autofree char *text = fl_document_text(copy, &bytes);
+    handle = make_handle(svg, text, bytes, error);
+    if (handle)
+        g_hash_table_insert(svg->variants, key, handle);
+    return handle;
 }
 
 static void set_number(xmlNode *node, const char *name, double value)
@@ -103,15 +115,19 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     if (!fl_document_normalise(svg->doc, path, number, warnings, error))
         return NULL;
     svg->leaves = fl_leaves_new(svg->doc);
-    return handle_of(svg, FL_PART_WHOLE, error) ? g_steal_pointer(&svg) : NULL;
+    svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
+    size_t bytes = 0;
+    g_autofree char *text = fl_document_text(svg->doc, &bytes);
+    svg->handle = make_handle(svg, text, bytes, error);
+    return svg->handle ? g_steal_pointer(&svg) : NULL;
 }
 
 void fl_svg_free(FlSvg *svg)
 {
     if (!svg)
         return;
-    for (int part = 0; part < 3; part++)
-        g_clear_object(&svg->handle[part]);
+    g_clear_object(&svg->handle);
+    g_clear_pointer(&svg->variants, g_hash_table_unref);
     fl_leaves_free(svg->leaves);
     if (svg->doc)
         xmlFreeDoc(svg->doc);
@@ -122,7 +138,7 @@ void fl_svg_free(FlSvg *svg)
 
 bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error)
 {
-    RsvgHandle *handle = svg->handle[FL_PART_WHOLE];
+    RsvgHandle *handle = svg->handle;
     if (rsvg_handle_get_intrinsic_size_in_pixels(handle, width, height) && *width > 0 &&
         *height > 0)
         return true;
@@ -145,26 +161,20 @@ const FlLeaves *fl_svg_leaves(const FlSvg *svg)
     return svg->leaves;
 }
 
-static bool draw_layer(FlSvg *svg, FlPart part, const char *id, cairo_t *cr, double width,
-                       double height, GError **error)
+bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
+                 double height, GError **error)
 {
     g_autoptr(GError) reason = NULL;
-    RsvgHandle *handle = handle_of(svg, part, error);
-    g_autofree char *layer = g_strconcat("#", id, NULL);
+    RsvgHandle *handle = handle_of(svg, part, leaf->turn, error);
+    g_autofree char *layer = g_strconcat("#", leaf->layer, NULL);
     const RsvgRectangle page = {0, 0, width, height};
     if (handle && rsvg_handle_render_layer(handle, cr, layer, &page, &reason))
         return true;
     if (handle) {
         set_rsvg_error(svg, reason, error);
-        g_prefix_error(error, "#%s in ", id);
+        g_prefix_error(error, "#%s in ", leaf->id);
     }
     return false;
-}
-
-bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
-                 double height, GError **error)
-{
-    return draw_layer(svg, part, leaf->id, cr, width, height, error);
 }
 
 static cairo_status_t append_script(void *text, const unsigned char *data, unsigned n)
@@ -176,13 +186,13 @@ static cairo_status_t append_script(void *text, const unsigned char *data, unsig
 /** The commands that draw a leaf, as text; to be freed. */
 static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, GError **error)
 {
-    double width = PROBE_PX, height = PROBE_PX;
+    const double width = PROBE_PX, height = PROBE_PX;
     GString *text = g_string_new(NULL);
     cairo_device_t *device = cairo_script_create_for_stream(append_script, text);
     g_autoptr(cairo_surface_t) surface =
         cairo_script_surface_create(device, CAIRO_CONTENT_COLOR_ALPHA, width, height);
     cairo_t *cr = cairo_create(surface);
-    const bool drawn = draw_layer(svg, part, leaf->id, cr, width, height, error);
+    const bool drawn = fl_svg_draw(svg, leaf, part, cr, width, height, error);
     cairo_destroy(cr);
     cairo_surface_finish(surface);
     cairo_device_finish(device);
