@@ -100,12 +100,6 @@ static bool run_import(char **words, GError **error)
     return done;
 }
 
-static const GOptionEntry list_entries[] = {
-    {"paths", 'p', 0, G_OPTION_ARG_NONE, &options.paths, "Also the folders that are searched",
-     NULL},
-    {NULL},
-};
-
 static bool written(GError **error)
 {
     if (fflush(stdout) == 0 && !ferror(stdout))
@@ -113,6 +107,92 @@ static bool written(GError **error)
     g_set_error_literal(error, FL_ERROR, FL_ERROR_OUTPUT, "standard output cannot be written");
     return false;
 }
+
+static const GOptionEntry check_entries[] = {
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "The picture sheet (NAME-check.png)",
+     "FILE"},
+    {"no-sheet", 0, 0, G_OPTION_ARG_NONE, &options.no_sheet, "Print the report only", NULL},
+    {"strict", 0, 0, G_OPTION_ARG_NONE, &options.strict, "Exit with 1 if there are problems", NULL},
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace the sheet", NULL},
+    {NULL},
+};
+
+static char *sheet_name(const char *style)
+{
+    g_autofree char *absolute = g_canonicalize_filename(style, NULL);
+    g_autofree char *base = g_path_get_basename(absolute);
+    return g_strconcat(base, "-check.png", NULL);
+}
+
+static bool check_one(const char *style, int *n_problems, GError **error)
+{
+    g_autofree char *sheet = options.no_sheet ? NULL
+                             : options.output ? g_strdup(options.output)
+                                              : sheet_name(style);
+    g_autoptr(FlStyleReport) report = fl_style_check(style, sheet, options.overwrite, error);
+    if (!report)
+        return false;
+    *n_problems += report->n_problems;
+    printf("%s", report->text);
+    if (sheet)
+        printf("sheet      %s\n", sheet);
+    return true;
+}
+
+static bool run_check(char **words, GError **error)
+{
+    int n_problems = 0;
+    if (!words[0])
+        return usage(error, "check needs a %s, by name or folder", "style");
+    if (words[1] && options.output)
+        return usage(error, "-o %s is one sheet, but there are several styles", options.output);
+    for (int i = 0; words[i]; i++) {
+        if (i > 0)
+            printf("\n");
+        if (!check_one(words[i], &n_problems, error))
+            return false;
+    }
+    if (!written(error))
+        return false;
+    if (!options.strict || n_problems == 0)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%d problem%s", n_problems,
+                n_problems == 1 ? "" : "s");
+    return false;
+}
+
+static void show_progress(int frame, int n_frames, void *data)
+{
+    if (!options.quiet)
+        fprintf(stderr, "fluidy-style: frame %d of %d\n", frame, n_frames);
+}
+
+static const GOptionEntry simulate_entries[] = {
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "The style to make", "DIR"},
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace a style in DIR", NULL},
+    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "No progress, only errors", NULL},
+    {NULL},
+};
+
+static bool run_simulate(char **words, GError **error)
+{
+    if (!words[0] || words[1])
+        return usage(error, "simulate takes one %s", "recipe");
+    if (!options.output)
+        return usage(error, "simulate needs -o %s, the style to make", "DIR");
+    g_autofree char *frames = g_build_filename(options.output, "frames", NULL);
+    if (!options.overwrite && g_file_test(frames, G_FILE_TEST_EXISTS)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s exists: -y overwrites it", frames);
+        return false;
+    }
+    return fl_watercolour_simulate(words[0], options.output, show_progress, NULL, error);
+}
+
+static const GOptionEntry list_entries[] = {
+    {"paths", 'p', 0, G_OPTION_ARG_NONE, &options.paths, "Also the folders that are searched",
+     NULL},
+    {NULL},
+};
 
 static bool run_list(char **words, GError **error)
 {
@@ -137,6 +217,10 @@ const FlStyleCommand fl_style_commands[] = {
      "numbered\npictures. Masks beside the pictures (mask_0001.png …) and alpha channels are "
      "kept.\n",
      import_entries, run_import},
+    {"check", "STYLE…", "report on styles, and draw picture sheets",
+     "STYLE is a name that fluidy-style list shows, or a folder.\n", check_entries, run_check},
+    {"simulate", "RECIPE -o DIR", "make a style by simulating paint", NULL, simulate_entries,
+     run_simulate},
     {"list", "", "list the styles that are found, and where",
      "Prints one style a line: name, tab, folder.\n", list_entries, run_list},
     {NULL},

@@ -1,0 +1,54 @@
+/* What a style holds, in numbers: how much paint, how it moves, how rich it is. */
+#ifndef FLUIDY_STYLE_MEASURE_H
+#define FLUIDY_STYLE_MEASURE_H
+
+#include "guides/guides.h"
+#include "style/bundle.h"
+
+/** Slower paint rests, px per frame; FL_MOVING_PX and faster paint moves. */
+#define FL_RESTING_PX 0.25f
+#define FL_MOVING_PX 0.5f
+#define FL_TOO_FAST_PX 4.0f // a faster front cannot be followed by 5x5 patches
+
+/** One frame. Shares are 0..1. */
+typedef struct FlFrameMeasure {
+    float paint;    // share of the frame inside the mask
+    float interior; // of the paint: deeper than the border
+    float resting;  // of the paint: slower than FL_RESTING_PX
+    float moving;   // of the paint: FL_MOVING_PX or faster
+    float front;    // median speed of the outline, px per frame
+    float steady;   // of the outline: from FL_MOVING_PX to FL_TOO_FAST_PX
+    float paper;    // median lightness of the bare paper, levels; -1: nothing is bare
+    float change;   // mean change of painted pixels' lightness to the next frame, levels; last: as
+                    // before
+} FlFrameMeasure;
+
+enum { FL_SPEED_BINS = 24, FL_OCTANTS = 8 };
+
+typedef struct FlMeasures {
+    int n_frames;
+    FlFrameMeasure *frame;
+    float speed[FL_SPEED_BINS]; // share of all paint by speed, 0.25 px per frame each; last: more
+    float
+        orientation[FL_OCTANTS]; // share of all outline by outward direction: right, down right, …
+    float rim[4];                // share of the left, top, right, bottom rim in the mask, at most
+    float texture;               // fine detail of the interior, levels (RMS above 2 px blur)
+    float thin_texture;          // the same where paint is a tenth to half as dense; -1: nowhere
+    float paper_texture;         // the same of bare paper; -1: nothing is bare
+    float alike;                 // RMS difference of the two likest 16x16 blocks; -1: none
+    int n_blocks;                // such blocks of paint in the last frame
+    float paper_range;           // how unevenly the bare paper is lit, levels
+    float edge;                  // density at the outline as a share of the interior's
+} FlMeasures;
+
+/** The style's guides with default parameters. NULL with an error set. */
+FlGuideSequence *fl_style_guides(const FlStyle *style, GError **error);
+
+/** Measures a style. NULL with FL_ERROR_NO_MEMORY or an error of the guides set. */
+FlMeasures *fl_measure(const FlStyle *style, const FlGuideSequence *sequence, GError **error);
+
+void fl_measures_free(FlMeasures *measures); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMeasures, fl_measures_free)
+
+#endif

@@ -1,0 +1,23 @@
+/* The picture sheet of fluidy-style check: everything that was understood, to be looked at. */
+#ifndef FLUIDY_STYLE_SHEET_H
+#define FLUIDY_STYLE_SHEET_H
+
+#include "style/measure.h"
+
+/** What a sheet shows; everything belongs to the caller. */
+typedef struct FlSheet {
+    const FlStyle *style;
+    const FlMeasures *measures;
+    const FlGuideSequence *guides;
+    const GPtrArray *facts;    // (element-type char*) lines
+    const GPtrArray *problems; // (element-type char*) lines
+} FlSheet;
+
+/**
+ * Draws frames with mask outline and border, the flow as arrows, histograms, facts and problems
+ * into a PNG file. Returns: false with FL_ERROR_OUTPUT, FL_ERROR_NO_MEMORY or an error of the
+ * guides set.
+ */
+bool fl_sheet_write(const FlSheet *sheet, const char *path, GError **error);
+
+#endif
