@@ -328,6 +328,35 @@ static void a_given_flow_replaces_the_constructed_one(void)
     g_assert_cmpfloat(g.flow[0], ==, 0.0f);
 }
 
+static bool fail_at_2(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    memset(coverage, 255, W * H);
+    if (frame == 2)
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "no such frame");
+    return frame != 2;
+}
+
+static bool not_a_number(void *data, int frame, float *flow, GError **error)
+{
+    for (int k = 0; k < 2 * W * H; k++)
+        flow[k] = frame == 1 ? NAN : 0.0f;
+    return true;
+}
+
+static void what_goes_wrong_in_the_source_is_passed_on(void)
+{
+    g_autoptr(GError) error = NULL, flow_error = NULL;
+    Draw draw = still_disc;
+    const FlGuideSource broken = {W, H, 5, fail_at_2, NULL, NULL};
+    const FlGuideSource bad_flow = {W, H, 3, draw_mask, not_a_number, &draw};
+    g_assert_null(fl_guide_sequence_new(&broken, &smoothed, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
+    g_assert_cmpstr(error->message, ==, "no such frame");
+    g_assert_null(fl_guide_sequence_new(&bad_flow, &smoothed, &flow_error));
+    g_assert_error(flow_error, FL_ERROR, FL_ERROR_INPUT);
+    g_assert_nonnull(strstr(flow_error->message, "the flow of frame 1 is not a number"));
+}
+
 static void wobble(int frame, uint8_t *mask)
 {
     draw_disc(mask, W, H, 20.0f + 1.7f * frame, 20.0f, 10.0f);
@@ -380,6 +409,7 @@ int main(int argc, char **argv)
     TEST(degenerate_shapes_are_defined);
     TEST(a_frame_of_one_pixel_is_defined);
     TEST(a_given_flow_replaces_the_constructed_one);
+    TEST(what_goes_wrong_in_the_source_is_passed_on);
     TEST(same_bytes_on_any_thread_count);
 #undef TEST
     return g_test_run();
