@@ -39,9 +39,9 @@ static void a_mistake_is_named_with_file_and_line(void)
         {"[project]\nbakground = none", ":2: [project] has no key “bakground”; did you mean "
                                         "“background”?"},
         {"[project]\nbackground = #12", ":2: background: “#12” is not a colour #RRGGBB"},
-        {"[project]\nfps = 0", ":2: fps: “0” is not a number above 0, 1000 at most"},
+        {"[project]\nfps = 0", ":2: fps: “0” is not a number from 0.01 to 1000 frames per second"},
         {"[project]\nseed = -3", ":2: seed: “-3” is not an integer from 1 on"},
-        {"[project]\nmissing = drop", ":2: missing: “drop” is not error, hold or skip"},
+        {"[project]\nmissing = drop", ":2: missing: “drop” is not one of error, hold, skip"},
         {"[defaults]\n\n# styles\nstyel = 01", ":4: [defaults] has no key “styel”; did you mean "
                                                "“style”?"},
         {"[defaults]\nstyle 01", ":2: “style 01” is neither “[section]” nor “key = value”"},
@@ -55,9 +55,14 @@ static void a_mistake_is_named_with_file_and_line(void)
         {"[region a]\nmatch-fil = #fff", ":2: [region] has no key “match-fil”; did you mean "
                                          "“match-fill”?"},
         {"[region a]\nmatch-fill = #ff", ":2: match-fill: “#ff” is not a colour #RRGGBB"},
-        {"[region a]\nmatch-id = ;", ":2: match-id: a name or a glob is missing; * matches all"},
-        {"[region a]\nmatch-tolerance = 256", ":2: match-tolerance: “256” is not an integer from 0 "
-                                              "to 255 levels"},
+        {"[region a]\nmatch-id = ;", ":2: match-id: a name or a glob is missing"},
+        {"[region a]\nmatch-tolerance = 256",
+         ":2: match-tolerance: “256” is not a number from 0.01 to "
+         "100"},
+        {"[region a]\nmatch = hair", ":2: match: “hair” is not *; for less than everything there "
+                                     "are match-fill, match-label and others"},
+        {"[region a]\nstyle = 01\n[region b]", ":1: [region a] does not say what it "
+                                               "matches: match-fill, match-label, … or match = *"},
         {"[region a]\nstacking = glase", ":2: stacking: “glase” is not knockout or glaze; did you "
                                          "mean “glaze”?"},
         {"[region a]\ntint = blue", ":2: tint: “blue” is not fill, keep or #RRGGBB"},
@@ -96,7 +101,7 @@ static void the_example_of_the_manual_is_read(void)
                                       "[ region line-art ]\nmatch-stroke = any\nmatch-fill = none\n"
                                       "passthrough = true\n");
     g_autofree char *paper = g_build_filename(folder, "paper.png", NULL);
-    g_assert_cmpstr(config->background, ==, paper);
+    g_assert_cmpstr(config->project.background, ==, paper);
     g_assert_cmpint(config->n_rules, ==, 2);
     const FlRule *hair = &config->rules[0];
     g_assert_cmpstr(hair->name, ==, "hair");
@@ -111,8 +116,8 @@ static void the_example_of_the_manual_is_read(void)
 static void later_words_win_and_a_preset_goes_first(void)
 {
     g_autoptr(FlConfig) config = load("[defaults]\nstyle = 02\nw-temp = 7\n"
-                                      "[region hair]\nw-temp = 3\nstyle = ./mine\n"
-                                      "[region skin]\nw-uni = 9\npreset = thesis\n");
+                                      "[region hair]\nmatch = *\nw-temp = 3\nstyle = ./mine\n"
+                                      "[region skin]\nmatch = *\nw-uni = 9\npreset = thesis\n");
     const FlSetting settings[] = {{"hair", "w-dir", "5"}, {NULL, "hold", "2"}};
     const FlRenderOptions options = {.settings = settings, .n_settings = 2};
 
@@ -135,9 +140,10 @@ static void later_words_win_and_a_preset_goes_first(void)
 
 static void the_options_win_over_the_project(void)
 {
-    g_autoptr(FlConfig) config = load("[project]\nfps = 12\nseed = 5\nmissing = hold\nkey = id\n"
-                                      "background = #ffffff\n");
-    FlRenderOptions options = {.fps = 30, .missing = FL_MISSING_ERROR};
+    g_autoptr(FlConfig) config =
+        load("[project]\nfps = 12\nseed = 5\ngap = 3\nstroke = drop\nmissing = hold\nkey = id\n"
+             "background = #ffffff\n");
+    FlRenderOptions options = {.fps = 30, .missing = FL_MISSING_ERROR, .gap = -1};
     fl_config_complete(config, &options);
     g_assert_cmpfloat(options.fps, ==, 30);
     g_assert_cmpint(options.missing, ==, FL_MISSING_ERROR);
@@ -145,6 +151,9 @@ static void the_options_win_over_the_project(void)
     g_assert_cmpint(options.key, ==, FL_KEY_ID);
     g_assert_cmpstr(options.background, ==, "#ffffff");
     g_assert_null(options.output);
+    g_assert_cmpint(options.stroke, ==, FL_STROKES_DROP);
+    g_assert_cmpfloat(options.gap, ==, 0);
+    g_assert_cmpint(options.blend, ==, FL_BLEND_SRGB);
 }
 
 int main(int argc, char **argv)

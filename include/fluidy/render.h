@@ -28,6 +28,21 @@ typedef enum FlRegionKey {
     FL_KEY_TREE,  /**< the place in the document tree */
 } FlRegionKey;
 
+/** What becomes of the strokes of the drawing. */
+typedef enum FlStrokes {
+    FL_STROKES_UNSET, /**< as the config says, else as FL_STROKES_KEEP */
+    FL_STROKES_KEEP,  /**< drawn over the paint; but painted where the drawing is mostly strokes */
+    FL_STROKES_PAINT, /**< painted as regions */
+    FL_STROKES_DROP,  /**< left out */
+} FlStrokes;
+
+/** In which light layers are blended. */
+typedef enum FlBlend {
+    FL_BLEND_UNSET, /**< as the config says, else as FL_BLEND_SRGB */
+    FL_BLEND_SRGB,  /**< as SVG does it */
+    FL_BLEND_LINEAR,
+} FlBlend;
+
 /** What to do about output files that exist. */
 typedef enum FlOverwrite {
     FL_OVERWRITE_REFUSE, /**< FL_ERROR_EXISTS before anything is painted */
@@ -58,7 +73,7 @@ typedef struct FlProgress {
 
 /**
  * Everything a render is told. A zeroed struct asks for all defaults; inputs are required.
- * What is not said here is as the config says.
+ * What is not said here is as the config says; a negative gap or feather says none.
  *
  * Strings belong to the caller and must stay until fl_render() returns. Paths and patterns are
  * relative to the working directory. A pattern has one frame number, written %d, %04d or ####.
@@ -72,6 +87,7 @@ typedef struct FlRenderOptions {
     const char *canvas; /**< "WxH" or "WxH+X+Y" in px, for SVGs without a size; NULL: theirs */
     const char *flow;   /**< pattern of flow files; may hold {region}; NULL: made from the masks */
     FlRegionKey key;
+    FlStrokes stroke;
     bool strict; /**< a warning about an SVG is an error: FL_ERROR_INPUT */
 
     /* How it is painted. */
@@ -89,7 +105,10 @@ typedef struct FlRenderOptions {
     int width, height;      /**< px; 0: from the other, by the drawing's aspect; both 0: scale */
     double scale;           /**< px of output per px of the drawing; 0: 1 */
     double dpi;             /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
-    double fps;             /**< frames per second of the film, for the exemplar's speed; 0: 24 */
+    double gap;             /**< px of paper around a region that hides others, ..32; 0: none */
+    double feather;         /**< px over which paint fades towards such a region, ..32; 0: none */
+    FlBlend blend;
+    double fps; /**< frames per second of the film, for the exemplar's speed; 0: 24 */
     FlOverwrite overwrite;
     const char *stats; /**< JSON lines about every frame, region and level; NULL: none */
     const char

@@ -20,6 +20,8 @@ static const struct Number {
     {"--dpi", offsetof(FlArgs, render.dpi), AS_DOUBLE, 1, 100000, " px per inch"},
     {"--fps", offsetof(FlArgs, render.fps), AS_DOUBLE, 0.01, 1000, " frames per second"},
     {"--seed", offsetof(FlArgs, render.seed), AS_UINT64, 1, 9007199254740991.0, ""},
+    {"--gap", offsetof(FlArgs, render.gap), AS_DOUBLE, 0, 32, " px"},
+    {"--feather", offsetof(FlArgs, render.feather), AS_DOUBLE, 0, 32, " px"},
     {"--threads", offsetof(FlArgs, render.threads), AS_INT, 1, 1024, ""},
 };
 
@@ -35,6 +37,8 @@ static const struct Choice {
      offsetof(FlArgs, render.key),
      FL_KEY_AUTO,
      {"auto", "fill", "id", "class", "label", "tree"}},
+    {"--stroke", offsetof(FlArgs, render.stroke), FL_STROKES_KEEP, {"keep", "paint", "drop"}},
+    {"--blend", offsetof(FlArgs, render.blend), FL_BLEND_SRGB, {"srgb", "linear"}},
     {"--progress",
      offsetof(FlArgs, progress),
      FL_PROGRESS_AUTO,
@@ -96,7 +100,7 @@ static gboolean read_number(const char *name, const char *value, gpointer data, 
     if (n->type == AS_INT)
         *(int *)field = (int)number;
     else if (n->type == AS_DOUBLE)
-        *(double *)field = number;
+        *(double *)field = number > 0 ? number : -1; // 0 is said, and wins over the config
     else
         *(uint64_t *)field = (uint64_t)number;
     return TRUE;
@@ -218,7 +222,10 @@ static const GOptionEntry more[] = {
      "what makes leaves one region: auto, fill, id, class, label or tree (auto)", "WORD"},
     {"strict", 0, FLAG(read_flag), "a warning about a drawing is an error", NULL},
     {"stacking", 0, VALUE(read_setting), "knockout or glaze what lies below (knockout)", "WORD"},
-    {"stroke", 0, VALUE(read_setting), "keep, paint or drop line art (keep)", "WORD"},
+    {"stroke", 0, VALUE(read_choice), "keep, paint or drop line art (keep)", "WORD"},
+    {"gap", 0, VALUE(read_number), "paper left around a region that hides others (0)", "PX"},
+    {"feather", 0, VALUE(read_number), "fade paint towards such a region (0)", "PX"},
+    {"blend", 0, VALUE(read_choice), "layers in srgb or in linear light (srgb)", "WORD"},
     {"flow", 0, PLACE(read_path), "flow fields instead of those made from the masks", "PATTERN"},
     {"stats", 0, PLACE(read_path), "JSON lines about every frame, region and level", "FILE"},
     {"dump", 0, PLACE(read_path), "guides and fields as pictures and raw data", "DIR"},

@@ -38,6 +38,23 @@ static bool usage(GError **error, const char *format, ...)
     return false;
 }
 
+static const struct MatchKey {
+    const char *key;
+    size_t offset;
+} match_keys[] = {
+    {"match-fill", offsetof(FlRule, match_fill)},
+    {"match-stroke", offsetof(FlRule, match_stroke)},
+    {"match-id", offsetof(FlRule, match_id)},
+    {"match-class", offsetof(FlRule, match_class)},
+    {"match-label", offsetof(FlRule, match_label)},
+    {"match-layer", offsetof(FlRule, match_layer)},
+};
+
+static char ***match_list(FlRule *rule, int i)
+{
+    return (char ***)((char *)rule + match_keys[i].offset);
+}
+
 /* ---- sections ---------------------------------------------------------------------------- */
 
 static bool start_region(Reader *reader, const char *name, int line, GError **error)
@@ -93,47 +110,87 @@ static bool set_version(Reader *reader, const char *value, GError **error)
            usage(error, "version: “%s” is not 1, the only version there is", value);
 }
 
+/* The config owns what [project] says. */
+static const char *own(Reader *reader, char *string)
+{
+    g_ptr_array_add(reader->config->strings, string);
+    return string;
+}
+
 static bool set_background(Reader *reader, const char *value, GError **error)
 {
     uint8_t rgb[3];
     const bool word = fl_text_colour(value, rgb) || strcmp(value, "none") == 0;
     if (*value == '#' && !word)
         return usage(error, "background: “%s” is not a colour #RRGGBB", value);
-    reader->config->background = word ? g_strdup(value) : path_from(reader, value);
+    reader->config->project.background =
+        own(reader, word ? g_strdup(value) : path_from(reader, value));
     return true;
 }
 
-static bool set_canvas(Reader *reader, const char *value, GError **error)
+typedef enum ProjectKind { TEXT, FILE_PATTERN, NUMBER, WORD } ProjectKind;
+
+/* Keys whose value goes into a field of FlRenderOptions; the first word of a WORD has the value 1.
+ */
+static const struct ProjectKey {
+    const char *key;
+    ProjectKind kind;
+    size_t offset;
+    const char *form;
+    double min, max;
+} project_keys[] = {
+#define AT(field) offsetof(FlRenderOptions, field)
+    {"blend", WORD, AT(blend), "srgb|linear"},
+    {"canvas", TEXT, AT(canvas)},
+    {"feather", NUMBER, AT(feather), "px", 0, 32},
+    {"fps", NUMBER, AT(fps), "frames per second", 0.01, 1000},
+    {"frames", TEXT, AT(frames)},
+    {"gap", NUMBER, AT(gap), "px", 0, 32},
+    {"key", WORD, AT(key), "auto|fill|id|class|label|tree"},
+    {"layers", FILE_PATTERN, AT(layers)},
+    {"missing", WORD, AT(missing), "error|hold|skip"},
+    {"output", FILE_PATTERN, AT(output)},
+    {"stroke", WORD, AT(stroke), "keep|paint|drop"},
+#undef AT
+};
+
+static bool set_number(const struct ProjectKey *key, double *field, const char *value,
+                       GError **error)
 {
-    reader->config->canvas = g_strdup(value);
-    return true;
+    return (fl_text_number(value, field) && *field >= key->min && *field <= key->max) ||
+           usage(error, "%s: “%s” is not a number from %g to %g %s", key->key, value, key->min,
+                 key->max, key->form);
 }
 
-static bool set_frames(Reader *reader, const char *value, GError **error)
+static bool set_word(const struct ProjectKey *key, int *field, const char *value, GError **error)
 {
-    reader->config->frames = g_strdup(value);
-    return true;
+    if (fl_text_choice(value, key->form, field)) {
+        ++*field;
+        return true;
+    }
+    g_auto(GStrv) words = g_strsplit(key->form, "|", -1);
+    g_autofree char *list = g_strjoinv(", ", words);
+    g_autofree char *hint = fl_did_you_mean(value, (const char *const *)words);
+    return usage(error, "%s: “%s” is not one of %s%s", key->key, value, list, hint);
 }
 
-static bool set_output(Reader *reader, const char *value, GError **error)
+static bool set_project_field(Reader *reader, const struct ProjectKey *key, const char *value,
+                              GError **error)
 {
-    reader->config->output = path_from(reader, value);
-    return true;
-}
-
-static bool set_layers(Reader *reader, const char *value, GError **error)
-{
-    reader->config->layers = path_from(reader, value);
-    return true;
-}
-
-static bool set_fps(Reader *reader, const char *value, GError **error)
-{
-    double fps = 0;
-    if (!fl_text_number(value, &fps) || fps <= 0 || fps > 1000)
-        return usage(error, "fps: “%s” is not a number above 0, 1000 at most", value);
-    reader->config->fps = fps;
-    return true;
+    void *const field = (char *)&reader->config->project + key->offset;
+    switch (key->kind) {
+    case TEXT:
+        *(const char **)field = own(reader, g_strdup(value));
+        return true;
+    case FILE_PATTERN:
+        *(const char **)field = own(reader, path_from(reader, value));
+        return true;
+    case NUMBER:
+        return set_number(key, field, value, error);
+    case WORD:
+        return set_word(key, field, value, error);
+    }
+    g_assert_not_reached();
 }
 
 static bool set_seed(Reader *reader, const char *value, GError **error)
@@ -141,68 +198,40 @@ static bool set_seed(Reader *reader, const char *value, GError **error)
     guint64 seed = 0;
     if (!g_ascii_string_to_unsigned(value, 10, 1, G_MAXUINT64, &seed, NULL))
         return usage(error, "seed: “%s” is not an integer from 1 on", value);
-    reader->config->seed = seed;
-    return true;
-}
-
-static bool set_missing(Reader *reader, const char *value, GError **error)
-{
-    int index = 0;
-    if (!fl_text_choice(value, "error|hold|skip", &index))
-        return usage(error, "missing: “%s” is not error, hold or skip", value);
-    reader->config->missing = FL_MISSING_ERROR + index;
-    return true;
-}
-
-static bool set_key(Reader *reader, const char *value, GError **error)
-{
-    int index = 0;
-    if (!fl_text_choice(value, "auto|fill|id|class|label|tree", &index))
-        return usage(error, "key: “%s” is not auto, fill, id, class, label or tree", value);
-    reader->config->key = FL_KEY_AUTO + index;
+    reader->config->project.seed = seed;
     return true;
 }
 
 static bool set_project(Reader *reader, const char *key, const char *value, GError **error)
 {
-    static const char *const keys[] = {"version", "background", "canvas", "fps",  "frames", "key",
-                                       "layers",  "missing",    "output", "seed", NULL};
-    static bool (*const setters[])(Reader *, const char *, GError **) = {
-        set_version, set_background, set_canvas,  set_fps,    set_frames,
-        set_key,     set_layers,     set_missing, set_output, set_seed};
-    for (int i = 0; keys[i]; i++)
-        if (strcmp(keys[i], key) == 0)
-            return setters[i](reader, value, error);
-    g_autofree char *hint = fl_did_you_mean(key, keys);
+    static const struct {
+        const char *key;
+        bool (*set)(Reader *, const char *, GError **);
+    } others[] = {{"version", set_version}, {"background", set_background}, {"seed", set_seed}};
+    g_autoptr(GPtrArray) known = g_ptr_array_new();
+    for (size_t i = 0; i < G_N_ELEMENTS(others); i++) {
+        if (strcmp(others[i].key, key) == 0)
+            return others[i].set(reader, value, error);
+        g_ptr_array_add(known, (gpointer)others[i].key);
+    }
+    for (size_t i = 0; i < G_N_ELEMENTS(project_keys); i++) {
+        if (strcmp(project_keys[i].key, key) == 0)
+            return set_project_field(reader, &project_keys[i], value, error);
+        g_ptr_array_add(known, (gpointer)project_keys[i].key);
+    }
+    g_ptr_array_add(known, NULL);
+    g_autofree char *hint = fl_did_you_mean(key, (const char *const *)known->pdata);
     return usage(error, "[project] has no key “%s”%s", key, hint);
 }
 
 /* ---- [region NAME] ----------------------------------------------------------------------- */
 
-static const struct MatchKey {
-    const char *key;
-    size_t offset;
-} match_keys[] = {
-    {"match", offsetof(FlRule, match)},
-    {"match-fill", offsetof(FlRule, match_fill)},
-    {"match-stroke", offsetof(FlRule, match_stroke)},
-    {"match-id", offsetof(FlRule, match_id)},
-    {"match-class", offsetof(FlRule, match_class)},
-    {"match-label", offsetof(FlRule, match_label)},
-    {"match-layer", offsetof(FlRule, match_layer)},
-};
-
-static char ***match_list(FlRule *rule, int i)
-{
-    return (char ***)((char *)rule + match_keys[i].offset);
-}
-
-/* Paints that start with # must be whole: "#3b2a1" would never match and never be missed. */
+/* A mistyped colour would never match, and never be missed. */
 static bool check_paints(const char *key, char **items, GError **error)
 {
     uint8_t rgb[3];
     for (; *items; items++)
-        if (**items == '#' && !strpbrk(*items, "*?[") && !fl_text_colour(*items, rgb))
+        if (**items == '#' && !fl_text_colour(*items, rgb))
             return usage(error, "%s: “%s” is not a colour #RRGGBB", key, *items);
     return true;
 }
@@ -212,11 +241,20 @@ static bool set_match(FlRule *rule, int i, const char *value, GError **error)
     const char *key = match_keys[i].key;
     g_auto(GStrv) items = fl_keyfile_list(value);
     if (!items[0])
-        return usage(error, "%s: a name or a glob is missing; * matches all", key);
+        return usage(error, "%s: a name or a glob is missing", key);
     const bool paints = strcmp(key, "match-fill") == 0 || strcmp(key, "match-stroke") == 0;
     if (paints && !check_paints(key, items, error))
         return false;
     *match_list(rule, i) = g_steal_pointer(&items);
+    return true;
+}
+
+static bool set_tolerance(FlRule *rule, const char *value, GError **error)
+{
+    double tolerance = 0;
+    if (!fl_text_number(value, &tolerance) || tolerance < 0.01 || tolerance > 100)
+        return usage(error, "match-tolerance: “%s” is not a number from 0.01 to 100", value);
+    rule->match_tolerance = (float)tolerance;
     return true;
 }
 
@@ -228,8 +266,9 @@ static bool unknown_key(const char *section, const char *key, bool matches, GErr
         g_ptr_array_add(known, (gpointer)*k);
     for (size_t i = 0; matches && i < G_N_ELEMENTS(match_keys); i++)
         g_ptr_array_add(known, (gpointer)match_keys[i].key);
-    if (matches)
-        g_ptr_array_add(known, (gpointer) "match-tolerance");
+    static const char *const other_matches[] = {"match", "match-tolerance"};
+    for (size_t i = 0; matches && i < G_N_ELEMENTS(other_matches); i++)
+        g_ptr_array_add(known, (gpointer)other_matches[i]);
     g_ptr_array_add(known, NULL);
     g_autofree char *hint = fl_did_you_mean(key, (const char *const *)known->pdata);
     return usage(error, "[%s] has no key “%s”%s", section, key, hint);
@@ -246,8 +285,15 @@ static bool set_region(FlRule *rule, const char *key, const char *value, GError 
         if (strcmp(match_keys[i].key, key) == 0)
             return set_match(rule, (int)i, value, error);
     if (strcmp(key, "match-tolerance") == 0)
-        return fl_text_integer(value, 0, 255, &rule->match_tolerance) ||
-               usage(error, "match-tolerance: “%s” is not an integer from 0 to 255 levels", value);
+        return set_tolerance(rule, value, error);
+    if (strcmp(key, "match") == 0) {
+        rule->match_all = strcmp(value, "*") == 0;
+        return rule->match_all ||
+               usage(error,
+                     "match: “%s” is not *; for less than everything there are match-fill, "
+                     "match-label and others",
+                     value);
+    }
     if (!known_wish(key))
         return unknown_key("region", key, true, error);
     return fl_wishes_add(&rule->wishes, key, value, error);
@@ -282,9 +328,27 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
 
 /* ---- the whole --------------------------------------------------------------------------- */
 
+/* A section that matches nothing in particular would silently take the whole drawing. */
+static bool check_rules(const FlConfig *config, GError **error)
+{
+    for (int r = 0; r < config->n_rules; r++) {
+        FlRule *rule = &config->rules[r];
+        bool matches = rule->match_all;
+        for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
+            matches |= *match_list(rule, (int)i) != NULL;
+        if (!matches)
+            return usage(error,
+                         "%s:%d: [region %s] does not say what it matches: match-fill, "
+                         "match-label, … or match = *",
+                         config->path, rule->line, rule->name);
+    }
+    return true;
+}
+
 FlConfig *fl_config_load(const char *path, GError **error)
 {
     g_autoptr(FlConfig) config = g_new0(FlConfig, 1);
+    config->strings = g_ptr_array_new_with_free_func(g_free);
     if (!path)
         return g_steal_pointer(&config);
     g_auto(Reader) reader = {
@@ -295,7 +359,9 @@ FlConfig *fl_config_load(const char *path, GError **error)
     config->path = g_strdup(path);
     config->defaults.folder = g_strdup(reader.folder);
     const FlKeyReader calls = {read_section, read_entry, &reader};
-    return fl_keyfile_read(path, &calls, error) ? g_steal_pointer(&config) : NULL;
+    if (!fl_keyfile_read(path, &calls, error) || !check_rules(config, error))
+        return NULL;
+    return g_steal_pointer(&config);
 }
 
 static void rule_clear(FlRule *rule)
@@ -314,38 +380,38 @@ void fl_config_free(FlConfig *config)
         rule_clear(&config->rules[i]);
     g_free(config->rules);
     fl_wishes_clear(&config->defaults);
-    char *const strings[] = {config->path,   config->background, config->canvas,
-                             config->frames, config->output,     config->layers};
-    for (size_t i = 0; i < G_N_ELEMENTS(strings); i++)
-        g_free(strings[i]);
+    g_ptr_array_unref(config->strings);
+    g_free(config->path);
     g_free(config);
 }
 
-static void complete_string(const char **option, const char *said)
-{
-    if (!*option)
-        *option = said;
-}
+/* The option, else what [project] says, else the default. */
+#define COMPLETE(field, fallback)                                                                  \
+    do {                                                                                           \
+        if (!options->field)                                                                       \
+            options->field = config->project.field;                                                \
+        if (!options->field)                                                                       \
+            options->field = fallback;                                                             \
+    } while (0)
 
 void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
 {
-    complete_string(&options->background, config->background);
-    complete_string(&options->canvas, config->canvas);
-    complete_string(&options->frames, config->frames);
-    complete_string(&options->output, config->output);
-    complete_string(&options->layers, config->layers);
-    if (options->missing == FL_MISSING_UNSET)
-        options->missing = config->missing ? config->missing : FL_MISSING_ERROR;
-    if (options->key == FL_KEY_UNSET)
-        options->key = config->key ? config->key : FL_KEY_AUTO;
-    if (options->seed == 0)
-        options->seed = config->seed ? config->seed : 1;
-    if (options->fps == 0)
-        options->fps = config->fps > 0 ? config->fps : 24;
-    if (options->dpi == 0)
-        options->dpi = 96;
-    if (options->scale == 0)
-        options->scale = 1;
+    COMPLETE(background, NULL);
+    COMPLETE(canvas, NULL);
+    COMPLETE(frames, NULL);
+    COMPLETE(output, NULL);
+    COMPLETE(layers, NULL);
+    COMPLETE(missing, FL_MISSING_ERROR);
+    COMPLETE(key, FL_KEY_AUTO);
+    COMPLETE(stroke, FL_STROKES_KEEP);
+    COMPLETE(blend, FL_BLEND_SRGB);
+    COMPLETE(gap, 0);
+    COMPLETE(feather, 0);
+    COMPLETE(seed, 1);
+    COMPLETE(fps, 24);
+    COMPLETE(dpi, 96);
+    options->gap = MAX(options->gap, 0);
+    options->feather = MAX(options->feather, 0);
 }
 
 /* Settings go through wishes, so that a preset among them comes first. */

@@ -6,33 +6,31 @@
 #include <fluidy/render.h>
 
 /**
- * A [region NAME] section. It holds for a leaf if every list that is not NULL has an item for it.
+ * A [region NAME] section. It holds for a leaf if every list that is not NULL has an item for it;
+ * with match = * all of them are NULL.
  *
- * Lists are NULL-terminated; items are globs of * and ? and [], compared without case. A fill or
- * stroke is "#rrggbb", "any", "none", "gradient", "image" or a glob.
+ * Lists are NULL-terminated; items are globs of * and ?, compared without case. A fill or stroke is
+ * a CSS colour, "any", "none", "gradient" or "image".
  */
 typedef struct FlRule {
-    char *name;   // of the section; unique in the file
-    int line;     // of the section, from 1
-    char **match; // the region's own name or its layer label
+    char *name;     // of the section; unique in the file
+    int line;       // of the section, from 1
+    bool match_all; // match = *
     char **match_fill, **match_stroke;
     char **match_id, **match_class, **match_label;
-    char **match_layer;  // any of the names in the leaf's label path
-    int match_tolerance; // levels per channel that a fill or stroke may be off, 0..255
+    char **match_layer;    // any of the names in the leaf's label path
+    float match_tolerance; // of colours, CIE76, 0..100; 0: not said
     FlWishes wishes;
 } FlRule;
 
 /** A config in memory. Rules are in the order of the file: the first that holds for a leaf wins. */
 typedef struct FlConfig {
-    char *path;                                           // for messages; NULL: no file
-    char *background, *canvas, *frames, *output, *layers; // of [project]; NULL: not said
-    double fps;                                           // 0: not said
-    uint64_t seed;                                        // 0: not said
-    FlMissing missing;
-    FlRegionKey key;
-    FlWishes defaults; // of [defaults]
+    char *path;              // for messages; NULL: no file
+    FlRenderOptions project; // what [project] says; its strings are in `strings`
+    FlWishes defaults;       // of [defaults]
     int n_rules;
     FlRule *rules;
+    GPtrArray *strings;
 } FlConfig;
 
 /**

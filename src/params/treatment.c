@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef enum Kind { CHOICE, BOOL, INT, STYLE, TINT, NAME } Kind;
+typedef enum Kind { CHOICE, BOOL, INT, STYLE, TINT, PASS, NAME } Kind;
 
 static const struct Setting {
     const char *field;
@@ -73,16 +73,26 @@ static char *style_path(const char *value, const char *folder)
     return is_path ? g_steal_pointer(&path) : g_strdup(value);
 }
 
-static bool set_tint(FlTint *tint, const char *value)
+static bool set_tint(FlTreatment *treatment, const char *value)
 {
-    int mode = 0;
-    if (fl_text_choice(value, "fill|keep", &mode)) {
-        *tint = (FlTint){.mode = mode ? FL_TINT_KEEP : FL_TINT_FILL};
-        return true;
-    }
-    if (!fl_text_colour(value, tint->rgb))
+    int tint = FL_TINT_FILL;
+    const bool is_colour = fl_text_colour(value, treatment->colour);
+    if (!is_colour && !fl_text_choice(value, "fill|keep", &tint))
         return false;
-    tint->mode = FL_TINT_COLOUR;
+    treatment->tint = tint;
+    treatment->has_colour = is_colour;
+    return true;
+}
+
+static bool set_passthrough(FlPassthrough *passthrough, const char *value)
+{
+    bool on = false;
+    if (fl_text_bool(value, &on))
+        *passthrough = on ? FL_PASSTHROUGH_YES : FL_PASSTHROUGH_NO;
+    else if (g_ascii_strcasecmp(value, "auto") == 0)
+        *passthrough = FL_PASSTHROUGH_AUTO;
+    else
+        return false;
     return true;
 }
 
@@ -104,7 +114,9 @@ static bool store(FlTreatment *treatment, const struct Setting *setting, const c
     case INT:
         return set_int(field, setting->form, value);
     case TINT:
-        return set_tint(field, value);
+        return set_tint(treatment, value);
+    case PASS:
+        return set_passthrough(field, value);
     case STYLE:
         replace_string(field, style_path(value, folder));
         return true;

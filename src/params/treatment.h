@@ -11,24 +11,30 @@ typedef enum FlDetail { FL_DETAIL_DRAFT, FL_DETAIL_NORMAL, FL_DETAIL_FINE } FlDe
 /** What a region does to the regions below it. */
 typedef enum FlStacking { FL_STACKING_KNOCKOUT, FL_STACKING_GLAZE } FlStacking;
 
-/** What becomes of the drawing's strokes. */
-typedef enum FlStroke { FL_STROKE_KEEP, FL_STROKE_PAINT, FL_STROKE_DROP } FlStroke;
-
-typedef struct FlTint {
-    enum { FL_TINT_FILL, FL_TINT_KEEP, FL_TINT_COLOUR } mode;
-    uint8_t rgb[3]; // of FL_TINT_COLOUR
+/** The colour of the paint. */
+typedef enum FlTint {
+    FL_TINT_FILL, // the drawing's fill, or another one
+    FL_TINT_KEEP, // the exemplar's own colours
 } FlTint;
+
+/** Whether a region is painted at all. */
+typedef enum FlPassthrough {
+    FL_PASSTHROUGH_AUTO, // strokes and shading are not
+    FL_PASSTHROUGH_NO,   // it is
+    FL_PASSTHROUGH_YES,  // it is drawn as it is
+} FlPassthrough;
 
 /** How one region is painted, everything decided. */
 typedef struct FlTreatment {
     char *style; // a name or a path; NULL: nobody said
     FlTint tint;
+    bool has_colour;   // with FL_TINT_FILL: `colour` instead of the drawing's fill
+    uint8_t colour[3]; // sRGB
     FlDetail detail;
     FlStacking stacking;
-    FlStroke stroke;
     int hold; // frames, 1..1000
     bool reverse;
-    bool passthrough;
+    FlPassthrough passthrough;
     char *merge_with; // another region's name; NULL: none
     FlParams params;
 } FlTreatment;
