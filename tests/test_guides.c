@@ -1,5 +1,6 @@
 #include "guide_shapes.h"
 #include "guides/guides.h"
+#include "guides/store.h"
 #include <math.h>
 #include <string.h>
 #ifdef _OPENMP
@@ -357,6 +358,23 @@ static void what_goes_wrong_in_the_source_is_passed_on(void)
     g_assert_nonnull(strstr(flow_error->message, "the flow of frame 1 is not a number"));
 }
 
+static void stored_integers_of_any_size_come_back(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(FlSpill) spill = fl_spill_new(40, &error);
+    for (int size = 0; size < 20; size++)
+        for (int step = 1; step <= 2; step++) {
+            int32_t values[64], back[64];
+            for (int k = 0; k < 64; k++)
+                values[k] = (int32_t)((0x40000000u >> size) * (uint32_t)(k % 5 - 2) + (uint32_t)k);
+            values[63] = size == 0 ? INT32_MAX : 0;
+            const size_t block = 2 * size + step - 1;
+            g_assert_true(fl_store_put(spill, block, values, 64, step, &error));
+            g_assert_true(fl_store_get(spill, block, back, 64, step, &error));
+            g_assert_cmpmem(back, sizeof back, values, sizeof values);
+        }
+}
+
 static void wobble(int frame, uint8_t *mask)
 {
     draw_disc(mask, W, H, 20.0f + 1.7f * frame, 20.0f, 10.0f);
@@ -410,6 +428,7 @@ int main(int argc, char **argv)
     TEST(a_frame_of_one_pixel_is_defined);
     TEST(a_given_flow_replaces_the_constructed_one);
     TEST(what_goes_wrong_in_the_source_is_passed_on);
+    TEST(stored_integers_of_any_size_come_back);
     TEST(same_bytes_on_any_thread_count);
 #undef TEST
     return g_test_run();

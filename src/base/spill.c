@@ -108,3 +108,9 @@ bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, 
     }
     return true;
 }
+
+size_t fl_spill_bytes(const FlSpill *spill, size_t block)
+{
+    g_assert(block < spill->n_blocks && spill->blocks[block].packed_bytes > 0);
+    return spill->blocks[block].bytes;
+}

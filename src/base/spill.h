@@ -21,6 +21,9 @@ bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, 
 /** Reads a block of exactly `bytes` bytes, as stored. Several threads may read. */
 bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, GError **error);
 
+/** The bytes of a stored block. */
+size_t fl_spill_bytes(const FlSpill *spill, size_t block);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSpill, fl_spill_free)
 
 #endif

@@ -212,20 +212,22 @@ static bool motion_of(Builder *b, int frame, const Motion **motion, GError **err
 static void add_motion(const FlOutline *to, const FlOutline *from, const float *motion,
                        float weight, float *flow, float *norm)
 {
-    const FlBox *box = &to->box;
-    for (int y = 0; y < box->height; y++)
-        for (int x = 0; x < box->width; x++) {
-            const int fx = box->x + x, fy = box->y + y;
-            const size_t p = y * (size_t)box->width + x;
-            if (to->coverage[p] < FL_INSIDE || !fl_outline_contains(from, fx, fy))
+    const FlBox *a = &to->box, *b = &from->box;
+    const int left = MAX(a->x, b->x), right = MIN(a->x + a->width, b->x + b->width);
+    const int top = MAX(a->y, b->y), bottom = MIN(a->y + a->height, b->y + b->height);
+    for (int y = top; y < bottom; y++) {
+        size_t p = (y - a->y) * (size_t)a->width + left - a->x;
+        size_t q = (y - b->y) * (size_t)b->width + left - b->x;
+        for (int x = left; x < right; x++, p++, q++) {
+            if (!(to->coverage[p] & from->coverage[q] & FL_INSIDE))
                 continue;
-            const size_t q = (fy - from->box.y) * (size_t)from->box.width + fx - from->box.x;
             norm[p] += weight;
             if (motion) {
                 flow[2 * p] += weight * motion[2 * q];
                 flow[2 * p + 1] += weight * motion[2 * q + 1];
             }
         }
+    }
 }
 
 /** *flow: NULL if nothing moves in the whole window, else of outline's box, to be freed. */
