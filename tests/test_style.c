@@ -115,11 +115,15 @@ static void style_ini_values_are_taken(void)
     g_autofree char *folder = drop_folder();
     write_text(folder, "style.ini",
                "# a comment\n[style]\nname = Ink\nauthor=A. Painter\nfps = 12.5\nborder = 9\n"
-               "medium = opaque\npaper = #fed\n[recipe]\nsteps = 3\n");
+               "medium = opaque\npaper = #fed\nlicence=\nmade-by=recipe.ini\n"
+               "missing-orientations = up, down\n[recipe]\nsteps = 3\n");
     g_autoptr(FlStyle) style = fl_style_load(folder, &error);
     g_assert_no_error(error);
     g_assert_cmpstr(style->name, ==, "Ink");
     g_assert_cmpstr(style->author, ==, "A. Painter");
+    g_assert_cmpstr(style->licence, ==, "");
+    g_assert_cmpstr(style->made_by, ==, "recipe.ini");
+    g_assert_cmpstr(style->missing_orientations, ==, "up, down");
     g_assert_cmpfloat(style->fps, ==, 12.5f);
     g_assert_cmpfloat(style->border_px, ==, 9);
     g_assert_cmpint(style->medium, ==, FL_MEDIUM_OPAQUE);
@@ -139,6 +143,7 @@ static void a_mistake_in_style_ini_is_told_with_its_line(void)
         {"[style]\nmedium = opaqe\n", "did you mean “opaque”?"},
         {"[style]\npaper = white\n", "style.ini:2: paper = white: expected a colour"},
         {"[style]\nfps = 3\nfps = 4\n", "style.ini:3: fps is given a second time"},
+        {"[style]\nfps =\n", "style.ini:2: fps = : expected a number"},
         {"[style]\nfps\n", "style.ini:2: \"fps\": expected \"key = value\""},
         {"fps = 3\n", "style.ini:1: \"fps = 3\" stands before any section"},
     };

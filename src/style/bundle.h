@@ -23,10 +23,12 @@ typedef struct FlStyle {
     float scale;      // px of the target per px of the style that suits it, > 0
     uint8_t paper[3]; // sRGB of the bare paper
     FlMedium medium;
-    uint8_t *rgb;     // n_frames * height * width * 3, sRGB
-    uint8_t *mask;    // n_frames * height * width, coverage 0..255
-    float *flow;      // n_frames * height * width * 2, px per frame; NULL: construct it
-    unsigned guessed; // FlGuess bits (manifest.h): what the folder does not say itself
+    uint8_t *rgb;               // n_frames * height * width * 3, sRGB
+    uint8_t *mask;              // n_frames * height * width, coverage 0..255
+    float *flow;                // n_frames * height * width * 2, px per frame; NULL: construct it
+    char *made_by;              // what made the frames, such as a recipe's file name; may be NULL
+    char *missing_orientations; // which ways no outline faces, "none" or NULL, by style.ini
+    unsigned guessed;           // FlGuess bits (manifest.h): what the folder does not say itself
 } FlStyle;
 
 /** Pixels of all frames together that a style may have: 64 frames of 800x600. */

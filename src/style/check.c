@@ -42,9 +42,12 @@ static void add_given_facts(Check *check)
     add(facts, "name       %s", style->name);
     add(facts, "folder     %s", style->path);
     add(facts, "author     %s", style->author ? style->author : "not given");
-    add(facts, "licence    %s", style->licence ? style->licence : "not given");
-    add(facts, "size       %dx%d, %d frames, %g per second (%s)", style->width, style->height,
-        style->n_frames, style->fps, how_known(style, FL_GUESS_FPS));
+    add(facts, "licence    %s", style->licence && style->licence[0] ? style->licence : "not given");
+    if (style->made_by)
+        add(facts, "made by    %s", style->made_by);
+    add(facts, "size       %dx%d, %d frame%s, %g per second (%s)", style->width, style->height,
+        style->n_frames, style->n_frames == 1 ? "" : "s", style->fps,
+        how_known(style, FL_GUESS_FPS));
     add(facts, "medium     %s, scale %g",
         style->medium == FL_MEDIUM_OPAQUE ? "opaque" : "transparent", style->scale);
     add(facts, "paper      #%02x%02x%02x (%s)", style->paper[0], style->paper[1], style->paper[2],
@@ -73,11 +76,22 @@ static float median_over_frames(const FlMeasures *measures, size_t field)
 static const char *const octants[FL_OCTANTS] = {"right", "down right", "down", "down left",
                                                 "left",  "up left",    "up",   "up right"};
 
-static char *missing_octants(const FlMeasures *measures)
+/* Whether a list such as "left, up left" has the name. */
+static bool is_listed(const char *list, const char *name)
+{
+    g_auto(GStrv) words = g_strsplit_set(list ? list : "", ",;", -1);
+    for (int i = 0; words[i]; i++)
+        if (g_ascii_strcasecmp(g_strstrip(words[i]), name) == 0)
+            return true;
+    return false;
+}
+
+/* The ways no outline faces, but for those that `known` lists (NULL: none). */
+static char *missing_octants(const FlMeasures *measures, const char *known)
 {
     g_autoptr(GPtrArray) names = g_ptr_array_new();
     for (int i = 0; i < FL_OCTANTS; i++)
-        if (measures->orientation[i] < LEAST_OCTANT)
+        if (measures->orientation[i] < LEAST_OCTANT && !is_listed(known, octants[i]))
             g_ptr_array_add(names, (gpointer)octants[i]);
     g_ptr_array_add(names, NULL);
     return g_strjoinv(", ", (char **)names->pdata);
@@ -88,7 +102,7 @@ static void add_measured_facts(Check *check)
     const FlMeasures *m = check->measures;
     const FlFrameMeasure *first = &m->frame[0], *last = &m->frame[m->n_frames - 1];
     GPtrArray *facts = check->facts;
-    g_autofree char *missing = missing_octants(m);
+    g_autofree char *missing = missing_octants(m, NULL);
     add(facts, "paint      %.0f %% of the first frame, %.0f %% of the last", 100 * first->paint,
         100 * last->paint);
     add(facts, "interior   %.0f %% of the paint of the last frame", 100 * last->interior);
@@ -101,12 +115,13 @@ static void add_measured_facts(Check *check)
     add(facts, "outward    %s%s", missing[0] ? "all directions but " : "all directions", missing);
     add(facts, "texture    %.1f levels of fine detail (scanned washes: 2.8 to 6.4)", m->texture);
     if (m->thin_texture >= 0)
-        add(facts, "grain      %.1f levels under thin paint, %.1f on bare paper", m->thin_texture,
-            m->paper_texture);
+        add(facts, "grain      %.1f levels under thin paint", m->thin_texture);
+    if (m->paper_texture >= 0)
+        add(facts, "paper      %.1f levels of fine detail; its light varies by %.0f",
+            m->paper_texture, m->paper_range);
     if (m->n_blocks > 1)
         add(facts, "variety    %d blocks of 16x16; the likest two differ by %.1f levels",
             m->n_blocks, m->alike);
-    add(facts, "light      the paper varies by %.0f levels", m->paper_range);
     add(facts, "life       paint changes by %.1f levels from frame to frame", MEDIAN(m, change));
 }
 
@@ -175,9 +190,12 @@ static void find_mask_problems(Check *check)
             "the outline cuts through paint (%.0f %% as dense as the interior): the masks should "
             "reach a little over bare paper",
             100 * m->edge);
-    g_autofree char *missing = missing_octants(m);
+    g_autofree char *missing = missing_octants(m, check->style->missing_orientations);
     if (missing[0])
-        add(problems, "no outline faces %s: such edges are painted with turned ones", missing);
+        add(problems,
+            "no outline faces %s: such edges are painted with turned ones (missing-orientations = "
+            "in style.ini says that this is known)",
+            missing);
 }
 
 static void find_motion_problems(Check *check)
@@ -223,7 +241,7 @@ static void look(Check *check)
     find_mask_problems(check);
     find_motion_problems(check);
     find_texture_problems(check);
-    if (!check->style->licence)
+    if (!check->style->licence || !check->style->licence[0])
         add(check->problems, "no licence is given in style.ini");
 }
 

@@ -71,6 +71,7 @@ static void set_facts(Import *import, const FlSource *source)
     style->author = g_strdup(how->author);
     style->licence = g_strdup(how->licence);
     style->fps = rate > 0 ? (float)CLAMP(rate, 0.01, 1000) : 25;
+    style->guessed = rate > 0 ? 0 : FL_GUESS_FPS; // all else is known in the end
     style->scale = 1;
 }
 

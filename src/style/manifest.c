@@ -29,6 +29,8 @@ static const struct Key {
     {"border", NUMBER, offsetof(FlStyle, border_px), 0.5, 1000, FL_GUESS_BORDER},
     {"scale", NUMBER, offsetof(FlStyle, scale), 0.01, 100},
     {"medium", MEDIUM, offsetof(FlStyle, medium)},
+    {"made-by", TEXT, offsetof(FlStyle, made_by)},
+    {"missing-orientations", TEXT, offsetof(FlStyle, missing_orientations)},
     {"paper", COLOUR, offsetof(FlStyle, paper), 0, 0, FL_GUESS_PAPER},
 };
 
@@ -135,7 +137,7 @@ static bool split_line(Line *line, char *text, GError **error)
     *equals = '\0';
     line->key = g_strstrip(text);
     line->value = g_strstrip(equals + 1);
-    return line->value[0] || wrong(line, error, "%s has no value", line->key);
+    return true;
 }
 
 bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
@@ -179,6 +181,10 @@ char *fl_manifest_text(const FlStyle *style)
         g_string_append_printf(text, "author = %s\n", style->author);
     if (style->licence)
         g_string_append_printf(text, "licence = %s\n", style->licence);
+    if (style->made_by)
+        g_string_append_printf(text, "made-by = %s\n", style->made_by);
+    if (style->missing_orientations)
+        g_string_append_printf(text, "missing-orientations = %s\n", style->missing_orientations);
     if (!(style->guessed & FL_GUESS_FPS))
         g_string_append_printf(text, "fps = %s\n",
                                g_ascii_formatd(number, sizeof number, "%.6g", style->fps));
