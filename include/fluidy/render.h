@@ -22,8 +22,8 @@ typedef enum FlRegionKey {
     FL_KEY_UNSET, /**< as the config says, else as FL_KEY_AUTO */
     FL_KEY_AUTO,  /**< the layer label without frame numbers, and the paint; else by overlap */
     FL_KEY_FILL,  /**< the computed paint alone */
-    FL_KEY_ID,    /**< the leaf's id */
-    FL_KEY_CLASS, /**< the leaf's class */
+    FL_KEY_ID,    /**< the leaf's id, without the frame's number */
+    FL_KEY_CLASS, /**< the innermost class attributes */
     FL_KEY_LABEL, /**< the layer label alone */
     FL_KEY_TREE,  /**< the place in the document tree */
 } FlRegionKey;

@@ -4,12 +4,7 @@
 
 #include "compose/box.h"
 #include "compose/ink.h"
-
-/** Where the colour comes from. */
-typedef enum FlTint {
-    FL_TINT_FILL, // the drawing's fill or any other: the picture if there is one, else the flat one
-    FL_TINT_KEEP, // the exemplar's own colours
-} FlTint;
+#include "params/treatment.h"
 
 /**
  * How one region of one frame is coloured.

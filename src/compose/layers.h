@@ -3,15 +3,10 @@
 #define FLUIDY_COMPOSE_LAYERS_H
 
 #include "compose/box.h"
+#include "params/treatment.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-/** What an upper layer does to those below it. */
-typedef enum FlStacking {
-    FL_STACKING_KNOCKOUT, // they are not there: paper under the paint
-    FL_STACKING_GLAZE,    // its density adds to theirs, as a wash over dry paint
-} FlStacking;
 
 /** One layer; in arrays the bottom one comes first. */
 typedef struct FlLayer {

@@ -4,14 +4,8 @@
 
 #include "frames/warnings.h"
 #include <fluidy/error.h>
+#include <fluidy/render.h>
 #include <stdbool.h>
-
-/** What to do about a number without a file. */
-typedef enum FlMissing {
-    FL_MISSING_ERROR, // stop, and list the numbers
-    FL_MISSING_HOLD,  // show the frame before it again
-    FL_MISSING_SKIP,  // leave it out
-} FlMissing;
 
 /** The files of a film, in order. A held frame has the file of another number. */
 typedef struct FlSequence {

@@ -9,11 +9,14 @@
 typedef enum FlDetail { FL_DETAIL_DRAFT, FL_DETAIL_NORMAL, FL_DETAIL_FINE } FlDetail;
 
 /** What a region does to the regions below it. */
-typedef enum FlStacking { FL_STACKING_KNOCKOUT, FL_STACKING_GLAZE } FlStacking;
+typedef enum FlStacking {
+    FL_STACKING_KNOCKOUT, // they are not there: paper under the paint
+    FL_STACKING_GLAZE,    // its density adds to theirs, as a wash over dry paint
+} FlStacking;
 
 /** The colour of the paint. */
 typedef enum FlTint {
-    FL_TINT_FILL, // the drawing's fill, or another one
+    FL_TINT_FILL, // the drawing's fill or any other: the picture if there is one, else the flat one
     FL_TINT_KEEP, // the exemplar's own colours
 } FlTint;
 

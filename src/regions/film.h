@@ -7,25 +7,9 @@
 #include "frames/warnings.h"
 #include "regions/rules.h"
 #include <fluidy/error.h>
+#include <fluidy/render.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-/** What becomes of strokes [DESIGN §4]. */
-typedef enum FlStrokes {
-    FL_STROKES_KEEP,  // drawn over the paint; but painted where the drawing is mostly strokes
-    FL_STROKES_PAINT, // painted, with the fills of the same paint
-    FL_STROKES_DROP,  // left out
-} FlStrokes;
-
-/** What makes leaves one region. */
-typedef enum FlKey {
-    FL_KEY_AUTO,  // label path and paint, followed through changes of the paint
-    FL_KEY_FILL,  // paint alone
-    FL_KEY_ID,    // the leaf's id, without the frame's number
-    FL_KEY_CLASS, // the innermost class attributes
-    FL_KEY_LABEL, // label path alone
-    FL_KEY_TREE,  // place in the document
-} FlKey;
 
 /** How a sequence is read; zero is the default of every field. */
 typedef struct FlFilmOptions {
@@ -38,7 +22,7 @@ typedef struct FlFilmOptions {
     int width, height; // of the picture, px; 0: as the drawing says; both: what fits in, filled up
     double scale;      // px per px of the drawing; 0: 1; not together with width or height
     FlStrokes strokes;
-    FlKey key;
+    FlRegionKey key;
     const FlRegionRule *rules; // the first that matches wins; used during fl_film_open() only
     int n_rules;
 } FlFilmOptions;

@@ -207,7 +207,7 @@ GArray *fl_identify(FlScan *scan, const FlFilmOptions *options)
 {
     Work w = {.scan = scan, .options = options};
     w.paint_strokes = options->strokes == FL_STROKES_PAINT ||
-                      (options->strokes == FL_STROKES_KEEP && is_line_art(scan));
+                      (options->strokes <= FL_STROKES_KEEP && is_line_art(scan));
     w.label_of = fl_clean_labels(scan);
     w.tracks = fl_follow(scan, w.label_of, &w.track_of);
     w.rule_of = g_new(int, w.tracks->len + 1);

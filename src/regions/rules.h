@@ -2,16 +2,10 @@
 #ifndef FLUIDY_REGIONS_RULES_H
 #define FLUIDY_REGIONS_RULES_H
 
+#include "params/treatment.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-/** Whether a region is painted. */
-typedef enum FlPassthrough {
-    FL_PASSTHROUGH_AUTO, // strokes and shading are not
-    FL_PASSTHROUGH_NO,   // it is
-    FL_PASSTHROUGH_YES,  // drawn as it is
-} FlPassthrough;
 
 /**
  * A section [region NAME] of a config. A leaf belongs to the first rule all of whose match_* hold;
