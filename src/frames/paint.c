@@ -228,10 +228,21 @@ static void read_pattern(Reader *r, const char *line)
         g_strlcpy(r->next.surface, name, sizeof r->next.surface);
 }
 
+static void exchange_contexts(Reader *r)
+{
+    if (r->contexts->len < 2)
+        return;
+    Context *last = top(r), before = last[-1];
+    last[-1] = last[0];
+    last[0] = before;
+}
+
 static void read_line(Reader *r, const char *line)
 {
     char op[24];
     word_from_end(line, 0, op, sizeof op);
+    if (g_str_has_prefix(line, "exch "))
+        exchange_contexts(r);
     if (strcmp(op, "context") == 0) {
         const char *def = strstr(line, " /s");
         char name[16] = "";
@@ -240,6 +251,10 @@ static void read_line(Reader *r, const char *line)
         push_context(r, name);
     } else if (strcmp(op, "pop") == 0 && r->contexts->len > 1) {
         g_array_remove_index(r->contexts, r->contexts->len - 1);
+    } else if (strcmp(op, "undef") == 0 && line[0] == '/') {
+        char name[16];
+        word_from_end(line + 1, 1, name, sizeof name);
+        drop_surface(r, name); // what was not drawn by now is not, such as a group of opacity 0
     } else if (strcmp(op, "linear") == 0 || strcmp(op, "radial") == 0) {
         start_gradient(r, op);
     } else if (strcmp(op, "add-color-stop") == 0) {

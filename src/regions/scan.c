@@ -108,14 +108,31 @@ static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warning
     return good;
 }
 
-/** Whether the parts first … last - 1 can be drawn one by one although they are in a unit. */
-static bool lie_apart(const GArray *looks, guint first, guint last)
+/** Whether any two of the parts from `first` on overlap. */
+static bool overlap(const GArray *looks, guint first)
 {
-    for (guint i = first; i < last; i++)
-        for (guint j = i + 1; j < last; j++)
+    for (guint i = first; i < looks->len; i++)
+        for (guint j = i + 1; j < looks->len; j++)
             if (fl_boxes_meet(g_array_index(looks, Look, i).box, g_array_index(looks, Look, j).box))
-                return false;
-    return true;
+                return true;
+    return false;
+}
+
+/** Whether the parts from `first` on, all of a unit, can be drawn one by one: 1, 0, -1 an error. */
+static int is_separable(Frame *f, const FlUnit *unit, guint first, GError **error)
+{
+    if (unit->inseparable)
+        return 0;
+    if (!overlap(f->looks, first))
+        return 1;
+    const guint n = f->looks->len - first;
+    g_autofree FlPiece *piece = g_new(FlPiece, n);
+    for (guint i = 0; i < n; i++) {
+        const Look *look = &g_array_index(f->looks, Look, first + i);
+        piece[i] = (FlPiece){look->leaf, look->seen.part};
+    }
+    return fl_looks_alike(f->svg, &unit->leaf, piece, (int)n, f->all.x1, f->all.y1, f->width,
+                          f->height, error);
 }
 
 static bool look_at_leaves(Frame *f, FlWarnings *warnings, const char *file, int number,
@@ -139,7 +156,10 @@ static bool look_at_leaves(Frame *f, FlWarnings *warnings, const char *file, int
         i--;
         if (!u)
             continue;
-        if (u->inseparable || !lie_apart(f->looks, before, f->looks->len)) {
+        const int separable = is_separable(f, u, before, error);
+        if (separable < 0)
+            return false;
+        if (!separable) {
             g_array_set_size(f->looks, before);
             if (!look_at(f, &u->leaf, -1 - (int)unit, warnings, file, number, error))
                 return false;

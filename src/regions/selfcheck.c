@@ -4,6 +4,7 @@
 
 #define VISIBLE 24   // levels; a pixel that differs by more is seen
 #define MOST_SEEN 12 // pixels that may differ so; rounding at thin edges does
+#define EDGE 8       // one in so many pixels of a masked group may differ: those at the mask's edge
 
 struct FlSelfCheck {
     int width, height;
@@ -72,6 +73,43 @@ static int difference(uint32_t a, uint32_t b)
     for (int c = 0; c < 32; c += 8)
         most = MAX(most, abs((int)((a >> c) & 255) - (int)((b >> c) & 255)));
     return most;
+}
+
+/** Draws leaves over each other; NULL with an error. */
+static cairo_surface_t *draw_pieces(FlSvg *svg, const FlPiece *piece, int n, int width, int height,
+                                    double page_width, double page_height, GError **error)
+{
+    g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+    bool drawn = surface != NULL;
+    for (int i = 0; i < n && drawn; i++) {
+        cairo_t *cr = cairo_create(surface);
+        drawn = fl_svg_draw(svg, piece[i].leaf, piece[i].part, cr, page_width, page_height, error);
+        cairo_destroy(cr);
+    }
+    if (!drawn)
+        return NULL;
+    cairo_surface_flush(surface);
+    return g_steal_pointer(&surface);
+}
+
+int fl_looks_alike(FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n, int width,
+                   int height, double page_width, double page_height, GError **error)
+{
+    const FlPiece whole = {group, FL_PART_WHOLE};
+    g_autoptr(cairo_surface_t) one =
+        draw_pieces(svg, &whole, 1, width, height, page_width, page_height, error);
+    g_autoptr(cairo_surface_t) all =
+        one ? draw_pieces(svg, piece, n, width, height, page_width, page_height, error) : NULL;
+    if (!all)
+        return -1;
+    const uint32_t *a = (const uint32_t *)cairo_image_surface_get_data(one);
+    const uint32_t *b = (const uint32_t *)cairo_image_surface_get_data(all);
+    int ink = 0, seen = 0;
+    for (size_t p = 0; p < (size_t)width * height; p++) {
+        ink += a[p] != 0;
+        seen += difference(a[p], b[p]) > VISIBLE;
+    }
+    return seen * EDGE <= ink;
 }
 
 bool fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width, double page_height,

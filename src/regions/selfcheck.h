@@ -23,4 +23,18 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
 bool fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width, double page_height,
                           const char *file, int number, FlWarnings *warnings, GError **error);
 
+/** A part to be drawn by fl_looks_alike(). */
+typedef struct FlPiece {
+    const FlLeaf *leaf;
+    FlPart part;
+} FlPiece;
+
+/**
+ * Whether a group looks the same when its n pieces are drawn over each other one by one: groups
+ * with opacity or a mask do where nothing overlaps, and nearly so where a mask has sharp edges.
+ * Returns: 1 or 0; -1 with an error.
+ */
+int fl_looks_alike(FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n, int width,
+                   int height, double page_width, double page_height, GError **error);
+
 #endif
