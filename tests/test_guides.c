@@ -134,6 +134,35 @@ static void a_still_shape_is_directed_outward(void)
     }
 }
 
+static void halting_disc(int frame, uint8_t *mask)
+{
+    if (frame < 12)
+        draw_disc(mask, W, H, 20.0f + MIN(frame, 4), 24.0f, 12.0f);
+}
+
+static void frames_that_look_the_same_have_the_same_guides(void)
+{
+    Draw draw = halting_disc;
+    g_auto(FlGuides) last = {0}, g = {0}, again = {0};
+    g_autoptr(FlGuideSequence) s = sequence_of(&draw, 16, &smoothed);
+    get(s, 9, &last);
+    for (int frame = 15; frame >= 8; frame--) { // the flow is smoothed over 3 frames
+        get(s, frame, &g);
+        get(s, frame, &again);
+        g_assert_cmpmem(g.distance, sizeof(float[W * H]), again.distance, sizeof(float[W * H]));
+        if (frame >= 12) {
+            g_assert_cmpfloat(g.distance[24 * W + 24], ==, -(W + H));
+            continue;
+        }
+        g_assert_cmpmem(g.mask, W * H, last.mask, W * H);
+        g_assert_cmpmem(g.distance, sizeof(float[W * H]), last.distance, sizeof(float[W * H]));
+        g_assert_cmpmem(g.angle, W * H, last.angle, W * H);
+        g_assert_cmpmem(g.ext_plus, sizeof(float[W * H]), last.ext_plus, sizeof(float[W * H]));
+        g_assert_cmpmem(g.ext_minus, sizeof(float[W * H]), last.ext_minus, sizeof(float[W * H]));
+        g_assert_cmpfloat(g.ext_plus[24 * W + 24], >, 0.5f);
+    }
+}
+
 static void blinking_disc(int frame, uint8_t *mask)
 {
     if (frame % 4 != 3)
@@ -419,6 +448,7 @@ int main(int argc, char **argv)
     TEST(growth_points_outward);
     TEST(shrinking_points_inward_and_no_faster_than_the_limit);
     TEST(a_still_shape_is_directed_outward);
+    TEST(frames_that_look_the_same_have_the_same_guides);
     TEST(extents_start_again_where_a_shape_reappears);
     TEST(a_part_that_flashes_up_stays_at_rest);
     TEST(a_thin_bar_moves_as_one);

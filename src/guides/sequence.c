@@ -85,6 +85,7 @@ FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuid
     }
     g_autoptr(FlGuideSequence) sequence = g_new(FlGuideSequence, 1);
     *sequence = (FlGuideSequence){.source = *source, .params = *params};
+    g_mutex_init(&sequence->lock);
     sequence->frames = g_new0(FlFrameRecord, source->n_frames);
     sequence->spill = fl_spill_new((size_t)source->n_frames * FL_N_PLANES, error);
     if (!sequence->spill || !fl_sequence_build(sequence, error) || !look_back(sequence, error))
@@ -97,6 +98,8 @@ void fl_guide_sequence_free(FlGuideSequence *sequence)
     if (!sequence)
         return;
     fl_spill_free(sequence->spill);
+    g_mutex_clear(&sequence->lock);
+    g_free(sequence->distance);
     g_free(sequence->frames);
     g_free(sequence);
 }
@@ -136,6 +139,40 @@ static bool get_plane(const FlGuideSequence *sequence, int frame, FlPlane plane,
     return true;
 }
 
+static bool recall_distance(FlGuideSequence *sequence, int32_t holder, float *distance,
+                            size_t bytes)
+{
+    g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
+    const bool known = sequence->distance && sequence->holder == holder;
+    if (known)
+        memcpy(distance, sequence->distance, bytes);
+    return known;
+}
+
+static void keep_distance(FlGuideSequence *sequence, int32_t holder, const float *distance,
+                          size_t bytes)
+{
+    g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
+    if (!sequence->distance && !(sequence->distance = g_try_malloc(bytes)))
+        return; // it is only a shortcut
+    memcpy(sequence->distance, distance, bytes);
+    sequence->holder = holder;
+}
+
+/** The distance of a shape that is asked for again, as still ones are, is copied. */
+static bool get_distance(FlGuideSequence *sequence, int32_t holder, const uint8_t *mask,
+                         float *distance, GError **error)
+{
+    const int w = sequence->source.width, h = sequence->source.height;
+    const size_t bytes = (size_t)w * h * sizeof *distance;
+    if (recall_distance(sequence, holder, distance, bytes))
+        return true;
+    if (!fl_distance(mask, w, h, distance, error))
+        return false;
+    keep_distance(sequence, holder, distance, bytes);
+    return true;
+}
+
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error)
 {
@@ -163,7 +200,9 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
         place_bytes(&record->box, shape, w, guides->mask);
         place_bytes(&record->box, shape + area, w, guides->angle);
     }
-    return fl_distance(guides->mask, w, h, guides->distance, error);
+    // the lock is what is not const about a sequence
+    return get_distance((FlGuideSequence *)(uintptr_t)sequence, record->holder[FL_PLANE_SHAPE],
+                        guides->mask, guides->distance, error);
 }
 
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)

@@ -28,6 +28,10 @@ struct FlGuideSequence {
     FlGuideParams params;
     FlFrameRecord *frames; // source.n_frames
     FlSpill *spill;        // block of a plane of a frame: FL_N_PLANES * frame + plane
+
+    GMutex lock;     // guards what follows
+    float *distance; // the last one asked for; NULL: none yet
+    int32_t holder;  // of its shape
 };
 
 static inline size_t fl_plane_block(int frame, FlPlane plane)
