@@ -122,16 +122,20 @@ static void the_median_interior_colour_is_the_fill(void)
     }
 }
 
-/** The standard deviation of the logarithm of the density -log(colour / paper) in a channel. */
-static double contrast(const Sample *s, const uint8_t *rgb, const uint8_t *paper, int channel,
-                       double least)
+static double light_of(const uint8_t *rgb)
+{
+    return 0.2126 * delta_e_light(rgb[0]) + 0.7152 * delta_e_light(rgb[1]) +
+           0.0722 * delta_e_light(rgb[2]);
+}
+
+/** The standard deviation of the logarithm of the density of the light, inside the mask. */
+static double contrast(const Sample *s, const uint8_t *rgb, const uint8_t *paper)
 {
     double sum = 0, squares = 0, n = 0;
     for (size_t i = 0; i < (size_t)s->width * s->height; i++) {
-        const double d = -log(MAX(rgb[3 * i + channel], 1) / (double)paper[channel]);
         if (s->mask[i] < 255)
             continue;
-        const double l = log(MAX(d, least));
+        const double l = log(fmax(log(light_of(paper) / light_of(rgb + 3 * i)), 0.02));
         sum += l, squares += l * l, n++;
     }
     return sqrt(squares / n - sum / n * (sum / n));
@@ -142,15 +146,17 @@ static void four_fifths_of_the_contrast_are_kept(void)
     const struct {
         const char *name;
         const uint8_t *paper;
-        int channel; // the one that the paint absorbs most
-    } cases[] = {{"drop-30", drop_paper, 1}, {"bloom-30", bloom_paper, 0}};
-    for (int k = 0; k < 2; k++) {
+    } cases[] = {{"drop-13", drop_paper},
+                 {"drop-30", drop_paper},
+                 {"bloom-13", bloom_paper},
+                 {"bloom-30", bloom_paper}};
+    for (size_t k = 0; k < G_N_ELEMENTS(cases); k++) {
         g_auto(Sample) s = sample_load(cases[k].name);
         g_autoptr(FlInk) ink = ink_of(&s, cases[k].paper);
-        FlColouring how = {.fill = {120, 90, 70}, .paper = {255, 255, 255}, .tone = FL_TONE_ONE};
+        FlColouring how = {.fill = {120, 90, 70}, .paper = {255, 255, 255}};
+        how.tone = fl_ink_tone(ink, s.rgb, s.mask, s.width, s.height);
         g_autofree uint8_t *rgb = paint(&s, ink, &how);
-        const double had = contrast(&s, s.rgb, cases[k].paper, cases[k].channel, 0.02);
-        const double has = contrast(&s, rgb, white, 2, 0.02);
+        const double had = contrast(&s, s.rgb, cases[k].paper), has = contrast(&s, rgb, white);
         g_test_message("%s: log density deviates by %.3f, was %.3f", cases[k].name, has, had);
         g_assert_cmpfloat(has, >=, 0.8 * had);
     }
@@ -177,6 +183,22 @@ static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
         how.medium = medium ? FL_MEDIUM_OPAQUE : FL_MEDIUM_TRANSPARENT;
         fl_colourise(ink, &how, painted[0], coverage, 4, (FlBox){0, 0, 4, 1}, rgba);
         g_assert_cmpint(rgba[11], ==, medium ? 255 : 0);
+    }
+}
+
+static void more_paint_never_looks_like_less(void)
+{
+    const char *const names[] = {"drop-30", "bloom-30"};
+    for (int k = 0; k < 2; k++) {
+        g_auto(Sample) s = sample_load(names[k]);
+        g_autoptr(FlInk) ink = ink_of(&s, k ? bloom_paper : drop_paper);
+        for (int tone = FL_TONE_MIN; tone <= FL_TONE_MAX; tone *= 2) {
+            g_assert_cmpint(fl_ink_toned(ink, 0, tone), ==, 0);
+            for (int amount = 1; amount < FL_AMOUNTS; amount++)
+                g_assert_cmpint(fl_ink_toned(ink, amount, tone), >=,
+                                fl_ink_toned(ink, amount - 1, tone));
+        }
+        g_assert_cmpint(fl_ink_toned(ink, FL_AMOUNT_ONE, FL_TONE_ONE), ==, FL_AMOUNT_ONE);
     }
 }
 
@@ -250,6 +272,8 @@ int main(int argc, char **argv)
                     four_fifths_of_the_contrast_are_kept);
     g_test_add_func("/colourise/bare-paper-is-transparent-and-thin-paint-is-thin",
                     bare_paper_is_transparent_and_thin_paint_is_thin);
+    g_test_add_func("/colourise/more-paint-never-looks-like-less",
+                    more_paint_never_looks_like_less);
     g_test_add_func("/colourise/a-picture-of-one-colour-is-as-good-as-a-flat-fill",
                     a_picture_of_one_colour_is_as_good_as_a_flat_fill);
     g_test_add_func("/colourise/the-exemplars-own-colours-are-kept-on-its-own-paper",

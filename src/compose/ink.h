@@ -27,7 +27,10 @@
 typedef struct FlInk {
     uint8_t paper[3];     // sRGB of the exemplar's bare paper
     int32_t part[3][256]; // amount * 256 that a level of a channel adds
-    int32_t shoulder;     // amounts above one end at one plus this (FL_AMOUNT_ONE); 0: no end
+    int32_t toe;          // amounts below this bend down, to 0 at toe_end; 0: none do
+    int32_t toe_end;      // 0 … toe
+    int32_t toe_share;    // of the bend that is taken, 0 … FL_AMOUNT_ONE
+    int32_t shoulder;     // amounts above one end at one plus this; 0: no end
 } FlInk;
 
 /**
@@ -64,7 +67,7 @@ static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
 int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
                 int height);
 
-/** The amount after tone and shoulder, 0 … FL_AMOUNTS - 1; rises with amount. */
+/** The amount after tone, toe and shoulder, 0 … FL_AMOUNTS - 1; it never falls as amount rises. */
 int fl_ink_toned(const FlInk *ink, int amount, int tone);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlInk, fl_ink_free)
