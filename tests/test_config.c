@@ -61,8 +61,6 @@ static void a_mistake_is_named_with_file_and_line(void)
          "100"},
         {"[region a]\nmatch = hair", ":2: match: “hair” is not *; for less than everything there "
                                      "are match-fill, match-label and others"},
-        {"[region a]\nstyle = 01\n[region b]", ":1: [region a] does not say what it "
-                                               "matches: match-fill, match-label, … or match = *"},
         {"[region a]\nstacking = glase", ":2: stacking: “glase” is not knockout or glaze; did you "
                                          "mean “glaze”?"},
         {"[region a]\ntint = blue", ":2: tint: “blue” is not fill, keep or #RRGGBB"},
@@ -110,6 +108,7 @@ static void the_example_of_the_manual_is_read(void)
     g_assert_cmpuint(g_strv_length(hair->match_fill), ==, 2);
     g_assert_cmpstr(hair->match_fill[1], ==, "#2e1f12");
     g_assert_null(hair->match_id);
+    g_assert_false(hair->by_name);
     g_assert_cmpstr(config->rules[1].name, ==, "line-art");
 }
 

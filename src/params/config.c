@@ -328,21 +328,13 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
 
 /* ---- the whole --------------------------------------------------------------------------- */
 
-/* A section that matches nothing in particular would silently take the whole drawing. */
-static bool check_rules(const FlConfig *config, GError **error)
+/* A section without any match key is about the region that has its name by itself. */
+static bool is_by_name(FlRule *rule)
 {
-    for (int r = 0; r < config->n_rules; r++) {
-        FlRule *rule = &config->rules[r];
-        bool matches = rule->match_all;
-        for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
-            matches |= *match_list(rule, (int)i) != NULL;
-        if (!matches)
-            return usage(error,
-                         "%s:%d: [region %s] does not say what it matches: match-fill, "
-                         "match-label, … or match = *",
-                         config->path, rule->line, rule->name);
-    }
-    return true;
+    bool matches = rule->match_all;
+    for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
+        matches |= *match_list(rule, (int)i) != NULL;
+    return !matches;
 }
 
 FlConfig *fl_config_load(const char *path, GError **error)
@@ -359,8 +351,10 @@ FlConfig *fl_config_load(const char *path, GError **error)
     config->path = g_strdup(path);
     config->defaults.folder = g_strdup(reader.folder);
     const FlKeyReader calls = {read_section, read_entry, &reader};
-    if (!fl_keyfile_read(path, &calls, error) || !check_rules(config, error))
+    if (!fl_keyfile_read(path, &calls, error))
         return NULL;
+    for (int i = 0; i < config->n_rules; i++)
+        config->rules[i].by_name = is_by_name(&config->rules[i]);
     return g_steal_pointer(&config);
 }
 

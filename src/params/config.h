@@ -7,7 +7,8 @@
 
 /**
  * A [region NAME] section. It holds for a leaf if every list that is not NULL has an item for it;
- * with match = * all of them are NULL.
+ * with match = * all of them are NULL. Without a match key it holds for the region that has its
+ * name without any rule.
  *
  * Lists are NULL-terminated; items are globs of * and ?, compared without case. A fill or stroke is
  * a CSS colour, "any", "none", "gradient" or "image".
@@ -15,6 +16,7 @@
 typedef struct FlRule {
     char *name;     // of the section; unique in the file
     int line;       // of the section, from 1
+    bool by_name;   // no match key
     bool match_all; // match = *
     char **match_fill, **match_stroke;
     char **match_id, **match_class, **match_label;

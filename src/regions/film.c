@@ -176,10 +176,23 @@ static void remember(FlFilm *film, const FlScan *scan)
     }
 }
 
+/** Gives regions that no rule made to the rules that are about them by name. */
+static void apply_names(const FlScan *scan, GArray *groups, const FlRegionRule *rules, int n)
+{
+    g_auto(GStrv) names = fl_name_groups(scan, groups, rules);
+    for (guint r = 0; r < groups->len; r++) {
+        FlGroup *group = &g_array_index(groups, FlGroup, r);
+        for (int i = 0; i < n && group->rule < 0; i++)
+            if (rules[i].by_name && strcmp(rules[i].name, names[r]) == 0)
+                group->rule = i;
+    }
+}
+
 static FlFilm *make_film(const FlFilmOptions *options, FlSequence *sequence, FlScan *scan,
                          GError **error)
 {
     g_autoptr(GArray) groups = fl_identify(scan, options);
+    apply_names(scan, groups, options->rules, options->n_rules);
     merge_regions(scan, groups, options->rules);
     if (groups->len > INT16_MAX) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,

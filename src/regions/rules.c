@@ -116,7 +116,8 @@ int fl_rules_match(const FlRegionRule *rules, int n, const FlRuleSubject *subjec
 {
     for (int i = 0; i < n; i++) {
         const FlRegionRule *rule = &rules[i];
-        if (matches_paint(rule->match_fill, rule, subject, subject->has_fill, !subject->stroke) &&
+        if (!rule->by_name &&
+            matches_paint(rule->match_fill, rule, subject, subject->has_fill, !subject->stroke) &&
             matches_paint(rule->match_stroke, rule, subject, subject->has_stroke,
                           subject->stroke) &&
             matches_glob(rule->match_id, subject->ids) &&

@@ -25,6 +25,7 @@ typedef struct FlRegionRule {
     float tolerance;                 // of colours, CIE76; 0: 1
     const char *merge_with;          // the region of that name is this one too; NULL: none
     FlPassthrough passthrough;
+    bool by_name; // matches no leaf, but the region that gets this name without any rule
 } FlRegionRule;
 
 /** What a leaf shows a rule; lists are joined with '\n'. */
