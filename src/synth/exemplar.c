@@ -76,20 +76,19 @@ static bool fill_frame(FlExemplar *exemplar, const FlStyle *style, const FlParam
     return true;
 }
 
-static FlPacked pack(const FlStack *stack, size_t p, const FlExemplar *exemplar)
+static FlTexel pack(const FlStack *stack, size_t p, const FlExemplar *exemplar)
 {
-    FlPacked out;
+    FlTexel out;
+    const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
     for (int c = 0; c < 3; c++)
-        out.c[FL_CH_R + c] = fl_pack_channel(stack->plane[FL_PLANE_R + c][p], FL_ONE);
-    out.c[FL_CH_SHAPE] = fl_pack_channel(stack->plane[FL_PLANE_SHAPE][p], FL_ONE);
-    out.c[FL_CH_EXT_PLUS] =
-        fl_pack_channel(stack->plane[FL_PLANE_EXT_PLUS][p] * exemplar->ext_scale, 2 * FL_ONE);
-    out.c[FL_CH_EXT_MINUS] =
-        fl_pack_channel(stack->plane[FL_PLANE_EXT_MINUS][p] * exemplar->ext_scale, 2 * FL_ONE);
+        out.c[FL_CH_R + c] = fl_texel_channel(stack->plane[FL_PLANE_R + c][p]);
+    out.c[FL_CH_SHAPE] = fl_texel_channel(stack->plane[FL_PLANE_SHAPE][p]);
+    out.c[FL_CH_EXT_PLUS] = fl_texel_channel(stack->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
+    out.c[FL_CH_EXT_MINUS] = fl_texel_channel(stack->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
     out.c[FL_CH_ANGLE] = fl_stack_angle(stack, p);
     out.c[FL_CH_SEGMENT] =
-        fl_segment_of(stack->plane[FL_PLANE_INSIDE][p] >= 0.5f, stack->plane[FL_PLANE_DISTANCE][p],
-                      exemplar->border_px, true);
+        (uint8_t)fl_segment_of(stack->plane[FL_PLANE_INSIDE][p] >= 0.5f,
+                               stack->plane[FL_PLANE_DISTANCE][p], exemplar->border_px, true);
     return out;
 }
 
@@ -97,11 +96,11 @@ static FlPacked pack(const FlStack *stack, size_t p, const FlExemplar *exemplar)
 static void pack_frame(FlExemplarLevel *level, const FlStack *stack, const FlExemplar *exemplar,
                        int t)
 {
-    FlPacked *frame = level->pixels + t * level->frame_pixels;
+    FlTexel *frame = level->pixels + t * level->frame_pixels;
     for (int y = -FL_PAD; y < level->height + FL_PAD; y++) {
         for (int x = -FL_PAD; x < level->width + FL_PAD; x++) {
             const int sx = CLAMP(x, 0, level->width - 1), sy = CLAMP(y, 0, level->height - 1);
-            FlPacked packed = pack(stack, (size_t)sy * level->width + sx, exemplar);
+            FlTexel packed = pack(stack, (size_t)sy * level->width + sx, exemplar);
             if (sx != x || sy != y)
                 packed.c[FL_CH_SEGMENT] = FL_SEGMENT_OUTSIDE;
             frame[(size_t)(y + FL_PAD) * level->pitch + x + FL_PAD] = packed;
@@ -118,8 +117,7 @@ static bool level_init(FlExemplarLevel *level, int width, int height, int n_fram
     level->pitch = (size_t)width + 2 * FL_PAD;
     level->frame_pixels = level->pitch * (height + 2 * FL_PAD);
     const size_t pixels = (size_t)width * height * n_frames;
-    level->pixels =
-        fl_alloc(level->frame_pixels * n_frames, sizeof(FlPacked), "an exemplar", error);
+    level->pixels = fl_alloc(level->frame_pixels * n_frames, sizeof(FlTexel), "an exemplar", error);
     level->colour =
         level->pixels ? fl_alloc(3 * pixels, sizeof(float), "an exemplar", error) : NULL;
     level->offsets =
@@ -148,7 +146,7 @@ static bool list_valid(FlExemplarLevel *level, bool separate, GError **error)
     for (int t = 0; t < level->n_frames; t++)
         for (int y = 0; y < level->height; y++)
             for (int x = 0; x < level->width; x++) {
-                FlPacked *pixel = (FlPacked *)fl_exemplar_at(level, x, y, t);
+                FlTexel *pixel = (FlTexel *)fl_exemplar_at(level, x, y, t);
                 if (!separate && pixel->c[FL_CH_SEGMENT] == FL_SEGMENT_INTERIOR)
                     pixel->c[FL_CH_SEGMENT] = FL_SEGMENT_BORDER;
                 count[pixel->c[FL_CH_SEGMENT]]++;

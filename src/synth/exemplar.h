@@ -21,7 +21,7 @@ typedef enum FlSegment {
 typedef struct FlExemplarLevel {
     int width, height, n_frames; // without padding
     size_t pitch, frame_pixels;  // padded
-    FlPacked *pixels;
+    FlTexel *pixels;
     float *colour;                // cubic spline coefficients, n_frames * height * width * 3
     uint32_t *valid[FL_SEGMENTS]; // (t * height + y) * width + x of every pixel of the segment
     size_t n_valid[FL_SEGMENTS];
@@ -71,7 +71,7 @@ static inline FlSegment fl_segment_of(bool inside, float distance, float border_
 }
 
 /** x and y may lie up to FL_PAD outside. */
-static inline const FlPacked *fl_exemplar_at(const FlExemplarLevel *level, int x, int y, int t)
+static inline const FlTexel *fl_exemplar_at(const FlExemplarLevel *level, int x, int y, int t)
 {
     return level->pixels + (size_t)t * level->frame_pixels + (size_t)(y + FL_PAD) * level->pitch +
            (x + FL_PAD);

@@ -3,14 +3,14 @@
 #include "config.h"
 #include <stdlib.h>
 
-uint32_t fl_patch_distance_c(const FlPacked *centre, const int32_t *offsets, const FlPacked *target,
+uint32_t fl_patch_distance_c(const FlTexel *centre, const int32_t *offsets, const FlPacked *target,
                              const FlPacked *weight, uint32_t limit)
 {
     uint32_t sum = 0;
     for (int p = 0; p < FL_PATCH_PIXELS && sum <= limit; p++) {
-        const FlPacked *source = centre + offsets[p];
+        const FlTexel *source = centre + offsets[p];
         for (int c = 0; c < FL_CHANNELS; c++) {
-            const int d = source->c[c] - target[p].c[c];
+            const int d = FL_FINE * source->c[c] - target[p].c[c];
             sum += (uint32_t)(d * ((d * weight[p].c[c] + (1 << 14)) >> 15));
         }
     }

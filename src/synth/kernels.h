@@ -4,22 +4,29 @@
 
 #include "synth/rotation.h"
 
-/** Channels of a packed pixel: one 16-byte load. */
+/** Channels of a pixel, in the exemplar and in the target. */
 enum {
     FL_CH_R,
     FL_CH_G,
     FL_CH_B,        // 0 … FL_ONE
     FL_CH_SHAPE,    // 0 … FL_ONE
-    FL_CH_EXT_PLUS, // in source maxima, 0 … 2 FL_ONE
+    FL_CH_EXT_PLUS, // FL_ONE is twice the source's maximum
     FL_CH_EXT_MINUS,
-    FL_CH_ANGLE,   // direction of the flow, 0 … 255; weight 0
+    FL_CH_ANGLE,   // direction of the flow, 256 steps; weight 0
     FL_CH_SEGMENT, // FlSegment; weight 0
     FL_CHANNELS
 };
 
-#define FL_ONE 1020 // 1.0 in a packed channel: four times an 8-bit level
+#define FL_TEXEL_ONE 255                // 1.0 in the exemplar
+#define FL_FINE 16                      // steps of the target per step of the exemplar
+#define FL_ONE (FL_TEXEL_ONE * FL_FINE) // 1.0 in the target
 
-/** A packed pixel. */
+/** A pixel of the exemplar: as small as can be, since the search is bound by fetching them. */
+typedef struct FlTexel {
+    uint8_t c[FL_CHANNELS];
+} FlTexel;
+
+/** A pixel of the target. */
 typedef struct FlPacked {
     int16_t c[FL_CHANNELS];
 } FlPacked;
@@ -27,14 +34,14 @@ typedef struct FlPacked {
 /**
  * Weighted squared distance of a rotated exemplar patch to a target patch.
  *
- * centre points at the packed exemplar pixel; offsets are the rotated patch's, in pixels, in the
- * order of fl_patch_offsets. target and weight hold FL_PATCH_PIXELS packed pixels in that order,
- * 16-byte aligned; weights are 0 … 32767 for 0 … 1. Differences d are weighted as
- * d * round(d * w / 32768), which sums to less than 2^31 for channels within 0 … 2 FL_ONE.
+ * centre points at the exemplar pixel; offsets are the rotated patch's, in pixels, in the order of
+ * fl_patch_offsets. target and weight hold FL_PATCH_PIXELS packed pixels in that order, 64-byte
+ * aligned; channels are 0 … FL_ONE and weights 0 … 32767 for 0 … 1. A difference d is weighted as
+ * d * round(d * w / 32768); 25 * 8 * FL_ONE^2 < 2^32, so the sum cannot overflow.
  *
  * Returns: the distance; or, once it exceeds limit, any number above limit.
  */
-typedef uint32_t (*FlPatchDistance)(const FlPacked *centre, const int32_t *offsets,
+typedef uint32_t (*FlPatchDistance)(const FlTexel *centre, const int32_t *offsets,
                                     const FlPacked *target, const FlPacked *weight, uint32_t limit);
 
 /** One version of every kernel. */
@@ -56,13 +63,13 @@ unsigned fl_cpu_flags(void);
 /** Chooses the fastest version that flags allow; a pure function of them. */
 void fl_kernels_init(FlKernels *kernels, unsigned flags);
 
-uint32_t fl_patch_distance_c(const FlPacked *centre, const int32_t *offsets, const FlPacked *target,
+uint32_t fl_patch_distance_c(const FlTexel *centre, const int32_t *offsets, const FlPacked *target,
                              const FlPacked *weight, uint32_t limit);
-uint32_t fl_patch_distance_avx2(const FlPacked *centre, const int32_t *offsets,
+uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int32_t *offsets,
                                 const FlPacked *target, const FlPacked *weight, uint32_t limit);
-uint32_t fl_patch_distance_avx512(const FlPacked *centre, const int32_t *offsets,
+uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int32_t *offsets,
                                   const FlPacked *target, const FlPacked *weight, uint32_t limit);
-uint32_t fl_patch_distance_neon(const FlPacked *centre, const int32_t *offsets,
+uint32_t fl_patch_distance_neon(const FlTexel *centre, const int32_t *offsets,
                                 const FlPacked *target, const FlPacked *weight, uint32_t limit);
 
 #endif

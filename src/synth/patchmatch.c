@@ -43,8 +43,7 @@ static bool opposes(uint8_t turn)
     return turn > 64 && turn < 192;
 }
 
-static uint32_t patch_cost(const Visit *visit, const FlPacked *centre, uint8_t theta,
-                           uint32_t limit)
+static uint32_t patch_cost(const Visit *visit, const FlTexel *centre, uint8_t theta, uint32_t limit)
 {
     const FlSearch *search = visit->search;
     const uint8_t turn = (uint8_t)(theta + centre->c[FL_CH_ANGLE] - visit->angle);
@@ -64,7 +63,7 @@ uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match)
                    .y = y,
                    .angle = search->target->angle[(size_t)y * search->target->width + x]};
     gather(&visit);
-    const FlPacked *centre =
+    const FlTexel *centre =
         fl_exemplar_at(search->level, fl_match_x(match), fl_match_y(match), match.frame);
     return patch_cost(&visit, centre, match.theta, UINT32_MAX >> 1);
 }
@@ -110,7 +109,7 @@ static bool same_match(FlMatch a, FlMatch b)
     return a.x_16 == b.x_16 && a.y_16 == b.y_16 && a.frame == b.frame && a.theta == b.theta;
 }
 
-static void try_match(Visit *visit, FlMatch candidate, const FlPacked *centre)
+static void try_match(Visit *visit, FlMatch candidate, const FlTexel *centre)
 {
     const uint32_t prior = prior_cost(visit, candidate);
     if (prior >= visit->total || same_match(candidate, visit->best))
@@ -151,7 +150,7 @@ static void propagate(Visit *visit)
         const FlMatch m = visit->expected[k];
         if (m.frame == FL_NO_MATCH)
             continue;
-        const FlPacked *centre = fl_exemplar_at(level, fl_match_x(m), fl_match_y(m), m.frame);
+        const FlTexel *centre = fl_exemplar_at(level, fl_match_x(m), fl_match_y(m), m.frame);
         if (centre->c[FL_CH_SEGMENT] == visit->segment)
             try_match(visit, m, centre);
     }
@@ -179,7 +178,7 @@ static void random_search(Visit *visit, uint64_t key)
             random_within(&rng, fl_match_y(visit->best), share * level->height, level->height);
         m.frame = (int16_t)random_within(&rng, visit->best.frame, share * level->n_frames + 1,
                                          level->n_frames);
-        const FlPacked *centre = fl_exemplar_at(level, x, y, m.frame);
+        const FlTexel *centre = fl_exemplar_at(level, x, y, m.frame);
         if (centre->c[FL_CH_SEGMENT] != visit->segment)
             continue;
         m.x_16 = (uint16_t)(16 * x), m.y_16 = (uint16_t)(16 * y);

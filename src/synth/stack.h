@@ -44,11 +44,20 @@ void fl_stack_halve(const FlStack *fine, FlStack *coarse);
 /** Direction of the flow at a pixel, in 256 steps. */
 uint8_t fl_stack_angle(const FlStack *stack, size_t pixel);
 
-/** A plane's value as a packed channel: rounded, within 0 … limit. */
-static inline int16_t fl_pack_channel(float value, int limit)
+#define FL_EXT_UNIT 0.5f // extents are packed in halves: up to twice the source's maximum
+
+/** A plane's value of 0 … 1 as a target's channel: rounded and clamped. */
+static inline int16_t fl_pack_channel(float value)
 {
     const float scaled = value * FL_ONE + 0.5f;
-    return (int16_t)(scaled <= 0 ? 0 : scaled >= limit ? limit : scaled);
+    return (int16_t)(scaled <= 0 ? 0 : scaled >= FL_ONE ? FL_ONE : scaled);
+}
+
+/** The same as an exemplar's channel. */
+static inline uint8_t fl_texel_channel(float value)
+{
+    const float scaled = value * FL_TEXEL_ONE + 0.5f;
+    return (uint8_t)(scaled <= 0 ? 0 : scaled >= FL_TEXEL_ONE ? FL_TEXEL_ONE : scaled);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlStack, fl_stack_clear)

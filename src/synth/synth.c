@@ -139,7 +139,7 @@ static bool merge_previous(FlSearch *search, const FlNnf *shifted, int l, GError
         const FlMatch m = other->match[p];
         if (m.frame == FL_NO_MATCH || search->target->segment[p] == FL_SEGMENT_OUTSIDE)
             continue;
-        const FlPacked *centre =
+        const FlTexel *centre =
             fl_exemplar_at(search->level, fl_match_x(m), fl_match_y(m), m.frame);
         if (centre->c[FL_CH_SEGMENT] != search->target->segment[p])
             continue;

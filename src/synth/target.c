@@ -2,13 +2,18 @@
 
 #include "base/alloc.h"
 
+#define EXT_UNIT_SQUARED (FL_EXT_UNIT * FL_EXT_UNIT)
+#define WEIGHTS_SUM 5   // 25 pixels * 5 * FL_ONE^2 < 2^31: room for the other terms in 32 bits
 #define TANGENT_CAP 8.0 // |tan| of 83 degrees: steeper is as bad
 
 void fl_cost_scale_init(FlCostScale *scale, const FlParams *params)
 {
     fl_rotation_init();
-    scale->w_max = MAX(MAX(params->w_texture + params->w_temp, params->w_bound), params->w_ext);
-    scale->w_max = MAX(scale->w_max, 1e-6f);
+    const float w_colour = params->w_texture + params->w_temp,
+                w_ext = params->w_ext / EXT_UNIT_SQUARED;
+    const float sum = 3 * w_colour + params->w_bound + 2 * w_ext;
+    scale->w_max = MAX(MAX(w_colour, params->w_bound), w_ext);
+    scale->w_max = MAX(MAX(scale->w_max, sum / WEIGHTS_SUM), 1e-6f);
     scale->unit = (double)FL_ONE * FL_ONE / scale->w_max;
     for (int a = 0; a < FL_ANGLES; a++) {
         const double c = abs(fl_turns[a][0]), s = abs(fl_turns[a][1]);
@@ -39,16 +44,15 @@ static void fill_pixel(FlTargetLevel *level, const FlStack *stack, size_t p,
                        const FlExemplar *exemplar)
 {
     FlPacked *guide = &level->guide[p];
+    const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
     level->distance[p] = stack->plane[FL_PLANE_DISTANCE][p];
     level->segment[p] =
         (uint8_t)fl_segment_of(stack->plane[FL_PLANE_INSIDE][p] > 0, level->distance[p],
                                exemplar->border_px, exemplar->separate);
     level->angle[p] = fl_stack_angle(stack, p);
-    guide->c[FL_CH_SHAPE] = fl_pack_channel(stack->plane[FL_PLANE_SHAPE][p], FL_ONE);
-    guide->c[FL_CH_EXT_PLUS] =
-        fl_pack_channel(stack->plane[FL_PLANE_EXT_PLUS][p] * exemplar->ext_scale, 2 * FL_ONE);
-    guide->c[FL_CH_EXT_MINUS] =
-        fl_pack_channel(stack->plane[FL_PLANE_EXT_MINUS][p] * exemplar->ext_scale, 2 * FL_ONE);
+    guide->c[FL_CH_SHAPE] = fl_pack_channel(stack->plane[FL_PLANE_SHAPE][p]);
+    guide->c[FL_CH_EXT_PLUS] = fl_pack_channel(stack->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
+    guide->c[FL_CH_EXT_MINUS] = fl_pack_channel(stack->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
 }
 
 /* Bit-reversed order of a 4x4 pattern: tiles of consecutive classes are far from each other. */
@@ -170,7 +174,7 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
 {
     const size_t pixels = (size_t)level->width * level->height;
     const int16_t w_bound = quantise_weight(params->w_bound, scale);
-    const int16_t w_ext = quantise_weight(params->w_ext, scale);
+    const int16_t w_ext = quantise_weight(params->w_ext / EXT_UNIT_SQUARED, scale);
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < pixels; p++) {
         const float w_temporal = params->w_temp * level->temporal_weight[p];
@@ -181,7 +185,7 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
                                         w_temporal * level->temporal[3 * p + c]) /
                                            w
                                      : 0;
-            guide->c[FL_CH_R + c] = fl_pack_channel(mean, FL_ONE);
+            guide->c[FL_CH_R + c] = fl_pack_channel(mean);
             weight->c[FL_CH_R + c] = quantise_weight(w, scale);
         }
         weight->c[FL_CH_SHAPE] = w_bound;

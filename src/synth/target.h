@@ -12,7 +12,7 @@
  *
  * `guide` holds shape, extents and the colour that the search compares with: the mean of the
  * synthesised colour and the temporal guide, weighted as their terms. `weight` holds each
- * channel's weight, 32767 for the largest of the run (FlCostScale).
+ * channel's weight, 32767 for FlCostScale.w_max.
  */
 typedef struct FlTargetLevel {
     int width, height;
@@ -31,7 +31,7 @@ typedef struct FlTargetLevel {
 
 /** How terms become integer costs: a squared colour difference of 1 costs FL_ONE² / w_max. */
 typedef struct FlCostScale {
-    float w_max;                   // the largest weight a channel can have
+    float w_max;                   // the weight that is packed as 32767
     double unit;                   // cost of 1.0 in the paper's energy
     uint32_t direction[FL_ANGLES]; // w_dir n² |tan(angle)|, capped
 } FlCostScale;

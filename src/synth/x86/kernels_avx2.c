@@ -3,18 +3,20 @@
 
 #include <immintrin.h>
 
-static inline __m256i load_two(const FlPacked *a, const FlPacked *b)
+/* Two exemplar pixels, widened to the target's steps. */
+static inline __m256i load_two(const FlTexel *a, const FlTexel *b)
 {
-    return _mm256_inserti128_si256(_mm256_castsi128_si256(_mm_load_si128((const __m128i *)a)),
-                                   _mm_load_si128((const __m128i *)b), 1);
+    const __m128d first = _mm_load_sd((const double *)a);
+    const __m128i both = _mm_castpd_si128(_mm_loadh_pd(first, (const double *)b));
+    return _mm256_slli_epi16(_mm256_cvtepu8_epi16(both), 4);
 }
 
-static inline __m256i two_terms(const FlPacked *centre, const int32_t *offsets,
+static inline __m256i two_terms(const FlTexel *centre, const int32_t *offsets,
                                 const FlPacked *target, const FlPacked *weight)
 {
     const __m256i s = load_two(centre + offsets[0], centre + offsets[1]);
-    const __m256i d = _mm256_sub_epi16(s, _mm256_loadu_si256((const __m256i *)target));
-    const __m256i w = _mm256_loadu_si256((const __m256i *)weight);
+    const __m256i d = _mm256_sub_epi16(s, _mm256_load_si256((const __m256i *)target));
+    const __m256i w = _mm256_load_si256((const __m256i *)weight);
     return _mm256_madd_epi16(d, _mm256_mulhrs_epi16(d, w));
 }
 
@@ -26,7 +28,7 @@ static inline uint32_t sum_of(__m256i v)
     return (uint32_t)_mm_cvtsi128_si32(s);
 }
 
-uint32_t fl_patch_distance_avx2(const FlPacked *centre, const int32_t *offsets,
+uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int32_t *offsets,
                                 const FlPacked *target, const FlPacked *weight, uint32_t limit)
 {
     __m256i sum = _mm256_setzero_si256();
@@ -40,8 +42,9 @@ uint32_t fl_patch_distance_avx2(const FlPacked *centre, const int32_t *offsets,
         return sum_of(sum);
     for (int p = 16; p < 24; p += 2)
         sum = _mm256_add_epi32(sum, two_terms(centre, offsets + p, target + p, weight + p));
-    const __m128i d = _mm_sub_epi16(_mm_load_si128((const __m128i *)(centre + offsets[24])),
-                                    _mm_load_si128((const __m128i *)(target + 24)));
+    const __m128i texel = _mm_loadl_epi64((const __m128i *)(centre + offsets[24]));
+    const __m128i s = _mm_slli_epi16(_mm_cvtepu8_epi16(texel), 4);
+    const __m128i d = _mm_sub_epi16(s, _mm_load_si128((const __m128i *)(target + 24)));
     const __m128i last =
         _mm_madd_epi16(d, _mm_mulhrs_epi16(d, _mm_load_si128((const __m128i *)(weight + 24))));
     return sum_of(_mm256_add_epi32(sum, _mm256_zextsi128_si256(last)));

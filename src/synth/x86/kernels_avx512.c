@@ -3,20 +3,21 @@
 
 #include <immintrin.h>
 
-static inline __m128i load_one(const FlPacked *p)
+static inline __m128i load_two(const FlTexel *a, const FlTexel *b)
 {
-    return _mm_load_si128((const __m128i *)p);
+    const __m128d first = _mm_load_sd((const double *)a);
+    return _mm_castpd_si128(_mm_loadh_pd(first, (const double *)b));
 }
 
-static inline __m512i four_terms(const FlPacked *centre, const int32_t *offsets,
+static inline __m512i four_terms(const FlTexel *centre, const int32_t *offsets,
                                  const FlPacked *target, const FlPacked *weight)
 {
-    __m512i s = _mm512_castsi128_si512(load_one(centre + offsets[0]));
-    s = _mm512_inserti32x4(s, load_one(centre + offsets[1]), 1);
-    s = _mm512_inserti32x4(s, load_one(centre + offsets[2]), 2);
-    s = _mm512_inserti32x4(s, load_one(centre + offsets[3]), 3);
-    const __m512i d = _mm512_sub_epi16(s, _mm512_loadu_si512(target));
-    return _mm512_madd_epi16(d, _mm512_mulhrs_epi16(d, _mm512_loadu_si512(weight)));
+    const __m128i low = load_two(centre + offsets[0], centre + offsets[1]);
+    const __m128i high = load_two(centre + offsets[2], centre + offsets[3]);
+    const __m256i texels = _mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1);
+    const __m512i s = _mm512_slli_epi16(_mm512_cvtepu8_epi16(texels), 4);
+    const __m512i d = _mm512_sub_epi16(s, _mm512_load_si512(target));
+    return _mm512_madd_epi16(d, _mm512_mulhrs_epi16(d, _mm512_load_si512(weight)));
 }
 
 static inline uint32_t sum_of(__m512i v)
@@ -24,7 +25,7 @@ static inline uint32_t sum_of(__m512i v)
     return (uint32_t)_mm512_reduce_add_epi32(v);
 }
 
-uint32_t fl_patch_distance_avx512(const FlPacked *centre, const int32_t *offsets,
+uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int32_t *offsets,
                                   const FlPacked *target, const FlPacked *weight, uint32_t limit)
 {
     __m512i sum = four_terms(centre, offsets, target, weight);
@@ -32,10 +33,12 @@ uint32_t fl_patch_distance_avx512(const FlPacked *centre, const int32_t *offsets
     const uint32_t first = sum_of(sum);
     if (first > limit)
         return first;
-    sum = _mm512_setzero_si512();
     for (int p = 8; p < 24; p += 4)
         sum = _mm512_add_epi32(sum, four_terms(centre, offsets + p, target + p, weight + p));
-    const __m128i d = _mm_sub_epi16(load_one(centre + offsets[24]), load_one(target + 24));
-    const __m128i last = _mm_madd_epi16(d, _mm_mulhrs_epi16(d, load_one(weight + 24)));
-    return first + sum_of(_mm512_add_epi32(sum, _mm512_zextsi128_si512(last)));
+    const __m128i texel = _mm_loadl_epi64((const __m128i *)(centre + offsets[24]));
+    const __m128i s = _mm_slli_epi16(_mm_cvtepu8_epi16(texel), 4);
+    const __m128i d = _mm_sub_epi16(s, _mm_load_si128((const __m128i *)(target + 24)));
+    const __m128i last =
+        _mm_madd_epi16(d, _mm_mulhrs_epi16(d, _mm_load_si128((const __m128i *)(weight + 24))));
+    return sum_of(_mm512_add_epi32(sum, _mm512_zextsi128_si512(last)));
 }
