@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "synth/energy.h"
 #include "synth/shift.h"
 #include "synth/vote.h"
 #include <math.h>
@@ -23,6 +24,8 @@ struct FlSynth {
     uint64_t key;
     int frame;
     Previous previous;
+    bool wants_stats;
+    double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
 };
@@ -161,10 +164,31 @@ static double mean_energy(const FlSearch *search)
     return n > 0 ? (double)sum / search->scale->unit / (double)n : 0;
 }
 
-static void vote_and_blend(const FlSearch *search, FlTargetLevel *target, float w_texture)
+/* Seconds since a monotonic time, which moves on to now. */
+static double lap(gint64 *since)
 {
+    const gint64 now = g_get_monotonic_time(), before = *since;
+    *since = now;
+    return (double)(now - before) * 1e-6;
+}
+
+static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
+{
+    gint64 time = g_get_monotonic_time();
+    const float w_texture = search->params->w_texture;
     fl_vote(search->nnf, search->level, search->params->vote_sharpness, target->colour, NULL);
     fl_target_blend(target, search->params, search->scale, w_texture);
+    synth->seconds_vote += lap(&time);
+}
+
+static FlSearchCounts timed_search(FlSynth *synth, FlSearch *search, int sweeps)
+{
+    gint64 time = g_get_monotonic_time();
+    fl_occurrence_count(search->map, search->nnf, search->target);
+    fl_search_costs(search, search->nnf, search->cost);
+    const FlSearchCounts counts = fl_search_run(search, sweeps);
+    synth->seconds_search += lap(&time);
+    return counts;
 }
 
 /* The field to start a level with: from the coarser level, from the previous frame, or random. */
@@ -181,30 +205,39 @@ static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);
     if (coarsest && !shifted) { // guides alone decide the first guess [P21 §4.2]
         fl_target_blend(target, params, &synth->scale, 0);
-        fl_occurrence_count(search->map, search->nnf, target);
-        fl_search_costs(search, search->nnf, search->cost);
-        fl_search_run(search, fl_list_at(&params->patchmatch_iterations, 0));
+        timed_search(synth, search, fl_list_at(&params->patchmatch_iterations, 0));
     }
-    vote_and_blend(search, target, params->w_texture);
+    vote_and_blend(synth, search, target);
     fl_search_costs(search, search->nnf, search->cost);
     return coarsest || !shifted || merge_previous(search, shifted, l, error);
 }
 
 /* Search and vote in turn [F21 alg. 2]. */
-static void optimise(FlSearch *search, FlTargetLevel *target, int rounds, int sweeps,
-                     FlLevelStats *stats)
+static void optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int rounds,
+                     int sweeps, FlLevelStats *stats)
 {
     const uint64_t key = search->key;
     for (int round = 0; round < rounds; round++) {
         search->key = fl_key(key, 2 + (uint64_t)round);
-        fl_occurrence_count(search->map, search->nnf, target);
-        fl_search_costs(search, search->nnf, search->cost);
-        const FlSearchCounts counts = fl_search_run(search, sweeps);
+        const FlSearchCounts counts = timed_search(synth, search, sweeps);
         stats->counts.tried += counts.tried;
         stats->counts.accepted += counts.accepted;
-        vote_and_blend(search, target, search->params->w_texture);
+        vote_and_blend(synth, search, target);
     }
     search->key = key;
+}
+
+/* The energy of the field that the level ends with, and its terms. */
+static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats *stats)
+{
+    FlEnergy energy;
+    fl_occurrence_count(search->map, search->nnf, target);
+    fl_energy_of(search, target, search->cost, &energy);
+    fl_search_costs(search, search->nnf, search->cost);
+    stats->energy = mean_energy(search);
+    stats->texture = energy.texture, stats->temporal = energy.temporal;
+    stats->bound = energy.bound, stats->ext = energy.ext, stats->direction = energy.direction;
+    stats->uniformity = energy.uniformity;
 }
 
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
@@ -231,18 +264,18 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
         return false;
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
-    stats->energy_start = mean_energy(&search);
+    stats->energy_start = synth->wants_stats ? mean_energy(&search) : 0;
     const int from_coarsest = synth->n_levels - 1 - l;
     stats->rounds =
         l == 0 ? params->finest_rounds : fl_list_at(&params->opt_iterations, from_coarsest);
-    optimise(&search, target, stats->rounds,
+    optimise(synth, &search, target, stats->rounds,
              l == 0 ? params->finest_sweeps
                     : fl_list_at(&params->patchmatch_iterations, from_coarsest),
              stats);
     if (stats->rounds == 0) // a merged field has not been voted yet
-        vote_and_blend(&search, target, params->w_texture);
-    fl_search_costs(&search, search.nnf, cost);
-    stats->energy = mean_energy(&search);
+        vote_and_blend(synth, &search, target);
+    if (synth->wants_stats)
+        end_statistics(&search, target, stats);
     return true;
 }
 
@@ -278,8 +311,9 @@ static void clear_colours(FlSynth *synth)
 }
 
 static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *shifted,
-                    GError **error)
+                    FlFrameStats *stats, GError **error)
 {
+    gint64 time = g_get_monotonic_time();
     g_autofree float *shape =
         fl_alloc((size_t)synth->width * synth->height, sizeof(float), "a guide", error);
     if (!shape ||
@@ -288,8 +322,12 @@ static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *
                         error))
         return false;
     clear_colours(synth);
-    return !synth->previous.valid || (shifted_previous(synth, guides, rect, shifted, error) &&
-                                      make_temporal(synth, shifted, error));
+    stats->seconds_target = lap(&time);
+    if (synth->previous.valid && (!shifted_previous(synth, guides, rect, shifted, error) ||
+                                  !make_temporal(synth, shifted, error)))
+        return false;
+    stats->seconds_temporal = lap(&time);
+    return true;
 }
 
 static bool remember(FlSynth *synth, GError **error)
@@ -309,6 +347,8 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
                     FlSynthView *view, GError **error)
 {
     FlFrameStats own;
+    synth->wants_stats = stats != NULL;
+    synth->seconds_search = synth->seconds_vote = 0;
     stats = stats ? stats : &own;
     *stats = (FlFrameStats){0};
     clear_frame(synth);
@@ -322,15 +362,16 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
         return true;
     }
     g_auto(FlNnf) shifted = {0};
-    if (!prepare(synth, guides, rect, &shifted, error))
+    if (!prepare(synth, guides, rect, &shifted, stats, error))
         return false;
     stats->n_levels = synth->n_levels;
     for (int l = synth->n_levels - 1; l >= 0; l--) {
-        const gint64 start = g_get_monotonic_time();
+        gint64 time = g_get_monotonic_time();
         if (!run_level(synth, l, synth->previous.valid ? &shifted : NULL, &stats->level[l], error))
             return false;
-        stats->level[l].seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+        stats->level[l].seconds = lap(&time);
     }
+    stats->seconds_search = synth->seconds_search, stats->seconds_vote = synth->seconds_vote;
     write_rgb(synth, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
     if (view)

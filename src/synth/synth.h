@@ -9,7 +9,9 @@ typedef struct FlLevelStats {
     int width, height, pixels;
     int rounds;
     double energy_start, energy; // data terms of the field at the start and at the end
-    double texture, bound, ext, direction, temporal, uniformity; // its terms at the end
+    // The terms at the end. Together, the data terms exceed the energy by what the two colours that
+    // the search blends, the last vote and T_temp, differ by.
+    double texture, bound, ext, direction, temporal, uniformity;
     FlSearchCounts counts;
     double seconds;
 } FlLevelStats;
@@ -39,7 +41,7 @@ void fl_synth_free(FlSynth *synth); // NULL is fine
  * Paints the next frame. rgb: width * height * 3 sRGB, written in the mask and a rim of 2 px, the
  * style's paper elsewhere. An empty mask makes the next frame a first frame again.
  *
- * stats and view may be NULL.
+ * stats and view may be NULL. Statistics take a few hundredths of the time.
  */
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);

@@ -1,0 +1,57 @@
+#include "synth/energy.h"
+
+/* All weights off, rotation too: without it a turned patch costs nothing. */
+static FlParams no_weights(const FlParams *params)
+{
+    FlParams none = *params;
+    none.w_texture = none.w_bound = none.w_ext = none.w_temp = none.w_uni = none.w_coh = 0;
+    none.rotate = false;
+    return none;
+}
+
+/* Mean cost of the field under some of the weights; the scale stays that of the search. */
+static double mean_under(const FlSearch *search, FlTargetLevel *target, const FlParams *some,
+                         uint32_t *cost)
+{
+    FlSearch part = *search;
+    part.params = some;
+    fl_target_blend(target, some, search->scale, some->w_texture);
+    fl_search_costs(&part, search->nnf, cost);
+    uint64_t sum = 0, n = 0;
+    for (size_t p = 0; p < (size_t)target->width * target->height; p++)
+        if (target->segment[p] != FL_SEGMENT_OUTSIDE)
+            sum += cost[p], n++;
+    return n > 0 ? (double)sum / search->scale->unit / (double)n : 0;
+}
+
+static double mean_uniformity(const FlSearch *search)
+{
+    const FlTargetLevel *target = search->target;
+    uint64_t sum = 0, n = 0;
+    for (size_t p = 0; p < (size_t)target->width * target->height; p++) {
+        const FlMatch m = search->nnf->match[p];
+        if (m.frame == FL_NO_MATCH)
+            continue;
+        sum += fl_occurrence_cost(search->map, target->segment[p], m, m), n++;
+    }
+    return n > 0 ? (double)sum / search->scale->unit / (double)n : 0;
+}
+
+void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *room, FlEnergy *energy)
+{
+    const FlParams *all = search->params;
+    FlParams texture = no_weights(all), bound = texture, ext = texture, direction = texture,
+             temporal = texture;
+    texture.w_texture = all->w_texture;
+    bound.w_bound = all->w_bound;
+    ext.w_ext = all->w_ext;
+    direction.rotate = all->rotate; // its cost comes from the scale's table
+    temporal.w_temp = all->w_temp;
+    energy->texture = mean_under(search, target, &texture, room);
+    energy->bound = mean_under(search, target, &bound, room);
+    energy->ext = mean_under(search, target, &ext, room);
+    energy->direction = mean_under(search, target, &direction, room);
+    energy->temporal = mean_under(search, target, &temporal, room);
+    energy->uniformity = mean_uniformity(search);
+    fl_target_blend(target, all, search->scale, all->w_texture);
+}

@@ -1,0 +1,21 @@
+/* The energy of a field, term by term: for statistics, not for the search. */
+#ifndef FLUIDY_SYNTH_ENERGY_H
+#define FLUIDY_SYNTH_ENERGY_H
+
+#include "synth/patchmatch.h"
+
+/** Means per pixel in the paper's units: each term with its weight [F21 eq. 1]. */
+typedef struct FlEnergy {
+    double texture, bound, ext, direction, temporal; // the data terms
+    double uniformity;
+} FlEnergy;
+
+/**
+ * The energy of search->nnf with the target's colours and T_temp as they are.
+ *
+ * The colours of `target`, which is search->target, are blended anew for each term and once more at
+ * the end. `room` is width * height costs. About as long as a fifth of a sweep.
+ */
+void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *room, FlEnergy *energy);
+
+#endif
