@@ -1,0 +1,119 @@
+#!/bin/bash
+# fluidy-style as its user meets it. usage: style_cli.sh PROGRAM FIXTURES PAGE; speaks TAP.
+set -u
+export LC_ALL=C.UTF-8
+program=$(realpath "$1")
+small=$(realpath "$2")/style-small
+page=$3
+folder=$(mktemp -d)
+trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+export FLUIDY_STYLES=$folder/own XDG_DATA_HOME=$folder/none
+n=0
+
+result() { # result STATUS SENTENCE: prints the files out and err of the last run after a failure
+    n=$((n + 1))
+    if [ "$1" = 0 ]; then
+        echo "ok $n - $2"
+    else
+        echo "not ok $n - $2"
+        sed 's/^/# stdout: /' out | head -20
+        sed 's/^/# stderr: /' err | head -20
+    fi
+}
+
+skip() {
+    n=$((n + 1))
+    echo "ok $n - $1 # SKIP $2"
+}
+
+# refuses SENTENCE STATUS MESSAGE ARGUMENT...: one line on stderr that matches the glob MESSAGE,
+# nothing on stdout, no file written.
+refuses() {
+    local sentence=$1 status=$2 message=$3 found before
+    shift 3
+    before=$(ls -R)
+    "$program" "$@" >out 2>err
+    found=$?
+    # shellcheck disable=SC2053 # MESSAGE is a glob
+    [ "$found" = "$status" ] && [ "$(wc -l <err)" = 1 ] && [ ! -s out ] &&
+        [[ $(cat err) == "fluidy-style: "$message ]] && [ "$before" = "$(ls -R)" ]
+    result $? "$sentence"
+}
+
+# does SENTENCE ARGUMENT...: exit status 0.
+does() {
+    local sentence=$1
+    shift
+    "$program" "$@" >out 2>err
+    result $? "$sentence"
+}
+
+# Files that are not to be seen as changes by refuses().
+touch out err
+
+does 'help names the commands' --help
+{ grep -q '^  import' out && grep -q '^  check' out && grep -q '^  simulate' out && grep -q '^  list' out; }
+result $? 'all four of them'
+
+options() {
+    for command in import check simulate list; do "$program" $command --help; done |
+        grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | grep -v -- '--help' | sort -u
+}
+diff <(options) <(grep '^\.It Fl' "$page" | grep -oE '(Fl|,) -[a-z][a-z-]+' |
+    sed -E 's/^(Fl|,) -/--/' | sort -u) >out
+result $? 'fluidy-style(1) has the options of --help'
+
+refuses 'a command that does not exist has a suggestion' 2 '*no command imprt*did you mean*import*' imprt
+refuses 'an option that does not exist has a suggestion' 2 '*--scael; did you mean --scale?*' import --scael 2
+refuses 'import needs a folder' 2 '*import needs -o*' import "$small"
+refuses 'a source that does not exist is named' 1 'nowhere.mp4: no such file*' import nowhere.mp4 -o x
+refuses 'a range without an order is wrong usage' 2 '--frames 9-3: an empty range' import "$small" -o x -f 9-3
+refuses 'a crop that leaves the frame tells the size' 2 '*leaves the frame, which is 64x48' \
+    import "$small" -o x -c 60x40+10+10
+refuses 'a style that does not exist is named' 1 'no style “inc”*' check inc --no-sheet
+refuses 'a recipe that does not exist is named' 1 '*nowhere.ini*' simulate nowhere.ini -o x
+
+does 'a folder of pictures is imported' import "$small" -o own/ink -f 2-6x2 --licence CC0-1.0 --fps 6
+{ [ "$(ls own/ink/frames | wc -l)" = 3 ] && [ "$(ls own/ink/masks | wc -l)" = 3 ] &&
+    grep -q '^fps = 6$' own/ink/style.ini && [ ! -s out ] && grep -q 'paint fills' err; }
+result $? 'with the frames that were asked for, notes on stderr'
+refuses 'a style is not overwritten' 1 'own/ink/frames exists: -y overwrites it' import "$small" -o own/ink
+does 'but for -y' import "$small" -o own/ink -y -q
+{ [ "$(ls own/ink/frames | wc -l)" = 6 ] && [ ! -s err ] && [ "$(ls -A own)" = ink ]; }
+result $? 'quietly, and without leftovers'
+
+does 'list finds it' list
+grep -q "^ink	$folder/own/ink$" out
+result $? 'by name and folder'
+
+does 'check reports on it by name' check ink
+{ grep -q '^size       64x48, 6 frames' out && grep -q '^sheet      ink-check.png$' out &&
+    [ "$(head -c 4 ink-check.png | tail -c 3)" = PNG ]; }
+result $? 'and draws a picture sheet'
+refuses 'a sheet is not overwritten' 1 'ink-check.png exists: -y overwrites it' check ink
+"$program" check ink --no-sheet --strict >out 2>err
+{ [ $? = 1 ] && grep -q '^problem' out && grep -q '^fluidy-style: [0-9]* problem' err; }
+result $? 'under --strict problems are a failure'
+"$program" list >/dev/full 2>err
+[ $? = 1 ]
+result $? 'a full disk is a failure'
+
+if command -v ffmpeg >/dev/null; then
+    ffmpeg -v error -framerate 12 -i "$small/frames/%04d.png" -c:v ffv1 -pix_fmt bgr0 paint.mkv
+    does 'a video is imported' import paint.mkv -o video -f 2-6x2
+    { [ "$(ls video/frames | wc -l)" = 3 ] && grep -q '^fps = 6$' video/style.ini &&
+        cmp -s video/masks/0001.png own/ink/masks/0002.png; }
+    result $? 'frame by frame, at its rate, with the masks of its pictures'
+    refuses 'a video that ends early tells how many frames it gave' 1 '*ends before frame 9*6 frames' \
+        import paint.mkv -o early -f 1-9
+    ffmpeg -v error -i "$small/frames/0006.png" paint.jpg
+    does 'a photograph is imported' import paint.jpg -o photo
+    grep -q 'only one frame, so the paint will not flow' err
+    result $? 'with the warning that it will not flow'
+    head -c 2000 paint.mkv >cut.mkv
+    refuses 'a broken video is named' 1 'cut.mkv: *' import cut.mkv -o broken
+else
+    skip 'videos and photographs are imported' 'no ffmpeg'
+fi
+echo "1..$n"
