@@ -195,7 +195,8 @@ static void a_part_that_flashes_up_stays_at_rest(void)
 {
     Draw draw = new_part;
     g_auto(FlGuides) g = {0};
-    g_autoptr(FlGuideSequence) s = sequence_of(&draw, 5, &smoothed);
+    const FlGuideParams any_leap = {1.0f, 0.0f, 0.05f, 1.0f};
+    g_autoptr(FlGuideSequence) s = sequence_of(&draw, 5, &any_leap);
     for (int frame = 0; frame < 5; frame++) {
         get(s, frame, &g);
         for (int k = 0; k < 2 * W * H; k++)
