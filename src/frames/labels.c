@@ -52,16 +52,18 @@ static void cut_repeat(char *name)
         name[n - 1] = '\0';
 }
 
-/** An attribute by its local name, with a namespace of any prefix. */
+/** An attribute by its local name, with any prefix, be it declared or not. */
 static char *foreign_attribute(const xmlNode *node, const char *name)
 {
-    for (xmlAttr *a = node->properties; a; a = a->next)
-        if (a->ns && strcmp((const char *)a->name, name) == 0) {
+    for (xmlAttr *a = node->properties; a; a = a->next) {
+        const char *colon = strchr((const char *)a->name, ':');
+        if ((a->ns || colon) && strcmp(colon ? colon + 1 : (const char *)a->name, name) == 0) {
             xmlChar *value = xmlNodeListGetString(node->doc, a->children, 1);
             char *copy = g_strdup(value ? (const char *)value : "");
             xmlFree(value);
             return g_strstrip(copy);
         }
+    }
     return NULL;
 }
 

@@ -111,8 +111,11 @@ static bool is_zero(const xmlChar *length)
 static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const xmlChar *height)
 {
     const bool symbol = fl_is(shown, "symbol");
+    g_autofree char *overflow = fl_property(shown, "overflow");
     if (symbol)
         xmlNodeSetName(shown, (const xmlChar *)"svg");
+    if (symbol && !overflow) // librsvg cuts <svg> off at its edge, <symbol> only on request
+        xmlSetProp(shown, (const xmlChar *)"overflow", (const xmlChar *)"visible");
     if (symbol || fl_is(shown, "svg")) {
         if (width || symbol)
             xmlSetProp(shown, (const xmlChar *)"width", width ? width : (const xmlChar *)"100%");
@@ -136,6 +139,16 @@ static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
     return svg;
 }
 
+static bool is_circle(const xmlNode *use, const xmlNode *target, const Chain *chain)
+{
+    for (const Chain *c = chain; c; c = c->outer)
+        if (c->shown == target)
+            return true;
+    while (use && use != target)
+        use = use->parent;
+    return use != NULL;
+}
+
 static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **error)
 {
     g_autoptr(xmlChar) href = take_reference(use);
@@ -146,12 +159,11 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
     xmlNode *target = href ? g_hash_table_lookup(work->ids, href + 1) : NULL;
     g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(use, "id");
     xmlNodeSetName(use, (const xmlChar *)"g");
-    for (const Chain *c = chain; c; c = c->outer)
-        if (c->shown == target && target) {
-            fl_warnings_add(work->warnings, work->path, work->number, (const char *)id,
-                            "<use> of \"%s\" shows itself and is left out", href);
-            return true;
-        }
+    if (target && is_circle(use, target, chain)) {
+        fl_warnings_add(work->warnings, work->path, work->number, (const char *)id,
+                        "<use> of \"%s\" shows itself and is left out", href);
+        return true;
+    }
     if (!target || is_zero(width) || is_zero(height))
         return true; // nothing is drawn
     xmlNode *copy = xmlDocCopyNode(target, use->doc, 1);

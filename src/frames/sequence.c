@@ -359,11 +359,25 @@ static char *shared_name(const Found *first)
     return name;
 }
 
+/** The found files as a pattern with its folder, for messages. */
+static char *pattern_text(const Found *first)
+{
+    g_autofree char *folder = g_path_get_dirname(first->path);
+    g_autofree char *base = g_path_get_basename(first->path);
+    g_auto(FlPattern) p = {0};
+    int number = 0;
+    if (!fl_pattern_of_name(base, &p, &number))
+        return g_strdup(first->path);
+    g_autofree char *text = fl_pattern_text(&p);
+    return strcmp(folder, ".") == 0 ? g_steal_pointer(&text) : g_build_filename(folder, text, NULL);
+}
+
 /** Takes the wanted numbers from what was found. */
 static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing missing,
                           FlWarnings *warnings, GError **error)
 {
     const Found *first = &g_array_index(found, Found, 0);
+    g_autofree char *pattern = pattern_text(first);
     g_autoptr(GArray) gaps = g_array_new(FALSE, FALSE, sizeof(int));
     g_autoptr(FlSequence) s = g_new0(FlSequence, 1);
     s->file = g_new0(char *, wanted->len + 1);
@@ -387,7 +401,7 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
         return NULL;
     }
     if (gaps->len > 0)
-        fl_warnings_add(warnings, first->path, -1, NULL, "no file for frame%s %s: %s",
+        fl_warnings_add(warnings, pattern, -1, NULL, "no file for frame%s %s: %s",
                         gaps->len > 1 ? "s" : "", list,
                         missing == FL_MISSING_HOLD ? "the one before is held" : "left out");
     return g_steal_pointer(&s);

@@ -54,7 +54,8 @@ const char *fl_colour_word(const uint8_t rgb[3])
         {"light-blue", {160, 205, 240}}, {"blue", {45, 105, 215}},
         {"navy", {25, 35, 95}},          {"violet", {120, 70, 190}},
         {"purple", {110, 40, 110}},      {"lilac", {200, 175, 230}},
-        {"magenta", {225, 50, 200}},
+        {"magenta", {225, 50, 200}},     {"blue", {0, 0, 255}},
+        {"green", {0, 255, 0}},          {"pink", {250, 215, 220}},
     };
     size_t best = 0;
     for (size_t i = 1; i < sizeof words / sizeof words[0]; i++)

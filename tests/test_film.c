@@ -1,0 +1,339 @@
+#include "regions/film.h"
+#include "regions/raster.h"
+#include "scratch.h"
+#include <math.h>
+#include <string.h>
+
+#define KEEP FL_STROKES_KEEP
+
+static FlFilm *open_film(const FlFilmOptions *options, const char *input, FlWarnings *warnings)
+{
+    FlFilmOptions o = *options;
+    const char *const inputs[] = {input};
+    g_autoptr(GError) error = NULL;
+    o.inputs = inputs;
+    o.n_inputs = 1;
+    FlFilm *film = fl_film_open(&o, warnings, &error);
+    g_assert_no_error(error);
+    return film;
+}
+
+static FlFilm *open_fixture(const char *name, FlStrokes strokes, FlWarnings *warnings)
+{
+    const char *fixtures = g_getenv("FLUIDY_FIXTURES");
+    g_autofree char *folder =
+        g_build_filename(fixtures ? fixtures : "fixtures", "animations", name, NULL);
+    const FlFilmOptions options = {.strokes = strokes};
+    return open_film(&options, folder, warnings);
+}
+
+/** "name*frames name*frames …"; names of regions that are not painted in brackets. */
+static char *table(const FlFilm *film)
+{
+    GString *text = g_string_new(NULL);
+    for (int r = 0; r < fl_film_regions(film); r++) {
+        const FlRegion *region = fl_film_region(film, r);
+        g_string_append_printf(text, region->paintable ? "%s%s*%d" : "%s[%s]*%d", r ? " " : "",
+                               region->name, region->n_present);
+    }
+    return g_string_free(text, FALSE);
+}
+
+static void assert_table(const FlFilm *film, const char *expected)
+{
+    g_autofree char *got = table(film);
+    g_assert_cmpstr(got, ==, expected);
+}
+
+static const FlRegion *find(const FlFilm *film, const char *name)
+{
+    for (int r = 0; r < fl_film_regions(film); r++)
+        if (strcmp(fl_film_region(film, r)->name, name) == 0)
+            return fl_film_region(film, r);
+    return NULL;
+}
+
+static void layers_that_come_and_go_keep_their_regions(void)
+{
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_autoptr(FlFilm) film = open_fixture("snowman-wave-layers", KEEP, warnings);
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
+    g_assert_cmpint(fl_film_frames(film), ==, 44);
+    g_assert_cmpint(fl_film_width(film), ==, 1024);
+    g_assert_cmpstr(fl_film_name(film), ==, "snowman-wave-layers");
+    assert_table(film, "snow-9-95c7f7*44 snow-8-95c7f7*43 snow-7-95c7f7*44 snow-6-95c7f7*43 "
+                       "snow-5-95c7f7*43 arm-right-474d50*44 finger-right-474d50*44 "
+                       "arm-left-474d50*44 finger-left-474d50*44 body-e0e0e0*44 button-303030*44 "
+                       "hat-474d50*44 hat-a42718*44 head-e0e0e0*44 face-303030*44 face-ffa72b*44 "
+                       "snow-1-95c7f7*44 snow-2-95c7f7*21 snow-12-95c7f7*22 snow-11-95c7f7*19 "
+                       "snow-4-95c7f7*14 snow-3-95c7f7*18 snow-10-95c7f7*15 close-eye-303030*4");
+    const FlRegion *hat = find(film, "hat-a42718");
+    g_assert_cmpstr(hat->label, ==, "body/head/hat");
+    g_assert_cmpstr(hat->paint, ==, "#a42718");
+    g_assert_cmpint(hat->n_leaves, ==, 1);
+    g_assert_cmpfloat_with_epsilon(hat->area_px, 6771, 100);
+}
+
+static void limbs_that_are_strokes_are_painted(void)
+{
+    g_autoptr(FlFilm) film = open_fixture("strutter-zdog", KEEP, NULL);
+    assert_table(film, "crimson-cc2255*4 yellow-eeaa00*4 purple-663366*4 navy-442244*4 "
+                       "beige-ffeedd*4");
+    g_autoptr(FlFilm) fills = open_fixture("strutter-zdog", FL_STROKES_DROP, NULL);
+    g_assert_null(find(fills, "navy-442244"));
+}
+
+static void strokes_over_fills_are_drawn_as_they_are(void)
+{
+    g_autoptr(FlFilm) film = open_fixture("windsock-smil", KEEP, NULL);
+    assert_table(film, "[gradient-ced1d7-line]*3 gradient-f05c5c*3 [red-ef4444-line]*3");
+}
+
+static void masked_parts_are_regions_and_faint_ones_over_others_shading(void)
+{
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_autoptr(FlFilm) film = open_fixture("ghost-morph", KEEP, warnings);
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
+    g_assert_true(find(film, "white-ffffff") && find(film, "dark-brown-422b0d"));
+    g_assert_false(find(film, "dark-red-ab3e2d-shade")->paintable);
+}
+
+static void a_region_keeps_its_leaf_while_the_colour_changes(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < 6; t++) {
+        g_autofree char *name = g_strdup_printf("%d.svg", t);
+        g_autofree char *content = g_strdup_printf(
+            "<rect x=\"10\" y=\"10\" width=\"30\" height=\"30\" fill=\"rgb(%d,80,40)\"/>"
+            "<rect x=\"50\" y=\"10\" width=\"30\" height=\"30\" fill=\"rgb(%d,80,40)\"/>",
+            100 + 20 * t, 200 - 20 * t);
+        g_free(scratch_svg(folder, name, content));
+    }
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    g_assert_cmpint(fl_film_regions(film), ==, 2);
+    for (int t = 0; t < 6; t += 5) {
+        g_autoptr(FlRuns) runs = fl_film_runs(film, t, NULL);
+        g_assert_cmpint(runs->run[0].region, ==, 0);
+        g_assert_cmpint(runs->run[0].rgb[0], ==, 100 + 20 * t);
+        g_assert_cmpint(runs->run[0].coverage[25 * 100 + 25], ==, 255);
+    }
+}
+
+static void depth_sorted_leaves_and_renumbered_ids_keep_their_regions(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<linearGradient id=\"color-1\"><stop stop-color=\"red\"/></linearGradient>"
+                       "<linearGradient id=\"color-2\"><stop stop-color=\"blue\"/></linearGradient>"
+                       "<g id=\"blender_frame_1\"><rect width=\"30\" height=\"30\" "
+                       "fill=\"url(#color-1)\"/><circle id=\"path1\" r=\"40\" "
+                       "fill=\"url(#color-2)\"/><path d=\"M5 5h9v9z\" fill=\"#0a0\"/></g>"));
+    g_free(scratch_svg(folder, "2.svg",
+                       "<linearGradient id=\"color-1\"><stop stop-color=\"blue\"/></linearGradient>"
+                       "<linearGradient id=\"color-2\"><stop stop-color=\"red\"/></linearGradient>"
+                       "<g id=\"blender_frame_2\"><path d=\"M5 5h9v9z\" fill=\"#0a0\"/>"
+                       "<circle id=\"path2\" r=\"40\" fill=\"url(#color-1)\"/>"
+                       "<rect width=\"30\" height=\"30\" fill=\"url(#color-2)\"/></g>"));
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    assert_table(film, "red-ff0000*2 blue-0000ff*2 green-00aa00*2");
+}
+
+/** Peak signal to noise ratio of the runs' flat picture to librsvg's, over grey; dB. */
+static double psnr(const FlFilm *film, int t)
+{
+    const int w = fl_film_width(film), h = fl_film_height(film);
+    g_autoptr(FlRuns) runs = fl_film_runs(film, t, NULL);
+    g_autofree uint8_t *flat = g_malloc((size_t)w * h * 4);
+    fl_runs_flat(runs, w, h, flat);
+    const FlSvgOptions options = {0};
+    g_autoptr(FlSvg) svg = fl_svg_open(fl_film_file(film, t), 0, &options, NULL, NULL);
+    g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_ARGB32, w, h, NULL);
+    cairo_t *cr = cairo_create(surface);
+    g_assert_true(fl_svg_draw_original(svg, cr, w, h, NULL));
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    const uint32_t *truth = (const uint32_t *)cairo_image_surface_get_data(surface);
+    double sum = 0;
+    for (size_t p = 0; p < (size_t)w * h; p++)
+        for (int c = 0; c < 3; c++) {
+            const double a = flat[4 * p + 3], b = truth[p] >> 24;
+            const double mine = flat[4 * p + c] * a / 255 + 90 * (255 - a) / 255;
+            const double its = ((truth[p] >> (16 - 8 * c)) & 255) + 90 * (255 - b) / 255;
+            sum += (mine - its) * (mine - its);
+        }
+    return 10 * log10(255.0 * 255 / (sum / (3.0 * w * h) + 1e-9));
+}
+
+static void regions_over_each_other_are_the_drawing(void)
+{
+    static const char *const names[] = {"snowman-wave-layers", "ghost-morph",   "gem-facets",
+                                        "strutter-zdog",       "windsock-smil", "css-hearts"};
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_autoptr(FlFilm) film = open_fixture(names[i], KEEP, NULL);
+        const double db = psnr(film, 1);
+        g_test_message("%s: %.1f dB", names[i], db);
+        g_assert_cmpfloat(db, >, 60);
+    }
+}
+
+static void a_mask_is_the_whole_shape(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<g opacity=\".5\"><rect width=\"40\" height=\"40\" fill=\"red\"/></g>"
+                       "<rect x=\"20\" width=\"80\" height=\"40\" fill=\"blue\"/>"
+                       "<rect y=\"60\" width=\"40\" height=\"40\" fill=\"red\"/>"));
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
+    g_assert_cmpint(runs->n, ==, 3); // red, half; blue; red
+    g_assert_cmpint(runs->run[0].alpha, ==, 128);
+    uint8_t from_runs[10000], alone[10000];
+    fl_runs_mask(runs, 0, 100, 100, from_runs);
+    g_assert_true(fl_film_mask(film, 0, 0, alone, NULL));
+    g_assert_cmpmem(from_runs, 10000, alone, 10000);
+    int area = 0;
+    for (int p = 0; p < 10000; p++)
+        area += alone[p] == 255;
+    g_assert_cmpint(area, ==, 3200);
+}
+
+static void leaves_that_do_not_meet_share_a_run(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    GString *text = g_string_new(NULL);
+    for (int i = 0; i < 16; i++)
+        g_string_append_printf(text,
+                               "<circle cx=\"%d\" cy=\"%d\" r=\"9\"/>"
+                               "<circle cx=\"%d\" cy=\"%d\" r=\"5\" fill=\"red\"/>",
+                               12 + 25 * (i % 4), 12 + 25 * (i / 4), 12 + 25 * (i % 4),
+                               12 + 25 * (i / 4));
+    g_free(scratch_svg(folder, "1.svg", text->str));
+    g_string_free(text, TRUE);
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
+    g_assert_cmpint(runs->n, ==, 2);
+    g_assert_cmpfloat(psnr(film, 0), >, 70);
+}
+
+static void rules_choose_leaves_and_the_first_wins(void)
+{
+    static const char *const snow[] = {"snow *", NULL}, *const greys[] = {"#474d50", NULL};
+    static const char *const any[] = {"any", NULL}, *const head[] = {"HEAD", NULL};
+    const FlRegionRule rules[] = {
+        {.name = "snow", .match_label = snow, .passthrough = FL_PASSTHROUGH_YES},
+        {.name = "hat", .match_fill = greys, .match_layer = head, .tolerance = 5},
+        {.name = "twigs", .match_fill = greys, .merge_with = "snow"},
+        {.name = "rest", .match_fill = any},
+    };
+    const char *fixtures = g_getenv("FLUIDY_FIXTURES");
+    g_autofree char *pattern = g_build_filename(fixtures ? fixtures : "fixtures", "animations",
+                                                "snowman-wave-layers", "%04d.svg", NULL);
+    const FlFilmOptions options = {.range = "1-3", .rules = rules, .n_rules = 4};
+    g_autoptr(FlFilm) film = open_film(&options, pattern, NULL);
+    assert_table(film, "[snow]*3 rest*3 hat*3");
+    g_assert_cmpint(find(film, "hat")->rule, ==, 1);
+    const char *const wrong[] = {"blueish", NULL};
+    const FlRegionRule bad = {.name = "sky", .match_fill = wrong};
+    g_autoptr(GError) error = NULL;
+    g_assert_false(fl_rules_check(&bad, 1, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+    g_assert_nonnull(strstr(error->message, "region sky: match-fill = blueish"));
+}
+
+static void keys_other_than_the_default_can_be_asked_for(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 1; t <= 2; t++) {
+        g_autofree char *name = g_strdup_printf("%d.svg", t);
+        g_free(scratch_svg(
+            folder, name,
+            "<g id=\"arm\"><rect class=\"a\" width=\"30\" height=\"30\"/>"
+            "<rect class=\"b\" x=\"40\" width=\"30\" height=\"30\" fill=\"red\"/></g>"
+            "<g id=\"leg\"><rect class=\"a\" y=\"50\" width=\"30\" height=\"30\"/></g>"));
+    }
+    static const int n[] = {[FL_KEY_AUTO] = 3,  [FL_KEY_FILL] = 2,  [FL_KEY_ID] = 1,
+                            [FL_KEY_CLASS] = 2, [FL_KEY_LABEL] = 2, [FL_KEY_TREE] = 3};
+    for (int key = FL_KEY_AUTO; key <= FL_KEY_TREE; key++) {
+        const FlFilmOptions options = {.key = key};
+        g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+        g_test_message("key %d", key);
+        g_assert_cmpint(fl_film_regions(film), ==, n[key]);
+    }
+}
+
+static void the_picture_has_the_size_that_is_asked_for(void)
+{
+    static const struct {
+        int width, height;
+        double scale;
+        int w, h;
+    } sizes[] = {
+        {0, 0, 0, 64, 64}, {200, 0, 0, 200, 200}, {200, 100, 0, 100, 100}, {0, 0, 2.5, 160, 160}};
+    const char *fixtures = g_getenv("FLUIDY_FIXTURES");
+    g_autofree char *folder =
+        g_build_filename(fixtures ? fixtures : "fixtures", "animations", "windsock-smil", NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(sizes); i++) {
+        const FlFilmOptions options = {
+            .width = sizes[i].width, .height = sizes[i].height, .scale = sizes[i].scale};
+        g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+        g_assert_cmpint(fl_film_width(film), ==, sizes[i].w);
+        g_assert_cmpint(fl_film_height(film), ==, sizes[i].h);
+    }
+}
+
+static void an_empty_frame_is_a_frame(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg", ""));
+    g_free(scratch_svg(folder, "2.svg", "<rect width=\"9\" height=\"9\"/>"));
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    g_assert_cmpint(fl_film_region(film, 0)->first_frame, ==, 1);
+    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
+    g_assert_cmpint(runs->n, ==, 0);
+    uint8_t mask[10000];
+    g_assert_true(fl_film_mask(film, 0, 0, mask, NULL));
+    g_assert_cmpint(mask[0], ==, 0);
+}
+
+static void a_broken_frame_is_named(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg", ""));
+    g_autofree char *bad = scratch_write(folder, "2.svg", "<svg");
+    const char *const inputs[] = {folder};
+    const FlFilmOptions options = {.inputs = inputs, .n_inputs = 1};
+    g_autoptr(GError) error = NULL;
+    g_assert_null(fl_film_open(&options, NULL, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
+    g_assert_nonnull(strstr(error->message, bad));
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(path, function) g_test_add_func("/film/" path, function)
+    TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);
+    TEST("limbs-that-are-strokes-are-painted", limbs_that_are_strokes_are_painted);
+    TEST("strokes-over-fills-are-drawn-as-they-are", strokes_over_fills_are_drawn_as_they_are);
+    TEST("masked-parts-are-regions-and-faint-ones-over-others-shading",
+         masked_parts_are_regions_and_faint_ones_over_others_shading);
+    TEST("a-region-keeps-its-leaf-while-the-colour-changes",
+         a_region_keeps_its_leaf_while_the_colour_changes);
+    TEST("depth-sorted-leaves-and-renumbered-ids-keep-their-regions",
+         depth_sorted_leaves_and_renumbered_ids_keep_their_regions);
+    TEST("regions-over-each-other-are-the-drawing", regions_over_each_other_are_the_drawing);
+    TEST("a-mask-is-the-whole-shape", a_mask_is_the_whole_shape);
+    TEST("leaves-that-do-not-meet-share-a-run", leaves_that_do_not_meet_share_a_run);
+    TEST("rules-choose-leaves-and-the-first-wins", rules_choose_leaves_and_the_first_wins);
+    TEST("keys-other-than-the-default-can-be-asked-for",
+         keys_other_than_the_default_can_be_asked_for);
+    TEST("the-picture-has-the-size-that-is-asked-for", the_picture_has_the_size_that_is_asked_for);
+    TEST("an-empty-frame-is-a-frame", an_empty_frame_is_a_frame);
+    TEST("a-broken-frame-is-named", a_broken_frame_is_named);
+    return g_test_run();
+}
