@@ -3,6 +3,7 @@
 #define FLUIDY_FLUIDY_H
 
 #include <fluidy/error.h>
+#include <fluidy/inspect.h>
 #include <fluidy/params.h>
 #include <fluidy/render.h>
 #include <fluidy/style.h>

@@ -38,6 +38,7 @@ static const struct Choice {
      FL_KEY_AUTO,
      {"auto", "fill", "id", "class", "label", "tree"}},
     {"--stroke", offsetof(FlArgs, render.stroke), FL_STROKES_KEEP, {"keep", "paint", "drop"}},
+    {"--format", offsetof(FlArgs, listing), FL_LISTING_TABLE, {"table", "config"}},
     {"--blend", offsetof(FlArgs, render.blend), FL_BLEND_SRGB, {"srgb", "linear"}},
     {"--progress",
      offsetof(FlArgs, progress),
@@ -152,8 +153,14 @@ static gboolean read_flag(const char *name, const char *value, gpointer data, GE
         const char *name;
         FlTask task;
     } tasks[] = {
-        {"-h", FL_TASK_HELP},    {"--help", FL_TASK_HELP},       {"--help-all", FL_TASK_HELP_ALL},
-        {"-V", FL_TASK_VERSION}, {"--version", FL_TASK_VERSION},
+        {"-h", FL_TASK_HELP},
+        {"--help", FL_TASK_HELP},
+        {"--help-all", FL_TASK_HELP_ALL},
+        {"--list-regions", FL_TASK_LIST_REGIONS},
+        {"--list-styles", FL_TASK_LIST_STYLES},
+        {"--check", FL_TASK_CHECK},
+        {"-V", FL_TASK_VERSION},
+        {"--version", FL_TASK_VERSION},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(tasks); i++)
         if (strcmp(tasks[i].name, name) == 0)
@@ -208,6 +215,10 @@ static const GOptionEntry common[] = {
     {"threads", 'j', VALUE(read_number), "(one per processor)", "N"},
     {"quiet", 'q', FLAG(read_flag), "errors only", NULL},
     {"verbose", 'v', FLAG(read_flag), "say what is being done", NULL},
+    {"list-regions", 0, FLAG(read_flag), "print what the drawing is made of", NULL},
+    {"format", 0, VALUE(read_choice), "of that list: table, or config to edit", "WORD"},
+    {"list-styles", 0, FLAG(read_flag), "print the styles that are found", NULL},
+    {"check", 0, FLAG(read_flag), "write maps of the regions instead of paint", NULL},
     {"help", 'h', FLAG(read_flag), "this page", NULL},
     {"help-all", 0, FLAG(read_flag), "all options", NULL},
     {"version", 'V', FLAG(read_flag), "name and version", NULL},
@@ -316,6 +327,11 @@ static void improve_unknown(GError **error)
                     "there is no option %s; see fluidy-svg --help-all", unknown);
 }
 
+static bool needs_input(FlTask task)
+{
+    return task == FL_TASK_RENDER || task == FL_TASK_LIST_REGIONS || task == FL_TASK_CHECK;
+}
+
 bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
 {
     *args = (FlArgs){.settings = g_array_new(FALSE, TRUE, sizeof(FlSetting)),
@@ -332,7 +348,7 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
     args->render.inputs = (const char *const *)args->inputs + 1;
     args->render.settings = &g_array_index(args->settings, FlSetting, 0);
     args->render.n_settings = args->settings->len;
-    if (args->task == FL_TASK_RENDER && !args->render.inputs[0]) {
+    if (needs_input(args->task) && !args->render.inputs[0]) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "no input; expected SVG frames such as walk_%%04d.svg (see --help)");
         return false;

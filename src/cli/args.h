@@ -9,6 +9,9 @@ typedef enum FlTask {
     FL_TASK_HELP,
     FL_TASK_HELP_ALL,
     FL_TASK_VERSION,
+    FL_TASK_LIST_REGIONS,
+    FL_TASK_LIST_STYLES,
+    FL_TASK_CHECK,
 } FlTask;
 
 typedef enum FlProgressMode {
@@ -22,6 +25,7 @@ typedef enum FlProgressMode {
 typedef struct FlArgs {
     FlTask task;
     FlRenderOptions render; // its strings belong to this struct
+    FlListing listing;      // of FL_TASK_LIST_REGIONS
     FlProgressMode progress;
     bool quiet; // no warnings, notes or progress
     char **inputs;

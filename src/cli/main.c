@@ -2,6 +2,7 @@
 #include "args.h"
 #include "progress.h"
 
+#include <errno.h>
 #include <locale.h>
 #include <signal.h>
 #include <stdio.h>
@@ -59,7 +60,34 @@ static int fail(const GError *error)
     return usage ? USAGE : FAILURE;
 }
 
-static int render(FlArgs *args)
+static int print(const char *text)
+{
+    const bool written = fputs(text, stdout) >= 0 && fflush(stdout) == 0;
+    if (!written)
+        fprintf(stderr, "fluidy-svg: standard output cannot be written: %s\n", g_strerror(errno));
+    return written ? DONE : FAILURE;
+}
+
+static int list_styles(void)
+{
+    g_autoptr(GPtrArray) styles = fl_style_list();
+    g_autoptr(GString) text = g_string_new(NULL);
+    for (guint i = 0; i < styles->len; i++) {
+        const FlStyleEntry *style = styles->pdata[i];
+        if (!style->hidden)
+            g_string_append_printf(text, "%-12s %s\n", style->name, style->path);
+    }
+    return print(text->str);
+}
+
+static int list_regions(const FlArgs *args, GError **error)
+{
+    g_autofree char *text = fl_list_regions(&args->render, args->listing, error);
+    return text ? print(text) : FAILURE;
+}
+
+/* What reads the drawing, and may be interrupted. */
+static int work(FlArgs *args)
 {
     Voice voice = {.quiet = args->quiet};
     fl_meter_init(&voice.meter, args->quiet ? FL_PROGRESS_NONE : args->progress, stderr);
@@ -70,25 +98,33 @@ static int render(FlArgs *args)
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);
     g_autoptr(GError) error = NULL;
-    const bool fine = fl_render(&args->render, &error);
+    int status = DONE;
+    if (args->task == FL_TASK_LIST_REGIONS)
+        status = list_regions(args, &error);
+    else if (args->task == FL_TASK_CHECK)
+        fl_map_regions(&args->render, &error);
+    else
+        fl_render(&args->render, &error);
     fl_meter_hide(&voice.meter);
-    return fine ? DONE : fail(error);
-}
-
-static int print(const char *text)
-{
-    const bool written = fputs(text, stdout) >= 0 && fflush(stdout) == 0;
-    return written ? DONE : FAILURE;
+    return error ? fail(error) : status;
 }
 
 static int run(FlArgs *args)
 {
-    if (args->task == FL_TASK_RENDER)
-        return render(args);
-    g_autofree char *text = args->task == FL_TASK_VERSION
-                                ? g_strdup_printf("fluidy-svg %s\n", fl_version())
-                                : fl_args_help(args->task == FL_TASK_HELP_ALL);
-    return print(text);
+    g_autofree char *text = NULL;
+    switch (args->task) {
+    case FL_TASK_VERSION:
+        text = g_strdup_printf("fluidy-svg %s\n", fl_version());
+        return print(text);
+    case FL_TASK_HELP:
+    case FL_TASK_HELP_ALL:
+        text = fl_args_help(args->task == FL_TASK_HELP_ALL);
+        return print(text);
+    case FL_TASK_LIST_STYLES:
+        return list_styles();
+    default:
+        return work(args);
+    }
 }
 
 int main(int argc, char **argv)

@@ -11,6 +11,9 @@ typedef struct FlCanvas {
     double x, y, width, height; // width 0: as the file says
 } FlCanvas;
 
+/** Reads "WxH" or "WxH+X+Y" in px. FL_ERROR_USAGE. */
+bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error);
+
 typedef struct FlSvgOptions {
     FlCanvas canvas;
     double dpi; // of mm, cm, in, pt; 0: 96

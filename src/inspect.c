@@ -1,0 +1,266 @@
+/* What a drawing is made of, as tables, configs and maps. */
+#include <fluidy/inspect.h>
+
+#include "base/alloc.h"
+#include "base/cleanup.h"
+#include "output/name.h"
+#include "output/png.h"
+#include "regions/opening.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A drawing and what the caller said of it. */
+typedef struct Subject {
+    FlRenderOptions options; // complete
+    FlConfig *config;
+    FlFilm *film;
+} Subject;
+
+static void subject_clear(Subject *subject)
+{
+    fl_film_free(subject->film);
+    fl_config_free(subject->config);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Subject, subject_clear)
+
+static bool subject_init(Subject *subject, const FlRenderOptions *options, GError **error)
+{
+    *subject = (Subject){.options = *options};
+    subject->config = fl_config_load(options->config, error);
+    if (!subject->config)
+        return false;
+    fl_config_complete(subject->config, &subject->options);
+    subject->film = fl_film_of_options(&subject->options, subject->config, error);
+    return subject->film != NULL;
+}
+
+/* ---- tables ------------------------------------------------------------------------------- */
+
+enum { NAME, PAINT, FRAMES, AREA, SHAPES, PAINTED, SECTION, LABEL, N_COLUMNS };
+
+typedef struct Row {
+    char *cell[N_COLUMNS];
+} Row;
+
+static void row_clear(void *row)
+{
+    for (int c = 0; c < N_COLUMNS; c++)
+        g_free(((Row *)row)->cell[c]);
+}
+
+static Row heading(void)
+{
+    static const char *const words[N_COLUMNS] = {"REGION", "PAINT",   "FRAMES",  "AREA",
+                                                 "SHAPES", "PAINTED", "SECTION", "LAYER"};
+    Row row;
+    for (int c = 0; c < N_COLUMNS; c++)
+        row.cell[c] = g_strdup(words[c]);
+    return row;
+}
+
+static Row describe(const Subject *subject, int region)
+{
+    const FlRegion *r = fl_film_region(subject->film, region);
+    const char *section = r->rule >= 0 ? subject->config->rules[r->rule].name : "-";
+    return (Row){{g_strdup(r->name), g_strdup(r->paint),
+                  g_strdup_printf("%d/%d", r->n_present, fl_film_frames(subject->film)),
+                  g_strdup_printf("%.0f", r->area_px), g_strdup_printf("%d", r->n_leaves),
+                  g_strdup(r->paintable ? "yes" : "no"), g_strdup(section),
+                  g_strdup(*r->label ? r->label : "-")}};
+}
+
+/* Numbers stand at the right of their column. */
+static void append_row(GString *text, const Row *row, const int widths[N_COLUMNS])
+{
+    for (int c = 0; c < N_COLUMNS; c++) {
+        const int gap = widths[c] - (int)g_utf8_strlen(row->cell[c], -1);
+        const bool right = c == FRAMES || c == AREA || c == SHAPES;
+        if (c == N_COLUMNS - 1)
+            g_string_append_printf(text, "%s\n", row->cell[c]);
+        else
+            g_string_append_printf(text, "%*s%s%*s  ", right ? gap : 0, "", row->cell[c],
+                                   right ? 0 : gap, "");
+    }
+}
+
+static char *table(const Subject *subject)
+{
+    g_autoptr(GArray) rows = g_array_new(FALSE, FALSE, sizeof(Row));
+    g_array_set_clear_func(rows, row_clear);
+    const Row top = heading();
+    g_array_append_val(rows, top);
+    for (int r = 0; r < fl_film_regions(subject->film); r++) {
+        const Row row = describe(subject, r);
+        g_array_append_val(rows, row);
+    }
+    int widths[N_COLUMNS] = {0};
+    for (guint i = 0; i < rows->len; i++)
+        for (int c = 0; c < N_COLUMNS; c++)
+            widths[c] = MAX(widths[c], g_utf8_strlen(g_array_index(rows, Row, i).cell[c], -1));
+    GString *text = g_string_new(NULL);
+    for (guint i = 0; i < rows->len; i++)
+        append_row(text, &g_array_index(rows, Row, i), widths);
+    return g_string_free(text, FALSE);
+}
+
+/* ---- configs ------------------------------------------------------------------------------ */
+
+static const char *style_said(const Subject *subject)
+{
+    for (size_t i = subject->options.n_settings; i > 0; i--)
+        if (!subject->options.settings[i - 1].region &&
+            strcmp(subject->options.settings[i - 1].name, "style") == 0)
+            return subject->options.settings[i - 1].value;
+    return NULL;
+}
+
+static void append_section(GString *text, const Subject *subject, int region)
+{
+    const FlRegion *r = fl_film_region(subject->film, region);
+    g_string_append_printf(text, "\n[region %s]\n# %s%s%s, %d of %d frames, %.0f px\n", r->name,
+                           r->paint, *r->label ? " in layer " : "", r->label, r->n_present,
+                           fl_film_frames(subject->film), r->area_px);
+    if (r->paintable)
+        g_string_append(text, "# style = 01\n# tint = fill\n");
+    else
+        g_string_append(text, "# drawn as it is; passthrough = off paints it\n");
+}
+
+static char *config_text(const Subject *subject)
+{
+    const char *style = style_said(subject);
+    GString *text = g_string_new("# How the regions are painted; see fluidy-svg.conf(5).\n");
+    g_string_append_printf(text,
+                           "# Lines that start with # say nothing yet.\n\n"
+                           "[project]\nversion = 1\n# background = #ffffff\n\n"
+                           "[defaults]\n%sstyle = %s\n",
+                           style ? "" : "# ", style ? style : "01");
+    for (int r = 0; r < fl_film_regions(subject->film); r++)
+        append_section(text, subject, r);
+    return g_string_free(text, FALSE);
+}
+
+char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError **error)
+{
+    g_auto(Subject) subject = {0};
+    if (!subject_init(&subject, options, error))
+        return NULL;
+    return listing == FL_LISTING_CONFIG ? config_text(&subject) : table(&subject);
+}
+
+/* ---- maps --------------------------------------------------------------------------------- */
+
+#define LINE_PX 20
+#define LEGEND_PX 280
+
+/* The legend beside the map, as high as it needs to be. */
+static void draw_legend(cairo_t *cr, const FlFilm *film, int left)
+{
+    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cr, 12);
+    int line = 0;
+    for (int r = 0; r < fl_film_regions(film); r++) {
+        const FlRegion *region = fl_film_region(film, r);
+        if (!region->paintable)
+            continue;
+        uint8_t rgb[3];
+        fl_region_colour(film, r, rgb);
+        const double y = 8 + LINE_PX * line++;
+        cairo_set_source_rgb(cr, rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
+        cairo_rectangle(cr, left + 8, y, 14, 14);
+        cairo_fill(cr);
+        cairo_set_source_rgb(cr, 0, 0, 0);
+        cairo_move_to(cr, left + 30, y + 11);
+        cairo_show_text(cr, region->name);
+    }
+}
+
+static int legend_height(const FlFilm *film)
+{
+    int lines = 0;
+    for (int r = 0; r < fl_film_regions(film); r++)
+        lines += fl_film_region(film, r)->paintable;
+    return 16 + LINE_PX * lines;
+}
+
+/* Straight sRGBA over white, as the opaque pixels of a cairo surface. */
+static void copy_map(const uint8_t *rgba, int width, int height, cairo_surface_t *surface)
+{
+    cairo_surface_flush(surface);
+    uint8_t *rows = cairo_image_surface_get_data(surface);
+    const int stride = cairo_image_surface_get_stride(surface);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const uint8_t *from = rgba + 4 * ((size_t)y * width + x);
+            uint32_t pixel = 0xff;
+            for (int c = 0; c < 3; c++)
+                pixel = pixel << 8 | (from[c] * from[3] + 255 * (255 - from[3]) + 127) / 255;
+            memcpy(rows + (size_t)y * stride + 4 * x, &pixel, 4);
+        }
+    cairo_surface_mark_dirty(surface);
+}
+
+/* The other way: an opaque surface as straight sRGBA. */
+static void copy_surface(cairo_surface_t *surface, int width, int height, uint8_t *rgba)
+{
+    cairo_surface_flush(surface);
+    const uint8_t *rows = cairo_image_surface_get_data(surface);
+    const int stride = cairo_image_surface_get_stride(surface);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            uint32_t pixel = 0;
+            memcpy(&pixel, rows + (size_t)y * stride + 4 * x, 4);
+            uint8_t *to = rgba + 4 * ((size_t)y * width + x);
+            to[0] = pixel >> 16 & 255, to[1] = pixel >> 8 & 255, to[2] = pixel & 255, to[3] = 255;
+        }
+}
+
+static bool write_map(const Subject *subject, int frame, const char *pattern, GError **error)
+{
+    const FlFilm *film = subject->film;
+    const int width = fl_film_width(film), height = fl_film_height(film);
+    const int all_width = width + LEGEND_PX, all_height = MAX(height, legend_height(film));
+    g_autoptr(FlRuns) runs = fl_film_runs(film, frame, error);
+    g_autofree uint8_t *map =
+        runs ? fl_alloc((size_t)all_width * all_height, 4, "a map", error) : NULL;
+    if (!map)
+        return false;
+    fl_runs_map(film, runs, map);
+    g_autoptr(cairo_surface_t) surface =
+        cairo_image_surface_create(CAIRO_FORMAT_RGB24, all_width, all_height);
+    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "cannot draw a map of %dx%d pixels: %s",
+                    all_width, all_height, cairo_status_to_string(cairo_surface_status(surface)));
+        return false;
+    }
+    g_autoptr(cairo_t) cr = cairo_create(surface);
+    cairo_set_source_rgb(cr, 1, 1, 1);
+    cairo_paint(cr);
+    copy_map(map, width, height, surface);
+    draw_legend(cr, film, width);
+    copy_surface(surface, all_width, all_height, map);
+    g_autofree char *path = fl_output_name(pattern, fl_film_number(film, frame), NULL, error);
+    const FlPng png = {.width = all_width, .height = all_height, .rgba = map, .opaque = true};
+    const bool overwrite = subject->options.overwrite == FL_OVERWRITE_YES;
+    return path && fl_png_save(&png, path, overwrite, error);
+}
+
+bool fl_map_regions(const FlRenderOptions *options, GError **error)
+{
+    g_auto(Subject) subject = {0};
+    if (!subject_init(&subject, options, error))
+        return false;
+    g_autofree char *pattern =
+        options->output ? g_strdup(options->output)
+                        : g_strdup_printf("fluidy/%s_map_%%04d.png", fl_film_name(subject.film));
+    const int n = fl_film_frames(subject.film);
+    for (int f = 0; f < n; f++)
+        if (!write_map(&subject, f, pattern, error))
+            return false;
+    g_autofree char *line = g_strdup_printf("%d map%s: %s", n, n == 1 ? "" : "s", pattern);
+    if (options->note)
+        options->note(line, options->data);
+    return true;
+}

@@ -1,0 +1,106 @@
+#include "regions/opening.h"
+
+#include "base/suggest.h"
+
+/* The rule's wishes that matter to finding regions. The strings stay the config's. */
+static void add_wishes(const FlRule *from, FlRegionRule *rule)
+{
+    g_auto(FlTreatment) said = {0};
+    fl_treatment_init(&said);
+    fl_wishes_apply(&from->wishes, &said);
+    rule->passthrough = said.passthrough;
+    for (int i = 0; said.merge_with && i < from->wishes.n; i++)
+        if (g_str_equal(from->wishes.wish[i].key, "merge-with"))
+            rule->merge_with = from->wishes.wish[i].value;
+}
+
+static FlRegionRule *rules_of(const FlConfig *config)
+{
+    FlRegionRule *rules = g_new0(FlRegionRule, MAX(config->n_rules, 1));
+    for (int i = 0; i < config->n_rules; i++) {
+        const FlRule *from = &config->rules[i];
+        rules[i] = (FlRegionRule){
+            .name = from->name,
+            .match_fill = (const char *const *)from->match_fill,
+            .match_stroke = (const char *const *)from->match_stroke,
+            .match_id = (const char *const *)from->match_id,
+            .match_class = (const char *const *)from->match_class,
+            .match_label = (const char *const *)from->match_label,
+            .match_layer = (const char *const *)from->match_layer,
+            .tolerance = from->match_tolerance,
+            .by_name = from->by_name,
+        };
+        add_wishes(from, &rules[i]);
+    }
+    return rules;
+}
+
+static bool is_used(const FlFilm *film, int rule, const FlRegionRule *rules)
+{
+    bool used = rules[rule].merge_with != NULL; // its region has become another one
+    for (int r = 0; r < fl_film_regions(film); r++)
+        used |= fl_film_region(film, r)->rule == rule;
+    return used;
+}
+
+/* A section that holds for nothing is most often a mistyped name or colour. */
+static void warn_of_unused(const FlFilm *film, const FlConfig *config, const FlRegionRule *rules,
+                           FlWarnings *warnings)
+{
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (int r = 0; r < fl_film_regions(film); r++)
+        g_ptr_array_add(names, fl_film_region(film, r)->name);
+    g_ptr_array_add(names, NULL);
+    for (int i = 0; i < config->n_rules; i++) {
+        if (is_used(film, i, rules))
+            continue;
+        const FlRule *rule = &config->rules[i];
+        g_autofree char *hint = rule->by_name
+                                    ? fl_did_you_mean(rule->name, (const char *const *)names->pdata)
+                                    : g_strdup("");
+        g_autofree char *place = g_strdup_printf("%s:%d", config->path, rule->line);
+        fl_warnings_add(warnings, place, -1, NULL, "[region %s] holds for nothing in the drawing%s",
+                        rule->name, hint);
+    }
+}
+
+static bool report(const FlWarnings *warnings, const FlRenderOptions *options, GError **error)
+{
+    const int n = fl_warnings_count(warnings);
+    for (int i = 0; i < n; i++) {
+        g_autofree char *line = fl_warning_line(fl_warnings_get(warnings, i));
+        if (options->strict) {
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under --strict)", line,
+                        n, n == 1 ? "" : "s");
+            return false;
+        }
+        if (options->warning)
+            options->warning(line, options->data);
+    }
+    return true;
+}
+
+FlFilm *fl_film_of_options(const FlRenderOptions *options, const FlConfig *config, GError **error)
+{
+    g_autofree FlRegionRule *rules = rules_of(config);
+    FlFilmOptions wanted = {.inputs = options->inputs,
+                            .n_inputs = (int)g_strv_length((char **)options->inputs),
+                            .range = options->frames,
+                            .missing = options->missing,
+                            .dpi = options->dpi,
+                            .width = options->width,
+                            .height = options->height,
+                            .scale = options->scale,
+                            .strokes = options->stroke,
+                            .key = options->key,
+                            .rules = rules,
+                            .n_rules = config->n_rules};
+    if (options->canvas && !fl_canvas_parse(options->canvas, &wanted.canvas, error))
+        return NULL;
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_autoptr(FlFilm) film = fl_film_open(&wanted, warnings, error);
+    if (!film)
+        return NULL;
+    warn_of_unused(film, config, rules, warnings);
+    return report(warnings, options, error) ? g_steal_pointer(&film) : NULL;
+}
