@@ -54,12 +54,31 @@ static void put_header(png_structp png, png_infop info, const FlPng *picture)
         png_set_swap(png);
 }
 
-/** Writes to the stream; libpng jumps back here when it fails. */
-static bool put_picture(png_structp png, png_infop info, const FlPng *picture, FILE *stream)
+/** Where the bytes go: a stream, or else an array. */
+typedef struct Target {
+    FILE *stream;
+    GByteArray *array;
+} Target;
+
+static void put_bytes(png_structp png, png_bytep bytes, size_t n)
+{
+    Target *target = png_get_io_ptr(png);
+    if (target->array)
+        g_byte_array_append(target->array, bytes, (guint)n);
+    else if (fwrite(bytes, 1, n, target->stream) != n)
+        png_error(png, "write error");
+}
+
+static void flush_nothing(png_structp png)
+{
+}
+
+/** libpng jumps back here when it fails. */
+static bool put_picture(png_structp png, png_infop info, const FlPng *picture, Target *target)
 {
     if (setjmp(png_jmpbuf(png)))
         return false;
-    png_init_io(png, stream);
+    png_set_write_fn(png, target, put_bytes, flush_nothing);
     put_header(png, info, picture);
     const size_t row = (size_t)picture->width * 4;
     for (int y = 0; y < picture->height; y++)
@@ -71,23 +90,38 @@ static bool put_picture(png_structp png, png_infop info, const FlPng *picture, F
     return true;
 }
 
+static bool encode(const FlPng *picture, Target *target, Trouble *trouble)
+{
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, trouble, on_error, on_warning);
+    png_infop info = png ? png_create_info_struct(png) : NULL;
+    const bool put = info && put_picture(png, info, picture, target);
+    png_destroy_write_struct(&png, &info);
+    return put;
+}
+
+GBytes *fl_png_encode(const FlPng *picture)
+{
+    Trouble trouble = {""};
+    Target target = {.array = g_byte_array_new()};
+    const bool put = encode(picture, &target, &trouble);
+    GBytes *bytes = g_byte_array_free_to_bytes(target.array);
+    if (!put)
+        g_clear_pointer(&bytes, g_bytes_unref);
+    return bytes;
+}
+
 bool fl_png_save(const FlPng *picture, const char *path, bool overwrite, GError **error)
 {
     g_auto(FlAtomic) file = {0};
     Trouble trouble = {""};
     if (!fl_atomic_open(&file, path, overwrite, error))
         return false;
-    png_structp png =
-        png_create_write_struct(PNG_LIBPNG_VER_STRING, &trouble, on_error, on_warning);
-    png_infop info = png ? png_create_info_struct(png) : NULL;
+    Target target = {.stream = file.stream};
     errno = 0;
-    const bool put = info && put_picture(png, info, picture, file.stream);
-    const int errno_value = errno;
-    png_destroy_write_struct(&png, &info);
-    if (put)
+    if (encode(picture, &target, &trouble))
         return fl_atomic_commit(&file, error);
     g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                errno_value ? g_strerror(errno_value) : trouble.message);
+                errno ? g_strerror(errno) : trouble.message);
     return false;
 }
 

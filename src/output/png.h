@@ -23,4 +23,7 @@ typedef struct FlPng {
  */
 bool fl_png_save(const FlPng *png, const char *path, bool overwrite, GError **error);
 
+/** The bytes of the file that fl_png_save() writes; NULL if memory is short. */
+GBytes *fl_png_encode(const FlPng *png);
+
 #endif

@@ -1,13 +1,20 @@
 #include "output/sink.h"
+#include "config.h"
 #include "output/formats.h"
 #include "output/name.h"
 
 #include <string.h>
 
 static const FlSinkFormat *const formats[] = {
-    &fl_sink_png,
-    &fl_sink_png16,
-    NULL,
+    &fl_sink_png,  &fl_sink_png16,
+#if HAVE_EXR
+    &fl_sink_exr,
+#endif
+#if HAVE_ORA
+    &fl_sink_ora,
+#endif
+    &fl_sink_mov,  &fl_sink_webm,  &fl_sink_mkv,  &fl_sink_mp4, &fl_sink_gif,
+    &fl_sink_apng, &fl_sink_hash,  &fl_sink_null, NULL,
 };
 
 const FlSinkFormat *const *fl_sink_formats(void)
@@ -49,14 +56,20 @@ char *fl_sink_file(const FlSinkParams *params, int number, GError **error)
     return fl_output_name(params->path, number, NULL, error);
 }
 
+/** A pattern's mistakes show up before any frame is painted. */
+static bool check_path(const FlSinkFormat *format, const FlSinkParams *params, GError **error)
+{
+    g_autofree char *name = format->film ? NULL : fl_sink_file(params, 0, error);
+    return format->film || name;
+}
+
 FlSink *fl_sink_open(const FlSinkFormat *format, const FlSinkParams *params, GError **error)
 {
     g_autoptr(FlSink) sink = g_new0(FlSink, 1);
     sink->format = format;
     sink->params = *params;
     sink->params.path = g_strdup(params->path);
-    g_autofree char *name = fl_sink_file(params, 0, error); // a pattern's mistakes show up here
-    if (!name || (format->open && !format->open(sink, error)))
+    if (!check_path(format, params, error) || (format->open && !format->open(sink, error)))
         return NULL;
     return g_steal_pointer(&sink);
 }

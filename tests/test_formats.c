@@ -1,0 +1,487 @@
+#include "base/rng.h"
+#include "config.h"
+#include "output/sink.h"
+#include "style/picture.h"
+
+#include <gio/gio.h>
+#include <glib/gstdio.h>
+#include <math.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/resource.h>
+#if HAVE_EXR
+#include <OpenEXR/openexr.h>
+#endif
+#if HAVE_ORA
+#include <zip.h>
+#endif
+
+enum { W = 34, H = 26, FRAMES = 5 };
+
+typedef struct Scratch {
+    char *folder;
+} Scratch;
+
+static void scratch_clear(Scratch *scratch)
+{
+    g_autoptr(GDir) dir = g_dir_open(scratch->folder, 0, NULL);
+    for (const char *name; (name = g_dir_read_name(dir));) {
+        g_autofree char *path = g_build_filename(scratch->folder, name, NULL);
+        g_remove(path);
+    }
+    g_rmdir(scratch->folder);
+    g_free(scratch->folder);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Scratch, scratch_clear)
+
+static Scratch scratch_new(void)
+{
+    return (Scratch){g_dir_make_tmp("fluidy-formats-XXXXXX", NULL)};
+}
+
+static int count_files(const Scratch *scratch)
+{
+    g_autoptr(GDir) dir = g_dir_open(scratch->folder, 0, NULL);
+    int n = 0;
+    while (g_dir_read_name(dir))
+        n++;
+    return n;
+}
+
+/** Smooth colour that moves, with alpha falling from left to right. */
+static void fill(uint8_t *rgba, int frame)
+{
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const uint8_t pixel[4] = {(uint8_t)(60 + 4 * x), (uint8_t)(200 - 5 * y),
+                                      (uint8_t)(90 + 20 * frame), (uint8_t)(255 - 7 * x)};
+            memcpy(rgba + 4 * (y * W + x), pixel, 4);
+        }
+}
+
+/** Writes a film; returns whether it went well. */
+static bool write_film(const char *path, bool opaque, GError **error)
+{
+    const FlSinkFormat *format = fl_sink_format(NULL, path, error);
+    const FlSinkParams params = {
+        .path = path, .width = W, .height = H, .fps = 12, .opaque = opaque};
+    g_autoptr(FlSink) sink = format ? fl_sink_open(format, &params, error) : NULL;
+    uint8_t rgba[4 * W * H];
+    for (int k = 0; sink && k < FRAMES; k++) {
+        fill(rgba, k);
+        for (int i = 0; opaque && i < W * H; i++)
+            rgba[4 * i + 3] = 255;
+        const FlSinkFrame frame = {.number = k + 1, .rgba = rgba};
+        if (!fl_sink_frame(sink, &frame, error))
+            return false;
+    }
+    return sink && fl_sink_finish(sink, error);
+}
+
+/** What ffprobe says of the first stream: "key=value" lines; to be freed. */
+static char *probe(const char *path)
+{
+    g_autoptr(GError) error = NULL;
+    const char *const words[] = {
+        "ffprobe",
+        "-v",
+        "error",
+        "-count_frames",
+        "-select_streams",
+        "v:0",
+        "-show_entries",
+        "stream=codec_name,width,height,pix_fmt,r_frame_rate,nb_read_frames,color_space,"
+        "color_primaries,color_transfer:stream_tags=alpha_mode",
+        "-of",
+        "default=noprint_wrappers=1",
+        path,
+        NULL};
+    char *said = NULL;
+    int status = 0;
+    g_assert_true(g_spawn_sync(NULL, (char **)words, NULL, G_SPAWN_SEARCH_PATH, NULL, NULL, &said,
+                               NULL, &status, &error));
+    g_assert_no_error(error);
+    return said;
+}
+
+static void assert_said(const char *said, const char *line)
+{
+    g_auto(GStrv) lines = g_strsplit(said, "\n", -1);
+    if (!g_strv_contains((const char *const *)lines, line))
+        g_error("expected %s in:\n%s", line, said);
+}
+
+static bool lacks(const char *program)
+{
+    g_autofree char *found = g_find_program_in_path(program);
+    if (!found)
+        g_test_skip("ffmpeg is not installed");
+    return !found;
+}
+
+static void a_film_reads_back_with_size_rate_alpha_and_tags(void)
+{
+    const struct {
+        const char *name, *codec, *pixels;
+        bool opaque, bt709;
+    } films[] = {
+        {"a.mov", "codec_name=prores", "pix_fmt=yuva444p12le", false, true},
+        {"b.mov", "codec_name=prores", "pix_fmt=yuv444p12le", true, true},
+        {"a.webm", "codec_name=vp9", "TAG:alpha_mode=1", false, true},
+        {"a.mkv", "codec_name=ffv1", "pix_fmt=bgra", false, false},
+        {"a.mp4", "codec_name=h264", "pix_fmt=yuv420p", true, true},
+        {"a.gif", "codec_name=gif", "pix_fmt=bgra", false, false},
+        {"a.apng", "codec_name=apng", "pix_fmt=rgba", false, false},
+    };
+    if (lacks("ffmpeg") || lacks("ffprobe"))
+        return;
+    g_auto(Scratch) scratch = scratch_new();
+    for (size_t i = 0; i < G_N_ELEMENTS(films); i++) {
+        g_autoptr(GError) error = NULL;
+        g_autofree char *path = g_build_filename(scratch.folder, films[i].name, NULL);
+        write_film(path, films[i].opaque, &error);
+        g_assert_no_error(error);
+        g_autofree char *said = probe(path);
+        assert_said(said, films[i].codec);
+        assert_said(said, films[i].pixels);
+        assert_said(said, "width=34");
+        assert_said(said, "height=26");
+        assert_said(said, "nb_read_frames=5");
+        if (!g_str_has_suffix(path, "gif")) // whose clock counts in 1/100 s
+            assert_said(said, "r_frame_rate=12/1");
+        if (films[i].bt709) {
+            assert_said(said, "color_space=bt709");
+            assert_said(said, "color_transfer=bt709");
+            assert_said(said, "color_primaries=bt709");
+        }
+        g_assert_cmpint(count_files(&scratch), ==, (int)i + 1);
+    }
+}
+
+/** The last frame of a film as raw RGBA. */
+static void decode_last(const char *path, uint8_t *rgba)
+{
+    g_autofree char *filter = g_strdup_printf("select=eq(n\\,%d)", FRAMES - 1);
+    const char *const words[] = {"ffmpeg",   "-v",       "error",  "-i", path,
+                                 "-vf",      filter,     "-vsync", "0",  "-f",
+                                 "rawvideo", "-pix_fmt", "rgba",   "-",  NULL};
+    g_autoptr(GError) error = NULL;
+    g_autoptr(GSubprocess) child = g_subprocess_newv(words, G_SUBPROCESS_FLAGS_STDOUT_PIPE, &error);
+    g_autoptr(GBytes) out = NULL;
+    g_assert_true(g_subprocess_communicate(child, NULL, NULL, &out, NULL, &error));
+    g_assert_cmpint(g_bytes_get_size(out), ==, 4 * W * H);
+    memcpy(rgba, g_bytes_get_data(out, NULL), 4 * W * H);
+}
+
+static void a_lossless_film_keeps_every_bit_and_prores_nearly(void)
+{
+    const struct {
+        const char *name;
+        int tolerance;
+    } films[] = {{"a.mkv", 0}, {"a.apng", 0}, {"a.mov", 6}};
+    if (lacks("ffmpeg"))
+        return;
+    g_auto(Scratch) scratch = scratch_new();
+    uint8_t expected[4 * W * H], got[4 * W * H];
+    fill(expected, FRAMES - 1);
+    for (size_t i = 0; i < G_N_ELEMENTS(films); i++) {
+        g_autoptr(GError) error = NULL;
+        g_autofree char *path = g_build_filename(scratch.folder, films[i].name, NULL);
+        write_film(path, false, &error);
+        g_assert_no_error(error);
+        decode_last(path, got);
+        for (int k = 0; k < 4 * W * H; k++)
+            g_assert_cmpint(abs(got[k] - expected[k]), <=, films[i].tolerance);
+    }
+}
+
+static void transparent_frames_are_not_for_h264(void)
+{
+    if (lacks("ffmpeg"))
+        return;
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = g_build_filename(scratch.folder, "a.mp4", NULL);
+    g_assert_false(write_film(path, false, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+    g_assert_cmpint(count_files(&scratch), ==, 0);
+}
+
+static void an_unfinished_film_leaves_nothing(void)
+{
+    if (lacks("ffmpeg"))
+        return;
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = g_build_filename(scratch.folder, "a.mkv", NULL);
+    const FlSinkParams params = {.path = path, .width = W, .height = H, .fps = 25};
+    FlSink *sink = fl_sink_open(fl_sink_format(NULL, path, NULL), &params, &error);
+    g_assert_no_error(error);
+    uint8_t rgba[4 * W * H];
+    fill(rgba, 0);
+    g_assert_true(fl_sink_frame(sink, &(FlSinkFrame){.number = 1, .rgba = rgba}, &error));
+    fl_sink_free(sink);
+    g_assert_cmpint(count_files(&scratch), ==, 0);
+}
+
+/** Puts a program called ffmpeg first into $PATH; NULL: none at all. Returns the old $PATH. */
+static char *pretend_ffmpeg(const Scratch *scratch, const char *script)
+{
+    char *before = g_strdup(g_getenv("PATH"));
+    g_autofree char *program = g_build_filename(scratch->folder, "ffmpeg", NULL);
+    g_autofree char *path = g_strconcat(scratch->folder, ":", script ? before : "", NULL);
+    if (script) {
+        g_assert_true(g_file_set_contents(program, script, -1, NULL));
+        g_chmod(program, 0755);
+    }
+    g_setenv("PATH", path, TRUE);
+    return before;
+}
+
+static void the_death_of_ffmpeg_is_told_in_its_own_words(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_auto(Scratch) bin = scratch_new();
+    g_autofree char *before =
+        pretend_ffmpeg(&bin, "#!/bin/sh\necho first >&2\necho no such encoder >&2\nexit 1\n");
+    g_autofree char *path = g_build_filename(scratch.folder, "a.mkv", NULL);
+    g_assert_false(write_film(path, false, &error));
+    g_setenv("PATH", before, TRUE);
+    g_assert_error(error, FL_ERROR, FL_ERROR_OUTPUT);
+    g_assert_true(g_str_has_prefix(error->message, path));
+    g_assert_true(g_str_has_suffix(error->message, "ffmpeg stopped: no such encoder"));
+    g_assert_cmpint(count_files(&scratch), ==, 0);
+}
+
+static void a_missing_ffmpeg_is_one_plain_message(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *before = pretend_ffmpeg(&scratch, NULL);
+    g_autofree char *path = g_build_filename(scratch.folder, "a.mov", NULL);
+    g_assert_false(write_film(path, false, &error));
+    g_setenv("PATH", before, TRUE);
+    g_assert_error(error, FL_ERROR, FL_ERROR_OUTPUT);
+    g_assert_nonnull(strstr(error->message, "not installed"));
+    g_assert_cmpint(count_files(&scratch), ==, 0);
+}
+
+static void an_existing_film_is_kept(void)
+{
+    if (lacks("ffmpeg"))
+        return;
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = g_build_filename(scratch.folder, "a.mov", NULL), *now = NULL;
+    g_file_set_contents(path, "precious", -1, NULL);
+    g_assert_false(write_film(path, false, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_EXISTS);
+    g_file_get_contents(path, &now, NULL, NULL);
+    g_assert_cmpstr(now, ==, "precious");
+}
+
+/** Noise, which no format makes small; returns whether all went well. */
+static bool write_noise(const char *path, const FlSinkFormat *format, GError **error)
+{
+    enum { SIDE = 128 };
+    static uint8_t rgba[4 * SIDE * SIDE];
+    static uint16_t rgba16[4 * SIDE * SIDE];
+    FlRng rng = {1};
+    for (int i = 0; i < 4 * SIDE * SIDE; i++)
+        rgba[i] = i % 4 == 3 ? 255 : (uint8_t)fl_rng_u32(&rng),
+        rgba16[i] = (uint16_t)(rgba[i] * 257);
+    const FlSinkParams params = {
+        .path = path, .width = SIDE, .height = SIDE, .fps = 25, .opaque = true};
+    const FlSinkLayer layer = {"all", 0, 0, SIDE, SIDE, rgba};
+    g_autoptr(FlSink) sink = fl_sink_open(format, &params, error);
+    for (int k = 0; sink && k < 8; k++) {
+        const FlSinkFrame frame = {
+            .number = k, .rgba = rgba, .rgba16 = rgba16, .layers = &layer, .n_layers = 1};
+        if (!fl_sink_frame(sink, &frame, error))
+            return false;
+    }
+    return sink && fl_sink_finish(sink, error);
+}
+
+static void a_full_disk_is_an_error_and_leaves_no_litter(void)
+{
+    struct rlimit before;
+    getrlimit(RLIMIT_FSIZE, &before);
+    for (const FlSinkFormat *const *format = fl_sink_formats(); *format; format++) {
+        g_autoptr(GError) error = NULL;
+        g_auto(Scratch) scratch = scratch_new();
+        g_autofree char *name = g_strdup_printf("a%s%s", (*format)->film ? "" : "_%02d",
+                                                (*format)->suffix ? (*format)->suffix : "");
+        g_autofree char *path = g_build_filename(scratch.folder, name, NULL);
+        if (strcmp((*format)->name, "null") == 0)
+            continue;
+        g_test_message("%s", (*format)->name);
+        /* A file that grows beyond the limit fails as on a full disk, for our children as well. */
+        signal(SIGXFSZ, SIG_IGN);
+        setrlimit(RLIMIT_FSIZE, &(struct rlimit){300, before.rlim_max});
+        const bool written = write_noise(path, *format, &error);
+        setrlimit(RLIMIT_FSIZE, &before);
+        g_assert_false(written);
+        g_assert_error(error, FL_ERROR, FL_ERROR_OUTPUT);
+        g_assert_true(g_str_has_prefix(error->message, scratch.folder));
+        g_assert_cmpint(count_files(&scratch), ==, 0);
+    }
+}
+
+static void sums_are_a_line_per_frame(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = g_build_filename(scratch.folder, "a.sha256", NULL), *text = NULL;
+    write_film(path, false, &error);
+    g_assert_no_error(error);
+    g_assert_true(g_file_get_contents(path, &text, NULL, NULL));
+    g_auto(GStrv) lines = g_strsplit(text, "\n", -1);
+    g_assert_cmpint(g_strv_length(lines), ==, FRAMES + 1);
+    g_assert_true(g_str_has_suffix(lines[2], "  3"));
+    g_assert_cmpint(strlen(lines[0]), ==, 64 + 3);
+}
+
+#if HAVE_EXR || HAVE_ORA
+
+static uint8_t small[4 * 4 * 4], whole[4 * W * H];
+
+/** Writes frame 7 of two layers; returns its file. */
+static char *write_layered(const Scratch *scratch, const char *name)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *pattern = g_build_filename(scratch->folder, name, NULL);
+    const FlSinkParams params = {.path = pattern, .width = W, .height = H};
+    g_autoptr(FlSink) sink = fl_sink_open(fl_sink_format(NULL, pattern, &error), &params, &error);
+    g_assert_no_error(error);
+    fill(whole, 1);
+    for (int i = 0; i < 16; i++)
+        memcpy(small + 4 * i, (uint8_t[]){255, 128, 0, 51}, 4);
+    const FlSinkLayer layers[2] = {{"back-ground", 0, 0, W, H, whole},
+                                   {"hair", 5, 20, 4, 4, small}};
+    const FlSinkFrame frame = {.number = 7, .rgba = whole, .layers = layers, .n_layers = 2};
+    fl_sink_frame(sink, &frame, &error);
+    g_assert_no_error(error);
+    g_assert_true(fl_sink_finish(sink, &error));
+    return fl_sink_file(&params, 7, NULL);
+}
+
+#endif
+
+#if HAVE_EXR
+
+static float float_of(uint16_t half)
+{
+    const int exponent = half >> 10;
+    return exponent ? ldexpf(1024 + (half & 1023), exponent - 25) : ldexpf(half & 1023, -24);
+}
+
+static void an_exr_holds_linear_premultiplied_layers(void)
+{
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = write_layered(&scratch, "a_%02d.exr");
+    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    exr_context_t context;
+    exr_chunk_info_t info;
+    exr_decode_pipeline_t pipe = {0};
+    g_assert_cmpint(exr_start_read(&context, path, &how), ==, EXR_ERR_SUCCESS);
+    g_assert_cmpint(exr_read_scanline_chunk_info(context, 0, 16, &info), ==, EXR_ERR_SUCCESS);
+    g_assert_cmpint(exr_decoding_initialize(context, 0, &info, &pipe), ==, EXR_ERR_SUCCESS);
+    g_assert_cmpint(pipe.channel_count, ==, 12);
+    static uint16_t rows[12][16][W];
+    int green = -1, alpha = -1;
+    for (int c = 0; c < 12; c++) {
+        green = strcmp(pipe.channels[c].channel_name, "hair.G") ? green : c;
+        alpha = strcmp(pipe.channels[c].channel_name, "A") ? alpha : c;
+        pipe.channels[c].decode_to_ptr = (uint8_t *)rows[c];
+        pipe.channels[c].user_bytes_per_element = 2;
+        pipe.channels[c].user_data_type = EXR_PIXEL_HALF;
+        pipe.channels[c].user_pixel_stride = 2;
+        pipe.channels[c].user_line_stride = 2 * W;
+    }
+    g_assert_cmpint(exr_decoding_choose_default_routines(context, 0, &pipe), ==, EXR_ERR_SUCCESS);
+    g_assert_cmpint(exr_decoding_run(context, 0, &pipe), ==, EXR_ERR_SUCCESS);
+    g_assert_true(green >= 0 && alpha >= 0);
+    /* rows 16 to 25; level 128 is 0.2159 of linear light, alpha 0.2 */
+    g_assert_cmpfloat(fabsf(float_of(rows[green][20 - 16][6]) - 0.2159f * 0.2f), <, 1e-4f);
+    g_assert_cmpfloat(float_of(rows[green][19 - 16][6]), ==, 0);
+    g_assert_cmpfloat(fabsf(float_of(rows[alpha][0][10]) - 185 / 255.0f), <, 5e-4f);
+    exr_decoding_destroy(context, &pipe);
+    exr_finish(&context);
+}
+
+#endif
+
+#if HAVE_ORA
+
+static char *read_part(zip_t *zip, const char *name, size_t *bytes)
+{
+    zip_stat_t stat;
+    g_assert_cmpint(zip_stat(zip, name, 0, &stat), ==, 0);
+    char *data = g_malloc0(stat.size + 1);
+    zip_file_t *part = zip_fopen(zip, name, 0);
+    g_assert_cmpint(zip_fread(part, data, stat.size), ==, (gint64)stat.size);
+    zip_fclose(part);
+    *bytes = stat.size;
+    return data;
+}
+
+static void an_openraster_file_has_its_layers_in_order(void)
+{
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = write_layered(&scratch, "a_%02d.ora");
+    g_autofree char *again = write_layered(&scratch, "b_%02d.ora");
+    g_autofree char *file = NULL, *file_again = NULL;
+    size_t length = 0, length_again = 0, bytes = 0;
+    g_file_get_contents(path, &file, &length, NULL);
+    g_file_get_contents(again, &file_again, &length_again, NULL);
+    g_assert_cmpmem(file, length, file_again, length_again);
+    g_assert_cmpmem(file + 30, 8 + 16, "mimetypeimage/openraster", 24);
+    zip_t *zip = zip_open(path, ZIP_RDONLY, NULL);
+    g_autofree char *xml = read_part(zip, "stack.xml", &bytes);
+    g_assert_nonnull(strstr(xml, "w=\"34\" h=\"26\""));
+    g_assert_true(strstr(xml, "name=\"hair\"") < strstr(xml, "name=\"back-ground\""));
+    g_assert_nonnull(strstr(xml, "src=\"data/layer001.png\" x=\"5\" y=\"20\""));
+    g_autofree char *png = read_part(zip, "data/layer001.png", &bytes);
+    g_autofree char *out = g_build_filename(scratch.folder, "layer.png", NULL);
+    g_file_set_contents(out, png, (gssize)bytes, NULL);
+    g_autoptr(FlPicture) layer = fl_picture_read_png(out, NULL);
+    g_assert_cmpmem(layer->rgba, 64, small, 64);
+    g_autofree char *merged = read_part(zip, "mergedimage.png", &bytes);
+    g_autofree char *thumbnail = read_part(zip, "Thumbnails/thumbnail.png", &bytes);
+    zip_close(zip);
+}
+
+#endif
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/formats/a-film-reads-back-with-size-rate-alpha-and-tags",
+                    a_film_reads_back_with_size_rate_alpha_and_tags);
+    g_test_add_func("/formats/a-lossless-film-keeps-every-bit-and-prores-nearly",
+                    a_lossless_film_keeps_every_bit_and_prores_nearly);
+    g_test_add_func("/formats/transparent-frames-are-not-for-h264",
+                    transparent_frames_are_not_for_h264);
+    g_test_add_func("/formats/an-unfinished-film-leaves-nothing",
+                    an_unfinished_film_leaves_nothing);
+    g_test_add_func("/formats/the-death-of-ffmpeg-is-told-in-its-own-words",
+                    the_death_of_ffmpeg_is_told_in_its_own_words);
+    g_test_add_func("/formats/a-missing-ffmpeg-is-one-plain-message",
+                    a_missing_ffmpeg_is_one_plain_message);
+    g_test_add_func("/formats/an-existing-film-is-kept", an_existing_film_is_kept);
+    g_test_add_func("/formats/a-full-disk-is-an-error-and-leaves-no-litter",
+                    a_full_disk_is_an_error_and_leaves_no_litter);
+    g_test_add_func("/formats/sums-are-a-line-per-frame", sums_are_a_line_per_frame);
+#if HAVE_EXR
+    g_test_add_func("/formats/an-exr-holds-linear-premultiplied-layers",
+                    an_exr_holds_linear_premultiplied_layers);
+#endif
+#if HAVE_ORA
+    g_test_add_func("/formats/an-openraster-file-has-its-layers-in-order",
+                    an_openraster_file_has_its_layers_in_order);
+#endif
+    return g_test_run();
+}
