@@ -32,7 +32,8 @@ static double mean_uniformity(const FlSearch *search)
         const FlMatch m = search->nnf->match[p];
         if (m.frame == FL_NO_MATCH)
             continue;
-        sum += fl_occurrence_cost(search->map, target->segment[p], m, m), n++;
+        const FlCell cell = fl_occurrence_cell(search->map, m);
+        sum += fl_occurrence_cost(search->map, target->segment[p], cell, cell), n++;
     }
     return n > 0 ? (double)sum / search->scale->unit / (double)n : 0;
 }

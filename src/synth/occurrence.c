@@ -9,13 +9,17 @@ bool fl_occurrence_init(FlOccurrence *map, const FlExemplarLevel *level,
                         const FlTargetLevel *target, const FlParams *params,
                         const FlCostScale *scale, GError **error)
 {
-    *map = (FlOccurrence){.frames_per_cell = params->uni_radius + 1};
+    const int frames_per_cell = params->uni_radius + 1;
+    *map = (FlOccurrence){0};
     map->columns = level->width / FL_CELL + 1;
     map->rows = level->height / FL_CELL + 1;
-    map->slices = (level->n_frames - 1) / map->frames_per_cell + 1;
+    map->slices = (level->n_frames - 1) / frames_per_cell + 1;
     const size_t cells = (size_t)map->columns * map->rows * map->slices;
-    const double cell_pixels =
-        FL_CELL * FL_CELL * (double)MIN(map->frames_per_cell, level->n_frames);
+    const double cell_pixels = FL_CELL * FL_CELL * (double)MIN(frames_per_cell, level->n_frames);
+    if (!(map->slice_of = fl_alloc(level->n_frames, sizeof(uint16_t), "an occurrence map", error)))
+        return false;
+    for (int t = 0; t < level->n_frames; t++)
+        map->slice_of[t] = (uint16_t)(t / frames_per_cell);
     for (int s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++) {
         if (!(map->count[s] = fl_alloc(cells, sizeof(int32_t), "an occurrence map", error)) ||
             !(map->filtered[s] = fl_alloc(cells, sizeof(int32_t), "an occurrence map", error)))
@@ -33,6 +37,7 @@ void fl_occurrence_clear(FlOccurrence *map)
         free(map->count[s]);
         free(map->filtered[s]);
     }
+    free(map->slice_of);
     *map = (FlOccurrence){0};
 }
 
@@ -43,13 +48,15 @@ void fl_occurrence_count(FlOccurrence *map, const FlNnf *nnf, const FlTargetLeve
         memset(map->count[s], 0, cells * sizeof(int32_t));
     for (size_t p = 0; p < (size_t)nnf->width * nnf->height; p++)
         if (nnf->match[p].frame != FL_NO_MATCH)
-            map->count[target->segment[p]][fl_occurrence_cell(map, nnf->match[p])]++;
+            map->count[target->segment[p]]
+                      [fl_occurrence_index(map, fl_occurrence_cell(map, nnf->match[p]))]++;
     fl_occurrence_refresh(map);
 }
 
 void fl_occurrence_move(FlOccurrence *map, FlSegment segment, FlMatch from, FlMatch to)
 {
-    const size_t old = fl_occurrence_cell(map, from), new = fl_occurrence_cell(map, to);
+    const size_t old = fl_occurrence_index(map, fl_occurrence_cell(map, from));
+    const size_t new = fl_occurrence_index(map, fl_occurrence_cell(map, to));
     if (old == new)
         return;
     __atomic_fetch_sub(&map->count[segment][old], 1, __ATOMIC_RELAXED);

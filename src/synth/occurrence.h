@@ -15,7 +15,8 @@
 #define FL_CELL 3
 
 typedef struct FlOccurrence {
-    int columns, rows, slices, frames_per_cell;
+    int columns, rows, slices;
+    uint16_t *slice_of;             // of each frame of the exemplar
     int32_t *count[FL_SEGMENTS];    // matches per cell
     int32_t *filtered[FL_SEGMENTS]; // the same under the tent, brought up to date by _refresh
     uint64_t price[FL_SEGMENTS];    // cost of one filtered unit, in 1/65536
@@ -36,25 +37,32 @@ void fl_occurrence_move(FlOccurrence *map, FlSegment segment, FlMatch from, FlMa
 /** Filters the counts again. One thread. */
 void fl_occurrence_refresh(FlOccurrence *map);
 
-static inline size_t fl_occurrence_cell(const FlOccurrence *map, FlMatch m)
+/** A cell of the map. */
+typedef struct FlCell {
+    int x, y, t;
+} FlCell;
+
+static inline FlCell fl_occurrence_cell(const FlOccurrence *map, FlMatch m)
 {
-    return ((size_t)(m.frame / map->frames_per_cell) * map->rows + fl_match_y(m) / FL_CELL) *
-               map->columns +
-           fl_match_x(m) / FL_CELL;
+    return (FlCell){fl_match_x(m) / FL_CELL, fl_match_y(m) / FL_CELL, map->slice_of[m.frame]};
+}
+
+static inline size_t fl_occurrence_index(const FlOccurrence *map, FlCell cell)
+{
+    return ((size_t)cell.t * map->rows + cell.y) * map->columns + cell.x;
 }
 
 /**
- * The term for a candidate of a pixel whose match is `own`: 1.0 of the paper's energy where the use
- * is what an even use of the segment would be. The pixel's own use does not count.
+ * The term for a candidate in a cell, of a pixel whose match is in cell `own`: 1.0 of the paper's
+ * energy where the use is what an even use of the segment would be. The pixel's own use does not
+ * count.
  */
-static inline uint32_t fl_occurrence_cost(const FlOccurrence *map, FlSegment segment,
-                                          FlMatch candidate, FlMatch own)
+static inline uint32_t fl_occurrence_cost(const FlOccurrence *map, FlSegment segment, FlCell cell,
+                                          FlCell own)
 {
-    const int dx = abs(fl_match_x(candidate) / FL_CELL - fl_match_x(own) / FL_CELL);
-    const int dy = abs(fl_match_y(candidate) / FL_CELL - fl_match_y(own) / FL_CELL);
-    const int dt = abs(candidate.frame / map->frames_per_cell - own.frame / map->frames_per_cell);
+    const int dx = abs(cell.x - own.x), dy = abs(cell.y - own.y), dt = abs(cell.t - own.t);
     const int self = dx < 2 && dy < 2 && dt < 2 ? (2 - dx) * (2 - dy) * (2 - dt) : 0;
-    const int use = map->filtered[segment][fl_occurrence_cell(map, candidate)] - self;
+    const int use = map->filtered[segment][fl_occurrence_index(map, cell)] - self;
     return use <= 0 ? 0 : (uint32_t)MIN((uint64_t)use * map->price[segment] >> 16, 1u << 29);
 }
 

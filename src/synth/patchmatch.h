@@ -23,6 +23,13 @@ typedef struct FlSearchCounts {
     uint64_t accepted; // matches that changed
 } FlSearchCounts;
 
+/**
+ * Cost of a rotated exemplar patch against a gathered target patch: all but uniformity and
+ * coherence; once above limit, any number above limit.
+ */
+uint32_t fl_patch_cost(const FlSearch *search, const FlTargetPatch *patch, uint8_t target_angle,
+                       const FlTexel *centre, uint8_t theta, uint32_t limit);
+
 /** Texture, guides and direction of a match: all but uniformity and coherence. */
 uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
 

@@ -193,15 +193,42 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
     }
 }
 
-void fl_target_gather(const FlTargetLevel *level, int x, int y, FlPacked *patch, FlPacked *weight)
+/* Copies one pixel to place k. */
+static inline void gather_pixel(const FlTargetLevel *level, size_t from, int k,
+                                FlTargetPatch *patch)
+{
+    const FlPacked guide = level->guide[from];
+    FlPacked swapped = guide;
+    swapped.c[FL_CH_EXT_PLUS] = guide.c[FL_CH_EXT_MINUS];
+    swapped.c[FL_CH_EXT_MINUS] = guide.c[FL_CH_EXT_PLUS];
+    patch->guide[k] = guide;
+    patch->swapped[k] = swapped;
+    patch->weight[k] = level->weight[from];
+}
+
+/* Pixels beyond the rectangle have no weight. */
+static void gather_at_border(const FlTargetLevel *level, int x, int y, FlTargetPatch *patch)
 {
     for (int k = 0; k < FL_PATCH_PIXELS; k++) {
         const int px = x + fl_patch_offsets[k][0], py = y + fl_patch_offsets[k][1];
-        if (px >= 0 && py >= 0 && px < level->width && py < level->height) {
-            patch[k] = level->guide[(size_t)py * level->width + px];
-            weight[k] = level->weight[(size_t)py * level->width + px];
-        } else {
-            patch[k] = weight[k] = (FlPacked){0};
-        }
+        if (px >= 0 && py >= 0 && px < level->width && py < level->height)
+            gather_pixel(level, (size_t)py * level->width + px, k, patch);
+        else
+            patch->guide[k] = patch->swapped[k] = patch->weight[k] = (FlPacked){0};
     }
+}
+
+void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *patch)
+{
+    const int r = FL_PATCH_RADIUS;
+    if (x < r || y < r || x >= level->width - r || y >= level->height - r) {
+        gather_at_border(level, x, y, patch);
+        return;
+    }
+    const ptrdiff_t centre = (ptrdiff_t)y * level->width + x;
+    for (int k = 0; k < FL_PATCH_PIXELS; k++)
+        gather_pixel(level,
+                     (size_t)(centre + fl_patch_offsets[k][1] * (ptrdiff_t)level->width +
+                              fl_patch_offsets[k][0]),
+                     k, patch);
 }

@@ -60,8 +60,14 @@ void fl_target_temporal_pyramid(FlTarget *target);
 void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostScale *scale,
                      float w_texture);
 
-/** Target patch and weights around a pixel, in the order of fl_patch_offsets. */
-void fl_target_gather(const FlTargetLevel *level, int x, int y, FlPacked *patch, FlPacked *weight);
+/** The target around a pixel in the order of fl_patch_offsets, as the kernels read it. */
+typedef struct FlTargetPatch {
+    _Alignas(64) FlPacked guide[FL_PATCH_PIXELS + 3];
+    _Alignas(64) FlPacked swapped[FL_PATCH_PIXELS + 3]; // guide with its extents swapped
+    _Alignas(64) FlPacked weight[FL_PATCH_PIXELS + 3];
+} FlTargetPatch;
+
+void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *patch);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlTarget, fl_target_clear)
 
