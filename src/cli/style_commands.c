@@ -217,7 +217,7 @@ const FlStyleCommand fl_style_commands[] = {
      "numbered\npictures. Masks beside the pictures (mask_0001.png …) and alpha channels are "
      "kept.\n",
      import_entries, run_import},
-    {"check", "STYLE…", "report on styles, and draw picture sheets",
+    {"check", "STYLE ...", "report on styles, and draw picture sheets",
      "STYLE is a name that fluidy-style list shows, or a folder.\n", check_entries, run_check},
     {"simulate", "RECIPE -o DIR", "make a style by simulating paint", NULL, simulate_entries,
      run_simulate},

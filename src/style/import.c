@@ -66,7 +66,7 @@ static void set_facts(Import *import, const FlSource *source)
     const double rate = how->fps > 0     ? how->fps
                         : source->series ? 0
                                          : fl_ffmpeg_rate(source->path) / how->step;
-    style->path = g_strdup(how->folder);
+    style->path = g_strdup(how->source); // errors name it
     style->name = how->name ? g_strdup(how->name) : g_path_get_basename(absolute);
     style->author = g_strdup(how->author);
     style->licence = g_strdup(how->licence);
@@ -84,11 +84,10 @@ static bool take_pictures(FlStyle *style, GPtrArray *pictures, GError **error)
     return true;
 }
 
-static bool take_masks(Import *import, const FlSource *masks, int number, GError **error)
+static bool take_masks(Import *import, FlSource *masks, const FlSource *source, GError **error)
 {
     FlStyle *style = import->style;
-    int first;
-    g_autoptr(GPtrArray) pictures = fl_source_read(masks, import->how, &first, error);
+    g_autoptr(GPtrArray) pictures = fl_source_read(masks, import->how, error);
     if (!pictures)
         return false;
     const FlPicture *picture = g_ptr_array_index(pictures, 0);
@@ -98,13 +97,25 @@ static bool take_masks(Import *import, const FlSource *masks, int number, GError
             error, FL_ERROR, FL_ERROR_INPUT,
             "%s: %u masks of %dx%d from number %d: expected %d of %dx%d as the frames, from "
             "%d",
-            masks->path, pictures->len, picture->width, picture->height, first, style->n_frames,
-            style->width, style->height, number);
+            masks->path, pictures->len, picture->width, picture->height, masks->number,
+            style->n_frames, style->width, style->height, source->number);
         return false;
     }
     for (int frame = 0; frame < style->n_frames; frame++)
         fl_style_store_mask(style, frame, g_ptr_array_index(pictures, frame));
     return true;
+}
+
+static void note_what_was_read(const Import *import, const FlSource *source, const char *masks)
+{
+    const FlStyleImport *how = import->how;
+    const FlStyle *style = import->style;
+    note(import, "%d frame%s of %dx%d read from %s%s", style->n_frames,
+         style->n_frames == 1 ? "" : "s", style->width, style->height, how->source, masks);
+    if (how->scale == 0 && MAX(source->width, source->height) > MAX(style->width, style->height) &&
+        !how->crop[2])
+        note(import, "made smaller: the recording is %dx%d; --scale says otherwise", source->width,
+             source->height);
 }
 
 static bool read_all(Import *import, GError **error)
@@ -114,11 +125,10 @@ static bool read_all(Import *import, GError **error)
     g_autoptr(FlSource) source = fl_source_open(how->source, &found, error);
     g_autoptr(FlSource) masks =
         source && how->masks ? fl_source_open(how->masks, NULL, error) : g_steal_pointer(&found);
-    int number = 1;
     if (!source || (how->masks && !masks))
         return false;
     set_facts(import, source);
-    g_autoptr(GPtrArray) pictures = fl_source_read(source, how, &number, error);
+    g_autoptr(GPtrArray) pictures = fl_source_read(source, how, error);
     if (!pictures || !take_pictures(import->style, pictures, error))
         return false;
     const bool alpha = fl_style_has_alpha(import->style);
@@ -127,12 +137,11 @@ static bool read_all(Import *import, GError **error)
     if (alpha)
         fl_style_composite(import->style);
     import->masks_given = alpha || masks;
-    note(import, "%d frames of %dx%d read from %s%s", import->style->n_frames, import->style->width,
-         import->style->height, how->source,
-         masks   ? ", with their masks"
-         : alpha ? ", with their alpha channel as masks"
-                 : "");
-    return !masks || take_masks(import, masks, number, error);
+    note_what_was_read(import, source,
+                       masks   ? ", with their masks"
+                       : alpha ? ", with their alpha channel as masks"
+                               : "");
+    return !masks || take_masks(import, masks, source, error);
 }
 
 /* The paper colour and, unless they are given, the masks. */
@@ -149,6 +158,8 @@ static bool find_paint(Import *import, GError **error)
     }
     if (!import->how->paper && !import->masks_given)
         fl_paper_estimate(&clip, NULL, style->paper);
+    if (!import->masks_given)
+        style->guessed |= FL_GUESS_MASK;
     if (!import->masks_given && !fl_extract_masks(&clip, style->paper, style->mask, error))
         return false;
     if (!import->how->paper)

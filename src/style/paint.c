@@ -85,7 +85,7 @@ bool fl_style_check_paint(const FlStyle *style, GError **error)
     g_autofree char *what = NULL;
     if (inside == 0 && style->guessed & FL_GUESS_MASK)
         what = g_strdup_printf("no paint found: everything looks like the paper, #%02x%02x%02x; "
-                               "give paper = in style.ini, or a masks folder",
+                               "give the paper's colour, or masks",
                                style->paper[0], style->paper[1], style->paper[2]);
     else if (inside == 0)
         what = g_strdup("every mask is empty: expected white where the paint is");

@@ -24,7 +24,7 @@ void fl_source_free(FlSource *source)
 static FlSource *new_source(const char *path, FlSeries *series)
 {
     FlSource *source = g_new(FlSource, 1);
-    *source = (FlSource){g_strdup(path), series};
+    *source = (FlSource){.path = g_strdup(path), .series = series};
     return source;
 }
 
@@ -139,18 +139,17 @@ FlSource *fl_source_open(const char *path, FlSource **masks, GError **error)
 
 /* The frames that have been read so far, and what they must agree with. */
 typedef struct Reader {
-    const FlSource *source;
+    FlSource *source;
     const FlStyleImport *how;
-    int from_width, from_height; // of the source
-    int width, height;           // after crop and scale
+    int width, height; // after crop and scale
     GPtrArray *pictures;
 } Reader;
 
 static bool choose_size(Reader *reader, const FlPicture *first, const char *path, GError **error)
 {
     const int *crop = reader->how->crop;
-    reader->from_width = first->width;
-    reader->from_height = first->height;
+    reader->source->width = first->width;
+    reader->source->height = first->height;
     const int width = crop[2] ? crop[2] : first->width;
     const int height = crop[2] ? crop[3] : first->height;
     if (crop[2] && (crop[0] < 0 || crop[1] < 0 || width < 1 || height < 1 ||
@@ -187,10 +186,10 @@ static bool add_picture(Reader *reader, const FlPicture *whole, const char *path
     const int *crop = reader->how->crop;
     if (reader->pictures->len == 0 && !choose_size(reader, whole, path, error))
         return false;
-    if (whole->width != reader->from_width || whole->height != reader->from_height) {
+    if (whole->width != reader->source->width || whole->height != reader->source->height) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: %dx%d pixels: expected %dx%d as in the first frame", path, whole->width,
-                    whole->height, reader->from_width, reader->from_height);
+                    whole->height, reader->source->width, reader->source->height);
         return false;
     }
     if (!within_limit(reader, (int)reader->pictures->len + 1, error))
@@ -223,7 +222,7 @@ static FlPicture *read_still(const char *path, GError **error)
     return picture;
 }
 
-static bool read_series(Reader *reader, int *number, GError **error)
+static bool read_series(Reader *reader, GError **error)
 {
     const FlSeries *series = reader->source->series;
     const FlStyleImport *how = reader->how;
@@ -231,7 +230,7 @@ static bool read_series(Reader *reader, int *number, GError **error)
     const int first = how->first && !still ? how->first : series->number[0];
     const int last = how->last && !still ? how->last : series->number[series->n - 1];
     int expected = first;
-    *number = first;
+    reader->source->number = first;
     for (int i = 0; i < series->n; i++) {
         if (series->number[i] < first || series->number[i] > last ||
             (series->number[i] - first) % how->step != 0)
@@ -253,12 +252,13 @@ static bool read_series(Reader *reader, int *number, GError **error)
     return true;
 }
 
-static bool read_video(Reader *reader, int *number, GError **error)
+static bool read_video(Reader *reader, GError **error)
 {
     const FlStyleImport *how = reader->how;
-    *number = MAX(1, how->first);
+    const int first = MAX(1, how->first);
+    reader->source->number = first;
     g_autoptr(FlFfmpeg) ffmpeg =
-        fl_ffmpeg_open(reader->source->path, *number, how->last, how->step, error);
+        fl_ffmpeg_open(reader->source->path, first, how->last, how->step, error);
     if (!ffmpeg)
         return false;
     g_autoptr(GError) below = NULL;
@@ -274,19 +274,18 @@ static bool read_video(Reader *reader, int *number, GError **error)
             return false;
     }
     const int n = (int)reader->pictures->len;
-    if (!how->last || n == (how->last - *number) / how->step + 1)
+    if (!how->last || n == (how->last - first) / how->step + 1)
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: ends before frame %d: it gave %d frames",
                 reader->source->path, how->last, n);
     return false;
 }
 
-GPtrArray *fl_source_read(const FlSource *source, const FlStyleImport *how, int *number,
-                          GError **error)
+GPtrArray *fl_source_read(FlSource *source, const FlStyleImport *how, GError **error)
 {
     g_autoptr(GPtrArray) pictures = g_ptr_array_new_with_free_func((GDestroyNotify)fl_picture_free);
     Reader reader = {.source = source, .how = how, .pictures = pictures};
-    if (!(source->series ? read_series : read_video)(&reader, number, error))
+    if (!(source->series ? read_series : read_video)(&reader, error))
         return NULL;
     if (pictures->len == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: none of its frames is asked for",

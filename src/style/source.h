@@ -7,8 +7,10 @@
 #include <fluidy/style.h>
 
 typedef struct FlSource {
-    char *path;       // as the user named it
-    FlSeries *series; // numbered pictures, or one still; NULL: a video
+    char *path;        // as the user named it
+    FlSeries *series;  // numbered pictures, or one still; NULL: a video
+    int number;        // of the first frame that was read
+    int width, height; // of the frames that were read, before crop and scale
 } FlSource;
 
 /**
@@ -24,12 +26,11 @@ void fl_source_free(FlSource *source); // NULL is fine
 
 /**
  * Reads the frames that `how` selects, crops and scales them; all have one size, and together at
- * most FL_STYLE_MAX_PIXELS. *number gets the number of the first.
+ * most FL_STYLE_MAX_PIXELS.
  *
  * Returns: (element-type FlPicture); NULL with FL_ERROR_INPUT, _USAGE or _LIMIT set.
  */
-GPtrArray *fl_source_read(const FlSource *source, const FlStyleImport *how, int *number,
-                          GError **error);
+GPtrArray *fl_source_read(FlSource *source, const FlStyleImport *how, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSource, fl_source_free)
 
