@@ -34,8 +34,7 @@ FlTouch fl_brush_touch(const FlEvent *event, uint64_t key, float x_px, float y_p
     const float inside = event->radius + wobble - sqrtf(nearest);
     const float streak = fl_noise_octaves(fl_key(key, KEY_STREAKS), x_px / event->streak_px,
                                           y_px / event->streak_px, 4, 0.6f);
-    return (FlTouch){fmaxf(0, fminf(1, inside + 0.5f)),
-                     fmaxf(0.02f, 1 + 1.5f * event->streaks * streak)};
+    return (FlTouch){inside, fmaxf(0.02f, 1 + 1.5f * event->streaks * streak)};
 }
 
 FlBrush *fl_brush_new(const FlRecipe *recipe, GError **error)
@@ -48,7 +47,7 @@ FlBrush *fl_brush_new(const FlRecipe *recipe, GError **error)
         FlTouch *touch = fl_alloc((size_t)width * height, sizeof *touch, "a brush", error);
         if (!(brush->touches[e] = touch))
             return NULL;
-        const uint64_t key = fl_key(recipe->seed, (uint64_t)e);
+        const uint64_t key = fl_key(recipe->seed, (uint64_t)recipe->events[e].hand);
 #pragma omp parallel for schedule(static)
         for (int j = 0; j < height; j++)
             for (int i = 0; i < width; i++)
@@ -67,42 +66,124 @@ void fl_brush_free(FlBrush *brush)
     g_free(brush);
 }
 
-/* The brush fills up what the paper lacks of its share of water; pigment comes with the water. */
-static void pour(FlSheet *sheet, const FlEvent *event, const FlTouch *touches)
+/* An event at one moment: how far its puddle has grown and how fast it does. */
+typedef struct Moment {
+    const FlEvent *event;
+    const FlTouch *touches; // one for each cell
+    float grown;            // px
+    float speed;            // of the pigment at the rim, cells per step
+    float scale;            // cells per px
+} Moment;
+
+/* How far inside the puddle a cell lies, px. It grows faster where water runs easily. */
+static inline float depth(const FlSheet *sheet, const Moment *now, int i, int j)
 {
+    const size_t at = (size_t)j * sheet->width + i, face = at + (size_t)j;
+    const float ease = 2 * sheet->open_u[i > 0 ? face : face + 1] - 1;
+    return now->touches[at].inside + now->grown * (1 + now->event->crinkle * ease);
+}
+
+/* A puddle grows from where it is: a dry cell with no wet neighbour stays dry. */
+static bool out_of_reach(const FlSheet *sheet, const Moment *now, int i, int j)
+{
+    const size_t at = (size_t)j * sheet->width + i;
+    const uint8_t *wet = &sheet->wet[at];
+    return now->touches[at].inside < -0.5f && !wet[0] && !(i > 0 && wet[-1]) &&
+           !(i < sheet->width - 1 && wet[1]) && !(j > 0 && wet[-sheet->width]) &&
+           !(j < sheet->height - 1 && wet[sheet->width]);
+}
+
+/* How much of the event every cell gets, 0..1. */
+static void find_cover(const FlSheet *sheet, const Moment *now, float *cover)
+{
+    const int width = sheet->width;
+#pragma omp parallel for schedule(static)
+    for (int j = 0; j < sheet->height; j++)
+        for (int i = 0; i < width; i++) {
+            const float share = depth(sheet, now, i, j) + 0.5f;
+            cover[(size_t)j * width + i] = share <= 0 || out_of_reach(sheet, now, i, j) ? 0
+                                           : share < 1                                  ? share
+                                                                                        : 1;
+        }
+}
+
+/* The brush fills up what the paper lacks of its share of water; pigment comes with the water. */
+static void pour(FlSheet *sheet, const Moment *now)
+{
+    const FlEvent *event = now->event;
     const size_t cells = (size_t)sheet->width * sheet->height;
+    float *cover = sheet->spare[0];
+    find_cover(sheet, now, cover);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < cells; i++) {
-        const FlTouch touch = touches[i];
-        if (touch.cover <= 0)
+        if (cover[i] <= 0)
             continue;
         const float missing = event->water * sheet->capacity[i] - sheet->s[i];
-        const float given = fmaxf(0, missing) * event->rate * touch.cover;
+        const float given = fmaxf(0, missing) * event->rate * cover[i];
         sheet->s[i] += given;
-        sheet->p[i] += event->pressure * touch.cover;
+        sheet->p[i] += event->pressure * cover[i];
         for (int k = 0; k < sheet->n_pigments; k++)
-            sheet->floating[k][i] += given * touch.load * event->load[k];
-        if (event->water > 0 && touch.cover > 0.5f)
+            sheet->floating[k][i] += given * now->touches[i].load * event->load[k];
+        if (event->water > 0 && cover[i] > 0.5f)
             sheet->wet[i] = 1;
     }
 }
 
-static void lay_down(FlSheet *sheet, const FlEvent *event, const FlTouch *touches)
+static void lay_down(FlSheet *sheet, const Moment *now)
 {
     const size_t cells = (size_t)sheet->width * sheet->height;
+    float *cover = sheet->spare[0];
+    find_cover(sheet, now, cover);
     for (int k = 0; k < sheet->n_pigments; k++)
         for (size_t i = 0; i < cells; i++)
-            sheet->floating[k][i] += event->deposit[k] * touches[i].cover * touches[i].load;
+            sheet->floating[k][i] += now->event->deposit[k] * cover[i] * now->touches[i].load;
+}
+
+/* Velocity over a face between two cells: down the slope of the stroke's first outline, fastest at
+   the rim of the puddle, none beyond it; slower and faster with the paper. The slope of the puddle
+   itself would gather pigment wherever the paper slows it down. */
+static inline float sweep_speed(const Moment *now, FlTouch a, FlTouch b, float depth_px, float open)
+{
+    const float inside = now->event->sweep_px;
+    if (depth_px < -0.5f || depth_px > inside)
+        return 0;
+    const float slope = fmaxf(-1, fminf(1, (a.inside - b.inside) * now->scale));
+    return now->speed * (0.7f + 0.5f * open) * (1 - fmaxf(0, depth_px) / inside) * slope;
+}
+
+/* Sets the velocity of the water to that of the puddle that grows. */
+static void sweep(FlSheet *sheet, const Moment *now)
+{
+    const int width = sheet->width;
+    const FlTouch *touches = now->touches;
+#pragma omp parallel for schedule(static)
+    for (int j = 1; j < sheet->height; j++)
+        for (int i = 1; i < width; i++) {
+            const size_t at = (size_t)j * width + i, face = at + (size_t)j;
+            const float here = depth(sheet, now, i, j);
+            const float left = depth(sheet, now, i - 1, j), up = depth(sheet, now, i, j - 1);
+            sheet->u[face] = sweep_speed(now, touches[at - 1], touches[at], fminf(left, here),
+                                         sheet->open_u[face]);
+            sheet->v[at] = sweep_speed(now, touches[at - width], touches[at], fminf(up, here),
+                                       sheet->open_v[at]);
+        }
 }
 
 void fl_brush_apply(const FlBrush *brush, FlSheet *sheet, float before, float after)
 {
+    const float scale = (float)brush->recipe->oversample;
     for (int e = 0; e < brush->recipe->n_events; e++) {
         const FlEvent *event = &brush->recipe->events[e];
         const bool starts = event->from >= before && event->from < after;
+        const Moment now = {event, brush->touches[e],
+                            event->growth * fmaxf(0, before - event->from),
+                            event->sweep * event->growth * (after - before) * scale, scale};
+        if (!starts && !(event->from < before && event->until > before))
+            continue;
         if (starts)
-            lay_down(sheet, event, brush->touches[e]);
-        if (starts || (event->from < before && event->until > before))
-            pour(sheet, event, brush->touches[e]);
+            lay_down(sheet, &now);
+        if (now.speed > 0)
+            sweep(sheet, &now);
+        pour(sheet, &now);
     }
 }

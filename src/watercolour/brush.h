@@ -4,10 +4,10 @@
 
 #include "watercolour/sheet.h"
 
-/** How much of an event reaches the centre of a cell, 0..1, and how loaded the brush is there. */
+/** What an event does to one cell. */
 typedef struct FlTouch {
-    float cover; // 1 inside the stroke, 0 outside, soft over one px
-    float load;  // factor on the pigment, 1 on the average
+    float inside; // how far inside the stroke's first outline its centre lies, px
+    float load;   // factor on the pigment, 1 on the average
 } FlTouch;
 
 FlTouch fl_brush_touch(const FlEvent *event, uint64_t key, float x_px, float y_px);

@@ -20,94 +20,60 @@ static void soak(FlSheet *sheet, float alpha)
             sheet->s[i] += fmaxf(0, fminf(alpha, sheet->capacity[i] - sheet->s[i]));
 }
 
-static float power(float x, int n)
+/* How readily a cell gives water away, 0..1/4: its share of the capacity to the given power. Four
+   neighbours that take a quarter each cannot empty it. */
+static void find_mobility(const FlSheet *sheet, const FlFlow *flow, float *mobility)
 {
-    float product = 1;
-    for (; n > 0; n--)
-        product *= x;
-    return product;
+    const size_t cells = (size_t)sheet->width * sheet->height;
+#pragma omp parallel for schedule(static)
+    for (size_t i = 0; i < cells; i++) {
+        const float saturation = fminf(1, sheet->s[i] / sheet->capacity[i]);
+        float m = 0.25f * flow->conduct;
+        for (int n = 0; n < flow->mobility; n++)
+            m *= saturation;
+        mobility[i] = sheet->s[i] > flow->epsilon ? m : 0;
+    }
 }
 
-/* Water from cell a to cell b, >= 0, for s[a] > s[b]: at most a quarter of what is too much in a
-   and of the room in b, so that four neighbours cannot empty or overfill a cell. */
-static inline float flow_between(const FlSheet *sheet, const FlFlow *flow, size_t a, size_t b,
-                                 float open)
-{
-    const float from = sheet->s[a], to = sheet->s[b];
-    if (from <= flow->epsilon || to < flow->delta || (to < FL_DRY && from < sheet->pin[b]))
-        return 0;
-    const float room = sheet->capacity[b] - to;
-    const float saturation = fminf(1, from / sheet->capacity[a]);
-    const float q = flow->conduct * open * power(saturation, flow->mobility) * (from - to);
-    return 0.25f * fmaxf(0, fminf(q, room));
-}
+/* What a row of faces needs to know of the cells on its two sides, before (a) and after (b). */
+typedef struct Sides {
+    const float *sa, *sb, *ca, *cb, *pin_a, *pin_b, *ma, *mb, *open;
+} Sides;
 
-static inline float face_flow(const FlSheet *sheet, const FlFlow *flow, size_t a, size_t b,
-                              float open)
+/* Fluxes from a to b of n faces. The lower side must have room, and resists while it is dry. No
+   branches, so that compilers can do several faces at once. */
+static void row_fluxes(Sides x, int n, float sigma, float delta, float *restrict flux)
 {
-    const float sa = sheet->s[a], sb = sheet->s[b];
-    if (sa == sb || (sa < FL_DRY && sb < FL_DRY))
-        return 0;
-    return sa > sb ? flow_between(sheet, flow, a, b, open) : -flow_between(sheet, flow, b, a, open);
+    for (int i = 0; i < n; i++) {
+        const float sa = x.sa[i], sb = x.sb[i];
+        const bool forth = sa > sb;
+        const float high = forth ? sa : sb, low = forth ? sb : sa;
+        const float room = 0.25f * ((forth ? x.cb[i] : x.ca[i]) - low);
+        const float hold = low < FL_DRY ? sigma * (forth ? x.pin_b[i] : x.pin_a[i]) : 0;
+        const float want = (forth ? x.ma[i] : x.mb[i]) * x.open[i] * (high - low);
+        const float least = want < room ? want : room;
+        const float q = least > 0 && high > hold && low >= delta ? least : 0;
+        flux[i] = forth ? q : -q;
+    }
 }
 
 static void find_fluxes(FlSheet *sheet, const FlFlow *flow)
 {
     const int width = sheet->width, height = sheet->height;
+    const float *s = sheet->s, *c = sheet->capacity, *pin = sheet->pin, *m = sheet->spare[0];
+    find_mobility(sheet, flow, sheet->spare[0]);
 #pragma omp parallel for schedule(static)
     for (int j = 0; j < height; j++) {
-        const size_t row = (size_t)j * width, faces = (size_t)j * (width + 1);
-        for (int i = 1; i < width; i++)
-            sheet->flux_u[faces + i] =
-                face_flow(sheet, flow, row + i - 1, row + i, sheet->open_u[faces + i]);
-        for (int i = 0; j > 0 && i < width; i++)
-            sheet->flux_v[row + i] =
-                face_flow(sheet, flow, row + i - width, row + i, sheet->open_v[row + i]);
+        const size_t at = (size_t)j * width, face = (size_t)j * (width + 1) + 1, up = at - width;
+        const Sides u = {s + at,       s + at + 1, c + at,     c + at + 1,          pin + at,
+                         pin + at + 1, m + at,     m + at + 1, sheet->open_u + face};
+        row_fluxes(u, width - 1, flow->sigma, flow->delta, sheet->flux_u + face);
+        if (j == 0)
+            continue;
+        const Sides v = {
+            s + up, s + at, c + up, c + at, pin + up, pin + at, m + up, m + at, sheet->open_v + at};
+        row_fluxes(v, width, flow->sigma, flow->delta, sheet->flux_v + at);
     }
-}
-
-/* What passes a face with the water: the concentration on the side that it comes from. */
-static inline float carried(float flux, float before, float after)
-{
-    return flux > 0 ? flux * before : flux * after;
-}
-
-static void carry_pigment(FlSheet *sheet, float *g, float share)
-{
-    const int width = sheet->width, height = sheet->height;
-    const size_t cells = (size_t)width * height;
-    float *c = sheet->spare[0];
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < cells; i++)
-        c[i] = sheet->s[i] > FL_DRY ? share * g[i] / sheet->s[i] : 0;
-#pragma omp parallel for schedule(static)
-    for (int j = 0; j < height; j++)
-        for (int i = 0; i < width; i++) {
-            const size_t at = (size_t)j * width + i, face = (size_t)j * (width + 1) + i;
-            const float *fu = &sheet->flux_u[face], *fv = &sheet->flux_v[at];
-            float gain = 0;
-            if (i > 0)
-                gain += carried(fu[0], c[at - 1], c[at]);
-            if (i < width - 1)
-                gain -= carried(fu[1], c[at], c[at + 1]);
-            if (j > 0)
-                gain += carried(fv[0], c[at - width], c[at]);
-            if (j < height - 1)
-                gain -= carried(fv[width], c[at], c[at + width]);
-            g[at] += gain;
-        }
-}
-
-static void move_water(FlSheet *sheet)
-{
-    const int width = sheet->width;
-#pragma omp parallel for schedule(static)
-    for (int j = 0; j < sheet->height; j++)
-        for (int i = 0; i < width; i++) {
-            const size_t at = (size_t)j * width + i, face = (size_t)j * (width + 1) + i;
-            sheet->s[at] += sheet->flux_u[face] - sheet->flux_u[face + 1] + sheet->flux_v[at] -
-                            sheet->flux_v[at + width];
-        }
 }
 
 /* M grows where the paper holds enough water to be wet on top as well. */
@@ -124,8 +90,6 @@ void fl_capillary_flow(FlSheet *sheet, const FlFlow *flow)
     if (flow->absorb > 0)
         soak(sheet, flow->absorb);
     find_fluxes(sheet, flow);
-    for (int k = 0; flow->carry > 0 && k < sheet->n_pigments; k++)
-        carry_pigment(sheet, sheet->floating[k], flow->carry);
-    move_water(sheet);
+    fl_carry(sheet, flow->carry);
     wet_surface(sheet, flow->sigma);
 }

@@ -1,45 +1,39 @@
 /* Pigment spreading through standing water; faster for fine pigments, so that two separate. */
 #include "watercolour/stages.h"
 
-#include <math.h>
-
-static inline float exchange(const float *s, const float *c, size_t a, size_t b, float open)
+/* As much as the drier of the two sides lets through. */
+static inline float exchange(float sa, float sb, float ca, float cb, float open)
 {
-    return open * fminf(s[a], s[b]) * (c[a] - c[b]);
+    return open * (sa < sb ? sa : sb) * (ca - cb);
 }
 
-static void diffuse(FlSheet *sheet, float *g, float rate)
+/* The first row has no upper neighbour, the last no lower one: its own row stands in, of which the
+   face lets nothing through (open is 0 on the sheet's rim). */
+static void diffuse(FlSheet *sheet, float *grid, float rate)
 {
     const int width = sheet->width, height = sheet->height;
-    const size_t cells = (size_t)width * height;
-    float *c = sheet->spare[0];
-    const float *s = sheet->s;
 #pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < cells; i++)
-        c[i] = s[i] > FL_DRY ? g[i] / s[i] : 0;
-#pragma omp parallel for schedule(static)
-    for (int j = 0; j < height; j++)
+    for (int j = 0; j < height; j++) {
+        const size_t at = (size_t)j * width, face = (size_t)j * (width + 1);
+        const ptrdiff_t up = j > 0 ? -width : 0, down = j < height - 1 ? width : 0;
+        const float *s = sheet->s + at, *c = sheet->concentration + at;
+        const float *ou = sheet->open_u + face, *ov = sheet->open_v + at;
+        float *restrict g = grid + at;
         for (int i = 0; i < width; i++) {
-            const size_t at = (size_t)j * width + i, face = (size_t)j * (width + 1) + i;
-            if (s[at] <= FL_DRY)
-                continue;
-            const float *ou = &sheet->open_u[face], *ov = &sheet->open_v[at];
-            float gain = 0;
-            if (i > 0)
-                gain += exchange(s, c, at - 1, at, ou[0]);
-            if (i < width - 1)
-                gain -= exchange(s, c, at, at + 1, ou[1]);
-            if (j > 0)
-                gain += exchange(s, c, at - width, at, ov[0]);
-            if (j < height - 1)
-                gain -= exchange(s, c, at, at + width, ov[width]);
-            g[at] += rate * gain;
+            const int left = i > 0 ? i - 1 : i, right = i < width - 1 ? i + 1 : i;
+            g[i] += rate * (exchange(s[left], s[i], c[left], c[i], ou[i]) -
+                            exchange(s[i], s[right], c[i], c[right], ou[i + 1]) +
+                            exchange(s[i + up], s[i], c[i + up], c[i], ov[i]) -
+                            exchange(s[i], s[i + down], c[i], c[i + down], ov[i + width]));
         }
+    }
 }
 
-void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments)
+void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow *flow)
 {
     for (int k = 0; k < sheet->n_pigments; k++)
-        if (pigments[k].diffusion > 0)
+        for (int i = 0; i < flow->diffusions && pigments[k].diffusion > 0; i++) {
+            fl_find_concentration(sheet, sheet->floating[k], 1);
             diffuse(sheet, sheet->floating[k], pigments[k].diffusion);
+        }
 }

@@ -69,7 +69,11 @@ static void drop_small_parts(uint8_t *mask, uint8_t *seen, int *queue, int width
     }
 }
 
-/* Lower envelope of parabolas: squared distances along one line [Felzenszwalb & Huttenlocher]. */
+/*
+ * Lower envelope of parabolas: squared distances along one line [Felzenszwalb & Huttenlocher].
+ * Whole cells are enough here, and exact, so that styles rebuild to the same bytes whatever becomes
+ * of the sub-pixel distances of the guides.
+ */
 static void distance_line(float *line, int n, ptrdiff_t stride, float *copy, int *at, float *from)
 {
     for (int i = 0; i < n; i++)

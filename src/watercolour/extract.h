@@ -18,7 +18,8 @@ typedef struct FlExtract {
  * The signed distance of every cell's centre to the rim of the mask, positive inside, in cells.
  *
  * thickness has width * height values, >= 0, and is blurred in place; distance receives as many.
- * Without any paint, all distances are minus a large number. Errors: FL_ERROR_NO_MEMORY.
+ * Without any paint, all distances are about minus the size of the picture. Errors:
+ * FL_ERROR_NO_MEMORY.
  */
 bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *how, float *distance,
                      GError **error);

@@ -77,7 +77,7 @@ static float openness(const FlRecipe *recipe, float x, float y, float fibre)
     const float patch = fl_noise_octaves(fl_key(recipe->seed, KEY_PATCHES), x / paper->patch_px,
                                          y / paper->patch_px, 4, 0.75f);
     const float base = 1 - paper->fibre_pull * (1 - fibre);
-    return clamp(0.5f * factor(paper->patchiness, patch) * base, 0.002f, 1);
+    return clamp(0.8f * factor(paper->patchiness, patch) * base, 0.002f, 1);
 }
 
 static void make_cells(FlSheet *sheet, const FlRecipe *recipe, const float *fibres, float *open)
@@ -90,16 +90,14 @@ static void make_cells(FlSheet *sheet, const FlRecipe *recipe, const float *fibr
             const size_t at = (size_t)j * sheet->width + i;
             const float x = i * px, y = j * px;
             const float h =
-                clamp(bump(recipe->seed, paper, x, y) + 0.12f * fibres[at], 0.02f, 0.98f);
+                clamp(bump(recipe->seed, paper, x, y) + 0.2f * fibres[at], 0.02f, 0.98f);
             const float pin =
                 fl_noise_octaves(fl_key(recipe->seed, KEY_PIN), x / 3, y / 3, 2, 0.8f);
             sheet->relief[at] = h;
             sheet->capacity[at] =
                 paper->capacity[0] + h * (paper->capacity[1] - paper->capacity[0]);
             open[at] = openness(recipe, x, y, fibres[at]);
-            sheet->pin[at] = clamp(recipe->flow.sigma * (1 + 2 * paper->pinning * pin -
-                                                         0.6f * paper->pinning * fibres[at]),
-                                   0.3f * recipe->flow.sigma, 0.85f * sheet->capacity[at]);
+            sheet->pin[at] = clamp(1 + paper->pinning * (2 * pin - 1.5f * fibres[at]), 0.05f, 4);
         }
 }
 

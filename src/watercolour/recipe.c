@@ -19,6 +19,7 @@ static FlRecipe *defaults(void)
         .border = 15,
         .scale = 1,
         .steps = {60, 60},
+        .warm_up = 1,
         .seed = 1,
         .mask_threshold = 0.02f,
         .mask_margin = 3,
@@ -31,13 +32,18 @@ static FlRecipe *defaults(void)
                  .sweeps = 50,
                  .delta = -0.01f,
                  .sigma = 0.1f,
+                 .diffusions = 1,
                  .conduct = 1,
                  .mobility = 1,
                  .carry = 1,
                  .settle = 0.2f,
                  .thickness = 2.5f},
-        .dust =
-            {.speed_px = 1.5f, .swirl = 0.5f, .swirl_px = 30, .catch_rate = 0.3f, .weight = 0.3f},
+        .dust = {.speed_px = 1.5f,
+                 .swirl = 0.5f,
+                 .swirl_px = 30,
+                 .catch_rate = 0.3f,
+                 .weight = 0.3f,
+                 .rim_px = 12},
     };
     return recipe;
 }
@@ -74,7 +80,7 @@ static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
     const int n = fl_keylines_floats(lines, "steps", 1, 2, 1, 100000, steps);
     for (int i = 0; n > 0 && i < 2; i++)
         recipe->steps[i] = (int)steps[n == 2 ? i : 0];
-    fl_keylines_int(lines, "warm-up", 0, 1000000, &recipe->warm_up);
+    fl_keylines_int(lines, "warm-up", 1, 1000000, &recipe->warm_up);
     fl_keylines_int(lines, "oversample", 1, 3, &recipe->oversample);
     int seed = 1;
     fl_keylines_int(lines, "seed", 0, 1 << 24, &seed);
@@ -118,6 +124,7 @@ static void read_flow(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "epsilon", 0, 1, &flow->epsilon);
     fl_keylines_float(lines, "delta", -1, 1, &flow->delta);
     fl_keylines_float(lines, "sigma", 0, 1, &flow->sigma);
+    fl_keylines_int(lines, "diffusions", 0, 100, &flow->diffusions);
     fl_keylines_float(lines, "conduct", 0, 1, &flow->conduct);
     fl_keylines_int(lines, "mobility", 0, 4, &flow->mobility);
     fl_keylines_float(lines, "carry", 0, 1, &flow->carry);
@@ -136,6 +143,7 @@ static void read_dust(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "swirl-size", 1, 1000, &dust->swirl_px);
     fl_keylines_float(lines, "catch", 0, 1, &dust->catch_rate);
     fl_keylines_float(lines, "weight", 0, 10, &dust->weight);
+    fl_keylines_float(lines, "rim", 0, 1000, &dust->rim_px);
 }
 
 /* A pigment of the table by the name of its group, or one that gives its own K and S. */
@@ -167,7 +175,7 @@ static void read_event(FlKeyLines *lines, FlRecipe *recipe)
         return;
     }
     FlEvent *event = &recipe->events[recipe->n_events++];
-    *event = (FlEvent){.radius = 10, .wobble_px = 20, .rate = 1, .streak_px = 20};
+    *event = (FlEvent){.radius = 10, .wobble_px = 20, .rate = 1, .streak_px = 20, .sweep_px = 20};
     float flat[2 * FL_MAX_POINTS];
     const int n = fl_keylines_floats(lines, "points", 2, 2 * FL_MAX_POINTS, -10000, 10000, flat);
     if (n == 0 || n % 2 != 0)
@@ -177,6 +185,11 @@ static void read_event(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "radius", 0.5f, 10000, &event->radius);
     fl_keylines_float(lines, "wobble", 0, 1000, &event->wobble);
     fl_keylines_float(lines, "wobble-size", 1, 1000, &event->wobble_px);
+    fl_keylines_float(lines, "growth", 0, 100, &event->growth);
+    fl_keylines_float(lines, "crinkle", 0, 1, &event->crinkle);
+    fl_keylines_int(lines, "hand", 0, 1000, &event->hand);
+    fl_keylines_float(lines, "sweep", 0, 2, &event->sweep);
+    fl_keylines_float(lines, "sweep-depth", 1, 1000, &event->sweep_px);
     fl_keylines_float(lines, "from", 0, 10000, &event->from);
     event->until = event->from;
     fl_keylines_float(lines, "until", event->from, 10000, &event->until);

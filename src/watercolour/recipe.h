@@ -39,7 +39,12 @@ typedef struct FlEvent {
     int n_points;
     float points[FL_MAX_POINTS][2];  // the polyline that the brush follows
     float radius, wobble, wobble_px; // of the brush; its outline's unevenness and the size of that
-    float from, until;               // frames; from == until: done once
+    int hand;                        // strokes of one hand wobble and streak alike
+    float growth;                    // of the puddle outward, px per frame
+    float crinkle;                   // share of it that depends on the paper, 0..1
+    float sweep, sweep_px;           // share of that speed that pigment at its rim gets, and how
+                                     // far inside it still gets some
+    float from, until;               // frames, 0 to 1 are the warm-up; from == until: once
     float water;                     // what the brush gives until the paper holds this much, 0..1
     float rate;                      // share of the missing water given per step, 0..1
     float load[FL_MAX_PIGMENTS];     // pigment per unit of water, >= 0
@@ -55,6 +60,7 @@ typedef struct FlFlow {
     int sweeps;
     float edge_darkening;                // eta
     float absorb, epsilon, delta, sigma; // capillary: alpha, epsilon, delta, sigma
+    int diffusions;                      // times that pigment spreads per step
     float conduct;                       // share of the largest stable capillary flow, 0..1
     int mobility;                        // power of the saturation in the capillary flow, 0..4
     float carry;  // share of its pigment that water in the paper takes along, 0..1
@@ -69,6 +75,7 @@ typedef struct FlDust {
     float speed_px, swirl, swirl_px; // drift per frame; share of it that swirls; size of the swirls
     float catch_rate;                // how readily the tooth catches a grain, 0..1
     float weight;                    // thickness of one grain
+    float rim_px;                    // how deep the crumbling reaches into the stroke
 } FlDust;
 
 typedef struct FlRecipe {

@@ -1,4 +1,4 @@
-/* From the sheet to a picture: Kubelka-Munk colour, mask, PNG files. */
+/* From the sheet to a picture: Kubelka-Munk colour and mask. */
 #ifndef FLUIDY_WATERCOLOUR_SCAN_H
 #define FLUIDY_WATERCOLOUR_SCAN_H
 
@@ -21,10 +21,6 @@ void fl_scan_free(FlScan *scan); // NULL is fine
  * which scan still holds. Errors: FL_ERROR_NO_MEMORY.
  */
 bool fl_scan_draw(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe, GError **error);
-
-/** Writes 8-bit samples, 3 or 1 per px, as a well-packed PNG. Errors: FL_ERROR_OUTPUT. */
-bool fl_scan_write_png(const char *path, const uint8_t *samples, int width, int height,
-                       int channels, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlScan, fl_scan_free)
 

@@ -22,6 +22,10 @@ FlSheet *fl_sheet_new(int width, int height, int n_pigments, GError **error)
         if (!(sheet->floating[k] = fl_alloc(cells, sizeof(float), "pigment", error)) ||
             !(sheet->settled[k] = fl_alloc(cells, sizeof(float), "pigment", error)))
             return NULL;
+    if (!(sheet->concentration =
+              fl_alloc(cells + 2 * (size_t)width, sizeof(float), "pigment", error)))
+        return NULL;
+    sheet->concentration += width;
     if (!(sheet->wet = fl_alloc(cells, 1, "a wet mask", error)))
         return NULL;
     return g_steal_pointer(&sheet);
@@ -41,6 +45,8 @@ void fl_sheet_free(FlSheet *sheet)
         free(sheet->floating[k]);
         free(sheet->settled[k]);
     }
+    if (sheet->concentration)
+        free(sheet->concentration - sheet->width);
     free(sheet->wet);
     g_free(sheet);
 }

@@ -1,7 +1,9 @@
 /* A recipe from beginning to end: the stages of a step, the steps of a frame, the frames. */
 #include <fluidy/watercolour.h>
 
+#include "style/picture.h"
 #include "watercolour/brush.h"
+#include "watercolour/dust.h"
 #include "watercolour/scan.h"
 #include "watercolour/stages.h"
 
@@ -11,7 +13,13 @@
 /* One step [C97 §4.2]. */
 static void step(FlSheet *sheet, const FlRecipe *recipe)
 {
-    fl_diffuse_pigment(sheet, recipe->pigments);
+    if (recipe->flow.shallow) {
+        fl_update_velocities(sheet, &recipe->flow);
+        fl_relax_divergence(sheet, &recipe->flow);
+        fl_flow_outward(sheet, &recipe->flow);
+    }
+    fl_move_pigment(sheet);
+    fl_diffuse_pigment(sheet, recipe->pigments, &recipe->flow);
     fl_transfer_pigment(sheet, recipe->pigments, &recipe->flow);
     fl_capillary_flow(sheet, &recipe->flow);
     fl_evaporate(sheet, &recipe->flow);
@@ -35,6 +43,13 @@ static void run_to(FlSheet *sheet, const FlBrush *brush, const FlRecipe *recipe,
         fl_brush_apply(brush, sheet, before, (float)frame + (float)(i + 1) / (float)n);
         step(sheet, recipe);
     }
+}
+
+static void crumble(FlSheet *sheet, FlDustCloud *dust, int frame)
+{
+    if (frame > 0)
+        fl_dust_drift(dust, sheet, frame - 1);
+    fl_dust_lay(dust, sheet);
 }
 
 static bool make_folder(const char *path, GError **error)
@@ -77,8 +92,8 @@ static bool write_frame(const FlScan *scan, const char *folder, int number, GErr
     g_autofree char *name = g_strdup_printf("%04d.png", number);
     g_autofree char *frame = g_build_filename(folder, "frames", name, NULL);
     g_autofree char *mask = g_build_filename(folder, "masks", name, NULL);
-    return fl_scan_write_png(frame, scan->rgb, scan->width, scan->height, 3, error) &&
-           fl_scan_write_png(mask, scan->mask, scan->width, scan->height, 1, error);
+    return fl_png_write(frame, scan->rgb, scan->width, scan->height, 3, error) &&
+           fl_png_write(mask, scan->mask, scan->width, scan->height, 1, error);
 }
 
 static bool make_folders(const char *folder, GError **error)
@@ -102,8 +117,14 @@ bool fl_watercolour_simulate(const char *recipe_path, const char *output_folder,
     if (!scan || !make_folders(output_folder, error))
         return false;
     fl_sheet_make_paper(sheet, recipe);
+    g_autoptr(FlDustCloud) dust = NULL;
+    if (recipe->dust.grains > 0 && !(dust = fl_dust_new(recipe, sheet, error)))
+        return false;
     for (int frame = 0; frame < recipe->frames; frame++) {
-        run_to(sheet, brush, recipe, frame);
+        if (dust)
+            crumble(sheet, dust, frame);
+        else
+            run_to(sheet, brush, recipe, frame);
         if (!fl_scan_draw(scan, sheet, recipe, error) ||
             !write_frame(scan, output_folder, frame + 1, error))
             return false;

@@ -24,8 +24,14 @@ void fl_zero_dry_faces(FlSheet *sheet);
 /** Moves floating pigment with the shallow water [C97 §4.4]. Conserves it to rounding. */
 void fl_move_pigment(FlSheet *sheet);
 
+/** Fills the concentration with share * g / s, and 0 where it is dry. */
+void fl_find_concentration(FlSheet *sheet, const float *g, float share);
+
+/** Moves the water in the paper by flux_u and flux_v, and a share (0..1) of its pigment with it. */
+void fl_carry(FlSheet *sheet, float share);
+
 /** Spreads floating pigment through the water in the paper. Conserves it to rounding. */
-void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments);
+void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow *flow);
 
 /** Lets pigment settle on the paper and come off again where it is wet [C97 §4.5]. */
 void fl_transfer_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow *flow);

@@ -1,26 +1,25 @@
 /* Settling, granulation and staining [C97 §4.5]. */
 #include "watercolour/stages.h"
 
-#include <math.h>
-
-static void transfer(FlSheet *sheet, float *g, float *d, const FlPigment *pigment, float rate)
+/* Without branches, so that compilers can do several cells at once; a dry cell moves nothing. */
+static void transfer(FlSheet *sheet, float *restrict g, float *restrict d, const FlPigment *pigment,
+                     float rate)
 {
-    const size_t cells = (size_t)sheet->width * sheet->height;
+    const int cells = sheet->width * sheet->height;
     const float gamma = pigment->granulation;
-    const float density = fminf(1, rate * pigment->density);
-#pragma omp parallel for schedule(static)
-    for (size_t i = 0; i < cells; i++) {
-        if (!sheet->wet[i] && sheet->s[i] <= FL_DRY)
-            continue;
-        const float h = sheet->relief[i];
-        float down = g[i] * (1 - h * gamma) * density;
-        float up = d[i] * (1 + (h - 1) * gamma) * fminf(1, density / pigment->staining);
-        if (d[i] + down > 1)
-            down = fmaxf(0, 1 - d[i]);
-        if (g[i] + up > 1)
-            up = fmaxf(0, 1 - g[i]);
-        d[i] += down - up;
-        g[i] += up - down;
+    const float density = rate * pigment->density < 1 ? rate * pigment->density : 1;
+    const float lift = density < pigment->staining ? density / pigment->staining : 1;
+    const float *h = sheet->relief, *s = sheet->s;
+    const uint8_t *wet = sheet->wet;
+#pragma omp parallel for simd schedule(static)
+    for (int i = 0; i < cells; i++) {
+        const bool moves = (wet[i] != 0) | (s[i] > FL_DRY);
+        const float down = g[i] * (1 - h[i] * gamma) * density;
+        const float up = d[i] * (1 + (h[i] - 1) * gamma) * lift;
+        const float room_down = d[i] < 1 ? 1 - d[i] : 0, room_up = g[i] < 1 ? 1 - g[i] : 0;
+        const float net = (down < room_down ? down : room_down) - (up < room_up ? up : room_up);
+        d[i] += moves ? net : 0;
+        g[i] -= moves ? net : 0;
     }
 }
 

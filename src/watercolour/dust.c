@@ -1,0 +1,180 @@
+/*
+ * Crumbling: grains instead of fluid.
+ *
+ * A stroke of a dry stick leaves grains on the bumps of the paper. Each has a time at which it
+ * breaks off, the earlier the nearer it lies to the stroke's outline; the outline of what crumbles
+ * moves inward and what broke off moves outward, so that a front of dust runs ahead of the stroke.
+ * A loose grain drifts away from the stroke, along swirls and around the bumps, and is caught by
+ * the tooth: sooner on a bump than in a hollow. A grain that lies may be knocked loose again by
+ * the front. All random bits are a function of (seed, grain, frame).
+ */
+#include "watercolour/dust.h"
+
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "watercolour/noise.h"
+
+#include <math.h>
+
+enum { KEY_PLACE = 301, KEY_DRIFT, KEY_SWIRL, KEY_SHAPE };
+
+typedef struct Grain {
+    float x, y;  // cells
+    float reach; // how far from the stroke's outline it comes to rest in the end, px
+    float start; // how far inside the outline it began, px
+} Grain;
+
+struct FlDustCloud {
+    const FlRecipe *recipe;
+    int n;
+    Grain *grains;
+};
+
+/* How far inside the union of the strokes a point lies, px; negative outside. */
+static float depth_at(const FlRecipe *recipe, float x, float y, float *load)
+{
+    float deepest = -1e9f;
+    const float scale = (float)recipe->oversample;
+    for (int e = 0; e < recipe->n_events; e++) {
+        const FlEvent *event = &recipe->events[e];
+        const FlTouch touch = fl_brush_touch(event, fl_key(recipe->seed, (uint64_t)event->hand),
+                                             x / scale, y / scale);
+        if (touch.inside > deepest) {
+            deepest = touch.inside;
+            *load = touch.load;
+        }
+    }
+    return deepest;
+}
+
+static float relief_at(const FlSheet *sheet, float x, float y)
+{
+    const int i = MAX(0, MIN(sheet->width - 1, (int)x));
+    const int j = MAX(0, MIN(sheet->height - 1, (int)y));
+    return sheet->relief[(size_t)j * sheet->width + i];
+}
+
+/* A place within the stroke, likelier on the bumps and where the stick was pressed. */
+static Grain place_grain(const FlRecipe *recipe, const FlSheet *sheet, uint64_t index)
+{
+    FlRng rng = {fl_key(fl_key(recipe->seed, KEY_PLACE), index)};
+    Grain grain = {0};
+    for (int tries = 0; tries < 1000; tries++) {
+        grain.x = fl_rng_float(&rng) * sheet->width, grain.y = fl_rng_float(&rng) * sheet->height;
+        float load = 1;
+        grain.start = depth_at(recipe, grain.x, grain.y, &load);
+        if (grain.start < -1.5f)
+            continue;
+        const float tooth = (relief_at(sheet, grain.x, grain.y) - 0.3f) * 2.2f;
+        const float pressed = load * fmaxf(0.25f, tooth) * (grain.start < 2 ? 0.6f : 1);
+        if (fl_rng_float(&rng) * 2 < pressed)
+            break;
+    }
+    const float u = fl_rng_float(&rng);
+    grain.reach = u * u; // most grains do not go far
+    return grain;
+}
+
+FlDustCloud *fl_dust_new(const FlRecipe *recipe, const FlSheet *sheet, GError **error)
+{
+    g_autoptr(FlDustCloud) cloud = g_new0(FlDustCloud, 1);
+    cloud->recipe = recipe;
+    cloud->n = recipe->dust.grains;
+    if (!(cloud->grains = fl_alloc((size_t)cloud->n, sizeof(Grain), "dust", error)))
+        return NULL;
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < cloud->n; i++)
+        cloud->grains[i] = place_grain(recipe, sheet, (uint64_t)i);
+    return g_steal_pointer(&cloud);
+}
+
+void fl_dust_free(FlDustCloud *cloud)
+{
+    if (!cloud)
+        return;
+    free(cloud->grains);
+    g_free(cloud);
+}
+
+/* Where dust is blown: away from the stroke, with swirls, and off the bumps; about 1 long. The
+   swirls are the curl of a noise: being free of divergence, they do not gather the grains. */
+static void wind(const FlRecipe *recipe, const FlSheet *sheet, float x, float y, float out[2])
+{
+    const FlDust *dust = &recipe->dust;
+    const float scale = (float)recipe->oversample, size = dust->swirl_px;
+    float load;
+    const float far = 10 * scale; // the broad shape of the stroke, not each of its bays
+    const float dx = depth_at(recipe, x - far, y, &load) - depth_at(recipe, x + far, y, &load);
+    const float dy = depth_at(recipe, x, y - far, &load) - depth_at(recipe, x, y + far, &load);
+    const float norm = 1 / sqrtf(dx * dx + dy * dy + 0.05f);
+    const uint64_t key = fl_key(recipe->seed, KEY_SWIRL);
+    const float px = x / (scale * size), py = y / (scale * size), e = 0.05f;
+    const float curl_x =
+        fl_noise_octaves(key, px, py + e, 3, 0.5f) - fl_noise_octaves(key, px, py - e, 3, 0.5f);
+    const float curl_y =
+        fl_noise_octaves(key, px - e, py, 3, 0.5f) - fl_noise_octaves(key, px + e, py, 3, 0.5f);
+    const float slope_x = relief_at(sheet, x - scale, y) - relief_at(sheet, x + scale, y);
+    const float slope_y = relief_at(sheet, x, y - scale) - relief_at(sheet, x, y + scale);
+    out[0] = dx * norm + dust->swirl * 4 * curl_x + 0.4f * slope_x;
+    out[1] = dy * norm + dust->swirl * 4 * curl_y + 0.4f * slope_y;
+}
+
+/* A grain is loose while the front of the dust has passed the place where it lies but it has not
+   gone its way. The front starts at the outline and runs outward at the recipe's speed; grains
+   inside the stroke follow where they lie within the crumbling rim. */
+static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *grain, int index,
+                        int frame)
+{
+    const FlDust *dust = &recipe->dust;
+    FlRng rng = {fl_key(fl_key(fl_key(recipe->seed, KEY_DRIFT), (uint64_t)index), (uint64_t)frame)};
+    const float front = dust->speed_px * (float)(frame + 1);
+    const float rim = dust->rim_px;
+    if (grain->start > rim * (0.35f + fl_rng_float(&rng)))
+        return; // in the resting core
+    float load;
+    const float gone = -depth_at(recipe, grain->x, grain->y, &load);
+    const float goal = front * (1.0f - grain->reach) - grain->start * 0.5f;
+    const float tooth = relief_at(sheet, grain->x, grain->y);
+    if (gone > goal || fl_rng_float(&rng) < dust->catch_rate * tooth)
+        return;
+    float blow[2];
+    wind(recipe, sheet, grain->x, grain->y, blow);
+    const float way =
+        dust->speed_px * (float)recipe->oversample * (0.5f + 1.6f * fl_rng_float(&rng));
+    grain->x += way * (blow[0] + 0.5f * (fl_rng_float(&rng) - 0.5f));
+    grain->y += way * (blow[1] + 0.5f * (fl_rng_float(&rng) - 0.5f));
+}
+
+void fl_dust_drift(FlDustCloud *cloud, const FlSheet *sheet, int frame)
+{
+#pragma omp parallel for schedule(static)
+    for (int i = 0; i < cloud->n; i++)
+        drift_grain(cloud->recipe, sheet, &cloud->grains[i], i, frame);
+}
+
+/* A grain is as large as a cell and lies across up to four. */
+static void lay_grain(FlSheet *sheet, float *d, const Grain *grain, float weight)
+{
+    const float x = fmaxf(0, fminf((float)sheet->width - 1.001f, grain->x - 0.5f));
+    const float y = fmaxf(0, fminf((float)sheet->height - 1.001f, grain->y - 0.5f));
+    const int i = (int)x, j = (int)y;
+    const float fx = x - (float)i, fy = y - (float)j;
+    float *cell = &d[(size_t)j * sheet->width + i];
+    cell[0] += weight * (1 - fx) * (1 - fy);
+    cell[1] += weight * fx * (1 - fy);
+    cell[sheet->width] += weight * (1 - fx) * fy;
+    cell[sheet->width + 1] += weight * fx * fy;
+}
+
+void fl_dust_lay(const FlDustCloud *cloud, FlSheet *sheet)
+{
+    const size_t cells = (size_t)sheet->width * sheet->height;
+    for (int k = 0; k < sheet->n_pigments; k++)
+        for (size_t i = 0; i < cells; i++)
+            sheet->settled[k][i] = 0;
+    for (int i = 0; i < cloud->n; i++) { // in the grains' order: the sums are always the same
+        FlRng rng = {fl_key(fl_key(cloud->recipe->seed, KEY_SHAPE), (uint64_t)i)};
+        lay_grain(sheet, sheet->settled[i % sheet->n_pigments], &cloud->grains[i],
+                  cloud->recipe->dust.weight * (0.4f + 1.2f * fl_rng_float(&rng)));
+    }
+}

@@ -1,0 +1,28 @@
+/* Dry medium: grains that break off a stroke of charcoal or pastel and drift along the tooth. */
+#ifndef FLUIDY_WATERCOLOUR_DUST_H
+#define FLUIDY_WATERCOLOUR_DUST_H
+
+#include "watercolour/brush.h"
+
+/** All grains of a recipe; each has a place of its own from the beginning, lying or drifting. */
+typedef struct FlDustCloud FlDustCloud;
+
+/**
+ * Rubs the grains into the paper's tooth within the recipe's events: those with `from` 0.
+ *
+ * Grain i belongs to pigment i modulo the number of pigments. The recipe must outlive the cloud.
+ * Returns: NULL with FL_ERROR_NO_MEMORY set.
+ */
+FlDustCloud *fl_dust_new(const FlRecipe *recipe, const FlSheet *sheet, GError **error);
+
+void fl_dust_free(FlDustCloud *cloud); // NULL is fine
+
+/** Lets the grains crumble and drift for one frame; frame counts from 0. */
+void fl_dust_drift(FlDustCloud *cloud, const FlSheet *sheet, int frame);
+
+/** Puts the grains on the sheet: `settled` becomes their thickness. Nothing is lost or made. */
+void fl_dust_lay(const FlDustCloud *cloud, FlSheet *sheet);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDustCloud, fl_dust_free)
+
+#endif

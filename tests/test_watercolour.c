@@ -1,0 +1,366 @@
+/* The paint simulation: what each stage conserves, the colours, and recipes. */
+#include "watercolour/brush.h"
+#include "watercolour/kubelka_munk.h"
+#include "watercolour/stages.h"
+
+#include <fluidy/watercolour.h>
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#else
+#define omp_set_num_threads(n) (void)(n)
+#endif
+
+enum { SIDE = 48 };
+
+static const FlPigment pigment = {
+    .density = 0.05f, .staining = 3, .granulation = .8f, .diffusion = 0.1f};
+
+/* A small sheet with a wet, painted disc in its middle; uneven paper. */
+static FlSheet *painted_sheet(void)
+{
+    FlRecipe recipe = {.width = SIDE, .height = SIDE, .oversample = 1, .seed = 3, .n_pigments = 1};
+    recipe.paper = (FlPaper){.grain_px = 4,
+                             .roughness = .5f,
+                             .stretch = 1,
+                             .fibres = 1,
+                             .fibre_px = 20,
+                             .fibre_pull = .5f,
+                             .capacity = {.5f, .9f},
+                             .patchiness = .5f,
+                             .patch_px = 12,
+                             .pinning = .3f};
+    FlSheet *sheet = fl_sheet_new(SIDE, SIDE, 1, NULL);
+    g_assert_nonnull(sheet);
+    fl_sheet_make_paper(sheet, &recipe);
+    for (int j = 0; j < SIDE; j++)
+        for (int i = 0; i < SIDE; i++) {
+            const int x = i - SIDE / 2, y = j - SIDE / 2, at = j * SIDE + i;
+            if (x * x + y * y > 14 * 14)
+                continue;
+            sheet->wet[at] = 1;
+            sheet->s[at] = sheet->capacity[at];
+            sheet->p[at] = x * x + y * y < 36 ? 1 : 0.2f;
+            sheet->floating[0][at] = 0.3f + 0.01f * (float)x;
+        }
+    return sheet;
+}
+
+static FlFlow usual_flow(void)
+{
+    return (FlFlow){.viscosity = .1f,
+                    .drag = .01f,
+                    .slope = .3f,
+                    .relaxation = .1f,
+                    .tolerance = .01f,
+                    .sweeps = 50,
+                    .edge_darkening = .03f,
+                    .delta = -.01f,
+                    .sigma = .1f,
+                    .conduct = 1,
+                    .mobility = 1,
+                    .carry = 1,
+                    .settle = 1,
+                    .diffusions = 1,
+                    .evaporation = .001f,
+                    .rim_evaporation = .001f};
+}
+
+static void expect_pigment(const FlSheet *sheet, double before)
+{
+    g_assert_cmpfloat_with_epsilon(fl_sheet_pigment(sheet, 0), before, 1e-5 * before);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        g_assert_cmpfloat(sheet->floating[0][i], >=, -1e-6f);
+        g_assert_cmpfloat(sheet->settled[0][i], >=, 0);
+    }
+}
+
+static void shallow_water_conserves_pigment_and_keeps_it_in_the_wet_mask(void)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    const FlFlow flow = usual_flow();
+    const double before = fl_sheet_pigment(sheet, 0);
+    for (int step = 0; step < 60; step++) {
+        fl_update_velocities(sheet, &flow);
+        fl_relax_divergence(sheet, &flow);
+        fl_flow_outward(sheet, &flow);
+        fl_move_pigment(sheet);
+        fl_transfer_pigment(sheet, &pigment, &flow);
+    }
+    expect_pigment(sheet, before);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        if (!sheet->wet[i])
+            g_assert_cmpfloat(sheet->floating[0][i] + sheet->settled[0][i], ==, 0);
+}
+
+static void no_velocity_leaks_through_the_wet_mask(void)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    const FlFlow flow = usual_flow();
+    float fastest = 0;
+    for (int step = 0; step < 20; step++) {
+        fl_update_velocities(sheet, &flow);
+        fl_relax_divergence(sheet, &flow);
+        fl_flow_outward(sheet, &flow);
+        for (int j = 0; j < SIDE; j++)
+            for (int i = 1; i < SIDE; i++) {
+                const float u = sheet->u[j * (SIDE + 1) + i], v = sheet->v[i * SIDE + j];
+                if (!sheet->wet[j * SIDE + i] || !sheet->wet[j * SIDE + i - 1])
+                    g_assert_cmpfloat(u, ==, 0);
+                if (!sheet->wet[i * SIDE + j] || !sheet->wet[(i - 1) * SIDE + j])
+                    g_assert_cmpfloat(v, ==, 0);
+                fastest = fmaxf(fastest, fmaxf(fabsf(u), fabsf(v)));
+            }
+    }
+    g_assert_cmpfloat(fastest, >, 0.01f); // it does move
+    g_assert_cmpfloat(fastest, <, 10);    // and does not blow up
+}
+
+static void relaxing_leaves_little_divergence(void)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    FlFlow flow = usual_flow();
+    flow.sweeps = 1000;
+    flow.tolerance = 1e-4f;
+    fl_update_velocities(sheet, &flow);
+    fl_relax_divergence(sheet, &flow);
+    for (int j = 0; j < SIDE; j++)
+        for (int i = 0; i < SIDE; i++) {
+            const float *u = &sheet->u[j * (SIDE + 1) + i], *v = &sheet->v[j * SIDE + i];
+            g_assert_cmpfloat(fabsf(u[1] - u[0] + v[SIDE] - v[0]), <=, 1.01e-3f);
+        }
+}
+
+static void water_in_the_paper_conserves_pigment_and_spreads(void)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    const FlFlow flow = usual_flow();
+    const double before = fl_sheet_pigment(sheet, 0);
+    for (int step = 0; step < 200; step++) {
+        fl_diffuse_pigment(sheet, &pigment, &flow);
+        fl_transfer_pigment(sheet, &pigment, &flow);
+        fl_capillary_flow(sheet, &flow);
+        fl_evaporate(sheet, &flow);
+    }
+    expect_pigment(sheet, before);
+    float beyond = 0;
+    for (int j = 0; j < SIDE; j++)
+        beyond += sheet->floating[0][j * SIDE + SIDE / 2 - 16] +
+                  sheet->settled[0][j * SIDE + SIDE / 2 - 16];
+    g_assert_cmpfloat(beyond, >, 0.01f);
+}
+
+static void water_never_exceeds_the_capacity_of_the_paper(void)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    FlFlow flow = usual_flow();
+    flow.absorb = 0.05f;
+    for (int step = 0; step < 100; step++)
+        fl_capillary_flow(sheet, &flow);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        g_assert_cmpfloat(sheet->s[i], >=, -1e-6f);
+        g_assert_cmpfloat(sheet->s[i], <=, sheet->capacity[i] + 1e-5f);
+    }
+}
+
+static FlSheet *sheet_after_all_stages(int threads)
+{
+    omp_set_num_threads(threads);
+    FlSheet *sheet = painted_sheet();
+    const FlFlow flow = usual_flow();
+    for (int step = 0; step < 2; step++) {
+        fl_update_velocities(sheet, &flow);
+        fl_relax_divergence(sheet, &flow);
+        fl_flow_outward(sheet, &flow);
+        fl_move_pigment(sheet);
+        fl_diffuse_pigment(sheet, &pigment, &flow);
+        fl_transfer_pigment(sheet, &pigment, &flow);
+        fl_capillary_flow(sheet, &flow);
+        fl_evaporate(sheet, &flow);
+    }
+    omp_set_num_threads(1);
+    return sheet;
+}
+
+static void same_bytes_on_any_thread_count(void)
+{
+    g_autoptr(FlSheet) one = sheet_after_all_stages(1);
+    for (int threads = 2; threads <= 3; threads++) {
+        g_autoptr(FlSheet) many = sheet_after_all_stages(threads);
+        const size_t bytes = SIDE * SIDE * sizeof(float);
+        g_assert_cmpmem(many->floating[0], bytes, one->floating[0], bytes);
+        g_assert_cmpmem(many->settled[0], bytes, one->settled[0], bytes);
+        g_assert_cmpmem(many->s, bytes, one->s, bytes);
+        g_assert_cmpmem(many->u, bytes, one->u, bytes);
+    }
+}
+
+static void quinacridone_rose_has_its_printed_colours(void)
+{
+    static const double white[] = {.646, .054, .324}, black[] = {.039, .001, .017};
+    const FlPigment *rose = fl_pigment_find("Quinacridone Rose");
+    g_assert_nonnull(rose);
+    for (int c = 0; c < 3; c++) {
+        const FlLayer layer = fl_km_layer(rose->absorption[c], rose->scattering[c], 1);
+        g_assert_cmpfloat_with_epsilon(fl_km_over(layer, (FlLayer){1, 0}).reflectance, white[c],
+                                       6e-4);
+        g_assert_cmpfloat_with_epsilon(layer.reflectance, black[c], 6e-4);
+    }
+}
+
+static void a_pigment_comes_back_from_its_two_colours(void)
+{
+    for (int i = 0; fl_pigment_names()[i]; i++) {
+        const FlPigment *known = fl_pigment_find(fl_pigment_names()[i]);
+        g_assert_nonnull(known);
+        for (int c = 0; c < 3; c++) {
+            const FlLayer layer = fl_km_layer(known->absorption[c], known->scattering[c], 1);
+            const double white = fl_km_over(layer, (FlLayer){1, 0}).reflectance;
+            double k, s;
+            g_assert_true(fl_km_from_colours(white, layer.reflectance, &k, &s));
+            g_assert_cmpfloat_with_epsilon(k, known->absorption[c], 1e-4);
+            g_assert_cmpfloat_with_epsilon(s, known->scattering[c], 1e-4);
+        }
+    }
+    double k, s;
+    g_assert_false(fl_km_from_colours(.5, .6, &k, &s));
+}
+
+static void layers_without_absorption_or_scattering_are_no_special_case(void)
+{
+    const FlLayer clear = fl_km_layer(0, 0, 5), milk = fl_km_layer(0, 1, 3);
+    const FlLayer glass = fl_km_layer(1, 0, 2), pitch = fl_km_layer(100, 1, 100);
+    g_assert_cmpfloat(clear.reflectance, ==, 0);
+    g_assert_cmpfloat(clear.transmittance, ==, 1);
+    g_assert_cmpfloat_with_epsilon(milk.reflectance, .75, 1e-12);
+    g_assert_cmpfloat_with_epsilon(milk.reflectance + milk.transmittance, 1, 1e-12);
+    g_assert_cmpfloat_with_epsilon(glass.transmittance, exp(-2), 1e-12);
+    g_assert_cmpfloat(glass.reflectance, ==, 0);
+    g_assert_cmpfloat(pitch.transmittance, ==, 0);
+    g_assert_true(isfinite(pitch.reflectance));
+}
+
+static char *folder;
+
+static char *write_recipe(const char *text)
+{
+    char *path = g_build_filename(folder, "recipe.ini", NULL);
+    g_assert_true(g_file_set_contents(path, text, -1, NULL));
+    return path;
+}
+
+#define SMALL                                                                                      \
+    "# a small stroke\n[recipe]\nsize = 32 24\nframes = 2\nsteps = 10\n"                           \
+    "[pigment Phthalo Green]\n[event stroke]\npoints = 10 12 22 12\nradius = 6\nwater = 1\n"       \
+    "load = 0.5\n"
+
+static void a_recipe_error_names_file_and_line(void)
+{
+    static const char *const cases[][2] = {
+        {SMALL "colour = red\n", ":12: [event stroke] has no key “colour”"},
+        {SMALL "radios = 4\n", "did you mean “radius”?"},
+        {SMALL "[paper]\ncolour = red\n", ":13: [paper] colour: “red”: expected a colour"},
+        {SMALL "[flow]\ncarry = 2\n", ":13: [flow] carry: “2”: expected a number from 0 to 1"},
+        {SMALL "[flows]\n", ":12: [flows] is not a group of a recipe"},
+        {SMALL "[pigment Mud]\n", ":12: [pigment Mud] is not in the table"},
+        {SMALL "splash\n", ":12: “splash” is neither"},
+        {"[recipe]\nframes = 3\n", ":1: [recipe] size: expected width and height"},
+        {"[recipe]\nsize = 32 24\nframes = 3\n", "expected a [recipe] with a size, a [pigment"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *path = write_recipe(cases[i][0]);
+        g_autoptr(GError) error = NULL;
+        g_autoptr(FlRecipe) recipe = fl_recipe_load(path, &error);
+        g_assert_null(recipe);
+        g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
+        g_assert_true(g_str_has_prefix(error->message, path));
+        if (!strstr(error->message, cases[i][1]))
+            g_error("“%s” lacks “%s”", error->message, cases[i][1]);
+    }
+}
+
+static void a_missing_recipe_is_named(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_false(fl_watercolour_simulate("/nowhere/at all.ini", folder, NULL, NULL, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
+    g_assert_nonnull(strstr(error->message, "/nowhere/at all.ini"));
+}
+
+static void count_frames(int frame, int n_frames, void *data)
+{
+    g_assert_cmpint(++*(int *)data, ==, frame);
+    g_assert_cmpint(frame, <=, n_frames);
+}
+
+static void expect_same_file(const char *a, const char *b, const char *name)
+{
+    g_autofree char *path_a = g_build_filename(a, name, NULL);
+    g_autofree char *path_b = g_build_filename(b, name, NULL);
+    g_autofree char *data_a = NULL, *data_b = NULL;
+    gsize n_a = 0, n_b = 0;
+    g_assert_true(g_file_get_contents(path_a, &data_a, &n_a, NULL));
+    g_assert_true(g_file_get_contents(path_b, &data_b, &n_b, NULL));
+    g_assert_cmpmem(data_a, n_a, data_b, n_b);
+}
+
+static void simulate_small(const char *fixture, const char *output)
+{
+    g_autofree char *recipe =
+        g_build_filename(g_getenv("FLUIDY_FIXTURES"), fixture, "recipe.ini", NULL);
+    g_autoptr(GError) error = NULL;
+    int frames = 0;
+    fl_watercolour_simulate(recipe, output, count_frames, &frames, &error);
+    g_assert_no_error(error);
+    g_assert_cmpint(frames, ==, 3);
+}
+
+static void a_small_style_rebuilds_byte_for_byte(void)
+{
+    static const char *const fixtures[] = {"watercolour/wet", "watercolour/dust"};
+    for (size_t i = 0; i < G_N_ELEMENTS(fixtures); i++) {
+        g_autofree char *made = g_build_filename(folder, "made", NULL);
+        g_autofree char *stored = g_build_filename(g_getenv("FLUIDY_FIXTURES"), fixtures[i], NULL);
+        simulate_small(fixtures[i], made);
+        expect_same_file(made, stored, "style.ini");
+        expect_same_file(made, stored, "frames/0003.png");
+        expect_same_file(made, stored, "masks/0003.png");
+    }
+}
+
+static void remove_tree(const char *path)
+{
+    g_autoptr(GDir) dir = g_dir_open(path, 0, NULL);
+    for (const char *name; dir && (name = g_dir_read_name(dir));) {
+        g_autofree char *child = g_build_filename(path, name, NULL);
+        remove_tree(child);
+    }
+    g_remove(path);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    omp_set_num_threads(1); // more would only wait for each other on grids as small as these
+    folder = g_dir_make_tmp("fluidy-watercolour-XXXXXX", NULL);
+    g_assert_nonnull(folder);
+#define TEST(name) g_test_add_func("/watercolour/" #name, name)
+    TEST(shallow_water_conserves_pigment_and_keeps_it_in_the_wet_mask);
+    TEST(no_velocity_leaks_through_the_wet_mask);
+    TEST(relaxing_leaves_little_divergence);
+    TEST(water_in_the_paper_conserves_pigment_and_spreads);
+    TEST(water_never_exceeds_the_capacity_of_the_paper);
+    TEST(same_bytes_on_any_thread_count);
+    TEST(quinacridone_rose_has_its_printed_colours);
+    TEST(a_pigment_comes_back_from_its_two_colours);
+    TEST(layers_without_absorption_or_scattering_are_no_special_case);
+    TEST(a_recipe_error_names_file_and_line);
+    TEST(a_missing_recipe_is_named);
+    TEST(a_small_style_rebuilds_byte_for_byte);
+    const int status = g_test_run();
+    remove_tree(folder);
+    g_free(folder);
+    return status;
+}
