@@ -63,6 +63,8 @@ static void paint_is_found_under_a_lamp_beside_dirt(void)
     uint8_t paper[3];
     for (int t = 0; t < FRAMES; t++) // a hair, far from the paint
         memset(rgb + 3 * (PIXELS * t + 8 * WIDTH + 120), 90, 3 * 10);
+    for (int y = 70; y < 95; y++) // and a smudge that is wiped away
+        memset(rgb + 3 * (PIXELS + y * WIDTH + 10), 120, 3 * 25);
     fl_paper_estimate(&clip, NULL, paper);
     g_assert_true(fl_extract_masks(&clip, paper, mask, &error));
     g_assert_no_error(error);

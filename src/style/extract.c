@@ -79,7 +79,8 @@ static bool difference(const FlClip *clip, int frame, const FlPlate *plate, floa
     return true;
 }
 
-/* Otsu's threshold: the bin that parts a histogram of 256 into the two most different kinds. */
+/* Otsu's threshold [Otsu79]: the bin that parts a histogram of 256 into the two most different
+ * kinds. */
 static int part_histogram(const uint32_t count[256])
 {
     double n = 0, total = 0, below = 0, sum_below = 0, best = -1;

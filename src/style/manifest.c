@@ -45,7 +45,8 @@ static bool wrong(const Line *line, GError **error, const char *format, ...)
     return false;
 }
 
-bool fl_number_parse(const char *text, double *value)
+/* All of `text` as a finite number with a decimal point, in any locale. */
+static bool parse_number(const char *text, double *value)
 {
     char *end = NULL;
     *value = g_ascii_strtod(text, &end);
@@ -70,7 +71,7 @@ bool fl_colour_parse(const char *text, uint8_t rgb[3])
 static bool read_number(const Line *line, const struct Key *key, float *field, GError **error)
 {
     double value;
-    if (!fl_number_parse(line->value, &value) || value < key->min || value > key->max)
+    if (!parse_number(line->value, &value) || value < key->min || value > key->max)
         return wrong(line, error, "%s = %s: expected a number from %g to %g", line->key,
                      line->value, key->min, key->max);
     *field = (float)value;

@@ -27,7 +27,4 @@ char *fl_manifest_text(const FlStyle *style);
 /** Reads #rgb or #rrggbb. */
 bool fl_colour_parse(const char *text, uint8_t rgb[3]);
 
-/** Reads all of `text` as a finite number with a decimal point, in any locale. */
-bool fl_number_parse(const char *text, double *value);
-
 #endif

@@ -67,7 +67,7 @@ static double crossing(float a, float b, float level)
     return (level - a) / (double)(b - a);
 }
 
-/* The iso-line of the distance, cell by cell of the pixel grid [marching squares]. */
+/* The iso-line of the distance, by marching squares. */
 static void draw_level(const Page *page, float level, const double rgb[3])
 {
     const FlGuides *g = &page->guides;

@@ -97,7 +97,7 @@ static FlShift walk(const Pair *pair, FlShift start)
     return best;
 }
 
-/* Gauss and Newton on the squared difference [Lucas and Kanade 1981]. */
+/* Gauss and Newton on the squared difference [Lucas81]. */
 static FlShift refine(const Pair *pair, FlShift shift)
 {
     const FlShift start = shift;
