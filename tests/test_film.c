@@ -140,6 +140,38 @@ static void depth_sorted_leaves_and_renumbered_ids_keep_their_regions(void)
     assert_table(film, "red-ff0000*2 blue-0000ff*2 green-00aa00*2");
 }
 
+static void a_group_that_fades_stays_taken_apart(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 1; t <= 3; t++) {
+        g_autofree char *name = g_strdup_printf("%d.svg", t);
+        g_autofree char *content =
+            g_strdup_printf("<g opacity=\"%s\"><rect width=\"60\" height=\"60\" fill=\"red\"/>"
+                            "<circle cx=\"30\" cy=\"30\" r=\"20\" fill=\"blue\"/></g>",
+                            t == 3 ? ".3" : "1");
+        g_free(scratch_svg(folder, name, content));
+    }
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) fading = open_film(&options, folder, NULL);
+    assert_table(fading, "red-ff0000*3 blue-0000ff*3");
+    const FlFilmOptions last = {.range = "3"};
+    g_autoptr(FlFilm) faint = open_film(&last, folder, NULL);
+    assert_table(faint, "group*1");
+}
+
+static void rings_of_two_colours_are_regions_of_their_own(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<circle cx=\"50\" cy=\"50\" r=\"45\" fill=\"red\"/>"
+                       "<circle cx=\"50\" cy=\"50\" r=\"35\" fill=\"white\"/>"
+                       "<circle cx=\"50\" cy=\"50\" r=\"25\" fill=\"red\"/>"
+                       "<circle cx=\"52\" cy=\"50\" r=\"15\" fill=\"red\"/>"));
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    assert_table(film, "red-ff0000*1 white-ffffff*1 red-ff0000-2*1");
+}
+
 /** Peak signal to noise ratio of the runs' flat picture to librsvg's, over grey; dB. */
 static double psnr(const FlFilm *film, int t)
 {
@@ -326,6 +358,9 @@ int main(int argc, char **argv)
          a_region_keeps_its_leaf_while_the_colour_changes);
     TEST("depth-sorted-leaves-and-renumbered-ids-keep-their-regions",
          depth_sorted_leaves_and_renumbered_ids_keep_their_regions);
+    TEST("a-group-that-fades-stays-taken-apart", a_group_that_fades_stays_taken_apart);
+    TEST("rings-of-two-colours-are-regions-of-their-own",
+         rings_of_two_colours_are_regions_of_their_own);
     TEST("regions-over-each-other-are-the-drawing", regions_over_each_other_are_the_drawing);
     TEST("a-mask-is-the-whole-shape", a_mask_is_the_whole_shape);
     TEST("leaves-that-do-not-meet-share-a-run", leaves_that_do_not_meet_share_a_run);

@@ -1,5 +1,6 @@
 #include "regions/identity.h"
 
+#include "regions/nesting.h"
 #include "regions/tracks.h"
 #include <string.h>
 
@@ -20,8 +21,9 @@ typedef struct Work {
     int *label_of;
     GArray *tracks;
     int **track_of;
-    int *rule_of; // per track
-    int *twin_of; // per track: the first track whose paints change as its own do
+    int *rule_of;  // per track
+    int *depth_of; // per track: see fl_nesting()
+    int *twin_of;  // per track: the first track whose paints change as its own do
 } Work;
 
 /** Whether strokes are what the drawing consists of: zdog figures, line drawings. */
@@ -140,7 +142,7 @@ static char *key_of(const Work *w, const FlSeen *s, int track)
     if (tr->varies)
         return g_strdup_printf("track %d", w->twin_of[track]);
     const int place = s->kind == FL_PAINT_MIXED || s->kind == FL_PAINT_IMAGE ? s->tree : 0;
-    return g_strdup_printf("%s%d/%d/%d", apart, label, s->paint, place);
+    return g_strdup_printf("%s%d/%d/%d/%d", apart, label, s->paint, place, w->depth_of[track]);
 }
 
 /** Adds a part to its group. */
@@ -206,10 +208,12 @@ static GArray *gather(Work *w)
 GArray *fl_identify(FlScan *scan, const FlFilmOptions *options)
 {
     Work w = {.scan = scan, .options = options};
+    fl_scan_choose_units(scan);
     w.paint_strokes = options->strokes == FL_STROKES_PAINT ||
                       (options->strokes <= FL_STROKES_KEEP && is_line_art(scan));
     w.label_of = fl_clean_labels(scan);
     w.tracks = fl_follow(scan, w.label_of, &w.track_of);
+    w.depth_of = fl_nesting(scan, w.track_of, w.label_of, (int)w.tracks->len);
     w.rule_of = g_new(int, w.tracks->len + 1);
     w.twin_of = g_new(int, w.tracks->len + 1);
     for (guint k = 0; k < w.tracks->len; k++)
@@ -220,6 +224,7 @@ GArray *fl_identify(FlScan *scan, const FlFilmOptions *options)
     for (int t = 0; t < scan->n_frames; t++)
         g_free(w.track_of[t]);
     g_free(w.track_of);
+    g_free(w.depth_of);
     g_free(w.rule_of);
     g_free(w.twin_of);
     g_array_unref(w.tracks);

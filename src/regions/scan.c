@@ -90,6 +90,7 @@ static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warning
                              .has_stroke = n == 2 || p->stroke,
                              .kind = p->paint.kind,
                              .alpha = p->paint.alpha,
+                             .unit = index < 0 ? -index : 0,
                              .region = -1};
         memcpy(look.seen.rgb, p->paint.rgb, 3);
         if (p->blended)
@@ -160,7 +161,10 @@ static bool look_at_leaves(Frame *f, FlWarnings *warnings, const char *file, int
         if (separable < 0)
             return false;
         if (!separable) {
-            g_array_set_size(f->looks, before);
+            if (u->inseparable)
+                g_array_set_size(f->looks, before);
+            for (guint k = before; k < f->looks->len; k++)
+                g_array_index(f->looks, Look, k).seen.unit = 1 + (int)unit;
             if (!look_at(f, &u->leaf, -1 - (int)unit, warnings, file, number, error))
                 return false;
         }
@@ -182,6 +186,8 @@ static bool stack(Frame *f, GError **error)
     for (guint i = 0; i < f->looks->len; i++) {
         Look *look = &g_array_index(f->looks, Look, i);
         FlBox box;
+        if (look->seen.unit > 0 && look->seen.leaf >= 0)
+            continue; // the unit comes after its leaves
         if (!cover(f, look->leaf, look->seen.part, &box, error))
             return false;
         const bool fills_page = look->seen.area_px > 0.95f * page;

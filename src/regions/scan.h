@@ -26,6 +26,7 @@ typedef struct FlSeen {
     float box[4];  // x0, y0, x1, y1 of what is drawn, px of the picture; a pixel too wide
     float area_px; // sum of its coverage
     float covers;  // share of it that lies over other paint, page-filling ones not counted
+    int unit;      // 1 + index of the unit it is, or is a leaf of, if that is to be drawn as one
     int region;    // set later; -1: not drawn
 } FlSeen;
 
@@ -48,6 +49,12 @@ typedef struct FlScan {
 /** Returns: false with an error, which names the file. warnings may be NULL. */
 bool fl_scan_init(FlScan *scan, const FlSequence *sequence, const FlFilmOptions *options,
                   FlWarnings *warnings, GError **error);
+
+/**
+ * Decides between units and their leaves, which fl_scan_init() both lists: a group that is drawn
+ * leaf by leaf in other frames, because it only fades for a while, is so in all; another stays one.
+ */
+void fl_scan_choose_units(FlScan *scan);
 
 void fl_scan_clear(FlScan *scan);
 
