@@ -149,6 +149,24 @@ static void thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below(voi
     }
 }
 
+static void paint_below_runs_on_under_a_rim_without_body(void)
+{
+    uint8_t all[N], body[N], out[4 * N];
+    memset(all, 255, N);
+    for (int i = 0; i < N; i++)
+        body[i] = i % W < 24 ? 0 : 255;
+    FlLayer layers[2] = {flat_layer(all, 0, 0, 0), flat_layer(all, 255, 0, 0)};
+    for (int i = 0; i < N; i++) // a rim of bare paper, then thin red
+        layers[1].rgba[4 * i + 3] = i % W < 24 ? 0 : 128;
+    layers[1].body = body;
+    resolve(layers, 2, &plain);
+    fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
+    const uint8_t rim[4] = {0, 0, 0, 255}, core[4] = {255, 127, 127, 255};
+    g_assert_cmpmem(out + 4 * (20 * W + 10), 4, rim, 4);
+    g_assert_cmpmem(out + 4 * (20 * W + 40), 4, core, 4);
+    layers_clear(layers, 2);
+}
+
 /** Stacks of random discs of random paint. */
 static void random_layers(FlLayer *layers, uint8_t coverage[][N], int n, uint64_t key)
 {
@@ -263,6 +281,8 @@ int main(int argc, char **argv)
                     an_overlay_of_partial_opacity_tints_what_is_below);
     g_test_add_func("/layers/thin-paint-that-knocks-out-shows-paper-and-a-glaze-what-is-below",
                     thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below);
+    g_test_add_func("/layers/paint-below-runs-on-under-a-rim-without-body",
+                    paint_below_runs_on_under_a_rim_without_body);
     g_test_add_func("/layers/stored-layers-recompose-to-the-frame-bit-for-bit",
                     stored_layers_recompose_to_the_frame_bit_for_bit);
     g_test_add_func("/layers/sixteen-bits-are-the-same-picture", sixteen_bits_are_the_same_picture);

@@ -18,7 +18,7 @@ typedef struct FlColouring {
     uint8_t fill[3];        // the flat colour
     const uint8_t *picture; // a whole frame of straight RGBA, whose alpha is not read; or NULL
     uint8_t paper[3];       // the output's paper
-    FlMedium medium;        // opaque paint hides what is below where it is half its median or more
+    FlMedium medium;        // opaque paint hides what is below from a fifth of its median on
     bool linear;            // the layers will be blended in linear light
     int tone;               // of fl_ink_tone(); FL_TONE_ONE: as in the exemplar
 } FlColouring;
@@ -34,6 +34,14 @@ typedef struct FlColouring {
  */
 void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
                   const uint8_t *coverage, int width, FlBox box, uint8_t *rgba);
+
+/**
+ * How far the paint has body, 0..255 per pixel of the box: from nothing on bare paper to 255 at
+ * a fifth of the median amount. Layers that knock out by it let the paint below run on under their
+ * soft rims instead of ending it at their contour, where it leaves a line of paper.
+ */
+void fl_colourise_body(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
+                       const uint8_t *coverage, int width, FlBox box, uint8_t *body);
 
 /** What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.
  */

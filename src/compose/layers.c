@@ -66,7 +66,8 @@ static void resolve_rows(const FlLayer *layer, Above *above)
                 (uint8_t)stored_alpha(paint, above->seen[j], layer->coverage[i], above->paint[i]);
             if (knocks) {
                 above->paint[i] += (uint16_t)((65535 - above->paint[i]) * *alpha / 255);
-                above->area[i] += (uint8_t)scaled(above->seen[j], layer->alpha);
+                const int body = layer->body ? layer->body[j] : 255;
+                above->area[i] += (uint8_t)scaled(above->seen[j], scaled(body, layer->alpha));
             }
         }
 }

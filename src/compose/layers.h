@@ -13,8 +13,10 @@ typedef struct FlLayer {
     FlBox box;               // where it may be seen
     const uint8_t *coverage; // a whole frame's width * height, 0..255, borrowed: the whole shape,
                              // times the opacity of its fill where that varies
-    uint8_t *rgba;           // box.width * box.height * 4 straight RGBA; owned by the caller
-    uint8_t alpha;           // opacity of the layer, 255 opaque
+    const uint8_t *body; // box.width * box.height of fl_colourise_body(), borrowed: it knocks out
+                         // where its paint has body only; NULL: wherever its shape is
+    uint8_t *rgba;       // box.width * box.height * 4 straight RGBA; owned by the caller
+    uint8_t alpha;       // opacity of the layer, 255 opaque
     FlStacking stacking;
 } FlLayer;
 
