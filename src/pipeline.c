@@ -1,22 +1,235 @@
 /* The whole render, stage by stage. */
+#include "base/alloc.h"
+#include "base/first_error.h"
 #include "config.h"
-#include "params/config.h"
+#include "output/name.h"
+#include "output/png.h"
+#include "render/dump.h"
+#include "render/frame.h"
+#include "render/stats.h"
 #include <fluidy/fluidy.h>
+#include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 const char *fl_version(void)
 {
     return FL_VERSION;
 }
 
+/* A render in hand. */
+typedef struct Job {
+    FlPlan *plan;
+    FlBackground background;
+    FlSink *sink;
+    FlStats stats;
+    FlGuides *scratch; // one per thread that paints
+    int n_scratch;
+    int64_t start;    // microseconds, as g_get_monotonic_time()
+    int64_t painting; // the same, of the first painted frame
+} Job;
+
+static double seconds_since(int64_t start)
+{
+    return (double)(g_get_monotonic_time() - start) * 1e-6;
+}
+
+static bool tell(const Job *job, const char *stage, int done, double frame_s, GError **error)
+{
+    const FlRenderOptions *o = &job->plan->options;
+    const int total = fl_film_frames(job->plan->film);
+    FlProgress progress = {.stage = stage,
+                           .region_index = -1,
+                           .n_regions = job->plan->n_painters,
+                           .frame = fl_film_number(job->plan->film, MAX(done - 1, 0)),
+                           .done = done,
+                           .total = total,
+                           .share = (double)done / total,
+                           .elapsed_s = seconds_since(job->start),
+                           .frame_s = frame_s,
+                           .remaining_s = -1};
+    if (done > 0)
+        progress.remaining_s = seconds_since(job->painting) / done * (total - done);
+    if (!o->progress || o->progress(&progress, o->data))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames", done,
+                total);
+    return false;
+}
+
+/* A region as large as a thread's share of the film is painted by all threads together; the others
+ * side by side, a thread each. */
+static bool is_large(const FlPlan *plan, const FlPainter *painter, int n_threads)
+{
+    double total = 0;
+    for (int p = 0; p < plan->n_painters; p++)
+        total += plan->painters[p].area_px;
+    return painter->area_px * n_threads > total;
+}
+
+static bool paint_one(Job *job, int p, int frame, FlGuides *scratch, GError **error)
+{
+    FlPainter *painter = &job->plan->painters[p];
+    if (!fl_painter_frame(painter, frame, scratch, error))
+        return false;
+    const char *dump = job->plan->options.dump;
+    return !dump || frame % painter->treatment.hold != 0 ||
+           fl_dump_frame(dump, painter, scratch, fl_film_number(job->plan->film, frame), error);
+}
+
+static bool paint(Job *job, int frame, GError **error)
+{
+    const FlPlan *plan = job->plan;
+    for (int p = 0; p < plan->n_painters; p++)
+        if (is_large(plan, &plan->painters[p], job->n_scratch) &&
+            !paint_one(job, p, frame, &job->scratch[0], error))
+            return false;
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1) num_threads(job->n_scratch)
+    for (int p = 0; p < plan->n_painters; p++) {
+#ifdef _OPENMP
+        const int thread = omp_get_thread_num();
+#else
+        const int thread = 0;
+#endif
+        GError *mine = NULL;
+        if (is_large(plan, &plan->painters[p], job->n_scratch) ||
+            paint_one(job, p, frame, &job->scratch[thread], &mine))
+            continue;
+        fl_keep_first_error(&first, mine);
+    }
+    if (first)
+        g_propagate_error(error, first);
+    return first == NULL;
+}
+
+/* Layers as files of the whole frame's size, so that any program can stack them. */
+static bool write_layers(const Job *job, const FlComposite *composite, int frame, GError **error)
+{
+    const FlPlan *plan = job->plan;
+    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    for (int k = 0; k < composite->n_layers; k++) {
+        const FlLayer *layer = &composite->layers[k];
+        g_autofree uint8_t *rgba = fl_alloc(4 * (size_t)width * height, 1, "a layer", error);
+        g_autofree char *path =
+            rgba ? fl_output_name(plan->options.layers, fl_film_number(plan->film, frame),
+                                  composite->names[k], error)
+                 : NULL;
+        if (!path)
+            return false;
+        for (int y = 0; y < layer->box.height; y++)
+            memcpy(rgba + 4 * ((size_t)(layer->box.y + y) * width + layer->box.x),
+                   layer->rgba + 4 * (size_t)y * layer->box.width, 4 * (size_t)layer->box.width);
+        const FlPng png = {.width = width, .height = height, .rgba = rgba};
+        const bool overwrite = plan->options.overwrite == FL_OVERWRITE_YES;
+        if (!fl_png_save(&png, path, overwrite, error))
+            return false;
+    }
+    return true;
+}
+
+static bool write_frame(Job *job, const FlComposite *composite, int frame, GError **error)
+{
+    g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, MAX(composite->n_layers, 1));
+    for (int k = 0; k < composite->n_layers; k++) {
+        const FlLayer *from = &composite->layers[k];
+        layers[k] = (FlSinkLayer){composite->names[k], from->box.x,      from->box.y,
+                                  from->box.width,     from->box.height, from->rgba};
+    }
+    const FlSinkFrame out = {.number = fl_film_number(job->plan->film, frame),
+                             .rgba = composite->rgba,
+                             .rgba16 = composite->rgba16,
+                             .layers = layers,
+                             .n_layers = composite->n_layers};
+    return (!job->plan->options.layers || write_layers(job, composite, frame, error)) &&
+           (fl_plan_keeps(job->plan, frame) || fl_sink_frame(job->sink, &out, error));
+}
+
+static bool render_frame(Job *job, int frame, GError **error)
+{
+    const int64_t start = g_get_monotonic_time();
+    if (!paint(job, frame, error))
+        return false;
+    const int64_t painted = g_get_monotonic_time();
+    g_auto(FlComposite) composite = {0};
+    if (!fl_composite_init(&composite, job->plan, &job->background, frame,
+                           job->sink->format->takes_16, error))
+        return false;
+    const int64_t composed = g_get_monotonic_time();
+    if (!write_frame(job, &composite, frame, error))
+        return false;
+    fl_stats_frame(&job->stats, job->plan, frame, (double)(painted - start) * 1e-6,
+                   (double)(composed - painted) * 1e-6, seconds_since(composed));
+    return tell(job, "paint", frame + 1, seconds_since(start), error);
+}
+
+static bool open_sink(Job *job, GError **error)
+{
+    const FlPlan *plan = job->plan;
+    const FlSinkFormat *format = fl_sink_format(NULL, plan->output, error);
+    const FlSinkParams params = {.path = plan->output,
+                                 .width = fl_film_width(plan->film),
+                                 .height = fl_film_height(plan->film),
+                                 .fps = plan->options.fps > 0 ? plan->options.fps : 24,
+                                 .opaque = !job->background.none,
+                                 .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
+    job->sink = format ? fl_sink_open(format, &params, error) : NULL;
+    return job->sink != NULL;
+}
+
+static bool make_scratch(Job *job, GError **error)
+{
+#ifdef _OPENMP
+    job->n_scratch = CLAMP(omp_get_max_threads(), 1, MAX(job->plan->n_painters, 1));
+#else
+    job->n_scratch = 1;
+#endif
+    job->scratch = g_new0(FlGuides, job->n_scratch);
+    for (int k = 0; k < job->n_scratch; k++)
+        if (!fl_guides_init(&job->scratch[k], fl_film_width(job->plan->film),
+                            fl_film_height(job->plan->film), error))
+            return false;
+    return true;
+}
+
+static bool run(Job *job, GError **error)
+{
+    if (!fl_background_init(&job->background, job->plan, error) || !open_sink(job, error) ||
+        !fl_stats_init(&job->stats, job->plan, error) || !tell(job, "guides", 0, 0, error) ||
+        !fl_plan_prepare(job->plan, error) || !make_scratch(job, error))
+        return false;
+    job->painting = g_get_monotonic_time();
+    for (int f = 0; f < fl_film_frames(job->plan->film); f++)
+        if (!render_frame(job, f, error))
+            return false;
+    return fl_sink_finish(job->sink, error) && fl_stats_finish(&job->stats, error);
+}
+
+static void clear(Job *job)
+{
+    for (int k = 0; k < job->n_scratch; k++)
+        fl_guides_clear(&job->scratch[k]);
+    g_free(job->scratch);
+    fl_sink_free(job->sink);
+    fl_stats_clear(&job->stats);
+    fl_plan_free(job->plan);
+}
+
 bool fl_render(const FlRenderOptions *options, GError **error)
 {
-    g_autoptr(FlConfig) config = fl_config_load(options->config, error);
-    if (!config)
-        return false;
-    g_auto(FlTreatment) treatment = {0};
-    if (!fl_config_treatment(config, -1, "", options, &treatment, error))
-        return false;
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: this version cannot paint yet",
-                options->inputs[0]);
-    return false;
+    Job job = {.start = g_get_monotonic_time()};
+#ifdef _OPENMP
+    if (options->threads > 0)
+        omp_set_num_threads(options->threads);
+#endif
+    job.plan = fl_plan_new(options, error);
+    const bool done = job.plan && run(&job, error);
+    if (done && options->note) {
+        g_autofree char *line = g_strdup_printf("painted %d frames: %s",
+                                                fl_film_frames(job.plan->film), job.plan->output);
+        options->note(line, options->data);
+    }
+    clear(&job);
+    return done;
 }

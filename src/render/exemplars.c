@@ -1,0 +1,82 @@
+#include "render/exemplars.h"
+
+#include "style/adapt.h"
+#include <string.h>
+
+struct FlExemplars {
+    GPtrArray *boxes; // of FlPaintbox
+};
+
+static void paintbox_free(FlPaintbox *box)
+{
+    g_free(box->path);
+    fl_exemplar_free(box->exemplar);
+    fl_ink_free(box->ink);
+    g_free(box);
+}
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPaintbox, paintbox_free)
+
+FlExemplars *fl_exemplars_new(void)
+{
+    FlExemplars *exemplars = g_new0(FlExemplars, 1);
+    exemplars->boxes = g_ptr_array_new_with_free_func((GDestroyNotify)paintbox_free);
+    return exemplars;
+}
+
+void fl_exemplars_free(FlExemplars *exemplars)
+{
+    if (!exemplars)
+        return;
+    g_ptr_array_unref(exemplars->boxes);
+    g_free(exemplars);
+}
+
+static bool same_params(const FlParams *a, const FlParams *b)
+{
+    for (int i = 0; i < fl_param_count(); i++) {
+        g_autofree char *x = fl_params_get(a, fl_param_info(i)->name);
+        g_autofree char *y = fl_params_get(b, fl_param_info(i)->name);
+        if (!g_str_equal(x, y))
+            return false;
+    }
+    return true;
+}
+
+static FlPaintbox *load(const char *path, const FlTreatment *treatment, GError **error)
+{
+    const FlParams *params = &treatment->params;
+    const FlStyleUse use = {params->style_start, params->style_frames, params->style_step,
+                            params->style_scale, treatment->reverse};
+    g_autoptr(FlStyle) whole = fl_style_load(path, error);
+    g_autoptr(FlStyle) style = whole ? fl_style_adapt(whole, &use, error) : NULL;
+    if (!style)
+        return NULL;
+    g_autoptr(FlPaintbox) box = g_new0(FlPaintbox, 1);
+    *box = (FlPaintbox){.path = g_strdup(path),
+                        .params = *params,
+                        .reverse = treatment->reverse,
+                        .medium = style->medium};
+    memcpy(box->paper, style->paper, sizeof box->paper);
+    if (!(box->ink = fl_ink_of_style(style, error)) ||
+        !(box->exemplar = fl_exemplar_new(style, params, error)))
+        return NULL;
+    return g_steal_pointer(&box);
+}
+
+const FlPaintbox *fl_exemplars_get(FlExemplars *exemplars, const FlTreatment *treatment,
+                                   GError **error)
+{
+    g_autofree char *path = fl_style_find(treatment->style, error);
+    if (!path)
+        return NULL;
+    for (guint i = 0; i < exemplars->boxes->len; i++) {
+        const FlPaintbox *box = exemplars->boxes->pdata[i];
+        if (g_str_equal(box->path, path) && box->reverse == treatment->reverse &&
+            same_params(&box->params, &treatment->params))
+            return box;
+    }
+    FlPaintbox *box = load(path, treatment, error);
+    if (box)
+        g_ptr_array_add(exemplars->boxes, box);
+    return box;
+}

@@ -1,0 +1,182 @@
+#include "render/frame.h"
+
+#include "base/alloc.h"
+#include "compose/colourise.h"
+#include "output/name.h"
+#include "params/text.h"
+#include "style/picture.h"
+#include <string.h>
+
+#define BLEED_PX 8 // how far colours reach into transparency, for whoever scales the frames
+
+bool fl_background_init(FlBackground *background, const FlPlan *plan, GError **error)
+{
+    const char *said = plan->options.background;
+    *background = (FlBackground){0};
+    memcpy(background->flat, plan->paper, 3);
+    memcpy(background->paper, plan->paper, 3);
+    if (!said)
+        return true;
+    if (g_str_equal(said, "none")) {
+        background->none = true;
+    } else if (fl_text_colour(said, background->flat)) {
+        memcpy(background->paper, background->flat, 3);
+    } else if (g_str_has_suffix(said, ".png") || g_str_has_suffix(said, ".PNG")) {
+        background->pattern = said;
+    } else {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "background '%s': expected #rrggbb, none, a PNG file or a pattern of them",
+                    said);
+        return false;
+    }
+    return true;
+}
+
+/* The background's picture of a frame, in the frame's size. */
+static FlPicture *backdrop_picture(const FlBackground *background, const FlPlan *plan, int frame,
+                                   GError **error)
+{
+    const int number = fl_film_number(plan->film, frame);
+    g_autofree char *file = fl_output_is_pattern(background->pattern)
+                                ? fl_output_name(background->pattern, number, NULL, error)
+                                : g_strdup(background->pattern);
+    g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
+    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    if (picture && (picture->width != width || picture->height != height))
+        return fl_picture_resize(picture, width, height, error);
+    return g_steal_pointer(&picture);
+}
+
+static FlColouring colouring_of(const FlPlan *plan, const FlBackground *background,
+                                const FlPainter *painter, const FlRun *run, int tone)
+{
+    const FlTreatment *t = &painter->treatment;
+    FlColouring how = {.tint = t->tint,
+                       .picture = t->has_colour ? NULL : run->picture,
+                       .medium = painter->box->medium,
+                       .linear = plan->options.blend == FL_BLEND_LINEAR,
+                       .tone = t->tint == FL_TINT_KEEP ? FL_TONE_ONE : tone};
+    memcpy(how.fill, t->has_colour ? t->colour : run->rgb, 3);
+    memcpy(how.paper, background->paper, 3);
+    return how;
+}
+
+/* The tone of each painter that is seen in the frame. */
+static bool find_tones(const FlPlan *plan, const FlRuns *runs, int *tones, GError **error)
+{
+    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    g_autofree uint8_t *mask = fl_alloc((size_t)width * height, 1, "a mask", error);
+    if (!mask)
+        return false;
+    for (int p = 0; p < plan->n_painters; p++) {
+        const FlPainter *painter = &plan->painters[p];
+        fl_runs_mask(runs, painter->region, width, height, mask);
+        tones[p] = fl_ink_tone(painter->box->ink, painter->painted, mask, width, height);
+    }
+    return true;
+}
+
+static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
+                       const FlRun *run, const int *tones, GError **error)
+{
+    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    const int p = plan->painter_of[run->region];
+    const FlPainter *painter = p >= 0 ? &plan->painters[p] : NULL;
+    *layer = (FlLayer){.box = fl_box_of(run->coverage, width, height),
+                       .coverage = run->coverage,
+                       .alpha = run->alpha,
+                       .stacking = painter ? painter->treatment.stacking : FL_STACKING_KNOCKOUT};
+    layer->rgba = fl_alloc(4 * fl_box_pixels(layer->box), 1, "a layer", error);
+    if (!layer->rgba)
+        return false;
+    if (painter) {
+        const FlColouring how = colouring_of(plan, background, painter, run, tones[p]);
+        fl_colourise(painter->box->ink, &how, painter->painted, run->coverage, width, layer->box,
+                     layer->rgba);
+    } else {
+        fl_colourise_plain(run->picture, run->rgb, run->coverage, width, layer->box, layer->rgba);
+    }
+    return true;
+}
+
+/* The region's name, with a number from its second layer on. */
+static char *layer_name(const FlPlan *plan, const FlRuns *runs, int run)
+{
+    int earlier = 0;
+    for (int r = 0; r < run; r++)
+        earlier += runs->run[r].region == runs->run[run].region;
+    const char *name = fl_film_region(plan->film, runs->run[run].region)->name;
+    return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
+}
+
+static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
+                        GError **error)
+{
+    g_autofree int *tones = g_new0(int, MAX(plan->n_painters, 1));
+    if (!find_tones(plan, composite->runs, tones, error))
+        return false;
+    composite->layers = g_new0(FlLayer, MAX(composite->runs->n, 1));
+    composite->names = g_new0(char *, composite->runs->n + 1);
+    for (int r = 0; r < composite->runs->n; r++) {
+        const FlRun *run = &composite->runs->run[r];
+        if (plan->painter_of[run->region] == -2)
+            continue;
+        composite->names[composite->n_layers] = layer_name(plan, composite->runs, r);
+        if (!fill_layer(&composite->layers[composite->n_layers++], plan, background, run, tones,
+                        error))
+            return false;
+    }
+    FlStackParams params = {.linear = plan->options.blend == FL_BLEND_LINEAR,
+                            .gap_px = (float)MAX(plan->options.gap, 0),
+                            .feather_px = (float)MAX(plan->options.feather, 0)};
+    memcpy(params.paper, background->paper, 3);
+    return fl_layers_resolve(composite->layers, composite->n_layers, fl_film_width(plan->film),
+                             fl_film_height(plan->film), &params, error);
+}
+
+static bool compose(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
+                    int frame, bool with_16, GError **error)
+{
+    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    const size_t values = 4 * (size_t)width * height;
+    FlBackdrop backdrop = {.flat = {background->flat[0], background->flat[1], background->flat[2],
+                                    background->none ? 0 : 255}};
+    g_autoptr(FlPicture) picture =
+        background->pattern ? backdrop_picture(background, plan, frame, error) : NULL;
+    if (background->pattern && !picture)
+        return false;
+    backdrop.rgba = picture ? picture->rgba : NULL;
+    if (!(composite->rgba = fl_alloc(values, 1, "a frame", error)) ||
+        (with_16 && !(composite->rgba16 = fl_alloc(values, 2, "a frame", error))))
+        return false;
+    const bool linear = plan->options.blend == FL_BLEND_LINEAR;
+    fl_layers_compose(composite->layers, composite->n_layers, &backdrop, width, height, linear,
+                      composite->rgba);
+    if (with_16)
+        fl_layers_compose16(composite->layers, composite->n_layers, &backdrop, width, height,
+                            linear, composite->rgba16);
+    return !background->none || fl_layers_bleed(composite->rgba, width, height, BLEED_PX, error);
+}
+
+bool fl_composite_init(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
+                       int frame, bool with_16, GError **error)
+{
+    *composite = (FlComposite){0};
+    composite->runs = fl_film_runs(plan->film, frame - frame % plan->hold, error);
+    return composite->runs && make_layers(composite, plan, background, error) &&
+           compose(composite, plan, background, frame, with_16, error);
+}
+
+void fl_composite_clear(FlComposite *composite)
+{
+    for (int k = 0; k < composite->n_layers; k++) {
+        free(composite->layers[k].rgba);
+        g_free(composite->names[k]);
+    }
+    g_free(composite->layers);
+    g_free(composite->names);
+    fl_runs_free(composite->runs);
+    free(composite->rgba);
+    free(composite->rgba16);
+    *composite = (FlComposite){0};
+}

@@ -1,0 +1,39 @@
+/* The painter of one region: its guides, its synthesis, and the last frame it painted. */
+#ifndef FLUIDY_RENDER_PAINTER_H
+#define FLUIDY_RENDER_PAINTER_H
+
+#include "regions/film.h"
+#include "render/exemplars.h"
+#include "render/masks.h"
+#include "synth/synth.h"
+
+/** One region that is painted. */
+typedef struct FlPainter {
+    int region;
+    const char *name; // borrowed
+    double area_px;   // mean, for sharing out the work
+    FlTreatment treatment;
+    const FlPaintbox *box; // borrowed
+    const FlMasks *masks;  // borrowed
+    const FlFilm *film;    // borrowed
+    int width, height;
+    char *flow_pattern; // of flow files; NULL: the flow is made from the masks
+    FlGuideSequence *guides;
+    FlSynth *synth;
+    uint8_t *painted; // width * height * 3 sRGB
+    FlFrameStats stats;
+    FlSynthView view;
+    double seconds; // that the last frame took
+} FlPainter;
+
+/** Makes the guides of the whole film. The random numbers depend on seed and the region's name. */
+bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error);
+void fl_painter_clear(FlPainter *painter);
+
+/**
+ * Paints the next frame of the film; they come in order. A frame that is held keeps the last
+ * picture. `guides` is scratch of the film's size, which then holds the frame's guides.
+ */
+bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error);
+
+#endif

@@ -1,0 +1,318 @@
+#include "render/plan.h"
+
+#include "base/alloc.h"
+#include "base/first_error.h"
+#include "output/name.h"
+#include "output/sink.h"
+#include <string.h>
+
+static void report_warnings(const FlPlan *plan)
+{
+    for (int i = 0; plan->options.warning && i < fl_warnings_count(plan->warnings); i++) {
+        g_autofree char *line = fl_warning_line(fl_warnings_get(plan->warnings, i));
+        plan->options.warning(line, plan->options.data);
+    }
+}
+
+static bool strict_enough(const FlPlan *plan, GError **error)
+{
+    const int n = fl_warnings_count(plan->warnings);
+    if (!plan->options.strict || n == 0)
+        return true;
+    g_autofree char *line = fl_warning_line(fl_warnings_get(plan->warnings, 0));
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under --strict)", line, n,
+                n == 1 ? "" : "s");
+    return false;
+}
+
+static void rules_of(const FlConfig *config, FlRegionRule *rules)
+{
+    for (int i = 0; i < config->n_rules; i++) {
+        const FlRule *from = &config->rules[i];
+        g_auto(FlTreatment) said = {0};
+        fl_treatment_init(&said);
+        fl_wishes_apply(&from->wishes, &said);
+        rules[i] = (FlRegionRule){
+            .name = from->name,
+            .match_fill = (const char *const *)from->match_fill,
+            .match_stroke = (const char *const *)from->match_stroke,
+            .match_id = (const char *const *)from->match_id,
+            .match_class = (const char *const *)from->match_class,
+            .match_label = (const char *const *)from->match_label,
+            .match_layer = (const char *const *)from->match_layer,
+            .tolerance = from->match_tolerance,
+            .passthrough = said.passthrough,
+            .by_name = from->by_name,
+        };
+        if (said.merge_with) // the wishes own the string for as long as the config lives
+            for (int k = 0; k < from->wishes.n; k++)
+                if (g_str_equal(from->wishes.wish[k].key, "merge-with"))
+                    rules[i].merge_with = from->wishes.wish[k].value;
+    }
+}
+
+static bool open_film(FlPlan *plan, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    g_auto(FlTreatment) general = {0};
+    if (!fl_config_treatment(plan->config, -1, "", o, &general, error))
+        return false;
+    plan->hold = general.hold;
+    g_autofree FlRegionRule *rules = g_new0(FlRegionRule, MAX(plan->config->n_rules, 1));
+    rules_of(plan->config, rules);
+    FlFilmOptions film = {.inputs = o->inputs,
+                          .n_inputs = (int)g_strv_length((char **)o->inputs),
+                          .range = o->frames,
+                          .missing = o->missing,
+                          .dpi = o->dpi,
+                          .width = o->width,
+                          .height = o->height,
+                          .scale = o->scale,
+                          .strokes = o->stroke,
+                          .key = o->key,
+                          .rules = rules,
+                          .n_rules = plan->config->n_rules};
+    if (o->canvas && !fl_canvas_parse(o->canvas, &film.canvas, error))
+        return false;
+    plan->film = fl_film_open(&film, plan->warnings, error);
+    if (!plan->film)
+        return false;
+    report_warnings(plan);
+    return strict_enough(plan, error);
+}
+
+static void note(const FlPlan *plan, const char *format, ...) G_GNUC_PRINTF(2, 3);
+static void note(const FlPlan *plan, const char *format, ...)
+{
+    if (!plan->options.note)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *line = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    plan->options.note(line, plan->options.data);
+}
+
+static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
+{
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (int r = 0; r < fl_film_regions(plan->film); r++)
+        g_ptr_array_add(names, fl_film_region(plan->film, r)->name);
+    g_ptr_array_add(names, NULL);
+    g_autofree char *list = g_strjoinv(", ", (char **)names->pdata);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no region '%s'; there are: %s", name,
+                list);
+    return false;
+}
+
+static bool check_region_names(const FlPlan *plan, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    for (size_t i = 0; i <= o->n_settings; i++) {
+        const char *name = i < o->n_settings ? o->settings[i].region : o->only_region;
+        bool found = name == NULL;
+        for (int r = 0; !found && r < fl_film_regions(plan->film); r++)
+            found = g_str_equal(fl_film_region(plan->film, r)->name, name);
+        if (!found)
+            return no_such_region(plan, name, error);
+    }
+    return true;
+}
+
+/* Every flow file must say which frame it is for; with more regions than one, which region, too. */
+static char *flow_pattern(const FlPlan *plan)
+{
+    return g_strdup(plan->options.flow);
+}
+
+static bool add_painter(FlPlan *plan, int region, GError **error)
+{
+    const FlRegion *r = fl_film_region(plan->film, region);
+    FlPainter *painter = &plan->painters[plan->n_painters];
+    if (!fl_config_treatment(plan->config, r->rule, r->name, &plan->options, &painter->treatment,
+                             error))
+        return false;
+    plan->painter_of[region] = -1;
+    if (!r->paintable || painter->treatment.passthrough == FL_PASSTHROUGH_YES) {
+        fl_treatment_clear(&painter->treatment);
+        return true;
+    }
+    plan->n_painters++; // from here on the plan clears it
+    if (!painter->treatment.style) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "no style for region '%s': expected --style NAME, or style = NAME in a config",
+                    r->name);
+        return false;
+    }
+    plan->painter_of[region] = plan->n_painters - 1;
+    painter->region = region, painter->name = r->name, painter->area_px = r->area_px;
+    painter->masks = plan->masks, painter->film = plan->film;
+    painter->width = fl_film_width(plan->film), painter->height = fl_film_height(plan->film);
+    painter->flow_pattern = flow_pattern(plan);
+    painter->box = fl_exemplars_get(plan->exemplars, &painter->treatment, error);
+    if (painter->box && plan->options.verbose)
+        note(plan, "region %s: style %s", r->name, painter->box->path);
+    return painter->box != NULL;
+}
+
+static bool add_painters(FlPlan *plan, GError **error)
+{
+    const int n = fl_film_regions(plan->film);
+    plan->painters = g_new0(FlPainter, MAX(n, 1));
+    plan->painter_of = g_new0(int, MAX(n, 1));
+    for (int r = 0; r < n; r++) {
+        const char *only = plan->options.only_region;
+        if (only && !g_str_equal(only, fl_film_region(plan->film, r)->name))
+            plan->painter_of[r] = -2;
+        else if (!add_painter(plan, r, error))
+            return false;
+    }
+    memset(plan->paper, 255, sizeof plan->paper);
+    if (plan->n_painters > 0)
+        memcpy(plan->paper, plan->painters[0].box->paper, sizeof plan->paper);
+    return true;
+}
+
+static bool name_output(FlPlan *plan, GError **error)
+{
+    const char *said = plan->options.output;
+    plan->output =
+        said ? g_strdup(said) : g_strdup_printf("fluidy/%s_%%04d.png", fl_film_name(plan->film));
+    const FlSinkFormat *format = fl_sink_format(NULL, plan->output, error);
+    if (!format)
+        return false;
+    if (!format->film && !fl_output_is_pattern(plan->output) && fl_film_frames(plan->film) > 1) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: one file for %d frames; expected a number in the name, such as %%04d",
+                    plan->output, fl_film_frames(plan->film));
+        return false;
+    }
+    return true;
+}
+
+static char *frame_file(const FlPlan *plan, int frame, GError **error)
+{
+    const FlSinkParams params = {.path = plan->output};
+    return fl_sink_file(&params, fl_film_number(plan->film, frame), error);
+}
+
+static bool outputs_are_free(const FlPlan *plan, GError **error)
+{
+    if (plan->options.overwrite != FL_OVERWRITE_REFUSE)
+        return true;
+    for (int f = 0; f < fl_film_frames(plan->film); f++) {
+        g_autofree char *file = frame_file(plan, f, error);
+        if (!file)
+            return false;
+        if (g_file_test(file, G_FILE_TEST_EXISTS)) {
+            g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
+                        "%s: exists already; -y overwrites, --no-clobber keeps what is there",
+                        file);
+            return false;
+        }
+    }
+    return true;
+}
+
+bool fl_plan_keeps(const FlPlan *plan, int frame)
+{
+    g_autofree char *file = frame_file(plan, frame, NULL);
+    return plan->options.overwrite == FL_OVERWRITE_KEEP && file &&
+           g_file_test(file, G_FILE_TEST_EXISTS);
+}
+
+static bool make_plan(FlPlan *plan, GError **error)
+{
+    if (!plan->options.inputs || !plan->options.inputs[0]) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
+        return false;
+    }
+    if (!open_film(plan, error) || !check_region_names(plan, error))
+        return false;
+    plan->masks = fl_masks_new(fl_film_regions(plan->film), fl_film_frames(plan->film),
+                               fl_film_width(plan->film), fl_film_height(plan->film), error);
+    return plan->masks && add_painters(plan, error) && name_output(plan, error) &&
+           outputs_are_free(plan, error);
+}
+
+FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
+{
+    g_autoptr(FlPlan) plan = g_new0(FlPlan, 1);
+    plan->options = *options;
+    plan->warnings = fl_warnings_new();
+    plan->exemplars = fl_exemplars_new();
+    plan->config = fl_config_load(options->config, error);
+    if (!plan->config)
+        return NULL;
+    fl_config_complete(plan->config, &plan->options);
+    return make_plan(plan, error) ? g_steal_pointer(&plan) : NULL;
+}
+
+void fl_plan_free(FlPlan *plan)
+{
+    if (!plan)
+        return;
+    for (int p = 0; p < plan->n_painters; p++)
+        fl_painter_clear(&plan->painters[p]);
+    g_free(plan->painters);
+    g_free(plan->painter_of);
+    g_free(plan->output);
+    fl_exemplars_free(plan->exemplars);
+    fl_masks_free(plan->masks);
+    fl_film_free(plan->film);
+    fl_warnings_free(plan->warnings);
+    fl_config_free(plan->config);
+    g_free(plan);
+}
+
+/* One frame's masks of all painted regions. */
+static bool keep_masks(FlPlan *plan, int frame, GError **error)
+{
+    g_autoptr(FlRuns) runs = fl_film_runs(plan->film, frame, error);
+    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    g_autofree uint8_t *mask = runs ? fl_alloc((size_t)width * height, 1, "a mask", error) : NULL;
+    if (!mask)
+        return false;
+    for (int p = 0; p < plan->n_painters; p++) {
+        const int region = plan->painters[p].region;
+        bool drawn = false;
+        for (int r = 0; r < runs->n; r++)
+            drawn = drawn || runs->run[r].region == region;
+        if (!drawn)
+            continue;
+        fl_runs_mask(runs, region, width, height, mask);
+        if (!fl_masks_put(plan->masks, region, frame, mask, error))
+            return false;
+    }
+    return true;
+}
+
+static bool make_masks(FlPlan *plan, GError **error)
+{
+    const int n = fl_film_frames(plan->film);
+    GError *first = NULL;
+    int failed = 0;
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
+    for (int f = 0; f < n; f++) {
+        GError *mine = NULL;
+        if (failed == 0 && !keep_masks(plan, f, &mine))
+            failed++;
+        fl_keep_first_error(&first, mine);
+    }
+    if (first)
+        g_propagate_error(error, first);
+    return failed == 0;
+}
+
+bool fl_plan_prepare(FlPlan *plan, GError **error)
+{
+    if (!make_masks(plan, error))
+        return false;
+    int failed = 0;
+    // One after the other: the guides of a region use all threads themselves, and their scratch is
+    // as large as a frame.
+    for (int p = 0; p < plan->n_painters && failed == 0; p++)
+        failed += !fl_painter_init(&plan->painters[p], plan->options.seed, error);
+    return failed == 0;
+}

@@ -1,0 +1,42 @@
+/* The plan of a render: what is painted with what, decided before the first stroke. */
+#ifndef FLUIDY_RENDER_PLAN_H
+#define FLUIDY_RENDER_PLAN_H
+
+#include "params/config.h"
+#include "render/painter.h"
+
+typedef struct FlPlan {
+    FlRenderOptions options; // with what the config says filled in
+    FlConfig *config;
+    FlWarnings *warnings;
+    FlFilm *film;
+    FlMasks *masks;
+    FlExemplars *exemplars;
+    int n_painters;
+    FlPainter *painters;
+    int *painter_of; // by region; -1: drawn as it is, -2: left out
+    int hold;        // the drawing itself is shown on every hold-th frame
+    char *output;    // pattern or file
+    uint8_t paper[3];
+} FlPlan;
+
+/**
+ * Reads config and drawing and decides how every region is treated; options is what the caller
+ * said. Nothing is painted and no output is touched, but an output that must not be overwritten is
+ * an error now.
+ *
+ * Returns: to be freed with fl_plan_free(); NULL with an error of FL_ERROR.
+ */
+FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error);
+
+void fl_plan_free(FlPlan *plan); // NULL is fine
+
+/** Rasterises every frame's masks and makes the guides of every painted region. */
+bool fl_plan_prepare(FlPlan *plan, GError **error);
+
+/** Whether a frame's picture is there and to be kept. */
+bool fl_plan_keeps(const FlPlan *plan, int frame);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
+
+#endif

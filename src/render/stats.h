@@ -1,0 +1,26 @@
+/* Figures of a render as JSON lines: how quality and speed are argued. */
+#ifndef FLUIDY_RENDER_STATS_H
+#define FLUIDY_RENDER_STATS_H
+
+#include "output/atomic.h"
+#include "render/plan.h"
+
+/** The file of --stats; it appears under its name when it is whole. */
+typedef struct FlStats {
+    FlAtomic file;
+    bool open;
+} FlStats;
+
+/** Begins the file if the plan wants one. */
+bool fl_stats_init(FlStats *stats, const FlPlan *plan, GError **error);
+
+/** A line for each region and level that was painted in the frame, then one for the frame. */
+void fl_stats_frame(FlStats *stats, const FlPlan *plan, int frame, double paint_s, double compose_s,
+                    double write_s);
+
+bool fl_stats_finish(FlStats *stats, GError **error);
+void fl_stats_clear(FlStats *stats);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlStats, fl_stats_clear)
+
+#endif

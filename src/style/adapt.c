@@ -1,0 +1,141 @@
+#include "style/adapt.h"
+
+#include "base/alloc.h"
+#include <math.h>
+#include <string.h>
+
+#define SMALLEST 8 // pixels of a side that is worth searching
+
+/* Resamples one channel of interleaved bytes; reading and writing pixels are `channels` apart. */
+typedef struct Resampling {
+    int from_width, from_height, to_width, to_height;
+    int channels;
+} Resampling;
+
+/* Area average where the picture shrinks, linear interpolation where it grows: in both cases a tent
+ * as wide as the larger pixel. */
+static void resample_line(const float *from, int from_n, size_t from_step, float *to, int to_n,
+                          size_t to_step)
+{
+    const float ratio = (float)from_n / (float)to_n, radius = ratio > 1 ? ratio : 1;
+    for (int i = 0; i < to_n; i++) {
+        const float centre = ((float)i + 0.5f) * ratio - 0.5f;
+        float sum = 0, weight = 0;
+        for (int k = (int)floorf(centre - radius) + 1; (float)k < centre + radius; k++) {
+            const float w = radius - fabsf((float)k - centre);
+            if (w <= 0)
+                continue;
+            sum += w * from[CLAMP(k, 0, from_n - 1) * from_step];
+            weight += w;
+        }
+        to[i * to_step] = sum / weight;
+    }
+}
+
+static void resample(const float *from, const Resampling *r, float *between, float *to)
+{
+    const size_t c = (size_t)r->channels;
+    for (int y = 0; y < r->from_height; y++)
+        for (size_t k = 0; k < c; k++)
+            resample_line(from + (size_t)y * r->from_width * c + k, r->from_width, c,
+                          between + (size_t)y * r->to_width * c + k, r->to_width, c);
+    const size_t row = (size_t)r->to_width * c;
+    for (size_t k = 0; k < row; k++)
+        resample_line(between + k, r->from_height, row, to + k, r->to_height, row);
+}
+
+/* The planes that one frame is resampled through. */
+typedef struct Buffers {
+    float *from, *between, *to;
+} Buffers;
+
+static void resample_bytes(const uint8_t *from, const Resampling *r, const Buffers *b, uint8_t *to)
+{
+    const size_t values = (size_t)r->from_width * r->from_height * r->channels;
+    for (size_t p = 0; p < values; p++)
+        b->from[p] = from[p];
+    resample(b->from, r, b->between, b->to);
+    const size_t out = (size_t)r->to_width * r->to_height * r->channels;
+    for (size_t p = 0; p < out; p++)
+        to[p] = (uint8_t)(CLAMP(b->to[p], 0, 255) + 0.5f);
+}
+
+static void resample_flow(const float *from, const Resampling *r, const Buffers *b, float factor,
+                          float *to)
+{
+    resample(from, r, b->between, to);
+    for (size_t p = 0; p < (size_t)r->to_width * r->to_height * 2; p++)
+        to[p] *= factor;
+}
+
+static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
+{
+    const size_t from = (size_t)style->width * style->height;
+    const size_t to = (size_t)out->width * out->height, most = MAX(from, to);
+    Resampling r = {style->width, style->height, out->width, out->height, 3};
+    g_autofree float *all = fl_alloc(9 * MAX(most, (size_t)out->width * style->height),
+                                     sizeof(float), "an exemplar", error);
+    if (!all)
+        return false;
+    const size_t third = 3 * MAX(most, (size_t)out->width * style->height);
+    const Buffers b = {all, all + third, all + 2 * third};
+    const float speed =
+        (float)out->width / (float)style->width * (float)use->step * (use->reverse ? -1.0f : 1.0f);
+    for (int t = 0; t < out->n_frames; t++) {
+        const int k = use->reverse ? out->n_frames - 1 - t : t;
+        const size_t s = (size_t)(use->start - 1 + k * use->step);
+        r.channels = 3;
+        resample_bytes(style->rgb + 3 * s * from, &r, &b, out->rgb + 3 * to * t);
+        r.channels = 1;
+        resample_bytes(style->mask + s * from, &r, &b, out->mask + to * t);
+        r.channels = 2;
+        if (style->flow)
+            resample_flow(style->flow + 2 * s * from, &r, &b, speed, out->flow + 2 * to * t);
+    }
+    return true;
+}
+
+static bool sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
+{
+    const double scale = use->scale > 0 ? use->scale : style->scale;
+    const int left = (style->n_frames - use->start) / use->step + 1;
+    out->width = (int)lround(style->width * scale);
+    out->height = (int)lround(style->height * scale);
+    out->n_frames = use->frames > 0 ? MIN(use->frames, left) : left;
+    out->border_px = (float)(style->border_px * scale);
+    if (use->start > style->n_frames) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: style-start is %d, but the style has %d frames", style->path, use->start,
+                    style->n_frames);
+        return false;
+    }
+    if (out->width < SMALLEST || out->height < SMALLEST) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: scaled by %g its frames are %dx%d pixels; expected at least %dx%d",
+                    style->path, scale, out->width, out->height, SMALLEST, SMALLEST);
+        return false;
+    }
+    return true;
+}
+
+FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **error)
+{
+    g_autoptr(FlStyle) out = g_new0(FlStyle, 1);
+    *out = (FlStyle){.name = g_strdup(style->name),
+                     .path = g_strdup(style->path),
+                     .author = g_strdup(style->author),
+                     .licence = g_strdup(style->licence),
+                     .fps = style->fps / (float)use->step,
+                     .scale = 1,
+                     .medium = style->medium};
+    memcpy(out->paper, style->paper, sizeof out->paper);
+    if (!sizes(style, use, out, error))
+        return NULL;
+    const size_t pixels = (size_t)out->width * out->height * out->n_frames;
+    if (!(out->rgb = fl_alloc(3 * pixels, 1, "an exemplar", error)) ||
+        !(out->mask = fl_alloc(pixels, 1, "an exemplar", error)) ||
+        (style->flow && !(out->flow = fl_alloc(2 * pixels, sizeof(float), "an exemplar", error))) ||
+        !adapt_frames(style, use, out, error))
+        return NULL;
+    return g_steal_pointer(&out);
+}

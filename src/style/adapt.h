@@ -1,0 +1,25 @@
+/* The part of a style that is used, at the size that suits the target. */
+#ifndef FLUIDY_STYLE_ADAPT_H
+#define FLUIDY_STYLE_ADAPT_H
+
+#include "style/bundle.h"
+
+/** Which frames of a style are used, and how large. */
+typedef struct FlStyleUse {
+    int start;    // first frame, from 1
+    int frames;   // how many at most; 0: all
+    int step;     // every step-th frame, >= 1
+    float scale;  // size factor; 0: the style's own
+    bool reverse; // the last frame first
+} FlStyleUse;
+
+/**
+ * Makes the used part. The border width scales with the pictures; flow fields with both size and
+ * step.
+ *
+ * Returns: to be freed with fl_style_free(); NULL with FL_ERROR_USAGE if no frame is left or the
+ * pictures would be smaller than a patch, or FL_ERROR_NO_MEMORY.
+ */
+FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **error);
+
+#endif
