@@ -13,15 +13,22 @@
 static FlStyle *growing_disc(void)
 {
     FlStyle *style = g_new0(FlStyle, 1);
-    *style = (FlStyle){.name = g_strdup("disc"), .path = g_strdup("disc"), .width = W, .height = H,
-                       .n_frames = FRAMES, .fps = 25, .border_px = 6, .scale = 1,
+    *style = (FlStyle){.name = g_strdup("disc"),
+                       .path = g_strdup("disc"),
+                       .width = W,
+                       .height = H,
+                       .n_frames = FRAMES,
+                       .fps = 25,
+                       .border_px = 6,
+                       .scale = 1,
                        .paper = {250, 250, 250}};
     style->rgb = g_malloc(3 * W * H * FRAMES);
     style->mask = g_malloc(W * H * FRAMES);
     for (int p = 0; p < W * H * FRAMES; p++) {
         const int t = p / (W * H), y = p / W % H, x = p % W;
         const double inside = 12 + t - hypot(x - W / 2, y - H / 2);
-        const uint8_t tone = inside > 0 ? (uint8_t)(60 + fl_hash64((uint64_t)(p % (W * H))) % 120) : 250;
+        const uint8_t tone =
+            inside > 0 ? (uint8_t)(60 + fl_hash64((uint64_t)(p % (W * H))) % 120) : 250;
         style->mask[p] = (uint8_t)(CLAMP(inside + 0.5, 0, 1) * 255);
         memset(style->rgb + 3 * p, tone, 3);
     }
@@ -48,7 +55,8 @@ static uint8_t *painted(int threads)
     const FlGuideParams how = fl_guide_params(params);
     const FlGuideSource source = {48, 48, 3, moving_disc, NULL, NULL};
     g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, &error);
-    g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, 48, 48, 7, &error);
+    g_autoptr(FlSynth) synth =
+        fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7, &error);
     g_auto(FlGuides) now = {0};
     g_assert_true(fl_guides_init(&now, 48, 48, &error));
     uint8_t *rgb = g_malloc0(3 * 48 * 48);
@@ -85,7 +93,8 @@ static void a_coherent_field_votes_back_the_exemplar(void)
     g_assert_true(fl_nnf_init(&nnf, 10, 10, &error));
     for (int p = 0; p < 100; p++)
         nnf.match[p] = (FlMatch){.x_16 = (uint16_t)(16 * (27 + p % 10)),
-                                 .y_16 = (uint16_t)(16 * (19 + p / 10)), .frame = 3};
+                                 .y_16 = (uint16_t)(16 * (19 + p / 10)),
+                                 .frame = 3};
     float colour[300];
     fl_vote(&nnf, &exemplar->level[0], 1, colour, NULL);
     for (int p = 0; p < 100; p++) {

@@ -5,11 +5,12 @@
 #include "output/atomic.h"
 #include "style/picture.h"
 #include <math.h>
+#include <string.h>
 
-/* A plane of n floats a pixel, as large as the frame. */
+/* A plane of n floats a pixel, as large as the painter's part of the frame. */
 typedef struct Plane {
     const char *name;
-    const float *values;
+    float *values;
     int n;
     float low, high; // shown as black and white
 } Plane;
@@ -25,6 +26,18 @@ static char *file_of(const Dump *dump, const char *name, const char *suffix)
 {
     g_autofree char *leaf = g_strdup_printf("%s_%04d%s", name, dump->number, suffix);
     return g_build_filename(dump->folder, dump->painter->name, leaf, NULL);
+}
+
+/* The plane in the whole frame. */
+static float *whole(const FlPainter *painter, const Plane *plane, GError **error)
+{
+    const size_t n = (size_t)plane->n, pixels = (size_t)painter->width * painter->height;
+    float *out = fl_alloc(n * pixels, sizeof(float), "a picture", error);
+    const FlBox part = painter->rect;
+    for (int y = 0; out && y < part.height; y++)
+        memcpy(out + n * ((size_t)(part.y + y) * painter->width + part.x),
+               plane->values + n * (size_t)y * part.width, n * sizeof(float) * part.width);
+    return out;
 }
 
 static bool write_raw(const Dump *dump, const Plane *plane, GError **error)
@@ -80,7 +93,9 @@ static bool write_picture(const Dump *dump, const Plane *plane, GError **error)
 
 static bool write_plane(const Dump *dump, const Plane *plane, GError **error)
 {
-    return write_raw(dump, plane, error) && write_picture(dump, plane, error);
+    Plane shown = *plane;
+    g_autofree float *values = shown.values = whole(dump->painter, plane, error);
+    return values && write_raw(dump, &shown, error) && write_picture(dump, &shown, error);
 }
 
 static float largest(const float *values, size_t n)
@@ -111,7 +126,8 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, GError **error
         if (!write_plane(dump, &planes[k], error))
             return false;
     g_autofree char *flo = file_of(dump, "flow", ".flo");
-    return fl_flow_save(flo, guides->width, guides->height, guides->flow, error);
+    g_autofree float *flow = whole(dump->painter, &planes[2], error);
+    return flow && fl_flow_save(flo, dump->painter->width, dump->painter->height, flow, error);
 }
 
 /* The field as large as the frame, then what it looks like: x, y and frame as red, green, blue. */
@@ -119,6 +135,7 @@ static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error
 {
     const int width = dump->painter->width, height = dump->painter->height;
     const FlExemplarLevel *full = &dump->painter->box->exemplar->level[0];
+    const FlBox part = dump->painter->rect;
     const size_t pixels = (size_t)width * height;
     g_autofree float *field = fl_alloc(4 * pixels, sizeof(float), "a picture", error);
     g_autofree float *shown =
@@ -130,7 +147,8 @@ static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error
     for (int y = 0; y < view->rect.height; y++)
         for (int x = 0; x < view->rect.width; x++) {
             const FlMatch m = view->nnf->match[(size_t)y * view->rect.width + x];
-            const size_t p = (size_t)(view->rect.y + y) * width + view->rect.x + x;
+            const size_t p =
+                (size_t)(part.y + view->rect.y + y) * width + part.x + view->rect.x + x;
             if (m.frame == FL_NO_MATCH)
                 continue;
             field[4 * p] = m.frame;
@@ -146,21 +164,19 @@ static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error
 
 static bool dump_temporal(const Dump *dump, const FlSynthView *view, GError **error)
 {
-    const int width = dump->painter->width, height = dump->painter->height;
-    const size_t pixels = (size_t)width * height;
+    const FlBox part = dump->painter->rect;
+    const size_t pixels = fl_box_pixels(part);
     g_autofree float *weight = fl_alloc(pixels, sizeof(float), "a picture", error);
     g_autofree float *colour =
         weight ? fl_alloc(3 * pixels, sizeof(float), "a picture", error) : NULL;
     if (!colour)
         return false;
-    for (int y = 0; y < view->rect.height; y++)
-        for (int x = 0; x < view->rect.width; x++) {
-            const size_t from = (size_t)y * view->rect.width + x;
-            const size_t to = (size_t)(view->rect.y + y) * width + view->rect.x + x;
-            weight[to] = view->temporal_weight[from];
-            for (int c = 0; c < 3; c++)
-                colour[3 * to + c] = view->temporal[3 * from + c];
-        }
+    for (int y = 0; y < view->rect.height; y++) {
+        const size_t from = (size_t)y * view->rect.width, row = (size_t)view->rect.width;
+        const size_t to = (size_t)(view->rect.y + y) * part.width + view->rect.x;
+        memcpy(weight + to, view->temporal_weight + from, row * sizeof(float));
+        memcpy(colour + 3 * to, view->temporal + 3 * from, 3 * row * sizeof(float));
+    }
     const Plane planes[] = {{"temporal", colour, 3, 0, 1}, {"temporal-weight", weight, 1, 0, 1}};
     return write_plane(dump, &planes[0], error) && write_plane(dump, &planes[1], error);
 }

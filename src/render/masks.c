@@ -34,6 +34,19 @@ void fl_masks_free(FlMasks *masks)
     g_free(masks);
 }
 
+/* Copies the rows that two rectangles of a frame share. */
+static void copy_shared(const uint8_t *from, FlBox from_box, uint8_t *to, FlBox to_box)
+{
+    const int x0 = MAX(from_box.x, to_box.x);
+    const int x1 = MIN(from_box.x + from_box.width, to_box.x + to_box.width);
+    const int y0 = MAX(from_box.y, to_box.y);
+    const int y1 = MIN(from_box.y + from_box.height, to_box.y + to_box.height);
+    for (int y = y0; y < y1 && x0 < x1; y++)
+        memcpy(to + (size_t)(y - to_box.y) * to_box.width + (x0 - to_box.x),
+               from + (size_t)(y - from_box.y) * from_box.width + (x0 - from_box.x),
+               (size_t)(x1 - x0));
+}
+
 bool fl_masks_put(FlMasks *masks, int region, int frame, const uint8_t *coverage, GError **error)
 {
     const size_t block = (size_t)region * masks->n_frames + frame;
@@ -41,37 +54,41 @@ bool fl_masks_put(FlMasks *masks, int region, int frame, const uint8_t *coverage
     masks->boxes[block] = box;
     if (box.width == 0)
         return true;
-    const size_t bytes = (size_t)box.width * box.height;
+    const size_t bytes = fl_box_pixels(box);
     g_autofree uint8_t *cropped = fl_alloc(bytes, 1, "a mask", error);
     if (!cropped)
         return false;
-    for (int y = 0; y < box.height; y++)
-        memcpy(cropped + (size_t)y * box.width,
-               coverage + (size_t)(box.y + y) * masks->width + box.x, (size_t)box.width);
+    copy_shared(coverage, (FlBox){0, 0, masks->width, masks->height}, cropped, box);
     g_mutex_lock(&masks->mutex);
     const bool kept = fl_spill_put(masks->spill, block, cropped, bytes, error);
     g_mutex_unlock(&masks->mutex);
     return kept;
 }
 
-bool fl_masks_get(const FlMasks *masks, int region, int frame, uint8_t *coverage, GError **error)
+bool fl_masks_get(const FlMasks *masks, int region, int frame, FlBox part, uint8_t *coverage,
+                  GError **error)
 {
     const size_t block = (size_t)region * masks->n_frames + frame;
     const FlBox box = masks->boxes[block];
-    memset(coverage, 0, (size_t)masks->width * masks->height);
+    memset(coverage, 0, fl_box_pixels(part));
     if (box.width == 0)
         return true;
-    const size_t bytes = (size_t)box.width * box.height;
-    g_autofree uint8_t *cropped = fl_alloc(bytes, 1, "a mask", error);
-    if (!cropped || !fl_spill_get(masks->spill, block, cropped, bytes, error))
+    g_autofree uint8_t *cropped = fl_alloc(fl_box_pixels(box), 1, "a mask", error);
+    if (!cropped || !fl_spill_get(masks->spill, block, cropped, fl_box_pixels(box), error))
         return false;
-    for (int y = 0; y < box.height; y++)
-        memcpy(coverage + (size_t)(box.y + y) * masks->width + box.x,
-               cropped + (size_t)y * box.width, (size_t)box.width);
+    copy_shared(cropped, box, coverage, part);
     return true;
 }
 
-bool fl_masks_present(const FlMasks *masks, int region, int frame)
+FlBox fl_masks_extent(const FlMasks *masks, int region)
 {
-    return masks->boxes[(size_t)region * masks->n_frames + frame].width > 0;
+    int x0 = INT32_MAX, y0 = INT32_MAX, x1 = 0, y1 = 0;
+    for (int f = 0; f < masks->n_frames; f++) {
+        const FlBox box = masks->boxes[(size_t)region * masks->n_frames + f];
+        if (box.width == 0)
+            continue;
+        x0 = MIN(x0, box.x), x1 = MAX(x1, box.x + box.width);
+        y0 = MIN(y0, box.y), y1 = MAX(y1, box.y + box.height);
+    }
+    return x1 > x0 ? (FlBox){x0, y0, x1 - x0, y1 - y0} : (FlBox){0};
 }

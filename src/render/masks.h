@@ -2,6 +2,7 @@
 #ifndef FLUIDY_RENDER_MASKS_H
 #define FLUIDY_RENDER_MASKS_H
 
+#include "compose/box.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -15,11 +16,13 @@ void fl_masks_free(FlMasks *masks); // NULL is fine
 /** Keeps a mask of width * height bytes. Any thread. */
 bool fl_masks_put(FlMasks *masks, int region, int frame, const uint8_t *coverage, GError **error);
 
-/** Reads a mask back, an empty one if none was put. */
-bool fl_masks_get(const FlMasks *masks, int region, int frame, uint8_t *coverage, GError **error);
+/** Reads the part of a mask that lies in `part`, part.width * part.height bytes; 0 if none was put.
+ */
+bool fl_masks_get(const FlMasks *masks, int region, int frame, FlBox part, uint8_t *coverage,
+                  GError **error);
 
-/** Whether the region has any coverage in the frame. */
-bool fl_masks_present(const FlMasks *masks, int region, int frame);
+/** Where a region ever is. Returns: {0, 0, 0, 0} if nowhere. */
+FlBox fl_masks_extent(const FlMasks *masks, int region);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMasks, fl_masks_free)
 

@@ -4,38 +4,75 @@
 #include "base/rng.h"
 #include "guides/flow_file.h"
 #include "output/name.h"
+#include <string.h>
 
 static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
 {
     const FlPainter *painter = data;
-    return fl_masks_get(painter->masks, painter->region, frame * painter->treatment.hold, coverage,
-                        error);
+    return fl_masks_get(painter->masks, painter->region, frame * painter->treatment.hold,
+                        painter->rect, coverage, error);
 }
 
 static bool painter_flow(void *data, int frame, float *flow, GError **error)
 {
     const FlPainter *painter = data;
+    const FlBox rect = painter->rect;
     const int number = fl_film_number(painter->film, frame * painter->treatment.hold);
-    g_autofree char *file = fl_output_name(painter->flow_pattern, number, painter->name, error);
-    return file && fl_flow_load(file, painter->width, painter->height, flow, error);
+    const size_t pixels = (size_t)painter->width * painter->height;
+    g_autofree float *whole = fl_alloc(2 * pixels, sizeof(float), "a flow field", error);
+    g_autofree char *file =
+        whole ? fl_output_name(painter->flow_pattern, number, painter->name, error) : NULL;
+    if (!file || !fl_flow_load(file, painter->width, painter->height, whole, error))
+        return false;
+    for (int y = 0; y < rect.height; y++)
+        memcpy(flow + 2 * (size_t)y * rect.width,
+               whole + 2 * ((size_t)(rect.y + y) * painter->width + rect.x),
+               2 * sizeof(float) * (size_t)rect.width);
+    return true;
+}
+
+/* Room for the coarsest patches around the region, on the grid of the coarsest level, so that a
+ * cropped frame has the same pyramid as the whole one. */
+static FlBox cropped(const FlPainter *painter)
+{
+    const int levels =
+        MIN(painter->box->exemplar->n_levels, fl_levels_of(painter->width, painter->height));
+    const int grid = 1 << (levels - 1), room = FL_PATCH * grid;
+    const FlBox ever = fl_masks_extent(painter->masks, painter->region);
+    const int x0 = MAX(ever.x - room, 0) / grid * grid, y0 = MAX(ever.y - room, 0) / grid * grid;
+    const int x1 = MIN(ever.x + ever.width + room, painter->width);
+    const int y1 = MIN(ever.y + ever.height + room, painter->height);
+    return (FlBox){x0, y0, x1 - x0, y1 - y0};
+}
+
+static bool make_pictures(FlPainter *painter, GError **error)
+{
+    const size_t pixels = (size_t)painter->width * painter->height;
+    if (!(painter->painted = fl_alloc(3 * pixels, 1, "a painted region", error)) ||
+        !(painter->part = fl_alloc(3 * fl_box_pixels(painter->rect), 1, "a painted region", error)))
+        return false;
+    for (size_t p = 0; p < pixels; p++)
+        memcpy(painter->painted + 3 * p, painter->box->paper, 3);
+    return true;
 }
 
 bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
 {
     const int hold = painter->treatment.hold;
-    const FlGuideSource source = {.width = painter->width,
-                                  .height = painter->height,
+    painter->rect = cropped(painter);
+    const FlGuideSource source = {.width = painter->rect.width,
+                                  .height = painter->rect.height,
                                   .n_frames = (fl_film_frames(painter->film) - 1) / hold + 1,
                                   .mask = painter_mask,
                                   .flow = painter->flow_pattern ? painter_flow : NULL,
                                   .data = painter};
     const FlGuideParams how = fl_guide_params(&painter->treatment.params);
-    const size_t pixels = (size_t)painter->width * painter->height;
+    const FlSynthSize size = {painter->rect.width, painter->rect.height, painter->width,
+                              painter->height};
     return (painter->guides = fl_guide_sequence_new(&source, &how, error)) &&
-           (painter->synth =
-                fl_synth_new(painter->box->exemplar, &painter->treatment.params, painter->width,
-                             painter->height, fl_key(seed, g_str_hash(painter->name)), error)) &&
-           (painter->painted = fl_alloc(3 * pixels, 1, "a painted region", error));
+           (painter->synth = fl_synth_new(painter->box->exemplar, &painter->treatment.params, size,
+                                          fl_key(seed, g_str_hash(painter->name)), error)) &&
+           make_pictures(painter, error);
 }
 
 void fl_painter_clear(FlPainter *painter)
@@ -44,6 +81,7 @@ void fl_painter_clear(FlPainter *painter)
     fl_guide_sequence_free(painter->guides);
     fl_synth_free(painter->synth);
     free(painter->painted);
+    free(painter->part);
     g_free(painter->flow_pattern);
     *painter = (FlPainter){0};
 }
@@ -53,10 +91,15 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     const gint64 start = g_get_monotonic_time();
     if (frame % painter->treatment.hold != 0)
         return true;
+    const FlBox rect = painter->rect;
+    guides->width = rect.width, guides->height = rect.height;
     if (!fl_guide_sequence_get(painter->guides, frame / painter->treatment.hold, guides, error) ||
-        !fl_synth_frame(painter->synth, guides, painter->painted, &painter->stats, &painter->view,
+        !fl_synth_frame(painter->synth, guides, painter->part, &painter->stats, &painter->view,
                         error))
         return false;
+    for (int y = 0; y < rect.height; y++)
+        memcpy(painter->painted + 3 * ((size_t)(rect.y + y) * painter->width + rect.x),
+               painter->part + 3 * (size_t)y * rect.width, 3 * (size_t)rect.width);
     painter->seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
     return true;
 }

@@ -16,11 +16,13 @@ typedef struct FlPainter {
     const FlPaintbox *box; // borrowed
     const FlMasks *masks;  // borrowed
     const FlFilm *film;    // borrowed
-    int width, height;
-    char *flow_pattern; // of flow files; NULL: the flow is made from the masks
+    int width, height;     // of the film
+    FlBox rect;            // the part of it in which the region ever is, with some room
+    char *flow_pattern;    // of flow files; NULL: the flow is made from the masks
     FlGuideSequence *guides;
     FlSynth *synth;
-    uint8_t *painted; // width * height * 3 sRGB
+    uint8_t *painted; // width * height * 3 sRGB, paper outside rect
+    uint8_t *part;    // the same of rect
     FlFrameStats stats;
     FlSynthView view;
     double seconds; // that the last frame took
@@ -32,7 +34,8 @@ void fl_painter_clear(FlPainter *painter);
 
 /**
  * Paints the next frame of the film; they come in order. A frame that is held keeps the last
- * picture. `guides` is scratch of the film's size, which then holds the frame's guides.
+ * picture. `guides` is scratch made for the film's size, which then holds
+ * the frame's guides in the size of rect.
  */
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error);
 

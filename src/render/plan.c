@@ -4,81 +4,17 @@
 #include "base/first_error.h"
 #include "output/name.h"
 #include "output/sink.h"
+#include "regions/opening.h"
 #include <string.h>
-
-static void report_warnings(const FlPlan *plan)
-{
-    for (int i = 0; plan->options.warning && i < fl_warnings_count(plan->warnings); i++) {
-        g_autofree char *line = fl_warning_line(fl_warnings_get(plan->warnings, i));
-        plan->options.warning(line, plan->options.data);
-    }
-}
-
-static bool strict_enough(const FlPlan *plan, GError **error)
-{
-    const int n = fl_warnings_count(plan->warnings);
-    if (!plan->options.strict || n == 0)
-        return true;
-    g_autofree char *line = fl_warning_line(fl_warnings_get(plan->warnings, 0));
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under --strict)", line, n,
-                n == 1 ? "" : "s");
-    return false;
-}
-
-static void rules_of(const FlConfig *config, FlRegionRule *rules)
-{
-    for (int i = 0; i < config->n_rules; i++) {
-        const FlRule *from = &config->rules[i];
-        g_auto(FlTreatment) said = {0};
-        fl_treatment_init(&said);
-        fl_wishes_apply(&from->wishes, &said);
-        rules[i] = (FlRegionRule){
-            .name = from->name,
-            .match_fill = (const char *const *)from->match_fill,
-            .match_stroke = (const char *const *)from->match_stroke,
-            .match_id = (const char *const *)from->match_id,
-            .match_class = (const char *const *)from->match_class,
-            .match_label = (const char *const *)from->match_label,
-            .match_layer = (const char *const *)from->match_layer,
-            .tolerance = from->match_tolerance,
-            .passthrough = said.passthrough,
-            .by_name = from->by_name,
-        };
-        if (said.merge_with) // the wishes own the string for as long as the config lives
-            for (int k = 0; k < from->wishes.n; k++)
-                if (g_str_equal(from->wishes.wish[k].key, "merge-with"))
-                    rules[i].merge_with = from->wishes.wish[k].value;
-    }
-}
 
 static bool open_film(FlPlan *plan, GError **error)
 {
-    const FlRenderOptions *o = &plan->options;
     g_auto(FlTreatment) general = {0};
-    if (!fl_config_treatment(plan->config, -1, "", o, &general, error))
+    if (!fl_config_treatment(plan->config, -1, "", &plan->options, &general, error))
         return false;
     plan->hold = general.hold;
-    g_autofree FlRegionRule *rules = g_new0(FlRegionRule, MAX(plan->config->n_rules, 1));
-    rules_of(plan->config, rules);
-    FlFilmOptions film = {.inputs = o->inputs,
-                          .n_inputs = (int)g_strv_length((char **)o->inputs),
-                          .range = o->frames,
-                          .missing = o->missing,
-                          .dpi = o->dpi,
-                          .width = o->width,
-                          .height = o->height,
-                          .scale = o->scale,
-                          .strokes = o->stroke,
-                          .key = o->key,
-                          .rules = rules,
-                          .n_rules = plan->config->n_rules};
-    if (o->canvas && !fl_canvas_parse(o->canvas, &film.canvas, error))
-        return false;
-    plan->film = fl_film_open(&film, plan->warnings, error);
-    if (!plan->film)
-        return false;
-    report_warnings(plan);
-    return strict_enough(plan, error);
+    plan->film = fl_film_of_options(&plan->options, plan->config, error);
+    return plan->film != NULL;
 }
 
 static void note(const FlPlan *plan, const char *format, ...) G_GNUC_PRINTF(2, 3);
@@ -240,7 +176,6 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
 {
     g_autoptr(FlPlan) plan = g_new0(FlPlan, 1);
     plan->options = *options;
-    plan->warnings = fl_warnings_new();
     plan->exemplars = fl_exemplars_new();
     plan->config = fl_config_load(options->config, error);
     if (!plan->config)
@@ -261,7 +196,6 @@ void fl_plan_free(FlPlan *plan)
     fl_exemplars_free(plan->exemplars);
     fl_masks_free(plan->masks);
     fl_film_free(plan->film);
-    fl_warnings_free(plan->warnings);
     fl_config_free(plan->config);
     g_free(plan);
 }

@@ -8,7 +8,6 @@
 typedef struct FlPlan {
     FlRenderOptions options; // with what the config says filled in
     FlConfig *config;
-    FlWarnings *warnings;
     FlFilm *film;
     FlMasks *masks;
     FlExemplars *exemplars;

@@ -21,6 +21,7 @@ struct FlSynth {
     FlCostScale scale;
     FlKernels kernels;
     int width, height, n_levels;
+    float side; // the larger one of the whole frames, px
     uint64_t key;
     int frame;
     Previous previous;
@@ -30,14 +31,15 @@ struct FlSynth {
     FlNnf nnf[FL_MAX_LEVELS];
 };
 
-FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, int width, int height,
+FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed, GError **error)
 {
     FlSynth *synth = g_new0(FlSynth, 1);
     synth->exemplar = exemplar;
     synth->params = params;
-    synth->width = width, synth->height = height;
-    synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(width, height));
+    synth->width = size.width, synth->height = size.height;
+    synth->side = (float)MAX(size.frame_width, size.frame_height);
+    synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
     synth->key = fl_hash64(seed);
     fl_cost_scale_init(&synth->scale, params);
     fl_kernels_init(&synth->kernels, fl_cpu_flags());
@@ -114,7 +116,7 @@ static bool make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error)
         return false;
     fl_vote(shifted, &synth->exemplar->level[0], synth->params->vote_sharpness, full->temporal,
             voted);
-    const float side = (float)MAX(synth->width, synth->height);
+    const float side = synth->side;
     const float lower = synth->params->temp_lower * side;
     const float upper = MAX(synth->params->temp_upper * side, lower + 1e-3f);
 #pragma omp parallel for schedule(static)

@@ -32,8 +32,18 @@ typedef struct FlSynthView {
 /** The painter of one region: it remembers the last frame. */
 typedef struct FlSynth FlSynth;
 
-/** The exemplar and params must outlive it. Frames are width * height. */
-FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, int width, int height,
+/**
+ * The size of what is painted. A caller may hand over a part of its frames only, whose corner is a
+ * multiple of 2^(levels - 1); the pyramid and the lengths that are shares of a side are the whole
+ * frame's all the same.
+ */
+typedef struct FlSynthSize {
+    int width, height;             // of the guides
+    int frame_width, frame_height; // of the whole frames
+} FlSynthSize;
+
+/** The exemplar and params must outlive it. */
+FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed, GError **error);
 void fl_synth_free(FlSynth *synth); // NULL is fine
 
