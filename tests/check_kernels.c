@@ -106,13 +106,70 @@ static void a_limit_never_changes_which_side_of_it_a_distance_is_on(void)
     }
 }
 
+static void make_votes(FlVotes *votes, FlRng *rng)
+{
+    const uint32_t spread = 1 + fl_rng_below(rng, 60);
+    for (int k = 0; k < 32; k++) {
+        votes->x[k] = (uint16_t)(fl_rng_below(rng, spread) + (fl_rng_below(rng, 2) ? 65000 : 30));
+        votes->y[k] = (uint16_t)fl_rng_below(rng, spread);
+        votes->frame[k] = (int16_t)(fl_rng_below(rng, 4) - 1);
+    }
+}
+
+static void every_version_sorts_votes_like_c(void)
+{
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        FlKernels kernels;
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&kernels, levels[v]);
+        for (uint64_t seed = 1; seed <= 2000; seed++) {
+            FlRng rng = {seed};
+            FlVotes votes;
+            FlOpinion want[FL_PATCH_PIXELS], got[FL_PATCH_PIXELS];
+            make_votes(&votes, &rng);
+            const int n = fl_find_opinions_c(&votes, want);
+            g_assert_cmpint(kernels.opinions(&votes, got), ==, n);
+            g_assert_cmpmem(got, n * sizeof *got, want, n * sizeof *want);
+        }
+    }
+}
+
+static void every_version_samples_splines_like_c(void)
+{
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        FlKernels kernels;
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&kernels, levels[v]);
+        for (uint64_t seed = 1; seed <= 2000; seed++) {
+            FlRng rng = {seed};
+            FlSplinePixel pixels[64];
+            for (int p = 0; p < 64; p++)
+                for (int c = 0; c < 4; c++)
+                    pixels[p].c[c] = (int16_t)(fl_rng_below(&rng, 65535) - 32767);
+            const FlSplinePhase *x = &fl_spline_phases[seed % 16];
+            const FlSplinePhase *y = &fl_spline_phases[seed / 16 % 16];
+            const size_t pitch = 4 + seed % 17;
+            float want[4], got[4];
+            fl_spline_sample_c(pixels, pitch, x->x, y->y, want);
+            kernels.spline_sample(pixels, pitch, x->x, y->y, got);
+            g_assert_cmpmem(got, sizeof got, want, sizeof want);
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     fl_rotation_init();
+    fl_spline_init();
     g_test_add_func("/kernels/every-version-equals-c-on-noise", every_version_equals_c_on_noise);
     g_test_add_func("/kernels/no-version-overflows-on-extremes", no_version_overflows_on_extremes);
     g_test_add_func("/kernels/a-limit-never-changes-which-side-of-it-a-distance-is-on",
                     a_limit_never_changes_which_side_of_it_a_distance_is_on);
+    g_test_add_func("/kernels/every-version-sorts-votes-like-c", every_version_sorts_votes_like_c);
+    g_test_add_func("/kernels/every-version-samples-splines-like-c",
+                    every_version_samples_splines_like_c);
     return g_test_run();
 }

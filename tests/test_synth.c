@@ -96,7 +96,9 @@ static void a_coherent_field_votes_back_the_exemplar(void)
                                  .y_16 = (uint16_t)(16 * (19 + p / 10)),
                                  .frame = 3};
     float colour[300];
-    fl_vote(&nnf, &exemplar->level[0], 1, colour, NULL);
+    FlKernels kernels;
+    fl_kernels_init(&kernels, fl_cpu_flags());
+    fl_vote(&nnf, &exemplar->level[0], &kernels, 1, colour, NULL);
     for (int p = 0; p < 100; p++) {
         const uint8_t want = style->rgb[3 * ((size_t)(3 * H + 19 + p / 10) * W + 27 + p % 10)];
         g_assert_cmpfloat(fabsf(colour[3 * p] * 255 - want), <, 0.1f);

@@ -106,9 +106,18 @@ static void pack_frame(FlExemplarLevel *level, const FlStack *stack, const FlExe
             frame[(size_t)(y + FL_PAD) * level->pitch + x + FL_PAD] = packed;
         }
     }
+}
+
+/* The colours' spline coefficients; `room` is for three planes. */
+static void pack_colour(FlExemplarLevel *level, const FlStack *stack, int t, float *room)
+{
     const size_t pixels = (size_t)level->width * level->height;
-    fl_spline_prefilter(&stack->plane[FL_PLANE_R], level->width, level->height,
-                        level->colour + 3 * pixels * t);
+    float *const plane[3] = {room, room + pixels, room + 2 * pixels};
+    for (int c = 0; c < 3; c++)
+        memcpy(plane[c], stack->plane[FL_PLANE_R + c], pixels * sizeof(float));
+    fl_spline_prefilter(plane, level->width, level->height,
+                        level->colour + t * level->frame_pixels + FL_PAD * level->pitch + FL_PAD,
+                        (int)level->pitch);
 }
 
 static bool level_init(FlExemplarLevel *level, int width, int height, int n_frames, GError **error)
@@ -116,10 +125,10 @@ static bool level_init(FlExemplarLevel *level, int width, int height, int n_fram
     level->width = width, level->height = height, level->n_frames = n_frames;
     level->pitch = (size_t)width + 2 * FL_PAD;
     level->frame_pixels = level->pitch * (height + 2 * FL_PAD);
-    const size_t pixels = (size_t)width * height * n_frames;
     level->pixels = fl_alloc(level->frame_pixels * n_frames, sizeof(FlTexel), "an exemplar", error);
-    level->colour =
-        level->pixels ? fl_alloc(3 * pixels, sizeof(float), "an exemplar", error) : NULL;
+    level->colour = level->pixels ? fl_alloc(level->frame_pixels * n_frames, sizeof(FlSplinePixel),
+                                             "an exemplar", error)
+                                  : NULL;
     level->offsets =
         level->colour ? fl_alloc(FL_ANGLES, sizeof *level->offsets, "an exemplar", error) : NULL;
     if (!level->offsets)
@@ -187,7 +196,12 @@ static void scale_extents(FlExemplar *exemplar, const FlStyle *style)
 /* Builds every level of one frame from its level 0. */
 static bool pack_pyramid(FlExemplar *exemplar, FlStack *full, int t, GError **error)
 {
+    g_autofree float *room =
+        fl_alloc(3 * (size_t)full->width * full->height, sizeof *room, "an exemplar", error);
+    if (!room)
+        return false;
     pack_frame(&exemplar->level[0], full, exemplar, t);
+    pack_colour(&exemplar->level[0], full, t, room);
     g_auto(FlStack) fine = {0};
     for (int l = 1; l < exemplar->n_levels; l++) {
         FlExemplarLevel *level = &exemplar->level[l];
@@ -198,6 +212,7 @@ static bool pack_pyramid(FlExemplar *exemplar, FlStack *full, int t, GError **er
         fl_stack_clear(&fine);
         fine = coarse;
         pack_frame(level, &fine, exemplar, t);
+        pack_colour(level, &fine, t, room);
     }
     return true;
 }
@@ -245,6 +260,7 @@ static bool list_all_valid(FlExemplar *exemplar, const FlStyle *style, GError **
 FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error)
 {
     fl_rotation_init();
+    fl_spline_init();
     g_autoptr(FlExemplar) exemplar = g_new0(FlExemplar, 1);
     const size_t pixels = (size_t)style->width * style->height * style->n_frames;
     exemplar->n_levels = fl_levels_of(style->width, style->height);

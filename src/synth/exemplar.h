@@ -14,7 +14,8 @@ typedef enum FlSegment {
     FL_SEGMENTS
 } FlSegment;
 
-#define FL_PAD 4 // pixels around a packed frame, so that rotated patches need no clamping
+#define FL_PAD                                                                                     \
+    FL_SPLINE_PAD // pixels around a packed frame, so that rotated patches need no clamping
 #define FL_MAX_LEVELS 12
 
 /** One level. A packed frame has rows of `pitch` pixels; fl_exemplar_at() finds a pixel. */
@@ -22,7 +23,7 @@ typedef struct FlExemplarLevel {
     int width, height, n_frames; // without padding
     size_t pitch, frame_pixels;  // padded
     FlTexel *pixels;
-    float *colour;                // cubic spline coefficients, n_frames * height * width * 3
+    FlSplinePixel *colour;        // cubic spline coefficients, laid out like `pixels`
     uint32_t *valid[FL_SEGMENTS]; // (t * height + y) * width + x of every pixel of the segment
     size_t n_valid[FL_SEGMENTS];
     int32_t (*offsets)[FL_PATCH_PIXELS]; // [FL_ANGLES]: rotated patch offsets in packed pixels

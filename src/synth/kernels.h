@@ -3,6 +3,8 @@
 #define FLUIDY_SYNTH_KERNELS_H
 
 #include "synth/rotation.h"
+#include "synth/spline.h"
+#include <stddef.h>
 
 /** Channels of a pixel, in the exemplar and in the target. */
 enum {
@@ -44,9 +46,42 @@ typedef struct FlPacked {
 typedef uint32_t (*FlPatchDistance)(const FlTexel *centre, const int32_t *offsets,
                                     const FlPacked *target, const FlPacked *weight, uint32_t limit);
 
+/**
+ * The value of a spline between 4x4 coefficients, the first of which is given, with rows of `pitch`
+ * pixels: value[c] = sum over rows j, in order, of y[j] * (the whole sum of x[i] * coefficient). x
+ * and y as in FlSplinePhase. Every version rounds alike.
+ */
+typedef void (*FlSplineSample)(const FlSplinePixel *first, size_t pitch, const int16_t *x,
+                               const float *y, float value[4]);
+
+#define FL_SAME_PLACE 12 // 1/16 px: votes nearer than that mean the same place
+#define FL_VOTE_BIAS 64  // added to places, so that none is negative
+
+/** The places that the patches over a pixel point to, in 1/16 px; frame -1: no patch. */
+typedef struct FlVotes {
+    _Alignas(64) uint16_t x[32];
+    _Alignas(64) uint16_t y[32];
+    _Alignas(64) int16_t frame[32]; // the first FL_PATCH_PIXELS of each count
+} FlVotes;
+
+/** Votes for the same place: the first of them, and the others' differences from it. */
+typedef struct FlOpinion {
+    int x, y, frame;
+    int sum_x, sum_y;
+    int n; // of votes, the first included
+} FlOpinion;
+
+/**
+ * Sorts votes into opinions: the first vote that is left leads, all that are left in its frame and
+ * near it join. opinions has room for FL_PATCH_PIXELS. Returns their number.
+ */
+typedef int (*FlFindOpinions)(const FlVotes *votes, FlOpinion *opinions);
+
 /** One version of every kernel. */
 typedef struct FlKernels {
     FlPatchDistance patch_distance;
+    FlSplineSample spline_sample;
+    FlFindOpinions opinions;
     const char *name; // "c", "avx2", …
 } FlKernels;
 
@@ -71,5 +106,14 @@ uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int32_t *offsets,
                                   const FlPacked *target, const FlPacked *weight, uint32_t limit);
 uint32_t fl_patch_distance_neon(const FlTexel *centre, const int32_t *offsets,
                                 const FlPacked *target, const FlPacked *weight, uint32_t limit);
+
+void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t *x, const float *y,
+                        float value[4]);
+void fl_spline_sample_avx2(const FlSplinePixel *first, size_t pitch, const int16_t *x,
+                           const float *y, float value[4]);
+
+int fl_find_opinions_c(const FlVotes *votes, FlOpinion *opinions);
+int fl_find_opinions_avx2(const FlVotes *votes, FlOpinion *opinions);
+int fl_find_opinions_avx512(const FlVotes *votes, FlOpinion *opinions);
 
 #endif

@@ -20,6 +20,15 @@ extern const int16_t (*fl_turns)[2];
 /** Patch offsets in the order in which the distance visits them: outer ring first. */
 extern const int8_t fl_patch_offsets[FL_PATCH_PIXELS][2];
 
+/** An offset in 1/16 source pixels. */
+typedef struct FlOffset {
+    int16_t x, y;
+} FlOffset;
+
+/** R(-theta) of minus the offset of place k of a patch (row by row), in 1/16 source pixels: where
+ * the patch that is centred at place k takes the pixel in the middle from. */
+extern const FlOffset (*fl_vote_offsets)[FL_PATCH_PIXELS];
+
 /** Fills the tables; harmless to call again. To be called before the other modules run. */
 void fl_rotation_init(void);
 

@@ -2,17 +2,32 @@
 #ifndef FLUIDY_SYNTH_SPLINE_H
 #define FLUIDY_SYNTH_SPLINE_H
 
-/**
- * Spline coefficients of three planes, interleaved into coefficients (3 * width * height floats).
- * The picture is mirrored at its borders.
- */
-void fl_spline_prefilter(float *const plane[3], int width, int height, float *coefficients);
+#include <stdint.h>
+
+#define FL_SPLINE_ONE 4096 // 1.0 in a coefficient; they reach 5.0 where pixels alternate
+#define FL_SPLINE_PAD 4    // pixels around a picture of coefficients, at least 2
+
+/** Coefficients of a pixel: red, green, blue and a zero. */
+typedef struct FlSplinePixel {
+    int16_t c[4];
+} FlSplinePixel;
+
+/** The weights of four neighbours at a phase of n/16 pixel, as the kernels read them. */
+typedef struct FlSplinePhase {
+    _Alignas(32) int16_t x[16]; // in 1/32768: w0 w1 four times, w2 w3 four times
+    float y[4];                 // divided by FL_SPLINE_ONE * 32768
+} FlSplinePhase;
+
+/** [16]; filled by fl_spline_init(), which is harmless to call again. */
+extern const FlSplinePhase *fl_spline_phases;
+void fl_spline_init(void);
 
 /**
- * The three values at a position in 1/16 pixels; positions outside take the nearest pixel's. At a
- * pixel's centre the spline gives back that pixel.
+ * Spline coefficients of three planes of width * height values 0 … 1, which are overwritten. The
+ * picture is mirrored at its borders. coefficients points at pixel (0, 0) of a picture with rows of
+ * `pitch` pixels and FL_SPLINE_PAD pixels on every side, which are filled as well.
  */
-void fl_spline_sample(const float *coefficients, int width, int height, int x_16, int y_16,
-                      float value[3]);
+void fl_spline_prefilter(float *const plane[3], int width, int height, FlSplinePixel *coefficients,
+                         int pitch);
 
 #endif

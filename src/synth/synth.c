@@ -114,8 +114,8 @@ static bool make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error)
     g_autofree uint8_t *voted = fl_alloc(pixels, 1, "a temporal guide", error);
     if (!voted)
         return false;
-    fl_vote(shifted, &synth->exemplar->level[0], synth->params->vote_sharpness, full->temporal,
-            voted);
+    fl_vote(shifted, &synth->exemplar->level[0], &synth->kernels, synth->params->vote_sharpness,
+            full->temporal, voted);
     const float side = synth->side;
     const float lower = synth->params->temp_lower * side;
     const float upper = MAX(synth->params->temp_upper * side, lower + 1e-3f);
@@ -178,7 +178,8 @@ static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel
 {
     gint64 time = g_get_monotonic_time();
     const float w_texture = search->params->w_texture;
-    fl_vote(search->nnf, search->level, search->params->vote_sharpness, target->colour, NULL);
+    fl_vote(search->nnf, search->level, search->kernels, search->params->vote_sharpness,
+            target->colour, NULL);
     fl_target_blend(target, search->params, search->scale, w_texture);
     synth->seconds_vote += lap(&time);
 }

@@ -1,44 +1,36 @@
 #include "synth/vote.h"
 
-#include "synth/spline.h"
-
-#define SAME_PLACE 12 // 1/16 px
-
-/* Patches that show the same place of the exemplar. */
-typedef struct Opinion {
-    int frame, x_16, y_16; // of the first patch; later ones are compared with it
-    int sum_x, sum_y, n;
-} Opinion;
-
-static void hear(Opinion *opinions, int *n, int frame, int x_16, int y_16)
+/* Where the patch with match m, centred at place k of the 5x5 pixels around, takes the middle from.
+ */
+static inline void hear(FlMatch m, int k, FlVotes *votes)
 {
-    for (int k = 0; k < *n; k++) {
-        Opinion *o = &opinions[k];
-        if (o->frame == frame && abs(o->x_16 - x_16) < SAME_PLACE &&
-            abs(o->y_16 - y_16) < SAME_PLACE) {
-            o->sum_x += x_16, o->sum_y += y_16, o->n++;
-            return;
-        }
-    }
-    opinions[(*n)++] = (Opinion){frame, x_16, y_16, x_16, y_16, 1};
+    const FlOffset offset = fl_vote_offsets[m.theta][k];
+    votes->x[k] = (uint16_t)(m.x_16 + offset.x + FL_VOTE_BIAS);
+    votes->y[k] = (uint16_t)(m.y_16 + offset.y + FL_VOTE_BIAS);
+    votes->frame[k] = m.frame;
 }
 
-static int hear_all(const FlNnf *nnf, int x, int y, Opinion *opinions)
+static void hear_at_border(const FlNnf *nnf, int x, int y, FlVotes *votes)
 {
-    int n = 0;
-    for (int dy = -FL_PATCH_RADIUS; dy <= FL_PATCH_RADIUS; dy++)
-        for (int dx = -FL_PATCH_RADIUS; dx <= FL_PATCH_RADIUS; dx++) {
-            const int px = x + dx, py = y + dy;
-            if (px < 0 || py < 0 || px >= nnf->width || py >= nnf->height)
-                continue;
-            const FlMatch m = nnf->match[(size_t)py * nnf->width + px];
-            if (m.frame == FL_NO_MATCH)
-                continue;
-            int sx, sy;
-            fl_unrotate(m.theta, -dx, -dy, &sx, &sy);
-            hear(opinions, &n, m.frame, m.x_16 + sx, m.y_16 + sy);
-        }
-    return n;
+    for (int k = 0; k < FL_PATCH_PIXELS; k++) {
+        const int px = x + k % FL_PATCH - FL_PATCH_RADIUS, py = y + k / FL_PATCH - FL_PATCH_RADIUS;
+        const bool in = px >= 0 && py >= 0 && px < nnf->width && py < nnf->height;
+        hear(in ? nnf->match[(size_t)py * nnf->width + px] : (FlMatch){.frame = FL_NO_MATCH}, k,
+             votes);
+    }
+}
+
+static void hear_all(const FlNnf *nnf, int x, int y, FlVotes *votes)
+{
+    const int r = FL_PATCH_RADIUS;
+    if (x < r || y < r || x >= nnf->width - r || y >= nnf->height - r) {
+        hear_at_border(nnf, x, y, votes);
+        return;
+    }
+    const FlMatch *row = nnf->match + (size_t)(y - r) * nnf->width + x - r;
+    for (int dy = 0; dy < FL_PATCH; dy++, row += nnf->width)
+        for (int dx = 0; dx < FL_PATCH; dx++)
+            hear(row[dx], FL_PATCH * dy + dx, votes);
 }
 
 /* n^sharpness for 1 … 25 patches. */
@@ -53,18 +45,32 @@ static void weigh(float sharpness, float weight[FL_PATCH_PIXELS + 1])
     }
 }
 
-static void mix(const Opinion *opinions, int n, const FlExemplarLevel *level, const float *weight,
-                float colour[3])
+/* The mean of first + sum / n, half away from first. */
+static int mean_of(int first, int sum, int n)
 {
-    const size_t frame_values = 3 * (size_t)level->width * level->height;
+    return first - FL_VOTE_BIAS + (sum + (sum < 0 ? -n : n) / 2) / n;
+}
+
+static void sample(const FlExemplarLevel *level, const FlKernels *kernels, const FlOpinion *o,
+                   float value[4])
+{
+    const int x = CLAMP(mean_of(o->x, o->sum_x, o->n), 0, 16 * (level->width - 1));
+    const int y = CLAMP(mean_of(o->y, o->sum_y, o->n), 0, 16 * (level->height - 1));
+    const FlSplinePixel *at = level->colour + (size_t)o->frame * level->frame_pixels +
+                              (size_t)((y >> 4) - 1 + FL_PAD) * level->pitch + (x >> 4) - 1 +
+                              FL_PAD;
+    kernels->spline_sample(at, level->pitch, fl_spline_phases[x & 15].x, fl_spline_phases[y & 15].y,
+                           value);
+}
+
+static void mix(const FlOpinion *opinions, int n, const FlExemplarLevel *level,
+                const FlKernels *kernels, const float *weight, float colour[3])
+{
     float sum[3] = {0}, total = 0;
     for (int k = 0; k < n; k++) {
-        const Opinion *o = &opinions[k];
-        float value[3];
-        fl_spline_sample(level->colour + o->frame * frame_values, level->width, level->height,
-                         (o->sum_x + (o->sum_x < 0 ? -o->n : o->n) / 2) / o->n,
-                         (o->sum_y + (o->sum_y < 0 ? -o->n : o->n) / 2) / o->n, value);
-        const float w = weight[o->n];
+        float value[4];
+        sample(level, kernels, &opinions[k], value);
+        const float w = weight[opinions[k].n];
         for (int c = 0; c < 3; c++)
             sum[c] += w * value[c];
         total += w;
@@ -73,20 +79,43 @@ static void mix(const Opinion *opinions, int n, const FlExemplarLevel *level, co
         colour[c] = CLAMP(sum[c] / total, 0.0f, 1.0f);
 }
 
-void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, float sharpness, float *colour,
-             uint8_t *voted)
+/* Widens first … last (exclusive) to the columns that patches of the row cover. */
+static void widen(const FlNnf *nnf, int y, int *first, int *last)
+{
+    if (y < 0 || y >= nnf->height)
+        return;
+    const FlMatch *row = nnf->match + (size_t)y * nnf->width;
+    int x0 = 0, x1 = nnf->width;
+    while (x0 < x1 && row[x0].frame == FL_NO_MATCH)
+        x0++;
+    while (x1 > x0 && row[x1 - 1].frame == FL_NO_MATCH)
+        x1--;
+    if (x0 == x1)
+        return;
+    *first = MIN(*first, MAX(x0 - FL_PATCH_RADIUS, 0));
+    *last = MAX(*last, MIN(x1 + FL_PATCH_RADIUS, nnf->width));
+}
+
+void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
+             float sharpness, float *colour, uint8_t *voted)
 {
     float weight[FL_PATCH_PIXELS + 1];
     weigh(sharpness, weight);
 #pragma omp parallel for schedule(dynamic, 4)
-    for (int y = 0; y < nnf->height; y++)
-        for (int x = 0; x < nnf->width; x++) {
-            Opinion opinions[FL_PATCH_PIXELS];
+    for (int y = 0; y < nnf->height; y++) {
+        int first = nnf->width, last = 0;
+        for (int dy = -FL_PATCH_RADIUS; dy <= FL_PATCH_RADIUS; dy++)
+            widen(nnf, y + dy, &first, &last);
+        for (int x = first; x < last; x++) {
+            FlVotes votes;
+            FlOpinion opinions[FL_PATCH_PIXELS];
             const size_t p = (size_t)y * nnf->width + x;
-            const int n = hear_all(nnf, x, y, opinions);
+            hear_all(nnf, x, y, &votes);
+            const int n = kernels->opinions(&votes, opinions);
             if (n > 0)
-                mix(opinions, n, level, weight, colour + 3 * p);
+                mix(opinions, n, level, kernels, weight, colour + 3 * p);
             if (voted)
                 voted[p] = n > 0;
         }
+    }
 }

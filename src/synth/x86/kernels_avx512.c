@@ -42,3 +42,36 @@ uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int32_t *offsets,
         _mm_madd_epi16(d, _mm_mulhrs_epi16(d, _mm_load_si128((const __m128i *)(weight + 24))));
     return sum_of(_mm512_add_epi32(sum, _mm512_zextsi128_si512(last)));
 }
+
+/* The sum of the lanes of a mask. */
+static inline int masked_sum(__m512i v, __mmask32 mask)
+{
+    const __m512i pairs = _mm512_madd_epi16(_mm512_maskz_mov_epi16(mask, v), _mm512_set1_epi16(1));
+    return _mm512_reduce_add_epi32(pairs);
+}
+
+static inline __mmask32 near_zero(__m512i difference)
+{
+    return _mm512_cmplt_epi16_mask(_mm512_abs_epi16(difference), _mm512_set1_epi16(FL_SAME_PLACE));
+}
+
+int fl_find_opinions_avx512(const FlVotes *votes, FlOpinion *opinions)
+{
+    const __m512i x = _mm512_load_si512(votes->x), y = _mm512_load_si512(votes->y);
+    const __m512i frame = _mm512_load_si512(votes->frame);
+    __mmask32 left = _mm512_cmpge_epi16_mask(frame, _mm512_setzero_si512());
+    left &= (1u << FL_PATCH_PIXELS) - 1;
+    int n = 0;
+    while (left) {
+        const int k = __builtin_ctz(left);
+        const __m512i dx = _mm512_sub_epi16(x, _mm512_set1_epi16((int16_t)votes->x[k]));
+        const __m512i dy = _mm512_sub_epi16(y, _mm512_set1_epi16((int16_t)votes->y[k]));
+        const __mmask32 same = left & near_zero(dx) & near_zero(dy) &
+                               _mm512_cmpeq_epi16_mask(frame, _mm512_set1_epi16(votes->frame[k]));
+        left &= ~same;
+        opinions[n++] =
+            (FlOpinion){votes->x[k],          votes->y[k],          votes->frame[k],
+                        masked_sum(dx, same), masked_sum(dy, same), __builtin_popcount(same)};
+    }
+    return n;
+}
