@@ -83,6 +83,10 @@ does 'but for -y' import "$small" -o own/ink -y -q
 { [ "$(ls own/ink/frames | wc -l)" = 6 ] && [ ! -s err ] && [ "$(ls -A own)" = ink ]; }
 result $? 'quietly, and without leftovers'
 
+mkdir -- '-odd %d'
+cp "$small"/frames/*.png -- '-odd %d'
+does 'a folder may have any name' import -q -o odd -- '-odd %d'
+
 does 'list finds it' list
 grep -q "^ink	$folder/own/ink$" out
 result $? 'by name and folder'

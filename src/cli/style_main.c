@@ -62,6 +62,18 @@ static void improve_unknown(const GOptionEntry *entries, GError **error)
                 near ? "; did you mean --" : "", near ? near : "", near ? "?" : " (see --help)");
 }
 
+/* GOption keeps "--" before a word that begins with a dash; it has served its purpose. */
+static void drop_separator(char **words)
+{
+    while (*words && strcmp(*words, "--") != 0)
+        words++;
+    if (!*words)
+        return;
+    g_free(*words);
+    for (; *words; words++)
+        words[0] = words[1];
+}
+
 static bool run_command(const FlStyleCommand *command, char **argv, GError **error)
 {
     g_autofree char *usage = g_strdup_printf("%s — %s", command->arguments, command->summary);
@@ -77,6 +89,7 @@ static bool run_command(const FlStyleCommand *command, char **argv, GError **err
         g_propagate_error(error, problem);
         return false;
     }
+    drop_separator(words);
     return command->run(words + 1, error);
 }
 

@@ -34,7 +34,13 @@ typedef struct FlStyle {
 /** Pixels of all frames together that a style may have: 64 frames of 800x600. */
 #define FL_STYLE_MAX_PIXELS (64 * 800 * 600)
 
-/** Reads a folder. Returns: NULL with FL_ERROR_STYLE, naming the file and what was expected. */
+/**
+ * Reads a folder. What it does not say itself is found in its frames: the paper's colour, the
+ * masks, the border; the flow stays NULL.
+ *
+ * Returns: NULL with FL_ERROR_STYLE, naming the file and what was expected; FL_ERROR_LIMIT;
+ * FL_ERROR_INPUT for a flow field; FL_ERROR_NO_MEMORY.
+ */
 FlStyle *fl_style_load(const char *folder, GError **error);
 
 /**
