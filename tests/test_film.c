@@ -3,6 +3,7 @@
 #include "scratch.h"
 #include <math.h>
 #include <string.h>
+#include <zlib.h>
 
 #define KEEP FL_STROKES_KEEP
 
@@ -51,6 +52,32 @@ static const FlRegion *find(const FlFilm *film, const char *name)
         if (strcmp(fl_film_region(film, r)->name, name) == 0)
             return fl_film_region(film, r);
     return NULL;
+}
+
+/** Peak signal to noise ratio of the runs' flat picture to librsvg's, over grey; dB. */
+static double psnr(const FlFilm *film, int t)
+{
+    const int w = fl_film_width(film), h = fl_film_height(film);
+    g_autoptr(FlRuns) runs = fl_film_runs(film, t, NULL);
+    g_autofree uint8_t *flat = g_malloc((size_t)w * h * 4);
+    fl_runs_flat(runs, w, h, flat);
+    const FlSvgOptions options = {0};
+    g_autoptr(FlSvg) svg = fl_svg_open(fl_film_file(film, t), 0, &options, NULL, NULL);
+    g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_ARGB32, w, h, NULL);
+    cairo_t *cr = cairo_create(surface);
+    g_assert_true(fl_svg_draw_original(svg, cr, w, h, NULL));
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    const uint32_t *truth = (const uint32_t *)cairo_image_surface_get_data(surface);
+    double sum = 0;
+    for (size_t p = 0; p < (size_t)w * h; p++)
+        for (int c = 0; c < 3; c++) {
+            const double a = flat[4 * p + 3], b = truth[p] >> 24;
+            const double mine = flat[4 * p + c] * a / 255 + 90 * (255 - a) / 255;
+            const double its = ((truth[p] >> (16 - 8 * c)) & 255) + 90 * (255 - b) / 255;
+            sum += (mine - its) * (mine - its);
+        }
+    return 10 * log10(255.0 * 255 / (sum / (3.0 * w * h) + 1e-9));
 }
 
 static void layers_that_come_and_go_keep_their_regions(void)
@@ -159,6 +186,47 @@ static void a_group_that_fades_stays_taken_apart(void)
     assert_table(faint, "group*1");
 }
 
+static void a_mask_from_a_style_sheet_is_kept(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<style>.st3{mask:url(#m);} .st4{opacity:.5}</style>"
+                       "<mask id=\"m\"><rect width=\"50\" height=\"100\" fill=\"#fff\"/></mask>"
+                       "<g class=\"st3\"><rect width=\"80\" height=\"60\" fill=\"red\"/>"
+                       "<circle cx=\"30\" cy=\"30\" r=\"20\" fill=\"blue\"/></g>"
+                       "<g class=\"st4\"><rect x=\"60\" width=\"40\" height=\"60\"/>"
+                       "<circle cx=\"80\" cy=\"30\" r=\"20\" fill=\"red\"/></g>"));
+    const FlFilmOptions options = {0};
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_autoptr(FlFilm) film = open_film(&options, folder, warnings);
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
+    assert_table(film, "red-ff0000*1 blue-0000ff*1 group*1");
+    g_assert_cmpfloat(psnr(film, 0), >, 60);
+}
+
+static void packed_frames_of_unequal_size_are_read(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 1; t <= 2; t++) {
+        g_autofree char *path = g_strdup_printf("%s/%d.svgz", folder, t);
+        g_autofree char *text =
+            g_strdup_printf("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"100\">"
+                            "<rect width=\"40\" height=\"40\"/></svg>",
+                            100 * t);
+        gzFile file = gzopen(path, "wb");
+        g_assert_cmpint(gzwrite(file, text, (unsigned)strlen(text)), >, 0);
+        gzclose(file);
+    }
+    const FlFilmOptions options = {0};
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_autoptr(FlFilm) film = open_film(&options, folder, warnings);
+    g_assert_cmpint(fl_film_width(film), ==, 100);
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 1);
+    uint8_t mask[10000];
+    g_assert_true(fl_film_mask(film, 1, 0, mask, NULL));
+    g_assert_true(mask[39] == 255 && mask[40] == 0); // the scale is the first frame's
+}
+
 static void rings_of_two_colours_are_regions_of_their_own(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -170,32 +238,6 @@ static void rings_of_two_colours_are_regions_of_their_own(void)
     const FlFilmOptions options = {0};
     g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
     assert_table(film, "red-ff0000*1 white-ffffff*1 red-ff0000-2*1");
-}
-
-/** Peak signal to noise ratio of the runs' flat picture to librsvg's, over grey; dB. */
-static double psnr(const FlFilm *film, int t)
-{
-    const int w = fl_film_width(film), h = fl_film_height(film);
-    g_autoptr(FlRuns) runs = fl_film_runs(film, t, NULL);
-    g_autofree uint8_t *flat = g_malloc((size_t)w * h * 4);
-    fl_runs_flat(runs, w, h, flat);
-    const FlSvgOptions options = {0};
-    g_autoptr(FlSvg) svg = fl_svg_open(fl_film_file(film, t), 0, &options, NULL, NULL);
-    g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_ARGB32, w, h, NULL);
-    cairo_t *cr = cairo_create(surface);
-    g_assert_true(fl_svg_draw_original(svg, cr, w, h, NULL));
-    cairo_destroy(cr);
-    cairo_surface_flush(surface);
-    const uint32_t *truth = (const uint32_t *)cairo_image_surface_get_data(surface);
-    double sum = 0;
-    for (size_t p = 0; p < (size_t)w * h; p++)
-        for (int c = 0; c < 3; c++) {
-            const double a = flat[4 * p + 3], b = truth[p] >> 24;
-            const double mine = flat[4 * p + c] * a / 255 + 90 * (255 - a) / 255;
-            const double its = ((truth[p] >> (16 - 8 * c)) & 255) + 90 * (255 - b) / 255;
-            sum += (mine - its) * (mine - its);
-        }
-    return 10 * log10(255.0 * 255 / (sum / (3.0 * w * h) + 1e-9));
 }
 
 static void regions_over_each_other_are_the_drawing(void)
@@ -359,6 +401,8 @@ int main(int argc, char **argv)
     TEST("depth-sorted-leaves-and-renumbered-ids-keep-their-regions",
          depth_sorted_leaves_and_renumbered_ids_keep_their_regions);
     TEST("a-group-that-fades-stays-taken-apart", a_group_that_fades_stays_taken_apart);
+    TEST("a-mask-from-a-style-sheet-is-kept", a_mask_from_a_style_sheet_is_kept);
+    TEST("packed-frames-of-unequal-size-are-read", packed_frames_of_unequal_size_are_read);
     TEST("rings-of-two-colours-are-regions-of-their-own",
          rings_of_two_colours_are_regions_of_their_own);
     TEST("regions-over-each-other-are-the-drawing", regions_over_each_other_are_the_drawing);

@@ -142,6 +142,9 @@ static void leaves_add_up_to_the_document(void)
         "<style>rect:nth-child(even){fill:red} #a{stroke:blue}</style><g><rect " BOX
         "/><rect id=\"a\" x=\"50\" " BOX "/></g><rect y=\"50\" " BOX "/>",
         "<use id=\"u\" href=\"#u\"/><rect " BOX "/>",
+        "<style>/* a */ rect.x, g > .st0 {opacity: .9; mask: url(#m)}</style>"
+        "<mask id=\"m\"><rect y=\"9\" " BOX " fill=\"#fff\"/></mask><g class=\"a st0\">"
+        "<rect " BOX " fill=\"red\"/><rect y=\"60\" " BOX " fill=\"blue\"/></g>",
     };
     g_autoptr(Scratch) folder = scratch_make();
     for (size_t i = 0; i < G_N_ELEMENTS(documents); i++) {

@@ -1,5 +1,6 @@
 #include "frames/leaves.h"
 
+#include "frames/css.h"
 #include "frames/labels.h"
 #include "frames/normalise.h"
 #include <string.h>
@@ -8,6 +9,7 @@
 typedef struct Walk {
     GString *labels, *layers, *ids, *classes, *tree;
     FlLeaves *leaves;
+    FlCss *css;
     GHashTable *taken; // id -> xmlNode, the first of that id
     int unit;          // outermost unit around, -1: none
     char *masked;      // id of the outermost group around with a mask, NULL: none
@@ -139,6 +141,25 @@ static bool is_translucent(const xmlNode *node)
     return opacity && (strchr(opacity, '%') ? value / 100 : value) < 1;
 }
 
+static bool has_mask(const Walk *w, const xmlNode *node)
+{
+    return is_set(node, "mask") || fl_css_look_up(w->css, node) & FL_CSS_MASK;
+}
+
+/** Whether a group is drawn as one also where its shapes do not overlap. */
+static bool is_inseparable(const Walk *w, const xmlNode *node)
+{
+    return is_set(node, "filter") || is_set(node, "mix-blend-mode") ||
+           fl_css_look_up(w->css, node) & (FL_CSS_FILTER | FL_CSS_BLEND);
+}
+
+/** Whether a group may have to be drawn as one. */
+static bool is_unit(const Walk *w, const xmlNode *node)
+{
+    return is_inseparable(w, node) || has_mask(w, node) || is_translucent(node) ||
+           fl_css_look_up(w->css, node) & FL_CSS_OPACITY;
+}
+
 static void walk(Walk *w, xmlNode *node);
 
 /**
@@ -159,14 +180,14 @@ static void walk_masked(Walk *w, xmlNode *node)
 
 static void walk_group(Walk *w, xmlNode *node)
 {
-    if (!w->masked && is_set(node, "mask"))
+    if (!w->masked && has_mask(w, node))
         walk_masked(w, node);
     else
         walk(w, node);
 }
 
 /** Walks a group that may have to be drawn as one; it is a unit if it has two leaves or more. */
-static void walk_unit(Walk *w, xmlNode *node, bool inseparable)
+static void walk_unit(Walk *w, xmlNode *node)
 {
     FlLeaves *leaves = w->leaves;
     const int first = (int)leaves->leaf->len;
@@ -179,7 +200,7 @@ static void walk_unit(Walk *w, xmlNode *node, bool inseparable)
             g_array_index(leaves->leaf, FlLeaf, first + i).unit = -1;
         return;
     }
-    const FlUnit unit = {make_leaf(w, node), first, n, inseparable};
+    const FlUnit unit = {make_leaf(w, node), first, n, is_inseparable(w, node)};
     g_array_append_val(leaves->unit, unit);
 }
 
@@ -194,13 +215,11 @@ static void walk(Walk *w, xmlNode *node)
             continue;
         const Mark m = mark(w);
         enter(w, child, index);
-        const bool inseparable = is_set(child, "filter") || is_set(child, "mix-blend-mode");
         if (is_drawn(child)) {
             const FlLeaf leaf = make_leaf(w, child);
             g_array_append_val(w->leaves->leaf, leaf);
-        } else if (is_container(child) && w->unit < 0 &&
-                   (inseparable || is_set(child, "mask") || is_translucent(child))) {
-            walk_unit(w, child, inseparable);
+        } else if (is_container(child) && w->unit < 0 && is_unit(w, child)) {
+            walk_unit(w, child);
         } else if (is_container(child)) {
             walk_group(w, child);
         }
@@ -233,18 +252,18 @@ FlLeaves *fl_leaves_new(xmlDoc *doc)
     leaves->unit = g_array_new(FALSE, FALSE, sizeof(FlUnit));
     g_array_set_clear_func(leaves->leaf, leaf_clear);
     g_array_set_clear_func(leaves->unit, unit_clear);
-    Walk w = {g_string_new(NULL),
-              g_string_new(NULL),
-              g_string_new(NULL),
-              g_string_new(NULL),
-              g_string_new(NULL),
-              leaves,
-              NULL,
-              -1,
-              0};
+    Walk w = {.labels = g_string_new(NULL),
+              .layers = g_string_new(NULL),
+              .ids = g_string_new(NULL),
+              .classes = g_string_new(NULL),
+              .tree = g_string_new(NULL),
+              .leaves = leaves,
+              .css = fl_css_new(doc),
+              .unit = -1};
     w.taken = fl_document_ids(doc);
     walk(&w, xmlDocGetRootElement(doc));
     g_hash_table_unref(w.taken);
+    fl_css_free(w.css);
     g_string_free(w.labels, TRUE);
     g_string_free(w.layers, TRUE);
     g_string_free(w.ids, TRUE);
