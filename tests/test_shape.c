@@ -71,6 +71,16 @@ static void the_ramp_goes_from_the_contour_to_the_border(void)
         g_assert_cmpfloat(shape[k], ==, k > 1 ? 1.0f : 0.0f);
 }
 
+static void the_edge_guide_is_steep_at_the_contour_and_grows_to_the_border(void)
+{
+    const float distance[6] = {-3.0f, 0.0f, 1.0f, 2.0f, 10.0f, 50.0f};
+    const float expected[6] = {0.0f, 0.4f, 0.695f, 0.84f, 1.0f, 1.0f};
+    float shape[6];
+    fl_shape_edge(distance, 3, 2, 10.0f, 2.0f, shape);
+    for (int k = 0; k < 6; k++)
+        g_assert_cmpfloat_with_epsilon(shape[k], expected[k], 1e-6);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -79,6 +89,7 @@ int main(int argc, char **argv)
     TEST(the_blur_is_a_gaussian_of_a_third_of_the_border);
     TEST(a_border_of_nothing_leaves_the_coverage);
     TEST(the_ramp_goes_from_the_contour_to_the_border);
+    TEST(the_edge_guide_is_steep_at_the_contour_and_grows_to_the_border);
 #undef TEST
     return g_test_run();
 }

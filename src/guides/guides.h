@@ -69,6 +69,14 @@ bool fl_shape_blur(const uint8_t *mask, int width, int height, float border_px, 
 /** The thesis' shape guide min(distance / border_px, 1), not below 0 [P21 §3.4]. */
 void fl_shape_ramp(const float *distance, int width, int height, float border_px, float *shape);
 
+/**
+ * A shape guide that says near the contour how deep a pixel lies, whatever the contour's curvature:
+ * 0.8 of a smoothstep from -edge_px to edge_px and 0.2 of the ramp. The blurred mask is lower in
+ * tips and higher in notches, where it mixes up the depths.
+ */
+void fl_shape_edge(const float *distance, int width, int height, float border_px, float edge_px,
+                   float *shape);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlGuideSequence, fl_guide_sequence_free)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlGuides, fl_guides_clear)
 

@@ -76,3 +76,17 @@ void fl_shape_ramp(const float *distance, int width, int height, float border_px
     for (size_t p = 0; p < (size_t)width * height; p++)
         shape[p] = distance[p] > 0.0f ? MIN(distance[p] * scale, 1.0f) : 0.0f;
 }
+
+#define EDGE_SHARE 0.8f // of the smoothstep; the ramp's share keeps depths apart down to the border
+
+void fl_shape_edge(const float *distance, int width, int height, float border_px, float edge_px,
+                   float *shape)
+{
+    fl_shape_ramp(distance, width, height, border_px, shape);
+    const float scale = edge_px > 0.0f ? 0.5f / edge_px : INFINITY;
+    for (size_t p = 0; p < (size_t)width * height; p++) {
+        const float from = distance[p] + edge_px;
+        const float t = from > 0.0f ? MIN(from * scale, 1.0f) : 0.0f;
+        shape[p] = EDGE_SHARE * (t * t * (3.0f - 2.0f * t)) + (1.0f - EDGE_SHARE) * shape[p];
+    }
+}

@@ -25,9 +25,13 @@ FlGuideParams fl_guide_params(const FlParams *params)
 bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border_px, float *shape,
                     GError **error)
 {
-    if (!params->shape_ramp)
+    if (params->shape_ramp)
+        fl_shape_ramp(guides->distance, guides->width, guides->height, border_px, shape);
+    else if (params->shape_edge > 0)
+        fl_shape_edge(guides->distance, guides->width, guides->height, border_px,
+                      params->shape_edge * border_px, shape);
+    else
         return fl_shape_blur(guides->mask, guides->width, guides->height, border_px, shape, error);
-    fl_shape_ramp(guides->distance, guides->width, guides->height, border_px, shape);
     return true;
 }
 

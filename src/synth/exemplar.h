@@ -55,7 +55,9 @@ void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
 /** How params want guides made. */
 FlGuideParams fl_guide_params(const FlParams *params);
 
-/** The shape guide that params ask for: the blurred mask, or the thesis' ramp [F21 §3.1, P21 §3.4].
+/**
+ * The shape guide that params ask for: the depth below the contour, the blurred mask [F21 §3.1] or
+ * the thesis' ramp [P21 §3.4].
  */
 bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border_px, float *shape,
                     GError **error);

@@ -270,7 +270,8 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     stats->energy_start = synth->wants_stats ? mean_energy(&search) : 0;
     const int from_coarsest = synth->n_levels - 1 - l;
     stats->rounds =
-        l == 0 ? params->finest_rounds : fl_list_at(&params->opt_iterations, from_coarsest);
+        (l == 0 ? params->finest_rounds : fl_list_at(&params->opt_iterations, from_coarsest)) *
+        (shifted ? 1 : params->first_rounds);
     optimise(synth, &search, target, stats->rounds,
              l == 0 ? params->finest_sweeps
                     : fl_list_at(&params->patchmatch_iterations, from_coarsest),
