@@ -3,7 +3,7 @@
 set -u
 export LC_ALL=C.UTF-8
 program=$(realpath "$1")
-fixtures=$2
+fixtures=$(realpath "$2")
 folder=$(mktemp -d)
 trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
@@ -35,6 +35,7 @@ refuses() {
 }
 
 touch out err
+look='-s 01'
 drawing='<svg xmlns="http://www.w3.org/2000/svg" width="64" height="48">'
 mkdir whole gap broken empty nosize zero
 for i in 1 2 3; do
@@ -67,11 +68,46 @@ refuses 'a config that is not there is named' 1 'no.conf: *No such file*' -c no.
 printf '[defaults]\n\nstyel = 01\n' >bad.conf
 refuses 'a mistake in a config has file and line' 2 'bad.conf:3: *did you mean “style”?' -c bad.conf whole
 
+# What is wrong with the drawing is known before anything is painted.
+refuses 'a pattern that fits nothing suggests one' 1 '*did you mean w_%04d.svg*' 'whole/v_%04d.svg' $look
+refuses 'a folder that is not there is named' 1 'nowhere: *' nowhere $look
+refuses 'an empty folder is named' 1 'empty: no .svg files *' empty $look
+refuses 'a gap lists the numbers' 1 '*no file for frame 2; --missing *' gap $look
+refuses 'frames that do not exist are listed' 1 '*no file for frames 7-9; *' whole -f 7-9 $look
+refuses 'frames that are no numbers are refused' 2 'frames "1-x": expected *' whole -f 1-x $look
+refuses 'a broken file is named with its line' 1 'broken/w_0003.svg: *line *' broken $look
+refuses 'a drawing without a size asks for --canvas' 1 'nosize/w_0001.svg: *--canvas*' nosize $look
+refuses 'a drawing of no size is refused' 1 'zero/w_0001.svg: *' zero $look
+refuses 'a canvas without a height is refused' 2 "canvas '5': expected WxH *" whole --canvas 5 $look
+refuses 'an output without a frame number is refused' 2 'one.png: *' whole -o one.png $look
+refuses 'an output of no known kind lists the kinds' 2 'w_%d.bmp: *' whole -o w_%d.bmp $look
+refuses 'an unknown style gets a suggestion' 1 'no style “0l” *did you mean “0?”?' whole -s 0l
+refuses 'no style asks for one' 2 '*--style*' whole
+refuses 'a style that is not there is named' 1 './nowhere: *' whole -s ./nowhere
+refuses 'an unknown region lists the regions' 2 "there is no region *" whole --region hare $look
+refuses 'a background that is not there is named' 1 'paper.png: *' whole -b paper.png $look
+refuses 'flow that is not there is named' 1 '*flow_*.flo: *' whole --flow flow_%04d.flo $look
+mkdir locked && chmod 0 locked
+if ! touch locked/file 2>/dev/null; then
+    refuses 'a folder that cannot be written is named' 1 'locked/*: *' whole -o locked/w_%d.png $look
+fi
+refuses 'an output folder that is a file is named' 1 'out*: *Not a directory' whole -o out/w_%d.png $look
+
 "$program" --help >out 2>err && [ ! -s err ] && grep -q -- '--style' out
 result $? '--help goes to standard output'
 "$program" --help-all >out 2>err && [ ! -s err ] && grep -q -- '--w-temp' out
 result $? '--help-all has the parameters of the synthesis'
 "$program" -V >out 2>err && grep -qE '^fluidy-svg [0-9]+\.[0-9]+' out
 result $? '--version is the name and a number'
+
+film=$fixtures/animations/snowman-wave-layers
+"$program" --list-regions "$film" >out 2>err && [ ! -s err ] &&
+    grep -qE '^hat-a42718 +#a42718 +44/44 .* body/head/hat$' out
+result $? '--list-regions prints a line per region'
+"$program" --list-regions --format config "$film" >shot.conf 2>err &&
+    "$program" --list-regions -c shot.conf "$film" >again 2>err && [ ! -s err ] &&
+    cmp <(awk '{ print $1, $2, $3, $4 }' out) <(awk '{ print $1, $2, $3, $4 }' again) &&
+    grep -q ' yes  *hat-a42718 ' again
+result $? 'the config that is printed gives the same regions'
 
 echo "1..$n"

@@ -190,20 +190,20 @@ static gboolean read_overwrite(const char *name, const char *value, gpointer dat
 
 /* ---- the options ------------------------------------------------------------------------- */
 
-#define VALUE(reader) 0, G_OPTION_ARG_CALLBACK, (gpointer)(reader)
+// Values stay the bytes that were typed, whatever the locale.
+#define VALUE(reader) G_OPTION_FLAG_FILENAME, G_OPTION_ARG_CALLBACK, (gpointer)(reader)
 #define FLAG(reader) G_OPTION_FLAG_NO_ARG, G_OPTION_ARG_CALLBACK, (gpointer)(reader)
-#define PLACE(reader) G_OPTION_FLAG_FILENAME, G_OPTION_ARG_CALLBACK, (gpointer)(reader)
 
 static const GOptionEntry common[] = {
-    {"style", 's', PLACE(read_setting), "paint every region with this exemplar", "NAME|DIR"},
-    {"config", 'c', PLACE(read_path), "which region is painted how", "FILE"},
+    {"style", 's', VALUE(read_setting), "paint every region with this exemplar", "NAME|DIR"},
+    {"config", 'c', VALUE(read_path), "which region is painted how", "FILE"},
     {"frames", 'f', VALUE(read_path), "such as 1001-1096, 1-96x2 or 1,5,9 (all)", "RANGE"},
-    {"output", 'o', PLACE(read_path), "painted frames (fluidy/NAME_%04d.png)", "PATTERN"},
-    {"layers", 0, PLACE(read_path), "also one file per {region} and frame", "PATTERN"},
+    {"output", 'o', VALUE(read_path), "painted frames (fluidy/NAME_%04d.png)", "PATTERN"},
+    {"layers", 0, VALUE(read_path), "also one file per {region} and frame", "PATTERN"},
     {"width", 'W', VALUE(read_number), "width of the output, aspect kept", "PX"},
     {"height", 'H', VALUE(read_number), "height of the output, aspect kept", "PX"},
     {"scale", 0, VALUE(read_number), "output pixels per drawing pixel (1)", "FACTOR"},
-    {"background", 'b', PLACE(read_path), "#RRGGBB, none or an image (the paper)", "COLOUR|FILE"},
+    {"background", 'b', VALUE(read_path), "#RRGGBB, none or an image (the paper)", "COLOUR|FILE"},
     {"fps", 0, VALUE(read_number), "frames per second of the film (24)", "RATE"},
     {"hold", 0, VALUE(read_setting), "paint every n-th frame; 2: on twos (1)", "N"},
     {"detail", 0, VALUE(read_setting), "draft, normal or fine (normal)", "WORD"},
@@ -237,9 +237,9 @@ static const GOptionEntry more[] = {
     {"gap", 0, VALUE(read_number), "paper left around a region that hides others (0)", "PX"},
     {"feather", 0, VALUE(read_number), "fade paint towards such a region (0)", "PX"},
     {"blend", 0, VALUE(read_choice), "layers in srgb or in linear light (srgb)", "WORD"},
-    {"flow", 0, PLACE(read_path), "flow fields instead of those made from the masks", "PATTERN"},
-    {"stats", 0, PLACE(read_path), "JSON lines about every frame, region and level", "FILE"},
-    {"dump", 0, PLACE(read_path), "guides and fields as pictures and raw data", "DIR"},
+    {"flow", 0, VALUE(read_path), "flow fields instead of those made from the masks", "PATTERN"},
+    {"stats", 0, VALUE(read_path), "JSON lines about every frame, region and level", "FILE"},
+    {"dump", 0, VALUE(read_path), "guides and fields as pictures and raw data", "DIR"},
     {"progress", 0, VALUE(read_choice), "auto, bar, plain, json or none (auto)", "WORD"},
     {"preset", 0, VALUE(read_setting),
      "set all of the parameters below: default, fluidymation or thesis (default)", "WORD"},

@@ -127,14 +127,17 @@ static void show_json(FlMeter *meter, const FlProgress *p)
     fprintf(meter->stream, "{%s}\n", json->str + 1);
 }
 
-/* The last frame of a stage is always due, and so is the first of the next. */
+/* The last frame of a stage is always due, and so is the first of the next; but a log does not
+ * announce what has not begun, for it may be over at once. */
 static bool is_due(const FlMeter *meter, const FlProgress *p)
 {
+    if (meter->mode == FL_PROGRESS_PLAIN && p->done == 0)
+        return false;
     const double every = meter->mode == FL_PROGRESS_BAR     ? BAR_EVERY_S
                          : meter->mode == FL_PROGRESS_PLAIN ? PLAIN_EVERY_S
                                                             : 0;
     return g_strcmp0(p->stage, meter->stage) != 0 || p->region_index != meter->region_index ||
-           p->done == p->total || p->elapsed_s - meter->shown_s >= every;
+           (p->done > 0 && p->done == p->total) || p->elapsed_s - meter->shown_s >= every;
 }
 
 void fl_meter_show(FlMeter *meter, const FlProgress *progress)
