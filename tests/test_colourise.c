@@ -202,6 +202,17 @@ static void more_paint_never_looks_like_less(void)
     }
 }
 
+static void dense_cores_keep_texture_and_soft_rims_fade(void)
+{
+    g_auto(Sample) s = sample_load("drop-30");
+    g_autoptr(FlInk) ink = ink_of(&s, drop_paper);
+    const int core = fl_ink_toned(ink, 5 * FL_AMOUNT_ONE, FL_TONE_ONE);
+    const int rim = fl_ink_toned(ink, FL_AMOUNT_ONE / 20, FL_TONE_ONE);
+    g_assert_cmpint(core, >, 2 * FL_AMOUNT_ONE);
+    g_assert_cmpint(core, <, 3 * FL_AMOUNT_ONE);
+    g_assert_cmpint(rim, <, FL_AMOUNT_ONE / 40);
+}
+
 static void a_picture_of_one_colour_is_as_good_as_a_flat_fill(void)
 {
     g_auto(Sample) s = sample_load("drop-30");
@@ -274,6 +285,8 @@ int main(int argc, char **argv)
                     bare_paper_is_transparent_and_thin_paint_is_thin);
     g_test_add_func("/colourise/more-paint-never-looks-like-less",
                     more_paint_never_looks_like_less);
+    g_test_add_func("/colourise/dense-cores-keep-texture-and-soft-rims-fade",
+                    dense_cores_keep_texture_and_soft_rims_fade);
     g_test_add_func("/colourise/a-picture-of-one-colour-is-as-good-as-a-flat-fill",
                     a_picture_of_one_colour_is_as_good_as_a_flat_fill);
     g_test_add_func("/colourise/the-exemplars-own-colours-are-kept-on-its-own-paper",

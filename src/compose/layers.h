@@ -69,6 +69,7 @@ void fl_layers_compose16(const FlLayer *layers, int n, const FlBackdrop *backdro
 /**
  * Spreads colour into transparent pixels near visible ones, whose alpha stays 0: each pixel up to
  * radius_px away takes the mean of its neighbours one step nearer. Farther pixels become 0.
+ * It comes after composing: the frame equals the recomposed layers but for colours under alpha 0.
  */
 bool fl_layers_bleed(uint8_t *rgba, int width, int height, int radius_px, GError **error);
 
