@@ -274,6 +274,23 @@ static void a_mask_is_the_whole_shape(void)
     g_assert_cmpint(area, ==, 3200);
 }
 
+static void a_fading_gradient_keeps_its_mask(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<linearGradient id=\"g\"><stop stop-color=\"red\"/><stop offset=\"1\" "
+                       "stop-color=\"blue\"/></linearGradient><g opacity=\".25\"><rect "
+                       "width=\"60\" height=\"60\" fill=\"url(#g)\"/></g>"));
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
+    g_assert_cmpint(runs->n, ==, 1);
+    g_assert_cmpint(runs->run[0].alpha, ==, 64);
+    g_assert_cmpint(runs->run[0].coverage[30 * 100 + 30], ==, 255);
+    g_assert_cmpint(runs->run[0].picture[4 * (30 * 100 + 58)], <, 20); // blue at the right
+    g_assert_cmpfloat(psnr(film, 0), >, 50);
+}
+
 static void leaves_that_do_not_meet_share_a_run(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -407,6 +424,7 @@ int main(int argc, char **argv)
          rings_of_two_colours_are_regions_of_their_own);
     TEST("regions-over-each-other-are-the-drawing", regions_over_each_other_are_the_drawing);
     TEST("a-mask-is-the-whole-shape", a_mask_is_the_whole_shape);
+    TEST("a-fading-gradient-keeps-its-mask", a_fading_gradient_keeps_its_mask);
     TEST("leaves-that-do-not-meet-share-a-run", leaves_that_do_not_meet_share_a_run);
     TEST("rules-choose-leaves-and-the-first-wins", rules_choose_leaves_and_the_first_wins);
     TEST("keys-other-than-the-default-can-be-asked-for",

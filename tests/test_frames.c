@@ -189,6 +189,21 @@ static void copies_of_copies_meet_a_limit(void)
     g_assert_error(error, FL_ERROR, FL_ERROR_LIMIT);
 }
 
+static void uses_of_uses_meet_a_depth(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    GString *text = g_string_new("<defs><g id=\"l0\"><rect " BOX "/></g>");
+    for (int i = 1; i < 300; i++)
+        g_string_append_printf(text, "<g id=\"l%d\"><use href=\"#l%d\"/></g>", i, i - 1);
+    g_string_append(text, "</defs><use href=\"#l299\"/>");
+    g_autofree char *path = scratch_svg(folder, "a.svg", text->str);
+    g_string_free(text, TRUE);
+    const FlSvgOptions options = {0};
+    g_autoptr(GError) error = NULL;
+    g_assert_null(fl_svg_open(path, 1, &options, NULL, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_LIMIT);
+}
+
 static void broken_files_say_what_is_wrong_and_where(void)
 {
     static const struct {
@@ -333,6 +348,7 @@ int main(int argc, char **argv)
     TEST("a-use-that-shows-itself-is-left-out-with-a-warning",
          a_use_that_shows_itself_is_left_out_with_a_warning);
     TEST("copies-of-copies-meet-a-limit", copies_of_copies_meet_a_limit);
+    TEST("uses-of-uses-meet-a-depth", uses_of_uses_meet_a_depth);
     TEST("broken-files-say-what-is-wrong-and-where", broken_files_say_what_is_wrong_and_where);
     TEST("blenders-prologue-and-undeclared-prefixes-are-mended",
          blenders_prologue_and_undeclared_prefixes_are_mended);

@@ -9,6 +9,7 @@
 
 #define FL_MOST_BYTES (256 << 20) // of a file, unpacked
 #define FL_MOST_ELEMENTS 200000   // of a document, copies of <use> included
+#define FL_MOST_DEPTH 250         // of elements in each other, likewise; libxml2 stops at 256
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlDoc, xmlFreeDoc)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)

@@ -179,8 +179,22 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
     return normalise(work, use, &inner, error);
 }
 
+static bool is_shallow(const Work *work, const xmlNode *node, GError **error)
+{
+    int depth = 0;
+    for (; node; node = node->parent)
+        depth++;
+    if (depth > FL_MOST_DEPTH)
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                    "%s: more than %d elements in each other, those that <use> shows included",
+                    work->path, FL_MOST_DEPTH);
+    return depth <= FL_MOST_DEPTH;
+}
+
 static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **error)
 {
+    if (!is_shallow(work, node, error))
+        return false;
     for (xmlNode *child = node->children, *next; child; child = next) {
         next = child->next;
         if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))

@@ -14,6 +14,7 @@
 typedef struct Source {
     FlPaintKind kind;
     double rgba[4];
+    double peak;      // most opaque stop
     char surface[16]; // name of the surface that is the source; "" for others
     bool repeats;
     GString *key;
@@ -73,7 +74,7 @@ static Context *top(Reader *r)
 
 static void push_context(Reader *r, const char *surface)
 {
-    Context context = {.source = {.kind = FL_PAINT_FLAT, .rgba = {0, 0, 0, 1}}};
+    Context context = {.source = {.kind = FL_PAINT_FLAT, .rgba = {0, 0, 0, 1}, .peak = 1}};
     g_strlcpy(context.surface, surface, sizeof context.surface);
     g_array_append_val(r->contexts, context);
 }
@@ -99,7 +100,7 @@ static void word_from_end(const char *line, int n, char *word, size_t bytes)
 static void start_source(Reader *r, FlPaintKind kind)
 {
     source_clear(&r->next);
-    r->next = (Source){.kind = kind, .rgba = {0, 0, 0, 1}};
+    r->next = (Source){.kind = kind, .rgba = {0, 0, 0, 1}, .peak = 1};
 }
 
 static void read_solid(Reader *r, const char *line)
@@ -123,12 +124,14 @@ static void read_solid(Reader *r, const char *line)
         out[0] = out[1] = out[2] = v[0];
     else
         memcpy(out, v, sizeof v);
+    r->next.peak = out[3];
 }
 
 static void start_gradient(Reader *r, const char *type)
 {
     start_source(r, FL_PAINT_GRADIENT);
     r->next.key = g_string_new(type);
+    r->next.peak = 0;
     r->n_stops = 0;
     r->stop_offset = r->weight = 0;
     memset(r->sum, 0, sizeof r->sum);
@@ -153,6 +156,7 @@ static void read_stop(Reader *r, const char *line)
         v[i] = g_ascii_strtod(s, &s);
     if (r->n_stops++ == 0)
         memcpy(r->stop_rgba, v + 1, sizeof r->stop_rgba);
+    r->next.peak = MAX(r->next.peak, v[4]);
     add_stretch(r, CLAMP(v[0], r->stop_offset, 1), v + 1);
     if (r->next.key)
         g_string_append_printf(r->next.key, " %d:%02x%02x%02x%02x", (int)lround(v[0] * 100),
@@ -288,6 +292,7 @@ static FlPaint op_paint(const Op *op)
     FlPaint paint = {op->source.kind,
                      {to_byte(v[0]), to_byte(v[1]), to_byte(v[2])},
                      to_byte(v[3] * op->alpha),
+                     to_byte(op->source.peak * op->alpha),
                      NULL};
     if (op->source.kind == FL_PAINT_FLAT)
         paint.key = g_strdup_printf("#%02x%02x%02x", paint.rgb[0], paint.rgb[1], paint.rgb[2]);
@@ -319,6 +324,7 @@ static FlPainted join(const GArray *ops, int which, FlPart part)
             if (!same_paint(&paint, &painted.paint)) {
                 painted.paint.kind = FL_PAINT_MIXED;
                 painted.paint.alpha = MAX(painted.paint.alpha, paint.alpha);
+                painted.paint.peak = MAX(painted.paint.peak, paint.peak);
                 g_free(painted.paint.key);
                 painted.paint.key = g_strdup("mixed");
             }

@@ -28,6 +28,7 @@ typedef struct FlPaint {
     FlPaintKind kind;
     uint8_t rgb[3]; // the colour; of a gradient the mean over its stops
     uint8_t alpha;  // opacity, that of the groups around it included; of a gradient the mean
+    uint8_t peak;   // the opacity where it is most opaque: of a gradient its most opaque stop
     char *key;      // owned
 } FlPaint;
 

@@ -170,7 +170,7 @@ static void remember(FlFilm *film, const FlScan *scan)
                              .part = (uint8_t)s->part,
                              .flat = s->kind == FL_PAINT_FLAT,
                              .rgb = {s->rgb[0], s->rgb[1], s->rgb[2]},
-                             .alpha = s->alpha};
+                             .alpha = s->peak};
             memcpy(step->box, s->box, sizeof step->box);
         }
     }

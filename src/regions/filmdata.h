@@ -10,8 +10,9 @@ typedef struct FlStep {
     int16_t region; // index into the film's regions
     uint8_t part;   // FlPart
     uint8_t flat;   // else drawn as a picture
-    uint8_t rgb[3], alpha;
-    float box[4]; // x0, y0, x1, y1 that it lies in, px
+    uint8_t rgb[3];
+    uint8_t alpha; // FlPaint.peak
+    float box[4];  // x0, y0, x1, y1 that it lies in, px
 } FlStep;
 
 typedef struct FlFilmFrame {

@@ -36,12 +36,10 @@ static bool meets(const Run *run, const FlFilmFrame *frame, const FlStep *step)
 /** Whether step can be drawn with run: two translucent shapes only where they do not overlap. */
 static bool fits(const Run *run, const FlFilmFrame *frame, const FlStep *step)
 {
-    if (run->region != step->region || run->flat != step->flat)
+    if (run->region != step->region || run->flat != step->flat || run->alpha != step->alpha ||
+        (step->flat && memcmp(run->rgb, step->rgb, 3) != 0))
         return false;
-    if (!step->flat)
-        return true;
-    return memcmp(run->rgb, step->rgb, 3) == 0 && run->alpha == step->alpha &&
-           (step->alpha == 255 || !meets(run, frame, step));
+    return step->alpha == 255 || !meets(run, frame, step);
 }
 
 /** The runs of a frame; region < 0: all of them. */
@@ -65,7 +63,7 @@ static GArray *plan(const FlFilmFrame *frame, int region)
             const Run run = {step->region,
                              step->flat,
                              {step->rgb[0], step->rgb[1], step->rgb[2]},
-                             step->flat ? step->alpha : 255,
+                             step->alpha,
                              g_array_new(FALSE, FALSE, sizeof(int))};
             g_array_append_val(runs, run);
             found = &g_array_index(runs, Run, runs->len - 1);
@@ -134,6 +132,13 @@ static FlBox step_box(const Stage *stage, const FlStep *step)
     return fl_box_and(page, box);
 }
 
+/** What a drawn opacity is of a thing that is as opaque as `alpha`. */
+static void fill_solid(uint8_t solid[256], uint8_t alpha)
+{
+    for (int v = 0; v < 256; v++)
+        solid[v] = (uint8_t)MIN(255, (v * 255 + alpha / 2) / MAX(alpha, 1));
+}
+
 /** Adds one flat step to a coverage, taking its opacity out. */
 static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, GError **error)
 {
@@ -144,8 +149,7 @@ static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, 
     const int stride = cairo_image_surface_get_stride(stage->coverage);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
     uint8_t solid[256];
-    for (int v = 0; v < 256; v++)
-        solid[v] = (uint8_t)MIN(255, (v * 255 + step->alpha / 2) / MAX(step->alpha, 1));
+    fill_solid(solid, step->alpha);
     for (int y = box.y0; y < box.y1; y++) {
         const unsigned char *in = drawn + (size_t)y * stride;
         uint8_t *out = coverage + (size_t)y * width;
@@ -166,13 +170,13 @@ static bool draw_flat(const Stage *stage, const Run *run, uint8_t *coverage, GEr
     return true;
 }
 
-/** One straight RGBA pixel of a premultiplied one. */
-static inline void straighten(uint32_t pixel, uint8_t out[4])
+/** One straight RGBA pixel of a premultiplied one; its opacity becomes `alpha`. */
+static inline void straighten(uint32_t pixel, uint8_t alpha, uint8_t out[4])
 {
     const uint32_t a = pixel >> 24;
     for (int c = 0; c < 3; c++)
         out[c] = a ? (uint8_t)MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0;
-    out[3] = (uint8_t)a;
+    out[3] = alpha;
 }
 
 /** Draws the steps of a run on a picture of their own; picture may be NULL. */
@@ -190,13 +194,16 @@ static bool draw_picture(Stage *stage, const Run *run, uint8_t *coverage, uint8_
             return false;
     const int stride = cairo_image_surface_get_stride(stage->picture);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->picture);
+    uint8_t solid[256];
+    fill_solid(solid, run->alpha);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const uint32_t pixel = ((const uint32_t *)(drawn + (size_t)y * stride))[x];
             const size_t p = (size_t)y * width + x;
+            const uint8_t mine = solid[pixel >> 24];
             if (pixel && picture)
-                straighten(pixel, picture + 4 * p);
-            coverage[p] = fl_over((uint8_t)(pixel >> 24), coverage[p]);
+                straighten(pixel, mine, picture + 4 * p);
+            coverage[p] = fl_over(mine, coverage[p]);
         }
     fl_surface_wipe(stage->picture, (FlBox){0, 0, width, height});
     return true;

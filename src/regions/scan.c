@@ -5,7 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-#define LOOK_PX 256 // longest side of the small pictures on which a frame is looked over
+#define MOST_SIDE 32767       // px; cairo's limit
+#define MOST_PIXELS 100000000 // of a picture; each run of a frame takes one to five bytes for each
+#define LOOK_PX 256           // longest side of the small pictures on which a frame is looked over
 
 int fl_strings_add(FlStrings *strings, const char *text)
 {
@@ -90,6 +92,7 @@ static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warning
                              .has_stroke = n == 2 || p->stroke,
                              .kind = p->paint.kind,
                              .alpha = p->paint.alpha,
+                             .peak = p->paint.peak,
                              .unit = index < 0 ? -index : 0,
                              .region = -1};
         memcpy(look.seen.rgb, p->paint.rgb, 3);
@@ -97,7 +100,7 @@ static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warning
             fl_warnings_add(warnings, file, number, leaf->id,
                             "its blend mode is left out: it is drawn over what is below it");
         good = good && cover(f, leaf, p->part, &look.box, error);
-        const float opacity = p->paint.kind == FL_PAINT_FLAT ? MAX(p->paint.alpha, 1) / 255.0f : 1;
+        const float opacity = MAX(p->paint.peak, 1) / 255.0f;
         look.seen.area_px =
             (float)(sum_of(f->coverage, look.box) / opacity * f->factor * f->factor);
         fl_surface_wipe(f->coverage, look.box);
@@ -303,10 +306,11 @@ static bool set_size(FlScan *scan, const FlFilmOptions *o, GError **error)
                           o->height > 0 ? o->height / height : INFINITY);
     // librsvg's own page sizes carry rounding errors; half a thousandth of a pixel is none.
     const double w = ceil(width * scan->scale - 5e-4), h = ceil(height * scan->scale - 5e-4);
-    if (!(w <= 32767 && h <= 32767)) {
+    if (!(w <= MOST_SIDE && h <= MOST_SIDE && w * h <= MOST_PIXELS)) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "%s: a picture of %.0f x %.0f px; at most 32767 on each side can be drawn",
-                    scan->sequence->file[0], w, h);
+                    "%s: a picture of %.0f x %.0f px; at most %d px on each side and %d million in "
+                    "all can be drawn",
+                    scan->sequence->file[0], w, h, MOST_SIDE, MOST_PIXELS / 1000000);
         return false;
     }
     scan->page_width = width * scan->scale;

@@ -20,8 +20,8 @@ typedef struct FlSeen {
     bool stroke;
     bool has_fill, has_stroke; // of the leaf it is a part of
     FlPaintKind kind;
-    uint8_t rgb[3], alpha;
-    int paint; // FlPaint.key
+    uint8_t rgb[3], alpha, peak; // see FlPaint
+    int paint;                   // FlPaint.key
     int name, labels, layers, ids, classes, tree;
     float box[4];  // x0, y0, x1, y1 of what is drawn, px of the picture; a pixel too wide
     float area_px; // sum of its coverage
