@@ -129,9 +129,10 @@ static bool level_init(FlExemplarLevel *level, int width, int height, int n_fram
     level->width = width, level->height = height, level->n_frames = n_frames;
     level->pitch = (size_t)width + 2 * FL_PAD;
     level->frame_pixels = level->pitch * (height + 2 * FL_PAD);
-    level->pixels = fl_alloc(level->frame_pixels * n_frames, sizeof(FlTexel), "an exemplar", error);
-    level->colour = level->pixels ? fl_alloc(level->frame_pixels * n_frames, sizeof(FlSplinePixel),
-                                             "an exemplar", error)
+    level->pixels =
+        fl_alloc_huge(level->frame_pixels * n_frames, sizeof(FlTexel), "an exemplar", error);
+    level->colour = level->pixels ? fl_alloc_huge(level->frame_pixels * n_frames,
+                                                  sizeof(FlSplinePixel), "an exemplar", error)
                                   : NULL;
     level->offsets =
         level->colour ? fl_alloc(FL_ANGLES, sizeof *level->offsets, "an exemplar", error) : NULL;

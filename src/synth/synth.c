@@ -184,11 +184,13 @@ static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel
     synth->seconds_vote += lap(&time);
 }
 
-static FlSearchCounts timed_search(FlSynth *synth, FlSearch *search, int sweeps)
+/* The costs of the field must be those of the target as it is, unless they are `stale`. */
+static FlSearchCounts timed_search(FlSynth *synth, FlSearch *search, int sweeps, bool stale)
 {
     gint64 time = g_get_monotonic_time();
     fl_occurrence_count(search->map, search->nnf, search->target);
-    fl_search_costs(search, search->nnf, search->cost);
+    if (stale)
+        fl_search_costs(search, search->nnf, search->cost);
     const FlSearchCounts counts = fl_search_run(search, sweeps);
     synth->seconds_search += lap(&time);
     return counts;
@@ -208,21 +210,21 @@ static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);
     if (coarsest && !shifted) { // guides alone decide the first guess [P21 §4.2]
         fl_target_blend(target, params, &synth->scale, 0);
-        timed_search(synth, search, fl_list_at(&params->patchmatch_iterations, 0));
+        timed_search(synth, search, fl_list_at(&params->patchmatch_iterations, 0), true);
     }
     vote_and_blend(synth, search, target);
     fl_search_costs(search, search->nnf, search->cost);
     return coarsest || !shifted || merge_previous(search, shifted, l, error);
 }
 
-/* Search and vote in turn [F21 alg. 2]. */
+/* Search and vote in turn [F21 alg. 2]; the field comes with its costs. */
 static void optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int rounds,
                      int sweeps, FlLevelStats *stats)
 {
     const uint64_t key = search->key;
     for (int round = 0; round < rounds; round++) {
         search->key = fl_key(key, 2 + (uint64_t)round);
-        const FlSearchCounts counts = timed_search(synth, search, sweeps);
+        const FlSearchCounts counts = timed_search(synth, search, sweeps, round > 0);
         stats->counts.tried += counts.tried;
         stats->counts.accepted += counts.accepted;
         vote_and_blend(synth, search, target);
