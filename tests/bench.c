@@ -1,0 +1,304 @@
+/*
+ * How fast is the synthesis: the animations of [F21 table 2] by size, style and painted pixels.
+ *
+ * usage: bench [--frames N] [--threads N] [--detail WORD] [--case NAME] [--json FILE] [--rounds N]
+ *              [--compare OTHER_BENCH]
+ *
+ * Each case runs in a process of its own, so that its peak memory is its own. Of N frames the first
+ * starts from nothing and is left out of the means; a few more, not timed, tell the shares of the
+ * stages, the patch evaluations and the energy, whose statistics cost time. With --compare every
+ * case runs in both programs in turn; medians and their ratio are printed.
+ */
+#include "config.h"
+#include "params/params.h"
+#include "synth/synth.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#define FRAMES_MEASURED 3 // for the statistics
+
+typedef struct Case {
+    const char *name, *style;
+    int width, height, painted_px;
+} Case;
+
+static const Case cases[] = {
+    {"genie", "01", 900, 900, 123000},    {"horse", "02", 1000, 800, 111000},
+    {"sunflower", "03", 500, 600, 60000}, {"waving", "05", 640, 740, 80000},
+    {"jump", "06", 700, 300, 12000},
+};
+
+/* What one run of a case says; the words are the JSON's. */
+#define FIGURES(F)                                                                                 \
+    F(frame_s)                                                                                     \
+    F(first_frame_s) F(guides_s) F(target_s) F(temporal_s) F(search_s) F(vote_s) F(core_s_per_mpx) \
+        F(s_per_mpx) F(evaluations_per_px) F(evaluations_per_s_core) F(energy) F(painted_px)       \
+            F(peak_mib)
+
+typedef struct Figures {
+#define FIELD(name) double name;
+    FIGURES(FIELD)
+#undef FIELD
+} Figures;
+
+static int frames = 12, threads = 2, rounds = 1;
+static char *detail = NULL, *only = NULL, *json = NULL, *other = NULL, *run = NULL;
+
+static const GOptionEntry options[] = {
+    {"frames", 0, 0, G_OPTION_ARG_INT, &frames, "timed frames of each case", "N"},
+    {"threads", 0, 0, G_OPTION_ARG_INT, &threads, "threads", "N"},
+    {"detail", 0, 0, G_OPTION_ARG_STRING, &detail, "draft, normal or fine", "WORD"},
+    {"case", 0, 0, G_OPTION_ARG_STRING, &only, "this case only", "NAME"},
+    {"json", 0, 0, G_OPTION_ARG_FILENAME, &json, "write the figures", "FILE"},
+    {"rounds", 0, 0, G_OPTION_ARG_INT, &rounds, "medians of N runs", "N"},
+    {"compare", 0, 0, G_OPTION_ARG_FILENAME, &other, "another build's bench", "PROGRAM"},
+    {"run", 0, G_OPTION_FLAG_HIDDEN, G_OPTION_ARG_STRING, &run, NULL, NULL},
+    {0}};
+
+/* A three-lobed blob that turns, breathes and drifts; made anew at every call. */
+static bool blob(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    const Case *c = data;
+    const double radius = sqrt(c->painted_px / (G_PI * 1.02)), phase = frame * 0.12;
+    const double cx = c->width * 0.5 + 8 * sin(phase), cy = c->height * 0.5 + 8 * cos(0.7 * phase);
+    memset(coverage, 0, (size_t)c->width * c->height);
+    for (int y = 0; y < c->height; y++)
+        for (int x = 0; x < c->width; x++) {
+            const double dx = x - cx, dy = y - cy, r = hypot(dx, dy);
+            if (r > 1.25 * radius)
+                continue;
+            const double lobes = 0.2 * (1 + 0.2 * sin(phase)) * sin(3 * atan2(dy, dx) + phase);
+            const double inside = radius * (1 + lobes) - r + 0.5;
+            coverage[(size_t)y * c->width + x] = (uint8_t)(CLAMP(inside, 0, 1) * 255);
+        }
+    return true;
+}
+
+static double seconds(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* A case in hand. */
+typedef struct Bench {
+    const Case *c;
+    FlSynth *synth;
+    FlGuideSequence *sequence;
+    FlGuides guides;
+    uint8_t *rgb;
+} Bench;
+
+static bool timed_frames(Bench *b, Figures *f, GError **error)
+{
+    double wall = 0, cpu = 0;
+    for (int k = 0; k <= frames; k++) {
+        const double start = seconds(CLOCK_MONOTONIC);
+        if (!fl_guide_sequence_get(b->sequence, k, &b->guides, error))
+            return false;
+        const double painting = seconds(CLOCK_MONOTONIC);
+        const double used = seconds(CLOCK_PROCESS_CPUTIME_ID);
+        if (!fl_synth_frame(b->synth, &b->guides, b->rgb, NULL, NULL, error))
+            return false;
+        const double took = seconds(CLOCK_MONOTONIC) - painting;
+        f->guides_s += (painting - start) / (frames + 1);
+        if (k == 0)
+            f->first_frame_s = took;
+        else
+            wall += took, cpu += seconds(CLOCK_PROCESS_CPUTIME_ID) - used;
+    }
+    f->frame_s = wall / frames;
+    f->core_s_per_mpx = cpu / frames * 1e6; // to be divided by the pixels
+    return true;
+}
+
+static bool measured_frames(Bench *b, Figures *f, GError **error)
+{
+    double tried = 0;
+    for (int k = 1; k <= FRAMES_MEASURED; k++) {
+        FlFrameStats s;
+        if (!fl_guide_sequence_get(b->sequence, frames + k, &b->guides, error) ||
+            !fl_synth_frame(b->synth, &b->guides, b->rgb, &s, NULL, error))
+            return false;
+        for (int l = 0; l < s.n_levels; l++)
+            tried += (double)s.level[l].counts.tried / FRAMES_MEASURED;
+        f->energy += s.level[0].energy / FRAMES_MEASURED;
+        f->painted_px += (double)s.level[0].pixels / FRAMES_MEASURED;
+        f->target_s += s.seconds_target / FRAMES_MEASURED;
+        f->temporal_s += s.seconds_temporal / FRAMES_MEASURED;
+        f->search_s += s.seconds_search / FRAMES_MEASURED;
+        f->vote_s += s.seconds_vote / FRAMES_MEASURED;
+    }
+    f->evaluations_per_px = tried / f->painted_px;
+    f->evaluations_per_s_core = tried / f->search_s / threads;
+    f->core_s_per_mpx /= f->painted_px;
+    f->s_per_mpx = f->frame_s / f->painted_px * 1e6;
+    return true;
+}
+
+static bool run_case(const Case *c, Figures *f, GError **error)
+{
+    g_autofree char *folder = g_build_filename(FL_BUILD_STYLE_DIR, c->style, NULL);
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = fl_style_load(folder, error);
+    g_autoptr(FlExemplar) exemplar = style ? fl_exemplar_new(style, params, error) : NULL;
+    if (!exemplar)
+        return false;
+    const FlGuideParams how = fl_guide_params(params);
+    const FlGuideSource source = {c->width, c->height, frames + 1 + FRAMES_MEASURED,
+                                  blob,     NULL,      (void *)c};
+    const FlSynthSize size = {c->width, c->height, c->width, c->height};
+    Bench b = {.c = c};
+    const double start = seconds(CLOCK_MONOTONIC);
+    b.sequence = fl_guide_sequence_new(&source, &how, error);
+    f->guides_s = (seconds(CLOCK_MONOTONIC) - start) / source.n_frames;
+    b.synth = b.sequence ? fl_synth_new(exemplar, params, size, 1, error) : NULL;
+    b.rgb = g_malloc(3 * (size_t)c->width * c->height);
+    const bool ok = b.synth && fl_guides_init(&b.guides, c->width, c->height, error) &&
+                    timed_frames(&b, f, error) && measured_frames(&b, f, error);
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    f->peak_mib = (double)usage.ru_maxrss / 1024;
+    g_free(b.rgb);
+    fl_guides_clear(&b.guides);
+    fl_synth_free(b.synth);
+    fl_guide_sequence_free(b.sequence);
+    return ok;
+}
+
+static char *as_json(const Figures *f)
+{
+    GString *text = g_string_new("{");
+#define WRITE(name)                                                                                \
+    g_string_append_printf(text, "%s\"%s\": %.6g", text->len > 1 ? ", " : "", #name, f->name);
+    FIGURES(WRITE)
+#undef WRITE
+    g_string_append(text, "}");
+    return g_string_free(text, FALSE);
+}
+
+static double figure_in(const char *text, const char *name)
+{
+    g_autofree char *key = g_strdup_printf("\"%s\": ", name);
+    const char *at = strstr(text, key);
+    return at ? g_ascii_strtod(at + strlen(key), NULL) : NAN;
+}
+
+/* Runs a case in a process of its own. */
+static bool spawn(const char *program, const char *name, Figures *f, GError **error)
+{
+    g_autofree char *n = g_strdup_printf("%d", frames), *t = g_strdup_printf("%d", threads);
+    g_autofree char *text = NULL;
+    const char *argv[] = {program, "--run",     name, "--frames",
+                          n,       "--threads", t,    detail ? "--detail" : NULL,
+                          detail,  NULL};
+    int status;
+    if (!g_spawn_sync(NULL, (char **)argv, NULL, 0, NULL, NULL, &text, NULL, &status, error) ||
+        !g_spawn_check_wait_status(status, error))
+        return false;
+#define READ(name) f->name = figure_in(text, #name);
+    FIGURES(READ)
+#undef READ
+    return true;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static Figures medians(const Figures *runs, int n)
+{
+    Figures f;
+    g_autofree double *values = g_new(double, n);
+#define MEDIAN(name)                                                                               \
+    for (int k = 0; k < n; k++)                                                                    \
+        values[k] = runs[k].name;                                                                  \
+    qsort(values, n, sizeof *values, by_value);                                                    \
+    f.name = n % 2 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
+    FIGURES(MEDIAN)
+#undef MEDIAN
+    return f;
+}
+
+static void print_row(const char *name, const Figures *f)
+{
+    printf("%-10s %7.0f %8.3f %8.3f %7.3f %7.3f %7.3f %7.3f %7.3f %8.2f %7.1f %7.1f %7.3f %6.0f\n",
+           name, f->painted_px, f->frame_s, f->first_frame_s, f->guides_s, f->target_s,
+           f->temporal_s, f->search_s, f->vote_s, f->core_s_per_mpx, f->evaluations_per_px,
+           f->evaluations_per_s_core * 1e-6, f->energy, f->peak_mib);
+}
+
+/* One case, in this program and the other in turn. */
+static bool compare_case(const char *self, const Case *c, GString *out, GError **error)
+{
+    g_autofree Figures *own = g_new0(Figures, rounds), *others = g_new0(Figures, rounds);
+    for (int k = 0; k < rounds; k++)
+        if (!spawn(self, c->name, &own[k], error) ||
+            (other && !spawn(other, c->name, &others[k], error)))
+            return false;
+    const Figures f = medians(own, rounds);
+    print_row(c->name, &f);
+    g_autofree char *text = as_json(&f);
+    g_string_append_printf(out, "%s\n  \"%s\": %s", out->len > 1 ? "," : "", c->name, text);
+    if (!other)
+        return true;
+    const Figures o = medians(others, rounds);
+    print_row("  other", &o);
+    printf("  ratio    frame %.2f, core-s/Mpx %.2f, evaluations/s %.2f, energy %.3f, memory %.2f\n",
+           f.frame_s / o.frame_s, f.core_s_per_mpx / o.core_s_per_mpx,
+           f.evaluations_per_s_core / o.evaluations_per_s_core, f.energy / o.energy,
+           f.peak_mib / o.peak_mib);
+    return true;
+}
+
+static bool run_hidden(const char *name, GError **error)
+{
+#ifdef _OPENMP
+    omp_set_num_threads(threads);
+#endif
+    for (size_t k = 0; k < G_N_ELEMENTS(cases); k++)
+        if (g_str_equal(cases[k].name, name)) {
+            Figures f = {0};
+            if (!run_case(&cases[k], &f, error))
+                return false;
+            g_autofree char *text = as_json(&f);
+            puts(text);
+        }
+    return true;
+}
+
+static bool run_all(const char *self, GError **error)
+{
+    g_autoptr(GString) out = g_string_new("{");
+    printf("%d frames, %d threads, medians of %d; seconds per frame\n", frames, threads, rounds);
+    puts("case       painted    frame    first  guides  target    temp  search    vote core/Mpx"
+         " eval/px M/s*core energy    MiB");
+    for (size_t k = 0; k < G_N_ELEMENTS(cases); k++)
+        if ((!only || g_str_equal(cases[k].name, only)) &&
+            !compare_case(self, &cases[k], out, error))
+            return false;
+    g_string_append(out, "\n}\n");
+    return !json || g_file_set_contents(json, out->str, -1, error);
+}
+
+int main(int argc, char **argv)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(GOptionContext) context = g_option_context_new(NULL);
+    g_option_context_add_main_entries(context, options, NULL);
+    if (!g_option_context_parse(context, &argc, &argv, &error) ||
+        !(run ? run_hidden(run, &error) : run_all(argv[0], &error))) {
+        fprintf(stderr, "bench: %s\n", error->message);
+        return 1;
+    }
+    return 0;
+}
