@@ -1,4 +1,5 @@
 #include "guide_shapes.h"
+#include "guides/blur.h"
 #include "guides/guides.h"
 #include <math.h>
 #include <stdlib.h>
@@ -81,6 +82,19 @@ static void the_edge_guide_is_steep_at_the_contour_and_grows_to_the_border(void)
         g_assert_cmpfloat_with_epsilon(shape[k], expected[k], 1e-6);
 }
 
+static void a_blurred_ramp_stays_a_ramp_and_a_peak_becomes_a_gaussian(void)
+{
+    g_autoptr(GError) error = NULL;
+    float ramp[41 * 41], peak[41 * 41] = {0};
+    for (int p = 0; p < 41 * 41; p++)
+        ramp[p] = (float)(p % 41) + 0.5f * (float)(p / 41);
+    peak[20 * 41 + 20] = 1;
+    g_assert_true(fl_blur(ramp, 41, 41, 2, &error) && fl_blur(peak, 41, 41, 2, &error));
+    g_assert_cmpfloat_with_epsilon(ramp[20 * 41 + 20], 30, 1e-4);
+    g_assert_cmpfloat_with_epsilon(peak[20 * 41 + 20], 0.0399, 3e-4); // 1 / (2 pi sigma²), cut
+    g_assert_cmpfloat_with_epsilon(peak[20 * 41 + 22] / peak[20 * 41 + 20], exp(-0.5), 1e-4);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -89,6 +103,7 @@ int main(int argc, char **argv)
     TEST(the_blur_is_a_gaussian_of_a_third_of_the_border);
     TEST(a_border_of_nothing_leaves_the_coverage);
     TEST(the_ramp_goes_from_the_contour_to_the_border);
+    TEST(a_blurred_ramp_stays_a_ramp_and_a_peak_becomes_a_gaussian);
     TEST(the_edge_guide_is_steep_at_the_contour_and_grows_to_the_border);
 #undef TEST
     return g_test_run();

@@ -3,10 +3,11 @@
  * order, and each stage keeps a window of them:
  *
  *   outline_of   mask, box, distance
- *   distance_of  the distance smoothed along time, if asked for [P21 §4.1]
+ *   distance_of  the distance smoothed along time and in space, if asked for [P21 §4.1]
  *   motion_of    the flow of one interval
  *   finish_frame the flow smoothed along time [F21 App. A], direction, extent; into the spill
  */
+#include "guides/blur.h"
 #include "guides/direction.h"
 #include "guides/extent.h"
 #include "guides/flow.h"
@@ -34,6 +35,7 @@ typedef struct Smoothed {
 
 typedef struct Builder {
     FlGuideSequence *sequence;
+    bool smooths;                     // distances, before flow is made from them
     int flow_radius, dist_radius;     // frames on either side
     float *flow_weight, *dist_weight; // radius + 1
     int n_slots;
@@ -90,6 +92,7 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
     *b = (Builder){.sequence = sequence};
     b->flow_weight = temporal_weights(sequence->params.flow_sigma_frames, &b->flow_radius);
     b->dist_weight = temporal_weights(sequence->params.dist_sigma_frames, &b->dist_radius);
+    b->smooths = b->dist_radius > 0 || sequence->params.dist_sigma_px > 0.0f;
     const int n_slots = 2 * (b->flow_radius + b->dist_radius) + 4;
     b->outlines = g_new0(OutlineSlot, n_slots);
     b->motions = g_new0(Motion, n_slots);
@@ -131,7 +134,7 @@ static bool outline_of(Builder *b, int frame, FlOutline **outline, GError **erro
 }
 
 /** Weighted mean of the distances around a frame, frames without a shape left out. */
-static bool smooth_distance(Builder *b, int frame, float *distance, GError **error)
+static bool mean_distance(Builder *b, int frame, float *distance, GError **error)
 {
     const size_t n = (size_t)b->sequence->source.width * b->sequence->source.height;
     float norm = 0.0f;
@@ -152,6 +155,14 @@ static bool smooth_distance(Builder *b, int frame, float *distance, GError **err
     return true;
 }
 
+static bool smooth_distance(Builder *b, int frame, float *distance, GError **error)
+{
+    const FlGuideSource *source = &b->sequence->source;
+    const float sigma = b->sequence->params.dist_sigma_px;
+    return mean_distance(b, frame, distance, error) &&
+           (sigma <= 0.0f || fl_blur(distance, source->width, source->height, sigma, error));
+}
+
 /** The frame with the distance field that its motion is taken from. */
 static bool distance_of(Builder *b, int frame, FlFlowFrame *out, GError **error)
 {
@@ -159,7 +170,7 @@ static bool distance_of(Builder *b, int frame, FlFlowFrame *out, GError **error)
     if (!outline_of(b, frame, &outline, error))
         return false;
     *out = (FlFlowFrame){outline, outline ? outline->distance : NULL};
-    if (!outline || outline->empty || b->dist_radius == 0)
+    if (!outline || outline->empty || !b->smooths)
         return true;
     Smoothed *slot = &b->smoothed[frame % 3];
     const size_t n = (size_t)outline->frame_width * outline->frame_height;
@@ -183,7 +194,7 @@ static bool construct_motion(Builder *b, int frame, float **flow, GError **error
     if (!distance_of(b, frame - 1, &before, error) || !distance_of(b, frame, &now, error) ||
         !distance_of(b, frame + 1, &after, error))
         return false;
-    if (now.outline->empty || (b->dist_radius == 0 && now.outline == before.outline))
+    if (now.outline->empty || (!b->smooths && now.outline == before.outline))
         return true;
     g_autofree float *fresh = g_try_new(float, 2 * fl_box_area(&now.outline->box));
     bool moves;

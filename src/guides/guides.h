@@ -13,6 +13,8 @@ typedef struct FlGuideParams {
         dist_sigma_frames; // temporal Gaussian on the distance, the thesis' way [P21 §4.1]; 0: none
     float still_px;        // slower than this the direction is the outward normal's; px/frame
     float flow_limit;      // a contour moves at most this share of the larger side in one frame
+    float dist_sigma_px; // spatial Gaussian on the distance that flow is made from [P21 §4.1]; 0:
+                         // none
 } FlGuideParams;
 
 /**

@@ -18,6 +18,7 @@ FlGuideParams fl_guide_params(const FlParams *params)
 {
     return (FlGuideParams){.flow_sigma_frames = params->flow_sigma,
                            .dist_sigma_frames = params->time_blur_sigma,
+                           .dist_sigma_px = params->blur_sigma,
                            .still_px = params->flow_still,
                            .flow_limit = params->flow_limit};
 }
