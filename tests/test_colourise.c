@@ -202,6 +202,21 @@ static void more_paint_never_looks_like_less(void)
     }
 }
 
+static void a_line_too_thin_for_an_interior_gets_its_colour_too(void)
+{
+    enum { LENGTH = 90, WIDE = 2 };
+    g_auto(Sample) s = sample_load("drop-30");
+    g_autoptr(FlInk) ink = ink_of(&s, drop_paper);
+    uint8_t painted[3 * LENGTH * WIDE], coverage[LENGTH * WIDE];
+    for (int i = 0; i < LENGTH * WIDE; i++)
+        memcpy(painted + 3 * i, (uint8_t[]){220, 180, 210}, 3); // thinner than the median
+    memset(coverage, 200, sizeof coverage);
+    const int amount = fl_ink_amount(ink, painted);
+    const int tone = fl_ink_tone(ink, painted, coverage, LENGTH, WIDE);
+    g_assert_cmpint(amount, <, FL_AMOUNT_ONE / 2);
+    g_assert_cmpint(abs(fl_ink_toned(ink, amount, tone) - FL_AMOUNT_ONE), <, FL_AMOUNT_ONE / 50);
+}
+
 static void dense_cores_keep_texture_and_soft_rims_fade(void)
 {
     g_auto(Sample) s = sample_load("drop-30");
@@ -285,6 +300,8 @@ int main(int argc, char **argv)
                     bare_paper_is_transparent_and_thin_paint_is_thin);
     g_test_add_func("/colourise/more-paint-never-looks-like-less",
                     more_paint_never_looks_like_less);
+    g_test_add_func("/colourise/a-line-too-thin-for-an-interior-gets-its-colour-too",
+                    a_line_too_thin_for_an_interior_gets_its_colour_too);
     g_test_add_func("/colourise/dense-cores-keep-texture-and-soft-rims-fade",
                     dense_cores_keep_texture_and_soft_rims_fade);
     g_test_add_func("/colourise/a-picture-of-one-colour-is-as-good-as-a-flat-fill",

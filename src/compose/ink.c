@@ -135,14 +135,28 @@ void fl_ink_free(FlInk *ink)
     g_free(ink);
 }
 
-/** Inside the shape and at least `margin` px away from its contour along both axes. */
+/** Inside the shape and, with a margin, at least that far from its contour along both axes. */
 static bool is_inner(const uint8_t *coverage, int width, int height, int x, int y, int margin)
 {
     const uint8_t *at = coverage + (size_t)y * width + x;
+    if (margin == 0)
+        return *at >= INSIDE;
     return *at == 255 && (x < margin || at[-margin] == 255) &&
            (x >= width - margin || at[margin] == 255) &&
            (y < margin || at[-(ptrdiff_t)margin * width] == 255) &&
            (y >= height - margin || at[(ptrdiff_t)margin * width] == 255);
+}
+
+static void count_inner(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage,
+                        int width, int height, int margin, Histogram *h)
+{
+    memset(h, 0, sizeof *h);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            if (is_inner(coverage, width, height, x, y, margin)) {
+                h->count[fl_ink_amount(ink, painted + 3 * ((size_t)y * width + x))]++;
+                h->total++;
+            }
 }
 
 int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
@@ -150,12 +164,8 @@ int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverag
 {
     enum { MARGIN_PX = 2, ENOUGH = 64 };
     g_autofree Histogram *h = g_new0(Histogram, 1);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++)
-            if (is_inner(coverage, width, height, x, y, MARGIN_PX)) {
-                h->count[fl_ink_amount(ink, painted + 3 * ((size_t)y * width + x))]++;
-                h->total++;
-            }
+    for (int margin = MARGIN_PX; margin >= 0 && h->total < ENOUGH; margin--)
+        count_inner(ink, painted, coverage, width, height, margin, h);
     if (h->total == 0)
         return FL_TONE_ONE;
     const int tone = FL_TONE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
