@@ -37,9 +37,9 @@ static const Case cases[] = {
 /* What one run of a case says; the words are the JSON's. */
 #define FIGURES(F)                                                                                 \
     F(frame_s)                                                                                     \
-    F(first_frame_s) F(guides_s) F(target_s) F(temporal_s) F(search_s) F(vote_s) F(core_s_per_mpx) \
-        F(s_per_mpx) F(evaluations_per_px) F(evaluations_per_s_core) F(energy) F(painted_px)       \
-            F(peak_mib)
+    F(first_frame_s)                                                                               \
+    F(guides_s) F(target_s) F(temporal_s) F(search_s) F(vote_s) F(core_s_per_mpx) F(s_per_mpx)     \
+        F(evaluations_per_px) F(evaluations_per_s_core) F(energy) F(painted_px) F(peak_mib)
 
 typedef struct Figures {
 #define FIELD(name) double name;

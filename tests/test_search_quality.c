@@ -124,8 +124,8 @@ static void compare_after_rounds(Case *c, double *found, double *best)
 {
     searched(c, 0, 6);
     for (int round = 0; round < 3; round++) {
-        fl_vote(&c->nnf, c->search.level, c->search.kernels, c->params->vote_sharpness, c->target.level[0].colour,
-                NULL);
+        fl_vote(&c->nnf, c->search.level, c->search.kernels, c->params->vote_sharpness,
+                c->target.level[0].colour, NULL);
         searched(c, 1, 6);
     }
     compare_samples(c, found, best);

@@ -91,8 +91,14 @@ static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *b
         return false;
     if (painter) {
         const FlColouring how = colouring_of(plan, background, painter, run, tones[p]);
+        uint8_t *body = fl_alloc(fl_box_pixels(layer->box), 1, "a layer", error);
+        if (!body)
+            return false;
         fl_colourise(painter->box->ink, &how, painter->painted, run->coverage, width, layer->box,
                      layer->rgba);
+        fl_colourise_body(painter->box->ink, &how, painter->painted, run->coverage, width,
+                          layer->box, body);
+        layer->body = body;
     } else {
         fl_colourise_plain(run->picture, run->rgb, run->coverage, width, layer->box, layer->rgba);
     }
@@ -171,6 +177,7 @@ void fl_composite_clear(FlComposite *composite)
 {
     for (int k = 0; k < composite->n_layers; k++) {
         free(composite->layers[k].rgba);
+        free((uint8_t *)composite->layers[k].body);
         g_free(composite->names[k]);
     }
     g_free(composite->layers);

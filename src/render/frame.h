@@ -21,7 +21,7 @@ bool fl_background_init(FlBackground *background, const FlPlan *plan, GError **e
 typedef struct FlComposite {
     FlRuns *runs;
     int n_layers;
-    FlLayer *layers;  // bottom first; rgba is owned
+    FlLayer *layers;  // bottom first; rgba and body are owned
     char **names;     // of the layers, for files: unique in the frame
     uint8_t *rgba;    // width * height * 4 straight sRGBA
     uint16_t *rgba16; // NULL unless asked for

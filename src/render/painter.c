@@ -94,8 +94,8 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     const FlBox rect = painter->rect;
     guides->width = rect.width, guides->height = rect.height;
     if (!fl_guide_sequence_get(painter->guides, frame / painter->treatment.hold, guides, error) ||
-        !fl_synth_frame(painter->synth, guides, painter->part, &painter->stats, &painter->view,
-                        error))
+        !fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
+                        painter->wants_view ? &painter->view : NULL, error))
         return false;
     for (int y = 0; y < rect.height; y++)
         memcpy(painter->painted + 3 * ((size_t)(rect.y + y) * painter->width + rect.x),

@@ -24,6 +24,7 @@ typedef struct FlPainter {
     uint8_t *painted; // width * height * 3 sRGB, paper outside rect
     uint8_t *part;    // the same of rect
     FlFrameStats stats;
+    bool wants_view; // set by whoever looks at `view`, which keeps a frame's worth of memory
     FlSynthView view;
     double seconds; // that the last frame took
 } FlPainter;

@@ -55,12 +55,6 @@ static bool check_region_names(const FlPlan *plan, GError **error)
     return true;
 }
 
-/* Every flow file must say which frame it is for; with more regions than one, which region, too. */
-static char *flow_pattern(const FlPlan *plan)
-{
-    return g_strdup(plan->options.flow);
-}
-
 static bool add_painter(FlPlan *plan, int region, GError **error)
 {
     const FlRegion *r = fl_film_region(plan->film, region);
@@ -84,7 +78,8 @@ static bool add_painter(FlPlan *plan, int region, GError **error)
     painter->region = region, painter->name = r->name, painter->area_px = r->area_px;
     painter->masks = plan->masks, painter->film = plan->film;
     painter->width = fl_film_width(plan->film), painter->height = fl_film_height(plan->film);
-    painter->flow_pattern = flow_pattern(plan);
+    painter->flow_pattern = g_strdup(plan->options.flow);
+    painter->wants_view = plan->options.dump != NULL;
     painter->box = fl_exemplars_get(plan->exemplars, &painter->treatment, error);
     if (painter->box && plan->options.verbose)
         note(plan, "region %s: style %s", r->name, painter->box->path);

@@ -384,5 +384,8 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
         *view = (FlSynthView){rect, &synth->nnf[0], synth->previous.valid ? full->temporal : NULL,
                               synth->previous.valid ? full->temporal_weight : NULL};
     synth->frame++;
-    return remember(synth, error);
+    const bool remembered = remember(synth, error);
+    if (!view)
+        clear_frame(synth);
+    return remembered;
 }

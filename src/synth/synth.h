@@ -51,7 +51,8 @@ void fl_synth_free(FlSynth *synth); // NULL is fine
  * Paints the next frame. rgb: width * height * 3 sRGB, written in the mask and a rim of 2 px, the
  * style's paper elsewhere. An empty mask makes the next frame a first frame again.
  *
- * stats and view may be NULL. Statistics take a few hundredths of the time.
+ * stats and view may be NULL; without a view nothing of the frame but its field is kept. Statistics
+ * take a few hundredths of the time.
  */
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
