@@ -123,6 +123,9 @@ static bool write_layers(const Job *job, const FlComposite *composite, int frame
                    layer->rgba + 4 * (size_t)y * layer->box.width, 4 * (size_t)layer->box.width);
         const FlPng png = {.width = width, .height = height, .rgba = rgba};
         const bool overwrite = plan->options.overwrite == FL_OVERWRITE_YES;
+        const bool keep = plan->options.overwrite == FL_OVERWRITE_KEEP;
+        if (keep && g_file_test(path, G_FILE_TEST_EXISTS))
+            continue;
         if (!fl_png_save(&png, path, overwrite, error))
             return false;
     }
@@ -216,6 +219,28 @@ static void clear(Job *job)
     fl_plan_free(job->plan);
 }
 
+/* What could still go wrong before the first frame, without touching the output. */
+static bool rehearse(Job *job, GError **error)
+{
+    return fl_background_init(&job->background, job->plan, error);
+}
+
+static void summarise(const Job *job)
+{
+    const FlPlan *plan = job->plan;
+    const int n = fl_film_frames(plan->film);
+    if (!plan->options.note)
+        return;
+    g_autofree char *line =
+        plan->options.dry_run
+            ? g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s", n,
+                              n == 1 ? "" : "s", fl_film_width(plan->film),
+                              fl_film_height(plan->film), plan->n_painters,
+                              plan->n_painters == 1 ? "" : "s", plan->output)
+            : g_strdup_printf("painted %d frame%s: %s", n, n == 1 ? "" : "s", plan->output);
+    plan->options.note(line, plan->options.data);
+}
+
 bool fl_render(const FlRenderOptions *options, GError **error)
 {
     Job job = {.start = g_get_monotonic_time()};
@@ -224,12 +249,9 @@ bool fl_render(const FlRenderOptions *options, GError **error)
         omp_set_num_threads(options->threads);
 #endif
     job.plan = fl_plan_new(options, error);
-    const bool done = job.plan && run(&job, error);
-    if (done && options->note) {
-        g_autofree char *line = g_strdup_printf("painted %d frames: %s",
-                                                fl_film_frames(job.plan->film), job.plan->output);
-        options->note(line, options->data);
-    }
+    const bool done = job.plan && (options->dry_run ? rehearse(&job, error) : run(&job, error));
+    if (done)
+        summarise(&job);
     clear(&job);
     return done;
 }

@@ -84,7 +84,7 @@ refuses 'an output of no known kind lists the kinds' 2 'w_%d.bmp: *' whole -o w_
 refuses 'an unknown style gets a suggestion' 1 'no style “0l” *did you mean “0?”?' whole -s 0l
 refuses 'no style asks for one' 2 '*--style*' whole
 refuses 'a style that is not there is named' 1 './nowhere: *' whole -s ./nowhere
-refuses 'an unknown region lists the regions' 2 "there is no region *" whole --region hare $look
+refuses 'an unknown region lists the regions' 2 'there is no region “hare”; there are: *' whole --region hare $look
 refuses 'a background that is not there is named' 1 'paper.png: *' whole -b paper.png $look
 refuses 'flow that is not there is named' 1 '*flow_*.flo: *' whole --flow flow_%04d.flo $look
 mkdir locked && chmod 0 locked
@@ -99,6 +99,21 @@ result $? '--help goes to standard output'
 result $? '--help-all has the parameters of the synthesis'
 "$program" -V >out 2>err && grep -qE '^fluidy-svg [0-9]+\.[0-9]+' out
 result $? '--version is the name and a number'
+
+"$program" whole -s 01 --dry-run >out 2>err && [ ! -d fluidy ] &&
+    grep -q 'would paint 3 frames of 64x48 pixels, 1 region: fluidy/w_%04d.png' err
+result $? '--dry-run says what would be painted'
+"$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' >out 2>err &&
+    [ "$(ls a | wc -l)" = 6 ] && [ ! -s out ]
+result $? 'frames and layers are painted'
+cp -r a b
+refuses 'a frame that exists is not painted over' 1 'a/w_1.png: exists already; *' whole -s 01 -o 'a/w_%d.png'
+refuses 'a layer that exists is not painted over' 1 'a/*_1.png: exists already; *' \
+    whole -s 01 -o 'c/w_%d.png' --layers 'a/{region}_%d.png'
+rm a/w_2.png && touch -d @0 a/w_1.png
+"$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' --no-clobber -j1 \
+    >out 2>err && [ "$(stat -c %Y a/w_1.png)" = 0 ] && diff -r a b >out
+result $? '--no-clobber paints what is missing, and gives the same bytes'
 
 film=$fixtures/animations/snowman-wave-layers
 "$program" --list-regions "$film" >out 2>err && [ ! -s err ] &&

@@ -137,6 +137,26 @@ static void later_words_win_and_a_preset_goes_first(void)
     g_assert_cmpint(other.hold, ==, 2);
 }
 
+static void detail_is_between_preset_and_parameters(void)
+{
+    g_autoptr(FlConfig) config = load("[region a]\nfinest-rounds = 5\ndetail = draft\n"
+                                      "[region b]\ndetail = fine\npreset = thesis\n");
+    const FlRenderOptions options = {0};
+    const FlSetting normal = {NULL, "detail", "normal"};
+    const FlRenderOptions again = {.settings = &normal, .n_settings = 1};
+    g_auto(FlTreatment) a = {0}, b = {0}, c = {0}, preset = {0};
+    fl_treatment_init(&preset);
+    g_assert_true(fl_config_treatment(config, 0, "a", &options, &a, NULL));
+    g_assert_true(fl_config_treatment(config, 1, "b", &options, &b, NULL));
+    g_assert_true(fl_config_treatment(config, 0, "a", &again, &c, NULL));
+    g_assert_cmpint(a.detail, ==, FL_DETAIL_DRAFT);
+    g_assert_cmpint(a.params.finest_rounds, ==, 5);
+    g_assert_cmpint(fl_list_at(&a.params.opt_iterations, 0), ==, 2);
+    g_assert_cmpint(b.params.finest_rounds, ==, 2);
+    g_assert_cmpfloat(b.params.w_bound, ==, 5);
+    g_assert_cmpmem(&c.params, sizeof c.params, &preset.params, sizeof preset.params);
+}
+
 static void the_options_win_over_the_project(void)
 {
     g_autoptr(FlConfig) config =
@@ -164,6 +184,7 @@ int main(int argc, char **argv)
     CASE(a_file_that_cannot_be_read_is_named);
     CASE(the_example_of_the_manual_is_read);
     CASE(later_words_win_and_a_preset_goes_first);
+    CASE(detail_is_between_preset_and_parameters);
     CASE(the_options_win_over_the_project);
     const int status = g_test_run();
     g_autofree char *path = g_build_filename(folder, "shot.conf", NULL);

@@ -108,14 +108,15 @@ typedef struct FlRenderOptions {
     double gap;             /**< px of paper around a region that hides others, ..32; 0: none */
     double feather;         /**< px over which paint fades towards such a region, ..32; 0: none */
     FlBlend blend;
-    double fps; /**< frames per second of the film, for the exemplar's speed; 0: 24 */
+    double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
     FlOverwrite overwrite;
     const char *stats; /**< JSON lines about every frame, region and level; NULL: none */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: none */
 
     /* How it runs. */
-    int threads; /**< 0: one per processor. The bytes do not depend on it */
+    bool dry_run; /**< decide and check everything, tell it, and paint nothing */
+    int threads;  /**< 0: one per processor. The bytes do not depend on it */
     /** Called after every frame of a stage, from the calling thread; false stops the render with
      *  FL_ERROR_INTERRUPTED. NULL: nothing is called. */
     bool (*progress)(const FlProgress *progress, void *data);

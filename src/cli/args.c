@@ -169,6 +169,8 @@ static gboolean read_flag(const char *name, const char *value, gpointer data, GE
         args->quiet = true;
     if (strcmp(name, "-v") == 0 || strcmp(name, "--verbose") == 0)
         args->render.verbose = true;
+    if (strcmp(name, "--dry-run") == 0)
+        args->render.dry_run = true;
     if (strcmp(name, "--strict") == 0)
         args->render.strict = true;
     return TRUE;
@@ -198,13 +200,13 @@ static const GOptionEntry common[] = {
     {"style", 's', VALUE(read_setting), "paint every region with this exemplar", "NAME|DIR"},
     {"config", 'c', VALUE(read_path), "which region is painted how", "FILE"},
     {"frames", 'f', VALUE(read_path), "such as 1001-1096, 1-96x2 or 1,5,9 (all)", "RANGE"},
-    {"output", 'o', VALUE(read_path), "painted frames (fluidy/NAME_%04d.png)", "PATTERN"},
+    {"output", 'o', VALUE(read_path), "frames or a film (fluidy/NAME_%04d.png)", "PATTERN|FILE"},
     {"layers", 0, VALUE(read_path), "also one file per {region} and frame", "PATTERN"},
     {"width", 'W', VALUE(read_number), "width of the output, aspect kept", "PX"},
     {"height", 'H', VALUE(read_number), "height of the output, aspect kept", "PX"},
     {"scale", 0, VALUE(read_number), "output pixels per drawing pixel (1)", "FACTOR"},
     {"background", 'b', VALUE(read_path), "#RRGGBB, none or an image (the paper)", "COLOUR|FILE"},
-    {"fps", 0, VALUE(read_number), "frames per second of the film (24)", "RATE"},
+    {"fps", 0, VALUE(read_number), "frames per second of a film (24)", "RATE"},
     {"hold", 0, VALUE(read_setting), "paint every n-th frame; 2: on twos (1)", "N"},
     {"detail", 0, VALUE(read_setting), "draft, normal or fine (normal)", "WORD"},
     {"tint", 0, VALUE(read_setting), "fill, keep or #RRGGBB (fill)", "TINT"},
@@ -219,6 +221,7 @@ static const GOptionEntry common[] = {
     {"format", 0, VALUE(read_choice), "of that list: table, or config to edit", "WORD"},
     {"list-styles", 0, FLAG(read_flag), "print the styles that are found", NULL},
     {"check", 0, FLAG(read_flag), "write maps of the regions instead of paint", NULL},
+    {"dry-run", 0, FLAG(read_flag), "check everything, paint nothing", NULL},
     {"help", 'h', FLAG(read_flag), "this page", NULL},
     {"help-all", 0, FLAG(read_flag), "all options", NULL},
     {"version", 'V', FLAG(read_flag), "name and version", NULL},
@@ -327,6 +330,25 @@ static void improve_unknown(GError **error)
                     "there is no option %s; see fluidy-svg --help-all", unknown);
 }
 
+/* GOption reads "-j 4" but not "-j4". Returns: to be freed with g_strfreev(). */
+static char **split_values(int argc, char **argv)
+{
+    GPtrArray *words = g_ptr_array_new();
+    bool options = true;
+    for (int i = 0; i < argc; i++) {
+        const char *word = argv[i];
+        options = options && strcmp(word, "--") != 0;
+        bool joined = false;
+        for (size_t k = 0; options && i > 0 && k < G_N_ELEMENTS(shorts); k++)
+            joined |= strncmp(word, shorts[k][0], 2) == 0 && word[2] != '\0';
+        if (joined)
+            g_ptr_array_add(words, g_strndup(word, 2));
+        g_ptr_array_add(words, g_strdup(joined ? word + 2 : word));
+    }
+    g_ptr_array_add(words, NULL);
+    return (char **)g_ptr_array_free(words, FALSE);
+}
+
 static bool needs_input(FlTask task)
 {
     return task == FL_TASK_RENDER || task == FL_TASK_LIST_REGIONS || task == FL_TASK_CHECK;
@@ -337,7 +359,7 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
     *args = (FlArgs){.settings = g_array_new(FALSE, TRUE, sizeof(FlSetting)),
                      .strings = g_ptr_array_new_with_free_func(g_free)};
     g_autoptr(GOptionContext) context = new_context(args);
-    args->inputs = g_strdupv(argv); // GOption takes out what it knows
+    args->inputs = split_values(argc, argv); // GOption takes out what it knows
     GError *problem = NULL;
     if (!g_option_context_parse_strv(context, &args->inputs, &problem)) {
         if (g_error_matches(problem, G_OPTION_ERROR, G_OPTION_ERROR_UNKNOWN_OPTION))

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef enum Kind { CHOICE, BOOL, INT, STYLE, TINT, PASS, NAME } Kind;
+typedef enum Kind { CHOICE, DETAIL, BOOL, INT, STYLE, TINT, PASS, NAME } Kind;
 
 static const struct Setting {
     const char *field;
@@ -102,6 +102,27 @@ static bool set_int(int *field, const char *form, const char *value)
     return sscanf(form, "%d-%d", &min, &max) == 2 && fl_text_integer(value, min, max, field);
 }
 
+/* Detail is a preset of what costs most time: the rounds and sweeps of the search. */
+static bool set_detail(FlTreatment *treatment, const char *form, const char *value)
+{
+    static const char *const keys[] = {"opt-iterations", "patchmatch-iterations", "finest-rounds",
+                                       "finest-sweeps"};
+    static const char *const values[][G_N_ELEMENTS(keys)] = {
+        [FL_DETAIL_DRAFT] = {"2,1", "4,2", "0", "1"},
+        [FL_DETAIL_FINE] = {"6,3,2", "6,4", "2", "4"},
+    };
+    int detail = 0;
+    if (!fl_text_choice(value, form, &detail))
+        return false;
+    treatment->detail = detail;
+    for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
+        const char *normal = fl_param_info(fl_param_find(keys[i]))->preset_default;
+        fl_params_set(&treatment->params, keys[i],
+                      detail == FL_DETAIL_NORMAL ? normal : values[detail][i], NULL);
+    }
+    return true;
+}
+
 static bool store(FlTreatment *treatment, const struct Setting *setting, const char *value,
                   const char *folder)
 {
@@ -109,6 +130,8 @@ static bool store(FlTreatment *treatment, const struct Setting *setting, const c
     switch (setting->kind) {
     case CHOICE:
         return fl_text_choice(value, setting->form, field);
+    case DETAIL:
+        return set_detail(treatment, setting->form, value);
     case BOOL:
         return fl_text_bool(value, field);
     case INT:
@@ -204,11 +227,17 @@ void fl_wishes_clear(FlWishes *wishes)
     *wishes = (FlWishes){0};
 }
 
+/* What sets several things goes before what sets one of them. */
+static int turn_of(const char *key)
+{
+    return strcmp(key, "preset") == 0 ? 0 : strcmp(key, "detail") == 0 ? 1 : 2;
+}
+
 void fl_wishes_apply(const FlWishes *wishes, FlTreatment *treatment)
 {
-    for (int presets = 1; presets >= 0; presets--)
+    for (int turn = 0; turn < 3; turn++)
         for (int i = 0; i < wishes->n; i++)
-            if ((strcmp(wishes->wish[i].key, "preset") == 0) == presets)
+            if (turn_of(wishes->wish[i].key) == turn)
                 fl_treatment_set(treatment, wishes->wish[i].key, wishes->wish[i].value,
                                  wishes->folder, NULL);
 }

@@ -74,7 +74,7 @@ bool fl_wishes_add(FlWishes *wishes, const char *key, const char *value, GError 
 
 void fl_wishes_clear(FlWishes *wishes);
 
-/** Applies them all, a preset first. They were checked when they were added. */
+/** Applies them all, a preset first, then the detail. They were checked when they were added. */
 void fl_wishes_apply(const FlWishes *wishes, FlTreatment *treatment);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlTreatment, fl_treatment_clear)

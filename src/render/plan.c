@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/first_error.h"
+#include "base/suggest.h"
 #include "output/name.h"
 #include "output/sink.h"
 #include "regions/opening.h"
@@ -36,8 +37,12 @@ static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
         g_ptr_array_add(names, fl_film_region(plan->film, r)->name);
     g_ptr_array_add(names, NULL);
     g_autofree char *list = g_strjoinv(", ", (char **)names->pdata);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no region '%s'; there are: %s", name,
-                list);
+    g_autofree char *hint = fl_did_you_mean(name, (const char *const *)names->pdata);
+    if (*hint)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no region “%s”%s", name, hint);
+    else
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no region “%s”; there are: %s", name,
+                    list);
     return false;
 }
 
@@ -70,7 +75,7 @@ static bool add_painter(FlPlan *plan, int region, GError **error)
     plan->n_painters++; // from here on the plan clears it
     if (!painter->treatment.style) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "no style for region '%s': expected --style NAME, or style = NAME in a config",
+                    "no style for region “%s”: expected --style NAME, or style = NAME in a config",
                     r->name);
         return false;
     }
@@ -127,22 +132,51 @@ static char *frame_file(const FlPlan *plan, int frame, GError **error)
     return fl_sink_file(&params, fl_film_number(plan->film, frame), error);
 }
 
-static bool outputs_are_free(const FlPlan *plan, GError **error)
+static bool is_free(const char *file, GError **error)
 {
-    if (plan->options.overwrite != FL_OVERWRITE_REFUSE)
+    if (!g_file_test(file, G_FILE_TEST_EXISTS))
         return true;
-    for (int f = 0; f < fl_film_frames(plan->film); f++) {
-        g_autofree char *file = frame_file(plan, f, error);
-        if (!file)
+    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
+                "%s: exists already; -y overwrites, --no-clobber keeps what is there", file);
+    return false;
+}
+
+static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
+{
+    for (int p = 0; plan->options.layers && p < plan->n_painters; p++) {
+        g_autofree char *file = fl_output_name(
+            plan->options.layers, fl_film_number(plan->film, frame), plan->painters[p].name, error);
+        if (!file || !is_free(file, error))
             return false;
-        if (g_file_test(file, G_FILE_TEST_EXISTS)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
-                        "%s: exists already; -y overwrites, --no-clobber keeps what is there",
-                        file);
-            return false;
-        }
     }
     return true;
+}
+
+static bool outputs_are_free(const FlPlan *plan, GError **error)
+{
+    const bool pattern = fl_output_is_pattern(plan->output);
+    if (plan->options.overwrite != FL_OVERWRITE_REFUSE)
+        return true;
+    if (!pattern && !is_free(plan->output, error))
+        return false;
+    for (int f = 0; f < fl_film_frames(plan->film); f++) {
+        g_autofree char *file = pattern ? frame_file(plan, f, error) : NULL;
+        if ((pattern && (!file || !is_free(file, error))) || !layers_are_free(plan, f, error))
+            return false;
+    }
+    return true;
+}
+
+/* One name for every region would let the last layer win. */
+static bool check_layers(const FlPlan *plan, GError **error)
+{
+    const char *pattern = plan->options.layers;
+    if (!pattern || plan->n_painters < 2 || strstr(pattern, "{region}"))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "%s: one file for %d regions; expected {region} in the name", pattern,
+                plan->n_painters);
+    return false;
 }
 
 bool fl_plan_keeps(const FlPlan *plan, int frame)
@@ -164,7 +198,7 @@ static bool make_plan(FlPlan *plan, GError **error)
     plan->masks = fl_masks_new(fl_film_regions(plan->film), fl_film_frames(plan->film),
                                fl_film_width(plan->film), fl_film_height(plan->film), error);
     return plan->masks && add_painters(plan, error) && name_output(plan, error) &&
-           outputs_are_free(plan, error);
+           check_layers(plan, error) && outputs_are_free(plan, error);
 }
 
 FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
