@@ -5,6 +5,7 @@
 #include "watercolour/noise.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { KEY_WOBBLE = 201, KEY_STREAKS };
 
@@ -151,7 +152,7 @@ static inline float sweep_speed(const Moment *now, FlTouch a, FlTouch b, float d
     return now->speed * (0.7f + 0.5f * open) * (1 - fmaxf(0, depth_px) / inside) * slope;
 }
 
-/* Sets the velocity of the water to that of the puddle that grows. */
+/* Adds the velocity of the puddle that grows to that of the water. */
 static void sweep(FlSheet *sheet, const Moment *now)
 {
     const int width = sheet->width;
@@ -162,16 +163,24 @@ static void sweep(FlSheet *sheet, const Moment *now)
             const size_t at = (size_t)j * width + i, face = at + (size_t)j;
             const float here = depth(sheet, now, i, j);
             const float left = depth(sheet, now, i - 1, j), up = depth(sheet, now, i, j - 1);
-            sheet->u[face] = sweep_speed(now, touches[at - 1], touches[at], fminf(left, here),
-                                         sheet->open_u[face]);
-            sheet->v[at] = sweep_speed(now, touches[at - width], touches[at], fminf(up, here),
-                                       sheet->open_v[at]);
+            sheet->u[face] += sweep_speed(now, touches[at - 1], touches[at], fminf(left, here),
+                                          sheet->open_u[face]);
+            sheet->v[at] += sweep_speed(now, touches[at - width], touches[at], fminf(up, here),
+                                        sheet->open_v[at]);
         }
+}
+
+static void still_water(FlSheet *sheet)
+{
+    memset(sheet->u, 0, sizeof(float) * (size_t)(sheet->width + 1) * sheet->height);
+    memset(sheet->v, 0, sizeof(float) * (size_t)sheet->width * (sheet->height + 1));
 }
 
 void fl_brush_apply(const FlBrush *brush, FlSheet *sheet, float before, float after)
 {
     const float scale = (float)brush->recipe->oversample;
+    if (!brush->recipe->flow.shallow) // water moves as its puddles grow, and stops with them
+        still_water(sheet);
     for (int e = 0; e < brush->recipe->n_events; e++) {
         const FlEvent *event = &brush->recipe->events[e];
         const bool starts = event->from >= before && event->from < after;

@@ -22,6 +22,7 @@ typedef struct Grain {
     float x, y;  // cells
     float reach; // how far from the stroke's outline it comes to rest in the end, px
     float start; // how far inside the outline it began, px
+    float grip;  // how deep the crumbling must reach to loosen it, in rims of the recipe
 } Grain;
 
 struct FlDustCloud {
@@ -72,6 +73,7 @@ static Grain place_grain(const FlRecipe *recipe, const FlSheet *sheet, uint64_t 
     }
     const float u = fl_rng_float(&rng);
     grain.reach = u * u; // most grains do not go far
+    grain.grip = 0.15f + 1.5f * fl_rng_float(&rng) * fl_rng_float(&rng);
     return grain;
 }
 
@@ -128,8 +130,7 @@ static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *gra
     const FlDust *dust = &recipe->dust;
     FlRng rng = {fl_key(fl_key(fl_key(recipe->seed, KEY_DRIFT), (uint64_t)index), (uint64_t)frame)};
     const float front = dust->speed_px * (float)(frame + 1);
-    const float rim = dust->rim_px;
-    if (grain->start > rim * (0.35f + fl_rng_float(&rng)))
+    if (grain->start > dust->rim_px * grain->grip)
         return; // in the resting core
     float load;
     const float gone = -depth_at(recipe, grain->x, grain->y, &load);

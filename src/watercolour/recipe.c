@@ -23,6 +23,7 @@ static FlRecipe *defaults(void)
         .seed = 1,
         .mask_threshold = 0.02f,
         .mask_margin = 3,
+        .mask_blur = 1,
         .paper = {{244, 239, 228}, 4, 0.6f, 1.3f, 0, 30, 0, {0.6f, 0.9f}, 0.5f, 40, 0.3f, 0.03f},
         .flow = {.viscosity = 0.1f,
                  .drag = 0.01f,
@@ -89,6 +90,7 @@ static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "border", 1, 1000, &recipe->border);
     fl_keylines_float(lines, "scale", 0.01f, 100, &recipe->scale);
     fl_keylines_float(lines, "mask-threshold", 1e-4f, 10, &recipe->mask_threshold);
+    fl_keylines_float(lines, "mask-blur", 0, 50, &recipe->mask_blur);
     fl_keylines_float(lines, "mask-margin", 0, 50, &recipe->mask_margin);
 }
 

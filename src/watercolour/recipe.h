@@ -86,6 +86,7 @@ typedef struct FlRecipe {
     int steps[2], warm_up; // steps before the second and before the last frame; before the first
     uint64_t seed;
     float mask_threshold, mask_margin; // thickness that counts as paint; bare rim, px
+    float mask_blur;                   // radius over which the thickness is averaged, px
     FlPaper paper;
     FlFlow flow;
     FlDust dust;

@@ -96,8 +96,8 @@ static bool find_mask(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe
         for (size_t i = 0; i < cells; i++)
             thickness[i] += recipe->flow.thickness * (sheet->floating[k][i] + sheet->settled[k][i]);
     const int scale = recipe->oversample, area = scale * scale;
-    const FlExtract how = {recipe->mask_threshold, scale, 60 * area, 60 * area,
-                           recipe->mask_margin * scale};
+    const FlExtract how = {recipe->mask_threshold, (int)(recipe->mask_blur * scale + 0.5f),
+                           60 * area, 60 * area, recipe->mask_margin * scale};
     if (!fl_extract_mask(thickness, sheet->width, sheet->height, &how, distance, error))
         return false;
     draw_mask(scan, distance, scale);
