@@ -1,0 +1,120 @@
+#include "scorecard.h"
+
+#include <math.h>
+#include <string.h>
+
+#define REST_PX 0.1f // px/frame
+
+Film *film_new(const FlGuideSource *source, const FlGuideParams *how)
+{
+    g_autoptr(GError) error = NULL;
+    Film *film = g_new0(Film, 1);
+    *film = (Film){source->width, source->height, source->n_frames, NULL, NULL};
+    film->rgb = g_malloc0(3 * (size_t)film->width * film->height * film->n_frames);
+    film->guides = g_new0(FlGuides, film->n_frames);
+    g_autoptr(FlGuideSequence) sequence = fl_guide_sequence_new(source, how, &error);
+    for (int f = 0; f < film->n_frames; f++)
+        if (!sequence || !fl_guides_init(&film->guides[f], film->width, film->height, &error) ||
+            !fl_guide_sequence_get(sequence, f, &film->guides[f], &error))
+            g_error("%s", error->message);
+    return film;
+}
+
+static bool style_mask(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    const FlStyle *style = data;
+    const size_t pixels = (size_t)style->width * style->height;
+    memcpy(coverage, style->mask + frame * pixels, pixels);
+    return true;
+}
+
+Film *film_of_style(const FlStyle *style, const FlGuideParams *how)
+{
+    const FlGuideSource source = {style->width, style->height, style->n_frames,
+                                  style_mask,   NULL,          (void *)style};
+    Film *film = film_new(&source, how);
+    memcpy(film->rgb, style->rgb, 3 * (size_t)film->width * film->height * film->n_frames);
+    return film;
+}
+
+void film_free(Film *film)
+{
+    for (int f = 0; f < film->n_frames; f++)
+        fl_guides_clear(&film->guides[f]);
+    g_free(film->guides);
+    g_free(film->rgb);
+    g_free(film);
+}
+
+static double luminance(const Film *film, int f, int x, int y)
+{
+    const uint8_t *p = film->rgb + 3 * (((size_t)f * film->height + y) * film->width + x);
+    return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2];
+}
+
+/* A sum with its count. */
+typedef struct Mean {
+    double sum;
+    int n;
+} Mean;
+
+static void add(Mean *mean, double value)
+{
+    mean->sum += value, mean->n++;
+}
+
+static double mean_of(Mean mean)
+{
+    return mean.n > 0 ? mean.sum / mean.n : 0;
+}
+
+typedef struct Sums {
+    Mean gradient, tone, square, depth[DEPTHS], change, rest;
+} Sums;
+
+static void add_pixel(const Film *film, int f, int x, int y, Sums *sums)
+{
+    const FlGuides *g = &film->guides[f];
+    const size_t p = (size_t)y * film->width + x;
+    const double here = luminance(film, f, x, y);
+    const int depth = (int)ceilf(g->distance[p]);
+    if (depth >= 1 && depth <= DEPTHS)
+        add(&sums->depth[depth - 1], here);
+    if (g->distance[p] < 2 || x == 0 || y == 0)
+        return;
+    add(&sums->gradient,
+        fabs(here - luminance(film, f, x - 1, y)) + fabs(here - luminance(film, f, x, y - 1)));
+    add(&sums->tone, here);
+    add(&sums->square, here * here);
+    if (f == 0 || film->guides[f - 1].distance[p] < 2)
+        return;
+    const double change = fabs(here - luminance(film, f - 1, x, y));
+    const float u = g->flow[2 * p], v = g->flow[2 * p + 1];
+    add(&sums->change, change);
+    if (u * u + v * v < REST_PX * REST_PX)
+        add(&sums->rest, change);
+}
+
+Score film_score(const Film *film)
+{
+    Sums sums = {0};
+    for (int f = 0; f < film->n_frames; f++)
+        for (int y = 0; y < film->height; y++)
+            for (int x = 0; x < film->width; x++)
+                add_pixel(film, f, x, y, &sums);
+    const double mean = mean_of(sums.tone);
+    Score score = {.sharp = mean_of(sums.gradient), .flicker = mean_of(sums.change)};
+    score.deviation = sqrt(fmax(mean_of(sums.square) - mean * mean, 0));
+    score.rest = mean_of(sums.rest);
+    for (int k = 0; k < DEPTHS; k++)
+        score.profile[k] = mean_of(sums.depth[k]);
+    return score;
+}
+
+double profile_error(const Score *a, const Score *b)
+{
+    double sum = 0;
+    for (int k = 0; k < DEPTHS; k++)
+        sum += (a->profile[k] - b->profile[k]) * (a->profile[k] - b->profile[k]);
+    return sqrt(sum / DEPTHS);
+}

@@ -1,0 +1,35 @@
+/* What a painted film looks like in numbers, and the same numbers of its exemplar. */
+#ifndef TESTS_SCORECARD_H
+#define TESTS_SCORECARD_H
+
+#include "guides/guides.h"
+#include "style/bundle.h"
+
+#define DEPTHS 12 // px below the contour that the profile looks at
+
+/** Frames with their guides; rgb is n_frames * height * width * 3. */
+typedef struct Film {
+    int width, height, n_frames;
+    uint8_t *rgb;
+    FlGuides *guides;
+} Film;
+
+/** Luminances are 0 … 255. */
+typedef struct Score {
+    double sharp;           // mean gradient deeper than 2 px
+    double deviation;       // of the luminance there
+    double profile[DEPTHS]; // mean luminance by depth, 1 px each
+    double flicker;         // mean difference of one frame to the next there
+    double rest;            // the same where nothing moves faster than 0.1 px/frame; 0: nowhere
+} Score;
+
+/** An empty film with the guides of a sequence. Exits on errors, which only memory can cause. */
+Film *film_new(const FlGuideSource *source, const FlGuideParams *how);
+Film *film_of_style(const FlStyle *style, const FlGuideParams *how);
+void film_free(Film *film);
+Score film_score(const Film *film);
+
+/** Root mean square difference of the profiles. */
+double profile_error(const Score *a, const Score *b);
+
+#endif
