@@ -104,8 +104,8 @@ static void layers_that_come_and_go_keep_their_regions(void)
 static void limbs_that_are_strokes_are_painted(void)
 {
     g_autoptr(FlFilm) film = open_fixture("strutter-zdog", KEEP, NULL);
-    assert_table(film, "crimson-cc2255*4 yellow-eeaa00*4 purple-663366*4 navy-442244*4 "
-                       "beige-ffeedd*4");
+    assert_table(film, "crimson-cc2255*4 yellow-eeaa00*4 purple-663366*4 "
+                       "[purple-663366-line]*4 navy-442244*4 beige-ffeedd*4");
     g_autoptr(FlFilm) fills = open_fixture("strutter-zdog", FL_STROKES_DROP, NULL);
     g_assert_null(find(fills, "navy-442244"));
 }
@@ -113,7 +113,21 @@ static void limbs_that_are_strokes_are_painted(void)
 static void strokes_over_fills_are_drawn_as_they_are(void)
 {
     g_autoptr(FlFilm) film = open_fixture("windsock-smil", KEEP, NULL);
-    assert_table(film, "[gradient-ced1d7-line]*3 gradient-f05c5c*3 [red-ef4444-line]*3");
+    assert_table(film, "gradient-ced1d7*3 gradient-f05c5c*3 [red-ef4444-line]*3");
+}
+
+static void thick_strokes_are_limbs_and_thin_ones_lines(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<circle cx=\"50\" cy=\"50\" r=\"30\" fill=\"red\" stroke=\"blue\"/>"
+                       "<line x1=\"10\" y1=\"90\" x2=\"90\" y2=\"90\" stroke=\"red\" "
+                       "stroke-width=\"8\"/><path fill=\"none\" d=\"M10 10h80\" "
+                       "stroke=\"#0a0\" transform=\"scale(1 2)\"/>"));
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    assert_table(film, "red-ff0000*1 [blue-0000ff-line]*1 [green-00aa00-line]*1");
+    g_assert_cmpint(fl_film_region(film, 0)->n_leaves, ==, 2);
 }
 
 static void masked_parts_are_regions_and_faint_ones_over_others_shading(void)
@@ -411,6 +425,8 @@ int main(int argc, char **argv)
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);
     TEST("limbs-that-are-strokes-are-painted", limbs_that_are_strokes_are_painted);
     TEST("strokes-over-fills-are-drawn-as-they-are", strokes_over_fills_are_drawn_as_they_are);
+    TEST("thick-strokes-are-limbs-and-thin-ones-lines",
+         thick_strokes_are_limbs_and_thin_ones_lines);
     TEST("masked-parts-are-regions-and-faint-ones-over-others-shading",
          masked_parts_are_regions_and_faint_ones_over_others_shading);
     TEST("a-region-keeps-its-leaf-while-the-colour-changes",

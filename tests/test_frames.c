@@ -50,6 +50,7 @@ static void paint_is_what_css_makes_of_it(void)
     assert_painted("<style>.a{fill:#123456 !important}</style>"
                    "<rect class=\"a\" " BOX " style=\"fill:red\"/>",
                    "fill #123456@255");
+    assert_painted("<path d=\"M0 0h9v9h9v9h-18z\"/>", "fill #000000@255"); // steps
     assert_painted("<g fill=\"#0f0\" color=\"#00f\"><rect " BOX "/><rect " BOX
                    " fill=\"currentColor\"/></g>",
                    "fill #00ff00@255 | fill #0000ff@255");
@@ -69,7 +70,8 @@ static void fill_and_stroke_are_taken_apart_unless_they_are_one_colour(void)
     assert_painted("<rect " BOX " fill=\"red\" stroke=\"blue\" style=\"paint-order:stroke\"/>",
                    "stroke #0000ff@255 | fill #ff0000@255");
     assert_painted("<rect " BOX " fill=\"red\" stroke=\"red\"/>", "fill #ff0000@255");
-    assert_painted("<line x2=\"20\" y1=\"3\" y2=\"3\" stroke=\"red\"/>", "stroke #ff0000@255");
+    assert_painted("<line x2=\"20\" y1=\"3\" y2=\"3\" stroke=\"red\"/>",
+                   "fill #000000@255 | stroke #ff0000@255"); // a fill of no area
 }
 
 static void gradients_are_known_by_their_stops(void)

@@ -31,7 +31,8 @@ typedef enum FlRegionKey {
 /** What becomes of the strokes of the drawing. */
 typedef enum FlStrokes {
     FL_STROKES_UNSET, /**< as the config says, else as FL_STROKES_KEEP */
-    FL_STROKES_KEEP,  /**< drawn over the paint; but painted where the drawing is mostly strokes */
+    FL_STROKES_KEEP,  /**< drawn over the paint; but painted where the drawing is mostly strokes,
+                           and those without a fill that are 3 % of the page's side or wider */
     FL_STROKES_PAINT, /**< painted as regions */
     FL_STROKES_DROP,  /**< left out */
 } FlStrokes;

@@ -82,6 +82,14 @@ static char *give_id(Walk *w, xmlNode *node)
     return made;
 }
 
+static bool has_text(const xmlNode *node)
+{
+    bool found = fl_is(node, "text");
+    for (const xmlNode *child = node->children; child && !found; child = child->next)
+        found = child->type == XML_ELEMENT_NODE && has_text(child);
+    return found;
+}
+
 static FlLeaf make_leaf(Walk *w, xmlNode *node)
 {
     g_autoptr(xmlChar) name = (xmlChar *)authored_id(node);
@@ -105,6 +113,7 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         .classes = g_strdup(w->classes->str),
         .tree = g_strdup(w->tree->str),
         .unit = w->unit,
+        .text = has_text(node),
         .whole = whole,
     };
 }

@@ -20,6 +20,7 @@ typedef struct FlLeaf {
     char *classes; // every class word
     char *tree;    // child indices from the root, "0/3/1"
     int unit;      // index of the group it may have to be drawn with, -1: none
+    bool text;     // has text, whose shape depends on the scale
     bool whole;    // has markers, text runs or images: fill and stroke are not taken apart
 } FlLeaf;
 

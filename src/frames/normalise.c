@@ -52,8 +52,22 @@ static bool speaks(const char *languages)
     return false;
 }
 
+/** Whether librsvg has all features of a list; diagrams.net asks for those of foreign content. */
+static bool has_features(const char *features)
+{
+    static const char *const lacking[] = {"#Extensibility", "#Animation", "#Script", "Events",
+                                          NULL};
+    for (int i = 0; lacking[i]; i++)
+        if (strstr(features, lacking[i]))
+            return false;
+    return true;
+}
+
 static bool is_eligible(const xmlNode *node)
 {
+    g_autoptr(xmlChar) features = (xmlChar *)fl_attribute(node, "requiredFeatures");
+    if (features && !has_features((const char *)features))
+        return false;
     g_autoptr(xmlChar) extensions = (xmlChar *)fl_attribute(node, "requiredExtensions");
     g_autoptr(xmlChar) languages = (xmlChar *)fl_attribute(node, "systemLanguage");
     return !extensions && (!languages || speaks((const char *)languages));

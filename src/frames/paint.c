@@ -24,6 +24,7 @@ typedef struct Op {
     bool stroke;
     bool blended;
     double alpha; // of the groups around
+    double width; // of a stroke, px; else 0
     Source source;
     char surface[16]; // where it is drawn
 } Op;
@@ -32,6 +33,7 @@ typedef struct Context {
     char surface[16];
     Source source;
     bool blended;
+    double line_width, scale; // of the pen
 } Context;
 
 typedef struct Reader {
@@ -74,7 +76,9 @@ static Context *top(Reader *r)
 
 static void push_context(Reader *r, const char *surface)
 {
-    Context context = {.source = {.kind = FL_PAINT_FLAT, .rgba = {0, 0, 0, 1}, .peak = 1}};
+    Context context = {.source = {.kind = FL_PAINT_FLAT, .rgba = {0, 0, 0, 1}, .peak = 1},
+                       .line_width = 2, // cairo's default is not written
+                       .scale = 1};
     g_strlcpy(context.surface, surface, sizeof context.surface);
     g_array_append_val(r->contexts, context);
 }
@@ -214,7 +218,11 @@ static void draw(Reader *r, bool stroke, double alpha)
         merge_surface(r, source->surface, alpha, context->blended);
         return;
     }
-    Op op = {stroke, context->blended, alpha, source_copy(source), ""};
+    Op op = {.stroke = stroke,
+             .blended = context->blended,
+             .alpha = alpha,
+             .width = stroke ? context->line_width * context->scale : 0,
+             .source = source_copy(source)};
     if (source->surface[0]) {
         drop_surface(r, source->surface);
         op.source.kind = FL_PAINT_IMAGE;
@@ -230,6 +238,16 @@ static void read_pattern(Reader *r, const char *line)
     start_source(r, FL_PAINT_IMAGE);
     if (name[0] == 's' && g_ascii_isdigit(name[1]))
         g_strlcpy(r->next.surface, name, sizeof r->next.surface);
+}
+
+/** "[a b c d x y] set-matrix": the pen's; a pattern's is indented. */
+static void set_matrix(Reader *r, const char *line)
+{
+    double v[4] = {1, 0, 0, 1};
+    char *s = (char *)line + 1;
+    for (int i = 0; i < 4 && line[0] == '['; i++)
+        v[i] = g_ascii_strtod(s, &s);
+    top(r)->scale = sqrt(fabs(v[0] * v[3] - v[1] * v[2]));
 }
 
 static void exchange_contexts(Reader *r)
@@ -269,6 +287,10 @@ static void read_line(Reader *r, const char *line)
         r->next.repeats = strstr(line, "REPEAT") || strstr(line, "REFLECT");
     } else if (strcmp(op, "set-source") == 0) {
         set_source(r, line);
+    } else if (strcmp(op, "set-line-width") == 0) {
+        top(r)->line_width = g_ascii_strtod(line, NULL);
+    } else if (strcmp(op, "set-matrix") == 0 && line[0] != ' ') {
+        set_matrix(r, line);
     } else if (strcmp(op, "set-operator") == 0) {
         top(r)->blended = !strstr(line, "//OVER");
     } else if (strcmp(op, "mask") == 0) {
@@ -317,6 +339,7 @@ static FlPainted join(const GArray *ops, int which, FlPart part)
             continue;
         painted.stroke = painted.stroke && op->stroke;
         painted.blended = painted.blended || op->blended;
+        painted.width = MAX(painted.width, (float)op->width);
         FlPaint paint = op_paint(op);
         if (first) {
             painted.paint = paint;

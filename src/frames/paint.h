@@ -37,6 +37,7 @@ typedef struct FlPainted {
     FlPart part;
     bool stroke;  // the part consists of strokes only
     bool blended; // with a blend mode or another operator than OVER
+    float width;  // of its widest stroke, px of the page it was read on; 0: no stroke
     FlPaint paint;
 } FlPainted;
 

@@ -6,7 +6,13 @@
 #include <math.h>
 #include <string.h>
 
-#define PROBE_PX 256.0 // size of the page on which paints are read; filters and masks are pixels
+// Size of the page on which paints are read: small, for filters and masks are pixels; what is too
+// small to be drawn there is read once more on a large one.
+#define PROBE_PX 256.0
+#define LARGE_PROBE_PX 4096.0
+#define PROBE_TURN                                                                                 \
+    0.3 // rad: cairo's script surface fails for fills with axis-parallel edges only,
+        // boxes excepted
 
 struct FlSvg {
     char *path;
@@ -184,15 +190,16 @@ static cairo_status_t append_script(void *text, const unsigned char *data, unsig
 }
 
 /** The commands that draw a leaf, as text; to be freed. */
-static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, GError **error)
+static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, double size, GError **error)
 {
-    const double width = PROBE_PX, height = PROBE_PX;
     GString *text = g_string_new(NULL);
     cairo_device_t *device = cairo_script_create_for_stream(append_script, text);
     g_autoptr(cairo_surface_t) surface =
-        cairo_script_surface_create(device, CAIRO_CONTENT_COLOR_ALPHA, width, height);
+        cairo_script_surface_create(device, CAIRO_CONTENT_COLOR_ALPHA, size, size);
     cairo_t *cr = cairo_create(surface);
-    const bool drawn = fl_svg_draw(svg, leaf, part, cr, width, height, error);
+    cairo_translate(cr, size / 4, 0);
+    cairo_rotate(cr, PROBE_TURN);
+    const bool drawn = fl_svg_draw(svg, leaf, part, cr, size, size, error);
     cairo_destroy(cr);
     cairo_surface_finish(surface);
     cairo_device_finish(device);
@@ -202,12 +209,18 @@ static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, GError **err
 
 int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error)
 {
-    g_autofree char *script = script_of(svg, leaf, FL_PART_WHOLE, NULL);
-    if (script)
-        return fl_paint_read(script, leaf->whole, parts);
-    // cairo's script surface refuses to fill a path without an area; such a leaf is its stroke.
-    script = script_of(svg, leaf, FL_PART_STROKE, error);
-    return script ? fl_paint_read(script, leaf->whole, parts) : -1;
+    for (double size = PROBE_PX; size <= LARGE_PROBE_PX; size *= LARGE_PROBE_PX / PROBE_PX) {
+        g_autofree char *script = script_of(svg, leaf, FL_PART_WHOLE, size, NULL);
+        // It also fails for some fills without an area; such a leaf is its stroke.
+        if (!script)
+            script = script_of(svg, leaf, FL_PART_STROKE, size, error);
+        const int n = script ? fl_paint_read(script, leaf->whole, parts) : -1;
+        for (int i = 0; i < n; i++)
+            parts[i].width /= (float)size;
+        if (n != 0)
+            return n;
+    }
+    return 0;
 }
 
 bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)

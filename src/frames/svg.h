@@ -38,7 +38,7 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
 const FlLeaves *fl_svg_leaves(const FlSvg *svg);
 
 /**
- * What a leaf is painted with.
+ * What a leaf is painted with. FlPainted.width is a share of the page's longer side.
  * Returns: the number of parts, bottom up, 0 if nothing is drawn; -1 with FL_ERROR_INPUT.
  */
 int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error);

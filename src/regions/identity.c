@@ -112,9 +112,10 @@ static void find_twins(Work *w)
     }
 }
 
+/** Whether a part is a line that is drawn over the paint; thick strokes are limbs, and painted. */
 static bool is_apart(const Work *w, const FlSeen *s)
 {
-    return s->stroke && !w->paint_strokes;
+    return s->stroke && !w->paint_strokes && !s->thick;
 }
 
 /** What a part's region is known by; equal texts are one region. */

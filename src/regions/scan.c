@@ -7,7 +7,8 @@
 
 #define MOST_SIDE 32767       // px; cairo's limit
 #define MOST_PIXELS 100000000 // of a picture; each run of a frame takes one to five bytes for each
-#define LOOK_PX 256           // longest side of the small pictures on which a frame is looked over
+#define THICK 0.03f // width of a stroke, share of the page's longer side, that is no line any more
+#define LOOK_PX 256 // longest side of the small pictures on which a frame is looked over
 
 int fl_strings_add(FlStrings *strings, const char *text)
 {
@@ -50,6 +51,8 @@ typedef struct Frame {
     double width, height; // of the page in the small picture
     double factor;        // px of the picture per px of the small one
     cairo_surface_t *coverage;
+    cairo_surface_t *full; // in the picture's own size; made when first needed
+    int full_width, full_height;
     FlBox all;
     GArray *looks;
     FlSelfCheck *check;
@@ -76,9 +79,51 @@ static float sum_of(cairo_surface_t *coverage, FlBox box)
     return sum / 255.0f;
 }
 
+/**
+ * The box of a part whose look on the small picture does not tell: text, which is shaped anew at
+ * each scale, and what is too small to be seen there. Drawn in full size; px of the small picture.
+ */
+static bool box_in_full(Frame *f, const FlLeaf *leaf, FlPart part, FlBox *box, float *area_px,
+                        GError **error)
+{
+    const FlBox all = {0, 0, f->full_width, f->full_height};
+    if (!f->full)
+        f->full = fl_surface_new(CAIRO_FORMAT_A8, all.x1, all.y1, error);
+    if (!f->full)
+        return false;
+    cairo_t *cr = cairo_create(f->full);
+    const bool drawn =
+        fl_svg_draw(f->svg, leaf, part, cr, f->width * f->factor, f->height * f->factor, error);
+    cairo_destroy(cr);
+    const FlBox ink = fl_surface_ink(f->full, all);
+    *area_px = sum_of(f->full, ink);
+    fl_surface_wipe(f->full, ink);
+    *box = ink.x1 > 0 ? (FlBox){(int)floor(ink.x0 / f->factor), (int)floor(ink.y0 / f->factor),
+                                (int)ceil(ink.x1 / f->factor), (int)ceil(ink.y1 / f->factor)}
+                      : ink;
+    return drawn;
+}
+
+/** Tells the parts of one leaf, from `first` on, of each other; a fill of no area is no part. */
+static void relate_parts(GArray *looks, guint first)
+{
+    bool fill = false, stroke = false;
+    for (guint i = first; i < looks->len; i++) {
+        const Look *look = &g_array_index(looks, Look, i);
+        *(look->seen.stroke ? &stroke : &fill) = true;
+    }
+    for (guint i = first; i < looks->len; i++) {
+        FlSeen *seen = &g_array_index(looks, Look, i).seen;
+        seen->has_fill = fill;
+        seen->has_stroke = stroke;
+        seen->thick = seen->thick && !fill;
+    }
+}
+
 static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warnings, const char *file,
                     int number, GError **error)
 {
+    const guint first = f->looks->len;
     FlPainted parts[FL_MOST_PARTS];
     const int n = fl_svg_paint(f->svg, leaf, parts, error);
     bool good = n >= 0;
@@ -88,8 +133,7 @@ static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warning
         look.seen = (FlSeen){.leaf = index,
                              .part = p->part,
                              .stroke = p->stroke,
-                             .has_fill = n == 2 || !p->stroke,
-                             .has_stroke = n == 2 || p->stroke,
+                             .thick = p->stroke && p->width >= THICK,
                              .kind = p->paint.kind,
                              .alpha = p->paint.alpha,
                              .peak = p->paint.peak,
@@ -104,11 +148,16 @@ static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warning
         look.seen.area_px =
             (float)(sum_of(f->coverage, look.box) / opacity * f->factor * f->factor);
         fl_surface_wipe(f->coverage, look.box);
+        if (good && (leaf->text || look.box.x1 == 0)) {
+            good = box_in_full(f, leaf, p->part, &look.box, &look.seen.area_px, error);
+            look.seen.area_px /= opacity;
+        }
         if (good && look.box.x1 > 0 && p->paint.alpha > 0)
             g_array_append_val(f->looks, look);
         else
             g_free(look.paint);
     }
+    relate_parts(f->looks, first);
     return good;
 }
 
@@ -242,6 +291,8 @@ static void frame_clear(Frame *f)
     fl_svg_free(f->svg);
     if (f->coverage)
         cairo_surface_destroy(f->coverage);
+    if (f->full)
+        cairo_surface_destroy(f->full);
     fl_self_check_free(f->check);
 }
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Frame, frame_clear)
@@ -259,6 +310,8 @@ static bool open_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GErr
     frame->page_width = width * scan->scale;
     frame->page_height = height * scan->scale;
     f->factor = MAX(1, (double)MAX(scan->width, scan->height) / LOOK_PX);
+    f->full_width = scan->width;
+    f->full_height = scan->height;
     f->width = frame->page_width / f->factor;
     f->height = frame->page_height / f->factor;
     f->all = (FlBox){0, 0, MAX(1, (int)ceil(scan->width / f->factor)),

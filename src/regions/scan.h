@@ -19,6 +19,7 @@ typedef struct FlSeen {
     FlPart part;
     bool stroke;
     bool has_fill, has_stroke; // of the leaf it is a part of
+    bool thick;                // a stroke without a fill that is a limb rather than a line
     FlPaintKind kind;
     uint8_t rgb[3], alpha, peak; // see FlPaint
     int paint;                   // FlPaint.key
