@@ -1,12 +1,12 @@
 /*
  * Crumbling: grains instead of fluid.
  *
- * A stroke of a dry stick leaves grains on the bumps of the paper. Each has a time at which it
- * breaks off, the earlier the nearer it lies to the stroke's outline; the outline of what crumbles
- * moves inward and what broke off moves outward, so that a front of dust runs ahead of the stroke.
- * A loose grain drifts away from the stroke, along swirls and around the bumps, and is caught by
- * the tooth: sooner on a bump than in a hollow. A grain that lies may be knocked loose again by
- * the front. All random bits are a function of (seed, grain, frame).
+ * A stroke of a dry stick leaves grains on the bumps of the paper. How tightly a grain holds, and
+ * how deep it lies in the stroke, decide whether it ever breaks off; the core stays. What is loose
+ * drifts away from the stroke, along swirls and around the bumps, up to its own share of the way
+ * that the front of the dust has gone, so that the front runs ahead and a haze stays behind. In
+ * any frame the tooth may catch a grain, sooner on a bump than in a hollow. All random bits are a
+ * function of (seed, grain, frame).
  */
 #include "watercolour/dust.h"
 
@@ -20,7 +20,7 @@ enum { KEY_PLACE = 301, KEY_DRIFT, KEY_SWIRL, KEY_SHAPE };
 
 typedef struct Grain {
     float x, y;  // cells
-    float reach; // how far from the stroke's outline it comes to rest in the end, px
+    float lag;   // share of the front's way that it stays behind, 0..1
     float start; // how far inside the outline it began, px
     float grip;  // how deep the crumbling must reach to loosen it, in rims of the recipe
 } Grain;
@@ -72,7 +72,7 @@ static Grain place_grain(const FlRecipe *recipe, const FlSheet *sheet, uint64_t 
             break;
     }
     const float u = fl_rng_float(&rng);
-    grain.reach = u * u; // most grains do not go far
+    grain.lag = u * u; // most keep up
     grain.grip = 0.15f + 1.5f * fl_rng_float(&rng) * fl_rng_float(&rng);
     return grain;
 }
@@ -121,9 +121,8 @@ static void wind(const FlRecipe *recipe, const FlSheet *sheet, float x, float y,
     out[1] = dy * norm + dust->swirl * 4 * curl_y + 0.4f * slope_y;
 }
 
-/* A grain is loose while the front of the dust has passed the place where it lies but it has not
-   gone its way. The front starts at the outline and runs outward at the recipe's speed; grains
-   inside the stroke follow where they lie within the crumbling rim. */
+/* One frame of one grain. The front starts at the outline and runs at the recipe's speed; a grain
+   goes on while it is behind its own share of that. */
 static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *grain, int index,
                         int frame)
 {
@@ -134,7 +133,7 @@ static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *gra
         return; // in the resting core
     float load;
     const float gone = -depth_at(recipe, grain->x, grain->y, &load);
-    const float goal = front * (1.0f - grain->reach) - grain->start * 0.5f;
+    const float goal = front * (1.0f - grain->lag) - grain->start * 0.5f;
     const float tooth = relief_at(sheet, grain->x, grain->y);
     if (gone > goal || fl_rng_float(&rng) < dust->catch_rate * tooth)
         return;
