@@ -170,14 +170,13 @@ static bool render_frame(Job *job, int frame, GError **error)
 static bool open_sink(Job *job, GError **error)
 {
     const FlPlan *plan = job->plan;
-    const FlSinkFormat *format = fl_sink_format(NULL, plan->output, error);
     const FlSinkParams params = {.path = plan->output,
                                  .width = fl_film_width(plan->film),
                                  .height = fl_film_height(plan->film),
                                  .fps = plan->options.fps > 0 ? plan->options.fps : 24,
                                  .opaque = !job->background.none,
                                  .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
-    job->sink = format ? fl_sink_open(format, &params, error) : NULL;
+    job->sink = fl_sink_open(plan->format, &params, error);
     return job->sink != NULL;
 }
 

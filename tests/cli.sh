@@ -92,6 +92,9 @@ if ! touch locked/file 2>/dev/null; then
     refuses 'a folder that cannot be written is named' 1 'locked/*: *' whole -o locked/w_%d.png $look
 fi
 refuses 'an output folder that is a file is named' 1 'out*: *Not a directory' whole -o out/w_%d.png $look
+refuses 'an unknown format gets a suggestion' 2 'exxr: an unknown output format; *did you mean “exr”?' --format exxr -s 01 whole
+touch film.mkv
+refuses 'a film that exists stays' 1 'film.mkv: exists already; -y overwrites' -o film.mkv --no-clobber -s 01 whole
 
 "$program" --help >out 2>err && [ ! -s err ] && grep -q -- '--style' out
 result $? '--help goes to standard output'

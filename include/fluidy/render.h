@@ -101,6 +101,7 @@ typedef struct FlRenderOptions {
     /* What is written. */
     const char *output; /**< pattern; NULL: the config's, else "fluidy/NAME_%04d.png", NAME from the
                            input */
+    const char *format; /**< "png", "png16", "exr", "mov", …; NULL: as the output's name ends */
     const char *layers; /**< pattern with {region}: one RGBA file per region too; NULL: none */
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
     int width, height;      /**< px; 0: from the other, by the drawing's aspect; both 0: scale */

@@ -38,7 +38,6 @@ static const struct Choice {
      FL_KEY_AUTO,
      {"auto", "fill", "id", "class", "label", "tree"}},
     {"--stroke", offsetof(FlArgs, render.stroke), FL_STROKES_KEEP, {"keep", "paint", "drop"}},
-    {"--format", offsetof(FlArgs, listing), FL_LISTING_TABLE, {"table", "config"}},
     {"--blend", offsetof(FlArgs, render.blend), FL_BLEND_SRGB, {"srgb", "linear"}},
     {"--progress",
      offsetof(FlArgs, progress),
@@ -137,6 +136,19 @@ static gboolean read_path(const char *name, const char *value, gpointer data, GE
     return TRUE;
 }
 
+/* Of the list of regions, or else of the output; the library knows the latter. */
+static gboolean read_format(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    if (strcmp(value, "table") == 0)
+        args->listing = FL_LISTING_TABLE;
+    else if (strcmp(value, "config") == 0)
+        args->listing = FL_LISTING_CONFIG;
+    else
+        args->render.format = keep(args, value);
+    return TRUE;
+}
+
 /* What a [region] section could say as well; the library checks it, as it checks the config. */
 static gboolean read_setting(const char *name, const char *value, gpointer data, GError **error)
 {
@@ -218,7 +230,7 @@ static const GOptionEntry common[] = {
     {"quiet", 'q', FLAG(read_flag), "errors only", NULL},
     {"verbose", 'v', FLAG(read_flag), "say what is being done", NULL},
     {"list-regions", 0, FLAG(read_flag), "print what the drawing is made of", NULL},
-    {"format", 0, VALUE(read_choice), "of that list: table, or config to edit", "WORD"},
+    {"format", 0, VALUE(read_format), "as png16, exr, ora, mov; of that list: config", "WORD"},
     {"list-styles", 0, FLAG(read_flag), "print the styles that are found", NULL},
     {"check", 0, FLAG(read_flag), "write maps of the regions instead of paint", NULL},
     {"dry-run", 0, FLAG(read_flag), "check everything, paint nothing", NULL},

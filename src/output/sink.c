@@ -1,4 +1,5 @@
 #include "output/sink.h"
+#include "base/suggest.h"
 #include "config.h"
 #include "output/formats.h"
 #include "output/name.h"
@@ -28,13 +29,17 @@ static bool has_suffix(const char *path, const char *suffix)
     return length > end && g_ascii_strcasecmp(path + length - end, suffix) == 0;
 }
 
-/** "png, png16, …" */
-static char *list_formats(void)
+static void no_format(const char *name, const char *path, GError **error)
 {
-    g_autoptr(GString) list = g_string_new(NULL);
+    const char *words[G_N_ELEMENTS(formats)] = {NULL};
     for (int i = 0; formats[i]; i++)
-        g_string_append_printf(list, "%s%s", i ? ", " : "", formats[i]->name);
-    return g_string_free(g_steal_pointer(&list), FALSE);
+        words[i] = formats[i]->name;
+    g_autofree char *list = g_strjoinv(", ", (char **)words);
+    g_autofree char *hint = name ? fl_did_you_mean(name, words) : g_strdup("");
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                name ? "%s: an unknown output format; expected one of %s%s"
+                     : "%s: the end of the name means no output format; expected one of %s%s",
+                name ? name : path, list, hint);
 }
 
 const FlSinkFormat *fl_sink_format(const char *name, const char *path, GError **error)
@@ -43,11 +48,7 @@ const FlSinkFormat *fl_sink_format(const char *name, const char *path, GError **
         if (name ? strcmp(name, formats[i]->name) == 0
                  : formats[i]->suffix && has_suffix(path, formats[i]->suffix))
             return formats[i];
-    g_autofree char *list = list_formats();
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                name ? "%s: an unknown output format; expected one of %s"
-                     : "%s: the end of the name means no output format; expected one of %s",
-                name ? name : path, list);
+    no_format(name, path, error);
     return NULL;
 }
 

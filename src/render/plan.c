@@ -4,7 +4,6 @@
 #include "base/first_error.h"
 #include "base/suggest.h"
 #include "output/name.h"
-#include "output/sink.h"
 #include "regions/opening.h"
 #include <string.h>
 
@@ -109,15 +108,22 @@ static bool add_painters(FlPlan *plan, GError **error)
     return true;
 }
 
+static char *default_output(const FlPlan *plan)
+{
+    const char *suffix = plan->format->suffix ? plan->format->suffix : ".png";
+    return g_strdup_printf("fluidy/%s%s%s", fl_film_name(plan->film),
+                           plan->format->film ? "" : "_%04d", suffix);
+}
+
 static bool name_output(FlPlan *plan, GError **error)
 {
-    const char *said = plan->options.output;
-    plan->output =
-        said ? g_strdup(said) : g_strdup_printf("fluidy/%s_%%04d.png", fl_film_name(plan->film));
-    const FlSinkFormat *format = fl_sink_format(NULL, plan->output, error);
-    if (!format)
+    const char *format = plan->options.format, *said = plan->options.output;
+    plan->format = fl_sink_format(format || said ? format : "png", said, error);
+    if (!plan->format)
         return false;
-    if (!format->film && !fl_output_is_pattern(plan->output) && fl_film_frames(plan->film) > 1) {
+    plan->output = said ? g_strdup(said) : default_output(plan);
+    if (!plan->format->film && !fl_output_is_pattern(plan->output) &&
+        fl_film_frames(plan->film) > 1) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "%s: one file for %d frames; expected a number in the name, such as %%04d",
                     plan->output, fl_film_frames(plan->film));
@@ -129,15 +135,17 @@ static bool name_output(FlPlan *plan, GError **error)
 static char *frame_file(const FlPlan *plan, int frame, GError **error)
 {
     const FlSinkParams params = {.path = plan->output};
+    if (plan->format->film)
+        return g_strdup(plan->output);
     return fl_sink_file(&params, fl_film_number(plan->film, frame), error);
 }
 
-static bool is_free(const char *file, GError **error)
+static bool is_free(const FlPlan *plan, const char *file, GError **error)
 {
     if (!g_file_test(file, G_FILE_TEST_EXISTS))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
-                "%s: exists already; -y overwrites, --no-clobber keeps what is there", file);
+    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s: exists already; -y overwrites%s", file,
+                plan->format->film ? "" : ", --no-clobber keeps what is there");
     return false;
 }
 
@@ -146,7 +154,7 @@ static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
     for (int p = 0; plan->options.layers && p < plan->n_painters; p++) {
         g_autofree char *file = fl_output_name(
             plan->options.layers, fl_film_number(plan->film, frame), plan->painters[p].name, error);
-        if (!file || !is_free(file, error))
+        if (!file || !is_free(plan, file, error))
             return false;
     }
     return true;
@@ -155,13 +163,18 @@ static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
 static bool outputs_are_free(const FlPlan *plan, GError **error)
 {
     const bool pattern = fl_output_is_pattern(plan->output);
-    if (plan->options.overwrite != FL_OVERWRITE_REFUSE)
+    const bool film = plan->format->film; // cannot be added to, and so not kept
+    if (plan->options.overwrite == FL_OVERWRITE_YES)
         return true;
-    if (!pattern && !is_free(plan->output, error))
+    if (film && !is_free(plan, plan->output, error))
+        return false;
+    if (plan->options.overwrite == FL_OVERWRITE_KEEP)
+        return true;
+    if (!pattern && !is_free(plan, plan->output, error))
         return false;
     for (int f = 0; f < fl_film_frames(plan->film); f++) {
         g_autofree char *file = pattern ? frame_file(plan, f, error) : NULL;
-        if ((pattern && (!file || !is_free(file, error))) || !layers_are_free(plan, f, error))
+        if ((pattern && (!file || !is_free(plan, file, error))) || !layers_are_free(plan, f, error))
             return false;
     }
     return true;
@@ -193,12 +206,12 @@ static bool make_plan(FlPlan *plan, GError **error)
                     "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
         return false;
     }
-    if (!open_film(plan, error) || !check_region_names(plan, error))
+    if (!open_film(plan, error) || !check_region_names(plan, error) || !name_output(plan, error))
         return false;
     plan->masks = fl_masks_new(fl_film_regions(plan->film), fl_film_frames(plan->film),
                                fl_film_width(plan->film), fl_film_height(plan->film), error);
-    return plan->masks && add_painters(plan, error) && name_output(plan, error) &&
-           check_layers(plan, error) && outputs_are_free(plan, error);
+    return plan->masks && add_painters(plan, error) && check_layers(plan, error) &&
+           outputs_are_free(plan, error);
 }
 
 FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)

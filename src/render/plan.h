@@ -2,6 +2,7 @@
 #ifndef FLUIDY_RENDER_PLAN_H
 #define FLUIDY_RENDER_PLAN_H
 
+#include "output/sink.h"
 #include "params/config.h"
 #include "render/painter.h"
 
@@ -16,6 +17,7 @@ typedef struct FlPlan {
     int *painter_of; // by region; -1: drawn as it is, -2: left out
     int hold;        // the drawing itself is shown on every hold-th frame
     char *output;    // pattern or file
+    const FlSinkFormat *format;
     uint8_t paper[3];
 } FlPlan;
 
