@@ -7,6 +7,7 @@
 #include "render/dump.h"
 #include "render/frame.h"
 #include "render/stats.h"
+#include "report/report.h"
 #include <fluidy/fluidy.h>
 #include <string.h>
 #ifdef _OPENMP
@@ -24,6 +25,7 @@ typedef struct Job {
     FlBackground background;
     FlSink *sink;
     FlStats stats;
+    FlReport *report;  // NULL: not asked for
     FlGuides *scratch; // one per thread that paints
     int n_scratch;
     int64_t start;    // microseconds, as g_get_monotonic_time()
@@ -73,6 +75,7 @@ static bool paint_one(Job *job, int p, int frame, FlGuides *scratch, GError **er
     FlPainter *painter = &job->plan->painters[p];
     if (!fl_painter_frame(painter, frame, scratch, error))
         return false;
+    fl_report_guides(job->report, p, frame, scratch);
     const char *dump = job->plan->options.dump;
     return !dump || frame % painter->treatment.hold != 0 ||
            fl_dump_frame(dump, painter, scratch, fl_film_number(job->plan->film, frame), error);
@@ -162,9 +165,11 @@ static bool render_frame(Job *job, int frame, GError **error)
     const int64_t composed = g_get_monotonic_time();
     if (!write_frame(job, &composite, frame, error))
         return false;
-    fl_stats_frame(&job->stats, job->plan, frame, (double)(painted - start) * 1e-6,
-                   (double)(composed - painted) * 1e-6, seconds_since(composed));
-    return tell(job, "paint", frame + 1, seconds_since(start), error);
+    const FlReportFrame done = {frame, &composite, (double)(painted - start) * 1e-6,
+                                (double)(composed - painted) * 1e-6, seconds_since(composed)};
+    fl_stats_frame(&job->stats, job->plan, frame, done.paint_s, done.compose_s, done.write_s);
+    return fl_report_frame(job->report, &done, error) &&
+           tell(job, "paint", frame + 1, seconds_since(start), error);
 }
 
 static bool open_sink(Job *job, GError **error)
@@ -178,6 +183,14 @@ static bool open_sink(Job *job, GError **error)
                                  .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
     job->sink = fl_sink_open(plan->format, &params, error);
     return job->sink != NULL;
+}
+
+static bool open_report(Job *job, GError **error)
+{
+    const char *folder = job->plan->options.report;
+    if (folder)
+        job->report = fl_report_new(job->plan, folder, job->background.none, error);
+    return !folder || job->report;
 }
 
 static bool make_scratch(Job *job, GError **error)
@@ -195,17 +208,30 @@ static bool make_scratch(Job *job, GError **error)
     return true;
 }
 
-static bool run(Job *job, GError **error)
+/* Everything before the first stroke. */
+static bool prepare(Job *job, GError **error)
 {
+    const double read_s = seconds_since(job->start);
     if (!fl_background_init(&job->background, job->plan, error) || !open_sink(job, error) ||
-        !fl_stats_init(&job->stats, job->plan, error) || !tell(job, "guides", 0, 0, error) ||
-        !fl_plan_prepare(job->plan, error) || !make_scratch(job, error))
+        !fl_stats_init(&job->stats, job->plan, error) || !open_report(job, error) ||
+        !tell(job, "guides", 0, 0, error) || !fl_plan_prepare(job->plan, error) ||
+        !make_scratch(job, error))
         return false;
     job->painting = g_get_monotonic_time();
+    job->stats.read_s = read_s;
+    job->stats.guides_s = seconds_since(job->start) - read_s;
+    return true;
+}
+
+static bool run(Job *job, GError **error)
+{
+    if (!prepare(job, error))
+        return false;
     for (int f = 0; f < fl_film_frames(job->plan->film); f++)
         if (!render_frame(job, f, error))
             return false;
-    return fl_sink_finish(job->sink, error) && fl_stats_finish(&job->stats, error);
+    return fl_sink_finish(job->sink, error) && fl_stats_finish(&job->stats, error) &&
+           fl_report_finish(job->report, error);
 }
 
 static void clear(Job *job)
@@ -215,6 +241,7 @@ static void clear(Job *job)
     g_free(job->scratch);
     fl_sink_free(job->sink);
     fl_stats_clear(&job->stats);
+    fl_report_free(job->report);
     fl_plan_free(job->plan);
 }
 
@@ -224,20 +251,28 @@ static bool rehearse(Job *job, GError **error)
     return fl_background_init(&job->background, job->plan, error);
 }
 
+static char *what_was_done(const FlPlan *plan)
+{
+    const int n = fl_film_frames(plan->film);
+    if (!plan->options.dry_run)
+        return g_strdup_printf("painted %d frame%s: %s", n, n == 1 ? "" : "s", plan->output);
+    return g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s", n,
+                           n == 1 ? "" : "s", fl_film_width(plan->film), fl_film_height(plan->film),
+                           plan->n_painters, plan->n_painters == 1 ? "" : "s", plan->output);
+}
+
 static void summarise(const Job *job)
 {
-    const FlPlan *plan = job->plan;
-    const int n = fl_film_frames(plan->film);
-    if (!plan->options.note)
-        return;
-    g_autofree char *line =
-        plan->options.dry_run
-            ? g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s", n,
-                              n == 1 ? "" : "s", fl_film_width(plan->film),
-                              fl_film_height(plan->film), plan->n_painters,
-                              plan->n_painters == 1 ? "" : "s", plan->output)
-            : g_strdup_printf("painted %d frame%s: %s", n, n == 1 ? "" : "s", plan->output);
-    plan->options.note(line, plan->options.data);
+    const FlRenderOptions *o = &job->plan->options;
+    g_autofree char *done = what_was_done(job->plan);
+    g_autofree char *seconds = fl_stats_summary(&job->stats, fl_film_frames(job->plan->film));
+    g_autofree char *page =
+        o->report ? g_strdup_printf("to look at: %s/index.html", o->report) : NULL;
+    const char *const lines[] = {done, seconds, page};
+    const size_t n = o->dry_run ? 1 : G_N_ELEMENTS(lines);
+    for (size_t i = 0; i < n && o->note; i++)
+        if (lines[i])
+            o->note(lines[i], o->data);
 }
 
 bool fl_render(const FlRenderOptions *options, GError **error)

@@ -112,7 +112,8 @@ typedef struct FlRenderOptions {
     FlBlend blend;
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
     FlOverwrite overwrite;
-    const char *stats; /**< JSON lines about every frame, region and level; NULL: none */
+    const char *report; /**< a folder for a page to look at, index.html; NULL: none */
+    const char *stats;  /**< JSON lines about every frame, region and level; NULL: none */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: none */
 

@@ -57,6 +57,7 @@ static const struct Path {
     {"--layers", offsetof(FlArgs, render.layers)},
     {"--background", offsetof(FlArgs, render.background)},
     {"--region", offsetof(FlArgs, render.only_region)},
+    {"--report", offsetof(FlArgs, render.report)},
     {"--stats", offsetof(FlArgs, render.stats)},
     {"--dump", offsetof(FlArgs, render.dump)},
 };
@@ -229,6 +230,7 @@ static const GOptionEntry common[] = {
     {"threads", 'j', VALUE(read_number), "(one per processor)", "N"},
     {"quiet", 'q', FLAG(read_flag), "errors only", NULL},
     {"verbose", 'v', FLAG(read_flag), "say what is being done", NULL},
+    {"report", 0, VALUE(read_path), "also write a page to look at, DIR/index.html", "DIR"},
     {"list-regions", 0, FLAG(read_flag), "print what the drawing is made of", NULL},
     {"format", 0, VALUE(read_format), "as png16, exr, ora, mov; of that list: config", "WORD"},
     {"list-styles", 0, FLAG(read_flag), "print the styles that are found", NULL},

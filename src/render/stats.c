@@ -47,7 +47,7 @@ static void level_line(FILE *out, const FlPlan *plan, const FlPainter *painter, 
     fputs("}\n", out);
 }
 
-static double peak_mib(void)
+double fl_peak_mib(void)
 {
     struct rusage usage = {0};
     getrusage(RUSAGE_SELF, &usage);
@@ -57,6 +57,7 @@ static double peak_mib(void)
 void fl_stats_frame(FlStats *stats, const FlPlan *plan, int frame, double paint_s, double compose_s,
                     double write_s)
 {
+    stats->paint_s += paint_s, stats->compose_s += compose_s, stats->write_s += write_s;
     if (!stats->open)
         return;
     FILE *out = stats->file.stream;
@@ -67,8 +68,17 @@ void fl_stats_frame(FlStats *stats, const FlPlan *plan, int frame, double paint_
     pair(out, "paint_seconds", paint_s);
     pair(out, "compose_seconds", compose_s);
     pair(out, "write_seconds", write_s);
-    pair(out, "peak_mib", peak_mib());
+    pair(out, "peak_mib", fl_peak_mib());
     fputs("}\n", out);
+}
+
+char *fl_stats_summary(const FlStats *stats, int n_frames)
+{
+    return g_strdup_printf("seconds: read %.1f, guides %.1f, paint %.1f (%.2f a frame), compose "
+                           "%.1f, write %.1f; memory: at most %.0f MiB",
+                           stats->read_s, stats->guides_s, stats->paint_s,
+                           stats->paint_s / MAX(n_frames, 1), stats->compose_s, stats->write_s,
+                           fl_peak_mib());
 }
 
 bool fl_stats_finish(FlStats *stats, GError **error)

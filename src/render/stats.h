@@ -5,10 +5,11 @@
 #include "output/atomic.h"
 #include "render/plan.h"
 
-/** The file of --stats; it appears under its name when it is whole. */
+/** Seconds by stage, and the file of --stats, which appears under its name when it is whole. */
 typedef struct FlStats {
     FlAtomic file;
     bool open;
+    double read_s, guides_s, paint_s, compose_s, write_s;
 } FlStats;
 
 /** Begins the file if the plan wants one. */
@@ -17,6 +18,12 @@ bool fl_stats_init(FlStats *stats, const FlPlan *plan, GError **error);
 /** A line for each region and level that was painted in the frame, then one for the frame. */
 void fl_stats_frame(FlStats *stats, const FlPlan *plan, int frame, double paint_s, double compose_s,
                     double write_s);
+
+/** One line about the whole render: seconds of each stage, memory. To be freed. */
+char *fl_stats_summary(const FlStats *stats, int n_frames);
+
+/** The most memory that the program has had so far, MiB. */
+double fl_peak_mib(void);
 
 bool fl_stats_finish(FlStats *stats, GError **error);
 void fl_stats_clear(FlStats *stats);

@@ -1,0 +1,73 @@
+/* The page to look at: what is written into it. */
+#include "report/script.h"
+#include <math.h>
+#include <string.h>
+
+static char *written(void (*write)(FILE *out, const void *value), const void *value)
+{
+    char *text = NULL;
+    size_t n = 0;
+    FILE *out = open_memstream(&text, &n);
+    write(out, value);
+    fclose(out);
+    return text;
+}
+
+static void write_string(FILE *out, const void *value)
+{
+    fl_script_string(out, value);
+}
+
+static void write_number(FILE *out, const void *value)
+{
+    fl_script_number(out, *(const double *)value);
+}
+
+static void a_name_cannot_end_the_script(void)
+{
+    g_autofree char *text = written(write_string, "a</script>\"\\\n\xe2\x80\xa8é");
+    g_assert_cmpstr(text, ==, "\"a\\u003c/script\\u003e\\u0022\\u005c\\u000a\\u2028é\"");
+}
+
+static void bytes_that_are_no_text_become_text(void)
+{
+    g_autofree char *text = written(write_string, "\xff!");
+    g_assert_cmpstr(text, ==, "\"\xef\xbf\xbd!\"");
+    g_autofree char *nothing = written(write_string, NULL);
+    g_assert_cmpstr(nothing, ==, "null");
+}
+
+static void what_is_not_known_is_null(void)
+{
+    const double values[] = {NAN, INFINITY, 0.25};
+    const char *const expected[] = {"null", "null", "0.25"};
+    for (size_t k = 0; k < G_N_ELEMENTS(values); k++) {
+        g_autofree char *text = written(write_number, &values[k]);
+        g_assert_cmpstr(text, ==, expected[k]);
+    }
+}
+
+static void a_picture_is_a_data_uri(void)
+{
+    uint8_t rgba[] = {255, 0, 0, 128};
+    const FlPicture picture = {1, 1, rgba};
+    char *text = NULL;
+    size_t n = 0;
+    FILE *out = open_memstream(&text, &n);
+    g_assert_true(fl_script_picture(out, &picture, false, NULL));
+    fclose(out);
+    g_assert_true(g_str_has_prefix(text, "\"data:image/png;base64,iVBORw0KGgo"));
+    g_assert_true(g_str_has_suffix(text, "\""));
+    free(text);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/report/a name cannot end the script", a_name_cannot_end_the_script);
+    g_test_add_func("/report/bytes that are no text become text",
+                    bytes_that_are_no_text_become_text);
+    g_test_add_func("/report/what is not known is null", what_is_not_known_is_null);
+    g_test_add_func("/report/a picture is a data URI", a_picture_is_a_data_uri);
+    return g_test_run();
+}
