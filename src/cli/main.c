@@ -33,19 +33,15 @@ static bool show_progress(const FlProgress *progress, void *data)
 static void show_warning(const char *message, void *data)
 {
     Voice *voice = data;
-    if (voice->quiet)
-        return;
-    fl_meter_hide(&voice->meter);
-    fprintf(stderr, "fluidy-svg: warning: %s\n", message);
+    if (!voice->quiet)
+        fl_meter_say(&voice->meter, "warning", message);
 }
 
 static void show_note(const char *message, void *data)
 {
     Voice *voice = data;
-    if (voice->quiet)
-        return;
-    fl_meter_hide(&voice->meter);
-    fprintf(stderr, "fluidy-svg: %s\n", message);
+    if (!voice->quiet)
+        fl_meter_say(&voice->meter, "note", message);
 }
 
 /* One line, whatever the library below wrote. */

@@ -127,6 +127,19 @@ static void show_json(FlMeter *meter, const FlProgress *p)
     fprintf(meter->stream, "{%s}\n", json->str + 1);
 }
 
+void fl_meter_say(FlMeter *meter, const char *kind, const char *message)
+{
+    fl_meter_hide(meter);
+    if (meter->mode != FL_PROGRESS_JSON) {
+        const bool warning = strcmp(kind, "warning") == 0;
+        fprintf(meter->stream, "fluidy-svg: %s%s\n", warning ? "warning: " : "", message);
+        return;
+    }
+    g_autoptr(GString) json = g_string_new(NULL);
+    append_string(json, kind, message);
+    fprintf(meter->stream, "{%s}\n", json->str + 1);
+}
+
 /* The last frame of a stage is always due, and so is the first of the next; but a log does not
  * announce what has not begun, for it may be over at once. */
 static bool is_due(const FlMeter *meter, const FlProgress *p)

@@ -23,4 +23,7 @@ void fl_meter_show(FlMeter *meter, const FlProgress *progress);
 /** Takes the bar away, so that something else can be printed. */
 void fl_meter_hide(FlMeter *meter);
 
+/** Prints a line of words; as an object {"kind":"message"} among the lines of JSON. */
+void fl_meter_say(FlMeter *meter, const char *kind, const char *message);
+
 #endif
