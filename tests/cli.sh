@@ -103,6 +103,11 @@ result $? '--help-all has the parameters of the synthesis'
 "$program" -V >out 2>err && grep -qE '^fluidy-svg [0-9]+\.[0-9]+' out
 result $? '--version is the name and a number'
 
+printf '[region read-aa3311]\nhold = 2\n' >odd.conf
+"$program" whole -s 01 -c odd.conf --dry-run >out 2>err &&
+    grep -q 'warning: odd.conf:1: \[region read-aa3311\] .*did you mean “red-aa3311”?' err &&
+    "$program" whole -s 01 -c odd.conf --dry-run -f 1 >out 2>err && ! grep -q warning err
+result $? 'a section that holds for nothing in the whole film is a warning'
 "$program" whole -s 01 --dry-run >out 2>err && [ ! -d fluidy ] &&
     grep -q 'would paint 3 frames of 64x48 pixels, 1 region: fluidy/w_%04d.png' err
 result $? '--dry-run says what would be painted'

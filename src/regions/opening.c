@@ -101,6 +101,7 @@ FlFilm *fl_film_of_options(const FlRenderOptions *options, const FlConfig *confi
     g_autoptr(FlFilm) film = fl_film_open(&wanted, warnings, error);
     if (!film)
         return NULL;
-    warn_of_unused(film, config, rules, warnings);
+    if (!options->frames) // a section may be about something that other frames have
+        warn_of_unused(film, config, rules, warnings);
     return report(warnings, options, error) ? g_steal_pointer(&film) : NULL;
 }
