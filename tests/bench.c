@@ -119,9 +119,19 @@ static bool timed_frames(Bench *b, Figures *f, GError **error)
     return true;
 }
 
+/* Of the frame in hand, at full size also in a draft. */
+static double painted_pixels(const Bench *b)
+{
+    double n = 0;
+    for (size_t p = 0; p < (size_t)b->c->width * b->c->height; p++)
+        n += b->guides.mask[p] >= FL_INSIDE;
+    return n;
+}
+
 static bool measured_frames(Bench *b, Figures *f, GError **error)
 {
     double tried = 0;
+    fl_synth_measure(b->synth, true);
     for (int k = 1; k <= FRAMES_MEASURED; k++) {
         FlFrameStats s;
         if (!fl_guide_sequence_get(b->sequence, frames + k, &b->guides, error) ||
@@ -130,12 +140,12 @@ static bool measured_frames(Bench *b, Figures *f, GError **error)
         for (int l = 0; l < s.n_levels; l++)
             tried += (double)s.level[l].counts.tried / FRAMES_MEASURED;
         f->energy += s.level[0].energy / FRAMES_MEASURED;
-        f->painted_px += (double)s.level[0].pixels / FRAMES_MEASURED;
         f->target_s += s.seconds_target / FRAMES_MEASURED;
         f->temporal_s += s.seconds_temporal / FRAMES_MEASURED;
         f->search_s += s.seconds_search / FRAMES_MEASURED;
         f->vote_s += s.seconds_vote / FRAMES_MEASURED;
     }
+    f->painted_px = painted_pixels(b);
     f->evaluations_per_px = tried / f->painted_px;
     f->evaluations_per_s_core = tried / f->search_s / threads;
     f->core_s_per_mpx /= f->painted_px;
@@ -143,10 +153,18 @@ static bool measured_frames(Bench *b, Figures *f, GError **error)
     return true;
 }
 
+static FlDetail detail_of_word(void)
+{
+    if (detail && g_str_equal(detail, "draft"))
+        return FL_DETAIL_DRAFT;
+    return detail && g_str_equal(detail, "fine") ? FL_DETAIL_FINE : FL_DETAIL_NORMAL;
+}
+
 static bool run_case(const Case *c, Figures *f, GError **error)
 {
     g_autofree char *folder = g_build_filename(FL_BUILD_STYLE_DIR, c->style, NULL);
     g_autoptr(FlParams) params = fl_params_new();
+    fl_params_detail(params, detail_of_word());
     g_autoptr(FlStyle) style = fl_style_load(folder, error);
     g_autoptr(FlExemplar) exemplar = style ? fl_exemplar_new(style, params, error) : NULL;
     if (!exemplar)

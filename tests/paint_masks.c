@@ -109,6 +109,7 @@ static int paint(const FlStyle *style, Masks *masks, const char *out, int frames
         return 1;
     g_autofree uint8_t *rgb = g_malloc(3 * (size_t)w * h);
     double total = 0, pixels = 0;
+    fl_synth_measure(synth, g_getenv("VERBOSE") != NULL);
     for (int f = 0; f < frames; f++) {
         FlFrameStats stats;
         FlSynthView view;

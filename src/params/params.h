@@ -26,6 +26,15 @@ struct FlParams {
 
 void fl_params_defaults(FlParams *params);
 
+/** Quality against time. */
+typedef enum FlDetail { FL_DETAIL_DRAFT, FL_DETAIL_NORMAL, FL_DETAIL_FINE } FlDetail;
+
+/**
+ * Sets what costs most time: the rounds and sweeps of the search, and for a draft half the size.
+ * FL_DETAIL_NORMAL sets their defaults.
+ */
+void fl_params_detail(FlParams *params, FlDetail detail);
+
 /** The value for a level `from_coarsest` steps finer than the coarsest; >= 0. */
 static inline int fl_list_at(const FlIntList *list, int from_coarsest)
 {

@@ -102,24 +102,13 @@ static bool set_int(int *field, const char *form, const char *value)
     return sscanf(form, "%d-%d", &min, &max) == 2 && fl_text_integer(value, min, max, field);
 }
 
-/* Detail is a preset of what costs most time: the rounds and sweeps of the search. */
 static bool set_detail(FlTreatment *treatment, const char *form, const char *value)
 {
-    static const char *const keys[] = {"opt-iterations", "patchmatch-iterations", "finest-rounds",
-                                       "finest-sweeps"};
-    static const char *const values[][G_N_ELEMENTS(keys)] = {
-        [FL_DETAIL_DRAFT] = {"2,1", "4,2", "0", "1"},
-        [FL_DETAIL_FINE] = {"6,3,2", "6,4", "2", "4"},
-    };
     int detail = 0;
     if (!fl_text_choice(value, form, &detail))
         return false;
     treatment->detail = detail;
-    for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
-        const char *normal = fl_param_info(fl_param_find(keys[i]))->preset_default;
-        fl_params_set(&treatment->params, keys[i],
-                      detail == FL_DETAIL_NORMAL ? normal : values[detail][i], NULL);
-    }
+    fl_params_detail(&treatment->params, treatment->detail);
     return true;
 }
 

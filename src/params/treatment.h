@@ -6,8 +6,6 @@
 #include "params/params.h"
 #include <stdint.h>
 
-typedef enum FlDetail { FL_DETAIL_DRAFT, FL_DETAIL_NORMAL, FL_DETAIL_FINE } FlDetail;
-
 /** What a region does to the regions below it. */
 typedef enum FlStacking {
     FL_STACKING_KNOCKOUT, // they are not there: paper under the paint

@@ -290,5 +290,7 @@ bool fl_plan_prepare(FlPlan *plan, GError **error)
     // as large as a frame.
     for (int p = 0; p < plan->n_painters && failed == 0; p++)
         failed += !fl_painter_init(&plan->painters[p], plan->options.seed, error);
+    for (int p = 0; p < plan->n_painters && !failed; p++)
+        fl_synth_measure(plan->painters[p].synth, plan->options.stats != NULL);
     return failed == 0;
 }

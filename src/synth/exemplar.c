@@ -1,6 +1,7 @@
 #include "synth/exemplar.h"
 
 #include "base/alloc.h"
+#include "style/adapt.h"
 #include "synth/spline.h"
 #include <string.h>
 
@@ -263,14 +264,15 @@ static bool list_all_valid(FlExemplar *exemplar, const FlStyle *style, GError **
     return true;
 }
 
-FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error)
+static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, float scale,
+                               GError **error)
 {
     fl_rotation_init();
     fl_spline_init();
     g_autoptr(FlExemplar) exemplar = g_new0(FlExemplar, 1);
     const size_t pixels = (size_t)style->width * style->height * style->n_frames;
     exemplar->n_levels = fl_levels_of(style->width, style->height);
-    exemplar->border_px = params->border > 0 ? params->border : style->border_px;
+    exemplar->border_px = params->border > 0 ? params->border * scale : style->border_px;
     memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
     const FlGuideParams how = fl_guide_params(params);
     const FlGuideSource source = {.width = style->width,
@@ -289,6 +291,15 @@ FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError
         !list_all_valid(exemplar, style, error))
         return NULL;
     return g_steal_pointer(&exemplar);
+}
+
+FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error)
+{
+    if (!params->half_size)
+        return exemplar_of(style, params, 1, error);
+    const FlStyleUse half = {.start = 1, .step = 1, .scale = 0.5f};
+    g_autoptr(FlStyle) small = fl_style_adapt(style, &half, error);
+    return small ? exemplar_of(small, params, half.scale, error) : NULL;
 }
 
 void fl_exemplar_free(FlExemplar *exemplar)

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "synth/draft.h"
 #include "synth/energy.h"
 #include "synth/shift.h"
 #include "synth/vote.h"
@@ -13,6 +14,7 @@ typedef struct Previous {
     bool valid;
     FlRect rect;
     FlNnf nnf;
+    uint8_t *mask, *rgb; // of the whole frame: what a region that holds still is compared with
 } Previous;
 
 struct FlSynth {
@@ -25,25 +27,40 @@ struct FlSynth {
     uint64_t key;
     int frame;
     Previous previous;
-    bool wants_stats;
+    bool wants_energies;
+    FlGuides half; // of a draft, made at half the size
+    uint8_t *half_rgb;
     double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
+    FlSynthView view; // of the last frame that was painted, where somebody wanted it
 };
+
+static bool make_buffers(FlSynth *synth, GError **error)
+{
+    const size_t pixels = (size_t)synth->width * synth->height;
+    return (synth->previous.mask = fl_alloc(pixels, 1, "a mask", error)) &&
+           (synth->previous.rgb = fl_alloc(3 * pixels, 1, "a picture", error)) &&
+           (!synth->params->half_size ||
+            ((synth->half_rgb = fl_alloc(3 * pixels, 1, "a picture", error)) &&
+             fl_guides_init(&synth->half, synth->width, synth->height, error)));
+}
 
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed, GError **error)
 {
-    FlSynth *synth = g_new0(FlSynth, 1);
+    g_autoptr(FlSynth) synth = g_new0(FlSynth, 1);
+    const int part = params->half_size ? 2 : 1, round = part - 1;
     synth->exemplar = exemplar;
     synth->params = params;
-    synth->width = size.width, synth->height = size.height;
-    synth->side = (float)MAX(size.frame_width, size.frame_height);
-    synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
+    synth->width = (size.width + round) / part, synth->height = (size.height + round) / part;
+    synth->side = (float)MAX(size.frame_width, size.frame_height) / (float)part;
+    synth->n_levels =
+        MIN(exemplar->n_levels, fl_levels_of(size.frame_width / part, size.frame_height / part));
     synth->key = fl_hash64(seed);
     fl_cost_scale_init(&synth->scale, params);
     fl_kernels_init(&synth->kernels, fl_cpu_flags());
-    return synth;
+    return make_buffers(synth, error) ? g_steal_pointer(&synth) : NULL;
 }
 
 static void clear_frame(FlSynth *synth)
@@ -59,7 +76,16 @@ void fl_synth_free(FlSynth *synth)
         return;
     clear_frame(synth);
     fl_nnf_clear(&synth->previous.nnf);
+    free(synth->previous.mask);
+    free(synth->previous.rgb);
+    fl_guides_clear(&synth->half);
+    free(synth->half_rgb);
     g_free(synth);
+}
+
+void fl_synth_measure(FlSynth *synth, bool energies)
+{
+    synth->wants_energies = energies;
 }
 
 /* The mask's bounding box with room for the coarsest patches, on the coarsest grid. */
@@ -269,7 +295,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
         return false;
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
-    stats->energy_start = synth->wants_stats ? mean_energy(&search) : 0;
+    stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
     const int from_coarsest = synth->n_levels - 1 - l;
     stats->rounds =
         (l == 0 ? params->finest_rounds : fl_list_at(&params->opt_iterations, from_coarsest)) *
@@ -280,7 +306,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
              stats);
     if (stats->rounds == 0) // a merged field has not been voted yet
         vote_and_blend(synth, &search, target);
-    if (synth->wants_stats)
+    if (synth->wants_energies)
         end_statistics(&search, target, stats);
     return true;
 }
@@ -336,12 +362,15 @@ static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *
     return true;
 }
 
-static bool remember(FlSynth *synth, GError **error)
+static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb, GError **error)
 {
     const FlNnf *last = &synth->nnf[0];
+    const size_t pixels = (size_t)synth->width * synth->height;
     fl_nnf_clear(&synth->previous.nnf);
     synth->previous.valid = true;
     synth->previous.rect = synth->target.rect;
+    memcpy(synth->previous.mask, guides->mask, pixels);
+    memcpy(synth->previous.rgb, rgb, 3 * pixels);
     if (!fl_nnf_init(&synth->previous.nnf, last->width, last->height, error))
         return false;
     memcpy(synth->previous.nnf.match, last->match,
@@ -349,43 +378,89 @@ static bool remember(FlSynth *synth, GError **error)
     return true;
 }
 
-bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
-                    FlSynthView *view, GError **error)
+/* The same mask as in the last frame, and no flow that somebody could see. */
+static bool holds_still(const FlSynth *synth, const FlGuides *guides)
 {
-    FlFrameStats own;
-    synth->wants_stats = stats != NULL;
-    synth->seconds_search = synth->seconds_vote = 0;
-    stats = stats ? stats : &own;
-    *stats = (FlFrameStats){0};
-    clear_frame(synth);
-    fill_paper(synth, rgb);
-    FlRect rect;
-    if (!working_rect(synth, guides, &rect)) {
-        synth->previous.valid = false;
-        synth->frame++;
-        if (view)
-            *view = (FlSynthView){0};
-        return true;
-    }
-    g_auto(FlNnf) shifted = {0};
-    if (!prepare(synth, guides, rect, &shifted, stats, error))
+    const size_t pixels = (size_t)synth->width * synth->height;
+    const float limit = synth->params->flow_still * synth->params->flow_still;
+    if (synth->params->boil || !synth->previous.valid ||
+        memcmp(guides->mask, synth->previous.mask, pixels) != 0)
         return false;
+    for (size_t p = 0; p < pixels; p++) {
+        const float u = guides->flow[2 * p], v = guides->flow[2 * p + 1];
+        if (guides->mask[p] >= FL_INSIDE && u * u + v * v > limit)
+            return false;
+    }
+    return true;
+}
+
+static bool run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats, GError **error)
+{
+    synth->seconds_search = synth->seconds_vote = 0;
     stats->n_levels = synth->n_levels;
     for (int l = synth->n_levels - 1; l >= 0; l--) {
         gint64 time = g_get_monotonic_time();
-        if (!run_level(synth, l, synth->previous.valid ? &shifted : NULL, &stats->level[l], error))
+        if (!run_level(synth, l, synth->previous.valid ? shifted : NULL, &stats->level[l], error))
             return false;
         stats->level[l].seconds = lap(&time);
     }
     stats->seconds_search = synth->seconds_search, stats->seconds_vote = synth->seconds_vote;
+    return true;
+}
+
+/* A frame in the size of the synthesis. */
+static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
+                  FlSynthView *view, GError **error)
+{
+    FlRect rect;
+    g_auto(FlNnf) shifted = {0};
+    synth->frame++;
+    if (holds_still(synth, guides)) {
+        memcpy(rgb, synth->previous.rgb, 3 * (size_t)synth->width * synth->height);
+        *view = synth->view;
+        return true;
+    }
+    clear_frame(synth);
+    fill_paper(synth, rgb);
+    if (!working_rect(synth, guides, &rect)) {
+        synth->previous.valid = false;
+        return true;
+    }
+    if (!prepare(synth, guides, rect, &shifted, stats, error) ||
+        !run_levels(synth, &shifted, stats, error))
+        return false;
     write_rgb(synth, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
-    if (view)
-        *view = (FlSynthView){rect, &synth->nnf[0], synth->previous.valid ? full->temporal : NULL,
-                              synth->previous.valid ? full->temporal_weight : NULL};
-    synth->frame++;
-    const bool remembered = remember(synth, error);
+    *view = synth->view =
+        (FlSynthView){rect, &synth->nnf[0], synth->previous.valid ? full->temporal : NULL,
+                      synth->previous.valid ? full->temporal_weight : NULL};
+    return remember(synth, guides, rgb, error);
+}
+
+/* The same by way of half the size. */
+static bool paint_draft(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
+                        GError **error)
+{
+    FlSynthView view;
+    fl_guides_halve(guides, &synth->half);
+    if (!paint(synth, &synth->half, synth->half_rgb, stats, &view, error))
+        return false;
+    fl_picture_double(synth->half_rgb, guides->width, guides->height, rgb);
+    return true;
+}
+
+bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
+                    FlSynthView *view, GError **error)
+{
+    FlFrameStats no_stats;
+    FlSynthView no_view;
+    FlFrameStats *const s = stats ? stats : &no_stats;
+    FlSynthView *const v = view ? view : &no_view;
+    *s = (FlFrameStats){0};
+    *v = (FlSynthView){0};
+    const bool done = synth->params->half_size ? paint_draft(synth, guides, rgb, s, error)
+                                               : paint(synth, guides, rgb, s, v, error);
     if (!view)
         clear_frame(synth);
-    return remembered;
+    return done;
 }

@@ -47,12 +47,16 @@ FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynt
                       uint64_t seed, GError **error);
 void fl_synth_free(FlSynth *synth); // NULL is fine
 
+/** Whether statistics hold energies, which take a fifth of a frame's time (no); else they are 0. */
+void fl_synth_measure(FlSynth *synth, bool energies);
+
 /**
  * Paints the next frame. rgb: width * height * 3 sRGB, written in the mask and a rim of 2 px, the
  * style's paper elsewhere. An empty mask makes the next frame a first frame again.
  *
- * stats and view may be NULL; without a view nothing of the frame but its field is kept. Statistics
- * take a few hundredths of the time.
+ * stats and view may be NULL; without a view nothing of the frame but its field and picture is
+ * kept. A region that holds still keeps its last picture unless params->boil; stats are then
+ * empty. The view of a draft is empty.
  */
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
