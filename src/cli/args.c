@@ -317,6 +317,43 @@ char *fl_args_help(bool all)
     return g_option_context_get_help(context, !all, NULL);
 }
 
+const GOptionEntry *const *fl_args_groups(void)
+{
+    static const GOptionEntry *groups[] = {common, more, NULL, NULL};
+    groups[2] = parameter_entries();
+    return groups;
+}
+
+/* "fill|keep|#RRGGBB" as "fill keep"; NULL if no word is left. */
+static char *words_of(const char *form)
+{
+    g_auto(GStrv) parts = g_strsplit(form, "|", -1);
+    g_autoptr(GString) words = g_string_new(NULL);
+    for (char **part = parts; *part && parts[1]; part++)
+        if (g_ascii_islower(**part))
+            g_string_append_printf(words, "%s%s", words->len ? " " : "", *part);
+    return words->len ? g_string_free(g_steal_pointer(&words), FALSE) : NULL;
+}
+
+char *fl_args_words(const char *long_name)
+{
+#define FL_SETTING(type, field, form, preset, help) {#field, form},
+    static const char *const forms[][2] = {
+#include "params/settings.def"
+        {"preset", "default|fluidymation|thesis"},
+        {"format", "png|png16|exr|ora|mov|webm|mkv|mp4|gif|apng|table|config"},
+    };
+#undef FL_SETTING
+    for (size_t i = 0; i < G_N_ELEMENTS(choices); i++)
+        if (strcmp(choices[i].name + 2, long_name) == 0)
+            return g_strjoinv(" ", (char **)choices[i].words);
+    for (size_t i = 0; i < G_N_ELEMENTS(forms); i++)
+        if (strcmp(forms[i][0], long_name) == 0)
+            return words_of(forms[i][1]);
+    const int p = fl_param_find(long_name);
+    return p >= 0 && fl_param_info(p)->type == FL_PARAM_BOOL ? g_strdup("on off") : NULL;
+}
+
 /* ---- reading ------------------------------------------------------------------------------ */
 
 /* The option that nobody knows: the word of its message that starts with a dash. */

@@ -43,6 +43,13 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error);
 
 void fl_args_clear(FlArgs *args);
 
+/** Every option, in the groups of --help-all; the list and each group end with an empty one. */
+const GOptionEntry *const *fl_args_groups(void);
+
+/** What an option's value may be, such as "draft normal fine"; NULL: not a choice of words. Free.
+ */
+char *fl_args_words(const char *long_name);
+
 /** The text of --help, or of --help-all; to be freed with g_free(). */
 char *fl_args_help(bool all);
 
