@@ -73,9 +73,10 @@ static bool is_large(const FlPlan *plan, const FlPainter *painter, int n_threads
 static bool paint_one(Job *job, int p, int frame, FlGuides *scratch, GError **error)
 {
     FlPainter *painter = &job->plan->painters[p];
-    if (!fl_painter_frame(painter, frame, scratch, error))
+    painter->wants_view = job->plan->options.dump || fl_report_wants_view(job->report, frame);
+    if (!fl_painter_frame(painter, frame, scratch, error) ||
+        !fl_report_guides(job->report, p, frame, scratch, error))
         return false;
-    fl_report_guides(job->report, p, frame, scratch);
     const char *dump = job->plan->options.dump;
     return !dump || frame % painter->treatment.hold != 0 ||
            fl_dump_frame(dump, painter, scratch, fl_film_number(job->plan->film, frame), error);
@@ -189,7 +190,7 @@ static bool open_report(Job *job, GError **error)
 {
     const char *folder = job->plan->options.report;
     if (folder)
-        job->report = fl_report_new(job->plan, folder, job->background.none, error);
+        job->report = fl_report_new(job->plan, &job->background, folder, error);
     return !folder || job->report;
 }
 

@@ -1,4 +1,5 @@
 /* The page to look at: what is written into it. */
+#include "report/flicker.h"
 #include "report/script.h"
 #include <math.h>
 #include <string.h>
@@ -61,6 +62,38 @@ static void a_picture_is_a_data_uri(void)
     free(text);
 }
 
+enum { WIDTH = 12, HEIGHT = 5 };
+
+/* Stripes that have moved by shift px, in a mask that fills the frame. */
+static void paint_stripes(FlPainter *painter, FlGuides *guides, int shift, float flow)
+{
+    for (int p = 0; p < WIDTH * HEIGHT; p++) {
+        memset(painter->part + 3 * p, (p % WIDTH + WIDTH - shift) % 4 * 60, 3);
+        guides->mask[p] = 255;
+        guides->flow[2 * p] = flow;
+        guides->flow[2 * p + 1] = 0;
+    }
+}
+
+static void paint_that_moves_with_its_region_does_not_flicker(void)
+{
+    uint8_t part[3 * WIDTH * HEIGHT];
+    FlPainter painter = {.part = part};
+    g_auto(FlGuides) guides = {0};
+    g_assert_true(fl_guides_init(&guides, WIDTH, HEIGHT, NULL));
+    FlFlicker flicker = {0};
+    paint_stripes(&painter, &guides, 0, 2);
+    g_assert_true(fl_flicker_measure(&flicker, &painter, &guides, NULL));
+    g_assert_true(isnan(flicker.change)); // nothing came before
+    paint_stripes(&painter, &guides, 2, 0);
+    g_assert_true(fl_flicker_measure(&flicker, &painter, &guides, NULL));
+    g_assert_cmpfloat(flicker.change, ==, 0);
+    paint_stripes(&painter, &guides, 4, 0);
+    g_assert_true(fl_flicker_measure(&flicker, &painter, &guides, NULL));
+    g_assert_cmpfloat(flicker.change, ==, 120);
+    fl_flicker_clear(&flicker);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -69,5 +102,7 @@ int main(int argc, char **argv)
                     bytes_that_are_no_text_become_text);
     g_test_add_func("/report/what is not known is null", what_is_not_known_is_null);
     g_test_add_func("/report/a picture is a data URI", a_picture_is_a_data_uri);
+    g_test_add_func("/report/paint that moves with its region does not flicker",
+                    paint_that_moves_with_its_region_does_not_flicker);
     return g_test_run();
 }

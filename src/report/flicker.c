@@ -8,6 +8,7 @@ void fl_flicker_clear(FlFlicker *flicker)
 {
     free(flicker->luma);
     free(flicker->mask);
+    free(flicker->motion);
     *flicker = (FlFlicker){0};
 }
 
@@ -16,33 +17,41 @@ static uint8_t luma_of(const uint8_t *rgb)
     return (uint8_t)((rgb[0] + 2 * rgb[1] + rgb[2] + 2) / 4);
 }
 
-static double compare(const FlFlicker *before, const FlFlicker *now, size_t pixels)
+static double compare(const FlFlicker *before, const FlFlicker *now, int width, int height)
 {
     uint64_t sum = 0, n = 0;
-    for (size_t p = 0; p < pixels; p++)
-        if (before->mask[p] >= FL_INSIDE && now->mask[p] >= FL_INSIDE) {
-            sum += (uint64_t)abs(now->luma[p] - before->luma[p]);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const size_t from = (size_t)y * width + x;
+            const int to_x = x + before->motion[2 * from], to_y = y + before->motion[2 * from + 1];
+            const size_t to = (size_t)to_y * width + to_x;
+            if (before->mask[from] < FL_INSIDE || to_x < 0 || to_y < 0 || to_x >= width ||
+                to_y >= height || now->mask[to] < FL_INSIDE)
+                continue;
+            sum += (uint64_t)abs(now->luma[to] - before->luma[from]);
             n++;
         }
     return n > 0 ? (double)sum / (double)n : NAN;
 }
 
-bool fl_flicker_measure(FlFlicker *flicker, const FlPainter *painter, int frame, double *change,
+bool fl_flicker_measure(FlFlicker *flicker, const FlPainter *painter, const FlGuides *guides,
                         GError **error)
 {
-    const size_t pixels = fl_box_pixels(painter->rect);
-    const int drawn = frame - frame % painter->treatment.hold;
-    FlFlicker now = {fl_alloc(pixels, 1, "a picture", error), NULL};
-    *change = NAN;
-    if (!now.luma || !(now.mask = fl_alloc(pixels, 1, "a picture", error)) ||
-        !fl_masks_get(painter->masks, painter->region, drawn, painter->rect, now.mask, error)) {
+    const size_t pixels = (size_t)guides->width * guides->height;
+    FlFlicker now = {.change = NAN};
+    if (!(now.luma = fl_alloc(pixels, 1, "a picture", error)) ||
+        !(now.mask = fl_alloc(pixels, 1, "a picture", error)) ||
+        !(now.motion = fl_alloc(2 * pixels, sizeof(int16_t), "a picture", error))) {
         fl_flicker_clear(&now);
         return false;
     }
+    memcpy(now.mask, guides->mask, pixels);
     for (size_t p = 0; p < pixels; p++)
         now.luma[p] = luma_of(painter->part + 3 * p);
+    for (size_t k = 0; k < 2 * pixels; k++)
+        now.motion[k] = (int16_t)lrintf(CLAMP(guides->flow[k], -32000, 32000));
     if (flicker->luma)
-        *change = compare(flicker, &now, pixels);
+        now.change = compare(flicker, &now, guides->width, guides->height);
     fl_flicker_clear(flicker);
     *flicker = now;
     return true;

@@ -19,7 +19,7 @@
 
 struct FlReport {
     const FlPlan *plan;
-    bool transparent;
+    const FlBackground *background;
     FlAtomic file;
     GBytes *page;
     int width, height; // of the pictures, px
@@ -66,10 +66,11 @@ static bool begin(FlReport *report, const char *folder, GError **error)
     return true;
 }
 
-FlReport *fl_report_new(const FlPlan *plan, const char *folder, bool transparent, GError **error)
+FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, const char *folder,
+                        GError **error)
 {
     g_autoptr(FlReport) report = g_new0(FlReport, 1);
-    report->plan = plan, report->transparent = transparent;
+    report->plan = plan, report->background = background;
     g_mutex_init(&report->lock);
     report->flicker = g_new0(FlFlicker, MAX(plan->n_painters, 1));
     report->painter_seconds = g_new0(double, MAX(plan->n_painters, 1));
@@ -107,14 +108,26 @@ static bool shows_guides(const FlReport *report, int frame)
     return false;
 }
 
-void fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides)
+bool fl_report_wants_view(const FlReport *report, int frame)
 {
-    const FlPainter *painter = report ? &report->plan->painters[p] : NULL;
-    if (!report || !shows_guides(report, frame) || frame % painter->treatment.hold != 0)
-        return;
-    g_mutex_lock(&report->lock);
-    fl_guide_view_add(&report->view, p, painter, guides);
-    g_mutex_unlock(&report->lock);
+    return report && shows_guides(report, frame);
+}
+
+bool fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides, GError **error)
+{
+    if (!report)
+        return true;
+    const FlPainter *painter = &report->plan->painters[p];
+    if (frame % painter->treatment.hold != 0) { // the picture is the last one
+        report->flicker[p].change = 0;
+        return true;
+    }
+    if (shows_guides(report, frame)) {
+        g_mutex_lock(&report->lock);
+        fl_guide_view_add(&report->view, p, painter, guides);
+        g_mutex_unlock(&report->lock);
+    }
+    return fl_flicker_measure(&report->flicker[p], painter, guides, error);
 }
 
 /* ---- a frame -------------------------------------------------------------------------------- */
@@ -136,7 +149,7 @@ static bool write_pictures(FlReport *report, const FlComposite *composite, GErro
     if (!rgba)
         return false;
     fputs(",after:", out);
-    if (!write_scaled(report, composite->rgba, !report->transparent, error))
+    if (!write_scaled(report, composite->rgba, !report->background->none, error))
         return false;
     fl_runs_flat(composite->runs, width, height, rgba);
     fputs(",before:", out);
@@ -148,20 +161,17 @@ static bool write_pictures(FlReport *report, const FlComposite *composite, GErro
 }
 
 /* [energy, change, seconds] of each painter. */
-static bool write_painters(FlReport *report, int frame, GError **error)
+static void write_painters(FlReport *report, int frame)
 {
     FILE *out = report->file.stream;
     fputs(",painters:[", out);
     for (int p = 0; p < report->plan->n_painters; p++) {
         const FlPainter *painter = &report->plan->painters[p];
         const bool painted = painter->stats.n_levels > 0 && painter->stats.level[0].pixels > 0;
-        double change;
-        if (!fl_flicker_measure(&report->flicker[p], painter, frame, &change, error))
-            return false;
         fputs(p > 0 ? ",[" : "[", out);
         fl_script_number(out, painted ? painter->stats.level[0].energy : NAN);
         fputc(',', out);
-        fl_script_number(out, change);
+        fl_script_number(out, report->flicker[p].change);
         fputc(',', out);
         const bool held = frame % painter->treatment.hold != 0;
         fl_script_number(out, held ? 0 : painter->seconds);
@@ -169,7 +179,6 @@ static bool write_painters(FlReport *report, int frame, GError **error)
         fputc(']', out);
     }
     fputc(']', out);
-    return true;
 }
 
 static void write_seconds(FlReport *report, const FlReportFrame *frame)
@@ -192,8 +201,8 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
     fprintf(out, "<script>frames.push({number:%d",
             fl_film_number(report->plan->film, frame->frame));
     write_seconds(report, frame);
-    if (!write_painters(report, frame->frame, error) ||
-        (frame->frame % report->every == 0 && !write_pictures(report, frame->composite, error)))
+    write_painters(report, frame->frame);
+    if (frame->frame % report->every == 0 && !write_pictures(report, frame->composite, error))
         return false;
     if (shows_guides(report, frame->frame)) {
         fputs(",guides:", out);
@@ -250,10 +259,10 @@ static void write_film(const FlReport *report)
     fputs(",version:", out);
     fl_script_string(out, fl_version());
     fputs(",paper:", out);
-    fl_script_colour(out, plan->paper);
+    fl_script_colour(out, report->background->flat);
     fprintf(out, ",width:%d,height:%d,shown:[%d,%d],every:%d,transparent:%s,fps:",
             fl_film_width(plan->film), fl_film_height(plan->film), report->width, report->height,
-            report->every, report->transparent ? "true" : "false");
+            report->every, report->background->none ? "true" : "false");
     fl_script_number(out, fps > 0 ? fps : 24);
     fputs(",peak:", out);
     fl_script_number(out, fl_peak_mib());

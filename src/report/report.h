@@ -16,20 +16,24 @@ typedef struct FlReportFrame {
 } FlReportFrame;
 
 /**
- * Begins folder/index.html; the plan, whose background is transparent or not, must outlive it.
+ * Begins folder/index.html; plan and background must outlive it.
  *
  * Nothing is seen under that name before fl_report_finish(). Returns: to be freed with
  * fl_report_free(); NULL with FL_ERROR_EXISTS, FL_ERROR_OUTPUT or FL_ERROR_NO_MEMORY.
  */
-FlReport *fl_report_new(const FlPlan *plan, const char *folder, bool transparent, GError **error);
+FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, const char *folder,
+                        GError **error);
 
 void fl_report_free(FlReport *report); // NULL is fine
 
+/** Whether fl_report_guides() will look at the painters' views of a frame; NULL does not. */
+bool fl_report_wants_view(const FlReport *report, int frame);
+
 /**
- * Tells what painter p has just painted the frame from; only a few frames are kept. Any thread may
- * call it, in any order of the painters; a NULL report is told nothing.
+ * Tells what painter p has just painted the frame from. Any thread may call it, in any order of the
+ * painters; a NULL report is told nothing. FL_ERROR_NO_MEMORY.
  */
-void fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides);
+bool fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides, GError **error);
 
 /** Tells a report, or NULL, of a finished frame; frames come in order. FL_ERROR_INPUT,
  * FL_ERROR_NO_MEMORY. */
