@@ -6,6 +6,7 @@
 #include "output/png.h"
 #include "render/dump.h"
 #include "render/frame.h"
+#include "render/resume.h"
 #include "render/stats.h"
 #include "report/report.h"
 #include <fluidy/fluidy.h>
@@ -25,7 +26,8 @@ typedef struct Job {
     FlBackground background;
     FlSink *sink;
     FlStats stats;
-    FlReport *report;  // NULL: not asked for
+    FlReport *report; // NULL: not asked for
+    FlResume resume;
     FlGuides *scratch; // one per thread that paints
     int n_scratch;
     int64_t start;    // microseconds, as g_get_monotonic_time()
@@ -51,12 +53,13 @@ static bool tell(const Job *job, const char *stage, int done, double frame_s, GE
                            .elapsed_s = seconds_since(job->start),
                            .frame_s = frame_s,
                            .remaining_s = -1};
-    if (done > 0)
-        progress.remaining_s = seconds_since(job->painting) / done * (total - done);
+    const int mine = done - job->resume.first;
+    if (mine > 0)
+        progress.remaining_s = seconds_since(job->painting) / mine * (total - done);
     if (!o->progress || o->progress(&progress, o->data))
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames", done,
-                total);
+    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames; %s",
+                done, total, fl_resume_advice(&job->resume));
     return false;
 }
 
@@ -126,11 +129,8 @@ static bool write_layers(const Job *job, const FlComposite *composite, int frame
             memcpy(rgba + 4 * ((size_t)(layer->box.y + y) * width + layer->box.x),
                    layer->rgba + 4 * (size_t)y * layer->box.width, 4 * (size_t)layer->box.width);
         const FlPng png = {.width = width, .height = height, .rgba = rgba};
-        const bool overwrite = plan->options.overwrite == FL_OVERWRITE_YES;
-        const bool keep = plan->options.overwrite == FL_OVERWRITE_KEEP;
-        if (keep && g_file_test(path, G_FILE_TEST_EXISTS))
-            continue;
-        if (!fl_png_save(&png, path, overwrite, error))
+        if (!fl_resume_keeps(&job->resume, path) &&
+            !fl_png_save(&png, path, fl_resume_replaces(&job->resume, frame), error))
             return false;
     }
     return true;
@@ -149,8 +149,14 @@ static bool write_frame(Job *job, const FlComposite *composite, int frame, GErro
                              .rgba16 = composite->rgba16,
                              .layers = layers,
                              .n_layers = composite->n_layers};
-    return (!job->plan->options.layers || write_layers(job, composite, frame, error)) &&
-           (fl_plan_keeps(job->plan, frame) || fl_sink_frame(job->sink, &out, error));
+    if (!fl_resume_before_files(&job->resume, job->plan, frame, error) ||
+        (job->plan->options.layers && !write_layers(job, composite, frame, error)))
+        return false;
+    if (job->sink->format->film)
+        return fl_sink_frame(job->sink, &out, error);
+    g_autofree char *file = fl_sink_file(&job->sink->params, out.number, error);
+    job->sink->params.overwrite = fl_resume_replaces(&job->resume, frame);
+    return file && (fl_resume_keeps(&job->resume, file) || fl_sink_frame(job->sink, &out, error));
 }
 
 static bool render_frame(Job *job, int frame, GError **error)
@@ -170,6 +176,7 @@ static bool render_frame(Job *job, int frame, GError **error)
                                 (double)(composed - painted) * 1e-6, seconds_since(composed)};
     fl_stats_frame(&job->stats, job->plan, frame, done.paint_s, done.compose_s, done.write_s);
     return fl_report_frame(job->report, &done, error) &&
+           fl_resume_save(&job->resume, job->plan, frame + 1, error) &&
            tell(job, "paint", frame + 1, seconds_since(start), error);
 }
 
@@ -213,10 +220,11 @@ static bool make_scratch(Job *job, GError **error)
 static bool prepare(Job *job, GError **error)
 {
     const double read_s = seconds_since(job->start);
-    if (!fl_background_init(&job->background, job->plan, error) || !open_sink(job, error) ||
+    if (!fl_background_init(&job->background, job->plan, error) ||
+        !fl_resume_init(&job->resume, job->plan, error) || !open_sink(job, error) ||
         !fl_stats_init(&job->stats, job->plan, error) || !open_report(job, error) ||
         !tell(job, "guides", 0, 0, error) || !fl_plan_prepare(job->plan, error) ||
-        !make_scratch(job, error))
+        !make_scratch(job, error) || !fl_resume_start(&job->resume, job->plan, error))
         return false;
     job->painting = g_get_monotonic_time();
     job->stats.read_s = read_s;
@@ -228,11 +236,14 @@ static bool run(Job *job, GError **error)
 {
     if (!prepare(job, error))
         return false;
-    for (int f = 0; f < fl_film_frames(job->plan->film); f++)
+    for (int f = job->resume.first; f < fl_film_frames(job->plan->film); f++)
         if (!render_frame(job, f, error))
             return false;
-    return fl_sink_finish(job->sink, error) && fl_stats_finish(&job->stats, error) &&
-           fl_report_finish(job->report, error);
+    if (!fl_sink_finish(job->sink, error) || !fl_stats_finish(&job->stats, error) ||
+        !fl_report_finish(job->report, error))
+        return false;
+    fl_resume_finish(&job->resume);
+    return true;
 }
 
 static void clear(Job *job)
@@ -243,13 +254,15 @@ static void clear(Job *job)
     fl_sink_free(job->sink);
     fl_stats_clear(&job->stats);
     fl_report_free(job->report);
+    fl_resume_clear(&job->resume);
     fl_plan_free(job->plan);
 }
 
 /* What could still go wrong before the first frame, without touching the output. */
 static bool rehearse(Job *job, GError **error)
 {
-    return fl_background_init(&job->background, job->plan, error);
+    return fl_background_init(&job->background, job->plan, error) &&
+           fl_resume_init(&job->resume, job->plan, error);
 }
 
 static char *what_was_done(const FlPlan *plan)

@@ -112,8 +112,11 @@ typedef struct FlRenderOptions {
     FlBlend blend;
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
     FlOverwrite overwrite;
-    const char *report; /**< a folder for a page to look at, index.html; NULL: none */
+    /** Go on with an interrupted render although overwrite is FL_OVERWRITE_YES. Else that starts
+     *  anew, and everything else goes on by itself. */
+    bool resume;
     const char *stats;  /**< JSON lines about every frame, region and level; NULL: none */
+    const char *report; /**< a folder for a page to look at, index.html; NULL: none */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: none */
 
@@ -133,6 +136,12 @@ typedef struct FlRenderOptions {
 
 /**
  * Renders. Files appear whole, under their final name, one after the other.
+ *
+ * While frames are painted, a hidden file beside them, .NAME.state, holds what the next frame
+ * needs. It goes when the render is complete. With it, a render that was stopped, or killed, goes
+ * on where it was when it is asked for again, and paints the same bytes as one that was not. Films
+ * (.mov, .webm, …) start anew. If anything that decides the bytes has changed meanwhile, that is
+ * FL_ERROR_CHANGED.
  *
  * Returns: false with an error of FL_ERROR; the frames written so far stay.
  */

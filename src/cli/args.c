@@ -186,6 +186,8 @@ static gboolean read_flag(const char *name, const char *value, gpointer data, GE
         args->render.dry_run = true;
     if (strcmp(name, "--strict") == 0)
         args->render.strict = true;
+    if (strcmp(name, "--resume") == 0)
+        args->render.resume = true;
     return TRUE;
 }
 
@@ -248,6 +250,7 @@ static const GOptionEntry more[] = {
     {"dpi", 0, VALUE(read_number), "pixels per inch of drawings sized in mm or in (96)", "N"},
     {"key", 0, VALUE(read_choice),
      "what makes leaves one region: auto, fill, id, class, label or tree (auto)", "WORD"},
+    {"resume", 0, FLAG(read_flag), "go on with an interrupted render, also with -y", NULL},
     {"strict", 0, FLAG(read_flag), "a warning about a drawing is an error", NULL},
     {"stacking", 0, VALUE(read_setting), "knockout or glaze what lies below (knockout)", "WORD"},
     {"stroke", 0, VALUE(read_choice), "keep, paint or drop line art (keep)", "WORD"},

@@ -3,19 +3,22 @@
 #include "progress.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <locale.h>
 #include <signal.h>
 #include <stdio.h>
+#include <unistd.h>
 
 enum { DONE = 0, FAILURE = 1, USAGE = 2, INTERRUPTED = 75 };
 
 static volatile sig_atomic_t stop;
 
-/* The first signal asks; a second one finds the default action again. */
+/* The first signal asks; a second one of either kind finds the default action again. */
 static void on_signal(int number)
 {
     stop = 1;
-    signal(number, SIG_DFL);
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
 }
 
 typedef struct Voice {
@@ -93,6 +96,8 @@ static int work(FlArgs *args)
     args->render.data = &voice;
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);
+    if (args->task == FL_TASK_RENDER)
+        signal(SIGPIPE, SIG_IGN); // whoever read the progress may leave
     g_autoptr(GError) error = NULL;
     int status = DONE;
     if (args->task == FL_TASK_LIST_REGIONS)
@@ -123,8 +128,21 @@ static int run(FlArgs *args)
     }
 }
 
+/* A standard stream that is closed would become the first file that is opened. Nothing can be
+ * written to what takes its place, so that it still is an error to print. */
+static void fill_standard_streams(void)
+{
+    int fd;
+    do
+        fd = open("/dev/null", O_RDONLY);
+    while (fd >= 0 && fd <= STDERR_FILENO);
+    if (fd >= 0)
+        close(fd);
+}
+
 int main(int argc, char **argv)
 {
+    fill_standard_streams();
     setlocale(LC_CTYPE, "");
     FlArgs args;
     g_autoptr(GError) error = NULL;

@@ -86,6 +86,15 @@ void fl_painter_clear(FlPainter *painter)
     *painter = (FlPainter){0};
 }
 
+/* The picture of rect into that of the frame. */
+static void put_part(FlPainter *painter)
+{
+    const FlBox rect = painter->rect;
+    for (int y = 0; y < rect.height; y++)
+        memcpy(painter->painted + 3 * ((size_t)(rect.y + y) * painter->width + rect.x),
+               painter->part + 3 * (size_t)y * rect.width, 3 * (size_t)rect.width);
+}
+
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
@@ -97,9 +106,35 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
         !fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
                         painter->wants_view ? &painter->view : NULL, error))
         return false;
-    for (int y = 0; y < rect.height; y++)
-        memcpy(painter->painted + 3 * ((size_t)(rect.y + y) * painter->width + rect.x),
-               painter->part + 3 * (size_t)y * rect.width, 3 * (size_t)rect.width);
+    put_part(painter);
     painter->seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+    return true;
+}
+
+bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error)
+{
+    const bool holds = painter->treatment.hold > 1;
+    if (!(parts[0] = fl_synth_save(painter->synth, error)))
+        return false;
+    parts[1] = g_bytes_new(painter->part, holds ? 3 * fl_box_pixels(painter->rect) : 0);
+    return true;
+}
+
+bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
+{
+    const size_t bytes = painter->treatment.hold > 1 ? 3 * fl_box_pixels(painter->rect) : 0;
+    if (g_bytes_get_size(parts[1]) != bytes) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "region %s: the picture of an earlier render has another size", painter->name);
+        return false;
+    }
+    if (!fl_synth_load(painter->synth, parts[0], error)) {
+        g_prefix_error(error, "region %s: ", painter->name);
+        return false;
+    }
+    if (bytes > 0) {
+        memcpy(painter->part, g_bytes_get_data(parts[1], NULL), bytes);
+        put_part(painter);
+    }
     return true;
 }

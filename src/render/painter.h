@@ -40,4 +40,17 @@ void fl_painter_clear(FlPainter *painter);
  */
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error);
 
+/** What a painter needs to go on after the last frame it has painted: see fl_painter_save(). */
+#define FL_PAINTER_PARTS 2
+
+/**
+ * The painter's state: that of its synthesis and, if frames are held, the picture.
+ *
+ * parts: to be freed with g_bytes_unref(). Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error);
+
+/** The reverse, for a painter made the same way. FL_ERROR_CHANGED, which names the region. */
+bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error);
+
 #endif

@@ -131,54 +131,6 @@ static bool name_output(FlPlan *plan, GError **error)
     return true;
 }
 
-static char *frame_file(const FlPlan *plan, int frame, GError **error)
-{
-    const FlSinkParams params = {.path = plan->output};
-    if (plan->format->film)
-        return g_strdup(plan->output);
-    return fl_sink_file(&params, fl_film_number(plan->film, frame), error);
-}
-
-static bool is_free(const FlPlan *plan, const char *file, GError **error)
-{
-    if (!g_file_test(file, G_FILE_TEST_EXISTS))
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s: exists already; -y overwrites%s", file,
-                plan->format->film ? "" : ", --no-clobber keeps what is there");
-    return false;
-}
-
-static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
-{
-    for (int p = 0; plan->options.layers && p < plan->n_painters; p++) {
-        g_autofree char *file = fl_output_name(
-            plan->options.layers, fl_film_number(plan->film, frame), plan->painters[p].name, error);
-        if (!file || !is_free(plan, file, error))
-            return false;
-    }
-    return true;
-}
-
-static bool outputs_are_free(const FlPlan *plan, GError **error)
-{
-    const bool pattern = fl_output_is_pattern(plan->output);
-    const bool film = plan->format->film; // cannot be added to, and so not kept
-    if (plan->options.overwrite == FL_OVERWRITE_YES)
-        return true;
-    if (film && !is_free(plan, plan->output, error))
-        return false;
-    if (plan->options.overwrite == FL_OVERWRITE_KEEP)
-        return true;
-    if (!pattern && !is_free(plan, plan->output, error))
-        return false;
-    for (int f = 0; f < fl_film_frames(plan->film); f++) {
-        g_autofree char *file = pattern ? frame_file(plan, f, error) : NULL;
-        if ((pattern && (!file || !is_free(plan, file, error))) || !layers_are_free(plan, f, error))
-            return false;
-    }
-    return true;
-}
-
 /* One name for every region would let the last layer win. */
 static bool check_layers(const FlPlan *plan, GError **error)
 {
@@ -189,13 +141,6 @@ static bool check_layers(const FlPlan *plan, GError **error)
                 "%s: one file for %d regions; expected {region} in the name", pattern,
                 plan->n_painters);
     return false;
-}
-
-bool fl_plan_keeps(const FlPlan *plan, int frame)
-{
-    g_autofree char *file = frame_file(plan, frame, NULL);
-    return plan->options.overwrite == FL_OVERWRITE_KEEP && file &&
-           g_file_test(file, G_FILE_TEST_EXISTS);
 }
 
 static bool make_plan(FlPlan *plan, GError **error)
@@ -209,8 +154,7 @@ static bool make_plan(FlPlan *plan, GError **error)
         return false;
     plan->masks = fl_masks_new(fl_film_regions(plan->film), fl_film_frames(plan->film),
                                fl_film_width(plan->film), fl_film_height(plan->film), error);
-    return plan->masks && add_painters(plan, error) && check_layers(plan, error) &&
-           outputs_are_free(plan, error);
+    return plan->masks && add_painters(plan, error) && check_layers(plan, error);
 }
 
 FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)

@@ -23,8 +23,7 @@ typedef struct FlPlan {
 
 /**
  * Reads config and drawing and decides how every region is treated; options is what the caller
- * said. Nothing is painted and no output is touched, but an output that must not be overwritten is
- * an error now.
+ * said. Nothing is painted and no output is touched.
  *
  * Returns: to be freed with fl_plan_free(); NULL with an error of FL_ERROR.
  */
@@ -34,9 +33,6 @@ void fl_plan_free(FlPlan *plan); // NULL is fine
 
 /** Rasterises every frame's masks and makes the guides of every painted region. */
 bool fl_plan_prepare(FlPlan *plan, GError **error);
-
-/** Whether a frame's picture is there and to be kept. */
-bool fl_plan_keeps(const FlPlan *plan, int frame);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
 

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "synth/draft.h"
 #include "synth/energy.h"
+#include "synth/past.h"
 #include "synth/shift.h"
 #include "synth/vote.h"
 #include <math.h>
@@ -463,4 +464,25 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
     if (!view)
         clear_frame(synth);
     return done;
+}
+
+GBytes *fl_synth_save(const FlSynth *synth, GError **error)
+{
+    const Previous *p = &synth->previous;
+    const FlSynthPast past = {synth->frame, p->valid, p->rect, p->nnf, p->mask, p->rgb};
+    return fl_synth_past_pack(&past, synth->width, synth->height, error);
+}
+
+bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
+{
+    Previous *p = &synth->previous;
+    FlSynthPast past = {.mask = p->mask, .rgb = p->rgb};
+    fl_nnf_clear(&p->nnf);
+    p->valid = false;
+    if (!fl_synth_past_unpack(&past, state, &synth->exemplar->level[0], synth->width, synth->height,
+                              error))
+        return false;
+    synth->frame = past.frame;
+    p->valid = past.valid, p->rect = past.rect, p->nnf = past.nnf;
+    return true;
 }

@@ -61,6 +61,18 @@ void fl_synth_measure(FlSynth *synth, bool energies);
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
 
+/**
+ * What the next frame needs to know of those painted so far: a painter made the same way that has
+ * loaded it paints the same next frame.
+ *
+ * Returns: to be freed with g_bytes_unref(); NULL with FL_ERROR_NO_MEMORY set.
+ */
+GBytes *fl_synth_save(const FlSynth *synth, GError **error);
+
+/** Returns: false with FL_ERROR_CHANGED if the state is none or does not fit; the next frame is
+ * then a first one. */
+bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSynth, fl_synth_free)
 
 #endif

@@ -1,0 +1,223 @@
+#include "render/resume.h"
+
+#include "output/name.h"
+#include "output/sink.h"
+#include <glib/gstdio.h>
+
+static char *frame_file(const FlPlan *plan, int frame, GError **error)
+{
+    const FlSinkParams params = {.path = plan->output};
+    return fl_sink_file(&params, fl_film_number(plan->film, frame), error);
+}
+
+/* Hidden beside the frames, one for each pattern. */
+static char *state_file(const FlPlan *plan)
+{
+    g_autofree char *folder = g_path_get_dirname(plan->output);
+    g_autofree char *base = g_path_get_basename(plan->output);
+    g_autofree char *name = g_strdup_printf(".%s.state", base);
+    return g_build_filename(folder, name, NULL);
+}
+
+static bool may_overwrite(const FlPlan *plan)
+{
+    return plan->options.overwrite == FL_OVERWRITE_YES;
+}
+
+/* The state of an earlier run into resume->state, if this one is to go on with it. */
+static bool find_state(FlResume *resume, const FlPlan *plan, FlFingerprint *print, GError **error)
+{
+    if ((may_overwrite(plan) && !plan->options.resume) ||
+        !g_file_test(resume->path, G_FILE_TEST_EXISTS))
+        return true;
+    g_autoptr(GError) problem = NULL;
+    g_autoptr(FlState) state = fl_state_load(resume->path, &problem);
+    g_autofree char *difference =
+        state ? fl_fingerprint_difference(state->print, print) : g_strdup(problem->message);
+    if (!difference) {
+        resume->state = g_steal_pointer(&state);
+        return true;
+    }
+    if (may_overwrite(plan))
+        return true;
+    if (!state)
+        g_propagate_error(error, g_steal_pointer(&problem));
+    else
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: an earlier run painted %d frames, but %s; -y starts anew", plan->output,
+                    state->done, difference);
+    return false;
+}
+
+static bool is_free(const FlPlan *plan, const char *file, GError **error)
+{
+    if (!g_file_test(file, G_FILE_TEST_EXISTS))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s: exists already; -y overwrites%s", file,
+                plan->format->film ? "" : ", --no-clobber keeps what is there");
+    return false;
+}
+
+static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
+{
+    const int number = fl_film_number(plan->film, frame);
+    for (int p = 0; plan->options.layers && p < plan->n_painters; p++) {
+        const char *region = plan->painters[p].name;
+        g_autofree char *file = fl_output_name(plan->options.layers, number, region, error);
+        if (!file || !is_free(plan, file, error))
+            return false;
+    }
+    return true;
+}
+
+/* A frame that is finished must be there, and of another nothing that is not ours. */
+static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, GError **error)
+{
+    g_autofree char *file = resume->path ? frame_file(plan, frame, error) : NULL;
+    if (resume->path && !file)
+        return false;
+    if (frame < resume->first) {
+        if (!file || g_file_test(file, G_FILE_TEST_EXISTS))
+            return true;
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: an earlier run painted it, but it is gone; -y starts anew", file);
+        return false;
+    }
+    return resume->keep_files || fl_resume_replaces(resume, frame) ||
+           ((!file || is_free(plan, file, error)) && layers_are_free(plan, frame, error));
+}
+
+static bool check_files(const FlResume *resume, const FlPlan *plan, GError **error)
+{
+    if (!resume->path && !may_overwrite(plan) && !is_free(plan, plan->output, error))
+        return false;
+    for (int f = 0; f < fl_film_frames(plan->film); f++)
+        if (!check_frame(resume, plan, f, error))
+            return false;
+    return true;
+}
+
+static void tell_start(const FlResume *resume, const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    if (!o->note)
+        return;
+    g_autofree char *line =
+        g_strdup_printf("going on with an earlier run, which painted %d of %d frames",
+                        resume->first, fl_film_frames(plan->film));
+    o->note(line, o->data);
+}
+
+/* A film is one file: it is written anew or not at all. */
+static bool check_film(const FlPlan *plan, GError **error)
+{
+    if (plan->options.resume) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: a film cannot be resumed; expected frames, such as -o %s_%%04d.png",
+                    plan->output, fl_film_name(plan->film));
+        return false;
+    }
+    return true;
+}
+
+bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
+{
+    const bool film = plan->format->film;
+    *resume = (FlResume){.keep_files = plan->options.overwrite == FL_OVERWRITE_KEEP};
+    if (film && !check_film(plan, error))
+        return false;
+    g_autoptr(FlFingerprint) print = fl_fingerprint_new(plan, error);
+    resume->path = film ? NULL : state_file(plan);
+    if (!print || (resume->path && !find_state(resume, plan, print, error)))
+        return false;
+    resume->found = resume->written = resume->state != NULL;
+    if (!resume->found) {
+        resume->state = fl_state_new();
+        resume->state->overwrite = may_overwrite(plan);
+    }
+    fl_fingerprint_free(resume->state->print); // it says the same
+    resume->state->print = g_steal_pointer(&print);
+    resume->first = resume->state->done;
+    if (!check_files(resume, plan, error))
+        return false;
+    if (resume->found)
+        tell_start(resume, plan);
+    return true;
+}
+
+/* The painters' states as they are after `done` frames. */
+static bool take_state(FlResume *resume, const FlPlan *plan, int done, GError **error)
+{
+    g_ptr_array_set_size(resume->state->painter, 0);
+    for (int p = 0; p < plan->n_painters; p++) {
+        GBytes *parts[FL_PAINTER_PARTS];
+        if (!fl_painter_save(&plan->painters[p], parts, error))
+            return false;
+        for (int k = 0; k < FL_PAINTER_PARTS; k++)
+            g_ptr_array_add(resume->state->painter, parts[k]);
+    }
+    resume->state->done = done;
+    return true;
+}
+
+bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error)
+{
+    if (!resume->found)
+        return !resume->path || take_state(resume, plan, 0, error);
+    GBytes *const *parts = (GBytes *const *)resume->state->painter->pdata;
+    if (resume->state->painter->len != (guint)(FL_PAINTER_PARTS * plan->n_painters)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: has the state of another number of regions; -y starts anew", resume->path);
+        return false;
+    }
+    for (int p = 0; p < plan->n_painters; p++)
+        if (!fl_painter_load(&plan->painters[p], parts + FL_PAINTER_PARTS * p, error))
+            return false;
+    return true;
+}
+
+bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error)
+{
+    if (!fl_fingerprint_check_drawing(resume->state->print, plan->film, frame, error))
+        return false;
+    // The first state comes before the first frame: a frame without a state is not known as ours.
+    // It comes no sooner, so that a mistake that shows in the first frame leaves nothing behind.
+    if (!resume->path || resume->written)
+        return true;
+    return resume->written = fl_state_save(resume->state, resume->path, error);
+}
+
+bool fl_resume_save(FlResume *resume, const FlPlan *plan, int done, GError **error)
+{
+    return !resume->path || (take_state(resume, plan, done, error) &&
+                             fl_state_save(resume->state, resume->path, error));
+}
+
+bool fl_resume_replaces(const FlResume *resume, int frame)
+{
+    const bool in_hand = resume->found && frame == resume->first;
+    return !resume->keep_files && (in_hand || (resume->state && resume->state->overwrite));
+}
+
+bool fl_resume_keeps(const FlResume *resume, const char *file)
+{
+    return resume->keep_files && g_file_test(file, G_FILE_TEST_EXISTS);
+}
+
+const char *fl_resume_advice(const FlResume *resume)
+{
+    return resume->path ? "run again to go on" : "a film starts anew; frames could go on";
+}
+
+void fl_resume_finish(FlResume *resume)
+{
+    if (resume->path)
+        g_unlink(resume->path);
+}
+
+void fl_resume_clear(FlResume *resume)
+{
+    g_free(resume->path);
+    fl_state_free(resume->state);
+    *resume = (FlResume){0};
+}

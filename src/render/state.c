@@ -1,0 +1,120 @@
+#include "render/state.h"
+
+#include "output/atomic.h"
+#include <errno.h>
+#include <string.h>
+
+#define MAGIC "fluidy-svg state 1"
+#define TYPE "(sa(ss)ibaay)" // magic, facts, done, overwrite, painters
+#define SUM_BYTES 32         // SHA-256 of all that stands before it
+
+FlState *fl_state_new(void)
+{
+    FlState *state = g_new0(FlState, 1);
+    state->painter = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
+    return state;
+}
+
+void fl_state_free(FlState *state)
+{
+    if (!state)
+        return;
+    fl_fingerprint_free(state->print);
+    g_ptr_array_unref(state->painter);
+    g_free(state);
+}
+
+static GVariant *to_variant(const FlState *state)
+{
+    GVariantBuilder facts, painters;
+    g_variant_builder_init(&facts, G_VARIANT_TYPE("a(ss)"));
+    for (guint i = 0; i < state->print->facts->len; i++) {
+        const FlFact *fact = &g_array_index(state->print->facts, FlFact, i);
+        g_variant_builder_add(&facts, "(ss)", fact->name, fact->value);
+    }
+    g_variant_builder_init(&painters, G_VARIANT_TYPE("aay"));
+    for (guint i = 0; i < state->painter->len; i++)
+        g_variant_builder_add_value(
+            &painters,
+            g_variant_new_from_bytes(G_VARIANT_TYPE("ay"), state->painter->pdata[i], TRUE));
+    return g_variant_ref_sink(
+        g_variant_new(TYPE, MAGIC, &facts, state->done, state->overwrite, &painters));
+}
+
+static void sum_of(const void *data, size_t bytes, uint8_t sum[SUM_BYTES])
+{
+    g_autoptr(GChecksum) checksum = g_checksum_new(G_CHECKSUM_SHA256);
+    size_t length = SUM_BYTES;
+    g_checksum_update(checksum, data, (gssize)bytes);
+    g_checksum_get_digest(checksum, sum, &length);
+}
+
+bool fl_state_save(const FlState *state, const char *path, GError **error)
+{
+    g_autoptr(GVariant) variant = to_variant(state);
+    const void *data = g_variant_get_data(variant);
+    const size_t bytes = g_variant_get_size(variant);
+    uint8_t sum[SUM_BYTES];
+    g_auto(FlAtomic) file = {0};
+    if (!fl_atomic_open(&file, path, true, error))
+        return false;
+    sum_of(data, bytes, sum);
+    if (fwrite(data, 1, bytes, file.stream) != bytes ||
+        fwrite(sum, 1, SUM_BYTES, file.stream) != SUM_BYTES) {
+        fl_output_error(error, path, errno);
+        return false;
+    }
+    return fl_atomic_commit(&file, error);
+}
+
+static FlState *from_variant(GVariant *variant)
+{
+    const char *magic, *name, *value;
+    gboolean overwrite;
+    g_autoptr(GVariantIter) facts = NULL, painters = NULL;
+    g_autoptr(FlState) state = fl_state_new();
+    g_variant_get(variant, "(&sa(ss)ibaay)", &magic, &facts, &state->done, &overwrite, &painters);
+    if (!g_str_equal(magic, MAGIC) || state->done < 0)
+        return NULL;
+    state->overwrite = overwrite;
+    state->print = fl_fingerprint_new_empty();
+    while (g_variant_iter_next(facts, "(&s&s)", &name, &value))
+        fl_fingerprint_add(state->print, name, value);
+    for (GVariant *one; (one = g_variant_iter_next_value(painters)); g_variant_unref(one))
+        g_ptr_array_add(state->painter, g_variant_get_data_as_bytes(one));
+    return g_steal_pointer(&state);
+}
+
+FlState *fl_state_parse(GBytes *bytes, const char *path, GError **error)
+{
+    size_t size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    uint8_t sum[SUM_BYTES];
+    FlState *state = NULL;
+    if (size >= SUM_BYTES) {
+        sum_of(data, size - SUM_BYTES, sum);
+        g_autoptr(GBytes) body = g_bytes_new_from_bytes(bytes, 0, size - SUM_BYTES);
+        g_autoptr(GVariant) variant =
+            g_variant_ref_sink(g_variant_new_from_bytes(G_VARIANT_TYPE(TYPE), body, FALSE));
+        if (memcmp(sum, data + size - SUM_BYTES, SUM_BYTES) == 0 &&
+            g_variant_is_normal_form(variant))
+            state = from_variant(variant);
+    }
+    if (!state)
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: the state of an earlier render cannot be read; -y starts anew", path);
+    return state;
+}
+
+FlState *fl_state_load(const char *path, GError **error)
+{
+    char *contents = NULL;
+    size_t size = 0;
+    g_autoptr(GError) problem = NULL;
+    if (!g_file_get_contents(path, &contents, &size, &problem)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "%s", problem->message);
+        return NULL;
+    }
+    g_autoptr(GBytes) bytes = g_bytes_new_take(contents, size);
+    return fl_state_parse(bytes, path, error);
+}

@@ -1,0 +1,28 @@
+/* The state of a render in hand, as a file beside its frames: what it needs to go on later. */
+#ifndef FLUIDY_RENDER_STATE_H
+#define FLUIDY_RENDER_STATE_H
+
+#include "render/fingerprint.h"
+
+typedef struct FlState {
+    FlFingerprint *print;
+    int done;           // frames that are finished, from the first
+    bool overwrite;     // the render may replace files that it has not written
+    GPtrArray *painter; // of GBytes, two for each painter: see fl_painter_save()
+} FlState;
+
+FlState *fl_state_new(void);
+void fl_state_free(FlState *state); // NULL is fine
+
+/** Writes the file, whole or not at all, with a checksum at its end. FL_ERROR_OUTPUT. */
+bool fl_state_save(const FlState *state, const char *path, GError **error);
+
+/** Reads it. Returns: NULL with FL_ERROR_CHANGED set, if it is damaged or no such file. */
+FlState *fl_state_load(const char *path, GError **error);
+
+/** The same from bytes that need not be trusted; `path` is for the message. */
+FlState *fl_state_parse(GBytes *bytes, const char *path, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlState, fl_state_free)
+
+#endif

@@ -1,0 +1,152 @@
+#include "synth/past.h"
+
+#include "base/alloc.h"
+#include <string.h>
+#include <zlib.h>
+
+#define FASTEST 1 // a state is written after every frame and read once
+
+/* The bytes start with this; the deflated field, mask and picture follow. */
+typedef struct Header {
+    int32_t frame, valid;
+    int32_t x, y, width, height;
+} Header;
+
+/* The parts of the deflated bytes, one after the other. */
+typedef struct Parts {
+    struct {
+        void *data;
+        size_t bytes;
+    } part[3];
+    size_t bytes; // of all
+} Parts;
+
+static Parts parts_of(const FlSynthPast *past, int width, int height)
+{
+    const size_t pixels = (size_t)width * height;
+    const size_t matches = (size_t)past->nnf.width * past->nnf.height;
+    if (!past->valid)
+        return (Parts){0};
+    return (Parts){.part = {{past->nnf.match, matches * sizeof(FlMatch)},
+                            {past->mask, pixels},
+                            {past->rgb, 3 * pixels}},
+                   .bytes = matches * sizeof(FlMatch) + 4 * pixels};
+}
+
+/* Deflates the parts into `to`, which has room. Returns: the bytes used; 0 without memory. */
+static size_t deflate_parts(const Parts *parts, uint8_t *to, size_t room)
+{
+    z_stream z = {0};
+    if (deflateInit(&z, FASTEST) != Z_OK)
+        return 0;
+    z.next_out = to, z.avail_out = (uInt)room;
+    int status = Z_OK;
+    for (int k = 0; k < 3 && status == Z_OK; k++) {
+        z.next_in = parts->part[k].data, z.avail_in = (uInt)parts->part[k].bytes;
+        status = deflate(&z, k == 2 ? Z_FINISH : Z_NO_FLUSH);
+    }
+    deflateEnd(&z);
+    return status == Z_STREAM_END ? room - z.avail_out : 0;
+}
+
+/* Whether `from` is exactly the parts, deflated. */
+static bool inflate_parts(const Parts *parts, const uint8_t *from, size_t bytes)
+{
+    z_stream z = {.next_in = (Bytef *)from, .avail_in = (uInt)MIN(bytes, UINT_MAX)};
+    if (inflateInit(&z) != Z_OK)
+        return false;
+    bool whole = true;
+    int status = Z_OK;
+    for (int k = 0; k < 3 && whole; k++) {
+        z.next_out = parts->part[k].data, z.avail_out = (uInt)parts->part[k].bytes;
+        status = inflate(&z, Z_SYNC_FLUSH);
+        whole = z.avail_out == 0 && (status == Z_OK || (status == Z_STREAM_END && k == 2));
+    }
+    uint8_t more; // the sum at the end may still be unread, but nothing else
+    z.next_out = &more, z.avail_out = 1;
+    if (whole && status == Z_OK)
+        status = inflate(&z, Z_FINISH);
+    inflateEnd(&z);
+    return whole && status == Z_STREAM_END && z.avail_out == 1;
+}
+
+GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GError **error)
+{
+    const FlRect rect = past->valid ? past->rect : (FlRect){0};
+    const Header header = {past->frame, past->valid, rect.x, rect.y, rect.width, rect.height};
+    const Parts parts = parts_of(past, width, height);
+    const size_t room = past->valid ? compressBound(parts.bytes) : 0;
+    uint8_t *bytes = fl_alloc(sizeof header + room, 1, "a state", error);
+    if (!bytes)
+        return NULL;
+    memcpy(bytes, &header, sizeof header);
+    const size_t packed = past->valid ? deflate_parts(&parts, bytes + sizeof header, room) : 0;
+    if (past->valid && packed == 0) {
+        free(bytes);
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a state");
+        return NULL;
+    }
+    return g_bytes_new_with_free_func(bytes, sizeof header + packed, free, bytes);
+}
+
+static bool damaged(GError **error, const char *what)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "a region's state is damaged: %s", what);
+    return false;
+}
+
+/* Whether a rectangle has pixels, and all of them in the frame. */
+static bool fits(const Header *h, int width, int height)
+{
+    return h->x >= 0 && h->y >= 0 && h->width >= 1 && h->height >= 1 && h->width <= width &&
+           h->height <= height && h->x <= width - h->width && h->y <= height - h->height;
+}
+
+static bool matches_fit(const FlNnf *nnf, const FlExemplarLevel *level)
+{
+    for (size_t p = 0; p < (size_t)nnf->width * nnf->height; p++) {
+        const FlMatch m = nnf->match[p];
+        if (m.frame != FL_NO_MATCH &&
+            (m.frame < 0 || m.frame >= level->n_frames || m.x_16 > 16 * (level->width - 1) ||
+             m.y_16 > 16 * (level->height - 1)))
+            return false;
+    }
+    return true;
+}
+
+/* The field and the pictures of a last frame that had paint. */
+static bool unpack_frame(FlSynthPast *past, GBytes *bytes, const FlExemplarLevel *level, int width,
+                         int height, GError **error)
+{
+    size_t size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    if (!fl_nnf_init(&past->nnf, past->rect.width, past->rect.height, error))
+        return false;
+    const Parts parts = parts_of(past, width, height);
+    const bool whole = inflate_parts(&parts, data + sizeof(Header), size - sizeof(Header));
+    if (whole && matches_fit(&past->nnf, level))
+        return true;
+    fl_nnf_clear(&past->nnf);
+    return damaged(error,
+                   whole ? "its field points outside the style" : "its pictures cannot be read");
+}
+
+bool fl_synth_past_unpack(FlSynthPast *past, GBytes *bytes, const FlExemplarLevel *level, int width,
+                          int height, GError **error)
+{
+    size_t size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    Header h;
+    past->nnf = (FlNnf){0};
+    if (size < sizeof h)
+        return damaged(error, "it is cut short");
+    memcpy(&h, data, sizeof h);
+    if (h.frame < 0 || (h.valid != 0 && h.valid != 1))
+        return damaged(error, "it does not start as a state does");
+    if (h.valid && !fits(&h, width, height))
+        return damaged(error, "its field lies outside the frame");
+    past->frame = h.frame;
+    past->valid = h.valid;
+    past->rect = (FlRect){h.x, h.y, h.width, h.height};
+    return !past->valid || unpack_frame(past, bytes, level, width, height, error);
+}

@@ -1,0 +1,33 @@
+/* What the synthesis of one frame hands on to the next, as bytes: for a render that goes on later.
+ */
+#ifndef FLUIDY_SYNTH_PAST_H
+#define FLUIDY_SYNTH_PAST_H
+
+#include "synth/nnf.h"
+
+/** All that a region's next frame needs to know of those before it. */
+typedef struct FlSynthPast {
+    int frame;     // how many have been painted, >= 0
+    bool valid;    // the last of them had paint; else the rest means nothing
+    FlRect rect;   // its part of the frame
+    FlNnf nnf;     // its level-0 field, as large as rect
+    uint8_t *mask; // of the whole frame, width * height
+    uint8_t *rgb;  // the picture of the whole frame, width * height * 3
+} FlSynthPast;
+
+/** Deflated, in this machine's byte order; width * height px is the frame's size.
+ *  Returns: NULL with FL_ERROR_NO_MEMORY set. */
+GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GError **error);
+
+/**
+ * The reverse, for an exemplar whose level 0 is `level`. past->mask and past->rgb are the caller's
+ * and are filled. The bytes need not be trusted: a field that points outside the exemplar is an
+ * error.
+ *
+ * Returns: false with FL_ERROR_CHANGED or FL_ERROR_NO_MEMORY set; the field is then empty, and mask
+ * and rgb hold anything. Else past->nnf is to be cleared.
+ */
+bool fl_synth_past_unpack(FlSynthPast *past, GBytes *bytes, const FlExemplarLevel *level, int width,
+                          int height, GError **error);
+
+#endif

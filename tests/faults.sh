@@ -1,0 +1,118 @@
+#!/bin/bash
+# Machines that fail while a film is painted. usage: faults.sh PROGRAM FIXTURES; speaks TAP.
+# shellcheck source-path=SCRIPTDIR source=film.sh
+. "${0%/*}/film.sh"
+
+# A file system of its own for one command, as root of a name space of its own.
+own_mount() { # own_mount OPTIONS COMMAND: "disk" is then a tmpfs
+    unshare -rm bash -c "mount -t tmpfs -o $1 tmpfs disk && $2"
+}
+export -f paint
+export program style
+
+no_litter() { # no_litter FOLDER: nothing but frames and the state
+    [ -z "$(find "$1" -type f ! -name 'w_000[1-6].png' ! -name '.w_*.state')" ]
+}
+
+whole_frames() { # whole_frames FOLDER: each of its frames is one of a render without a fault
+    local file
+    for file in "$1"/*.png; do
+        cmp -s "$file" "whole/${file##*/}" || return 1
+    done
+}
+
+paint whole
+
+mkdir disk
+if own_mount size=64k true 2>/dev/null; then
+    # Room for two or three frames; then, with more of it, the same command again.
+    own_mount size=40k 'paint disk; status=$?; cp -r disk full; cp err err1
+                        mount -o remount,size=10m disk; paint disk && cp -r disk more
+                        exit $status'
+    found=$?
+    cp err1 err
+    [ $found = 1 ] && says 'No space left on device' && no_litter full && whole_frames full &&
+        [ -e full/w_0001.png ]
+    result $? 'a full disk is one message; the finished frames are whole and nothing else is left'
+    same more whole
+    result $? 'with room on the disk the same command completes the film'
+    own_mount size=1m,ro 'paint disk/there'
+    [ $? = 1 ] && says 'Read-only file system'
+    result $? 'a disk that cannot be written is one message'
+else
+    for sentence in full roomy read-only; do
+        n=$((n + 1))
+        echo "ok $n - a $sentence disk # SKIP no name spaces here"
+    done
+fi
+
+mkdir limited
+(ulimit -f 2 && trap '' XFSZ && paint limited)
+[ $? = 1 ] && says 'File too large' && no_litter limited
+result $? 'a limit on the size of files is one message'
+
+touch file
+paint file/below
+[ $? = 1 ] && says 'file' && [ ! -s out ]
+result $? 'a folder that cannot be made is one message'
+
+# after FRAME FOLDER COMMAND ARGUMENT...: paints, runs the command once the frame is there; the
+# status is the program's. Drawings are large enough that the rest takes longer than the command.
+after() {
+    local frame=$1 to=$2 command=$3
+    shift 3
+    "$program" film -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err &
+    local job=$!
+    while [ ! -e "$to/w_000$frame.png" ] && kill -0 $job 2>/dev/null; do
+        sleep 0.002
+    done
+    $command 2>/dev/null
+    wait $job
+}
+
+after 1 vanished 'mv film/w_0006.svg .'
+[ $? = 1 ] && says 'w_0006.svg' && no_litter vanished && whole_frames vanished
+result $? 'a drawing that vanishes is named; the frames before it are whole'
+mv w_0006.svg film/
+paint vanished && same vanished whole
+result $? 'and once it is back the same command completes the film'
+
+drawing w_0006.svg 56 1
+cp film/w_0006.svg kept.svg
+after 1 changed 'mv w_0006.svg film/'
+[ $? = 1 ] && says 'w_0006.svg: has changed since the render began' && whole_frames changed
+result $? 'a drawing that changes in between is named, and no frame of both is written'
+mv kept.svg film/w_0006.svg
+paint changed && same changed whole
+result $? 'and once it is as it was the same command completes the film'
+
+after 1 undone 'rm -rf undone'
+[ $? = 1 ] || [ -e undone/w_0006.png ] # the folder is made again where that can be
+result $? 'a folder of frames that vanishes does no more harm'
+
+"$program" film --list-regions >&- 2>err
+[ $? = 1 ] && : >out && says 'standard output cannot be written'
+result $? 'a closed standard output is one message'
+"$program" film --list-regions >/dev/full 2>err
+[ $? = 1 ] && says 'standard output cannot be written: No space left on device'
+result $? 'a full standard output is one message'
+timeout 100 "$program" film -s "$style" -o 'mute/w_%04d.png' --progress plain 2>&-
+[ $? = 0 ] && same mute whole
+result $? 'without a standard error the frames are the same'
+timeout 100 "$program" film -s "$style" -o 'pipe/w_%04d.png' --progress json 2>&1 | true
+[ "${PIPESTATUS[0]}" = 0 ] && same pipe whole
+result $? 'a reader of the progress who leaves does not stop the render'
+
+mkdir bin
+printf '#!/bin/sh\nhead -c 100 >/dev/null\necho no such codec >&2\nexit 1\n' >bin/ffmpeg
+chmod +x bin/ffmpeg
+PATH=$PWD/bin:$PATH "$program" film -s "$style" -o film.mov --progress none >out 2>err
+[ $? = 1 ] && says 'ffmpeg stopped: no such codec' && [ -z "$(find . -name '*.mov')" ]
+result $? 'an ffmpeg that dies is quoted, and no film is left'
+
+(ulimit -v 1500000 && paint huge -W 30000 -j 1)
+found=$?
+[ $found = 1 ] && [ "$(wc -l <err)" = 1 ] && [ ! -e huge/w_0001.png ]
+result $? 'memory that cannot be had is one message'
+
+echo "1..$n"

@@ -1,0 +1,52 @@
+# Sourced by tests that paint a tiny film: PROGRAM and FIXTURES are the first two arguments.
+# Makes and enters a folder with film/ (six drawings), big/ (larger ones) and bad/.
+set -u
+export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive
+program=$(realpath "$1")
+style=$(realpath "$2")/style-small
+folder=$(mktemp -d)
+trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+n=0
+touch out err
+
+result() { # result STATUS SENTENCE: prints the files out and err of the last run after a failure
+    n=$((n + 1))
+    if [ "$1" = 0 ]; then
+        echo "ok $n - $2"
+    else
+        echo "not ok $n - $2"
+        sed 's/^/# stdout: /' out | head -20
+        sed 's/^/# stderr: /' err | head -20
+        find . -path ./film -prune -o -type f -printf '# %p %s\n' | head -40
+    fi
+}
+
+# drawing NAME SIDE FRAME: a disc that moves over a square.
+drawing() {
+    echo "<svg xmlns='http://www.w3.org/2000/svg' width='$2' height='$2' viewBox='0 0 48 48'>" \
+        "<rect x='4' y='6' width='24' height='30' fill='#2255aa'/>" \
+        "<circle cx='$((18 + 3 * $3))' cy='24' r='11' fill='#aa3311'/></svg>" >"$1"
+}
+
+mkdir film
+for i in 1 2 3 4 5 6; do
+    drawing film/w_000$i.svg 56 $i
+done
+
+# paint FOLDER ARGUMENT...: paints the film into the folder; the status is the program's.
+paint() {
+    local to=$1
+    shift
+    timeout 120 "$program" film -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err
+}
+
+# same FOLDER FOLDER: they have the same files with the same bytes.
+same() {
+    diff -r "$1" "$2" >/dev/null
+}
+
+# says TEXT: standard error is one line, which has the text.
+says() {
+    [ "$(wc -l <err)" = 1 ] && grep -qF -- "$1" err
+}

@@ -1,0 +1,140 @@
+#!/bin/bash
+# Renders that are stopped, killed and asked for again.
+# usage: resume.sh PROGRAM FIXTURES; speaks TAP.
+# shellcheck source-path=SCRIPTDIR source=film.sh
+. "${0%/*}/film.sh"
+
+started() { # started FOLDER ARGUMENT...: paints in the background, as process $job
+    local to=$1
+    shift
+    "$program" film -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err &
+    job=$!
+}
+
+# wait_for FILE: until the file is there or the program has ended.
+wait_for() {
+    while [ ! -e "$1" ] && kill -0 $job 2>/dev/null; do
+        sleep 0.002
+    done
+}
+
+# stop FOLDER SIGNAL FRAME: paints, sends the signal after the frame; the status is the program's.
+stop() {
+    started "$1"
+    wait_for "$1/w_000$3.png"
+    kill -"$2" $job 2>/dev/null
+    wait $job 2>/dev/null
+}
+
+paint whole
+[ "$(ls whole | wc -l)" = 6 ] && [ ! -e whole/.w_%04d.png.state ]
+result $? 'a complete render leaves its frames and nothing else'
+
+for signal in INT TERM; do
+    stop $signal $signal 2
+    found=$?
+    [ $found = 75 ] && says 'run again to go on' && [ -e $signal/.w_%04d.png.state ]
+    result $? "SIG$signal ends a render with status 75 and says what to do"
+    paint $signal && grep -q 'going on with an earlier run' err && same $signal whole
+    result $? "the frames after SIG$signal and a second run are those of a whole render"
+done
+
+started twice
+wait_for twice/w_0001.png
+kill -INT $job
+kill -TERM $job 2>/dev/null
+wait $job 2>/dev/null
+found=$?
+[ $found = 143 ] || [ $found = 75 ] # the second came too late for a render that had ended
+result $? 'a second signal ends it at once'
+paint twice && same twice whole
+result $? 'and then it goes on all the same'
+
+# 50 kills: five a round, at any moment of one frame after another; now and then before the first.
+RANDOM=${SEED:-$$}
+echo "# SEED=${SEED:-$$}"
+for round in 1 2 3 4 5 6 7 8 9 10; do
+    rm -rf killed
+    for frame in 1 2 3 4 5; do
+        started killed -j $((1 + RANDOM % 3))
+        [ $((RANDOM % 4)) = 0 ] || wait_for killed/w_000$frame.png
+        sleep 0.0$((RANDOM % 90 + 10))
+        kill -KILL $job 2>/dev/null
+        wait $job 2>/dev/null
+    done
+    # the last run may have come to its end before it was killed
+    { [ -e killed/w_0006.png ] && [ ! -e killed/.w_%04d.png.state ]; } || paint killed
+    same killed whole
+    result $? "a render killed five times has the frames of a whole one (round $round)"
+done
+
+paint held_whole --hold 4
+started held --hold 4
+wait_for held/w_0002.png
+kill -KILL $job 2>/dev/null
+wait $job 2>/dev/null
+paint held --hold 4 && same held held_whole
+result $? 'a frame that is held is held on by a second run'
+
+paint layers_whole --layers 'layers_whole/{region}_%04d.png'
+started layered --layers 'layered/{region}_%04d.png'
+wait_for layered/w_0002.png
+kill -KILL $job 2>/dev/null
+wait $job 2>/dev/null
+paint layered --layers 'layered/{region}_%04d.png' && same layered layers_whole
+result $? 'layers are complete after a second run too'
+
+# ---- what has changed ----
+
+stop changed INT 2
+cp -r changed before
+refused() { # refused SENTENCE MESSAGE ARGUMENT...: status 1, one line, nothing touched
+    local sentence=$1 message=$2
+    shift 2
+    paint changed "$@"
+    [ $? = 1 ] && says "$message" && same changed before
+    result $? "$sentence"
+}
+refused 'another parameter is no reason to mix frames' 'w-temp of region ' --w-temp 3
+refused 'another seed is told with both values' 'seed was 1 and is 2; -y starts anew' --seed 2
+refused 'another size is told' 'the width was 56 and is 28' -W 28
+drawing film/w_0006.svg 56 1
+refused 'a drawing that was changed is named' 'w_0006.svg has other contents; -y starts anew'
+drawing film/w_0006.svg 56 6
+cp -r "$style" other-style
+printf '\n' >>other-style/style.ini
+own_style=$style
+style=$PWD/other-style
+mkdir same-name && mv other-style same-name/style-small && style=$PWD/same-name/style-small
+refused 'a style that was changed is named' 'style style-small has other contents'
+style=$own_style
+mv changed/w_0001.png .
+paint changed
+[ $? = 1 ] && says 'w_0001.png: an earlier run painted it, but it is gone'
+result $? 'a finished frame that is gone is told'
+mv w_0001.png changed/
+drawing changed/w_0005.png 56 1
+paint changed
+[ $? = 1 ] && says 'w_0005.png: exists already' && grep -q svg changed/w_0005.png
+result $? 'a file that a later frame would replace is refused and left alone'
+rm changed/w_0005.png
+head -c 100 changed/.w_%04d.png.state >cut && cp cut changed/.w_%04d.png.state
+paint changed
+[ $? = 1 ] && says 'the state of an earlier render cannot be read; -y starts anew'
+result $? 'a state that is cut short is told'
+paint changed -y && ! grep -q 'going on' err && same changed whole
+result $? '-y starts anew'
+
+rm -rf stopped
+stop stopped INT 2
+paint stopped -y --resume && grep -q 'going on' err && same stopped whole
+result $? '-y --resume goes on where it can'
+stop stopped2 INT 2
+paint stopped2 -y --resume --seed 2 && ! grep -q 'going on' err && ! same stopped2 whole
+result $? '-y --resume starts anew where it cannot'
+
+"$program" film -s "$style" -o film.gif --resume >out 2>err
+[ $? = 2 ] && says 'film.gif: a film cannot be resumed; expected frames, such as'
+result $? 'a film that should be resumed is refused'
+
+echo "1..$n"
