@@ -37,7 +37,7 @@ uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
 void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost);
 
 /**
- * Sweeps over the field. Tiles of 8x8 pixels in 16 classes are worked on class by class: tiles of
+ * Sweeps over the field. Tiles of 4x4 pixels in 16 classes are worked on class by class: tiles of
  * a class never touch, inside one the scan is sequential, and the occurrence map is refreshed
  * between classes. So the result does not depend on the number of threads.
  */

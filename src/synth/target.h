@@ -4,7 +4,7 @@
 
 #include "synth/exemplar.h"
 
-#define FL_TILE 8          // side of a tile of the search, pixels
+#define FL_TILE 4          // side of a tile of the search, pixels
 #define FL_TILE_CLASSES 16 // tiles of one class never touch each other
 
 /**
