@@ -1,6 +1,7 @@
 #include "synth/past.h"
 
 #include "base/alloc.h"
+#include <assert.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -11,6 +12,8 @@ typedef struct Header {
     int32_t frame, valid;
     int32_t x, y, width, height;
 } Header;
+
+static_assert(sizeof(Header) == FL_PAST_HEADER, "the header has no padding");
 
 /* The parts of the deflated bytes, one after the other. */
 typedef struct Parts {

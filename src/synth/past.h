@@ -5,6 +5,8 @@
 
 #include "synth/nnf.h"
 
+#define FL_PAST_HEADER 24 /**< bytes before those that are deflated */
+
 /** All that a region's next frame needs to know of those before it. */
 typedef struct FlSynthPast {
     int frame;     // how many have been painted, >= 0

@@ -1,0 +1,62 @@
+/* The state of an earlier render, its checksum made right, and a region's field. */
+#include "fuzz.h"
+#include "render/state.h"
+#include "synth/past.h"
+#include <string.h>
+#include <zlib.h>
+
+static void check_state(const uint8_t *data, size_t size)
+{
+    g_autoptr(GByteArray) file = g_byte_array_new();
+    g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
+    uint8_t digest[32];
+    size_t length = sizeof digest;
+    g_checksum_update(sum, data, (gssize)size);
+    g_checksum_get_digest(sum, digest, &length);
+    g_byte_array_append(file, data, (guint)size);
+    g_byte_array_append(file, digest, sizeof digest);
+    g_autoptr(GBytes) bytes = g_bytes_new(file->data, file->len);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(FlState) state = fl_state_parse(bytes, "fuzz.state", &error);
+    g_assert_true((state == NULL) == (error != NULL));
+    if (state) {
+        g_autofree char *same = fl_fingerprint_difference(state->print, state->print);
+        g_assert_null(same);
+    }
+}
+
+#define SIDE 16 // of the frames of a region's state
+
+static void check_past(GBytes *bytes)
+{
+    const FlExemplarLevel level = {.width = 40, .height = 30, .n_frames = 5};
+    uint8_t mask[SIDE * SIDE], rgb[3 * SIDE * SIDE];
+    g_autoptr(GError) error = NULL;
+    FlSynthPast past = {.mask = mask, .rgb = rgb};
+    const bool read = fl_synth_past_unpack(&past, bytes, &level, SIDE, SIDE, &error);
+    g_assert_true(read == (error == NULL));
+    for (int p = 0; p < past.nnf.width * past.nnf.height && read && past.valid; p++)
+        g_assert_cmpint(past.nnf.match[p].frame, <, level.n_frames);
+    fl_nnf_clear(&past.nnf);
+}
+
+/* The bytes as they are, and with all behind the header deflated as a state's are. */
+static void check_pasts(const uint8_t *data, size_t size)
+{
+    const size_t header = MIN(size, FL_PAST_HEADER);
+    uLongf packed = compressBound(size - header);
+    g_autofree uint8_t *deflated = g_malloc(header + packed);
+    memcpy(deflated, data, header);
+    g_assert_cmpint(compress(deflated + header, &packed, data + header, size - header), ==, Z_OK);
+    g_autoptr(GBytes) plain = g_bytes_new(data, size);
+    g_autoptr(GBytes) whole = g_bytes_new(deflated, header + packed);
+    check_past(plain);
+    check_past(whole);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    check_state(data, size);
+    check_pasts(data, size);
+    return 0;
+}

@@ -1,0 +1,44 @@
+/* A drawing: read, normalised, its leaves found, their paint asked for and one of them drawn. */
+#include "frames/svg.h"
+#include "fuzz.h"
+
+#define MOST_LEAVES 8 // to keep an input's time short
+#define SIDE 16
+
+static void look_at(FlSvg *svg)
+{
+    double width, height;
+    if (!fl_svg_size(svg, &width, &height, NULL))
+        return;
+    const FlLeaves *leaves = fl_svg_leaves(svg);
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_A8, SIDE, SIDE);
+    cairo_t *cr = cairo_create(surface);
+    for (guint l = 0; l < MIN(leaves->leaf->len, MOST_LEAVES); l++) {
+        const FlLeaf *leaf = &g_array_index(leaves->leaf, FlLeaf, l);
+        FlPainted parts[FL_MOST_PARTS];
+        g_autoptr(GError) error = NULL;
+        const int n = fl_svg_paint(svg, leaf, parts, &error);
+        g_assert_cmpint(n, <=, FL_MOST_PARTS);
+        if (n > 0)
+            fl_svg_draw(svg, leaf, parts[0].part, cr, SIDE, SIDE, NULL);
+        for (int k = 0; k < n; k++)
+            fl_paint_clear(&parts[k].paint);
+    }
+    cairo_destroy(cr);
+    cairo_surface_destroy(surface);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    char path[32];
+    const int fd = fuzz_file(data, size, path);
+    const FlSvgOptions options = {0};
+    g_autoptr(GError) error = NULL;
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_autoptr(FlSvg) svg = fl_svg_open(path, 1, &options, warnings, &error);
+    g_assert_true((svg == NULL) == (error != NULL));
+    if (svg)
+        look_at(svg);
+    fuzz_file_end(fd);
+    return 0;
+}
