@@ -24,19 +24,84 @@ report $? 'a render leaves a page'
 report $? 'the page has every frame'
 ! grep -oE '(src|href)="[^"]*"' page/index.html | grep -vE '"(data:[^"]*)?"'
 report $? 'the page refers to no other file'
+grep -q 'uses:\[{style:"01",picture:"data:image/png' page/index.html && ! grep -q 'painters:\[\[0,' page/index.html
+report $? 'the page has energies and the use of the recording'
 "$program" w_%04d.svg -s 01 -q -o 'new_%d.png' --report page 2>err
 [ $? = 1 ] && grep -q 'page/index.html: *exists' err && [ ! -e new_1.png ]
 report $? 'a page that exists stays, and nothing is painted'
+
+# What a visitor does, run by the page itself; the last line of the page tells how it went.
+cat >visitor.js <<'EOF'
+const said = [];
+const tell = (sentence, good) => said.push((good ? "ok" : "not ok") + " - " + sentence);
+const seen = () => byId("view").toDataURL();
+const change = (id, value, event) => {
+  byId(id).value = value;
+  byId(id).dispatchEvent(new Event(event || "change"));
+};
+const drag = (share) => {
+  const stage = byId("stage"), box = byId("view").getBoundingClientRect();
+  stage.setPointerCapture = () => {};
+  const where = { clientX: box.left + share * box.width, clientY: box.top + 5, buttons: 1 };
+  stage.dispatchEvent(new PointerEvent("pointerdown", where));
+};
+const differs = (sentence, act, undo) => {
+  const before = seen();
+  act();
+  const between = seen();
+  if (undo) undo();
+  tell(sentence, between !== before && (!undo || seen() === before));
+};
+addEventListener("load", () => {
+  tell("the contact sheet has every frame", document.querySelectorAll("#sheet button").length === 3);
+  tell("every curve is drawn", document.querySelectorAll("#energy path, #change path").length === 2);
+  tell("every frame has its bars of time", document.querySelectorAll("#times rect").length === 9);
+  tell("there are six guides of each of three frames", document.querySelectorAll("#guides canvas").length === 18);
+  tell("the use of the recording is shown", document.querySelectorAll("#uses img").length === 1);
+  differs("the frame slider shows another frame", () => change("scrub", "2", "input"));
+  tell("and its number", byId("number").textContent === "3");
+  differs("on twos the frame before is held", () => { show(1); change("hold", "1"); },
+    () => { show(2); change("hold", "2"); });
+  change("hold", "1");
+  differs("the seam can be dragged", () => drag(0.9), () => drag(0.5));
+  differs("the map can be shown", () => change("left", "map"), () => change("left", "before"));
+  differs("a region can be switched off and on", () => byId("none").click(), () => byId("all").click());
+  const slices = () => byId("slice-after").toDataURL(), row = slices();
+  change("axis", "y", "input");
+  tell("a slice can be a column", slices() !== row);
+  change("behind", "white");
+  tell("white can lie behind", byId("stage").style.backgroundColor === "white" &&
+    !byId("stage").classList.contains("checker"));
+  byId("play").click();
+  tell("it can play", state.playing && byId("play").textContent === "Pause");
+  const lines = document.createElement("pre");
+  lines.textContent = said.join("\n");
+  document.body.append(lines);
+});
+EOF
+awk '/<\/body>/ { print "<script>"; while ((getline line < "visitor.js") > 0) print line;
+    print "</script>" } { print }' page/index.html >page/visited.html
 
 if [ -z "$browser" ]; then
     n=$((n + 1))
     echo "ok $n - a browser shows it without a complaint # SKIP no chromium"
 else
-    timeout 60 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" \
-        --enable-logging=stderr --virtual-time-budget=5000 --dump-dom \
-        "file://$folder/page/index.html" >dom 2>log
-    ! grep CONSOLE log && grep -q '<h1 id="title">w, painted</h1>' dom &&
-        [ "$(grep -o '<small>' dom | wc -l)" = 3 ] && grep -q '<path d="M' dom
+    browse() { # browse PAGE: its DOM to the file dom, complaints to log
+        timeout 60 "$browser" --headless --no-sandbox --disable-gpu --enable-logging=stderr \
+            --user-data-dir="$folder/profile" --virtual-time-budget=5000 --dump-dom \
+            "file://$folder/page/$1" >dom 2>log
+        ! grep CONSOLE log
+    }
+    browse index.html && grep -q '<h1 id="title">w, painted</h1>' dom
     report $? 'a browser shows it without a complaint'
+    browse visited.html
+    report $? 'a visitor causes no complaint'
+    sed -n '/<pre>/,/<\/pre>/p' dom | sed -e 's/<[^>]*>//g' >told
+    [ "$(wc -l <told)" -ge 14 ]
+    report $? 'the visit runs to its end'
+    while read -r line; do
+        n=$((n + 1))
+        echo "$line" | sed "s/ - / $n - /"
+    done < <(sed '$a\' told | grep ok)
 fi
 echo "1..$n"

@@ -234,6 +234,6 @@ bool fl_plan_prepare(FlPlan *plan, GError **error)
     for (int p = 0; p < plan->n_painters && failed == 0; p++)
         failed += !fl_painter_init(&plan->painters[p], plan->options.seed, error);
     for (int p = 0; p < plan->n_painters && !failed; p++)
-        fl_synth_measure(plan->painters[p].synth, plan->options.stats != NULL);
+        fl_synth_measure(plan->painters[p].synth, plan->options.stats || plan->options.report);
     return failed == 0;
 }

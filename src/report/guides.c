@@ -1,6 +1,7 @@
 #include "report/guides.h"
 
 #include "base/alloc.h"
+#include "report/ramp.h"
 #include "report/script.h"
 #include <float.h>
 #include <math.h>
@@ -37,18 +38,6 @@ void fl_guide_view_reset(FlGuideView *view)
     memset(view->owner, 0, sizeof(int16_t) * pixels);
 }
 
-/* From dark violet over green to yellow, of even steps in lightness. */
-static void ramp(float value, uint8_t rgb[3])
-{
-    static const uint8_t stops[][3] = {
-        {68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}};
-    const int last = G_N_ELEMENTS(stops) - 1;
-    const float at = CLAMP(value, 0, 1) * (float)last;
-    const int k = MIN((int)at, last - 1);
-    for (int c = 0; c < 3; c++)
-        rgb[c] = (uint8_t)(stops[k][c] + (at - (float)k) * (stops[k + 1][c] - stops[k][c]) + 0.5f);
-}
-
 /* A vector as a colour: direction is hue, length is saturation. */
 static void wheel(float u, float v, float full, uint8_t rgb[3])
 {
@@ -83,7 +72,7 @@ static void put_match(const FlGuideView *view, const FlPainter *painter, size_t 
     uint8_t rgb[3];
     if (match.frame == FL_NO_MATCH)
         return;
-    ramp((float)match.frame / (float)MAX(full->n_frames - 1, 1), rgb);
+    fl_ramp((float)match.frame / (float)MAX(full->n_frames - 1, 1), rgb);
     put(view, FL_GUIDE_TIME, to, rgb);
     const uint8_t place[3] = {(uint8_t)(255 * fl_match_x(match) / full->width),
                               (uint8_t)(255 * fl_match_y(match) / full->height), 128};
@@ -99,11 +88,11 @@ static void put_pixel(FlGuideView *view, const FlPainter *painter, const FlGuide
     const float u = guides->flow[2 * from], v = guides->flow[2 * from + 1];
     const float shrunk = (float)view->picture[0]->width / (float)painter->width;
     uint8_t rgb[3];
-    ramp(guides->distance[from] / (3 * exemplar->border_px), rgb);
+    fl_ramp(guides->distance[from] / (3 * exemplar->border_px), rgb);
     put(view, FL_GUIDE_DISTANCE, to, rgb);
-    ramp(guides->ext_plus[from] * exemplar->ext_scale, rgb);
+    fl_ramp(guides->ext_plus[from] * exemplar->ext_scale, rgb);
     put(view, FL_GUIDE_EXT_PLUS, to, rgb);
-    ramp(guides->ext_minus[from] * exemplar->ext_scale, rgb);
+    fl_ramp(guides->ext_minus[from] * exemplar->ext_scale, rgb);
     put(view, FL_GUIDE_EXT_MINUS, to, rgb);
     put_match(view, painter, to, match_at(&painter->view, x, y));
     view->flow[2 * to] = u * shrunk, view->flow[2 * to + 1] = v * shrunk;

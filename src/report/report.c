@@ -6,6 +6,7 @@
 #include "report/flicker.h"
 #include "report/guides.h"
 #include "report/script.h"
+#include "report/use.h"
 #include <fluidy/fluidy.h>
 #include <gio/gio.h>
 #include <math.h>
@@ -25,10 +26,11 @@ struct FlReport {
     int width, height; // of the pictures, px
     int every;         // every n-th frame has pictures
     double seconds[3]; // paint, compose, write: sums
-    GMutex lock;       // of view
+    GMutex lock;       // of view and use
     FlGuideView view;
     FlFlicker *flicker;      // by painter
     double *painter_seconds; // by painter: sum
+    FlUse *use;              // by recording; those without a box are not used
 };
 
 /* As many pictures, and as large, as the page bears. */
@@ -74,6 +76,7 @@ FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, cons
     g_mutex_init(&report->lock);
     report->flicker = g_new0(FlFlicker, MAX(plan->n_painters, 1));
     report->painter_seconds = g_new0(double, MAX(plan->n_painters, 1));
+    report->use = g_new0(FlUse, MAX(plan->n_painters, 1));
     choose_size(report);
     if (!fl_guide_view_init(&report->view, report->width, report->height, error) ||
         !begin(report, folder, error))
@@ -85,9 +88,12 @@ void fl_report_free(FlReport *report)
 {
     if (!report)
         return;
-    for (int p = 0; p < report->plan->n_painters; p++)
+    for (int p = 0; p < report->plan->n_painters; p++) {
         fl_flicker_clear(&report->flicker[p]);
+        fl_use_clear(&report->use[p]);
+    }
     g_free(report->flicker);
+    g_free(report->use);
     g_free(report->painter_seconds);
     fl_guide_view_clear(&report->view);
     fl_atomic_clear(&report->file);
@@ -113,6 +119,18 @@ bool fl_report_wants_view(const FlReport *report, int frame)
     return report && shows_guides(report, frame);
 }
 
+/* Counts what a painter took from its recording. */
+static bool add_use(FlReport *report, const FlPainter *painter, GError **error)
+{
+    FlUse *use = report->use;
+    while (use->box && use->box != painter->box)
+        use++;
+    if (!use->box && !fl_use_init(use, painter->box, error))
+        return false;
+    fl_use_add(use, painter);
+    return true;
+}
+
 bool fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides, GError **error)
 {
     if (!report)
@@ -122,12 +140,14 @@ bool fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides
         report->flicker[p].change = 0;
         return true;
     }
+    bool done = true;
     if (shows_guides(report, frame)) {
         g_mutex_lock(&report->lock);
         fl_guide_view_add(&report->view, p, painter, guides);
+        done = add_use(report, painter, error);
         g_mutex_unlock(&report->lock);
     }
-    return fl_flicker_measure(&report->flicker[p], painter, guides, error);
+    return done && fl_flicker_measure(&report->flicker[p], painter, guides, error);
 }
 
 /* ---- a frame -------------------------------------------------------------------------------- */
@@ -247,7 +267,24 @@ static void write_region(const FlReport *report, int r)
     fputs("}", out);
 }
 
-static void write_film(const FlReport *report)
+static bool write_uses(const FlReport *report, GError **error)
+{
+    FILE *out = report->file.stream;
+    const char *comma = "";
+    fputs(",uses:[", out);
+    for (int k = 0; k < report->plan->n_painters; k++) {
+        if (report->use[k].total == 0)
+            continue;
+        fputs(comma, out);
+        if (!fl_use_write(&report->use[k], out, error))
+            return false;
+        comma = ",";
+    }
+    fputs("]", out);
+    return true;
+}
+
+static bool write_film(const FlReport *report, GError **error)
 {
     FILE *out = report->file.stream;
     const FlPlan *plan = report->plan;
@@ -271,7 +308,10 @@ static void write_film(const FlReport *report)
         fputs(r > 0 ? "," : "", out);
         write_region(report, r);
     }
-    fputs("]};</script>\n", out);
+    fputs("]", out);
+    const bool done = write_uses(report, error);
+    fputs("};</script>\n", out);
+    return done;
 }
 
 bool fl_report_finish(FlReport *report, GError **error)
@@ -281,7 +321,8 @@ bool fl_report_finish(FlReport *report, GError **error)
     gsize n = 0;
     const char *text = g_bytes_get_data(report->page, &n);
     const char *rest = page_mark(report) + strlen(MARK);
-    write_film(report);
+    if (!write_film(report, error))
+        return false;
     fwrite(rest, 1, n - (size_t)(rest - text), report->file.stream);
     return fl_atomic_commit(&report->file, error);
 }
