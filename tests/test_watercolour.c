@@ -165,6 +165,69 @@ static void water_never_exceeds_the_capacity_of_the_paper(void)
     }
 }
 
+/* A stroke along the middle of a sheet full of water and even paint, whose puddle grows. */
+static void sweep_the_middle(FlSheet *sheet, float rim_px)
+{
+    g_autoptr(FlRecipe) recipe = g_new0(FlRecipe, 1);
+    recipe->width = recipe->height = SIDE;
+    recipe->oversample = 1;
+    recipe->n_events = 1;
+    recipe->events[0] = (FlEvent){.n_points = 2,
+                                  .points = {{-SIDE, SIDE / 2}, {2 * SIDE, SIDE / 2}},
+                                  .radius = 10,
+                                  .wobble_px = 10,
+                                  .streak_px = 10,
+                                  .growth = 1,
+                                  .sweep = 1,
+                                  .sweep_px = 40,
+                                  .sweep_rim_px = rim_px,
+                                  .from = 0.01f,
+                                  .until = 9};
+    g_autoptr(FlBrush) brush = fl_brush_new(recipe, NULL);
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        sheet->wet[i] = 1;
+        sheet->floating[0][i] = 0.3f;
+    }
+    for (int step = 0; step < 40; step++) {
+        fl_brush_apply(brush, sheet, (float)step / 20, (float)(step + 1) / 20);
+        fl_move_pigment(sheet);
+    }
+}
+
+static float row_mean(const FlSheet *sheet, int row)
+{
+    float sum = 0;
+    for (int i = 0; i < SIDE; i++)
+        sum += sheet->floating[0][row * SIDE + i];
+    return sum / SIDE;
+}
+
+static void a_growing_puddle_opens_no_streak_along_its_line(void)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    sweep_the_middle(sheet, 0);
+    for (int row = SIDE / 2 - 4; row < SIDE / 2 + 4; row++)
+        g_assert_cmpfloat_with_epsilon(row_mean(sheet, row), row_mean(sheet, row + 1), 0.02f);
+}
+
+static float darkest_row(const FlSheet *sheet)
+{
+    float most = 0;
+    for (int row = 0; row < SIDE; row++)
+        most = fmaxf(most, row_mean(sheet, row));
+    return most;
+}
+
+static void a_wide_rim_gathers_paint_softly(void)
+{
+    g_autoptr(FlSheet) line = painted_sheet(), band = painted_sheet();
+    sweep_the_middle(line, 0);
+    sweep_the_middle(band, 6);
+    g_assert_cmpfloat(darkest_row(line), >, 0.5f);
+    g_assert_cmpfloat(darkest_row(band), >, 0.32f);
+    g_assert_cmpfloat(darkest_row(band), <, 0.45f);
+}
+
 static FlSheet *sheet_after_all_stages(int threads)
 {
     omp_set_num_threads(threads);
@@ -352,6 +415,8 @@ int main(int argc, char **argv)
     TEST(relaxing_leaves_little_divergence);
     TEST(water_in_the_paper_conserves_pigment_and_spreads);
     TEST(water_never_exceeds_the_capacity_of_the_paper);
+    TEST(a_growing_puddle_opens_no_streak_along_its_line);
+    TEST(a_wide_rim_gathers_paint_softly);
     TEST(same_bytes_on_any_thread_count);
     TEST(quinacridone_rose_has_its_printed_colours);
     TEST(a_pigment_comes_back_from_its_two_colours);

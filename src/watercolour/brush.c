@@ -32,10 +32,11 @@ FlTouch fl_brush_touch(const FlEvent *event, uint64_t key, float x_px, float y_p
     const float wobble =
         event->wobble * fl_noise_octaves(fl_key(key, KEY_WOBBLE), x_px / event->wobble_px,
                                          y_px / event->wobble_px, 3, 0.5f);
-    const float inside = event->radius + wobble - sqrtf(nearest);
+    const float away = sqrtf(nearest);
     const float streak = fl_noise_octaves(fl_key(key, KEY_STREAKS), x_px / event->streak_px,
                                           y_px / event->streak_px, 4, 0.6f);
-    return (FlTouch){inside, fmaxf(0.02f, 1 + 1.5f * event->streaks * streak)};
+    return (FlTouch){event->radius + wobble - away, away,
+                     fmaxf(0.02f, 1 + 1.5f * event->streaks * streak)};
 }
 
 FlBrush *fl_brush_new(const FlRecipe *recipe, GError **error)
@@ -140,16 +141,20 @@ static void lay_down(FlSheet *sheet, const Moment *now)
             sheet->floating[k][i] += now->event->deposit[k] * cover[i] * now->touches[i].load;
 }
 
-/* Velocity over a face between two cells: down the slope of the stroke's first outline, fastest at
-   the rim of the puddle, none beyond it; slower and faster with the paper. The slope of the puddle
-   itself would gather pigment wherever the paper slows it down. */
+/* Velocity over a face between two cells: down the slope of the stroke's first outline, fastest
+   near the rim of the puddle, none beyond it; slower and faster with the paper. The slope of the
+   puddle itself would gather pigment wherever the paper slows it down. Where the slope turns, on
+   the line that the brush follows, it begins at 0, or a streak without pigment would open there. */
 static inline float sweep_speed(const Moment *now, FlTouch a, FlTouch b, float depth_px, float open)
 {
-    const float inside = now->event->sweep_px;
-    if (depth_px < -0.5f || depth_px > inside)
+    const FlEvent *event = now->event;
+    if (depth_px < -0.5f || depth_px > event->sweep_px)
         return 0;
+    const float edge = fminf(1, (depth_px + 0.5f) / fmaxf(0.5f, event->sweep_rim_px));
+    const float middle = fminf(1, (a.away + b.away) / event->radius);
+    const float decline = 1 - fmaxf(0, depth_px) / event->sweep_px;
     const float slope = fmaxf(-1, fminf(1, (a.inside - b.inside) * now->scale));
-    return now->speed * (0.7f + 0.5f * open) * (1 - fmaxf(0, depth_px) / inside) * slope;
+    return now->speed * (0.7f + 0.5f * open) * decline * edge * middle * slope;
 }
 
 /* Adds the velocity of the puddle that grows to that of the water. */

@@ -7,6 +7,7 @@
 /** What an event does to one cell. */
 typedef struct FlTouch {
     float inside; // how far inside the stroke's first outline its centre lies, px
+    float away;   // how far from the line that the brush follows, px
     float load;   // factor on the pigment, 1 on the average
 } FlTouch;
 

@@ -1,12 +1,13 @@
 /*
  * Crumbling: grains instead of fluid.
  *
- * A stroke of a dry stick leaves grains on the bumps of the paper. How tightly a grain holds, and
- * how deep it lies in the stroke, decide whether it ever breaks off; the core stays. What is loose
- * drifts away from the stroke, along swirls and around the bumps, up to its own share of the way
- * that the front of the dust has gone, so that the front runs ahead and a haze stays behind. In
- * any frame the tooth may catch a grain, sooner on a bump than in a hollow. All random bits are a
- * function of (seed, grain, frame).
+ * A stroke of a dry stick leaves grains on the bumps of the paper; near its rim on the highest ones
+ * only. How tightly a grain holds, and how deep it lies in the stroke, decide whether it ever
+ * breaks off; the core stays. What is loose hops away from the stroke, along swirls and each a
+ * little its own way, from bump to bump, for it finds no hold in the hollows. It goes up to its own
+ * share of the way that the front of the dust has gone, so that the front runs ahead and a haze
+ * stays behind. Some parts of the stroke crumble faster and deeper than others. All random bits are
+ * a function of (seed, grain, frame).
  */
 #include "watercolour/dust.h"
 
@@ -16,12 +17,13 @@
 
 #include <math.h>
 
-enum { KEY_PLACE = 301, KEY_DRIFT, KEY_SWIRL, KEY_SHAPE };
+enum { KEY_PLACE = 301, KEY_DRIFT, KEY_SWIRL, KEY_SHAPE, KEY_LUMPS };
 
 typedef struct Grain {
     float x, y;  // cells
     float lag;   // share of the front's way that it stays behind, 0..1
     float start; // how far inside the outline it began, px
+    float ease;  // how readily its neighbourhood crumbles, 1 on the average
     float grip;  // how deep the crumbling must reach to loosen it, in rims of the recipe
 } Grain;
 
@@ -55,6 +57,14 @@ static float relief_at(const FlSheet *sheet, float x, float y)
     return sheet->relief[(size_t)j * sheet->width + i];
 }
 
+static float ease_at(const FlRecipe *recipe, float x, float y)
+{
+    const float lump_size = (float)recipe->oversample * recipe->dust.swirl_px;
+    const float lump =
+        fl_noise_octaves(fl_key(recipe->seed, KEY_LUMPS), x / lump_size, y / lump_size, 3, 0.7f);
+    return fmaxf(0.3f, 1 + recipe->dust.lumps * lump);
+}
+
 /* A place within the stroke, likelier on the bumps and where the stick was pressed. */
 static Grain place_grain(const FlRecipe *recipe, const FlSheet *sheet, uint64_t index)
 {
@@ -66,14 +76,15 @@ static Grain place_grain(const FlRecipe *recipe, const FlSheet *sheet, uint64_t 
         grain.start = depth_at(recipe, grain.x, grain.y, &load);
         if (grain.start < -1.5f)
             continue;
-        const float tooth = (relief_at(sheet, grain.x, grain.y) - 0.3f) * 2.2f;
-        const float pressed = load * fmaxf(0.25f, tooth) * (grain.start < 2 ? 0.6f : 1);
+        const float rim = fmaxf(0, 1 - grain.start / 8); // where only the bumps touch the stick
+        const float tooth = (relief_at(sheet, grain.x, grain.y) - 0.3f - 0.3f * rim) * 2.2f;
+        const float pressed = load * fmaxf(0.25f * (1 - rim), tooth);
         if (fl_rng_float(&rng) * 2 < pressed)
             break;
     }
-    const float u = fl_rng_float(&rng);
-    grain.lag = u * u; // most keep up
-    grain.grip = 0.15f + 1.5f * fl_rng_float(&rng) * fl_rng_float(&rng);
+    grain.lag = fl_rng_float(&rng);
+    grain.ease = ease_at(recipe, grain.x, grain.y);
+    grain.grip = (0.15f + 1.5f * fl_rng_float(&rng) * fl_rng_float(&rng)) * grain.ease;
     return grain;
 }
 
@@ -98,9 +109,9 @@ void fl_dust_free(FlDustCloud *cloud)
     g_free(cloud);
 }
 
-/* Where dust is blown: away from the stroke, with swirls, and off the bumps; about 1 long. The
-   swirls are the curl of a noise: being free of divergence, they do not gather the grains. */
-static void wind(const FlRecipe *recipe, const FlSheet *sheet, float x, float y, float out[2])
+/* Where dust is blown: away from the stroke, with swirls; about 1 long. The swirls are the curl of
+   a noise: being free of divergence, they do not gather the grains. */
+static void wind(const FlRecipe *recipe, float x, float y, float out[2])
 {
     const FlDust *dust = &recipe->dust;
     const float scale = (float)recipe->oversample, size = dust->swirl_px;
@@ -115,10 +126,8 @@ static void wind(const FlRecipe *recipe, const FlSheet *sheet, float x, float y,
         fl_noise_octaves(key, px, py + e, 3, 0.5f) - fl_noise_octaves(key, px, py - e, 3, 0.5f);
     const float curl_y =
         fl_noise_octaves(key, px - e, py, 3, 0.5f) - fl_noise_octaves(key, px + e, py, 3, 0.5f);
-    const float slope_x = relief_at(sheet, x - scale, y) - relief_at(sheet, x + scale, y);
-    const float slope_y = relief_at(sheet, x, y - scale) - relief_at(sheet, x, y + scale);
-    out[0] = dx * norm + dust->swirl * 4 * curl_x + 0.4f * slope_x;
-    out[1] = dy * norm + dust->swirl * 4 * curl_y + 0.4f * slope_y;
+    out[0] = dx * norm + dust->swirl * 4 * curl_x;
+    out[1] = dy * norm + dust->swirl * 4 * curl_y;
 }
 
 /* One frame of one grain. The front starts at the outline and runs at the recipe's speed; a grain
@@ -128,7 +137,7 @@ static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *gra
 {
     const FlDust *dust = &recipe->dust;
     FlRng rng = {fl_key(fl_key(fl_key(recipe->seed, KEY_DRIFT), (uint64_t)index), (uint64_t)frame)};
-    const float front = dust->speed_px * (float)(frame + 1);
+    const float front = dust->speed_px * grain->ease * (float)(frame + 1);
     if (grain->start > dust->rim_px * grain->grip)
         return; // in the resting core
     float load;
@@ -138,11 +147,14 @@ static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *gra
     if (gone > goal || fl_rng_float(&rng) < dust->catch_rate * tooth)
         return;
     float blow[2];
-    wind(recipe, sheet, grain->x, grain->y, blow);
+    wind(recipe, grain->x, grain->y, blow);
     const float way =
         dust->speed_px * (float)recipe->oversample * (0.5f + 1.6f * fl_rng_float(&rng));
-    grain->x += way * (blow[0] + 0.5f * (fl_rng_float(&rng) - 0.5f));
-    grain->y += way * (blow[1] + 0.5f * (fl_rng_float(&rng) - 0.5f));
+    const float x = grain->x + way * (blow[0] + dust->scatter * (fl_rng_float(&rng) - 0.5f));
+    const float y = grain->y + way * (blow[1] + dust->scatter * (fl_rng_float(&rng) - 0.5f));
+    if (fl_rng_float(&rng) > fmaxf(0.1f, 3 * (relief_at(sheet, x, y) - 0.3f)))
+        return; // nothing to cling to there
+    grain->x = x, grain->y = y;
 }
 
 void fl_dust_drift(FlDustCloud *cloud, const FlSheet *sheet, int frame)

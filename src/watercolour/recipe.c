@@ -40,6 +40,7 @@ static FlRecipe *defaults(void)
                  .settle = 0.2f,
                  .thickness = 2.5f},
         .dust = {.speed_px = 1.5f,
+                 .scatter = 0.5f,
                  .swirl = 0.5f,
                  .swirl_px = 30,
                  .catch_rate = 0.3f,
@@ -143,6 +144,8 @@ static void read_dust(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "speed", 0, 20, &dust->speed_px);
     fl_keylines_float(lines, "swirl", 0, 1, &dust->swirl);
     fl_keylines_float(lines, "swirl-size", 1, 1000, &dust->swirl_px);
+    fl_keylines_float(lines, "scatter", 0, 10, &dust->scatter);
+    fl_keylines_float(lines, "lumps", 0, 1, &dust->lumps);
     fl_keylines_float(lines, "catch", 0, 1, &dust->catch_rate);
     fl_keylines_float(lines, "weight", 0, 10, &dust->weight);
     fl_keylines_float(lines, "rim", 0, 1000, &dust->rim_px);
@@ -192,6 +195,7 @@ static void read_event(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_int(lines, "hand", 0, 1000, &event->hand);
     fl_keylines_float(lines, "sweep", 0, 2, &event->sweep);
     fl_keylines_float(lines, "sweep-depth", 1, 1000, &event->sweep_px);
+    fl_keylines_float(lines, "sweep-rim", 0, 1000, &event->sweep_rim_px);
     fl_keylines_float(lines, "from", 0, 10000, &event->from);
     event->until = event->from;
     fl_keylines_float(lines, "until", event->from, 10000, &event->until);

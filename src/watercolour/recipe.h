@@ -44,6 +44,7 @@ typedef struct FlEvent {
     float crinkle;                   // share of it that depends on the paper, 0..1
     float sweep, sweep_px;           // share of that speed that pigment at its rim gets, and how
                                      // far inside it still gets some
+    float sweep_rim_px;              // within which that speed falls to 0 at the rim itself
     float from, until;               // frames, 0 to 1 are the warm-up; from == until: once
     float water;                     // what the brush gives until the paper holds this much, 0..1
     float rate;                      // share of the missing water given per step, 0..1
@@ -73,6 +74,8 @@ typedef struct FlFlow {
 typedef struct FlDust {
     int grains;                      // 0: no dust
     float speed_px, swirl, swirl_px; // drift per frame; share of it that swirls; size of the swirls
+    float scatter;                   // share of it that is every grain's own
+    float lumps;                     // how unevenly it crumbles from place to place, 0..1
     float catch_rate;                // how readily the tooth catches a grain, 0..1
     float weight;                    // thickness of one grain
     float rim_px;                    // how deep the crumbling reaches into the stroke
