@@ -1,5 +1,6 @@
 #!/bin/sh
-# Against the installed library, a program that knows pkg-config only compiles, links and runs. usage: pkgconfig.sh BUILD-DIR
+# Against the installed library, a program that knows pkg-config only compiles, links and runs, and the
+# installed programs find it wherever it lies. usage: pkgconfig.sh BUILD-DIR
 set -eu
 build=$1
 folder=$(mktemp -d)
@@ -23,3 +24,6 @@ flags=$(pkg-config --cflags --libs fluidy)
 ${CC:-cc} "$folder/program.c" -o "$folder/program" $flags
 version=$(LD_LIBRARY_PATH=$(pkg-config --variable=libdir fluidy) "$folder/program")
 [ "$version" = "$(pkg-config --modversion fluidy)" ]
+"$(find "$folder" -path "*/bin/fluidy-svg")" --version >"$folder/said"
+"$(find "$folder" -path "*/bin/fluidy-style")" --version >>"$folder/said"
+[ "$(grep -c "$version" "$folder/said")" = 2 ]
