@@ -85,12 +85,20 @@ static bool paint_one(Job *job, int p, int frame, FlGuides *scratch, GError **er
            fl_dump_frame(dump, painter, scratch, fl_film_number(job->plan->film, frame), error);
 }
 
-static bool paint(Job *job, int frame, GError **error)
+/* What is done for painter p; step is a frame, or a picture of the lead-in. */
+typedef bool (*Work)(Job *job, int p, int step, FlGuides *scratch, GError **error);
+
+static bool lead_in_one(Job *job, int p, int k, FlGuides *scratch, GError **error)
+{
+    return fl_painter_lead_in(&job->plan->painters[p], k, scratch, error);
+}
+
+static bool for_each_painter(Job *job, Work work, int step, GError **error)
 {
     const FlPlan *plan = job->plan;
     for (int p = 0; p < plan->n_painters; p++)
         if (is_large(plan, &plan->painters[p], job->n_scratch) &&
-            !paint_one(job, p, frame, &job->scratch[0], error))
+            !work(job, p, step, &job->scratch[0], error))
             return false;
     GError *first = NULL;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(job->n_scratch)
@@ -102,7 +110,7 @@ static bool paint(Job *job, int frame, GError **error)
 #endif
         GError *mine = NULL;
         if (is_large(plan, &plan->painters[p], job->n_scratch) ||
-            paint_one(job, p, frame, &job->scratch[thread], &mine))
+            work(job, p, step, &job->scratch[thread], &mine))
             continue;
         fl_keep_first_error(&first, mine);
     }
@@ -162,7 +170,7 @@ static bool write_frame(Job *job, const FlComposite *composite, int frame, GErro
 static bool render_frame(Job *job, int frame, GError **error)
 {
     const int64_t start = g_get_monotonic_time();
-    if (!paint(job, frame, error))
+    if (!for_each_painter(job, paint_one, frame, error))
         return false;
     const int64_t painted = g_get_monotonic_time();
     g_auto(FlComposite) composite = {0};
@@ -216,7 +224,16 @@ static bool make_scratch(Job *job, GError **error)
     return true;
 }
 
-/* Everything before the first stroke. */
+/* The last pictures before the first ones, if the film is a loop. */
+static bool lead_in(Job *job, GError **error)
+{
+    for (int k = 0; job->plan->options.loop && k < FL_LOOP_LONGEST; k++)
+        if (!for_each_painter(job, lead_in_one, k, error) || !tell(job, "lead-in", 0, 0, error))
+            return false;
+    return true;
+}
+
+/* Everything before the first frame. */
 static bool prepare(Job *job, GError **error)
 {
     const double read_s = seconds_since(job->start);
@@ -224,7 +241,8 @@ static bool prepare(Job *job, GError **error)
         !fl_resume_init(&job->resume, job->plan, error) || !open_sink(job, error) ||
         !fl_stats_init(&job->stats, job->plan, error) || !open_report(job, error) ||
         !tell(job, "guides", 0, 0, error) || !fl_plan_prepare(job->plan, error) ||
-        !make_scratch(job, error) || !fl_resume_start(&job->resume, job->plan, error))
+        !make_scratch(job, error) || !lead_in(job, error) ||
+        !fl_resume_start(&job->resume, job->plan, error))
         return false;
     job->painting = g_get_monotonic_time();
     job->stats.read_s = read_s;

@@ -96,6 +96,7 @@ typedef struct FlRenderOptions {
     const FlSetting *settings; /**< win over the config's; in this order, the last wins */
     size_t n_settings;
     const char *only_region; /**< paint this one alone, over nothing; NULL: all */
+    bool loop;               /**< the end leads into the beginning, for films that are repeated */
     uint64_t seed; /**< same input, options and seed: same bytes; 0: the config's, else 1 */
 
     /* What is written. */

@@ -184,6 +184,8 @@ static gboolean read_flag(const char *name, const char *value, gpointer data, GE
         args->render.verbose = true;
     if (strcmp(name, "--dry-run") == 0)
         args->render.dry_run = true;
+    if (strcmp(name, "--loop") == 0)
+        args->render.loop = true;
     if (strcmp(name, "--strict") == 0)
         args->render.strict = true;
     if (strcmp(name, "--resume") == 0)
@@ -223,6 +225,7 @@ static const GOptionEntry common[] = {
     {"background", 'b', VALUE(read_path), "#RRGGBB, none or an image (the paper)", "COLOUR|FILE"},
     {"fps", 0, VALUE(read_number), "frames per second of a film (24)", "RATE"},
     {"hold", 0, VALUE(read_setting), "paint every n-th frame; 2: on twos (1)", "N"},
+    {"loop", 0, FLAG(read_flag), "let the end lead into the beginning", NULL},
     {"detail", 0, VALUE(read_setting), "draft, normal or fine (normal)", "WORD"},
     {"tint", 0, VALUE(read_setting), "fill, keep or #RRGGBB (fill)", "TINT"},
     {"region", 0, VALUE(read_path), "paint this region alone", "NAME"},

@@ -158,6 +158,7 @@ static void add_options(FlFingerprint *print, const FlPlan *plan)
     add_number(print, "blend", o->blend);
     add_number(print, "fps", o->fps);
     add_number(print, "hold", plan->hold);
+    add_number(print, "loop", o->loop);
 }
 
 /* The files of an option that is a pattern of one file per frame, or one file. */

@@ -58,11 +58,11 @@ static bool make_pictures(FlPainter *painter, GError **error)
 
 bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
 {
-    const int hold = painter->treatment.hold;
+    const int n_pictures = (fl_film_frames(painter->film) - 1) / painter->treatment.hold + 1;
     painter->rect = cropped(painter);
     const FlGuideSource source = {.width = painter->rect.width,
                                   .height = painter->rect.height,
-                                  .n_frames = (fl_film_frames(painter->film) - 1) / hold + 1,
+                                  .n_frames = n_pictures,
                                   .mask = painter_mask,
                                   .flow = painter->flow_pattern ? painter_flow : NULL,
                                   .data = painter};
@@ -72,7 +72,8 @@ bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
     return (painter->guides = fl_guide_sequence_new(&source, &how, error)) &&
            (painter->synth = fl_synth_new(painter->box->exemplar, &painter->treatment.params, size,
                                           fl_key(seed, g_str_hash(painter->name)), error)) &&
-           make_pictures(painter, error);
+           make_pictures(painter, error) &&
+           (!painter->loops || fl_loop_init(&painter->loop, n_pictures, error));
 }
 
 void fl_painter_clear(FlPainter *painter)
@@ -80,6 +81,7 @@ void fl_painter_clear(FlPainter *painter)
     fl_treatment_clear(&painter->treatment);
     fl_guide_sequence_free(painter->guides);
     fl_synth_free(painter->synth);
+    fl_loop_clear(&painter->loop);
     free(painter->painted);
     free(painter->part);
     g_free(painter->flow_pattern);
@@ -95,16 +97,30 @@ static void put_part(FlPainter *painter)
                painter->part + 3 * (size_t)y * rect.width, 3 * (size_t)rect.width);
 }
 
+/* The region's picture `index`, held ones counted once, into painter->part. */
+static bool paint_part(FlPainter *painter, int index, FlGuides *guides, GError **error)
+{
+    guides->width = painter->rect.width, guides->height = painter->rect.height;
+    return fl_guide_sequence_get(painter->guides, index, guides, error) &&
+           fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
+                          painter->wants_view ? &painter->view : NULL, error);
+}
+
+bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)
+{
+    const FlLoop *loop = &painter->loop;
+    return k >= loop->n || (paint_part(painter, loop->first + k, guides, error) &&
+                            fl_loop_keep(&painter->loop, k, painter->part, painter->rect, error));
+}
+
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
+    const int index = frame / painter->treatment.hold;
     if (frame % painter->treatment.hold != 0)
         return true;
-    const FlBox rect = painter->rect;
-    guides->width = rect.width, guides->height = rect.height;
-    if (!fl_guide_sequence_get(painter->guides, frame / painter->treatment.hold, guides, error) ||
-        !fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
-                        painter->wants_view ? &painter->view : NULL, error))
+    if (!paint_part(painter, index, guides, error) ||
+        !fl_loop_blend(&painter->loop, index, painter->part, painter->rect, error))
         return false;
     put_part(painter);
     painter->seconds = (double)(g_get_monotonic_time() - start) * 1e-6;

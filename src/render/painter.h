@@ -4,6 +4,7 @@
 
 #include "regions/film.h"
 #include "render/exemplars.h"
+#include "render/loop.h"
 #include "render/masks.h"
 #include "synth/synth.h"
 
@@ -18,7 +19,9 @@ typedef struct FlPainter {
     const FlFilm *film;    // borrowed
     int width, height;     // of the film
     FlBox rect;            // the part of it in which the region ever is, with some room
-    char *flow_pattern;    // of flow files; NULL: the flow is made from the masks
+    bool loops;            // the film's end leads into its beginning
+    FlLoop loop;
+    char *flow_pattern; // of flow files; NULL: the flow is made from the masks
     FlGuideSequence *guides;
     FlSynth *synth;
     uint8_t *painted; // width * height * 3 sRGB, paper outside rect
@@ -32,6 +35,12 @@ typedef struct FlPainter {
 /** Makes the guides of the whole film. The random numbers depend on seed and the region's name. */
 bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error);
 void fl_painter_clear(FlPainter *painter);
+
+/**
+ * Paints the k-th picture of the lead-in of a loop, in order; beyond painter->loop.n it does
+ * nothing. After the last one comes frame 0. `guides` is scratch.
+ */
+bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error);
 
 /**
  * Paints the next frame of the film; they come in order. A frame that is held keeps the last

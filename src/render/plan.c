@@ -83,6 +83,7 @@ static bool add_painter(FlPlan *plan, int region, GError **error)
     painter->masks = plan->masks, painter->film = plan->film;
     painter->width = fl_film_width(plan->film), painter->height = fl_film_height(plan->film);
     painter->flow_pattern = g_strdup(plan->options.flow);
+    painter->loops = plan->options.loop;
     painter->box = fl_exemplars_get(plan->exemplars, &painter->treatment, error);
     if (painter->box && plan->options.verbose)
         note(plan, "region %s: style %s", r->name, painter->box->path);

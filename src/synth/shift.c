@@ -1,5 +1,7 @@
 #include "synth/shift.h"
 
+#include <math.h>
+
 /* Scans from the match's frame in steps of `step` for the motion that is nearest to the wanted one;
  * of equal ones the first, so that paint that rests stays in its frame. */
 FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion_px, bool opposes)
@@ -34,14 +36,39 @@ static bool opposes(const FlExemplar *exemplar, FlMatch m, uint8_t target_angle)
     return turn > 64 && turn < 192;
 }
 
-void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const float *motion, const uint8_t *angle)
+/* One frame on, or back, unless there is no paint at its place. */
+static FlMatch boiled(const FlExemplar *exemplar, FlMatch match, int step)
+{
+    const FlExemplarLevel *full = &exemplar->level[0];
+    const size_t frame = (size_t)full->width * full->height;
+    const size_t pixel = (size_t)fl_match_y(match) * full->width + fl_match_x(match);
+    const int t = match.frame + step;
+    if (t >= 0 && t < full->n_frames && exemplar->mask[t * frame + pixel] >= FL_INSIDE)
+        match.frame = (int16_t)t;
+    return match;
+}
+
+int fl_boil_step(float boil, int frame, int n_frames)
+{
+    const int before = (int)floor((double)boil * (frame - 1)),
+              now = (int)floor((double)boil * frame);
+    const int turn = CLAMP(n_frames - 1, 1, FL_BOIL_TURN);
+    return now == before ? 0 : before % (2 * turn) < turn ? 1 : -1;
+}
+
+void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *motion)
 {
     const size_t pixels = (size_t)nnf->width * nnf->height;
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < pixels; p++) {
         FlMatch *m = &nnf->match[p];
-        if (m->frame != FL_NO_MATCH)
-            *m = fl_match_shifted(exemplar, *m, motion[p], opposes(exemplar, *m, angle[p]));
+        if (m->frame == FL_NO_MATCH)
+            continue;
+        if (motion->boil != 0 && motion->speed[p] <= motion->still)
+            *m = boiled(exemplar, *m, motion->boil);
+        else
+            *m = fl_match_shifted(exemplar, *m, motion->speed[p],
+                                  opposes(exemplar, *m, motion->angle[p]));
     }
 }
 

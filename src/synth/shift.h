@@ -11,12 +11,25 @@
  */
 FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion_px, bool opposes);
 
+/** What the target does between two frames: arrays of width * height of the field. */
+typedef struct FlTargetMotion {
+    const float *speed;   // px from the field's frame to the next
+    const uint8_t *angle; // its direction
+    float still;          // px: what is no faster holds still …
+    int boil;             // … and goes on by so many frames of the exemplar, -1 … 1
+} FlTargetMotion;
+
+/** Shifts a level-0 field. */
+void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *motion);
+
 /**
- * Shifts a level-0 field. `motion` is the target's, px from the field's frame to the next, and
- * `angle` its direction, both width * height of the field.
+ * Which way paint that holds still goes on before the frame-th painted frame, from 1: `boil` of the
+ * frames take a step. The exemplar is walked to and fro, since it ends but a hold may not:
+ * FL_BOIL_TURN steps (less if it is shorter) one way, as many back.
  */
-void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const float *motion,
-                  const uint8_t *angle);
+int fl_boil_step(float boil, int frame, int n_frames);
+
+#define FL_BOIL_TURN 12
 
 /**
  * The temporal weight m(q) [F21 §3.4]: 1 where the shifted match lies as deep in its paint as q in

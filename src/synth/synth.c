@@ -26,7 +26,8 @@ struct FlSynth {
     int width, height, n_levels;
     float side; // the larger one of the whole frames, px
     uint64_t key;
-    int frame;
+    int frame; // from 1
+    int boil;  // fl_boil_step() before it
     Previous previous;
     bool wants_energies;
     FlGuides half; // of a draft, made at half the size
@@ -111,9 +112,9 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
                              GError **error)
 {
     const size_t pixels = (size_t)rect.width * rect.height;
-    g_autofree float *motion = fl_alloc(pixels, sizeof(float), "a field", error);
+    g_autofree float *speed = fl_alloc(pixels, sizeof(float), "a field", error);
     g_autofree uint8_t *angle = fl_alloc(pixels, 1, "a field", error);
-    if (!motion || !angle || !fl_nnf_init(out, rect.width, rect.height, error))
+    if (!speed || !angle || !fl_nnf_init(out, rect.width, rect.height, error))
         return false;
     const Previous *previous = &synth->previous;
     for (int y = 0; y < rect.height; y++)
@@ -122,14 +123,15 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
             const size_t full = (size_t)(rect.y + y) * synth->width + rect.x + x;
             const int px = rect.x + x - previous->rect.x, py = rect.y + y - previous->rect.y;
             const float u = guides->flow[2 * full], v = guides->flow[2 * full + 1];
-            motion[p] = sqrtf(u * u + v * v);
+            speed[p] = sqrtf(u * u + v * v);
             angle[p] = guides->angle[full];
             if (px >= 0 && py >= 0 && px < previous->rect.width && py < previous->rect.height)
                 out->match[p] = previous->nnf.match[(size_t)py * previous->rect.width + px];
             if (guides->mask[full] < FL_INSIDE)
-                motion[p] = 0;
+                speed[p] = 0;
         }
-    fl_nnf_shift(out, synth->exemplar, motion, angle);
+    const FlTargetMotion motion = {speed, angle, synth->params->flow_still, synth->boil};
+    fl_nnf_shift(out, synth->exemplar, &motion);
     return true;
 }
 
@@ -379,12 +381,12 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
     return true;
 }
 
-/* The same mask as in the last frame, and no flow that somebody could see. */
+/* The same mask as in the last frame, no flow that somebody could see, and no boil due. */
 static bool holds_still(const FlSynth *synth, const FlGuides *guides)
 {
     const size_t pixels = (size_t)synth->width * synth->height;
     const float limit = synth->params->flow_still * synth->params->flow_still;
-    if (synth->params->boil || !synth->previous.valid ||
+    if (!synth->params->rest || synth->boil != 0 || !synth->previous.valid ||
         memcmp(guides->mask, synth->previous.mask, pixels) != 0)
         return false;
     for (size_t p = 0; p < pixels; p++) {
@@ -416,6 +418,8 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
     FlRect rect;
     g_auto(FlNnf) shifted = {0};
     synth->frame++;
+    synth->boil =
+        fl_boil_step(synth->params->boil, synth->frame, synth->exemplar->level[0].n_frames);
     if (holds_still(synth, guides)) {
         memcpy(rgb, synth->previous.rgb, 3 * (size_t)synth->width * synth->height);
         *view = synth->view;

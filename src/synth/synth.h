@@ -55,8 +55,8 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  * style's paper elsewhere. An empty mask makes the next frame a first frame again.
  *
  * stats and view may be NULL; without a view nothing of the frame but its field and picture is
- * kept. A region that holds still keeps its last picture unless params->boil; stats are then
- * empty. The view of a draft is empty.
+ * kept. With params->rest, a region that holds still keeps its last picture until params->boil is
+ * due; stats are then empty. The view of a draft is empty.
  */
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);

@@ -1,0 +1,162 @@
+/* Drawings that are held, and films that are repeated: how the paint lives through them. */
+#include "scratch.h"
+#include "style/picture.h"
+#include "synth/shift.h"
+#include <fluidy/fluidy.h>
+#include <math.h>
+
+#define SIDE 64
+#define FRAMES 12
+
+typedef struct Film {
+    Scratch *folder;
+    FlPicture *frame[FRAMES];
+} Film;
+
+static void film_clear(Film *film)
+{
+    for (int f = 0; f < FRAMES; f++)
+        fl_picture_free(film->frame[f]);
+    scratch_remove(film->folder);
+}
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Film, film_clear)
+
+/* A disc that goes round once, or holds still, painted with the small style. */
+static Film painted(double radius, const FlSetting *settings, size_t n_settings, bool loop)
+{
+    Film film = {.folder = scratch_make()};
+    for (int f = 0; f < FRAMES; f++) {
+        const double a = 2 * G_PI * f / FRAMES;
+        g_autofree char *name = g_strdup_printf("d_%02d.svg", f + 1);
+        g_autofree char *disc =
+            g_strdup_printf("<circle cx='%d' cy='%d' r='30' fill='#335588'/>",
+                            (int)lrint(50 + radius * cos(a)), (int)lrint(50 + radius * sin(a)));
+        g_autofree char *path = scratch_svg(film.folder, name, disc);
+    }
+    g_autofree char *output = g_build_filename(film.folder, "d_%02d.png", NULL);
+    const char *const inputs[] = {film.folder, NULL};
+    const FlRenderOptions options = {.inputs = inputs,
+                                     .output = output,
+                                     .width = SIDE,
+                                     .settings = settings,
+                                     .n_settings = n_settings,
+                                     .loop = loop};
+    g_autoptr(GError) error = NULL;
+    fl_render(&options, &error);
+    g_assert_no_error(error);
+    for (int f = 0; f < FRAMES; f++) {
+        g_autofree char *name = g_strdup_printf("d_%02d.png", f + 1);
+        g_autofree char *path = g_build_filename(film.folder, name, NULL);
+        film.frame[f] = fl_picture_read_png(path, &error);
+        g_assert_no_error(error);
+    }
+    return film;
+}
+
+/* Mean absolute difference of two frames, in levels. */
+static double change(const Film *film, int from, int to)
+{
+    long sum = 0;
+    for (int k = 0; k < 4 * SIDE * SIDE; k++)
+        sum += abs(film->frame[from]->rgba[k] - film->frame[to]->rgba[k]);
+    return (double)sum / (SIDE * SIDE);
+}
+
+static FlSetting style(void)
+{
+    static char *folder;
+    if (!folder)
+        folder = g_test_build_filename(G_TEST_DIST, "style-small", NULL);
+    return (FlSetting){.name = "style", .value = folder};
+}
+
+static void paint_rests_where_the_drawing_holds_still(void)
+{
+    const FlSetting settings[] = {style()};
+    g_auto(Film) film = painted(0, settings, 1, false);
+    for (int f = 1; f < FRAMES; f++)
+        g_assert_cmpfloat(change(&film, f - 1, f), ==, 0);
+}
+
+static void paint_boils_at_the_pace_that_is_asked_for(void)
+{
+    const FlSetting all[] = {style(), {.name = "boil", .value = "1"}};
+    g_auto(Film) film = painted(0, all, 2, false);
+    for (int f = 1; f < FRAMES; f++)
+        g_assert_cmpfloat(change(&film, f - 1, f), >, 0);
+    const FlSetting half[] = {style(), {.name = "boil", .value = "0.5"}};
+    g_auto(Film) slow = painted(0, half, 2, false);
+    for (int f = 1; f < FRAMES; f++) // frame f is the (f + 1)-th
+        if (f % 2 == 0)
+            g_assert_cmpfloat(change(&slow, f - 1, f), ==, 0);
+        else
+            g_assert_cmpfloat(change(&slow, f - 1, f), >, 0);
+}
+
+static void boiling_paint_goes_to_and_fro_in_its_recording(void)
+{
+    for (int n_frames = 1; n_frames < 40; n_frames += 6) {
+        int at = 0, furthest = 0;
+        for (int frame = 1; frame <= 200; frame++) {
+            at += fl_boil_step(1, frame, n_frames);
+            furthest = MAX(furthest, at);
+            g_assert_cmpint(at, >=, 0);
+        }
+        g_assert_cmpint(furthest, ==, CLAMP(n_frames - 1, 1, FL_BOIL_TURN));
+    }
+    for (int frame = 1; frame < 50; frame++)
+        g_assert_cmpint(fl_boil_step(0, frame, 20), ==, 0);
+}
+
+static void on_twos_every_picture_stays_for_two_frames(void)
+{
+    const FlSetting settings[] = {style(), {.name = "hold", .value = "2"}};
+    g_auto(Film) film = painted(14, settings, 2, false);
+    for (int f = 1; f < FRAMES; f++)
+        if (f % 2 == 1)
+            g_assert_cmpfloat(change(&film, f - 1, f), ==, 0);
+        else
+            g_assert_cmpfloat(change(&film, f - 1, f), >, 1);
+}
+
+/* The paint that changes between two frames, beside how it changes anywhere in the film. */
+static double jump(const Film *film)
+{
+    double most = 0;
+    for (int f = 1; f < FRAMES; f++)
+        most = MAX(most, change(film, f - 1, f));
+    return change(film, FRAMES - 1, 0) / most;
+}
+
+static void a_loop_ends_where_it_began(void)
+{
+    const FlSetting settings[] = {style(), {.name = "boil", .value = "1"}};
+    g_auto(Film) once = painted(0, settings, 2, false);
+    g_auto(Film) loop = painted(0, settings, 2, true);
+    g_test_message("jump at the end: %.3f, in a loop %.3f", jump(&once), jump(&loop));
+    g_assert_cmpfloat(jump(&loop), <, 0.5 * jump(&once));
+}
+
+static void a_held_drawing_loops_on_twos(void)
+{
+    const FlSetting settings[] = {
+        style(), {.name = "hold", .value = "2"}, {.name = "boil", .value = "1"}};
+    g_auto(Film) film = painted(0, settings, 3, true);
+    for (int f = 1; f < FRAMES; f += 2)
+        g_assert_cmpfloat(change(&film, f - 1, f), ==, 0);
+    g_assert_cmpfloat(jump(&film), <, 1.5);
+}
+
+int main(int argc, char **argv)
+{
+    g_setenv("G_TEST_SRCDIR", g_getenv("FLUIDY_FIXTURES"), true);
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name) g_test_add_func("/holds/" #name, name)
+    TEST(paint_rests_where_the_drawing_holds_still);
+    TEST(paint_boils_at_the_pace_that_is_asked_for);
+    TEST(boiling_paint_goes_to_and_fro_in_its_recording);
+    TEST(on_twos_every_picture_stays_for_two_frames);
+    TEST(a_loop_ends_where_it_began);
+    TEST(a_held_drawing_loops_on_twos);
+    return g_test_run();
+}
