@@ -20,7 +20,8 @@ struct FlSvg {
     xmlDoc *doc;
     char *original; // the text before it was normalised
     size_t original_bytes;
-    RsvgHandle *handle;   // of the normalised document
+    RsvgHandle *handle; // of the normalised document
+    bool has_images;
     GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
     FlLeaves *leaves;
 };
@@ -45,9 +46,15 @@ static RsvgHandle *make_handle(const FlSvg *svg, const char *text, size_t bytes,
     return handle;
 }
 
-static int variant_key(FlPart part, int turn)
+/** What a handle is for. */
+typedef enum Purpose {
+    TO_DRAW,
+    TO_READ, // cairo's script surface would pack every image: they are one pixel each
+} Purpose;
+
+static int variant_key(FlPart part, int turn, Purpose purpose)
 {
-    return (turn + 1) * 3 + (int)part;
+    return ((turn + 1) * 3 + (int)part) * 2 + (int)purpose;
 }
 
 /** Adds declarations that win over the style sheets to the style of the leaves. */
@@ -66,23 +73,54 @@ static void declare(const xmlDoc *doc, const FlLeaves *leaves, FlPart part, int 
     }
 }
 
-/** The handle that draws this part of the leaves of this turn. */
-static RsvgHandle *handle_of(FlSvg *svg, FlPart part, int turn, GError **error)
+/** Makes every image one grey pixel. */
+static void shrink_images(xmlNode *node)
 {
-    if (part == FL_PART_WHOLE && turn < 0)
+    static const char *const pixel =
+        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCB"
+        "d81ytgAAAABJRU5ErkJggg==";
+    for (; node; node = node->next) {
+        if (fl_is(node, "image")) {
+            xmlNs *xlink =
+                xmlSearchNsByHref(node->doc, node, (const xmlChar *)"http://www.w3.org/1999/xlink");
+            xmlUnsetNsProp(node, xlink, (const xmlChar *)"href");
+            xmlSetProp(node, (const xmlChar *)"href", (const xmlChar *)pixel);
+        }
+        if (node->type == XML_ELEMENT_NODE)
+            shrink_images(node->children);
+    }
+}
+
+/** The handle for this part of the leaves of this turn. */
+static RsvgHandle *handle_of(FlSvg *svg, FlPart part, int turn, Purpose purpose, GError **error)
+{
+    if (!svg->has_images)
+        purpose = TO_DRAW;
+    if (part == FL_PART_WHOLE && turn < 0 && purpose == TO_DRAW)
         return svg->handle;
-    gpointer key = GINT_TO_POINTER(variant_key(part, turn));
+    gpointer key = GINT_TO_POINTER(variant_key(part, turn, purpose));
     RsvgHandle *handle = g_hash_table_lookup(svg->variants, key);
     if (handle)
         return handle;
     g_autoptr(xmlDoc) copy = xmlCopyDoc(svg->doc, 1);
     declare(copy, svg->leaves, part, turn);
+    if (purpose == TO_READ)
+        shrink_images(copy->children);
     size_t bytes = 0;
     g_autofree char *text = fl_document_text(copy, &bytes);
     handle = make_handle(svg, text, bytes, error);
     if (handle)
         g_hash_table_insert(svg->variants, key, handle);
     return handle;
+}
+
+static bool has_images(const xmlNode *node)
+{
+    bool found = false;
+    for (; node && !found; node = node->next)
+        found =
+            fl_is(node, "image") || (node->type == XML_ELEMENT_NODE && has_images(node->children));
+    return found;
 }
 
 static void set_number(xmlNode *node, const char *name, double value)
@@ -121,6 +159,7 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     if (!fl_document_normalise(svg->doc, path, number, warnings, error))
         return NULL;
     svg->leaves = fl_leaves_new(svg->doc);
+    svg->has_images = has_images(svg->doc->children);
     svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
     size_t bytes = 0;
     g_autofree char *text = fl_document_text(svg->doc, &bytes);
@@ -167,11 +206,11 @@ const FlLeaves *fl_svg_leaves(const FlSvg *svg)
     return svg->leaves;
 }
 
-bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
-                 double height, GError **error)
+static bool draw_for(FlSvg *svg, const FlLeaf *leaf, FlPart part, Purpose purpose, cairo_t *cr,
+                     double width, double height, GError **error)
 {
     g_autoptr(GError) reason = NULL;
-    RsvgHandle *handle = handle_of(svg, part, leaf->turn, error);
+    RsvgHandle *handle = handle_of(svg, part, leaf->turn, purpose, error);
     g_autofree char *layer = g_strconcat("#", leaf->layer, NULL);
     const RsvgRectangle page = {0, 0, width, height};
     if (handle && rsvg_handle_render_layer(handle, cr, layer, &page, &reason))
@@ -181,6 +220,22 @@ bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, doubl
         g_prefix_error(error, "#%s in ", leaf->id);
     }
     return false;
+}
+
+bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
+                 double height, GError **error)
+{
+    return draw_for(svg, leaf, part, TO_DRAW, cr, width, height, error);
+}
+
+RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, double height)
+{
+    g_autofree char *layer = g_strconcat("#", leaf->id, NULL);
+    const RsvgRectangle page = {0, 0, width, height};
+    RsvgRectangle box = {0};
+    if (!rsvg_handle_get_geometry_for_layer(svg->handle, layer, &page, &box, NULL, NULL))
+        return (RsvgRectangle){0};
+    return box;
 }
 
 static cairo_status_t append_script(void *text, const unsigned char *data, unsigned n)
@@ -199,7 +254,7 @@ static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, double size,
     cairo_t *cr = cairo_create(surface);
     cairo_translate(cr, size / 4, 0);
     cairo_rotate(cr, PROBE_TURN);
-    const bool drawn = fl_svg_draw(svg, leaf, part, cr, size, size, error);
+    const bool drawn = draw_for(svg, leaf, part, TO_READ, cr, size, size, error);
     cairo_destroy(cr);
     cairo_surface_finish(surface);
     cairo_device_finish(device);

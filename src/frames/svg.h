@@ -50,6 +50,12 @@ int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
 bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
                  double height, GError **error);
 
+/**
+ * The box of a leaf, its strokes included and clips not, in px of a page of width x height; empty
+ * if it has none.
+ */
+RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, double height);
+
 /** Draws the file as it was before it was normalised. */
 bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error);
 

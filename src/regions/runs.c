@@ -102,6 +102,15 @@ static bool stage_init(Stage *stage, const FlFilm *film, int frame, GError **err
     return stage->coverage != NULL;
 }
 
+/** The pixels a step can reach. */
+static FlBox step_box(const Stage *stage, const FlStep *step)
+{
+    const FlBox page = {0, 0, stage->film->width, stage->film->height};
+    const FlBox box = {(int)floorf(step->box[0]), (int)floorf(step->box[1]),
+                       (int)ceilf(step->box[2]), (int)ceilf(step->box[3])};
+    return fl_box_and(page, box);
+}
+
 static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *surface,
                       GError **error)
 {
@@ -115,21 +124,15 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
     }
     const FlLeaf *leaf = step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
                                          : &g_array_index(list, FlUnit, index).leaf;
+    const FlBox box = step_box(stage, step);
     cairo_t *cr = cairo_create(surface);
+    cairo_rectangle(cr, box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0);
+    cairo_clip(cr);
     const bool drawn = fl_svg_draw(stage->svg, leaf, (FlPart)step->part, cr,
                                    stage->frame->page_width, stage->frame->page_height, error);
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     return drawn;
-}
-
-/** The pixels a step can reach. */
-static FlBox step_box(const Stage *stage, const FlStep *step)
-{
-    const FlBox page = {0, 0, stage->film->width, stage->film->height};
-    const FlBox box = {(int)floorf(step->box[0]), (int)floorf(step->box[1]),
-                       (int)ceilf(step->box[2]), (int)ceilf(step->box[3])};
-    return fl_box_and(page, box);
 }
 
 /** What a drawn opacity is of a thing that is as opaque as `alpha`. */
@@ -157,7 +160,7 @@ static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, 
             if (in[x])
                 out[x] = fl_over(solid[in[x]], out[x]);
     }
-    fl_surface_wipe(stage->coverage, (FlBox){0, 0, width, stage->film->height});
+    fl_surface_wipe(stage->coverage, box);
     return true;
 }
 

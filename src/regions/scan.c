@@ -104,6 +104,24 @@ static bool box_in_full(Frame *f, const FlLeaf *leaf, FlPart part, FlBox *box, f
     return drawn;
 }
 
+/**
+ * Widens the box of a stroke by where it is in full size: the pen that cairo draws thick lines of
+ * next to no length with has so few corners on a small picture that their caps are cut off.
+ */
+static void widen(Frame *f, const FlLeaf *leaf, FlBox *box)
+{
+    const RsvgRectangle r =
+        fl_svg_extents(f->svg, leaf, f->width * f->factor, f->height * f->factor);
+    const FlBox at =
+        fl_box_and(f->all, (FlBox){(int)floor(r.x / f->factor), (int)floor(r.y / f->factor),
+                                   (int)ceil((r.x + r.width) / f->factor),
+                                   (int)ceil((r.y + r.height) / f->factor)});
+    if (box->x1 == 0 || at.x1 == 0)
+        return;
+    box->x0 = MIN(box->x0, at.x0), box->x1 = MAX(box->x1, at.x1);
+    box->y0 = MIN(box->y0, at.y0), box->y1 = MAX(box->y1, at.y1);
+}
+
 /** Tells the parts of one leaf, from `first` on, of each other; a fill of no area is no part. */
 static void relate_parts(GArray *looks, guint first)
 {
@@ -152,6 +170,8 @@ static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warning
             good = box_in_full(f, leaf, p->part, &look.box, &look.seen.area_px, error);
             look.seen.area_px /= opacity;
         }
+        if (p->width > 0)
+            widen(f, leaf, &look.box);
         if (good && look.box.x1 > 0 && p->paint.alpha > 0)
             g_array_append_val(f->looks, look);
         else
