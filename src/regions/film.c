@@ -57,15 +57,16 @@ static char *label_path(const char *labels)
     return g_strdelimit(g_strdup(labels), "\n", '/');
 }
 
-static const char *paint_text(const FlScan *scan, const FlGroup *group)
+static char *paint_text(const FlGroup *group)
 {
+    const uint8_t *rgb = group->rgb;
     switch (group->kind) {
     case FL_PAINT_FLAT:
-        return fl_strings_get(&scan->strings, group->paint);
+        return g_strdup_printf("#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
     case FL_PAINT_GRADIENT:
-        return "gradient";
+        return g_strdup("gradient");
     default:
-        return "image";
+        return g_strdup("image");
     }
 }
 
@@ -87,7 +88,7 @@ static void describe(FlFilm *film, const FlScan *scan, const GArray *groups,
         const FlRegion region = {
             .name = g_strdup(names[r]),
             .label = label_path(fl_strings_get(&scan->strings, group->label)),
-            .paint = g_strdup(paint_text(scan, group)),
+            .paint = paint_text(group),
             .paintable = is_paintable(group, rules),
             .rule = group->rule,
         };

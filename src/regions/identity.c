@@ -2,11 +2,13 @@
 
 #include "regions/nesting.h"
 #include "regions/tracks.h"
+#include <stdlib.h>
 #include <string.h>
 
 #define SHADE_ALPHA 192  // a fill this opaque or more is no overlay
 #define SHADE_COVERS 0.8 // share of an overlay that lies over other fills
 #define LINE_ART 0.5     // share of the ink from which on strokes are the drawing
+#define ROUNDING 2       // levels of a channel by which exporters miss a colour from frame to frame
 
 /** What is summed over a region, to say what it is. */
 typedef struct Sum {
@@ -25,6 +27,62 @@ typedef struct Work {
     int *depth_of; // per track: see fl_nesting()
     int *twin_of;  // per track: the first track whose paints change as its own do
 } Work;
+
+static bool is_near(const uint8_t a[3], const uint8_t b[3])
+{
+    return abs(a[0] - b[0]) <= ROUNDING && abs(a[1] - b[1]) <= ROUNDING &&
+           abs(a[2] - b[2]) <= ROUNDING;
+}
+
+/** The first paint seen that looks the same; a paint that does not is added to firsts. */
+static int first_like(GArray *firsts, const FlSeen *s)
+{
+    for (guint k = 0; k < firsts->len; k++)
+        if (is_near(g_array_index(firsts, FlSeen, k).rgb, s->rgb))
+            return g_array_index(firsts, FlSeen, k).paint;
+    g_array_append_val(firsts, *s);
+    return s->paint;
+}
+
+/** Which flat paints differ by rounding only: paint -> the first like it. To be unref'd. */
+static GHashTable *find_near_paints(const FlScan *scan)
+{
+    g_autoptr(GArray) firsts = g_array_new(FALSE, FALSE, sizeof(FlSeen));
+    GHashTable *joined = g_hash_table_new(NULL, NULL);
+    for (int t = 0; t < scan->n_frames; t++)
+        for (guint i = 0; i < scan->frame[t].seen->len; i++) {
+            const FlSeen *s = &g_array_index(scan->frame[t].seen, FlSeen, i);
+            gpointer key = GINT_TO_POINTER(s->paint);
+            if (s->kind == FL_PAINT_FLAT && !g_hash_table_contains(joined, key))
+                g_hash_table_insert(joined, key, GINT_TO_POINTER(first_like(firsts, s)));
+        }
+    return joined;
+}
+
+static void join_paint(GHashTable *joined, int *paint)
+{
+    gpointer first = NULL;
+    if (g_hash_table_lookup_extended(joined, GINT_TO_POINTER(*paint), NULL, &first))
+        *paint = GPOINTER_TO_INT(first);
+}
+
+/** Gives paints that look the same one number. Tracks are followed before, by the exact paints. */
+static void join_near_paints(Work *w)
+{
+    g_autoptr(GHashTable) joined = find_near_paints(w->scan);
+    for (int t = 0; t < w->scan->n_frames; t++)
+        for (guint i = 0; i < w->scan->frame[t].seen->len; i++)
+            join_paint(joined, &g_array_index(w->scan->frame[t].seen, FlSeen, i).paint);
+    for (guint k = 0; k < w->tracks->len; k++) {
+        FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
+        track->varies = false;
+        for (guint i = 1; i < track->paints->len; i += 2) {
+            int *paint = &g_array_index(track->paints, int, i);
+            join_paint(joined, paint);
+            track->varies |= i > 1 && paint[-2] != *paint;
+        }
+    }
+}
 
 /** Whether strokes are what the drawing consists of: zdog figures, line drawings. */
 static bool is_line_art(const FlScan *scan)
@@ -160,7 +218,6 @@ static void add_up(const Work *w, const FlSeen *s, FlGroup *group, Sum *sum, GHa
     *area += s->area_px;
     if (*area > sum->best) {
         sum->best = *area;
-        group->paint = s->paint;
         group->kind = s->kind;
         group->label = w->label_of[s->labels];
         memcpy(group->rgb, s->rgb, 3);
@@ -214,6 +271,7 @@ GArray *fl_identify(FlScan *scan, const FlFilmOptions *options)
                       (options->strokes <= FL_STROKES_KEEP && is_line_art(scan));
     w.label_of = fl_clean_labels(scan);
     w.tracks = fl_follow(scan, w.label_of, &w.track_of);
+    join_near_paints(&w);
     w.depth_of = fl_nesting(scan, w.track_of, w.label_of, (int)w.tracks->len);
     w.rule_of = g_new(int, w.tracks->len + 1);
     w.twin_of = g_new(int, w.tracks->len + 1);

@@ -7,11 +7,10 @@
 /** What makes up a region, before it has a name. */
 typedef struct FlGroup {
     int label;          // label path without frame numbers, a number in FlScan.strings
-    int paint;          // the paint that covers most, likewise
     int rule;           // -1: none
     bool stroke, shade; // of strokes that are not painted; a translucent overlay
-    FlPaintKind kind;
-    uint8_t rgb[3];
+    FlPaintKind kind;   // of the paint that covers most
+    uint8_t rgb[3];     // its colour
 } FlGroup;
 
 /**

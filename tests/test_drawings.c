@@ -1,0 +1,89 @@
+/* Drawings of many programs: the table of regions of each, and their picture without paint. */
+#include "flat.h"
+#include <fluidy/inspect.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LEAST_DB 50 // rounding, and groups that fade drawn shape by shape
+#define AREA 3      // column of the tables that depends on the rasteriser
+
+static char *fixture(const char *folder, const char *name)
+{
+    const char *fixtures = g_getenv("FLUIDY_FIXTURES");
+    return g_build_filename(fixtures ? fixtures : "fixtures", "animations", folder, name, NULL);
+}
+
+/** The words of a line; to be unref'd. */
+static GPtrArray *words_of(const char *line)
+{
+    GPtrArray *words = g_ptr_array_new_with_free_func(g_free);
+    g_auto(GStrv) all = g_strsplit(line, " ", -1);
+    for (int i = 0; all[i]; i++)
+        if (all[i][0])
+            g_ptr_array_add(words, g_strdup(all[i]));
+    return words;
+}
+
+static void assert_same_line(const char *got, const char *expected)
+{
+    g_autoptr(GPtrArray) a = words_of(got), b = words_of(expected);
+    bool same = a->len == b->len;
+    for (guint i = 0; i < a->len && same; i++) {
+        const double x = atof(a->pdata[i]), y = atof(b->pdata[i]);
+        same = strcmp(a->pdata[i], b->pdata[i]) == 0 || (i == AREA && fabs(x - y) <= 2 + 0.01 * y);
+    }
+    if (!same)
+        g_assert_cmpstr(got, ==, expected);
+}
+
+static void the_table_of_regions_is_the_stored_one(const void *name)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *folder = fixture(name, NULL);
+    g_autofree char *file = g_strconcat(name, ".txt", NULL);
+    g_autofree char *path = fixture("tables", file);
+    g_autofree char *stored = NULL;
+    g_assert_true(g_file_get_contents(path, &stored, NULL, NULL));
+    const char *const inputs[] = {folder, NULL};
+    const FlRenderOptions options = {.inputs = inputs};
+    g_autofree char *table = fl_list_regions(&options, FL_LISTING_TABLE, &error);
+    g_assert_no_error(error);
+    g_auto(GStrv) got = g_strsplit(table, "\n", -1), expected = g_strsplit(stored, "\n", -1);
+    for (int i = 0; got[i] && expected[i]; i++)
+        assert_same_line(got[i], expected[i]);
+    g_assert_cmpuint(g_strv_length(got), ==, g_strv_length(expected));
+}
+
+static void regions_over_each_other_are_the_drawing(const void *name)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *folder = fixture(name, NULL);
+    const char *const inputs[] = {folder, NULL};
+    const FlFilmOptions options = {.inputs = inputs, .n_inputs = 1};
+    g_autoptr(FlFilm) film = fl_film_open(&options, NULL, &error);
+    g_assert_no_error(error);
+    const double psnr = flat_psnr(film, fl_film_frames(film) / 2);
+    g_test_message("%.1f dB", psnr);
+    g_assert_cmpfloat(psnr, >=, LEAST_DB);
+}
+
+int main(int argc, char **argv)
+{
+    static const char *const names[] = {
+        "android-wave",      "avatar-jump-flash",   "board-game",     "bouncing-balls",
+        "butterfly-colours", "css-hearts",          "gem-facets",     "ghost-morph",
+        "horse-gallop",      "horse-gallop-layers", "lottie-logo",    "rounded-spin",
+        "seedling-grow",     "snowman-wave-layers", "strutter-qtsvg", "strutter-zdog",
+        "suzanne-turn",      "windsock-smil",
+    };
+    g_test_init(&argc, &argv, NULL);
+    for (size_t i = 0; i < G_N_ELEMENTS(names); i++) {
+        g_autofree char *table =
+            g_strdup_printf("/drawings/%s/the-table-of-regions-is-the-stored-one", names[i]);
+        g_autofree char *flat =
+            g_strdup_printf("/drawings/%s/regions-over-each-other-are-the-drawing", names[i]);
+        g_test_add_data_func(table, names[i], the_table_of_regions_is_the_stored_one);
+        g_test_add_data_func(flat, names[i], regions_over_each_other_are_the_drawing);
+    }
+    return g_test_run();
+}
