@@ -4,6 +4,7 @@ set -u
 export LC_ALL=C.UTF-8
 program=$(realpath "$1")
 small=$(realpath "$2")/style-small
+dust=$(realpath "$2")/watercolour/dust
 page=$3
 folder=$(mktemp -d)
 trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
@@ -103,6 +104,17 @@ result $? 'under --strict problems are a failure'
 [ $? = 1 ]
 result $? 'a full disk is a failure'
 
+does 'a recipe is simulated' simulate "$dust/recipe.ini" -o dust
+{ diff -r dust/frames "$dust/frames" >out && diff -r dust/masks "$dust/masks" >>out &&
+    [ "$(tail -1 err)" = 'fluidy-style: frame 3 of 3' ]; }
+result $? 'frame by frame'
+sed 's/^frames = 3/frames = 2/' "$dust/recipe.ini" >short.ini
+refuses 'a simulated style is not overwritten' 1 'dust/frames exists: -y overwrites it' \
+    simulate short.ini -o dust
+does 'but for -y' simulate -qy short.ini -o dust
+{ [ "$(ls dust/frames | wc -l)" = 2 ] && [ "$(ls dust/masks | wc -l)" = 2 ] && [ ! -s err ]; }
+result $? 'and no frame of the old one stays'
+
 if command -v ffmpeg >/dev/null; then
     ffmpeg -v error -framerate 12 -i "$small/frames/%04d.png" -c:v ffv1 -pix_fmt bgr0 paint.mkv
     does 'a video is imported' import paint.mkv -o video -f 2-6x2
@@ -115,6 +127,9 @@ if command -v ffmpeg >/dev/null; then
     does 'a photograph is imported' import paint.jpg -o photo
     grep -q 'only one frame, so the paint will not flow' err
     result $? 'with the warning that it will not flow'
+    ffmpeg -v error -f lavfi -i sine=d=0.1 -c:a pcm_s16le sound.wav
+    refuses 'sound is no paint' 1 'sound.wav: has no pictures, only other streams' \
+        import sound.wav -o sound
     head -c 2000 paint.mkv >cut.mkv
     refuses 'a broken video is named' 1 'cut.mkv: *' import cut.mkv -o broken
 else

@@ -144,6 +144,20 @@ static void grain_that_does_not_move_is_no_shake(void)
     g_assert_cmpfloat(fl_shake_extent(found, FRAMES), ==, 0);
 }
 
+static void a_lamp_that_flickers_is_no_shake(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree uint8_t *rgb = g_malloc(PIXELS * 3 * FRAMES), *mask = g_malloc0(PIXELS * FRAMES);
+    const FlClip clip = {WIDTH, HEIGHT, FRAMES, rgb};
+    FlShift found[FRAMES];
+    for (int t = 0; t < FRAMES; t++)
+        draw(rgb + 3 * PIXELS * t, t, 0.3 + 0.04 * (t % 2), false, 0, 0);
+    for (int i = 0; i < PIXELS; i++)
+        mask[i] = hypot(i % WIDTH - 80, i / WIDTH - 50) < 36 ? 255 : 0;
+    g_assert_true(fl_shake_estimate(&clip, mask, found, &error));
+    g_assert_cmpfloat(fl_shake_extent(found, FRAMES), <, 0.1f);
+}
+
 static void remove_folder(const char *path)
 {
     g_autoptr(GDir) dir = g_dir_open(path, 0, NULL);
@@ -237,12 +251,28 @@ static void assert_import_fails(FlStyleImport *import, int code, const char *par
         g_error("\"%s\" does not say \"%s\"", error->message, part);
 }
 
+/* Masks in a folder of their own, of a corner that stays bare. */
+static char *mask_the_paper(const char *folder)
+{
+    char *aside = g_build_filename(folder, "aside", NULL);
+    g_autofree uint8_t *mask = g_malloc0(PIXELS);
+    g_assert_cmpint(g_mkdir(aside, 0700), ==, 0);
+    for (int y = 5; y < 30; y++)
+        memset(mask + y * WIDTH + 5, 255, 30);
+    for (int t = 0; t < FRAMES; t++) {
+        g_autofree char *path = g_strdup_printf("%s/mask_%02d.png", aside, 10 + t);
+        g_assert_true(fl_png_write(path, mask, WIDTH, HEIGHT, 1, NULL));
+    }
+    return aside;
+}
+
 static void what_cannot_be_imported_is_told(void)
 {
     g_autofree char *folder = record(true), *out = g_build_filename(folder, "ink", NULL);
     g_autofree char *other = g_build_filename(folder, "other_01.png", NULL);
     g_autofree char *gap = g_build_filename(folder, "paint_12.png", NULL);
     FlStyleImport import = FL_STYLE_IMPORT_DEFAULTS;
+    g_autofree char *aside = mask_the_paper(folder);
     import.folder = out;
     import.source = "/nowhere/paint.mp4";
     assert_import_fails(&import, FL_ERROR_INPUT, "no such file or folder");
@@ -253,6 +283,9 @@ static void what_cannot_be_imported_is_told(void)
     import.last = 99;
     assert_import_fails(&import, FL_ERROR_INPUT, "paint_15.png is missing");
     import.last = 0;
+    import.masks = aside;
+    assert_import_fails(&import, FL_ERROR_STYLE, "there is no paint under the masks");
+    import.masks = NULL;
     import.paper = "beige";
     assert_import_fails(&import, FL_ERROR_USAGE, "a colour such as");
     import.paper = NULL;
@@ -276,6 +309,7 @@ int main(int argc, char **argv)
                     camera_shake_is_measured_to_a_tenth_of_a_pixel);
     g_test_add_func("/import/grain-that-does-not-move-is-no-shake",
                     grain_that_does_not_move_is_no_shake);
+    g_test_add_func("/import/a-lamp-that-flickers-is-no-shake", a_lamp_that_flickers_is_no_shake);
     g_test_add_func("/import/an-imported-folder-is-a-style", an_imported_folder_is_a_style);
     g_test_add_func("/import/an-import-overwrites-only-when-told-to",
                     an_import_overwrites_only_when_told_to);

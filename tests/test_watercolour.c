@@ -347,7 +347,8 @@ static void a_recipe_error_names_file_and_line(void)
 static void a_missing_recipe_is_named(void)
 {
     g_autoptr(GError) error = NULL;
-    g_assert_false(fl_watercolour_simulate("/nowhere/at all.ini", folder, NULL, NULL, &error));
+    g_assert_false(
+        fl_watercolour_simulate("/nowhere/at all.ini", folder, false, NULL, NULL, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, "/nowhere/at all.ini"));
 }
@@ -375,7 +376,7 @@ static void simulate_small(const char *fixture, const char *output)
         g_build_filename(g_getenv("FLUIDY_FIXTURES"), fixture, "recipe.ini", NULL);
     g_autoptr(GError) error = NULL;
     int frames = 0;
-    fl_watercolour_simulate(recipe, output, count_frames, &frames, &error);
+    fl_watercolour_simulate(recipe, output, true, count_frames, &frames, &error);
     g_assert_no_error(error);
     g_assert_cmpint(frames, ==, 3);
 }

@@ -7,21 +7,21 @@
 
 G_BEGIN_DECLS
 
-/** Called after each frame is written, from the caller's thread; frame counts from 1. */
+/** Called after each frame is painted, from the caller's thread; frame counts from 1. */
 typedef void (*FlWatercolourProgress)(int frame, int n_frames, void *data);
 
 /**
  * Runs a recipe and writes what it paints as a style: style.ini, frames/0001.png …, masks/0001.png
  * ….
  *
- * The folder and its subfolders are made when they do not exist; files of the same names are
- * replaced, others are left alone. The same recipe gives the same bytes on any thread count.
- * progress may be NULL.
+ * The folder is made when it does not exist; what else it holds stays. All is written when the last
+ * frame is painted, or nothing. The same recipe gives the same bytes on any thread count. progress
+ * may be NULL.
  *
- * Returns: false with FL_ERROR_INPUT (the recipe; its file and line are named), FL_ERROR_LIMIT,
- * FL_ERROR_NO_MEMORY or FL_ERROR_OUTPUT; frames written before the failure stay.
+ * Returns: false with FL_ERROR_INPUT (the recipe; its file and line are named), FL_ERROR_EXISTS if
+ * there is a style in the folder and `overwrite` is false, FL_ERROR_NO_MEMORY or FL_ERROR_OUTPUT.
  */
-FL_API bool fl_watercolour_simulate(const char *recipe_path, const char *output_folder,
+FL_API bool fl_watercolour_simulate(const char *recipe_path, const char *folder, bool overwrite,
                                     FlWatercolourProgress progress, void *data, GError **error);
 
 G_END_DECLS

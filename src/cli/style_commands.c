@@ -180,12 +180,8 @@ static bool run_simulate(char **words, GError **error)
         return usage(error, "simulate takes one %s", "recipe");
     if (!options.output)
         return usage(error, "simulate needs -o %s, the style to make", "DIR");
-    g_autofree char *frames = g_build_filename(options.output, "frames", NULL);
-    if (!options.overwrite && g_file_test(frames, G_FILE_TEST_EXISTS)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s exists: -y overwrites it", frames);
-        return false;
-    }
-    return fl_watercolour_simulate(words[0], options.output, show_progress, NULL, error);
+    return fl_watercolour_simulate(words[0], options.output, options.overwrite, show_progress, NULL,
+                                   error);
 }
 
 static const GOptionEntry list_entries[] = {

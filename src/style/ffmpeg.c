@@ -83,6 +83,11 @@ static void set_complaint(const FlFfmpeg *ffmpeg, GError **error)
     text[MAX(n, 0)] = '\0';
     g_autofree char *said = g_utf8_make_valid(g_strchomp(text), -1);
     const char *line = strrchr(said, '\n');
+    if (strstr(said, "matches no streams")) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: has no pictures, only other streams",
+                    ffmpeg->path);
+        return;
+    }
     g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as pictures: %s", ffmpeg->path,
                 said[0] ? (line ? line + 1 : said) : "ffmpeg gave no reason");
 }

@@ -236,6 +236,8 @@ static bool improve(Import *import, GError **error)
     const FlStyleImport *how = import->how;
     if (!find_paint(import, error))
         return false;
+    if (import->masks_given && !fl_style_check_paint(import->style, error))
+        return false; // before bare paper under the masks is taken for paint in a shadow
     if (how->whole || (!how->paper && !is_like_paper(import->style->paper)))
         return true; // nothing to go by
     if (how->stabilise && import->style->n_frames > 1 &&

@@ -272,7 +272,7 @@ static double write_wrapped(cairo_t *cr, double x, double y, double width, const
         cairo_text_extents_t extents;
         g_string_append_printf(line, "%s%s", i ? " " : "", words[i]);
         cairo_text_extents(cr, line->str, &extents);
-        if (extents.width <= width || before == 0)
+        if (extents.x_advance <= width || before == 0)
             continue;
         g_string_truncate(line, before);
         write_line(cr, x, y, rgb, line->str);

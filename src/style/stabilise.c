@@ -18,13 +18,38 @@ static const double LEAST_TEXTURE = 0.25;
 /* So far may the shifts of two halves of the paper differ, px: else it is no camera that moves. */
 static const float AGREE_PX = 0.35f;
 
-static bool read_luma(const FlClip *clip, int frame, float *luma, GError **error)
+/* Detail is lightness as a share of its mean over LIGHT_PX of bare paper, times USUAL_LEVELS: a
+ * lamp that lights the sheet unevenly, or flickers, makes no detail that a shift could follow. */
+static const float LIGHT_PX = 8, USUAL_LEVELS = 200;
+
+/* The planes of a clip that a frame's detail is found with, a value per pixel. */
+typedef struct Light {
+    float *near; // how much of the neighbourhood is bare in every frame, 0..1
+    float *mean; // of the lightness of that, of the frame at hand
+} Light;
+
+static bool mean_over_paper(const FlClip *clip, float *plane, const uint8_t *painted,
+                            GError **error)
+{
+    for (size_t i = 0; i < (size_t)clip->width * clip->height; i++)
+        plane[i] = painted[i] ? 0 : plane[i];
+    return fl_blur_plane(plane, clip->width, clip->height, LIGHT_PX, error);
+}
+
+static bool read_detail(const FlClip *clip, int frame, const uint8_t *painted, const Light *light,
+                        float *detail, GError **error)
 {
     const size_t pixels = (size_t)clip->width * clip->height;
     const uint8_t *rgb = clip->rgb + frame * pixels * 3;
     for (size_t i = 0; i < pixels; i++, rgb += 3)
-        luma[i] = 0.25f * rgb[0] + 0.5f * rgb[1] + 0.25f * rgb[2];
-    return fl_blur_plane(luma, clip->width, clip->height, 1, error);
+        detail[i] = 0.25f * rgb[0] + 0.5f * rgb[1] + 0.25f * rgb[2];
+    memcpy(light->mean, detail, pixels * sizeof *detail);
+    if (!fl_blur_plane(detail, clip->width, clip->height, 1, error) ||
+        !mean_over_paper(clip, light->mean, painted, error))
+        return false;
+    for (size_t i = 0; i < pixels; i++)
+        detail[i] *= USUAL_LEVELS * light->near[i] / MAX(1, light->mean[i]);
+    return true;
 }
 
 /* Collects the places that are bare in every frame, 4 px away from paint and MARGIN from the rim.
@@ -165,19 +190,25 @@ static FlShift find_shift(const Pair *pair, size_t n_white, FlShift before)
 bool fl_shake_estimate(const FlClip *clip, const uint8_t *mask, FlShift *shift, GError **error)
 {
     const size_t pixels = (size_t)clip->width * clip->height;
-    g_autofree float *first = fl_alloc(pixels, sizeof(float), "a frame", error);
-    g_autofree float *current = fl_alloc(pixels, sizeof(float), "a frame", error);
+    g_autofree float *planes = fl_alloc(4 * pixels, sizeof(float), "a frame", error);
     g_autofree uint32_t *place = fl_alloc(pixels, sizeof(uint32_t), "a frame", error);
     g_autofree uint8_t *painted = fl_alloc(pixels, 1, "a frame", error);
-    if (!first || !current || !place || !painted || !read_luma(clip, 0, first, error))
+    if (!planes || !place || !painted)
         return false;
     const size_t n = find_bare(clip, mask, painted, place);
+    float *first = planes, *current = planes + pixels;
+    const Light light = {.near = planes + 2 * pixels, .mean = planes + 3 * pixels};
+    for (size_t i = 0; i < pixels; i++)
+        light.near[i] = 1;
+    if (!mean_over_paper(clip, light.near, painted, error) ||
+        !read_detail(clip, 0, painted, &light, first, error))
+        return false;
     const size_t n_white = sort_by_square(place, n, clip->width);
     const Pair pair = {first, current, clip->width, place, n};
     memset(shift, 0, clip->n_frames * sizeof *shift);
     const bool possible = has_texture(&pair);
     for (int frame = 1; frame < clip->n_frames && possible; frame++) {
-        if (!read_luma(clip, frame, current, error))
+        if (!read_detail(clip, frame, painted, &light, current, error))
             return false;
         shift[frame] = find_shift(&pair, n_white, shift[frame - 1]);
     }

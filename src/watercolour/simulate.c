@@ -1,14 +1,14 @@
 /* A recipe from beginning to end: the stages of a step, the steps of a frame, the frames. */
 #include <fluidy/watercolour.h>
 
-#include "style/picture.h"
+#include "base/alloc.h"
+#include "style/write.h"
 #include "watercolour/brush.h"
 #include "watercolour/dust.h"
 #include "watercolour/scan.h"
 #include "watercolour/stages.h"
 
-#include <errno.h>
-#include <glib/gstdio.h>
+#include <string.h>
 
 /* One step [C97 §4.2]. */
 static void step(FlSheet *sheet, const FlRecipe *recipe)
@@ -52,69 +52,50 @@ static void crumble(FlSheet *sheet, FlDustCloud *dust, int frame)
     fl_dust_lay(dust, sheet);
 }
 
-static bool make_folder(const char *path, GError **error)
+/* What the recipe says of the style, with room for its frames. */
+static FlStyle *new_style(const FlRecipe *recipe, const char *recipe_path, GError **error)
 {
-    if (g_mkdir_with_parents(path, 0777) == 0)
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot make the folder: %s", path,
-                g_strerror(errno));
-    return false;
+    const size_t pixels = (size_t)recipe->width * recipe->height * recipe->frames;
+    g_autoptr(FlStyle) style = g_new(FlStyle, 1);
+    *style = (FlStyle){
+        .name = g_strdup(recipe->name),
+        .path = g_strdup(recipe_path),
+        .author = g_strdup(recipe->author),
+        .licence = g_strdup(recipe->licence),
+        .made_by = g_path_get_basename(recipe_path),
+        .missing_orientations = g_strdup(recipe->missing),
+        .width = recipe->width,
+        .height = recipe->height,
+        .n_frames = recipe->frames,
+        .fps = recipe->fps,
+        .border_px = recipe->border,
+        .scale = recipe->scale,
+        .medium = strcmp(recipe->medium, "opaque") == 0 ? FL_MEDIUM_OPAQUE : FL_MEDIUM_TRANSPARENT,
+    };
+    memcpy(style->paper, recipe->paper.colour, sizeof style->paper);
+    if (!(style->rgb = fl_alloc(pixels, 3, "the frames of a style", error)) ||
+        !(style->mask = fl_alloc(pixels, 1, "the masks of a style", error)))
+        return NULL;
+    return g_steal_pointer(&style);
 }
 
-static bool write_manifest(const FlRecipe *recipe, const char *recipe_path, const char *folder,
-                           GError **error)
+static void keep(FlStyle *style, int frame, const FlScan *scan)
 {
-    g_autofree char *path = g_build_filename(folder, "style.ini", NULL);
-    g_autofree char *made_by = g_path_get_basename(recipe_path);
-    g_autoptr(GKeyFile) keys = g_key_file_new();
-    const uint8_t *paper = recipe->paper.colour;
-    g_autofree char *colour = g_strdup_printf("#%02x%02x%02x", paper[0], paper[1], paper[2]);
-    g_key_file_set_string(keys, "style", "name", recipe->name);
-    g_key_file_set_string(keys, "style", "author", recipe->author);
-    g_key_file_set_string(keys, "style", "licence", recipe->licence);
-    g_key_file_set_double(keys, "style", "fps", (double)recipe->fps);
-    g_key_file_set_double(keys, "style", "border", (double)recipe->border);
-    g_key_file_set_double(keys, "style", "scale", (double)recipe->scale);
-    g_key_file_set_string(keys, "style", "medium", recipe->medium);
-    g_key_file_set_string(keys, "style", "paper", colour);
-    g_key_file_set_string(keys, "style", "made-by", made_by);
-    g_key_file_set_string(keys, "style", "missing-orientations", recipe->missing);
-    g_autoptr(GError) below = NULL;
-    if (g_key_file_save_to_file(keys, path, &below))
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                below->message);
-    return false;
+    const size_t pixels = (size_t)scan->width * scan->height;
+    memcpy(style->rgb + frame * pixels * 3, scan->rgb, pixels * 3);
+    memcpy(style->mask + frame * pixels, scan->mask, pixels);
 }
 
-static bool write_frame(const FlScan *scan, const char *folder, int number, GError **error)
+/* All frames, one after the other. */
+static bool paint(FlStyle *style, const FlRecipe *recipe, FlWatercolourProgress progress,
+                  void *data, GError **error)
 {
-    g_autofree char *name = g_strdup_printf("%04d.png", number);
-    g_autofree char *frame = g_build_filename(folder, "frames", name, NULL);
-    g_autofree char *mask = g_build_filename(folder, "masks", name, NULL);
-    return fl_png_write(frame, scan->rgb, scan->width, scan->height, 3, error) &&
-           fl_png_write(mask, scan->mask, scan->width, scan->height, 1, error);
-}
-
-static bool make_folders(const char *folder, GError **error)
-{
-    g_autofree char *frames = g_build_filename(folder, "frames", NULL);
-    g_autofree char *masks = g_build_filename(folder, "masks", NULL);
-    return make_folder(frames, error) && make_folder(masks, error);
-}
-
-bool fl_watercolour_simulate(const char *recipe_path, const char *output_folder,
-                             FlWatercolourProgress progress, void *data, GError **error)
-{
-    g_autoptr(FlRecipe) recipe = fl_recipe_load(recipe_path, error);
-    if (!recipe)
-        return false;
     const int scale = recipe->oversample;
     g_autoptr(FlSheet) sheet =
         fl_sheet_new(recipe->width * scale, recipe->height * scale, recipe->n_pigments, error);
     g_autoptr(FlBrush) brush = sheet ? fl_brush_new(recipe, error) : NULL;
     g_autoptr(FlScan) scan = brush ? fl_scan_new(recipe->width, recipe->height, error) : NULL;
-    if (!scan || !make_folders(output_folder, error))
+    if (!scan)
         return false;
     fl_sheet_make_paper(sheet, recipe);
     g_autoptr(FlDustCloud) dust = NULL;
@@ -125,11 +106,22 @@ bool fl_watercolour_simulate(const char *recipe_path, const char *output_folder,
             crumble(sheet, dust, frame);
         else
             run_to(sheet, brush, recipe, frame);
-        if (!fl_scan_draw(scan, sheet, recipe, error) ||
-            !write_frame(scan, output_folder, frame + 1, error))
+        if (!fl_scan_draw(scan, sheet, recipe, error))
             return false;
+        keep(style, frame, scan);
         if (progress)
             progress(frame + 1, recipe->frames, data);
     }
-    return write_manifest(recipe, recipe_path, output_folder, error);
+    return true;
+}
+
+bool fl_watercolour_simulate(const char *recipe_path, const char *folder, bool overwrite,
+                             FlWatercolourProgress progress, void *data, GError **error)
+{
+    g_autoptr(FlRecipe) recipe = fl_recipe_load(recipe_path, error);
+    if (!recipe || !fl_style_may_write(folder, overwrite, error))
+        return false;
+    g_autoptr(FlStyle) style = new_style(recipe, recipe_path, error);
+    return style && paint(style, recipe, progress, data, error) &&
+           fl_style_write(style, folder, overwrite, error);
 }
