@@ -9,8 +9,9 @@
 
 typedef struct Case {
     FlTexel source[FIELD * FIELD];
-    _Alignas(64) FlPacked target[FL_PATCH_PIXELS + 3], weight[FL_PATCH_PIXELS + 3];
-    int32_t offsets[FL_PATCH_PIXELS];
+    _Alignas(64) FlPacked target[FL_PATCH_PIXELS + 3];
+    FlPacked rest;
+    int16_t offsets[FL_PATCH_PIXELS];
 } Case;
 
 static void fill(FlPacked *pixels, int n, FlRng *rng, int limit)
@@ -27,14 +28,32 @@ static void fill_texels(FlTexel *texels, int n, FlRng *rng)
             texels[p].c[c] = (uint8_t)fl_rng_u32(rng);
 }
 
+/* Offsets as of a rotated patch: opposite ones in pairs, the centre last. */
+static void make_offsets(int16_t *offsets, FlRng *rng)
+{
+    for (int p = 0; p < FL_PATCH_PIXELS - 1; p += 2) {
+        const int dx = (int)fl_rng_below(rng, 7) - 3, dy = (int)fl_rng_below(rng, 7) - 3;
+        offsets[p] = (int16_t)(dy * FIELD + dx);
+        offsets[p + 1] = (int16_t)-offsets[p];
+    }
+    offsets[FL_PATCH_PIXELS - 1] = 0;
+}
+
 static void make_case(Case *c, uint64_t seed)
 {
     FlRng rng = {seed};
     fill_texels(c->source, FIELD * FIELD, &rng);
     fill(c->target, FL_PATCH_PIXELS, &rng, FL_ONE);
-    fill(c->weight, FL_PATCH_PIXELS, &rng, 32767);
     for (int p = 0; p < FL_PATCH_PIXELS; p++)
-        c->offsets[p] = (int32_t)fl_rng_below(&rng, 7) * FIELD + (int32_t)fl_rng_below(&rng, 7);
+        c->target[p].c[FL_CH_COLOUR_WEIGHT] = (int16_t)fl_rng_below(&rng, 32768);
+    fill(&c->rest, 1, &rng, 32767);
+    make_offsets(c->offsets, &rng);
+}
+
+/* Any pixel that its patch does not leave the field from. */
+static const FlTexel *centre_of(const Case *c, uint64_t seed)
+{
+    return c->source + 4 * FIELD + seed % (FIELD * (FIELD - 8));
 }
 
 static const unsigned levels[] = {0, FL_CPU_AVX2, FL_CPU_AVX2 | FL_CPU_AVX512, FL_CPU_NEON};
@@ -43,6 +62,11 @@ static const unsigned levels[] = {0, FL_CPU_AVX2, FL_CPU_AVX2 | FL_CPU_AVX512, F
 static bool available(unsigned flags)
 {
     return (fl_cpu_flags() & flags) == flags;
+}
+
+static uint32_t distance_c(const Case *c, const FlTexel *centre, bool opposed, uint32_t limit)
+{
+    return fl_patch_distance_c(centre, c->offsets, opposed, c->target, &c->rest, limit);
 }
 
 static void every_version_equals_c_on_noise(void)
@@ -55,18 +79,18 @@ static void every_version_equals_c_on_noise(void)
         for (uint64_t seed = 1; seed <= 2000; seed++) {
             Case c;
             make_case(&c, seed);
-            const FlTexel *centre = c.source + seed % 3000;
-            const uint32_t want =
-                fl_patch_distance_c(centre, c.offsets, c.target, c.weight, UINT32_MAX);
+            const FlTexel *centre = centre_of(&c, seed);
+            const uint32_t want = distance_c(&c, centre, seed % 2, UINT32_MAX);
             const uint32_t got =
-                kernels.patch_distance(centre, c.offsets, c.target, c.weight, UINT32_MAX);
+                kernels.patch_distance(centre, c.offsets, seed % 2, c.target, &c.rest, UINT32_MAX);
             if (got != want)
-                g_error("%s, seed %" G_GUINT64_FORMAT ": %u, want %u", kernels.name, seed, got,
-                        want);
+                g_test_message("%s, seed %" G_GUINT64_FORMAT, kernels.name, seed);
+            g_assert_cmpuint(got, ==, want);
         }
     }
 }
 
+/* The exemplar all 0, the target all 1, every weight 1. */
 static void no_version_overflows_on_extremes(void)
 {
     for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
@@ -74,13 +98,25 @@ static void no_version_overflows_on_extremes(void)
         if (!available(levels[v]))
             continue;
         fl_kernels_init(&kernels, levels[v]);
-        Case c = {0};
-        for (int p = 0; p < FL_PATCH_PIXELS; p++)
-            for (int k = 0; k < FL_CHANNELS; k++)
-                c.target[p].c[k] = FL_ONE, c.weight[p].c[k] = 32767;
-        const uint32_t got =
-            kernels.patch_distance(c.source, c.offsets, c.target, c.weight, UINT32_MAX);
-        g_assert_cmpuint(got, ==, 25u * 8 * FL_ONE * FL_ONE);
+        Case c;
+        make_case(&c, 1);
+        memset(c.source, 0, sizeof c.source);
+        for (int k = 0; k < FL_WEIGHED_CHANNELS; k++)
+            c.rest.c[k] = 32767;
+        for (int p = 0; p < FL_PATCH_PIXELS; p++) {
+            for (int k = 0; k < FL_WEIGHED_CHANNELS; k++)
+                c.target[p].c[k] = FL_ONE;
+            c.target[p].c[FL_CH_COLOUR_WEIGHT] = 32767;
+        }
+        const FlTexel *centre = centre_of(&c, 0);
+        const uint32_t whole = 25u * 6 * FL_ONE * FL_ONE;
+        uint32_t pair[2];
+        g_assert_cmpuint(
+            kernels.patch_distance(centre, c.offsets, false, c.target, &c.rest, UINT32_MAX), ==,
+            whole);
+        kernels.patch_pair(centre, c.offsets, c.target, &c.rest, UINT32_MAX, pair);
+        g_assert_cmpuint(pair[0], ==, whole);
+        g_assert_cmpuint(pair[1], ==, whole);
     }
 }
 
@@ -94,14 +130,142 @@ static void a_limit_never_changes_which_side_of_it_a_distance_is_on(void)
         for (uint64_t seed = 1; seed <= 500; seed++) {
             Case c;
             make_case(&c, seed);
-            const uint32_t whole =
-                fl_patch_distance_c(c.source, c.offsets, c.target, c.weight, UINT32_MAX);
+            const FlTexel *centre = centre_of(&c, seed);
+            const uint32_t whole = distance_c(&c, centre, false, UINT32_MAX);
             const uint32_t at =
-                kernels.patch_distance(c.source, c.offsets, c.target, c.weight, whole);
+                kernels.patch_distance(centre, c.offsets, false, c.target, &c.rest, whole);
             const uint32_t below =
-                kernels.patch_distance(c.source, c.offsets, c.target, c.weight, whole - 1);
+                kernels.patch_distance(centre, c.offsets, false, c.target, &c.rest, whole - 1);
             g_assert_cmpuint(at, ==, whole);
             g_assert_cmpuint(below, >, whole - 1);
+        }
+    }
+}
+
+/* Offsets of the patch turned by half a turn. */
+static void turn(const int16_t *offsets, int16_t *turned)
+{
+    for (int p = 0; p < FL_PATCH_PIXELS; p++)
+        turned[p] = (int16_t)-offsets[p];
+}
+
+static void a_pair_is_the_distances_of_both_half_turns(void)
+{
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        FlKernels kernels;
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&kernels, levels[v]);
+        for (uint64_t seed = 1; seed <= 1000; seed++) {
+            Case c;
+            int16_t turned[FL_PATCH_PIXELS];
+            uint32_t got[2];
+            make_case(&c, seed);
+            turn(c.offsets, turned);
+            const FlTexel *centre = centre_of(&c, seed);
+            const uint32_t want[2] = {
+                distance_c(&c, centre, false, UINT32_MAX),
+                fl_patch_distance_c(centre, turned, true, c.target, &c.rest, UINT32_MAX)};
+            kernels.patch_pair(centre, c.offsets, c.target, &c.rest, MAX(want[0], want[1]), got);
+            g_assert_cmpuint(got[0], ==, want[0]);
+            g_assert_cmpuint(got[1], ==, want[1]);
+            const uint32_t limit = MIN(want[0], want[1]);
+            kernels.patch_pair(centre, c.offsets, c.target, &c.rest, limit, got);
+            g_assert_cmpuint(MIN(got[0], got[1]), ==, limit);
+            kernels.patch_pair(centre, c.offsets, c.target, &c.rest, limit - 1, got);
+            g_assert_cmpuint(MIN(got[0], got[1]), >, limit - 1);
+        }
+    }
+}
+
+/* Windows of an exemplar of up to `most` pixels and frames a side. */
+static void make_windows(FlWindows *windows, uint32_t most, FlRng *rng)
+{
+    *windows = (FlWindows){.n = 1 + (int)fl_rng_below(rng, FL_MAX_TRIES)};
+    windows->step[0] = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        windows->size[axis] = (uint16_t)(1 + fl_rng_below(rng, most));
+        for (int k = 0; k < windows->n; k++)
+            windows->reach[axis][k] = (uint16_t)fl_rng_below(rng, most);
+    }
+    windows->step[1] = windows->size[0];
+    windows->step[2] = (uint32_t)windows->size[0] * windows->size[1];
+}
+
+static void every_version_draws_the_same_tries_inside_the_windows(void)
+{
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        FlKernels kernels;
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&kernels, levels[v]);
+        for (uint64_t seed = 1; seed <= 2000; seed++) {
+            FlRng rng = {seed};
+            FlWindows w;
+            FlTries want, got;
+            make_windows(&w, seed % 2 ? 30 : 32767, &rng);
+            uint16_t centre[3];
+            for (int axis = 0; axis < 3; axis++)
+                centre[axis] = (uint16_t)fl_rng_below(&rng, w.size[axis]);
+            const uint32_t key = fl_rng_u32(&rng);
+            fl_draw_tries_c(&w, centre, key, &want);
+            kernels.draw_tries(&w, centre, key, &got);
+            g_assert_cmpmem(got.pixel, w.n * sizeof *got.pixel, want.pixel,
+                            w.n * sizeof *want.pixel);
+            for (int axis = 0; axis < 3; axis++)
+                for (int k = 0; k < w.n; k++) {
+                    g_assert_cmpint(got.at[axis][k], ==, want.at[axis][k]);
+                    g_assert_cmpint(got.at[axis][k], <, w.size[axis]);
+                    g_assert_cmpint(abs(got.at[axis][k] - centre[axis]), <=, w.reach[axis][k]);
+                }
+        }
+    }
+}
+
+enum { CELLS = 8 }; // side of the occurrence map, in time too
+
+static void make_sieve(FlSieve *sieve, const FlTexel *first, const int32_t *use, FlRng *rng)
+{
+    *sieve = (FlSieve){.first = first,
+                       .segment = (uint8_t)fl_rng_below(rng, 3),
+                       .use = use,
+                       .step = {1, CELLS, CELLS * CELLS},
+                       .factor = {10923, 10923, 8192},
+                       .price = (float)fl_rng_below(rng, 5000) / 7,
+                       .most = 536870912.0f,
+                       .limit = fl_rng_below(rng, 1u << 20),
+                       .frames = {-1, -1, (int16_t)fl_rng_below(rng, 16), -1}};
+    for (int axis = 0; axis < 3; axis++)
+        sieve->own[axis] = (uint16_t)fl_rng_below(rng, CELLS);
+}
+
+static void every_version_sifts_like_c(void)
+{
+    g_autofree FlTexel *texels = g_new(FlTexel, 24 * 24 * 16);
+    int32_t use[CELLS * CELLS * CELLS];
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        FlKernels kernels;
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&kernels, levels[v]);
+        for (uint64_t seed = 1; seed <= 1000; seed++) {
+            FlRng rng = {seed};
+            FlWindows w;
+            FlTries tries;
+            FlSieve sieve;
+            uint32_t want[FL_MAX_TRIES], got[FL_MAX_TRIES];
+            make_windows(&w, 16, &rng);
+            for (int k = 0; k < 16 * 16 * 16; k++)
+                texels[k].c[FL_CH_SEGMENT] = (uint8_t)fl_rng_below(&rng, 3);
+            for (int k = 0; k < CELLS * CELLS * CELLS; k++)
+                use[k] = (int32_t)fl_rng_below(&rng, seed % 5 ? 3000 : INT32_MAX);
+            kernels.draw_tries(&w, (uint16_t[3]){0, 0, 0}, fl_rng_u32(&rng), &tries);
+            make_sieve(&sieve, texels, use, &rng);
+            const uint64_t passed = fl_sift_c(&tries, w.n, &sieve, want);
+            g_assert_cmpuint(kernels.sift(&tries, w.n, &sieve, got), ==, passed);
+            for (int k = 0; k < w.n; k++)
+                if (passed >> k & 1)
+                    g_assert_cmpuint(got[k], ==, want[k]);
         }
     }
 }
@@ -168,6 +332,11 @@ int main(int argc, char **argv)
     g_test_add_func("/kernels/no-version-overflows-on-extremes", no_version_overflows_on_extremes);
     g_test_add_func("/kernels/a-limit-never-changes-which-side-of-it-a-distance-is-on",
                     a_limit_never_changes_which_side_of_it_a_distance_is_on);
+    g_test_add_func("/kernels/a-pair-is-the-distances-of-both-half-turns",
+                    a_pair_is_the_distances_of_both_half_turns);
+    g_test_add_func("/kernels/every-version-draws-the-same-tries-inside-the-windows",
+                    every_version_draws_the_same_tries_inside_the_windows);
+    g_test_add_func("/kernels/every-version-sifts-like-c", every_version_sifts_like_c);
     g_test_add_func("/kernels/every-version-sorts-votes-like-c", every_version_sorts_votes_like_c);
     g_test_add_func("/kernels/every-version-samples-splines-like-c",
                     every_version_samples_splines_like_c);

@@ -13,6 +13,16 @@ static inline uint64_t fl_hash64(uint64_t x)
     return x ^ (x >> 31);
 }
 
+/** A mixed 32-bit hash for kernels of many lanes (Wellons' lowbias32). */
+static inline uint32_t fl_hash32(uint32_t x)
+{
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+#define FL_HASH32_STEP 0x9e3779b9u // from one lane's argument to the next
+
 /** A key for a nested place, such as (seed, frame), then level, then pass. */
 static inline uint64_t fl_key(uint64_t key, uint64_t place)
 {

@@ -126,6 +126,19 @@ static void pack_colour(FlExemplarLevel *level, const FlStack *stack, int t, flo
                         (int)level->pitch);
 }
 
+/* Rotated offsets to the nearest pixel; half a turn negates them. */
+static void rotate_offsets(FlExemplarLevel *level)
+{
+    for (int a = 0; a < FL_ANGLES / 2; a++)
+        for (int p = 0; p < FL_PATCH_PIXELS; p += 2) {
+            int x, y;
+            fl_unrotate((uint8_t)a, fl_patch_offsets[p][0], fl_patch_offsets[p][1], &x, &y);
+            const int offset = ((y + 8) >> 4) * (int)level->pitch + ((x + 8) >> 4);
+            level->offsets[a][p] = level->offsets[a + FL_ANGLES / 2][p + 1] = (int16_t)offset;
+            level->offsets[a][p + 1] = level->offsets[a + FL_ANGLES / 2][p] = (int16_t)-offset;
+        }
+}
+
 static bool level_init(FlExemplarLevel *level, int width, int height, int n_frames, GError **error)
 {
     level->width = width, level->height = height, level->n_frames = n_frames;
@@ -140,13 +153,7 @@ static bool level_init(FlExemplarLevel *level, int width, int height, int n_fram
         level->colour ? fl_alloc(FL_ANGLES, sizeof *level->offsets, "an exemplar", error) : NULL;
     if (!level->offsets)
         return false;
-    for (int a = 0; a < FL_ANGLES; a++)
-        for (int p = 0; p < FL_PATCH_PIXELS; p++) {
-            int x, y;
-            fl_unrotate((uint8_t)a, fl_patch_offsets[p][0], fl_patch_offsets[p][1], &x, &y);
-            level->offsets[a][p] =
-                (int32_t)(((y + 8) >> 4) * (ptrdiff_t)level->pitch + ((x + 8) >> 4));
-        }
+    rotate_offsets(level);
     return true;
 }
 

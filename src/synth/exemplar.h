@@ -26,7 +26,7 @@ typedef struct FlExemplarLevel {
     FlSplinePixel *colour;        // cubic spline coefficients, laid out like `pixels`
     uint32_t *valid[FL_SEGMENTS]; // (t * height + y) * width + x of every pixel of the segment
     size_t n_valid[FL_SEGMENTS];
-    int32_t (*offsets)[FL_PATCH_PIXELS]; // [FL_ANGLES]: rotated patch offsets in packed pixels
+    int16_t (*offsets)[32]; // [FL_ANGLES][FL_PATCH_PIXELS of 32]: rotated patches in packed pixels
 } FlExemplarLevel;
 
 typedef struct FlExemplar {

@@ -1,21 +1,95 @@
 #include "synth/kernels.h"
 
+#include "base/rng.h"
 #include "config.h"
-#include <stdbool.h>
+#include <glib.h>
 #include <stdlib.h>
 
-uint32_t fl_patch_distance_c(const FlTexel *centre, const int32_t *offsets, const FlPacked *target,
-                             const FlPacked *weight, uint32_t limit)
+/* One pixel's share of a distance. */
+static uint32_t term(const FlTexel *source, bool opposed, const FlPacked *target,
+                     const FlPacked *rest)
 {
+    FlTexel s = *source;
+    if (opposed) {
+        s.c[FL_CH_EXT_PLUS] = source->c[FL_CH_EXT_MINUS];
+        s.c[FL_CH_EXT_MINUS] = source->c[FL_CH_EXT_PLUS];
+    }
     uint32_t sum = 0;
-    for (int p = 0; p < FL_PATCH_PIXELS && sum <= limit; p++) {
-        const FlTexel *source = centre + offsets[p];
-        for (int c = 0; c < FL_CHANNELS; c++) {
-            const int d = FL_FINE * source->c[c] - target[p].c[c];
-            sum += (uint32_t)(d * ((d * weight[p].c[c] + (1 << 14)) >> 15));
-        }
+    for (int c = 0; c < FL_WEIGHED_CHANNELS; c++) {
+        const int d = FL_FINE * s.c[c] - target->c[c];
+        const int weight = c <= FL_CH_B ? target->c[FL_CH_COLOUR_WEIGHT] : rest->c[c];
+        sum += (uint32_t)(d * ((d * weight + (1 << 14)) >> 15));
     }
     return sum;
+}
+
+uint32_t fl_patch_distance_c(const FlTexel *centre, const int16_t *offsets, bool opposed,
+                             const FlPacked *target, const FlPacked *rest, uint32_t limit)
+{
+    uint32_t sum = 0;
+    for (int p = 0; p < FL_PATCH_PIXELS && sum <= limit; p++)
+        sum += term(centre + offsets[p], opposed, &target[p], rest);
+    return sum;
+}
+
+void fl_patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
+                     const FlPacked *rest, uint32_t limit, uint32_t distance[2])
+{
+    distance[0] = fl_patch_distance_c(centre, offsets, false, target, rest, limit);
+    distance[1] = 0;
+    for (int p = 0; p < FL_PATCH_PIXELS && distance[1] <= limit; p++)
+        distance[1] += term(centre - offsets[p], true, &target[p], rest);
+}
+
+void fl_draw_tries_c(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                     FlTries *tries)
+{
+    for (int k = 0; k < windows->n; k++) {
+        tries->pixel[k] = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            const int reach = windows->reach[axis][k], last = windows->size[axis] - 1;
+            const int low = MAX(centre[axis] - reach, 0), high = MIN(centre[axis] + reach, last);
+            const uint32_t place = (uint32_t)(axis * FL_MAX_TRIES + k) / 2; // 16 bits for each try
+            const uint32_t bits = fl_hash32(key + place * FL_HASH32_STEP) >> (k % 2 * 16) & 0xffff;
+            const uint32_t at = (uint32_t)low + (bits * (uint32_t)(high - low + 1) >> 16);
+            tries->at[axis][k] = (uint16_t)at;
+            tries->pixel[k] += at * windows->step[axis];
+        }
+    }
+}
+
+/* How much of a match's use a cell so many cells away gets. */
+static int share(int apart)
+{
+    return MAX(2 - abs(apart), 0);
+}
+
+static uint32_t uniformity_of(const FlTries *tries, int k, const FlSieve *sieve)
+{
+    uint32_t index = 0;
+    int own = 1;
+    for (int axis = 0; axis < 3; axis++) {
+        const uint32_t cell = (2u * tries->at[axis][k] + 1) * sieve->factor[axis] >> 16;
+        index += cell * sieve->step[axis];
+        own *= share((int)cell - sieve->own[axis]);
+    }
+    const int use = sieve->use[index] - own;
+    return (uint32_t)MIN((float)MAX(use, 0) * sieve->price, sieve->most);
+}
+
+uint64_t fl_sift_c(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity)
+{
+    uint64_t passed = 0;
+    for (int k = 0; k < n; k++) {
+        const int16_t frame = (int16_t)tries->at[2][k], *frames = sieve->frames;
+        if (sieve->first[tries->pixel[k]].c[FL_CH_SEGMENT] != sieve->segment)
+            continue;
+        uniformity[k] = uniformity_of(tries, k, sieve);
+        if (uniformity[k] < sieve->limit || frame == frames[0] || frame == frames[1] ||
+            frame == frames[2] || frame == frames[3])
+            passed |= 1ull << k;
+    }
+    return passed;
 }
 
 void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t *x, const float *y,
@@ -83,7 +157,13 @@ unsigned fl_cpu_flags(void)
 
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
-    *kernels = (FlKernels){fl_patch_distance_c, fl_spline_sample_c, fl_find_opinions_c, "c"};
+    *kernels = (FlKernels){fl_patch_distance_c,
+                           fl_patch_pair_c,
+                           fl_draw_tries_c,
+                           fl_sift_c,
+                           fl_spline_sample_c,
+                           fl_find_opinions_c,
+                           "c"};
 #if HAVE_NEON
     if (flags & FL_CPU_NEON) {
         kernels->patch_distance = fl_patch_distance_neon;
@@ -92,12 +172,20 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
 #endif
 #if HAVE_AVX2
     if (flags & FL_CPU_AVX2)
-        *kernels = (FlKernels){fl_patch_distance_avx2, fl_spline_sample_avx2, fl_find_opinions_avx2,
+        *kernels = (FlKernels){fl_patch_distance_avx2,
+                               fl_patch_pair_avx2,
+                               fl_draw_tries_avx2,
+                               fl_sift_avx2,
+                               fl_spline_sample_avx2,
+                               fl_find_opinions_avx2,
                                "avx2"};
 #endif
 #if HAVE_AVX512
     if (flags & FL_CPU_AVX512) {
         kernels->patch_distance = fl_patch_distance_avx512;
+        kernels->patch_pair = fl_patch_pair_avx512;
+        kernels->draw_tries = fl_draw_tries_avx512;
+        kernels->sift = fl_sift_avx512;
         kernels->opinions = fl_find_opinions_avx512;
         kernels->name = "avx512";
     }

@@ -1,9 +1,10 @@
-/* The inner loop of the search, once in C and once per instruction set. */
+/* The inner loops of search and vote, once in C and once per instruction set. */
 #ifndef FLUIDY_SYNTH_KERNELS_H
 #define FLUIDY_SYNTH_KERNELS_H
 
 #include "synth/rotation.h"
 #include "synth/spline.h"
+#include <stdbool.h>
 #include <stddef.h>
 
 /** Channels of a pixel, in the exemplar and in the target. */
@@ -14,9 +15,11 @@ enum {
     FL_CH_SHAPE,    // 0 … FL_ONE
     FL_CH_EXT_PLUS, // FL_ONE is twice the source's maximum
     FL_CH_EXT_MINUS,
-    FL_CH_ANGLE,   // direction of the flow, 256 steps; weight 0
-    FL_CH_SEGMENT, // FlSegment; weight 0
-    FL_CHANNELS
+    FL_WEIGHED_CHANNELS,
+    FL_CH_ANGLE = FL_WEIGHED_CHANNELS, // direction of the flow, 256 steps
+    FL_CH_SEGMENT,                     // FlSegment
+    FL_CHANNELS,
+    FL_CH_COLOUR_WEIGHT = FL_CH_ANGLE // of a target
 };
 
 #define FL_TEXEL_ONE 255                // 1.0 in the exemplar
@@ -37,14 +40,65 @@ typedef struct FlPacked {
  * Weighted squared distance of a rotated exemplar patch to a target patch.
  *
  * centre points at the exemplar pixel; offsets are the rotated patch's, in pixels, in the order of
- * fl_patch_offsets. target and weight hold FL_PATCH_PIXELS packed pixels in that order, 64-byte
- * aligned; channels are 0 … FL_ONE and weights 0 … 32767 for 0 … 1. A difference d is weighted as
- * d * round(d * w / 32768); 25 * 8 * FL_ONE^2 < 2^32, so the sum cannot overflow.
+ * fl_patch_offsets. Where the patch is `opposed`, its extents change places. target holds
+ * FL_PATCH_PIXELS pixels in that order, 64-byte aligned; channels are 0 … FL_ONE and weights
+ * 0 … 32767 for 0 … 1. The colours' weight is each pixel's own, the other channels' are in `rest`.
+ * A difference d is weighted as d * round(d * w / 32768); 25 * 6 * FL_ONE^2 < 2^32, so the sum
+ * cannot overflow.
  *
  * Returns: the distance; or, once it exceeds limit, any number above limit.
  */
-typedef uint32_t (*FlPatchDistance)(const FlTexel *centre, const int32_t *offsets,
-                                    const FlPacked *target, const FlPacked *weight, uint32_t limit);
+typedef uint32_t (*FlPatchDistance)(const FlTexel *centre, const int16_t *offsets, bool opposed,
+                                    const FlPacked *target, const FlPacked *rest, uint32_t limit);
+
+/**
+ * The distances of a patch, and of the patch turned by another half turn and opposed, which
+ * consists of the same texels: offsets[p ^ 1] is -offsets[p], the last is 0. A distance may be any
+ * number above limit where it exceeds limit.
+ */
+typedef void (*FlPatchPair)(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
+                            const FlPacked *rest, uint32_t limit, uint32_t distance[2]);
+
+#define FL_MAX_TRIES 64 // of the random search for one pixel
+
+/** The windows that random tries are drawn from. */
+typedef struct FlWindows {
+    _Alignas(64) uint16_t reach[3][FL_MAX_TRIES]; // from the centre, in x, y (pixels) and frames
+    uint16_t size[3];                             // of the exemplar: x, y, frames
+    uint32_t step[3]; // pixels from one column, row, frame to the next in memory
+    int n;            // windows
+} FlWindows;
+
+/** Random tries; only the first n of the windows count. */
+typedef struct FlTries {
+    _Alignas(64) uint16_t at[3][FL_MAX_TRIES]; // x, y, frame
+    uint32_t pixel[FL_MAX_TRIES];              // where in memory, from the exemplar's first pixel
+} FlTries;
+
+/** Draws a try from each window around a centre (x, y, frame); the key decides. */
+typedef void (*FlDrawTries)(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                            FlTries *tries);
+
+/** What a try must pass before its patch is looked at. */
+typedef struct FlSieve {
+    const FlTexel *first; // the exemplar's first pixel
+    uint8_t segment;      // a try's centre must be of it
+    const int32_t *use;   // the occurrence map of the segment
+    uint32_t step[3];     // of the map: cells from one column, row, slice to the next
+    uint16_t factor[3];   // a place p, in x, y and time, is in cell (2p + 1) * factor >> 16
+    uint16_t own[3];      // the cell whose use is the pixel's own
+    float price, most;    // of one use, and of all
+    uint32_t limit;       // a try must cost less,
+    int16_t frames[4];    // unless it is in one of these frames
+} FlSieve;
+
+/**
+ * The first n tries that pass, a bit for each, and the uniformity term of those: the use of their
+ * cell but for the pixel's own, which spreads over 27 cells as the tent does, times the price.
+ * Places are below 32768. The tries must come from the same version, which draws a few more than n;
+ * others of the FL_MAX_TRIES terms may be written.
+ */
+typedef uint64_t (*FlSift)(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity);
 
 /**
  * The value of a spline between 4x4 coefficients, the first of which is given, with rows of `pitch`
@@ -80,6 +134,9 @@ typedef int (*FlFindOpinions)(const FlVotes *votes, FlOpinion *opinions);
 /** One version of every kernel. */
 typedef struct FlKernels {
     FlPatchDistance patch_distance;
+    FlPatchPair patch_pair;
+    FlDrawTries draw_tries;
+    FlSift sift;
     FlSplineSample spline_sample;
     FlFindOpinions opinions;
     const char *name; // "c", "avx2", …
@@ -98,14 +155,32 @@ unsigned fl_cpu_flags(void);
 /** Chooses the fastest version that flags allow; a pure function of them. */
 void fl_kernels_init(FlKernels *kernels, unsigned flags);
 
-uint32_t fl_patch_distance_c(const FlTexel *centre, const int32_t *offsets, const FlPacked *target,
-                             const FlPacked *weight, uint32_t limit);
-uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int32_t *offsets,
-                                const FlPacked *target, const FlPacked *weight, uint32_t limit);
-uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int32_t *offsets,
-                                  const FlPacked *target, const FlPacked *weight, uint32_t limit);
-uint32_t fl_patch_distance_neon(const FlTexel *centre, const int32_t *offsets,
-                                const FlPacked *target, const FlPacked *weight, uint32_t limit);
+uint32_t fl_patch_distance_c(const FlTexel *centre, const int16_t *offsets, bool opposed,
+                             const FlPacked *target, const FlPacked *rest, uint32_t limit);
+uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, bool opposed,
+                                const FlPacked *target, const FlPacked *rest, uint32_t limit);
+uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets, bool opposed,
+                                  const FlPacked *target, const FlPacked *rest, uint32_t limit);
+uint32_t fl_patch_distance_neon(const FlTexel *centre, const int16_t *offsets, bool opposed,
+                                const FlPacked *target, const FlPacked *rest, uint32_t limit);
+
+void fl_patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
+                     const FlPacked *rest, uint32_t limit, uint32_t distance[2]);
+void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
+                        const FlPacked *rest, uint32_t limit, uint32_t distance[2]);
+void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
+                          const FlPacked *rest, uint32_t limit, uint32_t distance[2]);
+
+void fl_draw_tries_c(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                     FlTries *tries);
+void fl_draw_tries_avx2(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                        FlTries *tries);
+void fl_draw_tries_avx512(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                          FlTries *tries);
+
+uint64_t fl_sift_c(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity);
+uint64_t fl_sift_avx2(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity);
+uint64_t fl_sift_avx512(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity);
 
 void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t *x, const float *y,
                         float value[4]);

@@ -13,20 +13,17 @@ bool fl_occurrence_init(FlOccurrence *map, const FlExemplarLevel *level,
     *map = (FlOccurrence){0};
     map->columns = level->width / FL_CELL + 1;
     map->rows = level->height / FL_CELL + 1;
-    map->slices = (level->n_frames - 1) / frames_per_cell + 1;
+    map->slice_factor = (uint16_t)((32768 + frames_per_cell - 1) / frames_per_cell);
+    map->slices = fl_occurrence_slice(map, level->n_frames - 1) + 1;
     const size_t cells = (size_t)map->columns * map->rows * map->slices;
     const double cell_pixels = FL_CELL * FL_CELL * (double)MIN(frames_per_cell, level->n_frames);
-    if (!(map->slice_of = fl_alloc(level->n_frames, sizeof(uint16_t), "an occurrence map", error)))
-        return false;
-    for (int t = 0; t < level->n_frames; t++)
-        map->slice_of[t] = (uint16_t)(t / frames_per_cell);
     for (int s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++) {
         if (!(map->count[s] = fl_alloc(cells, sizeof(int32_t), "an occurrence map", error)) ||
             !(map->filtered[s] = fl_alloc(cells, sizeof(int32_t), "an occurrence map", error)))
             return false;
         const double even = TENT_SUM * cell_pixels * MAX(target->n_inside[s], 1) /
                             (double)MAX(level->n_valid[s], 1);
-        map->price[s] = (uint64_t)(params->w_uni * scale->unit / even * 65536);
+        map->price[s] = (float)(params->w_uni * scale->unit / even);
     }
     return true;
 }
@@ -37,7 +34,6 @@ void fl_occurrence_clear(FlOccurrence *map)
         free(map->count[s]);
         free(map->filtered[s]);
     }
-    free(map->slice_of);
     *map = (FlOccurrence){0};
 }
 

@@ -13,13 +13,16 @@
  * date sixteen times per sweep: it must be fresh, or whole areas flee the same patch together.
  */
 #define FL_CELL 3
+#define FL_CELL_FACTOR 10923 // pixel p is in cell (2p + 1) * FL_CELL_FACTOR >> 16
+
+#define FL_OCCURRENCE_MOST 536870912.0f // 2^29: what the term costs at most
 
 typedef struct FlOccurrence {
     int columns, rows, slices;
-    uint16_t *slice_of;             // of each frame of the exemplar
+    uint16_t slice_factor;          // frame t is in slice (2t + 1) * slice_factor >> 16
     int32_t *count[FL_SEGMENTS];    // matches per cell
     int32_t *filtered[FL_SEGMENTS]; // the same under the tent, brought up to date by _refresh
-    uint64_t price[FL_SEGMENTS];    // cost of one filtered unit, in 1/65536
+    float price[FL_SEGMENTS];       // cost of one filtered unit
 } FlOccurrence;
 
 /** An empty map for a level and a target; w_uni 0 makes every term 0. */
@@ -37,6 +40,11 @@ void fl_occurrence_move(FlOccurrence *map, FlSegment segment, FlMatch from, FlMa
 /** Filters the counts again. One thread. */
 void fl_occurrence_refresh(FlOccurrence *map);
 
+static inline uint16_t fl_occurrence_slice(const FlOccurrence *map, int frame)
+{
+    return (uint16_t)((uint32_t)(2 * frame + 1) * map->slice_factor >> 16);
+}
+
 /** A cell of the map. */
 typedef struct FlCell {
     int x, y, t;
@@ -44,7 +52,8 @@ typedef struct FlCell {
 
 static inline FlCell fl_occurrence_cell(const FlOccurrence *map, FlMatch m)
 {
-    return (FlCell){fl_match_x(m) / FL_CELL, fl_match_y(m) / FL_CELL, map->slice_of[m.frame]};
+    return (FlCell){fl_match_x(m) / FL_CELL, fl_match_y(m) / FL_CELL,
+                    fl_occurrence_slice(map, m.frame)};
 }
 
 static inline size_t fl_occurrence_index(const FlOccurrence *map, FlCell cell)
@@ -63,7 +72,7 @@ static inline uint32_t fl_occurrence_cost(const FlOccurrence *map, FlSegment seg
     const int dx = abs(cell.x - own.x), dy = abs(cell.y - own.y), dt = abs(cell.t - own.t);
     const int self = dx < 2 && dy < 2 && dt < 2 ? (2 - dx) * (2 - dy) * (2 - dt) : 0;
     const int use = map->filtered[segment][fl_occurrence_index(map, cell)] - self;
-    return use <= 0 ? 0 : (uint32_t)MIN((uint64_t)use * map->price[segment] >> 16, 1u << 29);
+    return (uint32_t)MIN((float)MAX(use, 0) * map->price[segment], FL_OCCURRENCE_MOST);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlOccurrence, fl_occurrence_clear)

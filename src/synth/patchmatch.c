@@ -24,10 +24,9 @@ uint32_t fl_patch_cost(const FlSearch *search, const FlTargetPatch *patch, uint8
     const uint32_t direction = search->params->rotate ? search->scale->direction[turn] : 0;
     if (direction > limit)
         return direction;
-    return direction +
-           search->kernels->patch_distance(centre, search->level->offsets[theta],
-                                           opposes(turn) ? patch->swapped : patch->guide,
-                                           patch->weight, limit - direction);
+    return direction + search->kernels->patch_distance(centre, search->level->offsets[theta],
+                                                       opposes(turn), patch->guide,
+                                                       &search->target->rest, limit - direction);
 }
 
 uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match)
@@ -51,22 +50,6 @@ void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost)
                           ? UINT32_MAX
                           : fl_match_cost(search, x, y, nnf->match[p]);
         }
-}
-
-/* Scans a tile forwards or backwards. */
-static void visit_tile(const FlVisitPlan *plan, uint32_t tile, bool backwards, uint64_t key,
-                       FlSearchCounts *counts)
-{
-    const FlTargetLevel *target = plan->search->target;
-    const int x0 = (int)(tile % target->tile_columns) * FL_TILE;
-    const int y0 = (int)(tile / target->tile_columns) * FL_TILE;
-    for (int k = 0; k < FL_TILE * FL_TILE; k++) {
-        const int at = backwards ? FL_TILE * FL_TILE - 1 - k : k;
-        const int x = x0 + at % FL_TILE, y = y0 + at / FL_TILE;
-        if (x < target->width && y < target->height &&
-            target->segment[(size_t)y * target->width + x] != FL_SEGMENT_OUTSIDE)
-            fl_visit_pixel(plan, x, y, key, counts);
-    }
 }
 
 /*
@@ -128,8 +111,11 @@ static void work(Crew *crew)
     for (int step = 0; step < crew->sweeps * FL_TILE_CLASSES; step++) {
         const uint64_t key = fl_key(search->key, (uint64_t)(step / FL_TILE_CLASSES));
         int k;
-        while ((k = __atomic_fetch_add(&crew->next_tile, 1, __ATOMIC_RELAXED)) < crew->end_tile)
-            visit_tile(crew->plan, search->target->tiles[k], is_backwards(step), key, &own);
+        while ((k = __atomic_fetch_add(&crew->next_tile, FL_TILES_AT_ONCE, __ATOMIC_RELAXED)) <
+               crew->end_tile)
+            fl_visit_tiles(crew->plan, search->target->tiles + k,
+                           MIN(FL_TILES_AT_ONCE, crew->end_tile - k), is_backwards(step), key,
+                           &own);
         finish_step(crew, step);
     }
     __atomic_fetch_add(&crew->counts.tried, own.tried, __ATOMIC_RELAXED);

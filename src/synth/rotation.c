@@ -3,11 +3,12 @@
 #include <glib.h>
 #include <math.h>
 
-/* Far pixels differ most between patches, so a bad candidate is given up early. */
+/* Far pixels differ most between patches, so a bad candidate is given up early; opposite ones
+ * follow each other, so that half a turn exchanges them. */
 const int8_t fl_patch_offsets[FL_PATCH_PIXELS][2] = {
-    {-2, -2}, {2, 2},  {2, -2}, {-2, 2}, {0, -2}, {0, 2},  {-2, 0}, {2, 0},   {0, 0},
-    {-1, -2}, {1, 2},  {2, -1}, {-2, 1}, {1, -2}, {-1, 2}, {2, 1},  {-2, -1}, {-1, -1},
-    {1, 1},   {1, -1}, {-1, 1}, {0, -1}, {0, 1},  {-1, 0}, {1, 0},
+    {-2, -2}, {2, 2},  {2, -2}, {-2, 2}, {0, -2}, {0, 2}, {-2, 0},  {2, 0},   {-1, -2},
+    {1, 2},   {2, -1}, {-2, 1}, {1, -2}, {-1, 2}, {2, 1}, {-2, -1}, {-1, -1}, {1, 1},
+    {1, -1},  {-1, 1}, {0, -1}, {0, 1},  {-1, 0}, {1, 0}, {0, 0},
 };
 
 static int16_t turns[FL_ANGLES][2];

@@ -27,12 +27,13 @@ static bool level_init(FlTargetLevel *level, int width, int height, GError **err
 {
     const size_t pixels = (size_t)width * height;
     *level = (FlTargetLevel){.width = width, .height = height};
+    for (int k = 0; k < FL_PATCH_PIXELS; k++)
+        level->around[k] = fl_patch_offsets[k][1] * width + fl_patch_offsets[k][0];
     level->tile_columns = (width + FL_TILE - 1) / FL_TILE;
     const size_t tiles = (size_t)level->tile_columns * ((height + FL_TILE - 1) / FL_TILE);
     return (level->segment = fl_alloc(pixels, 1, "a target", error)) &&
            (level->angle = fl_alloc(pixels, 1, "a target", error)) &&
            (level->guide = fl_alloc(pixels, sizeof(FlPacked), "a target", error)) &&
-           (level->weight = fl_alloc(pixels, sizeof(FlPacked), "a target", error)) &&
            (level->colour = fl_alloc(3 * pixels, sizeof(float), "a target", error)) &&
            (level->temporal = fl_alloc(3 * pixels, sizeof(float), "a target", error)) &&
            (level->temporal_weight = fl_alloc(pixels, sizeof(float), "a target", error)) &&
@@ -125,7 +126,6 @@ void fl_target_clear(FlTarget *target)
         free(level->segment);
         free(level->angle);
         free(level->guide);
-        free(level->weight);
         free(level->colour);
         free(level->temporal);
         free(level->temporal_weight);
@@ -173,48 +173,31 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
                      float w_texture)
 {
     const size_t pixels = (size_t)level->width * level->height;
-    const int16_t w_bound = quantise_weight(params->w_bound, scale);
     const int16_t w_ext = quantise_weight(params->w_ext / EXT_UNIT_SQUARED, scale);
+    level->rest.c[FL_CH_SHAPE] = quantise_weight(params->w_bound, scale);
+    level->rest.c[FL_CH_EXT_PLUS] = level->rest.c[FL_CH_EXT_MINUS] = w_ext;
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < pixels; p++) {
         const float w_temporal = params->w_temp * level->temporal_weight[p];
         const float w = w_texture + w_temporal;
-        FlPacked *guide = &level->guide[p], *weight = &level->weight[p];
+        FlPacked *guide = &level->guide[p];
         for (int c = 0; c < 3; c++) {
             const float mean = w > 0 ? (w_texture * level->colour[3 * p + c] +
                                         w_temporal * level->temporal[3 * p + c]) /
                                            w
                                      : 0;
             guide->c[FL_CH_R + c] = fl_pack_channel(mean);
-            weight->c[FL_CH_R + c] = quantise_weight(w, scale);
         }
-        weight->c[FL_CH_SHAPE] = w_bound;
-        weight->c[FL_CH_EXT_PLUS] = weight->c[FL_CH_EXT_MINUS] = w_ext;
+        guide->c[FL_CH_COLOUR_WEIGHT] = quantise_weight(w, scale);
     }
 }
 
-/* Copies one pixel to place k. */
-static inline void gather_pixel(const FlTargetLevel *level, size_t from, int k,
-                                FlTargetPatch *patch)
-{
-    const FlPacked guide = level->guide[from];
-    FlPacked swapped = guide;
-    swapped.c[FL_CH_EXT_PLUS] = guide.c[FL_CH_EXT_MINUS];
-    swapped.c[FL_CH_EXT_MINUS] = guide.c[FL_CH_EXT_PLUS];
-    patch->guide[k] = guide;
-    patch->swapped[k] = swapped;
-    patch->weight[k] = level->weight[from];
-}
-
-/* Pixels beyond the rectangle have no weight. */
 static void gather_at_border(const FlTargetLevel *level, int x, int y, FlTargetPatch *patch)
 {
     for (int k = 0; k < FL_PATCH_PIXELS; k++) {
-        const int px = x + fl_patch_offsets[k][0], py = y + fl_patch_offsets[k][1];
-        if (px >= 0 && py >= 0 && px < level->width && py < level->height)
-            gather_pixel(level, (size_t)py * level->width + px, k, patch);
-        else
-            patch->guide[k] = patch->swapped[k] = patch->weight[k] = (FlPacked){0};
+        const int px = CLAMP(x + fl_patch_offsets[k][0], 0, level->width - 1);
+        const int py = CLAMP(y + fl_patch_offsets[k][1], 0, level->height - 1);
+        patch->guide[k] = level->guide[(size_t)py * level->width + px];
     }
 }
 
@@ -225,10 +208,7 @@ void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *p
         gather_at_border(level, x, y, patch);
         return;
     }
-    const ptrdiff_t centre = (ptrdiff_t)y * level->width + x;
+    const FlPacked *centre = level->guide + (size_t)y * level->width + x;
     for (int k = 0; k < FL_PATCH_PIXELS; k++)
-        gather_pixel(level,
-                     (size_t)(centre + fl_patch_offsets[k][1] * (ptrdiff_t)level->width +
-                              fl_patch_offsets[k][0]),
-                     k, patch);
+        patch->guide[k] = centre[level->around[k]];
 }

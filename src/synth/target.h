@@ -11,14 +11,15 @@
  * One level. All planes are row-major, width * height.
  *
  * `guide` holds shape, extents and the colour that the search compares with: the mean of the
- * synthesised colour and the temporal guide, weighted as their terms. `weight` holds each
- * channel's weight, 32767 for FlCostScale.w_max.
+ * synthesised colour and the temporal guide, weighted as their terms. The channel that has no use
+ * in a target, FL_CH_COLOUR_WEIGHT, holds the colour's weight, 32767 for FlCostScale.w_max.
  */
 typedef struct FlTargetLevel {
     int width, height;
     uint8_t *segment; // FlSegment
     uint8_t *angle;   // direction of the flow, 256 steps
-    FlPacked *guide, *weight;
+    FlPacked *guide;
+    FlPacked rest;          // weights of the other channels, for every pixel
     float *colour;          // 3 per pixel, 0 … 1: the last vote
     float *temporal;        // 3 per pixel: T_temp
     float *temporal_weight; // m(q), 0 … 1; 0 where T_temp is undefined
@@ -27,6 +28,7 @@ typedef struct FlTargetLevel {
     uint32_t *tiles; // row * columns + column of the tiles with paint, by class
     int n_tiles[FL_TILE_CLASSES + 1];
     int tile_columns;
+    int32_t around[FL_PATCH_PIXELS]; // fl_patch_offsets in pixels of this level
 } FlTargetLevel;
 
 /** How terms become integer costs: a squared colour difference of 1 costs FL_ONE² / w_max. */
@@ -63,10 +65,9 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
 /** The target around a pixel in the order of fl_patch_offsets, as the kernels read it. */
 typedef struct FlTargetPatch {
     _Alignas(64) FlPacked guide[FL_PATCH_PIXELS + 3];
-    _Alignas(64) FlPacked swapped[FL_PATCH_PIXELS + 3]; // guide with its extents swapped
-    _Alignas(64) FlPacked weight[FL_PATCH_PIXELS + 3];
 } FlTargetPatch;
 
+/** Pixels beyond the rectangle are as the nearest one in it. */
 void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *patch);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlTarget, fl_target_clear)

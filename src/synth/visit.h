@@ -1,24 +1,25 @@
-/* One pixel of the search: propagation and random search. */
+/* The pixels of a tile: propagation and random search. */
 #ifndef FLUIDY_SYNTH_VISIT_H
 #define FLUIDY_SYNTH_VISIT_H
 
 #include "synth/patchmatch.h"
 
-#define FL_MAX_WINDOWS 64
-
 /** What all visits of a search have in common. */
 typedef struct FlVisitPlan {
     const FlSearch *search;
-    int n_windows;
-    struct {
-        uint16_t x, y, frame; // how far a try may be from the match, pixels and frames
-    } window[FL_MAX_WINDOWS];
+    FlWindows windows;
     uint32_t coherence[5][5]; // [neighbours][of which continue elsewhere]
 } FlVisitPlan;
 
 void fl_visit_plan_init(FlVisitPlan *plan, const FlSearch *search);
 
-/** Improves the match of a pixel of the target; `key` decides the random tries. */
-void fl_visit_pixel(const FlVisitPlan *plan, int x, int y, uint64_t key, FlSearchCounts *counts);
+#define FL_TILES_AT_ONCE 4
+
+/**
+ * Improves the matches of up to FL_TILES_AT_ONCE tiles, one pixel after the other, forwards or
+ * backwards; `key` decides the random tries.
+ */
+void fl_visit_tiles(const FlVisitPlan *plan, const uint32_t *tiles, int n, bool backwards,
+                    uint64_t key, FlSearchCounts *counts);
 
 #endif

@@ -1,23 +1,70 @@
 /* Two pixels at a time. */
+#include "base/rng.h"
 #include "synth/kernels.h"
 
+#include <glib.h>
 #include <immintrin.h>
 
-/* Two exemplar pixels, widened to the target's steps. */
-static inline __m256i load_two(const FlTexel *a, const FlTexel *b)
+/* Byte orders of two pixels: as they are, with their extents changing places, and changing places
+ * themselves besides. */
+static const int8_t orders[3][16] = {
+    {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15},
+    {0, 1, 2, 3, 5, 4, 6, 7, 8, 9, 10, 11, 13, 12, 14, 15},
+    {8, 9, 10, 11, 13, 12, 14, 15, 0, 1, 2, 3, 5, 4, 6, 7},
+};
+
+static inline __m128i order_of(int k)
 {
-    const __m128d first = _mm_load_sd((const double *)a);
-    const __m128i both = _mm_castpd_si128(_mm_loadh_pd(first, (const double *)b));
-    return _mm256_slli_epi16(_mm256_cvtepu8_epi16(both), 4);
+    return _mm_loadu_si128((const __m128i *)orders[k]);
 }
 
-static inline __m256i two_terms(const FlTexel *centre, const int32_t *offsets,
-                                const FlPacked *target, const FlPacked *weight)
+static inline __m128i load_two(const FlTexel *centre, const int16_t *offsets)
 {
-    const __m256i s = load_two(centre + offsets[0], centre + offsets[1]);
-    const __m256i d = _mm256_sub_epi16(s, _mm256_load_si256((const __m256i *)target));
-    const __m256i w = _mm256_load_si256((const __m256i *)weight);
-    return _mm256_madd_epi16(d, _mm256_mulhrs_epi16(d, w));
+    const __m128d first = _mm_load_sd((const double *)(centre + offsets[0]));
+    return _mm_castpd_si128(_mm_loadh_pd(first, (const double *)(centre + offsets[1])));
+}
+
+/* The weights of two pixels: each one's for its colours, the rest for the other channels. */
+static inline __m256i weights_of(__m256i target, __m256i rest)
+{
+    const __m256i colour =
+        _mm256_setr_epi8(12, 13, 12, 13, 12, 13, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, 12, 13, 12,
+                         13, 12, 13, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1);
+    return _mm256_or_si256(_mm256_shuffle_epi8(target, colour), rest);
+}
+
+/* The weights of the other channels, where those of the colours are 0. */
+static inline __m256i load_rest(const FlPacked *rest)
+{
+    const __m128i others = _mm_setr_epi16(0, 0, 0, -1, -1, -1, 0, 0);
+    return _mm256_broadcastsi128_si256(
+        _mm_and_si128(others, _mm_loadu_si128((const __m128i *)rest)));
+}
+
+static inline __m256i two_terms(__m128i texels, __m256i target, __m256i weight)
+{
+    const __m256i s = _mm256_slli_epi16(_mm256_cvtepu8_epi16(texels), 4); // to the target's steps
+    const __m256i d = _mm256_sub_epi16(s, target);
+    return _mm256_madd_epi16(d, _mm256_mulhrs_epi16(d, weight));
+}
+
+static inline __m256i load_target(const FlPacked *target)
+{
+    return _mm256_load_si256((const __m256i *)target);
+}
+
+/* The last pixel of 25, beside nothing. */
+static inline __m256i load_last(const FlPacked *target)
+{
+    return _mm256_zextsi128_si256(_mm_load_si128((const __m128i *)(target + 24)));
+}
+
+/* Texels beyond the 25th count for nothing. */
+static inline __m256i last_term(__m128i texel, const FlPacked *target, __m256i rest)
+{
+    const __m256i t = load_last(target);
+    const __m256i terms = two_terms(texel, t, weights_of(t, rest));
+    return _mm256_zextsi128_si256(_mm256_castsi256_si128(terms));
 }
 
 static inline uint32_t sum_of(__m256i v)
@@ -28,26 +75,168 @@ static inline uint32_t sum_of(__m256i v)
     return (uint32_t)_mm_cvtsi128_si32(s);
 }
 
-uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int32_t *offsets,
-                                const FlPacked *target, const FlPacked *weight, uint32_t limit)
+uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, bool opposed,
+                                const FlPacked *target, const FlPacked *rest, uint32_t limit)
 {
+    const __m128i order = order_of(opposed);
+    const __m256i others = load_rest(rest);
     __m256i sum = _mm256_setzero_si256();
-    for (int p = 0; p < 8; p += 2)
-        sum = _mm256_add_epi32(sum, two_terms(centre, offsets + p, target + p, weight + p));
-    if (sum_of(sum) > limit)
-        return sum_of(sum);
-    for (int p = 8; p < 16; p += 2)
-        sum = _mm256_add_epi32(sum, two_terms(centre, offsets + p, target + p, weight + p));
-    if (sum_of(sum) > limit)
-        return sum_of(sum);
-    for (int p = 16; p < 24; p += 2)
-        sum = _mm256_add_epi32(sum, two_terms(centre, offsets + p, target + p, weight + p));
+    for (int p = 0; p < 24; p += 2) {
+        const __m128i texels = _mm_shuffle_epi8(load_two(centre, offsets + p), order);
+        const __m256i t = load_target(target + p);
+        sum = _mm256_add_epi32(sum, two_terms(texels, t, weights_of(t, others)));
+        if ((p == 6 || p == 14) && sum_of(sum) > limit)
+            return sum_of(sum);
+    }
     const __m128i texel = _mm_loadl_epi64((const __m128i *)(centre + offsets[24]));
-    const __m128i s = _mm_slli_epi16(_mm_cvtepu8_epi16(texel), 4);
-    const __m128i d = _mm_sub_epi16(s, _mm_load_si128((const __m128i *)(target + 24)));
-    const __m128i last =
-        _mm_madd_epi16(d, _mm_mulhrs_epi16(d, _mm_load_si128((const __m128i *)(weight + 24))));
-    return sum_of(_mm256_add_epi32(sum, _mm256_zextsi128_si256(last)));
+    return sum_of(_mm256_add_epi32(sum, last_term(_mm_shuffle_epi8(texel, order), target, others)));
+}
+
+void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
+                        const FlPacked *rest, uint32_t limit, uint32_t distance[2])
+{
+    const __m128i turned = order_of(2);
+    const __m256i others = load_rest(rest);
+    __m256i sum = _mm256_setzero_si256(), turned_sum = sum;
+    for (int p = 0; p < 24; p += 2) {
+        const __m128i texels = load_two(centre, offsets + p);
+        const __m256i t = load_target(target + p), w = weights_of(t, others);
+        sum = _mm256_add_epi32(sum, two_terms(texels, t, w));
+        turned_sum =
+            _mm256_add_epi32(turned_sum, two_terms(_mm_shuffle_epi8(texels, turned), t, w));
+        if (p == 6 || p == 14) {
+            distance[0] = sum_of(sum), distance[1] = sum_of(turned_sum);
+            if (distance[0] > limit && distance[1] > limit)
+                return;
+        }
+    }
+    const __m128i texel = _mm_loadl_epi64((const __m128i *)centre);
+    const __m128i opposed = _mm_shuffle_epi8(texel, order_of(1));
+    distance[0] = sum_of(_mm256_add_epi32(sum, last_term(texel, target, others)));
+    distance[1] = sum_of(_mm256_add_epi32(turned_sum, last_term(opposed, target, others)));
+}
+
+/* fl_hash32() of eight lanes. */
+static inline __m256i hash(__m256i v)
+{
+    v = _mm256_xor_si256(v, _mm256_srli_epi32(v, 16));
+    v = _mm256_mullo_epi32(v, _mm256_set1_epi32(0x7feb352d));
+    v = _mm256_xor_si256(v, _mm256_srli_epi32(v, 15));
+    v = _mm256_mullo_epi32(v, _mm256_set1_epi32((int)0x846ca68bu));
+    return _mm256_xor_si256(v, _mm256_srli_epi32(v, 16));
+}
+
+/* Sixteen tries along one axis, from the k-th on. */
+static inline __m256i draw_along(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                                 int axis, int k)
+{
+    const uint32_t place = (uint32_t)(axis * FL_MAX_TRIES + k) / 2;
+    const __m256i lane = _mm256_mullo_epi32(_mm256_set1_epi32((int)FL_HASH32_STEP),
+                                            _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    const __m256i bits =
+        hash(_mm256_add_epi32(_mm256_set1_epi32((int)(key + place * FL_HASH32_STEP)), lane));
+    const __m256i c = _mm256_set1_epi16((int16_t)centre[axis]);
+    const __m256i reach = _mm256_load_si256((const __m256i *)(windows->reach[axis] + k));
+    const __m256i end = _mm256_set1_epi16((int16_t)windows->size[axis]);
+    const __m256i low = _mm256_subs_epu16(c, reach);
+    const __m256i high = // exclusive
+        _mm256_min_epu16(_mm256_adds_epu16(_mm256_adds_epu16(c, reach), _mm256_set1_epi16(1)), end);
+    return _mm256_add_epi16(low, _mm256_mulhi_epu16(bits, _mm256_sub_epi16(high, low)));
+}
+
+/* Eight 16-bit places times the step to the next. */
+static inline __m256i steps(__m128i at, uint32_t step)
+{
+    return _mm256_mullo_epi32(_mm256_cvtepu16_epi32(at), _mm256_set1_epi32((int)step));
+}
+
+void fl_draw_tries_avx2(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                        FlTries *tries)
+{
+    for (int k = 0; k < windows->n; k += 16) {
+        __m256i low = _mm256_setzero_si256(), high = low;
+        for (int axis = 0; axis < 3; axis++) {
+            const __m256i at = draw_along(windows, centre, key, axis, k);
+            _mm256_store_si256((__m256i *)(tries->at[axis] + k), at);
+            low = _mm256_add_epi32(low, steps(_mm256_castsi256_si128(at), windows->step[axis]));
+            high =
+                _mm256_add_epi32(high, steps(_mm256_extracti128_si256(at, 1), windows->step[axis]));
+        }
+        _mm256_store_si256((__m256i *)(tries->pixel + k), low);
+        _mm256_store_si256((__m256i *)(tries->pixel + k + 8), high);
+    }
+}
+
+/* The cells of sixteen tries along an axis; takes their part of the pixel's own use into `own`. */
+static inline __m256i cells_along(const FlTries *tries, const FlSieve *sieve, int axis, int k,
+                                  __m256i *own)
+{
+    const __m256i at = _mm256_load_si256((const __m256i *)(tries->at[axis] + k));
+    const __m256i odd = _mm256_add_epi16(_mm256_add_epi16(at, at), _mm256_set1_epi16(1));
+    const __m256i cell = _mm256_mulhi_epu16(odd, _mm256_set1_epi16((int16_t)sieve->factor[axis]));
+    const __m256i apart =
+        _mm256_abs_epi16(_mm256_sub_epi16(cell, _mm256_set1_epi16((int16_t)sieve->own[axis])));
+    *own = _mm256_mullo_epi16(*own, _mm256_subs_epu16(_mm256_set1_epi16(2), apart));
+    return cell;
+}
+
+/* The uniformity term of eight cells. */
+static inline __m256i uniformity_at(const FlSieve *sieve, __m256i index, __m128i own)
+{
+    const __m256i use =
+        _mm256_sub_epi32(_mm256_i32gather_epi32(sieve->use, index, 4), _mm256_cvtepu16_epi32(own));
+    const __m256 counted = _mm256_cvtepi32_ps(_mm256_max_epi32(use, _mm256_setzero_si256()));
+    return _mm256_cvttps_epi32(_mm256_min_ps(_mm256_mul_ps(counted, _mm256_set1_ps(sieve->price)),
+                                             _mm256_set1_ps(sieve->most)));
+}
+
+/* Which of eight texels are of the segment, in lanes of all ones. */
+static inline __m256i of_segment(const FlSieve *sieve, const uint32_t *pixel)
+{
+    const __m256i last_bytes =
+        _mm256_i32gather_epi32((const int *)(const void *)&sieve->first->c[4],
+                               _mm256_load_si256((const __m256i *)pixel), sizeof(FlTexel));
+    return _mm256_cmpeq_epi32(_mm256_srli_epi32(last_bytes, 24), _mm256_set1_epi32(sieve->segment));
+}
+
+/* Eight of the sixteen lanes that are in one of the frames, widened. */
+static inline __m256i in_frames(const FlSieve *sieve, const uint16_t *at)
+{
+    const __m128i frame = _mm_load_si128((const __m128i *)at);
+    __m128i in = _mm_cmpeq_epi16(frame, _mm_set1_epi16(sieve->frames[0]));
+    for (int f = 1; f < 4; f++)
+        in = _mm_or_si128(in, _mm_cmpeq_epi16(frame, _mm_set1_epi16(sieve->frames[f])));
+    return _mm256_cvtepi16_epi32(in);
+}
+
+/* A bit for each of eight tries that pass. Terms are at most 2^29: signed comparison does. */
+static inline uint64_t passing(const FlTries *tries, const FlSieve *sieve, int k, __m256i term)
+{
+    const __m256i limit = _mm256_set1_epi32((int)MIN(sieve->limit, INT32_MAX));
+    const __m256i good =
+        _mm256_or_si256(_mm256_cmpgt_epi32(limit, term), in_frames(sieve, tries->at[2] + k));
+    const __m256i passed = _mm256_and_si256(good, of_segment(sieve, tries->pixel + k));
+    return (uint64_t)(uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(passed)) << k;
+}
+
+uint64_t fl_sift_avx2(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity)
+{
+    uint64_t passed = 0;
+    for (int k = 0; k < n; k += 16) {
+        __m256i low = _mm256_setzero_si256(), high = low, own = _mm256_set1_epi16(1);
+        for (int axis = 0; axis < 3; axis++) {
+            const __m256i cell = cells_along(tries, sieve, axis, k, &own);
+            low = _mm256_add_epi32(low, steps(_mm256_castsi256_si128(cell), sieve->step[axis]));
+            high =
+                _mm256_add_epi32(high, steps(_mm256_extracti128_si256(cell, 1), sieve->step[axis]));
+        }
+        low = uniformity_at(sieve, low, _mm256_castsi256_si128(own));
+        high = uniformity_at(sieve, high, _mm256_extracti128_si256(own, 1));
+        _mm256_storeu_si256((__m256i *)(uniformity + k), low);
+        _mm256_storeu_si256((__m256i *)(uniformity + k + 8), high);
+        passed |= passing(tries, sieve, k, low) | passing(tries, sieve, k + 8, high);
+    }
+    return n < 64 ? passed & ((1ull << n) - 1) : passed;
 }
 
 /* A row of four pixels as pairs of one channel, times the pairs of weights. */

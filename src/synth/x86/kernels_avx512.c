@@ -1,23 +1,50 @@
-/* Four pixels at a time. */
+/* Four pixels of a patch at a time, 32 tries or votes. */
+#include "base/rng.h"
 #include "synth/kernels.h"
 
 #include <immintrin.h>
 
-static inline __m128i load_two(const FlTexel *a, const FlTexel *b)
+static inline __m128i load_two(const FlTexel *centre, const int16_t *offsets)
 {
-    const __m128d first = _mm_load_sd((const double *)a);
-    return _mm_castpd_si128(_mm_loadh_pd(first, (const double *)b));
+    const __m128d first = _mm_load_sd((const double *)(centre + offsets[0]));
+    return _mm_castpd_si128(_mm_loadh_pd(first, (const double *)(centre + offsets[1])));
 }
 
-static inline __m512i four_terms(const FlTexel *centre, const int32_t *offsets,
-                                 const FlPacked *target, const FlPacked *weight)
+static inline __m256i load_four(const FlTexel *centre, const int16_t *offsets)
 {
-    const __m128i low = load_two(centre + offsets[0], centre + offsets[1]);
-    const __m128i high = load_two(centre + offsets[2], centre + offsets[3]);
-    const __m256i texels = _mm256_inserti128_si256(_mm256_castsi128_si256(low), high, 1);
-    const __m512i s = _mm512_slli_epi16(_mm512_cvtepu8_epi16(texels), 4);
-    const __m512i d = _mm512_sub_epi16(s, _mm512_load_si512(target));
-    return _mm512_madd_epi16(d, _mm512_mulhrs_epi16(d, _mm512_load_si512(weight)));
+    return _mm256_inserti128_si256(_mm256_castsi128_si256(load_two(centre, offsets)),
+                                   load_two(centre, offsets + 2), 1);
+}
+
+/* The weights of four pixels: each one's for its colours, the rest for the other channels. */
+static inline __m512i weights_of(__m512i target, __m512i rest)
+{
+    const __m128i colour =
+        _mm_setr_epi8(12, 13, 12, 13, 12, 13, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1);
+    return _mm512_mask_shuffle_epi8(rest, 0x003f003f003f003f, target,
+                                    _mm512_broadcast_i32x4(colour));
+}
+
+/* The weights of the other channels of four pixels. */
+static inline __m512i load_rest(const FlPacked *rest)
+{
+    const __m128i others = _mm_setr_epi16(0, 0, 0, -1, -1, -1, 0, 0);
+    return _mm512_broadcast_i32x4(_mm_and_si128(others, _mm_loadu_si128((const __m128i *)rest)));
+}
+
+static inline __m512i four_terms(__m256i texels, __m512i target, __m512i weight)
+{
+    const __m512i s = _mm512_slli_epi16(_mm512_cvtepu8_epi16(texels), 4); // to the target's steps
+    const __m512i d = _mm512_sub_epi16(s, target);
+    return _mm512_madd_epi16(d, _mm512_mulhrs_epi16(d, weight));
+}
+
+/* The last pixel of 25; the texel stands alone. */
+static inline __m512i last_term(__m128i texel, const FlPacked *target, __m512i rest)
+{
+    const __m512i t = _mm512_zextsi128_si512(_mm_load_si128((const __m128i *)(target + 24)));
+    const __m512i terms = four_terms(_mm256_zextsi128_si256(texel), t, weights_of(t, rest));
+    return _mm512_maskz_mov_epi32(0xf, terms);
 }
 
 static inline uint32_t sum_of(__m512i v)
@@ -25,22 +52,166 @@ static inline uint32_t sum_of(__m512i v)
     return (uint32_t)_mm512_reduce_add_epi32(v);
 }
 
-uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int32_t *offsets,
-                                  const FlPacked *target, const FlPacked *weight, uint32_t limit)
+/* Byte order of two pixels whose extents change places. */
+static inline __m128i opposed_order(void)
 {
-    __m512i sum = four_terms(centre, offsets, target, weight);
-    sum = _mm512_add_epi32(sum, four_terms(centre, offsets + 4, target + 4, weight + 4));
-    const uint32_t first = sum_of(sum);
-    if (first > limit)
-        return first;
-    for (int p = 8; p < 24; p += 4)
-        sum = _mm512_add_epi32(sum, four_terms(centre, offsets + p, target + p, weight + p));
+    return _mm_setr_epi8(0, 1, 2, 3, 5, 4, 6, 7, 8, 9, 10, 11, 13, 12, 14, 15);
+}
+
+uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets, bool opposed,
+                                  const FlPacked *target, const FlPacked *rest, uint32_t limit)
+{
+    const __m128i straight = _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+    const __m128i one = opposed ? opposed_order() : straight;
+    const __m256i order = _mm256_broadcastsi128_si256(one);
+    const __m512i others = load_rest(rest);
+    __m512i sum = _mm512_setzero_si512();
+    for (int p = 0; p < 24; p += 4) {
+        const __m256i texels = _mm256_shuffle_epi8(load_four(centre, offsets + p), order);
+        const __m512i t = _mm512_load_si512(target + p);
+        sum = _mm512_add_epi32(sum, four_terms(texels, t, weights_of(t, others)));
+        if (p == 4 && sum_of(sum) > limit)
+            return sum_of(sum);
+    }
     const __m128i texel = _mm_loadl_epi64((const __m128i *)(centre + offsets[24]));
-    const __m128i s = _mm_slli_epi16(_mm_cvtepu8_epi16(texel), 4);
-    const __m128i d = _mm_sub_epi16(s, _mm_load_si128((const __m128i *)(target + 24)));
-    const __m128i last =
-        _mm_madd_epi16(d, _mm_mulhrs_epi16(d, _mm_load_si128((const __m128i *)(weight + 24))));
-    return sum_of(_mm512_add_epi32(sum, _mm512_zextsi128_si512(last)));
+    return sum_of(_mm512_add_epi32(sum, last_term(_mm_shuffle_epi8(texel, one), target, others)));
+}
+
+void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
+                          const FlPacked *rest, uint32_t limit, uint32_t distance[2])
+{
+    const __m256i turned = _mm256_broadcastsi128_si256( // two pixels change places, extents too
+        _mm_setr_epi8(8, 9, 10, 11, 13, 12, 14, 15, 0, 1, 2, 3, 5, 4, 6, 7));
+    const __m512i others = load_rest(rest);
+    __m512i sum = _mm512_setzero_si512(), turned_sum = sum;
+    for (int p = 0; p < 24; p += 4) {
+        const __m256i texels = load_four(centre, offsets + p);
+        const __m512i t = _mm512_load_si512(target + p), w = weights_of(t, others);
+        sum = _mm512_add_epi32(sum, four_terms(texels, t, w));
+        turned_sum =
+            _mm512_add_epi32(turned_sum, four_terms(_mm256_shuffle_epi8(texels, turned), t, w));
+        if (p == 4) {
+            distance[0] = sum_of(sum), distance[1] = sum_of(turned_sum);
+            if (distance[0] > limit && distance[1] > limit)
+                return;
+        }
+    }
+    const __m128i texel = _mm_loadl_epi64((const __m128i *)centre);
+    const __m128i opposed = _mm_shuffle_epi8(texel, opposed_order());
+    distance[0] = sum_of(_mm512_add_epi32(sum, last_term(texel, target, others)));
+    distance[1] = sum_of(_mm512_add_epi32(turned_sum, last_term(opposed, target, others)));
+}
+
+/* fl_hash32() of sixteen lanes. */
+static inline __m512i hash(__m512i v)
+{
+    v = _mm512_xor_si512(v, _mm512_srli_epi32(v, 16));
+    v = _mm512_mullo_epi32(v, _mm512_set1_epi32(0x7feb352d));
+    v = _mm512_xor_si512(v, _mm512_srli_epi32(v, 15));
+    v = _mm512_mullo_epi32(v, _mm512_set1_epi32((int)0x846ca68bu));
+    return _mm512_xor_si512(v, _mm512_srli_epi32(v, 16));
+}
+
+/* 32 tries along one axis, from the k-th on. */
+static inline __m512i draw_along(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                                 int axis, int k)
+{
+    const uint32_t place = (uint32_t)(axis * FL_MAX_TRIES + k) / 2;
+    const __m512i lane =
+        _mm512_mullo_epi32(_mm512_set1_epi32((int)FL_HASH32_STEP),
+                           _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+    const __m512i bits =
+        hash(_mm512_add_epi32(_mm512_set1_epi32((int)(key + place * FL_HASH32_STEP)), lane));
+    const __m512i c = _mm512_set1_epi16((int16_t)centre[axis]);
+    const __m512i reach = _mm512_load_si512(windows->reach[axis] + k);
+    const __m512i end = _mm512_set1_epi16((int16_t)windows->size[axis]);
+    const __m512i low = _mm512_subs_epu16(c, reach);
+    const __m512i high = // exclusive
+        _mm512_min_epu16(_mm512_adds_epu16(_mm512_adds_epu16(c, reach), _mm512_set1_epi16(1)), end);
+    return _mm512_add_epi16(low, _mm512_mulhi_epu16(bits, _mm512_sub_epi16(high, low)));
+}
+
+/* Sixteen 16-bit places times the step to the next. */
+static inline __m512i steps(__m256i at, uint32_t step)
+{
+    return _mm512_mullo_epi32(_mm512_cvtepu16_epi32(at), _mm512_set1_epi32((int)step));
+}
+
+void fl_draw_tries_avx512(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
+                          FlTries *tries)
+{
+    for (int k = 0; k < windows->n; k += 32) {
+        __m512i low = _mm512_setzero_si512(), high = low;
+        for (int axis = 0; axis < 3; axis++) {
+            const __m512i at = draw_along(windows, centre, key, axis, k);
+            _mm512_store_si512(tries->at[axis] + k, at);
+            low = _mm512_add_epi32(low, steps(_mm512_castsi512_si256(at), windows->step[axis]));
+            high = _mm512_add_epi32(high,
+                                    steps(_mm512_extracti64x4_epi64(at, 1), windows->step[axis]));
+        }
+        _mm512_store_si512(tries->pixel + k, low);
+        _mm512_store_si512(tries->pixel + k + 16, high);
+    }
+}
+
+/* The cells of 32 tries along an axis; takes their part of the pixel's own use into `own`. */
+static inline __m512i cells_along(const FlTries *tries, const FlSieve *sieve, int axis, int k,
+                                  __m512i *own)
+{
+    const __m512i at = _mm512_load_si512(tries->at[axis] + k), two = _mm512_set1_epi16(2);
+    const __m512i odd = _mm512_add_epi16(_mm512_add_epi16(at, at), _mm512_set1_epi16(1));
+    const __m512i cell = _mm512_mulhi_epu16(odd, _mm512_set1_epi16((int16_t)sieve->factor[axis]));
+    const __m512i apart =
+        _mm512_abs_epi16(_mm512_sub_epi16(cell, _mm512_set1_epi16((int16_t)sieve->own[axis])));
+    *own = _mm512_mullo_epi16(*own, _mm512_subs_epu16(two, apart));
+    return cell;
+}
+
+/* The uniformity term of sixteen cells. */
+static inline __m512i uniformity_at(const FlSieve *sieve, __m512i index, __m256i own)
+{
+    const __m512i use =
+        _mm512_sub_epi32(_mm512_i32gather_epi32(index, sieve->use, 4), _mm512_cvtepu16_epi32(own));
+    const __m512 counted = _mm512_cvtepi32_ps(_mm512_max_epi32(use, _mm512_setzero_si512()));
+    return _mm512_cvttps_epi32(_mm512_min_ps(_mm512_mul_ps(counted, _mm512_set1_ps(sieve->price)),
+                                             _mm512_set1_ps(sieve->most)));
+}
+
+/* Which of sixteen texels are of the segment. */
+static inline __mmask16 of_segment(const FlSieve *sieve, const uint32_t *pixel)
+{
+    const __m512i last_bytes = _mm512_i32gather_epi32(
+        _mm512_load_si512(pixel), (const int *)(const void *)&sieve->first->c[4], sizeof(FlTexel));
+    return _mm512_cmpeq_epi32_mask(_mm512_srli_epi32(last_bytes, 24),
+                                   _mm512_set1_epi32(sieve->segment));
+}
+
+uint64_t fl_sift_avx512(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity)
+{
+    uint64_t passed = 0;
+    for (int k = 0; k < n; k += 32) {
+        __m512i low = _mm512_setzero_si512(), high = low, own = _mm512_set1_epi16(1);
+        for (int axis = 0; axis < 3; axis++) {
+            const __m512i cell = cells_along(tries, sieve, axis, k, &own);
+            low = _mm512_add_epi32(low, steps(_mm512_castsi512_si256(cell), sieve->step[axis]));
+            high = _mm512_add_epi32(high,
+                                    steps(_mm512_extracti64x4_epi64(cell, 1), sieve->step[axis]));
+        }
+        low = uniformity_at(sieve, low, _mm512_castsi512_si256(own));
+        high = uniformity_at(sieve, high, _mm512_extracti64x4_epi64(own, 1));
+        _mm512_storeu_si512(uniformity + k, low);
+        _mm512_storeu_si512(uniformity + k + 16, high);
+        const __m512i limit = _mm512_set1_epi32((int)sieve->limit);
+        __mmask32 good = _mm512_kunpackw(_mm512_cmplt_epu32_mask(high, limit),
+                                         _mm512_cmplt_epu32_mask(low, limit));
+        const __m512i frame = _mm512_load_si512(tries->at[2] + k);
+        for (int f = 0; f < 4; f++)
+            good |= _mm512_cmpeq_epi16_mask(frame, _mm512_set1_epi16(sieve->frames[f]));
+        good &= _mm512_kunpackw(of_segment(sieve, tries->pixel + k + 16),
+                                of_segment(sieve, tries->pixel + k));
+        passed |= (uint64_t)good << k;
+    }
+    return n < 64 ? passed & ((1ull << n) - 1) : passed;
 }
 
 /* The sum of the lanes of a mask. */
