@@ -118,6 +118,16 @@ changed_defaults_are_explained() {
     done
 }
 
+limits_are_documented() {
+    local name preset
+    sed -nE 's/^FL_LIMIT\([A-Z]+, "([a-z]+)", ([0-9]+),.*/\1 \2/p' src/base/limits.def |
+        while read -r name preset; do
+            [ "$preset" = 0 ] && preset='The machine'
+            grep -A1 "^\.It Cm $name\$" man/fluidy-svg.1.in | grep -qw "^$preset" ||
+                echo "--limit $name: the page does not say $preset"
+        done
+}
+
 report 'a folder includes headers of itself and the folders above it' layering
 report 'the programs use base, params and public headers only' programs_stay_outside
 report 'every exported symbol starts with fl_' exported_symbols
@@ -135,6 +145,7 @@ if [ ! -f "$build/man/fluidy-svg.1" ]; then
 else
     report 'fluidy-svg(1) has the options of --help-all' \
         options_are_documented "$build/src/cli/fluidy-svg" "$build/man/fluidy-svg.1"
+    report 'fluidy-svg(1) has every limit and its default' limits_are_documented
     report 'fluidy-svg(1) explains every default that is not the published one' \
         changed_defaults_are_explained
     if command -v mandoc >/dev/null; then

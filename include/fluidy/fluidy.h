@@ -4,6 +4,7 @@
 
 #include <fluidy/error.h>
 #include <fluidy/inspect.h>
+#include <fluidy/limits.h>
 #include <fluidy/params.h>
 #include <fluidy/render.h>
 #include <fluidy/style.h>

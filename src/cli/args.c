@@ -159,6 +159,11 @@ static gboolean read_setting(const char *name, const char *value, gpointer data,
     return TRUE;
 }
 
+static gboolean read_limit(const char *name, const char *value, gpointer data, GError **error)
+{
+    return fl_limit_set(value, error);
+}
+
 static gboolean read_flag(const char *name, const char *value, gpointer data, GError **error)
 {
     FlArgs *args = data;
@@ -254,6 +259,8 @@ static const GOptionEntry more[] = {
     {"key", 0, VALUE(read_choice),
      "what makes leaves one region: auto, fill, id, class, label or tree (auto)", "WORD"},
     {"resume", 0, FLAG(read_flag), "go on with an interrupted render, also with -y", NULL},
+    {"limit", 0, VALUE(read_limit), "how much a file may ask for; see TRUST in fluidy-svg(1)",
+     "NAME=N"},
     {"strict", 0, FLAG(read_flag), "a warning about a drawing is an error", NULL},
     {"stacking", 0, VALUE(read_setting), "knockout or glaze what lies below (knockout)", "WORD"},
     {"stroke", 0, VALUE(read_choice), "keep, paint or drop line art (keep)", "WORD"},
@@ -287,8 +294,9 @@ static const GOptionEntry *parameter_entries(void)
     entries = g_new0(GOptionEntry, fl_param_count() + 1);
     for (int i = 0; i < fl_param_count(); i++) {
         const FlParamInfo *info = fl_param_info(i);
-        entries[i] = (GOptionEntry){info->name, 0, VALUE(read_setting),
-                                    g_intern_string(parameter_help(info)), values[info->type]};
+        g_autofree char *help = parameter_help(info);
+        entries[i] = (GOptionEntry){info->name, 0, VALUE(read_setting), g_intern_string(help),
+                                    values[info->type]};
     }
     return entries;
 }

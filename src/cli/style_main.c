@@ -74,11 +74,21 @@ static void drop_separator(char **words)
         words[0] = words[1];
 }
 
+static gboolean read_limit(const char *name, const char *value, gpointer data, GError **error)
+{
+    return fl_limit_set(value, error);
+}
+
 static bool run_command(const FlStyleCommand *command, char **argv, GError **error)
 {
     g_autofree char *usage = g_strdup_printf("%s — %s", command->arguments, command->summary);
     g_autoptr(GOptionContext) context = g_option_context_new(usage);
+    const GOptionEntry limit[] = {{"limit", 0, 0, G_OPTION_ARG_CALLBACK, (gpointer)read_limit,
+                                   "how much a file may ask for; see TRUST in fluidy-svg(1)",
+                                   "NAME=N"},
+                                  {NULL}};
     g_option_context_add_main_entries(context, command->entries, NULL);
+    g_option_context_add_main_entries(context, limit, NULL);
     if (command->details)
         g_option_context_set_description(context, command->details);
     g_auto(GStrv) words = g_strdupv(argv); // GOption takes out what it knows

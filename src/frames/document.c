@@ -1,5 +1,6 @@
 #include "frames/document.h"
 
+#include "base/limits.h"
 #include <errno.h>
 #include <glib/gstdio.h>
 #include <libxml/parser.h>
@@ -50,13 +51,24 @@ char *fl_property(const xmlNode *node, const char *name)
     return attribute ? g_strstrip(g_strdup((const char *)attribute)) : NULL;
 }
 
+bool fl_document_is_huge(void)
+{
+    return fl_limit(FL_LIMIT_DEPTH) > 250 || fl_limit(FL_LIMIT_PATH) > 9000000 ||
+           fl_limit(FL_LIMIT_ELEMENTS) > 200000;
+}
+
+static double mebibytes(double bytes)
+{
+    return bytes / (1 << 20);
+}
+
 /** Unpacks gzip data; replaces *data. */
 static bool gunzip(const char *path, char **data, gsize *bytes, GError **error)
 {
     z_stream z = {.next_in = (Bytef *)*data, .avail_in = (uInt)*bytes};
     GByteArray *out = g_byte_array_new();
     int status = inflateInit2(&z, 15 + 16);
-    while (status == Z_OK && out->len <= FL_MOST_BYTES) {
+    while (status == Z_OK && mebibytes(out->len) <= (double)fl_limit(FL_LIMIT_DRAWING)) {
         guint8 block[65536];
         z.next_out = block;
         z.avail_out = sizeof block;
@@ -67,9 +79,8 @@ static bool gunzip(const char *path, char **data, gsize *bytes, GError **error)
     }
     inflateEnd(&z);
     if (status != Z_STREAM_END) {
-        const bool large = out->len > FL_MOST_BYTES;
-        g_set_error(error, FL_ERROR, large ? FL_ERROR_LIMIT : FL_ERROR_INPUT, "%s: %s", path,
-                    large ? "larger than 256 MiB when unpacked" : "damaged gzip data");
+        if (fl_limit_check(FL_LIMIT_DRAWING, mebibytes(out->len), path, error))
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: damaged gzip data", path);
         g_byte_array_unref(out);
         return false;
     }
@@ -83,10 +94,9 @@ static bool read_bytes(const char *path, char **data, gsize *bytes, GError **err
 {
     g_autoptr(GError) reason = NULL;
     GStatBuf info;
-    if (g_stat(path, &info) == 0 && info.st_size > FL_MOST_BYTES) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: larger than 256 MiB", path);
+    if (g_stat(path, &info) == 0 &&
+        !fl_limit_check(FL_LIMIT_DRAWING, mebibytes((double)info.st_size), path, error))
         return false;
-    }
     if (!g_file_get_contents(path, data, bytes, &reason)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", reason->message);
         return false;
@@ -100,8 +110,9 @@ static bool read_bytes(const char *path, char **data, gsize *bytes, GError **err
 static xmlDoc *parse(const char *data, gsize bytes, const char *path, char **problem)
 {
     xmlParserCtxt *context = xmlNewParserCtxt();
-    xmlDoc *doc = xmlCtxtReadMemory(context, data, (int)bytes, path, NULL,
-                                    XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING);
+    const int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
+                        (fl_document_is_huge() ? XML_PARSE_HUGE : 0);
+    xmlDoc *doc = xmlCtxtReadMemory(context, data, (int)bytes, path, NULL, options);
     const xmlError *e = xmlCtxtGetLastError(context);
     if (!doc && problem)
         *problem = e && e->message ? g_strdup_printf("line %d: %s", e->line, g_strchomp(e->message))
@@ -138,18 +149,42 @@ static void declare_prefix(xmlNode *root, const xmlChar *name)
         xmlNewNs(root, (const xmlChar *)href, (const xmlChar *)prefix);
 }
 
-/** Counts the elements below node and declares prefixes. Returns: the count. */
-static int visit(xmlNode *root, xmlNode *node)
+/* A document as it is walked through. */
+typedef struct Visit {
+    const char *path;
+    xmlNode *root;
+    int n; // elements so far
+} Visit;
+
+static bool check_length(const Visit *visit, const xmlAttr *a, GError **error)
 {
-    int n = 1;
-    declare_prefix(root, node->name);
-    for (xmlAttr *a = node->properties; a; a = a->next)
+    double length = 0;
+    if (!xmlStrEqual(a->name, (const xmlChar *)"d") &&
+        !xmlStrEqual(a->name, (const xmlChar *)"points"))
+        return true;
+    for (const xmlNode *text = a->children; text; text = text->next)
+        length += text->content ? (double)strlen((const char *)text->content) : 0;
+    return fl_limit_check(FL_LIMIT_PATH, length, visit->path, error);
+}
+
+/** Counts the elements from node on and declares prefixes; `depth` is node's, from 1. */
+static bool visit_node(Visit *visit, xmlNode *node, int depth, GError **error)
+{
+    visit->n++;
+    if (!fl_limit_check(FL_LIMIT_ELEMENTS, visit->n, visit->path, error) ||
+        !fl_limit_check(FL_LIMIT_DEPTH, depth, visit->path, error))
+        return false;
+    declare_prefix(visit->root, node->name);
+    for (xmlAttr *a = node->properties; a; a = a->next) {
         if (!a->ns)
-            declare_prefix(root, a->name);
+            declare_prefix(visit->root, a->name);
+        if (!check_length(visit, a, error))
+            return false;
+    }
     for (xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE)
-            n += visit(root, child);
-    return n;
+        if (child->type == XML_ELEMENT_NODE && !visit_node(visit, child, depth + 1, error))
+            return false;
+    return true;
 }
 
 xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error)
@@ -168,13 +203,8 @@ xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GEr
                     root ? (const char *)root->name : "", svg_namespace);
         return NULL;
     }
-    const int n = visit(root, root);
-    if (n > FL_MOST_ELEMENTS) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: %d elements, at most %d are drawn", path,
-                    n, FL_MOST_ELEMENTS);
-        return NULL;
-    }
-    return g_steal_pointer(&doc);
+    Visit visit = {path, root, 0};
+    return visit_node(&visit, root, 1, error) ? g_steal_pointer(&doc) : NULL;
 }
 
 char *fl_document_text(xmlDoc *doc, size_t *bytes)

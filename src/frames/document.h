@@ -7,10 +7,6 @@
 #include <libxml/tree.h>
 #include <stdbool.h>
 
-#define FL_MOST_BYTES (256 << 20) // of a file, unpacked
-#define FL_MOST_ELEMENTS 200000   // of a document, copies of <use> included
-#define FL_MOST_DEPTH 250         // of elements in each other, likewise; libxml2 stops at 256
-
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlDoc, xmlFreeDoc)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
 
@@ -24,6 +20,9 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
  * with the line) or FL_ERROR_LIMIT.
  */
 xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error);
+
+/** Whether a limit was raised beyond what libxml2 and librsvg allow without being told. */
+bool fl_document_is_huge(void);
 
 /** The document as XML; to be freed with g_free(). */
 char *fl_document_text(xmlDoc *doc, size_t *bytes);

@@ -1,5 +1,6 @@
 #include "frames/normalise.h"
 
+#include "base/limits.h"
 #include <string.h>
 
 /** Shown elements, from the outermost <use> inwards; an element twice is a circle. */
@@ -183,12 +184,8 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
     xmlNode *copy = xmlDocCopyNode(target, use->doc, 1);
     work->n_copied += put_ids_aside(copy);
     show_copy(place(use, x, y), copy, width, height);
-    if (work->n_copied > FL_MOST_ELEMENTS) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "%s: <use> makes more than %d copies of elements", work->path,
-                    FL_MOST_ELEMENTS);
+    if (!fl_limit_check(FL_LIMIT_ELEMENTS, work->n_copied, work->path, error))
         return false;
-    }
     const Chain inner = {chain, target};
     return normalise(work, use, &inner, error);
 }
@@ -198,11 +195,7 @@ static bool is_shallow(const Work *work, const xmlNode *node, GError **error)
     int depth = 0;
     for (; node; node = node->parent)
         depth++;
-    if (depth > FL_MOST_DEPTH)
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "%s: more than %d elements in each other, those that <use> shows included",
-                    work->path, FL_MOST_DEPTH);
-    return depth <= FL_MOST_DEPTH;
+    return fl_limit_check(FL_LIMIT_DEPTH, depth, work->path, error);
 }
 
 static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **error)

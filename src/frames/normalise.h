@@ -13,7 +13,7 @@
  * what it shows (a <symbol> becomes a nested <svg>). A circle of <use> draws nothing, with a
  * warning.
  *
- * Returns: false with FL_ERROR_LIMIT if the copies are more than FL_MOST_ELEMENTS elements.
+ * Returns: false with FL_ERROR_LIMIT if the copies are too many or too deep.
  */
 bool fl_document_normalise(xmlDoc *doc, const char *path, int number, FlWarnings *warnings,
                            GError **error);

@@ -1,5 +1,6 @@
 #include "frames/svg.h"
 
+#include "frames/images.h"
 #include "frames/lint.h"
 #include "frames/normalise.h"
 #include <cairo-script.h>
@@ -37,8 +38,9 @@ static RsvgHandle *make_handle(const FlSvg *svg, const char *text, size_t bytes,
     g_autoptr(GError) reason = NULL;
     g_autoptr(GFile) file = g_file_new_for_path(svg->path);
     g_autoptr(GInputStream) stream = g_memory_input_stream_new_from_data(text, (gssize)bytes, NULL);
-    RsvgHandle *handle =
-        rsvg_handle_new_from_stream_sync(stream, file, RSVG_HANDLE_FLAGS_NONE, NULL, &reason);
+    const RsvgHandleFlags flags =
+        fl_document_is_huge() ? RSVG_HANDLE_FLAG_UNLIMITED : RSVG_HANDLE_FLAGS_NONE;
+    RsvgHandle *handle = rsvg_handle_new_from_stream_sync(stream, file, flags, NULL, &reason);
     if (!handle)
         set_rsvg_error(svg, reason, error);
     else
@@ -155,6 +157,8 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     if (options->canvas.width > 0)
         set_canvas(xmlDocGetRootElement(svg->doc), &options->canvas);
     fl_lint(svg->doc, path, number, warnings);
+    if (!fl_images_check(svg->doc, path, number, warnings, error))
+        return NULL;
     svg->original = fl_document_text(svg->doc, &svg->original_bytes);
     if (!fl_document_normalise(svg->doc, path, number, warnings, error))
         return NULL;

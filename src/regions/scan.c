@@ -1,12 +1,12 @@
 #include "regions/scan.h"
 
+#include "base/limits.h"
 #include "regions/raster.h"
 #include "regions/selfcheck.h"
 #include <math.h>
 #include <string.h>
 
-#define MOST_SIDE 32767       // px; cairo's limit
-#define MOST_PIXELS 100000000 // of a picture; each run of a frame takes one to five bytes for each
+#define MOST_SIDE 32767 // px; cairo's limit
 #define THICK 0.03f // width of a stroke, share of the page's longer side, that is no line any more
 #define LOOK_PX 256 // longest side of the small pictures on which a frame is looked over
 
@@ -379,13 +379,14 @@ static bool set_size(FlScan *scan, const FlFilmOptions *o, GError **error)
                           o->height > 0 ? o->height / height : INFINITY);
     // librsvg's own page sizes carry rounding errors; half a thousandth of a pixel is none.
     const double w = ceil(width * scan->scale - 5e-4), h = ceil(height * scan->scale - 5e-4);
-    if (!(w <= MOST_SIDE && h <= MOST_SIDE && w * h <= MOST_PIXELS)) {
+    if (!(w <= MOST_SIDE && h <= MOST_SIDE)) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "%s: a picture of %.0f x %.0f px; at most %d px on each side and %d million in "
-                    "all can be drawn",
-                    scan->sequence->file[0], w, h, MOST_SIDE, MOST_PIXELS / 1000000);
+                    "%s: a picture of %.0f x %.0f px; at most %d px on each side can be drawn",
+                    scan->sequence->file[0], w, h, MOST_SIDE);
         return false;
     }
+    if (!fl_limit_check(FL_LIMIT_FRAME, w * h / 1e6, scan->sequence->file[0], error))
+        return false;
     scan->page_width = width * scan->scale;
     scan->page_height = height * scan->scale;
     scan->width = MAX(1, (int)w);

@@ -45,6 +45,16 @@ static FlBox cropped(const FlPainter *painter)
     return (FlBox){x0, y0, x1 - x0, y1 - y0};
 }
 
+double fl_painter_bytes(const FlPainter *painter)
+{
+    // measured: fields, votes, guides and the state of a region; an exemplar with its rotations
+    const double of_region = 80, of_exemplar = 50;
+    const FlExemplarLevel *exemplar = &painter->box->exemplar->level[0];
+    return 3.0 * painter->width * painter->height +
+           of_region * (double)fl_box_pixels(cropped(painter)) +
+           of_exemplar * exemplar->width * exemplar->height * exemplar->n_frames;
+}
+
 static bool make_pictures(FlPainter *painter, GError **error)
 {
     const size_t pixels = (size_t)painter->width * painter->height;

@@ -2,9 +2,11 @@
 
 #include "base/alloc.h"
 #include "base/first_error.h"
+#include "base/limits.h"
 #include "base/suggest.h"
 #include "output/name.h"
 #include "regions/opening.h"
+#include <math.h>
 #include <string.h>
 
 static bool open_film(FlPlan *plan, GError **error)
@@ -102,6 +104,8 @@ static bool add_painters(FlPlan *plan, GError **error)
         else if (!add_painter(plan, r, error))
             return false;
     }
+    if (!fl_limit_check(FL_LIMIT_REGIONS, plan->n_painters, fl_film_name(plan->film), error))
+        return false;
     memset(plan->paper, 255, sizeof plan->paper);
     if (plan->n_painters > 0)
         memcpy(plan->paper, plan->painters[0].box->paper, sizeof plan->paper);
@@ -225,9 +229,22 @@ static bool make_masks(FlPlan *plan, GError **error)
     return failed == 0;
 }
 
+/* Everything is as large as the frame or smaller, so that it can be told before it is asked for. */
+static bool check_memory(const FlPlan *plan, GError **error)
+{
+    const double pixels = (double)fl_film_width(plan->film) * fl_film_height(plan->film);
+    double bytes = 20e6 + 46 * pixels; // measured: the libraries; a frame composed, its guides
+    for (int p = 0; p < plan->n_painters; p++)
+        bytes += fl_painter_bytes(&plan->painters[p]);
+    g_autofree char *where =
+        g_strdup_printf("%s, %d regions in %dx%d pixels", fl_film_name(plan->film),
+                        plan->n_painters, fl_film_width(plan->film), fl_film_height(plan->film));
+    return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
+}
+
 bool fl_plan_prepare(FlPlan *plan, GError **error)
 {
-    if (!make_masks(plan, error))
+    if (!make_masks(plan, error) || !check_memory(plan, error))
         return false;
     int failed = 0;
     // One after the other: the guides of a region use all threads themselves, and their scratch is

@@ -31,9 +31,6 @@ typedef struct FlStyle {
     unsigned guessed;           // FlGuess bits (manifest.h): what the folder does not say itself
 } FlStyle;
 
-/** Pixels of all frames together that a style may have: 64 frames of 800x600. */
-#define FL_STYLE_MAX_PIXELS (64 * 800 * 600)
-
 /**
  * Reads a folder. What it does not say itself is found in its frames: the paper's colour, the
  * masks, the border; the flow stays NULL.

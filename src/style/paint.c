@@ -1,6 +1,7 @@
 #include "style/paint.h"
 
 #include "base/alloc.h"
+#include "base/limits.h"
 #include "style/manifest.h"
 
 #include <string.h>
@@ -8,15 +9,11 @@
 bool fl_style_allocate(FlStyle *style, const FlPicture *first, int n_frames, GError **error)
 {
     const size_t pixels = (size_t)first->width * first->height * n_frames;
-    if (pixels > FL_STYLE_MAX_PIXELS) {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_LIMIT,
-            "%s: %d frames of %dx%d are %.1f million pixels: expected at most %.1f million; "
-            "fluidy-style import --scale or --step makes it smaller",
-            style->path, n_frames, first->width, first->height, (double)pixels / 1e6,
-            FL_STYLE_MAX_PIXELS / 1e6);
+    g_autofree char *where = g_strdup_printf(
+        "%s: %d frames of %dx%d (fluidy-style import --scale or --step makes it smaller)",
+        style->path, n_frames, first->width, first->height);
+    if (!fl_limit_check(FL_LIMIT_STYLE, (double)pixels / 1e6, where, error))
         return false;
-    }
     style->width = first->width;
     style->height = first->height;
     style->n_frames = n_frames;

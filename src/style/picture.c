@@ -1,6 +1,7 @@
 #include "style/picture.h"
 
 #include "base/alloc.h"
+#include "base/limits.h"
 
 #include <errno.h>
 #include <math.h>
@@ -10,12 +11,13 @@
 
 FlPicture *fl_picture_new(int width, int height, GError **error)
 {
-    if (width < 1 || height < 1 || (int64_t)width * height > FL_PICTURE_MAX_PIXELS) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "a picture of %dx%d pixels: expected 1 to %d million pixels", width, height,
-                    FL_PICTURE_MAX_PIXELS / 1000000);
+    g_autofree char *where = g_strdup_printf("a picture of %dx%d pixels", width, height);
+    if (width < 1 || height < 1) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: expected 1 or more", where);
         return NULL;
     }
+    if (!fl_limit_check(FL_LIMIT_IMAGE, (double)width * height / 1e6, where, error))
+        return NULL;
     uint8_t *rgba = fl_alloc((size_t)width * height, 4, "a picture", error);
     if (!rgba)
         return NULL;

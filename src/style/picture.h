@@ -6,9 +6,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** Pixels of one picture that may be read; a larger file is FL_ERROR_LIMIT. */
-#define FL_PICTURE_MAX_PIXELS (100 * 1000 * 1000)
-
 /** Straight sRGBA, 8 bits a channel, rows from the top without padding. */
 typedef struct FlPicture {
     int width, height; // pixels, >= 1

@@ -1,5 +1,6 @@
 #include "style/source.h"
 
+#include "base/limits.h"
 #include "style/bundle.h"
 #include "style/ffmpeg.h"
 #include "style/find.h"
@@ -169,15 +170,10 @@ static bool choose_size(Reader *reader, const FlPicture *first, const char *path
 static bool within_limit(const Reader *reader, int n_frames, GError **error)
 {
     const double pixels = (double)reader->width * reader->height * n_frames;
-    if (pixels <= FL_STYLE_MAX_PIXELS)
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                "%s: %d frames or more of %dx%d: a style has at most %.1f million pixels, which is "
-                "%d such frames; take fewer with --frames or --step, or smaller ones with --scale",
-                reader->source->path, n_frames, reader->width, reader->height,
-                FL_STYLE_MAX_PIXELS / 1e6,
-                (int)(FL_STYLE_MAX_PIXELS / ((double)reader->width * reader->height)));
-    return false;
+    g_autofree char *where =
+        g_strdup_printf("%s: %d frames or more of %dx%d (--frames, --step and --scale take less)",
+                        reader->source->path, n_frames, reader->width, reader->height);
+    return fl_limit_check(FL_LIMIT_STYLE, pixels / 1e6, where, error);
 }
 
 /* Crops and scales one frame and keeps it; `whole` is left to the caller. */

@@ -26,7 +26,7 @@ void fl_source_free(FlSource *source); // NULL is fine
 
 /**
  * Reads the frames that `how` selects, crops and scales them; all have one size, and together at
- * most FL_STYLE_MAX_PIXELS.
+ * most FL_LIMIT_STYLE.
  *
  * Returns: (element-type FlPicture); NULL with FL_ERROR_INPUT, _USAGE or _LIMIT set.
  */

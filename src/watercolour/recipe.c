@@ -1,5 +1,6 @@
 #include "watercolour/recipe.h"
 
+#include "base/limits.h"
 #include "style/bundle.h"
 #include "watercolour/keylines.h"
 #include "watercolour/kubelka_munk.h"
@@ -80,9 +81,10 @@ static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_int(lines, "frames", 1, 10000, &recipe->frames);
     if (recipe->frames == 0)
         fl_keylines_complain(lines, "frames", "frames: expected a whole number from 1 to 10000");
-    if ((double)recipe->width * recipe->height * recipe->frames > FL_STYLE_MAX_PIXELS)
-        fl_keylines_complain(lines, "size", "size: more than %.1f million pixels in all frames",
-                             FL_STYLE_MAX_PIXELS / 1e6);
+    const double millions = (double)recipe->width * recipe->height * recipe->frames / 1e6;
+    g_autoptr(GError) problem = NULL;
+    if (!fl_limit_check(FL_LIMIT_STYLE, millions, "size", &problem))
+        fl_keylines_complain(lines, "size", "%s", problem->message);
     const int n = fl_keylines_floats(lines, "steps", 1, 2, 1, 100000, steps);
     for (int i = 0; n > 0 && i < 2; i++)
         recipe->steps[i] = (int)steps[n == 2 ? i : 0];

@@ -1,0 +1,80 @@
+#include "base/limits.h"
+
+#include "base/suggest.h"
+#include <string.h>
+#include <unistd.h>
+
+static const struct {
+    const char *name;
+    int64_t preset, most; // preset 0: of this machine
+    const char *what;
+} limits[] = {
+#define FL_LIMIT(constant, name, preset, most, what) {name, preset, most, what},
+#include "base/limits.def"
+#undef FL_LIMIT
+};
+
+static int64_t chosen[FL_N_LIMITS]; // 0: the default
+
+static int64_t machine_mib(void)
+{
+    return (int64_t)sysconf(_SC_PHYS_PAGES) / 1024 * sysconf(_SC_PAGESIZE) / 1024;
+}
+
+int64_t fl_limit(FlLimit limit)
+{
+    if (chosen[limit] > 0)
+        return chosen[limit];
+    return limits[limit].preset > 0 ? limits[limit].preset : machine_mib();
+}
+
+static bool no_such_limit(const char *name, GError **error)
+{
+    const char *names[FL_N_LIMITS + 1] = {NULL};
+    for (int i = 0; i < FL_N_LIMITS; i++)
+        names[i] = limits[i].name;
+    g_autofree char *list = g_strjoinv(", ", (char **)names);
+    g_autofree char *hint = fl_did_you_mean(name, names);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no limit “%s”%s; there are: %s", name,
+                hint, list);
+    return false;
+}
+
+bool fl_limit_set(const char *text, GError **error)
+{
+    g_auto(GStrv) parts = g_strsplit(text, "=", 2);
+    const char *name = parts[0] ? parts[0] : "", *value = parts[0] && parts[1] ? parts[1] : "";
+    int i = 0;
+    while (i < FL_N_LIMITS && strcmp(limits[i].name, name) != 0)
+        i++;
+    if (i == FL_N_LIMITS)
+        return no_such_limit(name, error);
+    guint64 number = 0;
+    if (!g_ascii_string_to_unsigned(value, 10, 1, (guint64)limits[i].most, &number, NULL)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "limit %s: “%s” is not an integer from 1 to %" G_GINT64_FORMAT " (%s)", name,
+                    value, limits[i].most, limits[i].what);
+        return false;
+    }
+    chosen[i] = (int64_t)number;
+    return true;
+}
+
+char *fl_limit_help(void)
+{
+    g_autoptr(GString) text = g_string_new(NULL);
+    for (int i = 0; i < FL_N_LIMITS; i++)
+        g_string_append_printf(text, "%s (%" G_GINT64_FORMAT "): %s\n", limits[i].name,
+                               fl_limit((FlLimit)i), limits[i].what);
+    return g_string_free(g_steal_pointer(&text), FALSE);
+}
+
+bool fl_limit_check(FlLimit limit, double wanted, const char *where, GError **error)
+{
+    if (wanted <= (double)fl_limit(limit))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                "%s: %.10g %s, more than the limit of %" G_GINT64_FORMAT "; --limit %s=N raises it",
+                where, wanted, limits[limit].what, fl_limit(limit), limits[limit].name);
+    return false;
+}

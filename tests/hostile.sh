@@ -1,0 +1,208 @@
+#!/bin/bash
+# Drawings that ask for too much or for what is none of their business.
+# usage: hostile.sh PROGRAM FIXTURES; speaks TAP.
+# shellcheck source-path=SCRIPTDIR source=film.sh
+. "${0%/*}/film.sh"
+
+# svg FILE BODY: a drawing of 48 x 48 px.
+svg() {
+    echo "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xlink='http://www.w3.org/1999/xlink'" \
+        "width='48' height='48'>$2</svg>" >"$1"
+}
+
+look() { # look ARGUMENT...: what the drawing x.svg is made of
+    timeout 20 "$program" --list-regions --progress none "$@" x.svg >out 2>err
+}
+
+# limited SENTENCE LIMIT MESSAGE: x.svg is too much for the limit, and not for a larger one
+limited() {
+    look
+    local before=$?
+    look --limit "$2=${4:-1}"
+    [ $? = 1 ] && [ $before = 0 ] && says "$3" && says "; --limit $2=N raises it"
+    result $? "$1"
+}
+
+shape='<path d="M1 1h30v30h-30z" fill="#aa3311"/>'
+mkdir own && cd own || exit 1
+svg x.svg "<defs><g id='a'>$shape</g></defs><use href='#a'/><use href='#a' x='9'/>"
+limited 'too many elements are an error' elements 'x.svg: 5 elements of a drawing' 4
+limited 'copies that <use> makes count as elements' elements 'x.svg: 6 elements of a drawing' 5
+svg x.svg "<g><g><g>$shape</g></g></g>"
+limited 'too many elements in each other are an error' depth 'x.svg: 4 elements in each other' 3
+limited 'path data that is too long is an error' path 'x.svg: 15 characters of a path' 14
+head -c 3000000 /dev/zero | tr '\0' ' ' >padding
+svg x.svg "$shape$(cat padding)"
+limited 'a file that is too large is an error' drawing 'MiB of a drawing'
+gzip -9c x.svg >y.svg && mv y.svg x.svg # gzip is found by its first bytes
+limited 'so is one that is too large when unpacked' drawing 'MiB of a drawing'
+timeout 20 ffmpeg -v error -f lavfi -i color=red:s=1200x1000 -frames:v 1 big.png </dev/null 2>err
+svg x.svg "$shape<image href='big.png' width='30' height='30'/>"
+limited 'an image with too many pixels is an error' image 'x.svg: 1.2 million pixels of an image'
+svg x.svg "$shape<image xlink:href='data:image/png;base64,$(base64 -w0 big.png)' width='30' height='30'/>"
+limited 'so is one that is embedded' image 'x.svg: 1.2 million pixels of an image'
+
+svg x.svg "$shape"
+look -W 2000 --limit frame=3
+[ $? = 1 ] && says 'x.svg: 4 million pixels of a frame, more than the limit of 3; --limit frame=N'
+result $? 'a frame that is too large is an error'
+look -W 20000
+[ $? = 1 ] && says 'x.svg: 400 million pixels of a frame, more than the limit of 100'
+result $? 'the limit of a frame holds without an option'
+paint() { # paint ARGUMENT...
+    timeout 60 "$program" x.svg -s "$style" -o "${to:-o}/%d.png" --progress none "$@" >out 2>err
+}
+paint --limit style=1 -s 01
+[ $? = 1 ] && says 'million pixels of a style' && says '--limit style=N raises it'
+result $? 'a style that is too large is an error'
+paint -W 2000 --limit memory=100
+[ $? = 1 ] && says 'MiB of memory for painting' && says '--limit memory=N' && [ ! -e o ]
+result $? 'a render that needs too much memory is refused before it is begun'
+svg x.svg "$shape<circle r='9' fill='#2255aa'/>"
+paint --limit regions=1
+[ $? = 1 ] && says '2 regions that are painted' && [ ! -e o ]
+result $? 'too many regions are an error'
+paint --limit elements=0
+[ $? = 2 ] && says 'limit elements: “0” is not an integer from 1 to 1000000'
+result $? 'a limit out of range is told the range'
+paint --limit elemnts=9
+[ $? = 2 ] && says 'there is no limit “elemnts”; did you mean “elements”?'
+result $? 'a mistyped limit gets a suggestion'
+
+deep() { # deep N: N groups in each other
+    printf '<g>%.0s' $(seq "$1")
+    echo "$shape"
+    printf '</g>%.0s' $(seq "$1")
+}
+svg x.svg "$(deep 100000)"
+look
+[ $? = 1 ] && [ "$(wc -l <err)" = 1 ]
+result $? '100000 elements in each other are an error'
+look --limit depth=1000
+[ $? = 1 ] && says 'more than the limit of 1000'
+result $? 'and they are one with the limit raised'
+svg x.svg "$(deep 900)"
+look --limit depth=1000 && grep -q aa3311 out
+result $? '900 are drawn with the limit raised'
+
+# ten times ten times ... of a shape; of an entity
+body="<g id='u0'>$shape</g>"
+for i in 1 2 3 4 5 6 7 8 9; do
+    uses=$(printf "<use href='#u$((i - 1))'/>%.0s" 1 2 3 4 5 6 7 8 9 10)
+    body="$body<g id='u$i'>$uses</g>"
+done
+svg x.svg "<defs>$body</defs><use href='#u9'/>"
+look
+[ $? = 1 ] && says 'more than the limit of 200000; --limit elements=N raises it'
+result $? 'a billion copies by <use> are an error'
+{
+    echo '<!DOCTYPE svg [<!ENTITY e0 "lol">'
+    for i in 1 2 3 4 5 6 7 8 9; do
+        echo "<!ENTITY e$i '$(printf "&e$((i - 1));%.0s" 1 2 3 4 5 6 7 8 9 10)'>"
+    done
+    echo "]><svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'><text y='9'>&e9;</text>$shape</svg>"
+} >x.svg
+(ulimit -v 2000000 && look)
+[ $? != 124 ] && [ "$(wc -l <err)" -le 1 ]
+result $? 'a billion laughs end soon and in little memory'
+
+# What a drawing must not see: the same bytes as if it were not there.
+cd ..
+mkdir outside
+echo "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'><rect id='r' width='48' height='48' fill='red'/></svg>" >outside/secret.svg
+cp own/big.png outside/secret.png
+echo 'path { fill: red !important }' >outside/secret.css
+echo secret >outside/secret.txt
+cd own || exit 1
+ln -s ../outside/secret.png link.png
+ln -s ../outside linked
+
+# unseen SENTENCE BODY [WARNING]: paints the same whether outside is there or not
+unseen() {
+    local warning=${3:-}
+    rm -rf with without
+    if [[ $2 == '<!DOCTYPE'* ]]; then echo "$2" >x.svg; else svg x.svg "$shape$2"; fi
+    to=with paint
+    local status=$?
+    cp err err1
+    mv ../outside ../gone
+    to=without paint
+    mv ../gone ../outside
+    cp err1 err
+    [ $status = 0 ] && diff -r with without >/dev/null && [ -e with/1.png ] && grep -qF -- "$warning" err
+    result $? "$sentence$1"
+}
+sentence='a drawing does not see '
+unseen 'an image outside its folder' "<image href='../outside/secret.png' width='48' height='48'/>" \
+    'the image "../outside/secret.png" is outside the drawing'
+unseen 'an image by its whole path' "<image href='$folder/outside/secret.png' width='48' height='48'/>" \
+    'is outside the drawing'
+unseen 'an image by a file address' "<image href='file://$folder/outside/secret.png' width='48' height='48'/>" \
+    'is outside the drawing'
+unseen 'an image by a link' "<image href='link.png' width='48' height='48'/>" 'is outside the drawing'
+unseen 'an image in a folder that is a link' "<image href='linked/secret.png' width='48' height='48'/>" \
+    'is outside the drawing'
+unseen 'a drawing as an image' "<image href='../outside/secret.svg' width='48' height='48'/>" \
+    'is outside the drawing'
+unseen 'what <use> takes from outside' "<use href='../outside/secret.svg#r'/>"
+unseen 'what <use> takes from a link' "<use href='linked/secret.svg#r'/>"
+unseen 'a style sheet outside' "<style>@import url('../outside/secret.css');</style>"
+unseen 'a style sheet by a link' "<style>@import 'linked/secret.css';</style>"
+unseen 'an image of a filter' "<filter id='f'><feImage href='../outside/secret.png'/></filter>
+    <rect width='48' height='48' filter='url(#f)'/>" 'is outside the drawing'
+unseen 'a DTD that is a file' "<!DOCTYPE svg SYSTEM '../outside/secret.txt'>
+    <svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'>$shape</svg>"
+unseen 'what is no file' "<image href='ftp://127.0.0.1:9/secret.png' width='48' height='48'/>" \
+    'is not in a file and is left out: nothing is fetched'
+{
+    echo "<!DOCTYPE svg [<!ENTITY x SYSTEM '../outside/secret.txt'>]>"
+    echo "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'>$shape<text y='20'>&x;</text></svg>"
+} >x.svg
+paint
+[ $? = 1 ] && says "Entity 'x' not defined" && ! grep -q secret err
+result $? 'an entity that is a file is an error, and the file is not read'
+
+# A server that notes who calls.
+/usr/bin/python3 - calls <<'EOF' &
+import http.server, sys
+class Note(http.server.BaseHTTPRequestHandler):
+    def do_GET(self):
+        open(sys.argv[1], 'a').write(self.path + '\n')
+        self.send_error(404)
+    def log_message(self, *words):
+        pass
+server = http.server.HTTPServer(('127.0.0.1', 0), Note)
+open('port', 'w').write(str(server.server_port) + '\n')
+server.serve_forever()
+EOF
+server=$!
+for _ in $(seq 100); do [ -s port ] || sleep 0.1; done
+if [ -s port ]; then
+    here=http://127.0.0.1:$(cat port)
+    {
+        echo "<?xml-stylesheet href='$here/1.css'?>"
+        echo "<!DOCTYPE svg SYSTEM '$here/2.dtd' [<!ENTITY % p SYSTEM '$here/3.ent'>%p;]>"
+        echo "<svg xmlns='http://www.w3.org/2000/svg' xmlns:xi='http://www.w3.org/2001/XInclude'"
+        echo "width='48' height='48'><style>@import url('$here/4.css');"
+        echo "@font-face { font-family: f; src: url('$here/5.ttf') }</style>$shape"
+        echo "<image href='$here/6.png' width='48' height='48'/><use href='$here/7.svg#r'/>"
+        echo "<xi:include href='$here/8.svg'/><rect width='9' height='9' fill='url($here/9.svg#p)'/>"
+        echo "<text y='20' font-family='f'>t</text></svg>"
+    } >x.svg
+    paint
+    [ $? = 0 ] && [ ! -e calls ] && (exec 3<>"/dev/tcp/127.0.0.1/$(cat port)" &&
+        printf 'GET /own HTTP/1.0\r\n\r\n' >&3 && cat <&3 >/dev/null) && grep -qx /own calls
+    result $? 'nothing in a drawing calls a server'
+else
+    n=$((n + 1))
+    echo "ok $n - nothing in a drawing calls a server # SKIP no server here"
+fi
+kill $server 2>/dev/null
+
+svg x.svg "$shape<image href='big.png' width='48' height='48'/>"
+rm -rf with without
+to=with paint && mv big.png gone.png && to=without paint && ! diff -r with without >/dev/null &&
+    grep -qF 'the image "big.png" does not exist and is left out' err
+result $? 'but it does see one in its folder, and says when it is gone'
+
+echo "1..$n"
