@@ -25,11 +25,13 @@ static float bump(uint64_t seed, const FlPaper *paper, float x, float y)
 
 /* One fibre: a line that turns a little all the way, as wide as a px. Turned without sin and cos,
    whose last bit differs between C libraries. */
-static void draw_fibre(float *grid, int width, int height, FlRng *rng, float length, float scale)
+static void draw_fibre(float *grid, int width, int height, FlRng *rng, const FlPaper *paper,
+                       float scale)
 {
     float x = fl_rng_float(rng) * width, y = fl_rng_float(rng) * height;
     float dx = fl_rng_float(rng) - 0.5f, dy = fl_rng_float(rng) - 0.5f;
-    float turn = (fl_rng_float(rng) - 0.5f) * 0.05f;
+    const float length = paper->fibre_px * scale, curl = paper->fibre_curl;
+    float turn = (fl_rng_float(rng) - 0.5f) * 0.05f * curl;
     const float strength = 0.4f + 0.6f * fl_rng_float(rng);
     const int steps = (int)(length * (0.4f + 1.2f * fl_rng_float(rng)));
     const float radius = 0.5f * scale * (0.6f + 0.6f * fl_rng_float(rng));
@@ -38,7 +40,7 @@ static void draw_fibre(float *grid, int width, int height, FlRng *rng, float len
         const float norm = 1 / sqrtf(dx * dx + dy * dy + 1e-12f);
         dx *= norm, dy *= norm;
         x += dx, y += dy;
-        turn = clamp(turn + (fl_rng_float(rng) - 0.5f) * 0.03f, -0.08f, 0.08f);
+        turn = clamp(turn + (fl_rng_float(rng) - 0.5f) * 0.03f * curl, -0.08f, 0.08f);
         const float turned = dx - turn * dy;
         dy += turn * dx, dx = turned;
         for (int j = (int)y - reach; j <= (int)y + reach; j++)
@@ -59,7 +61,7 @@ static void draw_fibres(FlSheet *sheet, const FlRecipe *recipe, float *grid)
     const int n = (int)(recipe->paper.fibres * recipe->width * recipe->height / 100);
     for (int i = 0; i < n; i++) {
         FlRng rng = {fl_key(fl_key(recipe->seed, KEY_FIBRES), (uint64_t)i)};
-        draw_fibre(grid, sheet->width, sheet->height, &rng, recipe->paper.fibre_px * scale, scale);
+        draw_fibre(grid, sheet->width, sheet->height, &rng, &recipe->paper, scale);
     }
 }
 

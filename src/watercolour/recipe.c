@@ -26,7 +26,17 @@ static FlRecipe *defaults(void)
         .mask_threshold = 0.02f,
         .mask_margin = 3,
         .mask_blur = 1,
-        .paper = {{244, 239, 228}, 4, 0.6f, 1.3f, 0, 30, 0, {0.6f, 0.9f}, 0.5f, 40, 0.3f, 0.03f},
+        .paper = {.colour = {244, 239, 228},
+                  .grain_px = 4,
+                  .roughness = 0.6f,
+                  .stretch = 1.3f,
+                  .fibre_px = 30,
+                  .fibre_curl = 1,
+                  .capacity = {0.6f, 0.9f},
+                  .patchiness = 0.5f,
+                  .patch_px = 40,
+                  .pinning = 0.3f,
+                  .shading = 0.03f},
         .flow = {.viscosity = 0.1f,
                  .drag = 0.01f,
                  .slope = 1,
@@ -110,6 +120,7 @@ static void read_paper(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "stretch", 0.1f, 10, &paper->stretch);
     fl_keylines_float(lines, "fibres", 0, 100, &paper->fibres);
     fl_keylines_float(lines, "fibre-length", 1, 1000, &paper->fibre_px);
+    fl_keylines_float(lines, "fibre-curl", 0, 1, &paper->fibre_curl);
     fl_keylines_float(lines, "fibre-pull", 0, 0.95f, &paper->fibre_pull);
     fl_keylines_floats(lines, "capacity", 2, 2, 0.01f, 10, paper->capacity);
     fl_keylines_float(lines, "patchiness", 0, 0.95f, &paper->patchiness);

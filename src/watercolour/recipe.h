@@ -26,6 +26,7 @@ typedef struct FlPaper {
     float stretch;     // bumps are longer along x by this factor
     float fibres;      // fibres per 100 square px
     float fibre_px;    // their length
+    float fibre_curl;  // how much they bend, 0: straight, 1: like ferns
     float fibre_pull;  // how much better water runs along a fibre, 0..0.95
     float capacity[2]; // cmin, cmax: water that fits between h = 0 and h = 1
     float patchiness;  // unevenness of the permeability in the large, 0..0.95
