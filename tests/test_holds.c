@@ -119,6 +119,17 @@ static void on_twos_every_picture_stays_for_two_frames(void)
             g_assert_cmpfloat(change(&film, f - 1, f), >, 1);
 }
 
+static void a_region_on_twos_keeps_its_shape_in_a_film_on_ones(void)
+{
+    const FlSetting settings[] = {style(), {"navy-335588", "hold", "2"}};
+    g_auto(Film) film = painted(14, settings, 2, false);
+    for (int f = 1; f < FRAMES; f++)
+        if (f % 2 == 1)
+            g_assert_cmpfloat(change(&film, f - 1, f), ==, 0);
+        else
+            g_assert_cmpfloat(change(&film, f - 1, f), >, 1);
+}
+
 /* The paint that changes between two frames, beside how it changes anywhere in the film. */
 static double jump(const Film *film)
 {
@@ -156,6 +167,7 @@ int main(int argc, char **argv)
     TEST(paint_boils_at_the_pace_that_is_asked_for);
     TEST(boiling_paint_goes_to_and_fro_in_its_recording);
     TEST(on_twos_every_picture_stays_for_two_frames);
+    TEST(a_region_on_twos_keeps_its_shape_in_a_film_on_ones);
     TEST(a_loop_ends_where_it_began);
     TEST(a_held_drawing_loops_on_twos);
     return g_test_run();

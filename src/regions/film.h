@@ -108,6 +108,7 @@ void fl_runs_map(const FlFilm *film, const FlRuns *runs, uint8_t *rgba);
 /** The colour of a region in such a picture, for a legend. */
 void fl_region_colour(const FlFilm *film, int region, uint8_t rgb[3]);
 
+void fl_run_clear(FlRun *run);
 void fl_runs_free(FlRuns *runs); // NULL is fine
 void fl_film_free(FlFilm *film); // NULL is fine
 

@@ -286,14 +286,19 @@ void fl_runs_mask(const FlRuns *runs, int region, int width, int height, uint8_t
             coverage[p] = fl_over(runs->run[r].coverage[p], coverage[p]);
 }
 
+void fl_run_clear(FlRun *run)
+{
+    free(run->coverage);
+    free(run->picture);
+    run->coverage = run->picture = NULL;
+}
+
 void fl_runs_free(FlRuns *runs)
 {
     if (!runs)
         return;
-    for (int r = 0; r < runs->n; r++) {
-        free(runs->run[r].coverage);
-        free(runs->run[r].picture);
-    }
+    for (int r = 0; r < runs->n; r++)
+        fl_run_clear(&runs->run[r]);
     g_free(runs->run);
     g_free(runs);
 }

@@ -4,6 +4,7 @@
 #include "compose/colourise.h"
 #include "output/name.h"
 #include "params/text.h"
+#include "render/held.h"
 #include "style/picture.h"
 #include <string.h>
 
@@ -168,7 +169,7 @@ bool fl_composite_init(FlComposite *composite, const FlPlan *plan, const FlBackg
                        int frame, bool with_16, GError **error)
 {
     *composite = (FlComposite){0};
-    composite->runs = fl_film_runs(plan->film, frame - frame % plan->hold, error);
+    composite->runs = fl_held_runs(plan, frame, error);
     return composite->runs && make_layers(composite, plan, background, error) &&
            compose(composite, plan, background, frame, with_16, error);
 }
