@@ -353,6 +353,37 @@ static void the_picture_has_the_size_that_is_asked_for(void)
     }
 }
 
+/* A house that stands still and a ball that comes from the left, each frame moved to 0,0. */
+static void frames_that_begin_at_nought_are_put_back(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < 4; t++) {
+        const double ball = 10 + 25 * t, left = MIN(ball, 50); // centre 8 px further right
+        g_autofree char *name = g_strdup_printf("walk.%04d.svg", t + 1);
+        g_autofree char *text =
+            g_strdup_printf("<svg xmlns='http://www.w3.org/2000/svg'>"
+                            "<path d='M%.1f,0h30v40h-30z' style='fill:rgb(200,40,40)'/>"
+                            "<circle cx='%.1f' cy='20' r='8' style='fill:rgb(40,40,200)'/></svg>",
+                            50 - left, ball + 8 - left);
+        g_autofree char *path = scratch_write(folder, name, text);
+    }
+    const FlFilmOptions options = {.registered = true};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    const int width = fl_film_width(film), height = fl_film_height(film);
+    g_assert_cmpint(width, ==, 91); // from the ball's first left edge at 10 to its last right one
+    g_assert_cmpint(height, ==, 40);
+    g_autofree uint8_t *first = g_malloc((size_t)width * height);
+    g_autofree uint8_t *mask = g_malloc((size_t)width * height);
+    g_assert_true(fl_film_mask(film, 0, 0, first, NULL));
+    for (int t = 0; t < 4; t++) {
+        g_assert_true(fl_film_mask(film, t, 0, mask, NULL));
+        g_assert_cmpmem(mask, width * height, first, width * height);
+        g_assert_true(fl_film_mask(film, t, 1, mask, NULL));
+        g_assert_cmpint(mask[20 * width + 8 + 25 * t], ==, 255);
+        g_assert_cmpint(mask[20 * width + (8 + 25 * t + 30) % width], ==, 0);
+    }
+}
+
 static void an_empty_frame_is_a_frame(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -385,6 +416,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
 #define TEST(path, function) g_test_add_func("/film/" path, function)
+    TEST("registered", frames_that_begin_at_nought_are_put_back);
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);
     TEST("limbs-that-are-strokes-are-painted", limbs_that_are_strokes_are_painted);
     TEST("strokes-over-fills-are-drawn-as-they-are", strokes_over_fills_are_drawn_as_they_are);

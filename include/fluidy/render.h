@@ -37,6 +37,14 @@ typedef enum FlStrokes {
     FL_STROKES_DROP,  /**< left out */
 } FlStrokes;
 
+/** Whether frames are put where they belong. */
+typedef enum FlRegistration {
+    FL_REGISTRATION_UNSET, /**< as the config says, else as FL_REGISTRATION_OFF */
+    FL_REGISTRATION_OFF,
+    FL_REGISTRATION_ON, /**< frames were moved so that each drawing begins at 0,0, as OpenToonz
+                           does: moved back so that most of each holds still */
+} FlRegistration;
+
 /** In which light layers are blended. */
 typedef enum FlBlend {
     FL_BLEND_UNSET, /**< as the config says, else as FL_BLEND_SRGB */
@@ -86,7 +94,8 @@ typedef struct FlRenderOptions {
     const char *frames; /**< "1001-1096", "1-96x2", "1,5,9"; NULL: all that are found */
     FlMissing missing;
     const char *canvas; /**< "WxH" or "WxH+X+Y" in px, for SVGs without a size; NULL: theirs */
-    const char *flow;   /**< pattern of flow files; may hold {region}; NULL: made from the masks */
+    FlRegistration registration;
+    const char *flow; /**< pattern of flow files; may hold {region}; NULL: made from the masks */
     FlRegionKey key;
     FlStrokes stroke;
     bool strict; /**< a warning about an SVG is an error: FL_ERROR_INPUT */

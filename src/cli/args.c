@@ -191,6 +191,8 @@ static gboolean read_flag(const char *name, const char *value, gpointer data, GE
         args->render.dry_run = true;
     if (strcmp(name, "--loop") == 0)
         args->render.loop = true;
+    if (strcmp(name, "--register") == 0)
+        args->render.registration = FL_REGISTRATION_ON;
     if (strcmp(name, "--strict") == 0)
         args->render.strict = true;
     if (strcmp(name, "--resume") == 0)
@@ -255,6 +257,8 @@ static const GOptionEntry common[] = {
 static const GOptionEntry more[] = {
     {"missing", 0, VALUE(read_choice), "a gap in the numbers: error, hold or skip (error)", "WORD"},
     {"canvas", 0, VALUE(read_path), "size of drawings that have none", "WxH[+X+Y]"},
+    {"register", 0, FLAG(read_flag), "move frames back that begin at 0,0, as OpenToonz writes them",
+     NULL},
     {"dpi", 0, VALUE(read_number), "pixels per inch of drawings sized in mm or in (96)", "N"},
     {"key", 0, VALUE(read_choice),
      "what makes leaves one region: auto, fill, id, class, label or tree (auto)", "WORD"},

@@ -199,9 +199,11 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
     *height = box.height;
     if (has_box && box.width > 0 && box.height > 0)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                "%s: the drawing has no size and no viewBox; give one, such as --canvas 1920x1080",
-                svg->path);
+    g_set_error(
+        error, FL_ERROR, FL_ERROR_INPUT,
+        "%s: the drawing has no size and no viewBox; give one, such as --canvas 1920x1080, or let "
+        "--register find one",
+        svg->path);
     return false;
 }
 

@@ -150,6 +150,7 @@ static const struct ProjectKey {
     {"layers", FILE_PATTERN, AT(layers)},
     {"missing", WORD, AT(missing), "error|hold|skip"},
     {"output", FILE_PATTERN, AT(output)},
+    {"register", WORD, AT(registration), "off|on"},
     {"stroke", WORD, AT(stroke), "keep|paint|drop"},
 #undef AT
 };
@@ -397,6 +398,7 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
     COMPLETE(layers, NULL);
     COMPLETE(missing, FL_MISSING_ERROR);
     COMPLETE(key, FL_KEY_AUTO);
+    COMPLETE(registration, FL_REGISTRATION_OFF);
     COMPLETE(stroke, FL_STROKES_KEEP);
     COMPLETE(blend, FL_BLEND_SRGB);
     COMPLETE(gap, 0);

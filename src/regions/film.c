@@ -160,6 +160,7 @@ static void remember(FlFilm *film, const FlScan *scan)
         FlFilmFrame *frame = &film->frame[t];
         frame->page_width = scan->frame[t].page_width;
         frame->page_height = scan->frame[t].page_height;
+        frame->canvas = scan->frame[t].canvas;
         frame->step = g_new0(FlStep, seen->len + 1);
         for (guint i = 0; i < seen->len; i++) {
             const FlSeen *s = &g_array_index(seen, FlSeen, i);
@@ -203,7 +204,7 @@ static FlFilm *make_film(const FlFilmOptions *options, FlSequence *sequence, FlS
     }
     FlFilm *film = g_new0(FlFilm, 1);
     *film = (FlFilm){.sequence = sequence,
-                     .svg = scan->svg,
+                     .dpi = scan->svg.dpi,
                      .width = scan->width,
                      .height = scan->height,
                      .regions = g_array_new(FALSE, TRUE, sizeof(FlRegion))};

@@ -19,11 +19,12 @@ typedef struct FlFilmFrame {
     int n;
     FlStep *step;                   // bottom up
     double page_width, page_height; // px of the picture
+    FlCanvas canvas;                // as in FlSvgOptions
 } FlFilmFrame;
 
 struct FlFilm {
     FlSequence *sequence;
-    FlSvgOptions svg;
+    double dpi;
     int width, height;
     FlFilmFrame *frame;
     GArray *regions; // FlRegion

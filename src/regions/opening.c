@@ -88,6 +88,7 @@ FlFilm *fl_film_of_options(const FlRenderOptions *options, const FlConfig *confi
                             .range = options->frames,
                             .missing = options->missing,
                             .dpi = options->dpi,
+                            .registered = options->registration == FL_REGISTRATION_ON,
                             .width = options->width,
                             .height = options->height,
                             .scale = options->scale,

@@ -2,6 +2,7 @@
 
 #include "base/limits.h"
 #include "regions/raster.h"
+#include "regions/register.h"
 #include "regions/selfcheck.h"
 #include <math.h>
 #include <string.h>
@@ -323,10 +324,11 @@ static bool open_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GErr
     const char *file = scan->sequence->file[t];
     const int number = scan->sequence->number[t];
     double width, height;
-    f->svg = fl_svg_open(file, number, &scan->svg, warnings, error);
+    FlScanFrame *frame = &scan->frame[t];
+    const FlSvgOptions options = {frame->canvas, scan->svg.dpi};
+    f->svg = fl_svg_open(file, number, &options, warnings, error);
     if (!f->svg || !fl_svg_size(f->svg, &width, &height, error))
         return false;
-    FlScanFrame *frame = &scan->frame[t];
     frame->page_width = width * scan->scale;
     frame->page_height = height * scan->scale;
     f->factor = MAX(1, (double)MAX(scan->width, scan->height) / LOOK_PX);
@@ -363,8 +365,9 @@ static bool scan_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GErr
 static bool set_size(FlScan *scan, const FlFilmOptions *o, GError **error)
 {
     double width, height;
+    const FlSvgOptions options = {scan->frame[0].canvas, scan->svg.dpi};
     g_autoptr(FlSvg) svg =
-        fl_svg_open(scan->sequence->file[0], scan->sequence->number[0], &scan->svg, NULL, error);
+        fl_svg_open(scan->sequence->file[0], scan->sequence->number[0], &options, NULL, error);
     if (!svg || !fl_svg_size(svg, &width, &height, error))
         return false;
     if (o->scale < 0 || o->width < 0 || o->height < 0 ||
@@ -402,7 +405,10 @@ bool fl_scan_init(FlScan *scan, const FlSequence *sequence, const FlFilmOptions 
                      .n_frames = sequence->n,
                      .frame = g_new0(FlScanFrame, sequence->n)};
     fl_strings_add(&scan->strings, "");
-    if (!set_size(scan, options, error))
+    for (int t = 0; t < scan->n_frames; t++)
+        scan->frame[t].canvas = options->canvas;
+    if ((options->registered && !fl_register(scan, warnings, error)) ||
+        !set_size(scan, options, error))
         return false;
     bool good = true;
 #pragma omp parallel for ordered schedule(static, 1)

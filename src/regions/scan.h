@@ -34,6 +34,7 @@ typedef struct FlSeen {
 typedef struct FlScanFrame {
     GArray *seen;                   // FlSeen, bottom up
     double page_width, page_height; // px of the picture
+    FlCanvas canvas;                // the frame's page
 } FlScanFrame;
 
 typedef struct FlScan {

@@ -149,6 +149,7 @@ static void add_options(FlFingerprint *print, const FlPlan *plan)
     add_number(print, "dpi", o->dpi);
     add_number(print, "key", o->key);
     add_number(print, "stroke", o->stroke);
+    add_number(print, "register", o->registration);
     fl_fingerprint_add(print, "region", o->only_region);
     fl_fingerprint_add(print, "layers", o->layers);
     fl_fingerprint_add(print, "background", o->background);
