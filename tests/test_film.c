@@ -353,6 +353,44 @@ static void the_picture_has_the_size_that_is_asked_for(void)
     }
 }
 
+static FlFilm *mixed_film(const char *folder, const char *mode, const char *fill,
+                          FlWarnings *warnings)
+{
+    g_autofree char *content =
+        g_strdup_printf("<rect width='100' height='100' fill='#fff'/>"
+                        "<circle cx='40' cy='50' r='30' fill='#cc8844'/>"
+                        "<path d='M30,30h50v30h-50z' fill='%s' style='mix-blend-mode:%s'/>",
+                        fill, mode);
+    g_autofree char *path = scratch_svg(folder, "mixed.svg", content);
+    const FlFilmOptions options = {0};
+    return open_film(&options, path, warnings);
+}
+
+static void blend_modes_are_drawn_or_named(void)
+{
+    static const struct {
+        const char *mode, *fill, *warning;
+        double least_db;
+    } cases[] = {
+        {"multiply", "#808080", NULL, 60},
+        {"screen", "#404040", NULL, 60},
+        {"multiply", "#80c0ff", "*#*its blend mode, multiply, is drawn as *over white only*", 20},
+        {"color-burn", "#808080", "*#*its blend mode is left out*", 5},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autoptr(Scratch) folder = scratch_make();
+        g_autoptr(FlWarnings) warnings = fl_warnings_new();
+        g_autoptr(FlFilm) film = mixed_film(folder, cases[i].mode, cases[i].fill, warnings);
+        g_assert_cmpint(fl_film_regions(film), ==, 3);
+        g_assert_cmpfloat(flat_psnr(film, 0), >=, cases[i].least_db);
+        g_assert_cmpint(fl_warnings_count(warnings), ==, cases[i].warning ? 1 : 0);
+        if (!cases[i].warning)
+            continue;
+        g_autofree char *line = fl_warning_line(fl_warnings_get(warnings, 0));
+        g_assert_true(g_pattern_match_simple(cases[i].warning, line));
+    }
+}
+
 /* A house that stands still and a ball that comes from the left, each frame moved to 0,0. */
 static void frames_that_begin_at_nought_are_put_back(void)
 {
@@ -416,6 +454,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
 #define TEST(path, function) g_test_add_func("/film/" path, function)
+    TEST("blend-modes", blend_modes_are_drawn_or_named);
     TEST("registered", frames_that_begin_at_nought_are_put_back);
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);
     TEST("limbs-that-are-strokes-are-painted", limbs_that_are_strokes_are_painted);

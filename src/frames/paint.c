@@ -22,7 +22,7 @@ typedef struct Source {
 
 typedef struct Op {
     bool stroke;
-    bool blended;
+    FlMix mix;
     double alpha; // of the groups around
     double width; // of a stroke, px; else 0
     Source source;
@@ -32,7 +32,7 @@ typedef struct Op {
 typedef struct Context {
     char surface[16];
     Source source;
-    bool blended;
+    FlMix mix;
     double line_width, scale; // of the pen
 } Context;
 
@@ -44,6 +44,19 @@ typedef struct Reader {
     double sum[4], weight;
     int n_stops;
 } Reader;
+
+uint8_t fl_mix_overlay(FlMix mix, uint8_t rgb[3])
+{
+    if (mix != FL_MIX_MULTIPLY && mix != FL_MIX_SCREEN)
+        return 255;
+    const int flip = mix == FL_MIX_MULTIPLY ? 255 : 0; // multiply is screen of the negatives
+    int most = 0;
+    for (int c = 0; c < 3; c++)
+        most = MAX(most, abs(flip - rgb[c]));
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (uint8_t)abs(flip - (most ? (abs(flip - rgb[c]) * 255 + most / 2) / most : 0));
+    return (uint8_t)most;
+}
 
 static void source_clear(Source *source)
 {
@@ -191,14 +204,14 @@ static void set_source(Reader *r, const char *line)
 }
 
 /** A group's surface is drawn: what was drawn on it belongs to the current surface now. */
-static void merge_surface(Reader *r, const char *surface, double alpha, bool blended)
+static void merge_surface(Reader *r, const char *surface, double alpha, FlMix mix)
 {
     for (guint i = 0; i < r->ops->len; i++) {
         Op *op = &g_array_index(r->ops, Op, i);
         if (strcmp(op->surface, surface) != 0)
             continue;
         op->alpha *= alpha;
-        op->blended |= blended;
+        op->mix = mix == FL_MIX_OVER ? op->mix : mix;
         g_strlcpy(op->surface, top(r)->surface, sizeof op->surface);
     }
 }
@@ -215,11 +228,11 @@ static void draw(Reader *r, bool stroke, double alpha)
     Context *context = top(r);
     const Source *source = &context->source;
     if (source->surface[0] && !source->repeats) {
-        merge_surface(r, source->surface, alpha, context->blended);
+        merge_surface(r, source->surface, alpha, context->mix);
         return;
     }
     Op op = {.stroke = stroke,
-             .blended = context->blended,
+             .mix = context->mix,
              .alpha = alpha,
              .width = stroke ? context->line_width * context->scale : 0,
              .source = source_copy(source)};
@@ -259,6 +272,14 @@ static void exchange_contexts(Reader *r)
     last[0] = before;
 }
 
+static FlMix mix_of(const char *line)
+{
+    return strstr(line, "//OVER ")       ? FL_MIX_OVER
+           : strstr(line, "//MULTIPLY ") ? FL_MIX_MULTIPLY
+           : strstr(line, "//SCREEN ")   ? FL_MIX_SCREEN
+                                         : FL_MIX_OTHER;
+}
+
 static void read_line(Reader *r, const char *line)
 {
     char op[24];
@@ -292,7 +313,7 @@ static void read_line(Reader *r, const char *line)
     } else if (strcmp(op, "set-matrix") == 0 && line[0] != ' ') {
         set_matrix(r, line);
     } else if (strcmp(op, "set-operator") == 0) {
-        top(r)->blended = !strstr(line, "//OVER");
+        top(r)->mix = mix_of(line);
     } else if (strcmp(op, "mask") == 0) {
         draw(r, false, strstr(line, " a mask") ? g_ascii_strtod(line, NULL) : 1);
     } else if (strcmp(op, "stroke+") == 0 || strcmp(op, "stroke") == 0) {
@@ -338,7 +359,7 @@ static FlPainted join(const GArray *ops, int which, FlPart part)
         if (which != 2 && op->stroke != (which == 1))
             continue;
         painted.stroke = painted.stroke && op->stroke;
-        painted.blended = painted.blended || op->blended;
+        painted.mix = first || op->mix == painted.mix ? op->mix : FL_MIX_OVER;
         painted.width = MAX(painted.width, (float)op->width);
         FlPaint paint = op_paint(op);
         if (first) {

@@ -13,6 +13,14 @@ typedef enum FlPaintKind {
     FL_PAINT_MIXED,    // several of these
 } FlPaintKind;
 
+/** How a leaf is mixed with what lies below it. */
+typedef enum FlMix {
+    FL_MIX_OVER,
+    FL_MIX_MULTIPLY,
+    FL_MIX_SCREEN,
+    FL_MIX_OTHER, // any other blend mode
+} FlMix;
+
 /** The parts of a leaf that are drawn apart. */
 typedef enum FlPart {
     FL_PART_WHOLE,
@@ -35,13 +43,21 @@ typedef struct FlPaint {
 /** A part of a leaf and its paint. */
 typedef struct FlPainted {
     FlPart part;
-    bool stroke;  // the part consists of strokes only
-    bool blended; // with a blend mode or another operator than OVER
-    float width;  // of its widest stroke, px of the page it was read on; 0: no stroke
+    bool stroke; // the part consists of strokes only
+    FlMix mix;   // of all of it; OVER if it has several
+    float width; // of its widest stroke, px of the page it was read on; 0: no stroke
     FlPaint paint;
 } FlPainted;
 
 #define FL_MOST_PARTS 2
+
+/**
+ * Turns a colour that is mixed into the transparent colour that does the same where it is laid
+ * over: for multiply exactly over white, for screen over black, and greys everywhere.
+ *
+ * Returns: the opacity, of 255, that it takes; rgb stays for the other modes.
+ */
+uint8_t fl_mix_overlay(FlMix mix, uint8_t rgb[3]);
 
 /**
  * Reads the drawing commands that cairo's script surface wrote for one leaf.

@@ -172,7 +172,11 @@ static void remember(FlFilm *film, const FlScan *scan)
                              .part = (uint8_t)s->part,
                              .flat = s->kind == FL_PAINT_FLAT,
                              .rgb = {s->rgb[0], s->rgb[1], s->rgb[2]},
-                             .alpha = s->peak};
+                             .alpha = s->peak,
+                             .drawn = s->peak,
+                             .mix = (uint8_t)s->mix};
+            if (step->flat)
+                step->alpha = (uint8_t)((s->peak * fl_mix_overlay(s->mix, step->rgb) + 127) / 255);
             memcpy(step->box, s->box, sizeof step->box);
         }
     }

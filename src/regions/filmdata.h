@@ -4,14 +4,16 @@
 
 #include "regions/film.h"
 
-/** How one part of a leaf is drawn in one frame. 28 bytes: this is what grows with the film. */
+/** How one part of a leaf is drawn in one frame. 32 bytes: this is what grows with the film. */
 typedef struct FlStep {
     int32_t leaf;   // index of the leaf; of a unit -1 - its index
     int16_t region; // index into the film's regions
     uint8_t part;   // FlPart
     uint8_t flat;   // else drawn as a picture
     uint8_t rgb[3];
-    uint8_t alpha; // FlPaint.peak
+    uint8_t alpha; // of its run
+    uint8_t drawn; // FlPaint.peak: what is drawn where it is covered
+    uint8_t mix;   // FlMix, of a picture; flat ones have rgb and alpha of fl_mix_overlay()
     float box[4];  // x0, y0, x1, y1 that it lies in, px
 } FlStep;
 

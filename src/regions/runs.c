@@ -11,7 +11,7 @@
 typedef struct Run {
     int region;
     bool flat;
-    uint8_t rgb[3], alpha;
+    uint8_t rgb[3], alpha, drawn, mix;
     GArray *steps; // indices
 } Run;
 
@@ -37,6 +37,7 @@ static bool meets(const Run *run, const FlFilmFrame *frame, const FlStep *step)
 static bool fits(const Run *run, const FlFilmFrame *frame, const FlStep *step)
 {
     if (run->region != step->region || run->flat != step->flat || run->alpha != step->alpha ||
+        run->drawn != step->drawn || run->mix != step->mix ||
         (step->flat && memcmp(run->rgb, step->rgb, 3) != 0))
         return false;
     return step->alpha == 255 || !meets(run, frame, step);
@@ -60,11 +61,9 @@ static GArray *plan(const FlFilmFrame *frame, int region)
                 break;
         }
         if (!found) {
-            const Run run = {step->region,
-                             step->flat,
-                             {step->rgb[0], step->rgb[1], step->rgb[2]},
-                             step->alpha,
-                             g_array_new(FALSE, FALSE, sizeof(int))};
+            const Run run = {
+                step->region, step->flat, {step->rgb[0], step->rgb[1], step->rgb[2]}, step->alpha,
+                step->drawn,  step->mix,  g_array_new(FALSE, FALSE, sizeof(int))};
             g_array_append_val(runs, run);
             found = &g_array_index(runs, Run, runs->len - 1);
         }
@@ -153,7 +152,7 @@ static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, 
     const int stride = cairo_image_surface_get_stride(stage->coverage);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
     uint8_t solid[256];
-    fill_solid(solid, step->alpha);
+    fill_solid(solid, step->drawn);
     for (int y = box.y0; y < box.y1; y++) {
         const unsigned char *in = drawn + (size_t)y * stride;
         uint8_t *out = coverage + (size_t)y * width;
@@ -199,15 +198,20 @@ static bool draw_picture(Stage *stage, const Run *run, uint8_t *coverage, uint8_
     const int stride = cairo_image_surface_get_stride(stage->picture);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->picture);
     uint8_t solid[256];
-    fill_solid(solid, run->alpha);
+    fill_solid(solid, run->drawn);
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const uint32_t pixel = ((const uint32_t *)(drawn + (size_t)y * stride))[x];
             const size_t p = (size_t)y * width + x;
-            const uint8_t mine = solid[pixel >> 24];
-            if (pixel && picture)
-                straighten(pixel, mine, picture + 4 * p);
-            coverage[p] = fl_over(mine, coverage[p]);
+            if (!pixel)
+                continue;
+            uint8_t mine[4];
+            straighten(pixel, solid[pixel >> 24], mine);
+            if (run->mix != FL_MIX_OVER)
+                mine[3] = (uint8_t)(mine[3] * fl_mix_overlay(run->mix, mine) / 255);
+            if (picture)
+                memcpy(picture + 4 * p, mine, 4);
+            coverage[p] = fl_over(mine[3], coverage[p]);
         }
     fl_surface_wipe(stage->picture, (FlBox){0, 0, width, height});
     return true;

@@ -52,19 +52,19 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
     const unsigned char *mine = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
     uint32_t *sum = (uint32_t *)cairo_image_surface_get_data(check->sum);
+    const bool flat = seen->kind == FL_PAINT_FLAT && seen->mix == FL_MIX_OVER;
     g_ptr_array_add(check->ids, leaf->id);
     const uint16_t index = (uint16_t)MIN(check->ids->len, UINT16_MAX);
     for (int y = box.y0; y < box.y1; y++)
         for (int x = box.x0; x < box.x1; x++) {
             const size_t p = (size_t)y * check->width + x;
             const uint8_t cover = mine[(size_t)y * stride + x];
-            if (cover && seen->kind == FL_PAINT_FLAT)
+            if (cover && flat)
                 sum[p] = fl_blend(sum[p], seen->rgb, cover);
             if (cover)
                 check->top[p] = index;
         }
-    return seen->kind == FL_PAINT_FLAT ||
-           draw_picture(check, svg, leaf, seen, page_width, page_height, error);
+    return flat || draw_picture(check, svg, leaf, seen, page_width, page_height, error);
 }
 
 static int difference(uint32_t a, uint32_t b)
