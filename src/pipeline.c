@@ -30,6 +30,7 @@ typedef struct Job {
     FlResume resume;
     FlGuides *scratch; // one per thread that paints
     int n_scratch;
+    int n_threads;
     int64_t start;    // microseconds, as g_get_monotonic_time()
     int64_t painting; // the same, of the first painted frame
 } Job;
@@ -93,13 +94,10 @@ static bool lead_in_one(Job *job, int p, int k, FlGuides *scratch, GError **erro
     return fl_painter_lead_in(&job->plan->painters[p], k, scratch, error);
 }
 
-static bool for_each_painter(Job *job, Work work, int step, GError **error)
+/* Side by side. */
+static bool for_each_small(Job *job, Work work, int step, GError **error)
 {
     const FlPlan *plan = job->plan;
-    for (int p = 0; p < plan->n_painters; p++)
-        if (is_large(plan, &plan->painters[p], job->n_scratch) &&
-            !work(job, p, step, &job->scratch[0], error))
-            return false;
     GError *first = NULL;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(job->n_scratch)
     for (int p = 0; p < plan->n_painters; p++) {
@@ -109,7 +107,7 @@ static bool for_each_painter(Job *job, Work work, int step, GError **error)
         const int thread = 0;
 #endif
         GError *mine = NULL;
-        if (is_large(plan, &plan->painters[p], job->n_scratch) ||
+        if (is_large(plan, &plan->painters[p], job->n_threads) ||
             work(job, p, step, &job->scratch[thread], &mine))
             continue;
         fl_keep_first_error(&first, mine);
@@ -117,6 +115,21 @@ static bool for_each_painter(Job *job, Work work, int step, GError **error)
     if (first)
         g_propagate_error(error, first);
     return first == NULL;
+}
+
+/* Inside a team, even of one, a search would make and end its own threads for every step; so large
+ * regions are painted outside, and no team is made where there are no others. */
+static bool for_each_painter(Job *job, Work work, int step, GError **error)
+{
+    const FlPlan *plan = job->plan;
+    int n_small = plan->n_painters;
+    for (int p = 0; p < plan->n_painters; p++)
+        if (is_large(plan, &plan->painters[p], job->n_threads)) {
+            n_small--;
+            if (!work(job, p, step, &job->scratch[0], error))
+                return false;
+        }
+    return n_small == 0 || for_each_small(job, work, step, error);
 }
 
 /* Layers as files of the whole frame's size, so that any program can stack them. */
@@ -212,10 +225,11 @@ static bool open_report(Job *job, GError **error)
 static bool make_scratch(Job *job, GError **error)
 {
 #ifdef _OPENMP
-    job->n_scratch = CLAMP(omp_get_max_threads(), 1, MAX(job->plan->n_painters, 1));
+    job->n_threads = MAX(omp_get_max_threads(), 1);
 #else
-    job->n_scratch = 1;
+    job->n_threads = 1;
 #endif
+    job->n_scratch = CLAMP(job->n_threads, 1, MAX(job->plan->n_painters, 1));
     job->scratch = g_new0(FlGuides, job->n_scratch);
     for (int k = 0; k < job->n_scratch; k++)
         if (!fl_guides_init(&job->scratch[k], fl_film_width(job->plan->film),
