@@ -208,7 +208,7 @@ static bool open_sink(Job *job, GError **error)
                                  .width = fl_film_width(plan->film),
                                  .height = fl_film_height(plan->film),
                                  .fps = plan->options.fps > 0 ? plan->options.fps : 24,
-                                 .opaque = !job->background.none,
+                                 .opaque = job->background.opaque,
                                  .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
     job->sink = fl_sink_open(plan->format, &params, error);
     return job->sink != NULL;

@@ -423,6 +423,18 @@ static bool needs_input(FlTask task)
     return task == FL_TASK_RENDER || task == FL_TASK_LIST_REGIONS || task == FL_TASK_CHECK;
 }
 
+/* GOption keeps "--" before a word that begins with a dash; it has served its purpose. */
+static void drop_separator(char **words)
+{
+    while (*words && strcmp(*words, "--") != 0)
+        words++;
+    if (!*words)
+        return;
+    g_free(*words);
+    for (; *words; words++)
+        words[0] = words[1];
+}
+
 bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
 {
     *args = (FlArgs){.settings = g_array_new(FALSE, TRUE, sizeof(FlSetting)),
@@ -436,8 +448,9 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
         g_propagate_error(error, problem);
         return false;
     }
+    drop_separator(args->inputs);
     args->render.inputs = (const char *const *)args->inputs + 1;
-    args->render.settings = &g_array_index(args->settings, FlSetting, 0);
+    args->render.settings = (const FlSetting *)(const void *)args->settings->data;
     args->render.n_settings = args->settings->len;
     if (needs_input(args->task) && !args->render.inputs[0]) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,

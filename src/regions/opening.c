@@ -64,6 +64,17 @@ static void warn_of_unused(const FlFilm *film, const FlConfig *config, const FlR
     }
 }
 
+/* A drawing without shapes is most often another than was meant. */
+static void warn_of_nothing(const FlFilm *film, FlWarnings *warnings)
+{
+    for (int r = 0; r < fl_film_regions(film); r++)
+        if (fl_film_region(film, r)->paintable)
+            return;
+    fl_warnings_add(warnings, fl_film_file(film, 0), -1, NULL,
+                    "there is nothing to paint in the drawing%s",
+                    fl_film_frames(film) > 1 ? ", nor in the other frames" : "");
+}
+
 static bool report(const FlWarnings *warnings, const FlRenderOptions *options, GError **error)
 {
     const int n = fl_warnings_count(warnings);
@@ -102,6 +113,7 @@ FlFilm *fl_film_of_options(const FlRenderOptions *options, const FlConfig *confi
     g_autoptr(FlFilm) film = fl_film_open(&wanted, warnings, error);
     if (!film)
         return NULL;
+    warn_of_nothing(film, warnings);
     if (!options->frames) // a section may be about something that other frames have
         warn_of_unused(film, config, rules, warnings);
     return report(warnings, options, error) ? g_steal_pointer(&film) : NULL;

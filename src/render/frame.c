@@ -10,20 +10,43 @@
 
 #define BLEED_PX 8 // how far colours reach into transparency, for whoever scales the frames
 
+static char *backdrop_file(const FlBackground *background, const FlPlan *plan, int frame,
+                           GError **error)
+{
+    const int number = fl_film_number(plan->film, frame);
+    return fl_output_is_pattern(background->pattern)
+               ? fl_output_name(background->pattern, number, NULL, error)
+               : g_strdup(background->pattern);
+}
+
+/* Whether all pictures of the background are opaque; one that cannot be read is told when it is
+ * its turn. */
+static bool pictures_are_opaque(const FlBackground *background, const FlPlan *plan)
+{
+    const int n = fl_output_is_pattern(background->pattern) ? fl_film_frames(plan->film) : 1;
+    for (int f = 0; f < n; f++) {
+        g_autofree char *file = backdrop_file(background, plan, f, NULL);
+        if (file && !fl_picture_is_opaque(file))
+            return false;
+    }
+    return true;
+}
+
 bool fl_background_init(FlBackground *background, const FlPlan *plan, GError **error)
 {
     const char *said = plan->options.background;
-    *background = (FlBackground){0};
+    *background = (FlBackground){.opaque = true};
     memcpy(background->flat, plan->paper, 3);
     memcpy(background->paper, plan->paper, 3);
     if (!said)
         return true;
     if (g_str_equal(said, "none")) {
-        background->none = true;
+        background->none = true, background->opaque = false;
     } else if (fl_text_colour(said, background->flat)) {
         memcpy(background->paper, background->flat, 3);
     } else if (g_str_has_suffix(said, ".png") || g_str_has_suffix(said, ".PNG")) {
         background->pattern = said;
+        background->opaque = pictures_are_opaque(background, plan);
     } else {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "background '%s': expected #rrggbb, none, a PNG file or a pattern of them",
@@ -37,10 +60,7 @@ bool fl_background_init(FlBackground *background, const FlPlan *plan, GError **e
 static FlPicture *backdrop_picture(const FlBackground *background, const FlPlan *plan, int frame,
                                    GError **error)
 {
-    const int number = fl_film_number(plan->film, frame);
-    g_autofree char *file = fl_output_is_pattern(background->pattern)
-                                ? fl_output_name(background->pattern, number, NULL, error)
-                                : g_strdup(background->pattern);
+    g_autofree char *file = backdrop_file(background, plan, frame, error);
     g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
     const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
     if (picture && (picture->width != width || picture->height != height))
@@ -162,7 +182,7 @@ static bool compose(FlComposite *composite, const FlPlan *plan, const FlBackgrou
     if (with_16)
         fl_layers_compose16(composite->layers, composite->n_layers, &backdrop, width, height,
                             linear, composite->rgba16);
-    return !background->none || fl_layers_bleed(composite->rgba, width, height, BLEED_PX, error);
+    return background->opaque || fl_layers_bleed(composite->rgba, width, height, BLEED_PX, error);
 }
 
 bool fl_composite_init(FlComposite *composite, const FlPlan *plan, const FlBackground *background,

@@ -139,7 +139,12 @@ static bool name_output(FlPlan *plan, GError **error)
 /* One name for every region would let the last layer win. */
 static bool check_layers(const FlPlan *plan, GError **error)
 {
-    const char *pattern = plan->options.layers;
+    const char *pattern = plan->options.layers, *brace = pattern ? strchr(pattern, '{') : NULL;
+    if (brace && strchr(brace, '}') && !strstr(pattern, "{region}")) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%.*s” is not understood; expected %s",
+                    pattern, (int)(strchr(brace, '}') + 1 - brace), brace, "{region}");
+        return false;
+    }
     if (!pattern || plan->n_painters < 2 || strstr(pattern, "{region}"))
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE,

@@ -169,7 +169,7 @@ static bool write_pictures(FlReport *report, const FlComposite *composite, GErro
     if (!rgba)
         return false;
     fputs(",after:", out);
-    if (!write_scaled(report, composite->rgba, !report->background->none, error))
+    if (!write_scaled(report, composite->rgba, report->background->opaque, error))
         return false;
     fl_runs_flat(composite->runs, width, height, rgba);
     fputs(",before:", out);

@@ -161,8 +161,11 @@ bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
         if (content[0] == '\0' || content[0] == '#' || content[0] == ';')
             continue;
         if (content[0] == '[') {
+            static const char *const sections[] = {"[style]", NULL};
             in_style = strcmp(content, "[style]") == 0;
             other = !in_style; // a tool's own section, such as a recipe's
+            if (other && fl_suggest(content, sections))
+                return wrong(&line, error, "%s: expected [style]", content);
         } else if (in_style) {
             if (!split_line(&line, content, error) || !read_key(style, &line, &seen, error))
                 return false;

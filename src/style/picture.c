@@ -58,6 +58,20 @@ FlPicture *fl_picture_read_png(const char *path, GError **error)
     return g_steal_pointer(&picture);
 }
 
+bool fl_picture_is_opaque(const char *path)
+{
+    png_image png = {.version = PNG_IMAGE_VERSION};
+    const bool known = png_image_begin_read_from_file(&png, path) != 0;
+    const bool may_be_transparent = known && (png.format & PNG_FORMAT_FLAG_ALPHA) != 0;
+    png_image_free(&png);
+    g_autoptr(FlPicture) picture = may_be_transparent ? fl_picture_read_png(path, NULL) : NULL;
+    const size_t pixels = picture ? (size_t)picture->width * picture->height : 0;
+    for (size_t p = 0; p < pixels; p++)
+        if (picture->rgba[4 * p + 3] < 255)
+            return false;
+    return true;
+}
+
 bool fl_png_write(const char *path, const uint8_t *data, int width, int height, int channels,
                   GError **error)
 {

@@ -22,6 +22,9 @@ FlPicture *fl_picture_new(int width, int height, GError **error);
  */
 FlPicture *fl_picture_read_png(const char *path, GError **error);
 
+/** Whether a PNG file has no pixel that is even partly transparent; true if it cannot be read. */
+bool fl_picture_is_opaque(const char *path);
+
 /**
  * Writes `channels` (1 grey, 3 sRGB, 4 sRGBA) interleaved bytes as a PNG file: a temporary name
  * first, synced and renamed. Returns: false with FL_ERROR_OUTPUT set, naming the file.
