@@ -2,7 +2,7 @@
 #ifndef FLUIDY_COMPOSE_COLOURISE_H
 #define FLUIDY_COMPOSE_COLOURISE_H
 
-#include "compose/box.h"
+#include "base/box.h"
 #include "compose/ink.h"
 #include "params/treatment.h"
 

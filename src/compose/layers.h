@@ -2,7 +2,7 @@
 #ifndef FLUIDY_COMPOSE_LAYERS_H
 #define FLUIDY_COMPOSE_LAYERS_H
 
-#include "compose/box.h"
+#include "base/box.h"
 #include "params/treatment.h"
 #include <fluidy/error.h>
 #include <stdbool.h>

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_COMPOSE_MATTE_H
 #define FLUIDY_COMPOSE_MATTE_H
 
-#include "compose/box.h"
+#include "base/box.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 

@@ -196,7 +196,7 @@ static bool construct_motion(Builder *b, int frame, float **flow, GError **error
         return false;
     if (now.outline->empty || (!b->smooths && now.outline == before.outline))
         return true;
-    g_autofree float *fresh = g_try_new(float, 2 * fl_box_area(&now.outline->box));
+    g_autofree float *fresh = g_try_new(float, 2 * fl_box_pixels(now.outline->box));
     bool moves;
     if (!fresh)
         return no_memory(b, error);
@@ -256,7 +256,7 @@ static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float
     }
     if (!moves)
         return true;
-    const size_t n = fl_box_area(&outline->box);
+    const size_t n = fl_box_pixels(outline->box);
     g_autofree float *sum = g_try_new0(float, 2 * n), *norm = g_try_new0(float, n);
     if (!sum || !norm)
         return no_memory(b, error);
@@ -280,7 +280,7 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
     const FlBox *box = &outline->box;
     if (!source->flow(source->data, frame, b->given, error))
         return false;
-    float *out = *flow = g_try_new0(float, 2 * fl_box_area(box));
+    float *out = *flow = g_try_new0(float, 2 * fl_box_pixels(*box));
     if (!out)
         return no_memory(b, error);
     for (int y = 0; y < box->height; y++)
@@ -301,7 +301,7 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
 /** Stores coverage and direction; the outline's normals are made if they are not yet. */
 static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *flow, GError **error)
 {
-    const size_t n = fl_box_area(&outline->box);
+    const size_t n = fl_box_pixels(outline->box);
     g_autofree uint8_t *shape = g_try_malloc0(2 * n);
     if (!shape)
         return no_memory(b, error);
@@ -322,7 +322,7 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
                        GError **error)
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
-    const size_t n = fl_box_area(&outline->box);
+    const size_t n = fl_box_pixels(outline->box);
     g_autofree int32_t *fixed = g_try_new(int32_t, 2 * n), *norm = g_try_new(int32_t, n);
     if (!fixed || !norm)
         return no_memory(b, error);

@@ -106,7 +106,7 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
                        float limit_px, float *flow, bool *moves, GError **error)
 {
     const FlBox *box = &now->outline->box;
-    const size_t n = fl_box_area(box);
+    const size_t n = fl_box_pixels(*box);
     g_auto(Traces) traces = {0};
     g_autofree uint8_t *cell = g_try_malloc(n);
     if (!cell) {
@@ -130,7 +130,7 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
 bool fl_outline_normals(FlOutline *outline, GError **error)
 {
     const FlBox *box = &outline->box;
-    const size_t n = fl_box_area(box);
+    const size_t n = fl_box_pixels(*box);
     g_autofree uint8_t *cell = g_try_malloc(n);
     g_autofree float *normal = g_try_new0(float, 2 * n);
     if (!cell || !normal) {

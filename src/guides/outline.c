@@ -4,27 +4,6 @@
 #include "guides/guides.h"
 #include <string.h>
 
-/** The smallest box around all pixels that are not 0. */
-static FlBox find_box(const uint8_t *mask, int width, int height)
-{
-    int top = height, bottom = -1, left = width, right = -1;
-    for (int y = 0; y < height; y++) {
-        const uint8_t *row = mask + y * (size_t)width;
-        if (row[0] == 0 && memcmp(row, row + 1, width - 1) == 0)
-            continue;
-        top = MIN(top, y), bottom = y;
-        for (int x = 0; x < left; x++)
-            if (row[x])
-                left = x;
-        for (int x = width - 1; x > right; x--)
-            if (row[x])
-                right = x;
-    }
-    if (bottom < 0)
-        return (FlBox){0, 0, 0, 0};
-    return (FlBox){left, top, right - left + 1, bottom - top + 1};
-}
-
 static bool any_inside(const uint8_t *coverage, size_t n)
 {
     uint8_t all = 0;
@@ -39,15 +18,15 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
     *outline = (FlOutline){.references = 1,
                            .frame_width = frame_width,
                            .frame_height = frame_height,
-                           .box = find_box(mask, frame_width, frame_height)};
+                           .box = fl_box_of(mask, frame_width, frame_height)};
     const FlBox *box = &outline->box;
-    outline->coverage = g_try_malloc(fl_box_area(box) + 1);
+    outline->coverage = g_try_malloc(fl_box_pixels(*box) + 1);
     if (!outline->coverage)
         goto no_memory;
     for (int y = 0; y < box->height; y++)
         memcpy(outline->coverage + y * (size_t)box->width,
                mask + (box->y + y) * (size_t)frame_width + box->x, box->width);
-    outline->empty = !any_inside(outline->coverage, fl_box_area(box));
+    outline->empty = !any_inside(outline->coverage, fl_box_pixels(*box));
     if (outline->empty)
         return g_steal_pointer(&outline);
     outline->distance = g_try_new(float, (size_t)frame_width *frame_height);
@@ -81,7 +60,7 @@ void fl_outline_unref(FlOutline *outline)
 
 bool fl_outline_equal(const FlOutline *outline, const uint8_t *mask)
 {
-    const FlBox box = find_box(mask, outline->frame_width, outline->frame_height);
+    const FlBox box = fl_box_of(mask, outline->frame_width, outline->frame_height);
     if (memcmp(&box, &outline->box, sizeof box) != 0)
         return false;
     for (int y = 0; y < box.height; y++)

@@ -2,20 +2,12 @@
 #ifndef FLUIDY_GUIDES_OUTLINE_H
 #define FLUIDY_GUIDES_OUTLINE_H
 
+#include "base/box.h"
+
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-
-/** A rectangle of pixels in a frame. */
-typedef struct FlBox {
-    int x, y, width, height; // width and height are 0 where there is nothing
-} FlBox;
-
-static inline size_t fl_box_area(const FlBox *box)
-{
-    return (size_t)box->width * box->height;
-}
 
 /** A mask in a frame of frame_width * frame_height pixels. Reference-counted, for one thread. */
 typedef struct FlOutline {

@@ -18,7 +18,7 @@ bool fl_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *cove
     const FlFrameRecord *record = &sequence->frames[frame];
     return fl_spill_get(sequence->spill,
                         fl_plane_block(record->holder[FL_PLANE_SHAPE], FL_PLANE_SHAPE),
-                        coverage_angle, 2 * fl_box_area(&record->box), error);
+                        coverage_angle, 2 * fl_box_pixels(record->box), error);
 }
 
 bool fl_sequence_plane(const FlGuideSequence *sequence, int frame, FlPlane plane, int32_t *values,
@@ -27,7 +27,7 @@ bool fl_sequence_plane(const FlGuideSequence *sequence, int frame, FlPlane plane
     const FlFrameRecord *record = &sequence->frames[frame];
     const size_t step = plane == FL_PLANE_FLOW ? 2 : 1;
     return fl_store_get(sequence->spill, fl_plane_block(record->holder[plane], plane), values,
-                        step * fl_box_area(&record->box), step, error);
+                        step * fl_box_pixels(record->box), step, error);
 }
 
 /** One frame of the way back: the sum goes from frame + 1 to frame. Room: three frames. */
@@ -52,7 +52,7 @@ static bool step_back(FlGuideSequence *sequence, int frame, FlExtent *extent, ui
                    norm);
     record->holder[FL_PLANE_MINUS] = frame;
     return fl_store_put(sequence->spill, fl_plane_block(frame, FL_PLANE_MINUS), norm,
-                        fl_box_area(&record->box), 1, error);
+                        fl_box_pixels(record->box), 1, error);
 }
 
 /** The extents to come need the whole future: one pass from the last frame to the first. */
@@ -186,7 +186,7 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
     memset(guides->ext_plus, 0, n * sizeof *guides->ext_plus);
     memset(guides->ext_minus, 0, n * sizeof *guides->ext_minus);
     const FlFrameRecord *record = &sequence->frames[frame];
-    const size_t area = fl_box_area(&record->box);
+    const size_t area = fl_box_pixels(record->box);
     if (area > 0) {
         g_autofree uint8_t *shape = g_try_malloc(2 * area);
         g_autofree int32_t *room = g_try_new(int32_t, 2 * area);

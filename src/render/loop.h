@@ -2,8 +2,8 @@
 #ifndef FLUIDY_RENDER_LOOP_H
 #define FLUIDY_RENDER_LOOP_H
 
+#include "base/box.h"
 #include "base/spill.h"
-#include "compose/box.h"
 
 /** Pictures over which the end turns into the lead-in: a third of the film, at most so many. */
 #define FL_LOOP_LONGEST 8

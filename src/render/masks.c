@@ -1,8 +1,8 @@
 #include "render/masks.h"
 
 #include "base/alloc.h"
+#include "base/box.h"
 #include "base/spill.h"
-#include "compose/box.h"
 #include <string.h>
 
 struct FlMasks {

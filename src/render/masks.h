@@ -2,7 +2,7 @@
 #ifndef FLUIDY_RENDER_MASKS_H
 #define FLUIDY_RENDER_MASKS_H
 
-#include "compose/box.h"
+#include "base/box.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>

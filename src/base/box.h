@@ -1,6 +1,6 @@
 /* A rectangle of pixels within a frame. */
-#ifndef FLUIDY_COMPOSE_BOX_H
-#define FLUIDY_COMPOSE_BOX_H
+#ifndef FLUIDY_BASE_BOX_H
+#define FLUIDY_BASE_BOX_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "compose/box.h"
+#include "base/box.h"
 
 #include <glib.h>
 
