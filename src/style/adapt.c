@@ -1,6 +1,8 @@
 #include "style/adapt.h"
 
 #include "base/alloc.h"
+#include "style/picture.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -12,36 +14,16 @@ typedef struct Resampling {
     int channels;
 } Resampling;
 
-/* Area average where the picture shrinks, linear interpolation where it grows: in both cases a tent
- * as wide as the larger pixel. */
-static void resample_line(const float *from, int from_n, size_t from_step, float *to, int to_n,
-                          size_t to_step)
-{
-    const float ratio = (float)from_n / (float)to_n, radius = ratio > 1 ? ratio : 1;
-    for (int i = 0; i < to_n; i++) {
-        const float centre = ((float)i + 0.5f) * ratio - 0.5f;
-        float sum = 0, weight = 0;
-        for (int k = (int)floorf(centre - radius) + 1; (float)k < centre + radius; k++) {
-            const float w = radius - fabsf((float)k - centre);
-            if (w <= 0)
-                continue;
-            sum += w * from[CLAMP(k, 0, from_n - 1) * from_step];
-            weight += w;
-        }
-        to[i * to_step] = sum / weight;
-    }
-}
-
 static void resample(const float *from, const Resampling *r, float *between, float *to)
 {
     const size_t c = (size_t)r->channels;
     for (int y = 0; y < r->from_height; y++)
         for (size_t k = 0; k < c; k++)
-            resample_line(from + (size_t)y * r->from_width * c + k, r->from_width, c,
-                          between + (size_t)y * r->to_width * c + k, r->to_width, c);
+            fl_resample_line(from + (size_t)y * r->from_width * c + k, r->from_width, c,
+                             between + (size_t)y * r->to_width * c + k, r->to_width, c);
     const size_t row = (size_t)r->to_width * c;
     for (size_t k = 0; k < row; k++)
-        resample_line(between + k, r->from_height, row, to + k, r->to_height, row);
+        fl_resample_line(between + k, r->from_height, row, to + k, r->to_height, row);
 }
 
 /* The planes that one frame is resampled through. */

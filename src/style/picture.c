@@ -110,72 +110,61 @@ FlPicture *fl_picture_crop(const FlPicture *picture, int x, int y, int width, in
     return g_steal_pointer(&part);
 }
 
-/* The samples that make one output sample along an axis: at most `count` from `first` on. */
-typedef struct Taps {
-    int first, count;
-    float *weight;
-} Taps;
-
-/* A tent as wide as the coarser of the two grids: area means when smaller, bilinear when larger. */
-static void make_taps(Taps *taps, int from, int to)
+void fl_resample_line(const float *from, int from_n, size_t from_step, float *to, int to_n,
+                      size_t to_step)
 {
-    const double step = (double)from / to, radius = step > 1 ? step : 1;
-    for (int i = 0; i < to; i++) {
-        const double centre = (i + 0.5) * step - 0.5;
-        const int first = MAX(0, (int)ceil(centre - radius));
-        const int last = MIN(from - 1, (int)floor(centre + radius));
-        double sum = 0;
-        taps[i] = (Taps){first, last - first + 1, g_new(float, last - first + 1)};
-        for (int j = first; j <= last; j++)
-            sum += 1 - fabs(j - centre) / radius;
-        for (int j = first; j <= last; j++)
-            taps[i].weight[j - first] = (float)((1 - fabs(j - centre) / radius) / sum);
+    const float ratio = (float)from_n / (float)to_n, radius = ratio > 1 ? ratio : 1;
+    for (int i = 0; i < to_n; i++) {
+        const float centre = ((float)i + 0.5f) * ratio - 0.5f;
+        const int first = MAX(0, (int)ceilf(centre - radius));
+        const int last = MIN(from_n - 1, (int)floorf(centre + radius));
+        float sum = 0, weight = 0;
+        for (int k = first; k <= last; k++) {
+            const float w = radius - fabsf((float)k - centre);
+            sum += w * from[k * from_step];
+            weight += w;
+        }
+        to[i * to_step] = sum / weight;
     }
 }
 
-static void free_taps(Taps *taps, int n)
+/* Colours are weighted by alpha, so that transparent pixels lend no colour. */
+static void weigh_row(const uint8_t *rgba, int width, float *weighted)
 {
-    for (int i = 0; i < n; i++)
-        g_free(taps[i].weight);
-    g_free(taps);
+    for (int x = 0; x < width; x++, rgba += 4, weighted += 4) {
+        for (int c = 0; c < 3; c++)
+            weighted[c] = (float)(rgba[c] * rgba[3]);
+        weighted[3] = rgba[3];
+    }
 }
 
-/* Colours are weighted by alpha, so that transparent pixels lend no colour. */
-static void sum_row(float *sum, const uint8_t *row, const Taps *columns, int width, float weight)
+static void unweigh_row(const float *weighted, int width, uint8_t *rgba)
 {
-    for (int x = 0; x < width; x++)
-        for (int j = 0; j < columns[x].count; j++) {
-            const uint8_t *p = row + (size_t)(columns[x].first + j) * 4;
-            const float alpha = weight * columns[x].weight[j] * p[3];
-            for (int c = 0; c < 3; c++)
-                sum[4 * x + c] += alpha * p[c];
-            sum[4 * x + 3] += alpha;
-        }
+    for (int x = 0; x < width; x++, rgba += 4, weighted += 4) {
+        for (int c = 0; c < 3; c++)
+            rgba[c] = weighted[3] > 0 ? (uint8_t)(MIN(weighted[c] / weighted[3], 255) + 0.5f) : 0;
+        rgba[3] = (uint8_t)(weighted[3] + 0.5f);
+    }
 }
 
 FlPicture *fl_picture_resize(const FlPicture *picture, int width, int height, GError **error)
 {
+    const size_t from_row = 4 * (size_t)picture->width, row = 4 * (size_t)width;
+    const int tallest = MAX(picture->height, height);
     g_autoptr(FlPicture) resized = fl_picture_new(width, height, error);
-    g_autofree float *sum = resized ? fl_alloc(width, 4 * sizeof(float), "a row", error) : NULL;
-    if (!sum)
+    g_autofree float *weighted =
+        resized ? fl_alloc(from_row + 2 * row * tallest, sizeof(float), "a picture", error) : NULL;
+    if (!weighted)
         return NULL;
-    Taps *columns = g_new(Taps, width), *rows = g_new(Taps, height);
-    make_taps(columns, picture->width, width);
-    make_taps(rows, picture->height, height);
-    for (int y = 0; y < height; y++) {
-        uint8_t *out = resized->rgba + (size_t)y * width * 4;
-        memset(sum, 0, (size_t)width * 4 * sizeof(float));
-        for (int j = 0; j < rows[y].count; j++)
-            sum_row(sum, picture->rgba + (size_t)(rows[y].first + j) * picture->width * 4, columns,
-                    width, rows[y].weight[j]);
-        for (int x = 0; x < width; x++, out += 4) {
-            const float alpha = sum[4 * x + 3];
-            for (int c = 0; c < 3; c++)
-                out[c] = alpha > 0 ? (uint8_t)(sum[4 * x + c] / alpha + 0.5f) : 0;
-            out[3] = (uint8_t)(alpha + 0.5f);
-        }
+    float *across = weighted + from_row, *both = across + row * tallest;
+    for (int y = 0; y < picture->height; y++) {
+        weigh_row(picture->rgba + y * from_row, picture->width, weighted);
+        for (int c = 0; c < 4; c++)
+            fl_resample_line(weighted + c, picture->width, 4, across + y * row + c, width, 4);
     }
-    free_taps(columns, width);
-    free_taps(rows, height);
+    for (size_t k = 0; k < row; k++)
+        fl_resample_line(across + k, picture->height, row, both + k, height, row);
+    for (int y = 0; y < height; y++)
+        unweigh_row(both + y * row, width, resized->rgba + y * row);
     return g_steal_pointer(&resized);
 }

@@ -4,6 +4,7 @@
 
 #include <fluidy/error.h>
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /** Straight sRGBA, 8 bits a channel, rows from the top without padding. */
@@ -36,7 +37,15 @@ bool fl_png_write(const char *path, const uint8_t *data, int width, int height, 
 FlPicture *fl_picture_crop(const FlPicture *picture, int x, int y, int width, int height,
                            GError **error);
 
-/** The picture in another size: means of areas when smaller, bilinear when larger. */
+/**
+ * A line of from_n samples in to_n samples; samples lie `step` floats apart. Area means where the
+ * line gets shorter, linear interpolation where it gets longer: in both cases a tent as wide as the
+ * larger sample, cut off at the ends of the line.
+ */
+void fl_resample_line(const float *from, int from_n, size_t from_step, float *to, int to_n,
+                      size_t to_step);
+
+/** The picture in another size, resampled along both axes. */
 FlPicture *fl_picture_resize(const FlPicture *picture, int width, int height, GError **error);
 
 void fl_picture_free(FlPicture *picture); // NULL is fine
