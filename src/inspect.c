@@ -5,7 +5,6 @@
 #include "base/cleanup.h"
 #include "output/name.h"
 #include "output/png.h"
-#include "output/sink.h"
 #include "regions/opening.h"
 
 #include <math.h>
@@ -254,15 +253,10 @@ bool fl_map_regions(const FlRenderOptions *options, GError **error)
     if (!subject_init(&subject, options, error))
         return false;
     g_autofree char *pattern =
-        options->output ? g_strdup(options->output)
-                        : g_strdup_printf("fluidy/%s_map_%%04d.png", fl_film_name(subject.film));
-    const FlSinkFormat *format = fl_sink_format(NULL, pattern, error);
-    if (!format || !g_str_equal(format->name, "png")) {
-        if (format)
-            g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: maps are PNG files; expected .png",
-                        pattern);
+        fl_output_of_film(options->output ? options->output : "fluidy/{name}_map_%04d.png",
+                          fl_film_name(subject.film));
+    if (!fl_png_named(pattern, "maps are", error))
         return false;
-    }
     const int n = fl_film_frames(subject.film);
     for (int f = 0; f < n; f++)
         if (!write_map(&subject, f, pattern, error))

@@ -31,8 +31,9 @@ typedef struct Job {
     FlGuides *scratch; // one per thread that paints
     int n_scratch;
     int n_threads;
-    int64_t start;    // microseconds, as g_get_monotonic_time()
-    int64_t painting; // the same, of the first painted frame
+    int64_t start;      // microseconds, as g_get_monotonic_time()
+    int64_t painting;   // the same, of the first painted frame
+    double rehearsed_s; // that a frame took which was not written
 } Job;
 
 static double seconds_since(int64_t start)
@@ -290,11 +291,25 @@ static void clear(Job *job)
     fl_plan_free(job->plan);
 }
 
-/* What could still go wrong before the first frame, without touching the output. */
+/* What could still go wrong before the first frame, and how long a frame takes, without touching
+ * the output: two frames are painted and thrown away, since a first one takes longer. */
 static bool rehearse(Job *job, GError **error)
 {
-    return fl_background_init(&job->background, job->plan, error) &&
-           fl_resume_init(&job->resume, job->plan, error);
+    const FlPlan *plan = job->plan;
+    job->plan->options.dump = NULL; // it would be written
+    if (!fl_background_init(&job->background, plan, error) ||
+        !fl_resume_init(&job->resume, plan, error) || !tell(job, "guides", 0, 0, error) ||
+        !fl_plan_prepare(job->plan, error) || !make_scratch(job, error))
+        return false;
+    for (int k = 0; k < 2 && k * plan->hold < fl_film_frames(plan->film); k++) {
+        const int64_t start = g_get_monotonic_time();
+        g_auto(FlComposite) composite = {0};
+        if (!for_each_painter(job, paint_one, k * plan->hold, error) ||
+            !fl_composite_init(&composite, plan, &job->background, k * plan->hold, false, error))
+            return false;
+        job->rehearsed_s = seconds_since(start);
+    }
+    return true;
 }
 
 static char *what_was_done(const FlPlan *plan)
@@ -307,15 +322,25 @@ static char *what_was_done(const FlPlan *plan)
                            plan->n_painters, plan->n_painters == 1 ? "" : "s", plan->output);
 }
 
+/* The time of the pictures that are painted; held ones take none. */
+static char *forecast(const Job *job)
+{
+    const int n = (fl_film_frames(job->plan->film) - 1) / job->plan->hold + 1;
+    const int seconds = (int)(job->rehearsed_s * n + 0.5);
+    return g_strdup_printf("that would take about %d:%02d:%02d, %.2f seconds a frame",
+                           seconds / 3600, seconds / 60 % 60, seconds % 60, job->rehearsed_s);
+}
+
 static void summarise(const Job *job)
 {
     const FlRenderOptions *o = &job->plan->options;
     g_autofree char *done = what_was_done(job->plan);
-    g_autofree char *seconds = fl_stats_summary(&job->stats, fl_film_frames(job->plan->film));
+    g_autofree char *seconds =
+        o->dry_run ? forecast(job) : fl_stats_summary(&job->stats, fl_film_frames(job->plan->film));
     g_autofree char *page =
         o->report ? g_strdup_printf("to look at: %s/index.html", o->report) : NULL;
     const char *const lines[] = {done, seconds, page};
-    const size_t n = o->dry_run ? 1 : G_N_ELEMENTS(lines);
+    const size_t n = o->dry_run ? 2 : G_N_ELEMENTS(lines);
     for (size_t i = 0; i < n && o->note; i++)
         if (lines[i])
             o->note(lines[i], o->data);

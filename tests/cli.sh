@@ -96,6 +96,16 @@ refuses 'an unknown format gets a suggestion' 2 'exxr: an unknown output format;
 touch film.mkv
 refuses 'a film that exists stays' 1 'film.mkv: exists already; -y overwrites' -o film.mkv --no-clobber -s 01 whole
 
+refuses 'a mistyped end of a name gets a suggestion' 2 'w_%d.pgn: *did you mean “png”?' whole -o w_%d.pgn $look
+refuses 'a mistyped folder gets a suggestion' 1 'whle: no such file; did you mean “whole”?' whle $look
+refuses 'a preview of no frame is refused' 2 '--preview: “x” is not *' --preview x whole
+refuses 'a preview of a frame that is not there is refused' 1 '*no file for frame 9; *' --preview 9 whole $look
+refuses 'a preview of a range is refused' 2 '--preview and --frames *' --preview 2 -f 1 whole
+refuses 'a mistyped style among several is found out first' 1 '*did you mean “0?”?' --styles 01,0l whole
+refuses 'no style among several is refused' 2 '--styles: expected names *' --styles 01, whole
+
+"$program" --help >out 2>err && [ ! -s err ] && [ "$(wc -l <out)" -le 24 ] && ! grep -qE '.{81}' out
+result $? '--help fits into a small terminal'
 "$program" --help >out 2>err && [ ! -s err ] && grep -q -- '--style' out
 result $? '--help goes to standard output'
 "$program" --help-all >out 2>err && [ ! -s err ] && grep -q -- '--w-temp' out
@@ -111,6 +121,36 @@ result $? 'a section that holds for nothing in the whole film is a warning'
 "$program" whole -s 01 --dry-run >out 2>err && [ ! -d fluidy ] &&
     grep -q 'would paint 3 frames of 64x48 pixels, 1 region: fluidy/w_%04d.png' err
 result $? '--dry-run says what would be painted'
+grep -qE 'would take about 0:00:0[0-9], 0\.[0-9]+ seconds a frame' err
+result $? 'and how long that would take'
+touch whole/fluidy-svg.conf
+"$program" whole -s 01 --dry-run >out 2>err &&
+    grep -q 'whole/fluidy-svg.conf is not used; -c whole/fluidy-svg.conf paints by it' err &&
+    "$program" whole -s 01 --dry-run -c whole/fluidy-svg.conf >out 2>err && ! grep -q 'not used' err
+result $? 'a config beside the drawing is offered'
+rm whole/fluidy-svg.conf
+mkdir odd
+for i in 1 2 3; do
+    echo "$drawing<path id='a' d='M9,9 h30 v30 x'/><path id='b' d='M9,9 h30 v30 x'/></svg>" >odd/w_$i.svg
+done
+"$program" odd -s 01 --detail draft -o 'odd/w_%d.png' >out 2>err && [ "$(grep -c warning: err)" = 1 ] &&
+    grep -q 'warning: odd/w_1.svg: #a: .* (and in 2 more frames); and so for 1 more element$' err &&
+    [ "$(tail -1 err)" = 'fluidy-svg: 1 warning at the beginning' ] &&
+    grep -qE 'seconds: read [0-9.]+, guides .* memory: at most [0-9]+ MiB' err
+result $? 'what is wrong in many places is one warning, and the summary recalls it'
+"$program" whole -s 01 --preview 3 >out 2>err && "$program" whole -s 01 --preview 3 -q >out 2>err &&
+    [ "$(ls fluidy)" = "$(printf 'w_preview_%s\n' 0002.png 0003.png)" ] && rm -r fluidy
+result $? '--preview paints a frame and those beside it, again and again'
+"$program" whole --styles 01,03 >out 2>err && [ "$(ls fluidy)" = w_styles.png ] && rm -r fluidy &&
+    "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]
+result $? '--styles is a sheet'
+"$program" --list-styles -o styles.png >out 2>err && [ -s styles.png ] &&
+    grep -qE '^01 +Watercolour into wet paper +/.*/01$' out
+result $? '--list-styles is a list and a sheet'
+"$program" whole -s 01 --detail draft -o '{name}/{name}.gif' -q >out 2>err && [ -s w/w.gif ]
+result $? 'the name of the drawing can stand in that of the output'
+refuses 'a sheet that is no PNG is refused' 2 'styles.jpg: sheets are PNG files; *' --list-styles -o styles.jpg
+refuses 'a sheet that exists stays' 1 'styles.png: exists already*' --list-styles -o styles.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' >out 2>err &&
     [ "$(ls a | wc -l)" = 6 ] && [ ! -s out ]
 result $? 'frames and layers are painted'

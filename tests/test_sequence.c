@@ -98,6 +98,11 @@ static void ranges_choose_frames(void)
     assert_numbers(folder, "f%d.svg", "1-6x2", FL_MISSING_ERROR, "1 3 5");
     assert_numbers(folder, "f%d.svg", "6, 1, 3-4,4", FL_MISSING_ERROR, "1 3 4 6");
     assert_numbers(folder, "f%d.svg", "5-", FL_MISSING_ERROR, "5 6");
+    assert_numbers(folder, "f%d.svg", "4~1", FL_MISSING_ERROR, "3 4 5");
+    assert_numbers(folder, "f%d.svg", "6~2", FL_MISSING_ERROR, "4 5 6");
+    assert_numbers(folder, "f%d.svg", "~1", FL_MISSING_ERROR, "2 3 4");
+    assert_message(folder, "f%d.svg", "9~1", "no file for frame 9");
+    assert_message(folder, "f%d.svg", "3~", "expected numbers and ranges");
     assert_message(folder, "f%d.svg", "5-9", "no file for frames 7-9");
     assert_message(folder, "f%d.svg", "4-2", "expected numbers and ranges");
     assert_message(folder, "f%d.svg", "", "expected numbers and ranges");

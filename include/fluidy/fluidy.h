@@ -2,6 +2,7 @@
 #ifndef FLUIDY_FLUIDY_H
 #define FLUIDY_FLUIDY_H
 
+#include <fluidy/compare.h>
 #include <fluidy/error.h>
 #include <fluidy/inspect.h>
 #include <fluidy/limits.h>

@@ -13,6 +13,7 @@ G_BEGIN_DECLS
 typedef struct FlStyleEntry {
     char *name;  /**< the folder's name, by which it is asked for */
     char *path;  /**< the folder */
+    char *title; /**< what style.ini calls it; NULL: nothing */
     bool hidden; /**< another one of the same name is found before it */
 } FlStyleEntry;
 

@@ -164,6 +164,40 @@ static gboolean read_limit(const char *name, const char *value, gpointer data, G
     return fl_limit_set(value, error);
 }
 
+/* A number of frames around one, drafts of which the next preview may replace. */
+static gboolean read_preview(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    char *end = NULL;
+    const gint64 number = g_ascii_strtoll(value, &end, 10);
+    if (!g_ascii_isdigit(*value) || *end || number > G_MAXINT / 2) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not the number of a frame", name,
+                    value);
+        return FALSE;
+    }
+    g_autofree char *range = g_strdup_printf("%s~1", value);
+    args->preview = keep(args, range);
+    return TRUE;
+}
+
+static gboolean read_styles(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    g_strfreev(args->styles);
+    args->styles = NULL;
+    args->task = FL_TASK_COMPARE;
+    if (strcmp(value, "all") == 0)
+        return TRUE;
+    args->styles = g_strsplit(value, ",", -1);
+    for (int i = 0; args->styles[i] && *value; i++)
+        if (!*args->styles[i])
+            value = "";
+    if (!*value)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: expected names with commas between, such as 01,03, or all", name);
+    return *value != '\0';
+}
+
 static gboolean read_flag(const char *name, const char *value, gpointer data, GError **error)
 {
     FlArgs *args = data;
@@ -224,37 +258,29 @@ static const GOptionEntry common[] = {
     {"style", 's', VALUE(read_setting), "paint every region with this exemplar", "NAME|DIR"},
     {"config", 'c', VALUE(read_path), "which region is painted how", "FILE"},
     {"frames", 'f', VALUE(read_path), "such as 1001-1096, 1-96x2 or 1,5,9 (all)", "RANGE"},
-    {"output", 'o', VALUE(read_path), "frames or a film (fluidy/NAME_%04d.png)", "PATTERN|FILE"},
-    {"layers", 0, VALUE(read_path), "also one file per {region} and frame", "PATTERN"},
+    {"output", 'o', VALUE(read_path), "(fluidy/{name}_%04d.png); or a film, .mov …",
+     "PATTERN|FILE"},
     {"width", 'W', VALUE(read_number), "width of the output, aspect kept", "PX"},
-    {"height", 'H', VALUE(read_number), "height of the output, aspect kept", "PX"},
-    {"scale", 0, VALUE(read_number), "output pixels per drawing pixel (1)", "FACTOR"},
     {"background", 'b', VALUE(read_path), "#RRGGBB, none or an image (the paper)", "COLOUR|FILE"},
     {"fps", 0, VALUE(read_number), "frames per second of a film (24)", "RATE"},
     {"hold", 0, VALUE(read_setting), "paint every n-th frame; 2: on twos (1)", "N"},
     {"loop", 0, FLAG(read_flag), "let the end lead into the beginning", NULL},
     {"detail", 0, VALUE(read_setting), "draft, normal or fine (normal)", "WORD"},
-    {"tint", 0, VALUE(read_setting), "fill, keep or #RRGGBB (fill)", "TINT"},
-    {"region", 0, VALUE(read_path), "paint this region alone", "NAME"},
-    {"seed", 0, VALUE(read_number), "same seed, same bytes (1)", "N"},
-    {"overwrite", 'y', FLAG(read_overwrite), "replace files that exist", NULL},
-    {"no-clobber", 0, FLAG(read_overwrite), "keep files that exist, write the others", NULL},
-    {"threads", 'j', VALUE(read_number), "(one per processor)", "N"},
-    {"quiet", 'q', FLAG(read_flag), "errors only", NULL},
-    {"verbose", 'v', FLAG(read_flag), "say what is being done", NULL},
+    {"preview", 0, VALUE(read_preview), "draft of frame N and those beside it", "N"},
+    {"styles", 0, VALUE(read_styles), "a sheet of several styles: 01,03 or all", "NAME,…"},
     {"report", 0, VALUE(read_path), "also write a page to look at, DIR/index.html", "DIR"},
+    {"overwrite", 'y', FLAG(read_overwrite), "replace files that exist", NULL},
     {"list-regions", 0, FLAG(read_flag), "print what the drawing is made of", NULL},
-    {"format", 0, VALUE(read_format), "as png16, exr, ora, mov; of that list: config", "WORD"},
-    {"list-styles", 0, FLAG(read_flag), "print the styles that are found", NULL},
+    {"list-styles", 0, FLAG(read_flag), "print the styles; -o FILE.png draws them", NULL},
     {"check", 0, FLAG(read_flag), "write maps of the regions instead of paint", NULL},
     {"dry-run", 0, FLAG(read_flag), "check everything, paint nothing", NULL},
+    {"quiet", 'q', FLAG(read_flag), "errors only", NULL},
     {"help", 'h', FLAG(read_flag), "this page", NULL},
     {"help-all", 0, FLAG(read_flag), "all options", NULL},
-    {"version", 'V', FLAG(read_flag), "name and version", NULL},
     {NULL},
 };
 
-static const GOptionEntry more[] = {
+static const GOptionEntry input[] = {
     {"missing", 0, VALUE(read_choice), "a gap in the numbers: error, hold or skip (error)", "WORD"},
     {"canvas", 0, VALUE(read_path), "size of drawings that have none", "WxH[+X+Y]"},
     {"register", 0, FLAG(read_flag), "move frames back that begin at 0,0, as OpenToonz writes them",
@@ -262,19 +288,46 @@ static const GOptionEntry more[] = {
     {"dpi", 0, VALUE(read_number), "pixels per inch of drawings sized in mm or in (96)", "N"},
     {"key", 0, VALUE(read_choice),
      "what makes leaves one region: auto, fill, id, class, label or tree (auto)", "WORD"},
-    {"resume", 0, FLAG(read_flag), "go on with an interrupted render, also with -y", NULL},
+    {"flow", 0, VALUE(read_path), "flow fields instead of those made from the masks", "PATTERN"},
     {"limit", 0, VALUE(read_limit), "how much a file may ask for; see TRUST in fluidy-svg(1)",
      "NAME=N"},
     {"strict", 0, FLAG(read_flag), "a warning about a drawing is an error", NULL},
+    {NULL},
+};
+
+static const GOptionEntry paint[] = {
+    {"tint", 0, VALUE(read_setting), "fill, keep or #RRGGBB (fill)", "TINT"},
     {"stacking", 0, VALUE(read_setting), "knockout or glaze what lies below (knockout)", "WORD"},
     {"stroke", 0, VALUE(read_choice), "keep, paint or drop line art (keep)", "WORD"},
     {"gap", 0, VALUE(read_number), "paper left around a region that hides others (0)", "PX"},
     {"feather", 0, VALUE(read_number), "fade paint towards such a region (0)", "PX"},
     {"blend", 0, VALUE(read_choice), "layers in srgb or in linear light (srgb)", "WORD"},
-    {"flow", 0, VALUE(read_path), "flow fields instead of those made from the masks", "PATTERN"},
+    {"region", 0, VALUE(read_path), "paint this region alone", "NAME"},
+    {"seed", 0, VALUE(read_number), "same seed, same bytes (1)", "N"},
+    {NULL},
+};
+
+static const GOptionEntry output[] = {
+    {"format", 0, VALUE(read_format), "as png16, exr, ora, mov; of that list: config", "WORD"},
+    {"layers", 0, VALUE(read_path), "also one file per {region} and frame", "PATTERN"},
+    {"height", 'H', VALUE(read_number), "height of the output, aspect kept", "PX"},
+    {"scale", 0, VALUE(read_number), "output pixels per drawing pixel (1)", "FACTOR"},
+    {"no-clobber", 0, FLAG(read_overwrite), "keep files that exist", NULL},
+    {"resume", 0, FLAG(read_flag), "go on with an interrupted render, also with -y", NULL},
     {"stats", 0, VALUE(read_path), "JSON lines about every frame, region and level", "FILE"},
     {"dump", 0, VALUE(read_path), "guides and fields as pictures and raw data", "DIR"},
+    {NULL},
+};
+
+static const GOptionEntry running[] = {
+    {"threads", 'j', VALUE(read_number), "(one per processor)", "N"},
+    {"verbose", 'v', FLAG(read_flag), "say what is being done", NULL},
     {"progress", 0, VALUE(read_choice), "auto, bar, plain, json or none (auto)", "WORD"},
+    {"version", 'V', FLAG(read_flag), "name and version", NULL},
+    {NULL},
+};
+
+static const GOptionEntry presets[] = {
     {"preset", 0, VALUE(read_setting),
      "set all of the parameters below: default, fluidymation or thesis (default)", "WORD"},
     {NULL},
@@ -305,41 +358,59 @@ static const GOptionEntry *parameter_entries(void)
     return entries;
 }
 
-static void add_group(GOptionContext *context, const char *title, const GOptionEntry *entries,
-                      FlArgs *args, bool main)
+const FlArgGroup *fl_args_groups(void)
 {
-    GOptionGroup *group = g_option_group_new(title, title, title, args, NULL);
-    g_option_group_add_entries(group, entries);
-    if (main)
-        g_option_context_set_main_group(context, group);
-    else
-        g_option_context_add_group(context, group);
+    static FlArgGroup groups[] = {{"Options", common},
+                                  {"More about the input", input},
+                                  {"More about the paint", paint},
+                                  {"More about the output", output},
+                                  {"Running", running},
+                                  {"Presets of the parameters of the synthesis", presets},
+                                  {"Parameters of the synthesis", NULL},
+                                  {NULL, NULL}};
+    groups[G_N_ELEMENTS(groups) - 2].entries = parameter_entries();
+    return groups;
 }
 
 static GOptionContext *new_context(FlArgs *args)
 {
-    GOptionContext *context = g_option_context_new("INPUT…");
+    GOptionContext *context = g_option_context_new(NULL);
+    GOptionGroup *all = g_option_group_new("", "", "", args, NULL);
     g_option_context_set_help_enabled(context, FALSE);
-    g_option_context_set_summary(
-        context, "Paints SVG frames with moving paint. INPUT is walk_%04d.svg, walk_####.svg, a\n"
-                 "quoted glob, a folder or files. --help-all lists more options.");
-    add_group(context, "Options:", common, args, true);
-    add_group(context, "More options:", more, args, false);
-    add_group(context, "Parameters of the synthesis:", parameter_entries(), args, false);
+    for (const FlArgGroup *g = fl_args_groups(); g->entries; g++)
+        g_option_group_add_entries(all, g->entries);
+    g_option_context_set_main_group(context, all);
     return context;
+}
+
+#define HELP_COLUMN 31
+
+static void append_help(GString *text, const GOptionEntry *entry)
+{
+    g_autoptr(GString) option = g_string_new("  ");
+    if (entry->short_name)
+        g_string_append_printf(option, "-%c, ", entry->short_name);
+    g_string_append_printf(option, "--%s", entry->long_name);
+    if (entry->arg_description)
+        g_string_append_printf(option, " %s", entry->arg_description);
+    const int gap = HELP_COLUMN - (int)g_utf8_strlen(option->str, -1);
+    g_string_append_printf(text, "%s%*s%s\n", option->str, MAX(gap, 1), "", entry->description);
 }
 
 char *fl_args_help(bool all)
 {
-    g_autoptr(GOptionContext) context = new_context(NULL);
-    return g_option_context_get_help(context, !all, NULL);
-}
-
-const GOptionEntry *const *fl_args_groups(void)
-{
-    static const GOptionEntry *groups[] = {common, more, NULL, NULL};
-    groups[2] = parameter_entries();
-    return groups;
+    GString *text =
+        g_string_new("fluidy-svg [OPTION…] INPUT… paints SVG frames with moving paint. INPUT is\n"
+                     "walk_%04d.svg, walk_####.svg, a quoted glob, a folder or files.\n");
+    for (const FlArgGroup *g = fl_args_groups(); g->entries; g++) {
+        if (g->entries != common)
+            g_string_append_printf(text, "\n%s:\n", g->title);
+        for (const GOptionEntry *e = g->entries; e->long_name; e++)
+            append_help(text, e);
+        if (!all)
+            break;
+    }
+    return g_string_free(text, FALSE);
 }
 
 /* "fill|keep|#RRGGBB" as "fill keep"; NULL if no word is left. */
@@ -383,9 +454,8 @@ static void improve_unknown(GError **error)
     g_autofree char *unknown = g_strdup(word + 1);
     *strchrnul(unknown, '=') = '\0';
     g_autoptr(GPtrArray) names = g_ptr_array_new();
-    const GOptionEntry *const groups[] = {common, more, parameter_entries()};
-    for (size_t i = 0; i < G_N_ELEMENTS(groups); i++)
-        for (const GOptionEntry *e = groups[i]; e->long_name; e++)
+    for (const FlArgGroup *g = fl_args_groups(); g->entries; g++)
+        for (const GOptionEntry *e = g->entries; e->long_name; e++)
             g_ptr_array_add(names, (gpointer)e->long_name);
     g_ptr_array_add(names, NULL);
     const char *near =
@@ -420,7 +490,28 @@ static char **split_values(int argc, char **argv)
 
 static bool needs_input(FlTask task)
 {
-    return task == FL_TASK_RENDER || task == FL_TASK_LIST_REGIONS || task == FL_TASK_CHECK;
+    return task == FL_TASK_RENDER || task == FL_TASK_LIST_REGIONS || task == FL_TASK_CHECK ||
+           task == FL_TASK_COMPARE;
+}
+
+/* What is tried out is painted fast, and replaces what was tried out before. */
+static bool make_preview(FlArgs *args, GError **error)
+{
+    const FlSetting draft = {.name = "detail", .value = "draft"};
+    g_array_prepend_val(args->settings, draft); // so that --detail wins
+    if (args->preview && args->render.frames) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "--preview and --frames contradict each other");
+        return false;
+    }
+    if (args->preview)
+        args->render.frames = args->preview;
+    if (args->render.output)
+        return true;
+    args->render.overwrite = FL_OVERWRITE_YES;
+    if (args->task == FL_TASK_RENDER && !args->render.format)
+        args->render.output = "fluidy/{name}_preview_%04d.png";
+    return true;
 }
 
 /* GOption keeps "--" before a word that begins with a dash; it has served its purpose. */
@@ -450,6 +541,8 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
     }
     drop_separator(args->inputs);
     args->render.inputs = (const char *const *)args->inputs + 1;
+    if ((args->preview || args->task == FL_TASK_COMPARE) && !make_preview(args, error))
+        return false;
     args->render.settings = (const FlSetting *)(const void *)args->settings->data;
     args->render.n_settings = args->settings->len;
     if (needs_input(args->task) && !args->render.inputs[0]) {
@@ -463,6 +556,7 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
 void fl_args_clear(FlArgs *args)
 {
     g_strfreev(args->inputs);
+    g_strfreev(args->styles);
     g_array_unref(args->settings);
     g_ptr_array_unref(args->strings);
 }

@@ -12,6 +12,7 @@ typedef enum FlTask {
     FL_TASK_LIST_REGIONS,
     FL_TASK_LIST_STYLES,
     FL_TASK_CHECK,
+    FL_TASK_COMPARE,
 } FlTask;
 
 typedef enum FlProgressMode {
@@ -27,7 +28,9 @@ typedef struct FlArgs {
     FlRenderOptions render; // its strings belong to this struct
     FlListing listing;      // of FL_TASK_LIST_REGIONS
     FlProgressMode progress;
-    bool quiet; // no warnings, notes or progress
+    const char *preview; // a range of frames; NULL: none
+    char **styles;       // of FL_TASK_COMPARE; NULL: all there are
+    bool quiet;          // no warnings, notes or progress
     char **inputs;
     GArray *settings;   // FlSetting
     GPtrArray *strings; // whatever else is owned
@@ -43,8 +46,14 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error);
 
 void fl_args_clear(FlArgs *args);
 
-/** Every option, in the groups of --help-all; the list and each group end with an empty one. */
-const GOptionEntry *const *fl_args_groups(void);
+/** Options that belong together; entries end with an empty one. */
+typedef struct FlArgGroup {
+    const char *title;
+    const GOptionEntry *entries;
+} FlArgGroup;
+
+/** Every option, in the groups of --help-all; one without entries ends the list. */
+const FlArgGroup *fl_args_groups(void);
 
 /** What an option's value may be, such as "draft normal fine"; NULL: not a choice of words. Free.
  */

@@ -24,6 +24,7 @@ static void on_signal(int number)
 typedef struct Voice {
     FlMeter meter;
     bool quiet;
+    int n_warnings;
 } Voice;
 
 static bool show_progress(const FlProgress *progress, void *data)
@@ -36,8 +37,18 @@ static bool show_progress(const FlProgress *progress, void *data)
 static void show_warning(const char *message, void *data)
 {
     Voice *voice = data;
+    voice->n_warnings++;
     if (!voice->quiet)
         fl_meter_say(&voice->meter, "warning", message);
+}
+
+/* At the end, when they may have gone from the screen. */
+static void recall_warnings(Voice *voice)
+{
+    const int n = voice->n_warnings;
+    g_autofree char *line = g_strdup_printf("%d warning%s at the beginning", n, n == 1 ? "" : "s");
+    if (n > 0 && !voice->quiet)
+        fl_meter_say(&voice->meter, "note", line);
 }
 
 static void show_note(const char *message, void *data)
@@ -67,16 +78,35 @@ static int print(const char *text)
     return written ? DONE : FAILURE;
 }
 
-static int list_styles(void)
+static int list_styles(const FlArgs *args)
 {
+    g_autoptr(GError) error = NULL;
+    const bool overwrite = args->render.overwrite == FL_OVERWRITE_YES;
+    if (args->render.output && !fl_style_sheet(args->render.output, overwrite, &error))
+        return fail(error);
     g_autoptr(GPtrArray) styles = fl_style_list();
     g_autoptr(GString) text = g_string_new(NULL);
     for (guint i = 0; i < styles->len; i++) {
         const FlStyleEntry *style = styles->pdata[i];
         if (!style->hidden)
-            g_string_append_printf(text, "%-12s %s\n", style->name, style->path);
+            g_string_append_printf(text, "%-12s %-36s %s\n", style->name,
+                                   style->title ? style->title : "", style->path);
     }
     return print(text->str);
+}
+
+static bool compare_styles(const FlArgs *args, GError **error)
+{
+    g_autoptr(GPtrArray) found = fl_style_list();
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (guint i = 0; i < found->len; i++) {
+        const FlStyleEntry *style = found->pdata[i];
+        if (!style->hidden)
+            g_ptr_array_add(names, style->name);
+    }
+    g_ptr_array_add(names, NULL);
+    char **styles = args->styles ? args->styles : (char **)names->pdata;
+    return fl_compare_styles(&args->render, (const char *const *)styles, error);
 }
 
 static int list_regions(const FlArgs *args, GError **error)
@@ -104,9 +134,13 @@ static int work(FlArgs *args)
         status = list_regions(args, &error);
     else if (args->task == FL_TASK_CHECK)
         fl_map_regions(&args->render, &error);
+    else if (args->task == FL_TASK_COMPARE)
+        compare_styles(args, &error);
     else
         fl_render(&args->render, &error);
     fl_meter_hide(&voice.meter);
+    if (!error && args->task == FL_TASK_RENDER)
+        recall_warnings(&voice);
     return error ? fail(error) : status;
 }
 
@@ -122,7 +156,7 @@ static int run(FlArgs *args)
         text = fl_args_help(args->task == FL_TASK_HELP_ALL);
         return print(text);
     case FL_TASK_LIST_STYLES:
-        return list_styles();
+        return list_styles(args);
     default:
         return work(args);
     }

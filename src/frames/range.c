@@ -1,6 +1,7 @@
 #include "frames/range.h"
 
 #include <stdbool.h>
+#include <string.h>
 
 #define LONGEST 1000000 // frames; beyond this a range is a slip of the keyboard
 
@@ -17,10 +18,28 @@ static bool read_number(const char **s, int *value)
     return true;
 }
 
-/** One part between commas. Returns: whether it was understood. */
-static bool read_part(const char *s, int film_last, int *first, int *last, int *step)
+/** A number and how many lie around it, within what *first and *last come in as. */
+static bool read_around(const char *s, int *first, int *last)
 {
+    int middle = *first + (*last - *first) / 2, away = 0;
+    if (*s != '~' && !read_number(&s, &middle))
+        return false;
+    if (*s++ != '~' || !read_number(&s, &away) || *s != '\0' || away >= LONGEST)
+        return false;
+    const bool known = middle >= *first && middle <= *last;
+    *first = known ? MAX(middle - away, *first) : middle;
+    *last = known ? MIN(middle + away, *last) : middle;
+    return true;
+}
+
+/** One part between commas; *first and *last come in as the film's. Returns: whether it was
+ * understood. */
+static bool read_part(const char *s, int *first, int *last, int *step)
+{
+    const int film_last = *last;
     *step = 1;
+    if (strchr(s, '~'))
+        return read_around(s, first, last);
     if (!read_number(&s, first))
         return false;
     *last = *first;
@@ -50,14 +69,15 @@ GArray *fl_range_parse(const char *range, int film_first, int film_last, GError 
     bool good = parts[0] != NULL;
     for (int i = 0; good && parts[i]; i++) {
         int first = film_first, last = film_last, step = 1;
-        good = read_part(g_strstrip(parts[i]), film_last, &first, &last, &step);
+        good = read_part(g_strstrip(parts[i]), &first, &last, &step);
         for (int n = first; good && n <= last; n += step)
             g_array_append_val(numbers, n);
     }
     if (!good) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "frames \"%s\": expected numbers and ranges such as 1001-1096, 1-96x2 or 1,5,9",
-                    range);
+        g_set_error(
+            error, FL_ERROR, FL_ERROR_USAGE,
+            "frames \"%s\": expected numbers and ranges such as 1001-1096, 1-96x2, 1,5,9 or 12~1",
+            range);
         g_array_unref(numbers);
         return NULL;
     }

@@ -1,5 +1,6 @@
 #include "frames/sequence.h"
 
+#include "base/suggest.h"
 #include "frames/pattern.h"
 #include "frames/range.h"
 #include <fnmatch.h>
@@ -114,8 +115,8 @@ static int edit_distance(const char *a, const char *b)
     return row[n];
 }
 
-/** "; did you mean walk_%04d.svg (44 files)?" or "". */
-static char *suggestion(const GPtrArray *names, const char *wanted)
+/** "; did you mean walk_%04d.svg (44 files)?", or a name that is near; names stays as it is. */
+static char *suggestion(GPtrArray *names, const char *wanted)
 {
     g_autoptr(GArray) groups = group_names(names);
     g_autofree char *best = NULL;
@@ -131,8 +132,15 @@ static char *suggestion(const GPtrArray *names, const char *wanted)
             best_n = group->n;
         }
     }
-    if (!best)
+    if (!best) {
+        g_ptr_array_add(names, NULL);
+        char *near = fl_did_you_mean(wanted, (const char *const *)names->pdata);
+        g_ptr_array_remove_index(names, names->len - 1);
+        if (*near)
+            return near;
+        g_free(near);
         return g_strdup("; its folder holds no numbered .svg files");
+    }
     return g_strdup_printf("; did you mean %s (%d file%s)?", best, best_n, best_n == 1 ? "" : "s");
 }
 

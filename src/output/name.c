@@ -89,3 +89,9 @@ char *fl_output_name(const char *pattern, int number, const char *region, GError
     }
     return g_string_free(g_steal_pointer(&name), FALSE);
 }
+
+char *fl_output_of_film(const char *pattern, const char *film)
+{
+    g_auto(GStrv) parts = g_strsplit(pattern, "{name}", -1);
+    return g_strjoinv(film, parts);
+}

@@ -15,6 +15,9 @@
  */
 char *fl_output_name(const char *pattern, int number, const char *region, GError **error);
 
+/** The pattern with the film's name in place of {name}; to be freed. */
+char *fl_output_of_film(const char *pattern, const char *film);
+
 /** Whether the pattern has a place for the frame number, so that frames get files of their own. */
 bool fl_output_is_pattern(const char *pattern);
 

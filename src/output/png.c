@@ -157,3 +157,12 @@ const FlSinkFormat fl_sink_png16 = {
     .takes_16 = true,
     .frame = png_frame,
 };
+
+bool fl_png_named(const char *path, const char *what, GError **error)
+{
+    const size_t length = strlen(path);
+    if (length > 4 && g_ascii_strcasecmp(path + length - 4, ".png") == 0)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: %s PNG files; expected .png", path, what);
+    return false;
+}

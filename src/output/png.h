@@ -23,6 +23,9 @@ typedef struct FlPng {
  */
 bool fl_png_save(const FlPng *png, const char *path, bool overwrite, GError **error);
 
+/** Whether a name ends in .png; else FL_ERROR_USAGE says that `what`, "maps are", PNG files. */
+bool fl_png_named(const char *path, const char *what, GError **error);
+
 /** The bytes of the file that fl_png_save() writes; NULL if memory is short. */
 GBytes *fl_png_encode(const FlPng *png);
 

@@ -1,6 +1,7 @@
 #include "regions/opening.h"
 
 #include "base/suggest.h"
+#include <string.h>
 
 /* The rule's wishes that matter to finding regions. The strings stay the config's. */
 static void add_wishes(const FlRule *from, FlRegionRule *rule)
@@ -75,11 +76,32 @@ static void warn_of_nothing(const FlFilm *film, FlWarnings *warnings)
                     fl_film_frames(film) > 1 ? ", nor in the other frames" : "");
 }
 
+/* The first of those that say the same of other elements; they count as one. */
+static bool is_first_of_its_kind(const FlWarnings *warnings, int i, int *n_alike)
+{
+    const char *text = fl_warnings_get(warnings, i)->text;
+    *n_alike = 0;
+    for (int k = 0; k < fl_warnings_count(warnings); k++)
+        if (g_str_equal(fl_warnings_get(warnings, k)->text, text)) {
+            if (k < i)
+                return false;
+            ++*n_alike;
+        }
+    return true;
+}
+
 static bool report(const FlWarnings *warnings, const FlRenderOptions *options, GError **error)
 {
     const int n = fl_warnings_count(warnings);
     for (int i = 0; i < n; i++) {
-        g_autofree char *line = fl_warning_line(fl_warnings_get(warnings, i));
+        int n_alike;
+        if (!is_first_of_its_kind(warnings, i, &n_alike))
+            continue;
+        g_autofree char *first = fl_warning_line(fl_warnings_get(warnings, i));
+        g_autofree char *line = n_alike == 1
+                                    ? g_strdup(first)
+                                    : g_strdup_printf("%s; and so for %d more element%s", first,
+                                                      n_alike - 1, n_alike == 2 ? "" : "s");
         if (options->strict) {
             g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under --strict)", line,
                         n, n == 1 ? "" : "s");
@@ -89,6 +111,19 @@ static bool report(const FlWarnings *warnings, const FlRenderOptions *options, G
             options->warning(line, options->data);
     }
     return true;
+}
+
+/* A config beside the drawing is offered, but what nobody asked for is not done. */
+static void offer_config(const FlFilm *film, const FlRenderOptions *options)
+{
+    g_autofree char *folder = g_path_get_dirname(fl_film_file(film, 0));
+    g_autofree char *path = strcmp(folder, ".") == 0
+                                ? g_strdup("fluidy-svg.conf")
+                                : g_build_filename(folder, "fluidy-svg.conf", NULL);
+    if (options->config || !options->note || !g_file_test(path, G_FILE_TEST_IS_REGULAR))
+        return;
+    g_autofree char *line = g_strdup_printf("%s is not used; -c %s paints by it", path, path);
+    options->note(line, options->data);
 }
 
 FlFilm *fl_film_of_options(const FlRenderOptions *options, const FlConfig *config, GError **error)
@@ -113,6 +148,7 @@ FlFilm *fl_film_of_options(const FlRenderOptions *options, const FlConfig *confi
     g_autoptr(FlFilm) film = fl_film_open(&wanted, warnings, error);
     if (!film)
         return NULL;
+    offer_config(film, options);
     warn_of_nothing(film, warnings);
     if (!options->frames) // a section may be about something that other frames have
         warn_of_unused(film, config, rules, warnings);

@@ -115,8 +115,7 @@ static bool add_painters(FlPlan *plan, GError **error)
 static char *default_output(const FlPlan *plan)
 {
     const char *suffix = plan->format->suffix ? plan->format->suffix : ".png";
-    return g_strdup_printf("fluidy/%s%s%s", fl_film_name(plan->film),
-                           plan->format->film ? "" : "_%04d", suffix);
+    return g_strdup_printf("fluidy/{name}%s%s", plan->format->film ? "" : "_%04d", suffix);
 }
 
 static bool name_output(FlPlan *plan, GError **error)
@@ -125,7 +124,8 @@ static bool name_output(FlPlan *plan, GError **error)
     plan->format = fl_sink_format(format || said ? format : "png", said, error);
     if (!plan->format)
         return false;
-    plan->output = said ? g_strdup(said) : default_output(plan);
+    g_autofree char *pattern = said ? g_strdup(said) : default_output(plan);
+    plan->output = fl_output_of_film(pattern, fl_film_name(plan->film));
     if (!plan->format->film && !fl_output_is_pattern(plan->output) &&
         fl_film_frames(plan->film) > 1) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,

@@ -2,7 +2,7 @@
 
 #include "base/suggest.h"
 #include "config.h"
-#include "style/bundle.h"
+#include "style/manifest.h"
 
 #include <string.h>
 
@@ -84,12 +84,24 @@ static void free_entry(void *data)
     FlStyleEntry *entry = data;
     g_free(entry->name);
     g_free(entry->path);
+    g_free(entry->title);
     g_free(entry);
 }
 
 static int compare_strings(const void *a, const void *b)
 {
     return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static char *title_of(const char *folder)
+{
+    FlStyle style = {0}; // the strings of which are freed below
+    g_autofree char *file = g_build_filename(folder, "style.ini", NULL);
+    const bool read = g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(&style, file, NULL);
+    char *title = read ? g_steal_pointer(&style.name) : NULL;
+    g_free(style.name), g_free(style.author), g_free(style.licence);
+    g_free(style.made_by), g_free(style.missing_orientations);
+    return title;
 }
 
 GPtrArray *fl_style_list(void)
@@ -109,6 +121,7 @@ GPtrArray *fl_style_list(void)
                 .path = g_build_filename(folders[i], name, NULL),
                 .hidden = !g_hash_table_add(seen, g_strdup(name)),
             };
+            entry->title = title_of(entry->path);
             g_ptr_array_add(entries, entry);
         }
     }

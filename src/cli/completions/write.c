@@ -107,14 +107,14 @@ static void bash_begin(const char *function)
 
 static void bash_svg(void)
 {
-    const GOptionEntry *const *groups = fl_args_groups();
+    const FlArgGroup *groups = fl_args_groups();
     bash_begin("_fluidy_svg");
     printf("    case $prev in\n");
-    for (int g = 0; groups[g]; g++)
-        bash_values(groups[g], "    ");
+    for (int g = 0; groups[g].entries; g++)
+        bash_values(groups[g].entries, "    ");
     printf("    esac\n    if [[ $cur == -* ]]; then\n        COMPREPLY=($(compgen -W '");
-    for (int g = 0; groups[g]; g++)
-        bash_names(groups[g]);
+    for (int g = 0; groups[g].entries; g++)
+        bash_names(groups[g].entries);
     printf("' -- \"$cur\"))\n    else\n        COMPREPLY=($(compgen -f -- \"$cur\"))\n    fi\n}\n"
            "complete -o filenames -F _fluidy_svg fluidy-svg\n");
 }
@@ -175,12 +175,12 @@ static void zsh_styles(void)
 
 static void zsh_svg(void)
 {
-    const GOptionEntry *const *groups = fl_args_groups();
+    const FlArgGroup *groups = fl_args_groups();
     printf("#compdef fluidy-svg\n\n");
     zsh_styles();
     printf("_arguments -s -S \\\n");
-    for (int g = 0; groups[g]; g++)
-        zsh_options(groups[g], "    ");
+    for (int g = 0; groups[g].entries; g++)
+        zsh_options(groups[g].entries, "    ");
     printf("    '*:input:_files'\n");
 }
 
@@ -226,9 +226,9 @@ static void fish_options(const char *program, const char *condition, const GOpti
 
 static void fish_svg(void)
 {
-    const GOptionEntry *const *groups = fl_args_groups();
-    for (int g = 0; groups[g]; g++)
-        fish_options("fluidy-svg", "", groups[g]);
+    const FlArgGroup *groups = fl_args_groups();
+    for (int g = 0; groups[g].entries; g++)
+        fish_options("fluidy-svg", "", groups[g].entries);
 }
 
 static void fish_style(void)

@@ -1,0 +1,102 @@
+#!/bin/bash
+# The manuals are about these programs, and their examples work. usage: manual.sh BUILD FIXTURES;
+# speaks TAP.
+set -u
+export LC_ALL=C.UTF-8
+build=$(realpath "$1")
+fixtures=$(realpath "$2")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+export PATH="$build/src/cli:$folder/bin:$PATH"
+export HOME=$folder EDITOR=true
+unset XDG_DATA_HOME
+export OMP_WAIT_POLICY=passive # tests run side by side
+n=0
+
+report() { # report STATUS SENTENCE: shows the file told after a failure
+    n=$((n + 1))
+    if [ "$1" = 0 ]; then
+        echo "ok $n - $2"
+    else
+        echo "not ok $n - $2"
+        sed 's/^/# /' told | tail -30
+    fi
+}
+
+# The long options that a manual describes, one a line.
+described() {
+    sed -n 's/^\.It Fl //p' "$1" | tr ' ,' '\n\n' | sed -n 's/^-\([a-z]\)/\1/p' | sort -u
+}
+
+# The same of what --help prints, on standard input.
+offered() {
+    sed -nE 's/^ +(-., )?--([a-z-]+).*/\2/p' | sort -u
+}
+
+# Lines of the examples of a manual, as the reader types them.
+examples() {
+    sed -n '/^\.Sh EXAMPLES/,/^\.Sh [^E]/p' "$1" |
+        sed -n -e '/^\.Bd/,/^\.Ed/{/^\.[BE]d/!p}' -e 's/^\.Dl //p' | sed 's/\\e/\\/g'
+}
+
+fluidy-svg --help-all | offered >is
+described "$build/man/fluidy-svg.1" >said
+diff is said >told
+report $? 'fluidy-svg(1) describes the options that there are, and no others'
+for command in import check simulate list; do fluidy-style "$command" --help; done | offered |
+    grep -vxE 'help(-all)?|version' >is
+described "$build/man/fluidy-style.1" | grep -vxE 'help(-all)?|version' >said
+diff is said >told
+report $? 'fluidy-style(1) describes the options that there are, and no others'
+
+# What the examples are about, as small as they allow.
+mkdir bin walk styles
+for style in 01 02 03 04 05 06; do
+    cp -r "$fixtures/style-small" "styles/$style"
+done
+export FLUIDY_STYLES=$folder/styles
+printf '#!/bin/sh\n[ -f "$1" ]\n' >bin/xdg-open
+chmod +x bin/xdg-open
+for i in $(seq 24); do
+    echo "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='36'><circle cx='$((12 + i))'
+cy='18' r='10' fill='#aa3311'/></svg>" | tee "$(printf 'walk_%04d.svg' "$i")" \
+        >"$(printf 'walk/walk_%04d.svg' "$i")"
+done
+examples "$build/man/fluidy-svg.1" >run
+bash -e run >told 2>&1 && [ -s walk.mov ] && [ -s cycle.gif ] && [ -s ink/index.html ] &&
+    [ -s styles.png ] && [ -s fluidy/walk_styles.png ]
+report $? 'the examples of fluidy-svg(1) work'
+
+sed -n '/^\.Sh EXAMPLES/,/^\.Sh DIAG/p' "$build/man/fluidy-svg.conf.5" |
+    sed -n '/^\.Bd/,/^\.Ed/{/^\.[BE]d/!p}' >example.conf
+cp "$fixtures/compose/drop-13-rgb.png" paper.png
+fluidy-svg walk -c example.conf --dry-run -o 'conf_%d.png' >told 2>&1
+report $? 'the example of fluidy-svg.conf(5) is a config'
+
+if ! command -v ffmpeg >/dev/null; then
+    n=$((n + 1))
+    echo "ok $n - the examples of fluidy-style(1) and (5) work # SKIP no ffmpeg"
+else
+    frames=$fixtures/styles/03/frames
+    paper='scale=700:-1,pad=1500:1000:550:180:color=0xf6f2ea'
+    ffmpeg -v error -framerate 2.7 -i "$frames/%04d.png" -vf "$paper,tpad=stop=-1:stop_mode=clone,fps=25" \
+        -frames:v 185 -c:v mpeg4 -q:v 3 ink.mp4
+    ffmpeg -v error -i "$frames/%04d.png" scan_%02d.jpg
+    i=0
+    for frame in "$frames"/*.png; do
+        i=$((i + 1))
+        cp "$frame" "$(printf 'rgb_%05d.png' $i)"
+        cp "${frame/frames/masks}" "$(printf 'alpha_%05d.png' $i)"
+    done
+    mkdir 01
+    cp "$fixtures/watercolour/wet/recipe.ini" 01/
+    # Whoever reads on does not paint the same film twice.
+    printf '#!/bin/sh\nrm -rf fluidy\nexec "%s" "$@"\n' "$build/src/cli/fluidy-svg" >bin/fluidy-svg
+    chmod +x bin/fluidy-svg
+    export PATH="$folder/bin:$PATH"
+    { examples "$build/man/fluidy-style.1" && echo rm -r ink ink-check.png && examples "$build/man/fluidy-style.5" | sed "/^\[/,\$d"; } >run
+    bash -e run >told 2>&1 && [ -f fire/style.ini ] && [ -f my01/style.ini ]
+    report $? 'the examples of fluidy-style(1) and (5) work'
+fi
+echo "1..$n"
