@@ -133,6 +133,42 @@ static void relaxing_leaves_little_divergence(void)
         }
 }
 
+/* Pigment of the disc within 2 cells of its rim, per cell, as a share of that within 6 of its
+   middle. */
+static float rim_over_core(float edge_darkening)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    FlFlow flow = usual_flow();
+    float sum[2] = {0}, cells[2] = {0};
+    flow.slope = 0;
+    flow.edge_darkening = edge_darkening;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        sheet->p[i] = 0;
+        sheet->floating[0][i] = sheet->wet[i] ? 0.25f : 0;
+    }
+    for (int step = 0; step < 60; step++) {
+        fl_update_velocities(sheet, &flow);
+        fl_relax_divergence(sheet, &flow);
+        fl_flow_outward(sheet, &flow);
+        fl_move_pigment(sheet);
+    }
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const float away = hypotf((float)(i % SIDE - SIDE / 2), (float)(i / SIDE - SIDE / 2));
+        if (sheet->wet[i] && (away > 12 || away < 6)) {
+            sum[away > 12] += sheet->floating[0][i];
+            cells[away > 12]++;
+        }
+    }
+    return sum[1] / cells[1] / (sum[0] / cells[0]);
+}
+
+static void pigment_gathers_at_the_rim_of_a_wash(void)
+{
+    g_assert_cmpfloat_with_epsilon(rim_over_core(0), 1, 0.01f);
+    g_assert_cmpfloat(rim_over_core(0.01f), >, 1.3f);
+    g_assert_cmpfloat(rim_over_core(0.03f), >, 1.3f * rim_over_core(0.01f));
+}
+
 static void water_in_the_paper_conserves_pigment_and_spreads(void)
 {
     g_autoptr(FlSheet) sheet = painted_sheet();
@@ -414,6 +450,7 @@ int main(int argc, char **argv)
     TEST(shallow_water_conserves_pigment_and_keeps_it_in_the_wet_mask);
     TEST(no_velocity_leaks_through_the_wet_mask);
     TEST(relaxing_leaves_little_divergence);
+    TEST(pigment_gathers_at_the_rim_of_a_wash);
     TEST(water_in_the_paper_conserves_pigment_and_spreads);
     TEST(water_never_exceeds_the_capacity_of_the_paper);
     TEST(a_growing_puddle_opens_no_streak_along_its_line);
