@@ -61,6 +61,19 @@ static bool check_region_names(const FlPlan *plan, GError **error)
     return true;
 }
 
+/* Said once for each style, by the first region that is painted with it. */
+static void warn_of_stillness(const FlPlan *plan, const FlPainter *painter)
+{
+    if (!painter->box || painter->box->exemplar->level[0].n_frames > 1 || !plan->options.warning)
+        return;
+    for (const FlPainter *p = plan->painters; p < painter; p++)
+        if (p->box == painter->box)
+            return;
+    g_autofree char *line =
+        g_strdup_printf("%s: one frame is used: its paint does not flow", painter->box->path);
+    plan->options.warning(line, plan->options.data);
+}
+
 static bool add_painter(FlPlan *plan, int region, GError **error)
 {
     const FlRegion *r = fl_film_region(plan->film, region);
@@ -87,6 +100,7 @@ static bool add_painter(FlPlan *plan, int region, GError **error)
     painter->flow_pattern = g_strdup(plan->options.flow);
     painter->loops = plan->options.loop;
     painter->box = fl_exemplars_get(plan->exemplars, &painter->treatment, error);
+    warn_of_stillness(plan, painter);
     if (painter->box && plan->options.verbose)
         note(plan, "region %s: style %s", r->name, painter->box->path);
     return painter->box != NULL;
