@@ -391,6 +391,35 @@ static void blend_modes_are_drawn_or_named(void)
     }
 }
 
+/* Rules that reach into groups are not foreseen: a group that fades and what a <use> shows. */
+static void the_smallest_group_that_looks_otherwise_is_taken_as_one(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *path =
+        scratch_svg(folder, "odd.svg",
+                    "<style>svg > g > g#pair { opacity: .5 } defs g rect { fill: #00aa00 }</style>"
+                    "<defs><g id='d'><rect width='20' height='20'/></g></defs>"
+                    "<g id='outer'><circle cx='20' cy='20' r='15' fill='#333399'/>"
+                    "<g id='pair'><rect x='30' y='30' width='40' height='40' fill='#aa0000'/>"
+                    "<rect x='50' y='50' width='40' height='40' fill='#cccc00'/></g></g>"
+                    "<g><use xlink:href='#d' x='5' y='70'/>"
+                    "<circle cx='80' cy='20' r='15' fill='#993399'/></g>");
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, path, warnings);
+    assert_table(film, "outer-333399*1 pair-group*1 green-00aa00*1 purple-993399*1");
+    g_assert_cmpfloat(flat_psnr(film, 0), >, 60);
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 2);
+    g_autofree char *use = fl_warning_line(fl_warnings_get(warnings, 0));
+    g_autofree char *pair = fl_warning_line(fl_warnings_get(warnings, 1));
+    g_assert_true(g_str_has_suffix(use,
+                                   "odd.svg: no. 2 of the groups without an id, drawn shape by "
+                                   "shape it does not look like the drawing: taken as one"));
+    g_assert_true(g_str_has_suffix(pair,
+                                   "odd.svg: #pair: drawn shape by shape it does not look like "
+                                   "the drawing: taken as one"));
+}
+
 /* A house that stands still and a ball that comes from the left, each frame moved to 0,0. */
 static void frames_that_begin_at_nought_are_put_back(void)
 {
@@ -454,6 +483,7 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
 #define TEST(path, function) g_test_add_func("/film/" path, function)
+    TEST("fall-back", the_smallest_group_that_looks_otherwise_is_taken_as_one);
     TEST("blend-modes", blend_modes_are_drawn_or_named);
     TEST("registered", frames_that_begin_at_nought_are_put_back);
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);

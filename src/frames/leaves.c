@@ -7,7 +7,8 @@
 
 /** What a leaf inherits from the groups around it; strings grow inwards and are cut back. */
 typedef struct Walk {
-    GString *labels, *layers, *ids, *classes, *tree;
+    GString *labels, *layers, *ids, *groups, *classes, *tree;
+    const char *const *whole;
     FlLeaves *leaves;
     FlCss *css;
     GHashTable *taken; // id -> xmlNode, the first of that id
@@ -18,12 +19,13 @@ typedef struct Walk {
 } Walk;
 
 typedef struct Mark {
-    gsize labels, layers, ids, classes, tree;
+    gsize labels, layers, ids, groups, classes, tree;
 } Mark;
 
 static Mark mark(const Walk *w)
 {
-    return (Mark){w->labels->len, w->layers->len, w->ids->len, w->classes->len, w->tree->len};
+    return (Mark){w->labels->len, w->layers->len,  w->ids->len,
+                  w->groups->len, w->classes->len, w->tree->len};
 }
 
 static void cut_back(Walk *w, Mark m)
@@ -31,6 +33,7 @@ static void cut_back(Walk *w, Mark m)
     g_string_truncate(w->labels, m.labels);
     g_string_truncate(w->layers, m.layers);
     g_string_truncate(w->ids, m.ids);
+    g_string_truncate(w->groups, m.groups);
     g_string_truncate(w->classes, m.classes);
     g_string_truncate(w->tree, m.tree);
 }
@@ -47,7 +50,25 @@ static void append(GString *list, const char *item)
 static char *authored_id(const xmlNode *node)
 {
     char *id = fl_attribute(node, "id");
-    return id ? id : fl_attribute(node, FL_COPIED_ID);
+    if (!id)
+        id = fl_attribute(node, FL_COPIED_ID);
+    if (!id || !g_str_has_prefix(id, FL_GROUP_ID))
+        return id;
+    xmlFree(id);
+    return NULL;
+}
+
+static bool is_container(const xmlNode *node)
+{
+    static const char *const containers[] = {"g", "svg", "a", NULL};
+    return fl_is_one_of(node, containers);
+}
+
+static void append_group(Walk *w, const xmlNode *node)
+{
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    if (id && is_container(node) && g_hash_table_lookup(w->taken, id) == node)
+        append(w->groups, (const char *)id);
 }
 
 static void enter(Walk *w, const xmlNode *node, int index)
@@ -60,6 +81,7 @@ static void enter(Walk *w, const xmlNode *node, int index)
     if (label && (is_layer || w->layers->len == 0))
         append(w->layers, label);
     append(w->ids, (const char *)id);
+    append_group(w, node);
     g_auto(GStrv) words = g_strsplit_set(classes ? (const char *)classes : "", " \t\r\n", -1);
     for (int i = 0; words[i]; i++)
         append(w->classes, words[i]);
@@ -110,6 +132,7 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         .labels = g_strdup(w->labels->str),
         .layers = g_strdup(w->layers->str),
         .ids = g_strdup(w->ids->str),
+        .groups = g_strdup(w->groups->str),
         .classes = g_strdup(w->classes->str),
         .tree = g_strdup(w->tree->str),
         .unit = w->unit,
@@ -128,12 +151,6 @@ static bool is_hidden(const xmlNode *node)
 {
     g_autofree char *display = fl_property(node, "display");
     return display && g_str_has_prefix(display, "none");
-}
-
-static bool is_container(const xmlNode *node)
-{
-    static const char *const containers[] = {"g", "svg", "a", NULL};
-    return fl_is_one_of(node, containers);
 }
 
 static bool is_drawn(const xmlNode *node)
@@ -224,7 +241,7 @@ static void walk(Walk *w, xmlNode *node)
             continue;
         const Mark m = mark(w);
         enter(w, child, index);
-        if (is_drawn(child)) {
+        if (is_drawn(child) || fl_is_whole(child, w->whole)) {
             const FlLeaf leaf = make_leaf(w, child);
             g_array_append_val(w->leaves->leaf, leaf);
         } else if (is_container(child) && w->unit < 0 && is_unit(w, child)) {
@@ -245,6 +262,7 @@ static void leaf_clear(void *data)
     g_free(leaf->labels);
     g_free(leaf->layers);
     g_free(leaf->ids);
+    g_free(leaf->groups);
     g_free(leaf->classes);
     g_free(leaf->tree);
 }
@@ -254,7 +272,7 @@ static void unit_clear(void *data)
     leaf_clear(&((FlUnit *)data)->leaf);
 }
 
-FlLeaves *fl_leaves_new(xmlDoc *doc)
+FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
 {
     FlLeaves *leaves = g_new0(FlLeaves, 1);
     leaves->leaf = g_array_new(FALSE, FALSE, sizeof(FlLeaf));
@@ -264,6 +282,8 @@ FlLeaves *fl_leaves_new(xmlDoc *doc)
     Walk w = {.labels = g_string_new(NULL),
               .layers = g_string_new(NULL),
               .ids = g_string_new(NULL),
+              .groups = g_string_new(NULL),
+              .whole = whole,
               .classes = g_string_new(NULL),
               .tree = g_string_new(NULL),
               .leaves = leaves,
@@ -276,6 +296,7 @@ FlLeaves *fl_leaves_new(xmlDoc *doc)
     g_string_free(w.labels, TRUE);
     g_string_free(w.layers, TRUE);
     g_string_free(w.ids, TRUE);
+    g_string_free(w.groups, TRUE);
     g_string_free(w.classes, TRUE);
     g_string_free(w.tree, TRUE);
     return leaves;

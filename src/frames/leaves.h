@@ -17,6 +17,7 @@ typedef struct FlLeaf {
     char *labels;  // what names it and the groups around it: layer labels, telling ids
     char *layers;  // the layers among them; the outermost group if there are none
     char *ids;     // every authored id, its own last
+    char *groups;  // ids, in the document, of the groups around it and of itself if it is one
     char *classes; // every class word
     char *tree;    // child indices from the root, "0/3/1"
     int unit;      // index of the group it may have to be drawn with, -1: none
@@ -39,8 +40,11 @@ typedef struct FlLeaves {
     GArray *unit; // FlUnit
 } FlLeaves;
 
-/** Lists the leaves and gives ids to those without. Content with display: none is left out. */
-FlLeaves *fl_leaves_new(xmlDoc *doc);
+/**
+ * Lists the leaves and gives ids to those without. Content with display: none is left out. Elements
+ * of `whole`, see fl_is_whole(), are leaves.
+ */
+FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole);
 
 void fl_leaves_free(FlLeaves *leaves); // NULL is fine
 

@@ -10,6 +10,7 @@ typedef struct Chain {
 } Chain;
 
 typedef struct Work {
+    const char *const *whole;
     const char *path;
     int number;
     FlWarnings *warnings;
@@ -24,6 +25,40 @@ bool fl_is_undrawn(const xmlNode *node)
         "marker", "linearGradient", "radialGradient", "filter",   "style",
         "script", "title",          "desc",           "metadata", NULL};
     return fl_is_one_of(node, undrawn);
+}
+
+static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
+{
+    static const char *const groups[] = {"g", "svg", "a", "use", NULL};
+    for (xmlNode *child = node->children; child; child = child->next) {
+        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
+            continue;
+        g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(child, "id");
+        if (!id && fl_is_one_of(child, groups)) {
+            g_autofree char *made = NULL;
+            do {
+                g_free(made);
+                made = g_strdup_printf(FL_GROUP_ID "%d", (*n_made)++);
+            } while (g_hash_table_contains(ids, made));
+            xmlSetProp(child, (const xmlChar *)"id", (const xmlChar *)made);
+        }
+        name_groups(child, ids, n_made);
+    }
+}
+
+void fl_document_name_groups(xmlDoc *doc)
+{
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    int n_made = 0;
+    name_groups(xmlDocGetRootElement(doc), ids, &n_made);
+}
+
+bool fl_is_whole(const xmlNode *node, const char *const *whole)
+{
+    if (!whole)
+        return false;
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    return id && g_strv_contains(whole, (const char *)id);
 }
 
 /** Takes href or xlink:href, whatever the prefix, off node; to be freed with xmlFree(). */
@@ -204,7 +239,8 @@ static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **er
         return false;
     for (xmlNode *child = node->children, *next; child; child = next) {
         next = child->next;
-        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
+        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child) ||
+            fl_is_whole(child, work->whole))
             continue;
         if (fl_is(child, "switch"))
             resolve_switch(child);
@@ -216,10 +252,10 @@ static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **er
     return true;
 }
 
-bool fl_document_normalise(xmlDoc *doc, const char *path, int number, FlWarnings *warnings,
-                           GError **error)
+bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
+                           FlWarnings *warnings, GError **error)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
-    Work work = {path, number, warnings, ids, 0};
+    Work work = {whole, path, number, warnings, ids, 0};
     return normalise(&work, xmlDocGetRootElement(doc), NULL, error);
 }

@@ -22,6 +22,7 @@ struct FlSvg {
     char *original; // the text before it was normalised
     size_t original_bytes;
     RsvgHandle *handle; // of the normalised document
+    RsvgHandle *before; // of the original, made when first needed
     bool has_images;
     GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
     FlLeaves *leaves;
@@ -159,10 +160,11 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, warnings, error))
         return NULL;
+    fl_document_name_groups(svg->doc);
     svg->original = fl_document_text(svg->doc, &svg->original_bytes);
-    if (!fl_document_normalise(svg->doc, path, number, warnings, error))
+    if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
         return NULL;
-    svg->leaves = fl_leaves_new(svg->doc);
+    svg->leaves = fl_leaves_new(svg->doc, options->whole);
     svg->has_images = has_images(svg->doc->children);
     svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
     size_t bytes = 0;
@@ -176,6 +178,7 @@ void fl_svg_free(FlSvg *svg)
     if (!svg)
         return;
     g_clear_object(&svg->handle);
+    g_clear_object(&svg->before);
     g_clear_pointer(&svg->variants, g_hash_table_unref);
     fl_leaves_free(svg->leaves);
     if (svg->doc)
@@ -284,14 +287,22 @@ int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
     return 0;
 }
 
-bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)
+bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
+                       GError **error)
 {
-    g_autoptr(RsvgHandle) handle = make_handle(svg, svg->original, svg->original_bytes, error);
+    if (!svg->before)
+        svg->before = make_handle(svg, svg->original, svg->original_bytes, error);
     g_autoptr(GError) reason = NULL;
+    g_autofree char *layer = id ? g_strconcat("#", id, NULL) : NULL;
     const RsvgRectangle page = {0, 0, width, height};
-    if (handle && rsvg_handle_render_document(handle, cr, &page, &reason))
+    if (svg->before && rsvg_handle_render_layer(svg->before, cr, layer, &page, &reason))
         return true;
-    if (handle)
+    if (svg->before)
         set_rsvg_error(svg, reason, error);
     return false;
+}
+
+bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)
+{
+    return fl_svg_draw_group(svg, NULL, cr, width, height, error);
 }

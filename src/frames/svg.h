@@ -16,7 +16,8 @@ bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error);
 
 typedef struct FlSvgOptions {
     FlCanvas canvas;
-    double dpi; // of mm, cm, in, pt; 0: 96
+    double dpi;               // of mm, cm, in, pt; 0: 96
+    const char *const *whole; // ids of groups that are drawn as one leaf; NULL: none
 } FlSvgOptions;
 
 /** A frame. It belongs to one thread at a time; different frames may be in different threads. */
@@ -55,6 +56,10 @@ bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, doubl
  * if it has none.
  */
 RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, double height);
+
+/** Draws a group of that id (NULL: everything) as it was before the file was normalised. */
+bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
+                       GError **error);
 
 /** Draws the file as it was before it was normalised. */
 bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error);

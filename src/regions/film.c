@@ -152,7 +152,7 @@ static void merge_regions(FlScan *scan, GArray *groups, const FlRegionRule *rule
     g_array_set_size(groups, kept);
 }
 
-static void remember(FlFilm *film, const FlScan *scan)
+static void remember(FlFilm *film, FlScan *scan)
 {
     film->frame = g_new0(FlFilmFrame, scan->n_frames);
     for (int t = 0; t < scan->n_frames; t++) {
@@ -161,6 +161,7 @@ static void remember(FlFilm *film, const FlScan *scan)
         frame->page_width = scan->frame[t].page_width;
         frame->page_height = scan->frame[t].page_height;
         frame->canvas = scan->frame[t].canvas;
+        frame->whole = g_steal_pointer(&scan->frame[t].whole);
         frame->step = g_new0(FlStep, seen->len + 1);
         for (guint i = 0; i < seen->len; i++) {
             const FlSeen *s = &g_array_index(seen, FlSeen, i);
@@ -237,12 +238,18 @@ FlFilm *fl_film_open(const FlFilmOptions *options, FlWarnings *warnings, GError 
     return film;
 }
 
+static void free_frame(FlFilmFrame *frame)
+{
+    g_free(frame->step);
+    g_strfreev(frame->whole);
+}
+
 void fl_film_free(FlFilm *film)
 {
     if (!film)
         return;
     for (int t = 0; t < film->sequence->n; t++)
-        g_free(film->frame[t].step);
+        free_frame(&film->frame[t]);
     g_free(film->frame);
     fl_sequence_free(film->sequence);
     g_array_unref(film->regions);

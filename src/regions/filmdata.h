@@ -22,6 +22,7 @@ typedef struct FlFilmFrame {
     FlStep *step;                   // bottom up
     double page_width, page_height; // px of the picture
     FlCanvas canvas;                // as in FlSvgOptions
+    char **whole;                   // likewise
 } FlFilmFrame;
 
 struct FlFilm {

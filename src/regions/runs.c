@@ -93,7 +93,8 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Stage, stage_clear)
 static bool stage_init(Stage *stage, const FlFilm *film, int frame, GError **error)
 {
     *stage = (Stage){.film = film, .frame = &film->frame[frame]};
-    const FlSvgOptions options = {stage->frame->canvas, film->dpi};
+    const FlSvgOptions options = {stage->frame->canvas, film->dpi,
+                                  (const char *const *)stage->frame->whole};
     stage->svg = fl_svg_open(film->sequence->file[frame], film->sequence->number[frame], &options,
                              NULL, error);
     if (!stage->svg)

@@ -1,16 +1,19 @@
 #include "regions/scan.h"
 
 #include "base/limits.h"
+#include "frames/normalise.h"
 #include "regions/raster.h"
 #include "regions/register.h"
 #include "regions/selfcheck.h"
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define MOST_SIDE 32767 // px; cairo's limit
-#define THICK 0.03f // width of a stroke, share of the page's longer side, that is no line any more
-#define GREYISH 16  // levels between the channels of a colour that is still a grey
-#define LOOK_PX 256 // longest side of the small pictures on which a frame is looked over
+#define THICK 0.03f  // width of a stroke, share of the page's longer side, that is no line any more
+#define GREYISH 16   // levels between the channels of a colour that is still a grey
+#define MOST_WHOLE 8 // groups of a frame that are taken as one, each after another look
+#define LOOK_PX 256  // longest side of the small pictures on which a frame is looked over
 
 int fl_strings_add(FlStrings *strings, const char *text)
 {
@@ -352,7 +355,7 @@ static bool open_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GErr
     const int number = scan->sequence->number[t];
     double width, height;
     FlScanFrame *frame = &scan->frame[t];
-    const FlSvgOptions options = {frame->canvas, scan->svg.dpi};
+    const FlSvgOptions options = {frame->canvas, scan->svg.dpi, (const char *const *)frame->whole};
     f->svg = fl_svg_open(file, number, &options, warnings, error);
     if (!f->svg || !fl_svg_size(f->svg, &width, &height, error))
         return false;
@@ -372,27 +375,76 @@ static bool open_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GErr
     return f->check != NULL;
 }
 
-static bool scan_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GError **error)
+/** Draws a frame leaf by leaf and looks whether it is the drawing; see fl_self_check_finish(). */
+static FlVerdict try_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, char **group,
+                           const char **leaf, GError **error)
 {
     const char *file = scan->sequence->file[t];
     const int number = scan->sequence->number[t];
     if (!open_frame(scan, t, f, warnings, error) ||
         !look_at_leaves(f, warnings, file, number, error) || !stack(f, error))
-        return false;
-    const FlScanFrame *frame = &scan->frame[t];
+        return FL_VERDICT_ERROR;
+    return fl_self_check_finish(f->check, f->svg, f->width, f->height, group, leaf, error);
+}
+
+/** Takes one more group of a frame as one leaf. */
+static void keep_whole(FlScanFrame *frame, const char *group)
+{
+    const guint n = frame->whole ? g_strv_length(frame->whole) : 0;
+    frame->whole = g_renew(char *, frame->whole, n + 2);
+    frame->whole[n] = g_strdup(group);
+    frame->whole[n + 1] = NULL;
+}
+
+static void warn_of_whole(FlWarnings *warnings, const char *file, int number, const char *group)
+{
+    const bool made = g_str_has_prefix(group, FL_GROUP_ID);
+    const int nth = made ? atoi(group + strlen(FL_GROUP_ID)) + 1 : 0;
+    g_autofree char *which =
+        made ? g_strdup_printf("no. %d of the groups without an id, ", nth) : g_strdup("");
+    fl_warnings_add(warnings, file, number, made ? NULL : group,
+                    "%sdrawn shape by shape it does not look like the drawing: taken as one",
+                    which);
+}
+
+/** Looks at a frame, anew for each group that has to stay in one piece [DESIGN §4]. */
+static bool scan_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GError **error)
+{
+    const char *file = scan->sequence->file[t];
+    const int number = scan->sequence->number[t];
+    FlScanFrame *frame = &scan->frame[t];
+    for (int tries = 0;; tries++) {
+        g_autoptr(FlWarnings) remarks = fl_warnings_new();
+        g_autofree char *group = NULL;
+        const char *leaf = NULL;
+        const FlVerdict verdict = try_frame(scan, t, f, remarks, &group, &leaf, error);
+        if (verdict == FL_VERDICT_ERROR)
+            return false;
+        if (verdict == FL_VERDICT_DIFFERS && group && tries < MOST_WHOLE) {
+            warn_of_whole(warnings, file, number, group);
+            keep_whole(frame, group);
+            frame_clear(f);
+            *f = (Frame){0};
+            continue;
+        }
+        fl_warnings_append(warnings, remarks);
+        if (verdict == FL_VERDICT_DIFFERS)
+            fl_warnings_add(warnings, file, number, leaf,
+                            "drawn leaf by leaf the frame does not look quite like the drawing");
+        break;
+    }
     if (fabs(frame->page_width - scan->page_width) > 0.5 ||
         fabs(frame->page_height - scan->page_height) > 0.5)
         fl_warnings_add(warnings, file, number, NULL,
                         "its page is not as large as the first frame's; it keeps its scale");
-    return fl_self_check_finish(f->check, f->svg, f->width, f->height, file, number, warnings,
-                                error);
+    return true;
 }
 
 /** Decides the size of the picture from the first frame. */
 static bool set_size(FlScan *scan, const FlFilmOptions *o, GError **error)
 {
     double width, height;
-    const FlSvgOptions options = {scan->frame[0].canvas, scan->svg.dpi};
+    const FlSvgOptions options = {scan->frame[0].canvas, scan->svg.dpi, NULL};
     g_autoptr(FlSvg) svg =
         fl_svg_open(scan->sequence->file[0], scan->sequence->number[0], &options, NULL, error);
     if (!svg || !fl_svg_size(svg, &width, &height, error))
@@ -462,9 +514,11 @@ bool fl_scan_init(FlScan *scan, const FlSequence *sequence, const FlFilmOptions 
 
 void fl_scan_clear(FlScan *scan)
 {
-    for (int t = 0; t < scan->n_frames && scan->frame; t++)
+    for (int t = 0; t < scan->n_frames && scan->frame; t++) {
         if (scan->frame[t].seen)
             g_array_unref(scan->frame[t].seen);
+        g_strfreev(scan->frame[t].whole);
+    }
     g_free(scan->frame);
     if (scan->strings.text) {
         g_hash_table_unref(scan->strings.number);

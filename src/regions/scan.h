@@ -36,6 +36,7 @@ typedef struct FlScanFrame {
     GArray *seen;                   // FlSeen, bottom up
     double page_width, page_height; // px of the picture
     FlCanvas canvas;                // the frame's page
+    char **whole;                   // FlSvgOptions.whole; NULL: none
 } FlScanFrame;
 
 typedef struct FlScan {

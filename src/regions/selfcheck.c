@@ -9,8 +9,8 @@
 struct FlSelfCheck {
     int width, height;
     cairo_surface_t *sum;
-    GPtrArray *ids; // of the parts; strings of the frame's leaves
-    uint16_t *top;  // width * height: 1 + index in ids of the last part drawn there
+    GArray *pieces; // FlPiece: the parts, bottom up
+    uint16_t *top;  // width * height: 1 + index in pieces of the last part drawn there
 };
 
 FlSelfCheck *fl_self_check_new(int width, int height, GError **error)
@@ -19,7 +19,7 @@ FlSelfCheck *fl_self_check_new(int width, int height, GError **error)
     if (!sum)
         return NULL;
     FlSelfCheck *check = g_new0(FlSelfCheck, 1);
-    *check = (FlSelfCheck){width, height, sum, g_ptr_array_new(),
+    *check = (FlSelfCheck){width, height, sum, g_array_new(FALSE, FALSE, sizeof(FlPiece)),
                            g_new0(uint16_t, (size_t)width * height)};
     return check;
 }
@@ -29,7 +29,7 @@ void fl_self_check_free(FlSelfCheck *check)
     if (!check)
         return;
     cairo_surface_destroy(check->sum);
-    g_ptr_array_unref(check->ids);
+    g_array_unref(check->pieces);
     g_free(check->top);
     g_free(check);
 }
@@ -53,8 +53,9 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
     const int stride = cairo_image_surface_get_stride(coverage);
     uint32_t *sum = (uint32_t *)cairo_image_surface_get_data(check->sum);
     const bool flat = seen->kind == FL_PAINT_FLAT && seen->mix == FL_MIX_OVER;
-    g_ptr_array_add(check->ids, leaf->id);
-    const uint16_t index = (uint16_t)MIN(check->ids->len, UINT16_MAX);
+    const FlPiece piece = {leaf, seen->part};
+    g_array_append_val(check->pieces, piece);
+    const uint16_t index = (uint16_t)MIN(check->pieces->len, UINT16_MAX);
     for (int y = box.y0; y < box.y1; y++)
         for (int x = box.x0; x < box.x1; x++) {
             const size_t p = (size_t)y * check->width + x;
@@ -112,30 +113,95 @@ int fl_looks_alike(FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
     return seen * EDGE <= ink;
 }
 
-bool fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width, double page_height,
-                          const char *file, int number, FlWarnings *warnings, GError **error)
+/** How many pixels differ visibly; the worst of them goes to *where. */
+static int compare(const uint32_t *a, const uint32_t *b, size_t n, size_t *where)
+{
+    int seen = 0, most = 0;
+    for (size_t p = 0; p < n; p++) {
+        const int d = difference(a[p], b[p]);
+        seen += d > VISIBLE;
+        *where = d > most ? p : *where;
+        most = MAX(most, d);
+    }
+    return seen;
+}
+
+/** A group (NULL: everything) as the file has it; NULL with an error. */
+static cairo_surface_t *draw_truth(const FlSelfCheck *check, FlSvg *svg, const char *group,
+                                   double page_width, double page_height, GError **error)
 {
     g_autoptr(cairo_surface_t) truth =
         fl_surface_new(CAIRO_FORMAT_ARGB32, check->width, check->height, error);
     if (!truth)
-        return false;
+        return NULL;
     cairo_t *cr = cairo_create(truth);
-    const bool drawn = fl_svg_draw_original(svg, cr, page_width, page_height, error);
+    const bool drawn = fl_svg_draw_group(svg, group, cr, page_width, page_height, error);
     cairo_destroy(cr);
     cairo_surface_flush(truth);
-    const uint32_t *a = (const uint32_t *)cairo_image_surface_get_data(truth);
-    const uint32_t *b = (const uint32_t *)cairo_image_surface_get_data(check->sum);
-    int seen = 0, most = 0;
-    size_t where = 0;
-    for (size_t p = 0; drawn && p < (size_t)check->width * check->height; p++) {
-        const int d = difference(a[p], b[p]);
-        seen += d > VISIBLE;
-        where = d > most ? p : where;
-        most = MAX(most, d);
+    return drawn ? g_steal_pointer(&truth) : NULL;
+}
+
+/** Whether a group looks as its leaves do. */
+static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, double page_width,
+                       double page_height, GError **error)
+{
+    g_autoptr(GArray) inner = g_array_new(FALSE, FALSE, sizeof(FlPiece));
+    for (guint i = 0; i < check->pieces->len; i++) {
+        const FlPiece *piece = &g_array_index(check->pieces, FlPiece, i);
+        g_auto(GStrv) groups = g_strsplit(piece->leaf->groups, "\n", -1);
+        if (g_strv_contains((const char *const *)groups, group))
+            g_array_append_val(inner, *piece);
     }
-    if (seen > MOST_SEEN)
-        fl_warnings_add(warnings, file, number,
-                        check->top[where] ? check->ids->pdata[check->top[where] - 1] : NULL,
-                        "drawn leaf by leaf the frame does not look quite like the drawing");
-    return drawn;
+    g_autoptr(cairo_surface_t) truth =
+        draw_truth(check, svg, group, page_width, page_height, error);
+    g_autoptr(cairo_surface_t) sum =
+        truth ? draw_pieces(svg, (const FlPiece *)inner->data, (int)inner->len, check->width,
+                            check->height, page_width, page_height, error)
+              : NULL;
+    if (!sum)
+        return FL_VERDICT_ERROR;
+    size_t where = 0;
+    const int seen = compare((const uint32_t *)cairo_image_surface_get_data(truth),
+                             (const uint32_t *)cairo_image_surface_get_data(sum),
+                             (size_t)check->width * check->height, &where);
+    return seen > MOST_SEEN ? FL_VERDICT_DIFFERS : FL_VERDICT_ALIKE;
+}
+
+/** The smallest group around a leaf that does not look as its leaves do: *group, NULL if none. */
+static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, double page_width,
+                       double page_height, char **group, GError **error)
+{
+    g_auto(GStrv) groups = g_strsplit(leaf->groups, "\n", -1);
+    for (guint i = g_strv_length(groups); i-- > 0 && groups[i][0];) {
+        const FlVerdict verdict = judge(check, svg, groups[i], page_width, page_height, error);
+        if (verdict == FL_VERDICT_ERROR)
+            return false;
+        if (verdict == FL_VERDICT_ALIKE)
+            continue;
+        *group = g_strdup(groups[i]);
+        return true;
+    }
+    return true;
+}
+
+FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
+                               double page_height, char **group, const char **leaf, GError **error)
+{
+    g_autoptr(cairo_surface_t) truth = draw_truth(check, svg, NULL, page_width, page_height, error);
+    if (!truth)
+        return FL_VERDICT_ERROR;
+    size_t where = 0;
+    const int seen = compare((const uint32_t *)cairo_image_surface_get_data(truth),
+                             (const uint32_t *)cairo_image_surface_get_data(check->sum),
+                             (size_t)check->width * check->height, &where);
+    *group = NULL;
+    *leaf = NULL;
+    if (seen <= MOST_SEEN)
+        return FL_VERDICT_ALIKE;
+    if (check->top[where] == 0)
+        return FL_VERDICT_DIFFERS;
+    const FlLeaf *top = g_array_index(check->pieces, FlPiece, check->top[where] - 1).leaf;
+    *leaf = top->id;
+    return find_group(check, svg, top, page_width, page_height, group, error) ? FL_VERDICT_DIFFERS
+                                                                              : FL_VERDICT_ERROR;
 }

@@ -8,6 +8,12 @@
 /** The picture that the leaves add up to, of one frame. */
 typedef struct FlSelfCheck FlSelfCheck;
 
+typedef enum FlVerdict {
+    FL_VERDICT_ERROR, // of the caller's GError
+    FL_VERDICT_ALIKE,
+    FL_VERDICT_DIFFERS,
+} FlVerdict;
+
 FlSelfCheck *fl_self_check_new(int width, int height, GError **error);
 void fl_self_check_free(FlSelfCheck *check); // NULL is fine
 
@@ -17,11 +23,14 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
                        GError **error);
 
 /**
- * Compares with the file as it is and warns if they differ visibly, naming the part that lies
- * topmost where they differ most. Returns: false if the file cannot be drawn.
+ * Compares with the file as it is, whether they differ visibly.
+ *
+ * If they do, *group becomes the id of the smallest group around the topmost part of the worst
+ * place that by itself does not look as its leaves do, to be freed; NULL if there is none. *leaf
+ * becomes that part's id, which is the frame's; NULL if nothing is drawn there.
  */
-bool fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width, double page_height,
-                          const char *file, int number, FlWarnings *warnings, GError **error);
+FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
+                               double page_height, char **group, const char **leaf, GError **error);
 
 /** A part to be drawn by fl_looks_alike(). */
 typedef struct FlPiece {
