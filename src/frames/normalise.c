@@ -210,7 +210,8 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
     g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(use, "id");
     xmlNodeSetName(use, (const xmlChar *)"g");
     if (target && is_circle(use, target, chain)) {
-        fl_warnings_add(work->warnings, work->path, work->number, (const char *)id,
+        const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);
+        fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : (const char *)id,
                         "<use> of \"%s\" shows itself and is left out", href);
         return true;
     }
