@@ -37,11 +37,12 @@ static void add(FlWarnings *warnings, const char *file, int frame, const char *e
     g_autofree char *key = g_strdup_printf("%s\n%s", element, text);
     FlWarning *known = g_hash_table_lookup(warnings->seen, key);
     if (known) {
-        known->n_frames += n_frames;
+        known->n_frames += known->last == frame ? 0 : n_frames;
+        known->last = frame;
         return;
     }
     FlWarning *w = g_new0(FlWarning, 1);
-    *w = (FlWarning){g_strdup(file), g_strdup(element), g_strdup(text), frame, n_frames};
+    *w = (FlWarning){g_strdup(file), g_strdup(element), g_strdup(text), frame, frame, n_frames};
     g_ptr_array_add(warnings->list, w);
     g_hash_table_insert(warnings->seen, g_steal_pointer(&key), w);
 }

@@ -10,6 +10,7 @@ typedef struct FlWarning {
     char *element; // id of the element, "" if it is about the whole file
     char *text;    // one line, without the names above and without a full stop
     int frame;     // number of the first frame, as in its file's name; -1: none
+    int last;      // number of the last
     int n_frames;  // in so many frames, >= 1
 } FlWarning;
 

@@ -414,10 +414,9 @@ static bool scan_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GErr
     const int number = scan->sequence->number[t];
     FlScanFrame *frame = &scan->frame[t];
     for (int tries = 0;; tries++) {
-        g_autoptr(FlWarnings) remarks = fl_warnings_new();
         g_autofree char *group = NULL;
         const char *leaf = NULL;
-        const FlVerdict verdict = try_frame(scan, t, f, remarks, &group, &leaf, error);
+        const FlVerdict verdict = try_frame(scan, t, f, warnings, &group, &leaf, error);
         if (verdict == FL_VERDICT_ERROR)
             return false;
         if (verdict == FL_VERDICT_DIFFERS && group && tries < MOST_WHOLE) {
@@ -427,7 +426,6 @@ static bool scan_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GErr
             *f = (Frame){0};
             continue;
         }
-        fl_warnings_append(warnings, remarks);
         if (verdict == FL_VERDICT_DIFFERS)
             fl_warnings_add(warnings, file, number, leaf,
                             "drawn leaf by leaf the frame does not look quite like the drawing");
