@@ -97,6 +97,14 @@ static char *missing_octants(const FlMeasures *measures, const char *known)
     return g_strjoinv(", ", (char **)names->pdata);
 }
 
+static bool has_outline(const FlMeasures *measures)
+{
+    for (int i = 0; i < FL_OCTANTS; i++)
+        if (measures->orientation[i] > 0)
+            return true;
+    return false;
+}
+
 static void add_measured_facts(Check *check)
 {
     const FlMeasures *m = check->measures;
@@ -112,7 +120,8 @@ static void add_measured_facts(Check *check)
         FL_MOVING_PX);
     add(facts, "front      %.2f px/frame; %.0f %% of it at %g to %g", MEDIAN(m, front),
         100 * MEDIAN(m, steady), FL_MOVING_PX, FL_TOO_FAST_PX);
-    add(facts, "outward    %s%s", missing[0] ? "all directions but " : "all directions", missing);
+    if (has_outline(m))
+        add(facts, "outward    all directions%s%s", missing[0] ? " but " : "", missing);
     add(facts, "texture    %.1f levels of fine detail (scanned washes: 2.8 to 6.4)", m->texture);
     if (m->thin_texture >= 0)
         add(facts, "grain      %.1f levels under thin paint", m->thin_texture);
@@ -191,7 +200,9 @@ static void find_mask_problems(Check *check)
             "reach a little over bare paper",
             100 * m->edge);
     g_autofree char *missing = missing_octants(m, check->style->missing_orientations);
-    if (missing[0])
+    if (!has_outline(m))
+        add(problems, "no outline is within the frame: edges have no paint of their own");
+    else if (missing[0])
         add(problems,
             "no outline faces %s: such edges are painted with turned ones (missing-orientations = "
             "in style.ini says that this is known)",
