@@ -111,6 +111,7 @@ result $? 'frame by frame'
 sed 's/^frames = 3/frames = 2/' "$dust/recipe.ini" >short.ini
 refuses 'a simulated style is not overwritten' 1 'dust/frames exists: -y overwrites it' \
     simulate short.ini -o dust
+refuses 'a file is no place for a style' 1 'err: is a file: expected a folder' simulate short.ini -o err
 does 'but for -y' simulate -qy short.ini -o dust
 { [ "$(ls dust/frames | wc -l)" = 2 ] && [ "$(ls dust/masks | wc -l)" = 2 ] && [ ! -s err ]; }
 result $? 'and no frame of the old one stays'

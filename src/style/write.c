@@ -19,7 +19,10 @@ bool fl_style_may_write(const char *folder, bool overwrite, GError **error)
             return false;
         }
     }
-    return true;
+    if (!g_file_test(folder, G_FILE_TEST_EXISTS) || g_file_test(folder, G_FILE_TEST_IS_DIR))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: is a file: expected a folder", folder);
+    return false;
 }
 
 static bool failed(GError **error, const char *path, const char *what)

@@ -13,7 +13,9 @@
  */
 bool fl_style_write(const FlStyle *style, const char *folder, bool overwrite, GError **error);
 
-/** False with FL_ERROR_EXISTS set if `folder` already holds a style; to be asked before long work.
+/**
+ * To be asked before long work. False with FL_ERROR_EXISTS set if `folder` already holds a style,
+ * or FL_ERROR_OUTPUT if it is a file.
  */
 bool fl_style_may_write(const char *folder, bool overwrite, GError **error);
 
