@@ -107,6 +107,23 @@ readme_test_command() {
     grep -qF 'README.md' .ci/run || echo '.ci/run does not read the command from README.md'
 }
 
+# The messages of the README are the program's: the words between what varies stand in the sources.
+readme_messages() {
+    local words part
+    words=$(cat src/*.c src/*/*.c | tr '\n' ' ' | sed 's/" *"//g')
+    sed -n '/^<!-- messages -->$/,/^## /s/^| `\([^`]*\)` .*/\1/p' README.md | sed 's/…/\n/g' |
+        while read -r part; do
+            [ -z "$part" ] || grep -qF -- "$part" <<<"$words" || echo "no message says: $part"
+        done
+}
+
+readme_pictures() {
+    grep -oE '\]\([^)#:]+\)' README.md | tr -d '()]' | while read -r file; do
+        [ -f "$file" ] || echo "README.md: there is no $file"
+    done
+    [ "$(cat fixtures/gallery/* | wc -c)" -lt 1500000 ] || echo 'fixtures/gallery is larger than 1.5 MB'
+}
+
 changed_defaults_are_explained() {
     local name
     for name in $(awk '/^\.It Fl -/ { name = $3 }
@@ -135,6 +152,8 @@ report 'include guards are the path' header_guards
 report 'no path of a workplace is committed' foreign_paths
 report '--help fits one screen' help_fits_one_screen "$build/src/cli/fluidy-svg"
 report 'CI runs the test command of the README' readme_test_command
+report 'the messages of the README are those of the program' readme_messages
+report 'the files that the README shows are there, and small' readme_pictures
 if command -v clang-format >/dev/null; then
     report 'the sources are formatted' formatting
 else
