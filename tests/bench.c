@@ -8,6 +8,11 @@
  * starts from nothing and is left out of the means; a few more, not timed, tell the shares of the
  * stages, the patch evaluations and the energy, whose statistics cost time. With --compare every
  * case runs in both programs in turn; medians and their ratio are printed.
+ *
+ * Core-seconds and evaluations are per second of processor time, and `scaling`, how much longer all
+ * threads worked than the busiest one, is what threads gain where they are not kept waiting: these
+ * hold on a machine that has other things to do. OMP_WAIT_POLICY=passive is set, so that waiting is
+ * not working.
  */
 #include "config.h"
 #include "params/params.h"
@@ -38,7 +43,8 @@ static const Case cases[] = {
 #define FIGURES(F)                                                                                 \
     F(frame_s)                                                                                     \
     F(first_frame_s)                                                                               \
-    F(guides_s) F(target_s) F(temporal_s) F(search_s) F(vote_s) F(core_s_per_mpx) F(s_per_mpx)     \
+    F(guides_s)                                                                                    \
+    F(target_s) F(temporal_s) F(search_s) F(vote_s) F(core_s_per_mpx) F(s_per_mpx) F(scaling)      \
         F(evaluations_per_px) F(evaluations_per_s_core) F(energy) F(painted_px) F(peak_mib)
 
 typedef struct Figures {
@@ -98,22 +104,27 @@ typedef struct Bench {
 
 static bool timed_frames(Bench *b, Figures *f, GError **error)
 {
-    double wall = 0, cpu = 0;
+    double wall = 0, cpu = 0, busiest = 0;
     for (int k = 0; k <= frames; k++) {
         const double start = seconds(CLOCK_MONOTONIC);
         if (!fl_guide_sequence_get(b->sequence, k, &b->guides, error))
             return false;
         const double painting = seconds(CLOCK_MONOTONIC);
         const double used = seconds(CLOCK_PROCESS_CPUTIME_ID);
+        const double own = seconds(CLOCK_THREAD_CPUTIME_ID); // the first thread does the rest too
         if (!fl_synth_frame(b->synth, &b->guides, b->rgb, NULL, NULL, error))
             return false;
         const double took = seconds(CLOCK_MONOTONIC) - painting;
         f->guides_s += (painting - start) / (frames + 1);
-        if (k == 0)
+        if (k == 0) {
             f->first_frame_s = took;
-        else
-            wall += took, cpu += seconds(CLOCK_PROCESS_CPUTIME_ID) - used;
+            continue;
+        }
+        wall += took;
+        cpu += seconds(CLOCK_PROCESS_CPUTIME_ID) - used;
+        busiest += seconds(CLOCK_THREAD_CPUTIME_ID) - own;
     }
+    f->scaling = cpu / busiest;
     f->frame_s = wall / frames;
     f->core_s_per_mpx = cpu / frames * 1e6; // to be divided by the pixels
     return true;
@@ -147,8 +158,10 @@ static bool measured_frames(Bench *b, Figures *f, GError **error)
     }
     f->painted_px = painted_pixels(b);
     f->evaluations_per_px = tried / f->painted_px;
-    f->evaluations_per_s_core = tried / f->search_s / threads;
     f->core_s_per_mpx /= f->painted_px;
+    const double stages = f->target_s + f->temporal_s + f->search_s + f->vote_s;
+    const double searching = f->core_s_per_mpx * 1e-6 * f->search_s / stages; // a pixel, core-s
+    f->evaluations_per_s_core = f->evaluations_per_px / searching;
     f->s_per_mpx = f->frame_s / f->painted_px * 1e6;
     return true;
 }
@@ -214,6 +227,7 @@ static bool spawn(const char *program, const char *name, Figures *f, GError **er
 {
     g_autofree char *n = g_strdup_printf("%d", frames), *t = g_strdup_printf("%d", threads);
     g_autofree char *text = NULL;
+    g_setenv("OMP_WAIT_POLICY", "passive", TRUE);
     const char *argv[] = {program, "--run",     name, "--frames",
                           n,       "--threads", t,    detail ? "--detail" : NULL,
                           detail,  NULL};
@@ -249,10 +263,11 @@ static Figures medians(const Figures *runs, int n)
 
 static void print_row(const char *name, const Figures *f)
 {
-    printf("%-10s %7.0f %8.3f %8.3f %7.3f %7.3f %7.3f %7.3f %7.3f %8.2f %7.1f %7.1f %7.3f %6.0f\n",
+    printf("%-10s %7.0f %8.3f %8.3f %7.3f %7.3f %7.3f %7.3f %7.3f %8.2f %7.2f %7.1f %7.1f %7.3f "
+           "%6.0f\n",
            name, f->painted_px, f->frame_s, f->first_frame_s, f->guides_s, f->target_s,
-           f->temporal_s, f->search_s, f->vote_s, f->core_s_per_mpx, f->evaluations_per_px,
-           f->evaluations_per_s_core * 1e-6, f->energy, f->peak_mib);
+           f->temporal_s, f->search_s, f->vote_s, f->core_s_per_mpx, f->scaling,
+           f->evaluations_per_px, f->evaluations_per_s_core * 1e-6, f->energy, f->peak_mib);
 }
 
 /* One case, in this program and the other in turn. */
@@ -299,7 +314,7 @@ static bool run_all(const char *self, GError **error)
     g_autoptr(GString) out = g_string_new("{");
     printf("%d frames, %d threads, medians of %d; seconds per frame\n", frames, threads, rounds);
     puts("case       painted    frame    first  guides  target    temp  search    vote core/Mpx"
-         " eval/px M/s*core energy    MiB");
+         " scaling eval/px M/s*core energy    MiB");
     for (size_t k = 0; k < G_N_ELEMENTS(cases); k++)
         if ((!only || g_str_equal(cases[k].name, only)) &&
             !compare_case(self, &cases[k], out, error))

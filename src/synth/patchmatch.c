@@ -8,7 +8,7 @@
 #endif
 
 #define FEW_TILES (4 * FL_TILE_CLASSES) // with fewer, threads wait more than they work
-#define PATIENCE 2000                   // looks at the step before other processes may run
+#define PATIENCE 200000                 // looks at the step, 0.1 ms, before others may run
 
 /* The source flow, rotated, opposes the target's: past and future motion change roles [F21 §3.3].
  */
@@ -55,9 +55,10 @@ void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost)
 /*
  * The steps of a search: the classes of each sweep in turn. Threads take tiles of a step from a
  * counter; whoever finishes a step last refreshes the map and opens the next. All of it happens in
- * one parallel region with a barrier of its own, which gives the processor away after a short wait:
+ * one parallel region with a barrier of its own, which gives the processor away after a while:
  * OpenMP's barriers spin, and sixteen of them per sweep cost ten times the search on a machine that
- * has other things to do.
+ * has other things to do. Whoever gives it away gets it back milliseconds later, so a tile's time
+ * must be waited for.
  */
 typedef struct Crew {
     const FlVisitPlan *plan;
