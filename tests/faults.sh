@@ -110,9 +110,14 @@ PATH=$PWD/bin:$PATH "$program" film -s "$style" -o film.mov --progress none >out
 [ $? = 1 ] && says 'ffmpeg stopped: no such codec' && [ -z "$(find . -name '*.mov')" ]
 result $? 'an ffmpeg that dies is quoted, and no film is left'
 
-(ulimit -v 1500000 && paint huge -W 30000 -j 1)
-found=$?
-[ $found = 1 ] && [ "$(wc -l <err)" = 1 ] && [ ! -e huge/w_0001.png ]
-result $? 'memory that cannot be had is one message'
+if [ -n "${ASAN_OPTIONS:-}" ]; then
+    n=$((n + 1))
+    echo "ok $n - memory that cannot be had is one message # SKIP the sanitizer needs it all"
+else
+    (ulimit -v 1500000 && paint huge -W 30000 -j 1 --limit frame=1000 --limit memory=1000000)
+    found=$?
+    [ $found = 1 ] && [ "$(wc -l <err)" = 1 ] && grep -qi 'memory' err && [ ! -e huge/w_0001.png ]
+    result $? 'memory that cannot be had is one message'
+fi
 
 echo "1..$n"

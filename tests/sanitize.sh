@@ -1,0 +1,67 @@
+#!/bin/bash
+# Runs tests in a build that watches memory, threads or arithmetic, or has the sources analysed.
+# usage: sanitize.sh address|thread|memcheck|analysers BUILD-DIR, in the source folder; each has a
+# folder of its own, but memcheck and analysers may share the one of an ordinary build.
+#
+# address: the whole suite, AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer.
+# thread: what uses threads, ThreadSanitizer with clang. gcc's reports false races in OpenMP; Archer
+#   tells clang's what OpenMP orders, and tsan_glib.c what GLib does.
+# memcheck: a short render in valgrind.
+# analysers: cppcheck and clang-tidy; tests/cppcheck.supp and .clang-tidy say what is left out.
+set -eu
+what=$1
+build=$2
+source=$PWD
+export OMP_WAIT_POLICY=passive FLUIDY_FIXTURES=$source/fixtures
+
+make_build() {
+    [ -f "$build/build.ninja" ] || meson setup "$build" -Dbuildtype=debugoptimized "$@"
+}
+
+# A render on several threads, with all that can be written beside it.
+render=("$build/src/cli/fluidy-svg" -s fixtures/style-small -W 64 -f 1-2 -j 3 --progress none -y
+    -o "$build/render/%d.png" --report "$build/render/report" --stats "$build/render/stats")
+
+case $what in
+address)
+    make_build -Db_sanitize=address,undefined -Db_lundef=false
+    ninja -C "$build"
+    export ASAN_OPTIONS=detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1
+    export LSAN_OPTIONS=suppressions=$source/tests/lsan.supp:print_suppressions=0
+    # a library with a sanitizer is not for programs without: no test of pkg-config
+    meson test -C "$build" --no-rebuild --no-suite headers --timeout-multiplier 6 --print-errorlogs
+    ;;
+thread)
+    export CC=clang
+    make_build -Db_sanitize=thread -Db_lundef=false
+    programs=(distance film guides holds layers synth synth_cases watercolour)
+    ninja -C "$build" src/cli/fluidy-svg "${programs[@]/#/tests/test_}"
+    clang -D_GNU_SOURCE -shared -fPIC -Wl,--unresolved-symbols=ignore-all \
+        $(pkg-config --cflags glib-2.0) tests/tsan_glib.c -o "$build/tsan_glib.so"
+    archer=$(clang -print-file-name=libarcher.so)
+    [ -f "$archer" ] || archer=$(find /usr/lib/llvm-* -name libarcher.so | head -1)
+    [ -f "$archer" ] || { echo 'no libarcher.so: it is in libomp-dev'; exit 1; }
+    export OMP_TOOL_LIBRARIES=$archer OMP_NUM_THREADS=3 LD_PRELOAD=$build/tsan_glib.so
+    export TSAN_OPTIONS='ignore_noninstrumented_modules=1 exitcode=66 halt_on_error=1'
+    for program in "${programs[@]}"; do
+        "$build/tests/test_$program"
+    done
+    "${render[@]}" fixtures/animations/snowman-wave-layers
+    ;;
+memcheck)
+    make_build
+    ninja -C "$build" src/cli/fluidy-svg
+    FLUIDY_CPU_MASK=3 valgrind -q --error-exitcode=66 "${render[@]}" -j 1 fixtures/animations/snowman-wave-layers
+    ;;
+analysers)
+    make_build
+    cppcheck -q --std=c11 --enable=warning,performance,portability --library=gtk \
+        --suppressions-list=tests/cppcheck.supp '-DG_GNUC_PRINTF(a,b)=' -I include -I src \
+        -i src/synth/arm --error-exitcode=66 src
+    git ls-files 'src/*.c' ':!src/*/arm/*' | xargs -P "$(nproc)" -n 8 clang-tidy -p "$build" --quiet
+    ;;
+*)
+    echo "usage: sanitize.sh address|thread|memcheck|analysers BUILD-DIR"
+    exit 2
+    ;;
+esac
