@@ -166,6 +166,21 @@ rm a/w_2.png && touch -d @0 a/w_1.png
     >out 2>err && [ "$(stat -c %Y a/w_1.png)" = 0 ] && diff -r a b >out
 result $? '--no-clobber paints what is missing, and gives the same bytes'
 
+# on_a_terminal COMMAND: what it prints there, control characters spelt out
+on_a_terminal() {
+    TERM=xterm script -qec "stty cols 75; $1" /dev/null </dev/null | tr '\r' '\n' | cat -v
+}
+paint="'$program' whole -s 01 --detail draft -o 'term/w_%d.png' -y"
+if command -v script >/dev/null; then
+    on_a_terminal "$paint" >out && grep -qE '^\[\^\[\[36m#{24}\^\[\[0m\] 100 % paint, frame 3 \(3/3\), [0-9.]+ s/frame, 0' out &&
+        ! grep '^\[' out | sed 's/\^\[\[[0-9]*[mK]//g' | grep -qE '.{76}'
+    result $? 'a terminal has a bar with frame, seconds a frame and the time that is left'
+    on_a_terminal "NO_COLOR=1 $paint" >out && grep -q '\[####' out && ! grep -qF '[36m' out
+    result $? 'NO_COLOR leaves the bar without colour'
+fi
+bash -c "$paint" 2>err >out && ! grep -q '\[' err && grep -qE '^100 % paint, frame 3 \(3/3\)' err
+result $? 'elsewhere there are plain lines'
+
 film=$fixtures/animations/snowman-wave-layers
 "$program" --list-regions "$film" >out 2>err && [ ! -s err ] &&
     grep -qE '^hat-a42718 +#a42718 +44/44 .* body/head/hat$' out

@@ -383,36 +383,6 @@ static GOptionContext *new_context(FlArgs *args)
     return context;
 }
 
-#define HELP_COLUMN 31
-
-static void append_help(GString *text, const GOptionEntry *entry)
-{
-    g_autoptr(GString) option = g_string_new("  ");
-    if (entry->short_name)
-        g_string_append_printf(option, "-%c, ", entry->short_name);
-    g_string_append_printf(option, "--%s", entry->long_name);
-    if (entry->arg_description)
-        g_string_append_printf(option, " %s", entry->arg_description);
-    const int gap = HELP_COLUMN - (int)g_utf8_strlen(option->str, -1);
-    g_string_append_printf(text, "%s%*s%s\n", option->str, MAX(gap, 1), "", entry->description);
-}
-
-char *fl_args_help(bool all)
-{
-    GString *text =
-        g_string_new("fluidy-svg [OPTION…] INPUT… paints SVG frames with moving paint. INPUT is\n"
-                     "walk_%04d.svg, walk_####.svg, a quoted glob, a folder or files.\n");
-    for (const FlArgGroup *g = fl_args_groups(); g->entries; g++) {
-        if (g->entries != common)
-            g_string_append_printf(text, "\n%s:\n", g->title);
-        for (const GOptionEntry *e = g->entries; e->long_name; e++)
-            append_help(text, e);
-        if (!all)
-            break;
-    }
-    return g_string_free(text, FALSE);
-}
-
 /* "fill|keep|#RRGGBB" as "fill keep"; NULL if no word is left. */
 static char *words_of(const char *form)
 {
@@ -444,30 +414,6 @@ char *fl_args_words(const char *long_name)
 }
 
 /* ---- reading ------------------------------------------------------------------------------ */
-
-/* The option that nobody knows: the word of its message that starts with a dash. */
-static void improve_unknown(GError **error)
-{
-    const char *word = strstr((*error)->message, " -");
-    if (!word)
-        return;
-    g_autofree char *unknown = g_strdup(word + 1);
-    *strchrnul(unknown, '=') = '\0';
-    g_autoptr(GPtrArray) names = g_ptr_array_new();
-    for (const FlArgGroup *g = fl_args_groups(); g->entries; g++)
-        for (const GOptionEntry *e = g->entries; e->long_name; e++)
-            g_ptr_array_add(names, (gpointer)e->long_name);
-    g_ptr_array_add(names, NULL);
-    const char *near =
-        fl_suggest(unknown + strspn(unknown, "-"), (const char *const *)names->pdata);
-    g_clear_error(error);
-    if (near)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no option %s; did you mean --%s?",
-                    unknown, near);
-    else
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "there is no option %s; see fluidy-svg --help-all", unknown);
-}
 
 /* GOption reads "-j 4" but not "-j4". Returns: to be freed with g_strfreev(). */
 static char **split_values(int argc, char **argv)
@@ -535,7 +481,7 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
     GError *problem = NULL;
     if (!g_option_context_parse_strv(context, &args->inputs, &problem)) {
         if (g_error_matches(problem, G_OPTION_ERROR, G_OPTION_ERROR_UNKNOWN_OPTION))
-            improve_unknown(&problem);
+            fl_args_suggest(&problem);
         g_propagate_error(error, problem);
         return false;
     }

@@ -59,6 +59,9 @@ const FlArgGroup *fl_args_groups(void);
  */
 char *fl_args_words(const char *long_name);
 
+/** Turns GOption's error about an unknown option into ours, with the option that is nearest. */
+void fl_args_suggest(GError **error);
+
 /** The text of --help, or of --help-all; to be freed with g_free(). */
 char *fl_args_help(bool all);
 
