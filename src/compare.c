@@ -98,6 +98,9 @@ static bool show_drawing(const Comparison *c, GError **error)
 /* The caller's settings and the style: the last wins. */
 static bool paint(const Comparison *c, const char *style, bool first, GError **error)
 {
+    g_autofree char *line = g_strdup_printf("style %s", style);
+    if (c->options.note)
+        c->options.note(line, c->options.data);
     const size_t n = c->options.n_settings;
     g_autofree FlSetting *settings = g_new0(FlSetting, n + 1);
     memcpy(settings, c->options.settings, n * sizeof *settings);

@@ -242,9 +242,11 @@ static bool make_scratch(Job *job, GError **error)
 /* The last pictures before the first ones, if the film is a loop. */
 static bool lead_in(Job *job, GError **error)
 {
+    const int64_t start = g_get_monotonic_time();
     for (int k = 0; job->plan->options.loop && k < FL_LOOP_LONGEST; k++)
         if (!for_each_painter(job, lead_in_one, k, error) || !tell(job, "lead-in", 0, 0, error))
             return false;
+    job->stats.paint_s = seconds_since(start);
     return true;
 }
 
@@ -261,7 +263,7 @@ static bool prepare(Job *job, GError **error)
         return false;
     job->painting = g_get_monotonic_time();
     job->stats.read_s = read_s;
-    job->stats.guides_s = seconds_since(job->start) - read_s;
+    job->stats.guides_s = seconds_since(job->start) - read_s - job->stats.paint_s;
     return true;
 }
 
@@ -326,7 +328,8 @@ static char *what_was_done(const FlPlan *plan)
 static char *forecast(const Job *job)
 {
     const int n = (fl_film_frames(job->plan->film) - 1) / job->plan->hold + 1;
-    const int seconds = (int)(job->rehearsed_s * n + 0.5);
+    const int lead_in = job->plan->options.loop ? MIN(n / 3, FL_LOOP_LONGEST) : 0;
+    const int seconds = (int)(job->rehearsed_s * (n + lead_in) + 0.5);
     return g_strdup_printf("that would take about %d:%02d:%02d, %.2f seconds a frame",
                            seconds / 3600, seconds / 60 % 60, seconds % 60, job->rehearsed_s);
 }
