@@ -202,6 +202,15 @@ static bool render_frame(Job *job, int frame, GError **error)
            tell(job, "paint", frame + 1, seconds_since(start), error);
 }
 
+/* Drafts are looked at and thrown away: their files are written sooner and are larger. */
+static bool is_draft(const FlPlan *plan)
+{
+    bool draft = plan->n_painters > 0;
+    for (int p = 0; p < plan->n_painters; p++)
+        draft = draft && plan->painters[p].treatment.params.half_size;
+    return draft;
+}
+
 static bool open_sink(Job *job, GError **error)
 {
     const FlPlan *plan = job->plan;
@@ -210,6 +219,7 @@ static bool open_sink(Job *job, GError **error)
                                  .height = fl_film_height(plan->film),
                                  .fps = plan->options.fps > 0 ? plan->options.fps : 24,
                                  .opaque = job->background.opaque,
+                                 .fast = is_draft(plan),
                                  .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
     job->sink = fl_sink_open(plan->format, &params, error);
     return job->sink != NULL;
