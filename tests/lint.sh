@@ -135,6 +135,14 @@ changed_defaults_are_explained() {
     done
 }
 
+# The keys of [project] and [region], which are said in the source and in the page.
+config_keys_are_documented() {
+    grep -oE '\{"[a-z-]+",' src/params/config.c | tr -d '{",' | sort -u |
+        while read -r key; do
+            grep -qE "^\.It Ic $key " man/fluidy-svg.conf.5.in || echo "fluidy-svg.conf(5) has no $key"
+        done
+}
+
 limits_are_documented() {
     local name preset
     sed -nE 's/^FL_LIMIT\([A-Z]+, "([a-z]+)", ([0-9]+),.*/\1 \2/p' src/base/limits.def |
@@ -165,6 +173,7 @@ else
     report 'fluidy-svg(1) has the options of --help-all' \
         options_are_documented "$build/src/cli/fluidy-svg" "$build/man/fluidy-svg.1"
     report 'fluidy-svg(1) has every limit and its default' limits_are_documented
+    report 'fluidy-svg.conf(5) has every key' config_keys_are_documented
     report 'fluidy-svg(1) explains every default that is not the published one' \
         changed_defaults_are_explained
     if command -v mandoc >/dev/null; then

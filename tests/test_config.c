@@ -40,6 +40,7 @@ static void a_mistake_is_named_with_file_and_line(void)
                                         "“background”?"},
         {"[project]\nbackground = #12", ":2: background: “#12” is not a colour #RRGGBB"},
         {"[project]\nfps = 0", ":2: fps: “0” is not a number from 0.01 to 1000 frames per second"},
+        {"[project]\nloop = of", ":2: loop: “of” is not on or off"},
         {"[project]\nseed = -3", ":2: seed: “-3” is not an integer from 1 on"},
         {"[project]\nmissing = drop", ":2: missing: “drop” is not one of error, hold, skip"},
         {"[defaults]\n\n# styles\nstyel = 01", ":4: [defaults] has no key “styel”; did you mean "
@@ -160,13 +161,14 @@ static void detail_is_between_preset_and_parameters(void)
 static void the_options_win_over_the_project(void)
 {
     g_autoptr(FlConfig) config =
-        load("[project]\nfps = 12\nseed = 5\ngap = 3\nstroke = drop\nmissing = hold\nkey = id\n"
+        load("[project]\nfps = 12\nseed = 5\nloop = on\ngap = 3\nstroke = drop\nmissing = hold\nkey = id\n"
              "background = #ffffff\n");
     FlRenderOptions options = {.fps = 30, .missing = FL_MISSING_ERROR, .gap = -1};
     fl_config_complete(config, &options);
     g_assert_cmpfloat(options.fps, ==, 30);
     g_assert_cmpint(options.missing, ==, FL_MISSING_ERROR);
     g_assert_cmpuint(options.seed, ==, 5);
+    g_assert_true(options.loop);
     g_assert_cmpint(options.key, ==, FL_KEY_ID);
     g_assert_cmpstr(options.background, ==, "#ffffff");
     g_assert_null(options.output);

@@ -203,12 +203,21 @@ static bool set_seed(Reader *reader, const char *value, GError **error)
     return true;
 }
 
+static bool set_loop(Reader *reader, const char *value, GError **error)
+{
+    return fl_text_bool(value, &reader->config->project.loop) ||
+           usage(error, "loop: “%s” is not on or off", value);
+}
+
 static bool set_project(Reader *reader, const char *key, const char *value, GError **error)
 {
     static const struct {
         const char *key;
         bool (*set)(Reader *, const char *, GError **);
-    } others[] = {{"version", set_version}, {"background", set_background}, {"seed", set_seed}};
+    } others[] = {{"version", set_version},
+                  {"background", set_background},
+                  {"seed", set_seed},
+                  {"loop", set_loop}};
     g_autoptr(GPtrArray) known = g_ptr_array_new();
     for (size_t i = 0; i < G_N_ELEMENTS(others); i++) {
         if (strcmp(others[i].key, key) == 0)
@@ -401,6 +410,7 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
     COMPLETE(registration, FL_REGISTRATION_OFF);
     COMPLETE(stroke, FL_STROKES_KEEP);
     COMPLETE(blend, FL_BLEND_SRGB);
+    COMPLETE(loop, false);
     COMPLETE(gap, 0);
     COMPLETE(feather, 0);
     COMPLETE(seed, 1);
