@@ -298,6 +298,8 @@ static const GOptionEntry input[] = {
 static const GOptionEntry paint[] = {
     {"tint", 0, VALUE(read_setting), "fill, keep or #RRGGBB (fill)", "TINT"},
     {"stacking", 0, VALUE(read_setting), "knockout or glaze what lies below (knockout)", "WORD"},
+    {"edges", 0, VALUE(read_setting), "paint closed or soft at edges that shapes share (closed)",
+     "WORD"},
     {"stroke", 0, VALUE(read_choice), "keep, paint or drop line art (keep)", "WORD"},
     {"gap", 0, VALUE(read_number), "paper left around a region that hides others (0)", "PX"},
     {"feather", 0, VALUE(read_number), "fade paint towards such a region (0)", "PX"},

@@ -51,28 +51,44 @@ static int opacity_of(FlMedium medium, int amount)
     return medium == FL_MEDIUM_OPAQUE ? body_of(amount) : 0;
 }
 
+/** The amount at pixel i of the frame, which is pixel j of the box. */
+static int amount_at(const FlInk *ink, const FlColouring *how, const int16_t *toned,
+                     const uint8_t *painted, size_t i, size_t j)
+{
+    return how->amounts ? how->amounts[j] : toned[fl_ink_amount(ink, painted + 3 * i)];
+}
+
+/** What fl_ink_toned() makes of each amount; to be freed. */
+static int16_t *tones_of(const FlInk *ink, int tone)
+{
+    int16_t *toned = g_new(int16_t, FL_AMOUNTS);
+    for (int i = 0; i < FL_AMOUNTS; i++)
+        toned[i] = (int16_t)fl_ink_toned(ink, i, tone);
+    return toned;
+}
+
 /** One fill for the whole region: what every amount looks like is known beforehand. */
 static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale *scale,
                         const uint8_t *painted, const uint8_t *coverage, int width, FlBox box,
                         uint8_t *rgba)
 {
     g_autofree Paint *look = g_new(Paint, FL_AMOUNTS);
+    g_autofree int16_t *toned = tones_of(ink, how->tone);
     int32_t base[3], step[3];
     for (int c = 0; c < 3; c++)
         base[c] = base_of(how->paper[c]), step[c] = step_of(how->fill[c], how->paper[c]);
-    for (int i = 0; i < FL_AMOUNTS; i++) {
-        const int amount = fl_ink_toned(ink, i, how->tone);
+    for (int amount = 0; amount < FL_AMOUNTS; amount++) {
         uint8_t colour[3];
         for (int c = 0; c < 3; c++)
             colour[c] = painted_level(base[c], step[c], amount);
-        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), look[i].rgba);
+        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), look[amount].rgba);
     }
     for (int y = 0; y < box.height; y++)
         for (int x = 0; x < box.width; x++) {
             const size_t i = (size_t)(box.y + y) * width + box.x + x;
+            const size_t j = (size_t)y * box.width + x;
             if (coverage[i])
-                memcpy(rgba + 4 * ((size_t)y * box.width + x),
-                       look[fl_ink_amount(ink, painted + 3 * i)].rgba, 4);
+                memcpy(rgba + 4 * j, look[amount_at(ink, how, toned, painted, i, j)].rgba, 4);
         }
 }
 
@@ -94,15 +110,15 @@ static void steps_init(Steps *steps, const FlInk *ink, const FlColouring *how)
 
 /** Colours one row from the painted pixels themselves, or from the picture. */
 static void colour_row(const FlInk *ink, const FlColouring *how, const FlScale *scale,
-                       const Steps *steps, const uint8_t *painted, const uint8_t *coverage,
-                       size_t start, int width, uint8_t *rgba)
+                       const Steps *steps, const int16_t *toned, const uint8_t *painted,
+                       const uint8_t *coverage, size_t start, size_t j, int width, uint8_t *rgba)
 {
     const bool keep = how->tint == FL_TINT_KEEP;
-    for (size_t i = start; i < start + (size_t)width; i++, rgba += 4) {
+    for (size_t i = start; i < start + (size_t)width; i++, j++, rgba += 4) {
         if (!coverage[i])
             continue;
         const uint8_t *source = keep ? painted + 3 * i : how->picture + 4 * i;
-        const int amount = fl_ink_toned(ink, fl_ink_amount(ink, painted + 3 * i), how->tone);
+        const int amount = amount_at(ink, how, toned, painted, i, j);
         uint8_t colour[3];
         for (int c = 0; c < 3; c++)
             colour[c] = painted_level(steps->base[c], steps->step[c][source[c]],
@@ -117,10 +133,12 @@ static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScal
 {
     Steps steps;
     steps_init(&steps, ink, how);
+    g_autofree int16_t *toned = tones_of(ink, how->tone);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < box.height; y++)
-        colour_row(ink, how, scale, &steps, painted, coverage, (size_t)(box.y + y) * width + box.x,
-                   box.width, rgba + (size_t)y * box.width * 4);
+        colour_row(ink, how, scale, &steps, toned, painted, coverage,
+                   (size_t)(box.y + y) * width + box.x, (size_t)y * box.width, box.width,
+                   rgba + (size_t)y * box.width * 4);
 }
 
 void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
@@ -135,15 +153,28 @@ void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *paint
         colour_pixels(ink, how, &scale, painted, coverage, width, box, rgba);
 }
 
-void fl_colourise_body(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                       const uint8_t *coverage, int width, FlBox box, uint8_t *body)
+void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
+                          const uint8_t *coverage, int width, FlBox box, int16_t *amounts)
 {
+    g_autofree int16_t *toned = tones_of(ink, tone);
     for (int y = 0; y < box.height; y++)
         for (int x = 0; x < box.width; x++) {
             const size_t i = (size_t)(box.y + y) * width + box.x + x;
-            const int amount =
-                coverage[i] ? fl_ink_toned(ink, fl_ink_amount(ink, painted + 3 * i), how->tone) : 0;
-            body[(size_t)y * box.width + x] = (uint8_t)body_of(amount);
+            amounts[(size_t)y * box.width + x] =
+                coverage[i] ? toned[fl_ink_amount(ink, painted + 3 * i)] : -1;
+        }
+}
+
+void fl_colourise_body(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
+                       const uint8_t *coverage, int width, FlBox box, uint8_t *body)
+{
+    g_autofree int16_t *toned = tones_of(ink, how->tone);
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const size_t i = (size_t)(box.y + y) * width + box.x + x;
+            const size_t j = (size_t)y * box.width + x;
+            const int amount = coverage[i] ? amount_at(ink, how, toned, painted, i, j) : 0;
+            body[j] = (uint8_t)body_of(amount);
         }
 }
 

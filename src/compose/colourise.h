@@ -21,6 +21,7 @@ typedef struct FlColouring {
     FlMedium medium;        // opaque paint hides what is below from a fifth of its median on
     bool linear;            // the layers will be blended in linear light
     int tone;               // of fl_ink_tone(); FL_TONE_ONE: as in the exemplar
+    const int16_t *amounts; // of the box, of fl_colourise_amounts() and changed; NULL: as painted
 } FlColouring;
 
 /**
@@ -34,6 +35,10 @@ typedef struct FlColouring {
  */
 void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
                   const uint8_t *coverage, int width, FlBox box, uint8_t *rgba);
+
+/** The amounts of paint of a box, box.width * box.height; -1 where coverage is 0. */
+void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
+                          const uint8_t *coverage, int width, FlBox box, int16_t *amounts);
 
 /**
  * How far the paint has body, 0..255 per pixel of the box: from nothing on bare paper to 255 at

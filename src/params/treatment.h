@@ -12,6 +12,12 @@ typedef enum FlStacking {
     FL_STACKING_GLAZE,    // its density adds to theirs, as a wash over dry paint
 } FlStacking;
 
+/** What paint does at an edge that its shape shares with others. */
+typedef enum FlEdges {
+    FL_EDGES_CLOSED, // it goes on up to the edge: neither a line of paper nor a double rim
+    FL_EDGES_SOFT,   // as at any other edge
+} FlEdges;
+
 /** The colour of the paint. */
 typedef enum FlTint {
     FL_TINT_FILL, // the drawing's fill or any other: the picture if there is one, else the flat one
@@ -33,6 +39,7 @@ typedef struct FlTreatment {
     uint8_t colour[3]; // sRGB
     FlDetail detail;
     FlStacking stacking;
+    FlEdges edges;
     int hold; // frames, 1..1000
     bool reverse;
     FlPassthrough passthrough;

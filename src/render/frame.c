@@ -1,6 +1,7 @@
 #include "render/frame.h"
 
 #include "base/alloc.h"
+#include "compose/closing.h"
 #include "compose/colourise.h"
 #include "output/name.h"
 #include "params/text.h"
@@ -97,8 +98,46 @@ static bool find_tones(const FlPlan *plan, const FlRuns *runs, int *tones, GErro
     return true;
 }
 
+/* The sum of all shapes that are shown. */
+static uint16_t *sum_shapes(const FlPlan *plan, const FlRuns *runs, GError **error)
+{
+    const size_t n = (size_t)fl_film_width(plan->film) * fl_film_height(plan->film);
+    uint16_t *drawn = fl_alloc(n, sizeof *drawn, "a matte", error);
+    for (int r = 0; drawn && r < runs->n; r++) {
+        const FlRun *run = &runs->run[r];
+        for (size_t i = 0; plan->painter_of[run->region] != -2 && i < n; i++)
+            drawn[i] = (uint16_t)MIN(drawn[i] + run->coverage[i] * run->alpha / 255, UINT16_MAX);
+    }
+    return drawn;
+}
+
+/* The amounts of paint of a layer, closed up at edges that it shares; *amounts is NULL, without an
+ * error, if its edges stay soft. */
+static bool close_edges(const FlLayer *layer, const FlPlan *plan, const FlPainter *painter,
+                        int tone, const uint16_t *drawn, int16_t **amounts, GError **error)
+{
+    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    const FlTreatment *t = &painter->treatment;
+    const bool apart = plan->options.gap > 0 || plan->options.feather > 0;
+    *amounts = NULL;
+    if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || apart ||
+        layer->box.width == 0)
+        return true;
+    const float border = painter->box->exemplar->border_px;
+    const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
+    g_autofree uint8_t *share = fl_alloc(fl_box_pixels(layer->box), 1, "a matte", error);
+    if (!share ||
+        !fl_closing_share(layer->coverage, drawn, width, height, layer->box, radius, share,
+                          error) ||
+        !(*amounts = fl_alloc(fl_box_pixels(layer->box), sizeof **amounts, "a matte", error)))
+        return false;
+    fl_colourise_amounts(painter->box->ink, tone, painter->painted, layer->coverage, width,
+                         layer->box, *amounts);
+    return fl_closing_apply(*amounts, share, layer->box, radius, error);
+}
+
 static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                       const FlRun *run, const int *tones, GError **error)
+                       const FlRun *run, const int *tones, const uint16_t *drawn, GError **error)
 {
     const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
     const int p = plan->painter_of[run->region];
@@ -111,7 +150,11 @@ static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *b
     if (!layer->rgba)
         return false;
     if (painter) {
-        const FlColouring how = colouring_of(plan, background, painter, run, tones[p]);
+        FlColouring how = colouring_of(plan, background, painter, run, tones[p]);
+        g_autofree int16_t *amounts = NULL;
+        if (!close_edges(layer, plan, painter, how.tone, drawn, &amounts, error))
+            return false;
+        how.amounts = amounts;
         uint8_t *body = fl_alloc(fl_box_pixels(layer->box), 1, "a layer", error);
         if (!body)
             return false;
@@ -142,6 +185,9 @@ static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBack
     g_autofree int *tones = g_new0(int, MAX(plan->n_painters, 1));
     if (!find_tones(plan, composite->runs, tones, error))
         return false;
+    g_autofree uint16_t *drawn = sum_shapes(plan, composite->runs, error);
+    if (!drawn)
+        return false;
     composite->layers = g_new0(FlLayer, MAX(composite->runs->n, 1));
     composite->names = g_new0(char *, composite->runs->n + 1);
     for (int r = 0; r < composite->runs->n; r++) {
@@ -150,7 +196,7 @@ static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBack
             continue;
         composite->names[composite->n_layers] = layer_name(plan, composite->runs, r);
         if (!fill_layer(&composite->layers[composite->n_layers++], plan, background, run, tones,
-                        error))
+                        drawn, error))
             return false;
     }
     FlStackParams params = {.linear = plan->options.blend == FL_BLEND_LINEAR,

@@ -1,0 +1,139 @@
+#include "compose/closing.h"
+
+#include "base/alloc.h"
+#include <glib.h>
+
+/** Outside the shape in a window: all of it, and the part that others cover. */
+typedef struct Around {
+    uint32_t free, taken;
+} Around;
+
+static Around around_of(const uint8_t *coverage, const uint16_t *drawn, size_t i)
+{
+    const uint32_t free = 255u - coverage[i];
+    const uint32_t others = MIN(255u, (uint32_t)(drawn[i] - MIN(drawn[i], coverage[i])));
+    return (Around){free, free * others / 255};
+}
+
+static void add(Around *sum, Around one)
+{
+    sum->free += one.free, sum->taken += one.taken;
+}
+
+static void take(Around *sum, Around one)
+{
+    sum->free -= one.free, sum->taken -= one.taken;
+}
+
+/** Sums over 2 r + 1 columns, one for each column of the box. */
+static void sum_row(const uint8_t *coverage, const uint16_t *drawn, size_t row, int width,
+                    FlBox box, int r, Around *out)
+{
+    Around sum = {0};
+    for (int x = MAX(box.x - r, 0); x < MIN(box.x + r, width); x++)
+        add(&sum, around_of(coverage, drawn, row + (size_t)x));
+    for (int x = box.x; x < box.x + box.width; x++) {
+        if (x + r < width)
+            add(&sum, around_of(coverage, drawn, row + (size_t)(x + r)));
+        out[x - box.x] = sum;
+        if (x - r >= 0)
+            take(&sum, around_of(coverage, drawn, row + (size_t)(x - r)));
+    }
+}
+
+/** Full within a third of the way from the contour to the radius, and then falling to 0. */
+static uint8_t share_of(Around sum, uint32_t window)
+{
+    if (sum.taken == 0)
+        return 0;
+    const uint64_t near = MIN((uint64_t)sum.free * 3, (uint64_t)window);
+    return (uint8_t)((uint64_t)sum.taken * 255 / sum.free * near / window);
+}
+
+static void add_row(Around *sums, const Around *row, size_t n)
+{
+    for (size_t x = 0; x < n; x++)
+        add(&sums[x], row[x]);
+}
+
+bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width, int height,
+                      FlBox box, int radius_px, uint8_t *share, GError **error)
+{
+    const int r = radius_px, y0 = MAX(box.y - r, 0), y1 = MIN(box.y + box.height + r, height);
+    g_assert(r >= 1 && r <= FL_CLOSING_MAX_PX);
+    const size_t n = (size_t)box.width;
+    g_autofree Around *rows = fl_alloc((size_t)(y1 - y0) * n, sizeof *rows, "a matte", error);
+    g_autofree Around *sums = rows ? fl_alloc(n, sizeof *sums, "a row of a matte", error) : NULL;
+    if (!sums)
+        return false;
+#pragma omp parallel for schedule(static)
+    for (int y = y0; y < y1; y++)
+        sum_row(coverage, drawn, (size_t)y * width, width, box, r, rows + (size_t)(y - y0) * n);
+    const uint32_t window = 255u * (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
+    for (int y = y0; y < MIN(box.y + r, y1); y++)
+        add_row(sums, rows + (size_t)(y - y0) * n, n);
+    for (int y = box.y; y < box.y + box.height; y++) {
+        if (y + r < y1)
+            add_row(sums, rows + (size_t)(y + r - y0) * n, n);
+        for (size_t x = 0; x < n; x++)
+            share[(size_t)(y - box.y) * n + x] = share_of(sums[x], window);
+        for (size_t x = 0; x < n && y - r >= y0; x++)
+            take(&sums[x], rows[(size_t)(y - r - y0) * n + x]);
+    }
+    return true;
+}
+
+#define MEAN_LEAST (FL_AMOUNT_ONE / 6) // paint this thin is made six times as thick, and not more
+#define LEAST (FL_AMOUNT_ONE * 3 / 4)      // what is bare of paint all the same
+#define MOST (2 * FL_AMOUNT_ONE)
+
+/** Paint and pixels of a shape in a window. */
+typedef struct Mean {
+    uint32_t sum, n;
+} Mean;
+
+/** The sums over 2 r + 1 of n values `step` apart. */
+static void slide(const Mean *in, Mean *out, int n, size_t step, int r)
+{
+    Mean m = {0};
+    for (int i = 0; i < MIN(r, n); i++)
+        m.sum += in[(size_t)i * step].sum, m.n += in[(size_t)i * step].n;
+    for (int i = 0; i < n; i++) {
+        if (i + r < n)
+            m.sum += in[(size_t)(i + r) * step].sum, m.n += in[(size_t)(i + r) * step].n;
+        out[(size_t)i * step] = m;
+        if (i - r >= 0)
+            m.sum -= in[(size_t)(i - r) * step].sum, m.n -= in[(size_t)(i - r) * step].n;
+    }
+}
+
+static int closed(int amount, Mean m, int share)
+{
+    const int mean = MAX((int)(m.sum / m.n), MEAN_LEAST);
+    const int even = CLAMP(amount * FL_AMOUNT_ONE / mean, LEAST, MOST);
+    return amount + (even - amount) * share / 255;
+}
+
+bool fl_closing_apply(int16_t *amounts, const uint8_t *share, FlBox box, int radius_px,
+                      GError **error)
+{
+    const size_t n = fl_box_pixels(box), width = (size_t)box.width;
+    const int r = MAX(1, radius_px / 4);
+    g_autofree Mean *one = fl_alloc(n, sizeof *one, "a matte", error);
+    g_autofree Mean *two = one ? fl_alloc(n, sizeof *two, "a matte", error) : NULL;
+    if (!two)
+        return false;
+    for (size_t i = 0; i < n; i++)
+        if (amounts[i] >= 0)
+            one[i] = (Mean){(uint32_t)amounts[i], 1};
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < box.height; y++)
+        slide(one + (size_t)y * width, two + (size_t)y * width, box.width, 1, r);
+#pragma omp parallel for schedule(static)
+    for (int x = 0; x < box.width; x++)
+        slide(two + x, one + x, box.height, width, r);
+    for (size_t i = 0; i < n; i++)
+        if (amounts[i] >= 0 && share[i])
+            amounts[i] = (int16_t)closed(amounts[i], one[i], share[i]);
+    return true;
+}

@@ -1,0 +1,34 @@
+/* Edges that shapes share: there paint closes up instead of fading into paper or darkening twice.
+ */
+#ifndef FLUIDY_COMPOSE_CLOSING_H
+#define FLUIDY_COMPOSE_CLOSING_H
+
+#include "base/box.h"
+#include "compose/ink.h"
+#include <fluidy/error.h>
+#include <stdbool.h>
+
+#define FL_CLOSING_MAX_PX 64
+
+/**
+ * How far the pixels of a shape are at an edge that it shares with others, 0..255: the share of
+ * what is not the shape's, within a square of radius_px (1 … FL_CLOSING_MAX_PX) around, that is
+ * others', falling to 0 at that depth below the contour.
+ *
+ * coverage and drawn are width * height: the shape's coverage, and the sum of all shapes' (its own
+ * included). share is box.width * box.height; it is 0 without others.
+ */
+bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width, int height,
+                      FlBox box, int radius_px, uint8_t *share, GError **error);
+
+/**
+ * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
+ * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim.
+ *
+ * amounts (0 … FL_AMOUNTS - 1, changed in place) and share are box.width * box.height; an amount
+ * below 0 is outside the shape. radius_px is that of the share.
+ */
+bool fl_closing_apply(int16_t *amounts, const uint8_t *share, FlBox box, int radius_px,
+                      GError **error);
+
+#endif

@@ -1,0 +1,105 @@
+/* Paint at edges that shapes share: rows of a shape whose left edge is shared and right edge free.
+ */
+#include "base/rng.h"
+#include "compose/closing.h"
+#include <glib.h>
+#include <math.h>
+
+#define WIDTH 96
+#define HEIGHT 32
+#define LEFT 16 // the shape's columns are LEFT … RIGHT - 1
+#define RIGHT 80
+#define BORDER 10
+
+static const FlBox box = {LEFT, 0, RIGHT - LEFT, HEIGHT};
+
+/** The share at both edges of the shape; what is left of it is another shape, if there is one. */
+static void make_share(bool neighbour, uint8_t *share)
+{
+    static uint8_t coverage[WIDTH * HEIGHT];
+    static uint16_t drawn[WIDTH * HEIGHT];
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const bool mine = x >= LEFT && x < RIGHT;
+            coverage[y * WIDTH + x] = mine ? 255 : 0;
+            drawn[y * WIDTH + x] = mine || (neighbour && x < LEFT) ? 255 : 0;
+        }
+    g_autoptr(GError) error = NULL;
+    fl_closing_share(coverage, drawn, WIDTH, HEIGHT, box, BORDER, share, &error);
+    g_assert_no_error(error);
+}
+
+/** Grainy paint that starts with `rim` times the median at both edges. */
+static void make_paint(double rim, int16_t *amounts)
+{
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < box.width; x++) {
+            const double depth = MIN(x, box.width - 1 - x) / (double)BORDER;
+            const double level = depth < 1 ? rim + (1 - rim) * depth : 1;
+            const uint32_t bits = (uint32_t)(fl_key(7, (uint64_t)(y * WIDTH + x)) >> 40);
+            const double grain = 0.8 + 0.4 * (bits & 1023) / 1023;
+            amounts[y * box.width + x] = (int16_t)(level * grain * FL_AMOUNT_ONE);
+        }
+}
+
+/** Mean amount, of the median, and deviation of its logarithm in columns x0 … x1 - 1 of the box. */
+static double look(const int16_t *amounts, int x0, int x1, double *grain)
+{
+    double sum = 0, logs = 0, squares = 0;
+    const double n = (double)HEIGHT * (x1 - x0);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = x0; x < x1; x++) {
+            const double a = MAX(amounts[y * box.width + x], 1) / (double)FL_AMOUNT_ONE;
+            sum += a, logs += log(a), squares += log(a) * log(a);
+        }
+    *grain = sqrt(squares / n - logs / n * logs / n);
+    return sum / n;
+}
+
+static void close_paint(double rim, bool neighbour, int16_t *amounts)
+{
+    g_autofree uint8_t *share = g_malloc(fl_box_pixels(box));
+    g_autoptr(GError) error = NULL;
+    make_share(neighbour, share);
+    make_paint(rim, amounts);
+    fl_closing_apply(amounts, share, box, BORDER, &error);
+    g_assert_no_error(error);
+}
+
+static void no_line_of_paper_and_no_dark_seam_lies_between_neighbours(void)
+{
+    g_autofree int16_t *amounts = g_new(int16_t, fl_box_pixels(box));
+    static const double rims[] = {0.1, 2};
+    for (size_t i = 0; i < G_N_ELEMENTS(rims); i++) {
+        double grain = 0, inside = 0;
+        close_paint(rims[i], true, amounts);
+        g_assert_cmpfloat(look(amounts, 0, 3, &grain), >, 0.75);
+        g_assert_cmpfloat(look(amounts, 0, 3, &grain), <, 1.25);
+        look(amounts, 2 * BORDER, 3 * BORDER, &inside);
+        look(amounts, 2, BORDER, &grain);
+        g_test_message("grain at the edge %.3f, inside %.3f", grain, inside);
+        g_assert_cmpfloat(grain, >, 0.8 * inside);
+    }
+}
+
+static void a_free_edge_stays_as_it_is_painted(void)
+{
+    g_autofree int16_t *amounts = g_new(int16_t, fl_box_pixels(box));
+    g_autofree int16_t *painted = g_new(int16_t, fl_box_pixels(box));
+    make_paint(0.1, painted);
+    close_paint(0.1, true, amounts);
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = box.width / 2; x < box.width; x++)
+            g_assert_cmpint(amounts[y * box.width + x], ==, painted[y * box.width + x]);
+    close_paint(0.1, false, amounts);
+    g_assert_cmpmem(amounts, 2 * fl_box_pixels(box), painted, 2 * fl_box_pixels(box));
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name) g_test_add_func("/closing/" #name, name)
+    TEST(no_line_of_paper_and_no_dark_seam_lies_between_neighbours);
+    TEST(a_free_edge_stays_as_it_is_painted);
+    return g_test_run();
+}
