@@ -191,4 +191,76 @@ result $? '--list-regions prints a line per region'
     grep -q ' yes  *hat-a42718 ' again
 result $? 'the config that is printed gives the same regions'
 
+# The config: three edits of the printed one, every key that the manual has, and its example.
+"$program" --list-regions --format config -f 1 "$film" >shot.conf 2>err &&
+    sed -i -e '/^\[region hat-474d50\]/,/^$/ s/^# tint = fill/tint = #224488/' \
+        -e '/^\[region face-ffa72b\]/,/^$/ s/^# style = 01/passthrough = on/' \
+        -e 's/^# background = #ffffff/background = #ffeedd/' shot.conf &&
+    [ "$(grep -cE '^(tint = #2|passthrough|background)' shot.conf)" = 3 ] &&
+    "$program" "$film" -c shot.conf -s 01 -W 96 -f 1 --detail draft -o edited_%d.png >out 2>err &&
+    "$program" "$film" -s 01 -W 96 -f 1 --detail draft -o plain_%d.png >out 2>err &&
+    ! cmp -s edited_1.png plain_1.png
+result $? 'three edits of the printed config change the picture'
+cat >all.conf <<'END'
+[project]
+version = 1
+background = #ffffff
+blend = linear
+canvas = 64x48
+feather = 1
+fps = 12
+frames = 1-2
+gap = 1
+key = auto
+layers = all/{region}_%d.png
+missing = hold
+output = all/w_%d.png
+register = off
+seed = 3
+stroke = paint
+[defaults]
+style = 01
+detail = draft
+[region disc]
+match-fill = #aa3311;#bb4422
+match-tolerance = 5
+match-id = c*
+match-class = a;b?
+match-label = *
+match-layer = Char*
+tint = #335577
+border = 6
+scale = 0.5
+rotate = off
+w-temp = 2
+w-bound = 8
+stacking = glaze
+edges = soft
+reverse = on
+hold = 2
+[region rim]
+match-stroke = #000000
+match-fill = none
+merge-with = disc
+[region white-ffffff]
+passthrough = on
+[region rest]
+match = *
+END
+mkdir all.d
+for i in 1 2; do
+    echo "$drawing<g inkscape:groupmode='layer' inkscape:label='Character'>" \
+        "<circle id='c1' class='x b2' cx='$((20 + 4 * i))' cy='24' r='12' fill='#a93311'/>" \
+        "<path d='M40,8v30' stroke='#000' stroke-width='3' fill='none'/></g>" \
+        "<path d='M50,10h8v8h-8z' fill='#228833'/></svg>" >all.d/w_000$i.svg
+done
+"$program" all.d -c all.conf >out 2>err && [ -s all/w_2.png ] && [ -s all/disc_1.png ] &&
+    [ -s all/rest_1.png ] && [ ! -e all/rim_1.png ] && ! grep -q warning err
+result $? 'every key of a config is taken'
+sed -n '/^\.Sh EXAMPLES/,/^\.Ed/p' "$fixtures/../man/fluidy-svg.conf.5.in" | grep -v '^\.' >example.conf
+cp plain_1.png paper.png
+"$program" all.d -c example.conf --dry-run >out 2>err &&
+    ! grep 'warning:' err | grep -v 'example.conf:8: \[region hair\] holds for nothing'
+result $? 'the example of fluidy-svg.conf(5) is read'
+
 echo "1..$n"

@@ -420,6 +420,46 @@ static void the_smallest_group_that_looks_otherwise_is_taken_as_one(void)
                                    "the drawing: taken as one"));
 }
 
+static void regions_merge_through_others_and_not_in_circles(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *path = scratch_svg(folder, "three.svg",
+                                        "<rect width='20' height='20' fill='#aa0000'/>"
+                                        "<rect x='30' width='20' height='20' fill='#00aa00'/>"
+                                        "<rect x='60' width='20' height='20' fill='#0000aa'/>");
+    const char *const red[] = {"#aa0000", NULL}, *const green[] = {"#00aa00", NULL},
+                      *const blue[] = {"#0000aa", NULL};
+    FlRegionRule rules[] = {{.name = "a", .match_fill = red, .merge_with = "b"},
+                            {.name = "b", .match_fill = green, .merge_with = "c"},
+                            {.name = "c", .match_fill = blue}};
+    const FlFilmOptions options = {.rules = rules, .n_rules = 3};
+    g_autoptr(FlFilm) film = open_film(&options, path, NULL);
+    assert_table(film, "c*1");
+    g_assert_cmpint(fl_film_region(film, 0)->n_leaves, ==, 3);
+    rules[2].merge_with = "a";
+    g_autoptr(FlFilm) circle = open_film(&options, path, NULL);
+    assert_table(circle, "a*1 b*1 c*1");
+}
+
+static void a_region_that_vanishes_and_returns_is_the_same(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    static const char *const frames[] = {
+        "<g><path id='path4' d='M10,10h20v20h-20z' fill='#aa0000'/></g>"
+        "<path id='path5' d='M50,50h30v30h-30z' fill='#0000aa'/>",
+        "<path id='path4' d='M52,50h30v30h-30z' fill='#0000aa'/>",
+        "<path id='path4' d='M54,50h30v30h-30z' fill='#0000aa'/>",
+        "<path id='path4' d='M56,50h30v30h-30z' fill='#0000aa'/><g/>"
+        "<path id='path5' d='M60,10h20v20h-20z' fill='#aa0000'/>"};
+    for (guint i = 0; i < G_N_ELEMENTS(frames); i++) {
+        g_autofree char *name = g_strdup_printf("w_%u.svg", i + 1);
+        g_autofree char *path = scratch_svg(folder, name, frames[i]);
+    }
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    assert_table(film, "red-aa0000*2 violet-0000aa*4");
+}
+
 /* A house that stands still and a ball that comes from the left, each frame moved to 0,0. */
 static void frames_that_begin_at_nought_are_put_back(void)
 {
@@ -483,6 +523,8 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
 #define TEST(path, function) g_test_add_func("/film/" path, function)
+    TEST("merges", regions_merge_through_others_and_not_in_circles);
+    TEST("returning", a_region_that_vanishes_and_returns_is_the_same);
     TEST("fall-back", the_smallest_group_that_looks_otherwise_is_taken_as_one);
     TEST("blend-modes", blend_modes_are_drawn_or_named);
     TEST("registered", frames_that_begin_at_nought_are_put_back);

@@ -84,7 +84,7 @@ bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width,
 }
 
 #define MEAN_LEAST (FL_AMOUNT_ONE / 6) // paint this thin is made six times as thick, and not more
-#define LEAST (FL_AMOUNT_ONE * 3 / 4)      // what is bare of paint all the same
+#define LEAST (FL_AMOUNT_ONE * 3 / 4)  // what is bare of paint all the same
 #define MOST (2 * FL_AMOUNT_ONE)
 
 /** Paint and pixels of a shape in a window. */

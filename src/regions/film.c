@@ -123,6 +123,15 @@ static void measure(FlFilm *film, const FlScan *scan)
     }
 }
 
+/** Where a region ends up when those that it joins join others; in a circle nothing joins. */
+static int end_of(const int *into, guint n, int region)
+{
+    int r = region;
+    for (guint k = 0; k < n && into[r] != r; k++)
+        r = into[r];
+    return into[r] == r ? r : region;
+}
+
 /** Joins a region whose rule says merge_with to the region of that name. */
 static void merge_regions(FlScan *scan, GArray *groups, const FlRegionRule *rules)
 {
@@ -136,18 +145,21 @@ static void merge_regions(FlScan *scan, GArray *groups, const FlRegionRule *rule
             if (q != r && strcmp(names[q], wish) == 0)
                 into[r] = (int)q;
     }
+    g_autofree int *end = g_new(int, groups->len + 1);
+    for (guint r = 0; r < groups->len; r++)
+        end[r] = end_of(into, groups->len, (int)r);
     g_autofree int *number = g_new(int, groups->len + 1);
     guint kept = 0;
     for (guint r = 0; r < groups->len; r++) {
         number[r] = (int)kept;
-        if (into[r] == (int)r)
+        if (end[r] == (int)r)
             g_array_index(groups, FlGroup, kept++) = g_array_index(groups, FlGroup, r);
     }
     for (int t = 0; t < scan->n_frames && kept < groups->len; t++)
         for (guint i = 0; i < scan->frame[t].seen->len; i++) {
             int *region = &g_array_index(scan->frame[t].seen, FlSeen, i).region;
             if (*region >= 0)
-                *region = number[into[*region]];
+                *region = number[end[*region]];
         }
     g_array_set_size(groups, kept);
 }
