@@ -98,14 +98,15 @@ static bool find_tones(const FlPlan *plan, const FlRuns *runs, int *tones, GErro
     return true;
 }
 
-/* The sum of all shapes that are shown. */
+/* The sum of all shapes, also of those left out: a region alone has the layer it has among others.
+ */
 static uint16_t *sum_shapes(const FlPlan *plan, const FlRuns *runs, GError **error)
 {
     const size_t n = (size_t)fl_film_width(plan->film) * fl_film_height(plan->film);
     uint16_t *drawn = fl_alloc(n, sizeof *drawn, "a matte", error);
     for (int r = 0; drawn && r < runs->n; r++) {
         const FlRun *run = &runs->run[r];
-        for (size_t i = 0; plan->painter_of[run->region] != -2 && i < n; i++)
+        for (size_t i = 0; i < n; i++)
             drawn[i] = (uint16_t)MIN(drawn[i] + run->coverage[i] * run->alpha / 255, UINT16_MAX);
     }
     return drawn;
