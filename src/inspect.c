@@ -98,7 +98,7 @@ static char *table(const Subject *subject)
     int widths[N_COLUMNS] = {0};
     for (guint i = 0; i < rows->len; i++)
         for (int c = 0; c < N_COLUMNS; c++)
-            widths[c] = MAX(widths[c], g_utf8_strlen(g_array_index(rows, Row, i).cell[c], -1));
+            widths[c] = MAX(widths[c], (int)g_utf8_strlen(g_array_index(rows, Row, i).cell[c], -1));
     GString *text = g_string_new(NULL);
     for (guint i = 0; i < rows->len; i++)
         append_row(text, &g_array_index(rows, Row, i), widths);

@@ -240,7 +240,7 @@ static void a_picture_of_one_colour_is_as_good_as_a_flat_fill(void)
     g_autofree uint8_t *flat = paint(&s, ink, &how);
     how.picture = picture_rgba;
     g_autofree uint8_t *pixels = paint(&s, ink, &how);
-    g_assert_cmpmem(flat, 3 * n, pixels, 3 * n);
+    g_assert_cmpmem(flat, (int)(3 * n), pixels, (int)(3 * n));
 }
 
 static void the_exemplars_own_colours_are_kept_on_its_own_paper(void)

@@ -472,7 +472,7 @@ static void frames_that_begin_at_nought_are_put_back(void)
                             "<path d='M%.1f,0h30v40h-30z' style='fill:rgb(200,40,40)'/>"
                             "<circle cx='%.1f' cy='20' r='8' style='fill:rgb(40,40,200)'/></svg>",
                             50 - left, ball + 8 - left);
-        g_autofree char *path = scratch_write(folder, name, text);
+        G_GNUC_UNUSED g_autofree char *path = scratch_write(folder, name, text);
     }
     const FlFilmOptions options = {.registered = true};
     g_autoptr(FlFilm) film = open_film(&options, folder, NULL);

@@ -31,7 +31,7 @@ static Film painted(double radius, const FlSetting *settings, size_t n_settings,
         g_autofree char *disc =
             g_strdup_printf("<circle cx='%d' cy='%d' r='30' fill='#335588'/>",
                             (int)lrint(50 + radius * cos(a)), (int)lrint(50 + radius * sin(a)));
-        g_autofree char *path = scratch_svg(film.folder, name, disc);
+        G_GNUC_UNUSED g_autofree char *path = scratch_svg(film.folder, name, disc);
     }
     g_autofree char *output = g_build_filename(film.folder, "d_%02d.png", NULL);
     const char *const inputs[] = {film.folder, NULL};

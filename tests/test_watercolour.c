@@ -403,7 +403,7 @@ static void expect_same_file(const char *a, const char *b, const char *name)
     gsize n_a = 0, n_b = 0;
     g_assert_true(g_file_get_contents(path_a, &data_a, &n_a, NULL));
     g_assert_true(g_file_get_contents(path_b, &data_b, &n_b, NULL));
-    g_assert_cmpmem(data_a, n_a, data_b, n_b);
+    g_assert_cmpmem(data_a, (int)n_a, data_b, (int)n_b);
 }
 
 static void simulate_small(const char *fixture, const char *output)

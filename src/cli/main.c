@@ -141,6 +141,7 @@ static int work(FlArgs *args)
     fl_meter_hide(&voice.meter);
     if (!error && args->task == FL_TASK_RENDER)
         recall_warnings(&voice);
+    // NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): args are only cleared after this
     return error ? fail(error) : status;
 }
 

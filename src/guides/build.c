@@ -348,6 +348,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     g_autofree float *flow = NULL;
     if (!outline_of(b, frame, &outline, error))
         return false;
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
     *record = (FlFrameRecord){outline->box, outline->empty, {-1, -1, -1, -1}};
     if (outline->box.width == 0) {
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);

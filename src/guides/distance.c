@@ -192,7 +192,7 @@ static void search_columns(Work *work)
         const int16_t *above = y > 0 ? near_y - w : NULL;
         const int32_t *seed_at = work->seed_at + y * (size_t)w;
         for (int x = 0; x < w; x++)
-            near_y[x] = seed_at[x] >= 0 ? y : above ? above[x] : -1;
+            near_y[x] = (int16_t)(seed_at[x] >= 0 ? y : above ? above[x] : -1);
     }
     for (int y = h - 2; y >= 0; y--) {
         int16_t *near_y = work->near_y + y * (size_t)w;
@@ -200,7 +200,7 @@ static void search_columns(Work *work)
             const int above = near_y[x], below = near_y[x + w];
             // what the row below has found may lie above this row: then it is this row's own
             const bool better = below > y && (above < 0 || below - y < y - above);
-            near_y[x] = better ? below : above;
+            near_y[x] = (int16_t)(better ? below : above);
         }
     }
 }

@@ -8,6 +8,7 @@ static bool any_inside(const uint8_t *coverage, size_t n)
 {
     uint8_t all = 0;
     for (size_t p = 0; p < n; p++)
+        // NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign): filled by memcpy()
         all |= coverage[p];
     return all & FL_INSIDE;
 }

@@ -142,7 +142,7 @@ static bool get_plane(const FlGuideSequence *sequence, int frame, FlPlane plane,
 static bool recall_distance(FlGuideSequence *sequence, int32_t holder, float *distance,
                             size_t bytes)
 {
-    g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
+    G_GNUC_UNUSED g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
     const bool known = sequence->distance && sequence->holder == holder;
     if (known)
         memcpy(distance, sequence->distance, bytes);
@@ -152,7 +152,7 @@ static bool recall_distance(FlGuideSequence *sequence, int32_t holder, float *di
 static void keep_distance(FlGuideSequence *sequence, int32_t holder, const float *distance,
                           size_t bytes)
 {
-    g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
+    G_GNUC_UNUSED g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
     if (!sequence->distance && !(sequence->distance = g_try_malloc(bytes)))
         return; // it is only a shortcut
     memcpy(sequence->distance, distance, bytes);

@@ -116,6 +116,7 @@ static bool read_key(FlStyle *style, const Line *line, unsigned *seen, GError **
     const char *names[G_N_ELEMENTS(keys) + 1] = {NULL};
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
         names[i] = keys[i].name;
+        // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): split_line() has set it
         if (strcmp(line->key, keys[i].name) != 0)
             continue;
         if (*seen & 1u << i)

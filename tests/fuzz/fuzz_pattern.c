@@ -10,7 +10,7 @@ static void as_input(const char *text)
     bool has_number = false;
     int number = 0;
     if (fl_pattern_parse(text, &pattern, &has_number, NULL) && has_number) {
-        g_autofree char *shown = fl_pattern_text(&pattern);
+        G_GNUC_UNUSED g_autofree char *shown = fl_pattern_text(&pattern);
         fl_pattern_match(&pattern, text, &number);
     }
     g_auto(FlPattern) of_name = {0};
