@@ -9,6 +9,7 @@
 #include "render/resume.h"
 #include "render/stats.h"
 #include "report/report.h"
+#include "style/picture.h"
 #include <fluidy/fluidy.h>
 #include <string.h>
 #ifdef _OPENMP
@@ -25,6 +26,7 @@ typedef struct Job {
     FlPlan *plan;
     FlBackground background;
     FlSink *sink;
+    FlSink *movie; // NULL: the frames alone
     FlStats stats;
     FlReport *report; // NULL: not asked for
     FlResume resume;
@@ -178,7 +180,32 @@ static bool write_frame(Job *job, const FlComposite *composite, int frame, GErro
         return fl_sink_frame(job->sink, &out, error);
     g_autofree char *file = fl_sink_file(&job->sink->params, out.number, error);
     job->sink->params.overwrite = fl_resume_replaces(&job->resume, frame);
-    return file && (fl_resume_keeps(&job->resume, file) || fl_sink_frame(job->sink, &out, error));
+    return file && (fl_resume_keeps(&job->resume, file) || fl_sink_frame(job->sink, &out, error)) &&
+           (!job->movie || fl_sink_frame(job->movie, &out, error));
+}
+
+/* The film takes the frames of an earlier run from their files. */
+static bool recall_frames(Job *job, GError **error)
+{
+    for (int f = 0; job->movie && f < job->resume.first; f++) {
+        const int number = fl_film_number(job->plan->film, f);
+        g_autofree char *file = fl_sink_file(&job->sink->params, number, error);
+        g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
+        if (!picture)
+            return false;
+        const FlSinkFrame out = {.number = number, .rgba = picture->rgba};
+        if (picture->width != job->movie->params.width ||
+            picture->height != job->movie->params.height) {
+            g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                        "%s: %dx%d pixels, but an earlier run painted %dx%d; -y starts anew", file,
+                        picture->width, picture->height, job->movie->params.width,
+                        job->movie->params.height);
+            return false;
+        }
+        if (!fl_sink_frame(job->movie, &out, error))
+            return false;
+    }
+    return true;
 }
 
 static bool render_frame(Job *job, int frame, GError **error)
@@ -214,15 +241,19 @@ static bool is_draft(const FlPlan *plan)
 static bool open_sink(Job *job, GError **error)
 {
     const FlPlan *plan = job->plan;
-    const FlSinkParams params = {.path = plan->output,
-                                 .width = fl_film_width(plan->film),
-                                 .height = fl_film_height(plan->film),
-                                 .fps = plan->options.fps > 0 ? plan->options.fps : 24,
-                                 .opaque = job->background.opaque,
-                                 .fast = is_draft(plan),
-                                 .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
+    FlSinkParams params = {.path = plan->output,
+                           .width = fl_film_width(plan->film),
+                           .height = fl_film_height(plan->film),
+                           .fps = plan->options.fps > 0 ? plan->options.fps : 24,
+                           .opaque = job->background.opaque,
+                           .fast = is_draft(plan),
+                           .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
     job->sink = fl_sink_open(plan->format, &params, error);
-    return job->sink != NULL;
+    if (!job->sink || !plan->movie)
+        return job->sink != NULL;
+    params.path = plan->movie;
+    job->movie = fl_sink_open(plan->movie_format, &params, error);
+    return job->movie && recall_frames(job, error);
 }
 
 static bool open_report(Job *job, GError **error)
@@ -284,8 +315,8 @@ static bool run(Job *job, GError **error)
     for (int f = job->resume.first; f < fl_film_frames(job->plan->film); f++)
         if (!render_frame(job, f, error))
             return false;
-    if (!fl_sink_finish(job->sink, error) || !fl_stats_finish(&job->stats, error) ||
-        !fl_report_finish(job->report, error))
+    if (!fl_sink_finish(job->sink, error) || (job->movie && !fl_sink_finish(job->movie, error)) ||
+        !fl_stats_finish(&job->stats, error) || !fl_report_finish(job->report, error))
         return false;
     fl_resume_finish(&job->resume);
     return true;
@@ -297,6 +328,7 @@ static void clear(Job *job)
         fl_guides_clear(&job->scratch[k]);
     g_free(job->scratch);
     fl_sink_free(job->sink);
+    fl_sink_free(job->movie);
     fl_stats_clear(&job->stats);
     fl_report_free(job->report);
     fl_resume_clear(&job->resume);
@@ -327,11 +359,14 @@ static bool rehearse(Job *job, GError **error)
 static char *what_was_done(const FlPlan *plan)
 {
     const int n = fl_film_frames(plan->film);
+    const char *movie = plan->movie ? plan->movie : "", *and = plan->movie ? " and " : "";
     if (!plan->options.dry_run)
-        return g_strdup_printf("painted %d frame%s: %s", n, n == 1 ? "" : "s", plan->output);
-    return g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s", n,
+        return g_strdup_printf("painted %d frame%s: %s%s%s", n, n == 1 ? "" : "s", movie, and,
+                               plan->output);
+    return g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n,
                            n == 1 ? "" : "s", fl_film_width(plan->film), fl_film_height(plan->film),
-                           plan->n_painters, plan->n_painters == 1 ? "" : "s", plan->output);
+                           plan->n_painters, plan->n_painters == 1 ? "" : "s", movie, and,
+                           plan->output);
 }
 
 /* The time of the pictures that are painted; held ones take none. */

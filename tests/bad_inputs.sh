@@ -119,7 +119,7 @@ table() {
 2|there is no limit “x”*there are: drawing, elements, *|good --limit x=1
 2|background 'blue': expected #rrggbb, none, *|good -b blue
 2|film.mp4: H.264 has no transparency; *|good -b clear.png -o film.mp4
-2|film.mov: a film cannot be resumed; expected frames, *|good --resume -o film.mov
+2|film.mov: a film cannot be resumed without its frames; *|good --resume --no-frames -o film.mov
 2|x.bmp: *|good -o x.bmp
 2|x_%s.png: "%s.p" is not understood; expected one %04d *|good -o x_%s.png
 2|x_%d_%d.png: *|good -o x_%d_%d.png

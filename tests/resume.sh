@@ -133,8 +133,23 @@ stop stopped2 INT 2
 paint stopped2 -y --resume --seed 2 && ! grep -q 'going on' err && ! same stopped2 whole
 result $? '-y --resume starts anew where it cannot'
 
-"$program" film -s "$style" -o film.gif --resume >out 2>err
-[ $? = 2 ] && says 'film.gif: a film cannot be resumed; expected frames, such as'
-result $? 'a film that should be resumed is refused'
+"$program" film -s "$style" -o film.gif --no-frames --resume >out 2>err
+[ $? = 2 ] && says 'film.gif: a film cannot be resumed without its frames; expected no --no-frames'
+result $? 'a film without frames that should be resumed is refused'
+
+"$program" film -s "$style" -o played/w.mkv -q >out 2>err
+[ $? = 0 ] && [ -s played/w.mkv ] && mv played/w.mkv played.mkv && same played whole
+result $? 'a film keeps its frames beside it'
+"$program" film -s "$style" -o on/w.mkv --progress none >out 2>err &
+job=$!
+wait_for on/w_0003.png
+kill -TERM $job 2>/dev/null
+wait $job 2>/dev/null
+[ $? = 75 ] && [ ! -e on/w.mkv ] && "$program" film -s "$style" -o on/w.mkv >out 2>err &&
+    grep -q 'going on' err && cmp -s on/w.mkv played.mkv && rm on/w.mkv && same on whole
+result $? 'an interrupted film goes on and has the same bytes'
+"$program" film -s "$style" -o alone/w.mkv --no-frames -q >out 2>err
+[ $? = 0 ] && [ "$(ls -A alone)" = w.mkv ] && cmp -s alone/w.mkv played.mkv
+result $? 'without frames the film is the same and alone'
 
 echo "1..$n"

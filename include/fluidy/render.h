@@ -112,6 +112,7 @@ typedef struct FlRenderOptions {
     const char *output; /**< pattern; NULL: the config's, else "fluidy/NAME_%04d.png", NAME from the
                            input */
     const char *format; /**< "png", "png16", "exr", "mov", …; NULL: as the output's name ends */
+    bool no_frames;     /**< of an output that is a film to play, not its frames as PNG beside it */
     const char *layers; /**< pattern with {region}: one RGBA file per region too; NULL: none */
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
     int width, height;      /**< px; 0: from the other, by the drawing's aspect; both 0: scale */

@@ -223,6 +223,8 @@ static gboolean read_flag(const char *name, const char *value, gpointer data, GE
         args->render.verbose = true;
     if (strcmp(name, "--dry-run") == 0)
         args->render.dry_run = true;
+    if (strcmp(name, "--no-frames") == 0)
+        args->render.no_frames = true;
     if (strcmp(name, "--loop") == 0)
         args->render.loop = true;
     if (strcmp(name, "--register") == 0)
@@ -311,6 +313,7 @@ static const GOptionEntry paint[] = {
 
 static const GOptionEntry output[] = {
     {"format", 0, VALUE(read_format), "as png16, exr, ora, mov; of that list: config", "WORD"},
+    {"no-frames", 0, FLAG(read_flag), "write a film without keeping its frames", NULL},
     {"layers", 0, VALUE(read_path), "also one file per {region} and frame", "PATTERN"},
     {"height", 'H', VALUE(read_number), "height of the output, aspect kept", "PX"},
     {"scale", 0, VALUE(read_number), "output pixels per drawing pixel (1)", "FACTOR"},

@@ -41,6 +41,7 @@ typedef struct FlSinkFormat {
     const char *suffix; // the file name's end that means this format, ".png"; or NULL
     const char *help;   // one line
     bool film;          // all frames go into one file
+    bool moving;        // a film to play, beside which its frames are kept unless asked otherwise
     bool takes_16;      // wants rgba16
     bool takes_layers;  // wants layers
     bool (*open)(FlSink *sink, GError **error); // NULL: nothing to do

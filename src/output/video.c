@@ -167,6 +167,7 @@ static void video_clear(FlSink *sink)
         .suffix = end,                                                                             \
         .help = text,                                                                              \
         .film = true,                                                                              \
+        .moving = true,                                                                            \
         .open = video_open,                                                                        \
         .frame = video_frame,                                                                      \
         .finish = video_finish,                                                                    \

@@ -133,6 +133,27 @@ static char *default_output(const FlPlan *plan)
     return g_strdup_printf("fluidy/{name}%s%s", plan->format->film ? "" : "_%04d", suffix);
 }
 
+/* A film's frames lie beside it: walk_0001.png, … of walk.mov. */
+static char *frames_of_movie(const FlPlan *plan)
+{
+    const char *suffix = plan->movie_format->suffix;
+    const bool named = g_str_has_suffix(plan->movie, suffix);
+    g_autoptr(GString) stem =
+        g_string_new_len(plan->movie, (gssize)(strlen(plan->movie) - (named ? strlen(suffix) : 0)));
+    g_string_replace(stem, "%", "%%", 0);
+    return g_strdup_printf("%s_%%04d.png", stem->str);
+}
+
+static bool keep_frames(FlPlan *plan, GError **error)
+{
+    if (!plan->format->moving || plan->options.no_frames)
+        return true;
+    plan->movie = g_steal_pointer(&plan->output), plan->movie_format = plan->format;
+    plan->output = frames_of_movie(plan);
+    plan->format = fl_sink_format("png", NULL, error);
+    return plan->format != NULL;
+}
+
 static bool name_output(FlPlan *plan, GError **error)
 {
     const char *format = plan->options.format, *said = plan->options.output;
@@ -148,7 +169,7 @@ static bool name_output(FlPlan *plan, GError **error)
                     plan->output, fl_film_frames(plan->film));
         return false;
     }
-    return true;
+    return keep_frames(plan, error);
 }
 
 /* One name for every region would let the last layer win. */
@@ -203,6 +224,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->painters);
     g_free(plan->painter_of);
     g_free(plan->output);
+    g_free(plan->movie);
     fl_exemplars_free(plan->exemplars);
     fl_masks_free(plan->masks);
     fl_film_free(plan->film);

@@ -18,6 +18,8 @@ typedef struct FlPlan {
     int hold;        // the drawing itself is shown on every hold-th frame
     char *output;    // pattern or file
     const FlSinkFormat *format;
+    char *movie; // the film that the frames are put together to; NULL: none
+    const FlSinkFormat *movie_format;
     uint8_t paper[3];
 } FlPlan;
 

@@ -49,12 +49,12 @@ static bool find_state(FlResume *resume, const FlPlan *plan, FlFingerprint *prin
     return false;
 }
 
-static bool is_free(const FlPlan *plan, const char *file, GError **error)
+static bool is_free(const char *file, bool film, GError **error)
 {
     if (!g_file_test(file, G_FILE_TEST_EXISTS))
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s: exists already; -y overwrites%s", file,
-                plan->format->film ? "" : ", --no-clobber keeps what is there");
+                film ? "" : ", --no-clobber keeps what is there");
     return false;
 }
 
@@ -64,7 +64,7 @@ static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
     for (int p = 0; plan->options.layers && p < plan->n_painters; p++) {
         const char *region = plan->painters[p].name;
         g_autofree char *file = fl_output_name(plan->options.layers, number, region, error);
-        if (!file || !is_free(plan, file, error))
+        if (!file || !is_free(file, false, error))
             return false;
     }
     return true;
@@ -84,12 +84,13 @@ static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, G
         return false;
     }
     return resume->keep_files || fl_resume_replaces(resume, frame) ||
-           ((!file || is_free(plan, file, error)) && layers_are_free(plan, frame, error));
+           ((!file || is_free(file, false, error)) && layers_are_free(plan, frame, error));
 }
 
 static bool check_files(const FlResume *resume, const FlPlan *plan, GError **error)
 {
-    if (!resume->path && !may_overwrite(plan) && !is_free(plan, plan->output, error))
+    const char *film = resume->path ? plan->movie : plan->output;
+    if (film && !may_overwrite(plan) && !is_free(film, true, error))
         return false;
     for (int f = 0; f < fl_film_frames(plan->film); f++)
         if (!check_frame(resume, plan, f, error))
@@ -108,13 +109,13 @@ static void tell_start(const FlResume *resume, const FlPlan *plan)
     o->note(line, o->data);
 }
 
-/* A film is one file: it is written anew or not at all. */
+/* A film without its frames is one file: it is written anew or not at all. */
 static bool check_film(const FlPlan *plan, GError **error)
 {
     if (plan->options.resume) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: a film cannot be resumed; expected frames, such as -o %s_%%04d.png",
-                    plan->output, fl_film_name(plan->film));
+                    "%s: a film cannot be resumed without its frames; expected no --no-frames",
+                    plan->output);
         return false;
     }
     return true;
@@ -206,7 +207,7 @@ bool fl_resume_keeps(const FlResume *resume, const char *file)
 
 const char *fl_resume_advice(const FlResume *resume)
 {
-    return resume->path ? "run again to go on" : "a film starts anew; frames could go on";
+    return resume->path ? "run again to go on" : "a film without its frames starts anew";
 }
 
 void fl_resume_finish(FlResume *resume)

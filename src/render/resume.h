@@ -6,7 +6,7 @@
 #include "render/state.h"
 
 typedef struct FlResume {
-    char *path;      // of the state; NULL: a film, which cannot go on
+    char *path;      // of the state; NULL: a film without its frames, which cannot go on
     FlState *state;  // as last written
     bool written;    // it is in the file
     bool found;      // an earlier run left it
