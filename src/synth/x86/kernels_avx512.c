@@ -47,9 +47,15 @@ static inline __m512i last_term(__m128i texel, const FlPacked *target, __m512i r
     return _mm512_maskz_mov_epi32(0xf, terms);
 }
 
+/* Not _mm512_reduce_add_epi32(): gcc's ends in a sum of signed numbers, which may overflow. */
 static inline uint32_t sum_of(__m512i v)
 {
-    return (uint32_t)_mm512_reduce_add_epi32(v);
+    const __m256i half =
+        _mm256_add_epi32(_mm512_castsi512_si256(v), _mm512_extracti64x4_epi64(v, 1));
+    __m128i sum = _mm_add_epi32(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
+    sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, _MM_SHUFFLE(1, 0, 3, 2)));
+    sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, _MM_SHUFFLE(2, 3, 0, 1)));
+    return (uint32_t)_mm_cvtsi128_si32(sum);
 }
 
 /* Byte order of two pixels whose extents change places. */
