@@ -12,12 +12,14 @@ static inline void draw_disc(uint8_t *mask, int width, int height, float x, floa
 {
     for (int py = 0; py < height; py++)
         for (int px = 0; px < width; px++) {
+            const float dx = (float)px - x, dy = (float)py - y;
             int n = 0;
-            if ((px - x) * (px - x) + (py - y) * (py - y) > (radius + 1) * (radius + 1))
+            if (dx * dx + dy * dy > (radius + 1) * (radius + 1))
                 continue;
             for (int k = 0; k < SHAPE_SAMPLES * SHAPE_SAMPLES; k++) {
-                const float sx = px + (k % SHAPE_SAMPLES + 0.5f) / SHAPE_SAMPLES - 0.5f - x;
-                const float sy = py + (float)(k / SHAPE_SAMPLES + 0.5f) / SHAPE_SAMPLES - 0.5f - y;
+                const int column = k % SHAPE_SAMPLES, row = k / SHAPE_SAMPLES;
+                const float sx = dx + ((float)column + 0.5f) / SHAPE_SAMPLES - 0.5f;
+                const float sy = dy + ((float)row + 0.5f) / SHAPE_SAMPLES - 0.5f;
                 n += sx * sx + sy * sy < radius * radius;
             }
             const int coverage = (n * 255 + 128) / (SHAPE_SAMPLES * SHAPE_SAMPLES);

@@ -92,7 +92,8 @@ static void a_free_edge_stays_as_it_is_painted(void)
         for (int x = box.width / 2; x < box.width; x++)
             g_assert_cmpint(amounts[y * box.width + x], ==, painted[y * box.width + x]);
     close_paint(0.1, false, amounts);
-    g_assert_cmpmem(amounts, 2 * fl_box_pixels(box), painted, 2 * fl_box_pixels(box));
+    const int bytes = (int)(2 * fl_box_pixels(box));
+    g_assert_cmpmem(amounts, bytes, painted, bytes);
 }
 
 int main(int argc, char **argv)

@@ -23,8 +23,9 @@ static void an_antialiased_disc_is_measured_to_a_fraction_of_a_pixel(void)
         draw_disc(mask, W, H, discs[k][0], discs[k][1], discs[k][2]);
         measure(mask, distance);
         for (int p = 0; p < W * H; p++) {
-            const double error =
-                discs[k][2] - hypot(p % W - discs[k][0], p / W - discs[k][1]) - distance[p];
+            const double error = discs[k][2] -
+                                 hypot(p % W - (double)discs[k][0], p / W - (double)discs[k][1]) -
+                                 distance[p];
             sum += fabs(error);
             if (fabsf(distance[p]) < 32)
                 worst = fmax(worst, fabs(error));
@@ -67,12 +68,12 @@ static void a_slanted_edge_is_measured_to_a_fraction_of_a_pixel(void)
     static float distance[W * H];
     for (int angle = 0; angle < 90; angle += 7) {
         uint8_t mask[W * H] = {0};
-        const float nx = cosf(angle * (float)G_PI / 180), ny = sinf(angle * (float)G_PI / 180);
+        const double nx = cos(angle * G_PI / 180), ny = sin(angle * G_PI / 180);
         for (int p = 0; p < W * H; p++) {
             int n = 0;
             for (int k = 0; k < 256; k++)
-                n += nx * (p % W + (k % 16 - 7.5f) / 16 - 40) +
-                         ny * (p / W + ((float)(k / 16) - 7.5f) / 16 - 35) <
+                n += nx * (p % W + (k % 16 - 7.5) / 16 - 40) +
+                         ny * (p / W + (k / 16 - 7.5) / 16 - 35) <
                      0;
             mask[p] = (uint8_t)((n * 255 + 128) / 256);
         }

@@ -453,7 +453,7 @@ static void a_region_that_vanishes_and_returns_is_the_same(void)
         "<path id='path5' d='M60,10h20v20h-20z' fill='#aa0000'/>"};
     for (guint i = 0; i < G_N_ELEMENTS(frames); i++) {
         g_autofree char *name = g_strdup_printf("w_%u.svg", i + 1);
-        g_autofree char *path = scratch_svg(folder, name, frames[i]);
+        g_free(scratch_svg(folder, name, frames[i]));
     }
     const FlFilmOptions options = {0};
     g_autoptr(FlFilm) film = open_film(&options, folder, NULL);

@@ -38,14 +38,14 @@ static void harmonic_functions_are_found_again(void)
     uint8_t cell[W * H];
     make_cells(cell);
     for (int p = 0; p < W * H; p++) {
-        const float x = (p % W - 50) / 45.0f, y = (p / W - 50) / 45.0f;
+        const float x = (float)(p % W - 50) / 45.0f, y = (float)(p / W - 50) / 45.0f;
         const bool fixed = cell[p] == FL_CELL_FIXED;
         field[2 * p] = fixed ? x + 2 * y : 1e6f;
         field[2 * p + 1] = fixed ? x * x - y * y : -1e6f;
     }
     solve(cell, 4, field);
     for (int p = 0; p < W * H; p++) {
-        const float x = (p % W - 50) / 45.0f, y = (p / W - 50) / 45.0f;
+        const float x = (float)(p % W - 50) / 45.0f, y = (float)(p / W - 50) / 45.0f;
         g_assert_cmpfloat_with_epsilon(field[2 * p], cell[p] ? x + 2 * y : 0, 0.01);
         g_assert_cmpfloat_with_epsilon(field[2 * p + 1], cell[p] ? x * x - y * y : 0, 0.01);
     }

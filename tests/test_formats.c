@@ -374,8 +374,9 @@ static char *write_layered(const Scratch *scratch, const char *name)
 
 static float float_of(uint16_t half)
 {
-    const int exponent = half >> 10;
-    return exponent ? ldexpf(1024 + (half & 1023), exponent - 25) : ldexpf(half & 1023, -24);
+    const int exponent = half >> 10, fraction = half & 1023;
+    return exponent ? ldexpf((float)(1024 + fraction), exponent - 25)
+                    : ldexpf((float)fraction, -24);
 }
 
 static void an_exr_holds_linear_premultiplied_layers(void)

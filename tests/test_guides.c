@@ -44,7 +44,7 @@ static void get(const FlGuideSequence *sequence, int frame, FlGuides *guides)
 
 static void sliding_disc(int frame, uint8_t *mask)
 {
-    draw_disc(mask, W, H, 28.0f + 0.3f * frame, 24.0f, 14.0f);
+    draw_disc(mask, W, H, 28.0f + 0.3f * (float)frame, 24.0f, 14.0f);
 }
 
 static void a_sliding_disc_has_its_speed_at_both_ends(void)
@@ -55,8 +55,8 @@ static void a_sliding_disc_has_its_speed_at_both_ends(void)
         g_autoptr(FlGuideSequence) s = sequence_of(&draw, 8, smooth ? &smoothed : &unsmoothed);
         for (int frame = 0; frame < 8; frame++) {
             get(s, frame, &g);
-            const int left = (int)ceilf(28.0f + 0.3f * frame - 14.0f + 0.5f);
-            const int right = (int)floorf(28.0f + 0.3f * frame + 14.0f - 0.5f);
+            const int left = (int)ceilf(28.0f + 0.3f * (float)frame - 14.0f + 0.5f);
+            const int right = (int)floorf(28.0f + 0.3f * (float)frame + 14.0f - 0.5f);
             assert_near(g.flow[2 * (24 * W + left)], 0.3, 0.06);
             assert_near(g.flow[2 * (24 * W + right)], 0.3, 0.06);
             assert_near(g.flow[2 * (24 * W + 28) + 1], 0.0, 0.02);
@@ -66,7 +66,7 @@ static void a_sliding_disc_has_its_speed_at_both_ends(void)
 
 static void growing_disc(int frame, uint8_t *mask)
 {
-    draw_disc(mask, W, H, 32.0f, 24.0f, 8.0f + frame);
+    draw_disc(mask, W, H, 32.0f, 24.0f, 8.0f + (float)frame);
 }
 
 static void growth_points_outward(void)
@@ -92,7 +92,7 @@ static void growth_points_outward(void)
 
 static void shrinking_disc(int frame, uint8_t *mask)
 {
-    draw_disc(mask, W, H, 32.0f, 24.0f, 20.0f - 3.0f * frame);
+    draw_disc(mask, W, H, 32.0f, 24.0f, 20.0f - 3.0f * (float)frame);
 }
 
 static void shrinking_points_inward_and_no_faster_than_the_limit(void)
@@ -123,7 +123,7 @@ static void a_still_shape_is_directed_outward(void)
         for (int y = 0; y < H; y++)
             for (int x = 0; x < W; x++) {
                 const int p = y * W + x;
-                const float dx = x - 32.0f, dy = y - 24.0f;
+                const float dx = (float)x - 32.0f, dy = (float)y - 24.0f;
                 g_assert_cmpfloat(g.flow[2 * p], ==, 0.0f);
                 if (g.mask[p] < FL_INSIDE || hypotf(dx, dy) < 2.0f)
                     continue;
@@ -137,7 +137,7 @@ static void a_still_shape_is_directed_outward(void)
 static void halting_disc(int frame, uint8_t *mask)
 {
     if (frame < 12)
-        draw_disc(mask, W, H, 20.0f + MIN(frame, 4), 24.0f, 12.0f);
+        draw_disc(mask, W, H, 20.0f + (float)MIN(frame, 4), 24.0f, 12.0f);
 }
 
 static void frames_that_look_the_same_have_the_same_guides(void)
@@ -166,7 +166,7 @@ static void frames_that_look_the_same_have_the_same_guides(void)
 static void blinking_disc(int frame, uint8_t *mask)
 {
     if (frame % 4 != 3)
-        draw_disc(mask, W, H, 32.0f, 24.0f, 10.0f + frame % 4);
+        draw_disc(mask, W, H, 32.0f, 24.0f, 10.0f + (float)(frame % 4));
 }
 
 static void extents_start_again_where_a_shape_reappears(void)
@@ -222,7 +222,7 @@ static void a_thin_bar_moves_as_one(void)
 static void leaping_ball(int frame, uint8_t *mask)
 {
     draw_box(mask, W, 0, 40, W, 8);
-    draw_disc(mask, W, H, 10.0f + 6.0f * frame, 10.0f, 2.5f);
+    draw_disc(mask, W, H, 10.0f + 6.0f * (float)frame, 10.0f, 2.5f);
 }
 
 static void a_ball_may_leap_by_more_than_its_size(void)
@@ -254,7 +254,7 @@ static void smoothing_brings_out_the_speed_of_binary_masks(void)
         g_autoptr(FlGuideSequence) s = sequence_of(&draw, 24, k ? &by_distance : &by_flow);
         for (int frame = 8; frame < 16; frame++) {
             get(s, frame, &g);
-            const int middle = (int)(28.0f + 0.3f * frame); // where masks jump by 0 or 1 px
+            const int middle = (int)(28.0f + 0.3f * (float)frame); // where masks jump by 0 or 1 px
             assert_near(g.flow[2 * (24 * W + middle + 12)], 0.25, 0.1);
             assert_near(g.flow[2 * (24 * W + middle - 12)], 0.25, 0.1);
         }
@@ -339,7 +339,7 @@ static bool spin(void *data, int frame, float *flow, GError **error)
 {
     for (int p = 0; p < W * H; p++) {
         flow[2 * p] = 0.25f * (24.0f - (float)(p / W));
-        flow[2 * p + 1] = 0.25f * (p % W - 32.0f);
+        flow[2 * p + 1] = 0.25f * ((float)(p % W) - 32.0f);
     }
     return true;
 }
@@ -407,8 +407,8 @@ static void stored_integers_of_any_size_come_back(void)
 
 static void wobble(int frame, uint8_t *mask)
 {
-    draw_disc(mask, W, H, 20.0f + 1.7f * frame, 20.0f, 10.0f);
-    draw_disc(mask, W, H, 44.0f - 0.2f * frame, 30.0f, 12.0f + 0.4f * frame);
+    draw_disc(mask, W, H, 20.0f + 1.7f * (float)frame, 20.0f, 10.0f);
+    draw_disc(mask, W, H, 44.0f - 0.2f * (float)frame, 30.0f, 12.0f + 0.4f * (float)frame);
 }
 
 static void same_bytes_on_any_thread_count(void)

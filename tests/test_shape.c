@@ -38,7 +38,7 @@ static void the_blur_is_a_gaussian_of_a_third_of_the_border(void)
     double sum = 0, moment = 0;
     for (int p = 0; p < W * H; p++) {
         sum += shape[p];
-        moment += shape[p] * (p % W - 45) * (p % W - 45);
+        moment += (double)shape[p] * (p % W - 45) * (p % W - 45);
         g_assert_true(shape[p] == 0.0f || (abs(p % W - 45) <= 15 && abs(p / W - 35) <= 15));
     }
     g_assert_cmpfloat_with_epsilon(sum, 1.0, 1e-5);

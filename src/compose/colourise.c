@@ -31,7 +31,8 @@ static int32_t base_of(uint8_t paper)
 /** The density of a channel of the fill beyond that of the paper. */
 static int32_t step_of(uint8_t fill, uint8_t paper)
 {
-    return fl_density(MAX(fill, MIN(FLOOR, MAX(paper, 1)))) - base_of(paper);
+    const uint8_t floor = paper > FLOOR ? FLOOR : MAX(paper, 1);
+    return fl_density(MAX(fill, floor)) - base_of(paper);
 }
 
 /** The level of paper of density `base` with `amount` times a density `step` on it. */

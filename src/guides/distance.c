@@ -104,20 +104,22 @@ static Seed partial_seed(const Work *work, int x, int y)
     const float diagonal = 0.70710678f;
     float gx = 0.0f, gy = 0.0f;
     for (int s = -1; s <= 1; s += 2) {
-        gx += s * coverage_at(work, x + s, y);
-        gy += s * coverage_at(work, x, y + s);
+        const float sign = (float)s;
+        gx += sign * coverage_at(work, x + s, y);
+        gy += sign * coverage_at(work, x, y + s);
         for (int t = -1; t <= 1; t += 2) {
-            gx += 0.5f * diagonal * s * coverage_at(work, x + s, y + t);
-            gy += 0.5f * diagonal * s * coverage_at(work, x + t, y + s);
+            gx += 0.5f * diagonal * sign * coverage_at(work, x + s, y + t);
+            gy += 0.5f * diagonal * sign * coverage_at(work, x + t, y + s);
         }
     }
-    const float norm = sqrtf(gx * gx + gy * gy);
+    const float norm = sqrtf(gx * gx + gy * gy), cx = (float)x, cy = (float)y;
     if (norm < 0.02f) // a dot, or a line thinner than a pixel
-        return (Seed){x, y, .half = 0.5f * coverage_at(work, x, y)};
+        return (Seed){cx, cy, .half = 0.5f * coverage_at(work, x, y)};
     gx /= norm, gy /= norm;
     const float depth =
         soften_depth(work, x, y, gx, gy, depth_of_coverage(coverage_at(work, x, y), gx, gy));
-    return (Seed){x - depth * gx, y - depth * gy, gx, gy, 0.5f / fmaxf(fabsf(gx), fabsf(gy))};
+    return (Seed){cx - depth * gx, cy - depth * gy, gx, gy,
+                  .half = 0.5f / fmaxf(fabsf(gx), fabsf(gy))};
 }
 
 /** A full or empty pixel beside an empty or full one: the contour is the border between them. */
@@ -136,8 +138,9 @@ static bool border_seed(const Work *work, int x, int y, Seed *seed)
         return false;
     if (sx != 0)
         sy = 0; // a corner: the pixels beside it have its other border
-    const float inward = own ? -1.0f : 1.0f;
-    *seed = (Seed){x + 0.5f * sx, y + 0.5f * sy, inward * sx, inward * sy, .half = 0.5f};
+    const float inward = own ? -1.0f : 1.0f, dx = (float)sx, dy = (float)sy;
+    *seed =
+        (Seed){(float)x + 0.5f * dx, (float)y + 0.5f * dy, inward * dx, inward * dy, .half = 0.5f};
     return true;
 }
 
@@ -253,7 +256,7 @@ static void link_seed(const Work *work, Seed *seed)
 
 static float squared_distance(const Seed *seed, int x, int y)
 {
-    const float qx = x - seed->x, qy = y - seed->y;
+    const float qx = (float)x - seed->x, qy = (float)y - seed->y;
     if (seed->nx == 0.0f && seed->ny == 0.0f) {
         const float d = sqrtf(qx * qx + qy * qy) - seed->half;
         return d * d;
@@ -316,7 +319,7 @@ bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GE
     g_autofree uint8_t *mixed = g_malloc(width);
     find_seeds(&work, mixed);
     if (work.seeds->len == 0) {
-        const float far = mask[0] >= FL_INSIDE ? width + height : -(width + height);
+        const float far = (float)(mask[0] >= FL_INSIDE ? width + height : -(width + height));
         for (size_t p = 0; p < (size_t)width * height; p++)
             distance[p] = far;
         return true;

@@ -95,8 +95,8 @@ void fl_distance_gradient(const float *distance, int width, int height, int x, i
     float gx = 0.0f, gy = 0.0f, span_x = 0.0f, span_y = 0.0f; // spans shrink at the frame's edges
     for (int j = 0; j < 5; j++) {
         const int py = CLAMP(y + j - 2, 0, height - 1);
-        span_y += slope[j] * py;
-        span_x += slope[j] * CLAMP(x + j - 2, 0, width - 1);
+        span_y += slope[j] * (float)py;
+        span_x += slope[j] * (float)CLAMP(x + j - 2, 0, width - 1);
         for (int i = 0; i < 5; i++) {
             const float d = distance[py * (size_t)width + CLAMP(x + i - 2, 0, width - 1)];
             gx += slope[i] * smooth[j] * d;

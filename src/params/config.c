@@ -392,9 +392,9 @@ void fl_config_free(FlConfig *config)
 /* The option, else what [project] says, else the default. */
 #define COMPLETE(field, fallback)                                                                  \
     do {                                                                                           \
-        if (!options->field)                                                                       \
+        if (options->field == 0)                                                                   \
             options->field = config->project.field;                                                \
-        if (!options->field)                                                                       \
+        if (options->field == 0)                                                                   \
             options->field = fallback;                                                             \
     } while (0)
 

@@ -67,7 +67,8 @@ int *fl_nesting(const FlScan *scan, int *const *track_of, const int *label_of, i
             best = count[k][l] > count[k][best] ? l : best;
         }
         const int frames = nested + count[k][0];
-        if (nested >= ALWAYS * frames && frames >= MOSTLY * scan->n_frames)
+        if ((float)nested >= ALWAYS * (float)frames &&
+            (float)frames >= MOSTLY * (float)scan->n_frames)
             depth[k] = best; // the most frequent
     }
     g_free(count);

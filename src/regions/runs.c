@@ -179,7 +179,7 @@ static inline void straighten(uint32_t pixel, uint8_t alpha, uint8_t out[4])
 {
     const uint32_t a = pixel >> 24;
     for (int c = 0; c < 3; c++)
-        out[c] = a ? (uint8_t)MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0;
+        out[c] = (uint8_t)(a ? MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0);
     out[3] = alpha;
 }
 
@@ -228,7 +228,7 @@ static void mean_colour(const uint8_t *picture, size_t n, uint8_t rgb[3])
         weight += picture[4 * p + 3];
     }
     for (int c = 0; c < 3; c++)
-        rgb[c] = weight ? (uint8_t)((sum[c] + weight / 2) / weight) : 0;
+        rgb[c] = (uint8_t)(weight ? (sum[c] + weight / 2) / weight : 0);
 }
 
 static bool draw_run(Stage *stage, const Run *run, FlRun *out, GError **error)

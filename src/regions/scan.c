@@ -81,7 +81,7 @@ static float sum_of(cairo_surface_t *coverage, FlBox box)
     for (int y = box.y0; y < box.y1; y++)
         for (int x = box.x0; x < box.x1; x++)
             sum += data[(size_t)y * stride + x];
-    return sum / 255.0f;
+    return (float)sum / 255.0f;
 }
 
 /**
@@ -303,7 +303,7 @@ static bool stack(Frame *f, GError **error)
                 if (!fills_page)
                     under[p] = fl_over(mine[p], under[p]);
             }
-        look->seen.covers = sum ? (float)covered / (255.0f * sum) : 0;
+        look->seen.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
         if (!fl_self_check_add(f->check, f->svg, look->leaf, &look->seen, f->coverage, box,
                                f->width, f->height, error))
             return false;

@@ -41,7 +41,7 @@ static float likeness(const FlSeen *a, const FlSeen *b)
         return -1;
     if (!same_paint && !same_tree && (difference > SUBTLE || shared < OVERLAP))
         return -1;
-    return 2 * same_paint + same_tree + same_name + 2 * shared +
+    return (float)(2 * same_paint + same_tree + same_name) + 2 * shared +
            (1 - MIN(difference, GRADUAL) / GRADUAL);
 }
 

@@ -52,9 +52,9 @@ void fl_visit_plan_init(FlVisitPlan *plan, const FlSearch *search)
         .step = {1, (uint32_t)level->pitch, (uint32_t)level->frame_pixels}};
     for (float share = 1; share * side >= 1 && w->n < FL_MAX_TRIES;
          share *= params->patchmatch_alpha, w->n++) {
-        w->reach[0][w->n] = (uint16_t)(share * level->width);
-        w->reach[1][w->n] = (uint16_t)(share * level->height);
-        w->reach[2][w->n] = (uint16_t)(share * level->n_frames + 1);
+        w->reach[0][w->n] = (uint16_t)(share * (float)level->width);
+        w->reach[1][w->n] = (uint16_t)(share * (float)level->height);
+        w->reach[2][w->n] = (uint16_t)(share * (float)level->n_frames + 1);
     }
     for (int n = 0; n <= 4; n++)
         for (int apart = 0; apart <= n; apart++)

@@ -54,7 +54,8 @@ FlBrush *fl_brush_new(const FlRecipe *recipe, GError **error)
         for (int j = 0; j < height; j++)
             for (int i = 0; i < width; i++)
                 touch[(size_t)j * width + i] =
-                    fl_brush_touch(&recipe->events[e], key, (i + 0.5f) / scale, (j + 0.5f) / scale);
+                    fl_brush_touch(&recipe->events[e], key, ((float)i + 0.5f) / (float)scale,
+                                   ((float)j + 0.5f) / (float)scale);
     }
     return g_steal_pointer(&brush);
 }

@@ -71,7 +71,8 @@ static Grain place_grain(const FlRecipe *recipe, const FlSheet *sheet, uint64_t 
     FlRng rng = {fl_key(fl_key(recipe->seed, KEY_PLACE), index)};
     Grain grain = {0};
     for (int tries = 0; tries < 1000; tries++) {
-        grain.x = fl_rng_float(&rng) * sheet->width, grain.y = fl_rng_float(&rng) * sheet->height;
+        grain.x = fl_rng_float(&rng) * (float)sheet->width;
+        grain.y = fl_rng_float(&rng) * (float)sheet->height;
         float load = 1;
         grain.start = depth_at(recipe, grain.x, grain.y, &load);
         if (grain.start < -1.5f)

@@ -30,9 +30,10 @@ void fl_evaporate(FlSheet *sheet, const FlFlow *flow)
         for (int i = 0; i < sheet->width; i++) {
             const size_t at = (size_t)j * sheet->width + i;
             const float s = sheet->s[at];
-            left[at] = s < FL_DRY ? s
-                                  : fmaxf(0, s - flow->evaporation -
-                                                 flow->rim_evaporation * dry_sides(sheet, i, j));
+            left[at] = s < FL_DRY
+                           ? s
+                           : fmaxf(0, s - flow->evaporation -
+                                          flow->rim_evaporation * (float)dry_sides(sheet, i, j));
         }
     const size_t cells = (size_t)sheet->width * sheet->height;
 #pragma omp parallel for schedule(static)

@@ -82,7 +82,8 @@ static void distance_line(float *line, int n, ptrdiff_t stride, float *copy, int
     at[0] = 0, from[0] = -FAR, from[1] = FAR;
     for (int q = 1; q < n; q++) {
         float cross;
-        while ((cross = (copy[q] + (float)q * q - copy[at[top]] - (float)at[top] * at[top]) /
+        while ((cross = (copy[q] + (float)q * (float)q - copy[at[top]] -
+                         (float)at[top] * (float)at[top]) /
                         (float)(2 * (q - at[top]))) <= from[top])
             top--;
         at[++top] = q;

@@ -28,7 +28,7 @@ static float bump(uint64_t seed, const FlPaper *paper, float x, float y)
 static void draw_fibre(float *grid, int width, int height, FlRng *rng, const FlPaper *paper,
                        float scale)
 {
-    float x = fl_rng_float(rng) * width, y = fl_rng_float(rng) * height;
+    float x = fl_rng_float(rng) * (float)width, y = fl_rng_float(rng) * (float)height;
     float dx = fl_rng_float(rng) - 0.5f, dy = fl_rng_float(rng) - 0.5f;
     const float length = paper->fibre_px * scale, curl = paper->fibre_curl;
     float turn = (fl_rng_float(rng) - 0.5f) * 0.05f * curl;
@@ -47,7 +47,7 @@ static void draw_fibre(float *grid, int width, int height, FlRng *rng, const FlP
             for (int k = (int)x - reach; k <= (int)x + reach; k++) {
                 if (j < 0 || k < 0 || j >= height || k >= width)
                     continue;
-                const float ex = k - x, ey = j - y;
+                const float ex = (float)k - x, ey = (float)j - y;
                 const float near = strength * (1 - (ex * ex + ey * ey) / (radius * radius + 1));
                 float *cell = &grid[(size_t)j * width + k];
                 *cell = near > *cell ? near : *cell;
@@ -57,8 +57,8 @@ static void draw_fibre(float *grid, int width, int height, FlRng *rng, const FlP
 
 static void draw_fibres(FlSheet *sheet, const FlRecipe *recipe, float *grid)
 {
-    const float scale = recipe->oversample;
-    const int n = (int)(recipe->paper.fibres * recipe->width * recipe->height / 100);
+    const float scale = (float)recipe->oversample;
+    const int n = (int)(recipe->paper.fibres * (float)recipe->width * (float)recipe->height / 100);
     for (int i = 0; i < n; i++) {
         FlRng rng = {fl_key(fl_key(recipe->seed, KEY_FIBRES), (uint64_t)i)};
         draw_fibre(grid, sheet->width, sheet->height, &rng, &recipe->paper, scale);
@@ -85,12 +85,12 @@ static float openness(const FlRecipe *recipe, float x, float y, float fibre)
 static void make_cells(FlSheet *sheet, const FlRecipe *recipe, const float *fibres, float *open)
 {
     const FlPaper *paper = &recipe->paper;
-    const float px = 1.0f / recipe->oversample;
+    const float px = 1.0f / (float)recipe->oversample;
 #pragma omp parallel for schedule(static)
     for (int j = 0; j < sheet->height; j++)
         for (int i = 0; i < sheet->width; i++) {
             const size_t at = (size_t)j * sheet->width + i;
-            const float x = i * px, y = j * px;
+            const float x = (float)i * px, y = (float)j * px;
             const float h =
                 clamp(bump(recipe->seed, paper, x, y) + 0.2f * fibres[at], 0.02f, 0.98f);
             const float pin =

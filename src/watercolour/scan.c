@@ -32,7 +32,7 @@ static double light(const FlSheet *sheet, const FlRecipe *recipe, int i, int j)
     const float *h = &sheet->relief[(size_t)j * sheet->width + i];
     const float along = i < sheet->width - 1 ? h[1] - h[0] : 0;
     const float down = j < sheet->height - 1 ? h[sheet->width] - h[0] : 0;
-    return 1 + recipe->paper.shading * recipe->oversample * (double)(along + down);
+    return 1 + recipe->paper.shading * (float)recipe->oversample * (double)(along + down);
 }
 
 /* All pigments of a cell are one layer; K and S are means weighted by thickness [C97 §5.2]. */
@@ -77,10 +77,10 @@ static void draw_mask(FlScan *scan, const float *distance, int scale)
                 for (int i = 0; i < scale; i++) {
                     const size_t at =
                         (size_t)(y * scale + j) * (scan->width * scale) + x * scale + i;
-                    sum += fmaxf(0, fminf(1, distance[at] / scale + 0.5f));
+                    sum += fmaxf(0, fminf(1, distance[at] / (float)scale + 0.5f));
                 }
             uint8_t *mask = &scan->mask[(size_t)y * scan->width + x];
-            const uint8_t coverage = (uint8_t)(255 * sum / (scale * scale) + 0.5f);
+            const uint8_t coverage = (uint8_t)(255 * sum / (float)(scale * scale) + 0.5f);
             *mask = coverage > *mask ? coverage : *mask;
         }
 }
@@ -96,8 +96,8 @@ static bool find_mask(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe
         for (size_t i = 0; i < cells; i++)
             thickness[i] += recipe->flow.thickness * (sheet->floating[k][i] + sheet->settled[k][i]);
     const int scale = recipe->oversample, area = scale * scale;
-    const FlExtract how = {recipe->mask_threshold, (int)(recipe->mask_blur * scale + 0.5f),
-                           60 * area, 60 * area, recipe->mask_margin * scale};
+    const FlExtract how = {recipe->mask_threshold, (int)(recipe->mask_blur * (float)scale + 0.5f),
+                           60 * area, 60 * area, recipe->mask_margin * (float)scale};
     if (!fl_extract_mask(thickness, sheet->width, sheet->height, &how, distance, error))
         return false;
     draw_mask(scan, distance, scale);
