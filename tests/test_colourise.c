@@ -264,6 +264,16 @@ static void paint_of_the_papers_colour_is_an_error(void)
     g_assert_error(error, FL_ERROR, FL_ERROR_STYLE);
 }
 
+static void paint_beyond_the_paper_is_counted(void)
+{
+    const uint8_t rgb[12] = {90, 80, 70, 90, 80, 70, 90, 80, 70, 250, 240, 200};
+    const uint8_t mask[4] = {255, 255, 255, 255}, paper[3] = {200, 190, 180};
+    g_autoptr(FlInk) mixed = fl_ink_new(paper, rgb, mask, 4, NULL);
+    g_autoptr(FlInk) dark = fl_ink_new(paper, rgb, mask, 3, NULL);
+    g_assert_cmpint(mixed->beyond, ==, 25);
+    g_assert_cmpint(dark->beyond, ==, 0);
+}
+
 /** How far a value is from the middle between two integers. */
 static double from_tie(double value)
 {
@@ -310,6 +320,8 @@ int main(int argc, char **argv)
                     the_exemplars_own_colours_are_kept_on_its_own_paper);
     g_test_add_func("/colourise/paint-of-the-papers-colour-is-an-error",
                     paint_of_the_papers_colour_is_an_error);
+    g_test_add_func("/colourise/paint-beyond-the-paper-is-counted",
+                    paint_beyond_the_paper_is_counted);
     g_test_add_func("/colourise/no-table-entry-is-near-a-tie", no_table_entry_is_near_a_tie);
     g_test_add_func("/colourise/linear-light-goes-there-and-back",
                     linear_light_goes_there_and_back);

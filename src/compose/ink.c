@@ -76,6 +76,18 @@ static void count_amounts(const FlInk *ink, const uint8_t *rgb, const uint8_t *m
             h->count[fl_ink_amount(ink, rgb + 3 * i)]++, h->total++;
 }
 
+/** Percent of the pixels whose amount would be below minus a tenth of the median. */
+static int percent_beyond(const FlInk *ink, const uint8_t *rgb, const uint8_t *mask, size_t n)
+{
+    size_t beyond = 0, total = 0;
+    for (size_t i = 0; i < n; i++)
+        if (mask[i] >= INSIDE) {
+            beyond += fl_ink_signed_amount(ink, rgb + 3 * i) < -FL_AMOUNT_ONE / 10;
+            total++;
+        }
+    return total ? (int)(100 * beyond / total) : 0;
+}
+
 static int32_t shoulder_for(int peak)
 {
     const int excess = peak - FL_AMOUNT_ONE, wanted = PEAK - FL_AMOUNT_ONE;
@@ -116,6 +128,7 @@ FlInk *fl_ink_new(const uint8_t paper[3], const uint8_t *rgb, const uint8_t *mas
     const int one = FL_AMOUNT_ONE * FL_AMOUNT_ONE / percentile(h, 50);
     set_parts(ink, median, CLAMP(one, FL_AMOUNT_ONE / 4, FL_AMOUNT_ONE * 4) * 256);
     count_amounts(ink, rgb, mask, n_pixels, h);
+    ink->beyond = percent_beyond(ink, rgb, mask, n_pixels);
     ink->shoulder = shoulder_for(percentile(h, PEAK_PERCENT));
     set_toe(ink, percentile(h, RIM_PERCENT));
     return g_steal_pointer(&ink);

@@ -31,6 +31,8 @@ typedef struct FlInk {
     int32_t toe_end;      // 0 … toe
     int32_t toe_share;    // of the bend that is taken, 0 … FL_AMOUNT_ONE
     int32_t shoulder;     // amounts above one end at one plus this; 0: no end
+    int beyond;           // percent of the pixels on the paper's other side, which count as bare:
+                          // lighter than the paper where the median is darker, or darker
 } FlInk;
 
 /**
@@ -47,10 +49,16 @@ FlInk *fl_ink_of_style(const FlStyle *style, GError **error);
 
 void fl_ink_free(FlInk *ink); // NULL is fine
 
-/** The amount of paint that a colour stands for, 0 … FL_AMOUNTS - 1. */
+/** The amount of paint that a colour stands for, negative beyond the paper. */
+static inline int fl_ink_signed_amount(const FlInk *ink, const uint8_t *rgb)
+{
+    return (ink->part[0][rgb[0]] + ink->part[1][rgb[1]] + ink->part[2][rgb[2]]) >> 8;
+}
+
+/** The same, 0 … FL_AMOUNTS - 1. */
 static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
 {
-    const int amount = (ink->part[0][rgb[0]] + ink->part[1][rgb[1]] + ink->part[2][rgb[2]]) >> 8;
+    const int amount = fl_ink_signed_amount(ink, rgb);
     return amount < 0 ? 0 : amount < FL_AMOUNTS ? amount : FL_AMOUNTS - 1;
 }
 

@@ -19,16 +19,17 @@ static bool open_film(FlPlan *plan, GError **error)
     return plan->film != NULL;
 }
 
-static void note(const FlPlan *plan, const char *format, ...) G_GNUC_PRINTF(2, 3);
-static void note(const FlPlan *plan, const char *format, ...)
+/* Says a line through one of the options' callbacks. */
+G_GNUC_PRINTF(3, 4)
+static void say(const FlPlan *plan, void (*to)(const char *, void *), const char *format, ...)
 {
-    if (!plan->options.note)
+    if (!to)
         return;
     va_list arguments;
     va_start(arguments, format);
     g_autofree char *line = g_strdup_vprintf(format, arguments);
     va_end(arguments);
-    plan->options.note(line, plan->options.data);
+    to(line, plan->options.data);
 }
 
 static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
@@ -61,17 +62,22 @@ static bool check_region_names(const FlPlan *plan, GError **error)
     return true;
 }
 
-/* Said once for each style, by the first region that is painted with it. */
-static void warn_of_stillness(const FlPlan *plan, const FlPainter *painter)
+/* Of a style, said by the first region that is painted with it. */
+static void warn_of_style(const FlPlan *plan, const FlPainter *painter)
 {
-    if (!painter->box || painter->box->exemplar->level[0].n_frames > 1 || !plan->options.warning)
-        return;
+    enum { MUCH_BEYOND = 10 }; // percent
+    const FlPaintbox *box = painter->box;
     for (const FlPainter *p = plan->painters; p < painter; p++)
-        if (p->box == painter->box)
+        if (p->box == box)
             return;
-    g_autofree char *line =
-        g_strdup_printf("%s: one frame is used: its paint does not flow", painter->box->path);
-    plan->options.warning(line, plan->options.data);
+    if (box->exemplar->level[0].n_frames == 1)
+        say(plan, plan->options.warning, "%s: one frame is used: its paint does not flow",
+            box->path);
+    if (box->ink->beyond >= MUCH_BEYOND && painter->treatment.tint == FL_TINT_FILL)
+        say(plan, plan->options.warning,
+            "%s: most of the paint is darker than the paper, but %d %% is lighter, or the other "
+            "way round, and will be bare; --tint keep keeps the recording's colours",
+            box->path, box->ink->beyond);
 }
 
 static bool add_painter(FlPlan *plan, int region, GError **error)
@@ -100,10 +106,12 @@ static bool add_painter(FlPlan *plan, int region, GError **error)
     painter->flow_pattern = g_strdup(plan->options.flow);
     painter->loops = plan->options.loop;
     painter->box = fl_exemplars_get(plan->exemplars, &painter->treatment, error);
-    warn_of_stillness(plan, painter);
-    if (painter->box && plan->options.verbose)
-        note(plan, "region %s: style %s", r->name, painter->box->path);
-    return painter->box != NULL;
+    if (!painter->box)
+        return false;
+    warn_of_style(plan, painter);
+    if (plan->options.verbose)
+        say(plan, plan->options.note, "region %s: style %s", r->name, painter->box->path);
+    return true;
 }
 
 static bool add_painters(FlPlan *plan, GError **error)
