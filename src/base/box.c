@@ -1,6 +1,16 @@
 #include "base/box.h"
 
 #include <glib.h>
+#include <stdbool.h>
+
+/* Most rows of most planes are blank, which is seen without looking for where they begin. */
+static bool is_blank(const uint8_t *row, int width)
+{
+    uint8_t any = 0;
+    for (int x = 0; x < width; x++)
+        any |= row[x];
+    return any == 0;
+}
 
 FlBox fl_box_of(const uint8_t *plane, int width, int height)
 {
@@ -8,10 +18,10 @@ FlBox fl_box_of(const uint8_t *plane, int width, int height)
     for (int y = 0; y < height; y++) {
         const uint8_t *row = plane + (size_t)y * width;
         int first = 0, last = width - 1;
-        while (first < width && !row[first])
-            first++;
-        if (first == width)
+        if (is_blank(row, width))
             continue;
+        while (!row[first])
+            first++;
         while (!row[last])
             last--;
         left = MIN(left, first), right = MAX(right, last);

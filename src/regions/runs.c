@@ -286,10 +286,19 @@ bool fl_film_mask(const FlFilm *film, int frame, int region, uint8_t *coverage, 
 void fl_runs_mask(const FlRuns *runs, int region, int width, int height, uint8_t *coverage)
 {
     const size_t n = (size_t)width * height;
-    memset(coverage, 0, n);
-    for (int r = 0; r < runs->n; r++)
-        for (size_t p = 0; runs->run[r].region == region && p < n; p++)
-            coverage[p] = fl_over(runs->run[r].coverage[p], coverage[p]);
+    bool bare = true;
+    for (int r = 0; r < runs->n; r++) {
+        const uint8_t *run = runs->run[r].coverage;
+        if (runs->run[r].region != region)
+            continue;
+        for (size_t p = 0; !bare && p < n; p++)
+            coverage[p] = fl_over(run[p], coverage[p]);
+        if (bare)
+            memcpy(coverage, run, n);
+        bare = false;
+    }
+    if (bare)
+        memset(coverage, 0, n);
 }
 
 void fl_run_clear(FlRun *run)

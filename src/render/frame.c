@@ -1,6 +1,7 @@
 #include "render/frame.h"
 
 #include "base/alloc.h"
+#include "base/first_error.h"
 #include "compose/closing.h"
 #include "compose/colourise.h"
 #include "output/name.h"
@@ -83,32 +84,46 @@ static FlColouring colouring_of(const FlPlan *plan, const FlBackground *backgrou
     return how;
 }
 
-/* The tone of each painter that is seen in the frame. */
-static bool find_tones(const FlPlan *plan, const FlRuns *runs, int *tones, GError **error)
+static bool find_tone(const FlPainter *painter, int frame, int *tone, GError **error)
 {
-    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
-    g_autofree uint8_t *mask = fl_alloc((size_t)width * height, 1, "a mask", error);
-    if (!mask)
+    const FlBox rect = painter->rect;
+    g_autofree uint8_t *mask = fl_alloc(fl_box_pixels(rect), 1, "a mask", error);
+    const int shown = frame - frame % painter->treatment.hold;
+    if (!mask || !fl_masks_get(painter->masks, painter->region, shown, rect, mask, error))
         return false;
-    for (int p = 0; p < plan->n_painters; p++) {
-        const FlPainter *painter = &plan->painters[p];
-        fl_runs_mask(runs, painter->region, width, height, mask);
-        tones[p] = fl_ink_tone(painter->box->ink, painter->painted, mask, width, height);
-    }
+    *tone = fl_ink_tone(painter->box->ink, painter->part, mask, rect.width, rect.height);
     return true;
+}
+
+/* The tone of each painter that is seen in the frame. */
+static bool find_tones(const FlPlan *plan, int frame, int *tones, GError **error)
+{
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int p = 0; p < plan->n_painters; p++) {
+        GError *mine = NULL;
+        if (!find_tone(&plan->painters[p], frame, &tones[p], &mine))
+            fl_keep_first_error(&first, mine);
+    }
+    if (first)
+        g_propagate_error(error, first);
+    return first == NULL;
 }
 
 /* The sum of all shapes, also of those left out: a region alone has the layer it has among others.
  */
-static uint16_t *sum_shapes(const FlPlan *plan, const FlRuns *runs, GError **error)
+static uint16_t *sum_shapes(const FlPlan *plan, const FlRuns *runs, const FlBox *boxes,
+                            GError **error)
 {
-    const size_t n = (size_t)fl_film_width(plan->film) * fl_film_height(plan->film);
-    uint16_t *drawn = fl_alloc(n, sizeof *drawn, "a matte", error);
-    for (int r = 0; drawn && r < runs->n; r++) {
-        const FlRun *run = &runs->run[r];
-        for (size_t i = 0; i < n; i++)
-            drawn[i] = (uint16_t)MIN(drawn[i] + run->coverage[i] * run->alpha / 255, UINT16_MAX);
-    }
+    const size_t width = (size_t)fl_film_width(plan->film);
+    uint16_t *drawn = fl_alloc(width * fl_film_height(plan->film), sizeof *drawn, "a matte", error);
+    for (int r = 0; drawn && r < runs->n; r++)
+        for (int y = boxes[r].y; y < boxes[r].y + boxes[r].height; y++) {
+            uint16_t *sum = drawn + (size_t)y * width + boxes[r].x;
+            const uint8_t *coverage = runs->run[r].coverage + (size_t)y * width + boxes[r].x;
+            for (int x = 0; x < boxes[r].width; x++)
+                sum[x] = (uint16_t)MIN(sum[x] + coverage[x] * runs->run[r].alpha / 255, UINT16_MAX);
+        }
     return drawn;
 }
 
@@ -138,12 +153,13 @@ static bool close_edges(const FlLayer *layer, const FlPlan *plan, const FlPainte
 }
 
 static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                       const FlRun *run, const int *tones, const uint16_t *drawn, GError **error)
+                       const FlRun *run, FlBox box, const int *tones, const uint16_t *drawn,
+                       GError **error)
 {
-    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    const int width = fl_film_width(plan->film);
     const int p = plan->painter_of[run->region];
     const FlPainter *painter = p >= 0 ? &plan->painters[p] : NULL;
-    *layer = (FlLayer){.box = fl_box_of(run->coverage, width, height),
+    *layer = (FlLayer){.box = box,
                        .coverage = run->coverage,
                        .alpha = run->alpha,
                        .stacking = painter ? painter->treatment.stacking : FL_STACKING_KNOCKOUT};
@@ -180,13 +196,25 @@ static char *layer_name(const FlPlan *plan, const FlRuns *runs, int run)
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
+/* Where each run is; to be freed with g_free(). */
+static FlBox *find_boxes(const FlPlan *plan, const FlRuns *runs)
+{
+    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    FlBox *boxes = g_new(FlBox, MAX(runs->n, 1));
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int r = 0; r < runs->n; r++)
+        boxes[r] = fl_box_of(runs->run[r].coverage, width, height);
+    return boxes;
+}
+
 static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                        GError **error)
+                        int frame, GError **error)
 {
     g_autofree int *tones = g_new0(int, MAX(plan->n_painters, 1));
-    if (!find_tones(plan, composite->runs, tones, error))
+    if (!find_tones(plan, frame, tones, error))
         return false;
-    g_autofree uint16_t *drawn = sum_shapes(plan, composite->runs, error);
+    g_autofree FlBox *boxes = find_boxes(plan, composite->runs);
+    g_autofree uint16_t *drawn = sum_shapes(plan, composite->runs, boxes, error);
     if (!drawn)
         return false;
     composite->layers = g_new0(FlLayer, MAX(composite->runs->n, 1));
@@ -196,8 +224,8 @@ static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBack
         if (plan->painter_of[run->region] == -2)
             continue;
         composite->names[composite->n_layers] = layer_name(plan, composite->runs, r);
-        if (!fill_layer(&composite->layers[composite->n_layers++], plan, background, run, tones,
-                        drawn, error))
+        if (!fill_layer(&composite->layers[composite->n_layers++], plan, background, run, boxes[r],
+                        tones, drawn, error))
             return false;
     }
     FlStackParams params = {.linear = plan->options.blend == FL_BLEND_LINEAR,
@@ -237,7 +265,7 @@ bool fl_composite_init(FlComposite *composite, const FlPlan *plan, const FlBackg
 {
     *composite = (FlComposite){0};
     composite->runs = fl_held_runs(plan, frame, error);
-    return composite->runs && make_layers(composite, plan, background, error) &&
+    return composite->runs && make_layers(composite, plan, background, frame, error) &&
            compose(composite, plan, background, frame, with_16, error);
 }
 
