@@ -16,6 +16,7 @@
  */
 #include "config.h"
 #include "params/params.h"
+#include "synth/draft.h"
 #include "synth/synth.h"
 #include <math.h>
 #include <stdio.h>
@@ -44,7 +45,8 @@ static const Case cases[] = {
     F(frame_s)                                                                                     \
     F(first_frame_s)                                                                               \
     F(guides_s)                                                                                    \
-    F(target_s) F(temporal_s) F(search_s) F(vote_s) F(core_s_per_mpx) F(s_per_mpx) F(scaling)      \
+    F(target_s)                                                                                    \
+    F(temporal_s) F(search_s) F(vote_s) F(core_s_per_mpx) F(s_per_mpx) F(scaling)                  \
         F(evaluations_per_px) F(evaluations_per_s_core) F(energy) F(painted_px) F(peak_mib)
 
 typedef struct Figures {
@@ -83,6 +85,17 @@ static bool blob(void *data, int frame, uint8_t *coverage, GError **error)
             const double inside = radius * (1 + lobes) - r + 0.5;
             coverage[(size_t)y * c->width + x] = (uint8_t)(CLAMP(inside, 0, 1) * 255);
         }
+    return true;
+}
+
+/* The same for a draft. */
+static bool half_blob(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    const Case *c = data;
+    g_autofree uint8_t *whole = g_malloc((size_t)c->width * c->height);
+    if (!blob(data, frame, whole, error))
+        return false;
+    fl_mask_halve(whole, c->width, c->height, coverage);
     return true;
 }
 
@@ -134,9 +147,9 @@ static bool timed_frames(Bench *b, Figures *f, GError **error)
 static double painted_pixels(const Bench *b)
 {
     double n = 0;
-    for (size_t p = 0; p < (size_t)b->c->width * b->c->height; p++)
+    for (size_t p = 0; p < (size_t)b->guides.width * b->guides.height; p++)
         n += b->guides.mask[p] >= FL_INSIDE;
-    return n;
+    return b->guides.width < b->c->width ? 4 * n : n;
 }
 
 static bool measured_frames(Bench *b, Figures *f, GError **error)
@@ -183,8 +196,11 @@ static bool run_case(const Case *c, Figures *f, GError **error)
     if (!exemplar)
         return false;
     const FlGuideParams how = fl_guide_params(params);
-    const FlGuideSource source = {c->width, c->height, frames + 1 + FRAMES_MEASURED,
-                                  blob,     NULL,      (void *)c};
+    const int n = frames + 1 + FRAMES_MEASURED;
+    FlGuideSource source = {c->width, c->height, n, blob, NULL, (void *)c};
+    if (params->half_size)
+        source = (FlGuideSource){
+            fl_half_side(c->width), fl_half_side(c->height), n, half_blob, NULL, (void *)c};
     const FlSynthSize size = {c->width, c->height, c->width, c->height};
     Bench b = {.c = c};
     const double start = seconds(CLOCK_MONOTONIC);
@@ -192,7 +208,7 @@ static bool run_case(const Case *c, Figures *f, GError **error)
     f->guides_s = (seconds(CLOCK_MONOTONIC) - start) / source.n_frames;
     b.synth = b.sequence ? fl_synth_new(exemplar, params, size, 1, error) : NULL;
     b.rgb = g_malloc(3 * (size_t)c->width * c->height);
-    const bool ok = b.synth && fl_guides_init(&b.guides, c->width, c->height, error) &&
+    const bool ok = b.synth && fl_guides_init(&b.guides, source.width, source.height, error) &&
                     timed_frames(&b, f, error) && measured_frames(&b, f, error);
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);

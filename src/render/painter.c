@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "guides/flow_file.h"
 #include "output/name.h"
+#include "synth/draft.h"
 #include <string.h>
 
 static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
@@ -11,6 +12,17 @@ static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **erro
     const FlPainter *painter = data;
     return fl_masks_get(painter->masks, painter->region, frame * painter->treatment.hold,
                         painter->rect, coverage, error);
+}
+
+static bool painter_half_mask(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    const FlPainter *painter = data;
+    const FlBox rect = painter->rect;
+    g_autofree uint8_t *mask = fl_alloc(fl_box_pixels(rect), 1, "a mask", error);
+    if (!mask || !painter_mask(data, frame, mask, error))
+        return false;
+    fl_mask_halve(mask, rect.width, rect.height, coverage);
+    return true;
 }
 
 static bool painter_flow(void *data, int frame, float *flow, GError **error)
@@ -31,13 +43,40 @@ static bool painter_flow(void *data, int frame, float *flow, GError **error)
     return true;
 }
 
+static bool painter_half_flow(void *data, int frame, float *flow, GError **error)
+{
+    const FlPainter *painter = data;
+    const FlBox rect = painter->rect;
+    g_autofree float *whole =
+        fl_alloc(2 * fl_box_pixels(rect), sizeof(float), "a flow field", error);
+    if (!whole || !painter_flow(data, frame, whole, error))
+        return false;
+    fl_flow_halve(whole, rect.width, rect.height, flow);
+    return true;
+}
+
+/* Where guides come from: the masks of the painter's rectangle, and its flow files. */
+static FlGuideSource source_of(FlPainter *painter, int n_pictures)
+{
+    const FlBox rect = painter->rect;
+    FlGuideSource source = {rect.width,   rect.height,  n_pictures,
+                            painter_mask, painter_flow, painter};
+    if (painter->treatment.params.half_size)
+        source = (FlGuideSource){fl_half_side(rect.width), fl_half_side(rect.height), n_pictures,
+                                 painter_half_mask,        painter_half_flow,         painter};
+    if (!painter->flow_pattern)
+        source.flow = NULL;
+    return source;
+}
+
 /* Room for the coarsest patches around the region, on the grid of the coarsest level, so that a
  * cropped frame has the same pyramid as the whole one. */
 static FlBox cropped(const FlPainter *painter)
 {
     const int levels =
         MIN(painter->box->exemplar->n_levels, fl_levels_of(painter->width, painter->height));
-    const int grid = 1 << (levels - 1), room = FL_PATCH * grid;
+    const int step = painter->treatment.params.half_size ? 2 : 1;
+    const int grid = step << (levels - 1), room = FL_PATCH * grid;
     const FlBox ever = fl_masks_extent(painter->masks, painter->region);
     const int x0 = MAX(ever.x - room, 0) / grid * grid, y0 = MAX(ever.y - room, 0) / grid * grid;
     const int x1 = MIN(ever.x + ever.width + room, painter->width);
@@ -70,12 +109,7 @@ bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
 {
     const int n_pictures = (fl_film_frames(painter->film) - 1) / painter->treatment.hold + 1;
     painter->rect = cropped(painter);
-    const FlGuideSource source = {.width = painter->rect.width,
-                                  .height = painter->rect.height,
-                                  .n_frames = n_pictures,
-                                  .mask = painter_mask,
-                                  .flow = painter->flow_pattern ? painter_flow : NULL,
-                                  .data = painter};
+    const FlGuideSource source = source_of(painter, n_pictures);
     const FlGuideParams how = fl_guide_params(&painter->treatment.params);
     const FlSynthSize size = {painter->rect.width, painter->rect.height, painter->width,
                               painter->height};
@@ -110,10 +144,17 @@ static void put_part(FlPainter *painter)
 /* The region's picture `index`, held ones counted once, into painter->part. */
 static bool paint_part(FlPainter *painter, int index, FlGuides *guides, GError **error)
 {
-    guides->width = painter->rect.width, guides->height = painter->rect.height;
-    return fl_guide_sequence_get(painter->guides, index, guides, error) &&
-           fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
-                          painter->wants_view ? &painter->view : NULL, error);
+    const bool half = painter->treatment.params.half_size;
+    const FlBox rect = painter->rect;
+    guides->width = half ? fl_half_side(rect.width) : rect.width;
+    guides->height = half ? fl_half_side(rect.height) : rect.height;
+    if (!fl_guide_sequence_get(painter->guides, index, guides, error) ||
+        !fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
+                        painter->wants_view ? &painter->view : NULL, error))
+        return false;
+    if (half && painter->wants_view)
+        fl_guides_double(guides, rect.width, rect.height);
+    return true;
 }
 
 bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)

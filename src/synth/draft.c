@@ -3,51 +3,67 @@
 #include <glib.h>
 
 /* The four pixels of a small one; at an odd border the last ones are met twice. */
-static void children(const FlGuides *guides, int x, int y, size_t child[4])
+static void children(int width, int height, int x, int y, size_t child[4])
 {
-    const int x1 = MIN(2 * x + 1, guides->width - 1), y1 = MIN(2 * y + 1, guides->height - 1);
-    child[0] = (size_t)2 * y * guides->width + 2 * x;
-    child[1] = (size_t)2 * y * guides->width + x1;
-    child[2] = (size_t)y1 * guides->width + 2 * x;
-    child[3] = (size_t)y1 * guides->width + x1;
+    const int x1 = MIN(2 * x + 1, width - 1), y1 = MIN(2 * y + 1, height - 1);
+    child[0] = (size_t)2 * y * width + 2 * x;
+    child[1] = (size_t)2 * y * width + x1;
+    child[2] = (size_t)y1 * width + 2 * x;
+    child[3] = (size_t)y1 * width + x1;
 }
 
-/* Directions do not average; one of the inside pixels' is taken, and its flow and extents too. */
-static void halve_pixel(const FlGuides *guides, FlGuides *half, int x, int y)
+void fl_mask_halve(const uint8_t *mask, int width, int height, uint8_t *half)
 {
-    const size_t to = (size_t)y * half->width + x;
-    size_t child[4], chosen;
-    int mask = 2;
-    float distance = 0;
-    children(guides, x, y, child);
-    chosen = child[0];
-    for (int k = 0; k < 4; k++) {
-        mask += guides->mask[child[k]];
-        distance += guides->distance[child[k]];
-        if (guides->mask[child[k]] > guides->mask[chosen])
-            chosen = child[k];
-    }
-    half->mask[to] = (uint8_t)(mask / 4);
-    half->distance[to] = distance * 0.125f;
-    half->flow[2 * to] = guides->flow[2 * chosen] * 0.5f;
-    half->flow[2 * to + 1] = guides->flow[2 * chosen + 1] * 0.5f;
-    half->angle[to] = guides->angle[chosen];
-    half->ext_plus[to] = guides->ext_plus[chosen] * 0.5f;
-    half->ext_minus[to] = guides->ext_minus[chosen] * 0.5f;
+    const int w = fl_half_side(width), h = fl_half_side(height);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            size_t child[4];
+            int sum = 2;
+            children(width, height, x, y, child);
+            for (int k = 0; k < 4; k++)
+                sum += mask[child[k]];
+            half[(size_t)y * w + x] = (uint8_t)(sum / 4);
+        }
 }
 
-void fl_guides_halve(const FlGuides *guides, FlGuides *half)
+void fl_flow_halve(const float *flow, int width, int height, float *half)
 {
-    g_assert(half->width == (guides->width + 1) / 2 && half->height == (guides->height + 1) / 2);
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < half->height; y++)
-        for (int x = 0; x < half->width; x++)
-            halve_pixel(guides, half, x, y);
+    const int w = fl_half_side(width), h = fl_half_side(height);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            size_t child[4];
+            float most = -1;
+            children(width, height, x, y, child);
+            for (int k = 0; k < 4; k++) { // the fastest: beside a shape nothing moves
+                const float *at = flow + 2 * child[k], speed = at[0] * at[0] + at[1] * at[1];
+                float *to = half + 2 * ((size_t)y * w + x);
+                if (speed > most || k == 0)
+                    most = speed, to[0] = at[0] * 0.5f, to[1] = at[1] * 0.5f;
+            }
+        }
+}
+
+/* Backwards, since no pixel is then written before it has been read for the last time. */
+void fl_guides_double(FlGuides *guides, int width, int height)
+{
+    for (int y = height - 1; y >= 0; y--)
+        for (int x = width - 1; x >= 0; x--) {
+            const size_t to = (size_t)y * width + x;
+            const size_t from = (size_t)(y / 2) * guides->width + x / 2;
+            guides->mask[to] = guides->mask[from];
+            guides->angle[to] = guides->angle[from];
+            guides->distance[to] = guides->distance[from] * 2;
+            guides->flow[2 * to] = guides->flow[2 * from] * 2;
+            guides->flow[2 * to + 1] = guides->flow[2 * from + 1] * 2;
+            guides->ext_plus[to] = guides->ext_plus[from] * 2;
+            guides->ext_minus[to] = guides->ext_minus[from] * 2;
+        }
+    guides->width = width, guides->height = height;
 }
 
 void fl_picture_double(const uint8_t *half, int width, int height, uint8_t *rgb)
 {
-    const int w = (width + 1) / 2, h = (height + 1) / 2;
+    const int w = fl_half_side(width), h = fl_half_side(height);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < height; y++) {
         // a pixel's centre is a quarter of a small pixel from the nearest small centre

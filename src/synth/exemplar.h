@@ -52,7 +52,7 @@ FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError
 
 void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
 
-/** How params want guides made. */
+/** How params want guides made, those of a draft at half the size. */
 FlGuideParams fl_guide_params(const FlParams *params);
 
 /**

@@ -30,8 +30,8 @@ struct FlSynth {
     int boil;  // fl_boil_step() before it
     Previous previous;
     bool wants_energies;
-    FlGuides half; // of a draft, made at half the size
-    uint8_t *half_rgb;
+    FlSynthSize size;                    // of the picture, twice that of a draft's guides
+    uint8_t *half_rgb;                   // a draft before it is enlarged
     double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
@@ -44,18 +44,19 @@ static bool make_buffers(FlSynth *synth, GError **error)
     return (synth->previous.mask = fl_alloc(pixels, 1, "a mask", error)) &&
            (synth->previous.rgb = fl_alloc(3 * pixels, 1, "a picture", error)) &&
            (!synth->params->half_size ||
-            ((synth->half_rgb = fl_alloc(3 * pixels, 1, "a picture", error)) &&
-             fl_guides_init(&synth->half, synth->width, synth->height, error)));
+            (synth->half_rgb = fl_alloc(3 * pixels, 1, "a picture", error)));
 }
 
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed, GError **error)
 {
     g_autoptr(FlSynth) synth = g_new0(FlSynth, 1);
-    const int part = params->half_size ? 2 : 1, round = part - 1;
+    const int part = params->half_size ? 2 : 1;
     synth->exemplar = exemplar;
     synth->params = params;
-    synth->width = (size.width + round) / part, synth->height = (size.height + round) / part;
+    synth->size = size;
+    synth->width = part == 2 ? fl_half_side(size.width) : size.width;
+    synth->height = part == 2 ? fl_half_side(size.height) : size.height;
     synth->side = (float)MAX(size.frame_width, size.frame_height) / (float)part;
     synth->n_levels =
         MIN(exemplar->n_levels, fl_levels_of(size.frame_width / part, size.frame_height / part));
@@ -80,7 +81,6 @@ void fl_synth_free(FlSynth *synth)
     fl_nnf_clear(&synth->previous.nnf);
     free(synth->previous.mask);
     free(synth->previous.rgb);
-    fl_guides_clear(&synth->half);
     free(synth->half_rgb);
     g_free(synth);
 }
@@ -447,10 +447,9 @@ static bool paint_draft(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, Fl
                         GError **error)
 {
     FlSynthView view;
-    fl_guides_halve(guides, &synth->half);
-    if (!paint(synth, &synth->half, synth->half_rgb, stats, &view, error))
+    if (!paint(synth, guides, synth->half_rgb, stats, &view, error))
         return false;
-    fl_picture_double(synth->half_rgb, guides->width, guides->height, rgb);
+    fl_picture_double(synth->half_rgb, synth->size.width, synth->size.height, rgb);
     return true;
 }
 

@@ -33,12 +33,12 @@ typedef struct FlSynthView {
 typedef struct FlSynth FlSynth;
 
 /**
- * The size of what is painted. A caller may hand over a part of its frames only, whose corner is a
- * multiple of 2^(levels - 1); the pyramid and the lengths that are shares of a side are the whole
- * frame's all the same.
+ * The size of the picture; a draft's guides have half of it, as fl_half_side() says. A caller may
+ * hand over a part of its frames only, whose corner is a multiple of 2^(levels - 1); the pyramid
+ * and the lengths that are shares of a side are the whole frame's all the same.
  */
 typedef struct FlSynthSize {
-    int width, height;             // of the guides
+    int width, height;             // of what is painted
     int frame_width, frame_height; // of the whole frames
 } FlSynthSize;
 
