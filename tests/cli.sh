@@ -1,7 +1,7 @@
 #!/bin/bash
 # The program as its user meets it. usage: cli.sh PROGRAM FIXTURES; speaks TAP.
 set -u
-export LC_ALL=C.UTF-8
+export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive # tests run side by side
 program=$(realpath "$1")
 fixtures=$(realpath "$2")
 folder=$(mktemp -d)

@@ -50,7 +50,7 @@ for shell in zsh fish; do
     done
 done
 if command -v fish >/dev/null; then
-    offered=$(fish --no-config -c "source $folder/fluidy-svg.fish; complete -C 'fluidy-svg --detail '" |
+    offered=$(fish --no-config -c "source '$folder/fluidy-svg.fish'; complete -C 'fluidy-svg --detail '" |
         cut -f 1 | sort | tr '\n' ' ')
     [ "$offered" = 'draft fine normal ' ]
     report $? 'fish completes a word of an option'

@@ -24,11 +24,12 @@ whole_frames() { # whole_frames FOLDER: each of its frames is one of a render wi
 paint whole
 
 mkdir disk
-if own_mount size=64k true 2>/dev/null; then
+if own_mount size=1m true 2>/dev/null; then
     # Room for two or three frames; then, with more of it, the same command again.
-    own_mount size=40k 'paint disk; status=$?; cp -r disk full; cp err err1
-                        mount -o remount,size=10m disk; paint disk && cp -r disk more
-                        exit $status'
+    own_mount size=1m 'head -c 984k /dev/zero >disk/filler
+                       paint disk/film; status=$?; cp -r disk/film full; cp err err1
+                       rm disk/filler; paint disk/film && cp -r disk/film more
+                       exit $status'
     found=$?
     cp err1 err
     [ $found = 1 ] && says 'No space left on device' && no_litter full && whole_frames full &&

@@ -15,15 +15,16 @@ int main(void)
 }
 EOF
 meson install -C "$build" --no-rebuild --quiet --destdir "$folder" --tags devel,runtime
-file=$(find "$folder" -name fluidy.pc)
-sed -i "s|^prefix=|prefix=$folder|" "$file"
+cd "$folder"
+file=$(find . -name fluidy.pc)
+sed -i 's|^prefix=/|prefix=|' "$file" # relative: the folder's own path may have spaces
 PKG_CONFIG_PATH=$(dirname "$file")
 export PKG_CONFIG_PATH
 flags=$(pkg-config --cflags --libs fluidy)
 # shellcheck disable=SC2086 # flags are words
-${CC:-cc} "$folder/program.c" -o "$folder/program" $flags
-version=$(LD_LIBRARY_PATH=$(pkg-config --variable=libdir fluidy) "$folder/program")
+${CC:-cc} program.c -o program $flags
+version=$(LD_LIBRARY_PATH=$(pkg-config --variable=libdir fluidy) ./program)
 [ "$version" = "$(pkg-config --modversion fluidy)" ]
-"$(find "$folder" -path "*/bin/fluidy-svg")" --version >"$folder/said"
-"$(find "$folder" -path "*/bin/fluidy-style")" --version >>"$folder/said"
-[ "$(grep -c "$version" "$folder/said")" = 2 ]
+"$(find . -path "*/bin/fluidy-svg")" --version >said
+"$(find . -path "*/bin/fluidy-style")" --version >>said
+[ "$(grep -c "$version" said)" = 2 ]

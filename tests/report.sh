@@ -1,7 +1,7 @@
 #!/bin/bash
 # The page of --report in a real browser. usage: report.sh PROGRAM; speaks TAP.
 set -u
-export LC_ALL=C.UTF-8
+export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive
 program=$(realpath "$1")
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
 folder=$(mktemp -d)

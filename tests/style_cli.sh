@@ -1,7 +1,7 @@
 #!/bin/bash
 # fluidy-style as its user meets it. usage: style_cli.sh PROGRAM FIXTURES PAGE; speaks TAP.
 set -u
-export LC_ALL=C.UTF-8
+export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive # tests run side by side
 program=$(realpath "$1")
 small=$(realpath "$2")/style-small
 dust=$(realpath "$2")/watercolour/dust
