@@ -2,6 +2,7 @@
 # The program as its user meets it. usage: cli.sh PROGRAM FIXTURES; speaks TAP.
 set -u
 export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive # tests run side by side
+unset NO_COLOR # as some have it in CI
 program=$(realpath "$1")
 fixtures=$(realpath "$2")
 folder=$(mktemp -d)
