@@ -111,10 +111,31 @@ PATH=$PWD/bin:$PATH "$program" film -s "$style" -o film.mov --progress none >out
 [ $? = 1 ] && says 'ffmpeg stopped: no such codec' && [ -z "$(find . -name '*.mov')" ]
 result $? 'an ffmpeg that dies is quoted, and no film is left'
 
+# tight KIB: one frame with that much address space is painted, or refused in one line.
+tight() {
+    local status
+    rm -rf tight
+    (ulimit -v "$1" && paint tight -W 500 -f 1 -j 2)
+    status=$?
+    case $status in
+    0) painted=$((painted + 1)) && [ -e tight/w_0001.png ] ;;
+    1) refused=$((refused + 1)) && grep -q 'not enough memory' err && [ "$(wc -l <err)" = 1 ] && [ ! -e tight ] ;;
+    127) grep -q 'loading shared libraries' err ;; # before main()
+    *) false ;;
+    esac || { echo "# $1 KiB: status $status"; return 1; }
+}
+
 if [ -n "${ASAN_OPTIONS:-}" ]; then
-    n=$((n + 1))
-    echo "ok $n - memory that cannot be had is one message # SKIP the sanitizer needs it all"
+    for sentence in 'that cannot be had' 'of any size'; do
+        n=$((n + 1))
+        echo "ok $n - memory $sentence is one message # SKIP the sanitizer needs it all"
+    done
 else
+    painted=0 refused=0
+    for kib in 60000 75000 80000 85000 90000 95000 100000 105000 110000 115000 120000 130000 200000 400000; do
+        tight $kib || break
+    done && [ $painted -gt 0 ] && [ $refused -gt 0 ]
+    result $? 'memory of any size is enough or is one message'
     (ulimit -v 1500000 && paint huge -W 30000 -j 1 --limit frame=1000 --limit memory=1000000)
     found=$?
     [ $found = 1 ] && [ "$(wc -l <err)" = 1 ] && grep -qi 'memory' err && [ ! -e huge/w_0001.png ]

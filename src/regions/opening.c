@@ -1,5 +1,6 @@
 #include "regions/opening.h"
 
+#include "base/room.h"
 #include "base/suggest.h"
 #include <string.h>
 
@@ -128,6 +129,8 @@ static void offer_config(const FlFilm *film, const FlRenderOptions *options)
 
 FlFilm *fl_film_of_options(const FlRenderOptions *options, const FlConfig *config, GError **error)
 {
+    if (!fl_room_check(error))
+        return NULL;
     g_autofree FlRegionRule *rules = rules_of(config);
     FlFilmOptions wanted = {.inputs = options->inputs,
                             .n_inputs = (int)g_strv_length((char **)options->inputs),

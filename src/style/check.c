@@ -1,4 +1,5 @@
 /* Says of a style what was understood, and what a painter should look into. */
+#include "base/room.h"
 #include "style/manifest.h"
 #include "style/measure.h"
 #include "style/sheet.h"
@@ -269,7 +270,7 @@ static char *report_text(const Check *check)
 
 FlStyleReport *fl_style_check(const char *name, const char *sheet, bool overwrite, GError **error)
 {
-    g_autofree char *folder = fl_style_find(name, error);
+    g_autofree char *folder = fl_room_check(error) ? fl_style_find(name, error) : NULL;
     if (!folder)
         return NULL;
     if (sheet && !overwrite && g_file_test(sheet, G_FILE_TEST_EXISTS)) {

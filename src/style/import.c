@@ -1,4 +1,5 @@
 /* A recording becomes a style: read, find the paper and the paint, hold still, flatten, write. */
+#include "base/room.h"
 #include "style/border.h"
 #include "style/extract.h"
 #include "style/ffmpeg.h"
@@ -295,7 +296,7 @@ bool fl_style_import(const FlStyleImport *how, GPtrArray *notes, GError **error)
 {
     g_autoptr(FlStyle) style = g_new0(FlStyle, 1);
     Import import = {.how = how, .style = style, .notes = notes};
-    if (!check_options(how, style->paper, error) ||
+    if (!fl_room_check(error) || !check_options(how, style->paper, error) ||
         !fl_style_may_write(how->folder, how->overwrite, error) || !read_all(&import, error) ||
         !improve(&import, error) || !fl_style_check_paint(style, error) ||
         !find_border(&import, error))
