@@ -245,6 +245,38 @@ static void blenders_prologue_and_undeclared_prefixes_are_mended(void)
     g_assert_cmpstr(leaf->labels, ==, "x");
 }
 
+static void illustrators_entities_stand_for_namespaces(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *path = scratch_write(
+        folder, "a.svg",
+        "<!DOCTYPE svg [<!ENTITY ns_svg \"http://www.w3.org/2000/svg\"><!ENTITY x \"u:x\">]>"
+        "<svg xmlns=\"&ns_svg;\" xmlns:i=\"&x;\" width=\"9\" height=\"9\"><switch>"
+        "<foreignObject requiredExtensions=\"&x;\"/><g i:extraneous=\"self\" id=\"arm_x5F_1\">"
+        "<rect fill=\"#123456\" " BOX "/></g></switch></svg>");
+    g_autoptr(FlSvg) svg = open_svg(path, NULL);
+    g_autofree char *paint = describe(svg);
+    g_assert_cmpstr(paint, ==, "fill #123456@255");
+    const FlLeaf *leaf = &g_array_index(fl_svg_leaves(svg)->leaf, FlLeaf, 0);
+    g_assert_cmpstr(leaf->labels, ==, "arm_1");
+}
+
+static void names_that_programs_keep_beside_ids_are_labels(void)
+{
+    static const char *const groups[] = {
+        "<g id=\"uuid-5\" data-name=\"arm\">", "<g id=\"arm3\" xmlns:serif=\"s\" serif:id=\"arm\">",
+        "<g vectornator:layerName=\"arm\">", "<g class=\"layer\"><title> arm</title>",
+        "<g id=\"arm\"><g id=\"Symbol_1_0_Layer0_0_FILL\"><g id=\"surface12\">"};
+    for (size_t i = 0; i < G_N_ELEMENTS(groups); i++) {
+        g_autoptr(Scratch) folder = scratch_make();
+        g_autofree char *content =
+            g_strdup_printf("%s<rect " BOX "/>%s", groups[i], i == 4 ? "</g></g></g>" : "</g>");
+        g_autofree char *path = scratch_svg(folder, "a.svg", content);
+        g_autoptr(FlSvg) svg = open_svg(path, NULL);
+        g_assert_cmpstr(g_array_index(fl_svg_leaves(svg)->leaf, FlLeaf, 0).labels, ==, "arm");
+    }
+}
+
 static void an_address_before_a_reference_is_mended(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -354,6 +386,9 @@ int main(int argc, char **argv)
     TEST("broken-files-say-what-is-wrong-and-where", broken_files_say_what_is_wrong_and_where);
     TEST("blenders-prologue-and-undeclared-prefixes-are-mended",
          blenders_prologue_and_undeclared_prefixes_are_mended);
+    TEST("illustrators-entities-stand-for-namespaces", illustrators_entities_stand_for_namespaces);
+    TEST("names-that-programs-keep-beside-ids-are-labels",
+         names_that_programs_keep_beside_ids_are_labels);
     TEST("an-address-before-a-reference-is-mended", an_address_before_a_reference_is_mended);
     TEST("silent-traps-give-warnings", silent_traps_give_warnings);
     TEST("good-path-data-passes", good_path_data_passes);

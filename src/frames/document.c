@@ -149,6 +149,26 @@ static void declare_prefix(xmlNode *root, const xmlChar *name)
         xmlNewNs(root, (const xmlChar *)href, (const xmlChar *)prefix);
 }
 
+/**
+ * Puts the text of entities in for them in declarations of namespaces, where libxml2 leaves them:
+ * Illustrator writes xmlns="&ns_svg;".
+ */
+static void expand_namespaces(xmlDoc *doc, xmlNs *ns)
+{
+    for (; ns; ns = ns->next) {
+        const char *href = (const char *)ns->href;
+        const size_t n = href ? strlen(href) : 0;
+        if (n < 3 || href[0] != '&' || href[n - 1] != ';')
+            continue;
+        g_autofree char *name = g_strndup(href + 1, n - 2);
+        const xmlEntity *entity = xmlGetDocEntity(doc, (const xmlChar *)name);
+        if (!entity || entity->etype != XML_INTERNAL_GENERAL_ENTITY || !entity->content)
+            continue;
+        xmlFree((xmlChar *)ns->href);
+        ns->href = xmlStrdup(entity->content);
+    }
+}
+
 /* A document as it is walked through. */
 typedef struct Visit {
     const char *path;
@@ -175,6 +195,7 @@ static bool visit_node(Visit *visit, xmlNode *node, int depth, GError **error)
         !fl_limit_check(FL_LIMIT_DEPTH, depth, visit->path, error))
         return false;
     declare_prefix(visit->root, node->name);
+    expand_namespaces(node->doc, node->nsDef);
     for (xmlAttr *a = node->properties; a; a = a->next) {
         if (!a->ns)
             declare_prefix(visit->root, a->name);
@@ -197,6 +218,8 @@ xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GEr
     if (!doc)
         return NULL;
     xmlNode *root = xmlDocGetRootElement(doc);
+    if (root)
+        expand_namespaces(doc, root->nsDef);
     if (!root || !fl_is(root, "svg")) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: the root is <%s>, expected <svg xmlns=\"%s\">", path,

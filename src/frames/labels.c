@@ -1,5 +1,6 @@
 #include "frames/labels.h"
 
+#include "frames/document.h"
 #include <glib.h>
 #include <string.h>
 
@@ -24,9 +25,12 @@ bool fl_label_is_generic(const char *name)
         "sprite",  "use",           "text",      "tspan",     "image",    "clip",
         "mask",    "fill",          "stroke",    "polygon",   "polyline", "xmlid",
         "object",  "compound path", "clip-path", "clip path", "frame",    "page",
-        "canvas",  "artboard",      "",          NULL};
+        "canvas",  "artboard",      "symbol",    "surface",   "vector",   "union",
+        "svgjsg",  "mask group",    "",          NULL};
     g_autofree char *lower = g_ascii_strdown(name, -1);
     if (g_str_has_prefix(lower, "__lottie") || g_str_has_prefix(lower, "fl-leaf-"))
+        return true;
+    if (g_str_has_suffix(name, "_FILL") || g_str_has_suffix(name, "_STROKES")) // Animate
         return true;
     if (g_str_has_prefix(lower, "shape-") && is_random(lower + 6)) // Penpot
         return true;
@@ -37,6 +41,25 @@ bool fl_label_is_generic(const char *name)
         n--;
     lower[n] = '\0';
     return g_strv_contains(words, lower);
+}
+
+/** Puts the characters back that ids cannot have: "arm_x20_left", or CorelDRAW's "arm_x0020_left".
+ */
+static void decode(char *name)
+{
+    char *out = name;
+    for (const char *in = name; *in;) {
+        char *end = NULL;
+        const bool escape = in[0] == '_' && in[1] == 'x' && g_ascii_isxdigit(in[2]);
+        const gint64 code = escape ? g_ascii_strtoll(in + 2, &end, 16) : 0;
+        if (escape && *end == '_' && code >= 0x20 && code < 0x7f) {
+            *out++ = (char)code;
+            in = end + 1;
+        } else {
+            *out++ = *in++;
+        }
+    }
+    *out = '\0';
 }
 
 /** Cuts Illustrator's mark of a repeated name: "tree_3_" is "tree". */
@@ -77,6 +100,37 @@ static bool follows_layer_comment(const xmlNode *node)
            g_str_has_prefix((const char *)before->content, "Layer:");
 }
 
+/** The text of a <title> in it, by which SVG-edit names layers; NULL if none. */
+static char *title_of(const xmlNode *node)
+{
+    for (const xmlNode *child = node->children; child; child = child->next)
+        if (fl_is(child, "title")) {
+            g_autoptr(xmlChar) text = xmlNodeGetContent(child);
+            return text ? g_strstrip(g_strdup((const char *)text)) : NULL;
+        }
+    return NULL;
+}
+
+/** The first of the names that programs keep beside ids, which have to be unique; "" if none. */
+static char *name_of(const xmlNode *node, const char *id)
+{
+    static const char *const foreign[] = {"label", "characterName", "layerName", NULL};
+    for (int i = 0; foreign[i]; i++) {
+        g_autofree char *name = foreign_attribute(node, foreign[i]);
+        if (name && name[0])
+            return g_steal_pointer(&name);
+    }
+    g_autofree char *affinity = foreign_attribute(node, "id");
+    g_autoptr(xmlChar) adobe = (xmlChar *)fl_attribute(node, "data-name");
+    g_autofree char *title = id && !fl_label_is_generic(id) ? NULL : title_of(node);
+    const char *name = affinity && affinity[0] ? affinity
+                       : adobe && adobe[0]     ? (const char *)adobe
+                       : title && title[0]     ? title
+                       : id                    ? id
+                                               : "";
+    return g_strdup(name);
+}
+
 char *fl_label_of(const xmlNode *node, const char *id, bool *is_layer)
 {
     static const char *const groups[] = {"g", "svg", "a", "use", NULL};
@@ -85,12 +139,9 @@ char *fl_label_of(const xmlNode *node, const char *id, bool *is_layer)
         return NULL;
     g_autofree char *mode = foreign_attribute(node, "groupmode");
     g_autofree char *label = foreign_attribute(node, "label");
-    g_autofree char *character = foreign_attribute(node, "characterName");
     *is_layer = (mode && strcmp(mode, "layer") == 0) || follows_layer_comment(node);
-    char *name = g_strdup(label && label[0]           ? label
-                          : character && character[0] ? character
-                          : id                        ? id
-                                                      : "");
+    char *name = name_of(node, id);
+    decode(name);
     cut_repeat(name);
     for (char *c = name; *c; c++)
         if (*c == '/' || *c == '\n')
