@@ -96,11 +96,30 @@ static void a_free_edge_stays_as_it_is_painted(void)
     g_assert_cmpmem(amounts, bytes, painted, bytes);
 }
 
+static void a_thin_shape_among_others_has_no_dark_core(void)
+{
+    enum { THIN = 6 };
+    const FlBox thin = {40, 0, THIN, HEIGHT};
+    static const int16_t profile[THIN] = {0, 100, 3000, 3000, 100, 0};
+    int16_t amounts[THIN * HEIGHT];
+    uint8_t share[THIN * HEIGHT];
+    g_autoptr(GError) error = NULL;
+    for (int i = 0; i < THIN * HEIGHT; i++)
+        amounts[i] = profile[i % THIN], share[i] = 255;
+    fl_closing_apply(amounts, share, thin, BORDER, &error);
+    g_assert_no_error(error);
+    for (int i = 0; i < THIN * HEIGHT; i++) {
+        g_assert_cmpint(amounts[i], >, FL_AMOUNT_ONE * 7 / 8);
+        g_assert_cmpint(amounts[i], <, FL_AMOUNT_ONE * 5 / 4);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
 #define TEST(name) g_test_add_func("/closing/" #name, name)
     TEST(no_line_of_paper_and_no_dark_seam_lies_between_neighbours);
     TEST(a_free_edge_stays_as_it_is_painted);
+    TEST(a_thin_shape_among_others_has_no_dark_core);
     return g_test_run();
 }

@@ -83,8 +83,10 @@ static void median_colour(const Sample *s, const uint8_t *rgb, uint8_t median[3]
             for (int x = 2; x < s->width - 2; x++) {
                 const size_t i = (size_t)y * s->width + x;
                 const size_t row = 2 * (size_t)s->width;
-                if (s->mask[i] == 255 && s->mask[i - 2] == 255 && s->mask[i + 2] == 255 &&
-                    s->mask[i - row] == 255 && s->mask[i + row] == 255)
+                bool inner = true;
+                for (size_t j = i - row; j <= i + row; j += row)
+                    inner &= s->mask[j - 2] == 255 && s->mask[j] == 255 && s->mask[j + 2] == 255;
+                if (inner)
                     values[n++] = rgb[3 * i + c];
             }
         qsort(values, n, 1, compare_bytes);

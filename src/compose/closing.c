@@ -85,7 +85,7 @@ bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width,
 
 #define MEAN_LEAST (FL_AMOUNT_ONE / 6) // paint this thin is made six times as thick, and not more
 #define LEAST (FL_AMOUNT_ONE * 3 / 4)  // what is bare of paint all the same
-#define MOST (2 * FL_AMOUNT_ONE)
+#define MOST (FL_AMOUNT_ONE * 3 / 2)
 
 /** Paint and pixels of a shape in a window. */
 typedef struct Mean {
@@ -107,33 +107,52 @@ static void slide(const Mean *in, Mean *out, int n, size_t step, int r)
     }
 }
 
-static int closed(int amount, Mean m, int share)
+/** Box sums of the amounts that are inside the shape, over 2 r + 1 columns and rows. */
+static bool sum_boxes(const int16_t *amounts, FlBox box, int r, Mean *sums, GError **error)
 {
-    const int mean = MAX((int)(m.sum / m.n), MEAN_LEAST);
+    const size_t n = fl_box_pixels(box), width = (size_t)box.width;
+    g_autofree Mean *rows = fl_alloc(n, sizeof *rows, "a matte", error);
+    if (!rows)
+        return false;
+    for (size_t i = 0; i < n; i++)
+        sums[i] = amounts[i] >= 0 ? (Mean){(uint32_t)amounts[i], 1} : (Mean){0, 0};
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < box.height; y++)
+        slide(sums + (size_t)y * width, rows + (size_t)y * width, box.width, 1, r);
+#pragma omp parallel for schedule(static)
+    for (int x = 0; x < box.width; x++)
+        slide(rows + x, sums + x, box.height, width, r);
+    return true;
+}
+
+/**
+ * Paint divided by its mean around, with less contrast the less of the window is the shape's: a
+ * thin shape is all rim, and its paint would be a dark core between pale rims. Half is a straight
+ * edge.
+ */
+static int evened(int amount, Mean around, uint32_t inside, uint32_t window)
+{
+    const int mean = MAX((int)(around.sum / around.n), MEAN_LEAST);
     const int even = CLAMP(amount * FL_AMOUNT_ONE / mean, LEAST, MOST);
-    return amount + (even - amount) * share / 255;
+    const int64_t part = (int64_t)FL_AMOUNT_ONE * MIN(2 * inside, window) / window;
+    return FL_AMOUNT_ONE +
+           (int)((even - FL_AMOUNT_ONE) * part * part / (FL_AMOUNT_ONE * FL_AMOUNT_ONE));
 }
 
 bool fl_closing_apply(int16_t *amounts, const uint8_t *share, FlBox box, int radius_px,
                       GError **error)
 {
-    const size_t n = fl_box_pixels(box), width = (size_t)box.width;
-    const int r = MAX(1, radius_px / 4);
-    g_autofree Mean *one = fl_alloc(n, sizeof *one, "a matte", error);
-    g_autofree Mean *two = one ? fl_alloc(n, sizeof *two, "a matte", error) : NULL;
-    if (!two)
+    const size_t n = fl_box_pixels(box);
+    g_autofree Mean *around = fl_alloc(n, sizeof *around, "a matte", error);
+    g_autofree Mean *wide = around ? fl_alloc(n, sizeof *wide, "a matte", error) : NULL;
+    if (!wide || !sum_boxes(amounts, box, MAX(1, radius_px / 4), around, error) ||
+        !sum_boxes(amounts, box, radius_px, wide, error))
         return false;
+    const uint32_t window = (uint32_t)(2 * radius_px + 1) * (uint32_t)(2 * radius_px + 1);
     for (size_t i = 0; i < n; i++)
-        if (amounts[i] >= 0)
-            one[i] = (Mean){(uint32_t)amounts[i], 1};
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < box.height; y++)
-        slide(one + (size_t)y * width, two + (size_t)y * width, box.width, 1, r);
-#pragma omp parallel for schedule(static)
-    for (int x = 0; x < box.width; x++)
-        slide(two + x, one + x, box.height, width, r);
-    for (size_t i = 0; i < n; i++)
-        if (amounts[i] >= 0 && share[i])
-            amounts[i] = (int16_t)closed(amounts[i], one[i], share[i]);
+        if (amounts[i] >= 0 && share[i]) {
+            const int even = evened(amounts[i], around[i], wide[i].n, window);
+            amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * share[i] / 255);
+        }
     return true;
 }

@@ -148,16 +148,19 @@ void fl_ink_free(FlInk *ink)
     g_free(ink);
 }
 
-/** Inside the shape and, with a margin, at least that far from its contour along both axes. */
+/** Inside the shape and, with a margin, with it all around: at the corners of a square too. */
 static bool is_inner(const uint8_t *coverage, int width, int height, int x, int y, int margin)
 {
-    const uint8_t *at = coverage + (size_t)y * width + x;
     if (margin == 0)
-        return *at >= INSIDE;
-    return *at == 255 && (x < margin || at[-margin] == 255) &&
-           (x >= width - margin || at[margin] == 255) &&
-           (y < margin || at[-(ptrdiff_t)margin * width] == 255) &&
-           (y >= height - margin || at[(ptrdiff_t)margin * width] == 255);
+        return coverage[(size_t)y * width + x] >= INSIDE;
+    for (int dy = -margin; dy <= margin; dy += margin)
+        for (int dx = -margin; dx <= margin; dx += margin) {
+            const int xx = x + dx, yy = y + dy; // beyond the page the shape goes on
+            if (xx >= 0 && xx < width && yy >= 0 && yy < height &&
+                coverage[(size_t)yy * width + xx] != 255)
+                return false;
+        }
+    return true;
 }
 
 static void count_inner(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage,

@@ -65,11 +65,12 @@ static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
 /**
  * The tone that brings a painted region's own median amount to one.
  *
- * painted is width * height * 3, coverage width * height, the whole shape. A region takes other
- * parts of the exemplar than its median (a thin limb is all rim, an early frame all fresh paint),
- * and without the tone its colour would not be the drawing's. The median is over pixels 2 px inside
- * the contour; where they are fewer than 64, as in thin lines, over pixels nearer to it; a region
- * of fewer pixels than that leans to FL_TONE_ONE. The tone is a function of this frame alone.
+ * painted is width * height * 3, coverage width * height: what counts of the shape. A region takes
+ * other parts of the exemplar than its median (a thin limb is all rim, an early frame all fresh
+ * paint), and without the tone its colour would not be the drawing's. The median is over pixels 2
+ * px inside the contour; where they are fewer than 64, as in thin lines, over pixels nearer to it;
+ * a region of fewer pixels than that leans to FL_TONE_ONE. The tone is a function of this frame
+ * alone.
  *
  * Returns: FL_TONE_MIN … FL_TONE_MAX.
  */

@@ -1,12 +1,12 @@
 #include "render/frame.h"
 
 #include "base/alloc.h"
-#include "base/first_error.h"
 #include "compose/closing.h"
 #include "compose/colourise.h"
 #include "output/name.h"
 #include "params/text.h"
 #include "render/held.h"
+#include "render/tone.h"
 #include "style/picture.h"
 #include <string.h>
 
@@ -82,32 +82,6 @@ static FlColouring colouring_of(const FlPlan *plan, const FlBackground *backgrou
     memcpy(how.fill, t->has_colour ? t->colour : run->rgb, 3);
     memcpy(how.paper, background->paper, 3);
     return how;
-}
-
-static bool find_tone(const FlPainter *painter, int frame, int *tone, GError **error)
-{
-    const FlBox rect = painter->rect;
-    g_autofree uint8_t *mask = fl_alloc(fl_box_pixels(rect), 1, "a mask", error);
-    const int shown = frame - frame % painter->treatment.hold;
-    if (!mask || !fl_masks_get(painter->masks, painter->region, shown, rect, mask, error))
-        return false;
-    *tone = fl_ink_tone(painter->box->ink, painter->part, mask, rect.width, rect.height);
-    return true;
-}
-
-/* The tone of each painter that is seen in the frame. */
-static bool find_tones(const FlPlan *plan, int frame, int *tones, GError **error)
-{
-    GError *first = NULL;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int p = 0; p < plan->n_painters; p++) {
-        GError *mine = NULL;
-        if (!find_tone(&plan->painters[p], frame, &tones[p], &mine))
-            fl_keep_first_error(&first, mine);
-    }
-    if (first)
-        g_propagate_error(error, first);
-    return first == NULL;
 }
 
 /* The sum of all shapes, also of those left out: a region alone has the layer it has among others.
@@ -211,9 +185,9 @@ static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBack
                         int frame, GError **error)
 {
     g_autofree int *tones = g_new0(int, MAX(plan->n_painters, 1));
-    if (!find_tones(plan, frame, tones, error))
-        return false;
     g_autofree FlBox *boxes = find_boxes(plan, composite->runs);
+    if (!fl_tones_find(plan, composite->runs, boxes, frame, tones, error))
+        return false;
     g_autofree uint16_t *drawn = sum_shapes(plan, composite->runs, boxes, error);
     if (!drawn)
         return false;
