@@ -353,6 +353,23 @@ static void the_picture_has_the_size_that_is_asked_for(void)
     }
 }
 
+static void no_row_or_column_of_the_picture_is_partly_bare(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *path =
+        scratch_write(folder, "a.svg",
+                      "<svg xmlns='http://www.w3.org/2000/svg' width='97.15px' height='128.35px'>"
+                      "<rect width='100%' height='100%' fill='#248'/></svg>");
+    for (int width = 95; width < 105; width++) {
+        const FlFilmOptions options = {.width = width};
+        g_autoptr(FlFilm) film = open_film(&options, path, NULL);
+        g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
+        g_assert_cmpint(fl_film_width(film), ==, width);
+        for (int i = 0; i < width * fl_film_height(film); i++)
+            g_assert_cmpint(runs->run[0].coverage[i], ==, 255);
+    }
+}
+
 static FlFilm *mixed_film(const char *folder, const char *mode, const char *fill,
                           FlWarnings *warnings)
 {
@@ -551,6 +568,8 @@ int main(int argc, char **argv)
     TEST("keys-other-than-the-default-can-be-asked-for",
          keys_other_than_the_default_can_be_asked_for);
     TEST("the-picture-has-the-size-that-is-asked-for", the_picture_has_the_size_that_is_asked_for);
+    TEST("no-row-or-column-of-the-picture-is-partly-bare",
+         no_row_or_column_of_the_picture_is_partly_bare);
     TEST("an-empty-frame-is-a-frame", an_empty_frame_is_a_frame);
     TEST("a-broken-frame-is-named", a_broken_frame_is_named);
     return g_test_run();

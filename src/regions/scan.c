@@ -438,6 +438,18 @@ static bool scan_frame(FlScan *scan, int t, Frame *f, FlWarnings *warnings, GErr
     return true;
 }
 
+/**
+ * The scale with which the page leaves no column or row of the picture partly bare: one that is
+ * would be a contour, with the rim of the paint along it. Less than a pixel of the page is cut off.
+ */
+static double cover_scale(double scale, double width, double height, double w, double h)
+{
+    const double rounding = 5e-4; // px; librsvg's own page sizes are off by less
+    return width * scale > w - rounding && height * scale > h - rounding
+               ? scale
+               : MAX(w / width, h / height);
+}
+
 /** Decides the size of the picture from the first frame. */
 static bool set_size(FlScan *scan, const FlFilmOptions *o, GError **error)
 {
@@ -457,8 +469,7 @@ static bool set_size(FlScan *scan, const FlFilmOptions *o, GError **error)
     if (o->width > 0 || o->height > 0)
         scan->scale = MIN(o->width > 0 ? o->width / width : INFINITY,
                           o->height > 0 ? o->height / height : INFINITY);
-    // librsvg's own page sizes carry rounding errors; half a thousandth of a pixel is none.
-    const double w = ceil(width * scan->scale - 5e-4), h = ceil(height * scan->scale - 5e-4);
+    const double w = MAX(1, round(width * scan->scale)), h = MAX(1, round(height * scan->scale));
     if (!(w <= MOST_SIDE && h <= MOST_SIDE)) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
                     "%s: a picture of %.0f x %.0f px; at most %d px on each side can be drawn",
@@ -467,10 +478,11 @@ static bool set_size(FlScan *scan, const FlFilmOptions *o, GError **error)
     }
     if (!fl_limit_check(FL_LIMIT_FRAME, w * h / 1e6, scan->sequence->file[0], error))
         return false;
+    scan->scale = cover_scale(scan->scale, width, height, w, h);
     scan->page_width = width * scan->scale;
     scan->page_height = height * scan->scale;
-    scan->width = MAX(1, (int)w);
-    scan->height = MAX(1, (int)h);
+    scan->width = (int)w;
+    scan->height = (int)h;
     return true;
 }
 
