@@ -370,44 +370,6 @@ static void no_row_or_column_of_the_picture_is_partly_bare(void)
     }
 }
 
-static FlFilm *mixed_film(const char *folder, const char *mode, const char *fill,
-                          FlWarnings *warnings)
-{
-    g_autofree char *content =
-        g_strdup_printf("<rect width='100' height='100' fill='#fff'/>"
-                        "<circle cx='40' cy='50' r='30' fill='#cc8844'/>"
-                        "<path d='M30,30h50v30h-50z' fill='%s' style='mix-blend-mode:%s'/>",
-                        fill, mode);
-    g_autofree char *path = scratch_svg(folder, "mixed.svg", content);
-    const FlFilmOptions options = {0};
-    return open_film(&options, path, warnings);
-}
-
-static void blend_modes_are_drawn_or_named(void)
-{
-    static const struct {
-        const char *mode, *fill, *warning;
-        double least_db;
-    } cases[] = {
-        {"multiply", "#808080", NULL, 60},
-        {"screen", "#404040", NULL, 60},
-        {"multiply", "#80c0ff", "*#*its blend mode, multiply, is drawn as *over white only*", 20},
-        {"color-burn", "#808080", "*#*its blend mode is left out*", 5},
-    };
-    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
-        g_autoptr(Scratch) folder = scratch_make();
-        g_autoptr(FlWarnings) warnings = fl_warnings_new();
-        g_autoptr(FlFilm) film = mixed_film(folder, cases[i].mode, cases[i].fill, warnings);
-        g_assert_cmpint(fl_film_regions(film), ==, 3);
-        g_assert_cmpfloat(flat_psnr(film, 0), >=, cases[i].least_db);
-        g_assert_cmpint(fl_warnings_count(warnings), ==, cases[i].warning ? 1 : 0);
-        if (!cases[i].warning)
-            continue;
-        g_autofree char *line = fl_warning_line(fl_warnings_get(warnings, 0));
-        g_assert_true(g_pattern_match_simple(cases[i].warning, line));
-    }
-}
-
 /* Rules that reach into groups are not foreseen: a group that fades and what a <use> shows. */
 static void the_smallest_group_that_looks_otherwise_is_taken_as_one(void)
 {
@@ -543,7 +505,6 @@ int main(int argc, char **argv)
     TEST("merges", regions_merge_through_others_and_not_in_circles);
     TEST("returning", a_region_that_vanishes_and_returns_is_the_same);
     TEST("fall-back", the_smallest_group_that_looks_otherwise_is_taken_as_one);
-    TEST("blend-modes", blend_modes_are_drawn_or_named);
     TEST("registered", frames_that_begin_at_nought_are_put_back);
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);
     TEST("limbs-that-are-strokes-are-painted", limbs_that_are_strokes_are_painted);

@@ -178,6 +178,7 @@ static void random_layers(FlLayer *layers, uint8_t coverage[][N], int n, uint64_
         for (int i = 0; i < 4 * N; i++)
             layers[k].rgba[i] = (uint8_t)fl_rng_u32(&rng);
         layers[k].alpha = fl_rng_below(&rng, 2) ? 255 : (uint8_t)fl_rng_u32(&rng);
+        layers[k].mix = fl_rng_below(&rng, 3) ? FL_MIX_OVER : fl_rng_below(&rng, FL_N_MIXES);
         layers[k].stacking = fl_rng_below(&rng, 4) ? FL_STACKING_KNOCKOUT : FL_STACKING_GLAZE;
     }
 }

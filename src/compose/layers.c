@@ -52,9 +52,14 @@ static int stored_alpha(int paint, int seen, int covered, int above)
     return (int)MIN((share + left / 2) / left, 255);
 }
 
+static bool knocks_out(const FlLayer *layer)
+{
+    return layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_MIX_OVER;
+}
+
 static void resolve_rows(const FlLayer *layer, Above *above)
 {
-    const bool knocks = layer->stacking == FL_STACKING_KNOCKOUT;
+    const bool knocks = knocks_out(layer);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < layer->box.height; y++)
         for (int x = 0; x < layer->box.width; x++) {
@@ -89,7 +94,7 @@ static void resolve_occlusion(FlLayer *layers, int n, const FlStackParams *param
         fl_matte_visible(layer->coverage, above->area, above->width, above->height, layer->box,
                          above->seen);
         resolve_rows(layer, above);
-        if (above->spread && layer->stacking == FL_STACKING_KNOCKOUT)
+        if (above->spread && knocks_out(layer))
             grow_area(layer, params, above);
     }
 }
@@ -152,21 +157,49 @@ static void glaze_pixel(const Sum *below, const FlScale *scale, const uint8_t *p
     memcpy(rgba, lifted, 4);
 }
 
-/** Bottom layer first: gives glazes the colour that is right over what lies below them. */
-static void resolve_glazes(FlLayer *layers, int n, int width, int y, const FlStackParams *params,
-                           const FlScale *scale, Sum *sums)
+/** Gives a mixed layer's pixel the colour that is right over what lies below it. */
+static void mix_pixel(const Sum *below, int drawn, const FlScale *scale, FlMix mix, uint8_t *rgba)
+{
+    uint8_t under[3];
+    for (int c = 0; c < 3; c++)
+        under[c] = fl_scale_level(scale, sum_value(below, c));
+    fl_mix(mix, under, drawn, rgba);
+}
+
+/** A row of the stack, from the paper up to the layer at hand. */
+typedef struct Row {
+    Sum *sum;
+    uint8_t *drawn; // how far the shapes below cover each pixel, 0..255
+} Row;
+
+static void add_shape(const FlLayer *layer, const uint8_t *coverage, uint8_t *drawn)
+{
+    for (int x = 0; x < layer->box.width; x++)
+        drawn[x] = (uint8_t)(drawn[x] + scaled(255 - drawn[x], scaled(coverage[x], layer->alpha)));
+}
+
+/** Bottom layer first: gives glazes and mixed layers the colours for what lies below them. */
+static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlStackParams *params,
+                            const FlScale *scale, Row below)
 {
     const FlBackdrop paper = {.flat = {params->paper[0], params->paper[1], params->paper[2], 255}};
-    sum_backdrop(&paper, scale, y, width, sums);
+    sum_backdrop(&paper, scale, y, width, below.sum);
+    memset(below.drawn, 0, (size_t)width);
     for (int k = 0; k < n; k++) {
-        const FlBox box = layers[k].box;
+        const FlLayer *layer = &layers[k];
+        const FlBox box = layer->box;
         if (y < box.y || y >= box.y + box.height)
             continue;
-        uint8_t *row = layers[k].rgba + (size_t)(y - box.y) * box.width * 4;
-        if (layers[k].stacking == FL_STACKING_GLAZE)
-            for (int x = 0; x < box.width; x++)
-                glaze_pixel(&sums[box.x + x], scale, params->paper, row + 4 * x);
-        sum_row(&layers[k], 1, scale, y, sums);
+        uint8_t *row = layer->rgba + (size_t)(y - box.y) * box.width * 4;
+        for (int x = 0; x < box.width; x++) {
+            if (layer->mix != FL_MIX_OVER && row[4 * x + 3])
+                mix_pixel(&below.sum[box.x + x], below.drawn[box.x + x], scale, layer->mix,
+                          row + 4 * x);
+            else if (layer->stacking == FL_STACKING_GLAZE && layer->mix == FL_MIX_OVER)
+                glaze_pixel(&below.sum[box.x + x], scale, params->paper, row + 4 * x);
+        }
+        sum_row(layer, 1, scale, y, below.sum);
+        add_shape(layer, layer->coverage + (size_t)y * width + box.x, below.drawn + box.x);
     }
 }
 
@@ -177,16 +210,17 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
     if (!above_init(&above, width, height, params->gap_px > 0 || params->feather_px > 0, error))
         return false;
     g_autofree Sum *sums = fl_alloc((size_t)width, sizeof *sums, "a row of pixels", error);
-    if (!sums)
+    g_autofree uint8_t *drawn = sums ? fl_alloc((size_t)width, 1, "a row of pixels", error) : NULL;
+    if (!drawn)
         return false;
     resolve_occlusion(layers, n, params, &above);
-    bool glazes = false;
+    bool plain = true;
     for (int k = 0; k < n; k++)
-        glazes |= layers[k].stacking == FL_STACKING_GLAZE;
+        plain &= layers[k].stacking != FL_STACKING_GLAZE && layers[k].mix == FL_MIX_OVER;
     FlScale scale;
     fl_scale_init(&scale, params->linear);
-    for (int y = 0; glazes && y < height; y++)
-        resolve_glazes(layers, n, width, y, params, &scale, sums);
+    for (int y = 0; !plain && y < height; y++)
+        resolve_colours(layers, n, width, y, params, &scale, (Row){sums, drawn});
     return true;
 }
 

@@ -3,6 +3,7 @@
 #define FLUIDY_COMPOSE_LAYERS_H
 
 #include "base/box.h"
+#include "base/mix.h"
 #include "params/treatment.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -17,7 +18,8 @@ typedef struct FlLayer {
                          // where its paint has body only; NULL: wherever its shape is
     uint8_t *rgba;       // box.width * box.height * 4 straight RGBA; owned by the caller
     uint8_t alpha;       // opacity of the layer, 255 opaque
-    FlStacking stacking;
+    FlStacking stacking; // a layer that is mixed hides nothing, whatever this says
+    FlMix mix;           // with what is below it
 } FlLayer;
 
 typedef struct FlStackParams {
@@ -34,7 +36,9 @@ typedef struct FlStackParams {
  * A layer is made so that the plain `over` of all layers shows every one of them exactly in the
  * part of each pixel that is its own: where a neighbour above takes the rest of an edge pixel, the
  * layer is full below it, so that shared edges show no seam. Where a layer is wholly hidden it
- * keeps its paint, except that transparent paint above takes away what would shine through.
+ * keeps its paint, except that transparent paint above takes away what would shine through. Glazes
+ * and layers that are mixed get the colours with which `over` does the same above what lies below
+ * them on the paper; bare paper is nothing to be mixed with, as in the drawing.
  */
 bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlStackParams *params,
                        GError **error);

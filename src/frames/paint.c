@@ -45,19 +45,6 @@ typedef struct Reader {
     int n_stops;
 } Reader;
 
-uint8_t fl_mix_overlay(FlMix mix, uint8_t rgb[3])
-{
-    if (mix != FL_MIX_MULTIPLY && mix != FL_MIX_SCREEN)
-        return 255;
-    const int flip = mix == FL_MIX_MULTIPLY ? 255 : 0; // multiply is screen of the negatives
-    int most = 0;
-    for (int c = 0; c < 3; c++)
-        most = MAX(most, abs(flip - rgb[c]));
-    for (int c = 0; c < 3; c++)
-        rgb[c] = (uint8_t)abs(flip - (most ? (abs(flip - rgb[c]) * 255 + most / 2) / most : 0));
-    return (uint8_t)most;
-}
-
 static void source_clear(Source *source)
 {
     if (source->key)
@@ -272,12 +259,19 @@ static void exchange_contexts(Reader *r)
     last[0] = before;
 }
 
+/** "//MULTIPLY set-operator"; what is no blend mode is librsvg's own business. */
 static FlMix mix_of(const char *line)
 {
-    return strstr(line, "//OVER ")       ? FL_MIX_OVER
-           : strstr(line, "//MULTIPLY ") ? FL_MIX_MULTIPLY
-           : strstr(line, "//SCREEN ")   ? FL_MIX_SCREEN
-                                         : FL_MIX_OTHER;
+    static const char *const names[FL_N_MIXES] = {
+        "OVER",    "MULTIPLY",       "SCREEN",     "OVERLAY",       "DARKEN",     "LIGHTEN",
+        "DODGE",   "BURN",           "HARD_LIGHT", "SOFT_LIGHT",    "DIFFERENCE", "EXCLUSION",
+        "HSL_HUE", "HSL_SATURATION", "HSL_COLOR",  "HSL_LUMINOSITY"};
+    const char *name = g_str_has_prefix(line, "//") ? line + 2 : line;
+    const size_t n = strcspn(name, " ");
+    for (int mix = 0; mix < FL_N_MIXES; mix++)
+        if (strlen(names[mix]) == n && strncmp(name, names[mix], n) == 0)
+            return (FlMix)mix;
+    return FL_MIX_OVER;
 }
 
 static void read_line(Reader *r, const char *line)
@@ -389,7 +383,7 @@ static int take_apart(const GArray *ops, bool whole, FlPainted parts[FL_MOST_PAR
     parts[0] = join(ops, 2, FL_PART_WHOLE);
     const FlPaint *paint = &parts[0].paint;
     const bool uniform = paint->kind == FL_PAINT_FLAT && (paint->alpha == 255 || ops->len == 1);
-    if (whole || uniform || strokes == 0 || strokes == ops->len)
+    if (whole || uniform || parts[0].mix != FL_MIX_OVER || strokes == 0 || strokes == ops->len)
         return 1;
     fl_paint_clear(&parts[0].paint);
     const int first = g_array_index(ops, Op, 0).stroke;

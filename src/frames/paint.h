@@ -2,6 +2,7 @@
 #ifndef FLUIDY_FRAMES_PAINT_H
 #define FLUIDY_FRAMES_PAINT_H
 
+#include "base/mix.h"
 #include <glib.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -12,14 +13,6 @@ typedef enum FlPaintKind {
     FL_PAINT_IMAGE,    // a raster image, a pattern, or the result of a filter
     FL_PAINT_MIXED,    // several of these
 } FlPaintKind;
-
-/** How a leaf is mixed with what lies below it. */
-typedef enum FlMix {
-    FL_MIX_OVER,
-    FL_MIX_MULTIPLY,
-    FL_MIX_SCREEN,
-    FL_MIX_OTHER, // any other blend mode
-} FlMix;
 
 /** The parts of a leaf that are drawn apart. */
 typedef enum FlPart {
@@ -52,18 +45,11 @@ typedef struct FlPainted {
 #define FL_MOST_PARTS 2
 
 /**
- * Turns a colour that is mixed into the transparent colour that does the same where it is laid
- * over: for multiply exactly over white, for screen over black, and greys everywhere.
- *
- * Returns: the opacity, of 255, that it takes; rgb stays for the other modes.
- */
-uint8_t fl_mix_overlay(FlMix mix, uint8_t rgb[3]);
-
-/**
  * Reads the drawing commands that cairo's script surface wrote for one leaf.
  *
  * whole: fill and stroke are not to be taken apart. A leaf whose fill and stroke have the same
- * opaque paint is one part. Returns: the number of parts, bottom up; 0 if nothing is drawn.
+ * opaque paint is one part, and so is one that is mixed with what is below it. Returns: the number
+ * of parts, bottom up; 0 if nothing is drawn.
  */
 int fl_paint_read(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]);
 

@@ -188,8 +188,6 @@ static void remember(FlFilm *film, FlScan *scan)
                              .alpha = s->peak,
                              .drawn = s->peak,
                              .mix = (uint8_t)s->mix};
-            if (step->flat)
-                step->alpha = (uint8_t)((s->peak * fl_mix_overlay(s->mix, step->rgb) + 127) / 255);
             memcpy(step->box, s->box, sizeof step->box);
         }
     }

@@ -54,6 +54,7 @@ typedef struct FlRun {
                        // Its A is coverage again, and its colours are defined where A > 0
     uint8_t rgb[3];    // the fill; of a picture its mean
     uint8_t alpha;     // opacity of the run, 255 opaque; coverage is without it
+    FlMix mix;         // with what is below it
 } FlRun;
 
 typedef struct FlRuns {

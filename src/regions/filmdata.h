@@ -13,7 +13,7 @@ typedef struct FlStep {
     uint8_t rgb[3];
     uint8_t alpha; // of its run
     uint8_t drawn; // FlPaint.peak: what is drawn where it is covered
-    uint8_t mix;   // FlMix, of a picture; flat ones have rgb and alpha of fl_mix_overlay()
+    uint8_t mix;   // FlMix
     float box[4];  // x0, y0, x1, y1 that it lies in, px
 } FlStep;
 

@@ -10,7 +10,10 @@ static void lay(const FlRun *run, const uint8_t *rgb, size_t n, uint8_t *rgba)
         if (a == 0)
             continue;
         uint8_t *out = rgba + 4 * p;
-        const uint8_t *colour = rgb ? rgb : run->picture ? run->picture + 4 * p : run->rgb;
+        uint8_t colour[3];
+        memcpy(colour, rgb ? rgb : run->picture ? run->picture + 4 * p : run->rgb, 3);
+        if (!rgb && run->mix != FL_MIX_OVER)
+            fl_mix(run->mix, out, out[3], colour);
         const uint32_t rest = out[3] * (255 - a); // weights out of 255 * 255
         const uint32_t all = 255 * a + rest;
         for (int c = 0; c < 3; c++)

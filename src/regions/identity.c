@@ -13,6 +13,7 @@
 /** What is summed over a region, to say what it is. */
 typedef struct Sum {
     double area, covered, alpha;
+    bool plain;  // not all of it is mixed with what is below it
     double best; // area of the paint of the group so far
 } Sum;
 
@@ -181,7 +182,7 @@ static char *key_of(const Work *w, const FlSeen *s, int track)
 {
     const FlTrack *tr = &g_array_index(w->tracks, FlTrack, track);
     const int label = w->label_of[s->labels];
-    const char *apart = is_apart(w, s) ? "s" : "";
+    const char *apart = is_apart(w, s) ? "s" : s->mix != FL_MIX_OVER ? "m" : "";
     if (w->rule_of[track] >= 0) // a rule's name makes the region; other rules of that name join
         return g_strdup_printf("rule %s", w->options->rules[w->rule_of[track]].name);
     switch (w->options->key) {
@@ -225,6 +226,7 @@ static void add_up(const Work *w, const FlSeen *s, FlGroup *group, Sum *sum, GHa
     sum->area += s->area_px;
     sum->covered += s->covers * s->area_px;
     sum->alpha = MAX(sum->alpha, s->alpha);
+    sum->plain |= s->mix == FL_MIX_OVER;
     group->stroke = group->stroke && is_apart(w, s);
 }
 
@@ -258,7 +260,7 @@ static GArray *gather(Work *w)
     for (guint r = 0; r < groups->len; r++) {
         const Sum *sum = &g_array_index(sums, Sum, r);
         g_array_index(groups, FlGroup, r).shade =
-            sum->alpha < SHADE_ALPHA && sum->covered >= SHADE_COVERS * sum->area;
+            (sum->alpha < SHADE_ALPHA || !sum->plain) && sum->covered >= SHADE_COVERS * sum->area;
     }
     return groups;
 }

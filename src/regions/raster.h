@@ -41,4 +41,13 @@ static inline uint32_t fl_blend(uint32_t below, const uint8_t rgb[3], uint32_t o
     return out;
 }
 
+/** One straight RGBA pixel of a premultiplied one; its opacity becomes `alpha`. */
+static inline void fl_straighten(uint32_t pixel, uint8_t alpha, uint8_t out[4])
+{
+    const uint32_t a = pixel >> 24;
+    for (int c = 0; c < 3; c++)
+        out[c] = a ? (uint8_t)MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0;
+    out[3] = alpha;
+}
+
 #endif

@@ -33,14 +33,15 @@ static bool meets(const Run *run, const FlFilmFrame *frame, const FlStep *step)
     return false;
 }
 
-/** Whether step can be drawn with run: two translucent shapes only where they do not overlap. */
+/** Whether step can be drawn with run: two that show what is below only where they do not overlap.
+ */
 static bool fits(const Run *run, const FlFilmFrame *frame, const FlStep *step)
 {
     if (run->region != step->region || run->flat != step->flat || run->alpha != step->alpha ||
         run->drawn != step->drawn || run->mix != step->mix ||
         (step->flat && memcmp(run->rgb, step->rgb, 3) != 0))
         return false;
-    return step->alpha == 255 || !meets(run, frame, step);
+    return (step->alpha == 255 && step->mix == FL_MIX_OVER) || !meets(run, frame, step);
 }
 
 /** The runs of a frame; region < 0: all of them. */
@@ -174,15 +175,6 @@ static bool draw_flat(const Stage *stage, const Run *run, uint8_t *coverage, GEr
     return true;
 }
 
-/** One straight RGBA pixel of a premultiplied one; its opacity becomes `alpha`. */
-static inline void straighten(uint32_t pixel, uint8_t alpha, uint8_t out[4])
-{
-    const uint32_t a = pixel >> 24;
-    for (int c = 0; c < 3; c++)
-        out[c] = (uint8_t)(a ? MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0);
-    out[3] = alpha;
-}
-
 /** Draws the steps of a run on a picture of their own; picture may be NULL. */
 static bool draw_picture(Stage *stage, const Run *run, uint8_t *coverage, uint8_t *picture,
                          GError **error)
@@ -207,9 +199,7 @@ static bool draw_picture(Stage *stage, const Run *run, uint8_t *coverage, uint8_
             if (!pixel)
                 continue;
             uint8_t mine[4];
-            straighten(pixel, solid[pixel >> 24], mine);
-            if (run->mix != FL_MIX_OVER)
-                mine[3] = (uint8_t)(mine[3] * fl_mix_overlay(run->mix, mine) / 255);
+            fl_straighten(pixel, solid[pixel >> 24], mine);
             if (picture)
                 memcpy(picture + 4 * p, mine, 4);
             coverage[p] = fl_over(mine[3], coverage[p]);
@@ -234,7 +224,7 @@ static void mean_colour(const uint8_t *picture, size_t n, uint8_t rgb[3])
 static bool draw_run(Stage *stage, const Run *run, FlRun *out, GError **error)
 {
     const size_t n = (size_t)stage->film->width * stage->film->height;
-    *out = (FlRun){.region = run->region, .alpha = run->alpha};
+    *out = (FlRun){.region = run->region, .alpha = run->alpha, .mix = (FlMix)run->mix};
     memcpy(out->rgb, run->rgb, 3);
     out->coverage = fl_alloc(n, 1, "the mask of a region", error);
     if (!out->coverage)

@@ -11,7 +11,6 @@
 
 #define MOST_SIDE 32767 // px; cairo's limit
 #define THICK 0.03f  // width of a stroke, share of the page's longer side, that is no line any more
-#define GREYISH 16   // levels between the channels of a colour that is still a grey
 #define MOST_WHOLE 8 // groups of a frame that are taken as one, each after another look
 #define LOOK_PX 256  // longest side of the small pictures on which a frame is looked over
 
@@ -143,33 +142,6 @@ static void relate_parts(GArray *looks, guint first)
     }
 }
 
-static void set_mix(FlSeen *seen, FlMix mix)
-{
-    uint8_t rgb[3];
-    memcpy(rgb, seen->rgb, 3);
-    seen->mix = mix;
-    seen->alpha = (uint8_t)(seen->alpha * fl_mix_overlay(mix, rgb) / 255);
-}
-
-/** Says what is drawn instead of a blend mode, unless it is the same. */
-static void warn_of_mix(const FlSeen *s, const FlLeaf *leaf, FlWarnings *warnings, const char *file,
-                        int number)
-{
-    const int most = MAX(s->rgb[0], MAX(s->rgb[1], s->rgb[2]));
-    const int least = MIN(s->rgb[0], MIN(s->rgb[1], s->rgb[2]));
-    const bool grey = s->kind == FL_PAINT_FLAT && most - least <= GREYISH;
-    if (s->mix == FL_MIX_OTHER)
-        fl_warnings_add(warnings, file, number, leaf->id,
-                        "its blend mode is left out: it is drawn over what is below it");
-    else if (s->mix != FL_MIX_OVER && !grey)
-        fl_warnings_add(
-            warnings, file, number, leaf->id,
-            "its blend mode, %s, is drawn as a transparent colour, which looks the same "
-            "over %s only",
-            s->mix == FL_MIX_MULTIPLY ? "multiply" : "screen",
-            s->mix == FL_MIX_MULTIPLY ? "white" : "black");
-}
-
 static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warnings, const char *file,
                     int number, GError **error)
 {
@@ -187,11 +159,10 @@ static bool look_at(Frame *f, const FlLeaf *leaf, int index, FlWarnings *warning
                              .kind = p->paint.kind,
                              .alpha = p->paint.alpha,
                              .peak = p->paint.peak,
+                             .mix = p->mix,
                              .unit = index < 0 ? -index : 0,
                              .region = -1};
         memcpy(look.seen.rgb, p->paint.rgb, 3);
-        set_mix(&look.seen, p->mix);
-        warn_of_mix(&look.seen, leaf, warnings, file, number);
         good = good && cover(f, leaf, p->part, &look.box, error);
         const float opacity = MAX(p->paint.peak, 1) / 255.0f;
         look.seen.area_px =
@@ -233,7 +204,7 @@ static int is_separable(Frame *f, const FlUnit *unit, guint first, GError **erro
     g_autofree FlPiece *piece = g_new(FlPiece, n);
     for (guint i = 0; i < n; i++) {
         const Look *look = &g_array_index(f->looks, Look, first + i);
-        piece[i] = (FlPiece){look->leaf, look->seen.part};
+        piece[i] = (FlPiece){look->leaf, look->seen.part, look->seen.mix};
     }
     return fl_looks_alike(f->svg, &unit->leaf, piece, (int)n, f->all.x1, f->all.y1, f->width,
                           f->height, error);

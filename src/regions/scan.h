@@ -22,8 +22,8 @@ typedef struct FlSeen {
     bool thick;                // a stroke without a fill that is a limb rather than a line
     FlPaintKind kind;
     uint8_t rgb[3], alpha, peak; // see FlPaint
-    FlMix mix;                   // then alpha is that of fl_mix_overlay()
-    int paint;                   // FlPaint.key
+    FlMix mix;
+    int paint; // FlPaint.key
     int name, labels, layers, ids, classes, tree;
     float box[4];  // x0, y0, x1, y1 of what is drawn, px of the picture; a pixel too wide
     float area_px; // sum of its coverage

@@ -34,14 +34,38 @@ void fl_self_check_free(FlSelfCheck *check)
     g_free(check);
 }
 
-static bool draw_picture(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSeen *seen,
-                         double page_width, double page_height, GError **error)
+/** Lays a premultiplied pixel over another, mixed with it. */
+static void mix_pixel(uint32_t *below, uint32_t pixel, FlMix mix)
 {
-    cairo_surface_mark_dirty(check->sum);
-    cairo_t *cr = cairo_create(check->sum);
-    const bool drawn = fl_svg_draw(svg, leaf, seen->part, cr, page_width, page_height, error);
+    uint8_t rgb[4], under[4];
+    fl_straighten(pixel, 0, rgb);
+    fl_straighten(*below, 0, under);
+    fl_mix(mix, under, (int)(*below >> 24), rgb);
+    *below = fl_blend(*below, rgb, pixel >> 24);
+}
+
+static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surface,
+                       double page_width, double page_height, GError **error)
+{
+    const int width = cairo_image_surface_get_width(surface);
+    const int height = cairo_image_surface_get_height(surface);
+    const bool plain = piece->mix == FL_MIX_OVER;
+    /* A mixed one is drawn apart: librsvg mixes it only with what is in the group around it. */
+    g_autoptr(cairo_surface_t) apart =
+        plain ? NULL : fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+    if (!plain && !apart)
+        return false;
+    cairo_surface_mark_dirty(surface);
+    cairo_t *cr = cairo_create(plain ? surface : apart);
+    const bool drawn =
+        fl_svg_draw(svg, piece->leaf, piece->part, cr, page_width, page_height, error);
     cairo_destroy(cr);
-    cairo_surface_flush(check->sum);
+    cairo_surface_flush(plain ? surface : apart);
+    uint32_t *below = (uint32_t *)cairo_image_surface_get_data(surface);
+    const uint32_t *pixels = plain ? NULL : (const uint32_t *)cairo_image_surface_get_data(apart);
+    for (size_t p = 0; drawn && pixels && p < (size_t)width * height; p++)
+        if (pixels[p])
+            mix_pixel(&below[p], pixels[p], piece->mix);
     return drawn;
 }
 
@@ -53,7 +77,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
     const int stride = cairo_image_surface_get_stride(coverage);
     uint32_t *sum = (uint32_t *)cairo_image_surface_get_data(check->sum);
     const bool flat = seen->kind == FL_PAINT_FLAT && seen->mix == FL_MIX_OVER;
-    const FlPiece piece = {leaf, seen->part};
+    const FlPiece piece = {leaf, seen->part, seen->mix};
     g_array_append_val(check->pieces, piece);
     const uint16_t index = (uint16_t)MIN(check->pieces->len, UINT16_MAX);
     for (int y = box.y0; y < box.y1; y++)
@@ -65,7 +89,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
             if (cover)
                 check->top[p] = index;
         }
-    return flat || draw_picture(check, svg, leaf, seen, page_width, page_height, error);
+    return flat || draw_piece(svg, &piece, check->sum, page_width, page_height, error);
 }
 
 static int difference(uint32_t a, uint32_t b)
@@ -82,21 +106,17 @@ static cairo_surface_t *draw_pieces(FlSvg *svg, const FlPiece *piece, int n, int
 {
     g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
     bool drawn = surface != NULL;
-    for (int i = 0; i < n && drawn; i++) {
-        cairo_t *cr = cairo_create(surface);
-        drawn = fl_svg_draw(svg, piece[i].leaf, piece[i].part, cr, page_width, page_height, error);
-        cairo_destroy(cr);
-    }
+    for (int i = 0; i < n && drawn; i++)
+        drawn = draw_piece(svg, &piece[i], surface, page_width, page_height, error);
     if (!drawn)
         return NULL;
-    cairo_surface_flush(surface);
     return g_steal_pointer(&surface);
 }
 
 int fl_looks_alike(FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n, int width,
                    int height, double page_width, double page_height, GError **error)
 {
-    const FlPiece whole = {group, FL_PART_WHOLE};
+    const FlPiece whole = {group, FL_PART_WHOLE, FL_MIX_OVER};
     g_autoptr(cairo_surface_t) one =
         draw_pieces(svg, &whole, 1, width, height, page_width, page_height, error);
     g_autoptr(cairo_surface_t) all =

@@ -36,6 +36,7 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width
 typedef struct FlPiece {
     const FlLeaf *leaf;
     FlPart part;
+    FlMix mix;
 } FlPiece;
 
 /**

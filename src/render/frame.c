@@ -136,7 +136,8 @@ static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *b
     *layer = (FlLayer){.box = box,
                        .coverage = run->coverage,
                        .alpha = run->alpha,
-                       .stacking = painter ? painter->treatment.stacking : FL_STACKING_KNOCKOUT};
+                       .stacking = painter ? painter->treatment.stacking : FL_STACKING_KNOCKOUT,
+                       .mix = run->mix};
     layer->rgba = fl_alloc(4 * fl_box_pixels(layer->box), 1, "a layer", error);
     if (!layer->rgba)
         return false;

@@ -22,7 +22,7 @@ static uint16_t *find_owners(const FlPlan *plan, const FlRuns *runs, const FlBox
     for (int r = 0; r < runs->n; r++) {
         const FlRun *run = &runs->run[r];
         const int p = plan->painter_of[run->region];
-        if (run->alpha < 255)
+        if (run->alpha < 255 || run->mix != FL_MIX_OVER)
             continue;
         for (int y = boxes[r].y; y < boxes[r].y + boxes[r].height; y++)
             for (int x = boxes[r].x; x < boxes[r].x + boxes[r].width; x++) {
