@@ -76,76 +76,61 @@ static uint32_t distance_c(const Case *c, const FlTexel *centre, bool opposed, u
     return fl_patch_distance_c(centre, c->offsets, opposed, c->target, &c->rest, limit);
 }
 
-static void every_version_equals_c_on_noise(void)
+static void the_distance_is_that_of_c(const void *version)
 {
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        for (uint64_t seed = 1; seed <= 2000; seed++) {
-            Case c;
-            make_case(&c, seed);
-            const FlTexel *centre = centre_of(&c, seed);
-            const uint32_t want = distance_c(&c, centre, seed % 2, UINT32_MAX);
-            const uint32_t got =
-                kernels.patch_distance(centre, c.offsets, seed % 2, c.target, &c.rest, UINT32_MAX);
-            if (got != want)
-                g_test_message("%s, seed %" G_GUINT64_FORMAT, kernels.name, seed);
-            g_assert_cmpuint(got, ==, want);
-        }
+    const FlKernels *kernels = version;
+    for (uint64_t seed = 1; seed <= 2000; seed++) {
+        Case c;
+        make_case(&c, seed);
+        const FlTexel *centre = centre_of(&c, seed);
+        const uint32_t want = distance_c(&c, centre, seed % 2, UINT32_MAX);
+        const uint32_t got =
+            kernels->patch_distance(centre, c.offsets, seed % 2, c.target, &c.rest, UINT32_MAX);
+        if (got != want)
+            g_test_message("%s, seed %" G_GUINT64_FORMAT, kernels->name, seed);
+        g_assert_cmpuint(got, ==, want);
     }
 }
 
 /* The exemplar all 0, the target all 1, every weight 1. */
-static void no_version_overflows_on_extremes(void)
+static void nothing_overflows_on_extremes(const void *version)
 {
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        Case c;
-        make_case(&c, 1);
-        memset(c.source, 0, sizeof c.source);
+    const FlKernels *kernels = version;
+    Case c;
+    make_case(&c, 1);
+    memset(c.source, 0, sizeof c.source);
+    for (int k = 0; k < FL_WEIGHED_CHANNELS; k++)
+        c.rest.c[k] = 32767;
+    for (int p = 0; p < FL_PATCH_PIXELS; p++) {
         for (int k = 0; k < FL_WEIGHED_CHANNELS; k++)
-            c.rest.c[k] = 32767;
-        for (int p = 0; p < FL_PATCH_PIXELS; p++) {
-            for (int k = 0; k < FL_WEIGHED_CHANNELS; k++)
-                c.target[p].c[k] = FL_ONE;
-            c.target[p].c[FL_CH_COLOUR_WEIGHT] = 32767;
-        }
-        const FlTexel *centre = centre_of(&c, 0);
-        const uint32_t whole = 25u * 6 * FL_ONE * FL_ONE;
-        uint32_t pair[2];
-        g_assert_cmpuint(
-            kernels.patch_distance(centre, c.offsets, false, c.target, &c.rest, UINT32_MAX), ==,
-            whole);
-        kernels.patch_pair(centre, c.offsets, c.target, &c.rest, UINT32_MAX, pair);
-        g_assert_cmpuint(pair[0], ==, whole);
-        g_assert_cmpuint(pair[1], ==, whole);
+            c.target[p].c[k] = FL_ONE;
+        c.target[p].c[FL_CH_COLOUR_WEIGHT] = 32767;
     }
+    const FlTexel *centre = centre_of(&c, 0);
+    const uint32_t whole = 25u * 6 * FL_ONE * FL_ONE;
+    uint32_t pair[2];
+    g_assert_cmpuint(
+        kernels->patch_distance(centre, c.offsets, false, c.target, &c.rest, UINT32_MAX), ==,
+        whole);
+    kernels->patch_pair(centre, c.offsets, c.target, &c.rest, UINT32_MAX, pair);
+    g_assert_cmpuint(pair[0], ==, whole);
+    g_assert_cmpuint(pair[1], ==, whole);
 }
 
-static void a_limit_never_changes_which_side_of_it_a_distance_is_on(void)
+static void a_limit_never_changes_which_side_of_it_a_distance_is_on(const void *version)
 {
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        for (uint64_t seed = 1; seed <= 500; seed++) {
-            Case c;
-            make_case(&c, seed);
-            const FlTexel *centre = centre_of(&c, seed);
-            const uint32_t whole = distance_c(&c, centre, false, UINT32_MAX);
-            const uint32_t at =
-                kernels.patch_distance(centre, c.offsets, false, c.target, &c.rest, whole);
-            const uint32_t below =
-                kernels.patch_distance(centre, c.offsets, false, c.target, &c.rest, whole - 1);
-            g_assert_cmpuint(at, ==, whole);
-            g_assert_cmpuint(below, >, whole - 1);
-        }
+    const FlKernels *kernels = version;
+    for (uint64_t seed = 1; seed <= 500; seed++) {
+        Case c;
+        make_case(&c, seed);
+        const FlTexel *centre = centre_of(&c, seed);
+        const uint32_t whole = distance_c(&c, centre, false, UINT32_MAX);
+        const uint32_t at =
+            kernels->patch_distance(centre, c.offsets, false, c.target, &c.rest, whole);
+        const uint32_t below =
+            kernels->patch_distance(centre, c.offsets, false, c.target, &c.rest, whole - 1);
+        g_assert_cmpuint(at, ==, whole);
+        g_assert_cmpuint(below, >, whole - 1);
     }
 }
 
@@ -156,32 +141,27 @@ static void turn(const int16_t *offsets, int16_t *turned)
         turned[p] = (int16_t)-offsets[p];
 }
 
-static void a_pair_is_the_distances_of_both_half_turns(void)
+static void a_pair_is_the_distances_of_both_half_turns(const void *version)
 {
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        for (uint64_t seed = 1; seed <= 1000; seed++) {
-            Case c;
-            int16_t turned[FL_PATCH_PIXELS];
-            uint32_t got[2];
-            make_case(&c, seed);
-            turn(c.offsets, turned);
-            const FlTexel *centre = centre_of(&c, seed);
-            const uint32_t want[2] = {
-                distance_c(&c, centre, false, UINT32_MAX),
-                fl_patch_distance_c(centre, turned, true, c.target, &c.rest, UINT32_MAX)};
-            kernels.patch_pair(centre, c.offsets, c.target, &c.rest, MAX(want[0], want[1]), got);
-            g_assert_cmpuint(got[0], ==, want[0]);
-            g_assert_cmpuint(got[1], ==, want[1]);
-            const uint32_t limit = MIN(want[0], want[1]);
-            kernels.patch_pair(centre, c.offsets, c.target, &c.rest, limit, got);
-            g_assert_cmpuint(MIN(got[0], got[1]), ==, limit);
-            kernels.patch_pair(centre, c.offsets, c.target, &c.rest, limit - 1, got);
-            g_assert_cmpuint(MIN(got[0], got[1]), >, limit - 1);
-        }
+    const FlKernels *kernels = version;
+    for (uint64_t seed = 1; seed <= 1000; seed++) {
+        Case c;
+        int16_t turned[FL_PATCH_PIXELS];
+        uint32_t got[2];
+        make_case(&c, seed);
+        turn(c.offsets, turned);
+        const FlTexel *centre = centre_of(&c, seed);
+        const uint32_t want[2] = {
+            distance_c(&c, centre, false, UINT32_MAX),
+            fl_patch_distance_c(centre, turned, true, c.target, &c.rest, UINT32_MAX)};
+        kernels->patch_pair(centre, c.offsets, c.target, &c.rest, MAX(want[0], want[1]), got);
+        g_assert_cmpuint(got[0], ==, want[0]);
+        g_assert_cmpuint(got[1], ==, want[1]);
+        const uint32_t limit = MIN(want[0], want[1]);
+        kernels->patch_pair(centre, c.offsets, c.target, &c.rest, limit, got);
+        g_assert_cmpuint(MIN(got[0], got[1]), ==, limit);
+        kernels->patch_pair(centre, c.offsets, c.target, &c.rest, limit - 1, got);
+        g_assert_cmpuint(MIN(got[0], got[1]), >, limit - 1);
     }
 }
 
@@ -199,33 +179,27 @@ static void make_windows(FlWindows *windows, uint32_t most, FlRng *rng)
     windows->step[2] = (uint32_t)windows->size[0] * windows->size[1];
 }
 
-static void every_version_draws_the_same_tries_inside_the_windows(void)
+static void the_same_tries_are_drawn_inside_the_windows(const void *version)
 {
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        for (uint64_t seed = 1; seed <= 2000; seed++) {
-            FlRng rng = {seed};
-            FlWindows w;
-            FlTries want, got;
-            make_windows(&w, seed % 2 ? 30 : 32767, &rng);
-            uint16_t centre[3];
-            for (int axis = 0; axis < 3; axis++)
-                centre[axis] = (uint16_t)fl_rng_below(&rng, w.size[axis]);
-            const uint32_t key = fl_rng_u32(&rng);
-            fl_draw_tries_c(&w, centre, key, &want);
-            kernels.draw_tries(&w, centre, key, &got);
-            g_assert_cmpmem(got.pixel, w.n * sizeof *got.pixel, want.pixel,
-                            w.n * sizeof *want.pixel);
-            for (int axis = 0; axis < 3; axis++)
-                for (int k = 0; k < w.n; k++) {
-                    g_assert_cmpint(got.at[axis][k], ==, want.at[axis][k]);
-                    g_assert_cmpint(got.at[axis][k], <, w.size[axis]);
-                    g_assert_cmpint(abs(got.at[axis][k] - centre[axis]), <=, w.reach[axis][k]);
-                }
-        }
+    const FlKernels *kernels = version;
+    for (uint64_t seed = 1; seed <= 2000; seed++) {
+        FlRng rng = {seed};
+        FlWindows w;
+        FlTries want, got;
+        make_windows(&w, seed % 2 ? 30 : 32767, &rng);
+        uint16_t centre[3];
+        for (int axis = 0; axis < 3; axis++)
+            centre[axis] = (uint16_t)fl_rng_below(&rng, w.size[axis]);
+        const uint32_t key = fl_rng_u32(&rng);
+        fl_draw_tries_c(&w, centre, key, &want);
+        kernels->draw_tries(&w, centre, key, &got);
+        g_assert_cmpmem(got.pixel, w.n * sizeof *got.pixel, want.pixel, w.n * sizeof *want.pixel);
+        for (int axis = 0; axis < 3; axis++)
+            for (int k = 0; k < w.n; k++) {
+                g_assert_cmpint(got.at[axis][k], ==, want.at[axis][k]);
+                g_assert_cmpint(got.at[axis][k], <, w.size[axis]);
+                g_assert_cmpint(abs(got.at[axis][k] - centre[axis]), <=, w.reach[axis][k]);
+            }
     }
 }
 
@@ -246,34 +220,29 @@ static void make_sieve(FlSieve *sieve, const FlTexel *first, const int32_t *use,
         sieve->own[axis] = (uint16_t)fl_rng_below(rng, CELLS);
 }
 
-static void every_version_sifts_like_c(void)
+static void the_same_tries_pass_as_in_c(const void *version)
 {
+    const FlKernels *kernels = version;
     g_autofree FlTexel *texels = g_new(FlTexel, 24 * 24 * 16);
     int32_t use[CELLS * CELLS * CELLS];
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        for (uint64_t seed = 1; seed <= 1000; seed++) {
-            FlRng rng = {seed};
-            FlWindows w;
-            FlTries tries;
-            FlSieve sieve;
-            uint32_t want[FL_MAX_TRIES], got[FL_MAX_TRIES];
-            make_windows(&w, 16, &rng);
-            for (int k = 0; k < 16 * 16 * 16; k++)
-                texels[k].c[FL_CH_SEGMENT] = (uint8_t)fl_rng_below(&rng, 3);
-            for (int k = 0; k < CELLS * CELLS * CELLS; k++)
-                use[k] = (int32_t)fl_rng_below(&rng, seed % 5 ? 3000 : INT32_MAX);
-            kernels.draw_tries(&w, (uint16_t[3]){0, 0, 0}, fl_rng_u32(&rng), &tries);
-            make_sieve(&sieve, texels, use, &rng);
-            const uint64_t passed = fl_sift_c(&tries, w.n, &sieve, want);
-            g_assert_cmpuint(kernels.sift(&tries, w.n, &sieve, got), ==, passed);
-            for (int k = 0; k < w.n; k++)
-                if (passed >> k & 1)
-                    g_assert_cmpuint(got[k], ==, want[k]);
-        }
+    for (uint64_t seed = 1; seed <= 1000; seed++) {
+        FlRng rng = {seed};
+        FlWindows w;
+        FlTries tries;
+        FlSieve sieve;
+        uint32_t want[FL_MAX_TRIES], got[FL_MAX_TRIES];
+        make_windows(&w, 16, &rng);
+        for (int k = 0; k < 16 * 16 * 16; k++)
+            texels[k].c[FL_CH_SEGMENT] = (uint8_t)fl_rng_below(&rng, 3);
+        for (int k = 0; k < CELLS * CELLS * CELLS; k++)
+            use[k] = (int32_t)fl_rng_below(&rng, seed % 5 ? 3000 : INT32_MAX);
+        kernels->draw_tries(&w, (uint16_t[3]){0, 0, 0}, fl_rng_u32(&rng), &tries);
+        make_sieve(&sieve, texels, use, &rng);
+        const uint64_t passed = fl_sift_c(&tries, w.n, &sieve, want);
+        g_assert_cmpuint(kernels->sift(&tries, w.n, &sieve, got), ==, passed);
+        for (int k = 0; k < w.n; k++)
+            if (passed >> k & 1)
+                g_assert_cmpuint(got[k], ==, want[k]);
     }
 }
 
@@ -287,46 +256,36 @@ static void make_votes(FlVotes *votes, FlRng *rng)
     }
 }
 
-static void every_version_sorts_votes_like_c(void)
+static void votes_are_sorted_as_in_c(const void *version)
 {
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        for (uint64_t seed = 1; seed <= 2000; seed++) {
-            FlRng rng = {seed};
-            FlVotes votes;
-            FlOpinion want[FL_PATCH_PIXELS], got[FL_PATCH_PIXELS];
-            make_votes(&votes, &rng);
-            const int n = fl_find_opinions_c(&votes, want);
-            g_assert_cmpint(kernels.opinions(&votes, got), ==, n);
-            g_assert_cmpmem(got, n * sizeof *got, want, n * sizeof *want);
-        }
+    const FlKernels *kernels = version;
+    for (uint64_t seed = 1; seed <= 2000; seed++) {
+        FlRng rng = {seed};
+        FlVotes votes;
+        FlOpinion want[FL_PATCH_PIXELS], got[FL_PATCH_PIXELS];
+        make_votes(&votes, &rng);
+        const int n = fl_find_opinions_c(&votes, want);
+        g_assert_cmpint(kernels->opinions(&votes, got), ==, n);
+        g_assert_cmpmem(got, n * sizeof *got, want, n * sizeof *want);
     }
 }
 
-static void every_version_samples_splines_like_c(void)
+static void splines_are_sampled_as_in_c(const void *version)
 {
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        for (uint64_t seed = 1; seed <= 2000; seed++) {
-            FlRng rng = {seed};
-            FlSplinePixel pixels[64];
-            for (int p = 0; p < 64; p++)
-                for (int c = 0; c < 4; c++)
-                    pixels[p].c[c] = (int16_t)(fl_rng_below(&rng, 65535) - 32767);
-            const FlSplinePhase *x = &fl_spline_phases[seed % 16];
-            const FlSplinePhase *y = &fl_spline_phases[seed / 16 % 16];
-            const size_t pitch = 4 + seed % 17;
-            float want[4], got[4];
-            fl_spline_sample_c(pixels, pitch, x->x, y->y, want);
-            kernels.spline_sample(pixels, pitch, x->x, y->y, got);
-            g_assert_cmpmem(got, sizeof got, want, sizeof want);
-        }
+    const FlKernels *kernels = version;
+    for (uint64_t seed = 1; seed <= 2000; seed++) {
+        FlRng rng = {seed};
+        FlSplinePixel pixels[64];
+        for (int p = 0; p < 64; p++)
+            for (int c = 0; c < 4; c++)
+                pixels[p].c[c] = (int16_t)(fl_rng_below(&rng, 65535) - 32767);
+        const FlSplinePhase *x = &fl_spline_phases[seed % 16];
+        const FlSplinePhase *y = &fl_spline_phases[seed / 16 % 16];
+        const size_t pitch = 4 + seed % 17;
+        float want[4], got[4];
+        fl_spline_sample_c(pixels, pitch, x->x, y->y, want);
+        kernels->spline_sample(pixels, pitch, x->x, y->y, got);
+        g_assert_cmpmem(got, sizeof got, want, sizeof want);
     }
 }
 
@@ -383,37 +342,47 @@ static void time_version(const FlKernels *kernels)
                                                  fl_spline_phases[k % 16].y, value));
 }
 
-static void time_versions(void)
+/** A check of one version; the argument is its FlKernels. */
+typedef struct Check {
+    const char *name;
+    GTestDataFunc run;
+} Check;
+
+static const Check checks[] = {
+    {"the-distance-is-that-of-c", the_distance_is_that_of_c},
+    {"nothing-overflows-on-extremes", nothing_overflows_on_extremes},
+    {"a-limit-never-changes-which-side-of-it-a-distance-is-on",
+     a_limit_never_changes_which_side_of_it_a_distance_is_on},
+    {"a-pair-is-the-distances-of-both-half-turns", a_pair_is_the_distances_of_both_half_turns},
+    {"the-same-tries-are-drawn-inside-the-windows", the_same_tries_are_drawn_inside_the_windows},
+    {"the-same-tries-pass-as-in-c", the_same_tries_pass_as_in_c},
+    {"votes-are-sorted-as-in-c", votes_are_sorted_as_in_c},
+    {"splines-are-sampled-as-in-c", splines_are_sampled_as_in_c},
+};
+
+static void add_checks(const FlKernels *version)
 {
-    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
-        FlKernels kernels;
-        if (!available(levels[v]))
-            continue;
-        fl_kernels_init(&kernels, levels[v]);
-        time_version(&kernels);
+    for (size_t k = 0; k < G_N_ELEMENTS(checks); k++) {
+        g_autofree char *path = g_strdup_printf("/kernels/%s/%s", version->name, checks[k].name);
+        g_test_add_data_func(path, version, checks[k].run);
     }
 }
 
 int main(int argc, char **argv)
 {
+    const bool time = argc == 2 && g_str_equal(argv[1], "--time");
+    FlKernels versions[G_N_ELEMENTS(levels)];
     fl_rotation_init();
     fl_spline_init();
-    if (argc == 2 && g_str_equal(argv[1], "--time")) {
-        time_versions();
-        return 0;
-    }
     g_test_init(&argc, &argv, NULL);
-    g_test_add_func("/kernels/every-version-equals-c-on-noise", every_version_equals_c_on_noise);
-    g_test_add_func("/kernels/no-version-overflows-on-extremes", no_version_overflows_on_extremes);
-    g_test_add_func("/kernels/a-limit-never-changes-which-side-of-it-a-distance-is-on",
-                    a_limit_never_changes_which_side_of_it_a_distance_is_on);
-    g_test_add_func("/kernels/a-pair-is-the-distances-of-both-half-turns",
-                    a_pair_is_the_distances_of_both_half_turns);
-    g_test_add_func("/kernels/every-version-draws-the-same-tries-inside-the-windows",
-                    every_version_draws_the_same_tries_inside_the_windows);
-    g_test_add_func("/kernels/every-version-sifts-like-c", every_version_sifts_like_c);
-    g_test_add_func("/kernels/every-version-sorts-votes-like-c", every_version_sorts_votes_like_c);
-    g_test_add_func("/kernels/every-version-samples-splines-like-c",
-                    every_version_samples_splines_like_c);
-    return g_test_run();
+    for (size_t v = 0; v < G_N_ELEMENTS(levels); v++) {
+        if (!available(levels[v]))
+            continue;
+        fl_kernels_init(&versions[v], levels[v]);
+        if (time)
+            time_version(&versions[v]);
+        else
+            add_checks(&versions[v]);
+    }
+    return time ? 0 : g_test_run();
 }
