@@ -1,25 +1,11 @@
 #!/bin/bash
 # The program as its user meets it. usage: cli.sh PROGRAM FIXTURES; speaks TAP.
-set -u
-export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive # tests run side by side
+# shellcheck source-path=SCRIPTDIR source=tap.sh
+. "${0%/*}/tap.sh"
 unset NO_COLOR # as some have it in CI
 program=$(realpath "$1")
 fixtures=$(realpath "$2")
-folder=$(mktemp -d)
-trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-n=0
-
-result() { # result STATUS SENTENCE: prints the files out and err of the last run after a failure
-    n=$((n + 1))
-    if [ "$1" = 0 ]; then
-        echo "ok $n - $2"
-    else
-        echo "not ok $n - $2"
-        sed 's/^/# stdout: /' out | head -20
-        sed 's/^/# stderr: /' err | head -20
-    fi
-}
 
 # refuses SENTENCE STATUS MESSAGE ARGUMENT...: one line on stderr that matches the glob MESSAGE,
 # nothing on stdout, no file written.

@@ -1,26 +1,10 @@
 # Sourced by tests that paint a tiny film: PROGRAM and FIXTURES are the first two arguments.
 # Makes and enters a folder with film/ (six drawings), big/ (larger ones) and bad/.
-set -u
-export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive
+# shellcheck source-path=SCRIPTDIR source=tap.sh
+. "${0%/*}/tap.sh"
 program=$(realpath "$1")
 style=$(realpath "$2")/style-small
-folder=$(mktemp -d)
-trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-n=0
-touch out err
-
-result() { # result STATUS SENTENCE: prints the files out and err of the last run after a failure
-    n=$((n + 1))
-    if [ "$1" = 0 ]; then
-        echo "ok $n - $2"
-    else
-        echo "not ok $n - $2"
-        sed 's/^/# stdout: /' out | head -20
-        sed 's/^/# stderr: /' err | head -20
-        find . -path ./film -prune -o -type f -printf '# %p %s\n' | head -40
-    fi
-}
 
 # drawing NAME SIDE FRAME: a disc that moves over a square.
 drawing() {

@@ -1,28 +1,14 @@
 #!/bin/bash
 # The manuals are about these programs, and their examples work. usage: manual.sh BUILD FIXTURES;
 # speaks TAP.
-set -u
-export LC_ALL=C.UTF-8
+# shellcheck source-path=SCRIPTDIR source=tap.sh
+. "${0%/*}/tap.sh"
 build=$(realpath "$1")
 fixtures=$(realpath "$2")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 export PATH="$build/src/cli:$folder/bin:$PATH"
 export HOME=$folder EDITOR=true
 unset XDG_DATA_HOME
-export OMP_WAIT_POLICY=passive # tests run side by side
-n=0
-
-report() { # report STATUS SENTENCE: shows the file told after a failure
-    n=$((n + 1))
-    if [ "$1" = 0 ]; then
-        echo "ok $n - $2"
-    else
-        echo "not ok $n - $2"
-        sed 's/^/# /' told | tail -30
-    fi
-}
 
 # The long options that a manual describes, one a line.
 described() {
@@ -42,13 +28,13 @@ examples() {
 
 fluidy-svg --help-all | offered >is
 described "$build/man/fluidy-svg.1" >said
-diff is said >told
-report $? 'fluidy-svg(1) describes the options that there are, and no others'
+diff is said >err
+result $? 'fluidy-svg(1) describes the options that there are, and no others'
 for command in import check simulate list; do fluidy-style "$command" --help; done | offered |
     grep -vxE 'help(-all)?|version' >is
 described "$build/man/fluidy-style.1" | grep -vxE 'help(-all)?|version' >said
-diff is said >told
-report $? 'fluidy-style(1) describes the options that there are, and no others'
+diff is said >err
+result $? 'fluidy-style(1) describes the options that there are, and no others'
 
 # What the examples are about, as small as they allow.
 mkdir bin walk styles
@@ -64,19 +50,18 @@ cy='18' r='10' fill='#aa3311'/></svg>" | tee "$(printf 'walk_%04d.svg' "$i")" \
         >"$(printf 'walk/walk_%04d.svg' "$i")"
 done
 examples "$build/man/fluidy-svg.1" >run
-bash -e run >told 2>&1 && [ -s walk.mov ] && [ -s cycle.gif ] && [ -s ink/index.html ] &&
+bash -e run >err 2>&1 && [ -s walk.mov ] && [ -s cycle.gif ] && [ -s ink/index.html ] &&
     [ -s styles.png ] && [ -s fluidy/walk_styles.png ]
-report $? 'the examples of fluidy-svg(1) work'
+result $? 'the examples of fluidy-svg(1) work'
 
 sed -n '/^\.Sh EXAMPLES/,/^\.Sh DIAG/p' "$build/man/fluidy-svg.conf.5" |
     sed -n '/^\.Bd/,/^\.Ed/{/^\.[BE]d/!p}' >example.conf
 cp "$fixtures/compose/drop-13-rgb.png" paper.png
-fluidy-svg walk -c example.conf --dry-run -o 'conf_%d.png' >told 2>&1
-report $? 'the example of fluidy-svg.conf(5) is a config'
+fluidy-svg walk -c example.conf --dry-run -o 'conf_%d.png' >err 2>&1
+result $? 'the example of fluidy-svg.conf(5) is a config'
 
 if ! command -v ffmpeg >/dev/null; then
-    n=$((n + 1))
-    echo "ok $n - the examples of fluidy-style(1) and (5) work # SKIP no ffmpeg"
+    skip 'the examples of fluidy-style(1) and (5) work' 'no ffmpeg'
 else
     frames=$fixtures/styles/03/frames
     paper='scale=700:-1,pad=1500:1000:550:180:color=0xf6f2ea'
@@ -96,7 +81,7 @@ else
     chmod +x bin/fluidy-svg
     export PATH="$folder/bin:$PATH"
     { examples "$build/man/fluidy-style.1" && echo rm -r ink ink-check.png && examples "$build/man/fluidy-style.5" | sed "/^\[/,\$d"; } >run
-    bash -e run >told 2>&1 && [ -f fire/style.ini ] && [ -f my01/style.ini ]
-    report $? 'the examples of fluidy-style(1) and (5) work'
+    bash -e run >err 2>&1 && [ -f fire/style.ini ] && [ -f my01/style.ini ]
+    result $? 'the examples of fluidy-style(1) and (5) work'
 fi
 echo "1..$n"

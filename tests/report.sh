@@ -1,34 +1,26 @@
 #!/bin/bash
 # The page of --report in a real browser. usage: report.sh PROGRAM; speaks TAP.
-set -u
-export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive
+# shellcheck source-path=SCRIPTDIR source=tap.sh
+. "${0%/*}/tap.sh"
 program=$(realpath "$1")
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
-n=0
-
-report() { # report STATUS SENTENCE
-    n=$((n + 1))
-    [ "$1" = 0 ] && echo "ok $n - $2" || echo "not ok $n - $2"
-}
 
 for i in 1 2 3; do
     echo "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='40'><g id='a&lt;/script&gt;'>
 <circle cx='$((16 + 4 * i))' cy='20' r='12' fill='#aa3311'/></g></svg>" >"w_000$i.svg"
 done
 "$program" w_%04d.svg -s 01 -q -b none -o 'out_%d.png' --report page
-report $? 'a render leaves a page'
+result $? 'a render leaves a page'
 [ "$(grep -c '^<script>frames.push' page/index.html)" = 3 ]
-report $? 'the page has every frame'
+result $? 'the page has every frame'
 ! grep -oE '(src|href)="[^"]*"' page/index.html | grep -vE '"(data:[^"]*)?"'
-report $? 'the page refers to no other file'
+result $? 'the page refers to no other file'
 grep -q 'uses:\[{style:"01",picture:"data:image/png' page/index.html && ! grep -q 'painters:\[\[0,' page/index.html
-report $? 'the page has energies and the use of the recording'
+result $? 'the page has energies and the use of the recording'
 "$program" w_%04d.svg -s 01 -q -o 'new_%d.png' --report page 2>err
 [ $? = 1 ] && grep -q 'page/index.html: *exists' err && [ ! -e new_1.png ]
-report $? 'a page that exists stays, and nothing is painted'
+result $? 'a page that exists stays, and nothing is painted'
 
 # What a visitor does, run by the page itself; the last line of the page tells how it went.
 cat >visitor.js <<'EOF'
@@ -83,8 +75,7 @@ awk '/<\/body>/ { print "<script>"; while ((getline line < "visitor.js") > 0) pr
     print "</script>" } { print }' page/index.html >page/visited.html
 
 if [ -z "$browser" ]; then
-    n=$((n + 1))
-    echo "ok $n - a browser shows it without a complaint # SKIP no chromium"
+    skip 'a browser shows it without a complaint' 'no chromium'
 else
     browse() { # browse PAGE: its DOM to the file dom, complaints to log
         timeout 60 "$browser" --headless --no-sandbox --disable-gpu --enable-logging=stderr \
@@ -93,12 +84,12 @@ else
         ! grep CONSOLE log
     }
     browse index.html && grep -q '<h1 id="title">w, painted</h1>' dom
-    report $? 'a browser shows it without a complaint'
+    result $? 'a browser shows it without a complaint'
     browse visited.html
-    report $? 'a visitor causes no complaint'
+    result $? 'a visitor causes no complaint'
     sed -n '/<pre>/,/<\/pre>/p' dom | sed -e 's/<[^>]*>//g' >told
     [ "$(wc -l <told)" -ge 14 ]
-    report $? 'the visit runs to its end'
+    result $? 'the visit runs to its end'
     while read -r line; do
         n=$((n + 1))
         echo "$line" | sed "s/ - / $n - /"

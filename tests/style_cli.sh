@@ -1,32 +1,13 @@
 #!/bin/bash
 # fluidy-style as its user meets it. usage: style_cli.sh PROGRAM FIXTURES PAGE; speaks TAP.
-set -u
-export LC_ALL=C.UTF-8 OMP_WAIT_POLICY=passive # tests run side by side
+# shellcheck source-path=SCRIPTDIR source=tap.sh
+. "${0%/*}/tap.sh"
 program=$(realpath "$1")
 small=$(realpath "$2")/style-small
 dust=$(realpath "$2")/watercolour/dust
 page=$3
-folder=$(mktemp -d)
-trap 'chmod -R u+w "$folder"; rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 export FLUIDY_STYLES=$folder/own XDG_DATA_HOME=$folder/none
-n=0
-
-result() { # result STATUS SENTENCE: prints the files out and err of the last run after a failure
-    n=$((n + 1))
-    if [ "$1" = 0 ]; then
-        echo "ok $n - $2"
-    else
-        echo "not ok $n - $2"
-        sed 's/^/# stdout: /' out | head -20
-        sed 's/^/# stderr: /' err | head -20
-    fi
-}
-
-skip() {
-    n=$((n + 1))
-    echo "ok $n - $1 # SKIP $2"
-}
 
 # refuses SENTENCE STATUS MESSAGE ARGUMENT...: one line on stderr that matches the glob MESSAGE,
 # nothing on stdout, no file written.
