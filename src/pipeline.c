@@ -1,7 +1,6 @@
 /* The whole render, stage by stage. */
 #include "base/alloc.h"
 #include "base/first_error.h"
-#include "config.h"
 #include "output/name.h"
 #include "output/png.h"
 #include "render/dump.h"
@@ -15,11 +14,6 @@
 #ifdef _OPENMP
 #include <omp.h>
 #endif
-
-const char *fl_version(void)
-{
-    return FL_VERSION;
-}
 
 /* A render in hand. */
 typedef struct Job {

@@ -1,0 +1,8 @@
+#include "config.h"
+
+#include <fluidy/fluidy.h>
+
+const char *fl_version(void)
+{
+    return FL_VERSION;
+}
