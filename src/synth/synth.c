@@ -241,7 +241,13 @@ static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
         fl_target_blend(target, params, &synth->scale, 0);
         timed_search(synth, search, fl_list_at(&params->patchmatch_iterations, 0), true);
     }
-    vote_and_blend(synth, search, target);
+    // A draft's finest level is not searched: all that its colours would be for is to choose
+    // between the last frame's matches and the coarser level's, and the last frame's colours do as
+    // well.
+    if (params->half_size && params->finest_rounds == 0 && l == 0 && !coarsest && shifted)
+        fl_target_blend(target, params, &synth->scale, 0);
+    else
+        vote_and_blend(synth, search, target);
     fl_search_costs(search, search->nnf, search->cost);
     return coarsest || !shifted || merge_previous(search, shifted, l, error);
 }
