@@ -1,10 +1,12 @@
 /* The whole render, stage by stage. */
 #include "base/alloc.h"
 #include "base/first_error.h"
+#include "base/task.h"
 #include "output/name.h"
 #include "output/png.h"
 #include "render/dump.h"
 #include "render/frame.h"
+#include "render/held.h"
 #include "render/resume.h"
 #include "render/stats.h"
 #include "report/report.h"
@@ -27,9 +29,15 @@ typedef struct Job {
     FlGuides *scratch; // one per thread that paints
     int n_scratch;
     int n_threads;
-    int64_t start;      // microseconds, as g_get_monotonic_time()
-    int64_t painting;   // the same, of the first painted frame
-    double rehearsed_s; // that a frame took which was not written
+    FlTask drawing, writing; // what goes on beside the painting
+    int frame;               // that is painted
+    FlRuns *runs;            // its shapes, drawn by `drawing`
+    int finished_frame;      // the last one that was painted
+    FlComposite finished;    // as it was composed, written by `writing`
+    double write_s;          // that it took
+    int64_t start;           // microseconds, as g_get_monotonic_time()
+    int64_t painting;        // the same, of the first painted frame
+    double rehearsed_s;      // that a frame took which was not written
 } Job;
 
 static double seconds_since(int64_t start)
@@ -167,8 +175,7 @@ static bool write_frame(Job *job, const FlComposite *composite, int frame, GErro
                              .rgba16 = composite->rgba16,
                              .layers = layers,
                              .n_layers = composite->n_layers};
-    if (!fl_resume_before_files(&job->resume, job->plan, frame, error) ||
-        (job->plan->options.layers && !write_layers(job, composite, frame, error)))
+    if (job->plan->options.layers && !write_layers(job, composite, frame, error))
         return false;
     if (job->sink->format->film)
         return fl_sink_frame(job->sink, &out, error);
@@ -202,25 +209,91 @@ static bool recall_frames(Job *job, GError **error)
     return true;
 }
 
+/* The task `drawing`. */
+static bool draw_shapes(void *data, GError **error)
+{
+    Job *job = data;
+    job->runs = fl_held_runs(job->plan, job->frame, error);
+    return job->runs != NULL;
+}
+
+/* The task `writing`: the files of a frame, and then the state that follows it. */
+static bool write_finished(void *data, GError **error)
+{
+    Job *job = data;
+    const int64_t start = g_get_monotonic_time();
+    const bool done = write_frame(job, &job->finished, job->finished_frame, error) &&
+                      fl_resume_save(&job->resume, error);
+    job->write_s = seconds_since(start);
+    return done;
+}
+
+/* Until the files of the last frame are written. */
+static bool finish_writing(Job *job, GError **error)
+{
+    const bool done = fl_task_wait(&job->writing, error);
+    fl_composite_clear(&job->finished);
+    job->stats.write_s += job->write_s, job->write_s = 0;
+    return done;
+}
+
+/* Writing needs one thread and waits for the disk, so the next frame is painted meanwhile; but not
+ * where somebody looks at what the painters have. */
+static bool overlaps(const Job *job)
+{
+    return job->n_threads > 1 && !job->stats.open && !job->report;
+}
+
+/* The frame with its shapes; all threads paint while these are drawn. */
+static bool paint_frame(Job *job, int frame, FlComposite *composite, double *paint_s,
+                        GError **error)
+{
+    const int64_t start = g_get_monotonic_time();
+    job->frame = frame;
+    fl_task_start(&job->drawing, draw_shapes, job, overlaps(job));
+    const bool painted = for_each_painter(job, paint_one, frame, error);
+    *paint_s = seconds_since(start);
+    if (!fl_task_wait(&job->drawing, painted ? error : NULL) || !painted)
+        return false;
+    return fl_composite_init(composite, job->plan, &job->background, frame,
+                             g_steal_pointer(&job->runs), job->sink->format->takes_16, error);
+}
+
+/* Figures and the report, once the frame's files are written. */
+static bool look_at(Job *job, double paint_s, double compose_s, GError **error)
+{
+    const FlReportFrame done = {job->finished_frame, &job->finished, paint_s, compose_s,
+                                job->write_s};
+    if (!fl_task_wait(&job->writing, error))
+        return false;
+    fl_stats_frame(&job->stats, job->plan, job->finished_frame, paint_s, compose_s, done.write_s);
+    job->write_s = 0; // it is counted
+    return fl_report_frame(job->report, &done, error);
+}
+
 static bool render_frame(Job *job, int frame, GError **error)
 {
     const int64_t start = g_get_monotonic_time();
-    if (!for_each_painter(job, paint_one, frame, error))
-        return false;
-    const int64_t painted = g_get_monotonic_time();
+    const bool beside = overlaps(job);
+    double paint_s = 0;
     g_auto(FlComposite) composite = {0};
-    if (!fl_composite_init(&composite, job->plan, &job->background, frame,
-                           job->sink->format->takes_16, error))
+    if (!paint_frame(job, frame, &composite, &paint_s, error))
         return false;
-    const int64_t composed = g_get_monotonic_time();
-    if (!write_frame(job, &composite, frame, error))
+    const double compose_s = seconds_since(start) - paint_s;
+    if (!finish_writing(job, error) ||
+        !fl_resume_before_files(&job->resume, job->plan, frame, error) ||
+        !fl_resume_take(&job->resume, job->plan, frame + 1, error))
         return false;
-    const FlReportFrame done = {frame, &composite, (double)(painted - start) * 1e-6,
-                                (double)(composed - painted) * 1e-6, seconds_since(composed)};
-    fl_stats_frame(&job->stats, job->plan, frame, done.paint_s, done.compose_s, done.write_s);
-    return fl_report_frame(job->report, &done, error) &&
-           fl_resume_save(&job->resume, job->plan, frame + 1, error) &&
-           tell(job, "paint", frame + 1, seconds_since(start), error);
+    if (beside)
+        g_clear_pointer(&composite.runs, fl_runs_free); // files are made of the layers
+    job->finished = composite, job->finished_frame = frame;
+    composite = (FlComposite){0};
+    fl_task_start(&job->writing, write_finished, job, beside);
+    if (beside)
+        job->stats.paint_s += paint_s, job->stats.compose_s += compose_s;
+    else if (!look_at(job, paint_s, compose_s, error))
+        return false;
+    return tell(job, "paint", frame + 1, seconds_since(start), error);
 }
 
 /* Drafts are looked at and thrown away: their files are written sooner and are larger. */
@@ -309,7 +382,8 @@ static bool run(Job *job, GError **error)
     for (int f = job->resume.first; f < fl_film_frames(job->plan->film); f++)
         if (!render_frame(job, f, error))
             return false;
-    if (!fl_sink_finish(job->sink, error) || (job->movie && !fl_sink_finish(job->movie, error)) ||
+    if (!finish_writing(job, error) || !fl_sink_finish(job->sink, error) ||
+        (job->movie && !fl_sink_finish(job->movie, error)) ||
         !fl_stats_finish(&job->stats, error) || !fl_report_finish(job->report, error))
         return false;
     fl_resume_finish(&job->resume);
@@ -318,6 +392,10 @@ static bool run(Job *job, GError **error)
 
 static void clear(Job *job)
 {
+    fl_task_clear(&job->drawing);
+    fl_task_clear(&job->writing);
+    fl_runs_free(job->runs);
+    fl_composite_clear(&job->finished);
     for (int k = 0; k < job->n_scratch; k++)
         fl_guides_clear(&job->scratch[k]);
     g_free(job->scratch);
@@ -342,8 +420,11 @@ static bool rehearse(Job *job, GError **error)
     for (int k = 0; k < 2 && k * plan->hold < fl_film_frames(plan->film); k++) {
         const int64_t start = g_get_monotonic_time();
         g_auto(FlComposite) composite = {0};
+        g_autoptr(FlRuns) runs = NULL;
         if (!for_each_painter(job, paint_one, k * plan->hold, error) ||
-            !fl_composite_init(&composite, plan, &job->background, k * plan->hold, false, error))
+            !(runs = fl_held_runs(plan, k * plan->hold, error)) ||
+            !fl_composite_init(&composite, plan, &job->background, k * plan->hold,
+                               g_steal_pointer(&runs), false, error))
             return false;
         job->rehearsed_s = seconds_since(start);
     }

@@ -5,7 +5,6 @@
 #include "compose/colourise.h"
 #include "output/name.h"
 #include "params/text.h"
-#include "render/held.h"
 #include "render/tone.h"
 #include "style/picture.h"
 #include <string.h>
@@ -236,11 +235,10 @@ static bool compose(FlComposite *composite, const FlPlan *plan, const FlBackgrou
 }
 
 bool fl_composite_init(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                       int frame, bool with_16, GError **error)
+                       int frame, FlRuns *runs, bool with_16, GError **error)
 {
-    *composite = (FlComposite){0};
-    composite->runs = fl_held_runs(plan, frame, error);
-    return composite->runs && make_layers(composite, plan, background, frame, error) &&
+    *composite = (FlComposite){.runs = runs};
+    return make_layers(composite, plan, background, frame, error) &&
            compose(composite, plan, background, frame, with_16, error);
 }
 

@@ -28,9 +28,12 @@ typedef struct FlComposite {
     uint16_t *rgba16; // NULL unless asked for
 } FlComposite;
 
-/** Composes the frame that the painters have just painted. */
+/**
+ * Composes the frame that the painters have just painted. runs: fl_held_runs() of it; they become
+ * the composite's.
+ */
 bool fl_composite_init(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                       int frame, bool with_16, GError **error);
+                       int frame, FlRuns *runs, bool with_16, GError **error);
 void fl_composite_clear(FlComposite *composite);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlComposite, fl_composite_clear)

@@ -1,5 +1,6 @@
 #include "render/resume.h"
 
+#include "base/first_error.h"
 #include "output/name.h"
 #include "output/sink.h"
 #include <glib/gstdio.h>
@@ -146,25 +147,31 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
     return true;
 }
 
-/* The painters' states as they are after `done` frames. */
-static bool take_state(FlResume *resume, const FlPlan *plan, int done, GError **error)
+bool fl_resume_take(FlResume *resume, const FlPlan *plan, int done, GError **error)
 {
-    g_ptr_array_set_size(resume->state->painter, 0);
+    GPtrArray *parts = resume->state->painter;
+    GError *first = NULL;
+    if (!resume->path)
+        return true;
+    g_ptr_array_set_size(parts, 0);
+    g_ptr_array_set_size(parts, FL_PAINTER_PARTS * plan->n_painters);
+#pragma omp parallel for schedule(dynamic, 1)
     for (int p = 0; p < plan->n_painters; p++) {
-        GBytes *parts[FL_PAINTER_PARTS];
-        if (!fl_painter_save(&plan->painters[p], parts, error))
-            return false;
-        for (int k = 0; k < FL_PAINTER_PARTS; k++)
-            g_ptr_array_add(resume->state->painter, parts[k]);
+        GError *mine = NULL;
+        GBytes **mine_parts = (GBytes **)parts->pdata + FL_PAINTER_PARTS * p;
+        if (!fl_painter_save(&plan->painters[p], mine_parts, &mine))
+            fl_keep_first_error(&first, mine);
     }
     resume->state->done = done;
-    return true;
+    if (first)
+        g_propagate_error(error, first);
+    return first == NULL;
 }
 
 bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error)
 {
     if (!resume->found)
-        return !resume->path || take_state(resume, plan, 0, error);
+        return fl_resume_take(resume, plan, 0, error);
     GBytes *const *parts = (GBytes *const *)resume->state->painter->pdata;
     if (resume->state->painter->len != (guint)(FL_PAINTER_PARTS * plan->n_painters)) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
@@ -188,10 +195,9 @@ bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GEr
     return resume->written = fl_state_save(resume->state, resume->path, error);
 }
 
-bool fl_resume_save(FlResume *resume, const FlPlan *plan, int done, GError **error)
+bool fl_resume_save(FlResume *resume, GError **error)
 {
-    return !resume->path || (take_state(resume, plan, done, error) &&
-                             fl_state_save(resume->state, resume->path, error));
+    return !resume->path || fl_state_save(resume->state, resume->path, error);
 }
 
 bool fl_resume_replaces(const FlResume *resume, int frame)

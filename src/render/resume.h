@@ -7,8 +7,8 @@
 
 typedef struct FlResume {
     char *path;      // of the state; NULL: a film without its frames, which cannot go on
-    FlState *state;  // as last written
-    bool written;    // it is in the file
+    FlState *state;  // as last taken
+    bool written;    // there is one in the file
     bool found;      // an earlier run left it
     int first;       // the frame to start with; those before it are finished
     bool keep_files; // what exists stays as it is
@@ -31,8 +31,11 @@ bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error);
  */
 bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error);
 
-/** Keeps the state after `done` frames. FL_ERROR_OUTPUT. */
-bool fl_resume_save(FlResume *resume, const FlPlan *plan, int done, GError **error);
+/** Takes the painters' states as they are after `done` frames. FL_ERROR_NO_MEMORY. */
+bool fl_resume_take(FlResume *resume, const FlPlan *plan, int done, GError **error);
+
+/** Writes what was taken, after the frame's files. FL_ERROR_OUTPUT. */
+bool fl_resume_save(FlResume *resume, GError **error);
 
 /** Whether files of a frame may be replaced: on request, and those of a frame that was in hand. */
 bool fl_resume_replaces(const FlResume *resume, int frame);
