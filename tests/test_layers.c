@@ -1,4 +1,5 @@
 #include "base/rng.h"
+#include "compose/holes.h"
 #include "compose/layers.h"
 #include "compose/matte.h"
 
@@ -167,6 +168,23 @@ static void paint_below_runs_on_under_a_rim_without_body(void)
     layers_clear(layers, 2);
 }
 
+static void a_hole_in_the_paint_has_body_and_its_rim_has_not(void)
+{
+    enum { LEFT = 12, TOP = 6, SIDE = 20 }; // the shape is a square of the frame
+    const FlBox box = {LEFT, TOP, SIDE, SIDE};
+    uint8_t coverage[N] = {0}, body[SIDE * SIDE];
+    memset(body, 255, sizeof body);
+    for (int k = 0; k < SIDE; k++) {
+        memset(coverage + (TOP + k) * W + LEFT, 255, SIDE);
+        body[10 * SIDE + MIN(k, 6)] = 40; // from the left side to column 6
+    }
+    body[10 * SIDE + 12] = body[11 * SIDE + 12] = 40;
+    g_assert_true(fl_holes_close(body, coverage, W, box, NULL));
+    for (int k = 0; k < SIDE; k++)
+        g_assert_cmpint(body[10 * SIDE + k], ==, k <= 6 ? 40 : 255);
+    g_assert_cmpint(body[11 * SIDE + 12], ==, 255);
+}
+
 /** Stacks of random discs of random paint. */
 static void random_layers(FlLayer *layers, uint8_t coverage[][N], int n, uint64_t key)
 {
@@ -284,6 +302,8 @@ int main(int argc, char **argv)
                     thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below);
     g_test_add_func("/layers/paint-below-runs-on-under-a-rim-without-body",
                     paint_below_runs_on_under_a_rim_without_body);
+    g_test_add_func("/layers/a-hole-in-the-paint-has-body-and-its-rim-has-not",
+                    a_hole_in_the_paint_has_body_and_its_rim_has_not);
     g_test_add_func("/layers/stored-layers-recompose-to-the-frame-bit-for-bit",
                     stored_layers_recompose_to_the_frame_bit_for_bit);
     g_test_add_func("/layers/sixteen-bits-are-the-same-picture", sixteen_bits_are_the_same_picture);

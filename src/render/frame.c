@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "compose/closing.h"
 #include "compose/colourise.h"
+#include "compose/holes.h"
 #include "output/name.h"
 #include "params/text.h"
 #include "render/tone.h"
@@ -154,6 +155,8 @@ static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *b
         fl_colourise_body(painter->box->ink, &how, painter->painted, run->coverage, width,
                           layer->box, body);
         layer->body = body;
+        if (!fl_holes_close(body, run->coverage, width, layer->box, error))
+            return false;
     } else {
         fl_colourise_plain(run->picture, run->rgb, run->coverage, width, layer->box, layer->rgba);
     }
