@@ -391,12 +391,12 @@ static void the_smallest_group_that_looks_otherwise_is_taken_as_one(void)
     g_assert_cmpint(fl_warnings_count(warnings), ==, 2);
     g_autofree char *use = fl_warning_line(fl_warnings_get(warnings, 0));
     g_autofree char *pair = fl_warning_line(fl_warnings_get(warnings, 1));
-    g_assert_true(g_str_has_suffix(use,
-                                   "odd.svg: no. 2 of the groups without an id, drawn shape by "
-                                   "shape it does not look like the drawing: taken as one"));
+    g_assert_true(g_str_has_suffix(
+        use, "odd.svg: no. 2 of the groups without an id, drawn shape by "
+             "shape it does not look like the drawing: taken as one, in every frame"));
     g_assert_true(g_str_has_suffix(pair,
                                    "odd.svg: #pair: drawn shape by shape it does not look like "
-                                   "the drawing: taken as one"));
+                                   "the drawing: taken as one, in every frame"));
 }
 
 static void regions_merge_through_others_and_not_in_circles(void)
@@ -437,6 +437,25 @@ static void a_region_that_vanishes_and_returns_is_the_same(void)
     const FlFilmOptions options = {0};
     g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
     assert_table(film, "red-aa0000*2 violet-0000aa*4");
+}
+
+/* As above, but the group fades in the second frame only. */
+static void a_group_that_is_taken_as_one_in_a_frame_is_so_in_all(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < 3; t++) {
+        g_autofree char *name = g_strdup_printf("%d.svg", t);
+        g_autofree char *content =
+            g_strdup_printf("<style>svg > g > g#pair { opacity: %s }</style><g id='outer'>"
+                            "<circle cx='20' cy='20' r='15' fill='#333399'/><g id='pair'>"
+                            "<rect x='30' y='30' width='40' height='40' fill='#aa0000'/>"
+                            "<rect x='50' y='50' width='40' height='40' fill='#cccc00'/></g></g>",
+                            t == 1 ? ".5" : "1");
+        g_free(scratch_svg(folder, name, content));
+    }
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    assert_table(film, "violet-333399*3 pair-group*3");
 }
 
 /* A house that stands still and a ball that comes from the left, each frame moved to 0,0. */
@@ -505,6 +524,7 @@ int main(int argc, char **argv)
     TEST("merges", regions_merge_through_others_and_not_in_circles);
     TEST("returning", a_region_that_vanishes_and_returns_is_the_same);
     TEST("fall-back", the_smallest_group_that_looks_otherwise_is_taken_as_one);
+    TEST("fall-back-in-a-frame", a_group_that_is_taken_as_one_in_a_frame_is_so_in_all);
     TEST("registered", frames_that_begin_at_nought_are_put_back);
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);
     TEST("limbs-that-are-strokes-are-painted", limbs_that_are_strokes_are_painted);

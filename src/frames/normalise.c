@@ -46,11 +46,12 @@ static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
     }
 }
 
-void fl_document_name_groups(xmlDoc *doc)
+int fl_document_name_groups(xmlDoc *doc)
 {
     g_autoptr(GHashTable) ids = fl_document_ids(doc);
     int n_made = 0;
     name_groups(xmlDocGetRootElement(doc), ids, &n_made);
+    return n_made;
 }
 
 bool fl_is_whole(const xmlNode *node, const char *const *whole)

@@ -11,7 +11,7 @@
 #define FL_GROUP_ID "fl-group-" // and a number: the ids that groups without one get
 
 /** Gives an id to every drawn <g>, <svg>, <a> and <use> that has none, in document order. */
-void fl_document_name_groups(xmlDoc *doc);
+int fl_document_name_groups(xmlDoc *doc);
 
 /** Whether node is to stay in one piece: its id is in the NULL-terminated list, which may be NULL.
  */

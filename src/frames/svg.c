@@ -24,6 +24,7 @@ struct FlSvg {
     RsvgHandle *handle; // of the normalised document
     RsvgHandle *before; // of the original, made when first needed
     bool has_images;
+    int n_nameless;       // groups without an id
     GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
     FlLeaves *leaves;
 };
@@ -160,7 +161,7 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, warnings, error))
         return NULL;
-    fl_document_name_groups(svg->doc);
+    svg->n_nameless = fl_document_name_groups(svg->doc);
     svg->original = fl_document_text(svg->doc, &svg->original_bytes);
     if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
         return NULL;
@@ -208,6 +209,11 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
         "--register find one",
         svg->path);
     return false;
+}
+
+int fl_svg_nameless_groups(const FlSvg *svg)
+{
+    return svg->n_nameless;
 }
 
 const FlLeaves *fl_svg_leaves(const FlSvg *svg)

@@ -35,6 +35,9 @@ void fl_svg_free(FlSvg *svg); // NULL is fine
  */
 bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error);
 
+/** How many groups have no id; in documents with as many the ones made for them mean the same. */
+int fl_svg_nameless_groups(const FlSvg *svg);
+
 /** The leaves, bottom up; they belong to svg. */
 const FlLeaves *fl_svg_leaves(const FlSvg *svg);
 

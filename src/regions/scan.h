@@ -37,6 +37,7 @@ typedef struct FlScanFrame {
     double page_width, page_height; // px of the picture
     FlCanvas canvas;                // the frame's page
     char **whole;                   // FlSvgOptions.whole; NULL: none
+    int n_nameless;                 // groups without an id
 } FlScanFrame;
 
 typedef struct FlScan {

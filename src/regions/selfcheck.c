@@ -1,6 +1,7 @@
 #include "regions/selfcheck.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #define VISIBLE 24   // levels; a pixel that differs by more is seen
 #define MOST_SEEN 12 // pixels that may differ so; rounding at thin edges does
@@ -8,6 +9,7 @@
 
 struct FlSelfCheck {
     int width, height;
+    int allowed; // pixels that differ at the edges of masks, where parts overlap
     cairo_surface_t *sum;
     GArray *pieces; // FlPiece: the parts, bottom up
     uint16_t *top;  // width * height: 1 + index in pieces of the last part drawn there
@@ -19,7 +21,11 @@ FlSelfCheck *fl_self_check_new(int width, int height, GError **error)
     if (!sum)
         return NULL;
     FlSelfCheck *check = g_new0(FlSelfCheck, 1);
-    *check = (FlSelfCheck){width, height, sum, g_array_new(FALSE, FALSE, sizeof(FlPiece)),
+    *check = (FlSelfCheck){width,
+                           height,
+                           0,
+                           sum,
+                           g_array_new(FALSE, FALSE, sizeof(FlPiece)),
                            g_new0(uint16_t, (size_t)width * height)};
     return check;
 }
@@ -113,9 +119,15 @@ static cairo_surface_t *draw_pieces(FlSvg *svg, const FlPiece *piece, int n, int
     return g_steal_pointer(&surface);
 }
 
-int fl_looks_alike(FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n, int width,
-                   int height, double page_width, double page_height, GError **error)
+static bool is_masked(const FlLeaf *leaf)
 {
+    return strcmp(leaf->layer, leaf->id) != 0;
+}
+
+int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
+                   double page_width, double page_height, GError **error)
+{
+    const int width = check->width, height = check->height;
     const FlPiece whole = {group, FL_PART_WHOLE, FL_MIX_OVER};
     g_autoptr(cairo_surface_t) one =
         draw_pieces(svg, &whole, 1, width, height, page_width, page_height, error);
@@ -130,7 +142,11 @@ int fl_looks_alike(FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
         ink += a[p] != 0;
         seen += difference(a[p], b[p]) > VISIBLE;
     }
-    return seen * EDGE <= ink;
+    if (seen * EDGE > ink)
+        return 0;
+    if (is_masked(piece[0].leaf))
+        check->allowed += seen;
+    return 1;
 }
 
 /** How many pixels differ visibly; the worst of them goes to *where. */
@@ -184,15 +200,22 @@ static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, 
     const int seen = compare((const uint32_t *)cairo_image_surface_get_data(truth),
                              (const uint32_t *)cairo_image_surface_get_data(sum),
                              (size_t)check->width * check->height, &where);
-    return seen > MOST_SEEN ? FL_VERDICT_DIFFERS : FL_VERDICT_ALIKE;
+    return seen > MOST_SEEN + check->allowed ? FL_VERDICT_DIFFERS : FL_VERDICT_ALIKE;
 }
 
-/** The smallest group around a leaf that does not look as its leaves do: *group, NULL if none. */
+/**
+ * The smallest group around a leaf that does not look as its leaves do: *group, NULL if none. What
+ * is inside a group with a mask cannot be looked at by itself: librsvg draws it without the mask.
+ */
 static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, double page_width,
                        double page_height, char **group, GError **error)
 {
     g_auto(GStrv) groups = g_strsplit(leaf->groups, "\n", -1);
+    bool masked = is_masked(leaf);
     for (guint i = g_strv_length(groups); i-- > 0 && groups[i][0];) {
+        masked = masked && strcmp(groups[i], leaf->layer) != 0;
+        if (masked)
+            continue;
         const FlVerdict verdict = judge(check, svg, groups[i], page_width, page_height, error);
         if (verdict == FL_VERDICT_ERROR)
             return false;
@@ -216,7 +239,7 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width
                              (size_t)check->width * check->height, &where);
     *group = NULL;
     *leaf = NULL;
-    if (seen <= MOST_SEEN)
+    if (seen <= MOST_SEEN + check->allowed)
         return FL_VERDICT_ALIKE;
     if (check->top[where] == 0)
         return FL_VERDICT_DIFFERS;

@@ -41,10 +41,11 @@ typedef struct FlPiece {
 
 /**
  * Whether a group looks the same when its n pieces are drawn over each other one by one: groups
- * with opacity or a mask do where nothing overlaps, and nearly so where a mask has sharp edges.
+ * with opacity or a mask do where nothing overlaps, and nearly so where a mask has sharp edges;
+ * pixels that differ at a mask's edge will not count in fl_self_check_finish().
  * Returns: 1 or 0; -1 with an error.
  */
-int fl_looks_alike(FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n, int width,
-                   int height, double page_width, double page_height, GError **error);
+int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
+                   double page_width, double page_height, GError **error);
 
 #endif
