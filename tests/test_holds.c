@@ -22,7 +22,8 @@ static void film_clear(Film *film)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Film, film_clear)
 
 /* A disc that goes round once, or holds still, painted with the small style. */
-static Film painted(double radius, const FlSetting *settings, size_t n_settings, bool loop)
+static Film painted_to(const char *dump, double radius, const FlSetting *settings,
+                       size_t n_settings, bool loop)
 {
     Film film = {.folder = scratch_make()};
     for (int f = 0; f < FRAMES; f++) {
@@ -40,6 +41,7 @@ static Film painted(double radius, const FlSetting *settings, size_t n_settings,
                                      .width = SIDE,
                                      .settings = settings,
                                      .n_settings = n_settings,
+                                     .dump = dump,
                                      .loop = loop};
     g_autoptr(GError) error = NULL;
     fl_render(&options, &error);
@@ -51,6 +53,11 @@ static Film painted(double radius, const FlSetting *settings, size_t n_settings,
         g_assert_no_error(error);
     }
     return film;
+}
+
+static Film painted(double radius, const FlSetting *settings, size_t n_settings, bool loop)
+{
+    return painted_to(NULL, radius, settings, n_settings, loop);
 }
 
 /* Mean absolute difference of two frames, in levels. */
@@ -148,6 +155,38 @@ static void a_loop_ends_where_it_began(void)
     g_assert_cmpfloat(jump(&loop), <, 0.5 * jump(&once));
 }
 
+/* Mean length of the flow that --dump wrote of a frame, px. */
+static double flow_length(const char *dump, int frame)
+{
+    g_autofree char *name = g_strdup_printf("flow_%04d.f32", frame);
+    g_autoptr(GDir) regions = g_dir_open(dump, 0, NULL);
+    g_autofree char *file = g_build_filename(dump, g_dir_read_name(regions), name, NULL);
+    g_autofree char *data = NULL;
+    gsize bytes = 0;
+    g_assert_true(g_file_get_contents(file, &data, &bytes, NULL));
+    const float *flow = (const float *)(const void *)data;
+    double sum = 0;
+    int n = 0;
+    for (size_t k = 0; k < bytes / sizeof *flow; k += 2)
+        if (flow[k] != 0 || flow[k + 1] != 0)
+            sum += hypot(flow[k], flow[k + 1]), n++;
+    return n > 0 ? sum / n : 0;
+}
+
+static void the_last_frame_of_a_loop_flows_on_to_the_first(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *dump = g_build_filename(folder, "dump", NULL);
+    const FlSetting settings[] = {style()};
+    g_auto(Film) loop = painted_to(dump, 20, settings, 1, true);
+    const double last = flow_length(dump, FRAMES), usual = flow_length(dump, FRAMES / 2);
+    g_test_message("flow of the last frame %.2f px, of another %.2f px", last, usual);
+    g_assert_cmpfloat(fabs(last - usual), <, 0.2 * usual);
+    const char *const remove[] = {"rm", "-r", dump, NULL};
+    g_spawn_sync(NULL, (char **)remove, NULL, G_SPAWN_SEARCH_PATH, NULL, NULL, NULL, NULL, NULL,
+                 NULL);
+}
+
 static void a_held_drawing_loops_on_twos(void)
 {
     const FlSetting settings[] = {
@@ -169,6 +208,7 @@ int main(int argc, char **argv)
     TEST(on_twos_every_picture_stays_for_two_frames);
     TEST(a_region_on_twos_keeps_its_shape_in_a_film_on_ones);
     TEST(a_loop_ends_where_it_began);
+    TEST(the_last_frame_of_a_loop_flows_on_to_the_first);
     TEST(a_held_drawing_loops_on_twos);
     return g_test_run();
 }

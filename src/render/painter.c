@@ -7,11 +7,20 @@
 #include "synth/draft.h"
 #include <string.h>
 
+#define WRAP 24 // pictures of a loop that its guides see beyond each end
+
+/* The frame of the film that a picture of the guides shows. */
+static int frame_of(const FlPainter *painter, int picture)
+{
+    const int n = painter->n_pictures;
+    return (picture - painter->wrap + n) % n * painter->treatment.hold;
+}
+
 static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
 {
     const FlPainter *painter = data;
-    return fl_masks_get(painter->masks, painter->region, frame * painter->treatment.hold,
-                        painter->rect, coverage, error);
+    return fl_masks_get(painter->masks, painter->region, frame_of(painter, frame), painter->rect,
+                        coverage, error);
 }
 
 static bool painter_half_mask(void *data, int frame, uint8_t *coverage, GError **error)
@@ -29,7 +38,7 @@ static bool painter_flow(void *data, int frame, float *flow, GError **error)
 {
     const FlPainter *painter = data;
     const FlBox rect = painter->rect;
-    const int number = fl_film_number(painter->film, frame * painter->treatment.hold);
+    const int number = fl_film_number(painter->film, frame_of(painter, frame));
     const size_t pixels = (size_t)painter->width * painter->height;
     g_autofree float *whole = fl_alloc(2 * pixels, sizeof(float), "a flow field", error);
     g_autofree char *file =
@@ -56,8 +65,9 @@ static bool painter_half_flow(void *data, int frame, float *flow, GError **error
 }
 
 /* Where guides come from: the masks of the painter's rectangle, and its flow files. */
-static FlGuideSource source_of(FlPainter *painter, int n_pictures)
+static FlGuideSource source_of(FlPainter *painter)
 {
+    const int n_pictures = painter->n_pictures + 2 * painter->wrap;
     const FlBox rect = painter->rect;
     FlGuideSource source = {rect.width,   rect.height,  n_pictures,
                             painter_mask, painter_flow, painter};
@@ -107,9 +117,10 @@ static bool make_pictures(FlPainter *painter, GError **error)
 
 bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
 {
-    const int n_pictures = (fl_film_frames(painter->film) - 1) / painter->treatment.hold + 1;
+    painter->n_pictures = (fl_film_frames(painter->film) - 1) / painter->treatment.hold + 1;
+    painter->wrap = painter->loops ? MIN(painter->n_pictures, WRAP) : 0;
     painter->rect = cropped(painter);
-    const FlGuideSource source = source_of(painter, n_pictures);
+    const FlGuideSource source = source_of(painter);
     const FlGuideParams how = fl_guide_params(&painter->treatment.params);
     const FlSynthSize size = {painter->rect.width, painter->rect.height, painter->width,
                               painter->height};
@@ -117,7 +128,7 @@ bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
            (painter->synth = fl_synth_new(painter->box->exemplar, &painter->treatment.params, size,
                                           fl_key(seed, g_str_hash(painter->name)), error)) &&
            make_pictures(painter, error) &&
-           (!painter->loops || fl_loop_init(&painter->loop, n_pictures, error));
+           (!painter->loops || fl_loop_init(&painter->loop, painter->n_pictures, error));
 }
 
 void fl_painter_clear(FlPainter *painter)
@@ -148,7 +159,7 @@ static bool paint_part(FlPainter *painter, int index, FlGuides *guides, GError *
     const FlBox rect = painter->rect;
     guides->width = half ? fl_half_side(rect.width) : rect.width;
     guides->height = half ? fl_half_side(rect.height) : rect.height;
-    if (!fl_guide_sequence_get(painter->guides, index, guides, error) ||
+    if (!fl_guide_sequence_get(painter->guides, painter->wrap + index, guides, error) ||
         !fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
                         painter->wants_view ? &painter->view : NULL, error))
         return false;

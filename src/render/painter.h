@@ -21,6 +21,8 @@ typedef struct FlPainter {
     FlBox rect;            // the part of it in which the region ever is, with some room
     bool loops;            // the film's end leads into its beginning
     FlLoop loop;
+    int n_pictures; // held frames counted once
+    int wrap; // so many pictures of a loop's end come before its guides, and of its start after
     char *flow_pattern; // of flow files; NULL: the flow is made from the masks
     FlGuideSequence *guides;
     FlSynth *synth;
