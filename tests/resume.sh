@@ -84,6 +84,15 @@ wait $job 2>/dev/null
 paint layered --layers 'layered/{region}_%04d.png' && same layered layers_whole
 result $? 'layers are complete after a second run too'
 
+started both
+wait_for both/w_0001.png
+kill -STOP $job
+"$program" film -s "$style" -o 'both/w_%04d.png' --progress none -y --seed 2 >out 2>other
+found=$?
+kill -CONT $job
+wait $job && mv other err && [ $found = 1 ] && says 'both/w_%04d.png: another run is writing it' && same both whole
+result $? 'of two runs that would write the same frames one is told and one paints'
+
 # ---- what has changed ----
 
 stop changed INT 2
@@ -148,6 +157,27 @@ wait $job 2>/dev/null
 [ $? = 75 ] && [ ! -e on/w.mkv ] && "$program" film -s "$style" -o on/w.mkv >out 2>err &&
     grep -q 'going on' err && cmp -s on/w.mkv played.mkv && rm on/w.mkv && same on whole
 result $? 'an interrupted film goes on and has the same bytes'
+for frame in 1 3; do
+    "$program" film -s "$style" -o dead/w.mkv --progress none >out 2>err &
+    job=$!
+    wait_for dead/w_000$frame.png
+    kill -KILL $job 2>/dev/null
+    wait $job 2>/dev/null
+done
+"$program" film -s "$style" -o dead/w.mkv >out 2>err && grep -q 'going on' err &&
+    cmp -s dead/w.mkv played.mkv && rm dead/w.mkv && same dead whole
+result $? 'so does one that was killed twice, and leaves nothing else'
+"$program" film -s "$style" -o one/w.mkv --no-frames --progress none >out 2>err &
+job=$!
+while [ ! -s one/.w.mkv.part ] && kill -0 $job 2>/dev/null; do
+    sleep 0.002 # it is locked by the time that ffmpeg writes to it
+done
+kill -STOP $job
+"$program" film -s "$style" -o one/w.mkv --no-frames -y -q --seed 2 >out 2>other
+found=$?
+kill -CONT $job
+wait $job && mv other err && [ $found = 1 ] && says 'one/w.mkv: another run is writing it' && cmp -s one/w.mkv played.mkv
+result $? 'of two runs that would write the same film one is told and one paints'
 "$program" film -s "$style" -o alone/w.mkv --no-frames -q >out 2>err
 [ $? = 0 ] && [ "$(ls -A alone)" = w.mkv ] && cmp -s alone/w.mkv played.mkv
 result $? 'without frames the film is the same and alone'

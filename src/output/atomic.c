@@ -1,5 +1,7 @@
 #include "output/atomic.h"
 
+#include "output/lock.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <glib/gstdio.h>
@@ -44,11 +46,10 @@ static bool prepare(FlAtomic *file, const char *path, bool overwrite, GError **e
 }
 
 /** A hidden name beside the path. */
-static char *temporary_name(const char *path, const char *suffix)
+static char *temporary_name(const char *path)
 {
     g_autofree char *folder = g_path_get_dirname(path);
-    g_autofree char *name =
-        g_strdup_printf(".fluidy-%08x%08x%s", g_random_int(), g_random_int(), suffix);
+    g_autofree char *name = g_strdup_printf(".fluidy-%08x%08x", g_random_int(), g_random_int());
     return g_build_filename(folder, name, NULL);
 }
 
@@ -63,9 +64,9 @@ static int open_nameless(const char *path)
 #endif
 }
 
-static int open_named(FlAtomic *file, const char *suffix)
+static int open_named(FlAtomic *file)
 {
-    file->temporary = temporary_name(file->path, suffix);
+    file->temporary = temporary_name(file->path);
     return open(file->temporary, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, MODE);
 }
 
@@ -84,22 +85,50 @@ bool fl_atomic_open(FlAtomic *file, const char *path, bool overwrite, GError **e
         return false;
     int fd = open_nameless(path);
     if (fd < 0)
-        fd = open_named(file, "");
+        fd = open_named(file);
     if (fd < 0)
         return give_up(file, errno, error);
     file->stream = fdopen(fd, "wb");
     return true;
 }
 
-bool fl_atomic_reserve(FlAtomic *file, const char *path, bool overwrite, const char *suffix,
-                       GError **error)
+/** ".NAME.part" beside the path. */
+static char *reserved_name(const char *path)
 {
+    g_autofree char *folder = g_path_get_dirname(path), *base = g_path_get_basename(path);
+    g_autofree char *name = g_strdup_printf(".%s.part", base);
+    return g_build_filename(folder, name, NULL);
+}
+
+/** An empty locked file of that name, or -1; an error is set if another run writes it. */
+static int open_reserved(FlAtomic *file, GError **error)
+{
+    file->temporary = reserved_name(file->path);
+    int fd = fl_lock_take(file->temporary, file->path, error);
+    struct stat found;
+    if (fd < 0 || fstat(fd, &found) != 0 || found.st_size == 0)
+        return fd;
+    // A new file: what a killed run left may have an ffmpeg that is not done with it.
+    g_unlink(file->temporary);
+    close(fd);
+    return fl_lock_take(file->temporary, file->path, error);
+}
+
+bool fl_atomic_reserve(FlAtomic *file, const char *path, bool overwrite, GError **error)
+{
+    GError *taken = NULL;
     if (!prepare(file, path, overwrite, error))
         return false;
-    const int fd = open_named(file, suffix);
-    if (fd < 0)
+    const int fd = open_reserved(file, &taken);
+    if (fd < 0 && !taken)
         return give_up(file, errno, error);
-    close(fd);
+    if (taken) {
+        g_propagate_error(error, taken);
+        g_clear_pointer(&file->temporary, g_free); // it is the other's
+        fl_atomic_clear(file);
+        return false;
+    }
+    file->stream = fdopen(fd, "rb");
     return true;
 }
 
@@ -114,8 +143,6 @@ static bool sync_path(const char *path, int flags)
 
 static bool sync_file(FlAtomic *file)
 {
-    if (!file->stream)
-        return sync_path(file->temporary, O_RDONLY);
     return fflush(file->stream) == 0 && fsync(fileno(file->stream)) == 0;
 }
 
@@ -148,7 +175,7 @@ static bool publish(FlAtomic *file)
     if (!file->temporary && !file->overwrite)
         return name_file(file, file->path);
     if (!file->temporary) {
-        g_autofree char *name = temporary_name(file->path, "");
+        g_autofree char *name = temporary_name(file->path);
         if (!name_file(file, name))
             return false;
         file->temporary = g_steal_pointer(&name);

@@ -13,7 +13,7 @@
  * nothing behind; else a temporary one in the same folder, which fl_atomic_clear() removes.
  */
 typedef struct FlAtomic {
-    FILE *stream;    // write here
+    FILE *stream;    // write here; of a reserved file it only holds the lock
     char *path;      // the name to be
     char *temporary; // NULL: without a name
     bool overwrite;
@@ -28,11 +28,10 @@ typedef struct FlAtomic {
 bool fl_atomic_open(FlAtomic *file, const char *path, bool overwrite, GError **error);
 
 /**
- * The same for a program that writes the file itself, to file->temporary; there is no stream.
- * suffix, such as ".mov", ends the temporary name.
+ * The same for a program that writes the file itself, to file->temporary: ".NAME.part" beside it.
+ * One that a killed run left is removed; one that is being written is FL_ERROR_EXISTS.
  */
-bool fl_atomic_reserve(FlAtomic *file, const char *path, bool overwrite, const char *suffix,
-                       GError **error);
+bool fl_atomic_reserve(FlAtomic *file, const char *path, bool overwrite, GError **error);
 
 /**
  * Syncs the file and gives it its name. The file needs clearing in any case.

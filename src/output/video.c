@@ -122,8 +122,7 @@ static bool video_open(FlSink *sink, GError **error)
                     params->path);
         return false;
     }
-    if (!fl_atomic_reserve(&state->file, params->path, params->overwrite, sink->format->suffix,
-                           error))
+    if (!fl_atomic_reserve(&state->file, params->path, params->overwrite, error))
         return false;
     state->child = start_ffmpeg(sink, state->file.temporary, error);
     if (!state->child)

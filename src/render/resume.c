@@ -1,9 +1,11 @@
 #include "render/resume.h"
 
 #include "base/first_error.h"
+#include "output/lock.h"
 #include "output/name.h"
 #include "output/sink.h"
 #include <glib/gstdio.h>
+#include <unistd.h>
 
 static char *frame_file(const FlPlan *plan, int frame, GError **error)
 {
@@ -12,11 +14,11 @@ static char *frame_file(const FlPlan *plan, int frame, GError **error)
 }
 
 /* Hidden beside the frames, one for each pattern. */
-static char *state_file(const FlPlan *plan)
+static char *hidden_file(const FlPlan *plan, const char *suffix)
 {
     g_autofree char *folder = g_path_get_dirname(plan->output);
     g_autofree char *base = g_path_get_basename(plan->output);
-    g_autofree char *name = g_strdup_printf(".%s.state", base);
+    g_autofree char *name = g_strdup_printf(".%s.%s", base, suffix);
     return g_build_filename(folder, name, NULL);
 }
 
@@ -129,7 +131,7 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
     if (film && !check_film(plan, error))
         return false;
     g_autoptr(FlFingerprint) print = fl_fingerprint_new(plan, error);
-    resume->path = film ? NULL : state_file(plan);
+    resume->path = film ? NULL : hidden_file(plan, "state");
     if (!print || (resume->path && !find_state(resume, plan, print, error)))
         return false;
     resume->found = resume->written = resume->state != NULL;
@@ -168,10 +170,38 @@ bool fl_resume_take(FlResume *resume, const FlPlan *plan, int done, GError **err
     return first == NULL;
 }
 
+/* Two runs with the same output would mix their frames. */
+static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
+{
+    g_autofree char *folder = g_path_get_dirname(plan->output);
+    g_autofree char *path = hidden_file(plan, "lock");
+    GError *taken = NULL;
+    (void)g_mkdir_with_parents(folder, 0777); // the state, which comes next, tells what is wrong
+    resume->lock = fl_lock_take(path, plan->output, &taken);
+    if (taken) {
+        g_propagate_error(error, taken);
+        return false;
+    }
+    resume->lock_path = g_steal_pointer(&path);
+    return true;
+}
+
+/* Before the state: a run that is killed in between is known to be complete by the next. */
+static void release_lock(FlResume *resume)
+{
+    if (resume->lock_path && resume->lock >= 0) {
+        g_unlink(resume->lock_path);
+        close(resume->lock);
+    }
+    g_clear_pointer(&resume->lock_path, g_free);
+}
+
 bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error)
 {
     if (!resume->found)
         return fl_resume_take(resume, plan, 0, error);
+    if (!take_lock(resume, plan, error))
+        return false;
     GBytes *const *parts = (GBytes *const *)resume->state->painter->pdata;
     if (resume->state->painter->len != (guint)(FL_PAINTER_PARTS * plan->n_painters)) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
@@ -190,7 +220,11 @@ bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GEr
         return false;
     // The first state comes before the first frame: a frame without a state is not known as ours.
     // It comes no sooner, so that a mistake that shows in the first frame leaves nothing behind.
-    if (!resume->path || resume->written)
+    if (!resume->path)
+        return true;
+    if (!resume->lock_path && !take_lock(resume, plan, error))
+        return false;
+    if (resume->written)
         return true;
     return resume->written = fl_state_save(resume->state, resume->path, error);
 }
@@ -218,12 +252,14 @@ const char *fl_resume_advice(const FlResume *resume)
 
 void fl_resume_finish(FlResume *resume)
 {
+    release_lock(resume);
     if (resume->path)
         g_unlink(resume->path);
 }
 
 void fl_resume_clear(FlResume *resume)
 {
+    release_lock(resume);
     g_free(resume->path);
     fl_state_free(resume->state);
     *resume = (FlResume){0};

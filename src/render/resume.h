@@ -12,6 +12,8 @@ typedef struct FlResume {
     bool found;      // an earlier run left it
     int first;       // the frame to start with; those before it are finished
     bool keep_files; // what exists stays as it is
+    char *lock_path; // beside the state, while it is held
+    int lock;        // its descriptor, where files can be locked
 } FlResume;
 
 /**
@@ -22,12 +24,14 @@ typedef struct FlResume {
  */
 bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error);
 
-/** Brings the painters, which are prepared, to the frame to start with. */
+/** Brings the painters, which are prepared, to the frame to start with. FL_ERROR_EXISTS as below.
+ */
 bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error);
 
 /**
  * To be called when a frame is painted and before any of its files is written. FL_ERROR_CHANGED if
- * the drawing is not what it was when the render began, FL_ERROR_OUTPUT.
+ * the drawing is not what it was when the render began, FL_ERROR_EXISTS if another run is writing
+ * the same frames, FL_ERROR_OUTPUT.
  */
 bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error);
 
