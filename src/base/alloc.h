@@ -2,6 +2,7 @@
 #ifndef FLUIDY_BASE_ALLOC_H
 #define FLUIDY_BASE_ALLOC_H
 
+#include "base/room.h"
 #include <fluidy/error.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -16,14 +17,14 @@ static inline void *fl_alloc(size_t count, size_t element_bytes, const char *wha
 {
     size_t bytes = 0;
     void *memory = NULL;
-    if (__builtin_mul_overflow(count, element_bytes, &bytes) || bytes > SIZE_MAX - 64 ||
-        !(memory = aligned_alloc(64, (bytes + 64) / 64 * 64)))
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                    "not enough memory for %s (%zu elements of %zu bytes)", what, count,
-                    element_bytes);
-    else
-        __builtin_memset(memory, 0, bytes);
-    return memory;
+    if (!__builtin_mul_overflow(count, element_bytes, &bytes) && bytes <= SIZE_MAX - 64)
+        memory = aligned_alloc(64, (bytes + 64) / 64 * 64);
+    if (memory && fl_room_left())
+        return __builtin_memset(memory, 0, bytes);
+    free(memory);
+    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                "not enough memory for %s (%zu elements of %zu bytes)", what, count, element_bytes);
+    return NULL;
 }
 
 #define FL_HUGE_PAGE ((size_t)2 << 20)
@@ -41,8 +42,10 @@ static inline void *fl_alloc_huge(size_t count, size_t element_bytes, const char
         return fl_alloc(count, element_bytes, what, error);
     bytes = (bytes + FL_HUGE_PAGE - 1) / FL_HUGE_PAGE * FL_HUGE_PAGE;
     void *memory = aligned_alloc(FL_HUGE_PAGE, bytes);
-    if (!memory)
+    if (!memory || !fl_room_left()) {
+        free(memory);
         return fl_alloc(count, element_bytes, what, error);
+    }
 #ifdef MADV_HUGEPAGE
     (void)madvise(memory, bytes, MADV_HUGEPAGE); // before the pages are touched
 #endif

@@ -2,12 +2,14 @@
 
 #include <pthread.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
 
 #define MIB ((size_t)1 << 20)
 #define OF_LIBRARIES (24 * MIB) // measured: a drawing is read with 16
+#define OF_SMALL_THINGS (12 * MIB)
 
 static size_t of_stacks(void)
 {
@@ -25,14 +27,24 @@ static size_t of_stacks(void)
     return others * stack;
 }
 
+static bool has_room(size_t bytes)
+{
+    void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return room != MAP_FAILED && munmap(room, bytes) == 0;
+}
+
+bool fl_room_left(void)
+{
+    struct rlimit limit;
+    return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
+           has_room(OF_SMALL_THINGS);
+}
+
 bool fl_room_check(GError **error)
 {
     const size_t bytes = OF_LIBRARIES + of_stacks();
-    void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (room != MAP_FAILED) {
-        munmap(room, bytes);
+    if (has_room(bytes))
         return true;
-    }
     g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
                 "not enough memory to begin: expected room for %zu MiB more; fewer threads or a "
                 "larger limit (ulimit -v) give it",

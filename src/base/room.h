@@ -15,4 +15,10 @@
  */
 bool fl_room_check(GError **error);
 
+/**
+ * Whether there still is room for small things, in a process whose address space is limited. What
+ * is large is given back where there is none: it is the last of which the lack can be told.
+ */
+bool fl_room_left(void);
+
 #endif
