@@ -249,6 +249,10 @@ static bool paint_frame(Job *job, int frame, FlComposite *composite, double *pai
                         GError **error)
 {
     const int64_t start = g_get_monotonic_time();
+    FlPlan *plan = job->plan;
+    if (!fl_exemplars_seek(plan->exemplars, frame, fl_film_frames(plan->film), plan->options.loop,
+                           error))
+        return false;
     job->frame = frame;
     fl_task_start(&job->drawing, draw_shapes, job, overlaps(job));
     const bool painted = for_each_painter(job, paint_one, frame, error);

@@ -50,6 +50,16 @@ result $? 'a second signal ends it at once'
 paint twice && same twice whole
 result $? 'and then it goes on all the same'
 
+paint slid_whole --style-window 2
+! same slid_whole whole
+result $? 'a window on the recording paints something else than the whole of it'
+started slid --style-window 2
+wait_for slid/w_0003.png
+kill -INT $job 2>/dev/null
+wait $job 2>/dev/null
+[ $? = 75 ] && paint slid --style-window 2 && same slid slid_whole
+result $? 'a render that is interrupted goes on with the window where it was'
+
 # 50 kills: five a round, at any moment of one frame after another; now and then before the first.
 RANDOM=${SEED:-$$}
 echo "# SEED=${SEED:-$$}"

@@ -28,6 +28,7 @@ static inline void *fl_alloc(size_t count, size_t element_bytes, const char *wha
 }
 
 #define FL_HUGE_PAGE ((size_t)2 << 20)
+#define FL_PAGE ((size_t)64 << 10) // a multiple of every machine's
 
 /**
  * The same for a table of many megabytes that is read at random: on huge pages where the system has
@@ -51,6 +52,34 @@ static inline void *fl_alloc_huge(size_t count, size_t element_bytes, const char
 #endif
     __builtin_memset(memory, 0, bytes);
     return memory;
+}
+
+/**
+ * The same with anything in it, for a table of which only a part is used at a time: what is not
+ * written to takes no memory, and what is no longer needed is given back by fl_release().
+ */
+static inline void *fl_alloc_lazy(size_t count, size_t element_bytes, const char *what,
+                                  GError **error)
+{
+    size_t bytes = 0;
+    void *memory = NULL;
+    if (__builtin_mul_overflow(count, element_bytes, &bytes) || bytes > SIZE_MAX - FL_HUGE_PAGE ||
+        !(memory = aligned_alloc(FL_PAGE, (bytes + FL_PAGE) / FL_PAGE * FL_PAGE)))
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                    "not enough memory for %s (%zu elements of %zu bytes)", what, count,
+                    element_bytes);
+    return memory;
+}
+
+/** Gives the whole pages of a part of such a table back; what was in the part is lost. */
+static inline void fl_release(void *part, size_t bytes)
+{
+#ifdef MADV_DONTNEED
+    const uintptr_t from = ((uintptr_t)part + FL_PAGE - 1) / FL_PAGE * FL_PAGE;
+    const uintptr_t to = ((uintptr_t)part + bytes) / FL_PAGE * FL_PAGE;
+    if (to > from)
+        (void)madvise((void *)from, to - from, MADV_DONTNEED);
+#endif
 }
 
 /** g_autofree frees with g_free(), which is free() since GLib 2.46; so both fit fl_alloc(). */

@@ -51,6 +51,7 @@ static FlPaintbox *load(const char *path, const FlTreatment *treatment, GError *
     g_autoptr(FlStyle) style = whole ? fl_style_adapt(whole, &use, error) : NULL;
     if (!style)
         return NULL;
+    g_clear_pointer(&whole, fl_style_free); // recordings are large
     g_autoptr(FlPaintbox) box = g_new0(FlPaintbox, 1);
     *box = (FlPaintbox){.path = g_strdup(path),
                         .params = *params,
@@ -79,4 +80,42 @@ const FlPaintbox *fl_exemplars_get(FlExemplars *exemplars, const FlTreatment *tr
     if (box)
         g_ptr_array_add(exemplars->boxes, box);
     return box;
+}
+
+double fl_exemplars_bytes(const FlExemplars *exemplars)
+{
+    const double of_window = 50, of_rest = 9; // measured: with its rotations; while it is read
+    double bytes = 0;
+    for (guint i = 0; i < exemplars->boxes->len; i++) {
+        const FlPaintbox *box = exemplars->boxes->pdata[i];
+        const FlExemplarLevel *full = &box->exemplar->level[0];
+        bytes += (double)full->width * full->height *
+                 (of_window * full->window + of_rest * (full->n_frames - full->window));
+    }
+    return bytes;
+}
+
+/*
+ * The window moves with the film, at most a frame of the recording for a frame of the film, as far
+ * as the recording goes or, in a loop, there and back. It is a function of the frame alone, so that
+ * regions may share it and a render that is interrupted goes on with the same.
+ */
+static int window_at(int spare, int frame, int n_frames, bool loops)
+{
+    if (loops)
+        return (int)((int64_t)2 * MIN(spare, n_frames / 2) * MIN(frame, n_frames - frame) /
+                     n_frames);
+    return n_frames > 1 ? (int)((int64_t)MIN(spare, n_frames - 1) * frame / (n_frames - 1)) : 0;
+}
+
+bool fl_exemplars_seek(FlExemplars *exemplars, int frame, int n_frames, bool loops, GError **error)
+{
+    for (guint i = 0; i < exemplars->boxes->len; i++) {
+        FlExemplar *exemplar = ((FlPaintbox *)exemplars->boxes->pdata[i])->exemplar;
+        const FlExemplarLevel *full = &exemplar->level[0];
+        const int first = window_at(full->n_frames - full->window, frame, n_frames, loops);
+        if (!fl_exemplar_seek(exemplar, first, error))
+            return false;
+    }
+    return true;
 }

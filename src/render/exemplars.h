@@ -31,6 +31,15 @@ void fl_exemplars_free(FlExemplars *exemplars); // NULL is fine
 const FlPaintbox *fl_exemplars_get(FlExemplars *exemplars, const FlTreatment *treatment,
                                    GError **error);
 
+/** About how many bytes they take. */
+double fl_exemplars_bytes(const FlExemplars *exemplars);
+
+/**
+ * Moves the windows of long recordings to where they are for a frame of a film of n_frames frames.
+ * Nobody may paint meanwhile. Returns: false with FL_ERROR_INPUT or FL_ERROR_NO_MEMORY set.
+ */
+bool fl_exemplars_seek(FlExemplars *exemplars, int frame, int n_frames, bool loops, GError **error);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlExemplars, fl_exemplars_free)
 
 #endif

@@ -96,12 +96,9 @@ static FlBox cropped(const FlPainter *painter)
 
 double fl_painter_bytes(const FlPainter *painter)
 {
-    // measured: fields, votes, guides and the state of a region; an exemplar with its rotations
-    const double of_region = 80, of_exemplar = 50;
-    const FlExemplarLevel *exemplar = &painter->box->exemplar->level[0];
+    const double of_region = 80; // measured: fields, votes, guides and the state
     return 3.0 * painter->width * painter->height +
-           of_region * (double)fl_box_pixels(cropped(painter)) +
-           of_exemplar * exemplar->width * exemplar->height * exemplar->n_frames;
+           of_region * (double)fl_box_pixels(cropped(painter));
 }
 
 static bool make_pictures(FlPainter *painter, GError **error)

@@ -34,7 +34,7 @@ typedef struct FlPainter {
     double seconds; // that the last frame took
 } FlPainter;
 
-/** About how many bytes the painter and its exemplar will take; the masks are known by then. */
+/** About how many bytes the painter will take; the masks are known by then. */
 double fl_painter_bytes(const FlPainter *painter);
 
 /** Makes the guides of the whole film. The random numbers depend on seed and the region's name. */

@@ -286,6 +286,7 @@ static bool check_memory(const FlPlan *plan, GError **error)
     double bytes = 20e6 + 10 * pixels; // measured: the libraries, a frame composed
     for (int p = 0; p < plan->n_painters; p++)
         bytes += fl_painter_bytes(&plan->painters[p]);
+    bytes += fl_exemplars_bytes(plan->exemplars);
     g_autofree char *where =
         g_strdup_printf("%s, %d regions in %dx%d pixels", fl_film_name(plan->film),
                         plan->n_painters, fl_film_width(plan->film), fl_film_height(plan->film));

@@ -62,7 +62,7 @@ double fl_flicker_of_exemplar(const FlExemplar *exemplar)
     const FlExemplarLevel *level = &exemplar->level[0];
     const size_t pixels = (size_t)level->width * level->height;
     uint64_t sum = 0, n = 0;
-    for (int t = 0; t + 1 < level->n_frames; t++)
+    for (int t = level->first; t + 1 < level->first + level->window; t++)
         for (size_t p = 0; p < pixels; p++) {
             const uint8_t *mask = exemplar->mask + (size_t)t * pixels + p;
             if (mask[0] < FL_INSIDE || mask[pixels] < FL_INSIDE)

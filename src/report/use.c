@@ -74,7 +74,7 @@ static FlPicture *picture_of(const FlUse *use, GError **error)
     for (int y = 0; picture && y < full->height; y++)
         for (int x = 0; x < full->width; x++) {
             uint8_t *rgba = picture->rgba + 4 * ((size_t)y * full->width + x);
-            const uint8_t *c = fl_exemplar_at(full, x, y, full->n_frames - 1)->c;
+            const uint8_t *c = fl_exemplar_at(full, x, y, full->first + full->window - 1)->c;
             const uint32_t n = around(use, x, y);
             const double expected =
                 even * frames_with_paint(use, x, y) * FL_PATCH_PIXELS; // about, at edges

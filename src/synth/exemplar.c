@@ -1,6 +1,7 @@
 #include "synth/exemplar.h"
 
 #include "base/alloc.h"
+#include "base/spill.h"
 #include "style/adapt.h"
 #include "synth/spline.h"
 #include <string.h>
@@ -54,30 +55,47 @@ static bool style_flow(void *data, int frame, float *flow, GError **error)
     return true;
 }
 
-static bool keep_guides(FlExemplar *exemplar, const FlGuides *guides, int t, size_t pixels)
+struct FlExemplarFrames {
+    FlParams params;
+    FlGuideSequence *sequence;
+    FlSpill *rgb;         // a block for each frame
+    int earliest, latest; // frames with paint
+};
+
+static void frames_free(FlExemplarFrames *frames)
 {
-    memcpy(exemplar->distance + t * pixels, guides->distance, pixels * sizeof(float));
-    memcpy(exemplar->ext_plus + t * pixels, guides->ext_plus, pixels * sizeof(float));
-    memcpy(exemplar->ext_minus + t * pixels, guides->ext_minus, pixels * sizeof(float));
-    memcpy(exemplar->mask + t * pixels, guides->mask, pixels);
-    return true;
+    if (!frames)
+        return;
+    fl_guide_sequence_free(frames->sequence);
+    fl_spill_free(frames->rgb);
+    g_free(frames);
+}
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlExemplarFrames, frames_free)
+
+static void keep_guides(FlExemplar *exemplar, const FlGuides *guides, int t)
+{
+    const size_t pixels = (size_t)guides->width * (size_t)guides->height;
+    const size_t at = (size_t)t * pixels;
+    memcpy(exemplar->distance + at, guides->distance, pixels * sizeof(float));
+    memcpy(exemplar->ext_plus + at, guides->ext_plus, pixels * sizeof(float));
+    memcpy(exemplar->ext_minus + at, guides->ext_minus, pixels * sizeof(float));
 }
 
 /* Level 0 of one frame: its guides, and its colours. */
-static bool fill_frame(FlExemplar *exemplar, const FlStyle *style, const FlParams *params,
-                       const FlGuideSequence *sequence, int t, FlStack *stack, GError **error)
+static bool fill_frame(FlExemplar *exemplar, const FlExemplarFrames *frames, const uint8_t *rgb,
+                       int t, FlStack *stack, GError **error)
 {
-    const size_t pixels = (size_t)style->width * style->height;
+    const FlExemplarLevel *level = &exemplar->level[0];
+    const size_t pixels = (size_t)level->width * (size_t)level->height;
     g_auto(FlGuides) guides = {0};
     float *shape = stack->plane[FL_PLANE_R]; // lent until the colours are there
-    if (!fl_guides_init(&guides, style->width, style->height, error) ||
-        !fl_guide_sequence_get(sequence, t, &guides, error) ||
-        !fl_shape_guide(&guides, params, exemplar->border_px, shape, error))
+    if (!fl_guides_init(&guides, level->width, level->height, error) ||
+        !fl_guide_sequence_get(frames->sequence, t, &guides, error) ||
+        !fl_shape_guide(&guides, &frames->params, exemplar->border_px, shape, error))
         return false;
-    keep_guides(exemplar, &guides, t, pixels);
-    fl_stack_fill(stack, &guides, shape, (FlRect){0, 0, style->width, style->height});
-    const uint8_t *rgb = style->rgb + 3 * pixels * t;
-    for (int c = 0; c < 3; c++)
+    keep_guides(exemplar, &guides, t);
+    fl_stack_fill(stack, &guides, shape, (FlRect){0, 0, level->width, level->height});
+    for (size_t c = 0; c < 3; c++)
         for (size_t p = 0; p < pixels; p++)
             stack->plane[FL_PLANE_R + c][p] = rgb[3 * p + c] / 255.0f;
     return true;
@@ -93,9 +111,9 @@ static FlTexel pack(const FlStack *stack, size_t p, const FlExemplar *exemplar)
     out.c[FL_CH_EXT_PLUS] = fl_texel_channel(stack->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
     out.c[FL_CH_EXT_MINUS] = fl_texel_channel(stack->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
     out.c[FL_CH_ANGLE] = fl_stack_angle(stack, p);
-    out.c[FL_CH_SEGMENT] =
-        (uint8_t)fl_segment_of(stack->plane[FL_PLANE_INSIDE][p] >= 0.5f,
-                               stack->plane[FL_PLANE_DISTANCE][p], exemplar->border_px, true);
+    out.c[FL_CH_SEGMENT] = (uint8_t)fl_segment_of(stack->plane[FL_PLANE_INSIDE][p] >= 0.5f,
+                                                  stack->plane[FL_PLANE_DISTANCE][p],
+                                                  exemplar->border_px, exemplar->separate);
     return out;
 }
 
@@ -140,19 +158,25 @@ static void rotate_offsets(FlExemplarLevel *level)
         }
 }
 
-static bool level_init(FlExemplarLevel *level, int width, int height, int n_frames, GError **error)
+/* An array of all frames of which only those of the window are touched, if that is shorter. */
+static void *alloc_frames(const FlExemplarLevel *level, size_t frame_elements, size_t element_bytes,
+                          GError **error)
 {
-    level->width = width, level->height = height, level->n_frames = n_frames;
+    const size_t n = frame_elements * (size_t)level->n_frames;
+    return level->window < level->n_frames ? fl_alloc_lazy(n, element_bytes, "an exemplar", error)
+                                           : fl_alloc_huge(n, element_bytes, "an exemplar", error);
+}
+
+static bool level_init(FlExemplarLevel *level, int width, int height, int n_frames, int window,
+                       GError **error)
+{
+    level->width = width, level->height = height;
+    level->n_frames = n_frames, level->window = window;
     level->pitch = (size_t)width + 2 * FL_PAD;
-    level->frame_pixels = level->pitch * (height + 2 * FL_PAD);
-    level->pixels =
-        fl_alloc_huge(level->frame_pixels * n_frames, sizeof(FlTexel), "an exemplar", error);
-    level->colour = level->pixels ? fl_alloc_huge(level->frame_pixels * n_frames,
-                                                  sizeof(FlSplinePixel), "an exemplar", error)
-                                  : NULL;
-    level->offsets =
-        level->colour ? fl_alloc(FL_ANGLES, sizeof *level->offsets, "an exemplar", error) : NULL;
-    if (!level->offsets)
+    level->frame_pixels = level->pitch * ((size_t)height + 2 * FL_PAD);
+    if (!(level->pixels = alloc_frames(level, level->frame_pixels, sizeof(FlTexel), error)) ||
+        !(level->colour = alloc_frames(level, level->frame_pixels, sizeof(FlSplinePixel), error)) ||
+        !(level->offsets = fl_alloc(FL_ANGLES, sizeof *level->offsets, "an exemplar", error)))
         return false;
     rotate_offsets(level);
     return true;
@@ -163,22 +187,38 @@ static FlSegment segment_at(const FlExemplarLevel *level, int x, int y, int t)
     return fl_exemplar_at(level, x, y, t)->c[FL_CH_SEGMENT];
 }
 
-/* Lists the pixels of each segment, or of the whole mask as border where they are not separate. */
-static bool list_valid(FlExemplarLevel *level, bool separate, GError **error)
+static void count_segments(const FlExemplarLevel *level, int t, size_t count[FL_SEGMENTS])
 {
+    for (int y = 0; y < level->height; y++)
+        for (int x = 0; x < level->width; x++)
+            count[segment_at(level, x, y, t)]++;
+}
+
+/* Where segments are not separate, all of the mask is border. */
+static void merge_segments(FlExemplarLevel *level, int t)
+{
+    for (int y = 0; y < level->height; y++)
+        for (int x = 0; x < level->width; x++) {
+            FlTexel *pixel = (FlTexel *)fl_exemplar_at(level, x, y, t);
+            if (pixel->c[FL_CH_SEGMENT] == FL_SEGMENT_INTERIOR)
+                pixel->c[FL_CH_SEGMENT] = FL_SEGMENT_BORDER;
+        }
+}
+
+/* Lists the pixels of each segment in the window. */
+static bool list_valid(FlExemplarLevel *level, GError **error)
+{
+    const int end = level->first + level->window;
     size_t count[FL_SEGMENTS] = {0};
-    for (int t = 0; t < level->n_frames; t++)
-        for (int y = 0; y < level->height; y++)
-            for (int x = 0; x < level->width; x++) {
-                FlTexel *pixel = (FlTexel *)fl_exemplar_at(level, x, y, t);
-                if (!separate && pixel->c[FL_CH_SEGMENT] == FL_SEGMENT_INTERIOR)
-                    pixel->c[FL_CH_SEGMENT] = FL_SEGMENT_BORDER;
-                count[pixel->c[FL_CH_SEGMENT]]++;
-            }
-    for (FlSegment s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++)
+    for (int t = level->first; t < end; t++)
+        count_segments(level, t, count);
+    for (FlSegment s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++) {
+        free(level->valid[s]);
+        level->n_valid[s] = 0;
         if (!(level->valid[s] = fl_alloc(count[s], sizeof(uint32_t), "an exemplar", error)))
             return false;
-    for (int t = 0; t < level->n_frames; t++)
+    }
+    for (int t = level->first; t < end; t++)
         for (int y = 0; y < level->height; y++)
             for (int x = 0; x < level->width; x++) {
                 const FlSegment s = segment_at(level, x, y, t);
@@ -187,25 +227,6 @@ static bool list_valid(FlExemplarLevel *level, bool separate, GError **error)
                         (uint32_t)(((size_t)t * level->height + y) * level->width + x);
             }
     return true;
-}
-
-static bool enough_of_each_segment(const FlExemplarLevel *level)
-{
-    size_t count[FL_SEGMENTS] = {0};
-    for (int t = 0; t < level->n_frames; t++)
-        for (int y = 0; y < level->height; y++)
-            for (int x = 0; x < level->width; x++)
-                count[segment_at(level, x, y, t)]++;
-    return count[FL_SEGMENT_BORDER] >= MIN_SEGMENT && count[FL_SEGMENT_INTERIOR] >= MIN_SEGMENT;
-}
-
-static void scale_extents(FlExemplar *exemplar, const FlStyle *style)
-{
-    const size_t pixels = (size_t)style->width * style->height * style->n_frames;
-    float most = 0;
-    for (size_t p = 0; p < pixels; p++)
-        most = MAX(most, MAX(exemplar->ext_plus[p], exemplar->ext_minus[p]));
-    exemplar->ext_scale = most > 0 ? 1 / most : 1;
 }
 
 /* Builds every level of one frame from its level 0. */
@@ -232,39 +253,89 @@ static bool pack_pyramid(FlExemplar *exemplar, FlStack *full, int t, GError **er
     return true;
 }
 
-static bool build_levels(FlExemplar *exemplar, const FlStyle *style, const FlParams *params,
-                         const FlGuideSequence *sequence, GError **error)
+/* Lets go of the frames t to end - 1, all at once, for pages go with neither of two neighbours;
+ * masks stay. */
+static void release_frames(FlExemplar *exemplar, int t, int end)
 {
-    int w = style->width, h = style->height;
-    for (int l = 0; l < exemplar->n_levels; l++, w = (w + 1) / 2, h = (h + 1) / 2)
-        if (!level_init(&exemplar->level[l], w, h, style->n_frames, error))
-            return false;
-    g_auto(FlStack) full = {0};
-    if (!fl_stack_init(&full, style->width, style->height, FL_PLANES, error))
+    const size_t pixels = (size_t)exemplar->level[0].width * (size_t)exemplar->level[0].height;
+    const size_t from = (size_t)t, n = (size_t)(end - t);
+    float *const planes[] = {exemplar->distance, exemplar->ext_plus, exemplar->ext_minus};
+    for (int l = 0; l < exemplar->n_levels; l++) {
+        const FlExemplarLevel *level = &exemplar->level[l];
+        const size_t frame = level->frame_pixels;
+        fl_release(level->pixels + from * frame, n * frame * sizeof(FlTexel));
+        fl_release(level->colour + from * frame, n * frame * sizeof(FlSplinePixel));
+    }
+    for (size_t k = 0; k < G_N_ELEMENTS(planes); k++)
+        fl_release(planes[k] + from * pixels, n * pixels * sizeof(float));
+}
+
+/* Copies the masks and finds the extents of all frames, which give the scale. */
+static bool measure(FlExemplar *exemplar, FlExemplarFrames *frames, GError **error)
+{
+    const FlExemplarLevel *level = &exemplar->level[0];
+    const size_t pixels = (size_t)level->width * (size_t)level->height;
+    g_auto(FlGuides) guides = {0};
+    float most = 0;
+    if (!fl_guides_init(&guides, level->width, level->height, error))
         return false;
-    for (int t = 0; t < style->n_frames; t++) // the extents of all frames give the scale
-        if (!fill_frame(exemplar, style, params, sequence, t, &full, error))
+    for (int t = 0; t < level->n_frames; t++) {
+        if (!fl_guide_sequence_get(frames->sequence, t, &guides, error))
             return false;
-    scale_extents(exemplar, style);
-    for (int t = 0; t < style->n_frames; t++)
-        if (!fill_frame(exemplar, style, params, sequence, t, &full, error) ||
-            !pack_pyramid(exemplar, &full, t, error))
-            return false;
+        memcpy(exemplar->mask + (size_t)t * pixels, guides.mask, pixels);
+        for (size_t p = 0; p < pixels; p++)
+            most = MAX(most, MAX(guides.ext_plus[p], guides.ext_minus[p]));
+    }
+    exemplar->ext_scale = most > 0 ? 1 / most : 1;
     return true;
 }
 
-static bool list_all_valid(FlExemplar *exemplar, const FlStyle *style, GError **error)
+typedef size_t Census[FL_MAX_LEVELS][FL_SEGMENTS]; // pixels of each level and segment
+
+/* Makes every frame once, to count what is in it, and keeps those of the window. */
+static bool make_frames(FlExemplar *exemplar, const FlStyle *style, FlExemplarFrames *frames,
+                        Census census, GError **error)
 {
-    exemplar->separate = true;
-    for (int l = 0; l < exemplar->n_levels; l++)
-        exemplar->separate = exemplar->separate && enough_of_each_segment(&exemplar->level[l]);
-    for (int l = 0; l < exemplar->n_levels; l++)
-        if (!list_valid(&exemplar->level[l], exemplar->separate, error))
+    const size_t pixels = (size_t)style->width * (size_t)style->height;
+    g_auto(FlStack) full = {0};
+    if (!fl_stack_init(&full, style->width, style->height, FL_PLANES, error))
+        return false;
+    exemplar->separate = true; // until it is known
+    frames->earliest = -1;
+    for (int t = 0; t < style->n_frames; t++) {
+        const uint8_t *rgb = style->rgb + 3 * pixels * (size_t)t;
+        const size_t before = census[0][FL_SEGMENT_BORDER];
+        if (!fill_frame(exemplar, frames, rgb, t, &full, error) ||
+            !pack_pyramid(exemplar, &full, t, error) ||
+            (frames->rgb && !fl_spill_put(frames->rgb, (size_t)t, rgb, 3 * pixels, error)))
             return false;
+        for (int l = 0; l < exemplar->n_levels; l++)
+            count_segments(&exemplar->level[l], t, census[l]);
+        if (t >= exemplar->level[0].window)
+            release_frames(exemplar, exemplar->level[0].window, t + 1);
+        if (census[0][FL_SEGMENT_BORDER] == before)
+            continue;
+        frames->earliest = frames->earliest < 0 ? t : frames->earliest;
+        frames->latest = t;
+    }
+    return true;
+}
+
+/* Decides what is matched separately and how many levels there are. */
+static bool judge(FlExemplar *exemplar, const FlStyle *style, Census census, GError **error)
+{
+    for (int l = 0; l < exemplar->n_levels; l++)
+        exemplar->separate = exemplar->separate && census[l][FL_SEGMENT_BORDER] >= MIN_SEGMENT &&
+                             census[l][FL_SEGMENT_INTERIOR] >= MIN_SEGMENT;
+    for (int l = 0; l < exemplar->n_levels && !exemplar->separate; l++) {
+        census[l][FL_SEGMENT_BORDER] += census[l][FL_SEGMENT_INTERIOR];
+        for (int t = 0; t < exemplar->level[l].window; t++)
+            merge_segments(&exemplar->level[l], t);
+    }
     while (exemplar->n_levels > 1 &&
-           exemplar->level[exemplar->n_levels - 1].n_valid[FL_SEGMENT_BORDER] < MIN_SEGMENT)
+           census[exemplar->n_levels - 1][FL_SEGMENT_BORDER] < MIN_SEGMENT)
         exemplar->n_levels--;
-    if (exemplar->level[0].n_valid[FL_SEGMENT_BORDER] == 0) {
+    if (census[0][FL_SEGMENT_BORDER] == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
                     "%s: no frame has paint in its mask; expected some pixels of it", style->path);
         return false;
@@ -272,16 +343,24 @@ static bool list_all_valid(FlExemplar *exemplar, const FlStyle *style, GError **
     return true;
 }
 
-static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, float scale,
-                               GError **error)
+static bool init_levels(FlExemplar *exemplar, const FlStyle *style, int window, GError **error)
 {
-    fl_rotation_init();
-    fl_spline_init();
-    g_autoptr(FlExemplar) exemplar = g_new0(FlExemplar, 1);
-    const size_t pixels = (size_t)style->width * style->height * style->n_frames;
-    exemplar->n_levels = fl_levels_of(style->width, style->height);
-    exemplar->border_px = params->border > 0 ? params->border * scale : style->border_px;
-    memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
+    int w = style->width, h = style->height;
+    exemplar->n_levels = fl_levels_of(w, h);
+    for (int l = 0; l < exemplar->n_levels; l++, w = (w + 1) / 2, h = (h + 1) / 2)
+        if (!level_init(&exemplar->level[l], w, h, style->n_frames, window, error))
+            return false;
+    const FlExemplarLevel *full = &exemplar->level[0];
+    const size_t pixels = (size_t)style->width * (size_t)style->height;
+    return (exemplar->distance = alloc_frames(full, pixels, sizeof(float), error)) &&
+           (exemplar->ext_plus = alloc_frames(full, pixels, sizeof(float), error)) &&
+           (exemplar->ext_minus = alloc_frames(full, pixels, sizeof(float), error)) &&
+           (exemplar->mask = fl_alloc(pixels * (size_t)style->n_frames, 1, "an exemplar", error));
+}
+
+static bool init_frames(FlExemplarFrames *frames, const FlStyle *style, const FlParams *params,
+                        bool all, GError **error)
+{
     const FlGuideParams how = fl_guide_params(params);
     const FlGuideSource source = {.width = style->width,
                                   .height = style->height,
@@ -289,16 +368,68 @@ static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, flo
                                   .mask = style_mask,
                                   .flow = style->flow ? style_flow : NULL,
                                   .data = (void *)style};
-    g_autoptr(FlGuideSequence) sequence = fl_guide_sequence_new(&source, &how, error);
-    if (!sequence ||
-        !(exemplar->distance = fl_alloc(pixels, sizeof(float), "an exemplar", error)) ||
-        !(exemplar->ext_plus = fl_alloc(pixels, sizeof(float), "an exemplar", error)) ||
-        !(exemplar->ext_minus = fl_alloc(pixels, sizeof(float), "an exemplar", error)) ||
-        !(exemplar->mask = fl_alloc(pixels, 1, "an exemplar", error)) ||
-        !build_levels(exemplar, style, params, sequence, error) ||
-        !list_all_valid(exemplar, style, error))
+    frames->params = *params;
+    return (frames->sequence = fl_guide_sequence_new(&source, &how, error)) &&
+           (all || (frames->rgb = fl_spill_new((size_t)style->n_frames, error)));
+}
+
+static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, float scale,
+                               GError **error)
+{
+    fl_rotation_init();
+    fl_spline_init();
+    const bool all = params->style_window == 0 || params->style_window >= style->n_frames;
+    g_autoptr(FlExemplar) exemplar = g_new0(FlExemplar, 1);
+    g_autoptr(FlExemplarFrames) frames = g_new0(FlExemplarFrames, 1);
+    Census census = {{0}};
+    exemplar->border_px = params->border > 0 ? params->border * scale : style->border_px;
+    memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
+    if (!init_levels(exemplar, style, all ? style->n_frames : params->style_window, error) ||
+        !init_frames(frames, style, params, all, error) || !measure(exemplar, frames, error) ||
+        !make_frames(exemplar, style, frames, census, error) ||
+        !judge(exemplar, style, census, error))
         return NULL;
-    return g_steal_pointer(&exemplar);
+    if (!all)
+        exemplar->frames = g_steal_pointer(&frames);
+    for (int l = 0; l < exemplar->n_levels; l++)
+        if (!list_valid(&exemplar->level[l], error))
+            return NULL;
+    return fl_exemplar_seek(exemplar, 0, error) ? g_steal_pointer(&exemplar) : NULL;
+}
+
+/* Makes a frame that the window has reached. */
+static bool make_frame(FlExemplar *exemplar, int t, GError **error)
+{
+    const FlExemplarFrames *frames = exemplar->frames;
+    const FlExemplarLevel *level = &exemplar->level[0];
+    const size_t bytes = 3 * (size_t)level->width * (size_t)level->height;
+    g_auto(FlStack) full = {0};
+    g_autofree uint8_t *rgb = fl_alloc(bytes, 1, "an exemplar", error);
+    return rgb && fl_spill_get(frames->rgb, (size_t)t, rgb, bytes, error) &&
+           fl_stack_init(&full, level->width, level->height, FL_PLANES, error) &&
+           fill_frame(exemplar, frames, rgb, t, &full, error) &&
+           pack_pyramid(exemplar, &full, t, error);
+}
+
+bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error)
+{
+    const FlExemplarFrames *frames = exemplar->frames;
+    const int old = exemplar->level[0].first, window = exemplar->level[0].window;
+    if (!frames)
+        return true;
+    const int last = MIN(frames->latest + 1, exemplar->level[0].n_frames) - window;
+    first = MAX(MIN(MAX(first, frames->earliest), last), 0);
+    release_frames(exemplar, 0, first);
+    release_frames(exemplar, first + window, exemplar->level[0].n_frames);
+    for (int t = first; t < first + window; t++)
+        if ((t < old || t >= old + window) && !make_frame(exemplar, t, error))
+            return false;
+    for (int l = 0; l < exemplar->n_levels && first != old; l++) {
+        exemplar->level[l].first = first;
+        if (!list_valid(&exemplar->level[l], error))
+            return false;
+    }
+    return true;
 }
 
 FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error)
@@ -326,5 +457,6 @@ void fl_exemplar_free(FlExemplar *exemplar)
     free(exemplar->ext_plus);
     free(exemplar->ext_minus);
     free(exemplar->mask);
+    frames_free(exemplar->frames);
     g_free(exemplar);
 }

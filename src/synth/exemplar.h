@@ -21,13 +21,18 @@ typedef enum FlSegment {
 /** One level. A packed frame has rows of `pitch` pixels; fl_exemplar_at() finds a pixel. */
 typedef struct FlExemplarLevel {
     int width, height, n_frames; // without padding
+    int first, window;           // the frames that can be searched; no others are in memory
     size_t pitch, frame_pixels;  // padded
     FlTexel *pixels;
-    FlSplinePixel *colour;        // cubic spline coefficients, laid out like `pixels`
-    uint32_t *valid[FL_SEGMENTS]; // (t * height + y) * width + x of every pixel of the segment
+    FlSplinePixel *colour; // cubic spline coefficients, laid out like `pixels`
+    uint32_t
+        *valid[FL_SEGMENTS]; // (t * height + y) * width + x of the segment's pixels in the window
     size_t n_valid[FL_SEGMENTS];
     int16_t (*offsets)[32]; // [FL_ANGLES][FL_PATCH_PIXELS of 32]: rotated patches in packed pixels
 } FlExemplarLevel;
+
+/** What a long exemplar's frames are made from as its window moves. */
+typedef struct FlExemplarFrames FlExemplarFrames;
 
 typedef struct FlExemplar {
     int n_levels;
@@ -37,8 +42,9 @@ typedef struct FlExemplar {
     float ext_scale; // 1 / the largest extent, 1/px
     uint8_t paper[3];
     // Level 0, n_frames * height * width:
-    float *distance, *ext_plus, *ext_minus; // px
+    float *distance, *ext_plus, *ext_minus; // px; like the levels, in memory in the window only
     uint8_t *mask;
+    FlExemplarFrames *frames; // what frames are made from; NULL: all of them are in the window
 } FlExemplar;
 
 /**
@@ -51,6 +57,15 @@ typedef struct FlExemplar {
 FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error);
 
 void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
+
+/**
+ * Moves the window [F21 §5] so that it begins with frame `first`, or as near to it as there are
+ * frames with paint in them: the frames that it leaves are let go, those that it reaches are made.
+ * Nobody else may use the exemplar meanwhile. The window begins where it would for 0.
+ *
+ * Returns: false with FL_ERROR_INPUT or FL_ERROR_NO_MEMORY set; the exemplar is of no use then.
+ */
+bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error);
 
 /** How params want guides made, those of a draft at half the size. */
 FlGuideParams fl_guide_params(const FlParams *params);
@@ -73,7 +88,13 @@ static inline FlSegment fl_segment_of(bool inside, float distance, float border_
     return separate && distance >= border_px ? FL_SEGMENT_INTERIOR : FL_SEGMENT_BORDER;
 }
 
-/** x and y may lie up to FL_PAD outside. */
+/** Whether a frame can be searched. */
+static inline bool fl_exemplar_has(const FlExemplarLevel *level, int t)
+{
+    return t >= level->first && t < level->first + level->window;
+}
+
+/** A pixel of a frame in the window; x and y may lie up to FL_PAD outside. */
 static inline const FlTexel *fl_exemplar_at(const FlExemplarLevel *level, int x, int y, int t)
 {
     return level->pixels + (size_t)t * level->frame_pixels + (size_t)(y + FL_PAD) * level->pitch +

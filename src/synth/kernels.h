@@ -61,10 +61,10 @@ typedef void (*FlPatchPair)(const FlTexel *centre, const int16_t *offsets, const
 
 #define FL_MAX_TRIES 64 // of the random search for one pixel
 
-/** The windows that random tries are drawn from. */
+/** The windows that random tries are drawn from; frames count from the first that is searched. */
 typedef struct FlWindows {
     _Alignas(64) uint16_t reach[3][FL_MAX_TRIES]; // from the centre, in x, y (pixels) and frames
-    uint16_t size[3];                             // of the exemplar: x, y, frames
+    uint16_t size[3];                             // of what is searched: x, y, frames
     uint32_t step[3]; // pixels from one column, row, frame to the next in memory
     int n;            // windows
 } FlWindows;
@@ -72,7 +72,7 @@ typedef struct FlWindows {
 /** Random tries; only the first n of the windows count. */
 typedef struct FlTries {
     _Alignas(64) uint16_t at[3][FL_MAX_TRIES]; // x, y, frame
-    uint32_t pixel[FL_MAX_TRIES];              // where in memory, from the exemplar's first pixel
+    uint32_t pixel[FL_MAX_TRIES]; // where in memory, from the first frame's first pixel
 } FlTries;
 
 /** Draws a try from each window around a centre (x, y, frame); the key decides. */
@@ -81,7 +81,7 @@ typedef void (*FlDrawTries)(const FlWindows *windows, const uint16_t centre[3], 
 
 /** What a try must pass before its patch is looked at. */
 typedef struct FlSieve {
-    const FlTexel *first; // the exemplar's first pixel
+    const FlTexel *first; // the first frame's first pixel
     uint8_t segment;      // a try's centre must be of it
     const int32_t *use;   // the occurrence map of the segment
     uint32_t step[3];     // of the map: cells from one column, row, slice to the next

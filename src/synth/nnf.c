@@ -25,6 +25,10 @@ FlMatch fl_match_random(const FlExemplarLevel *level, FlSegment segment, uint8_t
 {
     const FlSegment s = level->n_valid[segment] > 0 ? segment : FL_SEGMENT_BORDER;
     FlRng rng = {key};
+    if (level->n_valid[s] == 0) // on a coarse level little paint is none
+        return (FlMatch){.x_16 = (uint16_t)(16 * (level->width / 2)),
+                         .y_16 = (uint16_t)(16 * (level->height / 2)),
+                         .frame = (int16_t)level->first};
     const uint32_t n = (uint32_t)MIN(level->n_valid[s], UINT32_MAX);
     const uint32_t pixel = level->valid[s][fl_rng_below(&rng, n)];
     const int x = (int)(pixel % level->width), y = (int)(pixel / level->width % level->height);

@@ -10,13 +10,13 @@ bool fl_occurrence_init(FlOccurrence *map, const FlExemplarLevel *level,
                         const FlCostScale *scale, GError **error)
 {
     const int frames_per_cell = params->uni_radius + 1;
-    *map = (FlOccurrence){0};
+    *map = (FlOccurrence){.first = level->first};
     map->columns = level->width / FL_CELL + 1;
     map->rows = level->height / FL_CELL + 1;
     map->slice_factor = (uint16_t)((32768 + frames_per_cell - 1) / frames_per_cell);
-    map->slices = fl_occurrence_slice(map, level->n_frames - 1) + 1;
+    map->slices = fl_occurrence_slice(map, level->first + level->window - 1) + 1;
     const size_t cells = (size_t)map->columns * map->rows * map->slices;
-    const double cell_pixels = FL_CELL * FL_CELL * (double)MIN(frames_per_cell, level->n_frames);
+    const double cell_pixels = FL_CELL * FL_CELL * (double)MIN(frames_per_cell, level->window);
     for (int s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++) {
         if (!(map->count[s] = fl_alloc(cells, sizeof(int32_t), "an occurrence map", error)) ||
             !(map->filtered[s] = fl_alloc(cells, sizeof(int32_t), "an occurrence map", error)))

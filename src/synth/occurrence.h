@@ -19,7 +19,8 @@
 
 typedef struct FlOccurrence {
     int columns, rows, slices;
-    uint16_t slice_factor;          // frame t is in slice (2t + 1) * slice_factor >> 16
+    int first;                      // the exemplar's first frame that is searched
+    uint16_t slice_factor;          // the t-th from there is in slice (2t + 1) * slice_factor >> 16
     int32_t *count[FL_SEGMENTS];    // matches per cell
     int32_t *filtered[FL_SEGMENTS]; // the same under the tent, brought up to date by _refresh
     float price[FL_SEGMENTS];       // cost of one filtered unit
@@ -42,7 +43,7 @@ void fl_occurrence_refresh(FlOccurrence *map);
 
 static inline uint16_t fl_occurrence_slice(const FlOccurrence *map, int frame)
 {
-    return (uint16_t)((uint32_t)(2 * frame + 1) * map->slice_factor >> 16);
+    return (uint16_t)((uint32_t)(2 * (frame - map->first) + 1) * map->slice_factor >> 16);
 }
 
 /** A cell of the map. */

@@ -14,7 +14,7 @@ FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion
     const float start = extent[match.frame * frame + pixel];
     float best = motion_px;
     int best_frame = match.frame;
-    for (int t = match.frame + step; t >= 0 && t < full->n_frames; t += step) {
+    for (int t = match.frame + step; fl_exemplar_has(full, t); t += step) {
         if (exemplar->mask[t * frame + pixel] < FL_INSIDE)
             break;
         const float moved = extent[t * frame + pixel] - start;
@@ -43,8 +43,23 @@ static FlMatch boiled(const FlExemplar *exemplar, FlMatch match, int step)
     const size_t frame = (size_t)full->width * full->height;
     const size_t pixel = (size_t)fl_match_y(match) * full->width + fl_match_x(match);
     const int t = match.frame + step;
-    if (t >= 0 && t < full->n_frames && exemplar->mask[t * frame + pixel] >= FL_INSIDE)
+    if (fl_exemplar_has(full, t) && exemplar->mask[t * frame + pixel] >= FL_INSIDE)
         match.frame = (int16_t)t;
+    return match;
+}
+
+/* A match that the window has left behind goes to the nearest frame in it; if there is no paint at
+ * its place, it is none. */
+static FlMatch reached(const FlExemplar *exemplar, FlMatch match)
+{
+    const FlExemplarLevel *full = &exemplar->level[0];
+    const int t = CLAMP(match.frame, full->first, full->first + full->window - 1);
+    const size_t row = (size_t)t * (size_t)full->height + (size_t)fl_match_y(match);
+    if (t == match.frame)
+        return match;
+    match.frame = (int16_t)t;
+    if (exemplar->mask[row * (size_t)full->width + (size_t)fl_match_x(match)] < FL_INSIDE)
+        match.frame = FL_NO_MATCH;
     return match;
 }
 
@@ -62,6 +77,8 @@ void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < pixels; p++) {
         FlMatch *m = &nnf->match[p];
+        if (m->frame != FL_NO_MATCH)
+            *m = reached(exemplar, *m);
         if (m->frame == FL_NO_MATCH)
             continue;
         if (motion->boil != 0 && motion->speed[p] <= motion->still)

@@ -19,7 +19,7 @@ typedef struct FlTargetMotion {
     int boil;             // … and goes on by so many frames of the exemplar, -1 … 1
 } FlTargetMotion;
 
-/** Shifts a level-0 field. */
+/** Shifts a level-0 field, after matches that the exemplar's window has left are moved into it. */
 void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *motion);
 
 /**

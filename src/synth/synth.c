@@ -424,8 +424,7 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
     FlRect rect;
     g_auto(FlNnf) shifted = {0};
     synth->frame++;
-    synth->boil =
-        fl_boil_step(synth->params->boil, synth->frame, synth->exemplar->level[0].n_frames);
+    synth->boil = fl_boil_step(synth->params->boil, synth->frame, synth->exemplar->level[0].window);
     if (holds_still(synth, guides)) {
         memcpy(rgb, synth->previous.rgb, 3 * (size_t)synth->width * synth->height);
         *view = synth->view;

@@ -48,13 +48,13 @@ void fl_visit_plan_init(FlVisitPlan *plan, const FlSearch *search)
     FlWindows *w = &plan->windows;
     plan->search = search;
     *w = (FlWindows){
-        .size = {(uint16_t)level->width, (uint16_t)level->height, (uint16_t)level->n_frames},
+        .size = {(uint16_t)level->width, (uint16_t)level->height, (uint16_t)level->window},
         .step = {1, (uint32_t)level->pitch, (uint32_t)level->frame_pixels}};
     for (float share = 1; share * side >= 1 && w->n < FL_MAX_TRIES;
          share *= params->patchmatch_alpha, w->n++) {
         w->reach[0][w->n] = (uint16_t)(share * (float)level->width);
         w->reach[1][w->n] = (uint16_t)(share * (float)level->height);
-        w->reach[2][w->n] = (uint16_t)(share * (float)level->n_frames + 1);
+        w->reach[2][w->n] = (uint16_t)(share * (float)level->window + 1);
     }
     for (int n = 0; n <= 4; n++)
         for (int apart = 0; apart <= n; apart++)
@@ -112,7 +112,7 @@ static void find_expected(Visit *visit)
 static void draw(Visit *visit, const FlVisitPlan *plan, size_t pixel, uint64_t key)
 {
     const FlSearch *search = plan->search;
-    const FlTexel *first = fl_exemplar_at(search->level, 0, 0, 0);
+    const FlTexel *first = fl_exemplar_at(search->level, 0, 0, search->level->first);
     visit->plan = plan;
     visit->search = search;
     visit->pixel = pixel;
@@ -120,7 +120,7 @@ static void draw(Visit *visit, const FlVisitPlan *plan, size_t pixel, uint64_t k
     visit->y = (int)(pixel / (size_t)search->target->width);
     visit->own = visit->best = search->nnf->match[pixel];
     const uint16_t centre[3] = {(uint16_t)fl_match_x(visit->own), (uint16_t)fl_match_y(visit->own),
-                                (uint16_t)visit->own.frame};
+                                (uint16_t)(visit->own.frame - search->level->first)};
     search->kernels->draw_tries(&plan->windows, centre, (uint32_t)fl_key(key, pixel),
                                 &visit->tries);
     for (int k = 0; k < plan->windows.n; k++)
@@ -133,7 +133,7 @@ static FlSieve sieve_of(const Visit *visit)
     const FlOccurrence *map = search->map;
     const uint32_t apart = visit->plan->coherence[visit->n_expected][visit->n_expected];
     FlSieve sieve = {
-        .first = fl_exemplar_at(search->level, 0, 0, 0),
+        .first = fl_exemplar_at(search->level, 0, 0, search->level->first),
         .segment = (uint8_t)visit->segment,
         .use = map->filtered[visit->segment],
         .step = {1, (uint32_t)map->columns, (uint32_t)map->columns * (uint32_t)map->rows},
@@ -144,7 +144,9 @@ static FlSieve sieve_of(const Visit *visit)
         .most = FL_OCCURRENCE_MOST,
         .limit = visit->total > apart ? visit->total - apart : 0};
     for (int k = 0; k < 4; k++)
-        sieve.frames[k] = k < visit->n_expected ? visit->expected[k].frame : FL_NO_MATCH;
+        sieve.frames[k] = k < visit->n_expected
+                              ? (int16_t)(visit->expected[k].frame - search->level->first)
+                              : FL_NO_MATCH;
     return sieve;
 }
 
@@ -155,9 +157,9 @@ static void add_candidate(Visit *visit, int k, uint32_t uniformity)
     Candidate *c = &visit->candidate[visit->n_candidates++];
     c->match = (FlMatch){.x_16 = (uint16_t)(16 * tries->at[0][k]),
                          .y_16 = (uint16_t)(16 * tries->at[1][k]),
-                         .frame = (int16_t)tries->at[2][k]};
+                         .frame = (int16_t)(level->first + tries->at[2][k])};
     c->uniformity = uniformity;
-    c->centre = fl_exemplar_at(level, 0, 0, 0) + tries->pixel[k];
+    c->centre = fl_exemplar_at(level, 0, 0, level->first) + tries->pixel[k];
     if (visit->search->params->rotate)
         c->match.theta = (uint8_t)(visit->angle - c->centre->c[FL_CH_ANGLE]);
     const int16_t *offsets = level->offsets[c->match.theta];
