@@ -35,7 +35,7 @@ svg nan "$shape" "width='nan' height='9'"
 svg huge "$shape" "width='1e9' height='9'"
 svg twice "<g>
 <g a='1' a='2'/></g>"
-svg other "$shape" && echo '<svg/>' >other/a_2.svg
+svg other "$shape" && echo '<svg xmlns="urn:other"/>' >other/a_2.svg
 svg gap "$shape" && cp gap/a_1.svg gap/a_4.svg
 mkdir none text html cut
 echo 'not a drawing' >text/a_1.svg

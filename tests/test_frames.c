@@ -261,6 +261,19 @@ static void illustrators_entities_stand_for_namespaces(void)
     g_assert_cmpstr(leaf->labels, ==, "arm_1");
 }
 
+static void a_drawing_saved_from_a_page_has_no_namespace(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *path = scratch_write(folder, "a.svg",
+                                          "<svg width=\"90\" height=\"90\"><g id=\"bar\"><rect "
+                                          "style=\"fill: tomato\" " BOX "></rect></g></svg>");
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_autoptr(FlSvg) svg = open_svg(path, warnings);
+    g_autofree char *paint = describe(svg);
+    g_assert_cmpstr(paint, ==, "fill #ff6347@255");
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 1);
+}
+
 static void names_that_programs_keep_beside_ids_are_labels(void)
 {
     static const char *const groups[] = {
@@ -387,6 +400,8 @@ int main(int argc, char **argv)
     TEST("blenders-prologue-and-undeclared-prefixes-are-mended",
          blenders_prologue_and_undeclared_prefixes_are_mended);
     TEST("illustrators-entities-stand-for-namespaces", illustrators_entities_stand_for_namespaces);
+    TEST("a-drawing-saved-from-a-page-has-no-namespace",
+         a_drawing_saved_from_a_page_has_no_namespace);
     TEST("names-that-programs-keep-beside-ids-are-labels",
          names_that_programs_keep_beside_ids_are_labels);
     TEST("an-address-before-a-reference-is-mended", an_address_before_a_reference_is_mended);

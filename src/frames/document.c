@@ -169,6 +169,19 @@ static void expand_namespaces(xmlDoc *doc, xmlNs *ns)
     }
 }
 
+/** Drawings that a page has in its HTML need no namespace there, and lack it when they are saved.
+ */
+static void set_namespace(xmlNode *node, xmlNs *ns)
+{
+    for (; node; node = node->next) {
+        if (node->type != XML_ELEMENT_NODE)
+            continue;
+        if (!node->ns)
+            xmlSetNs(node, ns);
+        set_namespace(node->children, ns);
+    }
+}
+
 /* A document as it is walked through. */
 typedef struct Visit {
     const char *path;
@@ -220,6 +233,10 @@ xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GEr
     xmlNode *root = xmlDocGetRootElement(doc);
     if (root)
         expand_namespaces(doc, root->nsDef);
+    if (root && !root->ns && xmlStrEqual(root->name, (const xmlChar *)"svg")) {
+        set_namespace(root, xmlNewNs(root, (const xmlChar *)svg_namespace, NULL));
+        fl_warnings_add(warnings, path, number, NULL, "it has no xmlns and is taken for SVG");
+    }
     if (!root || !fl_is(root, "svg")) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: the root is <%s>, expected <svg xmlns=\"%s\">", path,
