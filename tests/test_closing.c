@@ -114,6 +114,21 @@ static void a_thin_shape_among_others_has_no_dark_core(void)
     }
 }
 
+static void a_line_is_seen_though_it_is_all_rim(void)
+{
+    enum { LINE = 3 };
+    const FlBox line = {40, 0, LINE, HEIGHT};
+    int16_t amounts[LINE * HEIGHT];
+    uint8_t share[LINE * HEIGHT] = {0};
+    g_autoptr(GError) error = NULL;
+    for (int i = 0; i < LINE * HEIGHT; i++)
+        amounts[i] = (int16_t)(i % 40);
+    fl_closing_apply(amounts, share, line, 2 * BORDER, &error);
+    g_assert_no_error(error);
+    for (int i = 0; i < LINE * HEIGHT; i++)
+        g_assert_cmpint(amounts[i], >, FL_AMOUNT_ONE * 7 / 8);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -121,5 +136,6 @@ int main(int argc, char **argv)
     TEST(no_line_of_paper_and_no_dark_seam_lies_between_neighbours);
     TEST(a_free_edge_stays_as_it_is_painted);
     TEST(a_thin_shape_among_others_has_no_dark_core);
+    TEST(a_line_is_seen_though_it_is_all_rim);
     return g_test_run();
 }

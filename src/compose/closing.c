@@ -126,17 +126,44 @@ static bool sum_boxes(const int16_t *amounts, FlBox box, int r, Mean *sums, GErr
 }
 
 /**
- * Paint divided by its mean around, with less contrast the less of the window is the shape's: a
- * thin shape is all rim, and its paint would be a dark core between pale rims. Half is a straight
- * edge.
+ * How thin the shape is at each pixel, 0..255: 255 where no square of a third of the radius fits in
+ * nearby, 0 at the edges of what is larger, half at a right corner.
  */
-static int evened(int amount, Mean around, uint32_t inside, uint32_t window)
+static bool find_thin(const int16_t *amounts, FlBox box, int radius_px, uint8_t *thin,
+                      GError **error)
+{
+    const size_t n = fl_box_pixels(box);
+    const int r = MAX(1, radius_px / 6);
+    const uint32_t full = (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
+    const uint32_t window = (uint32_t)(4 * r + 1) * (uint32_t)(4 * r + 1);
+    g_autofree Mean *sums = fl_alloc(n, sizeof *sums, "a matte", error);
+    g_autofree int16_t *deep = sums ? fl_alloc(n, sizeof *deep, "a matte", error) : NULL;
+    if (!deep || !sum_boxes(amounts, box, r, sums, error))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        deep[i] = sums[i].n == full;
+    if (!sum_boxes(deep, box, 2 * r, sums, error))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        thin[i] = (uint8_t)(255 - MIN(255, sums[i].sum * 255 * 8 / window));
+    return true;
+}
+
+/** What is left of the contrast, of FL_AMOUNT_ONE: less the less of the window is the shape's. */
+static int contrast_of(uint32_t inside, int radius_px, int thin)
+{
+    const int64_t one = FL_AMOUNT_ONE, side = 2 * radius_px + 1;
+    const int64_t part = MIN(2 * one * inside / (side * side), one); // one at a straight edge
+    return (int)(part * part / one * (255 - thin) / 255);
+}
+
+/** Paint divided by its mean around. In narrow shapes that would be a dark core between pale rims.
+ */
+static int evened(int amount, Mean around, int contrast)
 {
     const int mean = MAX((int)(around.sum / around.n), MEAN_LEAST);
     const int even = CLAMP(amount * FL_AMOUNT_ONE / mean, LEAST, MOST);
-    const int64_t part = (int64_t)FL_AMOUNT_ONE * MIN(2 * inside, window) / window;
-    return FL_AMOUNT_ONE +
-           (int)((even - FL_AMOUNT_ONE) * part * part / (FL_AMOUNT_ONE * FL_AMOUNT_ONE));
+    return FL_AMOUNT_ONE + (even - FL_AMOUNT_ONE) * contrast / FL_AMOUNT_ONE;
 }
 
 bool fl_closing_apply(int16_t *amounts, const uint8_t *share, FlBox box, int radius_px,
@@ -145,14 +172,16 @@ bool fl_closing_apply(int16_t *amounts, const uint8_t *share, FlBox box, int rad
     const size_t n = fl_box_pixels(box);
     g_autofree Mean *around = fl_alloc(n, sizeof *around, "a matte", error);
     g_autofree Mean *wide = around ? fl_alloc(n, sizeof *wide, "a matte", error) : NULL;
-    if (!wide || !sum_boxes(amounts, box, MAX(1, radius_px / 4), around, error) ||
-        !sum_boxes(amounts, box, radius_px, wide, error))
+    g_autofree uint8_t *thin = wide ? fl_alloc(n, 1, "a matte", error) : NULL;
+    if (!thin || !sum_boxes(amounts, box, MAX(1, radius_px / 4), around, error) ||
+        !sum_boxes(amounts, box, radius_px, wide, error) ||
+        !find_thin(amounts, box, radius_px, thin, error))
         return false;
-    const uint32_t window = (uint32_t)(2 * radius_px + 1) * (uint32_t)(2 * radius_px + 1);
     for (size_t i = 0; i < n; i++)
-        if (amounts[i] >= 0 && share[i]) {
-            const int even = evened(amounts[i], around[i], wide[i].n, window);
-            amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * share[i] / 255);
+        if (amounts[i] >= 0 && (share[i] || thin[i])) {
+            const int contrast = contrast_of(wide[i].n, radius_px, thin[i]);
+            const int even = evened(amounts[i], around[i], contrast);
+            amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * MAX(share[i], thin[i]) / 255);
         }
     return true;
 }

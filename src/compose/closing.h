@@ -23,8 +23,9 @@ bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width,
 
 /**
  * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
- * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim;
- * where the shape is thinner than the radius it keeps less grain, for there it is all rim.
+ * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim.
+ * Shapes thinner than a third of the radius are all rim, of which next to nothing would be left, or
+ * a dark core; their paint is even, also where their edges are free.
  *
  * amounts (0 … FL_AMOUNTS - 1, changed in place) and share are box.width * box.height; an amount
  * below 0 is outside the shape. radius_px is that of the share.
