@@ -1,5 +1,6 @@
 #include "render/state.h"
 
+#include "base/alloc.h"
 #include "output/atomic.h"
 #include <errno.h>
 #include <string.h>
@@ -52,12 +53,13 @@ static void sum_of(const void *data, size_t bytes, uint8_t sum[SUM_BYTES])
 bool fl_state_save(const FlState *state, const char *path, GError **error)
 {
     g_autoptr(GVariant) variant = to_variant(state);
-    const void *data = g_variant_get_data(variant);
     const size_t bytes = g_variant_get_size(variant);
+    g_autofree void *data = fl_alloc(bytes, 1, "a state", error);
     uint8_t sum[SUM_BYTES];
     g_auto(FlAtomic) file = {0};
-    if (!fl_atomic_open(&file, path, true, error))
+    if (!data || !fl_atomic_open(&file, path, true, error))
         return false;
+    g_variant_store(variant, data);
     sum_of(data, bytes, sum);
     if (fwrite(data, 1, bytes, file.stream) != bytes ||
         fwrite(sum, 1, SUM_BYTES, file.stream) != SUM_BYTES) {
