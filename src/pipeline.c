@@ -7,6 +7,7 @@
 #include "render/dump.h"
 #include "render/frame.h"
 #include "render/held.h"
+#include "render/paints.h"
 #include "render/resume.h"
 #include "render/stats.h"
 #include "report/report.h"
@@ -162,6 +163,22 @@ static bool write_layers(const Job *job, const FlComposite *composite, int frame
     return true;
 }
 
+/* Before the painters go on to the next frame. */
+static bool write_paint(const Job *job, int frame, GError **error)
+{
+    const FlRenderOptions *o = &job->plan->options;
+    for (int p = 0; o->paint && !o->merge && p < job->plan->n_painters; p++) {
+        const FlPainter *painter = &job->plan->painters[p];
+        g_autofree char *path = fl_paint_file(o->paint, painter, frame, error);
+        if (!path)
+            return false;
+        if (frame % painter->treatment.hold == 0 && !fl_resume_keeps(&job->resume, path) &&
+            !fl_paint_save(painter, path, fl_resume_replaces(&job->resume, frame), error))
+            return false;
+    }
+    return true;
+}
+
 static bool write_frame(Job *job, const FlComposite *composite, int frame, GError **error)
 {
     g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, MAX(composite->n_layers, 1));
@@ -286,6 +303,7 @@ static bool render_frame(Job *job, int frame, GError **error)
     const double compose_s = seconds_since(start) - paint_s;
     if (!finish_writing(job, error) ||
         !fl_resume_before_files(&job->resume, job->plan, frame, error) ||
+        !write_paint(job, frame, error) ||
         !fl_resume_take(&job->resume, job->plan, frame + 1, error))
         return false;
     if (beside)

@@ -125,6 +125,11 @@ table() {
 2|x_%d_%d.png: *|good -o x_%d_%d.png
 2|x_{region}.png: {region} has no meaning here; *|good -o x_{region}.png
 2|x_{rgion}.png: “{rgion}” is not understood; expected {region}|good --layers x_{rgion}.png
+2|--paint: one file for all frames; expected a number in the name*|good --paint x_{region}.png
+2|--merge composes what --paint has written; expected --paint PATTERN*|good --merge
+2|--merge paints nothing that --report or --dump could show*|good --merge --paint {region}_%d.png --dump d
+1|gone/red-aa3311_1.png: there is no such file; --paint without --merge writes*|good --merge --paint gone/{region}_%d.png
+1|odd/frames/0001.png: 64x48 pixels; expected 48x48*|good --merge --paint odd/frames/%04d.png -f 1
 2|x.mp4: maps are PNG files; expected .png|good --check -o x.mp4
 1|taken: cannot be written: Not a directory|good -o taken/x_%d.png
 1|taken: *|good --report taken -o x_%d.png

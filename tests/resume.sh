@@ -94,6 +94,20 @@ wait $job 2>/dev/null
 paint layered --layers 'layered/{region}_%04d.png' && same layered layers_whole
 result $? 'layers are complete after a second run too'
 
+paint painted --paint 'paint/{region}_%04d.png'
+started merged --merge --paint 'paint/{region}_%04d.png'
+wait_for merged/w_0002.png
+kill -KILL $job 2>/dev/null
+wait $job 2>/dev/null
+paint merged --merge --paint 'paint/{region}_%04d.png' && same merged whole
+result $? 'merging goes on too'
+started painted2 --paint 'paint2/{region}_%04d.png'
+wait_for painted2/w_0002.png
+kill -KILL $job 2>/dev/null
+wait $job 2>/dev/null
+paint painted2 --paint 'paint2/{region}_%04d.png' && same paint2 paint
+result $? 'and the paint that is kept is complete'
+
 started both
 wait_for both/w_0001.png
 kill -STOP $job

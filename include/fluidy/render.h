@@ -114,6 +114,9 @@ typedef struct FlRenderOptions {
     const char *format; /**< "png", "png16", "exr", "mov", …; NULL: as the output's name ends */
     bool no_frames;     /**< of an output that is a film to play, not its frames as PNG beside it */
     const char *layers; /**< pattern with {region}: one RGBA file per region too; NULL: none */
+    const char
+        *paint; /**< the same for the paint itself, before colours and stacking; NULL: none */
+    bool merge; /**< paint nothing: take the files of `paint`, which other runs have written */
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
     int width, height;      /**< px; 0: from the other, by the drawing's aspect; both 0: scale */
     double scale;           /**< px of output per px of the drawing; 0: 1 */
@@ -150,9 +153,9 @@ typedef struct FlRenderOptions {
  *
  * While frames are painted, a hidden file beside them, .NAME.state, holds what the next frame
  * needs. It goes when the render is complete. With it, a render that was stopped, or killed, goes
- * on where it was when it is asked for again, and paints the same bytes as one that was not. Films
- * (.mov, .webm, …) start anew. If anything that decides the bytes has changed meanwhile, that is
- * FL_ERROR_CHANGED.
+ * on where it was when it is asked for again, and paints the same bytes as one that was not. A
+ * film without its frames starts anew. If anything that decides the bytes has changed meanwhile,
+ * that is FL_ERROR_CHANGED.
  *
  * Returns: false with an error of FL_ERROR; the frames written so far stay.
  */

@@ -55,6 +55,7 @@ static const struct Path {
     {"--flow", offsetof(FlArgs, render.flow)},
     {"--output", offsetof(FlArgs, render.output)},
     {"--layers", offsetof(FlArgs, render.layers)},
+    {"--paint", offsetof(FlArgs, render.paint)},
     {"--background", offsetof(FlArgs, render.background)},
     {"--region", offsetof(FlArgs, render.only_region)},
     {"--report", offsetof(FlArgs, render.report)},
@@ -225,6 +226,8 @@ static gboolean read_flag(const char *name, const char *value, gpointer data, GE
         args->render.dry_run = true;
     if (strcmp(name, "--no-frames") == 0)
         args->render.no_frames = true;
+    if (strcmp(name, "--merge") == 0)
+        args->render.merge = true;
     if (strcmp(name, "--loop") == 0)
         args->render.loop = true;
     if (strcmp(name, "--register") == 0)
@@ -315,6 +318,8 @@ static const GOptionEntry output[] = {
     {"format", 0, VALUE(read_format), "as png16, exr, ora, mov; of that list: config", "WORD"},
     {"no-frames", 0, FLAG(read_flag), "write a film without keeping its frames", NULL},
     {"layers", 0, VALUE(read_path), "also one file per {region} and frame", "PATTERN"},
+    {"paint", 0, VALUE(read_path), "also the paint of each {region}, before colours", "PATTERN"},
+    {"merge", 0, FLAG(read_flag), "compose the files of --paint instead of painting", NULL},
     {"height", 'H', VALUE(read_number), "height of the output, aspect kept", "PX"},
     {"scale", 0, VALUE(read_number), "output pixels per drawing pixel (1)", "FACTOR"},
     {"no-clobber", 0, FLAG(read_overwrite), "keep files that exist", NULL},

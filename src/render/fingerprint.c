@@ -152,6 +152,8 @@ static void add_options(FlFingerprint *print, const FlPlan *plan)
     add_number(print, "register", o->registration);
     fl_fingerprint_add(print, "region", o->only_region);
     fl_fingerprint_add(print, "layers", o->layers);
+    fl_fingerprint_add(print, "paint", o->paint);
+    add_number(print, "merge", o->merge);
     fl_fingerprint_add(print, "background", o->background);
     add_number(print, "seed", (double)o->seed);
     add_number(print, "gap", o->gap);
@@ -225,6 +227,8 @@ static bool add_painters(FlFingerprint *print, const FlPlan *plan, GError **erro
         add_treatment(print, painter);
         if (painter->flow_pattern &&
             !add_pattern(print, plan, painter->flow_pattern, painter->name, error))
+            return false;
+        if (painter->given && !add_pattern(print, plan, painter->given, painter->name, error))
             return false;
         bool known = false;
         for (int q = 0; q < p; q++)

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "guides/flow_file.h"
 #include "output/name.h"
+#include "render/paints.h"
 #include "synth/draft.h"
 #include <string.h>
 
@@ -117,6 +118,8 @@ bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
     painter->n_pictures = (fl_film_frames(painter->film) - 1) / painter->treatment.hold + 1;
     painter->wrap = painter->loops ? MIN(painter->n_pictures, WRAP) : 0;
     painter->rect = cropped(painter);
+    if (painter->given)
+        return make_pictures(painter, error);
     const FlGuideSource source = source_of(painter);
     const FlGuideParams how = fl_guide_params(&painter->treatment.params);
     const FlSynthSize size = {painter->rect.width, painter->rect.height, painter->width,
@@ -172,9 +175,21 @@ bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **er
                             fl_loop_keep(&painter->loop, k, painter->part, painter->rect, error));
 }
 
+/* The paint of a frame that another run has painted. */
+static bool take_paint(FlPainter *painter, int frame, GError **error)
+{
+    g_autofree char *file = fl_paint_file(painter->given, painter, frame, error);
+    if (!file || !fl_paint_load(painter, file, error))
+        return false;
+    put_part(painter);
+    return true;
+}
+
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
+    if (painter->given)
+        return take_paint(painter, frame, error);
     const int index = frame / painter->treatment.hold;
     if (frame % painter->treatment.hold != 0)
         return true;
@@ -188,8 +203,10 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
 
 bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error)
 {
-    const bool holds = painter->treatment.hold > 1;
-    if (!(parts[0] = fl_synth_save(painter->synth, error)))
+    const bool holds = painter->treatment.hold > 1 && !painter->given;
+    if (painter->given)
+        parts[0] = g_bytes_new(NULL, 0);
+    else if (!(parts[0] = fl_synth_save(painter->synth, error)))
         return false;
     parts[1] = g_bytes_new(painter->part, holds ? 3 * fl_box_pixels(painter->rect) : 0);
     return true;
@@ -197,6 +214,8 @@ bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], 
 
 bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
 {
+    if (painter->given)
+        return true;
     const size_t bytes = painter->treatment.hold > 1 ? 3 * fl_box_pixels(painter->rect) : 0;
     if (g_bytes_get_size(parts[1]) != bytes) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,

@@ -23,6 +23,7 @@ typedef struct FlPainter {
     FlLoop loop;
     int n_pictures; // held frames counted once
     int wrap; // so many pictures of a loop's end come before its guides, and of its start after
+    const char *given;  // borrowed pattern of files that have its paint; NULL: it paints
     char *flow_pattern; // of flow files; NULL: the flow is made from the masks
     FlGuideSequence *guides;
     FlSynth *synth;

@@ -104,7 +104,8 @@ static bool add_painter(FlPlan *plan, int region, GError **error)
     painter->masks = plan->masks, painter->film = plan->film;
     painter->width = fl_film_width(plan->film), painter->height = fl_film_height(plan->film);
     painter->flow_pattern = g_strdup(plan->options.flow);
-    painter->loops = plan->options.loop;
+    painter->given = plan->options.merge ? plan->options.paint : NULL;
+    painter->loops = plan->options.loop && !painter->given;
     painter->box = fl_exemplars_get(plan->exemplars, &painter->treatment, error);
     if (!painter->box)
         return false;
@@ -181,9 +182,9 @@ static bool name_output(FlPlan *plan, GError **error)
 }
 
 /* One name for every region would let the last layer win. */
-static bool check_layers(const FlPlan *plan, GError **error)
+static bool check_regions_file(const FlPlan *plan, const char *pattern, GError **error)
 {
-    const char *pattern = plan->options.layers, *brace = pattern ? strchr(pattern, '{') : NULL;
+    const char *brace = pattern ? strchr(pattern, '{') : NULL;
     if (brace && strchr(brace, '}') && !strstr(pattern, "{region}")) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%.*s” is not understood; expected %s",
                     pattern, (int)(strchr(brace, '}') + 1 - brace), brace, "{region}");
@@ -197,6 +198,21 @@ static bool check_layers(const FlPlan *plan, GError **error)
     return false;
 }
 
+/* What the words say together. */
+static bool check_merge(const FlRenderOptions *options, GError **error)
+{
+    const char *wrong = NULL;
+    if (options->merge && !options->paint)
+        wrong = "--merge composes what --paint has written; expected --paint PATTERN too";
+    else if (options->merge && (options->report || options->dump))
+        wrong = "--merge paints nothing that --report or --dump could show; expected it alone";
+    else if (options->paint && !fl_output_is_pattern(options->paint))
+        wrong = "--paint: one file for all frames; expected a number in the name, such as %04d";
+    if (wrong)
+        g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);
+    return !wrong;
+}
+
 static bool make_plan(FlPlan *plan, GError **error)
 {
     if (!plan->options.inputs || !plan->options.inputs[0]) {
@@ -204,11 +220,14 @@ static bool make_plan(FlPlan *plan, GError **error)
                     "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
         return false;
     }
-    if (!open_film(plan, error) || !check_region_names(plan, error) || !name_output(plan, error))
+    if (!check_merge(&plan->options, error) || !open_film(plan, error) ||
+        !check_region_names(plan, error) || !name_output(plan, error))
         return false;
     plan->masks = fl_masks_new(fl_film_regions(plan->film), fl_film_frames(plan->film),
                                fl_film_width(plan->film), fl_film_height(plan->film), error);
-    return plan->masks && add_painters(plan, error) && check_layers(plan, error);
+    return plan->masks && add_painters(plan, error) &&
+           check_regions_file(plan, plan->options.layers, error) &&
+           check_regions_file(plan, plan->options.paint, error);
 }
 
 FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
@@ -302,7 +321,7 @@ bool fl_plan_prepare(FlPlan *plan, GError **error)
     // as large as a frame.
     for (int p = 0; p < plan->n_painters && failed == 0; p++)
         failed += !fl_painter_init(&plan->painters[p], plan->options.seed, error);
-    for (int p = 0; p < plan->n_painters && !failed; p++)
+    for (int p = 0; p < plan->n_painters && !failed && !plan->options.merge; p++)
         fl_synth_measure(plan->painters[p].synth, plan->options.stats || plan->options.report);
     return failed == 0;
 }

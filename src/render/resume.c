@@ -4,6 +4,7 @@
 #include "output/lock.h"
 #include "output/name.h"
 #include "output/sink.h"
+#include "render/paints.h"
 #include <glib/gstdio.h>
 #include <unistd.h>
 
@@ -73,6 +74,18 @@ static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
     return true;
 }
 
+static bool paints_are_free(const FlPlan *plan, int frame, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    for (int p = 0; o->paint && !o->merge && p < plan->n_painters; p++) {
+        const FlPainter *painter = &plan->painters[p];
+        g_autofree char *file = fl_paint_file(o->paint, painter, frame, error);
+        if (!file || (frame % painter->treatment.hold == 0 && !is_free(file, false, error)))
+            return false;
+    }
+    return true;
+}
+
 /* A frame that is finished must be there, and of another nothing that is not ours. */
 static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, GError **error)
 {
@@ -87,7 +100,8 @@ static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, G
         return false;
     }
     return resume->keep_files || fl_resume_replaces(resume, frame) ||
-           ((!file || is_free(file, false, error)) && layers_are_free(plan, frame, error));
+           ((!file || is_free(file, false, error)) && layers_are_free(plan, frame, error) &&
+            paints_are_free(plan, frame, error));
 }
 
 static bool check_files(const FlResume *resume, const FlPlan *plan, GError **error)

@@ -1,0 +1,55 @@
+#include "render/paints.h"
+
+#include "base/alloc.h"
+#include "output/name.h"
+#include "output/png.h"
+#include "style/picture.h"
+#include <string.h>
+
+char *fl_paint_file(const char *pattern, const FlPainter *painter, int frame, GError **error)
+{
+    const int first = frame - frame % painter->treatment.hold;
+    return fl_output_name(pattern, fl_film_number(painter->film, first), painter->name, error);
+}
+
+bool fl_paint_save(const FlPainter *painter, const char *path, bool overwrite, GError **error)
+{
+    const size_t pixels = (size_t)painter->width * painter->height;
+    g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "the paint of a region", error);
+    if (!rgba)
+        return false;
+    for (size_t p = 0; p < pixels; p++) {
+        for (int c = 0; c < 3; c++)
+            rgba[4 * p + c] = painter->painted[3 * p + c];
+        rgba[4 * p + 3] = 255;
+    }
+    const FlPng png = {
+        .width = painter->width, .height = painter->height, .rgba = rgba, .opaque = true};
+    return fl_png_save(&png, path, overwrite, error);
+}
+
+bool fl_paint_load(FlPainter *painter, const char *path, GError **error)
+{
+    if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: there is no such file; --paint without --merge writes the paint of “%s”",
+                    path, painter->name);
+        return false;
+    }
+    g_autoptr(FlPicture) picture = fl_picture_read_png(path, error);
+    if (!picture)
+        return false;
+    if (picture->width != painter->width || picture->height != painter->height) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: %dx%d pixels; expected %dx%d, as the frames have", path, picture->width,
+                    picture->height, painter->width, painter->height);
+        return false;
+    }
+    const FlBox rect = painter->rect;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t from = (size_t)(rect.y + y) * (size_t)painter->width + rect.x + x;
+            memcpy(painter->part + 3 * ((size_t)y * rect.width + x), picture->rgba + 4 * from, 3);
+        }
+    return true;
+}
