@@ -8,6 +8,9 @@
 #include "regions/opening.h"
 #include <math.h>
 #include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 static bool open_film(FlPlan *plan, GError **error)
 {
@@ -312,16 +315,44 @@ static bool check_memory(const FlPlan *plan, GError **error)
     return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
 }
 
+/* Whether as many regions as there are threads, all as large as this one, fit into a frame. */
+static bool is_small(const FlPlan *plan, const FlPainter *painter)
+{
+#ifdef _OPENMP
+    const size_t threads = (size_t)omp_get_max_threads();
+#else
+    const size_t threads = 1;
+#endif
+    const size_t frame = (size_t)fl_film_width(plan->film) * (size_t)fl_film_height(plan->film);
+    return fl_box_pixels(fl_masks_extent(plan->masks, painter->region)) * threads <= frame;
+}
+
+/* The guides of a region use all threads themselves, where it is large enough for that, and their
+ * scratch is as large as the region: small ones go side by side, the others one after the other. */
+static bool make_guides(FlPlan *plan, GError **error)
+{
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int p = 0; p < plan->n_painters; p++) {
+        GError *mine = NULL;
+        if (is_small(plan, &plan->painters[p]) &&
+            !fl_painter_init(&plan->painters[p], plan->options.seed, &mine))
+            fl_keep_first_error(&first, mine);
+    }
+    if (first)
+        g_propagate_error(error, first);
+    for (int p = 0; p < plan->n_painters && !first; p++)
+        if (!is_small(plan, &plan->painters[p]) &&
+            !fl_painter_init(&plan->painters[p], plan->options.seed, error))
+            return false;
+    return first == NULL;
+}
+
 bool fl_plan_prepare(FlPlan *plan, GError **error)
 {
-    if (!make_masks(plan, error) || !check_memory(plan, error))
+    if (!make_masks(plan, error) || !check_memory(plan, error) || !make_guides(plan, error))
         return false;
-    int failed = 0;
-    // One after the other: the guides of a region use all threads themselves, and their scratch is
-    // as large as a frame.
-    for (int p = 0; p < plan->n_painters && failed == 0; p++)
-        failed += !fl_painter_init(&plan->painters[p], plan->options.seed, error);
-    for (int p = 0; p < plan->n_painters && !failed && !plan->options.merge; p++)
+    for (int p = 0; p < plan->n_painters && !plan->options.merge; p++)
         fl_synth_measure(plan->painters[p].synth, plan->options.stats || plan->options.report);
-    return failed == 0;
+    return true;
 }

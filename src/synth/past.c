@@ -92,6 +92,18 @@ GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GErro
     return g_bytes_new_with_free_func(bytes, sizeof header + packed, free, bytes);
 }
 
+GBytes *fl_synth_past_later(GBytes *bytes, int frame)
+{
+    size_t size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    uint8_t *copy = g_memdup2(data, size);
+    Header header;
+    memcpy(&header, copy, sizeof header);
+    header.frame = frame;
+    memcpy(copy, &header, sizeof header);
+    return g_bytes_new_take(copy, size);
+}
+
 static bool damaged(GError **error, const char *what)
 {
     g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "a region's state is damaged: %s", what);

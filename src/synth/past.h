@@ -21,6 +21,9 @@ typedef struct FlSynthPast {
  *  Returns: NULL with FL_ERROR_NO_MEMORY set. */
 GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GError **error);
 
+/** The same bytes for a region that has held still since: `frame` frames have been painted. */
+GBytes *fl_synth_past_later(GBytes *bytes, int frame);
+
 /**
  * The reverse, for an exemplar whose level 0 is `level`. past->mask and past->rgb are the caller's
  * and are filled. The bytes need not be trusted: a field that points outside the exemplar is an

@@ -29,6 +29,7 @@ struct FlSynth {
     int frame; // from 1
     int boil;  // fl_boil_step() before it
     Previous previous;
+    GBytes *packed; // `previous` and all as it was saved; NULL since it has changed
     bool wants_energies;
     FlSynthSize size;                    // of the picture, twice that of a draft's guides
     uint8_t *half_rgb;                   // a draft before it is enlarged
@@ -66,6 +67,11 @@ FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynt
     return make_buffers(synth, error) ? g_steal_pointer(&synth) : NULL;
 }
 
+static void forget_packed(FlSynth *synth)
+{
+    g_clear_pointer(&synth->packed, g_bytes_unref);
+}
+
 static void clear_frame(FlSynth *synth)
 {
     for (int l = 0; l < synth->n_levels; l++)
@@ -78,6 +84,7 @@ void fl_synth_free(FlSynth *synth)
     if (!synth)
         return;
     clear_frame(synth);
+    forget_packed(synth);
     fl_nnf_clear(&synth->previous.nnf);
     free(synth->previous.mask);
     free(synth->previous.rgb);
@@ -431,6 +438,7 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
         return true;
     }
     clear_frame(synth);
+    forget_packed(synth);
     fill_paper(synth, rgb);
     if (!working_rect(synth, guides, &rect)) {
         synth->previous.valid = false;
@@ -474,11 +482,14 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
     return done;
 }
 
-GBytes *fl_synth_save(const FlSynth *synth, GError **error)
+GBytes *fl_synth_save(FlSynth *synth, GError **error)
 {
     const Previous *p = &synth->previous;
     const FlSynthPast past = {synth->frame, p->valid, p->rect, p->nnf, p->mask, p->rgb};
-    return fl_synth_past_pack(&past, synth->width, synth->height, error);
+    if (synth->packed)
+        return fl_synth_past_later(synth->packed, synth->frame);
+    synth->packed = fl_synth_past_pack(&past, synth->width, synth->height, error);
+    return synth->packed ? g_bytes_ref(synth->packed) : NULL;
 }
 
 bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
@@ -486,6 +497,7 @@ bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
     Previous *p = &synth->previous;
     FlSynthPast past = {.mask = p->mask, .rgb = p->rgb};
     fl_nnf_clear(&p->nnf);
+    forget_packed(synth);
     p->valid = false;
     if (!fl_synth_past_unpack(&past, state, &synth->exemplar->level[0], synth->width, synth->height,
                               error))

@@ -67,7 +67,7 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
  *
  * Returns: to be freed with g_bytes_unref(); NULL with FL_ERROR_NO_MEMORY set.
  */
-GBytes *fl_synth_save(const FlSynth *synth, GError **error);
+GBytes *fl_synth_save(FlSynth *synth, GError **error);
 
 /** Returns: false with FL_ERROR_CHANGED if the state is none or does not fit; the next frame is
  * then a first one. */
