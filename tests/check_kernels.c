@@ -298,7 +298,7 @@ static double since(double start)
 
 static void print_time(const char *kernel, double seconds)
 {
-    printf("  %-14s %6.1f ns\n", kernel, seconds / CALLS * 1e9);
+    printf("  %-14s %6.1f ns %6.1f M/s\n", kernel, seconds / CALLS * 1e9, CALLS / seconds * 1e-6);
 }
 
 #define TIME(name, call)                                                                           \
