@@ -259,17 +259,20 @@ static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     return coarsest || !shifted || merge_previous(search, shifted, l, error);
 }
 
-/* Search and vote in turn [F21 alg. 2]; the field comes with its costs. */
+/* Search and vote in turn [F21 alg. 2]; the field comes with its costs. The next level votes anew,
+ * so that the last vote is for the finest level's picture, or for energies. */
 static void optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int rounds,
                      int sweeps, FlLevelStats *stats)
 {
+    const bool last_counts = target == &synth->target.level[0] || synth->wants_energies;
     const uint64_t key = search->key;
     for (int round = 0; round < rounds; round++) {
         search->key = fl_key(key, 2 + (uint64_t)round);
         const FlSearchCounts counts = timed_search(synth, search, sweeps, round > 0);
         stats->counts.tried += counts.tried;
         stats->counts.accepted += counts.accepted;
-        vote_and_blend(synth, search, target);
+        if (round + 1 < rounds || last_counts)
+            vote_and_blend(synth, search, target);
     }
     search->key = key;
 }
@@ -320,7 +323,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
              l == 0 ? params->finest_sweeps
                     : fl_list_at(&params->patchmatch_iterations, from_coarsest),
              stats);
-    if (stats->rounds == 0) // a merged field has not been voted yet
+    if (stats->rounds == 0 && l == 0) // a merged field has not been voted yet
         vote_and_blend(synth, &search, target);
     if (synth->wants_energies)
         end_statistics(&search, target, stats);
