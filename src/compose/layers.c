@@ -113,10 +113,14 @@ static void sum_over(Sum *sum, const FlScale *scale, const uint8_t *rgba)
     sum->a = 65535 * alpha + (uint32_t)(((uint64_t)sum->a * (255 - alpha) + 127) / 255);
 }
 
+#define OPAQUE (65535 * 255) // the alpha of a sum with nothing left to show through
+
 static int32_t sum_value(const Sum *sum, int channel)
 {
     if (sum->a == 0)
         return 0;
+    if (sum->a == OPAQUE) // as below, without its long division
+        return (int32_t)((sum->x[channel] + 127) / 255);
     return (int32_t)MIN(((uint64_t)sum->x[channel] * 65535 + sum->a / 2) / sum->a, 65535);
 }
 
