@@ -54,6 +54,7 @@ svg image "$shape<image id='i' href='gone.png' width='9' height='9'/>"
 echo "x<svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'>$shape</svg>" >prologue.svg
 
 mkdir noframes
+own still && find still/frames -name '000[2-9].png' -delete
 own hole && rm hole/frames/0002.png
 own damaged && head -c 200 "$style/frames/0002.png" >damaged/frames/0002.png
 own gif && echo GIF89a >gif/frames/0002.png
@@ -161,6 +162,7 @@ table() {
 1|media/a_1.svg: @media rules are left out *under --strict)|media --strict
 1|image/a_1.svg: #i: the image "gone.png" does not exist *under --strict)|image --strict
 1|prologue.svg: what stands before <svg> is no XML *under --strict)|prologue.svg --strict
+1|./still: one frame is used: its paint does not flow (a warning under --strict)|good --strict -s ./still
 1|no style “nowhere” in *|good -s nowhere
 1|good/a_1.svg: *expected a style|good -s good/a_1.svg
 1|./noframes/frames: no such folder: *|good -s ./noframes

@@ -98,7 +98,7 @@ typedef struct FlRenderOptions {
     const char *flow; /**< pattern of flow files; may hold {region}; NULL: made from the masks */
     FlRegionKey key;
     FlStrokes stroke;
-    bool strict; /**< a warning about an SVG is an error: FL_ERROR_INPUT */
+    bool strict; /**< a warning is an error: FL_ERROR_INPUT, of a style FL_ERROR_STYLE */
 
     /* How it is painted. */
     const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: none */

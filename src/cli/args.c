@@ -296,7 +296,7 @@ static const GOptionEntry input[] = {
     {"flow", 0, VALUE(read_path), "flow fields instead of those made from the masks", "PATTERN"},
     {"limit", 0, VALUE(read_limit), "how much a file may ask for; see TRUST in fluidy-svg(1)",
      "NAME=N"},
-    {"strict", 0, FLAG(read_flag), "a warning about a drawing is an error", NULL},
+    {"strict", 0, FLAG(read_flag), "a warning is an error", NULL},
     {NULL},
 };
 

@@ -65,22 +65,37 @@ static bool check_region_names(const FlPlan *plan, GError **error)
     return true;
 }
 
+/* A warning about a style; false, with the error that it is, if there are to be none. */
+G_GNUC_PRINTF(3, 4)
+static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *line = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    if (plan->options.strict)
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s (a warning under --strict)", line);
+    else
+        say(plan, plan->options.warning, "%s", line);
+    return !plan->options.strict;
+}
+
 /* Of a style, said by the first region that is painted with it. */
-static void warn_of_style(const FlPlan *plan, const FlPainter *painter)
+static bool warn_of_style(const FlPlan *plan, const FlPainter *painter, GError **error)
 {
     enum { MUCH_BEYOND = 10 }; // percent
     const FlPaintbox *box = painter->box;
     for (const FlPainter *p = plan->painters; p < painter; p++)
         if (p->box == box)
-            return;
-    if (box->exemplar->level[0].n_frames == 1)
-        say(plan, plan->options.warning, "%s: one frame is used: its paint does not flow",
-            box->path);
-    if (box->ink->beyond >= MUCH_BEYOND && painter->treatment.tint == FL_TINT_FILL)
-        say(plan, plan->options.warning,
-            "%s: most of the paint is darker than the paper, but %d %% is lighter, or the other "
-            "way round, and will be bare; --tint keep keeps the recording's colours",
-            box->path, box->ink->beyond);
+            return true;
+    if (box->exemplar->level[0].n_frames == 1 &&
+        !warn(plan, error, "%s: one frame is used: its paint does not flow", box->path))
+        return false;
+    return box->ink->beyond < MUCH_BEYOND || painter->treatment.tint != FL_TINT_FILL ||
+           warn(plan, error,
+                "%s: most of the paint is darker than the paper, but %d %% is lighter, or the "
+                "other way round, and will be bare; --tint keep keeps the recording's colours",
+                box->path, box->ink->beyond);
 }
 
 static bool add_painter(FlPlan *plan, int region, GError **error)
@@ -110,9 +125,8 @@ static bool add_painter(FlPlan *plan, int region, GError **error)
     painter->given = plan->options.merge ? plan->options.paint : NULL;
     painter->loops = plan->options.loop && !painter->given;
     painter->box = fl_exemplars_get(plan->exemplars, &painter->treatment, error);
-    if (!painter->box)
+    if (!painter->box || !warn_of_style(plan, painter, error))
         return false;
-    warn_of_style(plan, painter);
     if (plan->options.verbose)
         say(plan, plan->options.note, "region %s: style %s", r->name, painter->box->path);
     return true;
