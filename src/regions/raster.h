@@ -46,7 +46,7 @@ static inline void fl_straighten(uint32_t pixel, uint8_t alpha, uint8_t out[4])
 {
     const uint32_t a = pixel >> 24;
     for (int c = 0; c < 3; c++)
-        out[c] = a ? (uint8_t)MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0;
+        out[c] = (uint8_t)(a ? MIN(255, (((pixel >> (16 - 8 * c)) & 255) * 255 + a / 2) / a) : 0);
     out[3] = alpha;
 }
 
