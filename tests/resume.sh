@@ -108,14 +108,16 @@ wait $job 2>/dev/null
 paint painted2 --paint 'paint2/{region}_%04d.png' && same paint2 paint
 result $? 'and the paint that is kept is complete'
 
-started both
-wait_for both/w_0001.png
-kill -STOP $job
-"$program" film -s "$style" -o 'both/w_%04d.png' --progress none -y --seed 2 >out 2>other
-found=$?
-kill -CONT $job
-wait $job && mv other err && [ $found = 1 ] && says 'both/w_%04d.png: another run is writing it' && same both whole
-result $? 'of two runs that would write the same frames one is told and one paints'
+# as another run has it
+mkdir both
+exec 9>both/.w_%04d.png.lock
+flock 9
+paint both -y
+[ $? = 1 ] && says 'both/w_%04d.png: another run is writing it' && [ ! -e both/w_0001.png ]
+result $? 'of two runs that would write the same frames the second is told'
+exec 9>&-
+paint both && same both whole
+result $? 'and a lock that a killed run left does no harm'
 
 # ---- what has changed ----
 
@@ -191,17 +193,13 @@ done
 "$program" film -s "$style" -o dead/w.mkv >out 2>err && grep -q 'going on' err &&
     cmp -s dead/w.mkv played.mkv && rm dead/w.mkv && same dead whole
 result $? 'so does one that was killed twice, and leaves nothing else'
-"$program" film -s "$style" -o one/w.mkv --no-frames --progress none >out 2>err &
-job=$!
-while [ ! -s one/.w.mkv.part ] && kill -0 $job 2>/dev/null; do
-    sleep 0.002 # it is locked by the time that ffmpeg writes to it
-done
-kill -STOP $job
-"$program" film -s "$style" -o one/w.mkv --no-frames -y -q --seed 2 >out 2>other
-found=$?
-kill -CONT $job
-wait $job && mv other err && [ $found = 1 ] && says 'one/w.mkv: another run is writing it' && cmp -s one/w.mkv played.mkv
-result $? 'of two runs that would write the same film one is told and one paints'
+mkdir one
+exec 9>one/.w.mkv.part
+flock 9
+"$program" film -s "$style" -o one/w.mkv --no-frames -y -q >out 2>err
+[ $? = 1 ] && says 'one/w.mkv: another run is writing it' && [ ! -e one/w.mkv ]
+result $? 'of two runs that would write the same film the second is told'
+exec 9>&-
 "$program" film -s "$style" -o alone/w.mkv --no-frames -q >out 2>err
 [ $? = 0 ] && [ "$(ls -A alone)" = w.mkv ] && cmp -s alone/w.mkv played.mkv
 result $? 'without frames the film is the same and alone'
