@@ -6,6 +6,7 @@
 #include "output/name.h"
 #include "output/png.h"
 #include "regions/opening.h"
+#include <fluidy/style.h>
 
 #include <math.h>
 #include <string.h>
@@ -116,6 +117,21 @@ static const char *style_said(const Subject *subject)
     return NULL;
 }
 
+/* What a config starts with: what was said, else 01, else the first that is found. NULL: none is.
+ */
+static char *style_to_start_with(const Subject *subject)
+{
+    const char *said = style_said(subject);
+    g_autoptr(GPtrArray) found = said ? NULL : fl_style_list();
+    const char *name = said;
+    for (guint i = 0; found && i < found->len; i++) {
+        const FlStyleEntry *entry = g_ptr_array_index(found, i);
+        if (!name || strcmp(entry->name, "01") == 0)
+            name = entry->name;
+    }
+    return g_strdup(name);
+}
+
 static void append_section(GString *text, const Subject *subject, int region)
 {
     const FlRegion *r = fl_film_region(subject->film, region);
@@ -130,7 +146,7 @@ static void append_section(GString *text, const Subject *subject, int region)
 
 static char *config_text(const Subject *subject)
 {
-    const char *style = style_said(subject);
+    g_autofree char *style = style_to_start_with(subject);
     GString *text = g_string_new("# How the regions are painted; see fluidy-svg.conf(5).\n");
     g_string_append_printf(text,
                            "# Lines that start with # say nothing yet.\n\n"

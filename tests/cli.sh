@@ -184,7 +184,7 @@ result $? 'the config that is printed gives the same regions'
         -e '/^\[region face-ffa72b\]/,/^$/ s/^# style = 01/passthrough = on/' \
         -e 's/^# background = #ffffff/background = #ffeedd/' shot.conf &&
     [ "$(grep -cE '^(tint = #2|passthrough|background)' shot.conf)" = 3 ] &&
-    "$program" "$film" -c shot.conf -s 01 -W 96 -f 1 --detail draft -o edited_%d.png >out 2>err &&
+    "$program" "$film" -c shot.conf -W 96 -f 1 --detail draft -o edited_%d.png >out 2>err &&
     "$program" "$film" -s 01 -W 96 -f 1 --detail draft -o plain_%d.png >out 2>err &&
     ! cmp -s edited_1.png plain_1.png
 result $? 'three edits of the printed config change the picture'
