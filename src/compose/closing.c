@@ -125,27 +125,41 @@ static bool sum_boxes(const int16_t *amounts, FlBox box, int r, Mean *sums, GErr
     return true;
 }
 
+/** The largest of 2 r + 1 of n values `step` apart. */
+static void spread(const uint8_t *in, uint8_t *out, int n, size_t step, int r)
+{
+    for (int i = 0; i < n; i++) {
+        uint8_t most = 0;
+        for (int k = MAX(i - r, 0); k <= MIN(i + r, n - 1); k++)
+            most = MAX(most, in[(size_t)k * step]);
+        out[(size_t)i * step] = most;
+    }
+}
+
 /**
- * How thin the shape is at each pixel, 0..255: 255 where no square of a third of the radius fits in
- * nearby, 0 at the edges of what is larger, half at a right corner.
+ * How thin the shape is at each pixel, 0..255: 0 where a square of half the radius lies in it
+ * nearby, as at the edges and corners of what is large, 255 where three fifths of such a square do
+ * at most, as in lines.
  */
 static bool find_thin(const int16_t *amounts, FlBox box, int radius_px, uint8_t *thin,
                       GError **error)
 {
-    const size_t n = fl_box_pixels(box);
-    const int r = MAX(1, radius_px / 6);
-    const uint32_t full = (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
-    const uint32_t window = (uint32_t)(4 * r + 1) * (uint32_t)(4 * r + 1);
+    const size_t n = fl_box_pixels(box), width = (size_t)box.width;
+    const int r = MAX(1, radius_px / 4), full = (2 * r + 1) * (2 * r + 1);
     g_autofree Mean *sums = fl_alloc(n, sizeof *sums, "a matte", error);
-    g_autofree int16_t *deep = sums ? fl_alloc(n, sizeof *deep, "a matte", error) : NULL;
-    if (!deep || !sum_boxes(amounts, box, r, sums, error))
+    g_autofree uint8_t *rows = sums ? fl_alloc(n, 1, "a matte", error) : NULL;
+    if (!rows || !sum_boxes(amounts, box, r, sums, error))
         return false;
     for (size_t i = 0; i < n; i++)
-        deep[i] = sums[i].n == full;
-    if (!sum_boxes(deep, box, 2 * r, sums, error))
-        return false;
+        thin[i] = (uint8_t)(MAX(4 * (int)sums[i].n - 3 * full, 0) * 255 / full);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < box.height; y++)
+        spread(thin + (size_t)y * width, rows + (size_t)y * width, box.width, 1, r);
+#pragma omp parallel for schedule(static)
+    for (int x = 0; x < box.width; x++)
+        spread(rows + x, thin + x, box.height, width, r);
     for (size_t i = 0; i < n; i++)
-        thin[i] = (uint8_t)(255 - MIN(255, sums[i].sum * 255 * 8 / window));
+        thin[i] = (uint8_t)(255 - thin[i]);
     return true;
 }
 

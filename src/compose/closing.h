@@ -24,7 +24,7 @@ bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width,
 /**
  * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
  * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim.
- * Shapes thinner than a third of the radius are all rim, of which next to nothing would be left, or
+ * Shapes thinner than half the radius are all rim, of which next to nothing would be left, or
  * a dark core; their paint is even, also where their edges are free.
  *
  * amounts (0 … FL_AMOUNTS - 1, changed in place) and share are box.width * box.height; an amount
