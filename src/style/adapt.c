@@ -34,6 +34,10 @@ typedef struct Buffers {
 static void resample_bytes(const uint8_t *from, const Resampling *r, const Buffers *b, uint8_t *to)
 {
     const size_t values = (size_t)r->from_width * r->from_height * r->channels;
+    if (r->from_width == r->to_width && r->from_height == r->to_height) {
+        memcpy(to, from, values);
+        return;
+    }
     for (size_t p = 0; p < values; p++)
         b->from[p] = from[p];
     resample(b->from, r, b->between, b->to);

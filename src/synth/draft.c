@@ -1,6 +1,7 @@
 #include "synth/draft.h"
 
 #include <glib.h>
+#include <string.h>
 
 /* The four pixels of a small one; at an odd border the last ones are met twice. */
 static void children(int width, int height, int x, int y, size_t child[4])
@@ -61,21 +62,37 @@ void fl_guides_double(FlGuides *guides, int width, int height)
     guides->width = width, guides->height = height;
 }
 
+/* Two rows of a small picture as one, of a row of the large one: a pixel's centre is a quarter of a
+ * small pixel from the nearest small centre. In quarters. */
+static void mix_rows(const uint8_t *near, const uint8_t *far, int values, uint16_t *mixed)
+{
+    for (int k = 0; k < values; k++)
+        mixed[k] = (uint16_t)(3 * near[k] + far[k]);
+}
+
+/* The same along a row, for every second pixel; a small row has one pixel of border at its ends. */
+static void mix_columns(const uint16_t *mixed, int far, int n, uint8_t *rgb)
+{
+    for (int x = 0; x < n; x++)
+        for (int c = 0; c < 3; c++)
+            rgb[6 * x + c] = (uint8_t)((3 * mixed[3 * x + c] + mixed[3 * (x + far) + c] + 8) >> 4);
+}
+
 void fl_picture_double(const uint8_t *half, int width, int height, uint8_t *rgb)
 {
     const int w = fl_half_side(width), h = fl_half_side(height);
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < height; y++) {
-        // a pixel's centre is a quarter of a small pixel from the nearest small centre
-        const uint8_t *near = half + 3 * (size_t)(y / 2) * w;
-        const uint8_t *far = half + 3 * (size_t)CLAMP(y / 2 + (y % 2 ? 1 : -1), 0, h - 1) * w;
-        for (int x = 0; x < width; x++) {
-            const int n = 3 * (x / 2), f = 3 * CLAMP(x / 2 + (x % 2 ? 1 : -1), 0, w - 1);
-            for (int c = 0; c < 3; c++)
-                rgb[3 * ((size_t)y * width + x) + c] =
-                    (uint8_t)((9 * near[n + c] + 3 * near[f + c] + 3 * far[n + c] + far[f + c] +
-                               8) >>
-                              4);
+#pragma omp parallel
+    {
+        g_autofree uint16_t *room = g_new(uint16_t, 3 * ((size_t)w + 2));
+        uint16_t *mixed = room + 3;
+#pragma omp for schedule(static)
+        for (int y = 0; y < height; y++) {
+            const int far = CLAMP(y / 2 + (y % 2 ? 1 : -1), 0, h - 1);
+            mix_rows(half + 3 * (size_t)(y / 2) * w, half + 3 * (size_t)far * w, 3 * w, mixed);
+            memcpy(room, mixed, 3 * sizeof *room);
+            memcpy(mixed + 3 * (size_t)w, mixed + 3 * ((size_t)w - 1), 3 * sizeof *room);
+            mix_columns(mixed, -1, w, rgb + 3 * (size_t)y * width);
+            mix_columns(mixed, 1, width / 2, rgb + 3 * (size_t)y * width + 3);
         }
     }
 }
