@@ -176,7 +176,7 @@ static bool keep_frames(FlPlan *plan, GError **error)
         return true;
     plan->movie = g_steal_pointer(&plan->output), plan->movie_format = plan->format;
     plan->output = frames_of_movie(plan);
-    plan->format = fl_sink_format("png", NULL, error);
+    plan->format = fl_sink_format("png", plan->output, error);
     return plan->format != NULL;
 }
 
