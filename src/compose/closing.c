@@ -2,6 +2,9 @@
 
 #include "base/alloc.h"
 #include <glib.h>
+#include <string.h>
+
+#define MANY (1 << 16) // pixels that are worth waking threads for
 
 /** Outside the shape in a window: all of it, and the part that others cover. */
 typedef struct Around {
@@ -66,7 +69,7 @@ bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width,
     g_autofree Around *sums = rows ? fl_alloc(n, sizeof *sums, "a row of a matte", error) : NULL;
     if (!sums)
         return false;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int y = y0; y < y1; y++)
         sum_row(coverage, drawn, (size_t)y * width, width, box, r, rows + (size_t)(y - y0) * n);
     const uint32_t window = 255u * (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
@@ -92,72 +95,95 @@ typedef struct Mean {
     uint32_t sum, n;
 } Mean;
 
-/** The sums over 2 r + 1 of n values `step` apart. */
-static void slide(const Mean *in, Mean *out, int n, size_t step, int r)
+#define BAND 64 // columns that are summed side by side, as they lie in memory
+
+/** Sums of a row over 2 r + 1 columns. */
+static void sum_columns(const int16_t *amounts, Mean *out, int n, int r)
 {
     Mean m = {0};
-    for (int i = 0; i < MIN(r, n); i++)
-        m.sum += in[(size_t)i * step].sum, m.n += in[(size_t)i * step].n;
-    for (int i = 0; i < n; i++) {
-        if (i + r < n)
-            m.sum += in[(size_t)(i + r) * step].sum, m.n += in[(size_t)(i + r) * step].n;
-        out[(size_t)i * step] = m;
-        if (i - r >= 0)
-            m.sum -= in[(size_t)(i - r) * step].sum, m.n -= in[(size_t)(i - r) * step].n;
+    for (int i = -r; i < n; i++) {
+        if (i + r < n && amounts[i + r] >= 0)
+            m.sum += (uint32_t)amounts[i + r], m.n++;
+        if (i >= 0)
+            out[i] = m;
+        if (i - r >= 0 && amounts[i - r] >= 0)
+            m.sum -= (uint32_t)amounts[i - r], m.n--;
+    }
+}
+
+/** Sums of the sums over 2 r + 1 rows, of n <= BAND columns of a box. */
+static void sum_rows(const Mean *in, Mean *out, int n, FlBox box, int r)
+{
+    const size_t width = (size_t)box.width;
+    Mean m[BAND] = {0};
+    for (int y = -r; y < box.height; y++) {
+        const Mean *enter = y + r < box.height ? in + (size_t)(y + r) * width : NULL;
+        const Mean *leave = y - r >= 0 ? in + (size_t)(y - r) * width : NULL;
+        for (int x = 0; x < n && enter; x++)
+            m[x].sum += enter[x].sum, m[x].n += enter[x].n;
+        for (int x = 0; x < n && y >= 0; x++)
+            out[(size_t)y * width + (size_t)x] = m[x];
+        for (int x = 0; x < n && leave; x++)
+            m[x].sum -= leave[x].sum, m[x].n -= leave[x].n;
     }
 }
 
 /** Box sums of the amounts that are inside the shape, over 2 r + 1 columns and rows. */
 static bool sum_boxes(const int16_t *amounts, FlBox box, int r, Mean *sums, GError **error)
 {
-    const size_t n = fl_box_pixels(box), width = (size_t)box.width;
-    g_autofree Mean *rows = fl_alloc(n, sizeof *rows, "a matte", error);
+    const size_t width = (size_t)box.width;
+    g_autofree Mean *rows = fl_alloc(fl_box_pixels(box), sizeof *rows, "a matte", error);
     if (!rows)
         return false;
-    for (size_t i = 0; i < n; i++)
-        sums[i] = amounts[i] >= 0 ? (Mean){(uint32_t)amounts[i], 1} : (Mean){0, 0};
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int y = 0; y < box.height; y++)
-        slide(sums + (size_t)y * width, rows + (size_t)y * width, box.width, 1, r);
-#pragma omp parallel for schedule(static)
-    for (int x = 0; x < box.width; x++)
-        slide(rows + x, sums + x, box.height, width, r);
+        sum_columns(amounts + (size_t)y * width, rows + (size_t)y * width, box.width, r);
+#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
+    for (int x = 0; x < box.width; x += BAND)
+        sum_rows(rows + x, sums + x, MIN(BAND, box.width - x), box, r);
     return true;
 }
 
-/** The largest of 2 r + 1 of n values `step` apart. */
-static void spread(const uint8_t *in, uint8_t *out, int n, size_t step, int r)
+/** The largest of 2 r + 1 columns. */
+static void spread_columns(const uint8_t *in, uint8_t *out, int n, int r)
 {
     for (int i = 0; i < n; i++) {
         uint8_t most = 0;
         for (int k = MAX(i - r, 0); k <= MIN(i + r, n - 1); k++)
-            most = MAX(most, in[(size_t)k * step]);
-        out[(size_t)i * step] = most;
+            most = MAX(most, in[k]);
+        out[i] = most;
     }
 }
 
+/** The largest of 2 r + 1 rows around row y of a box. */
+static void spread_rows(const uint8_t *in, uint8_t *out, FlBox box, int y, int r)
+{
+    memset(out, 0, (size_t)box.width);
+    for (int k = MAX(y - r, 0); k <= MIN(y + r, box.height - 1); k++)
+        for (int x = 0; x < box.width; x++)
+            out[x] = MAX(out[x], in[(size_t)k * (size_t)box.width + (size_t)x]);
+}
+
 /**
- * How thin the shape is at each pixel, 0..255: 0 where a square of half the radius lies in it
- * nearby, as at the edges and corners of what is large, 255 where three fifths of such a square do
- * at most, as in lines.
+ * How thin the shape is at each pixel, 0..255: 0 where a square of 2 r + 1 lies in it nearby, as at
+ * the edges and corners of what is large, 255 where three quarters of such a square do at most, as
+ * in lines. around has the sums over such squares.
  */
-static bool find_thin(const int16_t *amounts, FlBox box, int radius_px, uint8_t *thin,
-                      GError **error)
+static bool find_thin(const Mean *around, FlBox box, int r, uint8_t *thin, GError **error)
 {
     const size_t n = fl_box_pixels(box), width = (size_t)box.width;
-    const int r = MAX(1, radius_px / 4), full = (2 * r + 1) * (2 * r + 1);
-    g_autofree Mean *sums = fl_alloc(n, sizeof *sums, "a matte", error);
-    g_autofree uint8_t *rows = sums ? fl_alloc(n, 1, "a matte", error) : NULL;
-    if (!rows || !sum_boxes(amounts, box, r, sums, error))
+    const int full = (2 * r + 1) * (2 * r + 1);
+    g_autofree uint8_t *rows = fl_alloc(n, 1, "a matte", error);
+    if (!rows)
         return false;
     for (size_t i = 0; i < n; i++)
-        thin[i] = (uint8_t)(MAX(4 * (int)sums[i].n - 3 * full, 0) * 255 / full);
-#pragma omp parallel for schedule(static)
+        thin[i] = (uint8_t)(MAX(4 * (int)around[i].n - 3 * full, 0) * 255 / full);
+#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int y = 0; y < box.height; y++)
-        spread(thin + (size_t)y * width, rows + (size_t)y * width, box.width, 1, r);
-#pragma omp parallel for schedule(static)
-    for (int x = 0; x < box.width; x++)
-        spread(rows + x, thin + x, box.height, width, r);
+        spread_columns(thin + (size_t)y * width, rows + (size_t)y * width, box.width, r);
+#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
+    for (int y = 0; y < box.height; y++)
+        spread_rows(rows, thin + (size_t)y * width, box, y, r);
     for (size_t i = 0; i < n; i++)
         thin[i] = (uint8_t)(255 - thin[i]);
     return true;
@@ -184,12 +210,12 @@ bool fl_closing_apply(int16_t *amounts, const uint8_t *share, FlBox box, int rad
                       GError **error)
 {
     const size_t n = fl_box_pixels(box);
+    const int r = MAX(1, radius_px / 4);
     g_autofree Mean *around = fl_alloc(n, sizeof *around, "a matte", error);
     g_autofree Mean *wide = around ? fl_alloc(n, sizeof *wide, "a matte", error) : NULL;
     g_autofree uint8_t *thin = wide ? fl_alloc(n, 1, "a matte", error) : NULL;
-    if (!thin || !sum_boxes(amounts, box, MAX(1, radius_px / 4), around, error) ||
-        !sum_boxes(amounts, box, radius_px, wide, error) ||
-        !find_thin(amounts, box, radius_px, thin, error))
+    if (!thin || !sum_boxes(amounts, box, r, around, error) ||
+        !sum_boxes(amounts, box, radius_px, wide, error) || !find_thin(around, box, r, thin, error))
         return false;
     for (size_t i = 0; i < n; i++)
         if (amounts[i] >= 0 && (share[i] || thin[i])) {
