@@ -48,6 +48,9 @@ thread)
         "$build/tests/test_$program"
     done
     "${render[@]}" fixtures/animations/snowman-wave-layers
+    # without a report, files are written while the next frame is painted
+    "$build/src/cli/fluidy-svg" -s fixtures/style-small -W 64 -f 1-3 -j 3 --progress none -y \
+        -o "$build/render/%d.png" fixtures/animations/snowman-wave-layers
     ;;
 memcheck)
     make_build
