@@ -250,4 +250,18 @@ cp plain_1.png paper.png
     ! grep 'warning:' err | grep -v 'example.conf:8: \[region hair\] holds for nothing'
 result $? 'the example of fluidy-svg.conf(5) is read'
 
+# An edge is closed where shapes end at each other, and soft where one lies over the other.
+mkdir lie meet
+echo "<svg xmlns='http://www.w3.org/2000/svg' width='120' height='80'><path d='M5 5h110v70H5z' fill='#336699'/>
+<path d='M30 15h60v50H30z' fill='#bb4422'/></svg>" >lie/l_1.svg
+echo "<svg xmlns='http://www.w3.org/2000/svg' width='120' height='80'><path d='M5 5h55v70H5z' fill='#336699'/>
+<path d='M60 5h55v70H60z' fill='#bb4422'/></svg>" >meet/m_1.svg
+for drawing in lie meet; do
+    for edges in closed soft; do
+        "$program" $drawing -s "$fixtures/style-small" --edges $edges -q -o "$drawing/$edges%d.png" >out 2>err
+    done
+done
+cmp -s lie/closed1.png lie/soft1.png && ! cmp -s meet/closed1.png meet/soft1.png && [ -s meet/soft1.png ]
+result $? 'edges are closed where shapes meet, not where one lies over the other'
+
 echo "1..$n"

@@ -13,8 +13,8 @@
 
 static const FlBox box = {LEFT, 0, RIGHT - LEFT, HEIGHT};
 
-/** The share at both edges of the shape; what is left of it is another shape, if there is one. */
-static void make_share(bool neighbour, uint8_t *share)
+/** The share at both edges of the shape; what is left of column `neighbour` is another shape. */
+static void make_share(int neighbour, uint8_t *share)
 {
     static uint8_t coverage[WIDTH * HEIGHT];
     static uint16_t drawn[WIDTH * HEIGHT];
@@ -22,7 +22,7 @@ static void make_share(bool neighbour, uint8_t *share)
         for (int x = 0; x < WIDTH; x++) {
             const bool mine = x >= LEFT && x < RIGHT;
             coverage[y * WIDTH + x] = mine ? 255 : 0;
-            drawn[y * WIDTH + x] = mine || (neighbour && x < LEFT) ? 255 : 0;
+            drawn[y * WIDTH + x] = mine || x < neighbour ? 255 : 0;
         }
     g_autoptr(GError) error = NULL;
     fl_closing_share(coverage, drawn, WIDTH, HEIGHT, box, BORDER, share, &error);
@@ -56,13 +56,13 @@ static double look(const int16_t *amounts, int x0, int x1, double *grain)
     return sum / n;
 }
 
-static void close_paint(double rim, bool neighbour, int16_t *amounts)
+static void close_paint(double rim, int neighbour, int16_t *amounts)
 {
     g_autofree uint8_t *share = g_malloc(fl_box_pixels(box));
     g_autoptr(GError) error = NULL;
     make_share(neighbour, share);
     make_paint(rim, amounts);
-    fl_closing_apply(amounts, share, box, BORDER, &error);
+    fl_closing_apply(amounts, amounts, share, share, box, BORDER, &error);
     g_assert_no_error(error);
 }
 
@@ -72,7 +72,7 @@ static void no_line_of_paper_and_no_dark_seam_lies_between_neighbours(void)
     static const double rims[] = {0.1, 2};
     for (size_t i = 0; i < G_N_ELEMENTS(rims); i++) {
         double grain = 0, inside = 0;
-        close_paint(rims[i], true, amounts);
+        close_paint(rims[i], LEFT, amounts);
         g_assert_cmpfloat(look(amounts, 0, 3, &grain), >, 0.75);
         g_assert_cmpfloat(look(amounts, 0, 3, &grain), <, 1.25);
         look(amounts, 2 * BORDER, 3 * BORDER, &inside);
@@ -87,13 +87,21 @@ static void a_free_edge_stays_as_it_is_painted(void)
     g_autofree int16_t *amounts = g_new(int16_t, fl_box_pixels(box));
     g_autofree int16_t *painted = g_new(int16_t, fl_box_pixels(box));
     make_paint(0.1, painted);
-    close_paint(0.1, true, amounts);
+    close_paint(0.1, LEFT, amounts);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = box.width / 2; x < box.width; x++)
             g_assert_cmpint(amounts[y * box.width + x], ==, painted[y * box.width + x]);
-    close_paint(0.1, false, amounts);
+    close_paint(0.1, 0, amounts);
     const int bytes = (int)(2 * fl_box_pixels(box));
     g_assert_cmpmem(amounts, bytes, painted, bytes);
+}
+
+static void a_shape_that_only_comes_near_shares_no_edge(void)
+{
+    uint8_t share[WIDTH * HEIGHT];
+    make_share(LEFT - BORDER * 2 / 3, share);
+    for (size_t i = 0; i < fl_box_pixels(box); i++)
+        g_assert_cmpint(share[i], ==, 0);
 }
 
 static void a_thin_shape_among_others_has_no_dark_core(void)
@@ -106,7 +114,7 @@ static void a_thin_shape_among_others_has_no_dark_core(void)
     g_autoptr(GError) error = NULL;
     for (int i = 0; i < THIN * HEIGHT; i++)
         amounts[i] = profile[i % THIN], share[i] = 255;
-    fl_closing_apply(amounts, share, thin, BORDER, &error);
+    fl_closing_apply(amounts, amounts, share, share, thin, BORDER, &error);
     g_assert_no_error(error);
     for (int i = 0; i < THIN * HEIGHT; i++) {
         g_assert_cmpint(amounts[i], >, FL_AMOUNT_ONE * 7 / 8);
@@ -123,7 +131,7 @@ static void a_line_is_seen_though_it_is_all_rim(void)
     g_autoptr(GError) error = NULL;
     for (int i = 0; i < LINE * HEIGHT; i++)
         amounts[i] = (int16_t)(i % 40);
-    fl_closing_apply(amounts, share, line, 2 * BORDER, &error);
+    fl_closing_apply(amounts, amounts, share, share, line, 2 * BORDER, &error);
     g_assert_no_error(error);
     for (int i = 0; i < LINE * HEIGHT; i++)
         g_assert_cmpint(amounts[i], >, FL_AMOUNT_ONE * 7 / 8);
@@ -135,6 +143,7 @@ int main(int argc, char **argv)
 #define TEST(name) g_test_add_func("/closing/" #name, name)
     TEST(no_line_of_paper_and_no_dark_seam_lies_between_neighbours);
     TEST(a_free_edge_stays_as_it_is_painted);
+    TEST(a_shape_that_only_comes_near_shares_no_edge);
     TEST(a_thin_shape_among_others_has_no_dark_core);
     TEST(a_line_is_seen_though_it_is_all_rim);
     return g_test_run();

@@ -44,13 +44,17 @@ static void sum_row(const uint8_t *coverage, const uint16_t *drawn, size_t row, 
     }
 }
 
-/** Full within a third of the way from the contour to the radius, and then falling to 0. */
+/**
+ * Full within a third of the way from the contour to the radius, and then falling to 0; nothing
+ * where others have less than half of what is around, as those have that only come near.
+ */
 static uint8_t share_of(Around sum, uint32_t window)
 {
-    if (sum.taken == 0)
+    if (sum.taken <= sum.free / 2)
         return 0;
     const uint64_t near = MIN((uint64_t)sum.free * 3, (uint64_t)window);
-    return (uint8_t)((uint64_t)sum.taken * 255 / sum.free * near / window);
+    const uint64_t others = MIN(((uint64_t)sum.taken * 2 - sum.free) * 255 * 5 / 4 / sum.free, 255);
+    return (uint8_t)(others * near / window);
 }
 
 static void add_row(Around *sums, const Around *row, size_t n)
@@ -206,22 +210,27 @@ static int evened(int amount, Mean around, int contrast)
     return FL_AMOUNT_ONE + (even - FL_AMOUNT_ONE) * contrast / FL_AMOUNT_ONE;
 }
 
-bool fl_closing_apply(int16_t *amounts, const uint8_t *share, FlBox box, int radius_px,
-                      GError **error)
+bool fl_closing_apply(int16_t *amounts, const int16_t *seen, const uint8_t *share,
+                      const uint8_t *small, FlBox box, int radius_px, GError **error)
 {
     const size_t n = fl_box_pixels(box);
-    const int r = MAX(1, radius_px / 4);
+    const int quarter = MAX(1, radius_px / 4), most = MAX(1, radius_px * 3 / 4);
     g_autofree Mean *around = fl_alloc(n, sizeof *around, "a matte", error);
     g_autofree Mean *wide = around ? fl_alloc(n, sizeof *wide, "a matte", error) : NULL;
     g_autofree uint8_t *thin = wide ? fl_alloc(n, 1, "a matte", error) : NULL;
-    if (!thin || !sum_boxes(amounts, box, r, around, error) ||
-        !sum_boxes(amounts, box, radius_px, wide, error) || !find_thin(around, box, r, thin, error))
+    g_autofree uint8_t *narrow = thin ? fl_alloc(n, 1, "a matte", error) : NULL;
+    if (!narrow || !sum_boxes(amounts, box, quarter, around, error) ||
+        !find_thin(around, box, quarter, thin, error) || !sum_boxes(seen, box, most, wide, error) ||
+        !find_thin(wide, box, most, narrow, error) ||
+        !sum_boxes(amounts, box, radius_px, wide, error))
         return false;
-    for (size_t i = 0; i < n; i++)
-        if (amounts[i] >= 0 && (share[i] || thin[i])) {
-            const int contrast = contrast_of(wide[i].n, radius_px, thin[i]);
-            const int even = evened(amounts[i], around[i], contrast);
-            amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * MAX(share[i], thin[i]) / 255);
-        }
+    for (size_t i = 0; i < n; i++) {
+        const int part = MAX(MAX(share[i], small[i] * narrow[i] / 255), thin[i]);
+        if (amounts[i] < 0 || part == 0)
+            continue;
+        const int contrast = contrast_of(wide[i].n, radius_px, thin[i]);
+        const int even = evened(amounts[i], around[i], contrast);
+        amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * part / 255);
+    }
     return true;
 }

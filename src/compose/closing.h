@@ -24,13 +24,15 @@ bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width,
 /**
  * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
  * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim.
+ * `small` is the share that counts where what is seen of the shape is narrower than the radius.
  * Shapes thinner than half the radius are all rim, of which next to nothing would be left, or
  * a dark core; their paint is even, also where their edges are free.
  *
- * amounts (0 … FL_AMOUNTS - 1, changed in place) and share are box.width * box.height; an amount
- * below 0 is outside the shape. radius_px is that of the share.
+ * amounts (0 … FL_AMOUNTS - 1, changed in place), seen and the shares are box.width * box.height;
+ * an amount below 0 is outside the shape, `seen` is below 0 where the shape is not seen. radius_px
+ * is that of the shares.
  */
-bool fl_closing_apply(int16_t *amounts, const uint8_t *share, FlBox box, int radius_px,
-                      GError **error);
+bool fl_closing_apply(int16_t *amounts, const int16_t *seen, const uint8_t *share,
+                      const uint8_t *small, FlBox box, int radius_px, GError **error);
 
 #endif

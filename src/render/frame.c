@@ -1,11 +1,11 @@
 #include "render/frame.h"
 
 #include "base/alloc.h"
-#include "compose/closing.h"
 #include "compose/colourise.h"
 #include "compose/holes.h"
 #include "output/name.h"
 #include "params/text.h"
+#include "render/edges.h"
 #include "render/tone.h"
 #include "style/picture.h"
 #include <string.h>
@@ -84,56 +84,14 @@ static FlColouring colouring_of(const FlPlan *plan, const FlBackground *backgrou
     return how;
 }
 
-/* The sum of all shapes, also of those left out: a region alone has the layer it has among others.
- */
-static uint16_t *sum_shapes(const FlPlan *plan, const FlRuns *runs, const FlBox *boxes,
-                            GError **error)
-{
-    const size_t width = (size_t)fl_film_width(plan->film);
-    uint16_t *drawn = fl_alloc(width * fl_film_height(plan->film), sizeof *drawn, "a matte", error);
-    for (int r = 0; drawn && r < runs->n; r++)
-        for (int y = boxes[r].y; y < boxes[r].y + boxes[r].height; y++) {
-            uint16_t *sum = drawn + (size_t)y * width + boxes[r].x;
-            const uint8_t *coverage = runs->run[r].coverage + (size_t)y * width + boxes[r].x;
-            for (int x = 0; x < boxes[r].width; x++)
-                sum[x] = (uint16_t)MIN(sum[x] + coverage[x] * runs->run[r].alpha / 255, UINT16_MAX);
-        }
-    return drawn;
-}
-
-/* The amounts of paint of a layer, closed up at edges that it shares; *amounts is NULL, without an
- * error, if its edges stay soft. */
-static bool close_edges(const FlLayer *layer, const FlPlan *plan, const FlPainter *painter,
-                        int tone, const uint16_t *drawn, int16_t **amounts, GError **error)
-{
-    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
-    const FlTreatment *t = &painter->treatment;
-    const bool apart = plan->options.gap > 0 || plan->options.feather > 0;
-    *amounts = NULL;
-    if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || apart ||
-        layer->box.width == 0)
-        return true;
-    const float border = painter->box->exemplar->border_px;
-    const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
-    g_autofree uint8_t *share = fl_alloc(fl_box_pixels(layer->box), 1, "a matte", error);
-    if (!share ||
-        !fl_closing_share(layer->coverage, drawn, width, height, layer->box, radius, share,
-                          error) ||
-        !(*amounts = fl_alloc(fl_box_pixels(layer->box), sizeof **amounts, "a matte", error)))
-        return false;
-    fl_colourise_amounts(painter->box->ink, tone, painter->painted, layer->coverage, width,
-                         layer->box, *amounts);
-    return fl_closing_apply(*amounts, share, layer->box, radius, error);
-}
-
 static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                       const FlRun *run, FlBox box, const int *tones, const uint16_t *drawn,
-                       GError **error)
+                       FlEdgeMap *edges, int r, const int *tones, GError **error)
 {
     const int width = fl_film_width(plan->film);
+    const FlRun *run = &edges->runs->run[r];
     const int p = plan->painter_of[run->region];
     const FlPainter *painter = p >= 0 ? &plan->painters[p] : NULL;
-    *layer = (FlLayer){.box = box,
+    *layer = (FlLayer){.box = edges->boxes[r],
                        .coverage = run->coverage,
                        .alpha = run->alpha,
                        .stacking = painter ? painter->treatment.stacking : FL_STACKING_KNOCKOUT,
@@ -144,7 +102,7 @@ static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *b
     if (painter) {
         FlColouring how = colouring_of(plan, background, painter, run, tones[p]);
         g_autofree int16_t *amounts = NULL;
-        if (!close_edges(layer, plan, painter, how.tone, drawn, &amounts, error))
+        if (!fl_edges_close(edges, r, layer, painter, how.tone, &amounts, error))
             return false;
         how.amounts = amounts;
         uint8_t *body = fl_alloc(fl_box_pixels(layer->box), 1, "a layer", error);
@@ -191,18 +149,17 @@ static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBack
     g_autofree FlBox *boxes = find_boxes(plan, composite->runs);
     if (!fl_tones_find(plan, composite->runs, boxes, frame, tones, error))
         return false;
-    g_autofree uint16_t *drawn = sum_shapes(plan, composite->runs, boxes, error);
-    if (!drawn)
+    g_auto(FlEdgeMap) edges = {0};
+    if (!fl_edges_init(&edges, plan, composite->runs, boxes, error))
         return false;
     composite->layers = g_new0(FlLayer, MAX(composite->runs->n, 1));
     composite->names = g_new0(char *, composite->runs->n + 1);
     for (int r = 0; r < composite->runs->n; r++) {
-        const FlRun *run = &composite->runs->run[r];
-        if (plan->painter_of[run->region] == -2)
+        if (plan->painter_of[composite->runs->run[r].region] == -2)
             continue;
         composite->names[composite->n_layers] = layer_name(plan, composite->runs, r);
-        if (!fill_layer(&composite->layers[composite->n_layers++], plan, background, run, boxes[r],
-                        tones, drawn, error))
+        if (!fill_layer(&composite->layers[composite->n_layers++], plan, background, &edges, r,
+                        tones, error))
             return false;
     }
     FlStackParams params = {.linear = plan->options.blend == FL_BLEND_LINEAR,

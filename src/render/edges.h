@@ -1,0 +1,40 @@
+/* Which edges of a frame's shapes are closed: there paint goes on up to the edge. */
+#ifndef FLUIDY_RENDER_EDGES_H
+#define FLUIDY_RENDER_EDGES_H
+
+#include "compose/layers.h"
+#include "render/plan.h"
+
+/**
+ * How the shapes of a frame lie. Those count, too, that are left out of the picture: a region alone
+ * has the layer that it has among others.
+ */
+typedef struct FlEdgeMap {
+    const FlPlan *plan;
+    const FlRuns *runs;
+    const FlBox *boxes; // of the runs
+    uint16_t *top;      // a whole frame: 1 + the uppermost run, 0: none
+    int n;              // runs that count, and one: the lowest few thousand
+    bool *overlap;      // n * n: whether two runs, 1 + their numbers, lie over each other
+    uint16_t *drawn;    // room for a frame
+} FlEdgeMap;
+
+/** boxes: of the runs; borrowed, as everything else. FL_ERROR_NO_MEMORY. */
+bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, const FlBox *boxes,
+                   GError **error);
+void fl_edges_clear(FlEdgeMap *edges);
+
+/**
+ * The amounts of paint of a run's layer, closed up where its shape ends at another one. Where the
+ * two overlap, paint keeps its rim, as it does at free edges, and what lies below is seen beyond
+ * it; but shapes that are hardly more than rim, such as an eye, are closed there, too.
+ *
+ * amounts: of the layer's box, to be freed with free(); NULL, without an error, if its edges are
+ * soft. Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_edges_close(FlEdgeMap *edges, int run, const FlLayer *layer, const FlPainter *painter,
+                    int tone, int16_t **amounts, GError **error);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlEdgeMap, fl_edges_clear)
+
+#endif
