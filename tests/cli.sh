@@ -158,7 +158,7 @@ on_a_terminal() {
     TERM=xterm script -qec "stty cols 75; $1" /dev/null </dev/null | tr '\r' '\n' | cat -v
 }
 paint="'$program' whole -s 01 --detail draft -o 'term/w_%d.png' -y"
-if command -v script >/dev/null; then
+if [ "$(on_a_terminal 'echo yes' 2>/dev/null)" = yes ]; then
     on_a_terminal "$paint" >out && grep -qE '^\[\^\[\[36m#{24}\^\[\[0m\] 100 % paint, frame 3 \(3/3\), [0-9.]+ s/frame, 0' out &&
         ! grep '^\[' out | sed 's/\^\[\[[0-9]*[mK]//g' | grep -qE '.{76}'
     result $? 'a terminal has a bar with frame, seconds a frame and the time that is left'

@@ -19,11 +19,19 @@ wait_for() {
 }
 
 # stop FOLDER SIGNAL FRAME: paints, sends the signal after the frame; the status is the program's.
+# Where the program was done before the signal came, as may be on a busy machine, once more.
 stop() {
-    started "$1"
-    wait_for "$1/w_000$3.png"
-    kill -"$2" $job 2>/dev/null
-    wait $job 2>/dev/null
+    local try found
+    for try in 1 2 3 4 5 6 7 8 9 10; do
+        started "$1"
+        wait_for "$1/w_000$3.png"
+        kill -"$2" $job 2>/dev/null
+        wait $job 2>/dev/null
+        found=$?
+        [ $found = 0 ] || break
+        rm -rf "$1"
+    done
+    return $found
 }
 
 paint whole
@@ -122,6 +130,10 @@ result $? 'and a lock that a killed run left does no harm'
 # ---- what has changed ----
 
 stop changed INT 2
+while [ -e changed/w_0005.png ]; do # leave two to be painted
+    rm -rf changed
+    stop changed INT 2
+done
 cp -r changed before
 refused() { # refused SENTENCE MESSAGE ARGUMENT...: status 1, one line, nothing touched
     local sentence=$1 message=$2
@@ -148,11 +160,12 @@ paint changed
 [ $? = 1 ] && says 'w_0001.png: an earlier run painted it, but it is gone'
 result $? 'a finished frame that is gone is told'
 mv w_0001.png changed/
-drawing changed/w_0005.png 56 1
+later=changed/w_000$(($(ls changed/w_*.png | wc -l) + 2)).png # the next one was in hand
+drawing "$later" 56 1
 paint changed
-[ $? = 1 ] && says 'w_0005.png: exists already' && grep -q svg changed/w_0005.png
+[ $? = 1 ] && says "${later#*/}: exists already" && grep -q svg "$later"
 result $? 'a file that a later frame would replace is refused and left alone'
-rm changed/w_0005.png
+rm "$later"
 head -c 100 changed/.w_%04d.png.state >cut && cp cut changed/.w_%04d.png.state
 paint changed
 [ $? = 1 ] && says 'the state of an earlier render cannot be read; -y starts anew'
