@@ -18,8 +18,8 @@ bool fl_frame_look_init(FlFrameLook *f, FlSvg *svg, double page_width, double pa
     f->factor = MAX(1, (double)MAX(width, height) / LOOK_PX);
     f->width = page_width / f->factor;
     f->height = page_height / f->factor;
-    f->all =
-        (FlBox){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
+    f->all = (FlBounds){0, 0, MAX(1, (int)ceil(width / f->factor)),
+                        MAX(1, (int)ceil(height / f->factor))};
     f->looks = g_array_new(FALSE, FALSE, sizeof(FlLook));
     g_array_set_clear_func(f->looks, look_clear);
     f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.x1, f->all.y1, error);
@@ -40,7 +40,7 @@ void fl_frame_look_clear(FlFrameLook *f)
 }
 
 /** Draws a part into the frame's coverage. Returns: its box; the caller wipes it. */
-static bool cover(FlFrameLook *f, const FlLeaf *leaf, FlPart part, FlBox *box, GError **error)
+static bool cover(FlFrameLook *f, const FlLeaf *leaf, FlPart part, FlBounds *box, GError **error)
 {
     cairo_t *cr = cairo_create(f->coverage);
     const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->width, f->height, error);
@@ -49,7 +49,7 @@ static bool cover(FlFrameLook *f, const FlLeaf *leaf, FlPart part, FlBox *box, G
     return drawn;
 }
 
-static float sum_of(cairo_surface_t *coverage, FlBox box)
+static float sum_of(cairo_surface_t *coverage, FlBounds box)
 {
     const unsigned char *data = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
@@ -64,10 +64,10 @@ static float sum_of(cairo_surface_t *coverage, FlBox box)
  * The box of a part whose look on the small picture does not tell: text, which is shaped anew at
  * each scale, and what is too small to be seen there. Drawn in full size; px of the small picture.
  */
-static bool box_in_full(FlFrameLook *f, const FlLeaf *leaf, FlPart part, FlBox *box, float *area_px,
-                        GError **error)
+static bool box_in_full(FlFrameLook *f, const FlLeaf *leaf, FlPart part, FlBounds *box,
+                        float *area_px, GError **error)
 {
-    const FlBox all = {0, 0, f->full_width, f->full_height};
+    const FlBounds all = {0, 0, f->full_width, f->full_height};
     if (!f->full)
         f->full = fl_surface_new(CAIRO_FORMAT_A8, all.x1, all.y1, error);
     if (!f->full)
@@ -76,11 +76,11 @@ static bool box_in_full(FlFrameLook *f, const FlLeaf *leaf, FlPart part, FlBox *
     const bool drawn =
         fl_svg_draw(f->svg, leaf, part, cr, f->width * f->factor, f->height * f->factor, error);
     cairo_destroy(cr);
-    const FlBox ink = fl_surface_ink(f->full, all);
+    const FlBounds ink = fl_surface_ink(f->full, all);
     *area_px = sum_of(f->full, ink);
     fl_surface_wipe(f->full, ink);
-    *box = ink.x1 > 0 ? (FlBox){(int)floor(ink.x0 / f->factor), (int)floor(ink.y0 / f->factor),
-                                (int)ceil(ink.x1 / f->factor), (int)ceil(ink.y1 / f->factor)}
+    *box = ink.x1 > 0 ? (FlBounds){(int)floor(ink.x0 / f->factor), (int)floor(ink.y0 / f->factor),
+                                   (int)ceil(ink.x1 / f->factor), (int)ceil(ink.y1 / f->factor)}
                       : ink;
     return drawn;
 }
@@ -89,14 +89,14 @@ static bool box_in_full(FlFrameLook *f, const FlLeaf *leaf, FlPart part, FlBox *
  * Widens the box of a stroke by where it is in full size: the pen that cairo draws thick lines of
  * next to no length with has so few corners on a small picture that their caps are cut off.
  */
-static void widen(FlFrameLook *f, const FlLeaf *leaf, FlBox *box)
+static void widen(FlFrameLook *f, const FlLeaf *leaf, FlBounds *box)
 {
     const RsvgRectangle r =
         fl_svg_extents(f->svg, leaf, f->width * f->factor, f->height * f->factor);
-    const FlBox at =
-        fl_box_and(f->all, (FlBox){(int)floor(r.x / f->factor), (int)floor(r.y / f->factor),
-                                   (int)ceil((r.x + r.width) / f->factor),
-                                   (int)ceil((r.y + r.height) / f->factor)});
+    const FlBounds at =
+        fl_bounds_and(f->all, (FlBounds){(int)floor(r.x / f->factor), (int)floor(r.y / f->factor),
+                                         (int)ceil((r.x + r.width) / f->factor),
+                                         (int)ceil((r.y + r.height) / f->factor)});
     if (box->x1 == 0 || at.x1 == 0)
         return;
     box->x0 = MIN(box->x0, at.x0), box->x1 = MAX(box->x1, at.x1);
@@ -119,8 +119,7 @@ static void relate_parts(GArray *looks, guint first)
     }
 }
 
-static bool look_at(FlFrameLook *f, const FlLeaf *leaf, int index, FlWarnings *warnings,
-                    const char *file, int number, GError **error)
+static bool look_at(FlFrameLook *f, const FlLeaf *leaf, int index, GError **error)
 {
     const guint first = f->looks->len;
     FlPainted parts[FL_MOST_PARTS];
@@ -165,8 +164,8 @@ static bool overlap(const GArray *looks, guint first)
 {
     for (guint i = first; i < looks->len; i++)
         for (guint j = i + 1; j < looks->len; j++)
-            if (fl_boxes_meet(g_array_index(looks, FlLook, i).box,
-                              g_array_index(looks, FlLook, j).box))
+            if (fl_bounds_meet(g_array_index(looks, FlLook, i).box,
+                               g_array_index(looks, FlLook, j).box))
                 return true;
     return false;
 }
@@ -187,8 +186,7 @@ static int is_separable(FlFrameLook *f, const FlUnit *unit, guint first, GError 
     return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->width, f->height, error);
 }
 
-static bool look_at_leaves(FlFrameLook *f, FlWarnings *warnings, const char *file, int number,
-                           GError **error)
+static bool look_at_leaves(FlFrameLook *f, GError **error)
 {
     const FlLeaves *leaves = fl_svg_leaves(f->svg);
     guint unit = 0;
@@ -202,8 +200,7 @@ static bool look_at_leaves(FlFrameLook *f, FlWarnings *warnings, const char *fil
         else
             u = NULL;
         for (; i < end; i++)
-            if (!look_at(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, warnings, file, number,
-                         error))
+            if (!look_at(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, error))
                 return false;
         i--;
         if (!u)
@@ -216,7 +213,7 @@ static bool look_at_leaves(FlFrameLook *f, FlWarnings *warnings, const char *fil
                 g_array_set_size(f->looks, before);
             for (guint k = before; k < f->looks->len; k++)
                 g_array_index(f->looks, FlLook, k).seen.unit = 1 + (int)unit;
-            if (!look_at(f, &u->leaf, -1 - (int)unit, warnings, file, number, error))
+            if (!look_at(f, &u->leaf, -1 - (int)unit, error))
                 return false;
         }
         unit++;
@@ -236,7 +233,7 @@ static bool stack(FlFrameLook *f, GError **error)
     const int stride = cairo_image_surface_get_stride(below);
     for (guint i = 0; i < f->looks->len; i++) {
         FlLook *look = &g_array_index(f->looks, FlLook, i);
-        FlBox box;
+        FlBounds box;
         if (look->seen.unit > 0 && look->seen.leaf >= 0)
             continue; // the unit comes after its leaves
         if (!cover(f, look->leaf, look->seen.part, &box, error))
@@ -260,8 +257,7 @@ static bool stack(FlFrameLook *f, GError **error)
     return true;
 }
 
-bool fl_frame_look_over(FlFrameLook *f, FlWarnings *warnings, const char *file, int number,
-                        GError **error)
+bool fl_frame_look_over(FlFrameLook *f, GError **error)
 {
-    return look_at_leaves(f, warnings, file, number, error) && stack(f, error);
+    return look_at_leaves(f, error) && stack(f, error);
 }

@@ -11,7 +11,7 @@ typedef struct FlLook {
     FlSeen seen;
     const FlLeaf *leaf;
     char *paint;
-    FlBox box; // px of the small picture
+    FlBounds box; // px of the small picture
 } FlLook;
 
 /** What one thread needs for one frame. */
@@ -22,7 +22,7 @@ typedef struct FlFrameLook {
     cairo_surface_t *coverage;
     cairo_surface_t *full; // in the picture's own size; made when first needed
     int full_width, full_height;
-    FlBox all;
+    FlBounds all;
     GArray *looks;
     FlSelfCheck *check;
 } FlFrameLook;
@@ -35,8 +35,7 @@ bool fl_frame_look_init(FlFrameLook *look, FlSvg *svg, double page_width, double
                         int width, int height, GError **error);
 
 /** Finds the parts, bottom up, and draws them over each other for the self-check. */
-bool fl_frame_look_over(FlFrameLook *look, FlWarnings *warnings, const char *file, int number,
-                        GError **error);
+bool fl_frame_look_over(FlFrameLook *look, GError **error);
 
 void fl_frame_look_clear(FlFrameLook *look);
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFrameLook, fl_frame_look_clear)

@@ -26,7 +26,7 @@ static int pixel_bytes(cairo_surface_t *surface)
     return cairo_image_surface_get_format(surface) == CAIRO_FORMAT_A8 ? 1 : 4;
 }
 
-void fl_surface_wipe(cairo_surface_t *surface, FlBox box)
+void fl_surface_wipe(cairo_surface_t *surface, FlBounds box)
 {
     const int stride = cairo_image_surface_get_stride(surface), size = pixel_bytes(surface);
     cairo_surface_flush(surface);
@@ -51,12 +51,12 @@ static bool is_blank(const unsigned char *row, int n)
     return n == 0 || (row[0] == 0 && memcmp(row, row + 1, (size_t)n - 1) == 0);
 }
 
-FlBox fl_surface_ink(cairo_surface_t *surface, FlBox box)
+FlBounds fl_surface_ink(cairo_surface_t *surface, FlBounds box)
 {
     const int stride = cairo_image_surface_get_stride(surface), size = pixel_bytes(surface);
     cairo_surface_flush(surface);
     const unsigned char *data = cairo_image_surface_get_data(surface);
-    FlBox ink = {box.x1, box.y1, box.x0, box.y0};
+    FlBounds ink = {box.x1, box.y1, box.x0, box.y0};
     const int n = (box.x1 - box.x0) * size;
     for (int y = box.y0; y < box.y1 && n > 0; y++) {
         const unsigned char *row = data + (size_t)y * stride + box.x0 * size;
@@ -69,17 +69,17 @@ FlBox fl_surface_ink(cairo_surface_t *surface, FlBox box)
         ink.x0 = ink.x0 < first ? ink.x0 : first;
         ink.x1 = ink.x1 > last ? ink.x1 : last;
     }
-    return ink.y1 > ink.y0 ? ink : (FlBox){0};
+    return ink.y1 > ink.y0 ? ink : (FlBounds){0};
 }
 
-FlBox fl_box_and(FlBox a, FlBox b)
+FlBounds fl_bounds_and(FlBounds a, FlBounds b)
 {
-    const FlBox both = {a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0,
-                        a.x1 < b.x1 ? a.x1 : b.x1, a.y1 < b.y1 ? a.y1 : b.y1};
-    return both.x1 > both.x0 && both.y1 > both.y0 ? both : (FlBox){0};
+    const FlBounds both = {a.x0 > b.x0 ? a.x0 : b.x0, a.y0 > b.y0 ? a.y0 : b.y0,
+                           a.x1 < b.x1 ? a.x1 : b.x1, a.y1 < b.y1 ? a.y1 : b.y1};
+    return both.x1 > both.x0 && both.y1 > both.y0 ? both : (FlBounds){0};
 }
 
-bool fl_boxes_meet(FlBox a, FlBox b)
+bool fl_bounds_meet(FlBounds a, FlBounds b)
 {
     return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
 }

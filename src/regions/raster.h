@@ -8,21 +8,21 @@
 #include <stdint.h>
 
 /** A rectangle of pixels, x1 and y1 exclusive; empty if x1 <= x0. */
-typedef struct FlBox {
+typedef struct FlBounds {
     int x0, y0, x1, y1;
-} FlBox;
+} FlBounds;
 
 /** A cleared image surface; NULL with FL_ERROR_LIMIT or FL_ERROR_NO_MEMORY. */
 cairo_surface_t *fl_surface_new(cairo_format_t format, int width, int height, GError **error);
 
 /** Clears the pixels of a box. */
-void fl_surface_wipe(cairo_surface_t *surface, FlBox box);
+void fl_surface_wipe(cairo_surface_t *surface, FlBounds box);
 
 /** The smallest box of all pixels that are not 0, within `box`; A8 or ARGB32. */
-FlBox fl_surface_ink(cairo_surface_t *surface, FlBox box);
+FlBounds fl_surface_ink(cairo_surface_t *surface, FlBounds box);
 
-FlBox fl_box_and(FlBox a, FlBox b);
-bool fl_boxes_meet(FlBox a, FlBox b);
+FlBounds fl_bounds_and(FlBounds a, FlBounds b);
+bool fl_bounds_meet(FlBounds a, FlBounds b);
 
 /** a over b for coverages and opacities 0..255. */
 static inline uint8_t fl_over(uint8_t a, uint8_t b)

@@ -105,12 +105,12 @@ static bool stage_init(Stage *stage, const FlFilm *film, int frame, GError **err
 }
 
 /** The pixels a step can reach. */
-static FlBox step_box(const Stage *stage, const FlStep *step)
+static FlBounds step_box(const Stage *stage, const FlStep *step)
 {
-    const FlBox page = {0, 0, stage->film->width, stage->film->height};
-    const FlBox box = {(int)floorf(step->box[0]), (int)floorf(step->box[1]),
-                       (int)ceilf(step->box[2]), (int)ceilf(step->box[3])};
-    return fl_box_and(page, box);
+    const FlBounds page = {0, 0, stage->film->width, stage->film->height};
+    const FlBounds box = {(int)floorf(step->box[0]), (int)floorf(step->box[1]),
+                          (int)ceilf(step->box[2]), (int)ceilf(step->box[3])};
+    return fl_bounds_and(page, box);
 }
 
 static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *surface,
@@ -126,7 +126,7 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
     }
     const FlLeaf *leaf = step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
                                          : &g_array_index(list, FlUnit, index).leaf;
-    const FlBox box = step_box(stage, step);
+    const FlBounds box = step_box(stage, step);
     cairo_t *cr = cairo_create(surface);
     cairo_rectangle(cr, box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0);
     cairo_clip(cr);
@@ -150,7 +150,7 @@ static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, 
     const int width = stage->film->width;
     if (!draw_step(stage, step, stage->coverage, error))
         return false;
-    const FlBox box = step_box(stage, step);
+    const FlBounds box = step_box(stage, step);
     const int stride = cairo_image_surface_get_stride(stage->coverage);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
     uint8_t solid[256];
@@ -204,7 +204,7 @@ static bool draw_picture(Stage *stage, const Run *run, uint8_t *coverage, uint8_
                 memcpy(picture + 4 * p, mine, 4);
             coverage[p] = fl_over(mine[3], coverage[p]);
         }
-    fl_surface_wipe(stage->picture, (FlBox){0, 0, width, height});
+    fl_surface_wipe(stage->picture, (FlBounds){0, 0, width, height});
     return true;
 }
 

@@ -79,10 +79,7 @@ static bool open_frame(FlScan *scan, int t, FlFrameLook *look, FlWarnings *warni
 static FlVerdict try_frame(FlScan *scan, int t, FlFrameLook *f, FlWarnings *warnings, char **group,
                            const char **leaf, GError **error)
 {
-    const char *file = scan->sequence->file[t];
-    const int number = scan->sequence->number[t];
-    if (!open_frame(scan, t, f, warnings, error) ||
-        !fl_frame_look_over(f, warnings, file, number, error))
+    if (!open_frame(scan, t, f, warnings, error) || !fl_frame_look_over(f, error))
         return FL_VERDICT_ERROR;
     return fl_self_check_finish(f->check, f->svg, f->width, f->height, group, leaf, error);
 }

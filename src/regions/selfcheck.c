@@ -76,8 +76,8 @@ static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surfac
 }
 
 bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSeen *seen,
-                       cairo_surface_t *coverage, FlBox box, double page_width, double page_height,
-                       GError **error)
+                       cairo_surface_t *coverage, FlBounds box, double page_width,
+                       double page_height, GError **error)
 {
     const unsigned char *mine = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
