@@ -4,7 +4,7 @@
 #include <limits.h>
 #include <string.h>
 
-#define LONGEST 63
+#define LONGEST 255 // as of file names
 
 static char folded(char c)
 {

@@ -5,7 +5,7 @@
 /**
  * Letters to insert, delete, replace or swap with their neighbour to turn `a` into `b`.
  *
- * Case does not count, and '-' equals '_'. Bytes are letters. Each word may have 63 at most; a
+ * Case does not count, and '-' equals '_'. Bytes are letters. Each word may have 255 at most; a
  * longer one is far from everything (INT_MAX).
  */
 int fl_edit_distance(const char *a, const char *b);

@@ -96,25 +96,6 @@ static GArray *group_names(const GPtrArray *names)
     return groups;
 }
 
-/** Letters to insert, delete or replace to get from a to b. */
-static int edit_distance(const char *a, const char *b)
-{
-    const size_t n = strlen(b);
-    g_autofree int *row = g_new(int, n + 1);
-    for (size_t j = 0; j <= n; j++)
-        row[j] = (int)j;
-    for (size_t i = 1; a[i - 1]; i++) {
-        int diagonal = row[0];
-        row[0] = (int)i;
-        for (size_t j = 1; j <= n; j++) {
-            const int best = MIN(MIN(row[j], row[j - 1]) + 1, diagonal + (a[i - 1] != b[j - 1]));
-            diagonal = row[j];
-            row[j] = best;
-        }
-    }
-    return row[n];
-}
-
 /** "; did you mean walk_%04d.svg (44 files)?", or a name that is near; names stays as it is. */
 static char *suggestion(GPtrArray *names, const char *wanted)
 {
@@ -124,7 +105,7 @@ static char *suggestion(GPtrArray *names, const char *wanted)
     for (guint i = 0; i < groups->len; i++) {
         const Group *group = &g_array_index(groups, Group, i);
         g_autofree char *text = fl_pattern_text(&group->pattern);
-        const int distance = edit_distance(wanted, text);
+        const int distance = fl_edit_distance(wanted, text);
         if (distance < best_distance) {
             g_free(best);
             best = g_steal_pointer(&text);

@@ -307,8 +307,3 @@ bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, do
         set_rsvg_error(svg, reason, error);
     return false;
 }
-
-bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)
-{
-    return fl_svg_draw_group(svg, NULL, cr, width, height, error);
-}

@@ -64,9 +64,6 @@ RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, doubl
 bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
                        GError **error);
 
-/** Draws the file as it was before it was normalised. */
-bool fl_svg_draw_original(FlSvg *svg, cairo_t *cr, double width, double height, GError **error);
-
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSvg, fl_svg_free)
 
 #endif
