@@ -276,8 +276,8 @@ static bool paint_frame(Job *job, int frame, FlComposite *composite, double *pai
     *paint_s = seconds_since(start);
     if (!fl_task_wait(&job->drawing, painted ? error : NULL) || !painted)
         return false;
-    return fl_composite_init(composite, job->plan, &job->background, frame,
-                             g_steal_pointer(&job->runs), job->sink->format->takes_16, error);
+    return fl_composite_init(composite, plan, &job->background, frame, g_steal_pointer(&job->runs),
+                             plan->format->takes_16, error);
 }
 
 /* Figures and the report, once the frame's files are written. */
@@ -442,11 +442,8 @@ static bool rehearse(Job *job, GError **error)
     for (int k = 0; k < 2 && k * plan->hold < fl_film_frames(plan->film); k++) {
         const int64_t start = g_get_monotonic_time();
         g_auto(FlComposite) composite = {0};
-        g_autoptr(FlRuns) runs = NULL;
-        if (!for_each_painter(job, paint_one, k * plan->hold, error) ||
-            !(runs = fl_held_runs(plan, k * plan->hold, error)) ||
-            !fl_composite_init(&composite, plan, &job->background, k * plan->hold,
-                               g_steal_pointer(&runs), false, error))
+        double paint_s = 0;
+        if (!paint_frame(job, k * plan->hold, &composite, &paint_s, error))
             return false;
         job->rehearsed_s = seconds_since(start);
     }
