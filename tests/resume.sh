@@ -18,12 +18,13 @@ wait_for() {
     done
 }
 
-# stop FOLDER SIGNAL FRAME: paints, sends the signal after the frame; the status is the program's.
+# stop FOLDER SIGNAL FRAME [ARGUMENT...]: paints, sends the signal after the frame; the status is
+# the program's.
 # Where the program was done before the signal came, as may be on a busy machine, once more.
 stop() {
-    local try found
-    for try in 1 2 3 4 5 6 7 8 9 10; do
-        started "$1"
+    local found
+    for _ in 1 2 3 4 5 6 7 8 9 10; do
+        started "$1" "${@:4}"
         wait_for "$1/w_000$3.png"
         kill -"$2" $job 2>/dev/null
         wait $job 2>/dev/null
@@ -87,33 +88,21 @@ for round in 1 2 3 4 5 6 7 8 9 10; do
 done
 
 paint held_whole --hold 4
-started held --hold 4
-wait_for held/w_0002.png
-kill -KILL $job 2>/dev/null
-wait $job 2>/dev/null
+stop held KILL 2 --hold 4
 paint held --hold 4 && same held held_whole
 result $? 'a frame that is held is held on by a second run'
 
 paint layers_whole --layers 'layers_whole/{region}_%04d.png'
-started layered --layers 'layered/{region}_%04d.png'
-wait_for layered/w_0002.png
-kill -KILL $job 2>/dev/null
-wait $job 2>/dev/null
+stop layered KILL 2 --layers 'layered/{region}_%04d.png'
 paint layered --layers 'layered/{region}_%04d.png' && same layered layers_whole
 result $? 'layers are complete after a second run too'
 
 paint painted --paint 'paint/{region}_%04d.png'
-started merged --merge --paint 'paint/{region}_%04d.png'
-wait_for merged/w_0002.png
-kill -KILL $job 2>/dev/null
-wait $job 2>/dev/null
+stop merged KILL 2 --merge --paint 'paint/{region}_%04d.png'
 paint merged --merge --paint 'paint/{region}_%04d.png' && same merged whole
 result $? 'merging goes on too'
-started painted2 --paint 'paint2/{region}_%04d.png'
-wait_for painted2/w_0002.png
-kill -KILL $job 2>/dev/null
-wait $job 2>/dev/null
-paint painted2 --paint 'paint2/{region}_%04d.png' && same paint2 paint
+stop painted2 KILL 2 --paint 'painted2/paint/{region}_%04d.png'
+paint painted2 --paint 'painted2/paint/{region}_%04d.png' && same painted2/paint paint
 result $? 'and the paint that is kept is complete'
 
 # as another run has it

@@ -1,60 +1,19 @@
-#include "base/rng.h"
+#include "small_style.h"
 #include "synth/draft.h"
 #include "synth/synth.h"
 #include "synth/vote.h"
-#include <math.h>
 #include <omp.h>
-#include <string.h>
-
-#define W 64
-#define H 48
-#define FRAMES 6
-
-/* A disc of noisy paint that grows by a pixel a frame. */
-static FlStyle *growing_disc(void)
-{
-    FlStyle *style = g_new0(FlStyle, 1);
-    *style = (FlStyle){.name = g_strdup("disc"),
-                       .path = g_strdup("disc"),
-                       .width = W,
-                       .height = H,
-                       .n_frames = FRAMES,
-                       .fps = 25,
-                       .border_px = 6,
-                       .scale = 1,
-                       .paper = {250, 250, 250}};
-    style->rgb = g_malloc(3 * W * H * FRAMES);
-    style->mask = g_malloc(W * H * FRAMES);
-    for (int p = 0; p < W * H * FRAMES; p++) {
-        const int t = p / (W * H), y = p / W % H, x = p % W;
-        const double inside = 12 + t - hypot(x - W / 2, y - H / 2);
-        const uint8_t tone =
-            inside > 0 ? (uint8_t)(60 + fl_hash64((uint64_t)(p % (W * H))) % 120) : 250;
-        style->mask[p] = (uint8_t)(CLAMP(inside + 0.5, 0, 1) * 255);
-        memset(style->rgb + 3 * p, tone, 3);
-    }
-    return style;
-}
-
-static bool moving_disc(void *data, int frame, uint8_t *coverage, GError **error)
-{
-    for (int p = 0; p < 48 * 48; p++) {
-        const double inside = 14 - hypot(p % 48 - 22 - frame, p / 48 - 24);
-        coverage[p] = (uint8_t)(CLAMP(inside + 0.5, 0, 1) * 255);
-    }
-    return true;
-}
 
 /* Paints three frames; the third is returned. */
 static uint8_t *painted(int threads)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(FlParams) params = fl_params_new();
-    g_autoptr(FlStyle) style = growing_disc();
+    g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     g_assert_no_error(error);
     const FlGuideParams how = fl_guide_params(params);
-    const FlGuideSource source = {48, 48, 3, moving_disc, NULL, NULL};
+    const FlGuideSource source = {48, 48, 3, small_moving_disc, NULL, NULL};
     g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, &error);
     g_autoptr(FlSynth) synth =
         fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7, &error);
@@ -88,7 +47,7 @@ static void a_coherent_field_votes_back_the_exemplar(void)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(FlParams) params = fl_params_new();
-    g_autoptr(FlStyle) style = growing_disc();
+    g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     g_auto(FlNnf) nnf = {0};
     g_assert_true(fl_nnf_init(&nnf, 10, 10, &error));
@@ -101,7 +60,8 @@ static void a_coherent_field_votes_back_the_exemplar(void)
     fl_kernels_init(&kernels, fl_cpu_flags());
     fl_vote(&nnf, &exemplar->level[0], &kernels, 1, colour, NULL);
     for (int p = 0; p < 100; p++) {
-        const uint8_t want = style->rgb[3 * ((size_t)(3 * H + 19 + p / 10) * W + 27 + p % 10)];
+        const uint8_t want =
+            style->rgb[3 * ((size_t)(3 * STYLE_H + 19 + p / 10) * STYLE_W + 27 + p % 10)];
         g_assert_cmpfloat(fabsf(colour[3 * p] * 255 - want), <, 0.1f);
     }
 }
@@ -110,7 +70,7 @@ static void upscaling_keeps_a_rotated_field_coherent(void)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(FlParams) params = fl_params_new();
-    g_autoptr(FlStyle) style = growing_disc();
+    g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     g_auto(FlNnf) coarse = {0}, fine = {0};
     g_assert_true(fl_nnf_init(&coarse, 2, 1, &error) && fl_nnf_init(&fine, 4, 2, &error));

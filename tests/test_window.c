@@ -92,16 +92,6 @@ static void a_window_keeps_to_frames_with_paint(void)
     g_assert_cmpint(part->level[0].n_valid[FL_SEGMENT_BORDER], >, 0);
 }
 
-static bool moving_disc(void *data, int frame, uint8_t *coverage, GError **error)
-{
-    (void)data, (void)error;
-    for (int p = 0; p < 48 * 48; p++) {
-        const double inside = 14 - hypot(p % 48 - 20 - frame, p / 48 - 24);
-        coverage[p] = (uint8_t)(CLAMP(inside + 0.5, 0, 1) * 255);
-    }
-    return true;
-}
-
 /* The last of six frames, while the window goes on by two frames each time. */
 static uint8_t *painted(int threads)
 {
@@ -110,7 +100,7 @@ static uint8_t *painted(int threads)
     g_autoptr(FlStyle) style = long_style(0);
     g_autoptr(FlExemplar) exemplar = exemplar_with(style, WINDOW);
     const FlGuideParams how = fl_guide_params(params);
-    const FlGuideSource source = {48, 48, 6, moving_disc, NULL, NULL};
+    const FlGuideSource source = {48, 48, 6, small_moving_disc, NULL, NULL};
     g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, &error);
     g_autoptr(FlSynth) synth =
         fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7, &error);
