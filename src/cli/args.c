@@ -1,6 +1,7 @@
 #include "args.h"
 
 #include "base/suggest.h"
+#include "words.h"
 
 #include <math.h>
 #include <stddef.h>
@@ -470,18 +471,6 @@ static bool make_preview(FlArgs *args, GError **error)
     return true;
 }
 
-/* GOption keeps "--" before a word that begins with a dash; it has served its purpose. */
-static void drop_separator(char **words)
-{
-    while (*words && strcmp(*words, "--") != 0)
-        words++;
-    if (!*words)
-        return;
-    g_free(*words);
-    for (; *words; words++)
-        words[0] = words[1];
-}
-
 bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
 {
     *args = (FlArgs){.settings = g_array_new(FALSE, TRUE, sizeof(FlSetting)),
@@ -495,7 +484,7 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
         g_propagate_error(error, problem);
         return false;
     }
-    drop_separator(args->inputs);
+    fl_words_drop_separator(args->inputs);
     args->render.inputs = (const char *const *)args->inputs + 1;
     if ((args->preview || args->task == FL_TASK_COMPARE) && !make_preview(args, error))
         return false;

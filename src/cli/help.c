@@ -1,7 +1,7 @@
 /* What is said about options: the help, and which one was meant. */
 #include "args.h"
 
-#include "base/suggest.h"
+#include "words.h"
 
 #include <string.h>
 
@@ -37,24 +37,10 @@ char *fl_args_help(bool all)
 
 void fl_args_suggest(GError **error)
 {
-    // the word that starts with a dash
-    const char *word = strstr((*error)->message, " -");
-    if (!word)
-        return;
-    g_autofree char *unknown = g_strdup(word + 1);
-    *strchrnul(unknown, '=') = '\0';
     g_autoptr(GPtrArray) names = g_ptr_array_new();
     for (const FlArgGroup *g = fl_args_groups(); g->entries; g++)
         for (const GOptionEntry *e = g->entries; e->long_name; e++)
             g_ptr_array_add(names, (gpointer)e->long_name);
     g_ptr_array_add(names, NULL);
-    const char *near =
-        fl_suggest(unknown + strspn(unknown, "-"), (const char *const *)names->pdata);
-    g_clear_error(error);
-    if (near)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no option %s; did you mean --%s?",
-                    unknown, near);
-    else
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "there is no option %s; see fluidy-svg --help-all", unknown);
+    fl_words_unknown((const char *const *)names->pdata, "fluidy-svg --help-all", error);
 }

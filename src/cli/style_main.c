@@ -2,6 +2,7 @@
 #include "style_commands.h"
 
 #include "base/suggest.h"
+#include "words.h"
 
 #include <locale.h>
 #include <stdio.h>
@@ -46,32 +47,15 @@ static const FlStyleCommand *find_command(const char *word, GError **error)
     return NULL;
 }
 
-/* GOption says "Unknown option --scael"; we say what it may have meant. */
-static void improve_unknown(const GOptionEntry *entries, GError **error)
+/* Says what an option that the command does not have may have meant. */
+static void improve_unknown(const FlStyleCommand *command, GError **error)
 {
-    const char *word = strrchr((*error)->message, ' ');
-    g_autofree char *unknown = g_strdup(word ? word + 1 : (*error)->message);
     g_autoptr(GPtrArray) names = g_ptr_array_new();
-    for (const GOptionEntry *e = entries; e && e->long_name; e++)
+    for (const GOptionEntry *e = command->entries; e && e->long_name; e++)
         g_ptr_array_add(names, (gpointer)e->long_name);
     g_ptr_array_add(names, NULL);
-    const char *near =
-        fl_suggest(unknown + strspn(unknown, "-"), (const char *const *)names->pdata);
-    g_clear_error(error);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no option %s%s%s%s", unknown,
-                near ? "; did you mean --" : "", near ? near : "", near ? "?" : " (see --help)");
-}
-
-/* GOption keeps "--" before a word that begins with a dash; it has served its purpose. */
-static void drop_separator(char **words)
-{
-    while (*words && strcmp(*words, "--") != 0)
-        words++;
-    if (!*words)
-        return;
-    g_free(*words);
-    for (; *words; words++)
-        words[0] = words[1];
+    g_autofree char *help = g_strdup_printf("fluidy-style %s --help", command->name);
+    fl_words_unknown((const char *const *)names->pdata, help, error);
 }
 
 static gboolean read_limit(const char *name, const char *value, gpointer data, GError **error)
@@ -95,11 +79,11 @@ static bool run_command(const FlStyleCommand *command, char **argv, GError **err
     GError *problem = NULL;
     if (!g_option_context_parse_strv(context, &words, &problem)) {
         if (g_error_matches(problem, G_OPTION_ERROR, G_OPTION_ERROR_UNKNOWN_OPTION))
-            improve_unknown(command->entries, &problem);
+            improve_unknown(command, &problem);
         g_propagate_error(error, problem);
         return false;
     }
-    drop_separator(words);
+    fl_words_drop_separator(words);
     return command->run(words + 1, error);
 }
 
