@@ -17,15 +17,15 @@ static const FlBox box = {LEFT, 0, RIGHT - LEFT, HEIGHT};
 static void make_share(int neighbour, uint8_t *share)
 {
     static uint8_t coverage[WIDTH * HEIGHT];
-    static uint16_t drawn[WIDTH * HEIGHT];
+    static uint8_t others[WIDTH * HEIGHT];
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
             const bool mine = x >= LEFT && x < RIGHT;
             coverage[y * WIDTH + x] = mine ? 255 : 0;
-            drawn[y * WIDTH + x] = mine || x < neighbour ? 255 : 0;
+            others[y * WIDTH + x] = x < neighbour ? 255 : 0;
         }
     g_autoptr(GError) error = NULL;
-    fl_closing_share(coverage, drawn, WIDTH, HEIGHT, box, BORDER, share, &error);
+    fl_closing_share(coverage, others, WIDTH, HEIGHT, box, BORDER, share, &error);
     g_assert_no_error(error);
 }
 

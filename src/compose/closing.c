@@ -11,11 +11,10 @@ typedef struct Around {
     uint32_t free, taken;
 } Around;
 
-static Around around_of(const uint8_t *coverage, const uint16_t *drawn, size_t i)
+static Around around_of(const uint8_t *coverage, const uint8_t *others, size_t i)
 {
     const uint32_t free = 255u - coverage[i];
-    const uint32_t others = MIN(255u, (uint32_t)(drawn[i] - MIN(drawn[i], coverage[i])));
-    return (Around){free, free * others / 255};
+    return (Around){free, free * others[i] / 255};
 }
 
 static void add(Around *sum, Around one)
@@ -29,18 +28,18 @@ static void take(Around *sum, Around one)
 }
 
 /** Sums over 2 r + 1 columns, one for each column of the box. */
-static void sum_row(const uint8_t *coverage, const uint16_t *drawn, size_t row, int width,
+static void sum_row(const uint8_t *coverage, const uint8_t *others, size_t row, int width,
                     FlBox box, int r, Around *out)
 {
     Around sum = {0};
     for (int x = MAX(box.x - r, 0); x < MIN(box.x + r, width); x++)
-        add(&sum, around_of(coverage, drawn, row + (size_t)x));
+        add(&sum, around_of(coverage, others, row + (size_t)x));
     for (int x = box.x; x < box.x + box.width; x++) {
         if (x + r < width)
-            add(&sum, around_of(coverage, drawn, row + (size_t)(x + r)));
+            add(&sum, around_of(coverage, others, row + (size_t)(x + r)));
         out[x - box.x] = sum;
         if (x - r >= 0)
-            take(&sum, around_of(coverage, drawn, row + (size_t)(x - r)));
+            take(&sum, around_of(coverage, others, row + (size_t)(x - r)));
     }
 }
 
@@ -63,7 +62,7 @@ static void add_row(Around *sums, const Around *row, size_t n)
         add(&sums[x], row[x]);
 }
 
-bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width, int height,
+bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width, int height,
                       FlBox box, int radius_px, uint8_t *share, GError **error)
 {
     const int r = radius_px, y0 = MAX(box.y - r, 0), y1 = MIN(box.y + box.height + r, height);
@@ -75,7 +74,7 @@ bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width,
         return false;
 #pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int y = y0; y < y1; y++)
-        sum_row(coverage, drawn, (size_t)y * width, width, box, r, rows + (size_t)(y - y0) * n);
+        sum_row(coverage, others, (size_t)y * width, width, box, r, rows + (size_t)(y - y0) * n);
     const uint32_t window = 255u * (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
     for (int y = y0; y < MIN(box.y + r, y1); y++)
         add_row(sums, rows + (size_t)(y - y0) * n, n);

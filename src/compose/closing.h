@@ -13,12 +13,13 @@
 /**
  * How far the pixels of a shape are at an edge that it shares with others, 0..255: the share of
  * what is not the shape's, within a square of radius_px (1 … FL_CLOSING_MAX_PX) around, that is
- * others', falling to 0 at that depth below the contour.
+ * others', falling to 0 at that depth below the contour. It is 0 where others have less than half
+ * of what is around, as those have that only come near.
  *
- * coverage and drawn are width * height: the shape's coverage, and the sum of all shapes' (its own
- * included). share is box.width * box.height; it is 0 without others.
+ * coverage, of the shape, and others, of all other shapes, are width * height; what others have
+ * below the shape does not count. share is box.width * box.height.
  */
-bool fl_closing_share(const uint8_t *coverage, const uint16_t *drawn, int width, int height,
+bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width, int height,
                       FlBox box, int radius_px, uint8_t *share, GError **error);
 
 /**

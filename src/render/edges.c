@@ -4,9 +4,16 @@
 #include "compose/closing.h"
 #include "compose/colourise.h"
 
-#define SHOWN 128      // coverage, times opacity, from which on a shape is uppermost
+#define SHOWN 128      // coverage from which on a shape is uppermost
 #define TRAP_PX 4      // neighbours overlap by so much at most where a program traps them
 #define MOST_RUNS 4095 // whose overlaps are known
+
+/** Whether a run hides what it lies over. Shading does not: the edges below it are seen. */
+static bool hides(const FlPlan *plan, const FlRun *run)
+{
+    const bool painted = plan->painter_of[run->region] >= 0;
+    return run->mix == FL_MIX_OVER && run->alpha >= SHOWN && (painted || run->alpha == 255);
+}
 
 /** Whether a shape holds the corners of a square of TRAP_PX from pixel i on. */
 static bool holds_square(const uint8_t *coverage, size_t i, size_t width)
@@ -50,7 +57,7 @@ static void put_on_top(FlEdgeMap *edges, int run)
     for (int y = box->y; y < box->y + box->height; y++) {
         const size_t row = (size_t)y * width + (size_t)box->x;
         for (size_t i = row; i < row + (size_t)box->width; i++)
-            if (r->coverage[i] * r->alpha >= SHOWN * 255)
+            if (r->coverage[i] >= SHOWN)
                 edges->top[i] = (uint16_t)(run + 1);
     }
 }
@@ -63,10 +70,12 @@ bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, con
     edges->n = MIN(runs->n, MOST_RUNS) + 1;
     const size_t pairs = (size_t)edges->n * (size_t)edges->n;
     if (!(edges->top = fl_alloc(pixels, sizeof *edges->top, "a matte", error)) ||
-        !(edges->drawn = fl_alloc(pixels, sizeof *edges->drawn, "a matte", error)) ||
+        !(edges->others = fl_alloc(pixels, 1, "a matte", error)) ||
         !(edges->overlap = fl_alloc(pairs, sizeof *edges->overlap, "a matte", error)))
         return false;
     for (int r = 0; r < edges->n - 1; r++) {
+        if (!hides(plan, &runs->run[r]))
+            continue;
         note_overlaps(edges, r);
         put_on_top(edges, r);
     }
@@ -76,7 +85,7 @@ bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, con
 void fl_edges_clear(FlEdgeMap *edges)
 {
     free(edges->top);
-    free(edges->drawn);
+    free(edges->others);
     free(edges->overlap);
     *edges = (FlEdgeMap){0};
 }
@@ -97,10 +106,10 @@ static bool find_share(const FlEdgeMap *edges, int run, bool with_all, int radiu
         for (size_t i = row + (size_t)x0; i < row + (size_t)x1; i++) {
             const uint16_t top = edges->top[i];
             const bool other = top && top != run + 1 && (with_all || !overlap[top]);
-            edges->drawn[i] = (uint16_t)(coverage[i] + (other ? 255 : 0));
+            edges->others[i] = other ? 255 : 0;
         }
     }
-    return fl_closing_share(coverage, edges->drawn, width, height, *box, radius_px, share, error);
+    return fl_closing_share(coverage, edges->others, width, height, *box, radius_px, share, error);
 }
 
 /** -1 where another run lies over a run, else 0; of the run's box, to be freed with free(). */

@@ -16,7 +16,7 @@ typedef struct FlEdgeMap {
     uint16_t *top;      // a whole frame: 1 + the uppermost run, 0: none
     int n;              // runs that count, and one: the lowest few thousand
     bool *overlap;      // n * n: whether two runs, 1 + their numbers, lie over each other
-    uint16_t *drawn;    // room for a frame
+    uint8_t *others;    // room for a frame
 } FlEdgeMap;
 
 /** boxes: of the runs; borrowed, as everything else. FL_ERROR_NO_MEMORY. */
