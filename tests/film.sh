@@ -25,10 +25,9 @@ paint() {
     timeout 120 "$program" film -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err
 }
 
-# same FOLDER FOLDER: they have the same files with the same bytes. A file that is being replaced has a
-# hidden name for a moment, which stays if the program is killed in it.
+# same FOLDER FOLDER: they have the same files with the same bytes.
 same() {
-    diff -r -x '.fluidy-*' "$1" "$2" >/dev/null
+    diff -r "$1" "$2" >/dev/null
 }
 
 # says TEXT: standard error is one line, which has the text.

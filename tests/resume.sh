@@ -87,6 +87,13 @@ for round in 1 2 3 4 5 6 7 8 9 10; do
     result $? "a render killed five times has the frames of a whole one (round $round)"
 done
 
+# A file that replaces another has a hidden name for a moment; here a run was killed in it.
+stop left KILL 2
+echo half >left/..w_%04d.png.state.part
+echo mine >left/.w_0003.png.mine
+paint left && grep -q mine left/.w_0003.png.mine && rm left/.w_0003.png.mine && same left whole
+result $? 'a hidden file of the killed run is gone after the second, one of somebody else is not'
+
 paint held_whole --hold 4
 stop held KILL 2 --hold 4
 paint held --hold 4 && same held held_whole

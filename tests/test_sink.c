@@ -1,3 +1,4 @@
+#include "output/atomic.h"
 #include "output/name.h"
 #include "output/png.h"
 #include "output/sink.h"
@@ -152,6 +153,57 @@ static void a_file_that_cannot_be_written_is_an_error_that_names_it(void)
     }
 }
 
+/** A run that has come to the moment of replacing the file and no further. */
+static FlAtomic stopped_run(const char *path)
+{
+    g_autoptr(GError) error = NULL;
+    FlAtomic file = {0};
+    g_assert_true(fl_atomic_open(&file, path, true, &error));
+    fputs("half", file.stream);
+    g_assert_cmpint(g_mkdir(path, 0777), ==, 0);
+    g_assert_false(fl_atomic_commit(&file, &error));
+    g_assert_cmpint(g_rmdir(path), ==, 0);
+    g_assert_true(g_file_test(file.temporary, G_FILE_TEST_EXISTS));
+    return file;
+}
+
+static void what_a_killed_run_left_is_gone_once_the_file_is_written(void)
+{
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = in(&scratch, "a.png"), *foreign = in(&scratch, ".a.png.12");
+    uint8_t rgba[4 * W * H] = {0};
+    const FlPng png = {.width = W, .height = H, .rgba = rgba};
+    FlAtomic killed = stopped_run(path);
+    fclose(killed.stream); // what the kernel does of it all
+    g_file_set_contents(path, "old", -1, NULL);
+    g_file_set_contents(foreign, "not ours", -1, NULL);
+    g_assert_true(fl_png_save(&png, path, true, NULL));
+    g_assert_false(g_file_test(killed.temporary, G_FILE_TEST_EXISTS));
+    g_assert_true(g_file_test(foreign, G_FILE_TEST_EXISTS));
+    g_assert_cmpint(count_files(scratch.folder), ==, 2);
+    g_free(killed.temporary);
+    g_free(killed.path);
+}
+
+static void what_another_run_is_writing_stays(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = in(&scratch, "a.png"), *beside = in(&scratch, "b.png");
+    uint8_t rgba[4 * W * H] = {0};
+    const FlPng png = {.width = W, .height = H, .rgba = rgba};
+    g_auto(FlAtomic) alive = stopped_run(path);
+    g_assert_false(fl_png_save(&png, path, true, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_EXISTS);
+    g_assert_nonnull(strstr(error->message, "another run is writing it"));
+    g_assert_true(fl_png_save(&png, beside, true, NULL));
+    g_assert_true(fl_atomic_commit(&alive, NULL));
+    g_autofree char *now = NULL;
+    g_assert_true(g_file_get_contents(path, &now, NULL, NULL));
+    g_assert_cmpstr(now, ==, "half");
+    g_assert_cmpint(count_files(scratch.folder), ==, 2);
+}
+
 static void a_sink_writes_numbered_files(void)
 {
     g_autoptr(GError) error = NULL;
@@ -191,6 +243,9 @@ int main(int argc, char **argv)
                     an_existing_file_is_kept_unless_overwriting_is_allowed);
     g_test_add_func("/sink/a-file-that-cannot-be-written-is-an-error-that-names-it",
                     a_file_that_cannot_be_written_is_an_error_that_names_it);
+    g_test_add_func("/sink/what-a-killed-run-left-is-gone-once-the-file-is-written",
+                    what_a_killed_run_left_is_gone_once_the_file_is_written);
+    g_test_add_func("/sink/what-another-run-is-writing-stays", what_another_run_is_writing_stays);
     g_test_add_func("/sink/a-sink-writes-numbered-files", a_sink_writes_numbered_files);
     g_test_add_func("/sink/an-unknown-format-lists-those-there-are",
                     an_unknown_format_lists_those_there_are);

@@ -5,7 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <glib/gstdio.h>
-#include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -45,65 +45,32 @@ static bool prepare(FlAtomic *file, const char *path, bool overwrite, GError **e
     return true;
 }
 
-/** A hidden name beside the path. */
-static char *temporary_name(const char *path)
-{
-    g_autofree char *folder = g_path_get_dirname(path);
-    g_autofree char *name = g_strdup_printf(".fluidy-%08x%08x", g_random_int(), g_random_int());
-    return g_build_filename(folder, name, NULL);
-}
-
-/** A descriptor of a file without a name in the path's folder, or -1. */
-static int open_nameless(const char *path)
-{
-#ifdef O_TMPFILE
-    g_autofree char *folder = g_path_get_dirname(path);
-    return open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, MODE);
-#else
-    return -1;
-#endif
-}
-
-static int open_named(FlAtomic *file)
-{
-    file->temporary = temporary_name(file->path);
-    return open(file->temporary, O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, MODE);
-}
-
-/** Sets the error, forgets the file and returns false. */
-static bool give_up(FlAtomic *file, int errno_value, GError **error)
-{
-    fl_output_error(error, file->path, errno_value);
-    g_clear_pointer(&file->temporary, g_free);
-    g_clear_pointer(&file->path, g_free);
-    return false;
-}
-
-bool fl_atomic_open(FlAtomic *file, const char *path, bool overwrite, GError **error)
-{
-    if (!prepare(file, path, overwrite, error))
-        return false;
-    int fd = open_nameless(path);
-    if (fd < 0)
-        fd = open_named(file);
-    if (fd < 0)
-        return give_up(file, errno, error);
-    file->stream = fdopen(fd, "wb");
-    return true;
-}
-
-/** ".NAME.part" beside the path. */
-static char *reserved_name(const char *path)
+/** ".NAME.part" beside the path: the same in each run, so that the next finds what one has left. */
+static char *hidden_name(const char *path)
 {
     g_autofree char *folder = g_path_get_dirname(path), *base = g_path_get_basename(path);
     g_autofree char *name = g_strdup_printf(".%s.part", base);
     return g_build_filename(folder, name, NULL);
 }
 
-/** An empty locked file of that name, or -1; an error is set if another run writes it. */
-static int open_reserved(FlAtomic *file, GError **error)
+/** A locked descriptor of a file without a name in the path's folder, or -1. */
+static int open_nameless(const char *path)
 {
-    file->temporary = reserved_name(file->path);
+#ifdef O_TMPFILE
+    g_autofree char *folder = g_path_get_dirname(path);
+    const int fd = open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, MODE);
+    if (fd >= 0)
+        (void)flock(fd, LOCK_EX | LOCK_NB); // for the time when it has its hidden name
+    return fd;
+#else
+    return -1;
+#endif
+}
+
+/** An empty locked file of the hidden name, or -1; an error is set if another run writes it. */
+static int open_hidden(FlAtomic *file, GError **error)
+{
+    file->temporary = hidden_name(file->path);
     int fd = fl_lock_take(file->temporary, file->path, error);
     struct stat found;
     if (fd < 0 || fstat(fd, &found) != 0 || found.st_size == 0)
@@ -114,22 +81,33 @@ static int open_reserved(FlAtomic *file, GError **error)
     return fl_lock_take(file->temporary, file->path, error);
 }
 
-bool fl_atomic_reserve(FlAtomic *file, const char *path, bool overwrite, GError **error)
+/** Takes the descriptor; -1: that of a hidden file. */
+static bool begin(FlAtomic *file, int fd, GError **error)
 {
     GError *taken = NULL;
-    if (!prepare(file, path, overwrite, error))
-        return false;
-    const int fd = open_reserved(file, &taken);
-    if (fd < 0 && !taken)
-        return give_up(file, errno, error);
-    if (taken) {
-        g_propagate_error(error, taken);
-        g_clear_pointer(&file->temporary, g_free); // it is the other's
-        fl_atomic_clear(file);
-        return false;
+    if (fd < 0)
+        fd = open_hidden(file, &taken);
+    if (fd >= 0) {
+        file->stream = fdopen(fd, "wb");
+        return true;
     }
-    file->stream = fdopen(fd, "rb");
-    return true;
+    if (taken)
+        g_propagate_error(error, taken);
+    else
+        fl_output_error(error, file->path, errno);
+    g_clear_pointer(&file->temporary, g_free); // it is the other's
+    fl_atomic_clear(file);
+    return false;
+}
+
+bool fl_atomic_open(FlAtomic *file, const char *path, bool overwrite, GError **error)
+{
+    return prepare(file, path, overwrite, error) && begin(file, open_nameless(path), error);
+}
+
+bool fl_atomic_reserve(FlAtomic *file, const char *path, bool overwrite, GError **error)
+{
+    return prepare(file, path, overwrite, error) && begin(file, -1, error);
 }
 
 static bool sync_path(const char *path, int flags)
@@ -170,24 +148,44 @@ static bool rename_new(const char *from, const char *to)
     return rename(from, to) == 0;
 }
 
-static bool publish(FlAtomic *file)
+/** Removes a hidden file that nobody writes any more; an error is set if another run does. */
+static bool remove_left(const char *name, const char *path, GError **error)
+{
+    const int fd = fl_lock_take(name, path, error);
+    const bool removed = fd >= 0 && g_unlink(name) == 0;
+    if (fd >= 0)
+        close(fd);
+    return removed;
+}
+
+/** Gives a nameless file its hidden name, in the place of what a killed run left there. */
+static bool name_hidden(FlAtomic *file, GError **error)
+{
+    g_autofree char *name = hidden_name(file->path);
+    while (!name_file(file, name))
+        if (errno != EEXIST || !remove_left(name, file->path, error))
+            return false;
+    file->temporary = g_steal_pointer(&name);
+    return true;
+}
+
+static bool publish(FlAtomic *file, GError **error)
 {
     if (!file->temporary && !file->overwrite)
         return name_file(file, file->path);
-    if (!file->temporary) {
-        g_autofree char *name = temporary_name(file->path);
-        if (!name_file(file, name))
-            return false;
-        file->temporary = g_steal_pointer(&name);
-    }
+    if (!file->temporary && !name_hidden(file, error))
+        return false;
     return file->overwrite ? rename(file->temporary, file->path) == 0
                            : rename_new(file->temporary, file->path);
 }
 
 bool fl_atomic_commit(FlAtomic *file, GError **error)
 {
-    if (!sync_file(file) || !publish(file)) {
-        if (errno == EEXIST)
+    GError *taken = NULL;
+    if (!sync_file(file) || !publish(file, &taken)) {
+        if (taken)
+            g_propagate_error(error, taken);
+        else if (errno == EEXIST)
             exists_error(error, file->path);
         else
             fl_output_error(error, file->path, errno);
@@ -201,10 +199,10 @@ bool fl_atomic_commit(FlAtomic *file, GError **error)
 
 void fl_atomic_clear(FlAtomic *file)
 {
+    if (file->temporary)
+        g_unlink(file->temporary); // while it is locked: then it may be another run's
     if (file->stream)
         fclose(file->stream);
-    if (file->temporary)
-        g_unlink(file->temporary);
     g_free(file->temporary);
     g_free(file->path);
     *file = (FlAtomic){0};

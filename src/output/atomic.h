@@ -9,8 +9,10 @@
 /**
  * A file that is being written. Until fl_atomic_commit() nothing is seen under its name.
  *
- * It has no name at all where the file system can do that, so that even a killed program leaves
- * nothing behind; else a temporary one in the same folder, which fl_atomic_clear() removes.
+ * It has no name at all where the file system can do that; else, and for the moment in which it
+ * replaces another, it is ".NAME.part" beside that, which fl_atomic_clear() removes. The file is
+ * locked: what a killed program left under that name goes when NAME is written again, and what
+ * another run is writing stays.
  */
 typedef struct FlAtomic {
     FILE *stream;    // write here; of a reserved file it only holds the lock
@@ -22,22 +24,19 @@ typedef struct FlAtomic {
 /**
  * Begins a file, making its folder if need be.
  *
- * Returns: false with FL_ERROR_EXISTS if the file exists and overwrite is false, or
- * FL_ERROR_OUTPUT; then nothing needs to be cleared.
+ * Returns: false with FL_ERROR_EXISTS if the file exists and overwrite is false or another run is
+ * writing it, or FL_ERROR_OUTPUT; then nothing needs to be cleared.
  */
 bool fl_atomic_open(FlAtomic *file, const char *path, bool overwrite, GError **error);
 
-/**
- * The same for a program that writes the file itself, to file->temporary: ".NAME.part" beside it.
- * One that a killed run left is removed; one that is being written is FL_ERROR_EXISTS.
- */
+/** The same for a program that writes the file itself, to file->temporary: it has that name. */
 bool fl_atomic_reserve(FlAtomic *file, const char *path, bool overwrite, GError **error);
 
 /**
  * Syncs the file and gives it its name. The file needs clearing in any case.
  *
  * Returns: false with FL_ERROR_OUTPUT (a full disk, for instance), or FL_ERROR_EXISTS if a file of
- * that name has appeared meanwhile; the name is then as it was.
+ * that name has appeared meanwhile or another run is writing it; the name is then as it was.
  */
 bool fl_atomic_commit(FlAtomic *file, GError **error);
 
