@@ -1,12 +1,12 @@
 #include "base/limits.h"
 
+#include "base/memory.h"
 #include "base/suggest.h"
 #include <string.h>
-#include <unistd.h>
 
 static const struct {
     const char *name;
-    int64_t preset, most; // preset 0: of this machine
+    int64_t preset, most; // preset 0: fl_memory_mib()
     const char *what;
 } limits[] = {
 #define FL_LIMIT(constant, name, preset, most, what) {name, preset, most, what},
@@ -16,16 +16,11 @@ static const struct {
 
 static int64_t chosen[FL_N_LIMITS]; // 0: the default
 
-static int64_t machine_mib(void)
-{
-    return (int64_t)sysconf(_SC_PHYS_PAGES) / 1024 * sysconf(_SC_PAGESIZE) / 1024;
-}
-
 int64_t fl_limit(FlLimit limit)
 {
     if (chosen[limit] > 0)
         return chosen[limit];
-    return limits[limit].preset > 0 ? limits[limit].preset : machine_mib();
+    return limits[limit].preset > 0 ? limits[limit].preset : fl_memory_mib("/");
 }
 
 static bool no_such_limit(const char *name, GError **error)

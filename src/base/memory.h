@@ -1,0 +1,15 @@
+/* How much memory the process may use. */
+#ifndef FLUIDY_BASE_MEMORY_H
+#define FLUIDY_BASE_MEMORY_H
+
+#include <stdint.h>
+
+/**
+ * MiB, at least 1: the machine's memory, or less where a control group of the process, as that of a
+ * container, has a limit. What the system does not tell is no limit.
+ *
+ * root is "/", or a folder with proc/self/cgroup and sys/fs/cgroup as they are there.
+ */
+int64_t fl_memory_mib(const char *root);
+
+#endif
