@@ -8,6 +8,7 @@
 #include "output/png.h"
 #include "regions/opening.h"
 #include "style/bundle.h"
+#include "style/picture.h"
 #include <glib/gstdio.h>
 #include <string.h>
 
@@ -81,18 +82,21 @@ static bool comparison_init(Comparison *c, const FlRenderOptions *options, int n
 static bool show_drawing(const Comparison *c, GError **error)
 {
     const int width = fl_film_width(c->film), height = fl_film_height(c->film);
-    g_autoptr(FlPicture) picture = fl_picture_new(width, height, error);
-    for (int f = 0; picture && f < fl_film_frames(c->film); f++) {
+    g_autofree uint8_t *rgba = fl_alloc((size_t)width * height, 4, "a picture", error);
+    for (int f = 0; rgba && f < fl_film_frames(c->film); f++) {
         g_autoptr(FlRuns) runs = fl_film_runs(c->film, f, error);
         if (!runs)
             return false;
         g_autofree char *name = g_strdup_printf("frame %d", fl_film_number(c->film, f));
-        fl_runs_flat(runs, width, height, picture->rgba);
+        fl_runs_flat(runs, width, height, rgba);
+        g_autoptr(cairo_surface_t) picture = fl_surface_of(rgba, 4, width, height, error);
+        if (!picture)
+            return false;
         fl_contact_put(&c->contact, f, 0, picture);
         fl_contact_name_column(&c->contact, f, name);
     }
     fl_contact_name_row(&c->contact, 0, fl_film_name(c->film), "the drawing");
-    return picture != NULL;
+    return rgba != NULL;
 }
 
 /* The caller's settings and the style: the last wins. */
@@ -120,9 +124,12 @@ static bool show_style(const Comparison *c, const char *style, int row, GError *
     for (int f = 0; f < fl_film_frames(c->film); f++) {
         g_autofree char *file = fl_output_name(c->pattern, fl_film_number(c->film, f), NULL, error);
         g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
-        if (!picture)
+        g_autoptr(cairo_surface_t) surface =
+            picture ? fl_surface_of(picture->rgba, 4, picture->width, picture->height, error)
+                    : NULL;
+        if (!surface)
             return false;
-        fl_contact_put(&c->contact, f, row, picture);
+        fl_contact_put(&c->contact, f, row, surface);
     }
     g_autofree char *name = g_path_get_basename(style);
     fl_contact_name_row(&c->contact, row, name, "");
@@ -157,24 +164,24 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
 /* ---- what is installed ---------------------------------------------------------------------- */
 
 /* The k-th of STYLE_COLUMNS frames, the last one last. */
-static void show_recording(const FlContact *contact, const char *name, const FlStyle *style,
-                           int row)
+static bool show_recording(const FlContact *contact, const char *name, const FlStyle *style,
+                           int row, GError **error)
 {
     const size_t pixels = (size_t)style->width * style->height;
-    g_autoptr(FlPicture) picture = fl_picture_new(style->width, style->height, NULL);
-    for (int k = 0; picture && k < STYLE_COLUMNS; k++) {
+    for (int k = 0; k < STYLE_COLUMNS; k++) {
         const int frame = (k + 1) * style->n_frames / STYLE_COLUMNS - 1;
         const uint8_t *rgb = style->rgb + 3 * pixels * (size_t)MAX(frame, 0);
-        for (size_t p = 0; p < pixels; p++) {
-            memcpy(picture->rgba + 4 * p, rgb + 3 * p, 3);
-            picture->rgba[4 * p + 3] = 255;
-        }
+        g_autoptr(cairo_surface_t) picture =
+            fl_surface_of(rgb, 3, style->width, style->height, error);
+        if (!picture)
+            return false;
         fl_contact_put(contact, k, row, picture);
     }
     g_autofree char *lines = g_strdup_printf(
         "%s\n%dx%d, %d frames\n%s", style->name, style->width, style->height, style->n_frames,
         style->medium == FL_MEDIUM_OPAQUE ? "opaque" : "transparent");
     fl_contact_name_row(contact, row, name, lines);
+    return true;
 }
 
 bool fl_style_sheet(const char *path, bool overwrite, GError **error)
@@ -192,9 +199,9 @@ bool fl_style_sheet(const char *path, bool overwrite, GError **error)
         const FlStyleEntry *entry = styles->pdata[k];
         g_autoptr(GError) problem = NULL;
         g_autoptr(FlStyle) style = fl_style_load(entry->path, &problem);
-        if (style)
-            show_recording(&contact, entry->name, style, (int)k);
-        else
+        if (style && !show_recording(&contact, entry->name, style, (int)k, error))
+            return false;
+        if (!style)
             fl_contact_name_row(&contact, (int)k, entry->name, problem->message);
     }
     return fl_contact_save(&contact, path, overwrite, error);

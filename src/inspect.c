@@ -2,7 +2,7 @@
 #include <fluidy/inspect.h>
 
 #include "base/alloc.h"
-#include "base/cleanup.h"
+#include "base/surface.h"
 #include "output/name.h"
 #include "output/png.h"
 #include "regions/opening.h"
@@ -201,66 +201,32 @@ static int legend_height(const FlFilm *film)
     return 16 + LINE_PX * lines;
 }
 
-/* Straight sRGBA over white, as the opaque pixels of a cairo surface. */
-static void copy_map(const uint8_t *rgba, int width, int height, cairo_surface_t *surface)
-{
-    cairo_surface_flush(surface);
-    uint8_t *rows = cairo_image_surface_get_data(surface);
-    const int stride = cairo_image_surface_get_stride(surface);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const uint8_t *from = rgba + 4 * ((size_t)y * width + x);
-            uint32_t pixel = 0xff;
-            for (int c = 0; c < 3; c++)
-                pixel = pixel << 8 | (from[c] * from[3] + 255 * (255 - from[3]) + 127) / 255;
-            memcpy(rows + (size_t)y * stride + 4 * x, &pixel, 4);
-        }
-    cairo_surface_mark_dirty(surface);
-}
-
-/* The other way: an opaque surface as straight sRGBA. */
-static void copy_surface(cairo_surface_t *surface, int width, int height, uint8_t *rgba)
-{
-    cairo_surface_flush(surface);
-    const uint8_t *rows = cairo_image_surface_get_data(surface);
-    const int stride = cairo_image_surface_get_stride(surface);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            uint32_t pixel = 0;
-            memcpy(&pixel, rows + (size_t)y * stride + 4 * x, 4);
-            uint8_t *to = rgba + 4 * ((size_t)y * width + x);
-            to[0] = pixel >> 16 & 255, to[1] = pixel >> 8 & 255, to[2] = pixel & 255, to[3] = 255;
-        }
-}
-
 static bool write_map(const Subject *subject, int frame, const char *pattern, GError **error)
 {
     const FlFilm *film = subject->film;
     const int width = fl_film_width(film), height = fl_film_height(film);
     const int all_width = width + LEGEND_PX, all_height = MAX(height, legend_height(film));
     g_autoptr(FlRuns) runs = fl_film_runs(film, frame, error);
-    g_autofree uint8_t *map =
-        runs ? fl_alloc((size_t)all_width * all_height, 4, "a map", error) : NULL;
+    g_autofree uint8_t *map = runs ? fl_alloc((size_t)width * height, 4, "a map", error) : NULL;
     if (!map)
         return false;
     fl_runs_map(film, runs, map);
+    g_autoptr(cairo_surface_t) picture = fl_surface_of(map, 4, width, height, error);
     g_autoptr(cairo_surface_t) surface =
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, all_width, all_height);
-    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS) {
-        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "cannot draw a map of %dx%d pixels: %s",
-                    all_width, all_height, cairo_status_to_string(cairo_surface_status(surface)));
+        picture ? fl_surface_new(CAIRO_FORMAT_RGB24, all_width, all_height, error) : NULL;
+    if (!surface)
         return false;
-    }
     g_autoptr(cairo_t) cr = cairo_create(surface);
     cairo_set_source_rgb(cr, 1, 1, 1);
     cairo_paint(cr);
-    copy_map(map, width, height, surface);
+    cairo_set_source_surface(cr, picture, 0, 0);
+    cairo_paint(cr);
     draw_legend(cr, film, width);
-    copy_surface(surface, all_width, all_height, map);
+    g_autofree uint8_t *rgba = fl_surface_bytes(surface, 4, all_height, error);
     g_autofree char *path = fl_output_name(pattern, fl_film_number(film, frame), NULL, error);
-    const FlPng png = {.width = all_width, .height = all_height, .rgba = map, .opaque = true};
+    const FlPng png = {.width = all_width, .height = all_height, .rgba = rgba, .opaque = true};
     const bool overwrite = subject->options.overwrite == FL_OVERWRITE_YES;
-    return path && fl_png_save(&png, path, overwrite, error);
+    return rgba && path && fl_png_save(&png, path, overwrite, error);
 }
 
 bool fl_map_regions(const FlRenderOptions *options, GError **error)

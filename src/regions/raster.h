@@ -2,18 +2,13 @@
 #ifndef FLUIDY_REGIONS_RASTER_H
 #define FLUIDY_REGIONS_RASTER_H
 
-#include "base/cleanup.h"
-#include <fluidy/error.h>
+#include "base/surface.h"
 #include <stdbool.h>
-#include <stdint.h>
 
 /** A rectangle of pixels, x1 and y1 exclusive; empty if x1 <= x0. */
 typedef struct FlBounds {
     int x0, y0, x1, y1;
 } FlBounds;
-
-/** A cleared image surface; NULL with FL_ERROR_LIMIT or FL_ERROR_NO_MEMORY. */
-cairo_surface_t *fl_surface_new(cairo_format_t format, int width, int height, GError **error);
 
 /** Clears the pixels of a box. */
 void fl_surface_wipe(cairo_surface_t *surface, FlBounds box);

@@ -1,11 +1,9 @@
 #include "style/sheet.h"
 
-#include "base/alloc.h"
+#include "base/surface.h"
 #include "style/picture.h"
 
-#include <cairo.h>
 #include <math.h>
-#include <string.h>
 
 /* The sheet is SIDE wide; rows of pictures, then plots beside the text. All in px. */
 enum {
@@ -40,25 +38,6 @@ static void write_line(cairo_t *cr, double x, double y, const double rgb[3], con
     colour(cr, rgb);
     cairo_move_to(cr, x, y);
     cairo_show_text(cr, text);
-}
-
-static cairo_surface_t *frame_surface(const FlStyle *style, int frame)
-{
-    const size_t pixels = (size_t)style->width * style->height;
-    const uint8_t *rgb = style->rgb + 3 * pixels * frame;
-    cairo_surface_t *surface =
-        cairo_image_surface_create(CAIRO_FORMAT_RGB24, style->width, style->height);
-    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS)
-        return surface;
-    uint8_t *data = cairo_image_surface_get_data(surface);
-    const int stride = cairo_image_surface_get_stride(surface);
-    for (int y = 0; y < style->height; y++)
-        for (int x = 0; x < style->width; x++, rgb += 3) {
-            const uint32_t value = (uint32_t)rgb[0] << 16 | (uint32_t)rgb[1] << 8 | rgb[2];
-            memcpy(data + (size_t)y * stride + 4 * (size_t)x, &value, 4);
-        }
-    cairo_surface_mark_dirty(surface);
-    return surface;
 }
 
 /* Where the distance crosses `level` between two pixels, a point of the line. */
@@ -131,9 +110,10 @@ static bool draw_frame(Page *page, double x, double y, int frame, Overlay overla
 {
     const FlStyle *style = page->sheet->style;
     cairo_t *cr = page->cr;
-    if (!fl_guide_sequence_get(page->sheet->guides, frame, &page->guides, error))
+    const uint8_t *rgb = style->rgb + 3 * (size_t)style->width * style->height * frame;
+    g_autoptr(cairo_surface_t) surface = fl_surface_of(rgb, 3, style->width, style->height, error);
+    if (!surface || !fl_guide_sequence_get(page->sheet->guides, frame, &page->guides, error))
         return false;
-    cairo_surface_t *surface = frame_surface(style, frame);
     cairo_save(cr);
     cairo_translate(cr, x, y);
     cairo_scale(cr, page->scale, page->scale);
@@ -148,7 +128,6 @@ static bool draw_frame(Page *page, double x, double y, int frame, Overlay overla
     if (overlay == FLOW)
         draw_flow(page);
     cairo_restore(cr);
-    cairo_surface_destroy(surface);
     return true;
 }
 
@@ -308,29 +287,6 @@ static int page_height(const FlSheet *sheet, double scale)
     return (int)(3 * (LINE + scale * sheet->style->height + GAP)) + below + 3 * GAP;
 }
 
-static bool write_surface(cairo_surface_t *surface, int height, const char *path, GError **error)
-{
-    cairo_surface_flush(surface);
-    if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be drawn: %s", path,
-                    cairo_status_to_string(cairo_surface_status(surface)));
-        return false;
-    }
-    g_autofree uint8_t *rgb = fl_alloc((size_t)SIDE * height, 3, "the sheet", error);
-    const uint8_t *data = cairo_image_surface_get_data(surface);
-    const int stride = cairo_image_surface_get_stride(surface);
-    for (int y = 0; rgb && y < height; y++)
-        for (int x = 0; x < SIDE; x++) {
-            uint32_t value;
-            memcpy(&value, data + (size_t)y * stride + 4 * (size_t)x, 4);
-            uint8_t *out = rgb + 3 * ((size_t)y * SIDE + x);
-            out[0] = (uint8_t)(value >> 16);
-            out[1] = (uint8_t)(value >> 8);
-            out[2] = (uint8_t)value;
-        }
-    return rgb && fl_png_write(path, rgb, SIDE, height, 3, error);
-}
-
 static bool draw_page(Page *page, double *end, GError **error)
 {
     double y = GAP / 2.0;
@@ -350,18 +306,17 @@ static bool draw_page(Page *page, double *end, GError **error)
 bool fl_sheet_write(const FlSheet *sheet, const char *path, GError **error)
 {
     const FlStyle *style = sheet->style;
-    Page page = {.sheet = sheet};
-    page.scale = MIN((double)CELL / style->width, (double)CELL / style->height);
-    const int height = page_height(sheet, page.scale);
-    if (!fl_guides_init(&page.guides, style->width, style->height, error))
-        return false;
-    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, SIDE, height);
-    page.cr = cairo_create(surface);
+    const double scale = MIN((double)CELL / style->width, (double)CELL / style->height);
+    const int height = page_height(sheet, scale);
     double end = height;
-    const bool done = draw_page(&page, &end, error) &&
-                      write_surface(surface, MIN(height, (int)ceil(end)), path, error);
-    cairo_destroy(page.cr);
-    cairo_surface_destroy(surface);
+    g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_RGB24, SIDE, height, error);
+    g_autoptr(cairo_t) cr = surface ? cairo_create(surface) : NULL;
+    Page page = {sheet, cr, scale, {0}};
+    if (!cr || !fl_guides_init(&page.guides, style->width, style->height, error))
+        return false;
+    const bool drawn = draw_page(&page, &end, error);
+    const int used = MIN(height, (int)ceil(end));
     fl_guides_clear(&page.guides);
-    return done;
+    g_autofree uint8_t *rgb = drawn ? fl_surface_bytes(surface, 3, used, error) : NULL;
+    return rgb && fl_png_write(path, rgb, SIDE, used, 3, error);
 }

@@ -15,8 +15,8 @@ typedef struct FlSheet {
 
 /**
  * Draws frames with mask outline and border, the flow as arrows, histograms, facts and problems
- * into a PNG file. Returns: false with FL_ERROR_OUTPUT, FL_ERROR_NO_MEMORY or an error of the
- * guides set.
+ * into a PNG file. Returns: false with FL_ERROR_OUTPUT, FL_ERROR_NO_MEMORY, FL_ERROR_LIMIT or
+ * an error of the guides set.
  */
 bool fl_sheet_write(const FlSheet *sheet, const char *path, GError **error);
 

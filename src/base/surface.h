@@ -1,0 +1,25 @@
+/* Cairo's image surfaces, and bytes in and out of them. */
+#ifndef FLUIDY_BASE_SURFACE_H
+#define FLUIDY_BASE_SURFACE_H
+
+#include "base/cleanup.h"
+#include <fluidy/error.h>
+#include <stdint.h>
+
+/** A cleared image surface; NULL with FL_ERROR_LIMIT or FL_ERROR_NO_MEMORY. */
+cairo_surface_t *fl_surface_new(cairo_format_t format, int width, int height, GError **error);
+
+/**
+ * An ARGB32 surface of width * height pixels, rows from the top without padding: sRGB if channels
+ * is 3, straight sRGBA if it is 4. Errors as above.
+ */
+cairo_surface_t *fl_surface_of(const uint8_t *pixels, int channels, int width, int height,
+                               GError **error);
+
+/**
+ * The other way: the first `height` rows of an RGB24 surface, to be freed. A fourth channel is 255.
+ * NULL with FL_ERROR_NO_MEMORY.
+ */
+uint8_t *fl_surface_bytes(cairo_surface_t *surface, int channels, int height, GError **error);
+
+#endif
