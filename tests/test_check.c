@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "style/guides.h"
 #include "style/measure.h"
 
 #include <fluidy/style.h>
@@ -47,7 +48,9 @@ static FlMeasures *measure(Drop drop)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(FlStyle) style = draw_style(drop);
-    g_autoptr(FlGuideSequence) guides = fl_style_guides(style, &error);
+    FlParams params;
+    fl_params_defaults(&params);
+    g_autoptr(FlGuideSequence) guides = fl_style_guides(style, &params, &error);
     g_assert_no_error(error);
     FlMeasures *measures = fl_measure(style, guides, &error);
     g_assert_no_error(error);

@@ -1,5 +1,6 @@
 /* Says of a style what was understood, and what a painter should look into. */
 #include "base/room.h"
+#include "style/guides.h"
 #include "style/manifest.h"
 #include "style/measure.h"
 #include "style/sheet.h"
@@ -278,7 +279,9 @@ FlStyleReport *fl_style_check(const char *name, const char *sheet, bool overwrit
         return NULL;
     }
     g_autoptr(FlStyle) style = fl_style_load(folder, error);
-    g_autoptr(FlGuideSequence) guides = style ? fl_style_guides(style, error) : NULL;
+    FlParams params;
+    fl_params_defaults(&params);
+    g_autoptr(FlGuideSequence) guides = style ? fl_style_guides(style, &params, error) : NULL;
     g_autoptr(FlMeasures) measures = guides ? fl_measure(style, guides, error) : NULL;
     if (!measures)
         return NULL;

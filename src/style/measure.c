@@ -1,7 +1,6 @@
 #include "style/measure.h"
 
 #include "base/alloc.h"
-#include "params/params.h"
 #include "style/extract.h"
 
 #include <math.h>
@@ -17,43 +16,6 @@ void fl_measures_free(FlMeasures *measures)
         return;
     g_free(measures->frame);
     g_free(measures);
-}
-
-static bool style_mask(void *data, int frame, uint8_t *coverage, GError **error)
-{
-    const FlStyle *style = data;
-    const size_t pixels = (size_t)style->width * style->height;
-    memcpy(coverage, style->mask + frame * pixels, pixels);
-    return true;
-}
-
-static bool style_flow(void *data, int frame, float *flow, GError **error)
-{
-    const FlStyle *style = data;
-    const size_t n = (size_t)style->width * style->height * 2;
-    memcpy(flow, style->flow + frame * n, n * sizeof(float));
-    return true;
-}
-
-FlGuideSequence *fl_style_guides(const FlStyle *style, GError **error)
-{
-    const FlGuideSource source = {
-        .width = style->width,
-        .height = style->height,
-        .n_frames = style->n_frames,
-        .mask = style_mask,
-        .flow = style->flow ? style_flow : NULL,
-        .data = (void *)style,
-    };
-    FlParams params;
-    fl_params_defaults(&params);
-    const FlGuideParams how = {
-        .flow_sigma_frames = params.flow_sigma,
-        .dist_sigma_frames = params.time_blur_sigma,
-        .still_px = params.flow_still,
-        .flow_limit = params.flow_limit,
-    };
-    return fl_guide_sequence_new(&source, &how, error);
 }
 
 static float lightness(const uint8_t *rgb)

@@ -41,9 +41,6 @@ typedef struct FlMeasures {
     float edge;                  // density at the outline as a share of the interior's
 } FlMeasures;
 
-/** The style's guides with default parameters. NULL with an error set. */
-FlGuideSequence *fl_style_guides(const FlStyle *style, GError **error);
-
 /** Measures a style. NULL with FL_ERROR_NO_MEMORY or an error of the guides set. */
 FlMeasures *fl_measure(const FlStyle *style, const FlGuideSequence *sequence, GError **error);
 

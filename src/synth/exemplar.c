@@ -16,16 +16,6 @@ int fl_levels_of(int width, int height)
     return CLAMP(levels, 1, FL_MAX_LEVELS);
 }
 
-FlGuideParams fl_guide_params(const FlParams *params)
-{
-    const float part = params->half_size ? 0.5f : 1;
-    return (FlGuideParams){.flow_sigma_frames = params->flow_sigma,
-                           .dist_sigma_frames = params->time_blur_sigma,
-                           .dist_sigma_px = params->blur_sigma * part,
-                           .still_px = params->flow_still * part,
-                           .flow_limit = params->flow_limit};
-}
-
 bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border_px, float *shape,
                     GError **error)
 {
@@ -36,22 +26,6 @@ bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border
                       params->shape_edge * border_px, shape);
     else
         return fl_shape_blur(guides->mask, guides->width, guides->height, border_px, shape, error);
-    return true;
-}
-
-static bool style_mask(void *data, int frame, uint8_t *coverage, GError **error)
-{
-    const FlStyle *style = data;
-    const size_t pixels = (size_t)style->width * style->height;
-    memcpy(coverage, style->mask + frame * pixels, pixels);
-    return true;
-}
-
-static bool style_flow(void *data, int frame, float *flow, GError **error)
-{
-    const FlStyle *style = data;
-    const size_t values = 2 * (size_t)style->width * style->height;
-    memcpy(flow, style->flow + frame * values, values * sizeof *flow);
     return true;
 }
 
@@ -361,15 +335,8 @@ static bool init_levels(FlExemplar *exemplar, const FlStyle *style, int window, 
 static bool init_frames(FlExemplarFrames *frames, const FlStyle *style, const FlParams *params,
                         bool all, GError **error)
 {
-    const FlGuideParams how = fl_guide_params(params);
-    const FlGuideSource source = {.width = style->width,
-                                  .height = style->height,
-                                  .n_frames = style->n_frames,
-                                  .mask = style_mask,
-                                  .flow = style->flow ? style_flow : NULL,
-                                  .data = (void *)style};
     frames->params = *params;
-    return (frames->sequence = fl_guide_sequence_new(&source, &how, error)) &&
+    return (frames->sequence = fl_style_guides(style, params, error)) &&
            (all || (frames->rgb = fl_spill_new((size_t)style->n_frames, error)));
 }
 

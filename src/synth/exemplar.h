@@ -2,8 +2,7 @@
 #ifndef FLUIDY_SYNTH_EXEMPLAR_H
 #define FLUIDY_SYNTH_EXEMPLAR_H
 
-#include "params/params.h"
-#include "style/bundle.h"
+#include "style/guides.h"
 #include "synth/stack.h"
 
 /** Parts of a mask whose patches are matched with each other only [F21 §3.1]. */
@@ -66,9 +65,6 @@ void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
  * Returns: false with FL_ERROR_INPUT or FL_ERROR_NO_MEMORY set; the exemplar is of no use then.
  */
 bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error);
-
-/** How params want guides made, those of a draft at half the size. */
-FlGuideParams fl_guide_params(const FlParams *params);
 
 /**
  * The shape guide that params ask for: the depth below the contour, the blurred mask [F21 §3.1] or
