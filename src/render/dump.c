@@ -1,6 +1,7 @@
 #include "render/dump.h"
 
 #include "base/alloc.h"
+#include "base/ramp.h"
 #include "guides/flow_file.h"
 #include "output/atomic.h"
 #include "style/picture.h"
@@ -57,19 +58,6 @@ static uint8_t grey(float value, float low, float high)
     return (uint8_t)(CLAMP(share, 0, 1) * 255 + 0.5f);
 }
 
-/* A vector as a colour: direction is hue, length is saturation. */
-static void wheel(float u, float v, float most, uint8_t rgb[3])
-{
-    const float length = sqrtf(u * u + v * v);
-    const float hue = (atan2f(v, u) + (float)G_PI) * (3 / (float)G_PI);
-    const float strength = most > 0 ? MIN(length / most, 1) : 0;
-    for (int c = 0; c < 3; c++) {
-        const float k = fmodf(hue + (float)(5 - 2 * c), 6);
-        const float full = 1 - CLAMP(MIN(k, 4 - k), 0, 1);
-        rgb[c] = (uint8_t)(255 * (1 - strength * (1 - full)) + 0.5f);
-    }
-}
-
 static bool write_picture(const Dump *dump, const Plane *plane, GError **error)
 {
     const int width = dump->painter->width, height = dump->painter->height;
@@ -80,7 +68,7 @@ static bool write_picture(const Dump *dump, const Plane *plane, GError **error)
     for (size_t p = 0; p < pixels; p++) {
         const float *v = plane->values + p * plane->n;
         if (plane->n == 2)
-            wheel(v[0], v[1], plane->high, rgb + 3 * p);
+            fl_wheel(v[0], v[1], plane->high, rgb + 3 * p);
         else
             for (int c = 0; c < 3; c++)
                 rgb[3 * p + c] = grey(v[plane->n == 1 ? 0 : c], plane->low, plane->high);

@@ -1,7 +1,7 @@
 #include "report/guides.h"
 
 #include "base/alloc.h"
-#include "report/ramp.h"
+#include "base/ramp.h"
 #include "report/script.h"
 #include <float.h>
 #include <math.h>
@@ -36,18 +36,6 @@ void fl_guide_view_reset(FlGuideView *view)
         memset(view->picture[k]->rgba, 0, 4 * pixels);
     memset(view->flow, 0, 2 * sizeof(float) * pixels);
     memset(view->owner, 0, sizeof(int16_t) * pixels);
-}
-
-/* A vector as a colour: direction is hue, length is saturation. */
-static void wheel(float u, float v, float full, uint8_t rgb[3])
-{
-    const float hue = (atan2f(v, u) + (float)G_PI) * (3 / (float)G_PI);
-    const float strength = CLAMP(sqrtf(u * u + v * v) / full, 0, 1);
-    for (int c = 0; c < 3; c++) {
-        const float k = fmodf(hue + (float)(5 - 2 * c), 6);
-        const float shade = 1 - CLAMP(MIN(k, 4 - k), 0, 1);
-        rgb[c] = (uint8_t)(255 * (1 - strength * (1 - shade)) + 0.5f);
-    }
 }
 
 /* Where the exemplar's patch of a pixel of the painter's part is from. */
@@ -132,7 +120,7 @@ static void colour_flow(const FlGuideView *view, float full)
         uint8_t rgb[3];
         if (view->owner[p] == 0)
             continue;
-        wheel(view->flow[2 * p], view->flow[2 * p + 1], full, rgb);
+        fl_wheel(view->flow[2 * p], view->flow[2 * p + 1], full, rgb);
         put(view, FL_GUIDE_FLOW, p, rgb);
     }
 }

@@ -1,7 +1,7 @@
 #include "report/use.h"
 
 #include "base/alloc.h"
-#include "report/ramp.h"
+#include "base/ramp.h"
 #include "report/script.h"
 
 #define HOT 8 // times an even use: the end of the ramp
