@@ -118,9 +118,7 @@ static bool for_each_small(Job *job, Work work, int step, GError **error)
             continue;
         fl_keep_first_error(&first, mine);
     }
-    if (first)
-        g_propagate_error(error, first);
-    return first == NULL;
+    return fl_tell_first_error(error, first);
 }
 
 /* Inside a team, even of one, a search would make and end its own threads for every step; so large

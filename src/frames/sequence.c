@@ -125,7 +125,14 @@ static char *suggestion(GPtrArray *names, const char *wanted)
     return g_strdup_printf("; did you mean %s (%d file%s)?", best, best_n, best_n == 1 ? "" : "s");
 }
 
-static bool add_pattern(GArray *found, const char *input, const FlPattern *pattern, GError **error)
+/** Whether a name fits: to a pattern with a number, or if that is NULL, to wildcards. */
+static bool fits(const char *name, const FlPattern *pattern, const char *wildcards, int *number)
+{
+    return pattern ? fl_pattern_match(pattern, name, number)
+                   : is_svg(name) && fnmatch(wildcards, name, FNM_PERIOD) == 0;
+}
+
+static bool add_fitting(GArray *found, const char *input, const FlPattern *pattern, GError **error)
 {
     g_autofree char *folder = g_path_get_dirname(input), *base = g_path_get_basename(input);
     g_autoptr(GPtrArray) names = list_folder(folder, error);
@@ -133,7 +140,7 @@ static bool add_pattern(GArray *found, const char *input, const FlPattern *patte
         return false;
     for (guint i = 0; i < names->len; i++) {
         int number = 0;
-        if (fl_pattern_match(pattern, names->pdata[i], &number))
+        if (fits(names->pdata[i], pattern, base, &number))
             found_add(found, number, folder, names->pdata[i]);
     }
     if (found->len == 0) {
@@ -186,22 +193,6 @@ static bool add_folder(GArray *found, const char *folder, FlWarnings *warnings, 
             found_add(found, (int)found->len + 1, folder, name);
     }
     return true;
-}
-
-static bool add_glob(GArray *found, const char *input, GError **error)
-{
-    g_autofree char *folder = g_path_get_dirname(input), *base = g_path_get_basename(input);
-    g_autoptr(GPtrArray) names = list_folder(folder, error);
-    if (!names)
-        return false;
-    for (guint i = 0; i < names->len; i++)
-        if (is_svg(names->pdata[i]) && fnmatch(base, names->pdata[i], FNM_PERIOD) == 0)
-            found_add(found, 0, folder, names->pdata[i]);
-    if (found->len == 0) {
-        g_autofree char *hint = suggestion(names, base);
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no file fits%s", input, hint);
-    }
-    return found->len > 0;
 }
 
 /** Gives files named one by one their numbers; 1 … n where a name has none or stems differ. */
@@ -258,10 +249,10 @@ static bool add_input(GArray *found, const char *input, FlWarnings *warnings, GE
     if (!fl_pattern_parse(base, &pattern, &has_number, error))
         return false;
     if (has_number)
-        return add_pattern(found, input, &pattern, error);
+        return add_fitting(found, input, &pattern, error);
     if (!strpbrk(base, "*?["))
         return add_file(found, input, error);
-    if (!add_glob(found, input, error))
+    if (!add_fitting(found, input, NULL, error))
         return false;
     number_files(found);
     return true;

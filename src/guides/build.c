@@ -67,14 +67,6 @@ static void builder_clear(Builder *b)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Builder, builder_clear)
 
-static bool no_memory(const Builder *b, GError **error)
-{
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory for the guides of %dx%d pixels", b->sequence->source.width,
-                b->sequence->source.height);
-    return false;
-}
-
 static float *temporal_weights(float sigma_frames, int *radius)
 {
     *radius = sigma_frames > 0.0f ? (int)(3.0f * sigma_frames) : 0;
@@ -104,7 +96,7 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
     b->mask = g_try_malloc(n);
     b->given = source->flow ? g_try_new(float, 2 * n) : NULL;
     if (!b->mask || (source->flow && !b->given))
-        return no_memory(b, error);
+        return fl_sequence_no_memory(b->sequence, error);
     b->extent = fl_extent_new(source->width, source->height, error);
     return b->extent;
 }
@@ -176,7 +168,7 @@ static bool distance_of(Builder *b, int frame, FlFlowFrame *out, GError **error)
     const size_t n = (size_t)outline->frame_width * outline->frame_height;
     if (slot->frame != frame) {
         if (!slot->distance && !(slot->distance = g_try_new(float, n)))
-            return no_memory(b, error);
+            return fl_sequence_no_memory(b->sequence, error);
         slot->frame = -1;
         if (!smooth_distance(b, frame, slot->distance, error))
             return false;
@@ -199,7 +191,7 @@ static bool construct_motion(Builder *b, int frame, float **flow, GError **error
     g_autofree float *fresh = g_try_new(float, 2 * fl_box_pixels(now.outline->box));
     bool moves;
     if (!fresh)
-        return no_memory(b, error);
+        return fl_sequence_no_memory(b->sequence, error);
     if (!fl_flow_construct(&now, &before, &after, limit, fresh, &moves, error))
         return false;
     *flow = moves ? g_steal_pointer(&fresh) : NULL;
@@ -259,7 +251,7 @@ static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float
     const size_t n = fl_box_pixels(outline->box);
     g_autofree float *sum = g_try_new0(float, 2 * n), *norm = g_try_new0(float, n);
     if (!sum || !norm)
-        return no_memory(b, error);
+        return fl_sequence_no_memory(b->sequence, error);
     for (int k = first; k <= last; k++) {
         const FlOutline *from = b->outlines[k % b->n_slots].outline;
         add_motion(outline, from, b->motions[k % b->n_slots].flow, b->flow_weight[ABS(k - frame)],
@@ -282,7 +274,7 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
         return false;
     float *out = *flow = g_try_new0(float, 2 * fl_box_pixels(*box));
     if (!out)
-        return no_memory(b, error);
+        return fl_sequence_no_memory(b->sequence, error);
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++, out += 2) {
             const float *in = b->given + 2 * ((box->y + y) * (size_t)source->width + box->x + x);
@@ -304,7 +296,7 @@ static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *fl
     const size_t n = fl_box_pixels(outline->box);
     g_autofree uint8_t *shape = g_try_malloc0(2 * n);
     if (!shape)
-        return no_memory(b, error);
+        return fl_sequence_no_memory(b->sequence, error);
     memcpy(shape, outline->coverage, n);
     if (!outline->empty) {
         if (!outline->normal && !fl_outline_normals(outline, error))
@@ -325,7 +317,7 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
     const size_t n = fl_box_pixels(outline->box);
     g_autofree int32_t *fixed = g_try_new(int32_t, 2 * n), *norm = g_try_new(int32_t, n);
     if (!fixed || !norm)
-        return no_memory(b, error);
+        return fl_sequence_no_memory(b->sequence, error);
     for (size_t k = 0; k < 2 * n && flow; k++)
         fixed[k] = fl_flow_to_fixed(flow[k]);
     // the flow of a frame that nothing precedes stands in for one; no motion has happened yet

@@ -5,10 +5,11 @@
 #include "guides/store.h"
 #include <string.h>
 
-static bool no_memory(const FlGuideSource *source, GError **error)
+bool fl_sequence_no_memory(const FlGuideSequence *sequence, GError **error)
 {
     g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory for the guides of %dx%d pixels", source->width, source->height);
+                "not enough memory for the guides of %dx%d pixels", sequence->source.width,
+                sequence->source.height);
     return false;
 }
 
@@ -66,7 +67,7 @@ static bool look_back(FlGuideSequence *sequence, GError **error)
     g_autofree uint8_t *shape = g_try_malloc(2 * n);
     g_autofree int32_t *flow = g_try_new(int32_t, 2 * n), *norm = g_try_new(int32_t, n);
     if (!shape || !flow || !norm)
-        return no_memory(source, error);
+        return fl_sequence_no_memory(sequence, error);
     for (int frame = source->n_frames - 1; frame >= 0; frame--)
         if (!step_back(sequence, frame, extent, shape, flow, norm, error))
             return false;
@@ -191,7 +192,7 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
         g_autofree uint8_t *shape = g_try_malloc(2 * area);
         g_autofree int32_t *room = g_try_new(int32_t, 2 * area);
         if (!shape || !room)
-            return no_memory(&sequence->source, error);
+            return fl_sequence_no_memory(sequence, error);
         if (!fl_sequence_shape(sequence, frame, shape, error) ||
             !get_plane(sequence, frame, FL_PLANE_FLOW, room, guides->flow, error) ||
             !get_plane(sequence, frame, FL_PLANE_PLUS, room, guides->ext_plus, error) ||

@@ -42,6 +42,9 @@ static inline size_t fl_plane_block(int frame, FlPlane plane)
 /** Reads the masks and fills sequence->frames and spill, forwards, all but the extents to come. */
 bool fl_sequence_build(FlGuideSequence *sequence, GError **error);
 
+/** Sets FL_ERROR_NO_MEMORY and returns false. */
+bool fl_sequence_no_memory(const FlGuideSequence *sequence, GError **error);
+
 /** Reads a plane of shape or integers back; the plane must not be all 0. */
 bool fl_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *coverage_angle,
                        GError **error);

@@ -310,9 +310,7 @@ static bool make_masks(FlPlan *plan, GError **error)
             failed++;
         fl_keep_first_error(&first, mine);
     }
-    if (first)
-        g_propagate_error(error, first);
-    return failed == 0;
+    return fl_tell_first_error(error, first);
 }
 
 /* Everything is as large as the frame or smaller, so that it can be told before it is asked for. */
@@ -353,13 +351,13 @@ static bool make_guides(FlPlan *plan, GError **error)
             !fl_painter_init(&plan->painters[p], plan->options.seed, &mine))
             fl_keep_first_error(&first, mine);
     }
-    if (first)
-        g_propagate_error(error, first);
-    for (int p = 0; p < plan->n_painters && !first; p++)
+    if (!fl_tell_first_error(error, first))
+        return false;
+    for (int p = 0; p < plan->n_painters; p++)
         if (!is_small(plan, &plan->painters[p]) &&
             !fl_painter_init(&plan->painters[p], plan->options.seed, error))
             return false;
-    return first == NULL;
+    return true;
 }
 
 bool fl_plan_prepare(FlPlan *plan, GError **error)

@@ -179,9 +179,7 @@ bool fl_resume_take(FlResume *resume, const FlPlan *plan, int done, GError **err
             fl_keep_first_error(&first, mine);
     }
     resume->state->done = done;
-    if (first)
-        g_propagate_error(error, first);
-    return first == NULL;
+    return fl_tell_first_error(error, first);
 }
 
 /* Two runs with the same output would mix their frames. */

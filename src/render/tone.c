@@ -70,7 +70,5 @@ bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, const FlBox *boxes, i
         if (!find_tone(plan, p, owner, frame, &tones[p], &mine))
             fl_keep_first_error(&first, mine);
     }
-    if (first)
-        g_propagate_error(error, first);
-    return first == NULL;
+    return fl_tell_first_error(error, first);
 }
