@@ -97,6 +97,16 @@ does 'but for -y' simulate -qy short.ini -o dust
 { [ "$(ls dust/frames | wc -l)" = 2 ] && [ "$(ls dust/masks | wc -l)" = 2 ] && [ ! -s err ]; }
 result $? 'and no frame of the old one stays'
 
+mkdir -p .dust.part/frames .dust.mine && touch .dust.part/frames/0001.png
+exec 9<.dust.part
+flock 9
+refuses 'of two runs that would write the same style the second is told' 1 \
+    'dust: another run is writing it' simulate -qy short.ini -o dust
+exec 9<&-
+does 'what a killed run left is no hindrance' simulate -qy short.ini -o dust
+[ ! -e .dust.part ] && [ -e .dust.mine ]
+result $? 'and goes, and what somebody else has there stays'
+
 if command -v ffmpeg >/dev/null; then
     ffmpeg -v error -framerate 12 -i "$small/frames/%04d.png" -c:v ffv1 -pix_fmt bgr0 paint.mkv
     does 'a video is imported' import paint.mkv -o video -f 2-6x2

@@ -1,6 +1,6 @@
 #include "output/atomic.h"
 
-#include "output/lock.h"
+#include "base/lock.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,7 +1,7 @@
 #include "render/resume.h"
 
 #include "base/first_error.h"
-#include "output/lock.h"
+#include "base/lock.h"
 #include "output/name.h"
 #include "output/sink.h"
 #include "render/paints.h"

@@ -1,11 +1,12 @@
 #include "style/write.h"
 
+#include "base/lock.h"
 #include "style/manifest.h"
 #include "style/picture.h"
 
 #include <errno.h>
 #include <glib/gstdio.h>
-#include <string.h>
+#include <unistd.h>
 
 /* What a style's folder holds; the flow of another recording must not stay behind. */
 static const char *const parts[] = {"frames", "masks", "flow", "style.ini"};
@@ -92,18 +93,45 @@ static bool move_parts(const char *from, const char *to, GError **error)
     return true;
 }
 
+static bool remove_parts(const char *folder, GError **error)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(parts); i++) {
+        g_autofree char *path = g_build_filename(folder, parts[i], NULL);
+        if (!remove_tree(path, error))
+            return false;
+    }
+    return true;
+}
+
+/* ".NAME.part" beside a folder: the same in each run, so that what a killed one left there goes. */
+static char *hidden_name(const char *folder)
+{
+    g_autofree char *parent = g_path_get_dirname(folder), *base = g_path_get_basename(folder);
+    g_autofree char *name = g_strdup_printf(".%s.part", base);
+    return g_build_filename(parent, name, NULL);
+}
+
 bool fl_style_write(const FlStyle *style, const char *folder, bool overwrite, GError **error)
 {
     g_autofree char *absolute = g_canonicalize_filename(folder, NULL);
     g_autofree char *parent = g_path_get_dirname(absolute);
-    g_autofree char *beside = g_build_filename(parent, ".fluidy-style-XXXXXX", NULL);
+    g_autofree char *beside = hidden_name(absolute);
+    GError *taken = NULL;
     if (!fl_style_may_write(folder, overwrite, error))
         return false;
     if (g_mkdir_with_parents(parent, 0755) != 0)
         return failed(error, parent, "cannot be made");
-    if (!g_mkdtemp_full(beside, 0755))
-        return failed(error, parent, "cannot be written to");
-    const bool done = write_parts(style, beside, error) && move_parts(beside, absolute, error);
-    remove_tree(beside, NULL);
+    const int lock = fl_lock_take_folder(beside, folder, &taken);
+    if (taken)
+        g_propagate_error(error, taken);
+    else if (lock < 0)
+        failed(error, parent, "cannot be written to");
+    if (lock < 0)
+        return false;
+    const bool done = remove_parts(beside, error) && write_parts(style, beside, error) &&
+                      move_parts(beside, absolute, error);
+    remove_parts(beside, NULL);
+    g_rmdir(beside);
+    close(lock);
     return done;
 }

@@ -7,9 +7,9 @@
 /**
  * Writes frames, masks and style.ini; the flow, if there is any, is left out.
  *
- * Everything is written beside `folder` first and moved there when it is whole. What else is in the
- * folder stays. Returns: false with FL_ERROR_EXISTS if the folder has one of these and `overwrite`
- * is false, else with FL_ERROR_OUTPUT.
+ * Everything is written to ".NAME.part" beside `folder` first and moved there when it is whole.
+ * What else is in the folder stays. Returns: false with FL_ERROR_EXISTS if the folder has one of
+ * these and `overwrite` is false, or if another run is writing it, else with FL_ERROR_OUTPUT.
  */
 bool fl_style_write(const FlStyle *style, const char *folder, bool overwrite, GError **error);
 

@@ -1,4 +1,4 @@
-#include "output/lock.h"
+#include "base/lock.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -15,10 +15,19 @@ static bool still_named(int fd, const char *path)
            own.st_dev == named.st_dev;
 }
 
-int fl_lock_take(const char *path, const char *what, GError **error)
+static int open_or_make(const char *path, bool folder)
+{
+    if (!folder)
+        return open(path, O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+    if (mkdir(path, 0777) != 0 && errno != EEXIST)
+        return -1;
+    return open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
+static int take(const char *path, bool folder, const char *what, GError **error)
 {
     for (;;) {
-        const int fd = open(path, O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+        const int fd = open_or_make(path, folder);
         if (fd < 0)
             return -1;
         const bool taken = flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
@@ -30,4 +39,14 @@ int fl_lock_take(const char *path, const char *what, GError **error)
             return -1;
         }
     }
+}
+
+int fl_lock_take(const char *path, const char *what, GError **error)
+{
+    return take(path, false, what, error);
+}
+
+int fl_lock_take_folder(const char *path, const char *what, GError **error)
+{
+    return take(path, true, what, error);
 }

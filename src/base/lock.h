@@ -1,6 +1,6 @@
 /* Locks: two runs do not write the same files at the same time. */
-#ifndef FLUIDY_OUTPUT_LOCK_H
-#define FLUIDY_OUTPUT_LOCK_H
+#ifndef FLUIDY_BASE_LOCK_H
+#define FLUIDY_BASE_LOCK_H
 
 #include <fluidy/error.h>
 
@@ -13,5 +13,8 @@
  * with errno alone: the file cannot be made.
  */
 int fl_lock_take(const char *path, const char *what, GError **error);
+
+/** The same with a folder. */
+int fl_lock_take_folder(const char *path, const char *what, GError **error);
 
 #endif
