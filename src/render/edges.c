@@ -70,7 +70,6 @@ bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, con
     edges->n = MIN(runs->n, MOST_RUNS) + 1;
     const size_t pairs = (size_t)edges->n * (size_t)edges->n;
     if (!(edges->top = fl_alloc(pixels, sizeof *edges->top, "a matte", error)) ||
-        !(edges->others = fl_alloc(pixels, 1, "a matte", error)) ||
         !(edges->overlap = fl_alloc(pairs, sizeof *edges->overlap, "a matte", error)))
         return false;
     for (int r = 0; r < edges->n - 1; r++) {
@@ -85,14 +84,14 @@ bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, con
 void fl_edges_clear(FlEdgeMap *edges)
 {
     free(edges->top);
-    free(edges->others);
     free(edges->overlap);
     *edges = (FlEdgeMap){0};
 }
 
-/** The share of the edges of a run, with all others or with those that it does not overlap. */
+/** The share of the edges of a run, with all others or with those that it does not overlap; others:
+ * room for a frame. */
 static bool find_share(const FlEdgeMap *edges, int run, bool with_all, int radius_px,
-                       uint8_t *share, GError **error)
+                       uint8_t *others, uint8_t *share, GError **error)
 {
     const FlBox *box = &edges->boxes[run];
     const uint8_t *coverage = edges->runs->run[run].coverage;
@@ -106,10 +105,10 @@ static bool find_share(const FlEdgeMap *edges, int run, bool with_all, int radiu
         for (size_t i = row + (size_t)x0; i < row + (size_t)x1; i++) {
             const uint16_t top = edges->top[i];
             const bool other = top && top != run + 1 && (with_all || !overlap[top]);
-            edges->others[i] = other ? 255 : 0;
+            others[i] = other ? 255 : 0;
         }
     }
-    return fl_closing_share(coverage, edges->others, width, height, *box, radius_px, share, error);
+    return fl_closing_share(coverage, others, width, height, *box, radius_px, share, error);
 }
 
 /** -1 where another run lies over a run, else 0; of the run's box, to be freed with free(). */
@@ -126,12 +125,14 @@ static int16_t *find_seen(const FlEdgeMap *edges, int run, GError **error)
     return seen;
 }
 
-bool fl_edges_close(FlEdgeMap *edges, int run, const FlLayer *layer, const FlPainter *painter,
+bool fl_edges_close(const FlEdgeMap *edges, int run, const FlLayer *layer, const FlPainter *painter,
                     int tone, int16_t **amounts, GError **error)
 {
     const FlTreatment *t = &painter->treatment;
     const FlRenderOptions *options = &edges->plan->options;
+    const int width = fl_film_width(edges->plan->film);
     const size_t n = fl_box_pixels(layer->box);
+    const size_t pixels = (size_t)width * (size_t)fl_film_height(edges->plan->film);
     *amounts = NULL;
     if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || options->gap > 0 ||
         options->feather > 0 || n == 0 || run >= edges->n - 1)
@@ -141,11 +142,12 @@ bool fl_edges_close(FlEdgeMap *edges, int run, const FlLayer *layer, const FlPai
     g_autofree uint8_t *ends = fl_alloc(n, 1, "a matte", error);
     g_autofree uint8_t *meets = ends ? fl_alloc(n, 1, "a matte", error) : NULL;
     g_autofree int16_t *seen = meets ? find_seen(edges, run, error) : NULL;
-    if (!seen || !find_share(edges, run, false, radius, ends, error) ||
-        !find_share(edges, run, true, radius, meets, error) ||
+    g_autofree uint8_t *others = seen ? fl_alloc(pixels, 1, "a matte", error) : NULL;
+    if (!others || !find_share(edges, run, false, radius, others, ends, error) ||
+        !find_share(edges, run, true, radius, others, meets, error) ||
         !(*amounts = fl_alloc(n, sizeof **amounts, "a matte", error)))
         return false;
-    fl_colourise_amounts(painter->box->ink, tone, painter->painted, layer->coverage,
-                         fl_film_width(edges->plan->film), layer->box, *amounts);
+    fl_colourise_amounts(painter->box->ink, tone, painter->painted, layer->coverage, width,
+                         layer->box, *amounts);
     return fl_closing_apply(*amounts, seen, ends, meets, layer->box, radius, error);
 }

@@ -16,7 +16,6 @@ typedef struct FlEdgeMap {
     uint16_t *top;      // a whole frame: 1 + the uppermost run, 0: none
     int n;              // runs that count, and one: the lowest few thousand
     bool *overlap;      // n * n: whether two runs, 1 + their numbers, lie over each other
-    uint8_t *others;    // room for a frame
 } FlEdgeMap;
 
 /** boxes: of the runs; borrowed, as everything else. FL_ERROR_NO_MEMORY. */
@@ -30,9 +29,9 @@ void fl_edges_clear(FlEdgeMap *edges);
  * it; but shapes that are hardly more than rim, such as an eye, are closed there, too.
  *
  * amounts: of the layer's box, to be freed with free(); NULL, without an error, if its edges are
- * soft. Returns: false with FL_ERROR_NO_MEMORY set.
+ * soft. Several threads may call it at once. Returns: false with FL_ERROR_NO_MEMORY set.
  */
-bool fl_edges_close(FlEdgeMap *edges, int run, const FlLayer *layer, const FlPainter *painter,
+bool fl_edges_close(const FlEdgeMap *edges, int run, const FlLayer *layer, const FlPainter *painter,
                     int tone, int16_t **amounts, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlEdgeMap, fl_edges_clear)

@@ -1,6 +1,7 @@
 #include "render/frame.h"
 
 #include "base/alloc.h"
+#include "base/first_error.h"
 #include "compose/colourise.h"
 #include "compose/holes.h"
 #include "output/name.h"
@@ -10,6 +11,7 @@
 #include "style/picture.h"
 #include <string.h>
 
+#define MANY 8     // layers from which on each has a thread
 #define BLEED_PX 8 // how far colours reach into transparency, for whoever scales the frames
 
 static char *backdrop_file(const FlBackground *background, const FlPlan *plan, int frame,
@@ -85,7 +87,7 @@ static FlColouring colouring_of(const FlPlan *plan, const FlBackground *backgrou
 }
 
 static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                       FlEdgeMap *edges, int r, const int *tones, GError **error)
+                       const FlEdgeMap *edges, int r, const int *tones, GError **error)
 {
     const int width = fl_film_width(plan->film);
     const FlRun *run = &edges->runs->run[r];
@@ -142,6 +144,32 @@ static FlBox *find_boxes(const FlPlan *plan, const FlRuns *runs)
     return boxes;
 }
 
+/* A layer for each run that is not left out: side by side where there are many, each by all threads
+ * where there are few. */
+static bool fill_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
+                        const FlEdgeMap *edges, const int *tones, GError **error)
+{
+    const FlRuns *runs = composite->runs;
+    composite->layers = g_new0(FlLayer, MAX(runs->n, 1));
+    composite->names = g_new0(char *, runs->n + 1);
+    g_autofree int *run = g_new(int, MAX(runs->n, 1)); // of each layer
+    for (int r = 0; r < runs->n; r++)
+        if (plan->painter_of[runs->run[r].region] != -2) {
+            composite->names[composite->n_layers] = layer_name(plan, runs, r);
+            run[composite->n_layers++] = r;
+        }
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1) if (composite->n_layers >= MANY)
+    for (int k = 0; k < composite->n_layers; k++) {
+        GError *mine = NULL;
+        if (!fill_layer(&composite->layers[k], plan, background, edges, run[k], tones, &mine))
+            fl_keep_first_error(&first, mine);
+    }
+    if (first)
+        g_propagate_error(error, first);
+    return first == NULL;
+}
+
 static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
                         int frame, GError **error)
 {
@@ -152,16 +180,8 @@ static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBack
     g_auto(FlEdgeMap) edges = {0};
     if (!fl_edges_init(&edges, plan, composite->runs, boxes, error))
         return false;
-    composite->layers = g_new0(FlLayer, MAX(composite->runs->n, 1));
-    composite->names = g_new0(char *, composite->runs->n + 1);
-    for (int r = 0; r < composite->runs->n; r++) {
-        if (plan->painter_of[composite->runs->run[r].region] == -2)
-            continue;
-        composite->names[composite->n_layers] = layer_name(plan, composite->runs, r);
-        if (!fill_layer(&composite->layers[composite->n_layers++], plan, background, &edges, r,
-                        tones, error))
-            return false;
-    }
+    if (!fill_layers(composite, plan, background, &edges, tones, error))
+        return false;
     FlStackParams params = {.linear = plan->options.blend == FL_BLEND_LINEAR,
                             .gap_px = (float)MAX(plan->options.gap, 0),
                             .feather_px = (float)MAX(plan->options.feather, 0)};
