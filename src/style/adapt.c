@@ -1,6 +1,7 @@
 #include "style/adapt.h"
 
 #include "base/alloc.h"
+#include "base/first_error.h"
 #include "style/picture.h"
 
 #include <math.h>
@@ -54,31 +55,44 @@ static void resample_flow(const float *from, const Resampling *r, const Buffers 
         to[p] *= factor;
 }
 
-static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
+/* Frame t of the exemplar; all: room for three planes of `third` values. */
+static void adapt_frame(const FlStyle *style, const FlStyleUse *use, FlStyle *out, int t,
+                        float *all, size_t third)
 {
     const size_t from = (size_t)style->width * style->height;
-    const size_t to = (size_t)out->width * out->height, most = MAX(from, to);
-    Resampling r = {style->width, style->height, out->width, out->height, 3};
-    g_autofree float *all = fl_alloc(9 * MAX(most, (size_t)out->width * style->height),
-                                     sizeof(float), "an exemplar", error);
-    if (!all)
-        return false;
-    const size_t third = 3 * MAX(most, (size_t)out->width * style->height);
+    const size_t to = (size_t)out->width * out->height;
     const Buffers b = {all, all + third, all + 2 * third};
     const float speed =
         (float)out->width / (float)style->width * (float)use->step * (use->reverse ? -1.0f : 1.0f);
-    for (int t = 0; t < out->n_frames; t++) {
-        const int k = use->reverse ? out->n_frames - 1 - t : t;
-        const size_t s = (size_t)(use->start - 1 + k * use->step);
-        r.channels = 3;
-        resample_bytes(style->rgb + 3 * s * from, &r, &b, out->rgb + 3 * to * t);
-        r.channels = 1;
-        resample_bytes(style->mask + s * from, &r, &b, out->mask + to * t);
-        r.channels = 2;
-        if (style->flow)
-            resample_flow(style->flow + 2 * s * from, &r, &b, speed, out->flow + 2 * to * t);
+    const int k = use->reverse ? out->n_frames - 1 - t : t;
+    const size_t s = (size_t)(use->start - 1 + k * use->step);
+    Resampling r = {style->width, style->height, out->width, out->height, 3};
+    resample_bytes(style->rgb + 3 * s * from, &r, &b, out->rgb + 3 * to * t);
+    r.channels = 1;
+    resample_bytes(style->mask + s * from, &r, &b, out->mask + to * t);
+    r.channels = 2;
+    if (style->flow)
+        resample_flow(style->flow + 2 * s * from, &r, &b, speed, out->flow + 2 * to * t);
+}
+
+static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
+{
+    const int widest = MAX(style->width, out->width), tallest = MAX(style->height, out->height);
+    const size_t third = 3 * (size_t)widest * tallest;
+    GError *first = NULL;
+#pragma omp parallel
+    {
+        GError *mine = NULL;
+        g_autofree float *all = fl_alloc(3 * third, sizeof(float), "an exemplar", &mine);
+#pragma omp for schedule(dynamic, 1)
+        for (int t = 0; t < out->n_frames; t++)
+            if (all)
+                adapt_frame(style, use, out, t, all, third);
+        fl_keep_first_error(&first, mine);
     }
-    return true;
+    if (first)
+        g_propagate_error(error, first);
+    return first == NULL;
 }
 
 static bool sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
