@@ -165,9 +165,7 @@ static bool fill_layers(FlComposite *composite, const FlPlan *plan, const FlBack
         if (!fill_layer(&composite->layers[k], plan, background, edges, run[k], tones, &mine))
             fl_keep_first_error(&first, mine);
     }
-    if (first)
-        g_propagate_error(error, first);
-    return first == NULL;
+    return fl_tell_first_error(error, first);
 }
 
 static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,

@@ -90,9 +90,7 @@ static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *o
                 adapt_frame(style, use, out, t, all, third);
         fl_keep_first_error(&first, mine);
     }
-    if (first)
-        g_propagate_error(error, first);
-    return first == NULL;
+    return fl_tell_first_error(error, first);
 }
 
 static bool sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
