@@ -1,11 +1,11 @@
 #include "base/spill.h"
 
+#include "base/pack.h"
 #include <errno.h>
 #include <glib/gstdio.h>
 #include <stdint.h>
 #include <string.h>
 #include <unistd.h>
-#include <zlib.h>
 
 typedef struct Block {
     int64_t offset;
@@ -73,9 +73,11 @@ static bool read_all(int fd, uint8_t *data, size_t bytes, int64_t offset)
 bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, GError **error)
 {
     g_assert(block < spill->n_blocks);
-    uLongf packed_bytes = compressBound(bytes);
-    g_autofree uint8_t *packed = g_try_malloc(packed_bytes);
-    if (!packed || compress2(packed, &packed_bytes, data, bytes, 1) != Z_OK) {
+    const FlSpan part = {(void *)(uintptr_t)data, bytes}; // which is only read
+    const size_t room = fl_pack_room(&part, 1);
+    g_autofree uint8_t *packed = g_try_malloc(room);
+    const size_t packed_bytes = packed ? fl_pack(&part, 1, packed, room) : 0;
+    if (packed_bytes == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
         return false;
     }
@@ -95,13 +97,12 @@ bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, 
              spill->blocks[block].bytes == bytes);
     const Block *b = &spill->blocks[block];
     g_autofree uint8_t *packed = g_try_malloc(b->packed_bytes);
-    uLongf got = bytes;
     if (!packed) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
         return false;
     }
     if (!read_all(spill->fd, packed, b->packed_bytes, b->offset) ||
-        uncompress(data, &got, packed, b->packed_bytes) != Z_OK || got != bytes) {
+        !fl_unpack(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read a temporary file back: %s",
                     g_get_tmp_dir(), g_strerror(errno));
         return false;

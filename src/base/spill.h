@@ -6,8 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Blocks are deflated at level 1 and kept in an unlinked file in $TMPDIR: nothing is left behind.
- */
+/** Blocks are packed and kept in an unlinked file in $TMPDIR: nothing is left behind. */
 typedef struct FlSpill FlSpill;
 
 /** Room for blocks 0 … n_blocks - 1. Returns: NULL with FL_ERROR_OUTPUT set. */

@@ -5,7 +5,7 @@
 #include <errno.h>
 #include <string.h>
 
-#define MAGIC "fluidy-svg state 2"
+#define MAGIC "fluidy-svg state 3"
 #define TYPE "(sa(ss)ibaay)" // magic, facts, done, overwrite, painters
 #define SUM_BYTES 32         // SHA-256 of all that stands before it
 

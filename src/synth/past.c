@@ -1,13 +1,11 @@
 #include "synth/past.h"
 
 #include "base/alloc.h"
+#include "base/pack.h"
 #include <assert.h>
 #include <string.h>
-#include <zlib.h>
 
-#define FASTEST 1 // a state is written after every frame and read once
-
-/* The bytes start with this; the deflated field, mask and picture follow. Each match is stored as
+/* The bytes start with this; the packed field, mask and picture follow. Each match is stored as
  * its difference from the one before, which in a coherent field is mostly the same: a state is a
  * quarter smaller for it, and made in two thirds of the time. */
 typedef struct Header {
@@ -17,14 +15,7 @@ typedef struct Header {
 
 static_assert(sizeof(Header) == FL_PAST_HEADER, "the header has no padding");
 
-/* The parts of the deflated bytes, one after the other. */
-typedef struct Parts {
-    struct {
-        void *data;
-        size_t bytes;
-    } part[3];
-    size_t bytes; // of all
-} Parts;
+enum { FIELD, MASK, PICTURE, N_PARTS };
 
 static FlMatch minus(FlMatch a, FlMatch b)
 {
@@ -59,52 +50,15 @@ static void add_up(FlNnf *nnf)
         nnf->match[p] = plus(nnf->match[p], nnf->match[p - 1]);
 }
 
-/* `matches`: as they are deflated. */
-static Parts parts_of(const FlSynthPast *past, FlMatch *matches, int width, int height)
+/* `matches`: as they are packed. */
+static void parts_of(const FlSynthPast *past, FlMatch *matches, int width, int height,
+                     FlSpan parts[N_PARTS])
 {
     const size_t pixels = (size_t)width * height;
-    const size_t bytes = (size_t)past->nnf.width * (size_t)past->nnf.height * sizeof *matches;
-    if (!past->valid)
-        return (Parts){0};
-    return (Parts){.part = {{matches, bytes}, {past->mask, pixels}, {past->rgb, 3 * pixels}},
-                   .bytes = bytes + 4 * pixels};
-}
-
-/* Deflates the parts into `to`, which has room. Returns: the bytes used; 0 without memory. */
-static size_t deflate_parts(const Parts *parts, uint8_t *to, size_t room)
-{
-    z_stream z = {0};
-    if (deflateInit(&z, FASTEST) != Z_OK)
-        return 0;
-    z.next_out = to, z.avail_out = (uInt)room;
-    int status = Z_OK;
-    for (int k = 0; k < 3 && status == Z_OK; k++) {
-        z.next_in = parts->part[k].data, z.avail_in = (uInt)parts->part[k].bytes;
-        status = deflate(&z, k == 2 ? Z_FINISH : Z_NO_FLUSH);
-    }
-    deflateEnd(&z);
-    return status == Z_STREAM_END ? room - z.avail_out : 0;
-}
-
-/* Whether `from` is exactly the parts, deflated. */
-static bool inflate_parts(const Parts *parts, const uint8_t *from, size_t bytes)
-{
-    z_stream z = {.next_in = (Bytef *)from, .avail_in = (uInt)MIN(bytes, UINT_MAX)};
-    if (inflateInit(&z) != Z_OK)
-        return false;
-    bool whole = true;
-    int status = Z_OK;
-    for (int k = 0; k < 3 && whole; k++) {
-        z.next_out = parts->part[k].data, z.avail_out = (uInt)parts->part[k].bytes;
-        status = inflate(&z, Z_SYNC_FLUSH);
-        whole = z.avail_out == 0 && (status == Z_OK || (status == Z_STREAM_END && k == 2));
-    }
-    uint8_t more; // the sum at the end may still be unread, but nothing else
-    z.next_out = &more, z.avail_out = 1;
-    if (whole && status == Z_OK)
-        status = inflate(&z, Z_FINISH);
-    inflateEnd(&z);
-    return whole && status == Z_STREAM_END && z.avail_out == 1;
+    const size_t field = (size_t)past->nnf.width * (size_t)past->nnf.height * sizeof *matches;
+    parts[FIELD] = (FlSpan){matches, field};
+    parts[MASK] = (FlSpan){past->mask, pixels};
+    parts[PICTURE] = (FlSpan){past->rgb, 3 * pixels};
 }
 
 GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GError **error)
@@ -112,13 +66,14 @@ GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GErro
     const FlRect rect = past->valid ? past->rect : (FlRect){0};
     const Header header = {past->frame, past->valid, rect.x, rect.y, rect.width, rect.height};
     g_autofree FlMatch *matches = past->valid ? differences(&past->nnf) : NULL;
-    const Parts parts = parts_of(past, matches, width, height);
-    const size_t room = past->valid ? compressBound(parts.bytes) : 0;
+    FlSpan parts[N_PARTS];
+    parts_of(past, matches, width, height, parts);
+    const size_t room = past->valid ? fl_pack_room(parts, N_PARTS) : 0;
     uint8_t *bytes = fl_alloc(sizeof header + room, 1, "a state", error);
     if (!bytes)
         return NULL;
     memcpy(bytes, &header, sizeof header);
-    const size_t packed = matches ? deflate_parts(&parts, bytes + sizeof header, room) : 0;
+    const size_t packed = matches ? fl_pack(parts, N_PARTS, bytes + sizeof header, room) : 0;
     if (past->valid && packed == 0) {
         free(bytes);
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a state");
@@ -172,8 +127,9 @@ static bool unpack_frame(FlSynthPast *past, GBytes *bytes, const FlExemplarLevel
     const uint8_t *data = g_bytes_get_data(bytes, &size);
     if (!fl_nnf_init(&past->nnf, past->rect.width, past->rect.height, error))
         return false;
-    const Parts parts = parts_of(past, past->nnf.match, width, height);
-    const bool whole = inflate_parts(&parts, data + sizeof(Header), size - sizeof(Header));
+    FlSpan parts[N_PARTS];
+    parts_of(past, past->nnf.match, width, height, parts);
+    const bool whole = fl_unpack(data + sizeof(Header), size - sizeof(Header), parts, N_PARTS);
     add_up(&past->nnf);
     if (whole && matches_fit(&past->nnf, level))
         return true;

@@ -5,7 +5,7 @@
 
 #include "synth/nnf.h"
 
-#define FL_PAST_HEADER 24 /**< bytes before those that are deflated */
+#define FL_PAST_HEADER 24 /**< bytes before those that are packed */
 
 /** All that a region's next frame needs to know of those before it. */
 typedef struct FlSynthPast {
@@ -17,7 +17,7 @@ typedef struct FlSynthPast {
     uint8_t *rgb;  // the picture of the whole frame, width * height * 3
 } FlSynthPast;
 
-/** Deflated, in this machine's byte order; width * height px is the frame's size.
+/** Packed, in this machine's byte order; width * height px is the frame's size.
  *  Returns: NULL with FL_ERROR_NO_MEMORY set. */
 GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GError **error);
 
