@@ -25,14 +25,8 @@
 #define SOFT_RIM (FL_AMOUNT_ONE / 5)
 #define HARD_RIM (FL_AMOUNT_ONE * 2 / 5)
 
-/** Amounts and the number of pixels that have each. */
-typedef struct Histogram {
-    uint32_t count[FL_AMOUNTS];
-    uint64_t total;
-} Histogram;
-
 /** The amount below which `percent` of the pixels lie, at least 1. */
-static int percentile(const Histogram *h, int percent)
+static int percentile(const FlAmountCounts *h, int percent)
 {
     const uint64_t rank = h->total * (uint64_t)percent / 100;
     uint64_t below = 0;
@@ -68,7 +62,7 @@ static void set_parts(FlInk *ink, const int32_t median[3], int one)
 }
 
 static void count_amounts(const FlInk *ink, const uint8_t *rgb, const uint8_t *mask, size_t n,
-                          Histogram *h)
+                          FlAmountCounts *h)
 {
     memset(h, 0, sizeof *h);
     for (size_t i = 0; i < n; i++)
@@ -106,7 +100,7 @@ FlInk *fl_ink_new(const uint8_t paper[3], const uint8_t *rgb, const uint8_t *mas
                   GError **error)
 {
     g_autoptr(FlInk) ink = g_new0(FlInk, 1);
-    g_autofree Histogram *h = g_new0(Histogram, 1);
+    g_autofree FlAmountCounts *h = g_new0(FlAmountCounts, 1);
     int32_t median[3];
     int64_t square = 0;
     memcpy(ink->paper, paper, 3);
@@ -164,7 +158,7 @@ static bool is_inner(const uint8_t *coverage, int width, int height, int x, int 
 }
 
 static void count_inner(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage,
-                        int width, int height, int margin, Histogram *h)
+                        int width, int height, int margin, FlAmountCounts *h)
 {
     memset(h, 0, sizeof *h);
     for (int y = 0; y < height; y++)
@@ -178,15 +172,22 @@ static void count_inner(const FlInk *ink, const uint8_t *painted, const uint8_t 
 int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
                 int height)
 {
-    enum { MARGIN_PX = 2, ENOUGH = 64 };
-    g_autofree Histogram *h = g_new0(Histogram, 1);
-    for (int margin = MARGIN_PX; margin >= 0 && h->total < ENOUGH; margin--)
+    enum { MARGIN_PX = 2 };
+    g_autofree FlAmountCounts *h = g_new0(FlAmountCounts, 1);
+    for (int margin = MARGIN_PX; margin >= 0 && h->total < FL_COUNTS_ENOUGH; margin--)
         count_inner(ink, painted, coverage, width, height, margin, h);
+    return fl_counts_tone(h);
+}
+
+int fl_counts_tone(const FlAmountCounts *h)
+{
     if (h->total == 0)
         return FL_TONE_ONE;
     const int tone = FL_TONE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
-    const int sure = (int)MIN(h->total, ENOUGH);
-    return (CLAMP(tone, FL_TONE_MIN, FL_TONE_MAX) * sure + FL_TONE_ONE * (ENOUGH - sure)) / ENOUGH;
+    const int sure = (int)MIN(h->total, FL_COUNTS_ENOUGH);
+    return (CLAMP(tone, FL_TONE_MIN, FL_TONE_MAX) * sure +
+            FL_TONE_ONE * (FL_COUNTS_ENOUGH - sure)) /
+           FL_COUNTS_ENOUGH;
 }
 
 /** The cubic that is 0 at toe_end with slope 0 and meets the identity at toe, slope included. */

@@ -16,6 +16,14 @@
 #define FL_TONE_MIN (FL_TONE_ONE / 4)
 #define FL_TONE_MAX (FL_TONE_ONE * 8)
 
+/** Amounts, and the number of pixels that have each. */
+typedef struct FlAmountCounts {
+    uint32_t count[FL_AMOUNTS];
+    uint64_t total;
+} FlAmountCounts;
+
+#define FL_COUNTS_ENOUGH 64 // pixels that are trusted with a tone
+
 /**
  * What is known of a style's paint.
  *
@@ -68,14 +76,17 @@ static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
  * painted is width * height * 3, coverage width * height: what counts of the shape. A region takes
  * other parts of the exemplar than its median (a thin limb is all rim, an early frame all fresh
  * paint), and without the tone its colour would not be the drawing's. The median is over pixels 2
- * px inside the contour; where they are fewer than 64, as in thin lines, over pixels nearer to it;
- * a region of fewer pixels than that leans to FL_TONE_ONE. The tone is a function of this frame
- * alone.
+ * px inside the contour; where they are fewer than FL_COUNTS_ENOUGH, as in thin lines, over pixels
+ * nearer to it. The tone is a function of this frame alone.
  *
  * Returns: FL_TONE_MIN … FL_TONE_MAX.
  */
 int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
                 int height);
+
+/** The tone that brings the median of what was counted to one; fewer pixels than FL_COUNTS_ENOUGH
+ * lean to FL_TONE_ONE. Returns: FL_TONE_MIN … FL_TONE_MAX. */
+int fl_counts_tone(const FlAmountCounts *counts);
 
 /** The amount after tone, toe and shoulder, 0 … FL_AMOUNTS - 1; it never falls as amount rises. */
 int fl_ink_toned(const FlInk *ink, int amount, int tone);

@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "compose/closing.h"
-#include "compose/colourise.h"
 
 #define SHOWN 128      // coverage from which on a shape is uppermost
 #define TRAP_PX 4      // neighbours overlap by so much at most where a program traps them
@@ -125,15 +124,15 @@ static int16_t *find_seen(const FlEdgeMap *edges, int run, GError **error)
     return seen;
 }
 
-bool fl_edges_close(const FlEdgeMap *edges, int run, const FlLayer *layer, const FlPainter *painter,
-                    int tone, int16_t **amounts, GError **error)
+bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, int16_t *amounts,
+                    GError **error)
 {
     const FlTreatment *t = &painter->treatment;
     const FlRenderOptions *options = &edges->plan->options;
-    const int width = fl_film_width(edges->plan->film);
-    const size_t n = fl_box_pixels(layer->box);
-    const size_t pixels = (size_t)width * (size_t)fl_film_height(edges->plan->film);
-    *amounts = NULL;
+    const FlBox box = edges->boxes[run];
+    const size_t n = fl_box_pixels(box);
+    const size_t pixels =
+        (size_t)fl_film_width(edges->plan->film) * (size_t)fl_film_height(edges->plan->film);
     if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || options->gap > 0 ||
         options->feather > 0 || n == 0 || run >= edges->n - 1)
         return true;
@@ -143,11 +142,38 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlLayer *layer, const
     g_autofree uint8_t *meets = ends ? fl_alloc(n, 1, "a matte", error) : NULL;
     g_autofree int16_t *seen = meets ? find_seen(edges, run, error) : NULL;
     g_autofree uint8_t *others = seen ? fl_alloc(pixels, 1, "a matte", error) : NULL;
-    if (!others || !find_share(edges, run, false, radius, others, ends, error) ||
-        !find_share(edges, run, true, radius, others, meets, error) ||
-        !(*amounts = fl_alloc(n, sizeof **amounts, "a matte", error)))
-        return false;
-    fl_colourise_amounts(painter->box->ink, tone, painter->painted, layer->coverage, width,
-                         layer->box, *amounts);
-    return fl_closing_apply(*amounts, seen, ends, meets, layer->box, radius, error);
+    return others && find_share(edges, run, false, radius, others, ends, error) &&
+           find_share(edges, run, true, radius, others, meets, error) &&
+           fl_closing_apply(amounts, seen, ends, meets, box, radius, error);
+}
+
+/** Whether a run is uppermost at a pixel and 2 px around it. */
+static bool is_seen(const FlEdgeMap *edges, int run, int x, int y)
+{
+    enum { MARGIN_PX = 2 };
+    const int width = fl_film_width(edges->plan->film);
+    const int height = fl_film_height(edges->plan->film);
+    for (int dy = -MARGIN_PX; dy <= MARGIN_PX; dy += MARGIN_PX)
+        for (int dx = -MARGIN_PX; dx <= MARGIN_PX; dx += MARGIN_PX) {
+            const int xx = CLAMP(x + dx, 0, width - 1), yy = CLAMP(y + dy, 0, height - 1);
+            if (edges->top[(size_t)yy * width + xx] != run + 1)
+                return false;
+        }
+    return true;
+}
+
+void fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts)
+{
+    const FlBox box = edges->boxes[run];
+    g_autofree FlAmountCounts *counts = g_new0(FlAmountCounts, 1);
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const int amount = amounts[(size_t)y * box.width + x];
+            if (amount >= 0 && is_seen(edges, run, box.x + x, box.y + y))
+                counts->count[amount]++, counts->total++;
+        }
+    const int tone = CLAMP(fl_counts_tone(counts), FL_TONE_ONE * 2 / 3, FL_TONE_ONE * 3 / 2);
+    for (size_t i = 0; i < fl_box_pixels(box); i++)
+        if (amounts[i] > 0)
+            amounts[i] = (int16_t)MIN(amounts[i] * tone / FL_TONE_ONE, FL_AMOUNTS - 1);
 }

@@ -24,15 +24,22 @@ bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, con
 void fl_edges_clear(FlEdgeMap *edges);
 
 /**
- * The amounts of paint of a run's layer, closed up where its shape ends at another one. Where the
- * two overlap, paint keeps its rim, as it does at free edges, and what lies below is seen beyond
- * it; but shapes that are hardly more than rim, such as an eye, are closed there, too.
+ * Closes up the amounts of paint of a run where its shape ends at another one, unless its edges are
+ * soft. Where the two overlap, paint keeps its rim, as it does at free edges, and what lies below
+ * is seen beyond it; but shapes that are hardly more than rim, such as an eye, are closed there,
+ * too.
  *
- * amounts: of the layer's box, to be freed with free(); NULL, without an error, if its edges are
- * soft. Several threads may call it at once. Returns: false with FL_ERROR_NO_MEMORY set.
+ * amounts: of the run's box, below 0 outside the shape. Several threads may call it at once.
+ * Returns: false with FL_ERROR_NO_MEMORY set.
  */
-bool fl_edges_close(const FlEdgeMap *edges, int run, const FlLayer *layer, const FlPainter *painter,
-                    int tone, int16_t **amounts, GError **error);
+bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, int16_t *amounts,
+                    GError **error);
+
+/**
+ * Brings the median of the amounts, where the run is seen, to one, by a factor of 2/3 … 3/2: what
+ * was closed up, or belongs to a region with other tones elsewhere, may be off it.
+ */
+void fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlEdgeMap, fl_edges_clear)
 

@@ -86,6 +86,23 @@ static FlColouring colouring_of(const FlPlan *plan, const FlBackground *backgrou
     return how;
 }
 
+/* How much paint each pixel of a run's box has; to be freed with free(). */
+static int16_t *amounts_of(const FlPlan *plan, const FlEdgeMap *edges, int r,
+                           const FlPainter *painter, const FlColouring *how, GError **error)
+{
+    const FlBox box = edges->boxes[r];
+    g_autofree int16_t *amounts = fl_alloc(fl_box_pixels(box), sizeof *amounts, "a layer", error);
+    if (!amounts)
+        return NULL;
+    fl_colourise_amounts(painter->box->ink, how->tone, painter->painted,
+                         edges->runs->run[r].coverage, fl_film_width(plan->film), box, amounts);
+    if (!fl_edges_close(edges, r, painter, amounts, error))
+        return NULL;
+    if (how->tint != FL_TINT_KEEP)
+        fl_edges_level(edges, r, amounts);
+    return g_steal_pointer(&amounts);
+}
+
 static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
                        const FlEdgeMap *edges, int r, const int *tones, GError **error)
 {
@@ -103,8 +120,8 @@ static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *b
         return false;
     if (painter) {
         FlColouring how = colouring_of(plan, background, painter, run, tones[p]);
-        g_autofree int16_t *amounts = NULL;
-        if (!fl_edges_close(edges, r, layer, painter, how.tone, &amounts, error))
+        g_autofree int16_t *amounts = amounts_of(plan, edges, r, painter, &how, error);
+        if (!amounts)
             return false;
         how.amounts = amounts;
         uint8_t *body = fl_alloc(fl_box_pixels(layer->box), 1, "a layer", error);

@@ -1,0 +1,234 @@
+/*
+ * Whether painted regions have the colours of the drawing, and the contrast of the paint.
+ *
+ * usage: colours STYLE FOLDER...
+ *
+ * Paints every sequence and looks at each flat, opaque fill of a region in each frame where it is
+ * seen, 2 px inside, if that is 64 pixels or more. Printed: how far the median colour is from the
+ * fill, in CIEDE2000, where that is more than 3; how many fills are within 3; and the deviation of
+ * the logarithm of the density where a fill is deeper than the paint's border, in 2000 pixels or
+ * more, as a share of the exemplar's own. Status 1 if a fill is not within 3.
+ */
+#include "base/alloc.h"
+#include "delta_e.h"
+#include "guides/distance.h"
+#include "render/plan.h"
+#include "scratch.h"
+#include "style/picture.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MARGIN_PX = 2, ENOUGH = 64, LARGE = 2000, BOUND = 3 };
+
+static void stop_on(GError *error)
+{
+    if (!error)
+        return;
+    fprintf(stderr, "colours: %s\n", error->message);
+    exit(1);
+}
+
+/** The first run of the same region and fill. */
+static int first_like(const FlRuns *runs, int r)
+{
+    int first = 0;
+    while (runs->run[first].region != runs->run[r].region ||
+           memcmp(runs->run[first].rgb, runs->run[r].rgb, 3) != 0)
+        first++;
+    return first;
+}
+
+/** Which run is seen at each pixel, or the first like it, counted from 1; 0: none that is flat,
+ * opaque and painted. */
+static uint16_t *find_tops(const FlPlan *plan, const FlRuns *runs, size_t n_pixels)
+{
+    uint16_t *top = g_new0(uint16_t, n_pixels);
+    for (int r = 0; r < runs->n; r++) {
+        const FlRun *run = &runs->run[r];
+        const bool plain = plan->painter_of[run->region] >= 0 && !run->picture &&
+                           run->alpha == 255 && run->mix == FL_MIX_OVER;
+        const int first = first_like(runs, r);
+        for (size_t p = 0; p < n_pixels; p++)
+            if (run->coverage[p])
+                top[p] = plain && run->coverage[p] == 255 ? (uint16_t)(first + 1) : 0;
+    }
+    return top;
+}
+
+/** The level below which half of the pixels are. */
+static uint8_t median_of(const int count[256], int total)
+{
+    int level = 0;
+    for (int sum = count[0]; 2 * sum < total; sum += count[level])
+        level++;
+    return (uint8_t)level;
+}
+
+/** Mean and deviation of the logarithm of paint's density over the paper's. */
+typedef struct Contrast {
+    double n, sum, squares;
+} Contrast;
+
+static void add_pixel(Contrast *contrast, const uint8_t *rgb, const uint8_t paper[3])
+{
+    double density = 0;
+    for (int c = 0; c < 3; c++)
+        density += log((paper[c] + 0.5) / (rgb[c] + 0.5));
+    const double level = log(MAX(fabs(density), 0.01));
+    contrast->n++, contrast->sum += level, contrast->squares += level * level;
+}
+
+static double deviation(const Contrast *c)
+{
+    const double mean = c->sum / c->n;
+    return sqrt(MAX(c->squares / c->n - mean * mean, 0));
+}
+
+/** Depth below the contour of what a mask holds; to be freed with free(). */
+static float *depth_of(const uint8_t *mask, int width, int height)
+{
+    GError *error = NULL;
+    float *depth = fl_alloc((size_t)width * height, sizeof *depth, "depths", &error);
+    if (depth)
+        fl_distance(mask, width, height, depth, &error);
+    stop_on(error);
+    return depth;
+}
+
+static double contrast_of_style(const FlStyle *style)
+{
+    Contrast contrast = {0};
+    const size_t pixels = (size_t)style->width * style->height;
+    for (int t = 0; t < style->n_frames; t++) {
+        const uint8_t *rgb = style->rgb + 3 * t * pixels;
+        g_autofree float *depth = depth_of(style->mask + t * pixels, style->width, style->height);
+        for (size_t p = 0; p < pixels; p++)
+            if (depth[p] >= style->border_px)
+                add_pixel(&contrast, rgb + 3 * p, style->paper);
+    }
+    return deviation(&contrast);
+}
+
+typedef struct Tally {
+    double of_style; // deviation
+    int fills, within;
+    double worst;
+    double shares; // sum over the large ones
+    int large;
+} Tally;
+
+typedef struct Look {
+    int count[3][256], total;
+    Contrast contrast;
+} Look;
+
+static Look look_at(const FlPicture *picture, const uint16_t *top, uint16_t run,
+                    const uint8_t paper[3], float border_px)
+{
+    Look look = {0};
+    const size_t pixels = (size_t)picture->width * picture->height;
+    g_autofree uint8_t *mask = g_malloc(pixels);
+    for (size_t p = 0; p < pixels; p++)
+        mask[p] = top[p] == run ? 255 : 0;
+    g_autofree float *depth = depth_of(mask, picture->width, picture->height);
+    for (size_t p = 0; p < pixels; p++) {
+        const uint8_t *rgb = picture->rgba + 4 * p;
+        if (depth[p] < MARGIN_PX)
+            continue;
+        look.total++;
+        for (int c = 0; c < 3; c++)
+            look.count[c][rgb[c]]++;
+        if (depth[p] >= border_px)
+            add_pixel(&look.contrast, rgb, paper);
+    }
+    return look;
+}
+
+static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture, Tally *tally)
+{
+    GError *error = NULL;
+    g_autoptr(FlRuns) runs = fl_film_runs(plan->film, frame, &error);
+    stop_on(error);
+    g_autofree uint16_t *top = find_tops(plan, runs, (size_t)picture->width * picture->height);
+    for (int r = 0; r < runs->n; r++) {
+        uint8_t median[3];
+        if (plan->painter_of[runs->run[r].region] < 0 || first_like(runs, r) < r)
+            continue;
+        const FlPainter *painter = &plan->painters[plan->painter_of[runs->run[r].region]];
+        const Look look = look_at(picture, top, (uint16_t)(r + 1), plan->paper,
+                                  painter->box->exemplar->border_px);
+        if (look.total < ENOUGH)
+            continue;
+        for (int c = 0; c < 3; c++)
+            median[c] = median_of(look.count[c], look.total);
+        const uint8_t *fill = runs->run[r].rgb;
+        const double d = delta_e(median, fill);
+        tally->fills++, tally->within += d <= BOUND, tally->worst = MAX(tally->worst, d);
+        if (d > BOUND)
+            printf("  frame %d, %s: #%02x%02x%02x for #%02x%02x%02x, %.1f, %d pixels\n",
+                   fl_film_number(plan->film, frame),
+                   fl_film_region(plan->film, runs->run[r].region)->name, median[0], median[1],
+                   median[2], fill[0], fill[1], fill[2], d, look.total);
+        if (look.contrast.n >= LARGE)
+            tally->large++, tally->shares += deviation(&look.contrast) / tally->of_style;
+    }
+}
+
+static void print(const char *name, const Tally *tally)
+{
+    printf("%-22s %4d of %4d within %d, worst %4.1f", name, tally->within, tally->fills, BOUND,
+           tally->worst);
+    if (tally->large > 0)
+        printf("; contrast %3.0f %% in %d", 100 * tally->shares / tally->large, tally->large);
+    printf("\n");
+    fflush(stdout);
+}
+
+static void judge(const char *folder, const char *style, Tally *all)
+{
+    GError *error = NULL;
+    g_autoptr(Scratch) scratch = scratch_make();
+    g_autofree char *output = g_build_filename(scratch, "%d.png", NULL);
+    const char *const inputs[] = {folder, NULL};
+    const FlSetting setting = {.name = "style", .value = style};
+    const FlRenderOptions options = {
+        .inputs = inputs, .settings = &setting, .n_settings = 1, .output = output};
+    fl_render(&options, &error);
+    stop_on(error);
+    FlRenderOptions again = options;
+    again.overwrite = FL_OVERWRITE_YES;
+    g_autoptr(FlPlan) plan = fl_plan_new(&again, &error);
+    stop_on(error);
+    Tally tally = {.of_style = all->of_style};
+    for (int f = 0; f < fl_film_frames(plan->film); f++) {
+        g_autofree char *file =
+            g_strdup_printf("%s/%d.png", scratch, fl_film_number(plan->film, f));
+        g_autoptr(FlPicture) picture = fl_picture_read_png(file, &error);
+        stop_on(error);
+        judge_frame(plan, f, picture, &tally);
+    }
+    g_autofree char *name = g_path_get_basename(folder);
+    print(name, &tally);
+    all->fills += tally.fills, all->within += tally.within;
+    all->worst = MAX(all->worst, tally.worst);
+    all->shares += tally.shares, all->large += tally.large;
+}
+
+int main(int argc, char **argv)
+{
+    if (argc < 3) {
+        fprintf(stderr, "usage: colours STYLE FOLDER...\n");
+        return 2;
+    }
+    GError *error = NULL;
+    g_autofree char *path = fl_style_find(argv[1], &error);
+    stop_on(error);
+    g_autoptr(FlStyle) style = fl_style_load(path, &error);
+    stop_on(error);
+    Tally all = {.of_style = contrast_of_style(style)};
+    for (int i = 2; i < argc; i++)
+        judge(argv[i], path, &all);
+    print("all", &all);
+    return all.within < all.fills;
+}
