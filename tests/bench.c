@@ -9,10 +9,11 @@
  * stages, the patch evaluations and the energy, whose statistics cost time. With --compare every
  * case runs in both programs in turn; medians and their ratio are printed.
  *
- * Core-seconds and evaluations are per second of processor time, and `scaling`, how much longer all
- * threads worked than the busiest one, is what threads gain where they are not kept waiting: these
- * hold on a machine that has other things to do. OMP_WAIT_POLICY=passive is set, so that waiting is
- * not working.
+ * An evaluation is a patch distance that is started; a try is a match that is thought of, with
+ * those that are ruled out before their patch is looked at. Core-seconds, evaluations and tries are
+ * per second of processor time, and `scaling`, how much longer all threads worked than the busiest
+ * one, is what threads gain where they are not kept waiting: these hold on a machine that has other
+ * things to do. OMP_WAIT_POLICY=passive is set, so that waiting is not working.
  */
 #include "config.h"
 #include "params/params.h"
@@ -46,8 +47,9 @@ static const Case cases[] = {
     F(first_frame_s)                                                                               \
     F(guides_s)                                                                                    \
     F(target_s)                                                                                    \
-    F(temporal_s) F(search_s) F(vote_s) F(core_s_per_mpx) F(s_per_mpx) F(scaling)                  \
-        F(evaluations_per_px) F(evaluations_per_s_core) F(energy) F(painted_px) F(peak_mib)
+    F(temporal_s)                                                                                  \
+    F(search_s) F(vote_s) F(core_s_per_mpx) F(s_per_mpx) F(scaling) F(evaluations_per_px)          \
+        F(evaluations_per_s_core) F(tries_per_s_core) F(energy) F(painted_px) F(peak_mib)
 
 typedef struct Figures {
 #define FIELD(name) double name;
@@ -154,15 +156,17 @@ static double painted_pixels(const Bench *b)
 
 static bool measured_frames(Bench *b, Figures *f, GError **error)
 {
-    double tried = 0;
+    double drawn = 0, tried = 0;
     fl_synth_measure(b->synth, true);
     for (int k = 1; k <= FRAMES_MEASURED; k++) {
         FlFrameStats s;
         if (!fl_guide_sequence_get(b->sequence, frames + k, &b->guides, error) ||
             !fl_synth_frame(b->synth, &b->guides, b->rgb, &s, NULL, error))
             return false;
-        for (int l = 0; l < s.n_levels; l++)
+        for (int l = 0; l < s.n_levels; l++) {
+            drawn += (double)s.level[l].counts.drawn / FRAMES_MEASURED;
             tried += (double)s.level[l].counts.tried / FRAMES_MEASURED;
+        }
         f->energy += s.level[0].energy / FRAMES_MEASURED;
         f->target_s += s.seconds_target / FRAMES_MEASURED;
         f->temporal_s += s.seconds_temporal / FRAMES_MEASURED;
@@ -175,6 +179,7 @@ static bool measured_frames(Bench *b, Figures *f, GError **error)
     const double stages = f->target_s + f->temporal_s + f->search_s + f->vote_s;
     const double searching = f->core_s_per_mpx * 1e-6 * f->search_s / stages; // a pixel, core-s
     f->evaluations_per_s_core = f->evaluations_per_px / searching;
+    f->tries_per_s_core = drawn / f->painted_px / searching;
     f->s_per_mpx = f->frame_s / f->painted_px * 1e6;
     return true;
 }
@@ -279,11 +284,12 @@ static Figures medians(const Figures *runs, int n)
 
 static void print_row(const char *name, const Figures *f)
 {
-    printf("%-10s %7.0f %8.3f %8.3f %7.3f %7.3f %7.3f %7.3f %7.3f %8.2f %7.2f %7.1f %7.1f %7.3f "
-           "%6.0f\n",
-           name, f->painted_px, f->frame_s, f->first_frame_s, f->guides_s, f->target_s,
-           f->temporal_s, f->search_s, f->vote_s, f->core_s_per_mpx, f->scaling,
-           f->evaluations_per_px, f->evaluations_per_s_core * 1e-6, f->energy, f->peak_mib);
+    printf(
+        "%-10s %7.0f %8.3f %8.3f %7.3f %7.3f %7.3f %7.3f %7.3f %8.2f %7.2f %7.1f %7.1f %7.1f %7.3f "
+        "%6.0f\n",
+        name, f->painted_px, f->frame_s, f->first_frame_s, f->guides_s, f->target_s, f->temporal_s,
+        f->search_s, f->vote_s, f->core_s_per_mpx, f->scaling, f->evaluations_per_px,
+        f->evaluations_per_s_core * 1e-6, f->tries_per_s_core * 1e-6, f->energy, f->peak_mib);
 }
 
 /* One case, in this program and the other in turn. */
@@ -330,7 +336,7 @@ static bool run_all(const char *self, GError **error)
     g_autoptr(GString) out = g_string_new("{");
     printf("%d frames, %d threads, medians of %d; seconds per frame\n", frames, threads, rounds);
     puts("case       painted    frame    first  guides  target    temp  search    vote core/Mpx"
-         " scaling eval/px M/s*core energy    MiB");
+         " scaling eval/px Meval/s Mtry/s  energy    MiB");
     for (size_t k = 0; k < G_N_ELEMENTS(cases); k++)
         if ((!only || g_str_equal(cases[k].name, only)) &&
             !compare_case(self, &cases[k], out, error))

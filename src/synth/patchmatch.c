@@ -119,6 +119,7 @@ static void work(Crew *crew)
                            &own);
         finish_step(crew, step);
     }
+    __atomic_fetch_add(&crew->counts.drawn, own.drawn, __ATOMIC_RELAXED);
     __atomic_fetch_add(&crew->counts.tried, own.tried, __ATOMIC_RELAXED);
     __atomic_fetch_add(&crew->counts.accepted, own.accepted, __ATOMIC_RELAXED);
 }

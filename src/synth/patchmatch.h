@@ -19,6 +19,7 @@ typedef struct FlSearch {
 
 /** Counters of a search. */
 typedef struct FlSearchCounts {
+    uint64_t drawn;    // matches that were thought of, most of which are ruled out at once
     uint64_t tried;    // patch distances started
     uint64_t accepted; // matches that changed
 } FlSearchCounts;

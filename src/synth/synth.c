@@ -269,6 +269,7 @@ static void optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, in
     for (int round = 0; round < rounds; round++) {
         search->key = fl_key(key, 2 + (uint64_t)round);
         const FlSearchCounts counts = timed_search(synth, search, sweeps, round > 0);
+        stats->counts.drawn += counts.drawn;
         stats->counts.tried += counts.tried;
         stats->counts.accepted += counts.accepted;
         if (round + 1 < rounds || last_counts)

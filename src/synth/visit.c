@@ -257,6 +257,7 @@ static void settle(Visit *visit, FlSearchCounts *counts)
     fl_target_gather(search->target, visit->x, visit->y, &patch);
     find_expected(visit); // the pixel before may have moved
     visit->total = visit->data + visit->own_uniformity + coherence_cost(visit, visit->own);
+    counts->drawn += (uint64_t)visit->n_expected;
     counts->tried += propagate(visit, &patch);
     for (int k = 0; k < visit->n_candidates; k++) {
         const Candidate *c = &visit->candidate[k];
@@ -296,6 +297,7 @@ void fl_visit_tiles(const FlVisitPlan *plan, const uint32_t *tiles, int n, bool 
     int end = 0;
     for (int k = 0; k < n; k++)
         end += list_pixels(plan->search->target, tiles[k], backwards, pixels + end);
+    counts->drawn += (uint64_t)end * plan->windows.n * (plan->search->params->rotate ? 2 : 1);
     for (int k = 0; k < end + 2; k++) {
         if (k < end)
             draw(&visits[k % 3], plan, pixels[k], key);
