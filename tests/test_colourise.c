@@ -54,13 +54,15 @@ static FlInk *ink_of(const Sample *s, const uint8_t paper[3])
 }
 
 /** Colours a sample and puts it on its paper: to be freed, width * height * 3. */
-static uint8_t *paint(const Sample *s, const FlInk *ink, const FlColouring *how)
+static uint8_t *paint(const Sample *s, const FlInk *ink, const FlColouring *how, int tone)
 {
     const FlBox box = {0, 0, s->width, s->height};
     const size_t n = fl_box_pixels(box);
     g_autofree uint8_t *rgba = g_malloc(4 * n);
+    g_autofree int16_t *amounts = g_new(int16_t, n);
     uint8_t *rgb = g_malloc(3 * n);
-    fl_colourise(ink, how, s->rgb, s->mask, s->width, box, rgba);
+    fl_colourise_amounts(ink, tone, s->rgb, s->mask, s->width, box, amounts);
+    fl_colourise(ink, how, s->rgb, amounts, s->width, box, rgba);
     for (size_t i = 0; i < 3 * n; i++) {
         const uint8_t *p = rgba + i / 3 * 4;
         rgb[i] = (uint8_t)((p[i % 3] * p[3] + how->paper[i % 3] * (255 - p[3]) + 127) / 255);
@@ -110,10 +112,11 @@ static void the_median_interior_colour_is_the_fill(void)
         g_autoptr(FlInk) ink = ink_of(&learned, paper);
         for (size_t f = 0; f < 2 * G_N_ELEMENTS(fills); f++) {
             const uint8_t *fill = fills[f / 2], *on = f % 2 ? paper : white;
-            FlColouring how = {.tone = fl_ink_tone(ink, s.rgb, s.mask, s.width, s.height)};
+            const int tone = fl_ink_tone(ink, s.rgb, s.mask, s.width, s.height);
+            FlColouring how = {0};
             memcpy(how.fill, fill, 3);
             memcpy(how.paper, on, 3);
-            g_autofree uint8_t *rgb = paint(&s, ink, &how);
+            g_autofree uint8_t *rgb = paint(&s, ink, &how, tone);
             uint8_t median[3];
             median_colour(&s, rgb, median);
             g_test_message("%s on #%02x%02x%02x: #%02x%02x%02x becomes #%02x%02x%02x, %.2f",
@@ -155,9 +158,9 @@ static void four_fifths_of_the_contrast_are_kept(void)
     for (size_t k = 0; k < G_N_ELEMENTS(cases); k++) {
         g_auto(Sample) s = sample_load(cases[k].name);
         g_autoptr(FlInk) ink = ink_of(&s, cases[k].paper);
-        FlColouring how = {.fill = {120, 90, 70}, .paper = {255, 255, 255}};
-        how.tone = fl_ink_tone(ink, s.rgb, s.mask, s.width, s.height);
-        g_autofree uint8_t *rgb = paint(&s, ink, &how);
+        const FlColouring how = {.fill = {120, 90, 70}, .paper = {255, 255, 255}};
+        const int tone = fl_ink_tone(ink, s.rgb, s.mask, s.width, s.height);
+        g_autofree uint8_t *rgb = paint(&s, ink, &how, tone);
         const double had = contrast(&s, s.rgb, cases[k].paper), has = contrast(&s, rgb, white);
         g_test_message("%s: log density deviates by %.3f, was %.3f", cases[k].name, has, had);
         g_assert_cmpfloat(has, >=, 0.8 * had);
@@ -174,8 +177,11 @@ static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
     memcpy(painted[1], white, 3); // brighter than the paper: no paint either
     memcpy(painted[2], black, 3);
     memcpy(painted[3], black, 3);
-    FlColouring how = {.fill = {200, 30, 30}, .paper = {255, 255, 255}, .tone = FL_TONE_ONE};
-    fl_colourise(ink, &how, painted[0], coverage, 4, (FlBox){0, 0, 4, 1}, rgba);
+    const FlBox box = {0, 0, 4, 1};
+    int16_t amounts[4];
+    FlColouring how = {.fill = {200, 30, 30}, .paper = {255, 255, 255}};
+    fl_colourise_amounts(ink, FL_TONE_ONE, painted[0], coverage, 4, box, amounts);
+    fl_colourise(ink, &how, painted[0], amounts, 4, box, rgba);
     g_assert_cmpint(rgba[3], ==, 0);
     g_assert_cmpint(rgba[7], ==, 0);
     g_assert_cmpint(rgba[11], >=, 250);
@@ -183,7 +189,7 @@ static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
     for (int medium = 0; medium < 2; medium++) { // white gouache covers, white watercolour does not
         memset(how.fill, 255, 3);
         how.medium = medium ? FL_MEDIUM_OPAQUE : FL_MEDIUM_TRANSPARENT;
-        fl_colourise(ink, &how, painted[0], coverage, 4, (FlBox){0, 0, 4, 1}, rgba);
+        fl_colourise(ink, &how, painted[0], amounts, 4, box, rgba);
         g_assert_cmpint(rgba[11], ==, medium ? 255 : 0);
     }
 }
@@ -236,12 +242,12 @@ static void a_picture_of_one_colour_is_as_good_as_a_flat_fill(void)
     g_autoptr(FlInk) ink = ink_of(&s, drop_paper);
     const size_t n = (size_t)s.width * s.height;
     g_autofree uint8_t *picture_rgba = g_malloc(4 * n);
-    FlColouring how = {.fill = {12, 190, 77}, .paper = {250, 248, 240}, .tone = 5000};
+    FlColouring how = {.fill = {12, 190, 77}, .paper = {250, 248, 240}};
     for (size_t i = 0; i < n; i++)
         memcpy(picture_rgba + 4 * i, (uint8_t[]){12, 190, 77, 255}, 4);
-    g_autofree uint8_t *flat = paint(&s, ink, &how);
+    g_autofree uint8_t *flat = paint(&s, ink, &how, 5000);
     how.picture = picture_rgba;
-    g_autofree uint8_t *pixels = paint(&s, ink, &how);
+    g_autofree uint8_t *pixels = paint(&s, ink, &how, 5000);
     g_assert_cmpmem(flat, (int)(3 * n), pixels, (int)(3 * n));
 }
 
@@ -249,9 +255,9 @@ static void the_exemplars_own_colours_are_kept_on_its_own_paper(void)
 {
     g_auto(Sample) s = sample_load("drop-30");
     g_autoptr(FlInk) ink = ink_of(&s, drop_paper);
-    FlColouring how = {.tint = FL_TINT_KEEP, .tone = FL_TONE_ONE};
+    FlColouring how = {.tint = FL_TINT_KEEP};
     memcpy(how.paper, drop_paper, 3);
-    g_autofree uint8_t *rgb = paint(&s, ink, &how);
+    g_autofree uint8_t *rgb = paint(&s, ink, &how, FL_TONE_ONE);
     for (size_t i = 0; i < (size_t)s.width * s.height; i++)
         for (int c = 0; c < 3 && s.mask[i]; c++)
             g_assert_cmpint(abs(rgb[3 * i + c] - CLAMP(s.rgb[3 * i + c], 12, drop_paper[c])), <=,

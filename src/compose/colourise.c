@@ -52,29 +52,11 @@ static int opacity_of(FlMedium medium, int amount)
     return medium == FL_MEDIUM_OPAQUE ? body_of(amount) : 0;
 }
 
-/** The amount at pixel i of the frame, which is pixel j of the box. */
-static int amount_at(const FlInk *ink, const FlColouring *how, const int16_t *toned,
-                     const uint8_t *painted, size_t i, size_t j)
-{
-    return how->amounts ? how->amounts[j] : toned[fl_ink_amount(ink, painted + 3 * i)];
-}
-
-/** What fl_ink_toned() makes of each amount; to be freed. */
-static int16_t *tones_of(const FlInk *ink, int tone)
-{
-    int16_t *toned = g_new(int16_t, FL_AMOUNTS);
-    for (int i = 0; i < FL_AMOUNTS; i++)
-        toned[i] = (int16_t)fl_ink_toned(ink, i, tone);
-    return toned;
-}
-
 /** One fill for the whole region: what every amount looks like is known beforehand. */
-static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale *scale,
-                        const uint8_t *painted, const uint8_t *coverage, int width, FlBox box,
-                        uint8_t *rgba)
+static void colour_flat(const FlColouring *how, const FlScale *scale, const int16_t *amounts,
+                        FlBox box, uint8_t *rgba)
 {
     g_autofree Paint *look = g_new(Paint, FL_AMOUNTS);
-    g_autofree int16_t *toned = tones_of(ink, how->tone);
     int32_t base[3], step[3];
     for (int c = 0; c < 3; c++)
         base[c] = base_of(how->paper[c]), step[c] = step_of(how->fill[c], how->paper[c]);
@@ -84,13 +66,9 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
             colour[c] = painted_level(base[c], step[c], amount);
         fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), look[amount].rgba);
     }
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
-            const size_t i = (size_t)(box.y + y) * width + box.x + x;
-            const size_t j = (size_t)y * box.width + x;
-            if (coverage[i])
-                memcpy(rgba + 4 * j, look[amount_at(ink, how, toned, painted, i, j)].rgba, 4);
-        }
+    for (size_t i = 0; i < fl_box_pixels(box); i++)
+        if (amounts[i] >= 0)
+            memcpy(rgba + 4 * i, look[amounts[i]].rgba, 4);
 }
 
 /** What each level of a per-pixel source adds to the paper's density, per channel. */
@@ -109,55 +87,58 @@ static void steps_init(Steps *steps, const FlInk *ink, const FlColouring *how)
     }
 }
 
-/** Colours one row from the painted pixels themselves, or from the picture. */
-static void colour_row(const FlInk *ink, const FlColouring *how, const FlScale *scale,
-                       const Steps *steps, const int16_t *toned, const uint8_t *painted,
-                       const uint8_t *coverage, size_t start, size_t j, int width, uint8_t *rgba)
+/** Colours a row of the box from the painted pixels themselves, or from the picture. */
+static void colour_row(const FlColouring *how, const FlScale *scale, const Steps *steps,
+                       const uint8_t *source, size_t source_step, const int16_t *amounts, int width,
+                       uint8_t *rgba)
 {
-    const bool keep = how->tint == FL_TINT_KEEP;
-    for (size_t i = start; i < start + (size_t)width; i++, j++, rgba += 4) {
-        if (!coverage[i])
+    for (int x = 0; x < width; x++, source += source_step, rgba += 4) {
+        if (amounts[x] < 0)
             continue;
-        const uint8_t *source = keep ? painted + 3 * i : how->picture + 4 * i;
-        const int amount = amount_at(ink, how, toned, painted, i, j);
+        const int amount = how->tint == FL_TINT_KEEP ? FL_AMOUNT_ONE : amounts[x];
         uint8_t colour[3];
         for (int c = 0; c < 3; c++)
-            colour[c] = painted_level(steps->base[c], steps->step[c][source[c]],
-                                      keep ? FL_AMOUNT_ONE : amount);
-        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), rgba);
+            colour[c] = painted_level(steps->base[c], steps->step[c][source[c]], amount);
+        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amounts[x]), rgba);
     }
 }
 
 static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScale *scale,
-                          const uint8_t *painted, const uint8_t *coverage, int width, FlBox box,
+                          const uint8_t *painted, const int16_t *amounts, int width, FlBox box,
                           uint8_t *rgba)
 {
+    const bool keep = how->tint == FL_TINT_KEEP;
+    const uint8_t *source = keep ? painted : how->picture;
+    const size_t step = keep ? 3 : 4;
     Steps steps;
     steps_init(&steps, ink, how);
-    g_autofree int16_t *toned = tones_of(ink, how->tone);
 #pragma omp parallel for schedule(static)
-    for (int y = 0; y < box.height; y++)
-        colour_row(ink, how, scale, &steps, toned, painted, coverage,
-                   (size_t)(box.y + y) * width + box.x, (size_t)y * box.width, box.width,
-                   rgba + (size_t)y * box.width * 4);
+    for (int y = 0; y < box.height; y++) {
+        const size_t row = (size_t)y * box.width;
+        colour_row(how, scale, &steps,
+                   source + step * ((size_t)(box.y + y) * (size_t)width + (size_t)box.x), step,
+                   amounts + row, box.width, rgba + 4 * row);
+    }
 }
 
 void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                  const uint8_t *coverage, int width, FlBox box, uint8_t *rgba)
+                  const int16_t *amounts, int width, FlBox box, uint8_t *rgba)
 {
     FlScale scale;
     fl_scale_init(&scale, how->linear);
     memset(rgba, 0, fl_box_pixels(box) * 4);
     if (how->tint != FL_TINT_KEEP && !how->picture)
-        colour_flat(ink, how, &scale, painted, coverage, width, box, rgba);
+        colour_flat(how, &scale, amounts, box, rgba);
     else
-        colour_pixels(ink, how, &scale, painted, coverage, width, box, rgba);
+        colour_pixels(ink, how, &scale, painted, amounts, width, box, rgba);
 }
 
 void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
                           const uint8_t *coverage, int width, FlBox box, int16_t *amounts)
 {
-    g_autofree int16_t *toned = tones_of(ink, tone);
+    g_autofree int16_t *toned = g_new(int16_t, FL_AMOUNTS);
+    for (int i = 0; i < FL_AMOUNTS; i++)
+        toned[i] = (int16_t)fl_ink_toned(ink, i, tone);
     for (int y = 0; y < box.height; y++)
         for (int x = 0; x < box.width; x++) {
             const size_t i = (size_t)(box.y + y) * width + box.x + x;
@@ -166,17 +147,10 @@ void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
         }
 }
 
-void fl_colourise_body(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                       const uint8_t *coverage, int width, FlBox box, uint8_t *body)
+void fl_colourise_body(const int16_t *amounts, FlBox box, uint8_t *body)
 {
-    g_autofree int16_t *toned = tones_of(ink, how->tone);
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
-            const size_t i = (size_t)(box.y + y) * width + box.x + x;
-            const size_t j = (size_t)y * box.width + x;
-            const int amount = coverage[i] ? amount_at(ink, how, toned, painted, i, j) : 0;
-            body[j] = (uint8_t)body_of(amount);
-        }
+    for (size_t i = 0; i < fl_box_pixels(box); i++)
+        body[i] = (uint8_t)body_of(MAX(amounts[i], 0));
 }
 
 void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,

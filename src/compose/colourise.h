@@ -20,33 +20,33 @@ typedef struct FlColouring {
     uint8_t paper[3];       // the output's paper
     FlMedium medium;        // opaque paint hides what is below from a fifth of its median on
     bool linear;            // the layers will be blended in linear light
-    int tone;               // of fl_ink_tone(); FL_TONE_ONE: as in the exemplar
-    const int16_t *amounts; // of the box, of fl_colourise_amounts() and changed; NULL: as painted
 } FlColouring;
 
 /**
- * Colours the pixels of a box.
- *
- * painted is width * height * 3 sRGB and coverage width * height, whole frames; both are read where
- * coverage is nonzero only. rgba, box.width * box.height * 4, becomes straight RGBA: the paint
- * alone, without the coverage. Its alpha is the least with which the colour over the paper is the
- * painted colour, so that thin paint is transparent over any other background too (opaque paint has
- * more). Pixels without coverage become 0.
+ * The amounts of paint of a box, box.width * box.height; -1 where coverage is 0. tone is of
+ * fl_ink_tone(); FL_TONE_ONE: as in the exemplar. painted is width * height * 3 sRGB and coverage
+ * width * height, whole frames.
  */
-void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                  const uint8_t *coverage, int width, FlBox box, uint8_t *rgba);
-
-/** The amounts of paint of a box, box.width * box.height; -1 where coverage is 0. */
 void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
                           const uint8_t *coverage, int width, FlBox box, int16_t *amounts);
+
+/**
+ * Colours the pixels of a box that have an amount of paint, 0 or more.
+ *
+ * painted, as above, is read for FL_TINT_KEEP only. rgba, box.width * box.height * 4, becomes
+ * straight RGBA: the paint alone, without the coverage. Its alpha is the least with which the
+ * colour over the paper is the painted colour, so that thin paint is transparent over any other
+ * background too (opaque paint has more). The other pixels become 0.
+ */
+void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
+                  const int16_t *amounts, int width, FlBox box, uint8_t *rgba);
 
 /**
  * How far the paint has body, 0..255 per pixel of the box: from nothing on bare paper to 255 at
  * a fifth of the median amount. Layers that knock out by it let the paint below run on under their
  * soft rims instead of ending it at their contour, where it leaves a line of paper.
  */
-void fl_colourise_body(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                       const uint8_t *coverage, int width, FlBox box, uint8_t *body);
+void fl_colourise_body(const int16_t *amounts, FlBox box, uint8_t *body);
 
 /** What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.
  */

@@ -73,14 +73,13 @@ static FlPicture *backdrop_picture(const FlBackground *background, const FlPlan 
 }
 
 static FlColouring colouring_of(const FlPlan *plan, const FlBackground *background,
-                                const FlPainter *painter, const FlRun *run, int tone)
+                                const FlPainter *painter, const FlRun *run)
 {
     const FlTreatment *t = &painter->treatment;
     FlColouring how = {.tint = t->tint,
                        .picture = t->has_colour ? NULL : run->picture,
                        .medium = painter->box->medium,
-                       .linear = plan->options.blend == FL_BLEND_LINEAR,
-                       .tone = t->tint == FL_TINT_KEEP ? FL_TONE_ONE : tone};
+                       .linear = plan->options.blend == FL_BLEND_LINEAR};
     memcpy(how.fill, t->has_colour ? t->colour : run->rgb, 3);
     memcpy(how.paper, background->paper, 3);
     return how;
@@ -88,17 +87,18 @@ static FlColouring colouring_of(const FlPlan *plan, const FlBackground *backgrou
 
 /* How much paint each pixel of a run's box has; to be freed with free(). */
 static int16_t *amounts_of(const FlPlan *plan, const FlEdgeMap *edges, int r,
-                           const FlPainter *painter, const FlColouring *how, GError **error)
+                           const FlPainter *painter, int tone, GError **error)
 {
+    const bool keep = painter->treatment.tint == FL_TINT_KEEP;
     const FlBox box = edges->boxes[r];
     g_autofree int16_t *amounts = fl_alloc(fl_box_pixels(box), sizeof *amounts, "a layer", error);
     if (!amounts)
         return NULL;
-    fl_colourise_amounts(painter->box->ink, how->tone, painter->painted,
+    fl_colourise_amounts(painter->box->ink, keep ? FL_TONE_ONE : tone, painter->painted,
                          edges->runs->run[r].coverage, fl_film_width(plan->film), box, amounts);
     if (!fl_edges_close(edges, r, painter, amounts, error))
         return NULL;
-    if (how->tint != FL_TINT_KEEP)
+    if (!keep)
         fl_edges_level(edges, r, amounts);
     return g_steal_pointer(&amounts);
 }
@@ -119,19 +119,15 @@ static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *b
     if (!layer->rgba)
         return false;
     if (painter) {
-        FlColouring how = colouring_of(plan, background, painter, run, tones[p]);
-        g_autofree int16_t *amounts = amounts_of(plan, edges, r, painter, &how, error);
-        if (!amounts)
-            return false;
-        how.amounts = amounts;
-        uint8_t *body = fl_alloc(fl_box_pixels(layer->box), 1, "a layer", error);
+        const FlColouring how = colouring_of(plan, background, painter, run);
+        g_autofree int16_t *amounts = amounts_of(plan, edges, r, painter, tones[p], error);
+        uint8_t *body = amounts ? fl_alloc(fl_box_pixels(layer->box), 1, "a layer", error) : NULL;
         if (!body)
             return false;
-        fl_colourise(painter->box->ink, &how, painter->painted, run->coverage, width, layer->box,
-                     layer->rgba);
-        fl_colourise_body(painter->box->ink, &how, painter->painted, run->coverage, width,
-                          layer->box, body);
         layer->body = body;
+        fl_colourise(painter->box->ink, &how, painter->painted, amounts, width, layer->box,
+                     layer->rgba);
+        fl_colourise_body(amounts, layer->box, body);
         if (!fl_holes_close(body, run->coverage, width, layer->box, error))
             return false;
     } else {
