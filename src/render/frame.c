@@ -103,36 +103,41 @@ static int16_t *amounts_of(const FlPlan *plan, const FlEdgeMap *edges, int r,
     return g_steal_pointer(&amounts);
 }
 
-static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                       const FlEdgeMap *edges, int r, const int *tones, GError **error)
+static bool paint_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
+                        const FlEdgeMap *edges, int r, const FlPainter *painter, int tone,
+                        GError **error)
 {
     const int width = fl_film_width(plan->film);
     const FlRun *run = &edges->runs->run[r];
+    const FlColouring how = colouring_of(plan, background, painter, run);
+    g_autofree int16_t *amounts = amounts_of(plan, edges, r, painter, tone, error);
+    uint8_t *body = amounts ? fl_alloc(fl_box_pixels(layer->box), 1, "a layer", error) : NULL;
+    if (!body)
+        return false;
+    layer->body = body;
+    layer->stacking = painter->treatment.stacking;
+    fl_colourise(painter->box->ink, &how, painter->painted, amounts, width, layer->box,
+                 layer->rgba);
+    fl_colourise_body(amounts, layer->box, body);
+    return fl_holes_close(body, run->coverage, width, layer->box, error);
+}
+
+static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
+                       const FlEdgeMap *edges, int r, const int *tones, GError **error)
+{
+    const FlRun *run = &edges->runs->run[r];
     const int p = plan->painter_of[run->region];
-    const FlPainter *painter = p >= 0 ? &plan->painters[p] : NULL;
     *layer = (FlLayer){.box = edges->boxes[r],
                        .coverage = run->coverage,
                        .alpha = run->alpha,
-                       .stacking = painter ? painter->treatment.stacking : FL_STACKING_KNOCKOUT,
+                       .stacking = FL_STACKING_KNOCKOUT,
                        .mix = run->mix};
-    layer->rgba = fl_alloc(4 * fl_box_pixels(layer->box), 1, "a layer", error);
-    if (!layer->rgba)
+    if (!(layer->rgba = fl_alloc(4 * fl_box_pixels(layer->box), 1, "a layer", error)))
         return false;
-    if (painter) {
-        const FlColouring how = colouring_of(plan, background, painter, run);
-        g_autofree int16_t *amounts = amounts_of(plan, edges, r, painter, tones[p], error);
-        uint8_t *body = amounts ? fl_alloc(fl_box_pixels(layer->box), 1, "a layer", error) : NULL;
-        if (!body)
-            return false;
-        layer->body = body;
-        fl_colourise(painter->box->ink, &how, painter->painted, amounts, width, layer->box,
-                     layer->rgba);
-        fl_colourise_body(amounts, layer->box, body);
-        if (!fl_holes_close(body, run->coverage, width, layer->box, error))
-            return false;
-    } else {
-        fl_colourise_plain(run->picture, run->rgb, run->coverage, width, layer->box, layer->rgba);
-    }
+    if (p >= 0)
+        return paint_layer(layer, plan, background, edges, r, &plan->painters[p], tones[p], error);
+    fl_colourise_plain(run->picture, run->rgb, run->coverage, fl_film_width(plan->film), layer->box,
+                       layer->rgba);
     return true;
 }
 
