@@ -11,7 +11,6 @@
 #include "style/picture.h"
 #include <string.h>
 
-#define MANY 8     // layers from which on each has a thread
 #define BLEED_PX 8 // how far colours reach into transparency, for whoever scales the frames
 
 static char *backdrop_file(const FlBackground *background, const FlPlan *plan, int frame,
@@ -162,28 +161,41 @@ static FlBox *find_boxes(const FlPlan *plan, const FlRuns *runs)
     return boxes;
 }
 
-/* A layer for each run that is not left out: side by side where there are many, each by all threads
- * where there are few. */
+/* Side by side, those of the layers that are small enough; run: of each layer. */
+static bool fill_small(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
+                       const FlEdgeMap *edges, const int *tones, const int *run, GError **error)
+{
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < composite->n_layers; k++) {
+        GError *mine = NULL;
+        if (fl_plan_side_by_side(plan, fl_box_pixels(edges->boxes[run[k]])) &&
+            !fill_layer(&composite->layers[k], plan, background, edges, run[k], tones, &mine))
+            fl_keep_first_error(&first, mine);
+    }
+    return fl_tell_first_error(error, first);
+}
+
+/* A layer for each run that is not left out. */
 static bool fill_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
                         const FlEdgeMap *edges, const int *tones, GError **error)
 {
     const FlRuns *runs = composite->runs;
     composite->layers = g_new0(FlLayer, MAX(runs->n, 1));
     composite->names = g_new0(char *, runs->n + 1);
-    g_autofree int *run = g_new(int, MAX(runs->n, 1)); // of each layer
+    g_autofree int *run = g_new(int, MAX(runs->n, 1));
     for (int r = 0; r < runs->n; r++)
         if (plan->painter_of[runs->run[r].region] != -2) {
             composite->names[composite->n_layers] = layer_name(plan, runs, r);
             run[composite->n_layers++] = r;
         }
-    GError *first = NULL;
-#pragma omp parallel for schedule(dynamic, 1) if (composite->n_layers >= MANY)
-    for (int k = 0; k < composite->n_layers; k++) {
-        GError *mine = NULL;
-        if (!fill_layer(&composite->layers[k], plan, background, edges, run[k], tones, &mine))
-            fl_keep_first_error(&first, mine);
-    }
-    return fl_tell_first_error(error, first);
+    if (!fill_small(composite, plan, background, edges, tones, run, error))
+        return false;
+    for (int k = 0; k < composite->n_layers; k++)
+        if (!fl_plan_side_by_side(plan, fl_box_pixels(edges->boxes[run[k]])) &&
+            !fill_layer(&composite->layers[k], plan, background, edges, run[k], tones, error))
+            return false;
+    return true;
 }
 
 static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,

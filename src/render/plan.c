@@ -327,16 +327,20 @@ static bool check_memory(const FlPlan *plan, GError **error)
     return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
 }
 
-/* Whether as many regions as there are threads, all as large as this one, fit into a frame. */
-static bool is_small(const FlPlan *plan, const FlPainter *painter)
+bool fl_plan_side_by_side(const FlPlan *plan, size_t pixels)
 {
 #ifdef _OPENMP
     const size_t threads = (size_t)omp_get_max_threads();
 #else
     const size_t threads = 1;
 #endif
-    const size_t frame = (size_t)fl_film_width(plan->film) * (size_t)fl_film_height(plan->film);
-    return fl_box_pixels(fl_masks_extent(plan->masks, painter->region)) * threads <= frame;
+    return pixels * threads <=
+           (size_t)fl_film_width(plan->film) * (size_t)fl_film_height(plan->film);
+}
+
+static bool is_small(const FlPlan *plan, const FlPainter *painter)
+{
+    return fl_plan_side_by_side(plan, fl_box_pixels(fl_masks_extent(plan->masks, painter->region)));
 }
 
 /* The guides of a region use all threads themselves, where it is large enough for that, and their

@@ -36,6 +36,13 @@ void fl_plan_free(FlPlan *plan); // NULL is fine
 /** Rasterises every frame's masks and makes the guides of every painted region. */
 bool fl_plan_prepare(FlPlan *plan, GError **error);
 
+/**
+ * Whether as many areas of that many pixels as there are threads fit into a frame: such areas are
+ * worked on side by side, a thread each, and larger ones by all threads together, so that scratch
+ * never takes more than a whole frame's would.
+ */
+bool fl_plan_side_by_side(const FlPlan *plan, size_t pixels);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
 
 #endif
