@@ -183,7 +183,7 @@ static bool fill_layers(FlComposite *composite, const FlPlan *plan, const FlBack
     const FlRuns *runs = composite->runs;
     composite->layers = g_new0(FlLayer, MAX(runs->n, 1));
     composite->names = g_new0(char *, runs->n + 1);
-    g_autofree int *run = g_new(int, MAX(runs->n, 1));
+    g_autofree int *run = g_new0(int, MAX(runs->n, 1));
     for (int r = 0; r < runs->n; r++)
         if (plan->painter_of[runs->run[r].region] != -2) {
             composite->names[composite->n_layers] = layer_name(plan, runs, r);
