@@ -4,10 +4,10 @@
 # shellcheck source-path=SCRIPTDIR source=film.sh
 . "${0%/*}/film.sh"
 
-started() { # started FOLDER ARGUMENT...: paints in the background, as process $job
+started() { # started FOLDER ARGUMENT...: paints $output in the background, as process $job
     local to=$1
     shift
-    "$program" film -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err &
+    "$program" film -s "$style" -o "$to/${output:-w_%04d.png}" --progress none "$@" >out 2>err &
     job=$!
 }
 
@@ -18,15 +18,17 @@ wait_for() {
     done
 }
 
-# stop FOLDER SIGNAL FRAME [ARGUMENT...]: paints, sends the signal after the frame; the status is
+# stop FOLDER SIGNALS FRAME [ARGUMENT...]: paints, sends the signals after the frame; the status is
 # the program's.
-# Where the program was done before the signal came, as may be on a busy machine, once more.
+# Where the program was done before they came, as may be on a busy machine, once more.
 stop() {
-    local found
+    local found signal
     for _ in 1 2 3 4 5 6 7 8 9 10; do
         started "$1" "${@:4}"
         wait_for "$1/w_000$3.png"
-        kill -"$2" $job 2>/dev/null
+        for signal in $2; do
+            kill -"$signal" $job 2>/dev/null
+        done
         wait $job 2>/dev/null
         found=$?
         [ $found = 0 ] || break
@@ -48,11 +50,7 @@ for signal in INT TERM; do
     result $? "the frames after SIG$signal and a second run are those of a whole render"
 done
 
-started twice
-wait_for twice/w_0001.png
-kill -INT $job
-kill -TERM $job 2>/dev/null
-wait $job 2>/dev/null
+stop twice 'INT TERM' 1
 found=$?
 [ $found = 143 ] || [ $found = 75 ] # the second came too late for a render that had ended
 result $? 'a second signal ends it at once'
@@ -62,10 +60,7 @@ result $? 'and then it goes on all the same'
 paint slid_whole --style-window 2
 ! same slid_whole whole
 result $? 'a window on the recording paints something else than the whole of it'
-started slid --style-window 2
-wait_for slid/w_0003.png
-kill -INT $job 2>/dev/null
-wait $job 2>/dev/null
+stop slid INT 3 --style-window 2
 [ $? = 75 ] && paint slid --style-window 2 && same slid slid_whole
 result $? 'a render that is interrupted goes on with the window where it was'
 
@@ -184,20 +179,12 @@ result $? 'a film without frames that should be resumed is refused'
 "$program" film -s "$style" -o played/w.mkv -q >out 2>err
 [ $? = 0 ] && [ -s played/w.mkv ] && mv played/w.mkv played.mkv && same played whole
 result $? 'a film keeps its frames beside it'
-"$program" film -s "$style" -o on/w.mkv --progress none >out 2>err &
-job=$!
-wait_for on/w_0003.png
-kill -TERM $job 2>/dev/null
-wait $job 2>/dev/null
+output=w.mkv stop on TERM 3
 [ $? = 75 ] && [ ! -e on/w.mkv ] && "$program" film -s "$style" -o on/w.mkv >out 2>err &&
     grep -q 'going on' err && cmp -s on/w.mkv played.mkv && rm on/w.mkv && same on whole
 result $? 'an interrupted film goes on and has the same bytes'
 for frame in 1 3; do
-    "$program" film -s "$style" -o dead/w.mkv --progress none >out 2>err &
-    job=$!
-    wait_for dead/w_000$frame.png
-    kill -KILL $job 2>/dev/null
-    wait $job 2>/dev/null
+    output=w.mkv stop dead KILL $frame
 done
 "$program" film -s "$style" -o dead/w.mkv >out 2>err && grep -q 'going on' err &&
     cmp -s dead/w.mkv played.mkv && rm dead/w.mkv && same dead whole
