@@ -252,22 +252,27 @@ result $? 'the example of fluidy-svg.conf(5) is read'
 
 # An edge is closed where shapes end at each other, and soft where one lies over the other; shading
 # over both hides neither.
-mkdir lie meet lie-shaded meet-shaded
+mkdir lie lie-mixed meet lie-shaded meet-shaded
 echo "<svg xmlns='http://www.w3.org/2000/svg' width='120' height='80'><path d='M5 5h110v70H5z' fill='#336699'/>
 <path d='M30 15h60v50H30z' fill='#bb4422'/></svg>" >lie/d_1.svg
 echo "<svg xmlns='http://www.w3.org/2000/svg' width='120' height='80'><path d='M5 5h55v70H5z' fill='#336699'/>
 <path d='M60 5h55v70H60z' fill='#bb4422'/></svg>" >meet/d_1.svg
+sed "s|fill='#bb4422'|& style='mix-blend-mode:multiply'|" lie/d_1.svg >lie-mixed/d_1.svg
 for drawing in lie meet; do
     sed "s|</svg>|<path d='M0 0h120v80H0z' fill-opacity='.6'/></svg>|" $drawing/d_1.svg >$drawing-shaded/d_1.svg
 done
-closes() { # whether closed edges of the drawing $1 look other than soft ones
+printf '[region shading]\nmatch-fill = #bb4422\npassthrough = off\n' >painted.conf
+closes() { # closes DRAWING ARGUMENT...: whether closed edges look other than soft ones
     for edges in closed soft; do
-        "$program" "$1" -s "$fixtures/style-small" --edges $edges -q -o "$1/$edges%d.png" >out 2>err || return 2
+        "$program" "$@" -s "$fixtures/style-small" --edges $edges -q -o "$1/$edges%d.png" >out 2>err || return 2
     done
     ! cmp -s "$1/closed1.png" "$1/soft1.png"
 }
 closes meet && { closes lie; [ $? = 1 ]; }
 result $? 'edges are closed where shapes meet, not where one lies over the other'
+closes lie-mixed -c painted.conf
+[ $? = 1 ]
+result $? 'nor where shading that is to be painted lies over it'
 closes meet-shaded && { closes lie-shaded; [ $? = 1 ]; }
 result $? 'shading over shapes does not change which of their edges are closed'
 

@@ -72,10 +72,9 @@ bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, con
         !(edges->overlap = fl_alloc(pairs, sizeof *edges->overlap, "a matte", error)))
         return false;
     for (int r = 0; r < edges->n - 1; r++) {
-        if (!hides(plan, &runs->run[r]))
-            continue;
         note_overlaps(edges, r);
-        put_on_top(edges, r);
+        if (hides(plan, &runs->run[r]))
+            put_on_top(edges, r);
     }
     return true;
 }
@@ -110,16 +109,23 @@ static bool find_share(const FlEdgeMap *edges, int run, bool with_all, int radiu
     return fl_closing_share(coverage, others, width, height, *box, radius_px, share, error);
 }
 
-/** -1 where another run lies over a run, else 0; of the run's box, to be freed with free(). */
+/** Whether a run is seen at pixel i: nothing that hides it lies over it. */
+static bool is_seen(const FlEdgeMap *edges, int run, size_t i)
+{
+    return edges->runs->run[run].coverage[i] >= SHOWN && edges->top[i] <= run + 1;
+}
+
+/** 0 where a run is seen, else -1; of the run's box, to be freed with free(). */
 static int16_t *find_seen(const FlEdgeMap *edges, int run, GError **error)
 {
     const FlBox *box = &edges->boxes[run];
     const size_t width = (size_t)fl_film_width(edges->plan->film);
     int16_t *seen = fl_alloc(fl_box_pixels(*box), sizeof *seen, "a matte", error);
     for (int y = 0; seen && y < box->height; y++) {
-        const uint16_t *top = edges->top + (size_t)(box->y + y) * width + (size_t)box->x;
+        const size_t row = (size_t)(box->y + y) * width + (size_t)box->x;
         for (int x = 0; x < box->width; x++)
-            seen[(size_t)y * (size_t)box->width + (size_t)x] = top[x] == run + 1 ? 0 : -1;
+            seen[(size_t)y * (size_t)box->width + (size_t)x] =
+                is_seen(edges, run, row + (size_t)x) ? 0 : -1;
     }
     return seen;
 }
@@ -147,8 +153,8 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
            fl_closing_apply(amounts, seen, ends, meets, box, radius, error);
 }
 
-/** Whether a run is uppermost at a pixel and 2 px around it. */
-static bool is_seen(const FlEdgeMap *edges, int run, int x, int y)
+/** Whether a run is seen at a pixel and 2 px around it. */
+static bool is_inside(const FlEdgeMap *edges, int run, int x, int y)
 {
     enum { MARGIN_PX = 2 };
     const int width = fl_film_width(edges->plan->film);
@@ -156,7 +162,7 @@ static bool is_seen(const FlEdgeMap *edges, int run, int x, int y)
     for (int dy = -MARGIN_PX; dy <= MARGIN_PX; dy += MARGIN_PX)
         for (int dx = -MARGIN_PX; dx <= MARGIN_PX; dx += MARGIN_PX) {
             const int xx = CLAMP(x + dx, 0, width - 1), yy = CLAMP(y + dy, 0, height - 1);
-            if (edges->top[(size_t)yy * width + xx] != run + 1)
+            if (!is_seen(edges, run, (size_t)yy * width + xx))
                 return false;
         }
     return true;
@@ -169,7 +175,7 @@ void fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts)
     for (int y = 0; y < box.height; y++)
         for (int x = 0; x < box.width; x++) {
             const int amount = amounts[(size_t)y * box.width + x];
-            if (amount >= 0 && is_seen(edges, run, box.x + x, box.y + y))
+            if (amount >= 0 && is_inside(edges, run, box.x + x, box.y + y))
                 counts->count[amount]++, counts->total++;
         }
     const int tone = CLAMP(fl_counts_tone(counts), FL_TONE_ONE * 2 / 3, FL_TONE_ONE * 3 / 2);
