@@ -87,7 +87,7 @@ static FlBox cropped(const FlPainter *painter)
     const int levels =
         MIN(painter->box->exemplar->n_levels, fl_levels_of(painter->width, painter->height));
     const int step = painter->treatment.params.half_size ? 2 : 1;
-    const int grid = step << (levels - 1), room = 3 * grid;
+    const int grid = step << (levels - 1), room = (FL_PATCH_RADIUS + 1) * grid;
     const FlBox ever = fl_masks_extent(painter->masks, painter->region);
     const int x0 = MAX(ever.x - room, 0) / grid * grid, y0 = MAX(ever.y - room, 0) / grid * grid;
     const int x1 = MIN(ever.x + ever.width + room, painter->width);
