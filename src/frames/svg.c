@@ -8,9 +8,11 @@
 #include <string.h>
 
 // Size of the page on which paints are read: small, for filters and masks are pixels; what is too
-// small to be drawn there is read once more on a large one.
+// small to be drawn there is read once more on a large one. Something larger that is not drawn is
+// hidden, by a mask most often, and a mask as large as that page costs more than all the rest.
 #define PROBE_PX 256.0
 #define LARGE_PROBE_PX 4096.0
+#define SMALL_PX 4.0
 #define PROBE_TURN                                                                                 \
     0.3 // rad: cairo's script surface fails for fills with axis-parallel edges only,
         // boxes excepted
@@ -277,6 +279,12 @@ static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, double size,
     return g_string_free(text, !drawn);
 }
 
+static bool is_small(FlSvg *svg, const FlLeaf *leaf, double size)
+{
+    const RsvgRectangle box = fl_svg_extents(svg, leaf, size, size);
+    return box.width < SMALL_PX || box.height < SMALL_PX;
+}
+
 int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error)
 {
     for (double size = PROBE_PX; size <= LARGE_PROBE_PX; size *= LARGE_PROBE_PX / PROBE_PX) {
@@ -287,7 +295,7 @@ int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
         const int n = script ? fl_paint_read(script, leaf->whole, parts) : -1;
         for (int i = 0; i < n; i++)
             parts[i].width /= (float)size;
-        if (n != 0)
+        if (n != 0 || !is_small(svg, leaf, size))
             return n;
     }
     return 0;
