@@ -140,7 +140,7 @@ static bool for_each_painter(Job *job, Work work, int step, GError **error)
 static bool write_layers(const Job *job, const FlComposite *composite, int frame, GError **error)
 {
     const FlPlan *plan = job->plan;
-    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    const int width = plan->width, height = plan->height;
     for (int k = 0; k < composite->n_layers; k++) {
         const FlLayer *layer = &composite->layers[k];
         g_autofree uint8_t *rgba = fl_alloc(4 * (size_t)width * height, 1, "a layer", error);
@@ -316,24 +316,15 @@ static bool render_frame(Job *job, int frame, GError **error)
     return tell(job, "paint", frame + 1, seconds_since(start), error);
 }
 
-/* Drafts are looked at and thrown away: their files are written sooner and are larger. */
-static bool is_draft(const FlPlan *plan)
-{
-    bool draft = plan->n_painters > 0;
-    for (int p = 0; p < plan->n_painters; p++)
-        draft = draft && plan->painters[p].treatment.params.half_size;
-    return draft;
-}
-
 static bool open_sink(Job *job, GError **error)
 {
     const FlPlan *plan = job->plan;
     FlSinkParams params = {.path = plan->output,
-                           .width = fl_film_width(plan->film),
-                           .height = fl_film_height(plan->film),
+                           .width = plan->width,
+                           .height = plan->height,
                            .fps = plan->options.fps > 0 ? plan->options.fps : 24,
                            .opaque = job->background.opaque,
-                           .fast = is_draft(plan),
+                           .fast = plan->half, // drafts are looked at and thrown away
                            .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
     job->sink = fl_sink_open(plan->format, &params, error);
     if (!job->sink || !plan->movie)
@@ -456,9 +447,8 @@ static char *what_was_done(const FlPlan *plan)
         return g_strdup_printf("painted %d frame%s: %s%s%s", n, n == 1 ? "" : "s", movie, and,
                                plan->output);
     return g_strdup_printf("would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n,
-                           n == 1 ? "" : "s", fl_film_width(plan->film), fl_film_height(plan->film),
-                           plan->n_painters, plan->n_painters == 1 ? "" : "s", movie, and,
-                           plan->output);
+                           n == 1 ? "" : "s", plan->width, plan->height, plan->n_painters,
+                           plan->n_painters == 1 ? "" : "s", movie, and, plan->output);
 }
 
 /* The time of the pictures that are painted; held ones take none. */

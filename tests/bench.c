@@ -15,9 +15,9 @@
  * one, is what threads gain where they are not kept waiting: these hold on a machine that has other
  * things to do. OMP_WAIT_POLICY=passive is set, so that waiting is not working.
  */
+#include "base/box.h"
 #include "config.h"
 #include "params/params.h"
-#include "synth/draft.h"
 #include "synth/synth.h"
 #include <math.h>
 #include <stdio.h>
@@ -33,13 +33,20 @@
 typedef struct Case {
     const char *name, *style;
     int width, height, painted_px;
+    bool half; // as drafts are painted
 } Case;
 
 static const Case cases[] = {
-    {"genie", "01", 900, 900, 123000},    {"horse", "02", 1000, 800, 111000},
-    {"sunflower", "03", 500, 600, 60000}, {"waving", "05", 640, 740, 80000},
-    {"jump", "06", 700, 300, 12000},
+    {"genie", "01", 900, 900, 123000, false},    {"horse", "02", 1000, 800, 111000, false},
+    {"sunflower", "03", 500, 600, 60000, false}, {"waving", "05", 640, 740, 80000, false},
+    {"jump", "06", 700, 300, 12000, false},
 };
+
+static Case half_of(const Case *c)
+{
+    return (Case){c->name,           c->style, fl_half_side(c->width), fl_half_side(c->height),
+                  c->painted_px / 4, true};
+}
 
 /* What one run of a case says; the words are the JSON's. */
 #define FIGURES(F)                                                                                 \
@@ -48,7 +55,8 @@ static const Case cases[] = {
     F(guides_s)                                                                                    \
     F(target_s)                                                                                    \
     F(temporal_s)                                                                                  \
-    F(search_s) F(vote_s) F(core_s_per_mpx) F(s_per_mpx) F(scaling) F(evaluations_per_px)          \
+    F(search_s)                                                                                    \
+    F(vote_s) F(core_s_per_mpx) F(s_per_mpx) F(scaling) F(evaluations_per_px)                      \
         F(evaluations_per_s_core) F(tries_per_s_core) F(energy) F(painted_px) F(peak_mib)
 
 typedef struct Figures {
@@ -76,7 +84,9 @@ static bool blob(void *data, int frame, uint8_t *coverage, GError **error)
 {
     const Case *c = data;
     const double radius = sqrt(c->painted_px / (G_PI * 1.02)), phase = frame * 0.12;
-    const double cx = c->width * 0.5 + 8 * sin(phase), cy = c->height * 0.5 + 8 * cos(0.7 * phase);
+    const double way = c->half ? 4 : 8;
+    const double cx = c->width * 0.5 + way * sin(phase);
+    const double cy = c->height * 0.5 + way * cos(0.7 * phase);
     memset(coverage, 0, (size_t)c->width * c->height);
     for (int y = 0; y < c->height; y++)
         for (int x = 0; x < c->width; x++) {
@@ -87,17 +97,6 @@ static bool blob(void *data, int frame, uint8_t *coverage, GError **error)
             const double inside = radius * (1 + lobes) - r + 0.5;
             coverage[(size_t)y * c->width + x] = (uint8_t)(CLAMP(inside, 0, 1) * 255);
         }
-    return true;
-}
-
-/* The same for a draft. */
-static bool half_blob(void *data, int frame, uint8_t *coverage, GError **error)
-{
-    const Case *c = data;
-    g_autofree uint8_t *whole = g_malloc((size_t)c->width * c->height);
-    if (!blob(data, frame, whole, error))
-        return false;
-    fl_mask_halve(whole, c->width, c->height, coverage);
     return true;
 }
 
@@ -151,7 +150,7 @@ static double painted_pixels(const Bench *b)
     double n = 0;
     for (size_t p = 0; p < (size_t)b->guides.width * b->guides.height; p++)
         n += b->guides.mask[p] >= FL_INSIDE;
-    return b->guides.width < b->c->width ? 4 * n : n;
+    return b->c->half ? 4 * n : n;
 }
 
 static bool measured_frames(Bench *b, Figures *f, GError **error)
@@ -202,10 +201,7 @@ static bool run_case(const Case *c, Figures *f, GError **error)
         return false;
     const FlGuideParams how = fl_guide_params(params);
     const int n = frames + 1 + FRAMES_MEASURED;
-    FlGuideSource source = {c->width, c->height, n, blob, NULL, (void *)c};
-    if (params->half_size)
-        source = (FlGuideSource){
-            fl_half_side(c->width), fl_half_side(c->height), n, half_blob, NULL, (void *)c};
+    const FlGuideSource source = {c->width, c->height, n, blob, NULL, (void *)c};
     const FlSynthSize size = {c->width, c->height, c->width, c->height};
     Bench b = {.c = c};
     const double start = seconds(CLOCK_MONOTONIC);
@@ -323,7 +319,8 @@ static bool run_hidden(const char *name, GError **error)
     for (size_t k = 0; k < G_N_ELEMENTS(cases); k++)
         if (g_str_equal(cases[k].name, name)) {
             Figures f = {0};
-            if (!run_case(&cases[k], &f, error))
+            const Case half = half_of(&cases[k]);
+            if (!run_case(detail_of_word() == FL_DETAIL_DRAFT ? &half : &cases[k], &f, error))
                 return false;
             g_autofree char *text = as_json(&f);
             puts(text);

@@ -250,6 +250,23 @@ cp plain_1.png paper.png
     ! grep 'warning:' err | grep -v 'example.conf:8: \[region hair\] holds for nothing'
 result $? 'the example of fluidy-svg.conf(5) is read'
 
+# Drafts are made at half the size, all regions or none; their files have that of the frames.
+sides() { # of a PNG file
+    od -An -tu4 --endian=big -j16 -N8 "$1" | xargs
+}
+"$program" all.d -s 01 --detail draft -W 61 -o 'half/w_%d.png' --layers 'half/l_{region}_%d.png' \
+    --paint 'half/p_{region}_%d.png' -q >out 2>err && [ "$(sides half/w_1.png)" = '61 46' ] &&
+    [ "$(for layer in half/l_*; do sides "$layer"; done | sort -u)" = '61 46' ] &&
+    [ "$(for paint in half/p_*; do sides "$paint"; done | sort -u)" = '31 23' ]
+result $? 'a draft of an odd size has frames and layers of that size'
+for half in on off; do
+    printf '[defaults]\nstyle = 01\n[region one]\nmatch-fill = #a93311\ndetail = draft\nhalf-size = %s\n' $half \
+        >some-$half.conf
+    "$program" all.d -c some-$half.conf -o "some-$half/w_%d.png" -q >out 2>err || break
+done
+diff -r some-on some-off >out && [ -s some-on/w_1.png ]
+result $? 'among others a draft is not made at half the size'
+
 # An edge is closed where shapes end at each other, and soft where one lies over the other; shading
 # over both hides neither.
 mkdir lie lie-mixed meet lie-shaded meet-shaded

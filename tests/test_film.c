@@ -251,6 +251,29 @@ static void a_mask_is_the_whole_shape(void)
     g_assert_cmpint(area, ==, 3200);
 }
 
+/* Of an odd size; edges of one lie on pixels of the other. */
+static void a_film_of_half_the_size_has_the_same_shapes(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<rect x=\"8\" y=\"20\" width=\"40\" height=\"60\" fill=\"red\"/>"
+                       "<rect x=\"70\" y=\"90\" width=\"40\" height=\"40\" fill=\"red\"/>"));
+    const FlFilmOptions options = {.width = 75, .height = 75};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    uint8_t full[75 * 75], half[38 * 38];
+    g_assert_true(fl_film_mask(film, 0, 0, full, NULL));
+    fl_film_halve(film);
+    g_assert_cmpint(fl_film_width(film), ==, 38);
+    g_assert_cmpint(fl_film_height(film), ==, 38);
+    g_assert_true(fl_film_mask(film, 0, 0, half, NULL));
+    for (int y = 0; y < 37; y++)
+        for (int x = 0; x < 37; x++) {
+            const int p = 75 * 2 * y + 2 * x;
+            const int mean = (full[p] + full[p + 1] + full[p + 75] + full[p + 76] + 2) / 4;
+            g_assert_cmpint(abs(half[38 * y + x] - mean), <=, 2);
+        }
+}
+
 static void a_fading_gradient_keeps_its_mask(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -543,6 +566,8 @@ int main(int argc, char **argv)
     TEST("rings-of-two-colours-are-regions-of-their-own",
          rings_of_two_colours_are_regions_of_their_own);
     TEST("a-mask-is-the-whole-shape", a_mask_is_the_whole_shape);
+    TEST("a-film-of-half-the-size-has-the-same-shapes",
+         a_film_of_half_the_size_has_the_same_shapes);
     TEST("a-fading-gradient-keeps-its-mask", a_fading_gradient_keeps_its_mask);
     TEST("leaves-that-do-not-meet-share-a-run", leaves_that_do_not_meet_share_a_run);
     TEST("rules-choose-leaves-and-the-first-wins", rules_choose_leaves_and_the_first_wins);

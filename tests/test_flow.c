@@ -133,6 +133,17 @@ static void flow_files_come_back_as_they_were_saved(void)
     }
 }
 
+/* At an odd border, and beside a shape, where nothing moves. */
+static void flow_of_half_the_size_keeps_what_moves(void)
+{
+    float flow[30] = {0}, half[12];
+    flow[2 * 7] = 3;
+    flow[2 * 14 + 1] = -8;
+    fl_flow_halve(flow, 5, 3, half);
+    for (int k = 0; k < 12; k++)
+        g_assert_cmpfloat(half[k], ==, k == 2 ? 1.5f : k == 11 ? -4 : 0);
+}
+
 static void unknown_flow_is_no_flow(void)
 {
     const float flow[4] = {1.666666752e9f, 1.666666752e9f, 1, 2};
@@ -187,6 +198,7 @@ int main(int argc, char **argv)
     TEST(without_a_fixed_cell_all_is_zero);
     TEST(a_field_is_the_same_on_any_thread_count);
     TEST(flow_files_come_back_as_they_were_saved);
+    TEST(flow_of_half_the_size_keeps_what_moves);
     TEST(unknown_flow_is_no_flow);
     TEST(broken_flow_files_are_rejected_with_a_reason);
 #undef TEST

@@ -1,4 +1,5 @@
 #include "base/rng.h"
+#include "compose/enlarge.h"
 #include "compose/holes.h"
 #include "compose/layers.h"
 #include "compose/matte.h"
@@ -285,6 +286,96 @@ static void colour_bleeds_under_transparent_pixels(void)
     layers_clear(layers, 1);
 }
 
+enum { FULL_W = 2 * W - 1, FULL_H = 2 * H - 1, FULL_N = FULL_W * FULL_H };
+
+static FlLayer enlarged(const FlLayer *half)
+{
+    g_autoptr(GError) error = NULL;
+    FlLayer full;
+    g_assert_true(fl_layer_double(half, FULL_W, FULL_H, &full, &error));
+    g_assert_no_error(error);
+    return full;
+}
+
+static void enlarged_clear(FlLayer *layer)
+{
+    free(layer->rgba);
+    free((uint8_t *)layer->body);
+    free((uint8_t *)layer->coverage);
+}
+
+static void enlarged_neighbours_leave_no_seam(void)
+{
+    for (int turn = 0; turn < 16; turn++) {
+        const double a = cos(turn * 0.41), b = sin(turn * 0.41), c = a * 24.3 + b * 19.7;
+        g_autoptr(GError) error = NULL;
+        g_autofree uint8_t *out = g_malloc(4 * FULL_N);
+        uint8_t left[N], right[N];
+        half_plane(a, b, c, left);
+        half_plane(-a, -b, -c, right);
+        FlLayer half[2] = {flat_layer(left, 100, 100, 100), flat_layer(right, 100, 100, 100)};
+        FlLayer layers[2] = {enlarged(&half[0]), enlarged(&half[1])};
+        g_assert_true(fl_layers_resolve(layers, 2, FULL_W, FULL_H, &plain, &error));
+        fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, FULL_W, FULL_H,
+                          false, out);
+        for (int i = 0; i < 4 * FULL_N; i++)
+            if (i % 4 < 3)
+                g_assert_cmpint(out[i], <=, 103);
+        layers_clear(half, 2);
+        enlarged_clear(&layers[0]);
+        enlarged_clear(&layers[1]);
+    }
+}
+
+/* The box lies within the frame; what is paint has the colour, opacity and body that it had. */
+static void an_enlarged_layer_keeps_its_paint_up_to_the_edge(void)
+{
+    uint8_t shape[N], body[12 * 10];
+    const FlBox box = {18, 15, 12, 10};
+    memset(shape, 0, N);
+    memset(body, 80, sizeof body);
+    FlLayer half = {.box = box, .coverage = shape, .body = body, .alpha = 200};
+    half.rgba = g_malloc0(4 * sizeof body);
+    for (int y = 1; y < 9; y++) // a pixel of the box is left around
+        for (int x = 1; x < 11; x++) {
+            shape[(box.y + y) * W + box.x + x] = 255;
+            memcpy(half.rgba + 4 * (y * 12 + x), (uint8_t[]){10, 200, 30, 120}, 4);
+        }
+    FlLayer full = enlarged(&half);
+    g_assert_cmpint(full.alpha, ==, 200);
+    double area = 0;
+    for (int y = 0; y < full.box.height; y++)
+        for (int x = 0; x < full.box.width; x++) {
+            const int p = y * full.box.width + x;
+            const uint8_t covered = full.coverage[(full.box.y + y) * FULL_W + full.box.x + x];
+            area += covered / 255.0;
+            if (covered) {
+                g_assert_cmpmem(full.rgba + 4 * p, 4, ((uint8_t[]){10, 200, 30, 120}), 4);
+                g_assert_cmpint(full.body[p], ==, 80);
+            }
+        }
+    g_assert_cmpfloat(fabs(area - 4 * 80), <, 1);
+    g_free(half.rgba);
+    enlarged_clear(&full);
+}
+
+/* No column or row of the frame is lost, and beyond its edge nothing mixes in. */
+static void an_enlarged_layer_fills_the_frame(void)
+{
+    uint8_t all[N];
+    memset(all, 255, N);
+    FlLayer half = flat_layer(all, 1, 2, 3), full = enlarged(&half);
+    g_assert_cmpint(full.box.width, ==, FULL_W);
+    g_assert_cmpint(full.box.height, ==, FULL_H);
+    for (int p = 0; p < FULL_N; p++) {
+        g_assert_cmpint(full.coverage[p], ==, 255);
+        g_assert_cmpmem(full.rgba + 4 * p, 4, ((uint8_t[]){1, 2, 3, 255}), 4);
+    }
+    g_assert_null(full.body);
+    layers_clear(&half, 1);
+    enlarged_clear(&full);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -310,5 +401,9 @@ int main(int argc, char **argv)
     g_test_add_func("/layers/linear-light-blends-brighter", linear_light_blends_brighter);
     g_test_add_func("/layers/colour-bleeds-under-transparent-pixels",
                     colour_bleeds_under_transparent_pixels);
+    g_test_add_func("/layers/enlarged-neighbours-leave-no-seam", enlarged_neighbours_leave_no_seam);
+    g_test_add_func("/layers/an-enlarged-layer-keeps-its-paint-up-to-the-edge",
+                    an_enlarged_layer_keeps_its_paint_up_to_the_edge);
+    g_test_add_func("/layers/an-enlarged-layer-fills-the-frame", an_enlarged_layer_fills_the_frame);
     return g_test_run();
 }

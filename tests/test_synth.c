@@ -1,5 +1,4 @@
 #include "small_style.h"
-#include "synth/draft.h"
 #include "synth/synth.h"
 #include "synth/vote.h"
 #include <omp.h>
@@ -85,37 +84,6 @@ static void upscaling_keeps_a_rotated_field_coherent(void)
     }
 }
 
-/* A line of one pixel at an odd border, and a frame that moves to the right beside it. */
-static void a_draft_keeps_coverage_and_motion(void)
-{
-    const uint8_t mask[15] = {0, 0, 0, 0, 255, 0, 0, 0, 0, 255, 0, 0, 0, 0, 255};
-    float flow[30] = {0}, small[12];
-    uint8_t half[6];
-    flow[2 * 7] = 3;
-    fl_mask_halve(mask, 5, 3, half);
-    fl_flow_halve(flow, 5, 3, small);
-    g_assert_cmpmem(half, 6, ((const uint8_t[]){0, 0, 255, 0, 0, 255}), 6);
-    g_assert_cmpfloat(small[2 * 1], ==, 1.5f);
-}
-
-static void guides_of_a_draft_enlarge_in_place(void)
-{
-    g_autoptr(GError) error = NULL;
-    g_auto(FlGuides) guides = {0};
-    g_assert_true(fl_guides_init(&guides, 5, 3, &error));
-    guides.width = 3, guides.height = 2;
-    for (int p = 0; p < 6; p++)
-        guides.mask[p] = (uint8_t)p, guides.distance[p] = (float)p, guides.flow[2 * p] = (float)-p;
-    fl_guides_double(&guides, 5, 3);
-    g_assert_cmpint(guides.width * guides.height, ==, 15);
-    for (int p = 0; p < 15; p++) {
-        const int from = p / 5 / 2 * 3 + p % 5 / 2;
-        g_assert_cmpint(guides.mask[p], ==, from);
-        g_assert_cmpfloat(guides.distance[p], ==, (float)(2 * from));
-        g_assert_cmpfloat(guides.flow[2 * p], ==, (float)(-2 * from));
-    }
-}
-
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -126,8 +94,5 @@ int main(int argc, char **argv)
                     a_coherent_field_votes_back_the_exemplar);
     g_test_add_func("/synth/upscaling-keeps-a-rotated-field-coherent",
                     upscaling_keeps_a_rotated_field_coherent);
-    g_test_add_func("/synth/a-draft-keeps-coverage-and-motion", a_draft_keeps_coverage_and_motion);
-    g_test_add_func("/synth/guides-of-a-draft-enlarge-in-place",
-                    guides_of_a_draft_enlarge_in_place);
     return g_test_run();
 }

@@ -18,4 +18,10 @@ static inline size_t fl_box_pixels(FlBox box)
     return (size_t)box.width * (size_t)box.height;
 }
 
+/** A side of half the size; halves count as whole pixels. */
+static inline int fl_half_side(int px)
+{
+    return (px + 1) / 2;
+}
+
 #endif

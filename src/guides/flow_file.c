@@ -1,5 +1,7 @@
 #include "guides/flow_file.h"
 
+#include "base/box.h"
+
 #include <errno.h>
 #include <gio/gio.h>
 #include <math.h>
@@ -123,4 +125,31 @@ bool fl_flow_save(const char *path, int width, int height, const float *flow, GE
         return false;
     }
     return true;
+}
+
+/* The four pixels of a small one; at an odd border the last ones are met twice. */
+static void children(int width, int height, int x, int y, size_t child[4])
+{
+    const int x1 = MIN(2 * x + 1, width - 1), y1 = MIN(2 * y + 1, height - 1);
+    child[0] = (size_t)2 * y * width + 2 * x;
+    child[1] = (size_t)2 * y * width + x1;
+    child[2] = (size_t)y1 * width + 2 * x;
+    child[3] = (size_t)y1 * width + x1;
+}
+
+void fl_flow_halve(const float *flow, int width, int height, float *half)
+{
+    const int w = fl_half_side(width), h = fl_half_side(height);
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            size_t child[4];
+            float most = -1;
+            children(width, height, x, y, child);
+            for (int k = 0; k < 4; k++) { // the fastest: beside a shape nothing moves
+                const float *at = flow + 2 * child[k], speed = at[0] * at[0] + at[1] * at[1];
+                float *to = half + 2 * ((size_t)y * w + x);
+                if (speed > most || k == 0)
+                    most = speed, to[0] = at[0] * 0.5f, to[1] = at[1] * 0.5f;
+            }
+        }
 }

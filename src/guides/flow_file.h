@@ -17,6 +17,9 @@
  */
 bool fl_flow_load(const char *path, int width, int height, float *flow, GError **error);
 
+/** The flow at half the size, as fl_half_side() says; lengths become those of the small frame. */
+void fl_flow_halve(const float *flow, int width, int height, float *half);
+
 /** Writes one, in the format that the name asks for, by way of a temporary file. FL_ERROR_OUTPUT.
  */
 bool fl_flow_save(const char *path, int width, int height, const float *flow, GError **error);

@@ -1,3 +1,4 @@
+#include "base/box.h"
 #include "regions/filmdata.h"
 #include "regions/identity.h"
 #include "regions/names.h"
@@ -16,6 +17,19 @@ int fl_film_width(const FlFilm *film)
 int fl_film_height(const FlFilm *film)
 {
     return film->height;
+}
+
+/* The files are drawn to the page's size, and steps within their boxes. */
+void fl_film_halve(FlFilm *film)
+{
+    film->width = fl_half_side(film->width), film->height = fl_half_side(film->height);
+    for (int f = 0; f < film->sequence->n; f++) {
+        FlFilmFrame *frame = &film->frame[f];
+        frame->page_width /= 2, frame->page_height /= 2;
+        for (int i = 0; i < frame->n; i++)
+            for (int side = 0; side < 4; side++)
+                frame->step[i].box[side] /= 2;
+    }
 }
 
 int fl_film_regions(const FlFilm *film)

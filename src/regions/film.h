@@ -86,6 +86,12 @@ const char *fl_film_name(const FlFilm *film);
 const char *fl_film_file(const FlFilm *film, int frame);
 int fl_film_number(const FlFilm *film, int frame);
 
+/**
+ * From now on the film's pictures have half the width and height, halves counting as whole pixels;
+ * the regions stay as they are. Nobody may be drawing it.
+ */
+void fl_film_halve(FlFilm *film);
+
 /** Rasterises a frame. Any thread may call it. Returns: to be freed with fl_runs_free(). */
 FlRuns *fl_film_runs(const FlFilm *film, int frame, GError **error);
 

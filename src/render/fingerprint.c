@@ -142,8 +142,8 @@ static void add_options(FlFingerprint *print, const FlPlan *plan)
     const FlRenderOptions *o = &plan->options;
     fl_fingerprint_add(print, "the format", plan->format->name);
     add_number(print, "the first frame's number", fl_film_number(plan->film, 0));
-    add_number(print, "the width", fl_film_width(plan->film));
-    add_number(print, "the height", fl_film_height(plan->film));
+    add_number(print, "the width", plan->width);
+    add_number(print, "the height", plan->height);
     fl_fingerprint_add(print, "canvas", o->canvas);
     add_number(print, "scale", o->scale);
     add_number(print, "dpi", o->dpi);

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/first_error.h"
 #include "compose/colourise.h"
+#include "compose/enlarge.h"
 #include "compose/holes.h"
 #include "output/name.h"
 #include "params/text.h"
@@ -65,7 +66,7 @@ static FlPicture *backdrop_picture(const FlBackground *background, const FlPlan 
 {
     g_autofree char *file = backdrop_file(background, plan, frame, error);
     g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
-    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    const int width = plan->width, height = plan->height;
     if (picture && (picture->width != width || picture->height != height))
         return fl_picture_resize(picture, width, height, error);
     return g_steal_pointer(&picture);
@@ -121,8 +122,18 @@ static bool paint_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *
     return fl_holes_close(body, run->coverage, width, layer->box, error);
 }
 
-static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                       const FlEdgeMap *edges, int r, const int *tones, GError **error)
+static void clear_layer(FlLayer *layer, bool with_coverage)
+{
+    free(layer->rgba);
+    free((uint8_t *)layer->body);
+    if (with_coverage)
+        free((uint8_t *)layer->coverage);
+    *layer = (FlLayer){0};
+}
+
+/* In the size of the film. */
+static bool fill_film_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
+                            const FlEdgeMap *edges, int r, const int *tones, GError **error)
 {
     const FlRun *run = &edges->runs->run[r];
     const int p = plan->painter_of[run->region];
@@ -138,6 +149,19 @@ static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *b
     fl_colourise_plain(run->picture, run->rgb, run->coverage, fl_film_width(plan->film), layer->box,
                        layer->rgba);
     return true;
+}
+
+/* In the size of the frame. */
+static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
+                       const FlEdgeMap *edges, int r, const int *tones, GError **error)
+{
+    if (!plan->half)
+        return fill_film_layer(layer, plan, background, edges, r, tones, error);
+    FlLayer half;
+    const bool done = fill_film_layer(&half, plan, background, edges, r, tones, error) &&
+                      fl_layer_double(&half, plan->width, plan->height, layer, error);
+    clear_layer(&half, false);
+    return done;
 }
 
 /* The region's name, with a number from its second layer on. */
@@ -182,6 +206,7 @@ static bool fill_layers(FlComposite *composite, const FlPlan *plan, const FlBack
 {
     const FlRuns *runs = composite->runs;
     composite->layers = g_new0(FlLayer, MAX(runs->n, 1));
+    composite->enlarged = plan->half;
     composite->names = g_new0(char *, runs->n + 1);
     g_autofree int *run = g_new0(int, MAX(runs->n, 1));
     for (int r = 0; r < runs->n; r++)
@@ -214,14 +239,14 @@ static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBack
                             .gap_px = (float)MAX(plan->options.gap, 0),
                             .feather_px = (float)MAX(plan->options.feather, 0)};
     memcpy(params.paper, background->paper, 3);
-    return fl_layers_resolve(composite->layers, composite->n_layers, fl_film_width(plan->film),
-                             fl_film_height(plan->film), &params, error);
+    return fl_layers_resolve(composite->layers, composite->n_layers, plan->width, plan->height,
+                             &params, error);
 }
 
 static bool compose(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
                     int frame, bool with_16, GError **error)
 {
-    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
+    const int width = plan->width, height = plan->height;
     const size_t values = 4 * (size_t)width * height;
     FlBackdrop backdrop = {.flat = {background->flat[0], background->flat[1], background->flat[2],
                                     background->none ? 0 : 255}};
@@ -253,8 +278,7 @@ bool fl_composite_init(FlComposite *composite, const FlPlan *plan, const FlBackg
 void fl_composite_clear(FlComposite *composite)
 {
     for (int k = 0; k < composite->n_layers; k++) {
-        free(composite->layers[k].rgba);
-        free((uint8_t *)composite->layers[k].body);
+        clear_layer(&composite->layers[k], composite->enlarged);
         g_free(composite->names[k]);
     }
     g_free(composite->layers);

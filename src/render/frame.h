@@ -23,6 +23,7 @@ typedef struct FlComposite {
     FlRuns *runs;
     int n_layers;
     FlLayer *layers;  // bottom first; rgba and body are owned
+    bool enlarged;    // coverage is owned as well; else it is the runs'
     char **names;     // of the layers, for files: unique in the frame
     uint8_t *rgba;    // width * height * 4 straight sRGBA
     uint16_t *rgba16; // NULL unless asked for

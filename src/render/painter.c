@@ -5,7 +5,6 @@
 #include "guides/flow_file.h"
 #include "output/name.h"
 #include "render/paints.h"
-#include "synth/draft.h"
 #include <string.h>
 
 #define WRAP 24 // pictures of a loop that its guides see beyond each end
@@ -24,14 +23,17 @@ static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **erro
                         coverage, error);
 }
 
-static bool painter_half_mask(void *data, int frame, uint8_t *coverage, GError **error)
+/* The flow of the whole frame: files have the size of the film's frames, drafts half of it. */
+static bool load_flow(const FlPainter *painter, const char *file, float *flow, GError **error)
 {
-    const FlPainter *painter = data;
-    const FlBox rect = painter->rect;
-    g_autofree uint8_t *mask = fl_alloc(fl_box_pixels(rect), 1, "a mask", error);
-    if (!mask || !painter_mask(data, frame, mask, error))
+    const int width = painter->frame_width, height = painter->frame_height;
+    if (width == painter->width && height == painter->height)
+        return fl_flow_load(file, width, height, flow, error);
+    g_autofree float *full =
+        fl_alloc(2 * (size_t)width * height, sizeof(float), "a flow field", error);
+    if (!full || !fl_flow_load(file, width, height, full, error))
         return false;
-    fl_mask_halve(mask, rect.width, rect.height, coverage);
+    fl_flow_halve(full, width, height, flow);
     return true;
 }
 
@@ -44,7 +46,7 @@ static bool painter_flow(void *data, int frame, float *flow, GError **error)
     g_autofree float *whole = fl_alloc(2 * pixels, sizeof(float), "a flow field", error);
     g_autofree char *file =
         whole ? fl_output_name(painter->flow_pattern, number, painter->name, error) : NULL;
-    if (!file || !fl_flow_load(file, painter->width, painter->height, whole, error))
+    if (!file || !load_flow(painter, file, whole, error))
         return false;
     for (int y = 0; y < rect.height; y++)
         memcpy(flow + 2 * (size_t)y * rect.width,
@@ -53,31 +55,16 @@ static bool painter_flow(void *data, int frame, float *flow, GError **error)
     return true;
 }
 
-static bool painter_half_flow(void *data, int frame, float *flow, GError **error)
-{
-    const FlPainter *painter = data;
-    const FlBox rect = painter->rect;
-    g_autofree float *whole =
-        fl_alloc(2 * fl_box_pixels(rect), sizeof(float), "a flow field", error);
-    if (!whole || !painter_flow(data, frame, whole, error))
-        return false;
-    fl_flow_halve(whole, rect.width, rect.height, flow);
-    return true;
-}
-
 /* Where guides come from: the masks of the painter's rectangle, and its flow files. */
 static FlGuideSource source_of(FlPainter *painter)
 {
-    const int n_pictures = painter->n_pictures + 2 * painter->wrap;
     const FlBox rect = painter->rect;
-    FlGuideSource source = {rect.width,   rect.height,  n_pictures,
-                            painter_mask, painter_flow, painter};
-    if (painter->treatment.params.half_size)
-        source = (FlGuideSource){fl_half_side(rect.width), fl_half_side(rect.height), n_pictures,
-                                 painter_half_mask,        painter_half_flow,         painter};
-    if (!painter->flow_pattern)
-        source.flow = NULL;
-    return source;
+    return (FlGuideSource){.width = rect.width,
+                           .height = rect.height,
+                           .n_frames = painter->n_pictures + 2 * painter->wrap,
+                           .mask = painter_mask,
+                           .flow = painter->flow_pattern ? painter_flow : NULL,
+                           .data = painter};
 }
 
 /* Room for the coarsest patches around the region, on the grid of the coarsest level, so that a
@@ -86,8 +73,7 @@ static FlBox cropped(const FlPainter *painter)
 {
     const int levels =
         MIN(painter->box->exemplar->n_levels, fl_levels_of(painter->width, painter->height));
-    const int step = painter->treatment.params.half_size ? 2 : 1;
-    const int grid = step << (levels - 1), room = (FL_PATCH_RADIUS + 1) * grid;
+    const int grid = 1 << (levels - 1), room = (FL_PATCH_RADIUS + 1) * grid;
     const FlBox ever = fl_masks_extent(painter->masks, painter->region);
     const int x0 = MAX(ever.x - room, 0) / grid * grid, y0 = MAX(ever.y - room, 0) / grid * grid;
     const int x1 = MIN(ever.x + ever.width + room, painter->width);
@@ -155,17 +141,10 @@ static void put_part(FlPainter *painter)
 /* The region's picture `index`, held ones counted once, into painter->part. */
 static bool paint_part(FlPainter *painter, int index, FlGuides *guides, GError **error)
 {
-    const bool half = painter->treatment.params.half_size;
-    const FlBox rect = painter->rect;
-    guides->width = half ? fl_half_side(rect.width) : rect.width;
-    guides->height = half ? fl_half_side(rect.height) : rect.height;
-    if (!fl_guide_sequence_get(painter->guides, painter->wrap + index, guides, error) ||
-        !fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
-                        painter->wants_view ? &painter->view : NULL, error))
-        return false;
-    if (half && painter->wants_view)
-        fl_guides_double(guides, rect.width, rect.height);
-    return true;
+    guides->width = painter->rect.width, guides->height = painter->rect.height;
+    return fl_guide_sequence_get(painter->guides, painter->wrap + index, guides, error) &&
+           fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
+                          painter->wants_view ? &painter->view : NULL, error);
 }
 
 bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)

@@ -14,12 +14,13 @@ typedef struct FlPainter {
     const char *name; // borrowed
     double area_px;   // mean, for sharing out the work
     FlTreatment treatment;
-    const FlPaintbox *box; // borrowed
-    const FlMasks *masks;  // borrowed
-    const FlFilm *film;    // borrowed
-    int width, height;     // of the film
-    FlBox rect;            // the part of it in which the region ever is, with some room
-    bool loops;            // the film's end leads into its beginning
+    const FlPaintbox *box;         // borrowed
+    const FlMasks *masks;          // borrowed
+    const FlFilm *film;            // borrowed
+    int width, height;             // of the film
+    int frame_width, frame_height; // of the frames, which flow files have
+    FlBox rect;                    // the part of it in which the region ever is, with some room
+    bool loops;                    // the film's end leads into its beginning
     FlLoop loop;
     int n_pictures; // held frames counted once
     int wrap; // so many pictures of a loop's end come before its guides, and of its start after

@@ -98,29 +98,63 @@ static bool warn_of_style(const FlPlan *plan, const FlPainter *painter, GError *
                 box->path, box->ink->beyond);
 }
 
-static bool add_painter(FlPlan *plan, int region, GError **error)
+/* How a region is treated, and whether it is painted at all. */
+static bool treat_region(FlPlan *plan, int region, GError **error)
 {
     const FlRegion *r = fl_film_region(plan->film, region);
+    const char *only = plan->options.only_region;
     FlPainter *painter = &plan->painters[plan->n_painters];
-    if (!fl_config_treatment(plan->config, r->rule, r->name, &plan->options, &painter->treatment,
-                             error))
+    FlTreatment *treatment = &painter->treatment;
+    const bool left_out = only && !g_str_equal(only, r->name);
+    if (!fl_config_treatment(plan->config, r->rule, r->name, &plan->options, treatment, error))
         return false;
-    plan->painter_of[region] = -1;
-    if (!r->paintable || painter->treatment.passthrough == FL_PASSTHROUGH_YES) {
-        fl_treatment_clear(&painter->treatment);
+    const bool painted = r->paintable && treatment->passthrough != FL_PASSTHROUGH_YES;
+    plan->half &= !painted || treatment->params.half_size;
+    plan->painter_of[region] = left_out ? -2 : -1;
+    if (!painted || left_out) {
+        fl_treatment_clear(treatment);
         return true;
     }
-    plan->n_painters++; // from here on the plan clears it
-    if (!painter->treatment.style) {
+    painter->region = region;
+    plan->painter_of[region] = plan->n_painters++; // from here on the plan clears it
+    if (!treatment->style)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "no style for region “%s”: expected --style NAME, or style = NAME in a config",
                     r->name);
-        return false;
-    }
-    plan->painter_of[region] = plan->n_painters - 1;
-    painter->region = region, painter->name = r->name, painter->area_px = r->area_px;
+    return treatment->style != NULL;
+}
+
+/* Half the size is for all regions or for none, also of those that are left out this time: they are
+ * drawn and stacked together. */
+static bool treat_regions(FlPlan *plan, GError **error)
+{
+    const int n = fl_film_regions(plan->film);
+    plan->painters = g_new0(FlPainter, MAX(n, 1));
+    plan->painter_of = g_new0(int, MAX(n, 1));
+    plan->half = true;
+    for (int r = 0; r < n; r++)
+        if (!treat_region(plan, r, error))
+            return false;
+    plan->half &= plan->n_painters > 0;
+    for (int p = 0; p < plan->n_painters; p++)
+        plan->painters[p].treatment.params.half_size = plan->half;
+    return fl_limit_check(FL_LIMIT_REGIONS, plan->n_painters, fl_film_name(plan->film), error);
+}
+
+static void choose_size(FlPlan *plan)
+{
+    plan->width = fl_film_width(plan->film), plan->height = fl_film_height(plan->film);
+    if (plan->half)
+        fl_film_halve(plan->film);
+}
+
+static bool equip_painter(FlPlan *plan, FlPainter *painter, GError **error)
+{
+    const FlRegion *r = fl_film_region(plan->film, painter->region);
+    painter->name = r->name, painter->area_px = r->area_px;
     painter->masks = plan->masks, painter->film = plan->film;
     painter->width = fl_film_width(plan->film), painter->height = fl_film_height(plan->film);
+    painter->frame_width = plan->width, painter->frame_height = plan->height;
     painter->flow_pattern = g_strdup(plan->options.flow);
     painter->given = plan->options.merge ? plan->options.paint : NULL;
     painter->loops = plan->options.loop && !painter->given;
@@ -132,25 +166,17 @@ static bool add_painter(FlPlan *plan, int region, GError **error)
     return true;
 }
 
-static bool add_painters(FlPlan *plan, GError **error)
+static bool equip_painters(FlPlan *plan, GError **error)
 {
-    const int n = fl_film_regions(plan->film);
-    plan->painters = g_new0(FlPainter, MAX(n, 1));
-    plan->painter_of = g_new0(int, MAX(n, 1));
-    for (int r = 0; r < n; r++) {
-        const char *only = plan->options.only_region;
-        if (only && !g_str_equal(only, fl_film_region(plan->film, r)->name))
-            plan->painter_of[r] = -2;
-        else if (!add_painter(plan, r, error))
+    plan->masks = fl_masks_new(fl_film_regions(plan->film), fl_film_frames(plan->film),
+                               fl_film_width(plan->film), fl_film_height(plan->film), error);
+    for (int p = 0; plan->masks && p < plan->n_painters; p++)
+        if (!equip_painter(plan, &plan->painters[p], error))
             return false;
-    }
-    if (!fl_limit_check(FL_LIMIT_REGIONS, plan->n_painters, fl_film_name(plan->film), error))
-        return false;
     memset(plan->paper, 255, sizeof plan->paper);
-    if (plan->n_painters > 0)
-        // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): or add_painter() had failed
+    if (plan->n_painters > 0 && plan->masks)
         memcpy(plan->paper, plan->painters[0].box->paper, sizeof plan->paper);
-    return true;
+    return plan->masks != NULL;
 }
 
 static char *default_output(const FlPlan *plan)
@@ -238,12 +264,11 @@ static bool make_plan(FlPlan *plan, GError **error)
         return false;
     }
     if (!check_merge(&plan->options, error) || !open_film(plan, error) ||
-        !check_region_names(plan, error) || !name_output(plan, error))
+        !check_region_names(plan, error) || !name_output(plan, error) ||
+        !treat_regions(plan, error))
         return false;
-    plan->masks = fl_masks_new(fl_film_regions(plan->film), fl_film_frames(plan->film),
-                               fl_film_width(plan->film), fl_film_height(plan->film), error);
-    return plan->masks && add_painters(plan, error) &&
-           check_regions_file(plan, plan->options.layers, error) &&
+    choose_size(plan);
+    return equip_painters(plan, error) && check_regions_file(plan, plan->options.layers, error) &&
            check_regions_file(plan, plan->options.paint, error);
 }
 
@@ -316,14 +341,14 @@ static bool make_masks(FlPlan *plan, GError **error)
 /* Everything is as large as the frame or smaller, so that it can be told before it is asked for. */
 static bool check_memory(const FlPlan *plan, GError **error)
 {
-    const double pixels = (double)fl_film_width(plan->film) * fl_film_height(plan->film);
+    const double pixels = (double)plan->width * plan->height;
     double bytes = 20e6 + 10 * pixels; // measured: the libraries, a frame composed
     for (int p = 0; p < plan->n_painters; p++)
         bytes += fl_painter_bytes(&plan->painters[p]);
     bytes += fl_exemplars_bytes(plan->exemplars);
     g_autofree char *where =
         g_strdup_printf("%s, %d regions in %dx%d pixels", fl_film_name(plan->film),
-                        plan->n_painters, fl_film_width(plan->film), fl_film_height(plan->film));
+                        plan->n_painters, plan->width, plan->height);
     return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
 }
 
@@ -334,8 +359,7 @@ bool fl_plan_side_by_side(const FlPlan *plan, size_t pixels)
 #else
     const size_t threads = 1;
 #endif
-    return pixels * threads <=
-           (size_t)fl_film_width(plan->film) * (size_t)fl_film_height(plan->film);
+    return pixels * threads <= (size_t)plan->width * (size_t)plan->height;
 }
 
 static bool is_small(const FlPlan *plan, const FlPainter *painter)

@@ -14,9 +14,11 @@ typedef struct FlPlan {
     FlExemplars *exemplars;
     int n_painters;
     FlPainter *painters;
-    int *painter_of; // by region; -1: drawn as it is, -2: left out
-    int hold;        // the drawing itself is shown on every hold-th frame
-    char *output;    // pattern or file
+    int *painter_of;   // by region; -1: drawn as it is, -2: left out
+    int hold;          // the drawing itself is shown on every hold-th frame
+    int width, height; // of the frames
+    bool half;         // drafts: the film has half their size, and what is painted is enlarged
+    char *output;      // pattern or file
     const FlSinkFormat *format;
     char *movie; // the film that the frames are put together to; NULL: none
     const FlSinkFormat *movie_format;

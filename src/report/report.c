@@ -36,9 +36,8 @@ struct FlReport {
 /* As many pictures, and as large, as the page bears. */
 static void choose_size(FlReport *report)
 {
-    const FlFilm *film = report->plan->film;
-    const int width = fl_film_width(film), height = fl_film_height(film);
-    const int n = fl_film_frames(film), larger = MAX(width, height);
+    const int width = report->plan->width, height = report->plan->height;
+    const int n = fl_film_frames(report->plan->film), larger = MAX(width, height);
     const double smaller = (double)MIN(width, height) / larger;
     const double side = sqrt(PAGE_PIXELS / (n * smaller));
     const double shown = MIN(CLAMP(side, MIN_SIDE, MAX_SIDE), larger);
@@ -152,32 +151,31 @@ bool fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides
 
 /* ---- a frame -------------------------------------------------------------------------------- */
 
-static bool write_scaled(FlReport *report, const uint8_t *rgba, bool opaque, GError **error)
+static bool write_scaled(FlReport *report, const FlPicture *whole, bool opaque, GError **error)
 {
-    const FlFilm *film = report->plan->film;
-    const FlPicture whole = {fl_film_width(film), fl_film_height(film), (uint8_t *)rgba};
-    g_autoptr(FlPicture) small = fl_picture_resize(&whole, report->width, report->height, error);
+    g_autoptr(FlPicture) small = fl_picture_resize(whole, report->width, report->height, error);
     return small && fl_script_picture(report->file.stream, small, opaque, error);
 }
 
 static bool write_pictures(FlReport *report, const FlComposite *composite, GError **error)
 {
     FILE *out = report->file.stream;
-    const FlFilm *film = report->plan->film;
-    const int width = fl_film_width(film), height = fl_film_height(film);
-    g_autofree uint8_t *rgba = fl_alloc(4 * (size_t)width * height, 1, "a picture", error);
-    if (!rgba)
+    const FlPlan *plan = report->plan;
+    const FlPicture after = {plan->width, plan->height, composite->rgba};
+    g_autoptr(FlPicture) drawn =
+        fl_picture_new(fl_film_width(plan->film), fl_film_height(plan->film), error);
+    if (!drawn)
         return false;
     fputs(",after:", out);
-    if (!write_scaled(report, composite->rgba, report->background->opaque, error))
+    if (!write_scaled(report, &after, report->background->opaque, error))
         return false;
-    fl_runs_flat(composite->runs, width, height, rgba);
+    fl_runs_flat(composite->runs, drawn->width, drawn->height, drawn->rgba);
     fputs(",before:", out);
-    if (!write_scaled(report, rgba, false, error))
+    if (!write_scaled(report, drawn, false, error))
         return false;
-    fl_runs_map(film, composite->runs, rgba);
+    fl_runs_map(plan->film, composite->runs, drawn->rgba);
     fputs(",map:", out);
-    return write_scaled(report, rgba, false, error);
+    return write_scaled(report, drawn, false, error);
 }
 
 /* [energy, change, seconds] of each painter. */
@@ -297,9 +295,9 @@ static bool write_film(const FlReport *report, GError **error)
     fl_script_string(out, fl_version());
     fputs(",paper:", out);
     fl_script_colour(out, report->background->flat);
-    fprintf(out, ",width:%d,height:%d,shown:[%d,%d],every:%d,transparent:%s,fps:",
-            fl_film_width(plan->film), fl_film_height(plan->film), report->width, report->height,
-            report->every, report->background->none ? "true" : "false");
+    fprintf(out, ",width:%d,height:%d,shown:[%d,%d],every:%d,transparent:%s,fps:", plan->width,
+            plan->height, report->width, report->height, report->every,
+            report->background->none ? "true" : "false");
     fl_script_number(out, fps > 0 ? fps : 24);
     fputs(",peak:", out);
     fl_script_number(out, fl_peak_mib());

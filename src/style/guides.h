@@ -6,7 +6,7 @@
 #include "params/params.h"
 #include "style/bundle.h"
 
-/** How params want guides made, those of a draft at half the size. */
+/** How params want guides made; lengths in pixels are halved at half the size. */
 FlGuideParams fl_guide_params(const FlParams *params);
 
 /** The guides of a style, which must stay as long as they do. NULL with an error of theirs set. */

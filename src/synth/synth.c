@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
-#include "synth/draft.h"
 #include "synth/energy.h"
 #include "synth/past.h"
 #include "synth/shift.h"
@@ -31,8 +30,6 @@ struct FlSynth {
     Previous previous;
     GBytes *packed; // `previous` and all as it was saved; NULL since it has changed
     bool wants_energies;
-    FlSynthSize size;                    // of the picture, twice that of a draft's guides
-    uint8_t *half_rgb;                   // a draft before it is enlarged
     double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
@@ -43,24 +40,18 @@ static bool make_buffers(FlSynth *synth, GError **error)
 {
     const size_t pixels = (size_t)synth->width * synth->height;
     return (synth->previous.mask = fl_alloc(pixels, 1, "a mask", error)) &&
-           (synth->previous.rgb = fl_alloc(3 * pixels, 1, "a picture", error)) &&
-           (!synth->params->half_size ||
-            (synth->half_rgb = fl_alloc(3 * pixels, 1, "a picture", error)));
+           (synth->previous.rgb = fl_alloc(3 * pixels, 1, "a picture", error));
 }
 
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed, GError **error)
 {
     g_autoptr(FlSynth) synth = g_new0(FlSynth, 1);
-    const int part = params->half_size ? 2 : 1;
     synth->exemplar = exemplar;
     synth->params = params;
-    synth->size = size;
-    synth->width = part == 2 ? fl_half_side(size.width) : size.width;
-    synth->height = part == 2 ? fl_half_side(size.height) : size.height;
-    synth->side = (float)MAX(size.frame_width, size.frame_height) / (float)part;
-    synth->n_levels =
-        MIN(exemplar->n_levels, fl_levels_of(size.frame_width / part, size.frame_height / part));
+    synth->width = size.width, synth->height = size.height;
+    synth->side = (float)MAX(size.frame_width, size.frame_height);
+    synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
     synth->key = fl_hash64(seed);
     fl_cost_scale_init(&synth->scale, params);
     fl_kernels_init(&synth->kernels, fl_cpu_flags());
@@ -88,7 +79,6 @@ void fl_synth_free(FlSynth *synth)
     fl_nnf_clear(&synth->previous.nnf);
     free(synth->previous.mask);
     free(synth->previous.rgb);
-    free(synth->half_rgb);
     g_free(synth);
 }
 
@@ -248,10 +238,10 @@ static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
         fl_target_blend(target, params, &synth->scale, 0);
         timed_search(synth, search, fl_list_at(&params->patchmatch_iterations, 0), true);
     }
-    // A draft's finest level is not searched: all that its colours would be for is to choose
-    // between the last frame's matches and the coarser level's, and the last frame's colours do as
-    // well.
-    if (params->half_size && params->finest_rounds == 0 && l == 0 && !coarsest && shifted)
+    // Where the finest level is not searched, as in drafts, all that its colours would be for is to
+    // choose between the last frame's matches and the coarser level's, and the last frame's colours
+    // do as well.
+    if (params->finest_rounds == 0 && l == 0 && !coarsest && shifted)
         fl_target_blend(target, params, &synth->scale, 0);
     else
         vote_and_blend(synth, search, target);
@@ -428,7 +418,6 @@ static bool run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats
     return true;
 }
 
-/* A frame in the size of the synthesis. */
 static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                   FlSynthView *view, GError **error)
 {
@@ -459,17 +448,6 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
     return remember(synth, guides, rgb, error);
 }
 
-/* The same by way of half the size. */
-static bool paint_draft(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
-                        GError **error)
-{
-    FlSynthView view;
-    if (!paint(synth, guides, synth->half_rgb, stats, &view, error))
-        return false;
-    fl_picture_double(synth->half_rgb, synth->size.width, synth->size.height, rgb);
-    return true;
-}
-
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error)
 {
@@ -479,8 +457,7 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
     FlSynthView *const v = view ? view : &no_view;
     *s = (FlFrameStats){0};
     *v = (FlSynthView){0};
-    const bool done = synth->params->half_size ? paint_draft(synth, guides, rgb, s, error)
-                                               : paint(synth, guides, rgb, s, v, error);
+    const bool done = paint(synth, guides, rgb, s, v, error);
     if (!view)
         clear_frame(synth);
     return done;

@@ -33,9 +33,8 @@ typedef struct FlSynthView {
 typedef struct FlSynth FlSynth;
 
 /**
- * The size of the picture; a draft's guides have half of it, as fl_half_side() says. A caller may
- * hand over a part of its frames only, whose corner is a multiple of 2^(levels - 1); the pyramid
- * and the lengths that are shares of a side are the whole frame's all the same.
+ * A caller may hand over a part of its frames only, whose corner is a multiple of 2^(levels - 1);
+ * the pyramid and the lengths that are shares of a side are the whole frame's all the same.
  */
 typedef struct FlSynthSize {
     int width, height;             // of what is painted
@@ -56,7 +55,7 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  *
  * stats and view may be NULL; without a view nothing of the frame but its field and picture is
  * kept. With params->rest, a region that holds still keeps its last picture until params->boil is
- * due; stats are then empty. The view of a draft is empty.
+ * due; stats are then empty.
  */
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);

@@ -1,0 +1,179 @@
+#include "compose/enlarge.h"
+
+#include "base/alloc.h"
+#include "base/first_error.h"
+#include <glib.h>
+#include <string.h>
+
+/** What a pixel has, in planes, so that rows of it can be mixed: sums over covered pixels. */
+enum { COVERAGE, COVERED, ALPHA, RED, GREEN, BLUE, BODY, N_PLANES };
+
+/** A row of half the size: the box's columns and one on either side. */
+typedef struct HalfRow {
+    int y;           // in the frame
+    int first, last; // columns that are covered, last exclusive; none: first > last
+    float *plane[N_PLANES];
+} HalfRow;
+
+/** What a thread works with. */
+typedef struct Rows {
+    const FlLayer *half;
+    int half_width, half_height; // of the frame
+    float *room;
+    HalfRow read[3];       // the last ones that were read, by y % 3
+    float *mixed;          // a plane of two rows in one
+    float *wide[N_PLANES]; // a row of the full size, from column 2 * (box.x - 1) on
+} Rows;
+
+static size_t padded(const FlLayer *half)
+{
+    return (size_t)half->box.width + 2;
+}
+
+static bool rows_init(Rows *rows, const FlLayer *half, int width, int height, GError **error)
+{
+    const size_t n = padded(half);
+    *rows = (Rows){half, fl_half_side(width), fl_half_side(height)};
+    rows->room = fl_alloc(n * (3 * N_PLANES + 1 + 2 * N_PLANES), sizeof(float), "a layer", error);
+    float *next = rows->room;
+    for (int r = 0; next && r < 3; r++) {
+        rows->read[r].y = -1;
+        for (int k = 0; k < N_PLANES; k++, next += n)
+            rows->read[r].plane[k] = next;
+    }
+    for (int k = 0; next && k < N_PLANES; k++, next += 2 * n)
+        rows->wide[k] = next;
+    rows->mixed = next;
+    return next != NULL;
+}
+
+/** Of a pixel that is covered. */
+static void read_pixel(const Rows *rows, size_t i, size_t j, float *const plane[N_PLANES], int x)
+{
+    const FlLayer *half = rows->half;
+    const uint8_t *rgba = half->rgba + 4 * j;
+    const float alpha = rgba[3];
+    plane[COVERAGE][x] = half->coverage[i];
+    plane[COVERED][x] = 1;
+    plane[ALPHA][x] = alpha;
+    for (int c = 0; c < 3; c++)
+        plane[RED + c][x] = alpha * rgba[c];
+    plane[BODY][x] = half->body ? half->body[j] : 0;
+}
+
+/** Beyond the frame its last pixels go on; beyond the box there is nothing. */
+static const HalfRow *row_at(Rows *rows, int y)
+{
+    const FlBox box = rows->half->box;
+    y = CLAMP(y, 0, rows->half_height - 1);
+    HalfRow *row = &rows->read[y % 3];
+    if (row->y == y)
+        return row;
+    for (int k = 0; k < N_PLANES && row->first < row->last; k++)
+        memset(row->plane[k] + row->first, 0, (size_t)(row->last - row->first) * sizeof(float));
+    row->y = y, row->first = box.width + 2, row->last = 0;
+    const bool inside = y >= box.y && y < box.y + box.height;
+    for (int x = 0; inside && x < box.width + 2; x++) {
+        const int column = CLAMP(box.x + x - 1, 0, rows->half_width - 1);
+        const size_t i = (size_t)y * rows->half_width + column;
+        if (column < box.x || column >= box.x + box.width || !rows->half->coverage[i])
+            continue;
+        read_pixel(rows, i, (size_t)(y - box.y) * box.width + (column - box.x), row->plane, x);
+        row->first = MIN(row->first, x), row->last = x + 1;
+    }
+    return row;
+}
+
+/**
+ * Row y of the full size, sixteenfold: its pixels' centres are a quarter of a small pixel from the
+ * nearest small centres. Returns: the columns of it that have anything, last exclusive.
+ */
+static void widen(Rows *rows, int y, int *first, int *last)
+{
+    const HalfRow *near = row_at(rows, y / 2), *far = row_at(rows, y / 2 + (y % 2 ? 1 : -1));
+    const int n = (int)padded(rows->half);
+    const int x0 = MAX(MIN(near->first, far->first) - 1, 0);
+    const int x1 = MIN(MAX(near->last, far->last) + 1, n);
+    for (int k = 0; k < N_PLANES && x0 < x1; k++) {
+        float *mixed = rows->mixed, *wide = rows->wide[k];
+        for (int x = x0; x < x1; x++)
+            mixed[x] = 3 * near->plane[k][x] + far->plane[k][x];
+        for (int x = x0 + 1; x < x1; x++) {
+            wide[2 * x - 1] = 3 * mixed[x - 1] + mixed[x];
+            wide[2 * x] = 3 * mixed[x] + mixed[x - 1];
+        }
+    }
+    *first = 2 * x0 + 1, *last = 2 * x1 - 1;
+}
+
+static uint8_t to_8bit(float value)
+{
+    return (uint8_t)(value + 0.5f);
+}
+
+/** Columns first … last - 1 of a row of the full size, whose column 0 is `from` of the wide row. */
+static void store(const Rows *rows, int from, int first, int last, uint8_t *coverage, uint8_t *rgba,
+                  uint8_t *body)
+{
+    for (int x = first; x < last; x++) {
+        const int i = from + x;
+        const float covered = MAX(rows->wide[COVERED][i], 1); // 0: all else is 0 as well
+        const float alpha = MAX(rows->wide[ALPHA][i], 1);
+        coverage[x] = to_8bit(rows->wide[COVERAGE][i] / 16);
+        rgba[4 * x] = to_8bit(rows->wide[RED][i] / alpha);
+        rgba[4 * x + 1] = to_8bit(rows->wide[GREEN][i] / alpha);
+        rgba[4 * x + 2] = to_8bit(rows->wide[BLUE][i] / alpha);
+        rgba[4 * x + 3] = to_8bit(rows->wide[ALPHA][i] / covered);
+        if (body)
+            body[x] = to_8bit(rows->wide[BODY][i] / covered);
+    }
+}
+
+/** The box at full size, with the pixels that mix with what is inside. */
+static FlBox doubled(FlBox box, int width, int height)
+{
+    const int x0 = MAX(2 * box.x - 1, 0), x1 = MIN(2 * (box.x + box.width) + 1, width);
+    const int y0 = MAX(2 * box.y - 1, 0), y1 = MIN(2 * (box.y + box.height) + 1, height);
+    return (FlBox){x0, y0, x1 - x0, y1 - y0};
+}
+
+static bool make_planes(FlLayer *full, bool with_body, int width, int height, GError **error)
+{
+    const size_t n = fl_box_pixels(full->box);
+    return (full->coverage = fl_alloc((size_t)width * height, 1, "a layer", error)) &&
+           (full->rgba = fl_alloc(4 * n, 1, "a layer", error)) &&
+           (!with_body || (full->body = fl_alloc(n, 1, "a layer", error)));
+}
+
+bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, GError **error)
+{
+    GError *first = NULL;
+    *full = *half;
+    full->coverage = full->body = NULL, full->rgba = NULL;
+    if (half->box.width > 0)
+        full->box = doubled(half->box, width, height);
+    if (!make_planes(full, half->body, width, height, error))
+        return false;
+    const FlBox box = full->box;
+    const int left = box.x - 2 * (half->box.x - 1); // of the box in a wide row
+#pragma omp parallel
+    {
+        Rows rows;
+        GError *mine = NULL;
+        const bool ready = rows_init(&rows, half, width, height, &mine);
+#pragma omp for schedule(static)
+        for (int y = 0; y < box.height; y++) {
+            const size_t row = (size_t)y * box.width;
+            if (!ready)
+                continue;
+            int from = 0, to = 0;
+            widen(&rows, box.y + y, &from, &to);
+            store(&rows, left, MAX(from - left, 0), MIN(to - left, box.width),
+                  (uint8_t *)full->coverage + (size_t)(box.y + y) * width + box.x,
+                  full->rgba + 4 * row, full->body ? (uint8_t *)full->body + row : NULL);
+        }
+        free(rows.room);
+        fl_keep_first_error(&first, mine);
+    }
+    return fl_tell_first_error(error, first);
+}
