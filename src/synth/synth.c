@@ -166,6 +166,7 @@ static bool merge_previous(FlSearch *search, const FlNnf *shifted, int l, GError
         other = &down;
     }
     const size_t pixels = (size_t)other->width * other->height;
+#pragma omp parallel for schedule(dynamic, 1024)
     for (size_t p = 0; p < pixels; p++) {
         const FlMatch m = other->match[p];
         if (m.frame == FL_NO_MATCH || search->target->segment[p] == FL_SEGMENT_OUTSIDE)

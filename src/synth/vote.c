@@ -1,5 +1,7 @@
 #include "synth/vote.h"
 
+#include <string.h>
+
 /* Where the patch with match m, centred at place k of the 5x5 pixels around, takes the middle from.
  */
 static inline void hear(FlMatch m, int k, FlVotes *votes)
@@ -79,21 +81,31 @@ static void mix(const FlOpinion *opinions, int n, const FlExemplarLevel *level,
         colour[c] = CLAMP(sum[c] / total, 0.0f, 1.0f);
 }
 
-/* Widens first … last (exclusive) to the columns that patches of the row cover. */
-static void widen(const FlNnf *nnf, int y, int *first, int *last)
+/* near[x] = whether a patch of these rows covers column x of row y; room: as many. */
+static void find_covered(const FlNnf *nnf, int y, uint8_t *room, uint8_t *near)
 {
-    if (y < 0 || y >= nnf->height)
-        return;
-    const FlMatch *row = nnf->match + (size_t)y * nnf->width;
-    int x0 = 0, x1 = nnf->width;
-    while (x0 < x1 && row[x0].frame == FL_NO_MATCH)
-        x0++;
-    while (x1 > x0 && row[x1 - 1].frame == FL_NO_MATCH)
-        x1--;
-    if (x0 == x1)
-        return;
-    *first = MIN(*first, MAX(x0 - FL_PATCH_RADIUS, 0));
-    *last = MAX(*last, MIN(x1 + FL_PATCH_RADIUS, nnf->width));
+    const int r = FL_PATCH_RADIUS;
+    const size_t width = (size_t)MAX(nnf->width, 0);
+    memset(room, 0, width);
+    for (int v = MAX(y - r, 0); v <= MIN(y + r, nnf->height - 1); v++)
+        for (size_t x = 0; x < width; x++)
+            room[x] |= nnf->match[(size_t)v * width + x].frame != FL_NO_MATCH;
+    memcpy(near, room, width);
+    for (size_t d = 1; d <= (size_t)r; d++) {
+        for (size_t x = 0; x + d < width; x++)
+            near[x] |= room[x + d];
+        for (size_t x = d; x < width; x++)
+            near[x] |= room[x - d];
+    }
+}
+
+static void vote_for(const FlNnf *nnf, int x, int y, const FlExemplarLevel *level,
+                     const FlKernels *kernels, const float *weight, float colour[3])
+{
+    FlVotes votes;
+    FlOpinion opinions[FL_PATCH_PIXELS];
+    hear_all(nnf, x, y, &votes);
+    mix(opinions, kernels->opinions(&votes, opinions), level, kernels, weight, colour);
 }
 
 void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
@@ -101,21 +113,20 @@ void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *ke
 {
     float weight[FL_PATCH_PIXELS + 1];
     weigh(sharpness, weight);
-#pragma omp parallel for schedule(dynamic, 4)
-    for (int y = 0; y < nnf->height; y++) {
-        int first = nnf->width, last = 0;
-        for (int dy = -FL_PATCH_RADIUS; dy <= FL_PATCH_RADIUS; dy++)
-            widen(nnf, y + dy, &first, &last);
-        for (int x = first; x < last; x++) {
-            FlVotes votes;
-            FlOpinion opinions[FL_PATCH_PIXELS];
-            const size_t p = (size_t)y * nnf->width + x;
-            hear_all(nnf, x, y, &votes);
-            const int n = kernels->opinions(&votes, opinions);
-            if (n > 0)
-                mix(opinions, n, level, kernels, weight, colour + 3 * p);
-            if (voted)
-                voted[p] = n > 0;
+#pragma omp parallel
+    {
+        g_autofree uint8_t *room = g_malloc(2 * (size_t)nnf->width);
+        uint8_t *covered = room + nnf->width;
+#pragma omp for schedule(dynamic, 4)
+        for (int y = 0; y < nnf->height; y++) {
+            find_covered(nnf, y, room, covered);
+            for (int x = 0; x < nnf->width; x++) {
+                const size_t p = (size_t)y * nnf->width + x;
+                if (covered[x])
+                    vote_for(nnf, x, y, level, kernels, weight, colour + 3 * p);
+                if (voted)
+                    voted[p] = covered[x];
+            }
         }
     }
 }

@@ -13,7 +13,7 @@
  * n^sharpness, n the number of patches behind each; sharpness 1 is the papers' mean.
  *
  * colour: 3 floats per pixel, 0 … 1, untouched where nothing votes; voted: 1 where something did,
- * else 0 or untouched; may be NULL.
+ * else 0; may be NULL.
  */
 void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
              float sharpness, float *colour, uint8_t *voted);
