@@ -100,13 +100,27 @@ static bool lead_in_one(Job *job, int p, int k, FlGuides *scratch, GError **erro
     return fl_painter_lead_in(&job->plan->painters[p], k, scratch, error);
 }
 
-/* Side by side. */
+static int by_work(const void *a, const void *b, void *data)
+{
+    const FlPainter *painters = data, *p = &painters[*(const int *)a],
+                    *q = &painters[*(const int *)b];
+    const double more =
+        p->seconds != q->seconds ? q->seconds - p->seconds : q->area_px - p->area_px;
+    return (more > 0) - (more < 0);
+}
+
+/* Side by side, those first that took longest in the last frame, so that none is waited for. */
 static bool for_each_small(Job *job, Work work, int step, GError **error)
 {
     const FlPlan *plan = job->plan;
+    g_autofree int *order = g_new(int, plan->n_painters);
+    for (int p = 0; p < plan->n_painters; p++)
+        order[p] = p;
+    g_qsort_with_data(order, plan->n_painters, sizeof *order, by_work, plan->painters);
     GError *first = NULL;
 #pragma omp parallel for schedule(dynamic, 1) num_threads(job->n_scratch)
-    for (int p = 0; p < plan->n_painters; p++) {
+    for (int k = 0; k < plan->n_painters; k++) {
+        const int p = order[k];
 #ifdef _OPENMP
         const int thread = omp_get_thread_num();
 #else
