@@ -128,6 +128,14 @@ static FlMatch scaled_down(FlMatch m, int x, int y, int l, const FlExemplarLevel
     return m;
 }
 
+FlMatch fl_match_enlarged(FlMatch m, int l, const FlExemplarLevel *full)
+{
+    const int half = (1 << l) - 1; // the centre of the pixel, in half pixels from its corner
+    m.x_16 = clamp_16((m.x_16 << l) + 8 * half, full->width);
+    m.y_16 = clamp_16((m.y_16 << l) + 8 * half, full->height);
+    return m;
+}
+
 static uint64_t bin_of(FlMatch m)
 {
     return (uint64_t)(uint16_t)m.frame << 40 | (uint64_t)(m.theta >> 3) << 32 |

@@ -63,6 +63,9 @@ void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel
 /** The field of the next finer level [F21 §3.6, fig. 6]; pixels without a parent get no match. */
 void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level, FlNnf *fine);
 
+/** The match of a pixel of level l in level 0: its place there, as near as can be. */
+FlMatch fl_match_enlarged(FlMatch match, int l, const FlExemplarLevel *full);
+
 /**
  * The level-0 field at a coarser level: the mode of the inversely transformed matches in each
  * window of 2^l pixels [F21 §3.6, fig. 7]; none where the window has none.

@@ -132,25 +132,50 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
     return true;
 }
 
-/* T_temp and m(q) on every level. */
-static bool make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error)
+/* The finest level that is searched. Where it is not the finest of all, as in drafts, that one is
+ * the coarser level's field, enlarged. */
+static int finest_searched(const FlSynth *synth)
 {
-    FlTargetLevel *full = &synth->target.level[0];
-    const size_t pixels = (size_t)full->width * full->height;
+    return synth->params->finest_rounds == 0 && synth->n_levels > 1 ? 1 : 0;
+}
+
+/* T_temp and m(q) of a level from the last field in that level's size. */
+static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GError **error)
+{
+    FlTargetLevel *target = &synth->target.level[l];
+    const size_t pixels = (size_t)target->width * target->height;
     g_autofree uint8_t *voted = fl_alloc(pixels, 1, "a temporal guide", error);
     if (!voted)
         return false;
-    fl_vote(shifted, &synth->exemplar->level[0], &synth->kernels, synth->params->vote_sharpness,
-            full->temporal, voted);
+    fl_vote(shifted, &synth->exemplar->level[l], &synth->kernels, synth->params->vote_sharpness,
+            target->temporal, voted);
     const float side = synth->side;
     const float lower = synth->params->temp_lower * side;
     const float upper = MAX(synth->params->temp_upper * side, lower + 1e-3f);
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < pixels; p++)
         if (voted[p] && shifted->match[p].frame != FL_NO_MATCH)
-            full->temporal_weight[p] = fl_temporal_weight(synth->exemplar, shifted->match[p],
-                                                          full->distance[p], lower, upper);
-    fl_target_temporal_pyramid(&synth->target);
+            target->temporal_weight[p] = fl_temporal_weight(
+                synth->exemplar,
+                fl_match_enlarged(shifted->match[p], l, &synth->exemplar->level[0]),
+                target->distance[p], lower, upper);
+    return true;
+}
+
+/* T_temp and m(q) on every level that is searched. */
+static bool make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error)
+{
+    const int l = finest_searched(synth);
+    g_auto(FlNnf) down = {0};
+    if (l > 0) {
+        const FlTargetLevel *target = &synth->target.level[l];
+        if (!fl_nnf_init(&down, target->width, target->height, error))
+            return false;
+        fl_nnf_downscale(shifted, l, &synth->exemplar->level[l], &down);
+    }
+    if (!make_temporal_level(synth, l > 0 ? &down : shifted, l, error))
+        return false;
+    fl_target_temporal_pyramid(&synth->target, l);
     return true;
 }
 
@@ -201,14 +226,18 @@ static double lap(gint64 *since)
     return (double)(now - before) * 1e-6;
 }
 
-static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
+static void vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
 {
     gint64 time = g_get_monotonic_time();
-    const float w_texture = search->params->w_texture;
     fl_vote(search->nnf, search->level, search->kernels, search->params->vote_sharpness,
             target->colour, NULL);
-    fl_target_blend(target, search->params, search->scale, w_texture);
     synth->seconds_vote += lap(&time);
+}
+
+static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
+{
+    vote(synth, search, target);
+    fl_target_blend(target, search->params, search->scale, search->params->w_texture);
 }
 
 /* The costs of the field must be those of the target as it is, unless they are `stale`. */
@@ -239,13 +268,9 @@ static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
         fl_target_blend(target, params, &synth->scale, 0);
         timed_search(synth, search, fl_list_at(&params->patchmatch_iterations, 0), true);
     }
-    // Where the finest level is not searched, as in drafts, all that its colours would be for is to
-    // choose between the last frame's matches and the coarser level's, and the last frame's colours
-    // do as well.
-    if (params->finest_rounds == 0 && l == 0 && !coarsest && shifted)
-        fl_target_blend(target, params, &synth->scale, 0);
-    else
-        vote_and_blend(synth, search, target);
+    if (l < finest_searched(synth))
+        return true;
+    vote_and_blend(synth, search, target);
     fl_search_costs(search, search->nnf, search->cost);
     return coarsest || !shifted || merge_previous(search, shifted, l, error);
 }
@@ -273,6 +298,7 @@ static void optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, in
 static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats *stats)
 {
     FlEnergy energy;
+    fl_target_blend(target, search->params, search->scale, search->params->w_texture);
     fl_occurrence_count(search->map, search->nnf, target);
     fl_energy_of(search, target, search->cost, &energy);
     fl_search_costs(search, search->nnf, search->cost);
@@ -315,8 +341,8 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
              l == 0 ? params->finest_sweeps
                     : fl_list_at(&params->patchmatch_iterations, from_coarsest),
              stats);
-    if (stats->rounds == 0 && l == 0) // a merged field has not been voted yet
-        vote_and_blend(synth, &search, target);
+    if (stats->rounds == 0 && l == 0) // the field has not been voted yet
+        vote(synth, &search, target);
     if (synth->wants_energies)
         end_statistics(&search, target, stats);
     return true;
@@ -443,9 +469,9 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
         return false;
     write_rgb(synth, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
-    *view = synth->view =
-        (FlSynthView){rect, &synth->nnf[0], synth->previous.valid ? full->temporal : NULL,
-                      synth->previous.valid ? full->temporal_weight : NULL};
+    const bool has_temporal = synth->previous.valid && finest_searched(synth) == 0;
+    *view = synth->view = (FlSynthView){rect, &synth->nnf[0], has_temporal ? full->temporal : NULL,
+                                        has_temporal ? full->temporal_weight : NULL};
     return remember(synth, guides, rgb, error);
 }
 

@@ -26,7 +26,7 @@ typedef struct FlFrameStats {
 typedef struct FlSynthView {
     FlRect rect;
     const FlNnf *nnf;
-    const float *temporal, *temporal_weight; // T_temp and m; NULL in a first frame
+    const float *temporal, *temporal_weight; // T_temp and m; NULL in a first frame, and in drafts
 } FlSynthView;
 
 /** The painter of one region: it remembers the last frame. */

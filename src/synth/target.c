@@ -154,9 +154,9 @@ static void halve_temporal(const FlTargetLevel *fine, FlTargetLevel *coarse, int
     coarse->temporal_weight[to] = weight / (float)n;
 }
 
-void fl_target_temporal_pyramid(FlTarget *target)
+void fl_target_temporal_pyramid(FlTarget *target, int from)
 {
-    for (int l = 1; l < target->n_levels; l++) {
+    for (int l = from + 1; l < target->n_levels; l++) {
         FlTargetLevel *coarse = &target->level[l];
         for (int y = 0; y < coarse->height; y++)
             for (int x = 0; x < coarse->width; x++)

@@ -54,8 +54,8 @@ bool fl_target_init(FlTarget *target, const FlGuides *guides, const float *shape
                     int n_levels, const FlExemplar *exemplar, GError **error);
 void fl_target_clear(FlTarget *target);
 
-/** Averages T_temp and m of level 0 (set by the caller) down to the other levels. */
-void fl_target_temporal_pyramid(FlTarget *target);
+/** Averages T_temp and m of a level (set by the caller) down to the coarser ones. */
+void fl_target_temporal_pyramid(FlTarget *target, int from);
 
 /** Sets colour channels and weights from the last vote and T_temp; w_texture 0 leaves the guides.
  */

@@ -7,7 +7,7 @@
  * render into the search, one into votes, the rest into guides, the drawing's shapes, composing and
  * files. Of the search, a third each goes into patch distances and into what is below, and a tenth
  * each into gathering the target's patch, the sieve and the neighbours; in a draft, which searches
- * less, search and votes take a seventh and a fifth of the render.
+ * less, search and votes take a fifth and a sixth of the render, distances a tenth.
  *
  * A random try's texels are a cache miss each. So pixels go through three stages, each pixel a
  * stage behind the next one of its tile:
