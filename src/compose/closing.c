@@ -4,8 +4,6 @@
 #include <glib.h>
 #include <string.h>
 
-#define MANY (1 << 16) // pixels that are worth waking threads for
-
 /** Outside the shape in a window: all of it, and the part that others cover. */
 typedef struct Around {
     uint32_t free, taken;
@@ -72,7 +70,6 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
     g_autofree Around *sums = rows ? fl_alloc(n, sizeof *sums, "a row of a matte", error) : NULL;
     if (!sums)
         return false;
-#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int y = y0; y < y1; y++)
         sum_row(coverage, others, (size_t)y * width, width, box, r, rows + (size_t)(y - y0) * n);
     const uint32_t window = 255u * (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
@@ -138,10 +135,8 @@ static bool sum_boxes(const int16_t *amounts, FlBox box, int r, Mean *sums, GErr
     g_autofree Mean *rows = fl_alloc(fl_box_pixels(box), sizeof *rows, "a matte", error);
     if (!rows)
         return false;
-#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int y = 0; y < box.height; y++)
         sum_columns(amounts + (size_t)y * width, rows + (size_t)y * width, box.width, r);
-#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int x = 0; x < box.width; x += BAND)
         sum_rows(rows + x, sums + x, MIN(BAND, box.width - x), box, r);
     return true;
@@ -150,11 +145,12 @@ static bool sum_boxes(const int16_t *amounts, FlBox box, int r, Mean *sums, GErr
 /** The largest of 2 r + 1 columns. */
 static void spread_columns(const uint8_t *in, uint8_t *out, int n, int r)
 {
-    for (int i = 0; i < n; i++) {
-        uint8_t most = 0;
-        for (int k = MAX(i - r, 0); k <= MIN(i + r, n - 1); k++)
-            most = MAX(most, in[k]);
-        out[i] = most;
+    memcpy(out, in, (size_t)n);
+    for (int d = 1; d <= r; d++) {
+        for (int i = 0; i < n - d; i++)
+            out[i] = MAX(out[i], in[i + d]);
+        for (int i = d; i < n; i++)
+            out[i] = MAX(out[i], in[i - d]);
     }
 }
 
@@ -181,10 +177,8 @@ static bool find_thin(const Mean *around, FlBox box, int r, uint8_t *thin, GErro
         return false;
     for (size_t i = 0; i < n; i++)
         thin[i] = (uint8_t)(MAX(4 * (int)around[i].n - 3 * full, 0) * 255 / full);
-#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int y = 0; y < box.height; y++)
         spread_columns(thin + (size_t)y * width, rows + (size_t)y * width, box.width, r);
-#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > MANY)
     for (int y = 0; y < box.height; y++)
         spread_rows(rows, thin + (size_t)y * width, box, y, r);
     for (size_t i = 0; i < n; i++)
@@ -209,11 +203,27 @@ static int evened(int amount, Mean around, int contrast)
     return FL_AMOUNT_ONE + (even - FL_AMOUNT_ONE) * contrast / FL_AMOUNT_ONE;
 }
 
+/** Radii of the windows within which a shape is thin, and what is seen of it narrow. */
+static int thin_radius(int radius_px)
+{
+    return MAX(1, radius_px / 4);
+}
+
+static int narrow_radius(int radius_px)
+{
+    return MAX(1, radius_px * 3 / 4);
+}
+
+int fl_closing_reach(int radius_px)
+{
+    return MAX(2 * narrow_radius(radius_px), radius_px);
+}
+
 bool fl_closing_apply(int16_t *amounts, const int16_t *seen, const uint8_t *share,
                       const uint8_t *small, FlBox box, int radius_px, GError **error)
 {
     const size_t n = fl_box_pixels(box);
-    const int quarter = MAX(1, radius_px / 4), most = MAX(1, radius_px * 3 / 4);
+    const int quarter = thin_radius(radius_px), most = narrow_radius(radius_px);
     g_autofree Mean *around = fl_alloc(n, sizeof *around, "a matte", error);
     g_autofree Mean *wide = around ? fl_alloc(n, sizeof *wide, "a matte", error) : NULL;
     g_autofree uint8_t *thin = wide ? fl_alloc(n, 1, "a matte", error) : NULL;

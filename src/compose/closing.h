@@ -36,4 +36,8 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
 bool fl_closing_apply(int16_t *amounts, const int16_t *seen, const uint8_t *share,
                       const uint8_t *small, FlBox box, int radius_px, GError **error);
 
+/** How far away what is in a box may change an amount, px: a part with so much around it closes as
+ * in the whole. */
+int fl_closing_reach(int radius_px);
+
 #endif

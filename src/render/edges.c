@@ -1,11 +1,14 @@
 #include "render/edges.h"
 
 #include "base/alloc.h"
+#include "base/first_error.h"
 #include "compose/closing.h"
+#include <string.h>
 
 #define SHOWN 128      // coverage from which on a shape is uppermost
 #define TRAP_PX 4      // neighbours overlap by so much at most where a program traps them
 #define MOST_RUNS 4095 // whose overlaps are known
+#define TILE_PX 128    // a tile and what is around it fit into a processor's own cache
 
 /** Whether a run hides what it lies over. Shading does not: the edges below it are seen. */
 static bool hides(const FlPlan *plan, const FlRun *run)
@@ -86,27 +89,75 @@ void fl_edges_clear(FlEdgeMap *edges)
     *edges = (FlEdgeMap){0};
 }
 
-/** The share of the edges of a run, with all others or with those that it does not overlap; others:
- * room for a frame. */
-static bool find_share(const FlEdgeMap *edges, int run, bool with_all, int radius_px,
-                       uint8_t *others, uint8_t *share, GError **error)
+/** A part of a run's box that is closed by itself, and room for it. */
+typedef struct Tile {
+    FlBox box;                  // what is closed
+    FlBox part;                 // with what may change it
+    FlBox around;               // with what the shares are of
+    int16_t *amounts, *seen;    // of part
+    uint8_t *ends, *meets;      // of part: shares of the edges
+    uint8_t *coverage, *others; // of around
+} Tile;
+
+static FlBox grown(FlBox box, int px, FlBox limit)
 {
-    const FlBox *box = &edges->boxes[run];
-    const uint8_t *coverage = edges->runs->run[run].coverage;
+    const int x0 = MAX(box.x - px, limit.x),
+              x1 = MIN(box.x + box.width + px, limit.x + limit.width);
+    const int y0 = MAX(box.y - px, limit.y);
+    const int y1 = MIN(box.y + box.height + px, limit.y + limit.height);
+    return (FlBox){x0, y0, x1 - x0, y1 - y0};
+}
+
+static void tile_clear(Tile *tile)
+{
+    free(tile->amounts);
+    free(tile->seen);
+    free(tile->ends);
+    free(tile->meets);
+    free(tile->coverage);
+    free(tile->others);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Tile, tile_clear)
+
+static bool tile_init(Tile *tile, const FlEdgeMap *edges, int run, FlBox box, int radius_px,
+                      GError **error)
+{
+    const FlBox frame = {0, 0, fl_film_width(edges->plan->film), fl_film_height(edges->plan->film)};
+    const FlBox part = grown(box, fl_closing_reach(radius_px), edges->boxes[run]);
+    *tile = (Tile){.box = box, .part = part, .around = grown(part, radius_px, frame)};
+    const size_t n = fl_box_pixels(part), around = fl_box_pixels(tile->around);
+    return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
+           (tile->seen = fl_alloc(n, sizeof *tile->seen, "a matte", error)) &&
+           (tile->ends = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->meets = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->coverage = fl_alloc(around, 1, "a matte", error)) &&
+           (tile->others = fl_alloc(around, 1, "a matte", error));
+}
+
+/** Where pixel 0 of row y of a tile's box is in the frame. */
+static size_t in_frame(const FlEdgeMap *edges, FlBox box, int y)
+{
+    return (size_t)(box.y + y) * (size_t)fl_film_width(edges->plan->film) + (size_t)box.x;
+}
+
+/** The share of the edges of a run, with all others or with those that it does not overlap. */
+static bool find_share(Tile *tile, const FlEdgeMap *edges, int run, bool with_all, int radius_px,
+                       uint8_t *share, GError **error)
+{
     const bool *overlap = edges->overlap + (size_t)(run + 1) * (size_t)edges->n;
-    const int width = fl_film_width(edges->plan->film);
-    const int height = fl_film_height(edges->plan->film);
-    const int x0 = MAX(box->x - radius_px, 0), x1 = MIN(box->x + box->width + radius_px, width);
-    const int y0 = MAX(box->y - radius_px, 0), y1 = MIN(box->y + box->height + radius_px, height);
-    for (int y = y0; y < y1; y++) {
-        const size_t row = (size_t)y * (size_t)width;
-        for (size_t i = row + (size_t)x0; i < row + (size_t)x1; i++) {
-            const uint16_t top = edges->top[i];
-            const bool other = top && top != run + 1 && (with_all || !overlap[top]);
-            others[i] = other ? 255 : 0;
+    const FlBox around = tile->around, part = tile->part;
+    uint8_t *others = tile->others;
+    for (int y = 0; y < around.height; y++) {
+        const uint16_t *row = edges->top + in_frame(edges, around, y);
+        for (int x = 0; x < around.width; x++) {
+            const bool other = row[x] && row[x] != run + 1 && (with_all || !overlap[row[x]]);
+            *others++ = other ? 255 : 0;
         }
     }
-    return fl_closing_share(coverage, others, width, height, *box, radius_px, share, error);
+    const FlBox inner = {part.x - around.x, part.y - around.y, part.width, part.height};
+    return fl_closing_share(tile->coverage, tile->others, around.width, around.height, inner,
+                            radius_px, share, error);
 }
 
 /** Whether a run is seen at pixel i: nothing that hides it lies over it. */
@@ -115,19 +166,77 @@ static bool is_seen(const FlEdgeMap *edges, int run, size_t i)
     return edges->runs->run[run].coverage[i] >= SHOWN && edges->top[i] <= run + 1;
 }
 
-/** 0 where a run is seen, else -1; of the run's box, to be freed with free(). */
-static int16_t *find_seen(const FlEdgeMap *edges, int run, GError **error)
+/** What the tile has of the run: its amounts, its coverage, and 0 where it is seen, else -1. */
+static void fill_tile(Tile *tile, const FlEdgeMap *edges, int run, const int16_t *amounts)
 {
-    const FlBox *box = &edges->boxes[run];
-    const size_t width = (size_t)fl_film_width(edges->plan->film);
-    int16_t *seen = fl_alloc(fl_box_pixels(*box), sizeof *seen, "a matte", error);
-    for (int y = 0; seen && y < box->height; y++) {
-        const size_t row = (size_t)(box->y + y) * width + (size_t)box->x;
-        for (int x = 0; x < box->width; x++)
-            seen[(size_t)y * (size_t)box->width + (size_t)x] =
-                is_seen(edges, run, row + (size_t)x) ? 0 : -1;
+    const FlBox all = edges->boxes[run], part = tile->part, around = tile->around;
+    for (int y = 0; y < part.height; y++) {
+        const size_t row = (size_t)y * (size_t)part.width, frame = in_frame(edges, part, y);
+        const size_t from = (size_t)(part.y + y - all.y) * (size_t)all.width;
+        memcpy(tile->amounts + row, amounts + from + (part.x - all.x),
+               (size_t)part.width * sizeof *amounts);
+        for (int x = 0; x < part.width; x++)
+            tile->seen[row + (size_t)x] = is_seen(edges, run, frame + (size_t)x) ? 0 : -1;
     }
-    return seen;
+    for (int y = 0; y < around.height; y++)
+        memcpy(tile->coverage + (size_t)y * (size_t)around.width,
+               edges->runs->run[run].coverage + in_frame(edges, around, y), (size_t)around.width);
+}
+
+static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px,
+                       const int16_t *amounts, int16_t *closed, GError **error)
+{
+    g_auto(Tile) tile = {0};
+    const FlBox all = edges->boxes[run];
+    if (!tile_init(&tile, edges, run, box, radius_px, error))
+        return false;
+    fill_tile(&tile, edges, run, amounts);
+    const FlBox part = tile.part;
+    if (!find_share(&tile, edges, run, false, radius_px, tile.ends, error) ||
+        !find_share(&tile, edges, run, true, radius_px, tile.meets, error) ||
+        !fl_closing_apply(tile.amounts, tile.seen, tile.ends, tile.meets, part, radius_px, error))
+        return false;
+    for (int y = box.y; y < box.y + box.height; y++)
+        memcpy(closed + (size_t)(y - all.y) * (size_t)all.width + (box.x - all.x),
+               tile.amounts + (size_t)(y - part.y) * (size_t)part.width + (box.x - part.x),
+               (size_t)box.width * sizeof *closed);
+    return true;
+}
+
+/** Whether a shape has anything in a part of the frame. */
+static bool has_shape(const FlEdgeMap *edges, int run, FlBox box)
+{
+    const uint8_t *coverage = edges->runs->run[run].coverage;
+    for (int y = 0; y < box.height; y++) {
+        const uint8_t *row = coverage + in_frame(edges, box, y);
+        uint8_t any = 0;
+        for (int x = 0; x < box.width; x++)
+            any |= row[x];
+        if (any)
+            return true;
+    }
+    return false;
+}
+
+/** All tiles in which the shape is: many shapes are far smaller than their box. */
+static bool close_tiles(const FlEdgeMap *edges, int run, int radius_px, const int16_t *amounts,
+                        int16_t *closed, GError **error)
+{
+    const FlBox all = edges->boxes[run];
+    const int columns = (all.width + TILE_PX - 1) / TILE_PX;
+    const int rows = (all.height + TILE_PX - 1) / TILE_PX;
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int t = 0; t < columns * rows; t++) {
+        GError *mine = NULL;
+        const FlBox corner = {all.x + t % columns * TILE_PX, all.y + t / columns * TILE_PX, 0, 0};
+        const FlBox box = {corner.x, corner.y, MIN(TILE_PX, all.x + all.width - corner.x),
+                           MIN(TILE_PX, all.y + all.height - corner.y)};
+        if (has_shape(edges, run, box) &&
+            !close_tile(edges, run, box, radius_px, amounts, closed, &mine))
+            fl_keep_first_error(&first, mine);
+    }
+    return fl_tell_first_error(error, first);
 }
 
 bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, int16_t *amounts,
@@ -135,22 +244,17 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
 {
     const FlTreatment *t = &painter->treatment;
     const FlRenderOptions *options = &edges->plan->options;
-    const FlBox box = edges->boxes[run];
-    const size_t n = fl_box_pixels(box);
-    const size_t pixels =
-        (size_t)fl_film_width(edges->plan->film) * (size_t)fl_film_height(edges->plan->film);
+    const size_t n = fl_box_pixels(edges->boxes[run]);
     if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || options->gap > 0 ||
         options->feather > 0 || n == 0 || run >= edges->n - 1)
         return true;
     const float border = painter->box->exemplar->border_px;
     const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
-    g_autofree uint8_t *ends = fl_alloc(n, 1, "a matte", error);
-    g_autofree uint8_t *meets = ends ? fl_alloc(n, 1, "a matte", error) : NULL;
-    g_autofree int16_t *seen = meets ? find_seen(edges, run, error) : NULL;
-    g_autofree uint8_t *others = seen ? fl_alloc(pixels, 1, "a matte", error) : NULL;
-    return others && find_share(edges, run, false, radius, others, ends, error) &&
-           find_share(edges, run, true, radius, others, meets, error) &&
-           fl_closing_apply(amounts, seen, ends, meets, box, radius, error);
+    g_autofree int16_t *before = fl_alloc(n, sizeof *before, "a layer", error);
+    if (!before)
+        return false;
+    memcpy(before, amounts, n * sizeof *before);
+    return close_tiles(edges, run, radius, before, amounts, error);
 }
 
 /** Whether a run is seen at a pixel and 2 px around it. */
