@@ -66,6 +66,10 @@ static void resolve_rows(const FlLayer *layer, Above *above)
             const size_t i = (size_t)(layer->box.y + y) * above->width + layer->box.x + x;
             const size_t j = (size_t)y * layer->box.width + x;
             uint8_t *alpha = layer->rgba + 4 * j + 3;
+            if (!layer->coverage[i]) { // as below; so it is in most of a layer of scattered shapes
+                *alpha = 0;
+                continue;
+            }
             const int paint = scaled(*alpha, layer->alpha);
             *alpha =
                 (uint8_t)stored_alpha(paint, above->seen[j], layer->coverage[i], above->paint[i]);
