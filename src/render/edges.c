@@ -203,19 +203,22 @@ static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px
     return true;
 }
 
-/** Whether a shape has anything in a part of the frame. */
-static bool has_shape(const FlEdgeMap *edges, int run, FlBox box)
+/** What of a part of the frame a shape takes up; empty: nothing. */
+static FlBox shape_in(const FlEdgeMap *edges, int run, FlBox box)
 {
     const uint8_t *coverage = edges->runs->run[run].coverage;
+    int x0 = box.width, x1 = 0, y0 = box.height, y1 = 0;
     for (int y = 0; y < box.height; y++) {
         const uint8_t *row = coverage + in_frame(edges, box, y);
-        uint8_t any = 0;
-        for (int x = 0; x < box.width; x++)
-            any |= row[x];
-        if (any)
-            return true;
+        int first = 0, last = box.width;
+        while (first < last && !row[first])
+            first++;
+        while (last > first && !row[last - 1])
+            last--;
+        if (first < last)
+            x0 = MIN(x0, first), x1 = MAX(x1, last), y0 = MIN(y0, y), y1 = y + 1;
     }
-    return false;
+    return y1 > 0 ? (FlBox){box.x + x0, box.y + y0, x1 - x0, y1 - y0} : (FlBox){0};
 }
 
 /** All tiles in which the shape is: many shapes are far smaller than their box. */
@@ -230,10 +233,10 @@ static bool close_tiles(const FlEdgeMap *edges, int run, int radius_px, const in
     for (int t = 0; t < columns * rows; t++) {
         GError *mine = NULL;
         const FlBox corner = {all.x + t % columns * TILE_PX, all.y + t / columns * TILE_PX, 0, 0};
-        const FlBox box = {corner.x, corner.y, MIN(TILE_PX, all.x + all.width - corner.x),
-                           MIN(TILE_PX, all.y + all.height - corner.y)};
-        if (has_shape(edges, run, box) &&
-            !close_tile(edges, run, box, radius_px, amounts, closed, &mine))
+        const FlBox tile = {corner.x, corner.y, MIN(TILE_PX, all.x + all.width - corner.x),
+                            MIN(TILE_PX, all.y + all.height - corner.y)};
+        const FlBox box = shape_in(edges, run, tile);
+        if (box.width > 0 && !close_tile(edges, run, box, radius_px, amounts, closed, &mine))
             fl_keep_first_error(&first, mine);
     }
     return fl_tell_first_error(error, first);
