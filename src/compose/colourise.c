@@ -52,16 +52,22 @@ static int opacity_of(FlMedium medium, int amount)
     return medium == FL_MEDIUM_OPAQUE ? body_of(amount) : 0;
 }
 
-/** One fill for the whole region: what every amount looks like is known beforehand. */
+/** One fill for the whole region: each amount that it has is looked up. */
 static void colour_flat(const FlColouring *how, const FlScale *scale, const int16_t *amounts,
                         FlBox box, uint8_t *rgba)
 {
     g_autofree Paint *look = g_new(Paint, FL_AMOUNTS);
+    g_autofree bool *used = g_new0(bool, FL_AMOUNTS);
     int32_t base[3], step[3];
+    for (size_t i = 0; i < fl_box_pixels(box); i++)
+        if (amounts[i] >= 0)
+            used[amounts[i]] = true;
     for (int c = 0; c < 3; c++)
         base[c] = base_of(how->paper[c]), step[c] = step_of(how->fill[c], how->paper[c]);
     for (int amount = 0; amount < FL_AMOUNTS; amount++) {
         uint8_t colour[3];
+        if (!used[amount])
+            continue;
         for (int c = 0; c < 3; c++)
             colour[c] = painted_level(base[c], step[c], amount);
         fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), look[amount].rgba);
