@@ -4,6 +4,7 @@
 #include "compose/closing.h"
 #include <glib.h>
 #include <math.h>
+#include <string.h>
 
 #define WIDTH 96
 #define HEIGHT 32
@@ -137,6 +138,39 @@ static void a_line_is_seen_though_it_is_all_rim(void)
         g_assert_cmpint(amounts[i], >, FL_AMOUNT_ONE * 7 / 8);
 }
 
+/** Whether columns x0 … x1 - 1, closed with `reach` columns around them, are those of the whole. */
+static bool closes_as_in_the_whole(int x0, int x1, int reach)
+{
+    g_autofree int16_t *whole = g_new(int16_t, fl_box_pixels(box));
+    g_autofree int16_t *paint = g_new(int16_t, fl_box_pixels(box));
+    g_autofree uint8_t *share = g_malloc(fl_box_pixels(box));
+    const FlBox part = {LEFT + x0 - reach, 0, x1 - x0 + 2 * reach, HEIGHT};
+    g_autofree int16_t *amounts = g_new(int16_t, fl_box_pixels(part));
+    g_autofree uint8_t *shares = g_malloc(fl_box_pixels(part));
+    g_autoptr(GError) error = NULL;
+    close_paint(0.1, LEFT, whole);
+    make_paint(0.1, paint);
+    make_share(LEFT, share);
+    for (int y = 0; y < HEIGHT; y++) {
+        const size_t from = (size_t)(y * box.width + x0 - reach);
+        memcpy(amounts + y * part.width, paint + from, (size_t)part.width * sizeof *paint);
+        memcpy(shares + y * part.width, share + from, (size_t)part.width);
+    }
+    fl_closing_apply(amounts, amounts, shares, shares, part, BORDER, &error);
+    g_assert_no_error(error);
+    for (int y = 0; y < HEIGHT; y++)
+        if (memcmp(amounts + y * part.width + reach, whole + y * box.width + x0,
+                   (size_t)(x1 - x0) * sizeof *whole) != 0)
+            return false;
+    return true;
+}
+
+static void a_part_with_its_reach_closes_as_in_the_whole(void)
+{
+    g_assert_true(closes_as_in_the_whole(16, 40, fl_closing_reach(BORDER)));
+    g_assert_false(closes_as_in_the_whole(5, 40, 4)); // the rim's shares are not 0 there
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -146,5 +180,6 @@ int main(int argc, char **argv)
     TEST(a_shape_that_only_comes_near_shares_no_edge);
     TEST(a_thin_shape_among_others_has_no_dark_core);
     TEST(a_line_is_seen_though_it_is_all_rim);
+    TEST(a_part_with_its_reach_closes_as_in_the_whole);
     return g_test_run();
 }
