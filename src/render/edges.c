@@ -260,16 +260,18 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
     return close_tiles(edges, run, radius, before, amounts, error);
 }
 
-/** Whether a run is seen at a pixel and 2 px around it. */
+/** Whether a run is all that is seen at a pixel and 2 px around it. */
 static bool is_inside(const FlEdgeMap *edges, int run, int x, int y)
 {
     enum { MARGIN_PX = 2 };
+    const uint8_t *coverage = edges->runs->run[run].coverage;
     const int width = fl_film_width(edges->plan->film);
     const int height = fl_film_height(edges->plan->film);
     for (int dy = -MARGIN_PX; dy <= MARGIN_PX; dy += MARGIN_PX)
         for (int dx = -MARGIN_PX; dx <= MARGIN_PX; dx += MARGIN_PX) {
             const int xx = CLAMP(x + dx, 0, width - 1), yy = CLAMP(y + dy, 0, height - 1);
-            if (!is_seen(edges, run, (size_t)yy * width + xx))
+            const size_t i = (size_t)yy * width + xx;
+            if (coverage[i] < 255 || !is_seen(edges, run, i))
                 return false;
         }
     return true;
