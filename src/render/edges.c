@@ -91,8 +91,7 @@ void fl_edges_clear(FlEdgeMap *edges)
 
 /** A part of a run's box that is closed by itself, and room for it. */
 typedef struct Tile {
-    FlBox box;                  // what is closed
-    FlBox part;                 // with what may change it
+    FlBox part;                 // what is closed, with what may change it
     FlBox around;               // with what the shares are of
     int16_t *amounts, *seen;    // of part
     uint8_t *ends, *meets;      // of part: shares of the edges
@@ -125,7 +124,7 @@ static bool tile_init(Tile *tile, const FlEdgeMap *edges, int run, FlBox box, in
 {
     const FlBox frame = {0, 0, fl_film_width(edges->plan->film), fl_film_height(edges->plan->film)};
     const FlBox part = grown(box, fl_closing_reach(radius_px), edges->boxes[run]);
-    *tile = (Tile){.box = box, .part = part, .around = grown(part, radius_px, frame)};
+    *tile = (Tile){.part = part, .around = grown(part, radius_px, frame)};
     const size_t n = fl_box_pixels(part), around = fl_box_pixels(tile->around);
     return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
            (tile->seen = fl_alloc(n, sizeof *tile->seen, "a matte", error)) &&
