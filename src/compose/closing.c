@@ -219,27 +219,75 @@ int fl_closing_reach(int radius_px)
     return MAX(2 * narrow_radius(radius_px), radius_px);
 }
 
+/** Room for a window of each pixel, and what is made of it. */
+typedef struct Windows {
+    Mean *around, *wide;
+    uint8_t *thin, *part; // part: how far a pixel is evened, 0..255
+} Windows;
+
+static void windows_clear(Windows *windows)
+{
+    free(windows->around);
+    free(windows->wide);
+    free(windows->thin);
+    free(windows->part);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Windows, windows_clear)
+
+static bool windows_init(Windows *windows, size_t n, GError **error)
+{
+    *windows = (Windows){0};
+    return (windows->around = fl_alloc(n, sizeof *windows->around, "a matte", error)) &&
+           (windows->wide = fl_alloc(n, sizeof *windows->wide, "a matte", error)) &&
+           (windows->thin = fl_alloc(n, 1, "a matte", error)) &&
+           (windows->part = fl_alloc(n, 1, "a matte", error));
+}
+
+static bool any_of(const uint8_t *plane, size_t n)
+{
+    uint8_t any = 0;
+    for (size_t i = 0; i < n; i++)
+        any |= plane[i];
+    return any;
+}
+
+/** Fills `part`; most pixels of most shapes have none. */
+static bool find_parts(Windows *windows, const int16_t *seen, const uint8_t *share,
+                       const uint8_t *small, FlBox box, int radius_px, GError **error)
+{
+    const size_t n = fl_box_pixels(box);
+    const int most = narrow_radius(radius_px);
+    uint8_t *part = windows->part; // at first how narrow the shape is
+    if (any_of(small, n) && (!sum_boxes(seen, box, most, windows->wide, error) ||
+                             !find_thin(windows->wide, box, most, part, error)))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        part[i] = (uint8_t)MAX(MAX(share[i], small[i] * part[i] / 255), windows->thin[i]);
+    return true;
+}
+
 bool fl_closing_apply(int16_t *amounts, const int16_t *seen, const uint8_t *share,
                       const uint8_t *small, FlBox box, int radius_px, GError **error)
 {
     const size_t n = fl_box_pixels(box);
-    const int quarter = thin_radius(radius_px), most = narrow_radius(radius_px);
-    g_autofree Mean *around = fl_alloc(n, sizeof *around, "a matte", error);
-    g_autofree Mean *wide = around ? fl_alloc(n, sizeof *wide, "a matte", error) : NULL;
-    g_autofree uint8_t *thin = wide ? fl_alloc(n, 1, "a matte", error) : NULL;
-    g_autofree uint8_t *narrow = thin ? fl_alloc(n, 1, "a matte", error) : NULL;
-    if (!narrow || !sum_boxes(amounts, box, quarter, around, error) ||
-        !find_thin(around, box, quarter, thin, error) || !sum_boxes(seen, box, most, wide, error) ||
-        !find_thin(wide, box, most, narrow, error) ||
-        !sum_boxes(amounts, box, radius_px, wide, error))
+    const int quarter = thin_radius(radius_px);
+    g_auto(Windows) windows = {0};
+    if (!windows_init(&windows, n, error) ||
+        !sum_boxes(amounts, box, quarter, windows.around, error) ||
+        !find_thin(windows.around, box, quarter, windows.thin, error) ||
+        !find_parts(&windows, seen, share, small, box, radius_px, error))
+        return false;
+    if (!any_of(windows.part, n))
+        return true;
+    if (!sum_boxes(amounts, box, radius_px, windows.wide, error))
         return false;
     for (size_t i = 0; i < n; i++) {
-        const int part = MAX(MAX(share[i], small[i] * narrow[i] / 255), thin[i]);
-        if (amounts[i] < 0 || part == 0)
+        if (amounts[i] < 0 || windows.part[i] == 0)
             continue;
-        const int contrast = contrast_of(wide[i].n, radius_px, thin[i]);
-        const int even = evened(amounts[i], around[i], contrast);
-        amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * part / 255);
+        const int contrast = contrast_of(windows.wide[i].n, radius_px, windows.thin[i]);
+        const int even = evened(amounts[i], windows.around[i], contrast);
+        amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * windows.part[i] / 255);
     }
     return true;
 }
