@@ -35,7 +35,7 @@ static void disc(double cx, double cy, double r, uint8_t *coverage)
 /** A layer of flat opaque colour. */
 static FlLayer flat_layer(const uint8_t *coverage, uint8_t r, uint8_t g, uint8_t b)
 {
-    FlLayer layer = {.box = {0, 0, W, H}, .coverage = coverage, .alpha = 255};
+    FlLayer layer = {.area.box = {0, 0, W, H}, .coverage = coverage, .pitch = W, .alpha = 255};
     layer.rgba = g_malloc(4 * N);
     for (int i = 0; i < N; i++)
         memcpy(layer.rgba + 4 * i, (uint8_t[]){r, g, b, coverage[i] ? 255 : 0}, 4);
@@ -169,6 +169,29 @@ static void paint_below_runs_on_under_a_rim_without_body(void)
     layers_clear(layers, 2);
 }
 
+static void an_area_is_where_the_shape_is_and_no_more(void)
+{
+    for (uint64_t key = 0; key < 20; key++) {
+        FlRng rng = {key};
+        uint8_t plane[N] = {0};
+        g_auto(FlArea) area = {0};
+        for (uint32_t k = fl_rng_below(&rng, 60); k > 0; k--)
+            plane[fl_rng_below(&rng, H / 2) * 2 * W + fl_rng_below(&rng, W)] = 1;
+        fl_area_init(&area, plane, W, H);
+        int n = 0, found = 0;
+        for (int i = 0; i < N; i++)
+            n += plane[i];
+        for (int y = 0; y < area.box.height; y++) {
+            const FlColumns span = fl_area_row(&area, y);
+            const uint8_t *row = plane + (area.box.y + y) * W + area.box.x;
+            for (int x = span.first; x < span.last; x++)
+                found += row[x];
+            g_assert_true(span.first >= span.last || (row[span.first] && row[span.last - 1]));
+        }
+        g_assert_cmpint(found, ==, n);
+    }
+}
+
 static void a_hole_in_the_paint_has_body_and_its_rim_has_not(void)
 {
     enum { LEFT = 12, TOP = 6, SIDE = 20 }; // the shape is a square of the frame
@@ -180,7 +203,7 @@ static void a_hole_in_the_paint_has_body_and_its_rim_has_not(void)
         body[10 * SIDE + MIN(k, 6)] = 40; // from the left side to column 6
     }
     body[10 * SIDE + 12] = body[11 * SIDE + 12] = 40;
-    g_assert_true(fl_holes_close(body, coverage, W, box, NULL));
+    g_assert_true(fl_holes_close(body, coverage, W, &(FlArea){box}, NULL));
     for (int k = 0; k < SIDE; k++)
         g_assert_cmpint(body[10 * SIDE + k], ==, k <= 6 ? 40 : 255);
     g_assert_cmpint(body[11 * SIDE + 12], ==, 255);
@@ -299,6 +322,7 @@ static FlLayer enlarged(const FlLayer *half)
 
 static void enlarged_clear(FlLayer *layer)
 {
+    fl_area_clear(&layer->area);
     free(layer->rgba);
     free((uint8_t *)layer->body);
     free((uint8_t *)layer->coverage);
@@ -334,7 +358,11 @@ static void an_enlarged_layer_keeps_its_paint_up_to_the_edge(void)
     const FlBox box = {18, 15, 12, 10};
     memset(shape, 0, N);
     memset(body, 80, sizeof body);
-    FlLayer half = {.box = box, .coverage = shape, .body = body, .alpha = 200};
+    FlLayer half = {.area.box = box,
+                    .coverage = shape + box.y * W + box.x,
+                    .pitch = W,
+                    .body = body,
+                    .alpha = 200};
     half.rgba = g_malloc0(4 * sizeof body);
     for (int y = 1; y < 9; y++) // a pixel of the box is left around
         for (int x = 1; x < 11; x++) {
@@ -344,10 +372,10 @@ static void an_enlarged_layer_keeps_its_paint_up_to_the_edge(void)
     FlLayer full = enlarged(&half);
     g_assert_cmpint(full.alpha, ==, 200);
     double area = 0;
-    for (int y = 0; y < full.box.height; y++)
-        for (int x = 0; x < full.box.width; x++) {
-            const int p = y * full.box.width + x;
-            const uint8_t covered = full.coverage[(full.box.y + y) * FULL_W + full.box.x + x];
+    for (int y = 0; y < full.area.box.height; y++)
+        for (int x = 0; x < full.area.box.width; x++) {
+            const int p = y * full.area.box.width + x;
+            const uint8_t covered = full.coverage[p];
             area += covered / 255.0;
             if (covered) {
                 g_assert_cmpmem(full.rgba + 4 * p, 4, ((uint8_t[]){10, 200, 30, 120}), 4);
@@ -365,8 +393,8 @@ static void an_enlarged_layer_fills_the_frame(void)
     uint8_t all[N];
     memset(all, 255, N);
     FlLayer half = flat_layer(all, 1, 2, 3), full = enlarged(&half);
-    g_assert_cmpint(full.box.width, ==, FULL_W);
-    g_assert_cmpint(full.box.height, ==, FULL_H);
+    g_assert_cmpint(full.area.box.width, ==, FULL_W);
+    g_assert_cmpint(full.area.box.height, ==, FULL_H);
     for (int p = 0; p < FULL_N; p++) {
         g_assert_cmpint(full.coverage[p], ==, 255);
         g_assert_cmpmem(full.rgba + 4 * p, 4, ((uint8_t[]){1, 2, 3, 255}), 4);
@@ -393,6 +421,8 @@ int main(int argc, char **argv)
                     thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below);
     g_test_add_func("/layers/paint-below-runs-on-under-a-rim-without-body",
                     paint_below_runs_on_under_a_rim_without_body);
+    g_test_add_func("/layers/an-area-is-where-the-shape-is-and-no-more",
+                    an_area_is_where_the_shape_is_and_no_more);
     g_test_add_func("/layers/a-hole-in-the-paint-has-body-and-its-rim-has-not",
                     a_hole_in_the_paint_has_body_and_its_rim_has_not);
     g_test_add_func("/layers/stored-layers-recompose-to-the-frame-bit-for-bit",

@@ -1,6 +1,5 @@
 #include "base/box.h"
 
-#include <glib.h>
 #include <stdbool.h>
 
 /* Most rows of most planes are blank, which is seen without looking for where they begin. */
@@ -12,20 +11,44 @@ static bool is_blank(const uint8_t *row, int width)
     return any == 0;
 }
 
+/* Of a row that is not blank. */
+static FlColumns span_of(const uint8_t *row, int width)
+{
+    FlColumns span = {0, width};
+    while (!row[span.first])
+        span.first++;
+    while (!row[span.last - 1])
+        span.last--;
+    return span;
+}
+
 FlBox fl_box_of(const uint8_t *plane, int width, int height)
 {
     int left = width, right = -1, top = height, bottom = -1;
     for (int y = 0; y < height; y++) {
         const uint8_t *row = plane + (size_t)y * width;
-        int first = 0, last = width - 1;
         if (is_blank(row, width))
             continue;
-        while (!row[first])
-            first++;
-        while (!row[last])
-            last--;
-        left = MIN(left, first), right = MAX(right, last);
+        const FlColumns span = span_of(row, width);
+        left = MIN(left, span.first), right = MAX(right, span.last - 1);
         top = MIN(top, y), bottom = y;
     }
     return right < 0 ? (FlBox){0, 0, 0, 0} : (FlBox){left, top, right - left + 1, bottom - top + 1};
+}
+
+void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height)
+{
+    const FlBox box = fl_box_of(plane, width, height);
+    *area = (FlArea){box, g_new0(FlColumns, MAX(box.height, 1))};
+    for (int y = 0; y < box.height; y++) {
+        const uint8_t *row = plane + (size_t)(box.y + y) * width + box.x;
+        if (!is_blank(row, box.width))
+            area->row[y] = span_of(row, box.width);
+    }
+}
+
+void fl_area_clear(FlArea *area)
+{
+    g_free(area->row);
+    *area = (FlArea){0};
 }

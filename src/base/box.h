@@ -1,7 +1,8 @@
-/* A rectangle of pixels within a frame. */
+/* A rectangle of pixels within a frame, and what of it is taken. */
 #ifndef FLUIDY_BASE_BOX_H
 #define FLUIDY_BASE_BOX_H
 
+#include <glib.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -12,6 +13,31 @@ typedef struct FlBox {
 
 /** The smallest box that holds every nonzero byte of a width * height plane; {0, 0, 0, 0}: none. */
 FlBox fl_box_of(const uint8_t *plane, int width, int height);
+
+/** Columns first … last - 1; none if first >= last. */
+typedef struct FlColumns {
+    int first, last;
+} FlColumns;
+
+/** Where something is in a frame: many shapes are far smaller than the box around them. */
+typedef struct FlArea {
+    FlBox box;
+    FlColumns *row; // of each row of the box, within 0 … box.width; NULL: rows are full
+} FlArea;
+
+/** Where a width * height plane is not 0: in each row from its first such byte to the last one. */
+void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height);
+void fl_area_clear(FlArea *area);
+
+/** What row y of the box has. */
+static inline FlColumns fl_area_row(const FlArea *area, int y)
+{
+    return area->row ? area->row[y] : (FlColumns){0, area->box.width};
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlArea, fl_area_clear)
+
+#define FL_WORTH_THREADS ((size_t)1 << 15) // pixels; fewer are done before other threads are awake
 
 static inline size_t fl_box_pixels(FlBox box)
 {

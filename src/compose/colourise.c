@@ -54,14 +54,19 @@ static int opacity_of(FlMedium medium, int amount)
 
 /** One fill for the whole region: each amount that it has is looked up. */
 static void colour_flat(const FlColouring *how, const FlScale *scale, const int16_t *amounts,
-                        FlBox box, uint8_t *rgba)
+                        const FlArea *area, uint8_t *rgba)
 {
+    const size_t width = (size_t)area->box.width;
     g_autofree Paint *look = g_new(Paint, FL_AMOUNTS);
     g_autofree bool *used = g_new0(bool, FL_AMOUNTS);
     int32_t base[3], step[3];
-    for (size_t i = 0; i < fl_box_pixels(box); i++)
-        if (amounts[i] >= 0)
-            used[amounts[i]] = true;
+    for (int y = 0; y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const int16_t *row = amounts + (size_t)y * width;
+        for (int x = span.first; x < span.last; x++)
+            if (row[x] >= 0)
+                used[row[x]] = true;
+    }
     for (int c = 0; c < 3; c++)
         base[c] = base_of(how->paper[c]), step[c] = step_of(how->fill[c], how->paper[c]);
     for (int amount = 0; amount < FL_AMOUNTS; amount++) {
@@ -72,9 +77,13 @@ static void colour_flat(const FlColouring *how, const FlScale *scale, const int1
             colour[c] = painted_level(base[c], step[c], amount);
         fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), look[amount].rgba);
     }
-    for (size_t i = 0; i < fl_box_pixels(box); i++)
-        if (amounts[i] >= 0)
-            memcpy(rgba + 4 * i, look[amounts[i]].rgba, 4);
+    for (int y = 0; y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const int16_t *row = amounts + (size_t)y * width;
+        for (int x = span.first; x < span.last; x++)
+            if (row[x] >= 0)
+                memcpy(rgba + 4 * ((size_t)y * width + (size_t)x), look[row[x]].rgba, 4);
+    }
 }
 
 /** What each level of a per-pixel source adds to the paper's density, per channel. */
@@ -95,24 +104,26 @@ static void steps_init(Steps *steps, const FlInk *ink, const FlColouring *how)
 
 /** Colours a row of the box from the painted pixels themselves, or from the picture. */
 static void colour_row(const FlColouring *how, const FlScale *scale, const Steps *steps,
-                       const uint8_t *source, size_t source_step, const int16_t *amounts, int width,
-                       uint8_t *rgba)
+                       const uint8_t *row, size_t pixel_bytes, const int16_t *amounts,
+                       FlColumns span, uint8_t *rgba)
 {
-    for (int x = 0; x < width; x++, source += source_step, rgba += 4) {
+    for (int x = span.first; x < span.last; x++) {
+        const uint8_t *source = row + pixel_bytes * (size_t)x;
         if (amounts[x] < 0)
             continue;
         const int amount = how->tint == FL_TINT_KEEP ? FL_AMOUNT_ONE : amounts[x];
         uint8_t colour[3];
         for (int c = 0; c < 3; c++)
             colour[c] = painted_level(steps->base[c], steps->step[c][source[c]], amount);
-        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amounts[x]), rgba);
+        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amounts[x]), rgba + 4 * x);
     }
 }
 
 static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScale *scale,
-                          const uint8_t *painted, const int16_t *amounts, int width, FlBox box,
-                          uint8_t *rgba)
+                          const uint8_t *painted, const int16_t *amounts, int width,
+                          const FlArea *area, uint8_t *rgba)
 {
+    const FlBox box = area->box;
     const bool keep = how->tint == FL_TINT_KEEP;
     const uint8_t *source = keep ? painted : how->picture;
     const size_t step = keep ? 3 : 4;
@@ -123,48 +134,56 @@ static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScal
         const size_t row = (size_t)y * box.width;
         colour_row(how, scale, &steps,
                    source + step * ((size_t)(box.y + y) * (size_t)width + (size_t)box.x), step,
-                   amounts + row, box.width, rgba + 4 * row);
+                   amounts + row, fl_area_row(area, y), rgba + 4 * row);
     }
 }
 
 void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                  const int16_t *amounts, int width, FlBox box, uint8_t *rgba)
+                  const int16_t *amounts, int width, const FlArea *area, uint8_t *rgba)
 {
     FlScale scale;
     fl_scale_init(&scale, how->linear);
-    memset(rgba, 0, fl_box_pixels(box) * 4);
     if (how->tint != FL_TINT_KEEP && !how->picture)
-        colour_flat(how, &scale, amounts, box, rgba);
+        colour_flat(how, &scale, amounts, area, rgba);
     else
-        colour_pixels(ink, how, &scale, painted, amounts, width, box, rgba);
+        colour_pixels(ink, how, &scale, painted, amounts, width, area, rgba);
 }
 
 void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
-                          const uint8_t *coverage, int width, FlBox box, int16_t *amounts)
+                          const uint8_t *coverage, int width, const FlArea *area, int16_t *amounts)
 {
+    const FlBox box = area->box;
     g_autofree int16_t *toned = g_new(int16_t, FL_AMOUNTS);
     for (int i = 0; i < FL_AMOUNTS; i++)
         toned[i] = (int16_t)fl_ink_toned(ink, i, tone);
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
+    memset(amounts, 0xff, fl_box_pixels(box) * sizeof *amounts); // -1
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        for (int x = span.first; x < span.last; x++) {
             const size_t i = (size_t)(box.y + y) * width + box.x + x;
-            amounts[(size_t)y * box.width + x] =
-                coverage[i] ? toned[fl_ink_amount(ink, painted + 3 * i)] : -1;
+            if (coverage[i])
+                amounts[(size_t)y * box.width + x] = toned[fl_ink_amount(ink, painted + 3 * i)];
         }
+    }
 }
 
-void fl_colourise_body(const int16_t *amounts, FlBox box, uint8_t *body)
+void fl_colourise_body(const int16_t *amounts, const FlArea *area, uint8_t *body)
 {
-    for (size_t i = 0; i < fl_box_pixels(box); i++)
-        body[i] = (uint8_t)body_of(MAX(amounts[i], 0));
+    for (int y = 0; y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const size_t row = (size_t)y * area->box.width;
+        for (int x = span.first; x < span.last; x++)
+            body[row + x] = (uint8_t)body_of(MAX(amounts[row + x], 0));
+    }
 }
 
 void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
-                        int width, FlBox box, uint8_t *rgba)
+                        int width, const FlArea *area, uint8_t *rgba)
 {
-    memset(rgba, 0, fl_box_pixels(box) * 4);
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
+    const FlBox box = area->box;
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        for (int x = span.first; x < span.last; x++) {
             const size_t i = (size_t)(box.y + y) * width + box.x + x;
             uint8_t *to = rgba + 4 * ((size_t)y * box.width + x);
             if (!coverage[i])
@@ -172,4 +191,5 @@ void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uin
             memcpy(to, picture ? picture + 4 * i : flat, 3);
             to[3] = 255;
         }
+    }
 }

@@ -23,34 +23,36 @@ typedef struct FlColouring {
 } FlColouring;
 
 /**
- * The amounts of paint of a box, box.width * box.height; -1 where coverage is 0. tone is of
- * fl_ink_tone(); FL_TONE_ONE: as in the exemplar. painted is width * height * 3 sRGB and coverage
- * width * height, whole frames.
+ * The amounts of paint of an area, one per pixel of its box; -1 where coverage is 0 and beyond the
+ * area. tone is of fl_ink_tone(); FL_TONE_ONE: as in the exemplar. painted is width * height * 3
+ * sRGB and coverage width * height, whole frames.
  */
 void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
-                          const uint8_t *coverage, int width, FlBox box, int16_t *amounts);
+                          const uint8_t *coverage, int width, const FlArea *area, int16_t *amounts);
 
 /**
- * Colours the pixels of a box that have an amount of paint, 0 or more.
+ * Colours the pixels of an area that have an amount of paint, 0 or more.
  *
- * painted, as above, is read for FL_TINT_KEEP only. rgba, box.width * box.height * 4, becomes
+ * painted, as above, is read for FL_TINT_KEEP only. rgba, four bytes per pixel of the box, becomes
  * straight RGBA: the paint alone, without the coverage. Its alpha is the least with which the
  * colour over the paper is the painted colour, so that thin paint is transparent over any other
- * background too (opaque paint has more). The other pixels become 0.
+ * background too (opaque paint has more). The other pixels stay as they are.
  */
 void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                  const int16_t *amounts, int width, FlBox box, uint8_t *rgba);
+                  const int16_t *amounts, int width, const FlArea *area, uint8_t *rgba);
 
 /**
- * How far the paint has body, 0..255 per pixel of the box: from nothing on bare paper to 255 at
+ * How far the paint has body, 0..255 per pixel of the area: from nothing on bare paper to 255 at
  * a fifth of the median amount. Layers that knock out by it let the paint below run on under their
  * soft rims instead of ending it at their contour, where it leaves a line of paper.
  */
-void fl_colourise_body(const int16_t *amounts, FlBox box, uint8_t *body);
+void fl_colourise_body(const int16_t *amounts, const FlArea *area, uint8_t *body);
 
-/** What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.
+/**
+ * What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.
+ * Pixels without coverage stay as they are.
  */
 void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
-                        int width, FlBox box, uint8_t *rgba);
+                        int width, const FlArea *area, uint8_t *rgba);
 
 #endif

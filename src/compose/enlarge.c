@@ -27,7 +27,7 @@ typedef struct Rows {
 
 static size_t padded(const FlLayer *half)
 {
-    return (size_t)half->box.width + 2;
+    return (size_t)half->area.box.width + 2;
 }
 
 static bool rows_init(Rows *rows, const FlLayer *half, int width, int height, GError **error)
@@ -47,24 +47,29 @@ static bool rows_init(Rows *rows, const FlLayer *half, int width, int height, GE
     return next != NULL;
 }
 
-/** Of a pixel that is covered. */
-static void read_pixel(const Rows *rows, size_t i, size_t j, float *const plane[N_PLANES], int x)
+/** Pixel (column, row) of the box, if it is covered, into column x of the planes. */
+static bool read_pixel(const FlLayer *half, int column, int row, float *const plane[N_PLANES],
+                       int x)
 {
-    const FlLayer *half = rows->half;
+    const size_t j = (size_t)row * half->area.box.width + column;
+    const uint8_t coverage = half->coverage[(size_t)row * half->pitch + column];
     const uint8_t *rgba = half->rgba + 4 * j;
     const float alpha = rgba[3];
-    plane[COVERAGE][x] = half->coverage[i];
+    if (!coverage)
+        return false;
+    plane[COVERAGE][x] = coverage;
     plane[COVERED][x] = 1;
     plane[ALPHA][x] = alpha;
     for (int c = 0; c < 3; c++)
         plane[RED + c][x] = alpha * rgba[c];
     plane[BODY][x] = half->body ? half->body[j] : 0;
+    return true;
 }
 
 /** Beyond the frame its last pixels go on; beyond the box there is nothing. */
 static const HalfRow *row_at(Rows *rows, int y)
 {
-    const FlBox box = rows->half->box;
+    const FlBox box = rows->half->area.box;
     y = CLAMP(y, 0, rows->half_height - 1);
     HalfRow *row = &rows->read[y % 3];
     if (row->y == y)
@@ -72,14 +77,14 @@ static const HalfRow *row_at(Rows *rows, int y)
     for (int k = 0; k < N_PLANES && row->first < row->last; k++)
         memset(row->plane[k] + row->first, 0, (size_t)(row->last - row->first) * sizeof(float));
     row->y = y, row->first = box.width + 2, row->last = 0;
-    const bool inside = y >= box.y && y < box.y + box.height;
-    for (int x = 0; inside && x < box.width + 2; x++) {
-        const int column = CLAMP(box.x + x - 1, 0, rows->half_width - 1);
-        const size_t i = (size_t)y * rows->half_width + column;
-        if (column < box.x || column >= box.x + box.width || !rows->half->coverage[i])
-            continue;
-        read_pixel(rows, i, (size_t)(y - box.y) * box.width + (column - box.x), row->plane, x);
-        row->first = MIN(row->first, x), row->last = x + 1;
+    if (y < box.y || y >= box.y + box.height)
+        return row;
+    const FlColumns span = fl_area_row(&rows->half->area, y - box.y);
+    for (int x = span.first; x < span.last + 2; x++) {
+        const int column = CLAMP(box.x + x - 1, 0, rows->half_width - 1) - box.x;
+        if (column >= span.first && column < span.last &&
+            read_pixel(rows->half, column, y - box.y, row->plane, x))
+            row->first = MIN(row->first, x), row->last = x + 1;
     }
     return row;
 }
@@ -111,11 +116,11 @@ static uint8_t to_8bit(float value)
     return (uint8_t)(value + 0.5f);
 }
 
-/** Columns first … last - 1 of a row of the full size, whose column 0 is `from` of the wide row. */
-static void store(const Rows *rows, int from, int first, int last, uint8_t *coverage, uint8_t *rgba,
+/** A part of a row of the full size, whose column 0 is `from` of the wide row. */
+static void store(const Rows *rows, int from, FlColumns span, uint8_t *coverage, uint8_t *rgba,
                   uint8_t *body)
 {
-    for (int x = first; x < last; x++) {
+    for (int x = span.first; x < span.last; x++) {
         const int i = from + x;
         const float covered = MAX(rows->wide[COVERED][i], 1); // 0: all else is 0 as well
         const float alpha = MAX(rows->wide[ALPHA][i], 1);
@@ -137,10 +142,12 @@ static FlBox doubled(FlBox box, int width, int height)
     return (FlBox){x0, y0, x1 - x0, y1 - y0};
 }
 
-static bool make_planes(FlLayer *full, bool with_body, int width, int height, GError **error)
+static bool make_planes(FlLayer *full, bool with_body, GError **error)
 {
-    const size_t n = fl_box_pixels(full->box);
-    return (full->coverage = fl_alloc((size_t)width * height, 1, "a layer", error)) &&
+    const size_t n = fl_box_pixels(full->area.box);
+    full->area.row = g_new0(FlColumns, full->area.box.height);
+    full->pitch = (size_t)full->area.box.width;
+    return (full->coverage = fl_alloc(n, 1, "a layer", error)) &&
            (full->rgba = fl_alloc(4 * n, 1, "a layer", error)) &&
            (!with_body || (full->body = fl_alloc(n, 1, "a layer", error)));
 }
@@ -149,13 +156,13 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
 {
     GError *first = NULL;
     *full = *half;
-    full->coverage = full->body = NULL, full->rgba = NULL;
-    if (half->box.width > 0)
-        full->box = doubled(half->box, width, height);
-    if (!make_planes(full, half->body, width, height, error))
+    full->coverage = full->body = NULL, full->rgba = NULL, full->area.row = NULL;
+    if (half->area.box.width > 0)
+        full->area.box = doubled(half->area.box, width, height);
+    if (!make_planes(full, half->body, error))
         return false;
-    const FlBox box = full->box;
-    const int left = box.x - 2 * (half->box.x - 1); // of the box in a wide row
+    const FlBox box = full->area.box;
+    const int left = box.x - 2 * (half->area.box.x - 1); // of the box in a wide row
 #pragma omp parallel
     {
         Rows rows;
@@ -168,9 +175,10 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
                 continue;
             int from = 0, to = 0;
             widen(&rows, box.y + y, &from, &to);
-            store(&rows, left, MAX(from - left, 0), MIN(to - left, box.width),
-                  (uint8_t *)full->coverage + (size_t)(box.y + y) * width + box.x,
-                  full->rgba + 4 * row, full->body ? (uint8_t *)full->body + row : NULL);
+            const FlColumns span = {MAX(from - left, 0), MIN(to - left, box.width)};
+            full->area.row[y] = span;
+            store(&rows, left, span, (uint8_t *)full->coverage + row, full->rgba + 4 * row,
+                  full->body ? (uint8_t *)full->body + row : NULL);
         }
         free(rows.room);
         fl_keep_first_error(&first, mine);

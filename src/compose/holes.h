@@ -12,11 +12,13 @@
  * Gives full body to thin places that no thin way joins to the contour. Paint below runs on under a
  * soft rim; in a hole amid the paint, paper shows, for the paint above went around nothing.
  *
- * body, box.width * box.height, is that of fl_colourise_body(): thin is less than 255. coverage is
- * a whole frame, `width` wide; the contour is where it is less than 255, and the side of the box.
+ * body, one per pixel of the area's box, is that of fl_colourise_body(): thin is less than 255.
+ * coverage is a whole frame, `width` wide, 0 beyond the area; the contour is where it is less than
+ * 255, and the side of the box.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
-bool fl_holes_close(uint8_t *body, const uint8_t *coverage, int width, FlBox box, GError **error);
+bool fl_holes_close(uint8_t *body, const uint8_t *coverage, int width, const FlArea *area,
+                    GError **error);
 
 #endif

@@ -60,32 +60,36 @@ static bool knocks_out(const FlLayer *layer)
 static void resolve_rows(const FlLayer *layer, Above *above)
 {
     const bool knocks = knocks_out(layer);
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < layer->box.height; y++)
-        for (int x = 0; x < layer->box.width; x++) {
-            const size_t i = (size_t)(layer->box.y + y) * above->width + layer->box.x + x;
-            const size_t j = (size_t)y * layer->box.width + x;
+    const FlBox box = layer->area.box;
+#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > FL_WORTH_THREADS)
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(&layer->area, y);
+        for (int x = span.first; x < span.last; x++) {
+            const size_t i = (size_t)(box.y + y) * above->width + box.x + x;
+            const size_t j = (size_t)y * box.width + x;
+            const uint8_t coverage = layer->coverage[(size_t)y * layer->pitch + x];
             uint8_t *alpha = layer->rgba + 4 * j + 3;
-            if (!layer->coverage[i]) { // as below; so it is in most of a layer of scattered shapes
+            if (!coverage) { // as below
                 *alpha = 0;
                 continue;
             }
             const int paint = scaled(*alpha, layer->alpha);
-            *alpha =
-                (uint8_t)stored_alpha(paint, above->seen[j], layer->coverage[i], above->paint[i]);
+            *alpha = (uint8_t)stored_alpha(paint, above->seen[j], coverage, above->paint[i]);
             if (knocks) {
                 above->paint[i] += (uint16_t)((65535 - above->paint[i]) * *alpha / 255);
                 const int body = layer->body ? layer->body[j] : 255;
                 above->area[i] += (uint8_t)scaled(above->seen[j], scaled(body, layer->alpha));
             }
         }
+    }
 }
 
 static void grow_area(const FlLayer *layer, const FlStackParams *params, Above *above)
 {
     const size_t n = (size_t)above->width * above->height;
-    fl_matte_spread(layer->coverage, above->width, above->height, layer->box, params->gap_px,
-                    params->feather_px, above->spread);
+    const FlMatteShape shape = {&layer->area, layer->coverage, layer->pitch};
+    fl_matte_spread(&shape, above->width, above->height, params->gap_px, params->feather_px,
+                    above->spread);
     for (size_t i = 0; i < n; i++)
         above->area[i] = (uint8_t)MAX(above->area[i], scaled(above->spread[i], layer->alpha));
 }
@@ -95,8 +99,8 @@ static void resolve_occlusion(FlLayer *layers, int n, const FlStackParams *param
 {
     for (int k = n - 1; k >= 0; k--) {
         const FlLayer *layer = &layers[k];
-        fl_matte_visible(layer->coverage, above->area, above->width, above->height, layer->box,
-                         above->seen);
+        const FlMatteShape shape = {&layer->area, layer->coverage, layer->pitch};
+        fl_matte_visible(&shape, above->area, above->width, above->height, above->seen);
         resolve_rows(layer, above);
         if (above->spread && knocks_out(layer))
             grow_area(layer, params, above);
@@ -132,11 +136,12 @@ static int32_t sum_value(const Sum *sum, int channel)
 static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, Sum *sums)
 {
     for (int k = 0; k < n; k++) {
-        const FlBox box = layers[k].box;
+        const FlBox box = layers[k].area.box;
         if (y < box.y || y >= box.y + box.height)
             continue;
         const uint8_t *row = layers[k].rgba + (size_t)(y - box.y) * box.width * 4;
-        for (int x = 0; x < box.width; x++)
+        const FlColumns span = fl_area_row(&layers[k].area, y - box.y);
+        for (int x = span.first; x < span.last; x++)
             if (row[4 * x + 3])
                 sum_over(&sums[box.x + x], scale, row + 4 * x);
     }
@@ -180,9 +185,9 @@ typedef struct Row {
     uint8_t *drawn; // how far the shapes below cover each pixel, 0..255
 } Row;
 
-static void add_shape(const FlLayer *layer, const uint8_t *coverage, uint8_t *drawn)
+static void add_shape(const FlLayer *layer, FlColumns span, const uint8_t *coverage, uint8_t *drawn)
 {
-    for (int x = 0; x < layer->box.width; x++)
+    for (int x = span.first; x < span.last; x++)
         drawn[x] = (uint8_t)(drawn[x] + scaled(255 - drawn[x], scaled(coverage[x], layer->alpha)));
 }
 
@@ -195,11 +200,12 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
     memset(below.drawn, 0, (size_t)width);
     for (int k = 0; k < n; k++) {
         const FlLayer *layer = &layers[k];
-        const FlBox box = layer->box;
+        const FlBox box = layer->area.box;
         if (y < box.y || y >= box.y + box.height)
             continue;
         uint8_t *row = layer->rgba + (size_t)(y - box.y) * box.width * 4;
-        for (int x = 0; x < box.width; x++) {
+        const FlColumns span = fl_area_row(&layer->area, y - box.y);
+        for (int x = span.first; x < span.last; x++) {
             if (layer->mix != FL_MIX_OVER && row[4 * x + 3])
                 mix_pixel(&below.sum[box.x + x], below.drawn[box.x + x], scale, layer->mix,
                           row + 4 * x);
@@ -207,7 +213,8 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
                 glaze_pixel(&below.sum[box.x + x], scale, params->paper, row + 4 * x);
         }
         sum_row(layer, 1, scale, y, below.sum);
-        add_shape(layer, layer->coverage + (size_t)y * width + box.x, below.drawn + box.x);
+        add_shape(layer, span, layer->coverage + (size_t)(y - box.y) * layer->pitch,
+                  below.drawn + box.x);
     }
 }
 

@@ -11,12 +11,14 @@
 
 /** One layer; in arrays the bottom one comes first. */
 typedef struct FlLayer {
-    FlBox box;               // where it may be seen
-    const uint8_t *coverage; // a whole frame's width * height, 0..255, borrowed: the whole shape,
-                             // times the opacity of its fill where that varies
+    FlArea area;             // where it may be seen
+    const uint8_t *coverage; // of the box, 0..255, borrowed: the whole shape, times the opacity of
+                             // its fill where that varies; 0 beyond the area
+    size_t pitch;            // of coverage: bytes from one row to the next
     const uint8_t *body; // box.width * box.height of fl_colourise_body(), borrowed: it knocks out
                          // where its paint has body only; NULL: wherever its shape is
-    uint8_t *rgba;       // box.width * box.height * 4 straight RGBA; owned by the caller
+    uint8_t *rgba;       // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by
+                         // the caller
     uint8_t alpha;       // opacity of the layer, 255 opaque
     FlStacking stacking; // a layer that is mixed hides nothing, whatever this says
     FlMix mix;           // with what is below it

@@ -7,18 +7,29 @@ typedef struct Gradient {
     int x, y;
 } Gradient;
 
-static int at(const uint8_t *plane, int width, int height, int x, int y)
+/** A plane of a part of a frame; 0 beyond the part, but beyond the frame it goes on as it ends. */
+typedef struct Plane {
+    const uint8_t *value;
+    size_t pitch;
+    FlBox box;
+    int width, height; // of the frame
+} Plane;
+
+static int at(const Plane *plane, int x, int y)
 {
-    return plane[(size_t)CLAMP(y, 0, height - 1) * width + CLAMP(x, 0, width - 1)];
+    x = CLAMP(x, 0, plane->width - 1) - plane->box.x;
+    y = CLAMP(y, 0, plane->height - 1) - plane->box.y;
+    const bool inside = x >= 0 && y >= 0 && x < plane->box.width && y < plane->box.height;
+    return inside ? plane->value[(size_t)y * plane->pitch + x] : 0;
 }
 
 /** Sobel's, eight times the slope. */
-static Gradient gradient(const uint8_t *p, int width, int height, int x, int y)
+static Gradient gradient(const Plane *p, int x, int y)
 {
-    const int nw = at(p, width, height, x - 1, y - 1), ne = at(p, width, height, x + 1, y - 1);
-    const int sw = at(p, width, height, x - 1, y + 1), se = at(p, width, height, x + 1, y + 1);
-    const int w = at(p, width, height, x - 1, y), e = at(p, width, height, x + 1, y);
-    const int n = at(p, width, height, x, y - 1), s = at(p, width, height, x, y + 1);
+    const int nw = at(p, x - 1, y - 1), ne = at(p, x + 1, y - 1);
+    const int sw = at(p, x - 1, y + 1), se = at(p, x + 1, y + 1);
+    const int w = at(p, x - 1, y), e = at(p, x + 1, y);
+    const int n = at(p, x, y - 1), s = at(p, x, y + 1);
     return (Gradient){ne + 2 * e + se - nw - 2 * w - sw, sw + 2 * s + se - nw - 2 * n - ne};
 }
 
@@ -40,21 +51,26 @@ static int mixed_edge(int covered, int above, int cosine256)
                          : chance + (behind - chance) * cosine256 / 256;
 }
 
-void fl_matte_visible(const uint8_t *coverage, const uint8_t *above, int width, int height,
-                      FlBox box, uint8_t *visible)
+void fl_matte_visible(const FlMatteShape *shape, const uint8_t *above, int width, int height,
+                      uint8_t *visible)
 {
-#pragma omp parallel for schedule(static)
-    for (int row = 0; row < box.height; row++)
-        for (int column = 0; column < box.width; column++) {
-            const int x = box.x + column, y = box.y + row;
-            const int c = coverage[(size_t)y * width + x], u = above[(size_t)y * width + x];
+    const FlBox box = shape->area->box;
+    const Plane lower = {shape->coverage, shape->pitch, box, width, height};
+    const Plane upper = {above, (size_t)width, {0, 0, width, height}, width, height};
+#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > FL_WORTH_THREADS)
+    for (int row = 0; row < box.height; row++) {
+        const FlColumns span = fl_area_row(shape->area, row);
+        const int y = box.y + row;
+        for (int column = span.first; column < span.last; column++) {
+            const int x = box.x + column;
+            const int c = shape->coverage[(size_t)row * shape->pitch + column];
+            const int u = above[(size_t)y * width + x];
             int v = u == 0 ? c : c == 255 ? 255 - u : 0;
             if (c > 0 && c < 255 && u > 0 && u < 255)
-                v = mixed_edge(c, u,
-                               cosine(gradient(coverage, width, height, x, y),
-                                      gradient(above, width, height, x, y)));
+                v = mixed_edge(c, u, cosine(gradient(&lower, x, y), gradient(&upper, x, y)));
             visible[(size_t)row * box.width + column] = (uint8_t)v;
         }
+    }
 }
 
 /** A square of factors 0..255 around a pixel that belongs to the shape. */
@@ -77,12 +93,10 @@ static void brush_init(Brush *brush, float gap_px, float feather_px)
 }
 
 /** Only pixels of the shape with a neighbour that is not full can reach beyond it. */
-static bool is_rim(const uint8_t *coverage, int width, int height, int x, int y)
+static bool is_rim(const Plane *plane, int x, int y)
 {
-    return at(coverage, width, height, x, y) > 0 && (at(coverage, width, height, x - 1, y) < 255 ||
-                                                     at(coverage, width, height, x + 1, y) < 255 ||
-                                                     at(coverage, width, height, x, y - 1) < 255 ||
-                                                     at(coverage, width, height, x, y + 1) < 255);
+    return at(plane, x, y) > 0 && (at(plane, x - 1, y) < 255 || at(plane, x + 1, y) < 255 ||
+                                   at(plane, x, y - 1) < 255 || at(plane, x, y + 1) < 255);
 }
 
 static void dab(const Brush *brush, int strength, int x, int y, int width, int height,
@@ -97,14 +111,19 @@ static void dab(const Brush *brush, int strength, int x, int y, int width, int h
         }
 }
 
-void fl_matte_spread(const uint8_t *coverage, int width, int height, FlBox box, float gap_px,
+void fl_matte_spread(const FlMatteShape *shape, int width, int height, float gap_px,
                      float feather_px, uint8_t *matte)
 {
     Brush brush;
-    memcpy(matte, coverage, (size_t)width * height);
+    const FlBox box = shape->area->box;
+    const Plane plane = {shape->coverage, shape->pitch, box, width, height};
+    memset(matte, 0, (size_t)width * height);
+    for (int y = 0; y < box.height; y++)
+        memcpy(matte + (size_t)(box.y + y) * width + box.x,
+               shape->coverage + (size_t)y * shape->pitch, (size_t)box.width);
     brush_init(&brush, gap_px, feather_px);
     for (int y = box.y; y < box.y + box.height; y++)
         for (int x = box.x; x < box.x + box.width; x++)
-            if (is_rim(coverage, width, height, x, y))
-                dab(&brush, coverage[(size_t)y * width + x], x, y, width, height, matte);
+            if (is_rim(&plane, x, y))
+                dab(&brush, at(&plane, x, y), x, y, width, height, matte);
 }

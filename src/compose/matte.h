@@ -6,12 +6,19 @@
 #include <fluidy/error.h>
 #include <stdbool.h>
 
+/** A shape in a frame. */
+typedef struct FlMatteShape {
+    const FlArea *area;
+    const uint8_t *coverage; // of the area's box, 0..255; 0 beyond the area
+    size_t pitch;            // bytes from one row of coverage to the next
+} FlMatteShape;
+
 /**
  * The visible coverage of a shape below others.
  *
- * coverage and above are width * height planes, 0..255: the shape, and the part of each pixel that
- * what lies above it takes. visible, box.width * box.height, becomes the part of each pixel in
- * which the shape is seen; visible + above <= 255 everywhere.
+ * above is a width * height plane, 0..255: the part of each pixel that what lies above the shape
+ * takes. visible, one per pixel of the box, becomes the part of each pixel of the area in which the
+ * shape is seen; visible + above <= 255 there.
  *
  * Two coverages alone do not tell where in the pixel the shapes lie. Where their edges run against
  * each other the shapes adjoin and share the pixel; where they run the same way the upper shape
@@ -19,14 +26,14 @@
  * gradients blends these three cases, so neighbours leave no paper between them and a shape exactly
  * covered leaves no fringe.
  */
-void fl_matte_visible(const uint8_t *coverage, const uint8_t *above, int width, int height,
-                      FlBox box, uint8_t *visible);
+void fl_matte_visible(const FlMatteShape *shape, const uint8_t *above, int width, int height,
+                      uint8_t *visible);
 
 /**
  * A shape grown by gap_px and then fading out over feather_px, both >= 0 and together at most
  * FL_SPREAD_MAX_PX. matte is width * height and becomes 0..255, never below coverage.
  */
-void fl_matte_spread(const uint8_t *coverage, int width, int height, FlBox box, float gap_px,
+void fl_matte_spread(const FlMatteShape *shape, int width, int height, float gap_px,
                      float feather_px, uint8_t *matte);
 
 #define FL_SPREAD_MAX_PX 64

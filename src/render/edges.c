@@ -17,6 +17,12 @@ static bool hides(const FlPlan *plan, const FlRun *run)
     return run->mix == FL_MIX_OVER && run->alpha >= SHOWN && (painted || run->alpha == 255);
 }
 
+/** Where pixel 0 of row y of a box is in the frame. */
+static size_t in_frame(const FlEdgeMap *edges, FlBox box, int y)
+{
+    return (size_t)(box.y + y) * (size_t)fl_film_width(edges->plan->film) + (size_t)box.x;
+}
+
 /** Whether a shape holds the corners of a square of TRAP_PX from pixel i on. */
 static bool holds_square(const uint8_t *coverage, size_t i, size_t width)
 {
@@ -37,12 +43,13 @@ static uint16_t top_of_square(const uint16_t *top, size_t i, size_t width)
 /** Notes which runs a run, put over those below it, overlaps in some square of TRAP_PX. */
 static void note_overlaps(FlEdgeMap *edges, int run)
 {
-    const FlBox *box = &edges->boxes[run];
+    const FlArea *area = &edges->areas[run];
     const uint8_t *coverage = edges->runs->run[run].coverage;
     const size_t width = (size_t)fl_film_width(edges->plan->film), n = (size_t)edges->n;
-    for (int y = box->y; y < box->y + box->height - TRAP_PX; y++) {
-        const size_t row = (size_t)y * width + (size_t)box->x;
-        for (size_t i = row; i + TRAP_PX < row + (size_t)box->width; i++) {
+    for (int y = 0; y < area->box.height - TRAP_PX; y++) {
+        const size_t row = in_frame(edges, area->box, y);
+        const FlColumns span = fl_area_row(area, y);
+        for (size_t i = row + (size_t)span.first; i + TRAP_PX < row + (size_t)span.last; i++) {
             if (!holds_square(coverage, i, width))
                 continue;
             const size_t other = top_of_square(edges->top, i, width), own = (size_t)run + 1;
@@ -53,22 +60,22 @@ static void note_overlaps(FlEdgeMap *edges, int run)
 
 static void put_on_top(FlEdgeMap *edges, int run)
 {
-    const FlBox *box = &edges->boxes[run];
+    const FlArea *area = &edges->areas[run];
     const FlRun *r = &edges->runs->run[run];
-    const size_t width = (size_t)fl_film_width(edges->plan->film);
-    for (int y = box->y; y < box->y + box->height; y++) {
-        const size_t row = (size_t)y * width + (size_t)box->x;
-        for (size_t i = row; i < row + (size_t)box->width; i++)
+    for (int y = 0; y < area->box.height; y++) {
+        const size_t row = in_frame(edges, area->box, y);
+        const FlColumns span = fl_area_row(area, y);
+        for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++)
             if (r->coverage[i] >= SHOWN)
                 edges->top[i] = (uint16_t)(run + 1);
     }
 }
 
-bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, const FlBox *boxes,
+bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, const FlArea *areas,
                    GError **error)
 {
     const size_t pixels = (size_t)fl_film_width(plan->film) * (size_t)fl_film_height(plan->film);
-    *edges = (FlEdgeMap){.plan = plan, .runs = runs, .boxes = boxes};
+    *edges = (FlEdgeMap){.plan = plan, .runs = runs, .areas = areas};
     edges->n = MIN(runs->n, MOST_RUNS) + 1;
     const size_t pairs = (size_t)edges->n * (size_t)edges->n;
     if (!(edges->top = fl_alloc(pixels, sizeof *edges->top, "a matte", error)) ||
@@ -107,101 +114,6 @@ static FlBox grown(FlBox box, int px, FlBox limit)
     return (FlBox){x0, y0, x1 - x0, y1 - y0};
 }
 
-static void tile_clear(Tile *tile)
-{
-    free(tile->amounts);
-    free(tile->seen);
-    free(tile->ends);
-    free(tile->meets);
-    free(tile->coverage);
-    free(tile->others);
-}
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Tile, tile_clear)
-
-static bool tile_init(Tile *tile, const FlEdgeMap *edges, int run, FlBox box, int radius_px,
-                      GError **error)
-{
-    const FlBox frame = {0, 0, fl_film_width(edges->plan->film), fl_film_height(edges->plan->film)};
-    const FlBox part = grown(box, fl_closing_reach(radius_px), edges->boxes[run]);
-    *tile = (Tile){.part = part, .around = grown(part, radius_px, frame)};
-    const size_t n = fl_box_pixels(part), around = fl_box_pixels(tile->around);
-    return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
-           (tile->seen = fl_alloc(n, sizeof *tile->seen, "a matte", error)) &&
-           (tile->ends = fl_alloc(n, 1, "a matte", error)) &&
-           (tile->meets = fl_alloc(n, 1, "a matte", error)) &&
-           (tile->coverage = fl_alloc(around, 1, "a matte", error)) &&
-           (tile->others = fl_alloc(around, 1, "a matte", error));
-}
-
-/** Where pixel 0 of row y of a tile's box is in the frame. */
-static size_t in_frame(const FlEdgeMap *edges, FlBox box, int y)
-{
-    return (size_t)(box.y + y) * (size_t)fl_film_width(edges->plan->film) + (size_t)box.x;
-}
-
-/** The share of the edges of a run, with all others or with those that it does not overlap. */
-static bool find_share(Tile *tile, const FlEdgeMap *edges, int run, bool with_all, int radius_px,
-                       uint8_t *share, GError **error)
-{
-    const bool *overlap = edges->overlap + (size_t)(run + 1) * (size_t)edges->n;
-    const FlBox around = tile->around, part = tile->part;
-    uint8_t *others = tile->others;
-    for (int y = 0; y < around.height; y++) {
-        const uint16_t *row = edges->top + in_frame(edges, around, y);
-        for (int x = 0; x < around.width; x++) {
-            const bool other = row[x] && row[x] != run + 1 && (with_all || !overlap[row[x]]);
-            *others++ = other ? 255 : 0;
-        }
-    }
-    const FlBox inner = {part.x - around.x, part.y - around.y, part.width, part.height};
-    return fl_closing_share(tile->coverage, tile->others, around.width, around.height, inner,
-                            radius_px, share, error);
-}
-
-/** Whether a run is seen at pixel i: nothing that hides it lies over it. */
-static bool is_seen(const FlEdgeMap *edges, int run, size_t i)
-{
-    return edges->runs->run[run].coverage[i] >= SHOWN && edges->top[i] <= run + 1;
-}
-
-/** What the tile has of the run: its amounts, its coverage, and 0 where it is seen, else -1. */
-static void fill_tile(Tile *tile, const FlEdgeMap *edges, int run, const int16_t *amounts)
-{
-    const FlBox all = edges->boxes[run], part = tile->part, around = tile->around;
-    for (int y = 0; y < part.height; y++) {
-        const size_t row = (size_t)y * (size_t)part.width, frame = in_frame(edges, part, y);
-        const size_t from = (size_t)(part.y + y - all.y) * (size_t)all.width;
-        memcpy(tile->amounts + row, amounts + from + (part.x - all.x),
-               (size_t)part.width * sizeof *amounts);
-        for (int x = 0; x < part.width; x++)
-            tile->seen[row + (size_t)x] = is_seen(edges, run, frame + (size_t)x) ? 0 : -1;
-    }
-    for (int y = 0; y < around.height; y++)
-        memcpy(tile->coverage + (size_t)y * (size_t)around.width,
-               edges->runs->run[run].coverage + in_frame(edges, around, y), (size_t)around.width);
-}
-
-static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px,
-                       const int16_t *amounts, int16_t *closed, GError **error)
-{
-    g_auto(Tile) tile = {0};
-    const FlBox all = edges->boxes[run];
-    if (!tile_init(&tile, edges, run, box, radius_px, error))
-        return false;
-    fill_tile(&tile, edges, run, amounts);
-    const FlBox part = tile.part;
-    if (!find_share(&tile, edges, run, false, radius_px, tile.ends, error) ||
-        !find_share(&tile, edges, run, true, radius_px, tile.meets, error) ||
-        !fl_closing_apply(tile.amounts, tile.seen, tile.ends, tile.meets, part, radius_px, error))
-        return false;
-    for (int y = box.y; y < box.y + box.height; y++)
-        memcpy(closed + (size_t)(y - all.y) * (size_t)all.width + (box.x - all.x),
-               tile.amounts + (size_t)(y - part.y) * (size_t)part.width + (box.x - part.x),
-               (size_t)box.width * sizeof *closed);
-    return true;
-}
-
 /** What of a part of the frame a shape takes up; empty: nothing. */
 static FlBox shape_in(const FlEdgeMap *edges, int run, FlBox box)
 {
@@ -220,11 +132,103 @@ static FlBox shape_in(const FlEdgeMap *edges, int run, FlBox box)
     return y1 > 0 ? (FlBox){box.x + x0, box.y + y0, x1 - x0, y1 - y0} : (FlBox){0};
 }
 
+static void tile_clear(Tile *tile)
+{
+    free(tile->amounts);
+    free(tile->seen);
+    free(tile->ends);
+    free(tile->meets);
+    free(tile->coverage);
+    free(tile->others);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Tile, tile_clear)
+
+static bool tile_init(Tile *tile, const FlEdgeMap *edges, int run, FlBox box, int radius_px,
+                      GError **error)
+{
+    const FlBox frame = {0, 0, fl_film_width(edges->plan->film), fl_film_height(edges->plan->film)};
+    const FlBox part = shape_in(edges, run, grown(box, fl_closing_reach(radius_px), frame));
+    *tile = (Tile){.part = part, .around = grown(part, radius_px, frame)};
+    const size_t n = fl_box_pixels(part), around = fl_box_pixels(tile->around);
+    return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
+           (tile->seen = fl_alloc(n, sizeof *tile->seen, "a matte", error)) &&
+           (tile->ends = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->meets = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->coverage = fl_alloc(around, 1, "a matte", error)) &&
+           (tile->others = fl_alloc(around, 1, "a matte", error));
+}
+
+/** The share of the edges of a run, with all others or with those that it does not overlap. */
+static bool find_share(Tile *tile, const FlEdgeMap *edges, int run, bool with_all, int radius_px,
+                       uint8_t *share, GError **error)
+{
+    const bool *overlap = edges->overlap + (size_t)(run + 1) * (size_t)edges->n;
+    const FlBox around = tile->around, part = tile->part;
+    uint8_t *others = tile->others, any = 0;
+    for (int y = 0; y < around.height; y++) {
+        const uint16_t *row = edges->top + in_frame(edges, around, y);
+        for (int x = 0; x < around.width; x++) {
+            const bool other = row[x] && row[x] != run + 1 && (with_all || !overlap[row[x]]);
+            any |= *others++ = other ? 255 : 0;
+        }
+    }
+    memset(share, 0, fl_box_pixels(part));
+    if (!any)
+        return true;
+    const FlBox inner = {part.x - around.x, part.y - around.y, part.width, part.height};
+    return fl_closing_share(tile->coverage, tile->others, around.width, around.height, inner,
+                            radius_px, share, error);
+}
+
+/** Whether a run is seen at pixel i: nothing that hides it lies over it. */
+static bool is_seen(const FlEdgeMap *edges, int run, size_t i)
+{
+    return edges->runs->run[run].coverage[i] >= SHOWN && edges->top[i] <= run + 1;
+}
+
+/** What the tile has of the run: its amounts, its coverage, and 0 where it is seen, else -1. */
+static void fill_tile(Tile *tile, const FlEdgeMap *edges, int run, const int16_t *amounts)
+{
+    const FlBox all = edges->areas[run].box, part = tile->part, around = tile->around;
+    for (int y = 0; y < part.height; y++) {
+        const size_t row = (size_t)y * (size_t)part.width, frame = in_frame(edges, part, y);
+        const size_t from = (size_t)(part.y + y - all.y) * (size_t)all.width;
+        memcpy(tile->amounts + row, amounts + from + (part.x - all.x),
+               (size_t)part.width * sizeof *amounts);
+        for (int x = 0; x < part.width; x++)
+            tile->seen[row + (size_t)x] = is_seen(edges, run, frame + (size_t)x) ? 0 : -1;
+    }
+    for (int y = 0; y < around.height; y++)
+        memcpy(tile->coverage + (size_t)y * (size_t)around.width,
+               edges->runs->run[run].coverage + in_frame(edges, around, y), (size_t)around.width);
+}
+
+static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px,
+                       const int16_t *amounts, int16_t *closed, GError **error)
+{
+    g_auto(Tile) tile = {0};
+    const FlBox all = edges->areas[run].box;
+    if (!tile_init(&tile, edges, run, box, radius_px, error))
+        return false;
+    fill_tile(&tile, edges, run, amounts);
+    const FlBox part = tile.part;
+    if (!find_share(&tile, edges, run, false, radius_px, tile.ends, error) ||
+        !find_share(&tile, edges, run, true, radius_px, tile.meets, error) ||
+        !fl_closing_apply(tile.amounts, tile.seen, tile.ends, tile.meets, part, radius_px, error))
+        return false;
+    for (int y = box.y; y < box.y + box.height; y++)
+        memcpy(closed + (size_t)(y - all.y) * (size_t)all.width + (box.x - all.x),
+               tile.amounts + (size_t)(y - part.y) * (size_t)part.width + (box.x - part.x),
+               (size_t)box.width * sizeof *closed);
+    return true;
+}
+
 /** All tiles in which the shape is: many shapes are far smaller than their box. */
 static bool close_tiles(const FlEdgeMap *edges, int run, int radius_px, const int16_t *amounts,
                         int16_t *closed, GError **error)
 {
-    const FlBox all = edges->boxes[run];
+    const FlBox all = edges->areas[run].box;
     const int columns = (all.width + TILE_PX - 1) / TILE_PX;
     const int rows = (all.height + TILE_PX - 1) / TILE_PX;
     GError *first = NULL;
@@ -246,7 +250,7 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
 {
     const FlTreatment *t = &painter->treatment;
     const FlRenderOptions *options = &edges->plan->options;
-    const size_t n = fl_box_pixels(edges->boxes[run]);
+    const size_t n = fl_box_pixels(edges->areas[run].box);
     if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || options->gap > 0 ||
         options->feather > 0 || n == 0 || run >= edges->n - 1)
         return true;
@@ -278,16 +282,23 @@ static bool is_inside(const FlEdgeMap *edges, int run, int x, int y)
 
 void fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts)
 {
-    const FlBox box = edges->boxes[run];
+    const FlArea *area = &edges->areas[run];
+    const FlBox box = area->box;
     g_autofree FlAmountCounts *counts = g_new0(FlAmountCounts, 1);
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        for (int x = span.first; x < span.last; x++) {
             const int amount = amounts[(size_t)y * box.width + x];
             if (amount >= 0 && is_inside(edges, run, box.x + x, box.y + y))
                 counts->count[amount]++, counts->total++;
         }
+    }
     const int tone = CLAMP(fl_counts_tone(counts), FL_TONE_ONE * 2 / 3, FL_TONE_ONE * 3 / 2);
-    for (size_t i = 0; i < fl_box_pixels(box); i++)
-        if (amounts[i] > 0)
-            amounts[i] = (int16_t)MIN(amounts[i] * tone / FL_TONE_ONE, FL_AMOUNTS - 1);
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        int16_t *row = amounts + (size_t)y * box.width;
+        for (int x = span.first; x < span.last; x++)
+            if (row[x] > 0)
+                row[x] = (int16_t)MIN(row[x] * tone / FL_TONE_ONE, FL_AMOUNTS - 1);
+    }
 }

@@ -22,7 +22,7 @@ bool fl_background_init(FlBackground *background, const FlPlan *plan, GError **e
 typedef struct FlComposite {
     FlRuns *runs;
     int n_layers;
-    FlLayer *layers;  // bottom first; rgba and body are owned
+    FlLayer *layers;  // bottom first; their areas, rgba and body are owned
     bool enlarged;    // coverage is owned as well; else it is the runs'
     char **names;     // of the layers, for files: unique in the frame
     uint8_t *rgba;    // width * height * 4 straight sRGBA

@@ -10,7 +10,7 @@
 /* Which painter each pixel shows, NOBODY where it is none or several. What is translucent leaves
  * what is below it in sight; regions that are not painted this time hide all the same, so that one
  * that is painted alone has the tone it has among others. */
-static uint16_t *find_owners(const FlPlan *plan, const FlRuns *runs, const FlBox *boxes,
+static uint16_t *find_owners(const FlPlan *plan, const FlRuns *runs, const FlArea *areas,
                              GError **error)
 {
     const size_t width = (size_t)fl_film_width(plan->film);
@@ -24,12 +24,14 @@ static uint16_t *find_owners(const FlPlan *plan, const FlRuns *runs, const FlBox
         const int p = plan->painter_of[run->region];
         if (run->alpha < 255 || run->mix != FL_MIX_OVER)
             continue;
-        for (int y = boxes[r].y; y < boxes[r].y + boxes[r].height; y++)
-            for (int x = boxes[r].x; x < boxes[r].x + boxes[r].width; x++) {
-                const size_t i = (size_t)y * width + (size_t)x;
+        const FlBox box = areas[r].box;
+        for (int y = 0; y < box.height; y++) {
+            const FlColumns span = fl_area_row(&areas[r], y);
+            const size_t row = (size_t)(box.y + y) * width + (size_t)box.x;
+            for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++)
                 if (run->coverage[i])
                     owner[i] = p >= 0 && run->coverage[i] == 255 ? (uint16_t)p : NOBODY;
-            }
+        }
     }
     return owner;
 }
@@ -57,10 +59,10 @@ static bool find_tone(const FlPlan *plan, int p, const uint16_t *owner, int fram
     return true;
 }
 
-bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, const FlBox *boxes, int frame,
+bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, const FlArea *areas, int frame,
                    int *tones, GError **error)
 {
-    g_autofree uint16_t *owner = find_owners(plan, runs, boxes, error);
+    g_autofree uint16_t *owner = find_owners(plan, runs, areas, error);
     if (!owner)
         return false;
     GError *first = NULL;

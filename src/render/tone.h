@@ -9,9 +9,9 @@
  * else by the whole shape. Paint is not the same near a contour as inside, and a hidden part should
  * have no say in the colour.
  *
- * boxes has the box of each run; tones gets plan->n_painters values.
+ * areas has the area of each run; tones gets plan->n_painters values.
  */
-bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, const FlBox *boxes, int frame,
+bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, const FlArea *areas, int frame,
                    int *tones, GError **error);
 
 #endif
