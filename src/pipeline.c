@@ -166,7 +166,8 @@ static bool write_layers(const Job *job, const FlComposite *composite, int frame
             return false;
         for (int y = 0; y < layer->area.box.height; y++)
             memcpy(rgba + 4 * ((size_t)(layer->area.box.y + y) * width + layer->area.box.x),
-                   layer->rgba + 4 * (size_t)y * layer->area.box.width, 4 * (size_t)layer->area.box.width);
+                   layer->rgba + 4 * (size_t)y * layer->area.box.width,
+                   4 * (size_t)layer->area.box.width);
         const FlPng png = {.width = width, .height = height, .rgba = rgba};
         if (!fl_resume_keeps(&job->resume, path) &&
             !fl_png_save(&png, path, fl_resume_replaces(&job->resume, frame), error))
@@ -196,8 +197,8 @@ static bool write_frame(Job *job, const FlComposite *composite, int frame, GErro
     g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, MAX(composite->n_layers, 1));
     for (int k = 0; k < composite->n_layers; k++) {
         const FlLayer *from = &composite->layers[k];
-        layers[k] = (FlSinkLayer){composite->names[k], from->area.box.x,      from->area.box.y,
-                                  from->area.box.width,     from->area.box.height, from->rgba};
+        layers[k] = (FlSinkLayer){composite->names[k],  from->area.box.x,      from->area.box.y,
+                                  from->area.box.width, from->area.box.height, from->rgba};
     }
     const FlSinkFrame out = {.number = fl_film_number(job->plan->film, frame),
                              .rgba = composite->rgba,

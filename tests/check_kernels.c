@@ -1,5 +1,6 @@
 /*
- * Every version of every kernel against C: exact equality on noise and on overflow bait.
+ * Every version of every kernel and of every loop over rows against C: exact equality on noise and
+ * on overflow bait.
  *
  * With --time as the only argument, no test: prints nanoseconds per call on data that is in the
  * cache, which the search's is not; bench tells what a version is worth there.
@@ -289,6 +290,93 @@ static void splines_are_sampled_as_in_c(const void *version)
     }
 }
 
+enum { ROW = 200, LOOKS = 50 }; // the longest row
+
+/* Rows of noise, each from any address on, and what follows what is written. */
+typedef struct Noise {
+    float f[8][2 * ROW + 16];
+    int16_t s[3][ROW + 16];
+    int32_t seed[ROW + 16];
+    uint8_t rgba[4 * ROW + 16];
+    uint32_t look[LOOKS], sum[4][ROW + 16];
+} Noise;
+
+static void make_noise(Noise *noise, uint64_t seed)
+{
+    FlRng rng = {seed};
+    const bool extreme = seed % 4 == 0;
+    uint8_t *bytes = (uint8_t *)noise;
+    for (size_t k = 0; k < sizeof *noise; k++)
+        bytes[k] = extreme ? 255 : (uint8_t)fl_rng_u32(&rng);
+    for (int k = 0; k < 8; k++)
+        for (int i = 0; i < 2 * ROW + 16; i++) // some weights are 0
+            noise->f[k][i] = (float)MAX((int)fl_rng_below(&rng, 5000) - 1000, 0) / 64;
+    for (int i = 0; i < ROW + 16; i++) {
+        noise->s[0][i] = (int16_t)(fl_rng_below(&rng, LOOKS + 5) - 5);
+        for (int c = 0; c < 4; c++)
+            noise->sum[c][i] = extreme ? 65535 * 255 : fl_rng_below(&rng, 65535 * 255 + 1);
+    }
+}
+
+/* Runs every loop of a version over rows of n, `at` bytes or elements from an aligned address. */
+static void run_rows(const FlRows *rows, Noise *z, int n, int at)
+{
+    const FlSums sums = {{z->sum[0] + at, z->sum[1] + at, z->sum[2] + at}, z->sum[3] + at};
+    const float *const rgb[3] = {z->f[4] + at, z->f[5] + at, z->f[6] + at};
+    rows->add_pair(z->f[0] + at, z->f[1] + at, z->f[2], 0.37f, n);
+    rows->halve(z->f[1] + at, z->f[2], z->f[3] + at, n);
+    rows->halve_weighted(z->f[4] + at, z->f[5], z->f[1], z->f[2] + at, z->f[7] + at, n);
+    rows->near_above(z->seed + at, n % 2 ? z->s[0] : NULL, 7, z->s[1] + at, n);
+    rows->near_below(z->s[0], 9, z->s[1] + at, n);
+    rows->over(z->rgba + at, &sums, n);
+    rows->level_opaque(&sums, z->rgba + at, n);
+    rows->look_up(z->s[0] + at, z->look, z->sum[3] + at, n);
+    rows->straighten(rgb, z->f[2] + at, z->f[1], z->rgba + at, n / 2);
+    rows->share(z->f[2] + at, z->f[1], z->rgba + 2 * ROW + at, n / 2);
+}
+
+static void rows_are_those_of_c(const void *version)
+{
+    const FlRows *rows = version;
+    g_autofree Noise *want = g_new(Noise, 1), *got = g_new(Noise, 1);
+    for (uint64_t seed = 1; seed <= 1500; seed++) {
+        FlRng rng = {seed};
+        const int n = (int)fl_rng_below(&rng, seed % 3 ? 40 : ROW), at = (int)(seed % 9);
+        make_noise(want, seed);
+        memcpy(got, want, sizeof *got);
+        run_rows(&fl_rows_c, want, n, at);
+        run_rows(rows, got, n, at);
+        if (memcmp(got, want, sizeof *got) != 0)
+            g_test_message("%s, seed %" G_GUINT64_FORMAT, rows->name, seed);
+        g_assert_cmpmem(got, sizeof *got, want, sizeof *want);
+    }
+}
+
+/* Paint of every alpha over opaque sums of every level: nothing overflows, nothing is lost. */
+static void opaque_rows_stay_opaque(const void *version)
+{
+    const FlRows *rows = version;
+    uint32_t sum[4][256];
+    uint8_t rgba[4 * 256], out[4 * 256];
+    const FlSums sums = {{sum[0], sum[1], sum[2]}, sum[3]};
+    for (int below = 0; below < 256; below += 5)
+        for (int alpha = 0; alpha < 256; alpha++) {
+            for (int s = 0; s < 256; s++) {
+                sum[0][s] = sum[1][s] = sum[2][s] = 65535u * (uint32_t)below;
+                sum[3][s] = 65535 * 255;
+                memcpy(rgba + 4 * s,
+                       (uint8_t[]){(uint8_t)s, (uint8_t)s, (uint8_t)s, (uint8_t)alpha}, 4);
+            }
+            rows->over(rgba, &sums, 256);
+            rows->level_opaque(&sums, out, 256);
+            for (int s = 0; s < 256; s++) {
+                const double exact = (s * alpha + below * (255 - alpha)) / 255.0;
+                g_assert_cmpuint(sum[3][s], ==, 65535 * 255);
+                g_assert_cmpfloat(ABS(out[4 * s] - exact), <=, 0.51);
+            }
+        }
+}
+
 #define CALLS 200000
 
 static double since(double start)
@@ -342,6 +430,25 @@ static void time_version(const FlKernels *kernels)
                                                  fl_spline_phases[k % 16].y, value));
 }
 
+static void time_rows(const FlRows *rows)
+{
+    static Noise z;
+    make_noise(&z, 1);
+    const FlSums sums = {{z.sum[0], z.sum[1], z.sum[2]}, z.sum[3]};
+    const float *const rgb[3] = {z.f[4], z.f[5], z.f[6]};
+    printf("%s, rows of %d\n", rows->name, ROW);
+    TIME("add_pair", rows->add_pair(z.f[0], z.f[1], z.f[2], 0.37f, ROW));
+    TIME("halve", rows->halve(z.f[1], z.f[2], z.f[3], ROW));
+    TIME("halve_weighted", rows->halve_weighted(z.f[4], z.f[5], z.f[1], z.f[2], z.f[7], ROW));
+    TIME("near_above", rows->near_above(z.seed, z.s[0], 7, z.s[1], ROW));
+    TIME("near_below", rows->near_below(z.s[0], 9, z.s[1], ROW));
+    TIME("look_up", rows->look_up(z.s[0], z.look, z.sum[3], ROW));
+    TIME("over", rows->over(z.rgba, &sums, ROW));
+    TIME("level_opaque", rows->level_opaque(&sums, z.rgba, ROW));
+    TIME("share", rows->share(z.f[2], z.f[1], z.rgba, ROW));
+    TIME("straighten", rows->straighten(rgb, z.f[2], z.f[1], z.rgba, ROW));
+}
+
 /** A check of one version; the argument is its FlKernels. */
 typedef struct Check {
     const char *name;
@@ -368,6 +475,14 @@ static void add_checks(const FlKernels *version)
     }
 }
 
+static void add_row_checks(const FlRows *version, const char *level)
+{
+    g_autofree char *same = g_strdup_printf("/rows/%s/rows-are-those-of-c", level);
+    g_autofree char *opaque = g_strdup_printf("/rows/%s/opaque-rows-stay-opaque", level);
+    g_test_add_data_func(same, version, rows_are_those_of_c);
+    g_test_add_data_func(opaque, version, opaque_rows_stay_opaque);
+}
+
 int main(int argc, char **argv)
 {
     const bool time = argc == 2 && g_str_equal(argv[1], "--time");
@@ -380,9 +495,9 @@ int main(int argc, char **argv)
             continue;
         fl_kernels_init(&versions[v], levels[v]);
         if (time)
-            time_version(&versions[v]);
+            time_version(&versions[v]), time_rows(fl_rows_of(levels[v]));
         else
-            add_checks(&versions[v]);
+            add_checks(&versions[v]), add_row_checks(fl_rows_of(levels[v]), versions[v].name);
     }
     return time ? 0 : g_test_run();
 }

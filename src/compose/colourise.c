@@ -1,4 +1,5 @@
 #include "compose/colourise.h"
+#include "base/rows.h"
 #include "compose/blend.h"
 #include "compose/density.h"
 
@@ -16,11 +17,6 @@
  * and the line of paper around them is gone.
  */
 #define OPAQUE_AMOUNT (FL_AMOUNT_ONE / 5)
-
-/** What an amount of paint looks like: straight RGBA. */
-typedef struct Paint {
-    uint8_t rgba[4];
-} Paint;
 
 /** The density of a channel of the paper; it is never quite black. */
 static int32_t base_of(uint8_t paper)
@@ -57,7 +53,7 @@ static void colour_flat(const FlColouring *how, const FlScale *scale, const int1
                         const FlArea *area, uint8_t *rgba)
 {
     const size_t width = (size_t)area->box.width;
-    g_autofree Paint *look = g_new(Paint, FL_AMOUNTS);
+    g_autofree uint32_t *look = g_new(uint32_t, FL_AMOUNTS);
     g_autofree bool *used = g_new0(bool, FL_AMOUNTS);
     int32_t base[3], step[3];
     for (int y = 0; y < area->box.height; y++) {
@@ -70,19 +66,19 @@ static void colour_flat(const FlColouring *how, const FlScale *scale, const int1
     for (int c = 0; c < 3; c++)
         base[c] = base_of(how->paper[c]), step[c] = step_of(how->fill[c], how->paper[c]);
     for (int amount = 0; amount < FL_AMOUNTS; amount++) {
-        uint8_t colour[3];
+        uint8_t colour[3], rgba_of[4];
         if (!used[amount])
             continue;
         for (int c = 0; c < 3; c++)
             colour[c] = painted_level(base[c], step[c], amount);
-        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), look[amount].rgba);
+        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), rgba_of);
+        memcpy(&look[amount], rgba_of, 4);
     }
     for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
-        const int16_t *row = amounts + (size_t)y * width;
-        for (int x = span.first; x < span.last; x++)
-            if (row[x] >= 0)
-                memcpy(rgba + 4 * ((size_t)y * width + (size_t)x), look[row[x]].rgba, 4);
+        const size_t first = (size_t)y * width + (size_t)span.first;
+        fl_rows()->look_up(amounts + first, look, (uint32_t *)(void *)rgba + first,
+                           span.last - span.first);
     }
 }
 

@@ -36,7 +36,7 @@ void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
  * painted, as above, is read for FL_TINT_KEEP only. rgba, four bytes per pixel of the box, becomes
  * straight RGBA: the paint alone, without the coverage. Its alpha is the least with which the
  * colour over the paper is the painted colour, so that thin paint is transparent over any other
- * background too (opaque paint has more). The other pixels stay as they are.
+ * background too (opaque paint has more). The other pixels, which were 0, are 0.
  */
 void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
                   const int16_t *amounts, int width, const FlArea *area, uint8_t *rgba);

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/first_error.h"
+#include "base/rows.h"
 #include <glib.h>
 #include <string.h>
 
@@ -111,27 +112,19 @@ static void widen(Rows *rows, int y, int *first, int *last)
     *first = 2 * x0 + 1, *last = 2 * x1 - 1;
 }
 
-static uint8_t to_8bit(float value)
-{
-    return (uint8_t)(value + 0.5f);
-}
-
 /** A part of a row of the full size, whose column 0 is `from` of the wide row. */
 static void store(const Rows *rows, int from, FlColumns span, uint8_t *coverage, uint8_t *rgba,
                   uint8_t *body)
 {
-    for (int x = span.first; x < span.last; x++) {
-        const int i = from + x;
-        const float covered = MAX(rows->wide[COVERED][i], 1); // 0: all else is 0 as well
-        const float alpha = MAX(rows->wide[ALPHA][i], 1);
-        coverage[x] = to_8bit(rows->wide[COVERAGE][i] / 16);
-        rgba[4 * x] = to_8bit(rows->wide[RED][i] / alpha);
-        rgba[4 * x + 1] = to_8bit(rows->wide[GREEN][i] / alpha);
-        rgba[4 * x + 2] = to_8bit(rows->wide[BLUE][i] / alpha);
-        rgba[4 * x + 3] = to_8bit(rows->wide[ALPHA][i] / covered);
-        if (body)
-            body[x] = to_8bit(rows->wide[BODY][i] / covered);
-    }
+    const int at = from + span.first, n = span.last - span.first;
+    const float *const rgb[3] = {rows->wide[RED] + at, rows->wide[GREEN] + at,
+                                 rows->wide[BLUE] + at};
+    const float *weight = rows->wide[COVERED] + at; // 0: all else is 0 as well
+    for (int x = 0; x < n; x++)
+        coverage[span.first + x] = (uint8_t)(rows->wide[COVERAGE][at + x] / 16 + 0.5f);
+    fl_rows()->straighten(rgb, rows->wide[ALPHA] + at, weight, rgba + 4 * span.first, n);
+    if (body)
+        fl_rows()->share(rows->wide[BODY] + at, weight, body + span.first, n);
 }
 
 /** The box at full size, with the pixels that mix with what is inside. */

@@ -1,5 +1,6 @@
 #include "compose/layers.h"
 #include "base/alloc.h"
+#include "base/rows.h"
 #include "compose/blend.h"
 #include "compose/matte.h"
 
@@ -45,10 +46,12 @@ static int scaled(int a, int b)
  */
 static int stored_alpha(int paint, int seen, int covered, int above)
 {
-    const int left = 65535 - above;
+    const uint32_t left = 65535u - (uint32_t)above;
     if (left < 257) // hidden: the whole shape, for those who move the layers apart
         return scaled(paint, covered);
-    const int64_t share = (int64_t)paint * seen * 65535 / 255;
+    if (above == 0) // as below, without its long division
+        return scaled(paint, seen);
+    const uint32_t share = (uint32_t)(paint * seen) * 257;
     return (int)MIN((share + left / 2) / left, 255);
 }
 
@@ -112,16 +115,41 @@ typedef struct Sum {
     uint32_t x[3], a;
 } Sum;
 
-static void sum_over(Sum *sum, const FlScale *scale, const uint8_t *rgba)
+static uint32_t over(uint32_t sum, uint32_t value, uint32_t alpha)
 {
-    const uint32_t alpha = rgba[3];
-    for (int c = 0; c < 3; c++)
-        sum->x[c] = (uint32_t)scale->value[rgba[c]] * alpha +
-                    (uint32_t)(((uint64_t)sum->x[c] * (255 - alpha) + 127) / 255);
-    sum->a = 65535 * alpha + (uint32_t)(((uint64_t)sum->a * (255 - alpha) + 127) / 255);
+    return value * alpha + (sum * (255 - alpha) + 127) / 255; // below 2^32, as 65535 * 255^2 is
+}
+
+/** A row of sums in 4 * width values. */
+static FlSums sums_in(uint32_t *room, int width)
+{
+    return (FlSums){{room, room + width, room + 2 * (size_t)width}, room + 3 * (size_t)width};
+}
+
+/** A row of sums from column `first` on. */
+static FlSums sums_from(const FlSums *sums, int first)
+{
+    return (FlSums){{sums->x[0] + first, sums->x[1] + first, sums->x[2] + first}, sums->a + first};
+}
+
+static void sum_over(const FlSums *sums, const FlScale *scale, const uint8_t *rgba, int n)
+{
+    if (!scale->linear)
+        fl_rows()->over(rgba, sums, n);
+    for (int i = 0; scale->linear && i < n; i++) {
+        const uint32_t alpha = rgba[4 * i + 3];
+        for (int c = 0; c < 3; c++)
+            sums->x[c][i] = over(sums->x[c][i], (uint32_t)scale->value[rgba[4 * i + c]], alpha);
+        sums->a[i] = over(sums->a[i], 65535, alpha);
+    }
 }
 
 #define OPAQUE (65535 * 255) // the alpha of a sum with nothing left to show through
+
+static Sum sum_at(const FlSums *sums, int i)
+{
+    return (Sum){{sums->x[0][i], sums->x[1][i], sums->x[2][i]}, sums->a[i]};
+}
 
 static int32_t sum_value(const Sum *sum, int channel)
 {
@@ -133,7 +161,7 @@ static int32_t sum_value(const Sum *sum, int channel)
 }
 
 /** Blends the layers' pixels of row y over the sums of that row. */
-static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, Sum *sums)
+static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, const FlSums *sums)
 {
     for (int k = 0; k < n; k++) {
         const FlBox box = layers[k].area.box;
@@ -141,19 +169,23 @@ static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, S
             continue;
         const uint8_t *row = layers[k].rgba + (size_t)(y - box.y) * box.width * 4;
         const FlColumns span = fl_area_row(&layers[k].area, y - box.y);
-        for (int x = span.first; x < span.last; x++)
-            if (row[4 * x + 3])
-                sum_over(&sums[box.x + x], scale, row + 4 * x);
+        const FlSums below = sums_from(sums, box.x + span.first);
+        sum_over(&below, scale, row + 4 * span.first, span.last - span.first);
     }
 }
 
 static void sum_backdrop(const FlBackdrop *backdrop, const FlScale *scale, int y, int width,
-                         Sum *sums)
+                         const FlSums *sums)
 {
-    memset(sums, 0, (size_t)width * sizeof *sums);
-    for (int x = 0; x < width; x++)
-        sum_over(&sums[x], scale,
-                 backdrop->rgba ? backdrop->rgba + 4 * ((size_t)y * width + x) : backdrop->flat);
+    uint32_t *const planes[4] = {sums->x[0], sums->x[1], sums->x[2], sums->a};
+    const int n = backdrop->rgba ? width : 1; // of a flat one the first pixel, and then copies
+    for (int k = 0; k < 4; k++)
+        memset(planes[k], 0, (size_t)n * sizeof *planes[k]);
+    sum_over(sums, scale, backdrop->rgba ? backdrop->rgba + 4 * (size_t)y * width : backdrop->flat,
+             n);
+    for (int k = 0; k < 4; k++)
+        for (int x = n; x < width; x++)
+            planes[k][x] = planes[k][0];
 }
 
 /** Lays the density of a glaze over what lies below it: the layer's pixel that does so. */
@@ -181,7 +213,7 @@ static void mix_pixel(const Sum *below, int drawn, const FlScale *scale, FlMix m
 
 /** A row of the stack, from the paper up to the layer at hand. */
 typedef struct Row {
-    Sum *sum;
+    FlSums sums;
     uint8_t *drawn; // how far the shapes below cover each pixel, 0..255
 } Row;
 
@@ -196,7 +228,7 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
                             const FlScale *scale, Row below)
 {
     const FlBackdrop paper = {.flat = {params->paper[0], params->paper[1], params->paper[2], 255}};
-    sum_backdrop(&paper, scale, y, width, below.sum);
+    sum_backdrop(&paper, scale, y, width, &below.sums);
     memset(below.drawn, 0, (size_t)width);
     for (int k = 0; k < n; k++) {
         const FlLayer *layer = &layers[k];
@@ -206,13 +238,13 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
         uint8_t *row = layer->rgba + (size_t)(y - box.y) * box.width * 4;
         const FlColumns span = fl_area_row(&layer->area, y - box.y);
         for (int x = span.first; x < span.last; x++) {
+            const Sum under = sum_at(&below.sums, box.x + x);
             if (layer->mix != FL_MIX_OVER && row[4 * x + 3])
-                mix_pixel(&below.sum[box.x + x], below.drawn[box.x + x], scale, layer->mix,
-                          row + 4 * x);
+                mix_pixel(&under, below.drawn[box.x + x], scale, layer->mix, row + 4 * x);
             else if (layer->stacking == FL_STACKING_GLAZE && layer->mix == FL_MIX_OVER)
-                glaze_pixel(&below.sum[box.x + x], scale, params->paper, row + 4 * x);
+                glaze_pixel(&under, scale, params->paper, row + 4 * x);
         }
-        sum_row(layer, 1, scale, y, below.sum);
+        sum_row(layer, 1, scale, y, &below.sums);
         add_shape(layer, span, layer->coverage + (size_t)(y - box.y) * layer->pitch,
                   below.drawn + box.x);
     }
@@ -224,7 +256,7 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
     g_auto(Above) above = {0};
     if (!above_init(&above, width, height, params->gap_px > 0 || params->feather_px > 0, error))
         return false;
-    g_autofree Sum *sums = fl_alloc((size_t)width, sizeof *sums, "a row of pixels", error);
+    g_autofree uint32_t *sums = fl_alloc(4 * (size_t)width, sizeof *sums, "a row", error);
     g_autofree uint8_t *drawn = sums ? fl_alloc((size_t)width, 1, "a row of pixels", error) : NULL;
     if (!drawn)
         return false;
@@ -235,25 +267,39 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
     FlScale scale;
     fl_scale_init(&scale, params->linear);
     for (int y = 0; !plain && y < height; y++)
-        resolve_colours(layers, n, width, y, params, &scale, (Row){sums, drawn});
+        resolve_colours(layers, n, width, y, params, &scale, (Row){sums_in(sums, width), drawn});
     return true;
 }
 
-static void store_row(const Sum *sums, const FlScale *scale, int width, uint8_t *out)
+static bool is_opaque(const FlSums *sums, int width)
 {
+    uint32_t other = 0;
+    for (int x = 0; x < width; x++)
+        other |= sums->a[x] ^ OPAQUE;
+    return other == 0;
+}
+
+static void store_row(const FlSums *sums, const FlScale *scale, int width, uint8_t *out)
+{
+    if (!scale->linear && is_opaque(sums, width)) {
+        fl_rows()->level_opaque(sums, out, width);
+        return;
+    }
     for (int x = 0; x < width; x++) {
+        const Sum sum = sum_at(sums, x);
         for (int c = 0; c < 3; c++)
-            out[4 * x + c] = sums[x].a ? fl_scale_level(scale, sum_value(&sums[x], c)) : 0;
-        out[4 * x + 3] = (uint8_t)((sums[x].a + 32767) / 65535);
+            out[4 * x + c] = sum.a ? fl_scale_level(scale, sum_value(&sum, c)) : 0;
+        out[4 * x + 3] = (uint8_t)((sum.a + 32767) / 65535);
     }
 }
 
-static void store_row16(const Sum *sums, const FlScale *scale, int width, uint16_t *out)
+static void store_row16(const FlSums *sums, const FlScale *scale, int width, uint16_t *out)
 {
     for (int x = 0; x < width; x++) {
+        const Sum sum = sum_at(sums, x);
         for (int c = 0; c < 3; c++)
-            out[4 * x + c] = fl_scale_level16(scale, sum_value(&sums[x], c));
-        out[4 * x + 3] = (uint16_t)((sums[x].a + 127) / 255);
+            out[4 * x + c] = fl_scale_level16(scale, sum_value(&sum, c));
+        out[4 * x + 3] = (uint16_t)((sum.a + 127) / 255);
     }
 }
 
@@ -264,15 +310,16 @@ static void compose(const FlLayer *layers, int n, const FlBackdrop *backdrop, in
     fl_scale_init(&scale, linear);
 #pragma omp parallel
     {
-        g_autofree Sum *sums = g_new(Sum, width);
+        g_autofree uint32_t *room = g_new(uint32_t, 4 * (size_t)width);
+        const FlSums sums = sums_in(room, width);
 #pragma omp for schedule(static)
         for (int y = 0; y < height; y++) {
-            sum_backdrop(backdrop, &scale, y, width, sums);
-            sum_row(layers, n, &scale, y, sums);
+            sum_backdrop(backdrop, &scale, y, width, &sums);
+            sum_row(layers, n, &scale, y, &sums);
             if (out)
-                store_row(sums, &scale, width, out + (size_t)y * width * 4);
+                store_row(&sums, &scale, width, out + (size_t)y * width * 4);
             else
-                store_row16(sums, &scale, width, out16 + (size_t)y * width * 4);
+                store_row16(&sums, &scale, width, out16 + (size_t)y * width * 4);
         }
     }
 }

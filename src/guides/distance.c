@@ -7,6 +7,7 @@
  */
 #include "guides/distance.h"
 
+#include "base/rows.h"
 #include "guides/guides.h"
 #include <math.h>
 #include <string.h>
@@ -192,19 +193,12 @@ static void search_columns(Work *work)
     const int w = work->width, h = work->height;
     for (int y = 0; y < h; y++) {
         int16_t *near_y = work->near_y + y * (size_t)w;
-        const int16_t *above = y > 0 ? near_y - w : NULL;
-        const int32_t *seed_at = work->seed_at + y * (size_t)w;
-        for (int x = 0; x < w; x++)
-            near_y[x] = (int16_t)(seed_at[x] >= 0 ? y : above ? above[x] : -1);
+        fl_rows()->near_above(work->seed_at + y * (size_t)w, y > 0 ? near_y - w : NULL, y, near_y,
+                              w);
     }
     for (int y = h - 2; y >= 0; y--) {
         int16_t *near_y = work->near_y + y * (size_t)w;
-        for (int x = 0; x < w; x++) {
-            const int above = near_y[x], below = near_y[x + w];
-            // what the row below has found may lie above this row: then it is this row's own
-            const bool better = below > y && (above < 0 || below - y < y - above);
-            near_y[x] = (int16_t)(better ? below : above);
-        }
+        fl_rows()->near_below(near_y + w, y, near_y, w);
     }
 }
 

@@ -1,13 +1,7 @@
+#include "base/rows.h"
 #include "guides/gauss.h"
 #include "guides/guides.h"
 #include <math.h>
-
-/** dst += weight * (a + b), one row; the plain loop is what compilers vectorise. */
-static void add_rows(float *restrict dst, const float *a, const float *b, float weight, int n)
-{
-    for (int x = 0; x < n; x++)
-        dst[x] += weight * (a[x] + b[x]);
-}
 
 /** Blurs one row of coverage along x into dst; padded has room for width + 2 * radius. */
 static void blur_row(const uint8_t *row, int width, const float *weight, int radius, float *padded,
@@ -19,7 +13,7 @@ static void blur_row(const uint8_t *row, int width, const float *weight, int rad
     for (int x = 0; x < width; x++)
         dst[x] = weight[0] * middle[x];
     for (int k = 1; k <= radius; k++)
-        add_rows(dst, middle - k, middle + k, weight[k], width);
+        fl_rows()->add_pair(dst, middle - k, middle + k, weight[k], width);
 }
 
 /** Normalised one-sided kernel: weight[0] + 2 * (weight[1] + …) is 1. */
@@ -63,8 +57,9 @@ bool fl_shape_blur(const uint8_t *mask, int width, int height, float border_px, 
             for (int x = 0; x < width; x++)
                 dst[x] = weight[0] * middle[x];
             for (int k = 1; k <= radius; k++)
-                add_rows(dst, rows + MAX(y - k, 0) * (size_t)width,
-                         rows + MIN(y + k, height - 1) * (size_t)width, weight[k], width);
+                fl_rows()->add_pair(dst, rows + MAX(y - k, 0) * (size_t)width,
+                                    rows + MIN(y + k, height - 1) * (size_t)width, weight[k],
+                                    width);
         }
     }
     return true;

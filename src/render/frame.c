@@ -140,12 +140,13 @@ static bool fill_film_layer(FlLayer *layer, const FlPlan *plan, const FlBackgrou
     const FlRun *run = &edges->runs->run[r];
     const int p = plan->painter_of[run->region], width = fl_film_width(plan->film);
     const FlBox box = edges->areas[r].box;
-    *layer = (FlLayer){.area = {box, g_memdup2(edges->areas[r].row, box.height * sizeof(FlColumns))},
-                       .coverage = run->coverage + (size_t)box.y * width + box.x,
-                       .pitch = (size_t)width,
-                       .alpha = run->alpha,
-                       .stacking = FL_STACKING_KNOCKOUT,
-                       .mix = run->mix};
+    *layer =
+        (FlLayer){.area = {box, g_memdup2(edges->areas[r].row, box.height * sizeof(FlColumns))},
+                  .coverage = run->coverage + (size_t)box.y * width + box.x,
+                  .pitch = (size_t)width,
+                  .alpha = run->alpha,
+                  .stacking = FL_STACKING_KNOCKOUT,
+                  .mix = run->mix};
     if (!(layer->rgba = fl_alloc(4 * fl_box_pixels(box), 1, "a layer", error)))
         return false;
     if (p >= 0)

@@ -139,22 +139,6 @@ int fl_find_opinions_c(const FlVotes *votes, FlOpinion *opinions)
     return n;
 }
 
-unsigned fl_cpu_flags(void)
-{
-    unsigned flags = 0;
-#if defined(__x86_64__)
-    __builtin_cpu_init();
-    if (__builtin_cpu_supports("avx2"))
-        flags |= FL_CPU_AVX2;
-    if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
-        flags |= FL_CPU_AVX512;
-#elif defined(__aarch64__)
-    flags |= FL_CPU_NEON;
-#endif
-    const char *mask = getenv("FLUIDY_CPU_MASK");
-    return mask ? flags & (unsigned)strtoul(mask, NULL, 0) : flags;
-}
-
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
     *kernels = (FlKernels){fl_patch_distance_c,

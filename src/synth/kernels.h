@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SYNTH_KERNELS_H
 #define FLUIDY_SYNTH_KERNELS_H
 
+#include "base/rows.h"
 #include "synth/rotation.h"
 #include "synth/spline.h"
 #include <stdbool.h>
@@ -141,16 +142,6 @@ typedef struct FlKernels {
     FlFindOpinions opinions;
     const char *name; // "c", "avx2", …
 } FlKernels;
-
-/** What the processor can do; a level includes those below it. */
-enum {
-    FL_CPU_AVX2 = 1,
-    FL_CPU_AVX512 = 2,
-    FL_CPU_NEON = 4,
-};
-
-/** The processor's flags, lowered by the number in $FLUIDY_CPU_MASK. */
-unsigned fl_cpu_flags(void);
 
 /** Chooses the fastest version that flags allow; a pure function of them. */
 void fl_kernels_init(FlKernels *kernels, unsigned flags);

@@ -1,6 +1,7 @@
 #include "synth/stack.h"
 
 #include "base/alloc.h"
+#include "base/rows.h"
 #include "guides/direction.h"
 
 bool fl_stack_init(FlStack *stack, int width, int height, int n_planes, GError **error)
@@ -46,35 +47,34 @@ static bool counts_inside_only(FlPlane plane)
            plane == FL_PLANE_SIN;
 }
 
-/* The four children of a coarse pixel; at an odd border the last ones are met twice. */
-static void children(const FlStack *fine, int x, int y, size_t child[4])
+/* A row of one plane, but for the last pixel of an odd width. */
+static void halve_row(const FlStack *fine, FlStack *coarse, int plane, int y)
 {
-    const int x1 = 2 * x + 1 < fine->width ? 2 * x + 1 : 2 * x;
-    const int y1 = 2 * y + 1 < fine->height ? 2 * y + 1 : 2 * y;
-    child[0] = (size_t)2 * y * fine->width + 2 * x;
-    child[1] = (size_t)2 * y * fine->width + x1;
-    child[2] = (size_t)y1 * fine->width + 2 * x;
-    child[3] = (size_t)y1 * fine->width + x1;
+    const size_t width = (size_t)fine->width;
+    const size_t upper = 2 * (size_t)y * width,
+                 lower = 2 * y + 1 < fine->height ? upper + width : upper;
+    const float *from = fine->plane[plane], *inside = fine->plane[FL_PLANE_INSIDE];
+    float *to = coarse->plane[plane] + (size_t)y * coarse->width;
+    if (counts_inside_only(plane))
+        fl_rows()->halve_weighted(from + upper, from + lower, inside + upper, inside + lower, to,
+                                  fine->width / 2);
+    else
+        fl_rows()->halve(from + upper, from + lower, to, fine->width / 2);
 }
 
-static void halve_pixel(const FlStack *fine, FlStack *coarse, int x, int y)
+/* At an odd border the last column, or row, counts twice. */
+static void halve_last(const FlStack *fine, FlStack *coarse, int plane, int y)
 {
-    size_t child[4];
-    children(fine, x, y, child);
-    const float *in = fine->plane[FL_PLANE_INSIDE];
-    const float share = in[child[0]] + in[child[1]] + in[child[2]] + in[child[3]];
-    const size_t to = (size_t)y * coarse->width + x;
-    for (int p = 0; p < coarse->n_planes; p++) {
-        const float *f = fine->plane[p];
-        float sum = 0;
-        if (!counts_inside_only(p))
-            sum = (f[child[0]] + f[child[1]] + f[child[2]] + f[child[3]]) * 0.25f;
-        else if (share > 0)
-            sum = (f[child[0]] * in[child[0]] + f[child[1]] * in[child[1]] +
-                   f[child[2]] * in[child[2]] + f[child[3]] * in[child[3]]) /
-                  share;
-        coarse->plane[p][to] = sum;
-    }
+    const size_t width = (size_t)fine->width, upper = (2 * (size_t)y + 1) * width - 1;
+    const size_t lower = 2 * y + 1 < fine->height ? upper + width : upper;
+    const float *from = fine->plane[plane], *in = fine->plane[FL_PLANE_INSIDE];
+    const float pair[2][2] = {{from[upper], from[upper]}, {from[lower], from[lower]}};
+    const float weight[2][2] = {{in[upper], in[upper]}, {in[lower], in[lower]}};
+    float *to = coarse->plane[plane] + (size_t)y * coarse->width + coarse->width - 1;
+    if (counts_inside_only(plane))
+        fl_rows()->halve_weighted(pair[0], pair[1], weight[0], weight[1], to, 1);
+    else
+        fl_rows()->halve(pair[0], pair[1], to, 1);
 }
 
 void fl_stack_halve(const FlStack *fine, FlStack *coarse)
@@ -82,8 +82,11 @@ void fl_stack_halve(const FlStack *fine, FlStack *coarse)
     g_assert(coarse->width == (fine->width + 1) / 2 && coarse->height == (fine->height + 1) / 2);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < coarse->height; y++)
-        for (int x = 0; x < coarse->width; x++)
-            halve_pixel(fine, coarse, x, y);
+        for (int p = 0; p < coarse->n_planes; p++) {
+            halve_row(fine, coarse, p, y);
+            if (fine->width % 2)
+                halve_last(fine, coarse, p, y);
+        }
 }
 
 uint8_t fl_stack_angle(const FlStack *stack, size_t pixel)

@@ -1,0 +1,72 @@
+/* Loops over rows of pixels, compiled once per instruction set. */
+#ifndef FLUIDY_BASE_ROWS_H
+#define FLUIDY_BASE_ROWS_H
+
+#include <stdint.h>
+
+/** What the processor can do; a level includes those below it. */
+enum {
+    FL_CPU_AVX2 = 1,
+    FL_CPU_AVX512 = 2,
+    FL_CPU_NEON = 4,
+};
+
+/** The processor's flags, lowered by the number in $FLUIDY_CPU_MASK. */
+unsigned fl_cpu_flags(void);
+
+/** Pixels being blended, in planes: values 0..65535 times alpha 0..255, and 65535 times alpha. */
+typedef struct FlSums {
+    uint32_t *x[3], *a;
+} FlSums;
+
+/**
+ * One version of every loop; all give the same bytes. The source is the same, too, for the compiler
+ * knows the instruction sets: rows.inc. n is the length of what is written, 0 or more. Arrays
+ * may be aligned anyhow and do not overlap.
+ */
+typedef struct FlRows {
+    /** Blur: to[i] += weight * (a[i] + b[i]). a and b may be the same. */
+    void (*add_pair)(float *to, const float *a, const float *b, float weight, int n);
+
+    /** Pyramid: means of 2x2; upper and lower, which may be the same, are rows of 2 n values. */
+    void (*halve)(const float *upper, const float *lower, float *to, int n);
+
+    /** The same of values that count by their weights, 0 or more; 0 where all of these are 0. */
+    void (*halve_weighted)(const float *upper, const float *lower, const float *upper_weight,
+                           const float *lower_weight, float *to, int n);
+
+    /** Distance: near[i] = y where seed[i] >= 0, else above[i], or -1 if above is NULL. */
+    void (*near_above)(const int32_t *seed, const int16_t *above, int y, int16_t *near, int n);
+
+    /** Replaces rows near[i], the nearest to y at or above it or -1, by below[i] > y if nearer. */
+    void (*near_below)(const int16_t *below, int y, int16_t *near, int n);
+
+    /** Colourise: rgba[i] = look[amount[i]], as 32 bits; 0 where the amount is negative. */
+    void (*look_up)(const int16_t *amount, const uint32_t *look, uint32_t *rgba, int n);
+
+    /** Composite: straight RGBA over sums, as of fl_layers_compose(); a level's value is 257 times
+     * it. */
+    void (*over)(const uint8_t *rgba, const FlSums *sums, int n);
+
+    /** The RGBA of sums that are opaque, each value being 257 times a level. */
+    void (*level_opaque)(const FlSums *sums, uint8_t *rgba, int n);
+
+    /** Enlarge: to[i] = sum[i] / weight[i], rounded; a weight below 1 counts as 1. */
+    void (*share)(const float *sum, const float *weight, uint8_t *to, int n);
+
+    /** Straight RGBA of sums of colour times alpha, and of alpha, the latter by its weight. */
+    void (*straighten)(const float *const rgb[3], const float *alpha, const float *weight,
+                       uint8_t *rgba, int n);
+
+    const char *name; // "c", "avx2", …
+} FlRows;
+
+/** The fastest version that flags allow; a pure function of them. */
+const FlRows *fl_rows_of(unsigned flags);
+
+/** That of this processor. */
+const FlRows *fl_rows(void);
+
+extern const FlRows fl_rows_c, fl_rows_avx2, fl_rows_avx512;
+
+#endif
