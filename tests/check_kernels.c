@@ -299,6 +299,8 @@ typedef struct Noise {
     int32_t seed[ROW + 16];
     uint8_t rgba[4 * ROW + 16];
     uint32_t look[LOOKS], sum[4][ROW + 16];
+    uint16_t above[ROW + 16];
+    uint8_t area[ROW + 16];
 } Noise;
 
 static void make_noise(Noise *noise, uint64_t seed)
@@ -333,6 +335,9 @@ static void run_rows(const FlRows *rows, Noise *z, int n, int at)
     rows->look_up(z->s[0] + at, z->look, z->sum[3] + at, n);
     rows->straighten(rgb, z->f[2] + at, z->f[1], z->rgba + at, n / 2);
     rows->share(z->f[2] + at, z->f[1], z->rgba + 2 * ROW + at, n / 2);
+    const FlOcclusion layer = {z->rgba + at, z->rgba + ROW, n % 2 ? z->rgba + 3 : NULL, n,
+                               n % 5 > 0};
+    rows->occlude(&layer, z->sum[2] + at, z->above + at, z->area + at, n);
 }
 
 static void rows_are_those_of_c(const void *version)
@@ -373,6 +378,30 @@ static void opaque_rows_stay_opaque(const void *version)
                 const double exact = (s * alpha + below * (255 - alpha)) / 255.0;
                 g_assert_cmpuint(sum[3][s], ==, 65535 * 255);
                 g_assert_cmpfloat(ABS(out[4 * s] - exact), <=, 0.51);
+            }
+        }
+}
+
+/* The quotient in whole numbers, for every alpha of paint, share and what is above. */
+static void a_layer_shows_its_share(const void *version)
+{
+    const FlRows *rows = version;
+    for (int above = 0; above < 65536; above += above < 65000 ? 97 : 1)
+        for (int seen = 0; seen < 256; seen += 5) {
+            const uint32_t left = 65535 - (uint32_t)above;
+            uint32_t rgba[256];
+            uint16_t taken[256];
+            uint8_t covered[256], of_it[256];
+            for (int paint = 0; paint < 256; paint++)
+                rgba[paint] = GUINT32_TO_LE((uint32_t)paint << 24), taken[paint] = (uint16_t)above;
+            memset(covered, 255, sizeof covered);
+            memset(of_it, seen, sizeof of_it);
+            const FlOcclusion layer = {covered, of_it, NULL, 255, false};
+            rows->occlude(&layer, rgba, taken, NULL, 256);
+            for (uint32_t paint = 0; paint < 256; paint++) {
+                const uint32_t share = paint * (uint32_t)seen * 257;
+                const uint32_t want = left < 257 ? paint : MIN((share + left / 2) / left, 255);
+                g_assert_cmpuint(GUINT32_FROM_LE(rgba[paint]) >> 24, ==, want);
             }
         }
 }
@@ -446,6 +475,8 @@ static void time_rows(const FlRows *rows)
     TIME("over", rows->over(z.rgba, &sums, ROW));
     TIME("level_opaque", rows->level_opaque(&sums, z.rgba, ROW));
     TIME("share", rows->share(z.f[2], z.f[1], z.rgba, ROW));
+    const FlOcclusion layer = {z.rgba, z.rgba + ROW, z.rgba + 2 * ROW, 200, true};
+    TIME("occlude", rows->occlude(&layer, z.sum[2], z.above, z.area, ROW));
     TIME("straighten", rows->straighten(rgb, z.f[2], z.f[1], z.rgba, ROW));
 }
 
@@ -478,9 +509,11 @@ static void add_checks(const FlKernels *version)
 static void add_row_checks(const FlRows *version, const char *level)
 {
     g_autofree char *same = g_strdup_printf("/rows/%s/rows-are-those-of-c", level);
+    g_autofree char *shares = g_strdup_printf("/rows/%s/a-layer-shows-its-share", level);
     g_autofree char *opaque = g_strdup_printf("/rows/%s/opaque-rows-stay-opaque", level);
     g_test_add_data_func(same, version, rows_are_those_of_c);
     g_test_add_data_func(opaque, version, opaque_rows_stay_opaque);
+    g_test_add_data_func(shares, version, a_layer_shows_its_share);
 }
 
 int main(int argc, char **argv)

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_BASE_ROWS_H
 #define FLUIDY_BASE_ROWS_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 /** What the processor can do; a level includes those below it. */
@@ -18,6 +19,15 @@ unsigned fl_cpu_flags(void);
 typedef struct FlSums {
     uint32_t *x[3], *a;
 } FlSums;
+
+/** A row of a layer among those above it, for fl_layers_resolve(). */
+typedef struct FlOcclusion {
+    const uint8_t *coverage; // of the whole shape, 0..255
+    const uint8_t *seen;     // the part of each pixel that belongs to it, 0..255
+    const uint8_t *body;     // of its paint, 0..255; NULL: 255
+    int alpha;               // opacity of the layer, 0..255
+    bool knocks;             // whether it takes anything
+} FlOcclusion;
 
 /**
  * One version of every loop; all give the same bytes. The source is the same, too, for the compiler
@@ -57,6 +67,10 @@ typedef struct FlRows {
     /** Straight RGBA of sums of colour times alpha, and of alpha, the latter by its weight. */
     void (*straighten)(const float *const rgb[3], const float *alpha, const float *weight,
                        uint8_t *rgba, int n);
+
+    /** Composite: what a layer shows of its paint, in place, and takes of what lies below it. */
+    void (*occlude)(const FlOcclusion *layer, uint32_t *rgba, uint16_t *paint, uint8_t *area,
+                    int n);
 
     const char *name; // "c", "avx2", …
 } FlRows;

@@ -40,21 +40,6 @@ static int scaled(int a, int b)
     return (a * b + 127) / 255;
 }
 
-/**
- * The stored alpha of paint of alpha `paint` in a pixel where `seen` of 255 belongs to it. Its
- * share of the final pixel is paint * seen; `over` leaves it 1 - above->paint of its stored alpha.
- */
-static int stored_alpha(int paint, int seen, int covered, int above)
-{
-    const uint32_t left = 65535u - (uint32_t)above;
-    if (left < 257) // hidden: the whole shape, for those who move the layers apart
-        return scaled(paint, covered);
-    if (above == 0) // as below, without its long division
-        return scaled(paint, seen);
-    const uint32_t share = (uint32_t)(paint * seen) * 257;
-    return (int)MIN((share + left / 2) / left, 255);
-}
-
 static bool knocks_out(const FlLayer *layer)
 {
     return layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_MIX_OVER;
@@ -62,28 +47,21 @@ static bool knocks_out(const FlLayer *layer)
 
 static void resolve_rows(const FlLayer *layer, Above *above)
 {
-    const bool knocks = knocks_out(layer);
     const FlBox box = layer->area.box;
+    const bool knocks = knocks_out(layer);
 #pragma omp parallel for schedule(static) if (fl_box_pixels(box) > FL_WORTH_THREADS)
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
-        for (int x = span.first; x < span.last; x++) {
-            const size_t i = (size_t)(box.y + y) * above->width + box.x + x;
-            const size_t j = (size_t)y * box.width + x;
-            const uint8_t coverage = layer->coverage[(size_t)y * layer->pitch + x];
-            uint8_t *alpha = layer->rgba + 4 * j + 3;
-            if (!coverage) { // as below
-                *alpha = 0;
-                continue;
-            }
-            const int paint = scaled(*alpha, layer->alpha);
-            *alpha = (uint8_t)stored_alpha(paint, above->seen[j], coverage, above->paint[i]);
-            if (knocks) {
-                above->paint[i] += (uint16_t)((65535 - above->paint[i]) * *alpha / 255);
-                const int body = layer->body ? layer->body[j] : 255;
-                above->area[i] += (uint8_t)scaled(above->seen[j], scaled(body, layer->alpha));
-            }
-        }
+        const size_t i = (size_t)(box.y + y) * above->width + box.x + span.first;
+        const size_t j = (size_t)y * box.width + span.first;
+        const FlOcclusion row = {.coverage =
+                                     layer->coverage + (size_t)y * layer->pitch + span.first,
+                                 .seen = above->seen + j,
+                                 .body = layer->body ? layer->body + j : NULL,
+                                 .alpha = layer->alpha,
+                                 .knocks = knocks};
+        fl_rows()->occlude(&row, (uint32_t *)(void *)layer->rgba + j, above->paint + i,
+                           above->area + i, span.last - span.first);
     }
 }
 
