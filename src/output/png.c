@@ -5,10 +5,12 @@
 #include <errno.h>
 #include <png.h>
 #include <string.h>
+#include <zlib.h>
 
 /*
  * A painted frame of 1000x800: level 3 with all filters 72 ms and 1056 kB, level 6 143 ms and 1070
- * kB, level 1 with the `sub` filter alone 36 ms and 1088 kB.
+ * kB, level 1 with the `sub` filter alone 36 ms and 1088 kB. Drafts are enlarged and smooth: files
+ * of runs alone are 2 to 13 % smaller still.
  */
 #define LEVEL_FINAL 3
 #define LEVEL_FAST 1
@@ -48,6 +50,8 @@ static void put_header(png_structp png, png_infop info, const FlPng *picture)
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
     png_set_compression_level(png, picture->fast ? LEVEL_FAST : LEVEL_FINAL);
+    if (picture->fast)
+        png_set_compression_strategy(png, Z_RLE);
     png_set_filter(png, PNG_FILTER_TYPE_BASE, picture->fast ? PNG_FILTER_SUB : PNG_ALL_FILTERS);
     put_text(png, info, picture->text);
     png_write_info(png, info);
