@@ -4,10 +4,10 @@
 #include "output/atomic.h"
 #include <errno.h>
 #include <string.h>
+#include <zlib.h>
 
 #define MAGIC "fluidy-svg state 3"
 #define TYPE "(sa(ss)ibaay)" // magic, facts, done, overwrite, painters
-#define SUM_BYTES 32         // SHA-256 of all that stands before it
 
 FlState *fl_state_new(void)
 {
@@ -42,12 +42,9 @@ static GVariant *to_variant(const FlState *state)
         g_variant_new(TYPE, MAGIC, &facts, state->done, state->overwrite, &painters));
 }
 
-static void sum_of(const void *data, size_t bytes, uint8_t sum[SUM_BYTES])
+uint32_t fl_state_sum(const void *data, size_t bytes)
 {
-    g_autoptr(GChecksum) checksum = g_checksum_new(G_CHECKSUM_SHA256);
-    size_t length = SUM_BYTES;
-    g_checksum_update(checksum, data, (gssize)bytes);
-    g_checksum_get_digest(checksum, sum, &length);
+    return GUINT32_TO_LE((uint32_t)crc32_z(crc32_z(0, NULL, 0), data, bytes));
 }
 
 bool fl_state_save(const FlState *state, const char *path, GError **error)
@@ -55,14 +52,13 @@ bool fl_state_save(const FlState *state, const char *path, GError **error)
     g_autoptr(GVariant) variant = to_variant(state);
     const size_t bytes = g_variant_get_size(variant);
     g_autofree void *data = fl_alloc(bytes, 1, "a state", error);
-    uint8_t sum[SUM_BYTES];
     g_auto(FlAtomic) file = {0};
     if (!data || !fl_atomic_open(&file, path, true, error))
         return false;
     g_variant_store(variant, data);
-    sum_of(data, bytes, sum);
+    const uint32_t sum = fl_state_sum(data, bytes);
     if (fwrite(data, 1, bytes, file.stream) != bytes ||
-        fwrite(sum, 1, SUM_BYTES, file.stream) != SUM_BYTES) {
+        fwrite(&sum, sizeof sum, 1, file.stream) != 1) {
         fl_output_error(error, path, errno);
         return false;
     }
@@ -91,14 +87,14 @@ FlState *fl_state_parse(GBytes *bytes, const char *path, GError **error)
 {
     size_t size;
     const uint8_t *data = g_bytes_get_data(bytes, &size);
-    uint8_t sum[SUM_BYTES];
+    uint32_t sum;
     FlState *state = NULL;
-    if (size >= SUM_BYTES) {
-        sum_of(data, size - SUM_BYTES, sum);
-        g_autoptr(GBytes) body = g_bytes_new_from_bytes(bytes, 0, size - SUM_BYTES);
+    if (size >= sizeof sum) {
+        sum = fl_state_sum(data, size - sizeof sum);
+        g_autoptr(GBytes) body = g_bytes_new_from_bytes(bytes, 0, size - sizeof sum);
         g_autoptr(GVariant) variant =
             g_variant_ref_sink(g_variant_new_from_bytes(G_VARIANT_TYPE(TYPE), body, FALSE));
-        if (memcmp(sum, data + size - SUM_BYTES, SUM_BYTES) == 0 &&
+        if (memcmp(&sum, data + size - sizeof sum, sizeof sum) == 0 &&
             g_variant_is_normal_form(variant))
             state = from_variant(variant);
     }

@@ -14,6 +14,9 @@ typedef struct FlState {
 FlState *fl_state_new(void);
 void fl_state_free(FlState *state); // NULL is fine
 
+/** The checksum at the end of a state's file, as it is stored there: of all that is before it. */
+uint32_t fl_state_sum(const void *data, size_t bytes);
+
 /** Writes the file, whole or not at all, with a checksum at its end. FL_ERROR_OUTPUT. */
 bool fl_state_save(const FlState *state, const char *path, GError **error);
 
