@@ -1,5 +1,6 @@
 #include "compose/ink.h"
 #include "compose/density.h"
+#include "compose/inner.h"
 
 #include <string.h>
 
@@ -142,31 +143,18 @@ void fl_ink_free(FlInk *ink)
     g_free(ink);
 }
 
-/** Inside the shape and, with a margin, with it all around: at the corners of a square too. */
-static bool is_inner(const uint8_t *coverage, int width, int height, int x, int y, int margin)
-{
-    if (margin == 0)
-        return coverage[(size_t)y * width + x] >= INSIDE;
-    for (int dy = -margin; dy <= margin; dy += margin)
-        for (int dx = -margin; dx <= margin; dx += margin) {
-            const int xx = x + dx, yy = y + dy; // beyond the page the shape goes on
-            if (xx >= 0 && xx < width && yy >= 0 && yy < height &&
-                coverage[(size_t)yy * width + xx] != 255)
-                return false;
-        }
-    return true;
-}
-
 static void count_inner(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage,
                         int width, int height, int margin, FlAmountCounts *h)
 {
+    g_autofree uint8_t *inner = g_malloc((size_t)width);
     memset(h, 0, sizeof *h);
-    for (int y = 0; y < height; y++)
+    for (int y = 0; y < height; y++) {
+        const uint8_t *row = painted + 3 * (size_t)y * width;
+        fl_inner_row(coverage, width, height, y, margin, inner);
         for (int x = 0; x < width; x++)
-            if (is_inner(coverage, width, height, x, y, margin)) {
-                h->count[fl_ink_amount(ink, painted + 3 * ((size_t)y * width + x))]++;
-                h->total++;
-            }
+            if (inner[x] == 255)
+                h->count[fl_ink_amount(ink, row + 3 * x)]++, h->total++;
+    }
 }
 
 int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
@@ -174,8 +162,10 @@ int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverag
 {
     enum { MARGIN_PX = 2 };
     g_autofree FlAmountCounts *h = g_new0(FlAmountCounts, 1);
-    for (int margin = MARGIN_PX; margin >= 0 && h->total < FL_COUNTS_ENOUGH; margin--)
+    for (int margin = MARGIN_PX; margin > 0 && h->total < FL_COUNTS_ENOUGH; margin--)
         count_inner(ink, painted, coverage, width, height, margin, h);
+    if (h->total < FL_COUNTS_ENOUGH)
+        count_amounts(ink, painted, coverage, (size_t)width * height, h);
     return fl_counts_tone(h);
 }
 

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/first_error.h"
 #include "compose/closing.h"
+#include "compose/inner.h"
 #include <string.h>
 
 #define SHOWN 128      // coverage from which on a shape is uppermost
@@ -263,36 +264,53 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
     return close_tiles(edges, run, radius, before, amounts, error);
 }
 
-/** Whether a run is all that is seen at a pixel and 2 px around it. */
-static bool is_inside(const FlEdgeMap *edges, int run, int x, int y)
+/** 255 where a run is all that is seen, else 0; of a box that may be larger than the run's. */
+static uint8_t *own_pixels(const FlEdgeMap *edges, int run, FlBox box, GError **error)
 {
-    enum { MARGIN_PX = 2 };
-    const uint8_t *coverage = edges->runs->run[run].coverage;
-    const int width = fl_film_width(edges->plan->film);
-    const int height = fl_film_height(edges->plan->film);
-    for (int dy = -MARGIN_PX; dy <= MARGIN_PX; dy += MARGIN_PX)
-        for (int dx = -MARGIN_PX; dx <= MARGIN_PX; dx += MARGIN_PX) {
-            const int xx = CLAMP(x + dx, 0, width - 1), yy = CLAMP(y + dy, 0, height - 1);
-            const size_t i = (size_t)yy * width + xx;
-            if (coverage[i] < 255 || !is_seen(edges, run, i))
-                return false;
-        }
-    return true;
+    uint8_t *own = fl_alloc(fl_box_pixels(box), 1, "a matte", error);
+    const FlArea *area = &edges->areas[run];
+    for (int y = 0; own && y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const size_t from = in_frame(edges, area->box, y);
+        const uint8_t *coverage = edges->runs->run[run].coverage + from;
+        const uint16_t *top = edges->top + from;
+        uint8_t *row = own + (size_t)(area->box.y + y - box.y) * (size_t)box.width;
+        row += area->box.x - box.x;
+        for (int x = span.first; x < span.last; x++)
+            row[x] = coverage[x] == 255 && top[x] <= run + 1 ? 255 : 0;
+    }
+    return own;
 }
 
-void fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts)
+/** Counts the amounts of a run deep enough inside what is seen of it. */
+static bool count_inner(const FlEdgeMap *edges, int run, const int16_t *amounts,
+                        FlAmountCounts *counts, GError **error)
+{
+    enum { MARGIN_PX = 2 };
+    const FlArea *area = &edges->areas[run];
+    const FlBox frame = {0, 0, fl_film_width(edges->plan->film), fl_film_height(edges->plan->film)};
+    const FlBox box = grown(area->box, MARGIN_PX, frame);
+    g_autofree uint8_t *inner = g_malloc((size_t)box.width);
+    g_autofree uint8_t *own = own_pixels(edges, run, box, error);
+    for (int y = 0; own && y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const int16_t *row = amounts + (size_t)y * (size_t)area->box.width;
+        const uint8_t *within = inner + (area->box.x - box.x);
+        fl_inner_row(own, box.width, box.height, area->box.y + y - box.y, MARGIN_PX, inner);
+        for (int x = span.first; x < span.last; x++)
+            if (within[x] == 255 && row[x] >= 0)
+                counts->count[row[x]]++, counts->total++;
+    }
+    return own;
+}
+
+bool fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts, GError **error)
 {
     const FlArea *area = &edges->areas[run];
     const FlBox box = area->box;
     g_autofree FlAmountCounts *counts = g_new0(FlAmountCounts, 1);
-    for (int y = 0; y < box.height; y++) {
-        const FlColumns span = fl_area_row(area, y);
-        for (int x = span.first; x < span.last; x++) {
-            const int amount = amounts[(size_t)y * box.width + x];
-            if (amount >= 0 && is_inside(edges, run, box.x + x, box.y + y))
-                counts->count[amount]++, counts->total++;
-        }
-    }
+    if (!count_inner(edges, run, amounts, counts, error))
+        return false;
     const int tone = CLAMP(fl_counts_tone(counts), FL_TONE_ONE * 2 / 3, FL_TONE_ONE * 3 / 2);
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
@@ -301,4 +319,5 @@ void fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts)
             if (row[x] > 0)
                 row[x] = (int16_t)MIN(row[x] * tone / FL_TONE_ONE, FL_AMOUNTS - 1);
     }
+    return true;
 }

@@ -38,8 +38,10 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
 /**
  * Brings the median of the amounts, where the run is seen, to one, by a factor of 2/3 … 3/2: what
  * was closed up, or belongs to a region with other tones elsewhere, may be off it.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
  */
-void fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts);
+bool fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlEdgeMap, fl_edges_clear)
 

@@ -97,10 +97,9 @@ static int16_t *amounts_of(const FlPlan *plan, const FlEdgeMap *edges, int r,
         return NULL;
     fl_colourise_amounts(painter->box->ink, keep ? FL_TONE_ONE : tone, painter->painted,
                          edges->runs->run[r].coverage, fl_film_width(plan->film), area, amounts);
-    if (!fl_edges_close(edges, r, painter, amounts, error))
+    if (!fl_edges_close(edges, r, painter, amounts, error) ||
+        (!keep && !fl_edges_level(edges, r, amounts, error)))
         return NULL;
-    if (!keep)
-        fl_edges_level(edges, r, amounts);
     return g_steal_pointer(&amounts);
 }
 
