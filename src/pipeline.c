@@ -31,8 +31,8 @@ typedef struct Job {
     int n_scratch;
     int n_threads;
     FlTask drawing, writing; // what goes on beside the painting
-    int frame;               // that is painted
-    FlRuns *runs;            // its shapes, drawn by `drawing`
+    int drawn;               // the frame whose shapes `drawing` draws, or has drawn; -1: none
+    FlRuns *runs;            // these
     int finished_frame;      // the last one that was painted
     FlComposite finished;    // as it was composed, written by `writing`
     double write_s;          // that it took
@@ -239,12 +239,25 @@ static bool recall_frames(Job *job, GError **error)
     return true;
 }
 
+/* Writing needs one thread and waits for the disk, so the next frame is painted meanwhile; but not
+ * where somebody looks at what the painters have. */
+static bool overlaps(const Job *job)
+{
+    return job->n_threads > 1 && !job->stats.open && !job->report;
+}
+
 /* The task `drawing`. */
 static bool draw_shapes(void *data, GError **error)
 {
     Job *job = data;
-    job->runs = fl_held_runs(job->plan, job->frame, error);
+    job->runs = fl_held_runs(job->plan, job->drawn, error);
     return job->runs != NULL;
+}
+
+static void start_drawing(Job *job, int frame)
+{
+    job->drawn = frame;
+    fl_task_start(&job->drawing, draw_shapes, job, overlaps(job));
 }
 
 /* The task `writing`: the files of a frame, and then the state that follows it. */
@@ -267,15 +280,9 @@ static bool finish_writing(Job *job, GError **error)
     return done;
 }
 
-/* Writing needs one thread and waits for the disk, so the next frame is painted meanwhile; but not
- * where somebody looks at what the painters have. */
-static bool overlaps(const Job *job)
-{
-    return job->n_threads > 1 && !job->stats.open && !job->report;
-}
-
-/* The frame with its shapes; all threads paint while these are drawn. */
-static bool paint_frame(Job *job, int frame, FlComposite *composite, double *paint_s,
+/* The frame with its shapes; all threads paint while these are drawn, and those of the next frame
+ * meanwhile and while this one is composed. next: -1: none. */
+static bool paint_frame(Job *job, int frame, int next, FlComposite *composite, double *paint_s,
                         GError **error)
 {
     const int64_t start = g_get_monotonic_time();
@@ -283,14 +290,17 @@ static bool paint_frame(Job *job, int frame, FlComposite *composite, double *pai
     if (!fl_exemplars_seek(plan->exemplars, frame, fl_film_frames(plan->film), plan->options.loop,
                            error))
         return false;
-    job->frame = frame;
-    fl_task_start(&job->drawing, draw_shapes, job, overlaps(job));
+    if (job->drawn != frame)
+        start_drawing(job, frame);
     const bool painted = for_each_painter(job, paint_one, frame, error);
     *paint_s = seconds_since(start);
     if (!fl_task_wait(&job->drawing, painted ? error : NULL) || !painted)
         return false;
-    return fl_composite_init(composite, plan, &job->background, frame, g_steal_pointer(&job->runs),
-                             plan->format->takes_16, error);
+    FlRuns *runs = g_steal_pointer(&job->runs);
+    if (next >= 0 && overlaps(job))
+        start_drawing(job, next);
+    return fl_composite_init(composite, plan, &job->background, frame, runs, plan->format->takes_16,
+                             error);
 }
 
 /* Figures and the report, once the frame's files are written. */
@@ -311,7 +321,8 @@ static bool render_frame(Job *job, int frame, GError **error)
     const bool beside = overlaps(job);
     double paint_s = 0;
     g_auto(FlComposite) composite = {0};
-    if (!paint_frame(job, frame, &composite, &paint_s, error))
+    const int next = frame + 1 < fl_film_frames(job->plan->film) ? frame + 1 : -1;
+    if (!paint_frame(job, frame, next, &composite, &paint_s, error))
         return false;
     const double compose_s = seconds_since(start) - paint_s;
     if (!finish_writing(job, error) ||
@@ -447,7 +458,7 @@ static bool rehearse(Job *job, GError **error)
         const int64_t start = g_get_monotonic_time();
         g_auto(FlComposite) composite = {0};
         double paint_s = 0;
-        if (!paint_frame(job, k * plan->hold, &composite, &paint_s, error))
+        if (!paint_frame(job, k * plan->hold, -1, &composite, &paint_s, error))
             return false;
         job->rehearsed_s = seconds_since(start);
     }
@@ -493,7 +504,7 @@ static void summarise(const Job *job)
 
 bool fl_render(const FlRenderOptions *options, GError **error)
 {
-    Job job = {.start = g_get_monotonic_time()};
+    Job job = {.drawn = -1, .start = g_get_monotonic_time()};
 #ifdef _OPENMP
     if (options->threads > 0)
         omp_set_num_threads(options->threads);
