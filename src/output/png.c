@@ -3,16 +3,16 @@
 #include "output/formats.h"
 
 #include <errno.h>
+#include <libdeflate.h>
 #include <png.h>
 #include <string.h>
-#include <zlib.h>
 
 /*
- * A painted frame of 1000x800: level 3 with all filters 72 ms and 1056 kB, level 6 143 ms and 1070
- * kB, level 1 with the `sub` filter alone 36 ms and 1088 kB. Drafts are enlarged and smooth: files
- * of runs alone are 8 % smaller on average.
+ * libpng makes the file and libdeflate what is in it. A painted frame of 800x800: level 4 13 ms and
+ * 391 kB, level 1 9 ms and 401 kB; with libpng's choice of filters and zlib at level 3 it was 29 ms
+ * and 419 kB. Most values of 16 bits are a level's byte twice, which the filter would hide.
  */
-#define LEVEL_FINAL 3
+#define LEVEL_FINAL 4
 #define LEVEL_FAST 1
 
 /** Where libpng's own words go before it jumps. */
@@ -49,16 +49,8 @@ static void put_header(png_structp png, png_infop info, const FlPng *picture)
                  picture->opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-    png_set_compression_level(png, picture->fast ? LEVEL_FAST : LEVEL_FINAL);
-    if (picture->fast)
-        png_set_compression_strategy(png, Z_RLE);
-    png_set_filter(png, PNG_FILTER_TYPE_BASE, picture->fast ? PNG_FILTER_SUB : PNG_ALL_FILTERS);
     put_text(png, info, picture->text);
     png_write_info(png, info);
-    if (picture->opaque)
-        png_set_filler(png, 0, PNG_FILLER_AFTER);
-    if (picture->rgba16 && G_BYTE_ORDER == G_LITTLE_ENDIAN)
-        png_set_swap(png);
 }
 
 /** Where the bytes go: a stream, or else an array. */
@@ -80,28 +72,110 @@ static void flush_nothing(png_structp png)
 {
 }
 
+static size_t pixel_bytes(const FlPng *picture)
+{
+    return (picture->opaque ? 3 : 4) * (picture->rgba16 ? sizeof(uint16_t) : 1);
+}
+
+static void pack_row8(const uint8_t *rgba, int width, int channels, uint8_t *restrict out)
+{
+    for (int x = 0; x < width; x++)
+        for (int c = 0; c < channels; c++)
+            out[x * channels + c] = rgba[4 * x + c];
+}
+
+/** High bytes first. */
+static void pack_row16(const uint16_t *rgba, int width, int channels, uint8_t *restrict out)
+{
+    for (int x = 0; x < width; x++)
+        for (int c = 0; c < channels; c++, out += 2)
+            out[0] = (uint8_t)(rgba[4 * x + c] >> 8), out[1] = (uint8_t)(rgba[4 * x + c] & 0xff);
+}
+
+/** Row y as it is stored. */
+static void pack_row(const FlPng *picture, int y, uint8_t *out)
+{
+    const size_t first = (size_t)y * picture->width * 4;
+    if (picture->rgba16)
+        pack_row16(picture->rgba16 + first, picture->width, picture->opaque ? 3 : 4, out);
+    else if (picture->opaque)
+        pack_row8(picture->rgba + first, picture->width, 3, out);
+    else
+        pack_row8(picture->rgba + first, picture->width, 4, out);
+}
+
+/** What is left of a row of n bytes without the mean of the pixels to the left and above. */
+static void filter_row(const uint8_t *row, const uint8_t *above, size_t n, size_t pixel,
+                       uint8_t *restrict out)
+{
+    for (size_t i = 0; i < pixel; i++)
+        out[i] = (uint8_t)(row[i] - above[i] / 2);
+    for (size_t i = pixel; i < n; i++)
+        out[i] = (uint8_t)(row[i] - (row[i - pixel] + above[i]) / 2);
+}
+
+/** All rows, each after the byte that tells its filter; NULL if memory is short. */
+static uint8_t *filter_rows(const FlPng *picture)
+{
+    const size_t pixel = pixel_bytes(picture), n = picture->width * pixel;
+    g_autofree uint8_t *rows = g_try_malloc0(2 * n);
+    uint8_t *out = g_try_malloc((n + 1) * (size_t)picture->height);
+    for (int y = 0; rows && out && y < picture->height; y++) {
+        uint8_t *row = rows + (y % 2) * n, *to = out + (size_t)y * (n + 1);
+        pack_row(picture, y, row);
+        to[0] = picture->rgba16 ? PNG_FILTER_VALUE_NONE : PNG_FILTER_VALUE_AVG;
+        if (picture->rgba16)
+            memcpy(to + 1, row, n);
+        else
+            filter_row(row, rows + (y + 1) % 2 * n, n, pixel, to + 1);
+    }
+    if (!rows)
+        g_clear_pointer(&out, g_free);
+    return out;
+}
+
+/** The picture's pixels as a zlib stream of *bytes; NULL if memory is short. */
+static uint8_t *compress(const FlPng *picture, size_t *bytes)
+{
+    const size_t n = (picture->width * pixel_bytes(picture) + 1) * (size_t)picture->height;
+    g_autofree uint8_t *rows = filter_rows(picture);
+    struct libdeflate_compressor *compressor =
+        libdeflate_alloc_compressor(picture->fast ? LEVEL_FAST : LEVEL_FINAL);
+    const size_t room = compressor ? libdeflate_zlib_compress_bound(compressor, n) : 0;
+    uint8_t *stream = rows && compressor ? g_try_malloc(room) : NULL;
+    *bytes = stream ? libdeflate_zlib_compress(compressor, rows, n, stream, room) : 0;
+    if (compressor)
+        libdeflate_free_compressor(compressor);
+    return stream;
+}
+
+#define CHUNK_BYTES ((size_t)1 << 30) // of a file's parts, at most
+
 /** libpng jumps back here when it fails. */
-static bool put_picture(png_structp png, png_infop info, const FlPng *picture, Target *target)
+static bool put_picture(png_structp png, png_infop info, const FlPng *picture,
+                        const uint8_t *stream, size_t bytes, Target *target)
 {
     if (setjmp(png_jmpbuf(png)))
         return false;
     png_set_write_fn(png, target, put_bytes, flush_nothing);
     put_header(png, info, picture);
-    const size_t row = (size_t)picture->width * 4;
-    for (int y = 0; y < picture->height; y++)
-        if (picture->rgba16)
-            png_write_row(png, (png_const_bytep)(picture->rgba16 + (size_t)y * row));
-        else
-            png_write_row(png, picture->rgba + (size_t)y * row);
-    png_write_end(png, info);
+    for (size_t at = 0; at < bytes; at += CHUNK_BYTES)
+        png_write_chunk(png, (png_const_bytep) "IDAT", stream + at, MIN(bytes - at, CHUNK_BYTES));
+    png_write_chunk(png, (png_const_bytep) "IEND", NULL, 0);
     return true;
 }
 
 static bool encode(const FlPng *picture, Target *target, Trouble *trouble)
 {
+    size_t bytes;
+    g_autofree uint8_t *stream = compress(picture, &bytes);
+    if (!stream) {
+        g_strlcpy(trouble->message, "not enough memory", sizeof trouble->message);
+        return false;
+    }
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, trouble, on_error, on_warning);
     png_infop info = png ? png_create_info_struct(png) : NULL;
-    const bool put = info && put_picture(png, info, picture, target);
+    const bool put = info && put_picture(png, info, picture, stream, bytes, target);
     png_destroy_write_struct(&png, &info);
     return put;
 }

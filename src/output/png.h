@@ -12,7 +12,7 @@ typedef struct FlPng {
     const uint8_t *rgba;     // width * height * 4 straight sRGBA, 8 bits a channel
     const uint16_t *rgba16;  // the same, 16 bits, native byte order
     bool opaque;             // store no alpha
-    bool fast;               // deflate at level 1 instead of 3
+    bool fast;               // deflate at level 1 instead of 4
     const char *const *text; // keyword, text, …, NULL; or NULL
 } FlPng;
 

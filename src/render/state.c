@@ -3,8 +3,8 @@
 #include "base/alloc.h"
 #include "output/atomic.h"
 #include <errno.h>
+#include <libdeflate.h>
 #include <string.h>
-#include <zlib.h>
 
 #define MAGIC "fluidy-svg state 3"
 #define TYPE "(sa(ss)ibaay)" // magic, facts, done, overwrite, painters
@@ -44,7 +44,7 @@ static GVariant *to_variant(const FlState *state)
 
 uint32_t fl_state_sum(const void *data, size_t bytes)
 {
-    return GUINT32_TO_LE((uint32_t)crc32_z(crc32_z(0, NULL, 0), data, bytes));
+    return GUINT32_TO_LE(libdeflate_crc32(0, data, bytes));
 }
 
 bool fl_state_save(const FlState *state, const char *path, GError **error)
