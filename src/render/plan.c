@@ -367,16 +367,29 @@ static bool is_small(const FlPlan *plan, const FlPainter *painter)
     return fl_plan_side_by_side(plan, fl_box_pixels(fl_masks_extent(plan->masks, painter->region)));
 }
 
+static int by_extent(const void *a, const void *b, void *data)
+{
+    const FlPainter *p = *(FlPainter *const *)a, *q = *(FlPainter *const *)b;
+    const FlMasks *masks = data;
+    const size_t pixels_p = fl_box_pixels(fl_masks_extent(masks, p->region));
+    const size_t pixels_q = fl_box_pixels(fl_masks_extent(masks, q->region));
+    return (pixels_p < pixels_q) - (pixels_p > pixels_q);
+}
+
 /* The guides of a region use all threads themselves, where it is large enough for that, and their
- * scratch is as large as the region: small ones go side by side, the others one after the other. */
+ * scratch is as large as the region: small ones go side by side, the largest of them first, so that
+ * none is waited for; the others one after the other. */
 static bool make_guides(FlPlan *plan, GError **error)
 {
     GError *first = NULL;
+    g_autofree FlPainter **order = g_new(FlPainter *, MAX(plan->n_painters, 1));
+    for (int p = 0; p < plan->n_painters; p++)
+        order[p] = &plan->painters[p];
+    g_qsort_with_data(order, plan->n_painters, sizeof *order, by_extent, plan->masks);
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int p = 0; p < plan->n_painters; p++) {
+    for (int k = 0; k < plan->n_painters; k++) {
         GError *mine = NULL;
-        if (is_small(plan, &plan->painters[p]) &&
-            !fl_painter_init(&plan->painters[p], plan->options.seed, &mine))
+        if (is_small(plan, order[k]) && !fl_painter_init(order[k], plan->options.seed, &mine))
             fl_keep_first_error(&first, mine);
     }
     if (!fl_tell_first_error(error, first))
