@@ -3,11 +3,12 @@
 #include "base/rng.h"
 
 /*
- * Where the time goes (perf; a snowman of 19 regions, 1000 px wide, AVX-512): six tenths of a whole
- * render into the search, one into votes, the rest into guides, the drawing's shapes, composing and
- * files. Of the search, a third each goes into patch distances and into what is below, and a tenth
- * each into gathering the target's patch, the sieve and the neighbours; in a draft, which searches
- * less, search and votes take a fifth and a sixth of the render, distances a tenth.
+ * Where the time goes (perf; a snowman of 19 regions, 1000 px wide, AVX-512): two thirds of a whole
+ * render into the search, an eighth into votes, the rest into guides, the drawing's shapes,
+ * composing and files. Of the search, four tenths go into patch distances, three into what is
+ * below, and a twentieth each into gathering the target's patch, the sieve and the neighbours; in a
+ * draft, which searches less, search and votes take a fifth of the render each, the distances of
+ * the guides an eighth.
  *
  * A random try's texels are a cache miss each. So pixels go through three stages, each pixel a
  * stage behind the next one of its tile:
