@@ -168,7 +168,8 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
                 continue;
             int from = 0, to = 0;
             widen(&rows, box.y + y, &from, &to);
-            const FlColumns span = {MAX(from - left, 0), MIN(to - left, box.width)};
+            const FlColumns wide = {MAX(from - left, 0), MIN(to - left, box.width)};
+            const FlColumns span = wide.first < wide.last ? wide : (FlColumns){0, 0};
             full->area.row[y] = span;
             store(&rows, left, span, (uint8_t *)full->coverage + row, full->rgba + 4 * row,
                   full->body ? (uint8_t *)full->body + row : NULL);
