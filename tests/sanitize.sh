@@ -5,7 +5,8 @@
 #
 # address: the whole suite, AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer.
 # thread: what uses threads, ThreadSanitizer with clang. gcc's reports false races in OpenMP; Archer
-#   tells clang's what OpenMP orders, and tsan_glib.c what GLib does.
+#   tells clang's what OpenMP orders, and tsan_glib.c what GLib does. GLib's own slices, handed from
+#   a thread that has ended to the next, would be taken for shared.
 #   It also fails if clang warns of anything; .ci/run builds with gcc so.
 # memcheck: a short render in valgrind.
 # analysers: cppcheck and clang-tidy; tests/cppcheck.supp and .clang-tidy say what is left out.
@@ -43,6 +44,7 @@ thread)
     [ -f "$archer" ] || archer=$(find /usr/lib/llvm-* -name libarcher.so | head -1)
     [ -f "$archer" ] || { echo 'no libarcher.so: it is in libomp-dev'; exit 1; }
     export OMP_TOOL_LIBRARIES=$archer OMP_NUM_THREADS=3 LD_PRELOAD=$build/tsan_glib.so
+    export G_SLICE=always-malloc
     export TSAN_OPTIONS='ignore_noninstrumented_modules=1 exitcode=66 halt_on_error=1'
     for program in "${programs[@]}"; do
         "$build/tests/test_$program"
