@@ -22,18 +22,24 @@ static FlColumns span_of(const uint8_t *row, int width)
     return span;
 }
 
-FlBox fl_box_of(const uint8_t *plane, int width, int height)
+FlBox fl_box_within(const uint8_t *plane, int width, FlBox part)
 {
-    int left = width, right = -1, top = height, bottom = -1;
-    for (int y = 0; y < height; y++) {
-        const uint8_t *row = plane + (size_t)y * width;
-        if (is_blank(row, width))
+    int left = part.width, right = -1, top = part.height, bottom = -1;
+    for (int y = 0; y < part.height; y++) {
+        const uint8_t *row = plane + (size_t)(part.y + y) * width + part.x;
+        if (is_blank(row, part.width))
             continue;
-        const FlColumns span = span_of(row, width);
+        const FlColumns span = span_of(row, part.width);
         left = MIN(left, span.first), right = MAX(right, span.last - 1);
         top = MIN(top, y), bottom = y;
     }
-    return right < 0 ? (FlBox){0, 0, 0, 0} : (FlBox){left, top, right - left + 1, bottom - top + 1};
+    return right < 0 ? (FlBox){0, 0, 0, 0}
+                     : (FlBox){part.x + left, part.y + top, right - left + 1, bottom - top + 1};
+}
+
+FlBox fl_box_of(const uint8_t *plane, int width, int height)
+{
+    return fl_box_within(plane, width, (FlBox){0, 0, width, height});
 }
 
 void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height)

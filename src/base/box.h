@@ -14,6 +14,9 @@ typedef struct FlBox {
 /** The smallest box that holds every nonzero byte of a width * height plane; {0, 0, 0, 0}: none. */
 FlBox fl_box_of(const uint8_t *plane, int width, int height);
 
+/** The same of those in a part of a plane that is `width` wide. */
+FlBox fl_box_within(const uint8_t *plane, int width, FlBox part);
+
 /** Columns first … last - 1; none if first >= last. */
 typedef struct FlColumns {
     int first, last;

@@ -116,21 +116,9 @@ static FlBox grown(FlBox box, int px, FlBox limit)
 }
 
 /** What of a part of the frame a shape takes up; empty: nothing. */
-static FlBox shape_in(const FlEdgeMap *edges, int run, FlBox box)
+static FlBox shape_in(const FlEdgeMap *edges, int run, FlBox part)
 {
-    const uint8_t *coverage = edges->runs->run[run].coverage;
-    int x0 = box.width, x1 = 0, y0 = box.height, y1 = 0;
-    for (int y = 0; y < box.height; y++) {
-        const uint8_t *row = coverage + in_frame(edges, box, y);
-        int first = 0, last = box.width;
-        while (first < last && !row[first])
-            first++;
-        while (last > first && !row[last - 1])
-            last--;
-        if (first < last)
-            x0 = MIN(x0, first), x1 = MAX(x1, last), y0 = MIN(y0, y), y1 = y + 1;
-    }
-    return y1 > 0 ? (FlBox){box.x + x0, box.y + y0, x1 - x0, y1 - y0} : (FlBox){0};
+    return fl_box_within(edges->runs->run[run].coverage, fl_film_width(edges->plan->film), part);
 }
 
 static void tile_clear(Tile *tile)
