@@ -57,14 +57,23 @@ static double look(const int16_t *amounts, int x0, int x1, double *grain)
     return sum / n;
 }
 
+/** Closes the paint of a shape that is all that is seen of a box. */
+static void close_box(int16_t *amounts, const uint8_t *share, FlBox of, int border)
+{
+    g_autofree int16_t *inside = g_new(int16_t, fl_box_pixels(of));
+    g_autoptr(GError) error = NULL;
+    for (size_t i = 0; i < fl_box_pixels(of); i++)
+        inside[i] = 255;
+    fl_closing_apply(amounts, inside, inside, share, share, of, border, &error);
+    g_assert_no_error(error);
+}
+
 static void close_paint(double rim, int neighbour, int16_t *amounts)
 {
     g_autofree uint8_t *share = g_malloc(fl_box_pixels(box));
-    g_autoptr(GError) error = NULL;
     make_share(neighbour, share);
     make_paint(rim, amounts);
-    fl_closing_apply(amounts, amounts, share, share, box, BORDER, &error);
-    g_assert_no_error(error);
+    close_box(amounts, share, box, BORDER);
 }
 
 static void no_line_of_paper_and_no_dark_seam_lies_between_neighbours(void)
@@ -112,11 +121,9 @@ static void a_thin_shape_among_others_has_no_dark_core(void)
     static const int16_t profile[THIN] = {0, 100, 3000, 3000, 100, 0};
     int16_t amounts[THIN * HEIGHT];
     uint8_t share[THIN * HEIGHT];
-    g_autoptr(GError) error = NULL;
     for (int i = 0; i < THIN * HEIGHT; i++)
         amounts[i] = profile[i % THIN], share[i] = 255;
-    fl_closing_apply(amounts, amounts, share, share, thin, BORDER, &error);
-    g_assert_no_error(error);
+    close_box(amounts, share, thin, BORDER);
     for (int i = 0; i < THIN * HEIGHT; i++) {
         g_assert_cmpint(amounts[i], >, FL_AMOUNT_ONE * 7 / 8);
         g_assert_cmpint(amounts[i], <, FL_AMOUNT_ONE * 5 / 4);
@@ -129,13 +136,63 @@ static void a_line_is_seen_though_it_is_all_rim(void)
     const FlBox line = {40, 0, LINE, HEIGHT};
     int16_t amounts[LINE * HEIGHT];
     uint8_t share[LINE * HEIGHT] = {0};
-    g_autoptr(GError) error = NULL;
     for (int i = 0; i < LINE * HEIGHT; i++)
         amounts[i] = (int16_t)(i % 40);
-    fl_closing_apply(amounts, amounts, share, share, line, 2 * BORDER, &error);
-    g_assert_no_error(error);
+    close_box(amounts, share, line, 2 * BORDER);
     for (int i = 0; i < LINE * HEIGHT; i++)
         g_assert_cmpint(amounts[i], >, FL_AMOUNT_ONE * 7 / 8);
+}
+
+/** Half-covered pixels on either side of a line; `columns` with them. */
+static int16_t *inside_line(int columns, int rows)
+{
+    const size_t n = (size_t)columns * (size_t)rows;
+    g_autofree uint8_t *coverage = g_malloc0((size_t)(columns + 2) * (size_t)rows);
+    for (int y = 0; y < rows; y++)
+        for (int x = 1; x <= columns; x++)
+            coverage[y * (columns + 2) + x] = x == 1 || x == columns ? 128 : 255;
+    int16_t *inside = g_new(int16_t, n);
+    fl_closing_inside(coverage, columns + 2, rows, (FlBox){1, 0, columns, rows}, inside);
+    return inside;
+}
+
+/** Deviation of the amounts, of the median, along a line whose paint was beads of 0 and 2. */
+static double deviation_along(int columns, int border)
+{
+    enum { ROWS = 80 };
+    const FlBox line = {0, 0, columns, ROWS};
+    const size_t n = fl_box_pixels(line);
+    g_autofree int16_t *amounts = g_new(int16_t, n), *inside = inside_line(columns, ROWS);
+    g_autofree uint8_t *share = g_malloc0(n);
+    g_autoptr(GError) error = NULL;
+    for (int i = 0; i < (int)n; i++)
+        amounts[i] = i / columns / border % 2 ? 2 * FL_AMOUNT_ONE : 0;
+    fl_closing_apply(amounts, inside, inside, share, share, line, border, &error);
+    g_assert_no_error(error);
+    double squares = 0;
+    for (int y = 0; y < ROWS; y++) {
+        const double a = amounts[y * columns + columns / 2] / (double)FL_AMOUNT_ONE - 1;
+        squares += a * a / ROWS;
+    }
+    return sqrt(squares);
+}
+
+static void a_line_is_as_even_at_half_the_size(void)
+{
+    const double half = deviation_along(5, 10), full = deviation_along(9, 20); // 4 and 8 px
+    g_test_message("deviation at half the size %.3f, at the whole %.3f", half, full);
+    g_assert_cmpfloat(half, <, 0.25);
+    g_assert_cmpfloat_with_epsilon(half, full, 0.1);
+}
+
+static void what_is_faint_is_not_thin(void)
+{
+    uint8_t coverage[HEIGHT * HEIGHT];
+    int16_t inside[HEIGHT * HEIGHT];
+    memset(coverage, 60, sizeof coverage);
+    fl_closing_inside(coverage, HEIGHT, HEIGHT, (FlBox){0, 0, HEIGHT, HEIGHT}, inside);
+    for (int i = 0; i < HEIGHT * HEIGHT; i++)
+        g_assert_cmpint(inside[i], ==, 255);
 }
 
 /** Whether columns x0 … x1 - 1, closed with `reach` columns around them, are those of the whole. */
@@ -147,7 +204,6 @@ static bool closes_as_in_the_whole(int x0, int x1, int reach)
     const FlBox part = {LEFT + x0 - reach, 0, x1 - x0 + 2 * reach, HEIGHT};
     g_autofree int16_t *amounts = g_new(int16_t, fl_box_pixels(part));
     g_autofree uint8_t *shares = g_malloc(fl_box_pixels(part));
-    g_autoptr(GError) error = NULL;
     close_paint(0.1, LEFT, whole);
     make_paint(0.1, paint);
     make_share(LEFT, share);
@@ -156,8 +212,7 @@ static bool closes_as_in_the_whole(int x0, int x1, int reach)
         memcpy(amounts + y * part.width, paint + from, (size_t)part.width * sizeof *paint);
         memcpy(shares + y * part.width, share + from, (size_t)part.width);
     }
-    fl_closing_apply(amounts, amounts, shares, shares, part, BORDER, &error);
-    g_assert_no_error(error);
+    close_box(amounts, shares, part, BORDER);
     for (int y = 0; y < HEIGHT; y++)
         if (memcmp(amounts + y * part.width + reach, whole + y * box.width + x0,
                    (size_t)(x1 - x0) * sizeof *whole) != 0)
@@ -180,6 +235,8 @@ int main(int argc, char **argv)
     TEST(a_shape_that_only_comes_near_shares_no_edge);
     TEST(a_thin_shape_among_others_has_no_dark_core);
     TEST(a_line_is_seen_though_it_is_all_rim);
+    TEST(a_line_is_as_even_at_half_the_size);
+    TEST(what_is_faint_is_not_thin);
     TEST(a_part_with_its_reach_closes_as_in_the_whole);
     return g_test_run();
 }

@@ -86,60 +86,65 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
     return true;
 }
 
+void fl_closing_inside(const uint8_t *coverage, int width, int height, FlBox box, int16_t *inside)
+{
+    for (int y = box.y; y < box.y + box.height; y++) {
+        const uint8_t *row = coverage + (size_t)y * (size_t)width;
+        const uint8_t *above = y > 0 ? row - width : row;
+        const uint8_t *below = y + 1 < height ? row + width : row;
+        for (int x = box.x; x < box.x + box.width; x++) {
+            const uint8_t left = row[MAX(x - 1, 0)], right = row[MIN(x + 1, width - 1)];
+            const bool within = row[x] && left && right && above[x] && below[x];
+            *inside++ = within ? 255 : row[x];
+        }
+    }
+}
+
 #define MEAN_LEAST (FL_AMOUNT_ONE / 6) // paint this thin is made six times as thick, and not more
 #define LEAST (FL_AMOUNT_ONE * 3 / 4)  // what is bare of paint all the same
 #define MOST (FL_AMOUNT_ONE * 3 / 2)
 
-/** Paint and pixels of a shape in a window. */
-typedef struct Mean {
-    uint32_t sum, n;
-} Mean;
-
-#define BAND 64 // columns that are summed side by side, as they lie in memory
+#define BAND 128 // columns that are summed side by side, as they lie in memory
 
 /** Sums of a row over 2 r + 1 columns. */
-static void sum_columns(const int16_t *amounts, Mean *out, int n, int r)
+static void sum_columns(const int16_t *plane, uint32_t *out, int n, int r)
 {
-    Mean m = {0};
+    uint32_t sum = 0;
     for (int i = -r; i < n; i++) {
-        if (i + r < n && amounts[i + r] >= 0)
-            m.sum += (uint32_t)amounts[i + r], m.n++;
+        if (i + r < n)
+            sum += (uint32_t)plane[i + r];
         if (i >= 0)
-            out[i] = m;
-        if (i - r >= 0 && amounts[i - r] >= 0)
-            m.sum -= (uint32_t)amounts[i - r], m.n--;
+            out[i] = sum;
+        if (i - r >= 0)
+            sum -= (uint32_t)plane[i - r];
     }
 }
 
 /** Sums of the sums over 2 r + 1 rows, of n <= BAND columns of a box. */
-static void sum_rows(const Mean *in, Mean *out, int n, FlBox box, int r)
+static void sum_rows(const uint32_t *in, uint32_t *out, int n, FlBox box, int r)
 {
     const size_t width = (size_t)box.width;
-    Mean m[BAND] = {0};
+    uint32_t sum[BAND] = {0};
     for (int y = -r; y < box.height; y++) {
-        const Mean *enter = y + r < box.height ? in + (size_t)(y + r) * width : NULL;
-        const Mean *leave = y - r >= 0 ? in + (size_t)(y - r) * width : NULL;
+        const uint32_t *enter = y + r < box.height ? in + (size_t)(y + r) * width : NULL;
+        const uint32_t *leave = y - r >= 0 ? in + (size_t)(y - r) * width : NULL;
         for (int x = 0; x < n && enter; x++)
-            m[x].sum += enter[x].sum, m[x].n += enter[x].n;
+            sum[x] += enter[x];
         for (int x = 0; x < n && y >= 0; x++)
-            out[(size_t)y * width + (size_t)x] = m[x];
+            out[(size_t)y * width + (size_t)x] = sum[x];
         for (int x = 0; x < n && leave; x++)
-            m[x].sum -= leave[x].sum, m[x].n -= leave[x].n;
+            sum[x] -= leave[x];
     }
 }
 
-/** Box sums of the amounts that are inside the shape, over 2 r + 1 columns and rows. */
-static bool sum_boxes(const int16_t *amounts, FlBox box, int r, Mean *sums, GError **error)
+/** Sums of a plane, 0 or more, over 2 r + 1 columns and rows; rows: scratch. */
+static void sum_boxes(const int16_t *plane, FlBox box, int r, uint32_t *rows, uint32_t *sums)
 {
     const size_t width = (size_t)box.width;
-    g_autofree Mean *rows = fl_alloc(fl_box_pixels(box), sizeof *rows, "a matte", error);
-    if (!rows)
-        return false;
     for (int y = 0; y < box.height; y++)
-        sum_columns(amounts + (size_t)y * width, rows + (size_t)y * width, box.width, r);
+        sum_columns(plane + (size_t)y * width, rows + (size_t)y * width, box.width, r);
     for (int x = 0; x < box.width; x += BAND)
         sum_rows(rows + x, sums + x, MIN(BAND, box.width - x), box, r);
-    return true;
 }
 
 /** The largest of 2 r + 1 columns. */
@@ -163,72 +168,44 @@ static void spread_rows(const uint8_t *in, uint8_t *out, FlBox box, int y, int r
             out[x] = MAX(out[x], in[(size_t)k * (size_t)box.width + (size_t)x]);
 }
 
-/**
- * How thin the shape is at each pixel, 0..255: 0 where a square of 2 r + 1 lies in it nearby, as at
- * the edges and corners of what is large, 255 where three quarters of such a square do at most, as
- * in lines. around has the sums over such squares.
- */
-static bool find_thin(const Mean *around, FlBox box, int r, uint8_t *thin, GError **error)
+/** Widths that decide how a shape is closed, in half pixels: of what is thin, half of radius_px,
+ * and of what is narrow, three halves. */
+static int thin_width(int radius_px)
 {
-    const size_t n = fl_box_pixels(box), width = (size_t)box.width;
-    const int full = (2 * r + 1) * (2 * r + 1);
-    g_autofree uint8_t *rows = fl_alloc(n, 1, "a matte", error);
-    if (!rows)
-        return false;
-    for (size_t i = 0; i < n; i++)
-        thin[i] = (uint8_t)(MAX(4 * (int)around[i].n - 3 * full, 0) * 255 / full);
-    for (int y = 0; y < box.height; y++)
-        spread_columns(thin + (size_t)y * width, rows + (size_t)y * width, box.width, r);
-    for (int y = 0; y < box.height; y++)
-        spread_rows(rows, thin + (size_t)y * width, box, y, r);
-    for (size_t i = 0; i < n; i++)
-        thin[i] = (uint8_t)(255 - thin[i]);
-    return true;
+    return radius_px;
 }
 
-/** What is left of the contrast, of FL_AMOUNT_ONE: less the less of the window is the shape's. */
-static int contrast_of(uint32_t inside, int radius_px, int thin)
+static int narrow_width(int radius_px)
 {
-    const int64_t one = FL_AMOUNT_ONE, side = 2 * radius_px + 1;
-    const int64_t part = MIN(2 * one * inside / (side * side), one); // one at a straight edge
-    return (int)(part * part / one * (255 - thin) / 255);
+    return 3 * radius_px;
 }
 
-/** Paint divided by its mean around. In narrow shapes that would be a dark core between pale rims.
- */
-static int evened(int amount, Mean around, int contrast)
+/** The radius of the smallest window that is as wide, px. */
+static int window_radius(int width)
 {
-    const int mean = MAX((int)(around.sum / around.n), MEAN_LEAST);
-    const int even = CLAMP(amount * FL_AMOUNT_ONE / mean, LEAST, MOST);
-    return FL_AMOUNT_ONE + (even - FL_AMOUNT_ONE) * contrast / FL_AMOUNT_ONE;
-}
-
-/** Radii of the windows within which a shape is thin, and what is seen of it narrow. */
-static int thin_radius(int radius_px)
-{
-    return MAX(1, radius_px / 4);
-}
-
-static int narrow_radius(int radius_px)
-{
-    return MAX(1, radius_px * 3 / 4);
+    return MAX(1, (width + 1) / 4);
 }
 
 int fl_closing_reach(int radius_px)
 {
-    return MAX(2 * narrow_radius(radius_px), radius_px);
+    return MAX(2 * window_radius(narrow_width(radius_px)) + 1, radius_px);
 }
 
-/** Room for a window of each pixel, and what is made of it. */
+/** Room for what is made of the windows of each pixel. */
 typedef struct Windows {
-    Mean *around, *wide;
-    uint8_t *thin, *part; // part: how far a pixel is evened, 0..255
+    uint32_t *rows;                  // scratch
+    uint32_t *around, *wide, *paint; // sums: of what is inside the shape, and of its amounts
+    int16_t *weighed;                // amounts, of what is inside the shape
+    uint8_t *thin, *part;            // part: how far a pixel is evened, 0..255
 } Windows;
 
 static void windows_clear(Windows *windows)
 {
+    free(windows->rows);
     free(windows->around);
     free(windows->wide);
+    free(windows->paint);
+    free(windows->weighed);
     free(windows->thin);
     free(windows->part);
 }
@@ -238,10 +215,36 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Windows, windows_clear)
 static bool windows_init(Windows *windows, size_t n, GError **error)
 {
     *windows = (Windows){0};
-    return (windows->around = fl_alloc(n, sizeof *windows->around, "a matte", error)) &&
+    return (windows->rows = fl_alloc(n, sizeof *windows->rows, "a matte", error)) &&
+           (windows->around = fl_alloc(n, sizeof *windows->around, "a matte", error)) &&
            (windows->wide = fl_alloc(n, sizeof *windows->wide, "a matte", error)) &&
+           (windows->paint = fl_alloc(n, sizeof *windows->paint, "a matte", error)) &&
+           (windows->weighed = fl_alloc(n, sizeof *windows->weighed, "a matte", error)) &&
            (windows->thin = fl_alloc(n, 1, "a matte", error)) &&
            (windows->part = fl_alloc(n, 1, "a matte", error));
+}
+
+/**
+ * How thin what a plane has is at each pixel, 0..255: 0 where `width` half pixels of it lie nearby,
+ * as at the edges and corners of what is large, 255 where three quarters of that do at most, as in
+ * lines. `sums` becomes those over the window. Pixels at the contour are one farther from the
+ * middle of the nearest full window than its radius.
+ */
+static void find_thin(const int16_t *plane, FlBox box, int width, uint32_t *rows, uint32_t *sums,
+                      uint8_t *thin)
+{
+    const size_t n = fl_box_pixels(box), pitch = (size_t)box.width;
+    const int r = window_radius(width), unit = (2 * r + 1) * width;
+    uint8_t *spread = (uint8_t *)rows;
+    sum_boxes(plane, box, r, rows, sums);
+    for (size_t i = 0; i < n; i++)
+        thin[i] = (uint8_t)(CLAMP(8 * (int)sums[i] - 3 * 255 * unit, 0, 255 * unit) / unit);
+    for (int y = 0; y < box.height; y++)
+        spread_columns(thin + (size_t)y * pitch, spread + (size_t)y * pitch, box.width, r + 1);
+    for (int y = 0; y < box.height; y++)
+        spread_rows(spread, thin + (size_t)y * pitch, box, y, r + 1);
+    for (size_t i = 0; i < n; i++)
+        thin[i] = (uint8_t)(255 - thin[i]);
 }
 
 static bool any_of(const uint8_t *plane, size_t n)
@@ -253,41 +256,63 @@ static bool any_of(const uint8_t *plane, size_t n)
 }
 
 /** Fills `part`; most pixels of most shapes have none. */
-static bool find_parts(Windows *windows, const int16_t *seen, const uint8_t *share,
-                       const uint8_t *small, FlBox box, int radius_px, GError **error)
+static void find_parts(Windows *windows, const int16_t *inside, const int16_t *seen,
+                       const uint8_t *share, const uint8_t *small, FlBox box, int radius_px)
 {
     const size_t n = fl_box_pixels(box);
-    const int most = narrow_radius(radius_px);
     uint8_t *part = windows->part; // at first how narrow the shape is
-    if (any_of(small, n) && (!sum_boxes(seen, box, most, windows->wide, error) ||
-                             !find_thin(windows->wide, box, most, part, error)))
-        return false;
+    find_thin(inside, box, thin_width(radius_px), windows->rows, windows->around, windows->thin);
+    if (any_of(small, n))
+        find_thin(seen, box, narrow_width(radius_px), windows->rows, windows->wide, part);
     for (size_t i = 0; i < n; i++)
         part[i] = (uint8_t)MAX(MAX(share[i], small[i] * part[i] / 255), windows->thin[i]);
-    return true;
 }
 
-bool fl_closing_apply(int16_t *amounts, const int16_t *seen, const uint8_t *share,
-                      const uint8_t *small, FlBox box, int radius_px, GError **error)
+/** What is left of the contrast, of FL_AMOUNT_ONE: less the less of the window is the shape's. */
+static int contrast_of(uint32_t inside, int radius_px, int thin)
+{
+    const int64_t one = FL_AMOUNT_ONE, side = 2 * radius_px + 1;
+    const int64_t part = MIN(2 * one * inside / (255 * side * side), one); // one at a straight edge
+    return (int)(part * part / one * (255 - thin) / 255);
+}
+
+/** Paint divided by its mean around. In narrow shapes that would be a dark core between pale rims.
+ */
+static int evened(int amount, int mean, int contrast)
+{
+    const int even = CLAMP(amount * FL_AMOUNT_ONE / MAX(mean, MEAN_LEAST), LEAST, MOST);
+    return FL_AMOUNT_ONE + (even - FL_AMOUNT_ONE) * contrast / FL_AMOUNT_ONE;
+}
+
+/** Evens the parts of the amounts. */
+static void even_parts(int16_t *amounts, const Windows *windows, size_t n, int radius_px)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (amounts[i] < 0 || windows->part[i] == 0)
+            continue;
+        const int contrast = contrast_of(windows->wide[i], radius_px, windows->thin[i]);
+        const int mean = (int)(windows->paint[i] * UINT64_C(255) / windows->around[i]);
+        const int even = evened(amounts[i], mean, contrast);
+        amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * windows->part[i] / 255);
+    }
+}
+
+bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const int16_t *seen,
+                      const uint8_t *share, const uint8_t *small, FlBox box, int radius_px,
+                      GError **error)
 {
     const size_t n = fl_box_pixels(box);
-    const int quarter = thin_radius(radius_px);
     g_auto(Windows) windows = {0};
-    if (!windows_init(&windows, n, error) ||
-        !sum_boxes(amounts, box, quarter, windows.around, error) ||
-        !find_thin(windows.around, box, quarter, windows.thin, error) ||
-        !find_parts(&windows, seen, share, small, box, radius_px, error))
+    if (!windows_init(&windows, n, error))
         return false;
+    find_parts(&windows, inside, seen, share, small, box, radius_px);
     if (!any_of(windows.part, n))
         return true;
-    if (!sum_boxes(amounts, box, radius_px, windows.wide, error))
-        return false;
-    for (size_t i = 0; i < n; i++) {
-        if (amounts[i] < 0 || windows.part[i] == 0)
-            continue;
-        const int contrast = contrast_of(windows.wide[i].n, radius_px, windows.thin[i]);
-        const int even = evened(amounts[i], windows.around[i], contrast);
-        amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * windows.part[i] / 255);
-    }
+    for (size_t i = 0; i < n; i++)
+        windows.weighed[i] = (int16_t)(amounts[i] * inside[i] / 255);
+    sum_boxes(inside, box, radius_px, windows.rows, windows.wide);
+    sum_boxes(windows.weighed, box, window_radius(thin_width(radius_px)), windows.rows,
+              windows.paint);
+    even_parts(amounts, &windows, n, radius_px);
     return true;
 }

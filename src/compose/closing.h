@@ -23,18 +23,31 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
                       FlBox box, int radius_px, uint8_t *share, GError **error);
 
 /**
+ * How much of each pixel is inside a shape, 0..255: of those at its contour, next to one without
+ * coverage, what they are covered; all of those within, however faint their fill. Summed over a
+ * line it is the line's width. Were pixels at the contour counted as whole ones, lines would be
+ * wider by one, and at half the size, where that is twice as much, none would be thin.
+ *
+ * coverage is width * height, inside box.width * box.height; beyond the former it goes on.
+ */
+void fl_closing_inside(const uint8_t *coverage, int width, int height, FlBox box, int16_t *inside);
+
+/**
  * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
  * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim.
- * `small` is the share that counts where what is seen of the shape is narrower than the radius.
- * Shapes thinner than half the radius are all rim, of which next to nothing would be left, or
- * a dark core; their paint is even, also where their edges are free.
+ * `small` is the share that counts where what is seen of the shape is narrow: up to 9/8 of the
+ * radius wholly, from 3/2 on not at all. Shapes that are thin, up to 3/8 of the radius wholly and
+ * from 1/2 on not at all, are all rim, of which next to nothing would be left, or a dark core;
+ * their paint is even, also where their edges are free. These widths are fractions of the radius
+ * and not whole pixels, so that a drawing of half the size closes as that of the whole.
  *
- * amounts (0 … FL_AMOUNTS - 1, changed in place), seen and the shares are box.width * box.height;
- * an amount below 0 is outside the shape, `seen` is below 0 where the shape is not seen. radius_px
- * is that of the shares.
+ * amounts (0 … FL_AMOUNTS - 1, changed in place), inside, of fl_closing_inside(), seen, 255 where
+ * the shape is seen and else 0, and the shares are box.width * box.height; an amount below 0 is
+ * outside the shape, and nothing is inside there. radius_px is that of the shares.
  */
-bool fl_closing_apply(int16_t *amounts, const int16_t *seen, const uint8_t *share,
-                      const uint8_t *small, FlBox box, int radius_px, GError **error);
+bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const int16_t *seen,
+                      const uint8_t *share, const uint8_t *small, FlBox box, int radius_px,
+                      GError **error);
 
 /** How far away what is in a box may change an amount, px: a part with so much around it closes as
  * in the whole. */

@@ -101,7 +101,8 @@ void fl_edges_clear(FlEdgeMap *edges)
 typedef struct Tile {
     FlBox part;                 // what is closed, with what may change it
     FlBox around;               // with what the shares are of
-    int16_t *amounts, *seen;    // of part
+    int16_t *amounts;           // of part
+    int16_t *inside, *seen;     // of part
     uint8_t *ends, *meets;      // of part: shares of the edges
     uint8_t *coverage, *others; // of around
 } Tile;
@@ -124,6 +125,7 @@ static FlBox shape_in(const FlEdgeMap *edges, int run, FlBox part)
 static void tile_clear(Tile *tile)
 {
     free(tile->amounts);
+    free(tile->inside);
     free(tile->seen);
     free(tile->ends);
     free(tile->meets);
@@ -141,6 +143,7 @@ static bool tile_init(Tile *tile, const FlEdgeMap *edges, int run, FlBox box, in
     *tile = (Tile){.part = part, .around = grown(part, radius_px, frame)};
     const size_t n = fl_box_pixels(part), around = fl_box_pixels(tile->around);
     return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
+           (tile->inside = fl_alloc(n, sizeof *tile->inside, "a matte", error)) &&
            (tile->seen = fl_alloc(n, sizeof *tile->seen, "a matte", error)) &&
            (tile->ends = fl_alloc(n, 1, "a matte", error)) &&
            (tile->meets = fl_alloc(n, 1, "a matte", error)) &&
@@ -148,12 +151,19 @@ static bool tile_init(Tile *tile, const FlEdgeMap *edges, int run, FlBox box, in
            (tile->others = fl_alloc(around, 1, "a matte", error));
 }
 
+/** Where the part is in what is around it. */
+static FlBox part_of(const Tile *tile)
+{
+    const FlBox around = tile->around, part = tile->part;
+    return (FlBox){part.x - around.x, part.y - around.y, part.width, part.height};
+}
+
 /** The share of the edges of a run, with all others or with those that it does not overlap. */
 static bool find_share(Tile *tile, const FlEdgeMap *edges, int run, bool with_all, int radius_px,
                        uint8_t *share, GError **error)
 {
     const bool *overlap = edges->overlap + (size_t)(run + 1) * (size_t)edges->n;
-    const FlBox around = tile->around, part = tile->part;
+    const FlBox around = tile->around;
     uint8_t *others = tile->others, any = 0;
     for (int y = 0; y < around.height; y++) {
         const uint16_t *row = edges->top + in_frame(edges, around, y);
@@ -162,12 +172,11 @@ static bool find_share(Tile *tile, const FlEdgeMap *edges, int run, bool with_al
             any |= *others++ = other ? 255 : 0;
         }
     }
-    memset(share, 0, fl_box_pixels(part));
+    memset(share, 0, fl_box_pixels(tile->part));
     if (!any)
         return true;
-    const FlBox inner = {part.x - around.x, part.y - around.y, part.width, part.height};
-    return fl_closing_share(tile->coverage, tile->others, around.width, around.height, inner,
-                            radius_px, share, error);
+    return fl_closing_share(tile->coverage, tile->others, around.width, around.height,
+                            part_of(tile), radius_px, share, error);
 }
 
 /** Whether a run is seen at pixel i: nothing that hides it lies over it. */
@@ -176,7 +185,7 @@ static bool is_seen(const FlEdgeMap *edges, int run, size_t i)
     return edges->runs->run[run].coverage[i] >= SHOWN && edges->top[i] <= run + 1;
 }
 
-/** What the tile has of the run: its amounts, its coverage, and 0 where it is seen, else -1. */
+/** What the tile has of the run: its amounts, where it is seen, its coverage and what is inside. */
 static void fill_tile(Tile *tile, const FlEdgeMap *edges, int run, const int16_t *amounts)
 {
     const FlBox all = edges->areas[run].box, part = tile->part, around = tile->around;
@@ -186,11 +195,12 @@ static void fill_tile(Tile *tile, const FlEdgeMap *edges, int run, const int16_t
         memcpy(tile->amounts + row, amounts + from + (part.x - all.x),
                (size_t)part.width * sizeof *amounts);
         for (int x = 0; x < part.width; x++)
-            tile->seen[row + (size_t)x] = is_seen(edges, run, frame + (size_t)x) ? 0 : -1;
+            tile->seen[row + (size_t)x] = is_seen(edges, run, frame + (size_t)x) ? 255 : 0;
     }
     for (int y = 0; y < around.height; y++)
         memcpy(tile->coverage + (size_t)y * (size_t)around.width,
                edges->runs->run[run].coverage + in_frame(edges, around, y), (size_t)around.width);
+    fl_closing_inside(tile->coverage, around.width, around.height, part_of(tile), tile->inside);
 }
 
 static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px,
@@ -204,7 +214,8 @@ static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px
     const FlBox part = tile.part;
     if (!find_share(&tile, edges, run, false, radius_px, tile.ends, error) ||
         !find_share(&tile, edges, run, true, radius_px, tile.meets, error) ||
-        !fl_closing_apply(tile.amounts, tile.seen, tile.ends, tile.meets, part, radius_px, error))
+        !fl_closing_apply(tile.amounts, tile.inside, tile.seen, tile.ends, tile.meets, part,
+                          radius_px, error))
         return false;
     for (int y = box.y; y < box.y + box.height; y++)
         memcpy(closed + (size_t)(y - all.y) * (size_t)all.width + (box.x - all.x),
