@@ -3,6 +3,7 @@
 #define FLUIDY_BASE_ROWS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /** What the processor can do; a level includes those below it. */
@@ -29,6 +30,15 @@ typedef struct FlOcclusion {
     bool knocks;             // whether it takes anything
 } FlOcclusion;
 
+/** Every other cell of a row of a grid in which something diffuses, and what is around them. */
+typedef struct FlStencil {
+    float *value;
+    const float *beside; // beside[i] is the value left of cell i, beside[i + 1] the one right of it
+    const float *above, *below;
+    const float *source;  // what flows in from elsewhere
+    const float *inverse; // 1 / number of neighbours; 0 in a cell that keeps its value
+} FlStencil;
+
 /**
  * One version of every loop; all give the same bytes. The source is the same, too, for the compiler
  * knows the instruction sets: rows.inc. n is the length of what is written, 0 or more. Arrays
@@ -50,6 +60,20 @@ typedef struct FlRows {
 
     /** Replaces rows near[i], the nearest to y at or above it or -1, by below[i] > y if nearer. */
     void (*near_below)(const int16_t *below, int y, int16_t *near, int n);
+
+    /** Diffusion: value = (sum of the neighbours' values + source) * inverse. */
+    void (*relax)(const FlStencil *cells, int n);
+
+    /** Adds what 2 n cells are short of that to even[i / 2] and odd[i / 2] in turn. */
+    void (*add_residual)(const FlStencil *cells, float *even, float *odd, int n);
+
+    /**
+     * Adds to 2 n values the mean of those around them on a coarser level, 9 : 3 : 3 : 1, which are
+     * 0 where they have no part in the weight; not where it is 0. Around value[2 i] are the values
+     * coarse[parents[0][…] + i], around value[2 i + 1] those of parents[1].
+     */
+    void (*refine)(const float *coarse, const size_t parents[2][4], const float *weight,
+                   float *value, int n);
 
     /** Colourise: rgba[i] = look[amount[i]], as 32 bits; 0 where the amount is negative. */
     void (*look_up)(const int16_t *amount, const uint32_t *look, uint32_t *rgba, int n);

@@ -3,23 +3,32 @@
  * children, and its solution is where the next finer level starts. That alone is a good solution,
  * for what is left of the error is short-waved; the V-cycles take care of thin and winding shapes,
  * where coarse cells bridge gaps that the shape does not.
+ *
+ * A sweep goes over the cells of one colour of a chessboard. So a row is stored in two halves, its
+ * even cells and then its odd ones: in each half the cells of a colour and all that is on one side
+ * of them are without gaps.
  */
 #include "guides/laplace.h"
 
+#include "base/rows.h"
 #include <math.h>
 #include <string.h>
 
-typedef float Pair __attribute__((vector_size(8)));
-
-/** A grid with a rim of outside cells, so that every cell has four neighbours; (width + 2) *
- * (height + 2). */
+/**
+ * A grid with a rim of outside cells, so that every cell has four neighbours: arrays of (height +
+ * 2)
+ * * 2 * half. Nothing flows into the finest level, where half a row of sources does for all.
+ */
 typedef struct Level {
     int width, height;
-    size_t stride;
-    uint8_t *cell;  // FlCell
-    float *inverse; // 1 / number of neighbours that are not outside, in free cells; else 0
-    Pair *value;    // 0 outside
-    Pair *source;   // right-hand side: neighbours * value - sum of the neighbours' values
+    bool is_finest;
+    int pairs;        // of cells in half a row; the last may be beyond the width, outside
+    size_t half;      // cells in half a row, with one of the rim at either end
+    uint8_t *cell;    // FlCell
+    float *inverse;   // 1 / number of neighbours that are not outside, in free cells; else 0
+    float *parents;   // weight of the coarse cells around a free one that are inside; else 0
+    float *value[2];  // of either component; 0 outside
+    float *source[2]; // right-hand side: neighbours * value - sum of the neighbours' values
 } Level;
 
 enum {
@@ -31,67 +40,175 @@ enum {
 typedef struct Grid {
     int n_levels;
     Level level[MAX_LEVELS];
+    float low[2], high[2]; // of what is fixed
 } Grid;
 
 static void grid_clear(Grid *grid)
 {
-    for (int l = 0; l < grid->n_levels; l++) {
-        g_free(grid->level[l].cell);
-        g_free(grid->level[l].inverse);
-        g_free(grid->level[l].value);
-        g_free(grid->level[l].source);
+    for (Level *level = grid->level; level < grid->level + grid->n_levels; level++) {
+        g_free(level->cell);
+        g_free(level->inverse);
+        g_free(level->parents);
+        for (int k = 0; k < 2; k++)
+            g_free(level->value[k]), g_free(level->source[k]);
     }
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Grid, grid_clear)
 
-static bool level_init(Level *level, int width, int height)
+static bool level_init(Level *level, int width, int height, bool finest)
 {
-    const size_t n = (size_t)(width + 2) * (height + 2);
-    *level = (Level){.width = width, .height = height, .stride = width + 2};
+    const int pairs = (width + 31) / 32 * 8; // whole vectors, for loops are slow at their ends
+    *level = (Level){.width = width,
+                     .height = height,
+                     .is_finest = finest,
+                     .pairs = pairs,
+                     .half = 2 * (size_t)pairs + 2};
+    const size_t n = (size_t)(level->height + 2) * 2 * level->half;
     level->cell = g_try_new0(uint8_t, n);
     level->inverse = g_try_new0(float, n);
-    level->value = g_try_new0(Pair, n);
-    level->source = g_try_new0(Pair, n);
-    return level->cell && level->inverse && level->value && level->source;
+    level->parents = g_try_new0(float, n);
+    bool good = level->cell && level->inverse && level->parents;
+    for (int k = 0; k < 2; k++) {
+        level->value[k] = g_try_new0(float, n);
+        level->source[k] = g_try_new0(float, finest ? level->half : n);
+        good = good && level->value[k] && level->source[k];
+    }
+    return good;
 }
 
-static size_t cell_index(const Level *level, int x, int y)
+/** What is done to a row of a level, from what is in another one. */
+typedef void RowWork(const Level *level, const Level *other, int y);
+
+/** Does it to every row; a small level is not worth even a team of one thread. */
+static void for_rows(const Level *level, const Level *other, RowWork *work)
 {
-    return (y + 1) * level->stride + x + 1;
+    if (level->height > 64) {
+#pragma omp parallel for schedule(static)
+        for (int y = 0; y < level->height; y++)
+            work(level, other, y);
+    } else {
+        for (int y = 0; y < level->height; y++)
+            work(level, other, y);
+    }
+}
+
+/** Where the even or the odd cells of a row begin; y may be in the rim. */
+static size_t half_row(const Level *level, int odd, int y)
+{
+    return ((size_t)(y + 1) * 2 + (size_t)odd) * level->half + 1;
+}
+
+/** Where the first cell of half a row and its neighbours are; the right one is next to the left. */
+typedef struct Cross {
+    size_t own, left, above, below;
+} Cross;
+
+static Cross cross_at(const Level *level, int odd, int y)
+{
+    return (Cross){half_row(level, odd, y), half_row(level, !odd, y) - (size_t)!odd,
+                   half_row(level, odd, y - 1), half_row(level, odd, y + 1)};
 }
 
 /** A cell without neighbours stays as it is: its inverse is 0, like that of a fixed one. */
-static void count_neighbours(Level *level)
+static void count_neighbours(const Level *level, const Level *other, int y)
 {
-    const ptrdiff_t s = (ptrdiff_t)level->stride;
-    for (int y = 0; y < level->height; y++) {
-        const uint8_t *cell = level->cell + cell_index(level, 0, y);
-        float *inverse = level->inverse + cell_index(level, 0, y);
-        for (int x = 0; x < level->width; x++) {
-            const uint8_t *c = cell + x;
-            const int n = (c[-1] != 0) + (c[1] != 0) + (c[-s] != 0) + (c[s] != 0);
-            inverse[x] = *c == FL_CELL_FREE && n > 0 ? 1.0f / (float)n : 0.0f;
+    for (int odd = 0; odd < 2; odd++) {
+        const Cross at = cross_at(level, odd, y);
+        const uint8_t *own = level->cell + at.own, *beside = level->cell + at.left;
+        const uint8_t *above = level->cell + at.above, *below = level->cell + at.below;
+        float *restrict inverse = level->inverse + at.own;
+        for (int i = 0; i < 2 * level->pairs; i++) {
+            const int n =
+                (beside[i] != 0) + (beside[i + 1] != 0) + (above[i] != 0) + (below[i] != 0);
+            const float free = own[i] == FL_CELL_FREE && n > 0;
+            inverse[i] = free / (float)MAX(n, 1);
         }
     }
 }
 
-/** The coarse cell over four fine ones; any of the four may be in the rim of the fine level. */
-static void coarsen(const Level *fine, Level *coarse)
+/** Fixes a coarse cell to the mean of its fixed children, when all other values are 0 still. The
+ * first child is given; the others follow, by halves of rows. */
+static void fix(const Level *coarse, size_t c, const Level *fine, size_t child)
 {
-    for (int y = 0; y < coarse->height; y++) {
-        for (int x = 0; x < coarse->width; x++) {
-            const size_t f = cell_index(fine, 2 * x, 2 * y), c = cell_index(coarse, x, y);
-            const size_t child[4] = {f, f + 1, f + fine->stride, f + fine->stride + 1};
-            Pair sum = {0, 0};
-            int n_fixed = 0;
-            for (int k = 0; k < 4; k++) {
-                coarse->cell[c] |= fine->cell[child[k]];
-                if (fine->cell[child[k]] == FL_CELL_FIXED)
-                    sum += fine->value[child[k]], n_fixed++;
+    int n = 0;
+    for (int k = 0; k < 4; k++, child += fine->half) {
+        coarse->value[0][c] += fine->value[0][child];
+        coarse->value[1][c] += fine->value[1][child];
+        n += fine->cell[child] == FL_CELL_FIXED;
+    }
+    coarse->value[0][c] /= (float)n;
+    coarse->value[1][c] /= (float)n;
+}
+
+/** Makes the coarse cells of a row, each over four fine ones, any of which may be in the rim. */
+static void coarsen(const Level *coarse, const Level *fine, int y)
+{
+    const size_t h = fine->half;
+    for (int odd = 0; odd < 2; odd++) {
+        size_t c = half_row(coarse, odd, y), f = half_row(fine, 0, 2 * y) + odd;
+        for (int x = odd; x < coarse->width; x += 2, c++, f += 2) {
+            const uint8_t *child = fine->cell + f;
+            coarse->cell[c] = child[0] | child[h] | child[2 * h] | child[3 * h];
+            if (coarse->cell[c] & FL_CELL_FIXED) {
+                coarse->cell[c] = FL_CELL_FIXED;
+                fix(coarse, c, fine, f);
             }
-            if (n_fixed > 0)
-                coarse->cell[c] = FL_CELL_FIXED, coarse->value[c] = sum / (float)n_fixed;
+        }
+    }
+}
+
+/** The four coarse cells nearest to each cell of half a fine row, nearest first: those of its even
+ * cells and those of the odd ones. */
+static void find_parents(const Level *coarse, int odd, int y, size_t parents[2][4])
+{
+    const int row[2] = {y / 2, y & 1 ? y / 2 + 1 : y / 2 - 1};
+    for (int k = 0; k < 2; k++) {
+        const size_t evens = half_row(coarse, 0, row[k]), odds = half_row(coarse, 1, row[k]);
+        parents[0][2 * k] = evens;
+        parents[0][2 * k + 1] = odd ? odds : odds - 1;
+        parents[1][2 * k] = odds;
+        parents[1][2 * k + 1] = odd ? evens + 1 : evens;
+    }
+}
+
+/** The weight of those of a cell's parents that are in the shape, between which the coarse field is
+ * bilinear. */
+static int weight_of(const uint8_t *cell, const size_t parents[4], int i)
+{
+    cell += i;
+    return 9 * (cell[parents[0]] != 0) + 3 * (cell[parents[1]] != 0) + 3 * (cell[parents[2]] != 0) +
+           (cell[parents[3]] != 0);
+}
+
+static void weigh_parents(const Level *fine, const Level *coarse, int y)
+{
+    for (int odd = 0; odd < 2; odd++) {
+        const float *inverse = fine->inverse + half_row(fine, odd, y);
+        float *restrict weight = fine->parents + half_row(fine, odd, y);
+        size_t at[2][4];
+        find_parents(coarse, odd, y, at);
+        for (int i = 0; i < fine->pairs; i++) {
+            const int even = weight_of(coarse->cell, at[0], i);
+            const int next = weight_of(coarse->cell, at[1], i);
+            weight[2 * i] = inverse[2 * i] > 0 ? (float)even : 0.0f;
+            weight[2 * i + 1] = inverse[2 * i + 1] > 0 ? (float)next : 0.0f;
+        }
+    }
+}
+
+/** A row of the finest level, with the field where it is fixed. */
+static void load_row(Grid *grid, int y, const uint8_t *cell, const float *field)
+{
+    const Level *level = &grid->level[0];
+    for (int x = 0; x < level->width; x++) {
+        const size_t c = half_row(level, x & 1, y) + (size_t)(x / 2);
+        level->cell[c] = cell[x];
+        for (int k = 0; k < 2 && cell[x] == FL_CELL_FIXED; k++) {
+            const float value = field[2 * x + k];
+            level->value[k][c] = value;
+            grid->low[k] = MIN(grid->low[k], value);
+            grid->high[k] = MAX(grid->high[k], value);
         }
     }
 }
@@ -99,139 +216,123 @@ static void coarsen(const Level *fine, Level *coarse)
 static bool grid_init(Grid *grid, const uint8_t *cell, int width, int height, const float *field,
                       GError **error)
 {
+    *grid = (Grid){.low = {INFINITY, INFINITY}, .high = {-INFINITY, -INFINITY}};
     for (; grid->n_levels < MAX_LEVELS; width = (width + 1) / 2, height = (height + 1) / 2) {
         Level *level = &grid->level[grid->n_levels++];
-        if (!level_init(level, width, height)) {
+        const bool finest = grid->n_levels == 1;
+        if (!level_init(level, width, height, finest)) {
             g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
                         "not enough memory to diffuse a flow of %dx%d pixels", width, height);
             return false;
         }
-        for (int y = 0; y < height && grid->n_levels == 1; y++) {
-            const size_t row = cell_index(level, 0, y), p = y * (size_t)width;
-            memcpy(level->cell + row, cell + p, width);
-            for (int x = 0; x < width; x++)
-                if (cell[p + x] == FL_CELL_FIXED)
-                    level->value[row + x] = (Pair){field[2 * (p + x)], field[2 * (p + x) + 1]};
-        }
-        if (grid->n_levels > 1)
-            coarsen(level - 1, level);
-        count_neighbours(level);
+        for (int y = 0; y < height && finest; y++)
+            load_row(grid, y, cell + y * (size_t)width, field + 2 * y * (size_t)width);
+        if (!finest)
+            for_rows(level, level - 1, coarsen);
+        for_rows(level, NULL, count_neighbours);
+        if (!finest)
+            for_rows(level - 1, level, weigh_parents);
         if (width == 1 && height == 1)
             break;
     }
     return true;
 }
 
-/** One red-black sweep of Gauss and Seidel: a colour reads the other only, so threads may share it.
- */
-static void relax(Level *level)
+static FlStencil stencil_at(const Level *level, int component, int odd, int y)
 {
-    const ptrdiff_t s = (ptrdiff_t)level->stride;
-    for (int colour = 0; colour < 2; colour++) {
-#pragma omp parallel for schedule(static) if (level->height > 64)
-        for (int y = 0; y < level->height; y++) {
-            const size_t row = cell_index(level, 0, y);
-            const float *inverse = level->inverse + row;
-            const Pair *source = level->source + row;
-            Pair *value = level->value + row;
-            for (int x = (y + colour) & 1; x < level->width; x += 2)
-                if (inverse[x] > 0.0f) {
-                    const Pair sum = value[x - 1] + value[x + 1] + value[x - s] + value[x + s];
-                    value[x] = (sum + source[x]) * inverse[x];
-                }
+    const Cross at = cross_at(level, odd, y);
+    float *value = level->value[component];
+    return (FlStencil){.value = value + at.own,
+                       .beside = value + at.left,
+                       .above = value + at.above,
+                       .below = value + at.below,
+                       .source = level->source[component] + (level->is_finest ? 0 : at.own),
+                       .inverse = level->inverse + at.own};
+}
+
+static void relax_half(const Level *level, int odd, int y)
+{
+    for (int component = 0; component < 2; component++) {
+        const FlStencil cells = stencil_at(level, component, odd, y);
+        fl_rows()->relax(&cells, 2 * level->pairs);
+    }
+}
+
+static void relax_red(const Level *level, const Level *other, int y)
+{
+    relax_half(level, y & 1, y);
+}
+
+static void relax_black(const Level *level, const Level *other, int y)
+{
+    relax_half(level, !(y & 1), y);
+}
+
+/** Red-black sweeps of Gauss and Seidel: a colour reads the other only, so threads may share it. */
+static void relax(const Level *level, int sweeps)
+{
+    for (int sweep = 0; sweep < sweeps; sweep++) {
+        for_rows(level, NULL, relax_red);
+        for_rows(level, NULL, relax_black);
+    }
+}
+
+/** Adds to the free cells of a fine row (which may be 0) the coarse field. */
+static void refine(const Level *fine, const Level *coarse, int y)
+{
+    for (int odd = 0; odd < 2; odd++) {
+        const size_t row = half_row(fine, odd, y);
+        size_t parents[2][4];
+        find_parents(coarse, odd, y, parents);
+        for (int k = 0; k < 2; k++)
+            fl_rows()->refine(coarse->value[k], parents, fine->parents + row, fine->value[k] + row,
+                              fine->pairs);
+    }
+}
+
+/** Makes a row of the coarse problem whose solution is the correction of the fine one. */
+static void restrict_residual(const Level *coarse, const Level *fine, int y)
+{
+    const size_t even = half_row(coarse, 0, y), odd = half_row(coarse, 1, y);
+    for (int k = 0; k < 2; k++) {
+        float *source = coarse->source[k];
+        memset(coarse->value[k] + even, 0, 2 * coarse->half * sizeof(float));
+        memset(source + even, 0, 2 * coarse->half * sizeof(float));
+        for (int child = 0; child < 4 && 2 * y + child / 2 < fine->height; child++) {
+            const FlStencil cells = stencil_at(fine, k, child & 1, 2 * y + child / 2);
+            fl_rows()->add_residual(&cells, source + even, source + odd, fine->pairs);
         }
     }
 }
 
-/** Where the two nearest coarse cells along an axis are, for a fine coordinate, nearest first. */
-static ptrdiff_t other_parent(int fine, ptrdiff_t stride)
+static void v_cycle(const Grid *grid)
 {
-    return fine & 1 ? stride : -stride;
-}
-
-/** The coarse field at a fine cell: bilinear between the coarse cells that are in the shape. */
-static Pair interpolate(const Level *coarse, int x, int y)
-{
-    const ptrdiff_t c = (ptrdiff_t)cell_index(coarse, x / 2, y / 2);
-    const ptrdiff_t dx = other_parent(x, 1), dy = other_parent(y, (ptrdiff_t)coarse->stride);
-    const ptrdiff_t at[4] = {c, c + dx, c + dy, c + dx + dy};
-    const float weight[4] = {9, 3, 3, 1};
-    Pair sum = {0, 0};
-    float norm = 0.0f;
-    for (int k = 0; k < 4; k++)
-        if (coarse->cell[at[k]]) {
-            sum += weight[k] * coarse->value[at[k]];
-            norm += weight[k];
-        }
-    return sum / norm;
-}
-
-/** Adds to the free cells of the fine level (which may be 0) the coarse field. */
-static void refine(const Level *coarse, Level *fine)
-{
-#pragma omp parallel for schedule(static) if (fine->height > 64)
-    for (int y = 0; y < fine->height; y++) {
-        const size_t row = cell_index(fine, 0, y);
-        for (int x = 0; x < fine->width; x++)
-            if (fine->inverse[row + x] > 0.0f)
-                fine->value[row + x] += interpolate(coarse, x, y);
-    }
-}
-
-static Pair residual(const Level *level, size_t c)
-{
-    if (!(level->inverse[c] > 0.0f))
-        return (Pair){0, 0};
-    const Pair *v = level->value + c;
-    const ptrdiff_t s = (ptrdiff_t)level->stride;
-    return level->source[c] + v[-1] + v[1] + v[-s] + v[s] - v[0] / level->inverse[c];
-}
-
-/** Makes the coarse problem whose solution is the correction of the fine one. */
-static void restrict_residual(const Level *fine, Level *coarse)
-{
-    const size_t bytes = coarse->stride * (coarse->height + 2) * sizeof(Pair);
-    memset(coarse->value, 0, bytes);
-#pragma omp parallel for schedule(static) if (coarse->height > 64)
-    for (int y = 0; y < coarse->height; y++)
-        for (int x = 0; x < coarse->width; x++) {
-            const size_t f = cell_index(fine, 2 * x, 2 * y), c = cell_index(coarse, x, y);
-            coarse->source[c] = residual(fine, f) + residual(fine, f + 1) +
-                                residual(fine, f + fine->stride) +
-                                residual(fine, f + fine->stride + 1);
-        }
-}
-
-static void v_cycle(Grid *grid)
-{
+    const Level *level = grid->level;
     for (int l = 1; l < grid->n_levels; l++) {
-        restrict_residual(&grid->level[l - 1], &grid->level[l]);
+        for_rows(&level[l], &level[l - 1], restrict_residual);
         if (l < grid->n_levels - 1)
-            relax(&grid->level[l]);
+            relax(&level[l], 1);
     }
     for (int l = grid->n_levels - 2; l >= 0; l--) {
-        refine(&grid->level[l + 1], &grid->level[l]);
-        for (int sweep = 0; sweep < SWEEPS_CYCLE; sweep++)
-            relax(&grid->level[l]);
+        for_rows(&level[l], &level[l + 1], refine);
+        relax(&level[l], SWEEPS_CYCLE);
     }
 }
 
 /** What remains of the error must not break the maximum principle. */
-static void store(const Level *level, float *field)
+static void store_half(const Grid *grid, int component, int odd, int y, float *field)
 {
-    float low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (int y = 0; y < level->height; y++)
-        for (size_t c = cell_index(level, 0, y), end = c + level->width; c < end; c++)
-            for (int k = 0; k < 2 && level->cell[c] == FL_CELL_FIXED; k++) {
-                low[k] = MIN(low[k], level->value[c][k]);
-                high[k] = MAX(high[k], level->value[c][k]);
-            }
-    for (int y = 0; y < level->height; y++)
-        for (int x = 0; x < level->width; x++) {
-            const size_t c = cell_index(level, x, y);
-            for (int k = 0; k < 2; k++)
-                *field++ = level->cell[c] ? CLAMP(level->value[c][k], low[k], high[k]) : 0.0f;
-        }
+    const Level *level = &grid->level[0];
+    const size_t row = half_row(level, odd, y);
+    const uint8_t *cell = level->cell + row;
+    const float low = grid->low[component], high = grid->high[component];
+    float *restrict value = level->value[component] + row;
+    for (int i = 0; i < 2 * level->pairs; i++) {
+        const float clamped = MAX(low, MIN(high, value[i]));
+        value[i] = cell[i] ? clamped : 0.0f;
+    }
+    for (int x = odd; x < level->width; x += 2)
+        field[2 * x + component] = value[x / 2];
 }
 
 bool fl_laplace_solve(const uint8_t *cell, int width, int height, int cycles, float *field,
@@ -244,13 +345,15 @@ bool fl_laplace_solve(const uint8_t *cell, int width, int height, int cycles, fl
     g_auto(Grid) grid = {0};
     if (!grid_init(&grid, cell, width, height, field, error))
         return false;
+    const Level *level = grid.level;
     for (int l = grid.n_levels - 2; l >= 0; l--) {
-        refine(&grid.level[l + 1], &grid.level[l]);
-        for (int sweep = 0; sweep < SWEEPS_FIRST; sweep++)
-            relax(&grid.level[l]);
+        for_rows(&level[l], &level[l + 1], refine);
+        relax(&level[l], SWEEPS_FIRST);
     }
     for (int cycle = 0; cycle < cycles; cycle++)
         v_cycle(&grid);
-    store(&grid.level[0], field);
+    for (int y = 0; y < height; y++)
+        for (int k = 0; k < 4; k++)
+            store_half(&grid, k / 2, k % 2, y, field + 2 * y * (size_t)width);
     return true;
 }
