@@ -41,17 +41,23 @@ static int first_like(const FlRuns *runs, int r)
 
 /** Which run is seen at each pixel, or the first like it, counted from 1; 0: none that is flat,
  * opaque and painted. */
-static uint16_t *find_tops(const FlPlan *plan, const FlRuns *runs, size_t n_pixels)
+static uint16_t *find_tops(const FlPlan *plan, const FlRuns *runs)
 {
-    uint16_t *top = g_new0(uint16_t, n_pixels);
+    const size_t width = (size_t)fl_film_width(plan->film);
+    uint16_t *top = g_new0(uint16_t, width * (size_t)fl_film_height(plan->film));
     for (int r = 0; r < runs->n; r++) {
         const FlRun *run = &runs->run[r];
         const bool plain = plan->painter_of[run->region] >= 0 && !run->picture &&
                            run->alpha == 255 && run->mix == FL_MIX_OVER;
         const int first = first_like(runs, r);
-        for (size_t p = 0; p < n_pixels; p++)
-            if (run->coverage[p])
-                top[p] = plain && run->coverage[p] == 255 ? (uint16_t)(first + 1) : 0;
+        const FlBox box = run->area.box;
+        for (int y = 0; y < box.height; y++)
+            for (int x = 0; x < box.width; x++) {
+                const uint8_t coverage = run->coverage[(size_t)y * (size_t)box.width + (size_t)x];
+                if (coverage)
+                    top[(size_t)(box.y + y) * width + (size_t)(box.x + x)] =
+                        plain && coverage == 255 ? (uint16_t)(first + 1) : 0;
+            }
     }
     return top;
 }
@@ -150,7 +156,7 @@ static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture,
     GError *error = NULL;
     g_autoptr(FlRuns) runs = fl_film_runs(plan->film, frame, &error);
     stop_on(error);
-    g_autofree uint16_t *top = find_tops(plan, runs, (size_t)picture->width * picture->height);
+    g_autofree uint16_t *top = find_tops(plan, runs);
     for (int r = 0; r < runs->n; r++) {
         uint8_t median[3];
         if (plan->painter_of[runs->run[r].region] < 0 || first_like(runs, r) < r)

@@ -61,8 +61,9 @@ static uint8_t *paint(const Sample *s, const FlInk *ink, const FlColouring *how,
     g_autofree uint8_t *rgba = g_malloc0(4 * n);
     g_autofree int16_t *amounts = g_new(int16_t, n);
     uint8_t *rgb = g_malloc(3 * n);
-    fl_colourise_amounts(ink, tone, s->rgb, s->mask, s->width, &area, amounts);
-    fl_colourise(ink, how, s->rgb, amounts, s->width, &area, rgba);
+    const FlPaintedPart painted = {s->rgb, area.box};
+    fl_colourise_amounts(ink, tone, &painted, s->mask, &area, amounts);
+    fl_colourise(ink, how, &painted, amounts, &area, rgba);
     for (size_t i = 0; i < 3 * n; i++) {
         const uint8_t *p = rgba + i / 3 * 4;
         rgb[i] = (uint8_t)((p[i % 3] * p[3] + how->paper[i % 3] * (255 - p[3]) + 127) / 255);
@@ -172,16 +173,17 @@ static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
     g_auto(Sample) s = sample_load("bloom-30");
     g_autoptr(FlInk) ink = ink_of(&s, bloom_paper);
     const uint8_t black[3] = {0, 0, 0};
-    uint8_t painted[4][3], coverage[4] = {255, 255, 255, 0}, rgba[16] = {0};
-    memcpy(painted[0], bloom_paper, 3);
-    memcpy(painted[1], white, 3); // brighter than the paper: no paint either
-    memcpy(painted[2], black, 3);
-    memcpy(painted[3], black, 3);
+    uint8_t rgb[4][3], coverage[4] = {255, 255, 255, 0}, rgba[16] = {0};
+    memcpy(rgb[0], bloom_paper, 3);
+    memcpy(rgb[1], white, 3); // brighter than the paper: no paint either
+    memcpy(rgb[2], black, 3);
+    memcpy(rgb[3], black, 3);
     const FlArea area = {{0, 0, 4, 1}};
+    const FlPaintedPart painted = {rgb[0], area.box};
     int16_t amounts[4];
     FlColouring how = {.fill = {200, 30, 30}, .paper = {255, 255, 255}};
-    fl_colourise_amounts(ink, FL_TONE_ONE, painted[0], coverage, 4, &area, amounts);
-    fl_colourise(ink, &how, painted[0], amounts, 4, &area, rgba);
+    fl_colourise_amounts(ink, FL_TONE_ONE, &painted, coverage, &area, amounts);
+    fl_colourise(ink, &how, &painted, amounts, &area, rgba);
     g_assert_cmpint(rgba[3], ==, 0);
     g_assert_cmpint(rgba[7], ==, 0);
     g_assert_cmpint(rgba[11], >=, 250);
@@ -189,7 +191,7 @@ static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
     for (int medium = 0; medium < 2; medium++) { // white gouache covers, white watercolour does not
         memset(how.fill, 255, 3);
         how.medium = medium ? FL_MEDIUM_OPAQUE : FL_MEDIUM_TRANSPARENT;
-        fl_colourise(ink, &how, painted[0], amounts, 4, &area, rgba);
+        fl_colourise(ink, &how, &painted, amounts, &area, rgba);
         g_assert_cmpint(rgba[11], ==, medium ? 255 : 0);
     }
 }

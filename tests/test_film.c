@@ -132,7 +132,7 @@ static void a_region_keeps_its_leaf_while_the_colour_changes(void)
         g_autoptr(FlRuns) runs = fl_film_runs(film, t, NULL);
         g_assert_cmpint(runs->run[0].region, ==, 0);
         g_assert_cmpint(runs->run[0].rgb[0], ==, 100 + 20 * t);
-        g_assert_cmpint(runs->run[0].coverage[25 * 100 + 25], ==, 255);
+        g_assert_cmpint(runs->run[0].coverage[15 * 30 + 15], ==, 255);
     }
 }
 
@@ -286,9 +286,33 @@ static void a_fading_gradient_keeps_its_mask(void)
     g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
     g_assert_cmpint(runs->n, ==, 1);
     g_assert_cmpint(runs->run[0].alpha, ==, 64);
-    g_assert_cmpint(runs->run[0].coverage[30 * 100 + 30], ==, 255);
-    g_assert_cmpint(runs->run[0].picture[4 * (30 * 100 + 58)], <, 20); // blue at the right
+    g_assert_cmpint(runs->run[0].coverage[30 * 60 + 30], ==, 255);
+    g_assert_cmpint(runs->run[0].picture[4 * (30 * 60 + 58)], <, 20); // blue at the right
     g_assert_cmpfloat(flat_psnr(film, 0), >, 50);
+}
+
+/* Two squares of one run, the second beyond the page's right edge. */
+static void a_run_takes_the_room_of_what_is_drawn(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<path d=\"M10 20h10v10h-10z\" fill=\"red\"/>"
+                       "<path d=\"M90 40h30v20h-30z\" fill=\"red\"/>"));
+    const FlFilmOptions options = {0};
+    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
+    g_assert_cmpint(runs->n, ==, 1);
+    const FlArea *area = &runs->run[0].area;
+    g_assert_cmpmem(&area->box, sizeof(FlBox), &((FlBox){10, 20, 90, 40}), sizeof(FlBox));
+    const FlColumns first = fl_area_row(area, 5), none = fl_area_row(area, 15),
+                    second = fl_area_row(area, 25);
+    g_assert_cmpint(first.first, ==, 0);
+    g_assert_cmpint(first.last, ==, 10);
+    g_assert_cmpint(none.first, >=, none.last);
+    g_assert_cmpint(second.first, ==, 80);
+    g_assert_cmpint(second.last, ==, 90);
+    g_assert_cmpint(runs->run[0].coverage[25 * 90 + 85], ==, 255);
+    g_assert_cmpint(runs->run[0].coverage[25 * 90 + 5], ==, 0);
 }
 
 static void leaves_that_do_not_meet_share_a_run(void)
@@ -388,6 +412,8 @@ static void no_row_or_column_of_the_picture_is_partly_bare(void)
         g_autoptr(FlFilm) film = open_film(&options, path, NULL);
         g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
         g_assert_cmpint(fl_film_width(film), ==, width);
+        g_assert_cmpint(runs->run[0].area.box.width, ==, width);
+        g_assert_cmpint(runs->run[0].area.box.height, ==, fl_film_height(film));
         for (int i = 0; i < width * fl_film_height(film); i++)
             g_assert_cmpint(runs->run[0].coverage[i], ==, 255);
     }
@@ -569,6 +595,7 @@ int main(int argc, char **argv)
     TEST("a-film-of-half-the-size-has-the-same-shapes",
          a_film_of_half_the_size_has_the_same_shapes);
     TEST("a-fading-gradient-keeps-its-mask", a_fading_gradient_keeps_its_mask);
+    TEST("a-run-takes-the-room-of-what-is-drawn", a_run_takes_the_room_of_what_is_drawn);
     TEST("leaves-that-do-not-meet-share-a-run", leaves_that_do_not_meet_share_a_run);
     TEST("rules-choose-leaves-and-the-first-wins", rules_choose_leaves_and_the_first_wins);
     TEST("keys-other-than-the-default-can-be-asked-for",

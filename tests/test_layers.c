@@ -35,7 +35,7 @@ static void disc(double cx, double cy, double r, uint8_t *coverage)
 /** A layer of flat opaque colour. */
 static FlLayer flat_layer(const uint8_t *coverage, uint8_t r, uint8_t g, uint8_t b)
 {
-    FlLayer layer = {.area.box = {0, 0, W, H}, .coverage = coverage, .pitch = W, .alpha = 255};
+    FlLayer layer = {.area.box = {0, 0, W, H}, .coverage = coverage, .alpha = 255};
     layer.rgba = g_malloc(4 * N);
     for (int i = 0; i < N; i++)
         memcpy(layer.rgba + 4 * i, (uint8_t[]){r, g, b, coverage[i] ? 255 : 0}, 4);
@@ -194,16 +194,14 @@ static void an_area_is_where_the_shape_is_and_no_more(void)
 
 static void a_hole_in_the_paint_has_body_and_its_rim_has_not(void)
 {
-    enum { LEFT = 12, TOP = 6, SIDE = 20 }; // the shape is a square of the frame
-    const FlBox box = {LEFT, TOP, SIDE, SIDE};
-    uint8_t coverage[N] = {0}, body[SIDE * SIDE];
+    enum { SIDE = 20 };
+    const FlBox box = {12, 6, SIDE, SIDE};
+    uint8_t coverage[SIDE * SIDE], body[SIDE * SIDE];
+    memset(coverage, 255, sizeof coverage);
     memset(body, 255, sizeof body);
-    for (int k = 0; k < SIDE; k++) {
-        memset(coverage + (TOP + k) * W + LEFT, 255, SIDE);
-        body[10 * SIDE + MIN(k, 6)] = 40; // from the left side to column 6
-    }
+    memset(body + 10 * SIDE, 40, 7); // from the left side to column 6
     body[10 * SIDE + 12] = body[11 * SIDE + 12] = 40;
-    g_assert_true(fl_holes_close(body, coverage, W, &(FlArea){box}, NULL));
+    g_assert_true(fl_holes_close(body, coverage, &(FlArea){box}, NULL));
     for (int k = 0; k < SIDE; k++)
         g_assert_cmpint(body[10 * SIDE + k], ==, k <= 6 ? 40 : 255);
     g_assert_cmpint(body[11 * SIDE + 12], ==, 255);
@@ -354,19 +352,13 @@ static void enlarged_neighbours_leave_no_seam(void)
 /* The box lies within the frame; what is paint has the colour, opacity and body that it had. */
 static void an_enlarged_layer_keeps_its_paint_up_to_the_edge(void)
 {
-    uint8_t shape[N], body[12 * 10];
-    const FlBox box = {18, 15, 12, 10};
-    memset(shape, 0, N);
+    uint8_t shape[12 * 10] = {0}, body[12 * 10];
     memset(body, 80, sizeof body);
-    FlLayer half = {.area.box = box,
-                    .coverage = shape + box.y * W + box.x,
-                    .pitch = W,
-                    .body = body,
-                    .alpha = 200};
+    FlLayer half = {.area.box = {18, 15, 12, 10}, .coverage = shape, .body = body, .alpha = 200};
     half.rgba = g_malloc0(4 * sizeof body);
     for (int y = 1; y < 9; y++) // a pixel of the box is left around
         for (int x = 1; x < 11; x++) {
-            shape[(box.y + y) * W + box.x + x] = 255;
+            shape[y * 12 + x] = 255;
             memcpy(half.rgba + 4 * (y * 12 + x), (uint8_t[]){10, 200, 30, 120}, 4);
         }
     FlLayer full = enlarged(&half);

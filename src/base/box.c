@@ -1,6 +1,7 @@
 #include "base/box.h"
 
 #include <stdbool.h>
+#include <string.h>
 
 /* Most rows of most planes are blank, which is seen without looking for where they begin. */
 static bool is_blank(const uint8_t *row, int width)
@@ -40,6 +41,21 @@ FlBox fl_box_within(const uint8_t *plane, int width, FlBox part)
 FlBox fl_box_of(const uint8_t *plane, int width, int height)
 {
     return fl_box_within(plane, width, (FlBox){0, 0, width, height});
+}
+
+void fl_box_copy(const void *from, FlBox from_box, void *to, FlBox to_box, size_t pixel_bytes)
+{
+    const int x0 = MAX(from_box.x, to_box.x);
+    const int x1 = MIN(from_box.x + from_box.width, to_box.x + to_box.width);
+    const int y0 = MAX(from_box.y, to_box.y);
+    const int y1 = MIN(from_box.y + from_box.height, to_box.y + to_box.height);
+    const size_t from_row = pixel_bytes * (size_t)from_box.width;
+    const size_t to_row = pixel_bytes * (size_t)to_box.width;
+    for (int y = y0; y < y1 && x0 < x1; y++)
+        memcpy((char *)to + (size_t)(y - to_box.y) * to_row + pixel_bytes * (size_t)(x0 - to_box.x),
+               (const char *)from + (size_t)(y - from_box.y) * from_row +
+                   pixel_bytes * (size_t)(x0 - from_box.x),
+               pixel_bytes * (size_t)(x1 - x0));
 }
 
 void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height)

@@ -17,6 +17,10 @@ FlBox fl_box_of(const uint8_t *plane, int width, int height);
 /** The same of those in a part of a plane that is `width` wide. */
 FlBox fl_box_within(const uint8_t *plane, int width, FlBox part);
 
+/** Copies the pixels that two boxes of a frame share, of some bytes each; from and to hold a box.
+ */
+void fl_box_copy(const void *from, FlBox from_box, void *to, FlBox to_box, size_t pixel_bytes);
+
 /** Columns first … last - 1; none if first >= last. */
 typedef struct FlColumns {
     int first, last;

@@ -98,6 +98,13 @@ static void steps_init(Steps *steps, const FlInk *ink, const FlColouring *how)
     }
 }
 
+/** Row y of an area's box in what has been painted. */
+static const uint8_t *painted_row(const FlPaintedPart *painted, FlBox box, int y)
+{
+    const size_t row = (size_t)(box.y + y - painted->box.y) * (size_t)painted->box.width;
+    return painted->rgb + 3 * (row + (size_t)(box.x - painted->box.x));
+}
+
 /** Colours a row of the box from the painted pixels themselves, or from the picture. */
 static void colour_row(const FlColouring *how, const FlScale *scale, const Steps *steps,
                        const uint8_t *row, size_t pixel_bytes, const int16_t *amounts,
@@ -116,37 +123,35 @@ static void colour_row(const FlColouring *how, const FlScale *scale, const Steps
 }
 
 static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScale *scale,
-                          const uint8_t *painted, const int16_t *amounts, int width,
-                          const FlArea *area, uint8_t *rgba)
+                          const FlPaintedPart *painted, const int16_t *amounts, const FlArea *area,
+                          uint8_t *rgba)
 {
     const FlBox box = area->box;
     const bool keep = how->tint == FL_TINT_KEEP;
-    const uint8_t *source = keep ? painted : how->picture;
-    const size_t step = keep ? 3 : 4;
     Steps steps;
     steps_init(&steps, ink, how);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < box.height; y++) {
         const size_t row = (size_t)y * box.width;
-        colour_row(how, scale, &steps,
-                   source + step * ((size_t)(box.y + y) * (size_t)width + (size_t)box.x), step,
-                   amounts + row, fl_area_row(area, y), rgba + 4 * row);
+        const uint8_t *source = keep ? painted_row(painted, box, y) : how->picture + 4 * row;
+        colour_row(how, scale, &steps, source, keep ? 3 : 4, amounts + row, fl_area_row(area, y),
+                   rgba + 4 * row);
     }
 }
 
-void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                  const int16_t *amounts, int width, const FlArea *area, uint8_t *rgba)
+void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart *painted,
+                  const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
     FlScale scale;
     fl_scale_init(&scale, how->linear);
     if (how->tint != FL_TINT_KEEP && !how->picture)
         colour_flat(how, &scale, amounts, area, rgba);
     else
-        colour_pixels(ink, how, &scale, painted, amounts, width, area, rgba);
+        colour_pixels(ink, how, &scale, painted, amounts, area, rgba);
 }
 
-void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
-                          const uint8_t *coverage, int width, const FlArea *area, int16_t *amounts)
+void fl_colourise_amounts(const FlInk *ink, int tone, const FlPaintedPart *painted,
+                          const uint8_t *coverage, const FlArea *area, int16_t *amounts)
 {
     const FlBox box = area->box;
     g_autofree int16_t *toned = g_new(int16_t, FL_AMOUNTS);
@@ -155,11 +160,11 @@ void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
     memset(amounts, 0xff, fl_box_pixels(box) * sizeof *amounts); // -1
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
-        for (int x = span.first; x < span.last; x++) {
-            const size_t i = (size_t)(box.y + y) * width + box.x + x;
-            if (coverage[i])
-                amounts[(size_t)y * box.width + x] = toned[fl_ink_amount(ink, painted + 3 * i)];
-        }
+        const uint8_t *rgb = painted_row(painted, box, y);
+        const size_t row = (size_t)y * (size_t)box.width;
+        for (int x = span.first; x < span.last; x++)
+            if (coverage[row + x])
+                amounts[row + x] = toned[fl_ink_amount(ink, rgb + 3 * (size_t)x)];
     }
 }
 
@@ -174,18 +179,16 @@ void fl_colourise_body(const int16_t *amounts, const FlArea *area, uint8_t *body
 }
 
 void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
-                        int width, const FlArea *area, uint8_t *rgba)
+                        const FlArea *area, uint8_t *rgba)
 {
-    const FlBox box = area->box;
-    for (int y = 0; y < box.height; y++) {
+    for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
-        for (int x = span.first; x < span.last; x++) {
-            const size_t i = (size_t)(box.y + y) * width + box.x + x;
-            uint8_t *to = rgba + 4 * ((size_t)y * box.width + x);
+        const size_t row = (size_t)y * (size_t)area->box.width;
+        for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++) {
             if (!coverage[i])
                 continue;
-            memcpy(to, picture ? picture + 4 * i : flat, 3);
-            to[3] = 255;
+            memcpy(rgba + 4 * i, picture ? picture + 4 * i : flat, 3);
+            rgba[4 * i + 3] = 255;
         }
     }
 }

@@ -16,30 +16,36 @@
 typedef struct FlColouring {
     FlTint tint;
     uint8_t fill[3];        // the flat colour
-    const uint8_t *picture; // a whole frame of straight RGBA, whose alpha is not read; or NULL
+    const uint8_t *picture; // of the area's box, RGBA whose alpha is not read; or NULL
     uint8_t paper[3];       // the output's paper
     FlMedium medium;        // opaque paint hides what is below from a fifth of its median on
     bool linear;            // the layers will be blended in linear light
 } FlColouring;
 
+/** What has been painted in a part of the frame that holds the area's box: 3 bytes of sRGB a pixel.
+ */
+typedef struct FlPaintedPart {
+    const uint8_t *rgb;
+    FlBox box;
+} FlPaintedPart;
+
 /**
  * The amounts of paint of an area, one per pixel of its box; -1 where coverage is 0 and beyond the
- * area. tone is of fl_ink_tone(); FL_TONE_ONE: as in the exemplar. painted is width * height * 3
- * sRGB and coverage width * height, whole frames.
+ * area. tone is of fl_ink_tone(); FL_TONE_ONE: as in the exemplar. coverage is of the box.
  */
-void fl_colourise_amounts(const FlInk *ink, int tone, const uint8_t *painted,
-                          const uint8_t *coverage, int width, const FlArea *area, int16_t *amounts);
+void fl_colourise_amounts(const FlInk *ink, int tone, const FlPaintedPart *painted,
+                          const uint8_t *coverage, const FlArea *area, int16_t *amounts);
 
 /**
  * Colours the pixels of an area that have an amount of paint, 0 or more.
  *
- * painted, as above, is read for FL_TINT_KEEP only. rgba, four bytes per pixel of the box, becomes
+ * painted is read for FL_TINT_KEEP only. rgba, four bytes per pixel of the box, becomes
  * straight RGBA: the paint alone, without the coverage. Its alpha is the least with which the
  * colour over the paper is the painted colour, so that thin paint is transparent over any other
  * background too (opaque paint has more). The other pixels, which were 0, are 0.
  */
-void fl_colourise(const FlInk *ink, const FlColouring *how, const uint8_t *painted,
-                  const int16_t *amounts, int width, const FlArea *area, uint8_t *rgba);
+void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart *painted,
+                  const int16_t *amounts, const FlArea *area, uint8_t *rgba);
 
 /**
  * How far the paint has body, 0..255 per pixel of the area: from nothing on bare paper to 255 at
@@ -50,9 +56,9 @@ void fl_colourise_body(const int16_t *amounts, const FlArea *area, uint8_t *body
 
 /**
  * What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.
- * Pixels without coverage stay as they are.
+ * picture and coverage are of the box. Pixels without coverage stay as they are.
  */
 void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
-                        int width, const FlArea *area, uint8_t *rgba);
+                        const FlArea *area, uint8_t *rgba);
 
 #endif

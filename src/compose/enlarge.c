@@ -53,7 +53,7 @@ static bool read_pixel(const FlLayer *half, int column, int row, float *const pl
                        int x)
 {
     const size_t j = (size_t)row * half->area.box.width + column;
-    const uint8_t coverage = half->coverage[(size_t)row * half->pitch + column];
+    const uint8_t coverage = half->coverage[j];
     const uint8_t *rgba = half->rgba + 4 * j;
     const float alpha = rgba[3];
     if (!coverage)
@@ -139,7 +139,6 @@ static bool make_planes(FlLayer *full, bool with_body, GError **error)
 {
     const size_t n = fl_box_pixels(full->area.box);
     full->area.row = g_new0(FlColumns, full->area.box.height);
-    full->pitch = (size_t)full->area.box.width;
     return (full->coverage = fl_alloc(n, 1, "a layer", error)) &&
            (full->rgba = fl_alloc(4 * n, 1, "a layer", error)) &&
            (!with_body || (full->body = fl_alloc(n, 1, "a layer", error)));

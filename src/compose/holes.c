@@ -4,17 +4,15 @@
 
 /** What is being looked at: thin places, from the contour on. */
 typedef struct Rim {
-    const uint8_t *body, *coverage; // coverage: of the frame
-    int frame_width;
+    const uint8_t *body, *coverage;
     const FlArea *area;
-    uint8_t *reached; // of the box: joined to the contour
-    GArray *left;     // uint32_t: pixels of the box that were reached and not yet left
+    uint8_t *reached; // joined to the contour
+    GArray *left;     // uint32_t: pixels that were reached and not yet left
 } Rim;
 
 static uint8_t coverage_at(const Rim *rim, int x, int y)
 {
-    const FlBox box = rim->area->box;
-    return rim->coverage[(size_t)(box.y + y) * (size_t)rim->frame_width + (size_t)(box.x + x)];
+    return rim->coverage[(size_t)y * (size_t)rim->area->box.width + (size_t)x];
 }
 
 /** Whether a pixel is at the contour, or beside one that is outside the shape. */
@@ -55,12 +53,11 @@ static void spread(Rim *rim)
     }
 }
 
-bool fl_holes_close(uint8_t *body, const uint8_t *coverage, int width, const FlArea *area,
-                    GError **error)
+bool fl_holes_close(uint8_t *body, const uint8_t *coverage, const FlArea *area, GError **error)
 {
     g_autofree uint8_t *reached = fl_alloc(fl_box_pixels(area->box), 1, "a layer", error);
     g_autoptr(GArray) left = g_array_new(FALSE, FALSE, sizeof(uint32_t));
-    Rim rim = {body, coverage, width, area, reached, left};
+    Rim rim = {body, coverage, area, reached, left};
     if (!reached)
         return false;
     for (int y = 0; y < area->box.height; y++) {

@@ -13,12 +13,11 @@
  * soft rim; in a hole amid the paint, paper shows, for the paint above went around nothing.
  *
  * body, one per pixel of the area's box, is that of fl_colourise_body(): thin is less than 255.
- * coverage is a whole frame, `width` wide, 0 beyond the area; the contour is where it is less than
- * 255, and the side of the box.
+ * coverage, of the same pixels, is 0 beyond the area; the contour is where it is less than 255, and
+ * the side of the box.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
-bool fl_holes_close(uint8_t *body, const uint8_t *coverage, int width, const FlArea *area,
-                    GError **error);
+bool fl_holes_close(uint8_t *body, const uint8_t *coverage, const FlArea *area, GError **error);
 
 #endif

@@ -54,8 +54,7 @@ static void resolve_rows(const FlLayer *layer, Above *above)
         const FlColumns span = fl_area_row(&layer->area, y);
         const size_t i = (size_t)(box.y + y) * above->width + box.x + span.first;
         const size_t j = (size_t)y * box.width + span.first;
-        const FlOcclusion row = {.coverage =
-                                     layer->coverage + (size_t)y * layer->pitch + span.first,
+        const FlOcclusion row = {.coverage = layer->coverage + j,
                                  .seen = above->seen + j,
                                  .body = layer->body ? layer->body + j : NULL,
                                  .alpha = layer->alpha,
@@ -68,7 +67,7 @@ static void resolve_rows(const FlLayer *layer, Above *above)
 static void grow_area(const FlLayer *layer, const FlStackParams *params, Above *above)
 {
     const size_t n = (size_t)above->width * above->height;
-    const FlMatteShape shape = {&layer->area, layer->coverage, layer->pitch};
+    const FlMatteShape shape = {&layer->area, layer->coverage};
     fl_matte_spread(&shape, above->width, above->height, params->gap_px, params->feather_px,
                     above->spread);
     for (size_t i = 0; i < n; i++)
@@ -80,7 +79,7 @@ static void resolve_occlusion(FlLayer *layers, int n, const FlStackParams *param
 {
     for (int k = n - 1; k >= 0; k--) {
         const FlLayer *layer = &layers[k];
-        const FlMatteShape shape = {&layer->area, layer->coverage, layer->pitch};
+        const FlMatteShape shape = {&layer->area, layer->coverage};
         fl_matte_visible(&shape, above->area, above->width, above->height, above->seen);
         resolve_rows(layer, above);
         if (above->spread && knocks_out(layer))
@@ -223,7 +222,7 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
                 glaze_pixel(&under, scale, params->paper, row + 4 * x);
         }
         sum_row(layer, 1, scale, y, &below.sums);
-        add_shape(layer, span, layer->coverage + (size_t)(y - box.y) * layer->pitch,
+        add_shape(layer, span, layer->coverage + (size_t)(y - box.y) * box.width,
                   below.drawn + box.x);
     }
 }

@@ -14,7 +14,6 @@ typedef struct FlLayer {
     FlArea area;             // where it may be seen
     const uint8_t *coverage; // of the box, 0..255, borrowed: the whole shape, times the opacity of
                              // its fill where that varies; 0 beyond the area
-    size_t pitch;            // of coverage: bytes from one row to the next
     const uint8_t *body; // box.width * box.height of fl_colourise_body(), borrowed: it knocks out
                          // where its paint has body only; NULL: wherever its shape is
     uint8_t *rgba;       // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by

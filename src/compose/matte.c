@@ -10,7 +10,6 @@ typedef struct Gradient {
 /** A plane of a part of a frame; 0 beyond the part, but beyond the frame it goes on as it ends. */
 typedef struct Plane {
     const uint8_t *value;
-    size_t pitch;
     FlBox box;
     int width, height; // of the frame
 } Plane;
@@ -20,7 +19,7 @@ static int at(const Plane *plane, int x, int y)
     x = CLAMP(x, 0, plane->width - 1) - plane->box.x;
     y = CLAMP(y, 0, plane->height - 1) - plane->box.y;
     const bool inside = x >= 0 && y >= 0 && x < plane->box.width && y < plane->box.height;
-    return inside ? plane->value[(size_t)y * plane->pitch + x] : 0;
+    return inside ? plane->value[(size_t)y * plane->box.width + x] : 0;
 }
 
 /** Sobel's, eight times the slope. */
@@ -55,15 +54,15 @@ void fl_matte_visible(const FlMatteShape *shape, const uint8_t *above, int width
                       uint8_t *visible)
 {
     const FlBox box = shape->area->box;
-    const Plane lower = {shape->coverage, shape->pitch, box, width, height};
-    const Plane upper = {above, (size_t)width, {0, 0, width, height}, width, height};
+    const Plane lower = {shape->coverage, box, width, height};
+    const Plane upper = {above, {0, 0, width, height}, width, height};
 #pragma omp parallel for schedule(static) if (fl_box_pixels(box) > FL_WORTH_THREADS)
     for (int row = 0; row < box.height; row++) {
         const FlColumns span = fl_area_row(shape->area, row);
         const int y = box.y + row;
         for (int column = span.first; column < span.last; column++) {
             const int x = box.x + column;
-            const int c = shape->coverage[(size_t)row * shape->pitch + column];
+            const int c = shape->coverage[(size_t)row * box.width + column];
             const int u = above[(size_t)y * width + x];
             int v = u == 0 ? c : c == 255 ? 255 - u : 0;
             if (c > 0 && c < 255 && u > 0 && u < 255)
@@ -116,11 +115,9 @@ void fl_matte_spread(const FlMatteShape *shape, int width, int height, float gap
 {
     Brush brush;
     const FlBox box = shape->area->box;
-    const Plane plane = {shape->coverage, shape->pitch, box, width, height};
+    const Plane plane = {shape->coverage, box, width, height};
     memset(matte, 0, (size_t)width * height);
-    for (int y = 0; y < box.height; y++)
-        memcpy(matte + (size_t)(box.y + y) * width + box.x,
-               shape->coverage + (size_t)y * shape->pitch, (size_t)box.width);
+    fl_box_copy(shape->coverage, box, matte, (FlBox){0, 0, width, height}, 1);
     brush_init(&brush, gap_px, feather_px);
     for (int y = box.y; y < box.y + box.height; y++)
         for (int x = box.x; x < box.x + box.width; x++)

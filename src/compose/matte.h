@@ -10,7 +10,6 @@
 typedef struct FlMatteShape {
     const FlArea *area;
     const uint8_t *coverage; // of the area's box, 0..255; 0 beyond the area
-    size_t pitch;            // bytes from one row of coverage to the next
 } FlMatteShape;
 
 /**

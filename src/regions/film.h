@@ -2,6 +2,7 @@
 #ifndef FLUIDY_REGIONS_FILM_H
 #define FLUIDY_REGIONS_FILM_H
 
+#include "base/box.h"
 #include "frames/sequence.h"
 #include "frames/svg.h"
 #include "frames/warnings.h"
@@ -49,9 +50,10 @@ typedef struct FlRegion {
  */
 typedef struct FlRun {
     int region;        // index into the film's regions
-    uint8_t *coverage; // width * height, 0..255: the whole shape, hidden parts included
-    uint8_t *picture;  // width * height * 4 straight sRGBA as the SVG draws it; NULL: flat `rgb`.
-                       // Its A is coverage again, and its colours are defined where A > 0
+    FlArea area;       // where it is in the frame
+    uint8_t *coverage; // of the area's box, 0..255: the whole shape, hidden parts included
+    uint8_t *picture;  // of the box, 4 bytes a pixel, straight sRGBA as the SVG draws it; NULL:
+                       // flat `rgb`. A is coverage again, colours are defined where A > 0
     uint8_t rgb[3];    // the fill; of a picture its mean
     uint8_t alpha;     // opacity of the run, 255 opaque; coverage is without it
     FlMix mix;         // with what is below it

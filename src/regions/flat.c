@@ -2,14 +2,13 @@
 #include "regions/raster.h"
 #include <string.h>
 
-/** Lays a run over straight RGBA; with a colour of its own if rgb is given. */
-static void lay(const FlRun *run, const uint8_t *rgb, size_t n, uint8_t *rgba)
+/** Lays n pixels of a run, from p on, over straight RGBA. */
+static void lay_row(const FlRun *run, const uint8_t *rgb, size_t p, int n, uint8_t *rgba)
 {
-    for (size_t p = 0; p < n; p++) {
+    for (uint8_t *out = rgba; out < rgba + 4 * (size_t)n; out += 4, p++) {
         const uint32_t a = (run->coverage[p] * run->alpha + 127) / 255;
         if (a == 0)
             continue;
-        uint8_t *out = rgba + 4 * p;
         uint8_t colour[3];
         memcpy(colour, rgb ? rgb : run->picture ? run->picture + 4 * p : run->rgb, 3);
         if (!rgb && run->mix != FL_MIX_OVER)
@@ -22,12 +21,20 @@ static void lay(const FlRun *run, const uint8_t *rgb, size_t n, uint8_t *rgba)
     }
 }
 
+/** Lays a run over a frame, `width` wide; with a colour of its own if rgb is given. */
+static void lay(const FlRun *run, const uint8_t *rgb, int width, uint8_t *rgba)
+{
+    const FlBox box = run->area.box;
+    for (int y = 0; y < box.height; y++)
+        lay_row(run, rgb, (size_t)y * (size_t)box.width, box.width,
+                rgba + 4 * ((size_t)(box.y + y) * (size_t)width + (size_t)box.x));
+}
+
 void fl_runs_flat(const FlRuns *runs, int width, int height, uint8_t *rgba)
 {
-    const size_t n = (size_t)width * height;
-    memset(rgba, 0, 4 * n);
+    memset(rgba, 0, 4 * (size_t)width * (size_t)height);
     for (int r = 0; r < runs->n; r++)
-        lay(&runs->run[r], NULL, n, rgba);
+        lay(&runs->run[r], NULL, width, rgba);
 }
 
 /** Distinct colours: hues a golden angle apart, in three lightnesses. */
@@ -55,11 +62,10 @@ void fl_region_colour(const FlFilm *film, int region, uint8_t rgb[3])
 
 void fl_runs_map(const FlFilm *film, const FlRuns *runs, uint8_t *rgba)
 {
-    const size_t n = (size_t)film->width * film->height;
-    memset(rgba, 0, 4 * n);
+    memset(rgba, 0, 4 * (size_t)film->width * (size_t)film->height);
     for (int r = 0; r < runs->n; r++) {
         uint8_t rgb[3];
         fl_region_colour(film, runs->run[r].region, rgb);
-        lay(&runs->run[r], rgb, n, rgba);
+        lay(&runs->run[r], rgb, film->width, rgba);
     }
 }

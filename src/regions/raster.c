@@ -60,6 +60,14 @@ FlBounds fl_bounds_and(FlBounds a, FlBounds b)
     return both.x1 > both.x0 && both.y1 > both.y0 ? both : (FlBounds){0};
 }
 
+FlBounds fl_bounds_or(FlBounds a, FlBounds b)
+{
+    if (a.x1 <= a.x0 || b.x1 <= b.x0)
+        return a.x1 <= a.x0 ? b : a;
+    return (FlBounds){a.x0 < b.x0 ? a.x0 : b.x0, a.y0 < b.y0 ? a.y0 : b.y0,
+                      a.x1 > b.x1 ? a.x1 : b.x1, a.y1 > b.y1 ? a.y1 : b.y1};
+}
+
 bool fl_bounds_meet(FlBounds a, FlBounds b)
 {
     return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;

@@ -17,6 +17,7 @@ void fl_surface_wipe(cairo_surface_t *surface, FlBounds box);
 FlBounds fl_surface_ink(cairo_surface_t *surface, FlBounds box);
 
 FlBounds fl_bounds_and(FlBounds a, FlBounds b);
+FlBounds fl_bounds_or(FlBounds a, FlBounds b); // the smallest that holds both
 bool fl_bounds_meet(FlBounds a, FlBounds b);
 
 /** a over b for coverages and opacities 0..255. */

@@ -104,13 +104,28 @@ static bool stage_init(Stage *stage, const FlFilm *film, int frame, GError **err
     return stage->coverage != NULL;
 }
 
+/** The page's pixels. */
+static FlBounds page_of(const FlFilm *film)
+{
+    return (FlBounds){0, 0, film->width, film->height};
+}
+
 /** The pixels a step can reach. */
 static FlBounds step_box(const Stage *stage, const FlStep *step)
 {
-    const FlBounds page = {0, 0, stage->film->width, stage->film->height};
     const FlBounds box = {(int)floorf(step->box[0]), (int)floorf(step->box[1]),
                           (int)ceilf(step->box[2]), (int)ceilf(step->box[3])};
-    return fl_bounds_and(page, box);
+    return fl_bounds_and(page_of(stage->film), box);
+}
+
+/** Those that a run's steps can reach, and others between them. */
+static FlBounds run_box(const Stage *stage, const Run *run)
+{
+    FlBounds all = {0};
+    for (guint i = 0; i < run->steps->len; i++)
+        all = fl_bounds_or(all,
+                           step_box(stage, &stage->frame->step[g_array_index(run->steps, int, i)]));
+    return all;
 }
 
 static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *surface,
@@ -144,10 +159,22 @@ static void fill_solid(uint8_t solid[256], uint8_t alpha)
         solid[v] = (uint8_t)MIN(255, (v * 255 + alpha / 2) / MAX(alpha, 1));
 }
 
-/** Adds one flat step to a coverage, taking its opacity out. */
-static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, GError **error)
+/** What is drawn into: pixels of a box that holds all of it. */
+typedef struct Room {
+    FlBounds box;
+    uint8_t *coverage;
+    uint8_t *picture; // may be NULL
+} Room;
+
+static size_t room_pixel(const Room *room, int x, int y)
 {
-    const int width = stage->film->width;
+    const size_t width = (size_t)(room->box.x1 - room->box.x0);
+    return (size_t)(y - room->box.y0) * width + (size_t)(x - room->box.x0);
+}
+
+/** Adds one flat step to a coverage, taking its opacity out. */
+static bool add_flat(const Stage *stage, const FlStep *step, const Room *room, GError **error)
+{
     if (!draw_step(stage, step, stage->coverage, error))
         return false;
     const FlBounds box = step_box(stage, step);
@@ -156,9 +183,9 @@ static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, 
     uint8_t solid[256];
     fill_solid(solid, step->drawn);
     for (int y = box.y0; y < box.y1; y++) {
-        const unsigned char *in = drawn + (size_t)y * stride;
-        uint8_t *out = coverage + (size_t)y * width;
-        for (int x = box.x0; x < box.x1; x++)
+        const unsigned char *in = drawn + (size_t)y * stride + box.x0;
+        uint8_t *out = room->coverage + room_pixel(room, box.x0, y);
+        for (int x = 0; x < box.x1 - box.x0; x++)
             if (in[x])
                 out[x] = fl_over(solid[in[x]], out[x]);
     }
@@ -166,18 +193,16 @@ static bool add_flat(const Stage *stage, const FlStep *step, uint8_t *coverage, 
     return true;
 }
 
-static bool draw_flat(const Stage *stage, const Run *run, uint8_t *coverage, GError **error)
+static bool draw_flat(const Stage *stage, const Run *run, const Room *room, GError **error)
 {
     for (guint i = 0; i < run->steps->len; i++)
-        if (!add_flat(stage, &stage->frame->step[g_array_index(run->steps, int, i)], coverage,
-                      error))
+        if (!add_flat(stage, &stage->frame->step[g_array_index(run->steps, int, i)], room, error))
             return false;
     return true;
 }
 
-/** Draws the steps of a run on a picture of their own; picture may be NULL. */
-static bool draw_picture(Stage *stage, const Run *run, uint8_t *coverage, uint8_t *picture,
-                         GError **error)
+/** Draws the steps of a run on a picture of their own. */
+static bool draw_picture(Stage *stage, const Run *run, const Room *room, GError **error)
 {
     const int width = stage->film->width, height = stage->film->height;
     if (!stage->picture)
@@ -192,19 +217,19 @@ static bool draw_picture(Stage *stage, const Run *run, uint8_t *coverage, uint8_
     const unsigned char *drawn = cairo_image_surface_get_data(stage->picture);
     uint8_t solid[256];
     fill_solid(solid, run->drawn);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
+    for (int y = room->box.y0; y < room->box.y1; y++)
+        for (int x = room->box.x0; x < room->box.x1; x++) {
             const uint32_t pixel = ((const uint32_t *)(drawn + (size_t)y * stride))[x];
-            const size_t p = (size_t)y * width + x;
+            const size_t p = room_pixel(room, x, y);
             if (!pixel)
                 continue;
             uint8_t mine[4];
             fl_straighten(pixel, solid[pixel >> 24], mine);
-            if (picture)
-                memcpy(picture + 4 * p, mine, 4);
-            coverage[p] = fl_over(mine[3], coverage[p]);
+            if (room->picture)
+                memcpy(room->picture + 4 * p, mine, 4);
+            room->coverage[p] = fl_over(mine[3], room->coverage[p]);
         }
-    fl_surface_wipe(stage->picture, (FlBounds){0, 0, width, height});
+    fl_surface_wipe(stage->picture, room->box);
     return true;
 }
 
@@ -221,21 +246,45 @@ static void mean_colour(const uint8_t *picture, size_t n, uint8_t rgb[3])
         rgb[c] = (uint8_t)(weight ? (sum[c] + weight / 2) / weight : 0);
 }
 
-static bool draw_run(Stage *stage, const Run *run, FlRun *out, GError **error)
+static bool draw_in(Stage *stage, const Run *run, const Room *room, GError **error)
 {
-    const size_t n = (size_t)stage->film->width * stage->film->height;
-    *out = (FlRun){.region = run->region, .alpha = run->alpha, .mix = (FlMix)run->mix};
-    memcpy(out->rgb, run->rgb, 3);
-    out->coverage = fl_alloc(n, 1, "the mask of a region", error);
-    if (!out->coverage)
+    return run->flat ? draw_flat(stage, run, room, error) : draw_picture(stage, run, room, error);
+}
+
+/** Keeps what has been drawn, and no more room than that takes. */
+static bool keep_drawn(const Room *room, FlRun *out, GError **error)
+{
+    const FlBox from = {room->box.x0, room->box.y0, room->box.x1 - room->box.x0,
+                        room->box.y1 - room->box.y0};
+    fl_area_init(&out->area, room->coverage, from.width, from.height);
+    FlBox *box = &out->area.box;
+    box->x += from.x, box->y += from.y;
+    const size_t n = fl_box_pixels(*box);
+    if (!(out->coverage = fl_alloc(n, 1, "the mask of a region", error)))
         return false;
-    if (run->flat)
-        return draw_flat(stage, run, out->coverage, error);
-    out->picture = fl_alloc(n, 4, "the picture of a region", error);
-    if (!out->picture || !draw_picture(stage, run, out->coverage, out->picture, error))
+    fl_box_copy(room->coverage, from, out->coverage, *box, 1);
+    if (!room->picture)
+        return true;
+    if (!(out->picture = fl_alloc(n, 4, "the picture of a region", error)))
         return false;
+    fl_box_copy(room->picture, from, out->picture, *box, 4);
     mean_colour(out->picture, n, out->rgb);
     return true;
+}
+
+static bool draw_run(Stage *stage, const Run *run, FlRun *out, GError **error)
+{
+    const FlBounds box = run_box(stage, run);
+    const size_t n = (size_t)(box.x1 - box.x0) * (size_t)(box.y1 - box.y0);
+    *out = (FlRun){.region = run->region, .alpha = run->alpha, .mix = (FlMix)run->mix};
+    memcpy(out->rgb, run->rgb, 3);
+    g_autofree uint8_t *coverage = fl_alloc(n, 1, "the mask of a region", error);
+    g_autofree uint8_t *picture =
+        run->flat || !coverage ? NULL : fl_alloc(n, 4, "the picture of a region", error);
+    const Room room = {box, coverage, picture};
+    if (!coverage || (!run->flat && !picture))
+        return false;
+    return draw_in(stage, run, &room, error) && keep_drawn(&room, out, error);
 }
 
 FlRuns *fl_film_runs(const FlFilm *film, int frame, GError **error)
@@ -264,35 +313,32 @@ bool fl_film_mask(const FlFilm *film, int frame, int region, uint8_t *coverage, 
     g_auto(Stage) stage = {0};
     if (!stage_init(&stage, film, frame, error))
         return false;
-    for (guint r = 0; r < runs->len; r++) {
-        const Run *run = &g_array_index(runs, Run, r);
-        if (!(run->flat ? draw_flat(&stage, run, coverage, error)
-                        : draw_picture(&stage, run, coverage, NULL, error)))
+    const Room room = {page_of(film), coverage, NULL};
+    for (guint r = 0; r < runs->len; r++)
+        if (!draw_in(&stage, &g_array_index(runs, Run, r), &room, error))
             return false;
-    }
     return true;
 }
 
 void fl_runs_mask(const FlRuns *runs, int region, int width, int height, uint8_t *coverage)
 {
-    const size_t n = (size_t)width * height;
-    bool bare = true;
+    memset(coverage, 0, (size_t)width * (size_t)height);
     for (int r = 0; r < runs->n; r++) {
-        const uint8_t *run = runs->run[r].coverage;
-        if (runs->run[r].region != region)
-            continue;
-        for (size_t p = 0; !bare && p < n; p++)
-            coverage[p] = fl_over(run[p], coverage[p]);
-        if (bare)
-            memcpy(coverage, run, n);
-        bare = false;
+        const FlRun *run = &runs->run[r];
+        const FlBox box = run->area.box;
+        for (int y = 0; run->region == region && y < box.height; y++) {
+            const FlColumns span = fl_area_row(&run->area, y);
+            const uint8_t *from = run->coverage + (size_t)y * (size_t)box.width;
+            uint8_t *to = coverage + (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
+            for (int x = span.first; x < span.last; x++)
+                to[x] = fl_over(from[x], to[x]);
+        }
     }
-    if (bare)
-        memset(coverage, 0, n);
 }
 
 void fl_run_clear(FlRun *run)
 {
+    fl_area_clear(&run->area);
     free(run->coverage);
     free(run->picture);
     run->coverage = run->picture = NULL;

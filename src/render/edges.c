@@ -24,15 +24,20 @@ static size_t in_frame(const FlEdgeMap *edges, FlBox box, int y)
     return (size_t)(box.y + y) * (size_t)fl_film_width(edges->plan->film) + (size_t)box.x;
 }
 
-/** Whether a shape holds the corners of a square of TRAP_PX from pixel i on. */
-static bool holds_square(const uint8_t *coverage, size_t i, size_t width)
+/** The coverage of a run from column 0 of row y of its box on. */
+static const uint8_t *coverage_row(const FlRun *run, int y)
 {
-    const size_t down = i + TRAP_PX * width;
-    return coverage[i] >= SHOWN && coverage[i + TRAP_PX] >= SHOWN && coverage[down] >= SHOWN &&
-           coverage[down + TRAP_PX] >= SHOWN;
+    return run->coverage + (size_t)y * (size_t)run->area.box.width;
 }
 
-/** The run that is uppermost at all of these corners; 0: none. */
+/** Whether a shape, whose rows these are, holds the corners of a square of TRAP_PX. */
+static bool holds_square(const uint8_t *upper, const uint8_t *lower)
+{
+    return upper[0] >= SHOWN && upper[TRAP_PX] >= SHOWN && lower[0] >= SHOWN &&
+           lower[TRAP_PX] >= SHOWN;
+}
+
+/** The run that is uppermost at all corners of the one from pixel i on; 0: none. */
 static uint16_t top_of_square(const uint16_t *top, size_t i, size_t width)
 {
     const size_t down = i + TRAP_PX * width;
@@ -44,16 +49,16 @@ static uint16_t top_of_square(const uint16_t *top, size_t i, size_t width)
 /** Notes which runs a run, put over those below it, overlaps in some square of TRAP_PX. */
 static void note_overlaps(FlEdgeMap *edges, int run)
 {
-    const FlArea *area = &edges->areas[run];
-    const uint8_t *coverage = edges->runs->run[run].coverage;
+    const FlRun *r = &edges->runs->run[run];
     const size_t width = (size_t)fl_film_width(edges->plan->film), n = (size_t)edges->n;
-    for (int y = 0; y < area->box.height - TRAP_PX; y++) {
-        const size_t row = in_frame(edges, area->box, y);
-        const FlColumns span = fl_area_row(area, y);
-        for (size_t i = row + (size_t)span.first; i + TRAP_PX < row + (size_t)span.last; i++) {
-            if (!holds_square(coverage, i, width))
+    for (int y = 0; y < r->area.box.height - TRAP_PX; y++) {
+        const size_t row = in_frame(edges, r->area.box, y), own = (size_t)run + 1;
+        const uint8_t *upper = coverage_row(r, y), *lower = coverage_row(r, y + TRAP_PX);
+        const FlColumns span = fl_area_row(&r->area, y);
+        for (int x = span.first; x + TRAP_PX < span.last; x++) {
+            if (!holds_square(upper + x, lower + x))
                 continue;
-            const size_t other = top_of_square(edges->top, i, width), own = (size_t)run + 1;
+            const size_t other = top_of_square(edges->top, row + (size_t)x, width);
             edges->overlap[own * n + other] = edges->overlap[other * n + own] = true;
         }
     }
@@ -61,22 +66,21 @@ static void note_overlaps(FlEdgeMap *edges, int run)
 
 static void put_on_top(FlEdgeMap *edges, int run)
 {
-    const FlArea *area = &edges->areas[run];
     const FlRun *r = &edges->runs->run[run];
-    for (int y = 0; y < area->box.height; y++) {
-        const size_t row = in_frame(edges, area->box, y);
-        const FlColumns span = fl_area_row(area, y);
-        for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++)
-            if (r->coverage[i] >= SHOWN)
-                edges->top[i] = (uint16_t)(run + 1);
+    for (int y = 0; y < r->area.box.height; y++) {
+        const uint8_t *coverage = coverage_row(r, y);
+        uint16_t *top = edges->top + in_frame(edges, r->area.box, y);
+        const FlColumns span = fl_area_row(&r->area, y);
+        for (int x = span.first; x < span.last; x++)
+            if (coverage[x] >= SHOWN)
+                top[x] = (uint16_t)(run + 1);
     }
 }
 
-bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, const FlArea *areas,
-                   GError **error)
+bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, GError **error)
 {
     const size_t pixels = (size_t)fl_film_width(plan->film) * (size_t)fl_film_height(plan->film);
-    *edges = (FlEdgeMap){.plan = plan, .runs = runs, .areas = areas};
+    *edges = (FlEdgeMap){.plan = plan, .runs = runs};
     edges->n = MIN(runs->n, MOST_RUNS) + 1;
     const size_t pairs = (size_t)edges->n * (size_t)edges->n;
     if (!(edges->top = fl_alloc(pixels, sizeof *edges->top, "a matte", error)) ||
@@ -117,9 +121,15 @@ static FlBox grown(FlBox box, int px, FlBox limit)
 }
 
 /** What of a part of the frame a shape takes up; empty: nothing. */
-static FlBox shape_in(const FlEdgeMap *edges, int run, FlBox part)
+static FlBox shape_in(const FlRun *run, FlBox part)
 {
-    return fl_box_within(edges->runs->run[run].coverage, fl_film_width(edges->plan->film), part);
+    const FlBox all = run->area.box, both = grown(part, 0, all);
+    if (both.width <= 0 || both.height <= 0)
+        return (FlBox){0};
+    FlBox box = fl_box_within(run->coverage, all.width,
+                              (FlBox){both.x - all.x, both.y - all.y, both.width, both.height});
+    box.x += all.x, box.y += all.y;
+    return box;
 }
 
 static void tile_clear(Tile *tile)
@@ -139,7 +149,8 @@ static bool tile_init(Tile *tile, const FlEdgeMap *edges, int run, FlBox box, in
                       GError **error)
 {
     const FlBox frame = {0, 0, fl_film_width(edges->plan->film), fl_film_height(edges->plan->film)};
-    const FlBox part = shape_in(edges, run, grown(box, fl_closing_reach(radius_px), frame));
+    const FlBox part =
+        shape_in(&edges->runs->run[run], grown(box, fl_closing_reach(radius_px), frame));
     *tile = (Tile){.part = part, .around = grown(part, radius_px, frame)};
     const size_t n = fl_box_pixels(part), around = fl_box_pixels(tile->around);
     return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
@@ -179,27 +190,27 @@ static bool find_share(Tile *tile, const FlEdgeMap *edges, int run, bool with_al
                             part_of(tile), radius_px, share, error);
 }
 
-/** Whether a run is seen at pixel i: nothing that hides it lies over it. */
-static bool is_seen(const FlEdgeMap *edges, int run, size_t i)
+/** Whether a run is seen at a pixel: nothing that hides it lies over it. */
+static bool is_seen(uint8_t coverage, uint16_t top, int run)
 {
-    return edges->runs->run[run].coverage[i] >= SHOWN && edges->top[i] <= run + 1;
+    return coverage >= SHOWN && top <= run + 1;
 }
 
 /** What the tile has of the run: its amounts, where it is seen, its coverage and what is inside. */
 static void fill_tile(Tile *tile, const FlEdgeMap *edges, int run, const int16_t *amounts)
 {
-    const FlBox all = edges->areas[run].box, part = tile->part, around = tile->around;
+    const FlRun *r = &edges->runs->run[run];
+    const FlBox all = r->area.box, part = tile->part;
+    fl_box_copy(amounts, all, tile->amounts, part, sizeof *amounts);
+    fl_box_copy(r->coverage, all, tile->coverage, tile->around, 1);
     for (int y = 0; y < part.height; y++) {
-        const size_t row = (size_t)y * (size_t)part.width, frame = in_frame(edges, part, y);
-        const size_t from = (size_t)(part.y + y - all.y) * (size_t)all.width;
-        memcpy(tile->amounts + row, amounts + from + (part.x - all.x),
-               (size_t)part.width * sizeof *amounts);
+        const uint8_t *coverage = coverage_row(r, part.y - all.y + y) + (part.x - all.x);
+        const uint16_t *top = edges->top + in_frame(edges, part, y);
+        int16_t *seen = tile->seen + (size_t)y * (size_t)part.width;
         for (int x = 0; x < part.width; x++)
-            tile->seen[row + (size_t)x] = is_seen(edges, run, frame + (size_t)x) ? 255 : 0;
+            seen[x] = is_seen(coverage[x], top[x], run) ? 255 : 0;
     }
-    for (int y = 0; y < around.height; y++)
-        memcpy(tile->coverage + (size_t)y * (size_t)around.width,
-               edges->runs->run[run].coverage + in_frame(edges, around, y), (size_t)around.width);
+    const FlBox around = tile->around;
     fl_closing_inside(tile->coverage, around.width, around.height, part_of(tile), tile->inside);
 }
 
@@ -207,7 +218,7 @@ static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px
                        const int16_t *amounts, int16_t *closed, GError **error)
 {
     g_auto(Tile) tile = {0};
-    const FlBox all = edges->areas[run].box;
+    const FlBox all = edges->runs->run[run].area.box;
     if (!tile_init(&tile, edges, run, box, radius_px, error))
         return false;
     fill_tile(&tile, edges, run, amounts);
@@ -228,7 +239,7 @@ static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px
 static bool close_tiles(const FlEdgeMap *edges, int run, int radius_px, const int16_t *amounts,
                         int16_t *closed, GError **error)
 {
-    const FlBox all = edges->areas[run].box;
+    const FlBox all = edges->runs->run[run].area.box;
     const int columns = (all.width + TILE_PX - 1) / TILE_PX;
     const int rows = (all.height + TILE_PX - 1) / TILE_PX;
     GError *first = NULL;
@@ -238,7 +249,7 @@ static bool close_tiles(const FlEdgeMap *edges, int run, int radius_px, const in
         const FlBox corner = {all.x + t % columns * TILE_PX, all.y + t / columns * TILE_PX, 0, 0};
         const FlBox tile = {corner.x, corner.y, MIN(TILE_PX, all.x + all.width - corner.x),
                             MIN(TILE_PX, all.y + all.height - corner.y)};
-        const FlBox box = shape_in(edges, run, tile);
+        const FlBox box = shape_in(&edges->runs->run[run], tile);
         if (box.width > 0 && !close_tile(edges, run, box, radius_px, amounts, closed, &mine))
             fl_keep_first_error(&first, mine);
     }
@@ -250,7 +261,7 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
 {
     const FlTreatment *t = &painter->treatment;
     const FlRenderOptions *options = &edges->plan->options;
-    const size_t n = fl_box_pixels(edges->areas[run].box);
+    const size_t n = fl_box_pixels(edges->runs->run[run].area.box);
     if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || options->gap > 0 ||
         options->feather > 0 || n == 0 || run >= edges->n - 1)
         return true;
@@ -267,12 +278,11 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
 static uint8_t *own_pixels(const FlEdgeMap *edges, int run, FlBox box, GError **error)
 {
     uint8_t *own = fl_alloc(fl_box_pixels(box), 1, "a matte", error);
-    const FlArea *area = &edges->areas[run];
+    const FlArea *area = &edges->runs->run[run].area;
     for (int y = 0; own && y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
-        const size_t from = in_frame(edges, area->box, y);
-        const uint8_t *coverage = edges->runs->run[run].coverage + from;
-        const uint16_t *top = edges->top + from;
+        const uint8_t *coverage = coverage_row(&edges->runs->run[run], y);
+        const uint16_t *top = edges->top + in_frame(edges, area->box, y);
         uint8_t *row = own + (size_t)(area->box.y + y - box.y) * (size_t)box.width;
         row += area->box.x - box.x;
         for (int x = span.first; x < span.last; x++)
@@ -286,7 +296,7 @@ static bool count_inner(const FlEdgeMap *edges, int run, const int16_t *amounts,
                         FlAmountCounts *counts, GError **error)
 {
     enum { MARGIN_PX = 2 };
-    const FlArea *area = &edges->areas[run];
+    const FlArea *area = &edges->runs->run[run].area;
     const FlBox frame = {0, 0, fl_film_width(edges->plan->film), fl_film_height(edges->plan->film)};
     const FlBox box = grown(area->box, MARGIN_PX, frame);
     g_autofree uint8_t *inner = g_malloc((size_t)box.width);
@@ -305,7 +315,7 @@ static bool count_inner(const FlEdgeMap *edges, int run, const int16_t *amounts,
 
 bool fl_edges_level(const FlEdgeMap *edges, int run, int16_t *amounts, GError **error)
 {
-    const FlArea *area = &edges->areas[run];
+    const FlArea *area = &edges->runs->run[run].area;
     const FlBox box = area->box;
     g_autofree FlAmountCounts *counts = g_new0(FlAmountCounts, 1);
     if (!count_inner(edges, run, amounts, counts, error))

@@ -12,15 +12,13 @@
 typedef struct FlEdgeMap {
     const FlPlan *plan;
     const FlRuns *runs;
-    const FlArea *areas; // of the runs
-    uint16_t *top;       // a whole frame: 1 + the uppermost run, 0: none
-    int n;               // runs that count, and one: the lowest few thousand
-    bool *overlap;       // n * n: whether two runs, 1 + their numbers, lie over each other
+    uint16_t *top; // a whole frame: 1 + the uppermost run, 0: none
+    int n;         // runs that count, and one: the lowest few thousand
+    bool *overlap; // n * n: whether two runs, 1 + their numbers, lie over each other
 } FlEdgeMap;
 
-/** areas: of the runs; borrowed, as everything else. FL_ERROR_NO_MEMORY. */
-bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, const FlArea *areas,
-                   GError **error);
+/** Everything is borrowed. FL_ERROR_NO_MEMORY. */
+bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlRuns *runs, GError **error);
 void fl_edges_clear(FlEdgeMap *edges);
 
 /**

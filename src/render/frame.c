@@ -85,18 +85,24 @@ static FlColouring colouring_of(const FlPlan *plan, const FlBackground *backgrou
     return how;
 }
 
+static FlPaintedPart painted_by(const FlPainter *painter)
+{
+    return (FlPaintedPart){painter->part, painter->rect};
+}
+
 /* How much paint each pixel of a run's box has; to be freed with free(). */
-static int16_t *amounts_of(const FlPlan *plan, const FlEdgeMap *edges, int r,
-                           const FlPainter *painter, int tone, GError **error)
+static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPainter *painter, int tone,
+                           GError **error)
 {
     const bool keep = painter->treatment.tint == FL_TINT_KEEP;
-    const FlArea *area = &edges->areas[r];
+    const FlRun *run = &edges->runs->run[r];
+    const FlPaintedPart painted = painted_by(painter);
     g_autofree int16_t *amounts =
-        fl_alloc(fl_box_pixels(area->box), sizeof *amounts, "a layer", error);
+        fl_alloc(fl_box_pixels(run->area.box), sizeof *amounts, "a layer", error);
     if (!amounts)
         return NULL;
-    fl_colourise_amounts(painter->box->ink, keep ? FL_TONE_ONE : tone, painter->painted,
-                         edges->runs->run[r].coverage, fl_film_width(plan->film), area, amounts);
+    fl_colourise_amounts(painter->box->ink, keep ? FL_TONE_ONE : tone, &painted, run->coverage,
+                         &run->area, amounts);
     if (!fl_edges_close(edges, r, painter, amounts, error) ||
         (!keep && !fl_edges_level(edges, r, amounts, error)))
         return NULL;
@@ -107,19 +113,18 @@ static bool paint_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *
                         const FlEdgeMap *edges, int r, const FlPainter *painter, int tone,
                         GError **error)
 {
-    const int width = fl_film_width(plan->film);
     const FlRun *run = &edges->runs->run[r];
     const FlColouring how = colouring_of(plan, background, painter, run);
-    g_autofree int16_t *amounts = amounts_of(plan, edges, r, painter, tone, error);
+    const FlPaintedPart painted = painted_by(painter);
+    g_autofree int16_t *amounts = amounts_of(edges, r, painter, tone, error);
     uint8_t *body = amounts ? fl_alloc(fl_box_pixels(layer->area.box), 1, "a layer", error) : NULL;
     if (!body)
         return false;
     layer->body = body;
     layer->stacking = painter->treatment.stacking;
-    fl_colourise(painter->box->ink, &how, painter->painted, amounts, width, &layer->area,
-                 layer->rgba);
+    fl_colourise(painter->box->ink, &how, &painted, amounts, &layer->area, layer->rgba);
     fl_colourise_body(amounts, &layer->area, body);
-    return fl_holes_close(body, run->coverage, width, &layer->area, error);
+    return fl_holes_close(body, run->coverage, &layer->area, error);
 }
 
 static void clear_layer(FlLayer *layer, bool with_coverage)
@@ -137,20 +142,18 @@ static bool fill_film_layer(FlLayer *layer, const FlPlan *plan, const FlBackgrou
                             const FlEdgeMap *edges, int r, const int *tones, GError **error)
 {
     const FlRun *run = &edges->runs->run[r];
-    const int p = plan->painter_of[run->region], width = fl_film_width(plan->film);
-    const FlBox box = edges->areas[r].box;
-    *layer =
-        (FlLayer){.area = {box, g_memdup2(edges->areas[r].row, box.height * sizeof(FlColumns))},
-                  .coverage = run->coverage + (size_t)box.y * width + box.x,
-                  .pitch = (size_t)width,
-                  .alpha = run->alpha,
-                  .stacking = FL_STACKING_KNOCKOUT,
-                  .mix = run->mix};
+    const int p = plan->painter_of[run->region];
+    const FlBox box = run->area.box;
+    *layer = (FlLayer){.area = {box, g_memdup2(run->area.row, box.height * sizeof(FlColumns))},
+                       .coverage = run->coverage,
+                       .alpha = run->alpha,
+                       .stacking = FL_STACKING_KNOCKOUT,
+                       .mix = run->mix};
     if (!(layer->rgba = fl_alloc(4 * fl_box_pixels(box), 1, "a layer", error)))
         return false;
     if (p >= 0)
         return paint_layer(layer, plan, background, edges, r, &plan->painters[p], tones[p], error);
-    fl_colourise_plain(run->picture, run->rgb, run->coverage, width, &layer->area, layer->rgba);
+    fl_colourise_plain(run->picture, run->rgb, run->coverage, &layer->area, layer->rgba);
     return true;
 }
 
@@ -177,17 +180,6 @@ static char *layer_name(const FlPlan *plan, const FlRuns *runs, int run)
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
-/* Where each run is; to be cleared, and freed with g_free(). */
-static FlArea *find_areas(const FlPlan *plan, const FlRuns *runs)
-{
-    const int width = fl_film_width(plan->film), height = fl_film_height(plan->film);
-    FlArea *areas = g_new0(FlArea, MAX(runs->n, 1));
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int r = 0; r < runs->n; r++)
-        fl_area_init(&areas[r], runs->run[r].coverage, width, height);
-    return areas;
-}
-
 /* Side by side, those of the layers that are small enough; run: of each layer. */
 static bool fill_small(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
                        const FlEdgeMap *edges, const int *tones, const int *run, GError **error)
@@ -196,7 +188,7 @@ static bool fill_small(FlComposite *composite, const FlPlan *plan, const FlBackg
 #pragma omp parallel for schedule(dynamic, 1)
     for (int k = 0; k < composite->n_layers; k++) {
         GError *mine = NULL;
-        if (fl_plan_side_by_side(plan, fl_box_pixels(edges->areas[run[k]].box)) &&
+        if (fl_plan_side_by_side(plan, fl_box_pixels(edges->runs->run[run[k]].area.box)) &&
             !fill_layer(&composite->layers[k], plan, background, edges, run[k], tones, &mine))
             fl_keep_first_error(&first, mine);
     }
@@ -220,30 +212,20 @@ static bool fill_layers(FlComposite *composite, const FlPlan *plan, const FlBack
     if (!fill_small(composite, plan, background, edges, tones, run, error))
         return false;
     for (int k = 0; k < composite->n_layers; k++)
-        if (!fl_plan_side_by_side(plan, fl_box_pixels(edges->areas[run[k]].box)) &&
+        if (!fl_plan_side_by_side(plan, fl_box_pixels(edges->runs->run[run[k]].area.box)) &&
             !fill_layer(&composite->layers[k], plan, background, edges, run[k], tones, error))
             return false;
     return true;
 }
 
-static bool fill_areas(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                       const FlArea *areas, int frame, GError **error)
-{
-    g_autofree int *tones = g_new0(int, MAX(plan->n_painters, 1));
-    g_auto(FlEdgeMap) edges = {0};
-    return fl_tones_find(plan, composite->runs, areas, frame, tones, error) &&
-           fl_edges_init(&edges, plan, composite->runs, areas, error) &&
-           fill_layers(composite, plan, background, &edges, tones, error);
-}
-
 static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
                         int frame, GError **error)
 {
-    g_autofree FlArea *areas = find_areas(plan, composite->runs);
-    const bool filled = fill_areas(composite, plan, background, areas, frame, error);
-    for (int r = 0; r < composite->runs->n; r++)
-        fl_area_clear(&areas[r]);
-    if (!filled)
+    g_autofree int *tones = g_new0(int, MAX(plan->n_painters, 1));
+    g_auto(FlEdgeMap) edges = {0};
+    if (!fl_tones_find(plan, composite->runs, frame, tones, error) ||
+        !fl_edges_init(&edges, plan, composite->runs, error) ||
+        !fill_layers(composite, plan, background, &edges, tones, error))
         return false;
     FlStackParams params = {.linear = plan->options.blend == FL_BLEND_LINEAR,
                             .gap_px = (float)MAX(plan->options.gap, 0),

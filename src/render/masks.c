@@ -34,19 +34,6 @@ void fl_masks_free(FlMasks *masks)
     g_free(masks);
 }
 
-/* Copies the rows that two rectangles of a frame share. */
-static void copy_shared(const uint8_t *from, FlBox from_box, uint8_t *to, FlBox to_box)
-{
-    const int x0 = MAX(from_box.x, to_box.x);
-    const int x1 = MIN(from_box.x + from_box.width, to_box.x + to_box.width);
-    const int y0 = MAX(from_box.y, to_box.y);
-    const int y1 = MIN(from_box.y + from_box.height, to_box.y + to_box.height);
-    for (int y = y0; y < y1 && x0 < x1; y++)
-        memcpy(to + (size_t)(y - to_box.y) * to_box.width + (x0 - to_box.x),
-               from + (size_t)(y - from_box.y) * from_box.width + (x0 - from_box.x),
-               (size_t)(x1 - x0));
-}
-
 bool fl_masks_put(FlMasks *masks, int region, int frame, const uint8_t *coverage, GError **error)
 {
     const size_t block = (size_t)region * masks->n_frames + frame;
@@ -58,7 +45,7 @@ bool fl_masks_put(FlMasks *masks, int region, int frame, const uint8_t *coverage
     g_autofree uint8_t *cropped = fl_alloc(bytes, 1, "a mask", error);
     if (!cropped)
         return false;
-    copy_shared(coverage, (FlBox){0, 0, masks->width, masks->height}, cropped, box);
+    fl_box_copy(coverage, (FlBox){0, 0, masks->width, masks->height}, cropped, box, 1);
     g_mutex_lock(&masks->mutex);
     const bool kept = fl_spill_put(masks->spill, block, cropped, bytes, error);
     g_mutex_unlock(&masks->mutex);
@@ -76,7 +63,7 @@ bool fl_masks_get(const FlMasks *masks, int region, int frame, FlBox part, uint8
     g_autofree uint8_t *cropped = fl_alloc(fl_box_pixels(box), 1, "a mask", error);
     if (!cropped || !fl_spill_get(masks->spill, block, cropped, fl_box_pixels(box), error))
         return false;
-    copy_shared(cropped, box, coverage, part);
+    fl_box_copy(cropped, box, coverage, part, 1);
     return true;
 }
 

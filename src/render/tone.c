@@ -10,8 +10,7 @@
 /* Which painter each pixel shows, NOBODY where it is none or several. What is translucent leaves
  * what is below it in sight; regions that are not painted this time hide all the same, so that one
  * that is painted alone has the tone it has among others. */
-static uint16_t *find_owners(const FlPlan *plan, const FlRuns *runs, const FlArea *areas,
-                             GError **error)
+static uint16_t *find_owners(const FlPlan *plan, const FlRuns *runs, GError **error)
 {
     const size_t width = (size_t)fl_film_width(plan->film);
     const size_t n = width * (size_t)fl_film_height(plan->film);
@@ -24,13 +23,14 @@ static uint16_t *find_owners(const FlPlan *plan, const FlRuns *runs, const FlAre
         const int p = plan->painter_of[run->region];
         if (run->alpha < 255 || run->mix != FL_MIX_OVER)
             continue;
-        const FlBox box = areas[r].box;
+        const FlBox box = run->area.box;
         for (int y = 0; y < box.height; y++) {
-            const FlColumns span = fl_area_row(&areas[r], y);
-            const size_t row = (size_t)(box.y + y) * width + (size_t)box.x;
-            for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++)
-                if (run->coverage[i])
-                    owner[i] = p >= 0 && run->coverage[i] == 255 ? (uint16_t)p : NOBODY;
+            const FlColumns span = fl_area_row(&run->area, y);
+            const uint8_t *coverage = run->coverage + (size_t)y * (size_t)box.width;
+            uint16_t *row = owner + (size_t)(box.y + y) * width + (size_t)box.x;
+            for (int x = span.first; x < span.last; x++)
+                if (coverage[x])
+                    row[x] = p >= 0 && coverage[x] == 255 ? (uint16_t)p : NOBODY;
         }
     }
     return owner;
@@ -59,10 +59,9 @@ static bool find_tone(const FlPlan *plan, int p, const uint16_t *owner, int fram
     return true;
 }
 
-bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, const FlArea *areas, int frame,
-                   int *tones, GError **error)
+bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, int frame, int *tones, GError **error)
 {
-    g_autofree uint16_t *owner = find_owners(plan, runs, areas, error);
+    g_autofree uint16_t *owner = find_owners(plan, runs, error);
     if (!owner)
         return false;
     GError *first = NULL;

@@ -9,9 +9,8 @@
  * else by the whole shape. Paint is not the same near a contour as inside, and a hidden part should
  * have no say in the colour.
  *
- * areas has the area of each run; tones gets plan->n_painters values.
+ * tones gets plan->n_painters values.
  */
-bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, const FlArea *areas, int frame,
-                   int *tones, GError **error);
+bool fl_tones_find(const FlPlan *plan, const FlRuns *runs, int frame, int *tones, GError **error);
 
 #endif
