@@ -68,7 +68,7 @@ enum { WIDTH = 12, HEIGHT = 5 };
 static void paint_stripes(FlPainter *painter, FlGuides *guides, int shift, float flow)
 {
     for (int p = 0; p < WIDTH * HEIGHT; p++) {
-        memset(painter->part + 3 * p, (p % WIDTH + WIDTH - shift) % 4 * 60, 3);
+        memset(painter->painted + 3 * p, (p % WIDTH + WIDTH - shift) % 4 * 60, 3);
         guides->mask[p] = 255;
         guides->flow[2 * p] = flow;
         guides->flow[2 * p + 1] = 0;
@@ -78,7 +78,7 @@ static void paint_stripes(FlPainter *painter, FlGuides *guides, int shift, float
 static void paint_that_moves_with_its_region_does_not_flicker(void)
 {
     uint8_t part[3 * WIDTH * HEIGHT];
-    FlPainter painter = {.part = part};
+    FlPainter painter = {.painted = part};
     g_auto(FlGuides) guides = {0};
     g_assert_true(fl_guides_init(&guides, WIDTH, HEIGHT, NULL));
     FlFlicker flicker = {0};

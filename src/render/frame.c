@@ -87,7 +87,7 @@ static FlColouring colouring_of(const FlPlan *plan, const FlBackground *backgrou
 
 static FlPaintedPart painted_by(const FlPainter *painter)
 {
-    return (FlPaintedPart){painter->part, painter->rect};
+    return (FlPaintedPart){painter->painted, painter->rect};
 }
 
 /* How much paint each pixel of a run's box has; to be freed with free(). */

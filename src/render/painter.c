@@ -88,15 +88,10 @@ double fl_painter_bytes(const FlPainter *painter)
            of_region * (double)fl_box_pixels(cropped(painter));
 }
 
-static bool make_pictures(FlPainter *painter, GError **error)
+static bool make_picture(FlPainter *painter, GError **error)
 {
-    const size_t pixels = (size_t)painter->width * painter->height;
-    if (!(painter->painted = fl_alloc(3 * pixels, 1, "a painted region", error)) ||
-        !(painter->part = fl_alloc(3 * fl_box_pixels(painter->rect), 1, "a painted region", error)))
-        return false;
-    for (size_t p = 0; p < pixels; p++)
-        memcpy(painter->painted + 3 * p, painter->box->paper, 3);
-    return true;
+    painter->painted = fl_alloc(3 * fl_box_pixels(painter->rect), 1, "a painted region", error);
+    return painter->painted != NULL;
 }
 
 bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
@@ -105,7 +100,7 @@ bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
     painter->wrap = painter->loops ? MIN(painter->n_pictures, WRAP) : 0;
     painter->rect = cropped(painter);
     if (painter->given)
-        return make_pictures(painter, error);
+        return make_picture(painter, error);
     const FlGuideSource source = source_of(painter);
     const FlGuideParams how = fl_guide_params(&painter->treatment.params);
     const FlSynthSize size = {painter->rect.width, painter->rect.height, painter->width,
@@ -113,7 +108,7 @@ bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
     return (painter->guides = fl_guide_sequence_new(&source, &how, error)) &&
            (painter->synth = fl_synth_new(painter->box->exemplar, &painter->treatment.params, size,
                                           fl_key(seed, g_str_hash(painter->name)), error)) &&
-           make_pictures(painter, error) &&
+           make_picture(painter, error) &&
            (!painter->loops || fl_loop_init(&painter->loop, painter->n_pictures, error));
 }
 
@@ -124,44 +119,32 @@ void fl_painter_clear(FlPainter *painter)
     fl_synth_free(painter->synth);
     fl_loop_clear(&painter->loop);
     free(painter->painted);
-    free(painter->part);
     g_free(painter->flow_pattern);
     *painter = (FlPainter){0};
 }
 
-/* The picture of rect into that of the frame. */
-static void put_part(FlPainter *painter)
-{
-    const FlBox rect = painter->rect;
-    for (int y = 0; y < rect.height; y++)
-        memcpy(painter->painted + 3 * ((size_t)(rect.y + y) * painter->width + rect.x),
-               painter->part + 3 * (size_t)y * rect.width, 3 * (size_t)rect.width);
-}
-
-/* The region's picture `index`, held ones counted once, into painter->part. */
-static bool paint_part(FlPainter *painter, int index, FlGuides *guides, GError **error)
+/* The region's picture `index`, held ones counted once, into painter->painted. */
+static bool paint_picture(FlPainter *painter, int index, FlGuides *guides, GError **error)
 {
     guides->width = painter->rect.width, guides->height = painter->rect.height;
     return fl_guide_sequence_get(painter->guides, painter->wrap + index, guides, error) &&
-           fl_synth_frame(painter->synth, guides, painter->part, &painter->stats,
+           fl_synth_frame(painter->synth, guides, painter->painted, &painter->stats,
                           painter->wants_view ? &painter->view : NULL, error);
 }
 
 bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)
 {
     const FlLoop *loop = &painter->loop;
-    return k >= loop->n || (paint_part(painter, loop->first + k, guides, error) &&
-                            fl_loop_keep(&painter->loop, k, painter->part, painter->rect, error));
+    return k >= loop->n ||
+           (paint_picture(painter, loop->first + k, guides, error) &&
+            fl_loop_keep(&painter->loop, k, painter->painted, painter->rect, error));
 }
 
 /* The paint of a frame that another run has painted. */
 static bool take_paint(FlPainter *painter, int frame, GError **error)
 {
     g_autofree char *file = fl_paint_file(painter->given, painter, frame, error);
-    if (!file || !fl_paint_load(painter, file, error))
-        return false;
-    put_part(painter);
-    return true;
+    return file && fl_paint_load(painter, file, error);
 }
 
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error)
@@ -172,10 +155,9 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     const int index = frame / painter->treatment.hold;
     if (frame % painter->treatment.hold != 0)
         return true;
-    if (!paint_part(painter, index, guides, error) ||
-        !fl_loop_blend(&painter->loop, index, painter->part, painter->rect, error))
+    if (!paint_picture(painter, index, guides, error) ||
+        !fl_loop_blend(&painter->loop, index, painter->painted, painter->rect, error))
         return false;
-    put_part(painter);
     painter->seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
     return true;
 }
@@ -187,7 +169,7 @@ bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], 
         parts[0] = g_bytes_new(NULL, 0);
     else if (!(parts[0] = fl_synth_save(painter->synth, error)))
         return false;
-    parts[1] = g_bytes_new(painter->part, holds ? 3 * fl_box_pixels(painter->rect) : 0);
+    parts[1] = g_bytes_new(painter->painted, holds ? 3 * fl_box_pixels(painter->rect) : 0);
     return true;
 }
 
@@ -205,9 +187,7 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
         g_prefix_error(error, "region %s: ", painter->name);
         return false;
     }
-    if (bytes > 0) {
-        memcpy(painter->part, g_bytes_get_data(parts[1], NULL), bytes);
-        put_part(painter);
-    }
+    if (bytes > 0)
+        memcpy(painter->painted, g_bytes_get_data(parts[1], NULL), bytes);
     return true;
 }

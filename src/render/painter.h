@@ -28,8 +28,7 @@ typedef struct FlPainter {
     char *flow_pattern; // of flow files; NULL: the flow is made from the masks
     FlGuideSequence *guides;
     FlSynth *synth;
-    uint8_t *painted; // width * height * 3 sRGB, paper outside rect
-    uint8_t *part;    // the same of rect
+    uint8_t *painted; // the last picture, of rect: 3 bytes of sRGB a pixel
     FlFrameStats stats;
     bool wants_view; // set by whoever looks at `view`, which keeps a frame's worth of memory
     FlSynthView view;

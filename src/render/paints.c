@@ -15,14 +15,17 @@ char *fl_paint_file(const char *pattern, const FlPainter *painter, int frame, GE
 bool fl_paint_save(const FlPainter *painter, const char *path, bool overwrite, GError **error)
 {
     const size_t pixels = (size_t)painter->width * painter->height;
+    const uint8_t *paper = painter->box->paper;
+    const FlBox rect = painter->rect;
     g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "the paint of a region", error);
     if (!rgba)
         return false;
-    for (size_t p = 0; p < pixels; p++) {
-        for (int c = 0; c < 3; c++)
-            rgba[4 * p + c] = painter->painted[3 * p + c];
-        rgba[4 * p + 3] = 255;
-    }
+    for (size_t p = 0; p < pixels; p++) // paper, where the region never is
+        memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], 255}, 4);
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++)
+            memcpy(rgba + 4 * ((size_t)(rect.y + y) * (size_t)painter->width + rect.x + x),
+                   painter->painted + 3 * ((size_t)y * rect.width + x), 3);
     const FlPng png = {
         .width = painter->width, .height = painter->height, .rgba = rgba, .opaque = true};
     return fl_png_save(&png, path, overwrite, error);
@@ -49,7 +52,8 @@ bool fl_paint_load(FlPainter *painter, const char *path, GError **error)
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t from = (size_t)(rect.y + y) * (size_t)painter->width + rect.x + x;
-            memcpy(painter->part + 3 * ((size_t)y * rect.width + x), picture->rgba + 4 * from, 3);
+            memcpy(painter->painted + 3 * ((size_t)y * rect.width + x), picture->rgba + 4 * from,
+                   3);
         }
     return true;
 }

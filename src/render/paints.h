@@ -14,7 +14,7 @@ char *fl_paint_file(const char *pattern, const FlPainter *painter, int frame, GE
 /** Writes what the painter has painted, in the exemplar's colours and the frame's size, as PNG. */
 bool fl_paint_save(const FlPainter *painter, const char *path, bool overwrite, GError **error);
 
-/** Reads the part that is painter->part of such a file. FL_ERROR_INPUT, which names it. */
+/** Reads the part that is painter->painted of such a file. FL_ERROR_INPUT, which names it. */
 bool fl_paint_load(FlPainter *painter, const char *path, GError **error);
 
 #endif

@@ -55,7 +55,7 @@ static bool find_tone(const FlPlan *plan, int p, const uint16_t *owner, int fram
     }
     if (seen < ENOUGH && !fl_masks_get(painter->masks, painter->region, shown, rect, mask, error))
         return false;
-    *tone = fl_ink_tone(painter->box->ink, painter->part, mask, rect.width, rect.height);
+    *tone = fl_ink_tone(painter->box->ink, painter->painted, mask, rect.width, rect.height);
     return true;
 }
 

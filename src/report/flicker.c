@@ -47,7 +47,7 @@ bool fl_flicker_measure(FlFlicker *flicker, const FlPainter *painter, const FlGu
     }
     memcpy(now.mask, guides->mask, pixels);
     for (size_t p = 0; p < pixels; p++)
-        now.luma[p] = luma_of(painter->part + 3 * p);
+        now.luma[p] = luma_of(painter->painted + 3 * p);
     for (size_t k = 0; k < 2 * pixels; k++)
         now.motion[k] = (int16_t)lrintf(CLAMP(guides->flow[k], -32000, 32000));
     if (flicker->luma)
