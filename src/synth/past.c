@@ -69,17 +69,16 @@ GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GErro
     FlSpan parts[N_PARTS];
     parts_of(past, matches, width, height, parts);
     const size_t room = past->valid ? fl_pack_room(parts, N_PARTS) : 0;
-    uint8_t *bytes = fl_alloc(sizeof header + room, 1, "a state", error);
-    if (!bytes)
-        return NULL;
-    memcpy(bytes, &header, sizeof header);
-    const size_t packed = matches ? fl_pack(parts, N_PARTS, bytes + sizeof header, room) : 0;
-    if (past->valid && packed == 0) {
-        free(bytes);
+    g_autofree uint8_t *bytes = g_try_malloc(sizeof header + room);
+    const size_t packed =
+        bytes && matches ? fl_pack(parts, N_PARTS, bytes + sizeof header, room) : 0;
+    if (!bytes || (past->valid && packed == 0)) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a state");
         return NULL;
     }
-    return g_bytes_new_with_free_func(bytes, sizeof header + packed, free, bytes);
+    memcpy(bytes, &header, sizeof header);
+    bytes = g_realloc(bytes, sizeof header + packed); // it is kept, the room is not
+    return g_bytes_new_take(g_steal_pointer(&bytes), sizeof header + packed);
 }
 
 GBytes *fl_synth_past_later(GBytes *bytes, int frame)
