@@ -181,8 +181,15 @@ static void a_line_is_as_even_at_half_the_size(void)
 {
     const double half = deviation_along(5, 10), full = deviation_along(9, 20); // 4 and 8 px
     g_test_message("deviation at half the size %.3f, at the whole %.3f", half, full);
-    g_assert_cmpfloat(half, <, 0.25);
+    g_assert_cmpfloat(half, <, 0.1);
     g_assert_cmpfloat_with_epsilon(half, full, 0.1);
+}
+
+static void a_line_of_half_the_border_has_no_beads(void)
+{
+    g_assert_cmpfloat(deviation_along(9, 16), <, 0.1);
+    g_assert_cmpfloat(deviation_along(5, 8), <, 0.1);
+    g_assert_cmpfloat(deviation_along(21, 20), >, 0.9); // paint with room for its own form
 }
 
 static void what_is_faint_is_not_thin(void)
@@ -236,6 +243,7 @@ int main(int argc, char **argv)
     TEST(a_thin_shape_among_others_has_no_dark_core);
     TEST(a_line_is_seen_though_it_is_all_rim);
     TEST(a_line_is_as_even_at_half_the_size);
+    TEST(a_line_of_half_the_border_has_no_beads);
     TEST(what_is_faint_is_not_thin);
     TEST(a_part_with_its_reach_closes_as_in_the_whole);
     return g_test_run();

@@ -168,27 +168,32 @@ static void spread_rows(const uint8_t *in, uint8_t *out, FlBox box, int y, int r
             out[x] = MAX(out[x], in[(size_t)k * (size_t)box.width + (size_t)x]);
 }
 
-/** Widths that decide how a shape is closed, in half pixels: of what is thin, half of radius_px,
- * and of what is narrow, three halves. */
-static int thin_width(int radius_px)
+/** Widths, sixteenths of a pixel: up to `all` a shape is thin, or narrow, and from `none` on not.
+ */
+typedef struct Widths {
+    int all, none;
+} Widths;
+
+static Widths thin_widths(int radius_px)
 {
-    return radius_px;
+    return (Widths){8 * radius_px, 9 * radius_px};
 }
 
-static int narrow_width(int radius_px)
+static Widths narrow_widths(int radius_px)
 {
-    return 3 * radius_px;
+    return (Widths){18 * radius_px, 24 * radius_px};
 }
 
-/** The radius of the smallest window that is as wide, px. */
-static int window_radius(int width)
+/** The radius, px, of windows somewhat wider than `none`: in squares of 6/5 of the width of a line
+ * there is as much of it at any angle. */
+static int window_radius(Widths widths)
 {
-    return MAX(1, (width + 1) / 4);
+    return (widths.none + 16) / 32;
 }
 
 int fl_closing_reach(int radius_px)
 {
-    return MAX(2 * window_radius(narrow_width(radius_px)) + 1, radius_px);
+    return MAX(2 * window_radius(narrow_widths(radius_px)) + 1, radius_px);
 }
 
 /** Room for what is made of the windows of each pixel. */
@@ -225,20 +230,20 @@ static bool windows_init(Windows *windows, size_t n, GError **error)
 }
 
 /**
- * How thin what a plane has is at each pixel, 0..255: 0 where `width` half pixels of it lie nearby,
- * as at the edges and corners of what is large, 255 where three quarters of that do at most, as in
- * lines. `sums` becomes those over the window. Pixels at the contour are one farther from the
- * middle of the nearest full window than its radius.
+ * How thin what a plane has is at each pixel, 0..255: 0 where it is wide nearby, as at the edges
+ * and corners of what is large. `sums` becomes those over the window. Pixels at the contour are one
+ * farther from the middle of the nearest full window than its radius.
  */
-static void find_thin(const int16_t *plane, FlBox box, int width, uint32_t *rows, uint32_t *sums,
-                      uint8_t *thin)
+static void find_thin(const int16_t *plane, FlBox box, Widths widths, uint32_t *rows,
+                      uint32_t *sums, uint8_t *thin)
 {
     const size_t n = fl_box_pixels(box), pitch = (size_t)box.width;
-    const int r = window_radius(width), unit = (2 * r + 1) * width;
+    const int r = window_radius(widths), side = 2 * r + 1;
+    const int least = 255 * side * widths.all, unit = side * (widths.none - widths.all);
     uint8_t *spread = (uint8_t *)rows;
     sum_boxes(plane, box, r, rows, sums);
     for (size_t i = 0; i < n; i++)
-        thin[i] = (uint8_t)(CLAMP(8 * (int)sums[i] - 3 * 255 * unit, 0, 255 * unit) / unit);
+        thin[i] = (uint8_t)(CLAMP(16 * (int)sums[i] - least, 0, 255 * unit) / unit);
     for (int y = 0; y < box.height; y++)
         spread_columns(thin + (size_t)y * pitch, spread + (size_t)y * pitch, box.width, r + 1);
     for (int y = 0; y < box.height; y++)
@@ -261,9 +266,9 @@ static void find_parts(Windows *windows, const int16_t *inside, const int16_t *s
 {
     const size_t n = fl_box_pixels(box);
     uint8_t *part = windows->part; // at first how narrow the shape is
-    find_thin(inside, box, thin_width(radius_px), windows->rows, windows->around, windows->thin);
+    find_thin(inside, box, thin_widths(radius_px), windows->rows, windows->around, windows->thin);
     if (any_of(small, n))
-        find_thin(seen, box, narrow_width(radius_px), windows->rows, windows->wide, part);
+        find_thin(seen, box, narrow_widths(radius_px), windows->rows, windows->wide, part);
     for (size_t i = 0; i < n; i++)
         part[i] = (uint8_t)MAX(MAX(share[i], small[i] * part[i] / 255), windows->thin[i]);
 }
@@ -311,7 +316,7 @@ bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const int16_t *se
     for (size_t i = 0; i < n; i++)
         windows.weighed[i] = (int16_t)(amounts[i] * inside[i] / 255);
     sum_boxes(inside, box, radius_px, windows.rows, windows.wide);
-    sum_boxes(windows.weighed, box, window_radius(thin_width(radius_px)), windows.rows,
+    sum_boxes(windows.weighed, box, window_radius(thin_widths(radius_px)), windows.rows,
               windows.paint);
     even_parts(amounts, &windows, n, radius_px);
     return true;

@@ -36,10 +36,11 @@ void fl_closing_inside(const uint8_t *coverage, int width, int height, FlBox box
  * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
  * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim.
  * `small` is the share that counts where what is seen of the shape is narrow: up to 9/8 of the
- * radius wholly, from 3/2 on not at all. Shapes that are thin, up to 3/8 of the radius wholly and
- * from 1/2 on not at all, are all rim, of which next to nothing would be left, or a dark core;
- * their paint is even, also where their edges are free. These widths are fractions of the radius
- * and not whole pixels, so that a drawing of half the size closes as that of the whole.
+ * radius wholly, from 3/2 on not at all. Shapes that are thin, up to 1/2 of the radius wholly and
+ * from 9/16 on not at all, are all rim, of which next to nothing would be left, or beads and a dark
+ * core; their paint is even, also where their edges are free. Between these two widths the shape is
+ * seen as a pale band around that core, so that they are close together. They are fractions of the
+ * radius and not whole pixels, so that a drawing of half the size closes as that of the whole.
  *
  * amounts (0 … FL_AMOUNTS - 1, changed in place), inside, of fl_closing_inside(), seen, 255 where
  * the shape is seen and else 0, and the shares are box.width * box.height; an amount below 0 is
