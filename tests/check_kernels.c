@@ -292,6 +292,35 @@ static void splines_are_sampled_as_in_c(const void *version)
 
 enum { ROW = 200, LOOKS = 50 }; // the longest row
 
+/* Matches of any angle and frame, in an exemplar of any size. */
+static void make_matches(FlMatch *coarse, uint16_t most[2], FlRng *rng)
+{
+    for (int axis = 0; axis < 2; axis++)
+        most[axis] = (uint16_t)(16 * fl_rng_below(rng, fl_rng_below(rng, 2) ? 4096 : 3));
+    for (int i = 0; i < ROW; i++)
+        coarse[i] = (FlMatch){(uint16_t)fl_rng_below(rng, i % 8 ? most[0] / 2 + 1 : 65536),
+                              (uint16_t)fl_rng_below(rng, i % 9 ? most[1] / 2 + 1 : 65536),
+                              (int16_t)(fl_rng_below(rng, 4) - 1), (uint8_t)fl_rng_u32(rng),
+                              (uint8_t)fl_rng_u32(rng)};
+}
+
+static void matches_are_upscaled_as_in_c(const void *version)
+{
+    const FlKernels *kernels = version;
+    FlMatch coarse[ROW], want[2 * ROW], got[2 * ROW];
+    uint16_t most[2];
+    for (uint64_t seed = 1; seed <= 2 * ROW; seed++) {
+        FlRng rng = {seed};
+        const int at = (int)(seed % 5), n = MAX((int)seed - 2 * at, 0);
+        make_matches(coarse, most, &rng);
+        memset(want, 255, sizeof want);
+        memset(got, 255, sizeof got);
+        fl_upscale_row_c(coarse + at, fl_child_moves[seed % 2], most, want + at, n);
+        kernels->upscale_row(coarse + at, fl_child_moves[seed % 2], most, got + at, n);
+        g_assert_cmpmem(got, sizeof got, want, sizeof want);
+    }
+}
+
 /* Rows of noise, each from any address on, and what follows what is written. */
 typedef struct Noise {
     float f[8][2 * ROW + 16];
@@ -468,11 +497,14 @@ static void time_version(const FlKernels *kernels)
     FlOpinion opinions[FL_PATCH_PIXELS];
     uint32_t pair[2], uniformity[FL_MAX_TRIES];
     float value[4];
+    FlMatch coarse[ROW], fine[ROW];
+    uint16_t most[2];
     make_case(&c, 1);
     make_windows(&w, 16, &rng);
     w.n = 20;
     make_sieve(&sieve, texels, use, &rng);
     make_votes(&votes, &rng);
+    make_matches(coarse, most, &rng);
     const FlTexel *centre = centre_of(&c, 1);
     puts(kernels->name);
     TIME("patch_distance",
@@ -484,6 +516,7 @@ static void time_version(const FlKernels *kernels)
     TIME("opinions", kernels->opinions(&votes, opinions));
     TIME("spline_sample", kernels->spline_sample(pixels, 8, fl_spline_phases[k % 16].x,
                                                  fl_spline_phases[k % 16].y, value));
+    TIME("upscale_row", kernels->upscale_row(coarse, fl_child_moves[k % 2], most, fine, ROW));
 }
 
 static void time_rows(const FlRows *rows)
@@ -526,6 +559,7 @@ static const Check checks[] = {
     {"the-same-tries-are-drawn-inside-the-windows", the_same_tries_are_drawn_inside_the_windows},
     {"the-same-tries-pass-as-in-c", the_same_tries_pass_as_in_c},
     {"votes-are-sorted-as-in-c", votes_are_sorted_as_in_c},
+    {"matches-are-upscaled-as-in-c", matches_are_upscaled_as_in_c},
     {"splines-are-sampled-as-in-c", splines_are_sampled_as_in_c},
 };
 

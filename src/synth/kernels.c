@@ -139,15 +139,22 @@ int fl_find_opinions_c(const FlVotes *votes, FlOpinion *opinions)
     return n;
 }
 
+void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
+                      FlMatch *fine, int n)
+{
+    for (int i = 0; i < n; i++) {
+        FlMatch m = coarse[i / 2];
+        const FlOffset move = moves[m.theta][i % 2];
+        m.x_16 = (uint16_t)CLAMP(2 * m.x_16 + move.x, 0, most[0]);
+        m.y_16 = (uint16_t)CLAMP(2 * m.y_16 + move.y, 0, most[1]);
+        fine[i] = m;
+    }
+}
+
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
-    *kernels = (FlKernels){fl_patch_distance_c,
-                           fl_patch_pair_c,
-                           fl_draw_tries_c,
-                           fl_sift_c,
-                           fl_spline_sample_c,
-                           fl_find_opinions_c,
-                           "c"};
+    *kernels = (FlKernels){fl_patch_distance_c, fl_patch_pair_c,    fl_draw_tries_c,  fl_sift_c,
+                           fl_spline_sample_c,  fl_find_opinions_c, fl_upscale_row_c, "c"};
 #if HAVE_NEON
     if (flags & FL_CPU_NEON) {
         kernels->patch_distance = fl_patch_distance_neon;
@@ -156,13 +163,9 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
 #endif
 #if HAVE_AVX2
     if (flags & FL_CPU_AVX2)
-        *kernels = (FlKernels){fl_patch_distance_avx2,
-                               fl_patch_pair_avx2,
-                               fl_draw_tries_avx2,
-                               fl_sift_avx2,
-                               fl_spline_sample_avx2,
-                               fl_find_opinions_avx2,
-                               "avx2"};
+        *kernels = (FlKernels){
+            fl_patch_distance_avx2, fl_patch_pair_avx2,    fl_draw_tries_avx2,  fl_sift_avx2,
+            fl_spline_sample_avx2,  fl_find_opinions_avx2, fl_upscale_row_avx2, "avx2"};
 #endif
 #if HAVE_AVX512
     if (flags & FL_CPU_AVX512) {
@@ -171,6 +174,7 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
         kernels->draw_tries = fl_draw_tries_avx512;
         kernels->sift = fl_sift_avx512;
         kernels->opinions = fl_find_opinions_avx512;
+        kernels->upscale_row = fl_upscale_row_avx512;
         kernels->name = "avx512";
     }
 #endif

@@ -132,6 +132,24 @@ typedef struct FlOpinion {
  */
 typedef int (*FlFindOpinions)(const FlVotes *votes, FlOpinion *opinions);
 
+/** NNF(q): the centre of the source patch in 1/16 px of its level, its frame, its rotation. */
+typedef struct FlMatch {
+    uint16_t x_16, y_16;
+    int16_t frame; // FL_NO_MATCH: none
+    uint8_t theta; // target offset o is source offset R(-theta) o
+    uint8_t unused;
+} FlMatch;
+
+#define FL_NO_MATCH -1
+
+/**
+ * A row of n matches of the next finer level, two for each coarse one: match i is coarse[i / 2],
+ * its place p now 2 p + moves[theta][i % 2], but at least 0 and at most `most`, 65520 or less.
+ * Moves as in fl_child_moves.
+ */
+typedef void (*FlUpscaleRow)(const FlMatch *coarse, const FlOffset (*moves)[2],
+                             const uint16_t most[2], FlMatch *fine, int n);
+
 /** One version of every kernel. */
 typedef struct FlKernels {
     FlPatchDistance patch_distance;
@@ -140,6 +158,7 @@ typedef struct FlKernels {
     FlSift sift;
     FlSplineSample spline_sample;
     FlFindOpinions opinions;
+    FlUpscaleRow upscale_row;
     const char *name; // "c", "avx2", …
 } FlKernels;
 
@@ -181,5 +200,12 @@ void fl_spline_sample_avx2(const FlSplinePixel *first, size_t pitch, const int16
 int fl_find_opinions_c(const FlVotes *votes, FlOpinion *opinions);
 int fl_find_opinions_avx2(const FlVotes *votes, FlOpinion *opinions);
 int fl_find_opinions_avx512(const FlVotes *votes, FlOpinion *opinions);
+
+void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
+                      FlMatch *fine, int n);
+void fl_upscale_row_avx2(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
+                         FlMatch *fine, int n);
+void fl_upscale_row_avx512(const FlMatch *coarse, const FlOffset (*moves)[2],
+                           const uint16_t most[2], FlMatch *fine, int n);
 
 #endif

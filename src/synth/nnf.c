@@ -102,18 +102,15 @@ static uint16_t clamp_16(int v, int size)
     return (uint16_t)CLAMP(v, 0, 16 * (size - 1));
 }
 
-void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level, FlNnf *fine)
+void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level,
+                    const FlKernels *kernels, FlNnf *fine)
 {
+    const uint16_t most[2] = {(uint16_t)(16 * (fine_level->width - 1)),
+                              (uint16_t)(16 * (fine_level->height - 1))};
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < fine->height; y++)
-        for (int x = 0; x < fine->width; x++) {
-            FlMatch m = coarse->match[(size_t)(y / 2) * coarse->width + x / 2];
-            int dx, dy; // R(-theta)(q mod 2 - ½): rotate twice the offset, then halve
-            fl_unrotate(m.theta, 2 * (x & 1) - 1, 2 * (y & 1) - 1, &dx, &dy);
-            m.x_16 = clamp_16(2 * m.x_16 + 8 + dx / 2, fine_level->width);
-            m.y_16 = clamp_16(2 * m.y_16 + 8 + dy / 2, fine_level->height);
-            fine->match[(size_t)y * fine->width + x] = m;
-        }
+        kernels->upscale_row(coarse->match + (size_t)(y / 2) * coarse->width, fl_child_moves[y & 1],
+                             most, fine->match + (size_t)y * fine->width, fine->width);
 }
 
 /* The inverse of l upscalings for the match of full-size pixel (x, y). */

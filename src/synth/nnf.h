@@ -4,16 +4,6 @@
 
 #include "synth/target.h"
 
-/** NNF(q): the centre of the source patch in 1/16 px of its level, its frame, its rotation. */
-typedef struct FlMatch {
-    uint16_t x_16, y_16;
-    int16_t frame; // FL_NO_MATCH: none
-    uint8_t theta; // target offset o is source offset R(-theta) o
-    uint8_t unused;
-} FlMatch;
-
-#define FL_NO_MATCH -1
-
 /** The field of one target level: row-major, width * height. */
 typedef struct FlNnf {
     int width, height;
@@ -61,7 +51,8 @@ void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel
                    bool rotate, uint64_t key);
 
 /** The field of the next finer level [F21 §3.6, fig. 6]; pixels without a parent get no match. */
-void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level, FlNnf *fine);
+void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level,
+                    const FlKernels *kernels, FlNnf *fine);
 
 /** The match of a pixel of level l in level 0: its place there, as near as can be. */
 FlMatch fl_match_enlarged(FlMatch match, int l, const FlExemplarLevel *full);

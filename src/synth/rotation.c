@@ -28,6 +28,21 @@ static void fill_vote_offsets(void)
         }
 }
 
+static FlOffset child_moves[2][FL_ANGLES][2];
+const FlOffset (*fl_child_moves)[FL_ANGLES][2] = child_moves;
+
+/* The middle of a coarse pixel p is 2 p + 1/2 on the finer level, that of its child q is
+ * R(-theta)(q mod 2 - 1/2) from there: twice that is rotated, then halved. */
+static void fill_child_moves(void)
+{
+    for (int a = 0; a < FL_ANGLES; a++)
+        for (int k = 0; k < 4; k++) {
+            int dx, dy;
+            fl_unrotate((uint8_t)a, 2 * (k % 2) - 1, 2 * (k / 2) - 1, &dx, &dy);
+            child_moves[k / 2][a][k % 2] = (FlOffset){(int16_t)(8 + dx / 2), (int16_t)(8 + dy / 2)};
+        }
+}
+
 void fl_rotation_init(void)
 {
     static gsize once;
@@ -38,5 +53,6 @@ void fl_rotation_init(void)
         turns[a][1] = (int16_t)lrint(16384 * sin(a * (2 * G_PI / FL_ANGLES)));
     }
     fill_vote_offsets();
+    fill_child_moves();
     g_once_init_leave(&once, 1);
 }

@@ -30,6 +30,12 @@ typedef struct FlOffset {
  * the patch that is centred at place k takes the pixel in the middle from. */
 extern const FlOffset (*fl_vote_offsets)[FL_PATCH_PIXELS];
 
+/**
+ * From twice a match's place to that of a pixel of the next finer level, in 1/16 px of it, -8 … 24:
+ * fl_child_moves[row & 1][theta][column & 1].
+ */
+extern const FlOffset (*fl_child_moves)[FL_ANGLES][2];
+
 /** Fills the tables; harmless to call again. To be called before the other modules run. */
 void fl_rotation_init(void);
 

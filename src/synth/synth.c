@@ -260,7 +260,7 @@ static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     const bool coarsest = l == synth->n_levels - 1;
     const uint64_t key = fl_key(search->key, 1);
     if (!coarsest)
-        fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->nnf);
+        fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->kernels, search->nnf);
     else if (shifted)
         fl_nnf_downscale(shifted, l, search->level, search->nnf);
     fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);

@@ -252,3 +252,28 @@ int fl_find_opinions_avx512(const FlVotes *votes, FlOpinion *opinions)
     }
     return n;
 }
+
+/* In 16 bits: a place that overflows is above `most` anyway, and with 8 more no move is negative.
+ */
+void fl_upscale_row_avx512(const FlMatch *coarse, const FlOffset (*moves)[2],
+                           const uint16_t most[2], FlMatch *fine, int n)
+{
+    const __m512i least = _mm512_set1_epi16(8);
+    const __m512i limit = _mm512_set1_epi32((int)(most[0] | (uint32_t)most[1] << 16));
+    const __m512i first = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+    const __m512i second = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+    int i = 0;
+    for (; i + 16 <= n; i += 16) {
+        const __m512i m = _mm512_loadu_si512(coarse + i / 2);
+        const __m512i theta = _mm512_and_si512(_mm512_srli_epi64(m, 48), _mm512_set1_epi64(255));
+        const __m512i move = _mm512_i64gather_epi64(theta, moves, 8);
+        const __m512i rest = _mm512_shuffle_epi32(m, _MM_PERM_DDBB);
+        __m512i p = _mm512_shuffle_epi32(m, _MM_PERM_CCAA); // of both children
+        p = _mm512_adds_epu16(_mm512_adds_epu16(p, p), _mm512_add_epi16(move, least));
+        p = _mm512_min_epu16(_mm512_subs_epu16(p, least), limit);
+        const __m512i even = _mm512_unpacklo_epi32(p, rest), odd = _mm512_unpackhi_epi32(p, rest);
+        _mm512_storeu_si512(fine + i, _mm512_permutex2var_epi64(even, first, odd));
+        _mm512_storeu_si512(fine + i + 8, _mm512_permutex2var_epi64(even, second, odd));
+    }
+    fl_upscale_row_c(coarse + i / 2, moves, most, fine + i, n - i);
+}
