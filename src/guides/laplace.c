@@ -58,7 +58,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Grid, grid_clear)
 
 static bool level_init(Level *level, int width, int height, bool finest)
 {
-    const int pairs = (width + 31) / 32 * 8; // whole vectors, for loops are slow at their ends
+    const int pairs = (width + 15) / 16 * 4; // whole vectors, for loops are slow at their ends
     *level = (Level){.width = width,
                      .height = height,
                      .is_finest = finest,
