@@ -10,6 +10,7 @@
  */
 #include "guides/laplace.h"
 
+#include "base/alloc.h"
 #include "base/rows.h"
 #include <math.h>
 #include <string.h>
@@ -23,12 +24,13 @@ typedef struct Level {
     int width, height;
     bool is_finest;
     int pairs;        // of cells in half a row; the last may be beyond the width, outside
-    size_t half;      // cells in half a row, with one of the rim at either end
-    uint8_t *cell;    // FlCell
+    size_t half;      // cells from half a row to the next; the last is of the rim
+    void *memory;     // of the arrays
     float *inverse;   // 1 / number of neighbours that are not outside, in free cells; else 0
     float *parents;   // weight of the coarse cells around a free one that are inside; else 0
     float *value[2];  // of either component; 0 outside
     float *source[2]; // right-hand side: neighbours * value - sum of the neighbours' values
+    uint8_t *cell;    // FlCell
 } Level;
 
 enum {
@@ -45,36 +47,31 @@ typedef struct Grid {
 
 static void grid_clear(Grid *grid)
 {
-    for (Level *level = grid->level; level < grid->level + grid->n_levels; level++) {
-        g_free(level->cell);
-        g_free(level->inverse);
-        g_free(level->parents);
-        for (int k = 0; k < 2; k++)
-            g_free(level->value[k]), g_free(level->source[k]);
-    }
+    for (int l = 0; l < grid->n_levels; l++)
+        free(grid->level[l].memory);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Grid, grid_clear)
 
-static bool level_init(Level *level, int width, int height, bool finest)
+/* Loops are slow where vectors end, or begin anywhere: pairs are in fours, halves in sixteens. */
+static bool level_init(Level *level, int width, int height, bool finest, GError **error)
 {
-    const int pairs = (width + 15) / 16 * 4; // whole vectors, for loops are slow at their ends
-    *level = (Level){.width = width,
-                     .height = height,
-                     .is_finest = finest,
-                     .pairs = pairs,
-                     .half = 2 * (size_t)pairs + 2};
-    const size_t n = (size_t)(level->height + 2) * 2 * level->half;
-    level->cell = g_try_new0(uint8_t, n);
-    level->inverse = g_try_new0(float, n);
-    level->parents = g_try_new0(float, n);
-    bool good = level->cell && level->inverse && level->parents;
-    for (int k = 0; k < 2; k++) {
-        level->value[k] = g_try_new0(float, n);
-        level->source[k] = g_try_new0(float, finest ? level->half : n);
-        good = good && level->value[k] && level->source[k];
+    const int pairs = (width + 15) / 16 * 4;
+    const size_t half = ((size_t)pairs * 2 + 16) / 16 * 16, n = ((size_t)height + 2) * 2 * half;
+    const size_t sources = finest ? half : 2 * n;
+    float *memory =
+        fl_alloc(4 * n + sources + n / 4, sizeof *memory, "the diffusion of a flow", error);
+    *level = (Level){width, height, finest, pairs, half, .memory = memory};
+    if (!memory)
+        return false;
+    level->inverse = memory;
+    level->parents = memory + n;
+    for (size_t k = 0; k < 2; k++) {
+        level->value[k] = memory + (2 + k) * n;
+        level->source[k] = memory + 4 * n + (finest ? 0 : k * n);
     }
-    return good;
+    level->cell = (uint8_t *)(memory + 4 * n + sources);
+    return true;
 }
 
 /** What is done to a row of a level, from what is in another one. */
@@ -96,7 +93,7 @@ static void for_rows(const Level *level, const Level *other, RowWork *work)
 /** Where the even or the odd cells of a row begin; y may be in the rim. */
 static size_t half_row(const Level *level, int odd, int y)
 {
-    return ((size_t)(y + 1) * 2 + (size_t)odd) * level->half + 1;
+    return ((size_t)(y + 1) * 2 + (size_t)odd) * level->half;
 }
 
 /** Where the first cell of half a row and its neighbours are; the right one is next to the left. */
@@ -220,11 +217,8 @@ static bool grid_init(Grid *grid, const uint8_t *cell, int width, int height, co
     for (; grid->n_levels < MAX_LEVELS; width = (width + 1) / 2, height = (height + 1) / 2) {
         Level *level = &grid->level[grid->n_levels++];
         const bool finest = grid->n_levels == 1;
-        if (!level_init(level, width, height, finest)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                        "not enough memory to diffuse a flow of %dx%d pixels", width, height);
+        if (!level_init(level, width, height, finest, error))
             return false;
-        }
         for (int y = 0; y < height && finest; y++)
             load_row(grid, y, cell + y * (size_t)width, field + 2 * y * (size_t)width);
         if (!finest)
