@@ -2,6 +2,7 @@
  */
 #include "base/rng.h"
 #include "compose/closing.h"
+#include "compose/detail.h"
 #include <glib.h>
 #include <math.h>
 #include <string.h>
@@ -64,7 +65,7 @@ static void close_box(int16_t *amounts, const uint8_t *share, FlBox of, int bord
     g_autoptr(GError) error = NULL;
     for (size_t i = 0; i < fl_box_pixels(of); i++)
         inside[i] = 255;
-    fl_closing_apply(amounts, inside, inside, share, share, of, border, &error);
+    fl_closing_apply(amounts, inside, share, of, border, &error);
     g_assert_no_error(error);
 }
 
@@ -167,7 +168,7 @@ static double deviation_along(int columns, int border)
     g_autoptr(GError) error = NULL;
     for (int i = 0; i < (int)n; i++)
         amounts[i] = i / columns / border % 2 ? 2 * FL_AMOUNT_ONE : 0;
-    fl_closing_apply(amounts, inside, inside, share, share, line, border, &error);
+    fl_closing_apply(amounts, inside, share, line, border, &error);
     g_assert_no_error(error);
     double squares = 0;
     for (int y = 0; y < ROWS; y++) {
@@ -233,6 +234,54 @@ static void a_part_with_its_reach_closes_as_in_the_whole(void)
     g_assert_false(closes_as_in_the_whole(5, 40, 4)); // the rim's shares are not 0 there
 }
 
+/** What fl_detail_find() says of a disc of a diameter, from which a tail sticks out. */
+static uint8_t detail_of_disc(double diameter, uint8_t *of_tail)
+{
+    uint8_t seen[WIDTH * WIDTH] = {0}, detail[WIDTH * WIDTH];
+    for (int y = 0; y < WIDTH; y++)
+        for (int x = 0; x < WIDTH; x++) {
+            const double dx = x - 30, dy = y - 48;
+            const bool tail = x >= 30 && x < 90 && y >= 47 && y < 50;
+            seen[y * WIDTH + x] = tail || 4 * (dx * dx + dy * dy) < diameter * diameter ? 255 : 0;
+        }
+    g_assert_true(fl_detail_find(seen, WIDTH, WIDTH, BORDER, detail, NULL));
+    *of_tail = detail[48 * WIDTH + 88];
+    g_assert_cmpint(detail[48 * WIDTH + 90], ==, *of_tail); // beside it
+    g_assert_cmpint(detail[48 * WIDTH + 93], ==, 0);
+    return detail[48 * WIDTH + 30];
+}
+
+static void the_narrow_end_of_a_shape_is_no_detail(void)
+{
+    uint8_t tail;
+    g_assert_cmpint(detail_of_disc(9, &tail), ==, 255);
+    g_assert_cmpint(tail, ==, 255);
+    g_assert_cmpint(detail_of_disc(40, &tail), ==, 0);
+    g_assert_cmpint(tail, ==, 0);
+}
+
+/** Detail in the middle of each of three bars, turned by an angle, that lie side by side. */
+static uint8_t detail_of_bars(double bar, double degrees)
+{
+    uint8_t seen[WIDTH * WIDTH], detail[WIDTH * WIDTH];
+    const double c = cos(degrees * G_PI / 180), s = sin(degrees * G_PI / 180);
+    for (int i = 0; i < WIDTH * WIDTH; i++) {
+        const double across = (i % WIDTH - 48) * c + (i / WIDTH - 48) * s, gap = bar + 3;
+        seen[i] =
+            fabs(across - gap * round(across / gap)) < bar / 2 && fabs(across) < 2 * gap ? 255 : 0;
+    }
+    g_assert_true(fl_detail_find(seen, WIDTH, WIDTH, BORDER, detail, NULL));
+    return detail[48 * WIDTH + 48];
+}
+
+static void a_part_is_a_detail_by_its_own_width_at_any_angle(void)
+{
+    for (int degrees = 0; degrees < 90; degrees += 15) {
+        g_assert_cmpint(detail_of_bars(0.9 * BORDER, degrees), ==, 255);
+        g_assert_cmpint(detail_of_bars(1.7 * BORDER, degrees), ==, 0);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -245,6 +294,8 @@ int main(int argc, char **argv)
     TEST(a_line_is_as_even_at_half_the_size);
     TEST(a_line_of_half_the_border_has_no_beads);
     TEST(what_is_faint_is_not_thin);
+    TEST(the_narrow_end_of_a_shape_is_no_detail);
+    TEST(a_part_is_a_detail_by_its_own_width_at_any_angle);
     TEST(a_part_with_its_reach_closes_as_in_the_whole);
     return g_test_run();
 }

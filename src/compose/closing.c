@@ -1,6 +1,7 @@
 #include "compose/closing.h"
 
 #include "base/alloc.h"
+#include "compose/windows.h"
 #include <glib.h>
 #include <string.h>
 
@@ -104,49 +105,6 @@ void fl_closing_inside(const uint8_t *coverage, int width, int height, FlBox box
 #define LEAST (FL_AMOUNT_ONE * 3 / 4)  // what is bare of paint all the same
 #define MOST (FL_AMOUNT_ONE * 3 / 2)
 
-#define BAND 128 // columns that are summed side by side, as they lie in memory
-
-/** Sums of a row over 2 r + 1 columns. */
-static void sum_columns(const int16_t *plane, uint32_t *out, int n, int r)
-{
-    uint32_t sum = 0;
-    for (int i = -r; i < n; i++) {
-        if (i + r < n)
-            sum += (uint32_t)plane[i + r];
-        if (i >= 0)
-            out[i] = sum;
-        if (i - r >= 0)
-            sum -= (uint32_t)plane[i - r];
-    }
-}
-
-/** Sums of the sums over 2 r + 1 rows, of n <= BAND columns of a box. */
-static void sum_rows(const uint32_t *in, uint32_t *out, int n, FlBox box, int r)
-{
-    const size_t width = (size_t)box.width;
-    uint32_t sum[BAND] = {0};
-    for (int y = -r; y < box.height; y++) {
-        const uint32_t *enter = y + r < box.height ? in + (size_t)(y + r) * width : NULL;
-        const uint32_t *leave = y - r >= 0 ? in + (size_t)(y - r) * width : NULL;
-        for (int x = 0; x < n && enter; x++)
-            sum[x] += enter[x];
-        for (int x = 0; x < n && y >= 0; x++)
-            out[(size_t)y * width + (size_t)x] = sum[x];
-        for (int x = 0; x < n && leave; x++)
-            sum[x] -= leave[x];
-    }
-}
-
-/** Sums of a plane, 0 or more, over 2 r + 1 columns and rows; rows: scratch. */
-static void sum_boxes(const int16_t *plane, FlBox box, int r, uint32_t *rows, uint32_t *sums)
-{
-    const size_t width = (size_t)box.width;
-    for (int y = 0; y < box.height; y++)
-        sum_columns(plane + (size_t)y * width, rows + (size_t)y * width, box.width, r);
-    for (int x = 0; x < box.width; x += BAND)
-        sum_rows(rows + x, sums + x, MIN(BAND, box.width - x), box, r);
-}
-
 /** The largest of 2 r + 1 columns. */
 static void spread_columns(const uint8_t *in, uint8_t *out, int n, int r)
 {
@@ -168,32 +126,14 @@ static void spread_rows(const uint8_t *in, uint8_t *out, FlBox box, int y, int r
             out[x] = MAX(out[x], in[(size_t)k * (size_t)box.width + (size_t)x]);
 }
 
-/** Widths, sixteenths of a pixel: up to `all` a shape is thin, or narrow, and from `none` on not.
- */
-typedef struct Widths {
-    int all, none;
-} Widths;
-
-static Widths thin_widths(int radius_px)
+static FlWidths thin_widths(int radius_px)
 {
-    return (Widths){8 * radius_px, 9 * radius_px};
-}
-
-static Widths narrow_widths(int radius_px)
-{
-    return (Widths){18 * radius_px, 24 * radius_px};
-}
-
-/** The radius, px, of windows somewhat wider than `none`: in squares of 6/5 of the width of a line
- * there is as much of it at any angle. */
-static int window_radius(Widths widths)
-{
-    return (widths.none + 16) / 32;
+    return (FlWidths){8 * radius_px, 9 * radius_px};
 }
 
 int fl_closing_reach(int radius_px)
 {
-    return MAX(2 * window_radius(narrow_widths(radius_px)) + 1, radius_px);
+    return MAX(2 * fl_window_radius(thin_widths(radius_px)) + 1, radius_px);
 }
 
 /** Room for what is made of the windows of each pixel. */
@@ -234,16 +174,15 @@ static bool windows_init(Windows *windows, size_t n, GError **error)
  * and corners of what is large. `sums` becomes those over the window. Pixels at the contour are one
  * farther from the middle of the nearest full window than its radius.
  */
-static void find_thin(const int16_t *plane, FlBox box, Widths widths, uint32_t *rows,
+static void find_thin(const int16_t *plane, FlBox box, FlWidths widths, uint32_t *rows,
                       uint32_t *sums, uint8_t *thin)
 {
     const size_t n = fl_box_pixels(box), pitch = (size_t)box.width;
-    const int r = window_radius(widths), side = 2 * r + 1;
-    const int least = 255 * side * widths.all, unit = side * (widths.none - widths.all);
+    const int r = fl_window_radius(widths);
     uint8_t *spread = (uint8_t *)rows;
-    sum_boxes(plane, box, r, rows, sums);
+    fl_window_sums(plane, box, r, rows, sums);
     for (size_t i = 0; i < n; i++)
-        thin[i] = (uint8_t)(CLAMP(16 * (int)sums[i] - least, 0, 255 * unit) / unit);
+        thin[i] = fl_window_width(widths, sums[i]);
     for (int y = 0; y < box.height; y++)
         spread_columns(thin + (size_t)y * pitch, spread + (size_t)y * pitch, box.width, r + 1);
     for (int y = 0; y < box.height; y++)
@@ -258,19 +197,6 @@ static bool any_of(const uint8_t *plane, size_t n)
     for (size_t i = 0; i < n; i++)
         any |= plane[i];
     return any;
-}
-
-/** Fills `part`; most pixels of most shapes have none. */
-static void find_parts(Windows *windows, const int16_t *inside, const int16_t *seen,
-                       const uint8_t *share, const uint8_t *small, FlBox box, int radius_px)
-{
-    const size_t n = fl_box_pixels(box);
-    uint8_t *part = windows->part; // at first how narrow the shape is
-    find_thin(inside, box, thin_widths(radius_px), windows->rows, windows->around, windows->thin);
-    if (any_of(small, n))
-        find_thin(seen, box, narrow_widths(radius_px), windows->rows, windows->wide, part);
-    for (size_t i = 0; i < n; i++)
-        part[i] = (uint8_t)MAX(MAX(share[i], small[i] * part[i] / 255), windows->thin[i]);
 }
 
 /** What is left of the contrast, of FL_AMOUNT_ONE: less the less of the window is the shape's. */
@@ -302,22 +228,23 @@ static void even_parts(int16_t *amounts, const Windows *windows, size_t n, int r
     }
 }
 
-bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const int16_t *seen,
-                      const uint8_t *share, const uint8_t *small, FlBox box, int radius_px,
-                      GError **error)
+bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *share, FlBox box,
+                      int radius_px, GError **error)
 {
     const size_t n = fl_box_pixels(box);
+    const FlWidths thin = thin_widths(radius_px);
     g_auto(Windows) windows = {0};
     if (!windows_init(&windows, n, error))
         return false;
-    find_parts(&windows, inside, seen, share, small, box, radius_px);
-    if (!any_of(windows.part, n))
+    find_thin(inside, box, thin, windows.rows, windows.around, windows.thin);
+    for (size_t i = 0; i < n; i++)
+        windows.part[i] = MAX(share[i], windows.thin[i]);
+    if (!any_of(windows.part, n)) // as in most tiles of most shapes
         return true;
     for (size_t i = 0; i < n; i++)
         windows.weighed[i] = (int16_t)(amounts[i] * inside[i] / 255);
-    sum_boxes(inside, box, radius_px, windows.rows, windows.wide);
-    sum_boxes(windows.weighed, box, window_radius(thin_widths(radius_px)), windows.rows,
-              windows.paint);
+    fl_window_sums(inside, box, radius_px, windows.rows, windows.wide);
+    fl_window_sums(windows.weighed, box, fl_window_radius(thin), windows.rows, windows.paint);
     even_parts(amounts, &windows, n, radius_px);
     return true;
 }

@@ -35,20 +35,18 @@ void fl_closing_inside(const uint8_t *coverage, int width, int height, FlBox box
 /**
  * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
  * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim.
- * `small` is the share that counts where what is seen of the shape is narrow: up to 9/8 of the
- * radius wholly, from 3/2 on not at all. Shapes that are thin, up to 1/2 of the radius wholly and
- * from 9/16 on not at all, are all rim, of which next to nothing would be left, or beads and a dark
- * core; their paint is even, also where their edges are free. Between these two widths the shape is
- * seen as a pale band around that core, so that they are close together. They are fractions of the
- * radius and not whole pixels, so that a drawing of half the size closes as that of the whole.
+ * Shapes that are thin, up to 1/2 of the radius wholly and from 9/16 on not at all, are all rim, of
+ * which next to nothing would be left, or beads and a dark core; their paint is even, also where
+ * their edges are free. Between these two widths the shape is seen as a pale band around that core,
+ * so that they are close together. They are fractions of the radius and not whole pixels, so that a
+ * drawing of half the size closes as that of the whole.
  *
- * amounts (0 … FL_AMOUNTS - 1, changed in place), inside, of fl_closing_inside(), seen, 255 where
- * the shape is seen and else 0, and the shares are box.width * box.height; an amount below 0 is
- * outside the shape, and nothing is inside there. radius_px is that of the shares.
+ * amounts (0 … FL_AMOUNTS - 1, changed in place), inside, of fl_closing_inside(), and share are
+ * box.width * box.height; an amount below 0 is outside the shape, and nothing is inside there.
+ * radius_px is that of the share.
  */
-bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const int16_t *seen,
-                      const uint8_t *share, const uint8_t *small, FlBox box, int radius_px,
-                      GError **error);
+bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *share, FlBox box,
+                      int radius_px, GError **error);
 
 /** How far away what is in a box may change an amount, px: a part with so much around it closes as
  * in the whole. */

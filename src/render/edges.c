@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/first_error.h"
 #include "compose/closing.h"
+#include "compose/detail.h"
 #include "compose/inner.h"
 #include <string.h>
 
@@ -105,9 +106,9 @@ void fl_edges_clear(FlEdgeMap *edges)
 typedef struct Tile {
     FlBox part;                 // what is closed, with what may change it
     FlBox around;               // with what the shares are of
-    int16_t *amounts;           // of part
-    int16_t *inside, *seen;     // of part
-    uint8_t *ends, *meets;      // of part: shares of the edges
+    int16_t *amounts, *inside;  // of part
+    uint8_t *detail;            // of part
+    uint8_t *share, *meets;     // of part: of the edges that are closed, and of all
     uint8_t *coverage, *others; // of around
 } Tile;
 
@@ -136,8 +137,8 @@ static void tile_clear(Tile *tile)
 {
     free(tile->amounts);
     free(tile->inside);
-    free(tile->seen);
-    free(tile->ends);
+    free(tile->detail);
+    free(tile->share);
     free(tile->meets);
     free(tile->coverage);
     free(tile->others);
@@ -155,8 +156,8 @@ static bool tile_init(Tile *tile, const FlEdgeMap *edges, int run, FlBox box, in
     const size_t n = fl_box_pixels(part), around = fl_box_pixels(tile->around);
     return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
            (tile->inside = fl_alloc(n, sizeof *tile->inside, "a matte", error)) &&
-           (tile->seen = fl_alloc(n, sizeof *tile->seen, "a matte", error)) &&
-           (tile->ends = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->detail = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->share = fl_alloc(n, 1, "a matte", error)) &&
            (tile->meets = fl_alloc(n, 1, "a matte", error)) &&
            (tile->coverage = fl_alloc(around, 1, "a matte", error)) &&
            (tile->others = fl_alloc(around, 1, "a matte", error));
@@ -190,43 +191,54 @@ static bool find_share(Tile *tile, const FlEdgeMap *edges, int run, bool with_al
                             part_of(tile), radius_px, share, error);
 }
 
+/** The share of the edges that are closed: of details all, else those with runs below or above
+ * which the run does not lie. */
+static bool find_closed(Tile *tile, const FlEdgeMap *edges, int run, int radius_px, GError **error)
+{
+    const size_t n = fl_box_pixels(tile->part);
+    uint8_t any = 0;
+    for (size_t i = 0; i < n; i++)
+        any |= tile->detail[i];
+    if (!find_share(tile, edges, run, false, radius_px, tile->share, error) ||
+        (any && !find_share(tile, edges, run, true, radius_px, tile->meets, error)))
+        return false;
+    for (size_t i = 0; i < n && any; i++)
+        tile->share[i] = (uint8_t)MAX(tile->share[i], tile->meets[i] * tile->detail[i] / 255);
+    return true;
+}
+
 /** Whether a run is seen at a pixel: nothing that hides it lies over it. */
 static bool is_seen(uint8_t coverage, uint16_t top, int run)
 {
     return coverage >= SHOWN && top <= run + 1;
 }
 
-/** What the tile has of the run: its amounts, where it is seen, its coverage and what is inside. */
-static void fill_tile(Tile *tile, const FlEdgeMap *edges, int run, const int16_t *amounts)
+/** What is known of a run, of its box, before it is closed. */
+typedef struct Before {
+    const int16_t *amounts;
+    const uint8_t *detail;
+} Before;
+
+static void fill_tile(Tile *tile, const FlRun *run, const Before *before)
 {
-    const FlRun *r = &edges->runs->run[run];
-    const FlBox all = r->area.box, part = tile->part;
-    fl_box_copy(amounts, all, tile->amounts, part, sizeof *amounts);
-    fl_box_copy(r->coverage, all, tile->coverage, tile->around, 1);
-    for (int y = 0; y < part.height; y++) {
-        const uint8_t *coverage = coverage_row(r, part.y - all.y + y) + (part.x - all.x);
-        const uint16_t *top = edges->top + in_frame(edges, part, y);
-        int16_t *seen = tile->seen + (size_t)y * (size_t)part.width;
-        for (int x = 0; x < part.width; x++)
-            seen[x] = is_seen(coverage[x], top[x], run) ? 255 : 0;
-    }
-    const FlBox around = tile->around;
+    const FlBox all = run->area.box, around = tile->around;
+    fl_box_copy(before->amounts, all, tile->amounts, tile->part, sizeof *tile->amounts);
+    fl_box_copy(before->detail, all, tile->detail, tile->part, 1);
+    fl_box_copy(run->coverage, all, tile->coverage, around, 1);
     fl_closing_inside(tile->coverage, around.width, around.height, part_of(tile), tile->inside);
 }
 
 static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px,
-                       const int16_t *amounts, int16_t *closed, GError **error)
+                       const Before *before, int16_t *closed, GError **error)
 {
     g_auto(Tile) tile = {0};
     const FlBox all = edges->runs->run[run].area.box;
     if (!tile_init(&tile, edges, run, box, radius_px, error))
         return false;
-    fill_tile(&tile, edges, run, amounts);
+    fill_tile(&tile, &edges->runs->run[run], before);
     const FlBox part = tile.part;
-    if (!find_share(&tile, edges, run, false, radius_px, tile.ends, error) ||
-        !find_share(&tile, edges, run, true, radius_px, tile.meets, error) ||
-        !fl_closing_apply(tile.amounts, tile.inside, tile.seen, tile.ends, tile.meets, part,
-                          radius_px, error))
+    if (!find_closed(&tile, edges, run, radius_px, error) ||
+        !fl_closing_apply(tile.amounts, tile.inside, tile.share, part, radius_px, error))
         return false;
     for (int y = box.y; y < box.y + box.height; y++)
         memcpy(closed + (size_t)(y - all.y) * (size_t)all.width + (box.x - all.x),
@@ -236,7 +248,7 @@ static bool close_tile(const FlEdgeMap *edges, int run, FlBox box, int radius_px
 }
 
 /** All tiles in which the shape is: many shapes are far smaller than their box. */
-static bool close_tiles(const FlEdgeMap *edges, int run, int radius_px, const int16_t *amounts,
+static bool close_tiles(const FlEdgeMap *edges, int run, int radius_px, const Before *before,
                         int16_t *closed, GError **error)
 {
     const FlBox all = edges->runs->run[run].area.box;
@@ -250,10 +262,30 @@ static bool close_tiles(const FlEdgeMap *edges, int run, int radius_px, const in
         const FlBox tile = {corner.x, corner.y, MIN(TILE_PX, all.x + all.width - corner.x),
                             MIN(TILE_PX, all.y + all.height - corner.y)};
         const FlBox box = shape_in(&edges->runs->run[run], tile);
-        if (box.width > 0 && !close_tile(edges, run, box, radius_px, amounts, closed, &mine))
+        if (box.width > 0 && !close_tile(edges, run, box, radius_px, before, closed, &mine))
             fl_keep_first_error(&first, mine);
     }
     return fl_tell_first_error(error, first);
+}
+
+/** How far each pixel of a run's box is of a small detail, as of fl_detail_find(). */
+static uint8_t *find_detail(const FlEdgeMap *edges, int run, int radius_px, GError **error)
+{
+    const FlRun *r = &edges->runs->run[run];
+    const FlBox box = r->area.box;
+    g_autofree uint8_t *seen = fl_alloc(fl_box_pixels(box), 1, "a matte", error);
+    g_autofree uint8_t *detail = seen ? fl_alloc(fl_box_pixels(box), 1, "a matte", error) : NULL;
+    for (int y = 0; detail && y < box.height; y++) {
+        const FlColumns span = fl_area_row(&r->area, y);
+        const uint8_t *coverage = coverage_row(r, y);
+        const uint16_t *top = edges->top + in_frame(edges, box, y);
+        uint8_t *row = seen + (size_t)y * (size_t)box.width;
+        for (int x = span.first; x < span.last; x++)
+            row[x] = is_seen(coverage[x], top[x], run) ? 255 : 0;
+    }
+    return detail && fl_detail_find(seen, box.width, box.height, radius_px, detail, error)
+               ? g_steal_pointer(&detail)
+               : NULL;
 }
 
 bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, int16_t *amounts,
@@ -267,11 +299,12 @@ bool fl_edges_close(const FlEdgeMap *edges, int run, const FlPainter *painter, i
         return true;
     const float border = painter->box->exemplar->border_px;
     const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
-    g_autofree int16_t *before = fl_alloc(n, sizeof *before, "a layer", error);
-    if (!before)
+    g_autofree int16_t *copy = fl_alloc(n, sizeof *copy, "a layer", error);
+    g_autofree uint8_t *detail = copy ? find_detail(edges, run, radius, error) : NULL;
+    if (!detail)
         return false;
-    memcpy(before, amounts, n * sizeof *before);
-    return close_tiles(edges, run, radius, before, amounts, error);
+    memcpy(copy, amounts, n * sizeof *copy);
+    return close_tiles(edges, run, radius, &(Before){copy, detail}, amounts, error);
 }
 
 /** 255 where a run is all that is seen, else 0; of a box that may be larger than the run's. */
