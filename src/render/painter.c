@@ -83,9 +83,7 @@ static FlBox cropped(const FlPainter *painter)
 
 double fl_painter_bytes(const FlPainter *painter)
 {
-    const double of_region = 80; // measured: fields, votes, guides and the state
-    return 3.0 * painter->width * painter->height +
-           of_region * (double)fl_box_pixels(cropped(painter));
+    return 45 * (double)fl_box_pixels(cropped(painter)); // measured: fields, guides and the state
 }
 
 static bool make_picture(FlPainter *painter, GError **error)

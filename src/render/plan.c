@@ -342,7 +342,7 @@ static bool make_masks(FlPlan *plan, GError **error)
 static bool check_memory(const FlPlan *plan, GError **error)
 {
     const double pixels = (double)plan->width * plan->height;
-    double bytes = 20e6 + 10 * pixels; // measured: the libraries, a frame composed
+    double bytes = 20e6 + 100 * pixels; // measured: the libraries, scratch, a frame composed
     for (int p = 0; p < plan->n_painters; p++)
         bytes += fl_painter_bytes(&plan->painters[p]);
     bytes += fl_exemplars_bytes(plan->exemplars);
