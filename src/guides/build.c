@@ -6,7 +6,11 @@
  *   distance_of  the distance smoothed along time and in space, if asked for [P21 §4.1]
  *   motion_of    the flow of one interval
  *   finish_frame the flow smoothed along time [F21 App. A], direction, extent; into the spill
+ *
+ * For one region is often most of a film, the outline of one frame, the motion of an earlier one
+ * and the end of a yet earlier one are made side by side: none needs what the others make.
  */
+#include "base/first_error.h"
 #include "guides/blur.h"
 #include "guides/direction.h"
 #include "guides/extent.h"
@@ -85,7 +89,7 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
     b->flow_weight = temporal_weights(sequence->params.flow_sigma_frames, &b->flow_radius);
     b->dist_weight = temporal_weights(sequence->params.dist_sigma_frames, &b->dist_radius);
     b->smooths = b->dist_radius > 0 || sequence->params.dist_sigma_px > 0.0f;
-    const int n_slots = 2 * (b->flow_radius + b->dist_radius) + 4;
+    const int n_slots = 2 * (b->flow_radius + b->dist_radius) + 6;
     b->outlines = g_new0(OutlineSlot, n_slots);
     b->motions = g_new0(Motion, n_slots);
     b->n_slots = n_slots;
@@ -360,13 +364,65 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     return put_shape(b, frame, outline, flow, error) && put_motion(b, frame, outline, flow, error);
 }
 
+/** The last frame whose outline the motion of a frame needs. */
+static int last_outline(const Builder *b, int frame)
+{
+    return frame + 1 + b->dist_radius;
+}
+
+static bool prepare_outline(Builder *b, int frame, GError **error)
+{
+    FlOutline *outline;
+    return outline_of(b, frame, &outline, error);
+}
+
+static bool prepare_motion(Builder *b, int frame, GError **error)
+{
+    const FlGuideSource *source = &b->sequence->source;
+    const Motion *motion;
+    return source->flow || frame >= source->n_frames || motion_of(b, frame, &motion, error);
+}
+
+/** What the first step finds, in order. */
+static bool prepare_first(Builder *b, GError **error)
+{
+    for (int frame = 0; frame <= last_outline(b, b->flow_radius); frame++)
+        if (!prepare_outline(b, frame, error))
+            return false;
+    for (int frame = 0; frame < b->flow_radius; frame++)
+        if (!prepare_motion(b, frame, error))
+            return false;
+    return true;
+}
+
+/** Finishes a frame, and prepares what the next step finds: the last motion that the next frame
+ * needs, and the last outline that the motion after that one needs. */
+static bool step(Builder *b, int frame, GError **error)
+{
+    const int motion = frame + 1 + b->flow_radius, outline = last_outline(b, motion + 1);
+    GError *first = NULL, *of_frame = NULL, *of_motion = NULL, *of_outline = NULL;
+#pragma omp parallel sections
+    {
+#pragma omp section
+        (void)prepare_outline(b, outline, &of_outline);
+#pragma omp section
+        (void)prepare_motion(b, motion, &of_motion);
+#pragma omp section
+        (void)(frame >= 0 && finish_frame(b, frame, &of_frame));
+    }
+    fl_keep_first_error(&first, of_frame); // the earliest frame's
+    fl_keep_first_error(&first, of_motion);
+    fl_keep_first_error(&first, of_outline);
+    return fl_tell_first_error(error, first);
+}
+
 bool fl_sequence_build(FlGuideSequence *sequence, GError **error)
 {
     g_auto(Builder) builder = {0};
-    if (!builder_init(&builder, sequence, error))
+    if (!builder_init(&builder, sequence, error) || !prepare_first(&builder, error))
         return false;
-    for (int frame = 0; frame < sequence->source.n_frames; frame++)
-        if (!finish_frame(&builder, frame, error))
+    for (int frame = -1; frame < sequence->source.n_frames; frame++)
+        if (!step(&builder, frame, error))
             return false;
     return true;
 }
