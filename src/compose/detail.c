@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "compose/windows.h"
 #include "guides/parts.h"
+#include <string.h>
 
 /** One part, and room for what is made of it: of the largest box of all. */
 typedef struct Room {
@@ -75,15 +76,17 @@ static bool judge_parts(const FlParts *parts, int width, int height, FlWidths wi
     return true;
 }
 
-/** The largest value of the parts around a pixel. */
-static uint8_t beside(const FlParts *parts, const uint8_t *value, int width, int height, int x,
-                      int y)
+/** Gives a pixel's value to it and to those around it that no part has. */
+static void spread(const FlParts *parts, uint8_t value, int width, int height, int x, int y,
+                   uint8_t *detail)
 {
-    uint8_t most = 0;
+    detail[(size_t)y * (size_t)width + (size_t)x] = value;
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
-        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++)
-            most = MAX(most, value[parts->part[(size_t)ny * (size_t)width + (size_t)nx]]);
-    return most;
+        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++) {
+            const size_t i = (size_t)ny * (size_t)width + (size_t)nx;
+            if (!parts->part[i])
+                detail[i] = MAX(detail[i], value);
+        }
 }
 
 bool fl_detail_find(const uint8_t *seen, int width, int height, int radius_px, uint8_t *detail,
@@ -96,10 +99,12 @@ bool fl_detail_find(const uint8_t *seen, int width, int height, int radius_px, u
     g_autofree uint8_t *value = g_new0(uint8_t, parts.n_parts + 1);
     if (!judge_parts(&parts, width, height, widths, value, error))
         return false;
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const int32_t part = parts.part[(size_t)y * (size_t)width + (size_t)x];
-            *detail++ = part ? value[part] : beside(&parts, value, width, height, x, y);
-        }
+    memset(detail, 0, (size_t)width * (size_t)height);
+    for (int y = 0; y < height; y++) {
+        const int32_t *part = parts.part + (size_t)y * (size_t)width;
+        for (int x = 0; x < width; x++)
+            if (value[part[x]] > 0) // which few are; value[0] is 0
+                spread(&parts, value[part[x]], width, height, x, y, detail);
+    }
     return true;
 }
