@@ -150,27 +150,37 @@ static bool recall_distance(FlGuideSequence *sequence, int32_t holder, float *di
     return known;
 }
 
-static void keep_distance(FlGuideSequence *sequence, int32_t holder, const float *distance,
-                          size_t bytes)
+/** Until it is asked for again, if it will be. */
+static void keep_distance(FlGuideSequence *sequence, bool again, int32_t holder,
+                          const float *distance, size_t bytes)
 {
     G_GNUC_UNUSED g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
-    if (!sequence->distance && !(sequence->distance = g_try_malloc(bytes)))
-        return; // it is only a shortcut
-    memcpy(sequence->distance, distance, bytes);
-    sequence->holder = holder;
+    if (!again)
+        g_clear_pointer(&sequence->distance, g_free);
+    else if (sequence->distance && sequence->holder == holder)
+        return;
+    else if (sequence->distance || (sequence->distance = g_try_malloc(bytes)))
+        memcpy(sequence->distance, distance, bytes), sequence->holder = holder;
 }
 
-/** The distance of a shape that is asked for again, as still ones are, is copied. */
-static bool get_distance(FlGuideSequence *sequence, int32_t holder, const uint8_t *mask,
-                         float *distance, GError **error)
+/** The frame that has a frame's shape; -1: there is none. */
+static int32_t shape_holder(const FlGuideSequence *sequence, int frame)
+{
+    const bool exists = frame < sequence->source.n_frames;
+    return exists ? sequence->frames[frame].holder[FL_PLANE_SHAPE] : -1;
+}
+
+/** The distance of a shape that the next frame has as well, as still ones do, is kept. */
+static bool get_distance(FlGuideSequence *sequence, int frame, const uint8_t *mask, float *distance,
+                         GError **error)
 {
     const int w = sequence->source.width, h = sequence->source.height;
     const size_t bytes = (size_t)w * h * sizeof *distance;
-    if (recall_distance(sequence, holder, distance, bytes))
-        return true;
-    if (!fl_distance(mask, w, h, distance, error))
+    const int32_t holder = shape_holder(sequence, frame);
+    if (!recall_distance(sequence, holder, distance, bytes) &&
+        !fl_distance(mask, w, h, distance, error))
         return false;
-    keep_distance(sequence, holder, distance, bytes);
+    keep_distance(sequence, shape_holder(sequence, frame + 1) == holder, holder, distance, bytes);
     return true;
 }
 
@@ -202,8 +212,8 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
         place_bytes(&record->box, shape + area, w, guides->angle);
     }
     // the lock is what is not const about a sequence
-    return get_distance((FlGuideSequence *)(uintptr_t)sequence, record->holder[FL_PLANE_SHAPE],
-                        guides->mask, guides->distance, error);
+    return get_distance((FlGuideSequence *)(uintptr_t)sequence, frame, guides->mask,
+                        guides->distance, error);
 }
 
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)

@@ -30,7 +30,7 @@ struct FlGuideSequence {
     FlSpill *spill;        // block of a plane of a frame: FL_N_PLANES * frame + plane
 
     GMutex lock;     // guards what follows
-    float *distance; // the last one asked for; NULL: none yet
+    float *distance; // the last one asked for, if the next frame has it too; or NULL
     int32_t holder;  // of its shape
 };
 
