@@ -92,7 +92,7 @@ static void spread(const FlParts *parts, uint8_t value, int width, int height, i
 bool fl_detail_find(const uint8_t *seen, int width, int height, int radius_px, uint8_t *detail,
                     GError **error)
 {
-    const FlWidths widths = {18 * radius_px, 24 * radius_px};
+    const FlWidths widths = {20 * radius_px, 22 * radius_px};
     g_auto(FlParts) parts = {0};
     if (!fl_parts_init(&parts, seen, width, height, error))
         return false;

@@ -8,9 +8,9 @@
 
 /**
  * How far each connected part of what is seen of a shape is a small detail, such as an eye or the
- * side of a tile, 0..255: wholly if it is nowhere wider than 9/8 of radius_px, not at all if it is
- * as wide as 3/2 of it somewhere. The ends of a leaf are no details, however narrow: their paint
- * has the rim that it has all around.
+ * side of a tile, 0..255: wholly if it is nowhere wider than 5/4 of radius_px, not at all if it is
+ * as wide as 11/8 of it somewhere, for between the two it has a pale band around. The ends of a
+ * leaf are no details, however narrow: their paint has the rim that it has all around.
  *
  * seen and detail are width * height; seen is 255 where the shape is seen, else 0. Pixels beside a
  * part, at its contour, have its value too.
