@@ -164,10 +164,7 @@ static bool write_layers(const Job *job, const FlComposite *composite, int frame
                  : NULL;
         if (!path)
             return false;
-        for (int y = 0; y < layer->area.box.height; y++)
-            memcpy(rgba + 4 * ((size_t)(layer->area.box.y + y) * width + layer->area.box.x),
-                   layer->rgba + 4 * (size_t)y * layer->area.box.width,
-                   4 * (size_t)layer->area.box.width);
+        fl_box_copy(layer->rgba, layer->area.box, rgba, (FlBox){0, 0, width, height}, 4);
         const FlPng png = {.width = width, .height = height, .rgba = rgba};
         if (!fl_resume_keeps(&job->resume, path) &&
             !fl_png_save(&png, path, fl_resume_replaces(&job->resume, frame), error))

@@ -1,14 +1,12 @@
 #include "base/box.h"
 
-#include <stdbool.h>
 #include <string.h>
 
-/* Most rows of most planes are blank, which is seen without looking for where they begin. */
-static bool is_blank(const uint8_t *row, int width)
+bool fl_is_blank(const uint8_t *bytes, size_t n)
 {
     uint8_t any = 0;
-    for (int x = 0; x < width; x++)
-        any |= row[x];
+    for (size_t i = 0; i < n; i++)
+        any |= bytes[i];
     return any == 0;
 }
 
@@ -28,7 +26,7 @@ FlBox fl_box_within(const uint8_t *plane, int width, FlBox part)
     int left = part.width, right = -1, top = part.height, bottom = -1;
     for (int y = 0; y < part.height; y++) {
         const uint8_t *row = plane + (size_t)(part.y + y) * width + part.x;
-        if (is_blank(row, part.width))
+        if (fl_is_blank(row, (size_t)part.width)) // as most rows of most planes
             continue;
         const FlColumns span = span_of(row, part.width);
         left = MIN(left, span.first), right = MAX(right, span.last - 1);
@@ -64,7 +62,7 @@ void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height)
     *area = (FlArea){box, g_new0(FlColumns, MAX(box.height, 1))};
     for (int y = 0; y < box.height; y++) {
         const uint8_t *row = plane + (size_t)(box.y + y) * width + box.x;
-        if (!is_blank(row, box.width))
+        if (!fl_is_blank(row, (size_t)box.width))
             area->row[y] = span_of(row, box.width);
     }
 }

@@ -3,8 +3,12 @@
 #define FLUIDY_BASE_BOX_H
 
 #include <glib.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/** Whether n bytes are 0, seen without looking for where the first other one is. */
+bool fl_is_blank(const uint8_t *bytes, size_t n);
 
 /** Columns x … x + width - 1, rows y … y + height - 1; empty if a size is 0. */
 typedef struct FlBox {

@@ -191,14 +191,6 @@ static void find_thin(const int16_t *plane, FlBox box, FlWidths widths, uint32_t
         thin[i] = (uint8_t)(255 - thin[i]);
 }
 
-static bool any_of(const uint8_t *plane, size_t n)
-{
-    uint8_t any = 0;
-    for (size_t i = 0; i < n; i++)
-        any |= plane[i];
-    return any;
-}
-
 /** What is left of the contrast, of FL_AMOUNT_ONE: less the less of the window is the shape's. */
 static int contrast_of(uint32_t inside, int radius_px, int thin)
 {
@@ -239,7 +231,7 @@ bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *sh
     find_thin(inside, box, thin, windows.rows, windows.around, windows.thin);
     for (size_t i = 0; i < n; i++)
         windows.part[i] = MAX(share[i], windows.thin[i]);
-    if (!any_of(windows.part, n)) // as in most tiles of most shapes
+    if (fl_is_blank(windows.part, n)) // as in most tiles of most shapes
         return true;
     for (size_t i = 0; i < n; i++)
         windows.weighed[i] = (int16_t)(amounts[i] * inside[i] / 255);

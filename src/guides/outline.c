@@ -24,9 +24,7 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
     outline->coverage = g_try_malloc(fl_box_pixels(*box) + 1);
     if (!outline->coverage)
         goto no_memory;
-    for (int y = 0; y < box->height; y++)
-        memcpy(outline->coverage + y * (size_t)box->width,
-               mask + (box->y + y) * (size_t)frame_width + box->x, box->width);
+    fl_box_copy(mask, (FlBox){0, 0, frame_width, frame_height}, outline->coverage, *box, 1);
     outline->empty = !any_inside(outline->coverage, fl_box_pixels(*box));
     if (outline->empty)
         return g_steal_pointer(&outline);

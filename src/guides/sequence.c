@@ -105,15 +105,7 @@ void fl_guide_sequence_free(FlGuideSequence *sequence)
     g_free(sequence);
 }
 
-/** Copies a cropped plane of bytes into one of the whole frame. */
-static void place_bytes(const FlBox *box, const uint8_t *crop, int width, uint8_t *plane)
-{
-    for (int y = 0; y < box->height; y++)
-        memcpy(plane + (box->y + y) * (size_t)width + box->x, crop + y * (size_t)box->width,
-               box->width);
-}
-
-/** The same for integers of 1 / one px; channels is 1 or 2. */
+/** Puts a cropped plane of integers of 1 / one px into one of the whole frame; channels: 1 or 2. */
 static void place_fixed(const FlBox *box, const int32_t *crop, int channels, int one, int width,
                         float *plane)
 {
@@ -208,8 +200,8 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
             !get_plane(sequence, frame, FL_PLANE_PLUS, room, guides->ext_plus, error) ||
             !get_plane(sequence, frame, FL_PLANE_MINUS, room, guides->ext_minus, error))
             return false;
-        place_bytes(&record->box, shape, w, guides->mask);
-        place_bytes(&record->box, shape + area, w, guides->angle);
+        fl_box_copy(shape, record->box, guides->mask, (FlBox){0, 0, w, h}, 1);
+        fl_box_copy(shape + area, record->box, guides->angle, (FlBox){0, 0, w, h}, 1);
     }
     // the lock is what is not const about a sequence
     return get_distance((FlGuideSequence *)(uintptr_t)sequence, frame, guides->mask,

@@ -1,5 +1,6 @@
 #include "regions/raster.h"
 
+#include "base/box.h"
 #include <string.h>
 
 static int pixel_bytes(cairo_surface_t *surface)
@@ -26,12 +27,6 @@ static int find_ink(const unsigned char *row, int n, int step)
     return n;
 }
 
-/** Whether all n bytes are 0. */
-static bool is_blank(const unsigned char *row, int n)
-{
-    return n == 0 || (row[0] == 0 && memcmp(row, row + 1, (size_t)n - 1) == 0);
-}
-
 FlBounds fl_surface_ink(cairo_surface_t *surface, FlBounds box)
 {
     const int stride = cairo_image_surface_get_stride(surface), size = pixel_bytes(surface);
@@ -41,7 +36,7 @@ FlBounds fl_surface_ink(cairo_surface_t *surface, FlBounds box)
     const int n = (box.x1 - box.x0) * size;
     for (int y = box.y0; y < box.y1 && n > 0; y++) {
         const unsigned char *row = data + (size_t)y * stride + box.x0 * size;
-        if (is_blank(row, n))
+        if (fl_is_blank(row, (size_t)n))
             continue;
         ink.y0 = ink.y0 < y ? ink.y0 : y;
         ink.y1 = y + 1;

@@ -34,10 +34,9 @@ static float *whole(const FlPainter *painter, const Plane *plane, GError **error
 {
     const size_t n = (size_t)plane->n, pixels = (size_t)painter->width * painter->height;
     float *out = fl_alloc(n * pixels, sizeof(float), "a picture", error);
-    const FlBox part = painter->rect;
-    for (int y = 0; out && y < part.height; y++)
-        memcpy(out + n * ((size_t)(part.y + y) * painter->width + part.x),
-               plane->values + n * (size_t)y * part.width, n * sizeof(float) * part.width);
+    if (out)
+        fl_box_copy(plane->values, painter->rect, out,
+                    (FlBox){0, 0, painter->width, painter->height}, n * sizeof(float));
     return out;
 }
 

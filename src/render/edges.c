@@ -196,13 +196,13 @@ static bool find_share(Tile *tile, const FlEdgeMap *edges, int run, bool with_al
 static bool find_closed(Tile *tile, const FlEdgeMap *edges, int run, int radius_px, GError **error)
 {
     const size_t n = fl_box_pixels(tile->part);
-    uint8_t any = 0;
-    for (size_t i = 0; i < n; i++)
-        any |= tile->detail[i];
-    if (!find_share(tile, edges, run, false, radius_px, tile->share, error) ||
-        (any && !find_share(tile, edges, run, true, radius_px, tile->meets, error)))
+    if (!find_share(tile, edges, run, false, radius_px, tile->share, error))
         return false;
-    for (size_t i = 0; i < n && any; i++)
+    if (fl_is_blank(tile->detail, n))
+        return true;
+    if (!find_share(tile, edges, run, true, radius_px, tile->meets, error))
+        return false;
+    for (size_t i = 0; i < n; i++)
         tile->share[i] = (uint8_t)MAX(tile->share[i], tile->meets[i] * tile->detail[i] / 255);
     return true;
 }

@@ -40,7 +40,6 @@ static bool load_flow(const FlPainter *painter, const char *file, float *flow, G
 static bool painter_flow(void *data, int frame, float *flow, GError **error)
 {
     const FlPainter *painter = data;
-    const FlBox rect = painter->rect;
     const int number = fl_film_number(painter->film, frame_of(painter, frame));
     const size_t pixels = (size_t)painter->width * painter->height;
     g_autofree float *whole = fl_alloc(2 * pixels, sizeof(float), "a flow field", error);
@@ -48,10 +47,8 @@ static bool painter_flow(void *data, int frame, float *flow, GError **error)
         whole ? fl_output_name(painter->flow_pattern, number, painter->name, error) : NULL;
     if (!file || !load_flow(painter, file, whole, error))
         return false;
-    for (int y = 0; y < rect.height; y++)
-        memcpy(flow + 2 * (size_t)y * rect.width,
-               whole + 2 * ((size_t)(rect.y + y) * painter->width + rect.x),
-               2 * sizeof(float) * (size_t)rect.width);
+    fl_box_copy(whole, (FlBox){0, 0, painter->width, painter->height}, flow, painter->rect,
+                2 * sizeof(float));
     return true;
 }
 
