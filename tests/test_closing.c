@@ -277,8 +277,8 @@ static uint8_t detail_of_bars(double bar, double degrees)
 static void a_part_is_a_detail_by_its_own_width_at_any_angle(void)
 {
     for (int degrees = 0; degrees < 90; degrees += 15) {
-        g_assert_cmpint(detail_of_bars(0.9 * BORDER, degrees), ==, 255);
-        g_assert_cmpint(detail_of_bars(1.7 * BORDER, degrees), ==, 0);
+        g_assert_cmpint(detail_of_bars(1.15 * BORDER, degrees), ==, 255);
+        g_assert_cmpint(detail_of_bars(1.6 * BORDER, degrees), ==, 0);
     }
 }
 

@@ -13,8 +13,8 @@ typedef struct FlWidths {
     int all, none;
 } FlWidths;
 
-/** The radius, px, of windows somewhat wider than `none`: in squares of 6/5 of the width of a line
- * there is as much of it at any angle. */
+/** The radius, px, of windows hardly wider than `none`, which is then 1.1 to 1.2 times `all`: in
+ * squares of so much more than the width of a line there is as much of it at any angle. */
 static inline int fl_window_radius(FlWidths widths)
 {
     return (widths.none + 16) / 32;

@@ -16,9 +16,9 @@
 #include <string.h>
 
 /**
- * A grid with a rim of outside cells, so that every cell has four neighbours: arrays of (height +
- * 2)
- * * 2 * half. Nothing flows into the finest level, where half a row of sources does for all.
+ * A grid with a rim of outside cells, so that every cell has four neighbours. An array has two
+ * halves for each of height + 2 rows. Nothing flows into the finest level, where half a row of
+ * sources does for all.
  */
 typedef struct Level {
     int width, height;

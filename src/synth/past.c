@@ -69,7 +69,7 @@ GBytes *fl_synth_past_pack(const FlSynthPast *past, int width, int height, GErro
     FlSpan parts[N_PARTS];
     parts_of(past, matches, width, height, parts);
     const size_t room = past->valid ? fl_pack_room(parts, N_PARTS) : 0;
-    g_autofree uint8_t *bytes = g_try_malloc(sizeof header + room);
+    g_autofree uint8_t *bytes = fl_room_left() ? g_try_malloc(sizeof header + room) : NULL;
     const size_t packed =
         bytes && matches ? fl_pack(parts, N_PARTS, bytes + sizeof header, room) : 0;
     if (!bytes || (past->valid && packed == 0)) {
