@@ -140,38 +140,38 @@ static FlParams *params_of(const Variant *variant)
     return params;
 }
 
-static void paint(const FlExemplar *exemplar, const FlParams *params, Film *film, FieldScore *field)
+static void paint(const FlExemplar *exemplar, const FlParams *params, Film *drawing, FieldScore *field)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, (FlSynthSize){W, H, W, H}, 1, &error);
     for (int f = 0; f < FRAMES; f++) {
         FlSynthView view;
-        if (!synth || !fl_synth_frame(synth, &film->guides[f], film->rgb + 3 * (size_t)W * H * f,
+        if (!synth || !fl_synth_frame(synth, &drawing->guides[f], drawing->rgb + 3 * (size_t)W * H * f,
                                       NULL, &view, &error))
             g_error("%s", error->message);
-        add_field(field, exemplar, &view, &film->guides[f]);
+        add_field(field, exemplar, &view, &drawing->guides[f]);
     }
 }
 
-static void copy_pixel(const Film *film, int f, int x, int y, cairo_surface_t *sheet, int to_x,
+static void copy_pixel(const Film *drawing, int f, int x, int y, cairo_surface_t *sheet, int to_x,
                        int to_y)
 {
-    const uint8_t *p = film->rgb + 3 * (((size_t)f * H + y) * W + x);
+    const uint8_t *p = drawing->rgb + 3 * (((size_t)f * H + y) * W + x);
     uint32_t *row = (uint32_t *)(void *)(cairo_image_surface_get_data(sheet) +
                                          (size_t)to_y * cairo_image_surface_get_stride(sheet));
     row[to_x] = (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2];
 }
 
 /* Three frames, then the slice with ten rows per frame. */
-static void show(const Film *film, cairo_surface_t *sheet, int row)
+static void show(const Film *drawing, cairo_surface_t *sheet, int row)
 {
     const int frames[3] = {1, FRAMES / 2, FRAMES - 1};
     cairo_surface_flush(sheet);
     for (int y = 0; y < H; y++)
         for (int x = 0; x < W; x++) {
             for (int k = 0; k < 3; k++)
-                copy_pixel(film, frames[k], x, y, sheet, k * W + x, row * H + y);
-            copy_pixel(film, MIN(y / 10, FRAMES - 1), x, SLICE_ROW, sheet, 3 * W + x, row * H + y);
+                copy_pixel(drawing, frames[k], x, y, sheet, k * W + x, row * H + y);
+            copy_pixel(drawing, MIN(y / 10, FRAMES - 1), x, SLICE_ROW, sheet, 3 * W + x, row * H + y);
         }
     cairo_surface_mark_dirty(sheet);
     cairo_t *cr = cairo_create(sheet);
@@ -190,12 +190,12 @@ static void run(const FlStyle *style, int row, cairo_surface_t *sheet)
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     if (!exemplar)
         g_error("%s", error->message);
-    Film *model = film_of_style(style, &how), *film = film_new(&source, &how);
+    Film *model = film_of_style(style, &how), *drawing = film_new(&source, &how);
     FieldScore field = {.columns = style->width / CELL + 1, .rows = style->height / CELL + 1};
     field.n_cells = field.columns * field.rows * (style->n_frames / CELL + 1);
     field.cells = g_new0(int, field.n_cells);
-    paint(exemplar, params, film, &field);
-    const Score want = film_score(model), got = film_score(film);
+    paint(exemplar, params, drawing, &field);
+    const Score want = film_score(model), got = film_score(drawing);
     double entropy, most;
     spread(&field, exemplar, &entropy, &most);
     if (row == 0)
@@ -206,9 +206,9 @@ static void run(const FlStyle *style, int row, cairo_surface_t *sheet)
            field.turn / MAX(field.n_turns, 1), field.motion / field.n, entropy, most,
            got.flicker / want.flicker, got.rest);
     fflush(stdout);
-    show(film, sheet, row);
+    show(drawing, sheet, row);
     film_free(model);
-    film_free(film);
+    film_free(drawing);
     g_free(field.cells);
 }
 

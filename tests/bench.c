@@ -15,7 +15,7 @@
  * one, is what threads gain where they are not kept waiting: these hold on a machine that has other
  * things to do. OMP_WAIT_POLICY=passive is set, so that waiting is not working.
  */
-#include "base/box.h"
+#include "base/rect.h"
 #include "config.h"
 #include "params/params.h"
 #include "synth/synth.h"

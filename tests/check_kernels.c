@@ -17,12 +17,12 @@
 
 typedef struct Case {
     FlTexel source[FIELD * FIELD];
-    _Alignas(64) FlPacked target[FL_PATCH_PIXELS + 3];
-    FlPacked rest;
+    _Alignas(64) FlCompressed target[FL_PATCH_PIXELS + 3];
+    FlCompressed rest;
     int16_t offsets[FL_PATCH_PIXELS];
 } Case;
 
-static void fill(FlPacked *pixels, int n, FlRng *rng, int limit)
+static void fill(FlCompressed *pixels, int n, FlRng *rng, int limit)
 {
     for (int p = 0; p < n; p++)
         for (int c = 0; c < FL_CHANNELS; c++)
@@ -373,7 +373,7 @@ static FlStencil stencil_of(Noise *z, int at)
 static const size_t parents[2][4] = {{3, 0, 9, 10}, {7, 4, 5, 1}};
 
 /* Runs every loop of a version over rows of n, `at` bytes or elements from an aligned address. */
-static void run_rows(const FlRows *rows, Noise *z, int n, int at)
+static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
 {
     const FlSums sums = {{z->sum[0] + at, z->sum[1] + at, z->sum[2] + at}, z->sum[3] + at};
     const float *const rgb[3] = {z->f[4] + at, z->f[5] + at, z->f[6] + at};
@@ -398,14 +398,14 @@ static void run_rows(const FlRows *rows, Noise *z, int n, int at)
 
 static void rows_are_those_of_c(const void *version)
 {
-    const FlRows *rows = version;
+    const FlRowKernels *rows = version;
     g_autofree Noise *want = g_new(Noise, 1), *got = g_new(Noise, 1);
     for (uint64_t seed = 1; seed <= 1500; seed++) {
         FlRng rng = {seed};
         const int n = (int)fl_rng_below(&rng, seed % 3 ? 40 : ROW), at = (int)(seed % 9);
         make_noise(want, seed);
         memcpy(got, want, sizeof *got);
-        run_rows(&fl_rows_c, want, n, at);
+        run_rows(&fl_row_kernels_c, want, n, at);
         run_rows(rows, got, n, at);
         if (memcmp(got, want, sizeof *got) != 0)
             g_test_message("%s, seed %" G_GUINT64_FORMAT, rows->name, seed);
@@ -416,7 +416,7 @@ static void rows_are_those_of_c(const void *version)
 /* Paint of every alpha over opaque sums of every level: nothing overflows, nothing is lost. */
 static void opaque_rows_stay_opaque(const void *version)
 {
-    const FlRows *rows = version;
+    const FlRowKernels *rows = version;
     uint32_t sum[4][256];
     uint8_t rgba[4 * 256], out[4 * 256];
     const FlSums sums = {{sum[0], sum[1], sum[2]}, sum[3]};
@@ -441,7 +441,7 @@ static void opaque_rows_stay_opaque(const void *version)
 /* The quotient in whole numbers, for every alpha of paint, share and what is above. */
 static void a_layer_shows_its_share(const void *version)
 {
-    const FlRows *rows = version;
+    const FlRowKernels *rows = version;
     for (int above = 0; above < 65536; above += above < 65000 ? 97 : 1)
         for (int seen = 0; seen < 256; seen += 5) {
             const uint32_t left = 65535 - (uint32_t)above;
@@ -519,7 +519,7 @@ static void time_version(const FlKernels *kernels)
     TIME("upscale_row", kernels->upscale_row(coarse, fl_child_moves[k % 2], most, fine, ROW));
 }
 
-static void time_rows(const FlRows *rows)
+static void time_rows(const FlRowKernels *rows)
 {
     static Noise z;
     make_noise(&z, 1);
@@ -571,7 +571,7 @@ static void add_checks(const FlKernels *version)
     }
 }
 
-static void add_row_checks(const FlRows *version, const char *level)
+static void add_row_checks(const FlRowKernels *version, const char *level)
 {
     g_autofree char *same = g_strdup_printf("/rows/%s/rows-are-those-of-c", level);
     g_autofree char *shares = g_strdup_printf("/rows/%s/a-layer-shows-its-share", level);
@@ -593,9 +593,9 @@ int main(int argc, char **argv)
             continue;
         fl_kernels_init(&versions[v], levels[v]);
         if (time)
-            time_version(&versions[v]), time_rows(fl_rows_of(levels[v]));
+            time_version(&versions[v]), time_rows(fl_row_kernels_for(levels[v]));
         else
-            add_checks(&versions[v]), add_row_checks(fl_rows_of(levels[v]), versions[v].name);
+            add_checks(&versions[v]), add_row_checks(fl_row_kernels_for(levels[v]), versions[v].name);
     }
     return time ? 0 : g_test_run();
 }

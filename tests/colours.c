@@ -12,9 +12,9 @@
 #include "base/alloc.h"
 #include "delta_e.h"
 #include "guides/distance.h"
-#include "render/plan.h"
+#include "job/plan.h"
 #include "scratch.h"
-#include "style/picture.h"
+#include "io/picture.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,30 +30,30 @@ static void stop_on(GError *error)
 }
 
 /** The first run of the same region and fill. */
-static int first_like(const FlRuns *runs, int r)
+static int first_like(const FlDrawList *draws, int r)
 {
     int first = 0;
-    while (runs->run[first].region != runs->run[r].region ||
-           memcmp(runs->run[first].rgb, runs->run[r].rgb, 3) != 0)
+    while (draws->draw[first].region != draws->draw[r].region ||
+           memcmp(draws->draw[first].rgb, draws->draw[r].rgb, 3) != 0)
         first++;
     return first;
 }
 
 /** Which run is seen at each pixel, or the first like it, counted from 1; 0: none that is flat,
  * opaque and painted. */
-static uint16_t *find_tops(const FlPlan *plan, const FlRuns *runs)
+static uint16_t *find_tops(const FlPlan *plan, const FlDrawList *draws)
 {
-    const size_t width = (size_t)fl_film_width(plan->film);
-    uint16_t *top = g_new0(uint16_t, width * (size_t)fl_film_height(plan->film));
-    for (int r = 0; r < runs->n; r++) {
-        const FlRun *run = &runs->run[r];
-        const bool plain = plan->painter_of[run->region] >= 0 && !run->picture &&
-                           run->alpha == 255 && run->mix == FL_MIX_OVER;
-        const int first = first_like(runs, r);
-        const FlBox box = run->area.box;
+    const size_t width = (size_t)fl_drawing_width(plan->drawing);
+    uint16_t *top = g_new0(uint16_t, width * (size_t)fl_drawing_height(plan->drawing));
+    for (int r = 0; r < draws->n; r++) {
+        const FlDraw *draw = &draws->draw[r];
+        const bool plain = plan->painter_of[draw->region] >= 0 && !draw->picture &&
+                           draw->alpha == 255 && draw->mix == FL_BLEND_MODE_OVER;
+        const int first = first_like(draws, r);
+        const FlRect box = draw->area.box;
         for (int y = 0; y < box.height; y++)
             for (int x = 0; x < box.width; x++) {
-                const uint8_t coverage = run->coverage[(size_t)y * (size_t)box.width + (size_t)x];
+                const uint8_t coverage = draw->coverage[(size_t)y * (size_t)box.width + (size_t)x];
                 if (coverage)
                     top[(size_t)(box.y + y) * width + (size_t)(box.x + x)] =
                         plain && coverage == 255 ? (uint16_t)(first + 1) : 0;
@@ -129,14 +129,14 @@ typedef struct Look {
     Contrast contrast;
 } Look;
 
-static Look look_at(const FlPicture *picture, const uint16_t *top, uint16_t run,
+static Look look_at(const FlPicture *picture, const uint16_t *top, uint16_t draw,
                     const uint8_t paper[3], float border_px)
 {
     Look look = {0};
     const size_t pixels = (size_t)picture->width * picture->height;
     g_autofree uint8_t *mask = g_malloc(pixels);
     for (size_t p = 0; p < pixels; p++)
-        mask[p] = top[p] == run ? 255 : 0;
+        mask[p] = top[p] == draw ? 255 : 0;
     g_autofree float *depth = depth_of(mask, picture->width, picture->height);
     for (size_t p = 0; p < pixels; p++) {
         const uint8_t *rgb = picture->rgba + 4 * p;
@@ -154,27 +154,27 @@ static Look look_at(const FlPicture *picture, const uint16_t *top, uint16_t run,
 static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture, Tally *tally)
 {
     GError *error = NULL;
-    g_autoptr(FlRuns) runs = fl_film_runs(plan->film, frame, &error);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, &error);
     stop_on(error);
-    g_autofree uint16_t *top = find_tops(plan, runs);
-    for (int r = 0; r < runs->n; r++) {
+    g_autofree uint16_t *top = find_tops(plan, draws);
+    for (int r = 0; r < draws->n; r++) {
         uint8_t median[3];
-        if (plan->painter_of[runs->run[r].region] < 0 || first_like(runs, r) < r)
+        if (plan->painter_of[draws->draw[r].region] < 0 || first_like(draws, r) < r)
             continue;
-        const FlPainter *painter = &plan->painters[plan->painter_of[runs->run[r].region]];
+        const FlPainter *painter = &plan->painters[plan->painter_of[draws->draw[r].region]];
         const Look look = look_at(picture, top, (uint16_t)(r + 1), plan->paper,
-                                  painter->box->exemplar->border_px);
+                                  painter->style->exemplar->border_px);
         if (look.total < ENOUGH)
             continue;
         for (int c = 0; c < 3; c++)
             median[c] = median_of(look.count[c], look.total);
-        const uint8_t *fill = runs->run[r].rgb;
+        const uint8_t *fill = draws->draw[r].rgb;
         const double d = delta_e(median, fill);
         tally->fills++, tally->within += d <= BOUND, tally->worst = MAX(tally->worst, d);
         if (d > BOUND)
             printf("  frame %d, %s: #%02x%02x%02x for #%02x%02x%02x, %.1f, %d pixels\n",
-                   fl_film_number(plan->film, frame),
-                   fl_film_region(plan->film, runs->run[r].region)->name, median[0], median[1],
+                   fl_drawing_number(plan->drawing, frame),
+                   fl_drawing_region(plan->drawing, draws->draw[r].region)->name, median[0], median[1],
                    median[2], fill[0], fill[1], fill[2], d, look.total);
         if (look.contrast.n >= LARGE)
             tally->large++, tally->shares += deviation(&look.contrast) / tally->of_style;
@@ -207,9 +207,9 @@ static void judge(const char *folder, const char *style, Tally *all)
     g_autoptr(FlPlan) plan = fl_plan_new(&again, &error);
     stop_on(error);
     Tally tally = {.of_style = all->of_style};
-    for (int f = 0; f < fl_film_frames(plan->film); f++) {
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) {
         g_autofree char *file =
-            g_strdup_printf("%s/%d.png", scratch, fl_film_number(plan->film, f));
+            g_strdup_printf("%s/%d.png", scratch, fl_drawing_number(plan->drawing, f));
         g_autoptr(FlPicture) picture = fl_picture_read_png(file, &error);
         stop_on(error);
         judge_frame(plan, f, picture, &tally);

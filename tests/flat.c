@@ -9,23 +9,23 @@ static void print_sequence(const char *folder)
 {
     GError *error = NULL;
     const char *const inputs[] = {folder, NULL};
-    const FlFilmOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
     const gint64 start = g_get_monotonic_time();
-    g_autoptr(FlFilm) film = fl_film_open(&options, NULL, &error);
+    g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);
     const double read_s = (double)(g_get_monotonic_time() - start) * 1e-6;
-    const int n = fl_film_frames(film);
+    const int n = fl_drawing_frames(drawing);
     double sum = 0, least = 99;
     int where = 0;
     for (int t = 0; t < n; t++) {
-        const double psnr = flat_psnr(film, t);
+        const double psnr = flat_psnr(drawing, t);
         sum += psnr;
         where = psnr < least ? t : where;
         least = MIN(least, psnr);
     }
     g_autofree char *name = g_path_get_basename(folder);
     printf("%-22s %5.1f %5.1f  frame %3d of %3d, %2d regions, read in %.3f s a frame\n", name,
-           least, sum / n, fl_film_number(film, where), n, fl_film_regions(film), read_s / n);
+           least, sum / n, fl_drawing_number(drawing, where), n, fl_drawing_regions(drawing), read_s / n);
     fflush(stdout);
 }
 

@@ -3,15 +3,15 @@
 #define FLUIDY_TESTS_FLAT_H
 
 #include "base/cleanup.h"
-#include "regions/film.h"
+#include "drawing/drawing.h"
 #include <math.h>
 
 /** librsvg's picture of a file as it is, in the frame's size, as premultiplied ARGB. */
-static inline cairo_surface_t *flat_truth(const FlFilm *film, int frame)
+static inline cairo_surface_t *flat_truth(const FlDrawing *drawing, int frame)
 {
     GError *error = NULL;
-    const int width = fl_film_width(film), height = fl_film_height(film);
-    g_autoptr(RsvgHandle) svg = rsvg_handle_new_from_file(fl_film_file(film, frame), &error);
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
+    g_autoptr(RsvgHandle) svg = rsvg_handle_new_from_file(fl_drawing_file(drawing, frame), &error);
     g_assert_no_error(error);
     rsvg_handle_set_dpi(svg, 96);
     cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
@@ -29,15 +29,15 @@ static inline cairo_surface_t *flat_truth(const FlFilm *film, int frame)
 #define FLAT_GREY 90 // backdrop: white on white would not be compared
 
 /** PSNR in dB of RGB over grey; 99 if nothing differs. */
-static inline double flat_psnr(const FlFilm *film, int frame)
+static inline double flat_psnr(const FlDrawing *drawing, int frame)
 {
     GError *error = NULL;
-    const int width = fl_film_width(film), height = fl_film_height(film);
-    g_autoptr(cairo_surface_t) truth = flat_truth(film, frame);
-    g_autoptr(FlRuns) runs = fl_film_runs(film, frame, &error);
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
+    g_autoptr(cairo_surface_t) truth = flat_truth(drawing, frame);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, frame, &error);
     g_assert_no_error(error);
     g_autofree uint8_t *flat = g_malloc(4 * (size_t)width * height);
-    fl_runs_flat(runs, width, height, flat);
+    fl_draw_list_flat(draws, width, height, flat);
     const unsigned char *rows = cairo_image_surface_get_data(truth);
     const int stride = cairo_image_surface_get_stride(truth);
     double sum = 0;

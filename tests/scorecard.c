@@ -8,16 +8,16 @@
 Film *film_new(const FlGuideSource *source, const FlGuideParams *how)
 {
     g_autoptr(GError) error = NULL;
-    Film *film = g_new0(Film, 1);
-    *film = (Film){source->width, source->height, source->n_frames, NULL, NULL};
-    film->rgb = g_malloc0(3 * (size_t)film->width * film->height * film->n_frames);
-    film->guides = g_new0(FlGuides, film->n_frames);
+    Film *drawing = g_new0(Film, 1);
+    *drawing = (Film){source->width, source->height, source->n_frames, NULL, NULL};
+    drawing->rgb = g_malloc0(3 * (size_t)drawing->width * drawing->height * drawing->n_frames);
+    drawing->guides = g_new0(FlGuides, drawing->n_frames);
     g_autoptr(FlGuideSequence) sequence = fl_guide_sequence_new(source, how, &error);
-    for (int f = 0; f < film->n_frames; f++)
-        if (!sequence || !fl_guides_init(&film->guides[f], film->width, film->height, &error) ||
-            !fl_guide_sequence_get(sequence, f, &film->guides[f], &error))
+    for (int f = 0; f < drawing->n_frames; f++)
+        if (!sequence || !fl_guides_init(&drawing->guides[f], drawing->width, drawing->height, &error) ||
+            !fl_guide_sequence_get(sequence, f, &drawing->guides[f], &error))
             g_error("%s", error->message);
-    return film;
+    return drawing;
 }
 
 static bool style_mask(void *data, int frame, uint8_t *coverage, GError **error)
@@ -32,23 +32,23 @@ Film *film_of_style(const FlStyle *style, const FlGuideParams *how)
 {
     const FlGuideSource source = {style->width, style->height, style->n_frames,
                                   style_mask,   NULL,          (void *)style};
-    Film *film = film_new(&source, how);
-    memcpy(film->rgb, style->rgb, 3 * (size_t)film->width * film->height * film->n_frames);
-    return film;
+    Film *drawing = film_new(&source, how);
+    memcpy(drawing->rgb, style->rgb, 3 * (size_t)drawing->width * drawing->height * drawing->n_frames);
+    return drawing;
 }
 
-void film_free(Film *film)
+void film_free(Film *drawing)
 {
-    for (int f = 0; f < film->n_frames; f++)
-        fl_guides_clear(&film->guides[f]);
-    g_free(film->guides);
-    g_free(film->rgb);
-    g_free(film);
+    for (int f = 0; f < drawing->n_frames; f++)
+        fl_guides_clear(&drawing->guides[f]);
+    g_free(drawing->guides);
+    g_free(drawing->rgb);
+    g_free(drawing);
 }
 
-static double luminance(const Film *film, int f, int x, int y)
+static double luminance(const Film *drawing, int f, int x, int y)
 {
-    const uint8_t *p = film->rgb + 3 * (((size_t)f * film->height + y) * film->width + x);
+    const uint8_t *p = drawing->rgb + 3 * (((size_t)f * drawing->height + y) * drawing->width + x);
     return 0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2];
 }
 
@@ -72,36 +72,36 @@ typedef struct Sums {
     Mean gradient, tone, square, depth[DEPTHS], change, rest;
 } Sums;
 
-static void add_pixel(const Film *film, int f, int x, int y, Sums *sums)
+static void add_pixel(const Film *drawing, int f, int x, int y, Sums *sums)
 {
-    const FlGuides *g = &film->guides[f];
-    const size_t p = (size_t)y * film->width + x;
-    const double here = luminance(film, f, x, y);
+    const FlGuides *g = &drawing->guides[f];
+    const size_t p = (size_t)y * drawing->width + x;
+    const double here = luminance(drawing, f, x, y);
     const int depth = (int)ceilf(g->distance[p]);
     if (depth >= 1 && depth <= DEPTHS)
         add(&sums->depth[depth - 1], here);
     if (g->distance[p] < 2 || x == 0 || y == 0)
         return;
     add(&sums->gradient,
-        fabs(here - luminance(film, f, x - 1, y)) + fabs(here - luminance(film, f, x, y - 1)));
+        fabs(here - luminance(drawing, f, x - 1, y)) + fabs(here - luminance(drawing, f, x, y - 1)));
     add(&sums->tone, here);
     add(&sums->square, here * here);
-    if (f == 0 || film->guides[f - 1].distance[p] < 2)
+    if (f == 0 || drawing->guides[f - 1].distance[p] < 2)
         return;
-    const double change = fabs(here - luminance(film, f - 1, x, y));
+    const double change = fabs(here - luminance(drawing, f - 1, x, y));
     const float u = g->flow[2 * p], v = g->flow[2 * p + 1];
     add(&sums->change, change);
     if (u * u + v * v < REST_PX * REST_PX)
         add(&sums->rest, change);
 }
 
-Score film_score(const Film *film)
+Score film_score(const Film *drawing)
 {
     Sums sums = {0};
-    for (int f = 0; f < film->n_frames; f++)
-        for (int y = 0; y < film->height; y++)
-            for (int x = 0; x < film->width; x++)
-                add_pixel(film, f, x, y, &sums);
+    for (int f = 0; f < drawing->n_frames; f++)
+        for (int y = 0; y < drawing->height; y++)
+            for (int x = 0; x < drawing->width; x++)
+                add_pixel(drawing, f, x, y, &sums);
     const double mean = mean_of(sums.tone);
     Score score = {.sharp = mean_of(sums.gradient), .flicker = mean_of(sums.change)};
     score.deviation = sqrt(fmax(mean_of(sums.square) - mean * mean, 0));

@@ -3,7 +3,7 @@
 #define TESTS_SCORECARD_H
 
 #include "guides/guides.h"
-#include "style/bundle.h"
+#include "style/style_folder.h"
 
 #define DEPTHS 12 // px below the contour that the profile looks at
 
@@ -26,8 +26,8 @@ typedef struct Score {
 /** An empty film with the guides of a sequence. Exits on errors, which only memory can cause. */
 Film *film_new(const FlGuideSource *source, const FlGuideParams *how);
 Film *film_of_style(const FlStyle *style, const FlGuideParams *how);
-void film_free(Film *film);
-Score film_score(const Film *film);
+void film_free(Film *drawing);
+Score film_score(const Film *drawing);
 
 /** Root mean square difference of the profiles. */
 double profile_error(const Score *a, const Score *b);

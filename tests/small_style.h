@@ -3,7 +3,7 @@
 #define TESTS_SMALL_STYLE_H
 
 #include "base/rng.h"
-#include "style/bundle.h"
+#include "style/style_folder.h"
 #include <math.h>
 #include <string.h>
 

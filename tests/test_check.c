@@ -1,5 +1,5 @@
 #include "base/alloc.h"
-#include "style/guides.h"
+#include "style/style_guides.h"
 #include "style/measure.h"
 
 #include <fluidy/style.h>

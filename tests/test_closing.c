@@ -13,7 +13,7 @@
 #define RIGHT 80
 #define BORDER 10
 
-static const FlBox box = {LEFT, 0, RIGHT - LEFT, HEIGHT};
+static const FlRect box = {LEFT, 0, RIGHT - LEFT, HEIGHT};
 
 /** The share at both edges of the shape; what is left of column `neighbour` is another shape. */
 static void make_share(int neighbour, uint8_t *share)
@@ -59,11 +59,11 @@ static double look(const int16_t *amounts, int x0, int x1, double *grain)
 }
 
 /** Closes the paint of a shape that is all that is seen of a box. */
-static void close_box(int16_t *amounts, const uint8_t *share, FlBox of, int border)
+static void close_box(int16_t *amounts, const uint8_t *share, FlRect of, int border)
 {
-    g_autofree int16_t *inside = g_new(int16_t, fl_box_pixels(of));
+    g_autofree int16_t *inside = g_new(int16_t, fl_rect_pixels(of));
     g_autoptr(GError) error = NULL;
-    for (size_t i = 0; i < fl_box_pixels(of); i++)
+    for (size_t i = 0; i < fl_rect_pixels(of); i++)
         inside[i] = 255;
     fl_closing_apply(amounts, inside, share, of, border, &error);
     g_assert_no_error(error);
@@ -71,7 +71,7 @@ static void close_box(int16_t *amounts, const uint8_t *share, FlBox of, int bord
 
 static void close_paint(double rim, int neighbour, int16_t *amounts)
 {
-    g_autofree uint8_t *share = g_malloc(fl_box_pixels(box));
+    g_autofree uint8_t *share = g_malloc(fl_rect_pixels(box));
     make_share(neighbour, share);
     make_paint(rim, amounts);
     close_box(amounts, share, box, BORDER);
@@ -79,7 +79,7 @@ static void close_paint(double rim, int neighbour, int16_t *amounts)
 
 static void no_line_of_paper_and_no_dark_seam_lies_between_neighbours(void)
 {
-    g_autofree int16_t *amounts = g_new(int16_t, fl_box_pixels(box));
+    g_autofree int16_t *amounts = g_new(int16_t, fl_rect_pixels(box));
     static const double rims[] = {0.1, 2};
     for (size_t i = 0; i < G_N_ELEMENTS(rims); i++) {
         double grain = 0, inside = 0;
@@ -95,15 +95,15 @@ static void no_line_of_paper_and_no_dark_seam_lies_between_neighbours(void)
 
 static void a_free_edge_stays_as_it_is_painted(void)
 {
-    g_autofree int16_t *amounts = g_new(int16_t, fl_box_pixels(box));
-    g_autofree int16_t *painted = g_new(int16_t, fl_box_pixels(box));
+    g_autofree int16_t *amounts = g_new(int16_t, fl_rect_pixels(box));
+    g_autofree int16_t *painted = g_new(int16_t, fl_rect_pixels(box));
     make_paint(0.1, painted);
     close_paint(0.1, LEFT, amounts);
     for (int y = 0; y < HEIGHT; y++)
         for (int x = box.width / 2; x < box.width; x++)
             g_assert_cmpint(amounts[y * box.width + x], ==, painted[y * box.width + x]);
     close_paint(0.1, 0, amounts);
-    const int bytes = (int)(2 * fl_box_pixels(box));
+    const int bytes = (int)(2 * fl_rect_pixels(box));
     g_assert_cmpmem(amounts, bytes, painted, bytes);
 }
 
@@ -111,14 +111,14 @@ static void a_shape_that_only_comes_near_shares_no_edge(void)
 {
     uint8_t share[WIDTH * HEIGHT];
     make_share(LEFT - BORDER * 2 / 3, share);
-    for (size_t i = 0; i < fl_box_pixels(box); i++)
+    for (size_t i = 0; i < fl_rect_pixels(box); i++)
         g_assert_cmpint(share[i], ==, 0);
 }
 
 static void a_thin_shape_among_others_has_no_dark_core(void)
 {
     enum { THIN = 6 };
-    const FlBox thin = {40, 0, THIN, HEIGHT};
+    const FlRect thin = {40, 0, THIN, HEIGHT};
     static const int16_t profile[THIN] = {0, 100, 3000, 3000, 100, 0};
     int16_t amounts[THIN * HEIGHT];
     uint8_t share[THIN * HEIGHT];
@@ -134,7 +134,7 @@ static void a_thin_shape_among_others_has_no_dark_core(void)
 static void a_line_is_seen_though_it_is_all_rim(void)
 {
     enum { LINE = 3 };
-    const FlBox line = {40, 0, LINE, HEIGHT};
+    const FlRect line = {40, 0, LINE, HEIGHT};
     int16_t amounts[LINE * HEIGHT];
     uint8_t share[LINE * HEIGHT] = {0};
     for (int i = 0; i < LINE * HEIGHT; i++)
@@ -153,7 +153,7 @@ static int16_t *inside_line(int columns, int rows)
         for (int x = 1; x <= columns; x++)
             coverage[y * (columns + 2) + x] = x == 1 || x == columns ? 128 : 255;
     int16_t *inside = g_new(int16_t, n);
-    fl_closing_inside(coverage, columns + 2, rows, (FlBox){1, 0, columns, rows}, inside);
+    fl_closing_inside(coverage, columns + 2, rows, (FlRect){1, 0, columns, rows}, inside);
     return inside;
 }
 
@@ -161,8 +161,8 @@ static int16_t *inside_line(int columns, int rows)
 static double deviation_along(int columns, int border)
 {
     enum { ROWS = 80 };
-    const FlBox line = {0, 0, columns, ROWS};
-    const size_t n = fl_box_pixels(line);
+    const FlRect line = {0, 0, columns, ROWS};
+    const size_t n = fl_rect_pixels(line);
     g_autofree int16_t *amounts = g_new(int16_t, n), *inside = inside_line(columns, ROWS);
     g_autofree uint8_t *share = g_malloc0(n);
     g_autoptr(GError) error = NULL;
@@ -198,7 +198,7 @@ static void what_is_faint_is_not_thin(void)
     uint8_t coverage[HEIGHT * HEIGHT];
     int16_t inside[HEIGHT * HEIGHT];
     memset(coverage, 60, sizeof coverage);
-    fl_closing_inside(coverage, HEIGHT, HEIGHT, (FlBox){0, 0, HEIGHT, HEIGHT}, inside);
+    fl_closing_inside(coverage, HEIGHT, HEIGHT, (FlRect){0, 0, HEIGHT, HEIGHT}, inside);
     for (int i = 0; i < HEIGHT * HEIGHT; i++)
         g_assert_cmpint(inside[i], ==, 255);
 }
@@ -206,12 +206,12 @@ static void what_is_faint_is_not_thin(void)
 /** Whether columns x0 … x1 - 1, closed with `reach` columns around them, are those of the whole. */
 static bool closes_as_in_the_whole(int x0, int x1, int reach)
 {
-    g_autofree int16_t *whole = g_new(int16_t, fl_box_pixels(box));
-    g_autofree int16_t *paint = g_new(int16_t, fl_box_pixels(box));
-    g_autofree uint8_t *share = g_malloc(fl_box_pixels(box));
-    const FlBox part = {LEFT + x0 - reach, 0, x1 - x0 + 2 * reach, HEIGHT};
-    g_autofree int16_t *amounts = g_new(int16_t, fl_box_pixels(part));
-    g_autofree uint8_t *shares = g_malloc(fl_box_pixels(part));
+    g_autofree int16_t *whole = g_new(int16_t, fl_rect_pixels(box));
+    g_autofree int16_t *paint = g_new(int16_t, fl_rect_pixels(box));
+    g_autofree uint8_t *share = g_malloc(fl_rect_pixels(box));
+    const FlRect part = {LEFT + x0 - reach, 0, x1 - x0 + 2 * reach, HEIGHT};
+    g_autofree int16_t *amounts = g_new(int16_t, fl_rect_pixels(part));
+    g_autofree uint8_t *shares = g_malloc(fl_rect_pixels(part));
     close_paint(0.1, LEFT, whole);
     make_paint(0.1, paint);
     make_share(LEFT, share);

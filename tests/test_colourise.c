@@ -1,7 +1,7 @@
 #include "compose/colourise.h"
 #include "compose/density.h"
 #include "delta_e.h"
-#include "style/picture.h"
+#include "io/picture.h"
 
 #include <string.h>
 
@@ -57,7 +57,7 @@ static FlInk *ink_of(const Sample *s, const uint8_t paper[3])
 static uint8_t *paint(const Sample *s, const FlInk *ink, const FlColouring *how, int tone)
 {
     const FlArea area = {{0, 0, s->width, s->height}};
-    const size_t n = fl_box_pixels(area.box);
+    const size_t n = fl_rect_pixels(area.box);
     g_autofree uint8_t *rgba = g_malloc0(4 * n);
     g_autofree int16_t *amounts = g_new(int16_t, n);
     uint8_t *rgb = g_malloc(3 * n);
@@ -113,7 +113,7 @@ static void the_median_interior_colour_is_the_fill(void)
         g_autoptr(FlInk) ink = ink_of(&learned, paper);
         for (size_t f = 0; f < 2 * G_N_ELEMENTS(fills); f++) {
             const uint8_t *fill = fills[f / 2], *on = f % 2 ? paper : white;
-            const int tone = fl_ink_tone(ink, s.rgb, s.mask, s.width, s.height);
+            const int tone = fl_ink_exposure(ink, s.rgb, s.mask, s.width, s.height);
             FlColouring how = {0};
             memcpy(how.fill, fill, 3);
             memcpy(how.paper, on, 3);
@@ -160,7 +160,7 @@ static void four_fifths_of_the_contrast_are_kept(void)
         g_auto(Sample) s = sample_load(cases[k].name);
         g_autoptr(FlInk) ink = ink_of(&s, cases[k].paper);
         const FlColouring how = {.fill = {120, 90, 70}, .paper = {255, 255, 255}};
-        const int tone = fl_ink_tone(ink, s.rgb, s.mask, s.width, s.height);
+        const int tone = fl_ink_exposure(ink, s.rgb, s.mask, s.width, s.height);
         g_autofree uint8_t *rgb = paint(&s, ink, &how, tone);
         const double had = contrast(&s, s.rgb, cases[k].paper), has = contrast(&s, rgb, white);
         g_test_message("%s: log density deviates by %.3f, was %.3f", cases[k].name, has, had);
@@ -182,7 +182,7 @@ static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
     const FlPaintedPart painted = {rgb[0], area.box};
     int16_t amounts[4];
     FlColouring how = {.fill = {200, 30, 30}, .paper = {255, 255, 255}};
-    fl_colourise_amounts(ink, FL_TONE_ONE, &painted, coverage, &area, amounts);
+    fl_colourise_amounts(ink, FL_EXPOSURE_ONE, &painted, coverage, &area, amounts);
     fl_colourise(ink, &how, &painted, amounts, &area, rgba);
     g_assert_cmpint(rgba[3], ==, 0);
     g_assert_cmpint(rgba[7], ==, 0);
@@ -202,13 +202,13 @@ static void more_paint_never_looks_like_less(void)
     for (int k = 0; k < 2; k++) {
         g_auto(Sample) s = sample_load(names[k]);
         g_autoptr(FlInk) ink = ink_of(&s, k ? bloom_paper : drop_paper);
-        for (int tone = FL_TONE_MIN; tone <= FL_TONE_MAX; tone *= 2) {
-            g_assert_cmpint(fl_ink_toned(ink, 0, tone), ==, 0);
+        for (int tone = FL_EXPOSURE_MIN; tone <= FL_EXPOSURE_MAX; tone *= 2) {
+            g_assert_cmpint(fl_ink_exposed(ink, 0, tone), ==, 0);
             for (int amount = 1; amount < FL_AMOUNTS; amount++)
-                g_assert_cmpint(fl_ink_toned(ink, amount, tone), >=,
-                                fl_ink_toned(ink, amount - 1, tone));
+                g_assert_cmpint(fl_ink_exposed(ink, amount, tone), >=,
+                                fl_ink_exposed(ink, amount - 1, tone));
         }
-        g_assert_cmpint(fl_ink_toned(ink, FL_AMOUNT_ONE, FL_TONE_ONE), ==, FL_AMOUNT_ONE);
+        g_assert_cmpint(fl_ink_exposed(ink, FL_AMOUNT_ONE, FL_EXPOSURE_ONE), ==, FL_AMOUNT_ONE);
     }
 }
 
@@ -222,17 +222,17 @@ static void a_line_too_thin_for_an_interior_gets_its_colour_too(void)
         memcpy(painted + 3 * i, (uint8_t[]){220, 180, 210}, 3); // thinner than the median
     memset(coverage, 200, sizeof coverage);
     const int amount = fl_ink_amount(ink, painted);
-    const int tone = fl_ink_tone(ink, painted, coverage, LENGTH, WIDE);
+    const int tone = fl_ink_exposure(ink, painted, coverage, LENGTH, WIDE);
     g_assert_cmpint(amount, <, FL_AMOUNT_ONE / 2);
-    g_assert_cmpint(abs(fl_ink_toned(ink, amount, tone) - FL_AMOUNT_ONE), <, FL_AMOUNT_ONE / 50);
+    g_assert_cmpint(abs(fl_ink_exposed(ink, amount, tone) - FL_AMOUNT_ONE), <, FL_AMOUNT_ONE / 50);
 }
 
 static void dense_cores_keep_texture_and_soft_rims_fade(void)
 {
     g_auto(Sample) s = sample_load("drop-30");
     g_autoptr(FlInk) ink = ink_of(&s, drop_paper);
-    const int core = fl_ink_toned(ink, 5 * FL_AMOUNT_ONE, FL_TONE_ONE);
-    const int rim = fl_ink_toned(ink, FL_AMOUNT_ONE / 20, FL_TONE_ONE);
+    const int core = fl_ink_exposed(ink, 5 * FL_AMOUNT_ONE, FL_EXPOSURE_ONE);
+    const int rim = fl_ink_exposed(ink, FL_AMOUNT_ONE / 20, FL_EXPOSURE_ONE);
     g_assert_cmpint(core, >, 2 * FL_AMOUNT_ONE);
     g_assert_cmpint(core, <, 3 * FL_AMOUNT_ONE);
     g_assert_cmpint(rim, <, FL_AMOUNT_ONE / 40);
@@ -259,7 +259,7 @@ static void the_exemplars_own_colours_are_kept_on_its_own_paper(void)
     g_autoptr(FlInk) ink = ink_of(&s, drop_paper);
     FlColouring how = {.tint = FL_TINT_KEEP};
     memcpy(how.paper, drop_paper, 3);
-    g_autofree uint8_t *rgb = paint(&s, ink, &how, FL_TONE_ONE);
+    g_autofree uint8_t *rgb = paint(&s, ink, &how, FL_EXPOSURE_ONE);
     for (size_t i = 0; i < (size_t)s.width * s.height; i++)
         for (int c = 0; c < 3 && s.mask[i]; c++)
             g_assert_cmpint(abs(rgb[3 * i + c] - CLAMP(s.rgb[3 * i + c], 12, drop_paper[c])), <=,

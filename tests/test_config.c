@@ -121,10 +121,10 @@ static void later_words_win_and_a_preset_goes_first(void)
     const FlSetting settings[] = {{"hair", "w-dir", "5"}, {NULL, "hold", "2"}};
     const FlRenderOptions options = {.settings = settings, .n_settings = 2};
 
-    g_auto(FlTreatment) hair = {0}, skin = {0}, other = {0};
-    g_assert_true(fl_config_treatment(config, 0, "hair", &options, &hair, NULL));
-    g_assert_true(fl_config_treatment(config, 1, "skin", &options, &skin, NULL));
-    g_assert_true(fl_config_treatment(config, -1, "sky", &options, &other, NULL));
+    g_auto(FlRegionSettings) hair = {0}, skin = {0}, other = {0};
+    g_assert_true(fl_config_region_settings(config, 0, "hair", &options, &hair, NULL));
+    g_assert_true(fl_config_region_settings(config, 1, "skin", &options, &skin, NULL));
+    g_assert_true(fl_config_region_settings(config, -1, "sky", &options, &other, NULL));
 
     g_autofree char *mine = g_build_filename(folder, "./mine", NULL);
     g_assert_cmpstr(hair.style, ==, mine);
@@ -145,11 +145,11 @@ static void detail_is_between_preset_and_parameters(void)
     const FlRenderOptions options = {0};
     const FlSetting normal = {NULL, "detail", "normal"};
     const FlRenderOptions again = {.settings = &normal, .n_settings = 1};
-    g_auto(FlTreatment) a = {0}, b = {0}, c = {0}, preset = {0};
-    fl_treatment_init(&preset);
-    g_assert_true(fl_config_treatment(config, 0, "a", &options, &a, NULL));
-    g_assert_true(fl_config_treatment(config, 1, "b", &options, &b, NULL));
-    g_assert_true(fl_config_treatment(config, 0, "a", &again, &c, NULL));
+    g_auto(FlRegionSettings) a = {0}, b = {0}, c = {0}, preset = {0};
+    fl_region_settings_init(&preset);
+    g_assert_true(fl_config_region_settings(config, 0, "a", &options, &a, NULL));
+    g_assert_true(fl_config_region_settings(config, 1, "b", &options, &b, NULL));
+    g_assert_true(fl_config_region_settings(config, 0, "a", &again, &c, NULL));
     g_assert_cmpint(a.detail, ==, FL_DETAIL_DRAFT);
     g_assert_cmpint(a.params.finest_rounds, ==, 5);
     g_assert_true(a.params.half_size && !b.params.half_size);

@@ -59,10 +59,10 @@ static void regions_over_each_other_are_the_drawing(const void *name)
     g_autoptr(GError) error = NULL;
     g_autofree char *folder = fixture(name, NULL);
     const char *const inputs[] = {folder, NULL};
-    const FlFilmOptions options = {.inputs = inputs, .n_inputs = 1};
-    g_autoptr(FlFilm) film = fl_film_open(&options, NULL, &error);
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, &error);
     g_assert_no_error(error);
-    const double psnr = flat_psnr(film, fl_film_frames(film) / 2);
+    const double psnr = flat_psnr(drawing, fl_drawing_frames(drawing) / 2);
     g_test_message("%.1f dB", psnr);
     g_assert_cmpfloat(psnr, >=, LEAST_DB);
 }

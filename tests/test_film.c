@@ -1,6 +1,6 @@
 #include "flat.h"
-#include "regions/film.h"
-#include "regions/raster.h"
+#include "drawing/drawing.h"
+#include "drawing/raster.h"
 #include "scratch.h"
 #include <math.h>
 #include <string.h>
@@ -8,68 +8,68 @@
 
 #define KEEP FL_STROKES_KEEP
 
-static FlFilm *open_film(const FlFilmOptions *options, const char *input, FlWarnings *warnings)
+static FlDrawing *open_film(const FlDrawingOptions *options, const char *input, FlWarnings *warnings)
 {
-    FlFilmOptions o = *options;
+    FlDrawingOptions o = *options;
     const char *const inputs[] = {input};
     g_autoptr(GError) error = NULL;
     o.inputs = inputs;
     o.n_inputs = 1;
-    FlFilm *film = fl_film_open(&o, warnings, &error);
+    FlDrawing *drawing = fl_drawing_open(&o, warnings, &error);
     g_assert_no_error(error);
-    return film;
+    return drawing;
 }
 
-static FlFilm *open_fixture(const char *name, FlStrokes strokes, FlWarnings *warnings)
+static FlDrawing *open_fixture(const char *name, FlStrokes strokes, FlWarnings *warnings)
 {
     const char *fixtures = g_getenv("FLUIDY_FIXTURES");
     g_autofree char *folder =
         g_build_filename(fixtures ? fixtures : "fixtures", "animations", name, NULL);
-    const FlFilmOptions options = {.strokes = strokes};
+    const FlDrawingOptions options = {.strokes = strokes};
     return open_film(&options, folder, warnings);
 }
 
 /** "name*frames name*frames …"; names of regions that are not painted in brackets. */
-static char *table(const FlFilm *film)
+static char *table(const FlDrawing *drawing)
 {
     GString *text = g_string_new(NULL);
-    for (int r = 0; r < fl_film_regions(film); r++) {
-        const FlRegion *region = fl_film_region(film, r);
+    for (int r = 0; r < fl_drawing_regions(drawing); r++) {
+        const FlRegion *region = fl_drawing_region(drawing, r);
         g_string_append_printf(text, region->paintable ? "%s%s*%d" : "%s[%s]*%d", r ? " " : "",
                                region->name, region->n_present);
     }
     return g_string_free(text, FALSE);
 }
 
-static void assert_table(const FlFilm *film, const char *expected)
+static void assert_table(const FlDrawing *drawing, const char *expected)
 {
-    g_autofree char *got = table(film);
+    g_autofree char *got = table(drawing);
     g_assert_cmpstr(got, ==, expected);
 }
 
-static const FlRegion *find(const FlFilm *film, const char *name)
+static const FlRegion *find(const FlDrawing *drawing, const char *name)
 {
-    for (int r = 0; r < fl_film_regions(film); r++)
-        if (strcmp(fl_film_region(film, r)->name, name) == 0)
-            return fl_film_region(film, r);
+    for (int r = 0; r < fl_drawing_regions(drawing); r++)
+        if (strcmp(fl_drawing_region(drawing, r)->name, name) == 0)
+            return fl_drawing_region(drawing, r);
     return NULL;
 }
 
 static void layers_that_come_and_go_keep_their_regions(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
-    g_autoptr(FlFilm) film = open_fixture("snowman-wave-layers", KEEP, warnings);
+    g_autoptr(FlDrawing) drawing = open_fixture("snowman-wave-layers", KEEP, warnings);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
-    g_assert_cmpint(fl_film_frames(film), ==, 44);
-    g_assert_cmpint(fl_film_width(film), ==, 1024);
-    g_assert_cmpstr(fl_film_name(film), ==, "snowman-wave-layers");
-    assert_table(film, "snow-9-95c7f7*44 snow-8-95c7f7*43 snow-7-95c7f7*44 snow-6-95c7f7*43 "
+    g_assert_cmpint(fl_drawing_frames(drawing), ==, 44);
+    g_assert_cmpint(fl_drawing_width(drawing), ==, 1024);
+    g_assert_cmpstr(fl_drawing_name(drawing), ==, "snowman-wave-layers");
+    assert_table(drawing, "snow-9-95c7f7*44 snow-8-95c7f7*43 snow-7-95c7f7*44 snow-6-95c7f7*43 "
                        "snow-5-95c7f7*43 arm-right-474d50*44 finger-right-474d50*44 "
                        "arm-left-474d50*44 finger-left-474d50*44 body-e0e0e0*44 button-303030*44 "
                        "hat-474d50*44 hat-a42718*44 head-e0e0e0*44 face-303030*44 face-ffa72b*44 "
                        "snow-1-95c7f7*44 snow-2-95c7f7*21 snow-12-95c7f7*22 snow-11-95c7f7*19 "
                        "snow-4-95c7f7*14 snow-3-95c7f7*18 snow-10-95c7f7*15 close-eye-303030*4");
-    const FlRegion *hat = find(film, "hat-a42718");
+    const FlRegion *hat = find(drawing, "hat-a42718");
     g_assert_cmpstr(hat->label, ==, "body/head/hat");
     g_assert_cmpstr(hat->paint, ==, "#a42718");
     g_assert_cmpint(hat->n_leaves, ==, 1);
@@ -78,17 +78,17 @@ static void layers_that_come_and_go_keep_their_regions(void)
 
 static void limbs_that_are_strokes_are_painted(void)
 {
-    g_autoptr(FlFilm) film = open_fixture("strutter-zdog", KEEP, NULL);
-    assert_table(film, "crimson-cc2255*4 yellow-eeaa00*4 purple-663366*4 "
+    g_autoptr(FlDrawing) drawing = open_fixture("strutter-zdog", KEEP, NULL);
+    assert_table(drawing, "crimson-cc2255*4 yellow-eeaa00*4 purple-663366*4 "
                        "[purple-663366-line]*4 navy-442244*4 beige-ffeedd*4");
-    g_autoptr(FlFilm) fills = open_fixture("strutter-zdog", FL_STROKES_DROP, NULL);
+    g_autoptr(FlDrawing) fills = open_fixture("strutter-zdog", FL_STROKES_DROP, NULL);
     g_assert_null(find(fills, "navy-442244"));
 }
 
 static void strokes_over_fills_are_drawn_as_they_are(void)
 {
-    g_autoptr(FlFilm) film = open_fixture("windsock-smil", KEEP, NULL);
-    assert_table(film, "gradient-ced1d7*3 gradient-f05c5c*3 [red-ef4444-line]*3");
+    g_autoptr(FlDrawing) drawing = open_fixture("windsock-smil", KEEP, NULL);
+    assert_table(drawing, "gradient-ced1d7*3 gradient-f05c5c*3 [red-ef4444-line]*3");
 }
 
 static void thick_strokes_are_limbs_and_thin_ones_lines(void)
@@ -99,19 +99,19 @@ static void thick_strokes_are_limbs_and_thin_ones_lines(void)
                        "<line x1=\"10\" y1=\"90\" x2=\"90\" y2=\"90\" stroke=\"red\" "
                        "stroke-width=\"8\"/><path fill=\"none\" d=\"M10 10h80\" "
                        "stroke=\"#0a0\" transform=\"scale(1 2)\"/>"));
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    assert_table(film, "red-ff0000*1 [blue-0000ff-line]*1 [green-00aa00-line]*1");
-    g_assert_cmpint(fl_film_region(film, 0)->n_leaves, ==, 2);
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    assert_table(drawing, "red-ff0000*1 [blue-0000ff-line]*1 [green-00aa00-line]*1");
+    g_assert_cmpint(fl_drawing_region(drawing, 0)->n_leaves, ==, 2);
 }
 
 static void masked_parts_are_regions_and_faint_ones_over_others_shading(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
-    g_autoptr(FlFilm) film = open_fixture("ghost-morph", KEEP, warnings);
+    g_autoptr(FlDrawing) drawing = open_fixture("ghost-morph", KEEP, warnings);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
-    g_assert_true(find(film, "white-ffffff") && find(film, "dark-brown-422b0d"));
-    g_assert_false(find(film, "dark-red-ab3e2d-shade")->paintable);
+    g_assert_true(find(drawing, "white-ffffff") && find(drawing, "dark-brown-422b0d"));
+    g_assert_false(find(drawing, "dark-red-ab3e2d-shade")->paintable);
 }
 
 static void a_region_keeps_its_leaf_while_the_colour_changes(void)
@@ -125,14 +125,14 @@ static void a_region_keeps_its_leaf_while_the_colour_changes(void)
             100 + 20 * t, 200 - 20 * t);
         g_free(scratch_svg(folder, name, content));
     }
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    g_assert_cmpint(fl_film_regions(film), ==, 2);
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_assert_cmpint(fl_drawing_regions(drawing), ==, 2);
     for (int t = 0; t < 6; t += 5) {
-        g_autoptr(FlRuns) runs = fl_film_runs(film, t, NULL);
-        g_assert_cmpint(runs->run[0].region, ==, 0);
-        g_assert_cmpint(runs->run[0].rgb[0], ==, 100 + 20 * t);
-        g_assert_cmpint(runs->run[0].coverage[15 * 30 + 15], ==, 255);
+        g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, t, NULL);
+        g_assert_cmpint(draws->draw[0].region, ==, 0);
+        g_assert_cmpint(draws->draw[0].rgb[0], ==, 100 + 20 * t);
+        g_assert_cmpint(draws->draw[0].coverage[15 * 30 + 15], ==, 255);
     }
 }
 
@@ -151,9 +151,9 @@ static void depth_sorted_leaves_and_renumbered_ids_keep_their_regions(void)
                        "<g id=\"blender_frame_2\"><path d=\"M5 5h9v9z\" fill=\"#0a0\"/>"
                        "<circle id=\"path2\" r=\"40\" fill=\"url(#color-1)\"/>"
                        "<rect width=\"30\" height=\"30\" fill=\"url(#color-2)\"/></g>"));
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    assert_table(film, "red-ff0000*2 blue-0000ff*2 green-00aa00*2");
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    assert_table(drawing, "red-ff0000*2 blue-0000ff*2 green-00aa00*2");
 }
 
 static void a_group_that_fades_stays_taken_apart(void)
@@ -167,11 +167,11 @@ static void a_group_that_fades_stays_taken_apart(void)
                             t == 3 ? ".3" : "1");
         g_free(scratch_svg(folder, name, content));
     }
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) fading = open_film(&options, folder, NULL);
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) fading = open_film(&options, folder, NULL);
     assert_table(fading, "red-ff0000*3 blue-0000ff*3");
-    const FlFilmOptions last = {.range = "3"};
-    g_autoptr(FlFilm) faint = open_film(&last, folder, NULL);
+    const FlDrawingOptions last = {.range = "3"};
+    g_autoptr(FlDrawing) faint = open_film(&last, folder, NULL);
     assert_table(faint, "group*1");
 }
 
@@ -185,12 +185,12 @@ static void a_mask_from_a_style_sheet_is_kept(void)
                        "<circle cx=\"30\" cy=\"30\" r=\"20\" fill=\"blue\"/></g>"
                        "<g class=\"st4\"><rect x=\"60\" width=\"40\" height=\"60\"/>"
                        "<circle cx=\"80\" cy=\"30\" r=\"20\" fill=\"red\"/></g>"));
-    const FlFilmOptions options = {0};
+    const FlDrawingOptions options = {0};
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
-    g_autoptr(FlFilm) film = open_film(&options, folder, warnings);
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, warnings);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
-    assert_table(film, "red-ff0000*1 blue-0000ff*1 group*1");
-    g_assert_cmpfloat(flat_psnr(film, 0), >, 60);
+    assert_table(drawing, "red-ff0000*1 blue-0000ff*1 group*1");
+    g_assert_cmpfloat(flat_psnr(drawing, 0), >, 60);
 }
 
 static void packed_frames_of_unequal_size_are_read(void)
@@ -206,13 +206,13 @@ static void packed_frames_of_unequal_size_are_read(void)
         g_assert_cmpint(gzwrite(file, text, (unsigned)strlen(text)), >, 0);
         gzclose(file);
     }
-    const FlFilmOptions options = {0};
+    const FlDrawingOptions options = {0};
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
-    g_autoptr(FlFilm) film = open_film(&options, folder, warnings);
-    g_assert_cmpint(fl_film_width(film), ==, 100);
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, warnings);
+    g_assert_cmpint(fl_drawing_width(drawing), ==, 100);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 1);
     uint8_t mask[10000];
-    g_assert_true(fl_film_mask(film, 1, 0, mask, NULL));
+    g_assert_true(fl_drawing_mask(drawing, 1, 0, mask, NULL));
     g_assert_true(mask[39] == 255 && mask[40] == 0); // the scale is the first frame's
 }
 
@@ -224,9 +224,9 @@ static void rings_of_two_colours_are_regions_of_their_own(void)
                        "<circle cx=\"50\" cy=\"50\" r=\"35\" fill=\"white\"/>"
                        "<circle cx=\"50\" cy=\"50\" r=\"25\" fill=\"red\"/>"
                        "<circle cx=\"52\" cy=\"50\" r=\"15\" fill=\"red\"/>"));
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    assert_table(film, "red-ff0000*1 white-ffffff*1 red-ff0000-2*1");
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    assert_table(drawing, "red-ff0000*1 white-ffffff*1 red-ff0000-2*1");
 }
 
 static void a_mask_is_the_whole_shape(void)
@@ -236,14 +236,14 @@ static void a_mask_is_the_whole_shape(void)
                        "<g opacity=\".5\"><rect width=\"40\" height=\"40\" fill=\"red\"/></g>"
                        "<rect x=\"20\" width=\"80\" height=\"40\" fill=\"blue\"/>"
                        "<rect y=\"60\" width=\"40\" height=\"40\" fill=\"red\"/>"));
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
-    g_assert_cmpint(runs->n, ==, 3); // red, half; blue; red
-    g_assert_cmpint(runs->run[0].alpha, ==, 128);
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+    g_assert_cmpint(draws->n, ==, 3); // red, half; blue; red
+    g_assert_cmpint(draws->draw[0].alpha, ==, 128);
     uint8_t from_runs[10000], alone[10000];
-    fl_runs_mask(runs, 0, 100, 100, from_runs);
-    g_assert_true(fl_film_mask(film, 0, 0, alone, NULL));
+    fl_draw_list_mask(draws, 0, 100, 100, from_runs);
+    g_assert_true(fl_drawing_mask(drawing, 0, 0, alone, NULL));
     g_assert_cmpmem(from_runs, 10000, alone, 10000);
     int area = 0;
     for (int p = 0; p < 10000; p++)
@@ -258,14 +258,14 @@ static void a_film_of_half_the_size_has_the_same_shapes(void)
     g_free(scratch_svg(folder, "1.svg",
                        "<rect x=\"8\" y=\"20\" width=\"40\" height=\"60\" fill=\"red\"/>"
                        "<rect x=\"70\" y=\"90\" width=\"40\" height=\"40\" fill=\"red\"/>"));
-    const FlFilmOptions options = {.width = 75, .height = 75};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+    const FlDrawingOptions options = {.width = 75, .height = 75};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
     uint8_t full[75 * 75], half[38 * 38];
-    g_assert_true(fl_film_mask(film, 0, 0, full, NULL));
-    fl_film_halve(film);
-    g_assert_cmpint(fl_film_width(film), ==, 38);
-    g_assert_cmpint(fl_film_height(film), ==, 38);
-    g_assert_true(fl_film_mask(film, 0, 0, half, NULL));
+    g_assert_true(fl_drawing_mask(drawing, 0, 0, full, NULL));
+    fl_drawing_halve(drawing);
+    g_assert_cmpint(fl_drawing_width(drawing), ==, 38);
+    g_assert_cmpint(fl_drawing_height(drawing), ==, 38);
+    g_assert_true(fl_drawing_mask(drawing, 0, 0, half, NULL));
     for (int y = 0; y < 37; y++)
         for (int x = 0; x < 37; x++) {
             const int p = 75 * 2 * y + 2 * x;
@@ -281,14 +281,14 @@ static void a_fading_gradient_keeps_its_mask(void)
                        "<linearGradient id=\"g\"><stop stop-color=\"red\"/><stop offset=\"1\" "
                        "stop-color=\"blue\"/></linearGradient><g opacity=\".25\"><rect "
                        "width=\"60\" height=\"60\" fill=\"url(#g)\"/></g>"));
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
-    g_assert_cmpint(runs->n, ==, 1);
-    g_assert_cmpint(runs->run[0].alpha, ==, 64);
-    g_assert_cmpint(runs->run[0].coverage[30 * 60 + 30], ==, 255);
-    g_assert_cmpint(runs->run[0].picture[4 * (30 * 60 + 58)], <, 20); // blue at the right
-    g_assert_cmpfloat(flat_psnr(film, 0), >, 50);
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+    g_assert_cmpint(draws->n, ==, 1);
+    g_assert_cmpint(draws->draw[0].alpha, ==, 64);
+    g_assert_cmpint(draws->draw[0].coverage[30 * 60 + 30], ==, 255);
+    g_assert_cmpint(draws->draw[0].picture[4 * (30 * 60 + 58)], <, 20); // blue at the right
+    g_assert_cmpfloat(flat_psnr(drawing, 0), >, 50);
 }
 
 /* Two squares of one run, the second beyond the page's right edge. */
@@ -298,12 +298,12 @@ static void a_run_takes_the_room_of_what_is_drawn(void)
     g_free(scratch_svg(folder, "1.svg",
                        "<path d=\"M10 20h10v10h-10z\" fill=\"red\"/>"
                        "<path d=\"M90 40h30v20h-30z\" fill=\"red\"/>"));
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
-    g_assert_cmpint(runs->n, ==, 1);
-    const FlArea *area = &runs->run[0].area;
-    g_assert_cmpmem(&area->box, sizeof(FlBox), &((FlBox){10, 20, 90, 40}), sizeof(FlBox));
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+    g_assert_cmpint(draws->n, ==, 1);
+    const FlArea *area = &draws->draw[0].area;
+    g_assert_cmpmem(&area->box, sizeof(FlRect), &((FlRect){10, 20, 90, 40}), sizeof(FlRect));
     const FlColumns first = fl_area_row(area, 5), none = fl_area_row(area, 15),
                     second = fl_area_row(area, 25);
     g_assert_cmpint(first.first, ==, 0);
@@ -311,8 +311,8 @@ static void a_run_takes_the_room_of_what_is_drawn(void)
     g_assert_cmpint(none.first, >=, none.last);
     g_assert_cmpint(second.first, ==, 80);
     g_assert_cmpint(second.last, ==, 90);
-    g_assert_cmpint(runs->run[0].coverage[25 * 90 + 85], ==, 255);
-    g_assert_cmpint(runs->run[0].coverage[25 * 90 + 5], ==, 0);
+    g_assert_cmpint(draws->draw[0].coverage[25 * 90 + 85], ==, 255);
+    g_assert_cmpint(draws->draw[0].coverage[25 * 90 + 5], ==, 0);
 }
 
 static void leaves_that_do_not_meet_share_a_run(void)
@@ -327,11 +327,11 @@ static void leaves_that_do_not_meet_share_a_run(void)
                                12 + 25 * (i / 4));
     g_free(scratch_svg(folder, "1.svg", text->str));
     g_string_free(text, TRUE);
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
-    g_assert_cmpint(runs->n, ==, 2);
-    g_assert_cmpfloat(flat_psnr(film, 0), >, 70);
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+    g_assert_cmpint(draws->n, ==, 2);
+    g_assert_cmpfloat(flat_psnr(drawing, 0), >, 70);
 }
 
 static void rules_choose_leaves_and_the_first_wins(void)
@@ -347,10 +347,10 @@ static void rules_choose_leaves_and_the_first_wins(void)
     const char *fixtures = g_getenv("FLUIDY_FIXTURES");
     g_autofree char *pattern = g_build_filename(fixtures ? fixtures : "fixtures", "animations",
                                                 "snowman-wave-layers", "%04d.svg", NULL);
-    const FlFilmOptions options = {.range = "1-3", .rules = rules, .n_rules = 4};
-    g_autoptr(FlFilm) film = open_film(&options, pattern, NULL);
-    assert_table(film, "[snow]*3 rest*3 hat*3");
-    g_assert_cmpint(find(film, "hat")->rule, ==, 1);
+    const FlDrawingOptions options = {.range = "1-3", .rules = rules, .n_rules = 4};
+    g_autoptr(FlDrawing) drawing = open_film(&options, pattern, NULL);
+    assert_table(drawing, "[snow]*3 rest*3 hat*3");
+    g_assert_cmpint(find(drawing, "hat")->rule, ==, 1);
     const char *const wrong[] = {"blueish", NULL};
     const FlRegionRule bad = {.name = "sky", .match_fill = wrong};
     g_autoptr(GError) error = NULL;
@@ -373,10 +373,10 @@ static void keys_other_than_the_default_can_be_asked_for(void)
     static const int n[] = {[FL_KEY_AUTO] = 3,  [FL_KEY_FILL] = 2,  [FL_KEY_ID] = 1,
                             [FL_KEY_CLASS] = 2, [FL_KEY_LABEL] = 2, [FL_KEY_TREE] = 3};
     for (int key = FL_KEY_AUTO; key <= FL_KEY_TREE; key++) {
-        const FlFilmOptions options = {.key = key};
-        g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
+        const FlDrawingOptions options = {.key = key};
+        g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
         g_test_message("key %d", key);
-        g_assert_cmpint(fl_film_regions(film), ==, n[key]);
+        g_assert_cmpint(fl_drawing_regions(drawing), ==, n[key]);
     }
 }
 
@@ -392,11 +392,11 @@ static void the_picture_has_the_size_that_is_asked_for(void)
     g_autofree char *folder =
         g_build_filename(fixtures ? fixtures : "fixtures", "animations", "windsock-smil", NULL);
     for (size_t i = 0; i < G_N_ELEMENTS(sizes); i++) {
-        const FlFilmOptions options = {
+        const FlDrawingOptions options = {
             .width = sizes[i].width, .height = sizes[i].height, .scale = sizes[i].scale};
-        g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-        g_assert_cmpint(fl_film_width(film), ==, sizes[i].w);
-        g_assert_cmpint(fl_film_height(film), ==, sizes[i].h);
+        g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+        g_assert_cmpint(fl_drawing_width(drawing), ==, sizes[i].w);
+        g_assert_cmpint(fl_drawing_height(drawing), ==, sizes[i].h);
     }
 }
 
@@ -408,14 +408,14 @@ static void no_row_or_column_of_the_picture_is_partly_bare(void)
                       "<svg xmlns='http://www.w3.org/2000/svg' width='97.15px' height='128.35px'>"
                       "<rect width='100%' height='100%' fill='#248'/></svg>");
     for (int width = 95; width < 105; width++) {
-        const FlFilmOptions options = {.width = width};
-        g_autoptr(FlFilm) film = open_film(&options, path, NULL);
-        g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
-        g_assert_cmpint(fl_film_width(film), ==, width);
-        g_assert_cmpint(runs->run[0].area.box.width, ==, width);
-        g_assert_cmpint(runs->run[0].area.box.height, ==, fl_film_height(film));
-        for (int i = 0; i < width * fl_film_height(film); i++)
-            g_assert_cmpint(runs->run[0].coverage[i], ==, 255);
+        const FlDrawingOptions options = {.width = width};
+        g_autoptr(FlDrawing) drawing = open_film(&options, path, NULL);
+        g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+        g_assert_cmpint(fl_drawing_width(drawing), ==, width);
+        g_assert_cmpint(draws->draw[0].area.box.width, ==, width);
+        g_assert_cmpint(draws->draw[0].area.box.height, ==, fl_drawing_height(drawing));
+        for (int i = 0; i < width * fl_drawing_height(drawing); i++)
+            g_assert_cmpint(draws->draw[0].coverage[i], ==, 255);
     }
 }
 
@@ -433,10 +433,10 @@ static void the_smallest_group_that_looks_otherwise_is_taken_as_one(void)
                     "<g><use xlink:href='#d' x='5' y='70'/>"
                     "<circle cx='80' cy='20' r='15' fill='#993399'/></g>");
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, path, warnings);
-    assert_table(film, "outer-333399*1 pair-group*1 green-00aa00*1 purple-993399*1");
-    g_assert_cmpfloat(flat_psnr(film, 0), >, 60);
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, path, warnings);
+    assert_table(drawing, "outer-333399*1 pair-group*1 green-00aa00*1 purple-993399*1");
+    g_assert_cmpfloat(flat_psnr(drawing, 0), >, 60);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 2);
     g_autofree char *use = fl_warning_line(fl_warnings_get(warnings, 0));
     g_autofree char *pair = fl_warning_line(fl_warnings_get(warnings, 1));
@@ -460,12 +460,12 @@ static void regions_merge_through_others_and_not_in_circles(void)
     FlRegionRule rules[] = {{.name = "a", .match_fill = red, .merge_with = "b"},
                             {.name = "b", .match_fill = green, .merge_with = "c"},
                             {.name = "c", .match_fill = blue}};
-    const FlFilmOptions options = {.rules = rules, .n_rules = 3};
-    g_autoptr(FlFilm) film = open_film(&options, path, NULL);
-    assert_table(film, "c*1");
-    g_assert_cmpint(fl_film_region(film, 0)->n_leaves, ==, 3);
+    const FlDrawingOptions options = {.rules = rules, .n_rules = 3};
+    g_autoptr(FlDrawing) drawing = open_film(&options, path, NULL);
+    assert_table(drawing, "c*1");
+    g_assert_cmpint(fl_drawing_region(drawing, 0)->n_leaves, ==, 3);
     rules[2].merge_with = "a";
-    g_autoptr(FlFilm) circle = open_film(&options, path, NULL);
+    g_autoptr(FlDrawing) circle = open_film(&options, path, NULL);
     assert_table(circle, "a*1 b*1 c*1");
 }
 
@@ -483,9 +483,9 @@ static void a_region_that_vanishes_and_returns_is_the_same(void)
         g_autofree char *name = g_strdup_printf("w_%u.svg", i + 1);
         g_free(scratch_svg(folder, name, frames[i]));
     }
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    assert_table(film, "red-aa0000*2 violet-0000aa*4");
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    assert_table(drawing, "red-aa0000*2 violet-0000aa*4");
 }
 
 /* As above, but the group fades in the second frame only. */
@@ -502,9 +502,9 @@ static void a_group_that_is_taken_as_one_in_a_frame_is_so_in_all(void)
                             t == 1 ? ".5" : "1");
         g_free(scratch_svg(folder, name, content));
     }
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    assert_table(film, "violet-333399*3 pair-group*3");
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    assert_table(drawing, "violet-333399*3 pair-group*3");
 }
 
 /* A house that stands still and a ball that comes from the left, each frame moved to 0,0. */
@@ -521,18 +521,18 @@ static void frames_that_begin_at_nought_are_put_back(void)
                             50 - left, ball + 8 - left);
         G_GNUC_UNUSED g_autofree char *path = scratch_write(folder, name, text);
     }
-    const FlFilmOptions options = {.registered = true};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    const int width = fl_film_width(film), height = fl_film_height(film);
+    const FlDrawingOptions options = {.registered = true};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
     g_assert_cmpint(width, ==, 91); // from the ball's first left edge at 10 to its last right one
     g_assert_cmpint(height, ==, 40);
     g_autofree uint8_t *first = g_malloc((size_t)width * height);
     g_autofree uint8_t *mask = g_malloc((size_t)width * height);
-    g_assert_true(fl_film_mask(film, 0, 0, first, NULL));
+    g_assert_true(fl_drawing_mask(drawing, 0, 0, first, NULL));
     for (int t = 0; t < 4; t++) {
-        g_assert_true(fl_film_mask(film, t, 0, mask, NULL));
+        g_assert_true(fl_drawing_mask(drawing, t, 0, mask, NULL));
         g_assert_cmpmem(mask, width * height, first, width * height);
-        g_assert_true(fl_film_mask(film, t, 1, mask, NULL));
+        g_assert_true(fl_drawing_mask(drawing, t, 1, mask, NULL));
         g_assert_cmpint(mask[20 * width + 8 + 25 * t], ==, 255);
         g_assert_cmpint(mask[20 * width + (8 + 25 * t + 30) % width], ==, 0);
     }
@@ -543,13 +543,13 @@ static void an_empty_frame_is_a_frame(void)
     g_autoptr(Scratch) folder = scratch_make();
     g_free(scratch_svg(folder, "1.svg", ""));
     g_free(scratch_svg(folder, "2.svg", "<rect width=\"9\" height=\"9\"/>"));
-    const FlFilmOptions options = {0};
-    g_autoptr(FlFilm) film = open_film(&options, folder, NULL);
-    g_assert_cmpint(fl_film_region(film, 0)->first_frame, ==, 1);
-    g_autoptr(FlRuns) runs = fl_film_runs(film, 0, NULL);
-    g_assert_cmpint(runs->n, ==, 0);
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_assert_cmpint(fl_drawing_region(drawing, 0)->first_frame, ==, 1);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+    g_assert_cmpint(draws->n, ==, 0);
     uint8_t mask[10000];
-    g_assert_true(fl_film_mask(film, 0, 0, mask, NULL));
+    g_assert_true(fl_drawing_mask(drawing, 0, 0, mask, NULL));
     g_assert_cmpint(mask[0], ==, 0);
 }
 
@@ -559,9 +559,9 @@ static void a_broken_frame_is_named(void)
     g_free(scratch_svg(folder, "1.svg", ""));
     g_autofree char *bad = scratch_write(folder, "2.svg", "<svg");
     const char *const inputs[] = {folder};
-    const FlFilmOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
     g_autoptr(GError) error = NULL;
-    g_assert_null(fl_film_open(&options, NULL, &error));
+    g_assert_null(fl_drawing_open(&options, NULL, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, bad));
 }

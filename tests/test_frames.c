@@ -1,5 +1,5 @@
-#include "frames/pathdata.h"
-#include "frames/svg.h"
+#include "svg/path_data.h"
+#include "svg/svg_frame.h"
 #include "scratch.h"
 #include <string.h>
 

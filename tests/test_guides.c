@@ -1,6 +1,6 @@
 #include "guide_shapes.h"
 #include "guides/guides.h"
-#include "guides/store.h"
+#include "guides/plane_store.h"
 #include <math.h>
 #include <string.h>
 #ifdef _OPENMP
@@ -399,8 +399,8 @@ static void stored_integers_of_any_size_come_back(void)
                 values[k] = (int32_t)((0x40000000u >> size) * (uint32_t)(k % 5 - 2) + (uint32_t)k);
             values[63] = size == 0 ? INT32_MAX : 0;
             const size_t block = 2 * size + step - 1;
-            g_assert_true(fl_store_put(spill, block, values, 64, step, &error));
-            g_assert_true(fl_store_get(spill, block, back, 64, step, &error));
+            g_assert_true(fl_plane_store_put(spill, block, values, 64, step, &error));
+            g_assert_true(fl_plane_store_get(spill, block, back, 64, step, &error));
             g_assert_cmpmem(back, sizeof back, values, sizeof values);
         }
 }

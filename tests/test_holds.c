@@ -1,6 +1,6 @@
 /* Drawings that are held, and films that are repeated: how the paint lives through them. */
 #include "scratch.h"
-#include "style/picture.h"
+#include "io/picture.h"
 #include "synth/shift.h"
 #include <fluidy/fluidy.h>
 #include <math.h>
@@ -13,11 +13,11 @@ typedef struct Film {
     FlPicture *frame[FRAMES];
 } Film;
 
-static void film_clear(Film *film)
+static void film_clear(Film *drawing)
 {
     for (int f = 0; f < FRAMES; f++)
-        fl_picture_free(film->frame[f]);
-    scratch_remove(film->folder);
+        fl_picture_free(drawing->frame[f]);
+    scratch_remove(drawing->folder);
 }
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Film, film_clear)
 
@@ -25,17 +25,17 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Film, film_clear)
 static Film painted_to(const char *dump, double radius, const FlSetting *settings,
                        size_t n_settings, bool loop)
 {
-    Film film = {.folder = scratch_make()};
+    Film drawing = {.folder = scratch_make()};
     for (int f = 0; f < FRAMES; f++) {
         const double a = 2 * G_PI * f / FRAMES;
         g_autofree char *name = g_strdup_printf("d_%02d.svg", f + 1);
         g_autofree char *disc =
             g_strdup_printf("<circle cx='%d' cy='%d' r='30' fill='#335588'/>",
                             (int)lrint(50 + radius * cos(a)), (int)lrint(50 + radius * sin(a)));
-        G_GNUC_UNUSED g_autofree char *path = scratch_svg(film.folder, name, disc);
+        G_GNUC_UNUSED g_autofree char *path = scratch_svg(drawing.folder, name, disc);
     }
-    g_autofree char *output = g_build_filename(film.folder, "d_%02d.png", NULL);
-    const char *const inputs[] = {film.folder, NULL};
+    g_autofree char *output = g_build_filename(drawing.folder, "d_%02d.png", NULL);
+    const char *const inputs[] = {drawing.folder, NULL};
     const FlRenderOptions options = {.inputs = inputs,
                                      .output = output,
                                      .width = SIDE,
@@ -48,11 +48,11 @@ static Film painted_to(const char *dump, double radius, const FlSetting *setting
     g_assert_no_error(error);
     for (int f = 0; f < FRAMES; f++) {
         g_autofree char *name = g_strdup_printf("d_%02d.png", f + 1);
-        g_autofree char *path = g_build_filename(film.folder, name, NULL);
-        film.frame[f] = fl_picture_read_png(path, &error);
+        g_autofree char *path = g_build_filename(drawing.folder, name, NULL);
+        drawing.frame[f] = fl_picture_read_png(path, &error);
         g_assert_no_error(error);
     }
-    return film;
+    return drawing;
 }
 
 static Film painted(double radius, const FlSetting *settings, size_t n_settings, bool loop)
@@ -61,11 +61,11 @@ static Film painted(double radius, const FlSetting *settings, size_t n_settings,
 }
 
 /* Mean absolute difference of two frames, in levels. */
-static double change(const Film *film, int from, int to)
+static double change(const Film *drawing, int from, int to)
 {
     long sum = 0;
     for (int k = 0; k < 4 * SIDE * SIDE; k++)
-        sum += abs(film->frame[from]->rgba[k] - film->frame[to]->rgba[k]);
+        sum += abs(drawing->frame[from]->rgba[k] - drawing->frame[to]->rgba[k]);
     return (double)sum / (SIDE * SIDE);
 }
 
@@ -80,17 +80,17 @@ static FlSetting style(void)
 static void paint_rests_where_the_drawing_holds_still(void)
 {
     const FlSetting settings[] = {style()};
-    g_auto(Film) film = painted(0, settings, 1, false);
+    g_auto(Film) drawing = painted(0, settings, 1, false);
     for (int f = 1; f < FRAMES; f++)
-        g_assert_cmpfloat(change(&film, f - 1, f), ==, 0);
+        g_assert_cmpfloat(change(&drawing, f - 1, f), ==, 0);
 }
 
 static void paint_boils_at_the_pace_that_is_asked_for(void)
 {
     const FlSetting all[] = {style(), {.name = "boil", .value = "1"}};
-    g_auto(Film) film = painted(0, all, 2, false);
+    g_auto(Film) drawing = painted(0, all, 2, false);
     for (int f = 1; f < FRAMES; f++)
-        g_assert_cmpfloat(change(&film, f - 1, f), >, 0);
+        g_assert_cmpfloat(change(&drawing, f - 1, f), >, 0);
     const FlSetting half[] = {style(), {.name = "boil", .value = "0.5"}};
     g_auto(Film) slow = painted(0, half, 2, false);
     for (int f = 1; f < FRAMES; f++) // frame f is the (f + 1)-th
@@ -118,32 +118,32 @@ static void boiling_paint_goes_to_and_fro_in_its_recording(void)
 static void on_twos_every_picture_stays_for_two_frames(void)
 {
     const FlSetting settings[] = {style(), {.name = "hold", .value = "2"}};
-    g_auto(Film) film = painted(14, settings, 2, false);
+    g_auto(Film) drawing = painted(14, settings, 2, false);
     for (int f = 1; f < FRAMES; f++)
         if (f % 2 == 1)
-            g_assert_cmpfloat(change(&film, f - 1, f), ==, 0);
+            g_assert_cmpfloat(change(&drawing, f - 1, f), ==, 0);
         else
-            g_assert_cmpfloat(change(&film, f - 1, f), >, 1);
+            g_assert_cmpfloat(change(&drawing, f - 1, f), >, 1);
 }
 
 static void a_region_on_twos_keeps_its_shape_in_a_film_on_ones(void)
 {
     const FlSetting settings[] = {style(), {"navy-335588", "hold", "2"}};
-    g_auto(Film) film = painted(14, settings, 2, false);
+    g_auto(Film) drawing = painted(14, settings, 2, false);
     for (int f = 1; f < FRAMES; f++)
         if (f % 2 == 1)
-            g_assert_cmpfloat(change(&film, f - 1, f), ==, 0);
+            g_assert_cmpfloat(change(&drawing, f - 1, f), ==, 0);
         else
-            g_assert_cmpfloat(change(&film, f - 1, f), >, 1);
+            g_assert_cmpfloat(change(&drawing, f - 1, f), >, 1);
 }
 
 /* The paint that changes between two frames, beside how it changes anywhere in the film. */
-static double jump(const Film *film)
+static double jump(const Film *drawing)
 {
     double most = 0;
     for (int f = 1; f < FRAMES; f++)
-        most = MAX(most, change(film, f - 1, f));
-    return change(film, FRAMES - 1, 0) / most;
+        most = MAX(most, change(drawing, f - 1, f));
+    return change(drawing, FRAMES - 1, 0) / most;
 }
 
 static void a_loop_ends_where_it_began(void)
@@ -191,10 +191,10 @@ static void a_held_drawing_loops_on_twos(void)
 {
     const FlSetting settings[] = {
         style(), {.name = "hold", .value = "2"}, {.name = "boil", .value = "1"}};
-    g_auto(Film) film = painted(0, settings, 3, true);
+    g_auto(Film) drawing = painted(0, settings, 3, true);
     for (int f = 1; f < FRAMES; f += 2)
-        g_assert_cmpfloat(change(&film, f - 1, f), ==, 0);
-    g_assert_cmpfloat(jump(&film), <, 1.5);
+        g_assert_cmpfloat(change(&drawing, f - 1, f), ==, 0);
+    g_assert_cmpfloat(jump(&drawing), <, 1.5);
 }
 
 int main(int argc, char **argv)

@@ -1,8 +1,8 @@
 #include "style/border.h"
-#include "style/bundle.h"
-#include "style/extract.h"
-#include "style/picture.h"
-#include "style/plate.h"
+#include "style/style_folder.h"
+#include "style/estimate.h"
+#include "io/picture.h"
+#include "style/flat_field.h"
 #include "style/stabilise.h"
 
 #include <fluidy/style.h>
@@ -77,14 +77,14 @@ static void a_plate_makes_the_light_even(void)
     g_autofree uint8_t *rgb = draw_all(0.15, NULL), *mask = g_malloc0(PIXELS * FRAMES);
     const FlClip clip = {WIDTH, HEIGHT, FRAMES, rgb};
     uint8_t paper[3];
-    FlPlate plate;
+    FlFlatField plate;
     for (int t = 0; t < FRAMES; t++)
         for (int i = 0; i < PIXELS; i++)
             mask[PIXELS * t + i] = hypot(i % WIDTH - 80, i / WIDTH - 50) < 18 + 3 * t ? 255 : 0;
     fl_paper_estimate(&clip, mask, paper);
-    fl_plate_fit(&plate, &clip, mask, paper);
-    g_assert_cmpfloat(fabsf(fl_plate_range(&plate) - 0.15f * 240), <, 5);
-    fl_plate_flatten(&plate, rgb, mask, FRAMES);
+    fl_flat_field_fit(&plate, &clip, mask, paper);
+    g_assert_cmpfloat(fabsf(fl_flat_field_range(&plate) - 0.15f * 240), <, 5);
+    fl_flat_field_flatten(&plate, rgb, mask, FRAMES);
     double left = 0, right = 0;
     for (int y = 0; y < 80; y++)
         for (int x = 0; x < 12; x++) {

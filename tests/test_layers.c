@@ -2,7 +2,7 @@
 #include "compose/enlarge.h"
 #include "compose/holes.h"
 #include "compose/layers.h"
-#include "compose/matte.h"
+#include "compose/visibility.h"
 
 #include <math.h>
 #include <string.h>
@@ -153,14 +153,14 @@ static void thin_paint_that_knocks_out_shows_paper_and_a_glaze_what_is_below(voi
 
 static void paint_below_runs_on_under_a_rim_without_body(void)
 {
-    uint8_t all[N], body[N], out[4 * N];
+    uint8_t all[N], knockout[N], out[4 * N];
     memset(all, 255, N);
     for (int i = 0; i < N; i++)
-        body[i] = i % W < 24 ? 0 : 255;
+        knockout[i] = i % W < 24 ? 0 : 255;
     FlLayer layers[2] = {flat_layer(all, 0, 0, 0), flat_layer(all, 255, 0, 0)};
     for (int i = 0; i < N; i++) // a rim of bare paper, then thin red
         layers[1].rgba[4 * i + 3] = i % W < 24 ? 0 : 128;
-    layers[1].body = body;
+    layers[1].knockout = knockout;
     resolve(layers, 2, &plain);
     fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
     const uint8_t rim[4] = {0, 0, 0, 255}, core[4] = {255, 127, 127, 255};
@@ -195,16 +195,16 @@ static void an_area_is_where_the_shape_is_and_no_more(void)
 static void a_hole_in_the_paint_has_body_and_its_rim_has_not(void)
 {
     enum { SIDE = 20 };
-    const FlBox box = {12, 6, SIDE, SIDE};
-    uint8_t coverage[SIDE * SIDE], body[SIDE * SIDE];
+    const FlRect box = {12, 6, SIDE, SIDE};
+    uint8_t coverage[SIDE * SIDE], knockout[SIDE * SIDE];
     memset(coverage, 255, sizeof coverage);
-    memset(body, 255, sizeof body);
-    memset(body + 10 * SIDE, 40, 7); // from the left side to column 6
-    body[10 * SIDE + 12] = body[11 * SIDE + 12] = 40;
-    g_assert_true(fl_holes_close(body, coverage, &(FlArea){box}, NULL));
+    memset(knockout, 255, sizeof knockout);
+    memset(knockout + 10 * SIDE, 40, 7); // from the left side to column 6
+    knockout[10 * SIDE + 12] = knockout[11 * SIDE + 12] = 40;
+    g_assert_true(fl_holes_close(knockout, coverage, &(FlArea){box}, NULL));
     for (int k = 0; k < SIDE; k++)
-        g_assert_cmpint(body[10 * SIDE + k], ==, k <= 6 ? 40 : 255);
-    g_assert_cmpint(body[11 * SIDE + 12], ==, 255);
+        g_assert_cmpint(knockout[10 * SIDE + k], ==, k <= 6 ? 40 : 255);
+    g_assert_cmpint(knockout[11 * SIDE + 12], ==, 255);
 }
 
 /** Stacks of random discs of random paint. */
@@ -218,7 +218,7 @@ static void random_layers(FlLayer *layers, uint8_t coverage[][N], int n, uint64_
         for (int i = 0; i < 4 * N; i++)
             layers[k].rgba[i] = (uint8_t)fl_rng_u32(&rng);
         layers[k].alpha = fl_rng_below(&rng, 2) ? 255 : (uint8_t)fl_rng_u32(&rng);
-        layers[k].mix = fl_rng_below(&rng, 3) ? FL_MIX_OVER : fl_rng_below(&rng, FL_N_MIXES);
+        layers[k].mix = fl_rng_below(&rng, 3) ? FL_BLEND_MODE_OVER : fl_rng_below(&rng, FL_N_MIXES);
         layers[k].stacking = fl_rng_below(&rng, 4) ? FL_STACKING_KNOCKOUT : FL_STACKING_GLAZE;
     }
 }
@@ -322,7 +322,7 @@ static void enlarged_clear(FlLayer *layer)
 {
     fl_area_clear(&layer->area);
     free(layer->rgba);
-    free((uint8_t *)layer->body);
+    free((uint8_t *)layer->knockout);
     free((uint8_t *)layer->coverage);
 }
 
@@ -352,10 +352,10 @@ static void enlarged_neighbours_leave_no_seam(void)
 /* The box lies within the frame; what is paint has the colour, opacity and body that it had. */
 static void an_enlarged_layer_keeps_its_paint_up_to_the_edge(void)
 {
-    uint8_t shape[12 * 10] = {0}, body[12 * 10];
-    memset(body, 80, sizeof body);
-    FlLayer half = {.area.box = {18, 15, 12, 10}, .coverage = shape, .body = body, .alpha = 200};
-    half.rgba = g_malloc0(4 * sizeof body);
+    uint8_t shape[12 * 10] = {0}, knockout[12 * 10];
+    memset(knockout, 80, sizeof knockout);
+    FlLayer half = {.area.box = {18, 15, 12, 10}, .coverage = shape, .knockout = knockout, .alpha = 200};
+    half.rgba = g_malloc0(4 * sizeof knockout);
     for (int y = 1; y < 9; y++) // a pixel of the box is left around
         for (int x = 1; x < 11; x++) {
             shape[y * 12 + x] = 255;
@@ -371,7 +371,7 @@ static void an_enlarged_layer_keeps_its_paint_up_to_the_edge(void)
             area += covered / 255.0;
             if (covered) {
                 g_assert_cmpmem(full.rgba + 4 * p, 4, ((uint8_t[]){10, 200, 30, 120}), 4);
-                g_assert_cmpint(full.body[p], ==, 80);
+                g_assert_cmpint(full.knockout[p], ==, 80);
             }
         }
     g_assert_cmpfloat(fabs(area - 4 * 80), <, 1);
@@ -391,7 +391,7 @@ static void an_enlarged_layer_fills_the_frame(void)
         g_assert_cmpint(full.coverage[p], ==, 255);
         g_assert_cmpmem(full.rgba + 4 * p, 4, ((uint8_t[]){1, 2, 3, 255}), 4);
     }
-    g_assert_null(full.body);
+    g_assert_null(full.knockout);
     layers_clear(&half, 1);
     enlarged_clear(&full);
 }

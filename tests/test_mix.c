@@ -8,15 +8,15 @@ static const char *const modes[] = {"multiply",   "screen",      "overlay",    "
                                     "soft-light", "difference",  "exclusion",  "hue",
                                     "saturation", "color",       "luminosity"};
 
-static FlFilm *open_drawing(const char *folder, const char *content, FlWarnings *warnings)
+static FlDrawing *open_drawing(const char *folder, const char *content, FlWarnings *warnings)
 {
     g_autofree char *path = scratch_svg(folder, "mixed.svg", content);
     const char *const inputs[] = {path};
-    const FlFilmOptions options = {.inputs = inputs, .n_inputs = 1};
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
     g_autoptr(GError) error = NULL;
-    FlFilm *film = fl_film_open(&options, warnings, &error);
+    FlDrawing *drawing = fl_drawing_open(&options, warnings, &error);
     g_assert_no_error(error);
-    return film;
+    return drawing;
 }
 
 static void every_blend_mode_looks_as_the_drawing_does(void)
@@ -34,9 +34,9 @@ static void every_blend_mode_looks_as_the_drawing_does(void)
             "<g style='mix-blend-mode:%s'><circle cx='70' cy='40' r='20' fill='%s' stroke='#311' "
             "stroke-width='4'/><circle cx='80' cy='50' r='12' fill='#fff'/></g>",
             fill, mode, mode, fill);
-        g_autoptr(FlFilm) film = open_drawing(folder, content, warnings);
-        g_test_message("%s of %s: %.1f dB", mode, fill, flat_psnr(film, 0));
-        g_assert_cmpfloat(flat_psnr(film, 0), >=, 45);
+        g_autoptr(FlDrawing) drawing = open_drawing(folder, content, warnings);
+        g_test_message("%s of %s: %.1f dB", mode, fill, flat_psnr(drawing, 0));
+        g_assert_cmpfloat(flat_psnr(drawing, 0), >=, 45);
         g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
     }
 }
@@ -45,30 +45,30 @@ static void what_is_mixed_in_a_group_of_its_own_is_drawn_shape_by_shape(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
-    g_autoptr(FlFilm) film = open_drawing(
+    g_autoptr(FlDrawing) drawing = open_drawing(
         folder,
         "<style>.i{isolation:isolate}.m{mix-blend-mode:multiply;fill:#79c}</style><g class='i'>"
         "<rect width='100' height='100' fill='#fed'/><circle cx='40' cy='50' r='30' fill='#c52'/>"
         "<path class='m' d='M40,20a30,30,0,0,1,0,60c20-15,20-45,0-60z'/></g>",
         warnings);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
-    g_assert_cmpint(fl_film_regions(film), ==, 3);
-    g_assert_cmpfloat(flat_psnr(film, 0), >=, 45);
+    g_assert_cmpint(fl_drawing_regions(drawing), ==, 3);
+    g_assert_cmpfloat(flat_psnr(drawing, 0), >=, 45);
 }
 
 static void a_mixed_shape_over_others_is_shading_and_one_beside_them_is_painted(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
-    g_autoptr(FlFilm) film =
+    g_autoptr(FlDrawing) drawing =
         open_drawing(folder,
                      "<circle cx='30' cy='50' r='25' fill='#cc8844'/>"
                      "<circle cx='30' cy='50' r='15' fill='#335' style='mix-blend-mode:overlay'/>"
                      "<circle cx='80' cy='50' r='15' fill='#353' style='mix-blend-mode:multiply'/>",
                      NULL);
-    g_assert_cmpint(fl_film_regions(film), ==, 3);
-    g_assert_true(fl_film_region(film, 0)->paintable);
-    g_assert_false(fl_film_region(film, 1)->paintable);
-    g_assert_true(fl_film_region(film, 2)->paintable);
+    g_assert_cmpint(fl_drawing_regions(drawing), ==, 3);
+    g_assert_true(fl_drawing_region(drawing, 0)->paintable);
+    g_assert_false(fl_drawing_region(drawing, 1)->paintable);
+    g_assert_true(fl_drawing_region(drawing, 2)->paintable);
 }
 
 int main(int argc, char **argv)

@@ -1,5 +1,5 @@
 /* Packed bytes: they come back, and what is not whole is known. */
-#include "base/pack.h"
+#include "base/compress.h"
 #include "base/rng.h"
 #include <glib.h>
 #include <string.h>
@@ -20,10 +20,10 @@ static uint8_t one_back[ONE + 1], three_back[THREE + 1];
 static uint8_t *packed(size_t *used)
 {
     const FlSpan spans[] = {{one, ONE}, {NULL, TWO}, {three, THREE}};
-    const size_t room = fl_pack_room(spans, 3);
+    const size_t room = fl_compress_bound(spans, 3);
     uint8_t *bytes = g_malloc(room);
     fill(one, three);
-    *used = fl_pack(spans, 3, bytes, room);
+    *used = fl_compress(spans, 3, bytes, room);
     g_assert_cmpint(*used, >, THREE);
     g_assert_cmpint(*used, <, THREE + ONE / 10);
     return bytes;
@@ -32,7 +32,7 @@ static uint8_t *packed(size_t *used)
 static bool unpacks(const uint8_t *bytes, size_t used, size_t first, size_t last)
 {
     const FlSpan spans[] = {{one_back, first}, {NULL, TWO}, {three_back, last}};
-    return fl_unpack(bytes, used, spans, 3);
+    return fl_decompress(bytes, used, spans, 3);
 }
 
 static void spans_come_back_as_they_were(void)

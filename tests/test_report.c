@@ -1,6 +1,6 @@
 /* The page to look at: what is written into it. */
-#include "report/flicker.h"
-#include "report/script.h"
+#include "inspect/flicker.h"
+#include "inspect/page_script.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "frames/sequence.h"
+#include "drawing/sequence.h"
 #include "scratch.h"
 #include <string.h>
 

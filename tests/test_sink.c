@@ -1,8 +1,8 @@
-#include "output/atomic.h"
-#include "output/name.h"
-#include "output/png.h"
-#include "output/sink.h"
-#include "style/picture.h"
+#include "io/atomic_file.h"
+#include "io/output_name.h"
+#include "io/png.h"
+#include "io/sink.h"
+#include "io/picture.h"
 
 #include <glib/gstdio.h>
 #include <string.h>
@@ -154,10 +154,10 @@ static void a_file_that_cannot_be_written_is_an_error_that_names_it(void)
 }
 
 /** A run that has come to the moment of replacing the file and no further. */
-static FlAtomic stopped_run(const char *path)
+static FlAtomicFile stopped_run(const char *path)
 {
     g_autoptr(GError) error = NULL;
-    FlAtomic file = {0};
+    FlAtomicFile file = {0};
     g_assert_true(fl_atomic_open(&file, path, true, &error));
     fputs("half", file.stream);
     g_assert_cmpint(g_mkdir(path, 0777), ==, 0);
@@ -173,7 +173,7 @@ static void what_a_killed_run_left_is_gone_once_the_file_is_written(void)
     g_autofree char *path = in(&scratch, "a.png"), *foreign = in(&scratch, ".a.png.12");
     uint8_t rgba[4 * W * H] = {0};
     const FlPng png = {.width = W, .height = H, .rgba = rgba};
-    FlAtomic killed = stopped_run(path);
+    FlAtomicFile killed = stopped_run(path);
     fclose(killed.stream); // what the kernel does of it all
     g_file_set_contents(path, "old", -1, NULL);
     g_file_set_contents(foreign, "not ours", -1, NULL);
@@ -192,7 +192,7 @@ static void what_another_run_is_writing_stays(void)
     g_autofree char *path = in(&scratch, "a.png"), *beside = in(&scratch, "b.png");
     uint8_t rgba[4 * W * H] = {0};
     const FlPng png = {.width = W, .height = H, .rgba = rgba};
-    g_auto(FlAtomic) alive = stopped_run(path);
+    g_auto(FlAtomicFile) alive = stopped_run(path);
     g_assert_false(fl_png_save(&png, path, true, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_EXISTS);
     g_assert_nonnull(strstr(error->message, "another run is writing it"));

@@ -1,10 +1,10 @@
 #include "guides/flow_file.h"
-#include "style/bundle.h"
-#include "style/extract.h"
-#include "style/find.h"
+#include "style/style_folder.h"
+#include "style/estimate.h"
+#include "style/find_style.h"
 #include "style/manifest.h"
-#include "style/paint.h"
-#include "style/picture.h"
+#include "style/paint_frames.h"
+#include "io/picture.h"
 
 #include <glib/gstdio.h>
 #include <math.h>

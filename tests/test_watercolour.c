@@ -302,8 +302,8 @@ static void quinacridone_rose_has_its_printed_colours(void)
     const FlPigment *rose = fl_pigment_find("Quinacridone Rose");
     g_assert_nonnull(rose);
     for (int c = 0; c < 3; c++) {
-        const FlLayer layer = fl_km_layer(rose->absorption[c], rose->scattering[c], 1);
-        g_assert_cmpfloat_with_epsilon(fl_km_over(layer, (FlLayer){1, 0}).reflectance, white[c],
+        const FlKmLayer layer = fl_km_layer(rose->absorption[c], rose->scattering[c], 1);
+        g_assert_cmpfloat_with_epsilon(fl_km_over(layer, (FlKmLayer){1, 0}).reflectance, white[c],
                                        6e-4);
         g_assert_cmpfloat_with_epsilon(layer.reflectance, black[c], 6e-4);
     }
@@ -315,8 +315,8 @@ static void a_pigment_comes_back_from_its_two_colours(void)
         const FlPigment *known = fl_pigment_find(fl_pigment_names()[i]);
         g_assert_nonnull(known);
         for (int c = 0; c < 3; c++) {
-            const FlLayer layer = fl_km_layer(known->absorption[c], known->scattering[c], 1);
-            const double white = fl_km_over(layer, (FlLayer){1, 0}).reflectance;
+            const FlKmLayer layer = fl_km_layer(known->absorption[c], known->scattering[c], 1);
+            const double white = fl_km_over(layer, (FlKmLayer){1, 0}).reflectance;
             double k, s;
             g_assert_true(fl_km_from_colours(white, layer.reflectance, &k, &s));
             g_assert_cmpfloat_with_epsilon(k, known->absorption[c], 1e-4);
@@ -329,8 +329,8 @@ static void a_pigment_comes_back_from_its_two_colours(void)
 
 static void layers_without_absorption_or_scattering_are_no_special_case(void)
 {
-    const FlLayer clear = fl_km_layer(0, 0, 5), milk = fl_km_layer(0, 1, 3);
-    const FlLayer glass = fl_km_layer(1, 0, 2), pitch = fl_km_layer(100, 1, 100);
+    const FlKmLayer clear = fl_km_layer(0, 0, 5), milk = fl_km_layer(0, 1, 3);
+    const FlKmLayer glass = fl_km_layer(1, 0, 2), pitch = fl_km_layer(100, 1, 100);
     g_assert_cmpfloat(clear.reflectance, ==, 0);
     g_assert_cmpfloat(clear.transmittance, ==, 1);
     g_assert_cmpfloat_with_epsilon(milk.reflectance, .75, 1e-12);

@@ -46,11 +46,11 @@ typedef enum FlRegistration {
 } FlRegistration;
 
 /** In which light layers are blended. */
-typedef enum FlBlend {
+typedef enum FlBlendSpace {
     FL_BLEND_UNSET, /**< as the config says, else as FL_BLEND_SRGB */
     FL_BLEND_SRGB,  /**< as SVG does it */
     FL_BLEND_LINEAR,
-} FlBlend;
+} FlBlendSpace;
 
 /** What to do about output files that exist. */
 typedef enum FlOverwrite {
@@ -123,7 +123,7 @@ typedef struct FlRenderOptions {
     double dpi;             /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
     double gap;             /**< px of paper around a region that hides others, ..32; 0: none */
     double feather;         /**< px over which paint fades towards such a region, ..32; 0: none */
-    FlBlend blend;
+    FlBlendSpace blend;
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
     FlOverwrite overwrite;
     /** Go on with an interrupted render although overwrite is FL_OVERWRITE_YES. Else that starts

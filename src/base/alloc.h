@@ -2,7 +2,7 @@
 #ifndef FLUIDY_BASE_ALLOC_H
 #define FLUIDY_BASE_ALLOC_H
 
-#include "base/room.h"
+#include "base/headroom.h"
 #include <fluidy/error.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -19,7 +19,7 @@ static inline void *fl_alloc(size_t count, size_t element_bytes, const char *wha
     void *memory = NULL;
     if (!__builtin_mul_overflow(count, element_bytes, &bytes) && bytes <= SIZE_MAX - 64)
         memory = aligned_alloc(64, (bytes + 64) / 64 * 64);
-    if (memory && fl_room_left())
+    if (memory && fl_headroom_left())
         return __builtin_memset(memory, 0, bytes);
     free(memory);
     g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
@@ -43,7 +43,7 @@ static inline void *fl_alloc_huge(size_t count, size_t element_bytes, const char
         return fl_alloc(count, element_bytes, what, error);
     bytes = (bytes + FL_HUGE_PAGE - 1) / FL_HUGE_PAGE * FL_HUGE_PAGE;
     void *memory = aligned_alloc(FL_HUGE_PAGE, bytes);
-    if (!memory || !fl_room_left()) {
+    if (!memory || !fl_headroom_left()) {
         free(memory);
         return fl_alloc(count, element_bytes, what, error);
     }

@@ -1,6 +1,6 @@
 #include "base/spill.h"
 
-#include "base/pack.h"
+#include "base/compress.h"
 #include <errno.h>
 #include <glib/gstdio.h>
 #include <stdint.h>
@@ -74,9 +74,9 @@ bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, 
 {
     g_assert(block < spill->n_blocks);
     const FlSpan part = {(void *)(uintptr_t)data, bytes}; // which is only read
-    const size_t room = fl_pack_room(&part, 1);
+    const size_t room = fl_compress_bound(&part, 1);
     g_autofree uint8_t *packed = g_try_malloc(room);
-    const size_t packed_bytes = packed ? fl_pack(&part, 1, packed, room) : 0;
+    const size_t packed_bytes = packed ? fl_compress(&part, 1, packed, room) : 0;
     if (packed_bytes == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
         return false;
@@ -102,7 +102,7 @@ bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, 
         return false;
     }
     if (!read_all(spill->fd, packed, b->packed_bytes, b->offset) ||
-        !fl_unpack(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1)) {
+        !fl_decompress(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read a temporary file back: %s",
                     g_get_tmp_dir(), g_strerror(errno));
         return false;

@@ -187,7 +187,7 @@ static gboolean read_styles(const char *name, const char *value, gpointer data, 
     FlArgs *args = data;
     g_strfreev(args->styles);
     args->styles = NULL;
-    args->task = FL_TASK_COMPARE;
+    args->task = FL_COMMAND_COMPARE;
     if (strcmp(value, "all") == 0)
         return TRUE;
     args->styles = g_strsplit(value, ",", -1);
@@ -205,16 +205,16 @@ static gboolean read_flag(const char *name, const char *value, gpointer data, GE
     FlArgs *args = data;
     static const struct {
         const char *name;
-        FlTask task;
+        FlCommand task;
     } tasks[] = {
-        {"-h", FL_TASK_HELP},
-        {"--help", FL_TASK_HELP},
-        {"--help-all", FL_TASK_HELP_ALL},
-        {"--list-regions", FL_TASK_LIST_REGIONS},
-        {"--list-styles", FL_TASK_LIST_STYLES},
-        {"--check", FL_TASK_CHECK},
-        {"-V", FL_TASK_VERSION},
-        {"--version", FL_TASK_VERSION},
+        {"-h", FL_COMMAND_HELP},
+        {"--help", FL_COMMAND_HELP},
+        {"--help-all", FL_COMMAND_HELP_ALL},
+        {"--list-regions", FL_COMMAND_LIST_REGIONS},
+        {"--list-styles", FL_COMMAND_LIST_STYLES},
+        {"--check", FL_COMMAND_CHECK},
+        {"-V", FL_COMMAND_VERSION},
+        {"--version", FL_COMMAND_VERSION},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(tasks); i++)
         if (strcmp(tasks[i].name, name) == 0)
@@ -445,10 +445,10 @@ static char **split_values(int argc, char **argv)
     return (char **)g_ptr_array_free(words, FALSE);
 }
 
-static bool needs_input(FlTask task)
+static bool needs_input(FlCommand task)
 {
-    return task == FL_TASK_RENDER || task == FL_TASK_LIST_REGIONS || task == FL_TASK_CHECK ||
-           task == FL_TASK_COMPARE;
+    return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
+           task == FL_COMMAND_CHECK || task == FL_COMMAND_COMPARE;
 }
 
 /* What is tried out is painted fast, and replaces what was tried out before. */
@@ -466,7 +466,7 @@ static bool make_preview(FlArgs *args, GError **error)
     if (args->render.output)
         return true;
     args->render.overwrite = FL_OVERWRITE_YES;
-    if (args->task == FL_TASK_RENDER && !args->render.format)
+    if (args->task == FL_COMMAND_RENDER && !args->render.format)
         args->render.output = "fluidy/{name}_preview_%04d.png";
     return true;
 }
@@ -486,7 +486,7 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
     }
     fl_words_drop_separator(args->inputs);
     args->render.inputs = (const char *const *)args->inputs + 1;
-    if ((args->preview || args->task == FL_TASK_COMPARE) && !make_preview(args, error))
+    if ((args->preview || args->task == FL_COMMAND_COMPARE) && !make_preview(args, error))
         return false;
     args->render.settings = (const FlSetting *)(const void *)args->settings->data;
     args->render.n_settings = args->settings->len;

@@ -4,16 +4,16 @@
 
 #include <fluidy/fluidy.h>
 
-typedef enum FlTask {
-    FL_TASK_RENDER,
-    FL_TASK_HELP,
-    FL_TASK_HELP_ALL,
-    FL_TASK_VERSION,
-    FL_TASK_LIST_REGIONS,
-    FL_TASK_LIST_STYLES,
-    FL_TASK_CHECK,
-    FL_TASK_COMPARE,
-} FlTask;
+typedef enum FlCommand {
+    FL_COMMAND_RENDER,
+    FL_COMMAND_HELP,
+    FL_COMMAND_HELP_ALL,
+    FL_COMMAND_VERSION,
+    FL_COMMAND_LIST_REGIONS,
+    FL_COMMAND_LIST_STYLES,
+    FL_COMMAND_CHECK,
+    FL_COMMAND_COMPARE,
+} FlCommand;
 
 typedef enum FlProgressMode {
     FL_PROGRESS_AUTO, // a bar on a terminal, else plain
@@ -24,12 +24,12 @@ typedef enum FlProgressMode {
 } FlProgressMode;
 
 typedef struct FlArgs {
-    FlTask task;
+    FlCommand task;
     FlRenderOptions render; // its strings belong to this struct
-    FlListing listing;      // of FL_TASK_LIST_REGIONS
+    FlListing listing;      // of FL_COMMAND_LIST_REGIONS
     FlProgressMode progress;
     const char *preview; // a range of frames; NULL: none
-    char **styles;       // of FL_TASK_COMPARE; NULL: all there are
+    char **styles;       // of FL_COMMAND_COMPARE; NULL: all there are
     bool quiet;          // no warnings, notes or progress
     char **inputs;
     GArray *settings;   // FlSetting

@@ -126,20 +126,20 @@ static int work(FlArgs *args)
     args->render.data = &voice;
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);
-    if (args->task == FL_TASK_RENDER)
+    if (args->task == FL_COMMAND_RENDER)
         signal(SIGPIPE, SIG_IGN); // whoever read the progress may leave
     g_autoptr(GError) error = NULL;
     int status = DONE;
-    if (args->task == FL_TASK_LIST_REGIONS)
+    if (args->task == FL_COMMAND_LIST_REGIONS)
         status = list_regions(args, &error);
-    else if (args->task == FL_TASK_CHECK)
+    else if (args->task == FL_COMMAND_CHECK)
         fl_map_regions(&args->render, &error);
-    else if (args->task == FL_TASK_COMPARE)
+    else if (args->task == FL_COMMAND_COMPARE)
         compare_styles(args, &error);
     else
         fl_render(&args->render, &error);
     fl_meter_hide(&voice.meter);
-    if (!error && args->task == FL_TASK_RENDER)
+    if (!error && args->task == FL_COMMAND_RENDER)
         recall_warnings(&voice);
     // NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): args are only cleared after this
     return error ? fail(error) : status;
@@ -149,14 +149,14 @@ static int run(FlArgs *args)
 {
     g_autofree char *text = NULL;
     switch (args->task) {
-    case FL_TASK_VERSION:
+    case FL_COMMAND_VERSION:
         text = g_strdup_printf("fluidy-svg %s\n", fl_version());
         return print(text);
-    case FL_TASK_HELP:
-    case FL_TASK_HELP_ALL:
-        text = fl_args_help(args->task == FL_TASK_HELP_ALL);
+    case FL_COMMAND_HELP:
+    case FL_COMMAND_HELP_ALL:
+        text = fl_args_help(args->task == FL_COMMAND_HELP_ALL);
         return print(text);
-    case FL_TASK_LIST_STYLES:
+    case FL_COMMAND_LIST_STYLES:
         return list_styles(args);
     default:
         return work(args);

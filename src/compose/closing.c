@@ -28,7 +28,7 @@ static void take(Around *sum, Around one)
 
 /** Sums over 2 r + 1 columns, one for each column of the box. */
 static void sum_row(const uint8_t *coverage, const uint8_t *others, size_t row, int width,
-                    FlBox box, int r, Around *out)
+                    FlRect box, int r, Around *out)
 {
     Around sum = {0};
     for (int x = MAX(box.x - r, 0); x < MIN(box.x + r, width); x++)
@@ -62,7 +62,7 @@ static void add_row(Around *sums, const Around *row, size_t n)
 }
 
 bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width, int height,
-                      FlBox box, int radius_px, uint8_t *share, GError **error)
+                      FlRect box, int radius_px, uint8_t *share, GError **error)
 {
     const int r = radius_px, y0 = MAX(box.y - r, 0), y1 = MIN(box.y + box.height + r, height);
     g_assert(r >= 1 && r <= FL_CLOSING_MAX_PX);
@@ -87,7 +87,7 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
     return true;
 }
 
-void fl_closing_inside(const uint8_t *coverage, int width, int height, FlBox box, int16_t *inside)
+void fl_closing_inside(const uint8_t *coverage, int width, int height, FlRect box, int16_t *inside)
 {
     for (int y = box.y; y < box.y + box.height; y++) {
         const uint8_t *row = coverage + (size_t)y * (size_t)width;
@@ -118,7 +118,7 @@ static void spread_columns(const uint8_t *in, uint8_t *out, int n, int r)
 }
 
 /** The largest of 2 r + 1 rows around row y of a box. */
-static void spread_rows(const uint8_t *in, uint8_t *out, FlBox box, int y, int r)
+static void spread_rows(const uint8_t *in, uint8_t *out, FlRect box, int y, int r)
 {
     memset(out, 0, (size_t)box.width);
     for (int k = MAX(y - r, 0); k <= MIN(y + r, box.height - 1); k++)
@@ -174,10 +174,10 @@ static bool windows_init(Windows *windows, size_t n, GError **error)
  * and corners of what is large. `sums` becomes those over the window. Pixels at the contour are one
  * farther from the middle of the nearest full window than its radius.
  */
-static void find_thin(const int16_t *plane, FlBox box, FlWidths widths, uint32_t *rows,
+static void find_thin(const int16_t *plane, FlRect box, FlWidths widths, uint32_t *rows,
                       uint32_t *sums, uint8_t *thin)
 {
-    const size_t n = fl_box_pixels(box), pitch = (size_t)box.width;
+    const size_t n = fl_rect_pixels(box), pitch = (size_t)box.width;
     const int r = fl_window_radius(widths);
     uint8_t *spread = (uint8_t *)rows;
     fl_window_sums(plane, box, r, rows, sums);
@@ -220,10 +220,10 @@ static void even_parts(int16_t *amounts, const Windows *windows, size_t n, int r
     }
 }
 
-bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *share, FlBox box,
+bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *share, FlRect box,
                       int radius_px, GError **error)
 {
-    const size_t n = fl_box_pixels(box);
+    const size_t n = fl_rect_pixels(box);
     const FlWidths thin = thin_widths(radius_px);
     g_auto(Windows) windows = {0};
     if (!windows_init(&windows, n, error))

@@ -3,7 +3,7 @@
 #ifndef FLUIDY_COMPOSE_CLOSING_H
 #define FLUIDY_COMPOSE_CLOSING_H
 
-#include "base/box.h"
+#include "base/rect.h"
 #include "compose/ink.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -20,7 +20,7 @@
  * below the shape does not count. share is box.width * box.height.
  */
 bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width, int height,
-                      FlBox box, int radius_px, uint8_t *share, GError **error);
+                      FlRect box, int radius_px, uint8_t *share, GError **error);
 
 /**
  * How much of each pixel is inside a shape, 0..255: of those at its contour, next to one without
@@ -30,7 +30,7 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
  *
  * coverage is width * height, inside box.width * box.height; beyond the former it goes on.
  */
-void fl_closing_inside(const uint8_t *coverage, int width, int height, FlBox box, int16_t *inside);
+void fl_closing_inside(const uint8_t *coverage, int width, int height, FlRect box, int16_t *inside);
 
 /**
  * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
@@ -45,7 +45,7 @@ void fl_closing_inside(const uint8_t *coverage, int width, int height, FlBox box
  * box.width * box.height; an amount below 0 is outside the shape, and nothing is inside there.
  * radius_px is that of the share.
  */
-bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *share, FlBox box,
+bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *share, FlRect box,
                       int radius_px, GError **error);
 
 /** How far away what is in a box may change an amount, px: a part with so much around it closes as

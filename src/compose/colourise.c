@@ -1,7 +1,7 @@
 #include "compose/colourise.h"
-#include "base/rows.h"
-#include "compose/blend.h"
+#include "base/row_kernels.h"
 #include "compose/density.h"
+#include "compose/layer_blend.h"
 
 #include <string.h>
 
@@ -77,8 +77,8 @@ static void colour_flat(const FlColouring *how, const FlScale *scale, const int1
     for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const size_t first = (size_t)y * width + (size_t)span.first;
-        fl_rows()->look_up(amounts + first, look, (uint32_t *)(void *)rgba + first,
-                           span.last - span.first);
+        fl_row_kernels()->look_up(amounts + first, look, (uint32_t *)(void *)rgba + first,
+                                  span.last - span.first);
     }
 }
 
@@ -99,7 +99,7 @@ static void steps_init(Steps *steps, const FlInk *ink, const FlColouring *how)
 }
 
 /** Row y of an area's box in what has been painted. */
-static const uint8_t *painted_row(const FlPaintedPart *painted, FlBox box, int y)
+static const uint8_t *painted_row(const FlPaintedPart *painted, FlRect box, int y)
 {
     const size_t row = (size_t)(box.y + y - painted->box.y) * (size_t)painted->box.width;
     return painted->rgb + 3 * (row + (size_t)(box.x - painted->box.x));
@@ -126,7 +126,7 @@ static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScal
                           const FlPaintedPart *painted, const int16_t *amounts, const FlArea *area,
                           uint8_t *rgba)
 {
-    const FlBox box = area->box;
+    const FlRect box = area->box;
     const bool keep = how->tint == FL_TINT_KEEP;
     Steps steps;
     steps_init(&steps, ink, how);
@@ -150,14 +150,14 @@ void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart 
         colour_pixels(ink, how, &scale, painted, amounts, area, rgba);
 }
 
-void fl_colourise_amounts(const FlInk *ink, int tone, const FlPaintedPart *painted,
+void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *painted,
                           const uint8_t *coverage, const FlArea *area, int16_t *amounts)
 {
-    const FlBox box = area->box;
+    const FlRect box = area->box;
     g_autofree int16_t *toned = g_new(int16_t, FL_AMOUNTS);
     for (int i = 0; i < FL_AMOUNTS; i++)
-        toned[i] = (int16_t)fl_ink_toned(ink, i, tone);
-    memset(amounts, 0xff, fl_box_pixels(box) * sizeof *amounts); // -1
+        toned[i] = (int16_t)fl_ink_exposed(ink, i, exposure);
+    memset(amounts, 0xff, fl_rect_pixels(box) * sizeof *amounts); // -1
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const uint8_t *rgb = painted_row(painted, box, y);
@@ -168,13 +168,13 @@ void fl_colourise_amounts(const FlInk *ink, int tone, const FlPaintedPart *paint
     }
 }
 
-void fl_colourise_body(const int16_t *amounts, const FlArea *area, uint8_t *body)
+void fl_colourise_knockout(const int16_t *amounts, const FlArea *area, uint8_t *knockout)
 {
     for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const size_t row = (size_t)y * area->box.width;
         for (int x = span.first; x < span.last; x++)
-            body[row + x] = (uint8_t)body_of(MAX(amounts[row + x], 0));
+            knockout[row + x] = (uint8_t)body_of(MAX(amounts[row + x], 0));
     }
 }
 

@@ -2,9 +2,9 @@
 #ifndef FLUIDY_COMPOSE_COLOURISE_H
 #define FLUIDY_COMPOSE_COLOURISE_H
 
-#include "base/box.h"
+#include "base/rect.h"
 #include "compose/ink.h"
-#include "params/treatment.h"
+#include "params/region_settings.h"
 
 /**
  * How one region of one frame is coloured.
@@ -26,14 +26,14 @@ typedef struct FlColouring {
  */
 typedef struct FlPaintedPart {
     const uint8_t *rgb;
-    FlBox box;
+    FlRect box;
 } FlPaintedPart;
 
 /**
  * The amounts of paint of an area, one per pixel of its box; -1 where coverage is 0 and beyond the
- * area. tone is of fl_ink_tone(); FL_TONE_ONE: as in the exemplar. coverage is of the box.
+ * area. tone is of fl_ink_exposure(); FL_EXPOSURE_ONE: as in the exemplar. coverage is of the box.
  */
-void fl_colourise_amounts(const FlInk *ink, int tone, const FlPaintedPart *painted,
+void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *painted,
                           const uint8_t *coverage, const FlArea *area, int16_t *amounts);
 
 /**
@@ -52,7 +52,7 @@ void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart 
  * a fifth of the median amount. Layers that knock out by it let the paint below run on under their
  * soft rims instead of ending it at their contour, where it leaves a line of paper.
  */
-void fl_colourise_body(const int16_t *amounts, const FlArea *area, uint8_t *body);
+void fl_colourise_knockout(const int16_t *amounts, const FlArea *area, uint8_t *knockout);
 
 /**
  * What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "compose/windows.h"
-#include "guides/parts.h"
+#include "guides/connected_parts.h"
 #include <string.h>
 
 /** One part, and room for what is made of it: of the largest box of all. */
@@ -21,17 +21,17 @@ static void room_clear(Room *room)
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Room, room_clear)
 
 /** The box of each part, from 1 on; to be freed with g_free(). */
-static FlBox *boxes_of(const FlParts *parts, int width, int height)
+static FlRect *boxes_of(const FlConnectedParts *parts, int width, int height)
 {
-    FlBox *boxes = g_new0(FlBox, parts->n_parts + 1);
+    FlRect *boxes = g_new0(FlRect, parts->n_parts + 1);
     const int32_t *part = parts->part;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++, part++) {
-            FlBox *box = &boxes[*part];
+            FlRect *box = &boxes[*part];
             if (*part == 0)
                 continue;
             if (box->width == 0)
-                *box = (FlBox){x, y, 1, 1};
+                *box = (FlRect){x, y, 1, 1};
             const int right = MAX(box->x + box->width, x + 1);
             box->x = MIN(box->x, x), box->width = right - box->x;
             box->height = y + 1 - box->y;
@@ -40,8 +40,8 @@ static FlBox *boxes_of(const FlParts *parts, int width, int height)
 }
 
 /** How wide a part is where it is widest, 0..255. */
-static uint8_t width_of(const FlParts *parts, int32_t number, FlBox box, int width, FlWidths widths,
-                        Room *room)
+static uint8_t width_of(const FlConnectedParts *parts, int32_t number, FlRect box, int width,
+                        FlWidths widths, Room *room)
 {
     uint32_t most = 0;
     for (int y = 0; y < box.height; y++) {
@@ -51,20 +51,20 @@ static uint8_t width_of(const FlParts *parts, int32_t number, FlBox box, int wid
             own[x] = part[x] == number ? 255 : 0;
     }
     fl_window_sums(room->own, box, fl_window_radius(widths), room->rows, room->sums);
-    for (size_t i = 0; i < fl_box_pixels(box); i++)
+    for (size_t i = 0; i < fl_rect_pixels(box); i++)
         most = MAX(most, room->sums[i]);
     return fl_window_width(widths, most);
 }
 
 /** Of each part how far it is a detail; value[0] stays. */
-static bool judge_parts(const FlParts *parts, int width, int height, FlWidths widths,
+static bool judge_parts(const FlConnectedParts *parts, int width, int height, FlWidths widths,
                         uint8_t *value, GError **error)
 {
-    g_autofree FlBox *boxes = boxes_of(parts, width, height);
+    g_autofree FlRect *boxes = boxes_of(parts, width, height);
     g_auto(Room) room = {0};
     size_t largest = 0;
     for (int k = 1; k <= parts->n_parts; k++)
-        largest = MAX(largest, fl_box_pixels(boxes[k]));
+        largest = MAX(largest, fl_rect_pixels(boxes[k]));
     if (!(room.own = fl_alloc(largest, sizeof *room.own, "a matte", error)) ||
         !(room.rows = fl_alloc(largest, sizeof *room.rows, "a matte", error)) ||
         !(room.sums = fl_alloc(largest, sizeof *room.sums, "a matte", error)))
@@ -77,8 +77,8 @@ static bool judge_parts(const FlParts *parts, int width, int height, FlWidths wi
 }
 
 /** Gives a pixel's value to it and to those around it that no part has. */
-static void spread(const FlParts *parts, uint8_t value, int width, int height, int x, int y,
-                   uint8_t *detail)
+static void spread(const FlConnectedParts *parts, uint8_t value, int width, int height, int x,
+                   int y, uint8_t *detail)
 {
     detail[(size_t)y * (size_t)width + (size_t)x] = value;
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
@@ -93,8 +93,8 @@ bool fl_detail_find(const uint8_t *seen, int width, int height, int radius_px, u
                     GError **error)
 {
     const FlWidths widths = {20 * radius_px, 22 * radius_px};
-    g_auto(FlParts) parts = {0};
-    if (!fl_parts_init(&parts, seen, width, height, error))
+    g_auto(FlConnectedParts) parts = {0};
+    if (!fl_connected_parts_init(&parts, seen, width, height, error))
         return false;
     g_autofree uint8_t *value = g_new0(uint8_t, parts.n_parts + 1);
     if (!judge_parts(&parts, width, height, widths, value, error))

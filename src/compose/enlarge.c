@@ -1,8 +1,8 @@
 #include "compose/enlarge.h"
 
 #include "base/alloc.h"
-#include "base/first_error.h"
-#include "base/rows.h"
+#include "base/parallel_error.h"
+#include "base/row_kernels.h"
 #include <glib.h>
 #include <string.h>
 
@@ -63,14 +63,14 @@ static bool read_pixel(const FlLayer *half, int column, int row, float *const pl
     plane[ALPHA][x] = alpha;
     for (int c = 0; c < 3; c++)
         plane[RED + c][x] = alpha * rgba[c];
-    plane[BODY][x] = half->body ? half->body[j] : 0;
+    plane[BODY][x] = half->knockout ? half->knockout[j] : 0;
     return true;
 }
 
 /** Beyond the frame its last pixels go on; beyond the box there is nothing. */
 static const HalfRow *row_at(Rows *rows, int y)
 {
-    const FlBox box = rows->half->area.box;
+    const FlRect box = rows->half->area.box;
     y = CLAMP(y, 0, rows->half_height - 1);
     HalfRow *row = &rows->read[y % 3];
     if (row->y == y)
@@ -114,7 +114,7 @@ static void widen(Rows *rows, int y, int *first, int *last)
 
 /** A part of a row of the full size, whose column 0 is `from` of the wide row. */
 static void store(const Rows *rows, int from, FlColumns span, uint8_t *coverage, uint8_t *rgba,
-                  uint8_t *body)
+                  uint8_t *knockout)
 {
     const int at = from + span.first, n = span.last - span.first;
     const float *const rgb[3] = {rows->wide[RED] + at, rows->wide[GREEN] + at,
@@ -122,38 +122,38 @@ static void store(const Rows *rows, int from, FlColumns span, uint8_t *coverage,
     const float *weight = rows->wide[COVERED] + at; // 0: all else is 0 as well
     for (int x = 0; x < n; x++)
         coverage[span.first + x] = (uint8_t)(rows->wide[COVERAGE][at + x] / 16 + 0.5f);
-    fl_rows()->straighten(rgb, rows->wide[ALPHA] + at, weight, rgba + 4 * span.first, n);
-    if (body)
-        fl_rows()->share(rows->wide[BODY] + at, weight, body + span.first, n);
+    fl_row_kernels()->straighten(rgb, rows->wide[ALPHA] + at, weight, rgba + 4 * span.first, n);
+    if (knockout)
+        fl_row_kernels()->share(rows->wide[BODY] + at, weight, knockout + span.first, n);
 }
 
 /** The box at full size, with the pixels that mix with what is inside. */
-static FlBox doubled(FlBox box, int width, int height)
+static FlRect doubled(FlRect box, int width, int height)
 {
     const int x0 = MAX(2 * box.x - 1, 0), x1 = MIN(2 * (box.x + box.width) + 1, width);
     const int y0 = MAX(2 * box.y - 1, 0), y1 = MIN(2 * (box.y + box.height) + 1, height);
-    return (FlBox){x0, y0, x1 - x0, y1 - y0};
+    return (FlRect){x0, y0, x1 - x0, y1 - y0};
 }
 
 static bool make_planes(FlLayer *full, bool with_body, GError **error)
 {
-    const size_t n = fl_box_pixels(full->area.box);
+    const size_t n = fl_rect_pixels(full->area.box);
     full->area.row = g_new0(FlColumns, full->area.box.height);
     return (full->coverage = fl_alloc(n, 1, "a layer", error)) &&
            (full->rgba = fl_alloc(4 * n, 1, "a layer", error)) &&
-           (!with_body || (full->body = fl_alloc(n, 1, "a layer", error)));
+           (!with_body || (full->knockout = fl_alloc(n, 1, "a layer", error)));
 }
 
 bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, GError **error)
 {
     GError *first = NULL;
     *full = *half;
-    full->coverage = full->body = NULL, full->rgba = NULL, full->area.row = NULL;
+    full->coverage = full->knockout = NULL, full->rgba = NULL, full->area.row = NULL;
     if (half->area.box.width > 0)
         full->area.box = doubled(half->area.box, width, height);
-    if (!make_planes(full, half->body, error))
+    if (!make_planes(full, half->knockout, error))
         return false;
-    const FlBox box = full->area.box;
+    const FlRect box = full->area.box;
     const int left = box.x - 2 * (half->area.box.x - 1); // of the box in a wide row
 #pragma omp parallel
     {
@@ -171,10 +171,10 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
             const FlColumns span = wide.first < wide.last ? wide : (FlColumns){0, 0};
             full->area.row[y] = span;
             store(&rows, left, span, (uint8_t *)full->coverage + row, full->rgba + 4 * row,
-                  full->body ? (uint8_t *)full->body + row : NULL);
+                  full->knockout ? (uint8_t *)full->knockout + row : NULL);
         }
         free(rows.room);
-        fl_keep_first_error(&first, mine);
+        fl_parallel_error_keep(&first, mine);
     }
-    return fl_tell_first_error(error, first);
+    return fl_parallel_error_tell(error, first);
 }

@@ -4,7 +4,7 @@
 
 /** What is being looked at: thin places, from the contour on. */
 typedef struct Rim {
-    const uint8_t *body, *coverage;
+    const uint8_t *knockout, *coverage;
     const FlArea *area;
     uint8_t *reached; // joined to the contour
     GArray *left;     // uint32_t: pixels that were reached and not yet left
@@ -18,7 +18,7 @@ static uint8_t coverage_at(const Rim *rim, int x, int y)
 /** Whether a pixel is at the contour, or beside one that is outside the shape. */
 static bool is_contour(const Rim *rim, int x, int y)
 {
-    const FlBox box = rim->area->box;
+    const FlRect box = rim->area->box;
     return x == 0 || y == 0 || x == box.width - 1 || y == box.height - 1 ||
            coverage_at(rim, x, y) < 255 || !coverage_at(rim, x - 1, y) ||
            !coverage_at(rim, x + 1, y) || !coverage_at(rim, x, y - 1) ||
@@ -28,7 +28,7 @@ static bool is_contour(const Rim *rim, int x, int y)
 static void reach(Rim *rim, int x, int y)
 {
     const uint32_t p = (uint32_t)y * (uint32_t)rim->area->box.width + (uint32_t)x;
-    if (rim->body[p] == 255 || rim->reached[p] || !coverage_at(rim, x, y))
+    if (rim->knockout[p] == 255 || rim->reached[p] || !coverage_at(rim, x, y))
         return;
     rim->reached[p] = 1;
     g_array_append_val(rim->left, p);
@@ -53,16 +53,16 @@ static void spread(Rim *rim)
     }
 }
 
-bool fl_holes_close(uint8_t *body, const uint8_t *coverage, const FlArea *area, GError **error)
+bool fl_holes_close(uint8_t *knockout, const uint8_t *coverage, const FlArea *area, GError **error)
 {
-    g_autofree uint8_t *reached = fl_alloc(fl_box_pixels(area->box), 1, "a layer", error);
+    g_autofree uint8_t *reached = fl_alloc(fl_rect_pixels(area->box), 1, "a layer", error);
     g_autoptr(GArray) left = g_array_new(FALSE, FALSE, sizeof(uint32_t));
-    Rim rim = {body, coverage, area, reached, left};
+    Rim rim = {knockout, coverage, area, reached, left};
     if (!reached)
         return false;
     for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
-        const uint8_t *row = body + (size_t)y * (size_t)area->box.width;
+        const uint8_t *row = knockout + (size_t)y * (size_t)area->box.width;
         for (int x = span.first; x < span.last; x++)
             if (row[x] < 255 && is_contour(&rim, x, y))
                 reach(&rim, x, y);
@@ -73,7 +73,7 @@ bool fl_holes_close(uint8_t *body, const uint8_t *coverage, const FlArea *area, 
         const size_t row = (size_t)y * (size_t)area->box.width;
         for (int x = span.first; x < span.last; x++)
             if (!reached[row + (size_t)x])
-                body[row + (size_t)x] = 255;
+                knockout[row + (size_t)x] = 255;
     }
     return true;
 }

@@ -1,6 +1,6 @@
 #include "compose/ink.h"
 #include "compose/density.h"
-#include "compose/inner.h"
+#include "compose/interior.h"
 
 #include <string.h>
 
@@ -150,15 +150,15 @@ static void count_inner(const FlInk *ink, const uint8_t *painted, const uint8_t 
     memset(h, 0, sizeof *h);
     for (int y = 0; y < height; y++) {
         const uint8_t *row = painted + 3 * (size_t)y * width;
-        fl_inner_row(coverage, width, height, y, margin, inner);
+        fl_interior_row(coverage, width, height, y, margin, inner);
         for (int x = 0; x < width; x++)
             if (inner[x] == 255)
                 h->count[fl_ink_amount(ink, row + 3 * x)]++, h->total++;
     }
 }
 
-int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
-                int height)
+int fl_ink_exposure(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
+                    int height)
 {
     enum { MARGIN_PX = 2 };
     g_autofree FlAmountCounts *h = g_new0(FlAmountCounts, 1);
@@ -166,17 +166,17 @@ int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverag
         count_inner(ink, painted, coverage, width, height, margin, h);
     if (h->total < FL_COUNTS_ENOUGH)
         count_amounts(ink, painted, coverage, (size_t)width * height, h);
-    return fl_counts_tone(h);
+    return fl_counts_exposure(h);
 }
 
-int fl_counts_tone(const FlAmountCounts *h)
+int fl_counts_exposure(const FlAmountCounts *h)
 {
     if (h->total == 0)
-        return FL_TONE_ONE;
-    const int tone = FL_TONE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
+        return FL_EXPOSURE_ONE;
+    const int exposure = FL_EXPOSURE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
     const int sure = (int)MIN(h->total, FL_COUNTS_ENOUGH);
-    return (CLAMP(tone, FL_TONE_MIN, FL_TONE_MAX) * sure +
-            FL_TONE_ONE * (FL_COUNTS_ENOUGH - sure)) /
+    return (CLAMP(exposure, FL_EXPOSURE_MIN, FL_EXPOSURE_MAX) * sure +
+            FL_EXPOSURE_ONE * (FL_COUNTS_ENOUGH - sure)) /
            FL_COUNTS_ENOUGH;
 }
 
@@ -193,9 +193,9 @@ static int64_t bent(const FlInk *ink, int64_t amount)
     return (amount * (one - ink->toe_share) + bend * ink->toe_share) / one;
 }
 
-int fl_ink_toned(const FlInk *ink, int amount, int tone)
+int fl_ink_exposed(const FlInk *ink, int amount, int exposure)
 {
-    int64_t toned = bent(ink, (int64_t)amount * tone / FL_TONE_ONE);
+    int64_t toned = bent(ink, (int64_t)amount * exposure / FL_EXPOSURE_ONE);
     const int64_t excess = toned - FL_AMOUNT_ONE;
     if (excess > 0 && ink->shoulder > 0)
         toned = FL_AMOUNT_ONE + excess * ink->shoulder / (excess + ink->shoulder);

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_COMPOSE_INK_H
 #define FLUIDY_COMPOSE_INK_H
 
-#include "style/bundle.h"
+#include "style/style_folder.h"
 
 /**
  * Amounts of paint are fixed point, FL_AMOUNT_ONE to the unit; the exemplar's median interior has
@@ -11,10 +11,10 @@
 #define FL_AMOUNT_ONE 1024
 #define FL_AMOUNTS 8192
 
-/** A tone scales amounts; FL_TONE_ONE leaves them as they are. */
-#define FL_TONE_ONE 4096
-#define FL_TONE_MIN (FL_TONE_ONE / 4)
-#define FL_TONE_MAX (FL_TONE_ONE * 8)
+/** A tone scales amounts; FL_EXPOSURE_ONE leaves them as they are. */
+#define FL_EXPOSURE_ONE 4096
+#define FL_EXPOSURE_MIN (FL_EXPOSURE_ONE / 4)
+#define FL_EXPOSURE_MAX (FL_EXPOSURE_ONE * 8)
 
 /** Amounts, and the number of pixels that have each. */
 typedef struct FlAmountCounts {
@@ -79,17 +79,17 @@ static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
  * px inside the contour; where they are fewer than FL_COUNTS_ENOUGH, as in thin lines, over pixels
  * nearer to it. The tone is a function of this frame alone.
  *
- * Returns: FL_TONE_MIN … FL_TONE_MAX.
+ * Returns: FL_EXPOSURE_MIN … FL_EXPOSURE_MAX.
  */
-int fl_ink_tone(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
-                int height);
+int fl_ink_exposure(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
+                    int height);
 
 /** The tone that brings the median of what was counted to one; fewer pixels than FL_COUNTS_ENOUGH
- * lean to FL_TONE_ONE. Returns: FL_TONE_MIN … FL_TONE_MAX. */
-int fl_counts_tone(const FlAmountCounts *counts);
+ * lean to FL_EXPOSURE_ONE. Returns: FL_EXPOSURE_MIN … FL_EXPOSURE_MAX. */
+int fl_counts_exposure(const FlAmountCounts *counts);
 
 /** The amount after tone, toe and shoulder, 0 … FL_AMOUNTS - 1; it never falls as amount rises. */
-int fl_ink_toned(const FlInk *ink, int amount, int tone);
+int fl_ink_exposed(const FlInk *ink, int amount, int exposure);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlInk, fl_ink_free)
 

@@ -1,8 +1,8 @@
 #include "compose/layers.h"
 #include "base/alloc.h"
-#include "base/rows.h"
-#include "compose/blend.h"
-#include "compose/matte.h"
+#include "base/row_kernels.h"
+#include "compose/layer_blend.h"
+#include "compose/visibility.h"
 
 #include <string.h>
 
@@ -42,34 +42,34 @@ static int scaled(int a, int b)
 
 static bool knocks_out(const FlLayer *layer)
 {
-    return layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_MIX_OVER;
+    return layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
 }
 
 static void resolve_rows(const FlLayer *layer, Above *above)
 {
-    const FlBox box = layer->area.box;
+    const FlRect box = layer->area.box;
     const bool knocks = knocks_out(layer);
-#pragma omp parallel for schedule(static) if (fl_box_pixels(box) > FL_WORTH_THREADS)
+#pragma omp parallel for schedule(static) if (fl_rect_pixels(box) > FL_WORTH_THREADS)
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
         const size_t i = (size_t)(box.y + y) * above->width + box.x + span.first;
         const size_t j = (size_t)y * box.width + span.first;
         const FlOcclusion row = {.coverage = layer->coverage + j,
                                  .seen = above->seen + j,
-                                 .body = layer->body ? layer->body + j : NULL,
+                                 .knockout = layer->knockout ? layer->knockout + j : NULL,
                                  .alpha = layer->alpha,
                                  .knocks = knocks};
-        fl_rows()->occlude(&row, (uint32_t *)(void *)layer->rgba + j, above->paint + i,
-                           above->area + i, span.last - span.first);
+        fl_row_kernels()->occlude(&row, (uint32_t *)(void *)layer->rgba + j, above->paint + i,
+                                  above->area + i, span.last - span.first);
     }
 }
 
 static void grow_area(const FlLayer *layer, const FlStackParams *params, Above *above)
 {
     const size_t n = (size_t)above->width * above->height;
-    const FlMatteShape shape = {&layer->area, layer->coverage};
-    fl_matte_spread(&shape, above->width, above->height, params->gap_px, params->feather_px,
-                    above->spread);
+    const FlVisibleShape shape = {&layer->area, layer->coverage};
+    fl_visibility_spread(&shape, above->width, above->height, params->gap_px, params->feather_px,
+                         above->spread);
     for (size_t i = 0; i < n; i++)
         above->area[i] = (uint8_t)MAX(above->area[i], scaled(above->spread[i], layer->alpha));
 }
@@ -79,8 +79,8 @@ static void resolve_occlusion(FlLayer *layers, int n, const FlStackParams *param
 {
     for (int k = n - 1; k >= 0; k--) {
         const FlLayer *layer = &layers[k];
-        const FlMatteShape shape = {&layer->area, layer->coverage};
-        fl_matte_visible(&shape, above->area, above->width, above->height, above->seen);
+        const FlVisibleShape shape = {&layer->area, layer->coverage};
+        fl_visibility_visible(&shape, above->area, above->width, above->height, above->seen);
         resolve_rows(layer, above);
         if (above->spread && knocks_out(layer))
             grow_area(layer, params, above);
@@ -112,7 +112,7 @@ static FlSums sums_from(const FlSums *sums, int first)
 static void sum_over(const FlSums *sums, const FlScale *scale, const uint8_t *rgba, int n)
 {
     if (!scale->linear)
-        fl_rows()->over(rgba, sums, n);
+        fl_row_kernels()->over(rgba, sums, n);
     for (int i = 0; scale->linear && i < n; i++) {
         const uint32_t alpha = rgba[4 * i + 3];
         for (int c = 0; c < 3; c++)
@@ -141,7 +141,7 @@ static int32_t sum_value(const Sum *sum, int channel)
 static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, const FlSums *sums)
 {
     for (int k = 0; k < n; k++) {
-        const FlBox box = layers[k].area.box;
+        const FlRect box = layers[k].area.box;
         if (y < box.y || y >= box.y + box.height)
             continue;
         const uint8_t *row = layers[k].rgba + (size_t)(y - box.y) * box.width * 4;
@@ -180,12 +180,13 @@ static void glaze_pixel(const Sum *below, const FlScale *scale, const uint8_t *p
 }
 
 /** Gives a mixed layer's pixel the colour that is right over what lies below it. */
-static void mix_pixel(const Sum *below, int drawn, const FlScale *scale, FlMix mix, uint8_t *rgba)
+static void mix_pixel(const Sum *below, int drawn, const FlScale *scale, FlBlendMode mix,
+                      uint8_t *rgba)
 {
     uint8_t under[3];
     for (int c = 0; c < 3; c++)
         under[c] = fl_scale_level(scale, sum_value(below, c));
-    fl_mix(mix, under, drawn, rgba);
+    fl_blend_mode_apply(mix, under, drawn, rgba);
 }
 
 /** A row of the stack, from the paper up to the layer at hand. */
@@ -209,16 +210,16 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
     memset(below.drawn, 0, (size_t)width);
     for (int k = 0; k < n; k++) {
         const FlLayer *layer = &layers[k];
-        const FlBox box = layer->area.box;
+        const FlRect box = layer->area.box;
         if (y < box.y || y >= box.y + box.height)
             continue;
         uint8_t *row = layer->rgba + (size_t)(y - box.y) * box.width * 4;
         const FlColumns span = fl_area_row(&layer->area, y - box.y);
         for (int x = span.first; x < span.last; x++) {
             const Sum under = sum_at(&below.sums, box.x + x);
-            if (layer->mix != FL_MIX_OVER && row[4 * x + 3])
+            if (layer->mix != FL_BLEND_MODE_OVER && row[4 * x + 3])
                 mix_pixel(&under, below.drawn[box.x + x], scale, layer->mix, row + 4 * x);
-            else if (layer->stacking == FL_STACKING_GLAZE && layer->mix == FL_MIX_OVER)
+            else if (layer->stacking == FL_STACKING_GLAZE && layer->mix == FL_BLEND_MODE_OVER)
                 glaze_pixel(&under, scale, params->paper, row + 4 * x);
         }
         sum_row(layer, 1, scale, y, &below.sums);
@@ -240,7 +241,7 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
     resolve_occlusion(layers, n, params, &above);
     bool plain = true;
     for (int k = 0; k < n; k++)
-        plain &= layers[k].stacking != FL_STACKING_GLAZE && layers[k].mix == FL_MIX_OVER;
+        plain &= layers[k].stacking != FL_STACKING_GLAZE && layers[k].mix == FL_BLEND_MODE_OVER;
     FlScale scale;
     fl_scale_init(&scale, params->linear);
     for (int y = 0; !plain && y < height; y++)
@@ -259,7 +260,7 @@ static bool is_opaque(const FlSums *sums, int width)
 static void store_row(const FlSums *sums, const FlScale *scale, int width, uint8_t *out)
 {
     if (!scale->linear && is_opaque(sums, width)) {
-        fl_rows()->level_opaque(sums, out, width);
+        fl_row_kernels()->level_opaque(sums, out, width);
         return;
     }
     for (int x = 0; x < width; x++) {

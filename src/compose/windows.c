@@ -17,7 +17,7 @@ static void sum_columns(const int16_t *plane, uint32_t *out, int n, int r)
 }
 
 /** Sums of the sums over 2 r + 1 rows, of n <= BAND columns of a box. */
-static void sum_rows(const uint32_t *in, uint32_t *out, int n, FlBox box, int r)
+static void sum_rows(const uint32_t *in, uint32_t *out, int n, FlRect box, int r)
 {
     const size_t width = (size_t)box.width;
     uint32_t sum[BAND] = {0};
@@ -33,7 +33,7 @@ static void sum_rows(const uint32_t *in, uint32_t *out, int n, FlBox box, int r)
     }
 }
 
-void fl_window_sums(const int16_t *plane, FlBox box, int r, uint32_t *rows, uint32_t *sums)
+void fl_window_sums(const int16_t *plane, FlRect box, int r, uint32_t *rows, uint32_t *sums)
 {
     const size_t width = (size_t)box.width;
     for (int y = 0; y < box.height; y++)

@@ -2,11 +2,11 @@
 #ifndef FLUIDY_COMPOSE_WINDOWS_H
 #define FLUIDY_COMPOSE_WINDOWS_H
 
-#include "base/box.h"
+#include "base/rect.h"
 
 /** Sums of a plane, 0 or more, over 2 r + 1 columns and rows, of every pixel of a box; what is
  * beyond is 0. rows: scratch. All have box.width * box.height elements. */
-void fl_window_sums(const int16_t *plane, FlBox box, int r, uint32_t *rows, uint32_t *sums);
+void fl_window_sums(const int16_t *plane, FlRect box, int r, uint32_t *rows, uint32_t *sums);
 
 /** Sixteenths of a pixel: up to `all` something is narrow, and from `none` on it is not. */
 typedef struct FlWidths {

@@ -7,7 +7,7 @@
  */
 #include "guides/distance.h"
 
-#include "base/rows.h"
+#include "base/row_kernels.h"
 #include "guides/guides.h"
 #include <math.h>
 #include <string.h>
@@ -193,12 +193,12 @@ static void search_columns(Work *work)
     const int w = work->width, h = work->height;
     for (int y = 0; y < h; y++) {
         int16_t *near_y = work->near_y + y * (size_t)w;
-        fl_rows()->near_above(work->seed_at + y * (size_t)w, y > 0 ? near_y - w : NULL, y, near_y,
-                              w);
+        fl_row_kernels()->near_above(work->seed_at + y * (size_t)w, y > 0 ? near_y - w : NULL, y,
+                                     near_y, w);
     }
     for (int y = h - 2; y >= 0; y--) {
         int16_t *near_y = work->near_y + y * (size_t)w;
-        fl_rows()->near_below(near_y + w, y, near_y, w);
+        fl_row_kernels()->near_below(near_y + w, y, near_y, w);
     }
 }
 

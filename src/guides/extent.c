@@ -8,7 +8,7 @@ enum { SUM_LIMIT = 1 << 30 };
 
 struct FlExtent {
     int width;
-    FlBox box;    // outside it the sum is 0
+    FlRect box;   // outside it the sum is 0
     int32_t *sum; // interleaved, of the frame
 };
 
@@ -39,15 +39,15 @@ void fl_extent_free(FlExtent *extent)
     g_free(extent);
 }
 
-static bool box_contains(const FlBox *box, int x, int y)
+static bool box_contains(const FlRect *box, int x, int y)
 {
     return x >= box->x && y >= box->y && x < box->x + box->width && y < box->y + box->height;
 }
 
 /** Empties the sum where the last mask's box is not in the next one's. */
-static void leave_box(FlExtent *extent, const FlBox *next)
+static void leave_box(FlExtent *extent, const FlRect *next)
 {
-    const FlBox *box = &extent->box;
+    const FlRect *box = &extent->box;
     for (int y = box->y; y < box->y + box->height; y++)
         for (int x = box->x; x < box->x + box->width; x++)
             if (!box_contains(next, x, y))
@@ -67,8 +67,8 @@ static int32_t norm_of(const int32_t sum[2])
     return (int32_t)(sqrt(x * x + y * y) * ((double)FL_EXTENT_ONE / FL_FLOW_ONE) + 0.5);
 }
 
-void fl_extent_step(FlExtent *extent, const FlBox *mask_box, const uint8_t *coverage,
-                    const FlBox *flow_box, const int32_t *flow, int32_t *norm)
+void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *coverage,
+                    const FlRect *flow_box, const int32_t *flow, int32_t *norm)
 {
     leave_box(extent, mask_box);
     for (int y = mask_box->y; y < mask_box->y + mask_box->height; y++)

@@ -24,8 +24,8 @@ void fl_extent_free(FlExtent *extent); // NULL is fine
  * coverage is of mask_box; flow is interleaved and of flow_box, NULL: none. What lies outside its
  * box is 0. A mask_box of no size empties the sum. extent: area of mask_box.
  */
-void fl_extent_step(FlExtent *extent, const FlBox *mask_box, const uint8_t *coverage,
-                    const FlBox *flow_box, const int32_t *flow, int32_t *norm);
+void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *coverage,
+                    const FlRect *flow_box, const int32_t *flow, int32_t *norm);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlExtent, fl_extent_free)
 

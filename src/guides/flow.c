@@ -2,7 +2,7 @@
 
 #include "guides/guides.h"
 #include "guides/laplace.h"
-#include "guides/trace.h"
+#include "guides/part_tracking.h"
 #include <math.h>
 #include <string.h>
 
@@ -10,14 +10,14 @@ static const float least_gradient = 0.25f; // below it a gradient has no directi
 
 /** The parts of the shape, and where each was and will be. */
 typedef struct Traces {
-    FlParts parts;
+    FlConnectedParts parts;
     FlTrace *before, *after; // by part number
     uint32_t *fixed;         // how many pixels of the part have a velocity
 } Traces;
 
 static void traces_clear(Traces *traces)
 {
-    fl_parts_clear(&traces->parts);
+    fl_connected_parts_clear(&traces->parts);
     g_free(traces->before);
     g_free(traces->after);
     g_free(traces->fixed);
@@ -29,14 +29,14 @@ static bool traces_init(Traces *traces, const FlOutline *now, const FlOutline *b
                         const FlOutline *after, float limit_px, GError **error)
 {
     *traces = (Traces){0};
-    FlParts *parts = &traces->parts;
-    if (!fl_parts_init(parts, now->coverage, now->box.width, now->box.height, error))
+    FlConnectedParts *parts = &traces->parts;
+    if (!fl_connected_parts_init(parts, now->coverage, now->box.width, now->box.height, error))
         return false;
     traces->before = g_new(FlTrace, parts->n_parts + 1);
     traces->after = g_new(FlTrace, parts->n_parts + 1);
     traces->fixed = g_new0(uint32_t, parts->n_parts + 1);
-    return fl_trace_parts(now, parts, before, limit_px, traces->before, error) &&
-           fl_trace_parts(now, parts, after, limit_px, traces->after, error);
+    return fl_part_tracking_find(now, parts, before, limit_px, traces->before, error) &&
+           fl_part_tracking_find(now, parts, after, limit_px, traces->after, error);
 }
 
 static float length(const float v[2])
@@ -87,7 +87,7 @@ static void fix_velocities(const FlFlowFrame *now, const FlFlowFrame *before,
                            const FlFlowFrame *after, float limit_px, Traces *traces, uint8_t *cell,
                            float *flow)
 {
-    const FlBox *box = &now->outline->box;
+    const FlRect *box = &now->outline->box;
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++) {
             const size_t p = y * (size_t)box->width + x;
@@ -105,8 +105,8 @@ static void fix_velocities(const FlFlowFrame *now, const FlFlowFrame *before,
 bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const FlFlowFrame *after,
                        float limit_px, float *flow, bool *moves, GError **error)
 {
-    const FlBox *box = &now->outline->box;
-    const size_t n = fl_box_pixels(*box);
+    const FlRect *box = &now->outline->box;
+    const size_t n = fl_rect_pixels(*box);
     g_auto(Traces) traces = {0};
     g_autofree uint8_t *cell = g_try_malloc(n);
     if (!cell) {
@@ -129,8 +129,8 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
 
 bool fl_outline_normals(FlOutline *outline, GError **error)
 {
-    const FlBox *box = &outline->box;
-    const size_t n = fl_box_pixels(*box);
+    const FlRect *box = &outline->box;
+    const size_t n = fl_rect_pixels(*box);
     g_autofree uint8_t *cell = g_try_malloc(n);
     g_autofree float *normal = g_try_new0(float, 2 * n);
     if (!cell || !normal) {

@@ -1,6 +1,6 @@
 #include "guides/flow_file.h"
 
-#include "base/box.h"
+#include "base/rect.h"
 
 #include <errno.h>
 #include <gio/gio.h>

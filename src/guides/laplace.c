@@ -11,7 +11,7 @@
 #include "guides/laplace.h"
 
 #include "base/alloc.h"
-#include "base/rows.h"
+#include "base/row_kernels.h"
 #include <math.h>
 #include <string.h>
 
@@ -30,7 +30,7 @@ typedef struct Level {
     float *parents;   // weight of the coarse cells around a free one that are inside; else 0
     float *value[2];  // of either component; 0 outside
     float *source[2]; // right-hand side: neighbours * value - sum of the neighbours' values
-    uint8_t *cell;    // FlCell
+    uint8_t *cell;    // FlSolverCell
 } Level;
 
 enum {
@@ -248,7 +248,7 @@ static void relax_half(const Level *level, int odd, int y)
 {
     for (int component = 0; component < 2; component++) {
         const FlStencil cells = stencil_at(level, component, odd, y);
-        fl_rows()->relax(&cells, 2 * level->pairs);
+        fl_row_kernels()->relax(&cells, 2 * level->pairs);
     }
 }
 
@@ -279,8 +279,8 @@ static void refine(const Level *fine, const Level *coarse, int y)
         size_t parents[2][4];
         find_parents(coarse, odd, y, parents);
         for (int k = 0; k < 2; k++)
-            fl_rows()->refine(coarse->value[k], parents, fine->parents + row, fine->value[k] + row,
-                              fine->pairs);
+            fl_row_kernels()->refine(coarse->value[k], parents, fine->parents + row,
+                                     fine->value[k] + row, fine->pairs);
     }
 }
 
@@ -294,7 +294,7 @@ static void restrict_residual(const Level *coarse, const Level *fine, int y)
         memset(source + even, 0, 2 * coarse->half * sizeof(float));
         for (int child = 0; child < 4 && 2 * y + child / 2 < fine->height; child++) {
             const FlStencil cells = stencil_at(fine, k, child & 1, 2 * y + child / 2);
-            fl_rows()->add_residual(&cells, source + even, source + odd, fine->pairs);
+            fl_row_kernels()->add_residual(&cells, source + even, source + odd, fine->pairs);
         }
     }
 }

@@ -6,20 +6,20 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-typedef enum FlCell {
+typedef enum FlSolverCell {
     FL_CELL_OUTSIDE,
     FL_CELL_FREE,  // to be solved
     FL_CELL_FIXED, // given
-} FlCell;
+} FlSolverCell;
 
 /**
  * Fills the free cells with the harmonic field of the fixed ones [F21 App. A, Joh02]; no value
  * passes through outside cells or the frame, which insulate.
  *
- * cell: width * height FlCell. field: interleaved pairs, 2 * width * height; read where fixed,
- * written everywhere (0 outside). Every component of the result lies between the least and greatest
- * fixed value. Free cells that no fixed one reaches get values in that range too; give them values
- * of their own if it matters.
+ * cell: width * height FlSolverCell. field: interleaved pairs, 2 * width * height; read where
+ * fixed, written everywhere (0 outside). Every component of the result lies between the least and
+ * greatest fixed value. Free cells that no fixed one reaches get values in that range too; give
+ * them values of their own if it matters.
  *
  * cycles: V-cycles after the first solution, which comes from the coarse levels: 0 where only
  * smoothness matters, 2 for an error of about 1 % of the range.

@@ -19,13 +19,13 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
     *outline = (FlOutline){.references = 1,
                            .frame_width = frame_width,
                            .frame_height = frame_height,
-                           .box = fl_box_of(mask, frame_width, frame_height)};
-    const FlBox *box = &outline->box;
-    outline->coverage = g_try_malloc(fl_box_pixels(*box) + 1);
+                           .box = fl_rect_of(mask, frame_width, frame_height)};
+    const FlRect *box = &outline->box;
+    outline->coverage = g_try_malloc(fl_rect_pixels(*box) + 1);
     if (!outline->coverage)
         goto no_memory;
-    fl_box_copy(mask, (FlBox){0, 0, frame_width, frame_height}, outline->coverage, *box, 1);
-    outline->empty = !any_inside(outline->coverage, fl_box_pixels(*box));
+    fl_rect_copy(mask, (FlRect){0, 0, frame_width, frame_height}, outline->coverage, *box, 1);
+    outline->empty = !any_inside(outline->coverage, fl_rect_pixels(*box));
     if (outline->empty)
         return g_steal_pointer(&outline);
     outline->distance = g_try_new(float, (size_t)frame_width *frame_height);
@@ -59,7 +59,7 @@ void fl_outline_unref(FlOutline *outline)
 
 bool fl_outline_equal(const FlOutline *outline, const uint8_t *mask)
 {
-    const FlBox box = fl_box_of(mask, outline->frame_width, outline->frame_height);
+    const FlRect box = fl_rect_of(mask, outline->frame_width, outline->frame_height);
     if (memcmp(&box, &outline->box, sizeof box) != 0)
         return false;
     for (int y = 0; y < box.height; y++)

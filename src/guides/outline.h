@@ -2,7 +2,7 @@
 #ifndef FLUIDY_GUIDES_OUTLINE_H
 #define FLUIDY_GUIDES_OUTLINE_H
 
-#include "base/box.h"
+#include "base/rect.h"
 
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -14,7 +14,7 @@ typedef struct FlOutline {
     int references;
     int frame_width, frame_height;
     bool empty;        // no pixel is inside; box may still hold faint ones
-    FlBox box;         // of all pixels with coverage
+    FlRect box;        // of all pixels with coverage
     uint8_t *coverage; // of the box
     float *distance;   // of the frame, fl_distance(); NULL if empty
     float *normal;     // of the box, fl_outline_normals(); NULL until then

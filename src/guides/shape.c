@@ -1,4 +1,4 @@
-#include "base/rows.h"
+#include "base/row_kernels.h"
 #include "guides/gauss.h"
 #include "guides/guides.h"
 #include <math.h>
@@ -13,7 +13,7 @@ static void blur_row(const uint8_t *row, int width, const float *weight, int rad
     for (int x = 0; x < width; x++)
         dst[x] = weight[0] * middle[x];
     for (int k = 1; k <= radius; k++)
-        fl_rows()->add_pair(dst, middle - k, middle + k, weight[k], width);
+        fl_row_kernels()->add_pair(dst, middle - k, middle + k, weight[k], width);
 }
 
 /** Normalised one-sided kernel: weight[0] + 2 * (weight[1] + …) is 1. */
@@ -57,9 +57,9 @@ bool fl_shape_blur(const uint8_t *mask, int width, int height, float border_px, 
             for (int x = 0; x < width; x++)
                 dst[x] = weight[0] * middle[x];
             for (int k = 1; k <= radius; k++)
-                fl_rows()->add_pair(dst, rows + MAX(y - k, 0) * (size_t)width,
-                                    rows + MIN(y + k, height - 1) * (size_t)width, weight[k],
-                                    width);
+                fl_row_kernels()->add_pair(dst, rows + MAX(y - k, 0) * (size_t)width,
+                                           rows + MIN(y + k, height - 1) * (size_t)width, weight[k],
+                                           width);
         }
     }
     return true;

@@ -1,7 +1,7 @@
 #include "params/config.h"
 
 #include "base/suggest.h"
-#include "params/keyfile.h"
+#include "params/key_file.h"
 #include "params/text.h"
 
 #include <stddef.h>
@@ -67,8 +67,8 @@ static bool start_region(Reader *reader, const char *name, int line, GError **er
             return usage(error, "[region %s] was there already, in line %d", name,
                          config->rules[i].line);
     config->rules = g_renew(FlRule, config->rules, config->n_rules + 1);
-    config->rules[config->n_rules++] =
-        (FlRule){.name = g_strdup(name), .line = line, .wishes.folder = g_strdup(reader->folder)};
+    config->rules[config->n_rules++] = (FlRule){
+        .name = g_strdup(name), .line = line, .overrides.folder = g_strdup(reader->folder)};
     reader->place = REGION;
     return true;
 }
@@ -249,7 +249,7 @@ static bool check_paints(const char *key, char **items, GError **error)
 static bool set_match(FlRule *rule, int i, const char *value, GError **error)
 {
     const char *key = match_keys[i].key;
-    g_auto(GStrv) items = fl_keyfile_list(value);
+    g_auto(GStrv) items = fl_key_file_list(value);
     if (!items[0])
         return usage(error, "%s: a name or a glob is missing", key);
     const bool paints = strcmp(key, "match-fill") == 0 || strcmp(key, "match-stroke") == 0;
@@ -272,7 +272,7 @@ static bool set_tolerance(FlRule *rule, const char *value, GError **error)
 static bool unknown_key(const char *section, const char *key, bool matches, GError **error)
 {
     g_autoptr(GPtrArray) known = g_ptr_array_new();
-    for (const char *const *k = fl_treatment_keys(); *k; k++)
+    for (const char *const *k = fl_region_settings_keys(); *k; k++)
         g_ptr_array_add(known, (gpointer)*k);
     for (size_t i = 0; matches && i < G_N_ELEMENTS(match_keys); i++)
         g_ptr_array_add(known, (gpointer)match_keys[i].key);
@@ -286,7 +286,7 @@ static bool unknown_key(const char *section, const char *key, bool matches, GErr
 
 static bool known_wish(const char *key)
 {
-    return g_strv_contains(fl_treatment_keys(), key);
+    return g_strv_contains(fl_region_settings_keys(), key);
 }
 
 static bool set_region(FlRule *rule, const char *key, const char *value, GError **error)
@@ -306,14 +306,14 @@ static bool set_region(FlRule *rule, const char *key, const char *value, GError 
     }
     if (!known_wish(key))
         return unknown_key("region", key, true, error);
-    return fl_wishes_add(&rule->wishes, key, value, error);
+    return fl_overrides_add(&rule->overrides, key, value, error);
 }
 
 static bool set_default(FlConfig *config, const char *key, const char *value, GError **error)
 {
     if (!known_wish(key))
         return unknown_key("defaults", key, false, error);
-    return fl_wishes_add(&config->defaults, key, value, error);
+    return fl_overrides_add(&config->defaults, key, value, error);
 }
 
 static bool read_entry(void *data, const char *key, const char *value, int line, GError **error)
@@ -361,7 +361,7 @@ FlConfig *fl_config_load(const char *path, GError **error)
     config->path = g_strdup(path);
     config->defaults.folder = g_strdup(reader.folder);
     const FlKeyReader calls = {read_section, read_entry, &reader};
-    if (!fl_keyfile_read(path, &calls, error))
+    if (!fl_key_file_read(path, &calls, error))
         return NULL;
     for (int i = 0; i < config->n_rules; i++)
         config->rules[i].by_name = is_by_name(&config->rules[i]);
@@ -373,7 +373,7 @@ static void rule_clear(FlRule *rule)
     g_free(rule->name);
     for (size_t i = 0; i < G_N_ELEMENTS(match_keys); i++)
         g_strfreev(*match_list(rule, (int)i));
-    fl_wishes_clear(&rule->wishes);
+    fl_overrides_clear(&rule->overrides);
 }
 
 void fl_config_free(FlConfig *config)
@@ -383,7 +383,7 @@ void fl_config_free(FlConfig *config)
     for (int i = 0; i < config->n_rules; i++)
         rule_clear(&config->rules[i]);
     g_free(config->rules);
-    fl_wishes_clear(&config->defaults);
+    fl_overrides_clear(&config->defaults);
     g_ptr_array_unref(config->strings);
     g_free(config->path);
     g_free(config);
@@ -422,30 +422,31 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
 
 /* Settings go through wishes, so that a preset among them comes first. */
 static bool apply_settings(const FlRenderOptions *options, const char *region,
-                           FlTreatment *treatment, GError **error)
+                           FlRegionSettings *settings, GError **error)
 {
-    g_auto(FlWishes) wishes = {0};
+    g_auto(FlOverrides) overrides = {0};
     for (size_t i = 0; i < options->n_settings; i++) {
         const FlSetting *setting = &options->settings[i];
         if (g_strcmp0(setting->region, region) == 0 &&
-            !fl_wishes_add(&wishes, setting->name, setting->value, error))
+            !fl_overrides_add(&overrides, setting->name, setting->value, error))
             return false;
     }
-    fl_wishes_apply(&wishes, treatment);
+    fl_overrides_apply(&overrides, settings);
     return true;
 }
 
-bool fl_config_treatment(const FlConfig *config, int rule, const char *region,
-                         const FlRenderOptions *options, FlTreatment *treatment, GError **error)
+bool fl_config_region_settings(const FlConfig *config, int rule, const char *region,
+                               const FlRenderOptions *options, FlRegionSettings *settings,
+                               GError **error)
 {
     g_assert(rule >= -1 && rule < config->n_rules);
-    fl_treatment_init(treatment);
-    fl_wishes_apply(&config->defaults, treatment);
+    fl_region_settings_init(settings);
+    fl_overrides_apply(&config->defaults, settings);
     if (rule >= 0)
-        fl_wishes_apply(&config->rules[rule].wishes, treatment);
-    if (apply_settings(options, NULL, treatment, error) &&
-        apply_settings(options, region, treatment, error))
+        fl_overrides_apply(&config->rules[rule].overrides, settings);
+    if (apply_settings(options, NULL, settings, error) &&
+        apply_settings(options, region, settings, error))
         return true;
-    fl_treatment_clear(treatment);
+    fl_region_settings_clear(settings);
     return false;
 }

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_PARAMS_CONFIG_H
 #define FLUIDY_PARAMS_CONFIG_H
 
-#include "params/treatment.h"
+#include "params/region_settings.h"
 #include <fluidy/render.h>
 
 /**
@@ -22,14 +22,14 @@ typedef struct FlRule {
     char **match_id, **match_class, **match_label;
     char **match_layer;    // any of the names in the leaf's label path
     float match_tolerance; // of colours, CIE76, 0..100; 0: not said
-    FlWishes wishes;
+    FlOverrides overrides;
 } FlRule;
 
 /** A config in memory. Rules are in the order of the file: the first that holds for a leaf wins. */
 typedef struct FlConfig {
     char *path;              // for messages; NULL: no file
     FlRenderOptions project; // what [project] says; its strings are in `strings`
-    FlWishes defaults;       // of [defaults]
+    FlOverrides defaults;    // of [defaults]
     int n_rules;
     FlRule *rules;
     GPtrArray *strings;
@@ -58,8 +58,9 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options);
  * rule is an index into config->rules; -1: none holds. `treatment` is not initialised before.
  * Returns: false with FL_ERROR_USAGE about an option's setting; nothing is then to be cleared.
  */
-bool fl_config_treatment(const FlConfig *config, int rule, const char *region,
-                         const FlRenderOptions *options, FlTreatment *treatment, GError **error);
+bool fl_config_region_settings(const FlConfig *config, int rule, const char *region,
+                               const FlRenderOptions *options, FlRegionSettings *settings,
+                               GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlConfig, fl_config_free)
 

@@ -19,9 +19,9 @@ void fl_loop_clear(FlLoop *loop)
     *loop = (FlLoop){0};
 }
 
-bool fl_loop_keep(FlLoop *loop, int k, const uint8_t *rgb, FlBox box, GError **error)
+bool fl_loop_keep(FlLoop *loop, int k, const uint8_t *rgb, FlRect box, GError **error)
 {
-    return fl_spill_put(loop->pictures, (size_t)k, rgb, 3 * fl_box_pixels(box), error);
+    return fl_spill_put(loop->pictures, (size_t)k, rgb, 3 * fl_rect_pixels(box), error);
 }
 
 static float corner(int column, int row)
@@ -39,10 +39,10 @@ static float turn_of(int x, int y)
            (corner(column, row + 1) * (1 - u) + corner(column + 1, row + 1) * u) * v;
 }
 
-bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlBox box, GError **error)
+bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlRect box, GError **error)
 {
     const int k = index - loop->first;
-    const size_t bytes = 3 * fl_box_pixels(box);
+    const size_t bytes = 3 * fl_rect_pixels(box);
     if (loop->n == 0 || k < 0)
         return true;
     g_autofree uint8_t *lead_in = fl_alloc(bytes, 1, "a picture", error);

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_RENDER_LOOP_H
 #define FLUIDY_RENDER_LOOP_H
 
-#include "base/box.h"
+#include "base/rect.h"
 #include "base/spill.h"
 
 /** Pictures over which the end turns into the lead-in: a third of the film, at most so many. */
@@ -24,12 +24,12 @@ bool fl_loop_init(FlLoop *loop, int n_pictures, GError **error);
 void fl_loop_clear(FlLoop *loop);
 
 /** Keeps the k-th picture of the lead-in, sRGB. FL_ERROR_OUTPUT. */
-bool fl_loop_keep(FlLoop *loop, int k, const uint8_t *rgb, FlBox box, GError **error);
+bool fl_loop_keep(FlLoop *loop, int k, const uint8_t *rgb, FlRect box, GError **error);
 
 /**
  * Turns the region's picture `index` towards the lead-in's; one before the end of the film stays as
  * it is. The spots are fixed in the frame: box is the picture's place in it. FL_ERROR_OUTPUT.
  */
-bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlBox box, GError **error);
+bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlRect box, GError **error);
 
 #endif

@@ -3,8 +3,8 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "guides/flow_file.h"
-#include "output/name.h"
-#include "render/paints.h"
+#include "io/output_name.h"
+#include "render/paint_files.h"
 #include <string.h>
 
 #define WRAP 24 // pictures of a loop that its guides see beyond each end
@@ -13,14 +13,14 @@
 static int frame_of(const FlPainter *painter, int picture)
 {
     const int n = painter->n_pictures;
-    return (picture - painter->wrap + n) % n * painter->treatment.hold;
+    return (picture - painter->wrap + n) % n * painter->settings.hold;
 }
 
 static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
 {
     const FlPainter *painter = data;
-    return fl_masks_get(painter->masks, painter->region, frame_of(painter, frame), painter->rect,
-                        coverage, error);
+    return fl_mask_store_get(painter->masks, painter->region, frame_of(painter, frame),
+                             painter->rect, coverage, error);
 }
 
 /* The flow of the whole frame: files have the size of the film's frames, drafts half of it. */
@@ -40,22 +40,22 @@ static bool load_flow(const FlPainter *painter, const char *file, float *flow, G
 static bool painter_flow(void *data, int frame, float *flow, GError **error)
 {
     const FlPainter *painter = data;
-    const int number = fl_film_number(painter->film, frame_of(painter, frame));
+    const int number = fl_drawing_number(painter->drawing, frame_of(painter, frame));
     const size_t pixels = (size_t)painter->width * painter->height;
     g_autofree float *whole = fl_alloc(2 * pixels, sizeof(float), "a flow field", error);
     g_autofree char *file =
         whole ? fl_output_name(painter->flow_pattern, number, painter->name, error) : NULL;
     if (!file || !load_flow(painter, file, whole, error))
         return false;
-    fl_box_copy(whole, (FlBox){0, 0, painter->width, painter->height}, flow, painter->rect,
-                2 * sizeof(float));
+    fl_rect_copy(whole, (FlRect){0, 0, painter->width, painter->height}, flow, painter->rect,
+                 2 * sizeof(float));
     return true;
 }
 
 /* Where guides come from: the masks of the painter's rectangle, and its flow files. */
 static FlGuideSource source_of(FlPainter *painter)
 {
-    const FlBox rect = painter->rect;
+    const FlRect rect = painter->rect;
     return (FlGuideSource){.width = rect.width,
                            .height = rect.height,
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
@@ -66,42 +66,42 @@ static FlGuideSource source_of(FlPainter *painter)
 
 /* Room for the coarsest patches around the region, on the grid of the coarsest level, so that a
  * cropped frame has the same pyramid as the whole one. */
-static FlBox cropped(const FlPainter *painter)
+static FlRect cropped(const FlPainter *painter)
 {
     const int levels =
-        MIN(painter->box->exemplar->n_levels, fl_levels_of(painter->width, painter->height));
+        MIN(painter->style->exemplar->n_levels, fl_levels_of(painter->width, painter->height));
     const int grid = 1 << (levels - 1), room = (FL_PATCH_RADIUS + 1) * grid;
-    const FlBox ever = fl_masks_extent(painter->masks, painter->region);
+    const FlRect ever = fl_mask_store_extent(painter->masks, painter->region);
     const int x0 = MAX(ever.x - room, 0) / grid * grid, y0 = MAX(ever.y - room, 0) / grid * grid;
     const int x1 = MIN(ever.x + ever.width + room, painter->width);
     const int y1 = MIN(ever.y + ever.height + room, painter->height);
-    return (FlBox){x0, y0, x1 - x0, y1 - y0};
+    return (FlRect){x0, y0, x1 - x0, y1 - y0};
 }
 
 double fl_painter_bytes(const FlPainter *painter)
 {
-    return 45 * (double)fl_box_pixels(cropped(painter)); // measured: fields, guides and the state
+    return 45 * (double)fl_rect_pixels(cropped(painter)); // measured: fields, guides and the state
 }
 
 static bool make_picture(FlPainter *painter, GError **error)
 {
-    painter->painted = fl_alloc(3 * fl_box_pixels(painter->rect), 1, "a painted region", error);
+    painter->painted = fl_alloc(3 * fl_rect_pixels(painter->rect), 1, "a painted region", error);
     return painter->painted != NULL;
 }
 
 bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
 {
-    painter->n_pictures = (fl_film_frames(painter->film) - 1) / painter->treatment.hold + 1;
+    painter->n_pictures = (fl_drawing_frames(painter->drawing) - 1) / painter->settings.hold + 1;
     painter->wrap = painter->loops ? MIN(painter->n_pictures, WRAP) : 0;
     painter->rect = cropped(painter);
     if (painter->given)
         return make_picture(painter, error);
     const FlGuideSource source = source_of(painter);
-    const FlGuideParams how = fl_guide_params(&painter->treatment.params);
+    const FlGuideParams how = fl_guide_params(&painter->settings.params);
     const FlSynthSize size = {painter->rect.width, painter->rect.height, painter->width,
                               painter->height};
     return (painter->guides = fl_guide_sequence_new(&source, &how, error)) &&
-           (painter->synth = fl_synth_new(painter->box->exemplar, &painter->treatment.params, size,
+           (painter->synth = fl_synth_new(painter->style->exemplar, &painter->settings.params, size,
                                           fl_key(seed, g_str_hash(painter->name)), error)) &&
            make_picture(painter, error) &&
            (!painter->loops || fl_loop_init(&painter->loop, painter->n_pictures, error));
@@ -109,7 +109,7 @@ bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
 
 void fl_painter_clear(FlPainter *painter)
 {
-    fl_treatment_clear(&painter->treatment);
+    fl_region_settings_clear(&painter->settings);
     fl_guide_sequence_free(painter->guides);
     fl_synth_free(painter->synth);
     fl_loop_clear(&painter->loop);
@@ -147,8 +147,8 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     const gint64 start = g_get_monotonic_time();
     if (painter->given)
         return take_paint(painter, frame, error);
-    const int index = frame / painter->treatment.hold;
-    if (frame % painter->treatment.hold != 0)
+    const int index = frame / painter->settings.hold;
+    if (frame % painter->settings.hold != 0)
         return true;
     if (!paint_picture(painter, index, guides, error) ||
         !fl_loop_blend(&painter->loop, index, painter->painted, painter->rect, error))
@@ -159,12 +159,12 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
 
 bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error)
 {
-    const bool holds = painter->treatment.hold > 1 && !painter->given;
+    const bool holds = painter->settings.hold > 1 && !painter->given;
     if (painter->given)
         parts[0] = g_bytes_new(NULL, 0);
     else if (!(parts[0] = fl_synth_save(painter->synth, error)))
         return false;
-    parts[1] = g_bytes_new(painter->painted, holds ? 3 * fl_box_pixels(painter->rect) : 0);
+    parts[1] = g_bytes_new(painter->painted, holds ? 3 * fl_rect_pixels(painter->rect) : 0);
     return true;
 }
 
@@ -172,7 +172,7 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
 {
     if (painter->given)
         return true;
-    const size_t bytes = painter->treatment.hold > 1 ? 3 * fl_box_pixels(painter->rect) : 0;
+    const size_t bytes = painter->settings.hold > 1 ? 3 * fl_rect_pixels(painter->rect) : 0;
     if (g_bytes_get_size(parts[1]) != bytes) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "region %s: the picture of an earlier render has another size", painter->name);

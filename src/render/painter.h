@@ -2,10 +2,10 @@
 #ifndef FLUIDY_RENDER_PAINTER_H
 #define FLUIDY_RENDER_PAINTER_H
 
-#include "regions/film.h"
-#include "render/exemplars.h"
+#include "drawing/drawing.h"
+#include "job/mask_store.h"
+#include "job/style_cache.h"
 #include "render/loop.h"
-#include "render/masks.h"
 #include "synth/synth.h"
 
 /** One region that is painted. */
@@ -13,13 +13,13 @@ typedef struct FlPainter {
     int region;
     const char *name; // borrowed
     double area_px;   // mean, for sharing out the work
-    FlTreatment treatment;
-    const FlPaintbox *box;         // borrowed
-    const FlMasks *masks;          // borrowed
-    const FlFilm *film;            // borrowed
+    FlRegionSettings settings;
+    const FlStyleInstance *style;  // borrowed
+    const FlMaskStore *masks;      // borrowed
+    const FlDrawing *drawing;      // borrowed
     int width, height;             // of the film
     int frame_width, frame_height; // of the frames, which flow files have
-    FlBox rect;                    // the part of it in which the region ever is, with some room
+    FlRect rect;                   // the part of it in which the region ever is, with some room
     bool loops;                    // the film's end leads into its beginning
     FlLoop loop;
     int n_pictures; // held frames counted once

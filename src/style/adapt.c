@@ -1,8 +1,8 @@
 #include "style/adapt.h"
 
 #include "base/alloc.h"
-#include "base/first_error.h"
-#include "style/picture.h"
+#include "base/parallel_error.h"
+#include "io/picture.h"
 
 #include <math.h>
 #include <string.h>
@@ -88,9 +88,9 @@ static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *o
         for (int t = 0; t < out->n_frames; t++)
             if (all)
                 adapt_frame(style, use, out, t, all, third);
-        fl_keep_first_error(&first, mine);
+        fl_parallel_error_keep(&first, mine);
     }
-    return fl_tell_first_error(error, first);
+    return fl_parallel_error_tell(error, first);
 }
 
 static bool sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)

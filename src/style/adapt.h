@@ -2,7 +2,7 @@
 #ifndef FLUIDY_STYLE_ADAPT_H
 #define FLUIDY_STYLE_ADAPT_H
 
-#include "style/bundle.h"
+#include "style/style_folder.h"
 
 /** Which frames of a style are used, and how large. */
 typedef struct FlStyleUse {

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_STYLE_BORDER_H
 #define FLUIDY_STYLE_BORDER_H
 
-#include "style/extract.h"
+#include "style/estimate.h"
 
 /**
  * The border width b [F21 §3.1], in px: the depth below the outline from which on the mean colour

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_STYLE_MANIFEST_H
 #define FLUIDY_STYLE_MANIFEST_H
 
-#include "style/bundle.h"
+#include "style/style_folder.h"
 
 /** Values that style.ini did not give and that have to be found from the pictures. */
 typedef enum FlGuess {

@@ -1,7 +1,7 @@
 #include "style/measure.h"
 
 #include "base/alloc.h"
-#include "style/extract.h"
+#include "style/estimate.h"
 
 #include <math.h>
 #include <string.h>

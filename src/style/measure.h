@@ -3,7 +3,7 @@
 #define FLUIDY_STYLE_MEASURE_H
 
 #include "guides/guides.h"
-#include "style/bundle.h"
+#include "style/style_folder.h"
 
 /** Slower paint rests, px per frame; FL_MOVING_PX and faster paint moves. */
 #define FL_RESTING_PX 0.25f

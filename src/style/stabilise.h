@@ -2,7 +2,7 @@
 #ifndef FLUIDY_STYLE_STABILISE_H
 #define FLUIDY_STYLE_STABILISE_H
 
-#include "style/extract.h"
+#include "style/estimate.h"
 
 /** How far a frame's content lies from where it lies in the first frame, px, right and down. */
 typedef struct FlShift {

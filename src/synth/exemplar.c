@@ -57,49 +57,49 @@ static void keep_guides(FlExemplar *exemplar, const FlGuides *guides, int t)
 
 /* Level 0 of one frame: its guides, and its colours. */
 static bool fill_frame(FlExemplar *exemplar, const FlExemplarFrames *frames, const uint8_t *rgb,
-                       int t, FlStack *stack, GError **error)
+                       int t, FlPyramid *pyramid, GError **error)
 {
     const FlExemplarLevel *level = &exemplar->level[0];
     const size_t pixels = (size_t)level->width * (size_t)level->height;
     g_auto(FlGuides) guides = {0};
-    float *shape = stack->plane[FL_PLANE_R]; // lent until the colours are there
+    float *shape = pyramid->plane[FL_PLANE_R]; // lent until the colours are there
     if (!fl_guides_init(&guides, level->width, level->height, error) ||
         !fl_guide_sequence_get(frames->sequence, t, &guides, error) ||
         !fl_shape_guide(&guides, &frames->params, exemplar->border_px, shape, error))
         return false;
     keep_guides(exemplar, &guides, t);
-    fl_stack_fill(stack, &guides, shape, (FlRect){0, 0, level->width, level->height});
+    fl_pyramid_fill(pyramid, &guides, shape, (FlRect){0, 0, level->width, level->height});
     for (size_t c = 0; c < 3; c++)
         for (size_t p = 0; p < pixels; p++)
-            stack->plane[FL_PLANE_R + c][p] = rgb[3 * p + c] / 255.0f;
+            pyramid->plane[FL_PLANE_R + c][p] = rgb[3 * p + c] / 255.0f;
     return true;
 }
 
-static FlTexel pack(const FlStack *stack, size_t p, const FlExemplar *exemplar)
+static FlTexel pack(const FlPyramid *pyramid, size_t p, const FlExemplar *exemplar)
 {
     FlTexel out;
     const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
     for (int c = 0; c < 3; c++)
-        out.c[FL_CH_R + c] = fl_texel_channel(stack->plane[FL_PLANE_R + c][p]);
-    out.c[FL_CH_SHAPE] = fl_texel_channel(stack->plane[FL_PLANE_SHAPE][p]);
-    out.c[FL_CH_EXT_PLUS] = fl_texel_channel(stack->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
-    out.c[FL_CH_EXT_MINUS] = fl_texel_channel(stack->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
-    out.c[FL_CH_ANGLE] = fl_stack_angle(stack, p);
-    out.c[FL_CH_SEGMENT] = (uint8_t)fl_segment_of(stack->plane[FL_PLANE_INSIDE][p] >= 0.5f,
-                                                  stack->plane[FL_PLANE_DISTANCE][p],
+        out.c[FL_CH_R + c] = fl_texel_channel(pyramid->plane[FL_PLANE_R + c][p]);
+    out.c[FL_CH_SHAPE] = fl_texel_channel(pyramid->plane[FL_GUIDE_PLANE_SHAPE][p]);
+    out.c[FL_CH_EXT_PLUS] = fl_texel_channel(pyramid->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
+    out.c[FL_CH_EXT_MINUS] = fl_texel_channel(pyramid->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
+    out.c[FL_CH_ANGLE] = fl_pyramid_angle(pyramid, p);
+    out.c[FL_CH_SEGMENT] = (uint8_t)fl_segment_of(pyramid->plane[FL_PLANE_INSIDE][p] >= 0.5f,
+                                                  pyramid->plane[FL_PLANE_DISTANCE][p],
                                                   exemplar->border_px, exemplar->separate);
     return out;
 }
 
 /* Padding repeats the nearest pixel but belongs to no segment. */
-static void pack_frame(FlExemplarLevel *level, const FlStack *stack, const FlExemplar *exemplar,
+static void pack_frame(FlExemplarLevel *level, const FlPyramid *pyramid, const FlExemplar *exemplar,
                        int t)
 {
     FlTexel *frame = level->pixels + t * level->frame_pixels;
     for (int y = -FL_PAD; y < level->height + FL_PAD; y++) {
         for (int x = -FL_PAD; x < level->width + FL_PAD; x++) {
             const int sx = CLAMP(x, 0, level->width - 1), sy = CLAMP(y, 0, level->height - 1);
-            FlTexel packed = pack(stack, (size_t)sy * level->width + sx, exemplar);
+            FlTexel packed = pack(pyramid, (size_t)sy * level->width + sx, exemplar);
             if (sx != x || sy != y)
                 packed.c[FL_CH_SEGMENT] = FL_SEGMENT_OUTSIDE;
             frame[(size_t)(y + FL_PAD) * level->pitch + x + FL_PAD] = packed;
@@ -108,12 +108,12 @@ static void pack_frame(FlExemplarLevel *level, const FlStack *stack, const FlExe
 }
 
 /* The colours' spline coefficients; `room` is for three planes. */
-static void pack_colour(FlExemplarLevel *level, const FlStack *stack, int t, float *room)
+static void pack_colour(FlExemplarLevel *level, const FlPyramid *pyramid, int t, float *room)
 {
     const size_t pixels = (size_t)level->width * level->height;
     float *const plane[3] = {room, room + pixels, room + 2 * pixels};
     for (int c = 0; c < 3; c++)
-        memcpy(plane[c], stack->plane[FL_PLANE_R + c], pixels * sizeof(float));
+        memcpy(plane[c], pyramid->plane[FL_PLANE_R + c], pixels * sizeof(float));
     fl_spline_prefilter(plane, level->width, level->height,
                         level->colour + t * level->frame_pixels + FL_PAD * level->pitch + FL_PAD,
                         (int)level->pitch);
@@ -204,7 +204,7 @@ static bool list_valid(FlExemplarLevel *level, GError **error)
 }
 
 /* Builds every level of one frame from its level 0. */
-static bool pack_pyramid(FlExemplar *exemplar, FlStack *full, int t, GError **error)
+static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **error)
 {
     g_autofree float *room =
         fl_alloc(3 * (size_t)full->width * full->height, sizeof *room, "an exemplar", error);
@@ -212,14 +212,14 @@ static bool pack_pyramid(FlExemplar *exemplar, FlStack *full, int t, GError **er
         return false;
     pack_frame(&exemplar->level[0], full, exemplar, t);
     pack_colour(&exemplar->level[0], full, t, room);
-    g_auto(FlStack) fine = {0};
+    g_auto(FlPyramid) fine = {0};
     for (int l = 1; l < exemplar->n_levels; l++) {
         FlExemplarLevel *level = &exemplar->level[l];
-        FlStack coarse;
-        if (!fl_stack_init(&coarse, level->width, level->height, FL_PLANES, error))
+        FlPyramid coarse;
+        if (!fl_pyramid_init(&coarse, level->width, level->height, FL_PLANES, error))
             return false;
-        fl_stack_halve(l == 1 ? full : &fine, &coarse);
-        fl_stack_clear(&fine);
+        fl_pyramid_halve(l == 1 ? full : &fine, &coarse);
+        fl_pyramid_clear(&fine);
         fine = coarse;
         pack_frame(level, &fine, exemplar, t);
         pack_colour(level, &fine, t, room);
@@ -271,8 +271,8 @@ static bool make_frames(FlExemplar *exemplar, const FlStyle *style, FlExemplarFr
                         Census census, GError **error)
 {
     const size_t pixels = (size_t)style->width * (size_t)style->height;
-    g_auto(FlStack) full = {0};
-    if (!fl_stack_init(&full, style->width, style->height, FL_PLANES, error))
+    g_auto(FlPyramid) full = {0};
+    if (!fl_pyramid_init(&full, style->width, style->height, FL_PLANES, error))
         return false;
     exemplar->separate = true; // until it is known
     frames->earliest = -1;
@@ -370,10 +370,10 @@ static bool make_frame(FlExemplar *exemplar, int t, GError **error)
     const FlExemplarFrames *frames = exemplar->frames;
     const FlExemplarLevel *level = &exemplar->level[0];
     const size_t bytes = 3 * (size_t)level->width * (size_t)level->height;
-    g_auto(FlStack) full = {0};
+    g_auto(FlPyramid) full = {0};
     g_autofree uint8_t *rgb = fl_alloc(bytes, 1, "an exemplar", error);
     return rgb && fl_spill_get(frames->rgb, (size_t)t, rgb, bytes, error) &&
-           fl_stack_init(&full, level->width, level->height, FL_PLANES, error) &&
+           fl_pyramid_init(&full, level->width, level->height, FL_PLANES, error) &&
            fill_frame(exemplar, frames, rgb, t, &full, error) &&
            pack_pyramid(exemplar, &full, t, error);
 }

@@ -2,8 +2,8 @@
 #ifndef FLUIDY_SYNTH_EXEMPLAR_H
 #define FLUIDY_SYNTH_EXEMPLAR_H
 
-#include "style/guides.h"
-#include "synth/stack.h"
+#include "style/style_guides.h"
+#include "synth/pyramid.h"
 
 /** Parts of a mask whose patches are matched with each other only [F21 §3.1]. */
 typedef enum FlSegment {

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 
 /* One pixel's share of a distance. */
-static uint32_t term(const FlTexel *source, bool opposed, const FlPacked *target,
-                     const FlPacked *rest)
+static uint32_t term(const FlTexel *source, bool opposed, const FlCompressed *target,
+                     const FlCompressed *rest)
 {
     FlTexel s = *source;
     if (opposed) {
@@ -24,7 +24,7 @@ static uint32_t term(const FlTexel *source, bool opposed, const FlPacked *target
 }
 
 uint32_t fl_patch_distance_c(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                             const FlPacked *target, const FlPacked *rest, uint32_t limit)
+                             const FlCompressed *target, const FlCompressed *rest, uint32_t limit)
 {
     uint32_t sum = 0;
     for (int p = 0; p < FL_PATCH_PIXELS && sum <= limit; p++)
@@ -32,8 +32,8 @@ uint32_t fl_patch_distance_c(const FlTexel *centre, const int16_t *offsets, bool
     return sum;
 }
 
-void fl_patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
-                     const FlPacked *rest, uint32_t limit, uint32_t distance[2])
+void fl_patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
+                     const FlCompressed *rest, uint32_t limit, uint32_t distance[2])
 {
     distance[0] = fl_patch_distance_c(centre, offsets, false, target, rest, limit);
     distance[1] = 0;

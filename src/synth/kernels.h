@@ -2,7 +2,7 @@
 #ifndef FLUIDY_SYNTH_KERNELS_H
 #define FLUIDY_SYNTH_KERNELS_H
 
-#include "base/rows.h"
+#include "base/row_kernels.h"
 #include "synth/rotation.h"
 #include "synth/spline.h"
 #include <stdbool.h>
@@ -33,9 +33,9 @@ typedef struct FlTexel {
 } FlTexel;
 
 /** A pixel of the target. */
-typedef struct FlPacked {
+typedef struct FlCompressed {
     int16_t c[FL_CHANNELS];
-} FlPacked;
+} FlCompressed;
 
 /**
  * Weighted squared distance of a rotated exemplar patch to a target patch.
@@ -50,15 +50,17 @@ typedef struct FlPacked {
  * Returns: the distance; or, once it exceeds limit, any number above limit.
  */
 typedef uint32_t (*FlPatchDistance)(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                    const FlPacked *target, const FlPacked *rest, uint32_t limit);
+                                    const FlCompressed *target, const FlCompressed *rest,
+                                    uint32_t limit);
 
 /**
  * The distances of a patch, and of the patch turned by another half turn and opposed, which
  * consists of the same texels: offsets[p ^ 1] is -offsets[p], the last is 0. A distance may be any
  * number above limit where it exceeds limit.
  */
-typedef void (*FlPatchPair)(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
-                            const FlPacked *rest, uint32_t limit, uint32_t distance[2]);
+typedef void (*FlPatchPair)(const FlTexel *centre, const int16_t *offsets,
+                            const FlCompressed *target, const FlCompressed *rest, uint32_t limit,
+                            uint32_t distance[2]);
 
 #define FL_MAX_TRIES 64 // of the random search for one pixel
 
@@ -166,20 +168,23 @@ typedef struct FlKernels {
 void fl_kernels_init(FlKernels *kernels, unsigned flags);
 
 uint32_t fl_patch_distance_c(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                             const FlPacked *target, const FlPacked *rest, uint32_t limit);
+                             const FlCompressed *target, const FlCompressed *rest, uint32_t limit);
 uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                const FlPacked *target, const FlPacked *rest, uint32_t limit);
+                                const FlCompressed *target, const FlCompressed *rest,
+                                uint32_t limit);
 uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                  const FlPacked *target, const FlPacked *rest, uint32_t limit);
+                                  const FlCompressed *target, const FlCompressed *rest,
+                                  uint32_t limit);
 uint32_t fl_patch_distance_neon(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                const FlPacked *target, const FlPacked *rest, uint32_t limit);
+                                const FlCompressed *target, const FlCompressed *rest,
+                                uint32_t limit);
 
-void fl_patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
-                     const FlPacked *rest, uint32_t limit, uint32_t distance[2]);
-void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
-                        const FlPacked *rest, uint32_t limit, uint32_t distance[2]);
-void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
-                          const FlPacked *rest, uint32_t limit, uint32_t distance[2]);
+void fl_patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
+                     const FlCompressed *rest, uint32_t limit, uint32_t distance[2]);
+void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
+                        const FlCompressed *rest, uint32_t limit, uint32_t distance[2]);
+void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
+                          const FlCompressed *rest, uint32_t limit, uint32_t distance[2]);
 
 void fl_draw_tries_c(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
                      FlTries *tries);

@@ -3,8 +3,8 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "synth/energy.h"
-#include "synth/past.h"
 #include "synth/shift.h"
+#include "synth/synth_state.h"
 #include "synth/vote.h"
 #include <math.h>
 #include <string.h>
@@ -493,24 +493,24 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
 GBytes *fl_synth_save(FlSynth *synth, GError **error)
 {
     const Previous *p = &synth->previous;
-    const FlSynthPast past = {synth->frame, p->valid, p->rect, p->nnf, p->mask, p->rgb};
+    const FlSynthState saved = {synth->frame, p->valid, p->rect, p->nnf, p->mask, p->rgb};
     if (synth->packed)
-        return fl_synth_past_later(synth->packed, synth->frame);
-    synth->packed = fl_synth_past_pack(&past, synth->width, synth->height, error);
+        return fl_synth_state_later(synth->packed, synth->frame);
+    synth->packed = fl_synth_state_pack(&saved, synth->width, synth->height, error);
     return synth->packed ? g_bytes_ref(synth->packed) : NULL;
 }
 
 bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
 {
     Previous *p = &synth->previous;
-    FlSynthPast past = {.mask = p->mask, .rgb = p->rgb};
+    FlSynthState saved = {.mask = p->mask, .rgb = p->rgb};
     fl_nnf_clear(&p->nnf);
     forget_packed(synth);
     p->valid = false;
-    if (!fl_synth_past_unpack(&past, state, &synth->exemplar->level[0], synth->width, synth->height,
-                              error))
+    if (!fl_synth_state_unpack(&saved, state, &synth->exemplar->level[0], synth->width,
+                               synth->height, error))
         return false;
-    synth->frame = past.frame;
-    p->valid = past.valid, p->rect = past.rect, p->nnf = past.nnf;
+    synth->frame = saved.frame;
+    p->valid = saved.valid, p->rect = saved.rect, p->nnf = saved.nnf;
     return true;
 }

@@ -33,7 +33,7 @@ static bool level_init(FlTargetLevel *level, int width, int height, GError **err
     const size_t tiles = (size_t)level->tile_columns * ((height + FL_TILE - 1) / FL_TILE);
     return (level->segment = fl_alloc(pixels, 1, "a target", error)) &&
            (level->angle = fl_alloc(pixels, 1, "a target", error)) &&
-           (level->guide = fl_alloc(pixels, sizeof(FlPacked), "a target", error)) &&
+           (level->guide = fl_alloc(pixels, sizeof(FlCompressed), "a target", error)) &&
            (level->colour = fl_alloc(3 * pixels, sizeof(float), "a target", error)) &&
            (level->temporal = fl_alloc(3 * pixels, sizeof(float), "a target", error)) &&
            (level->temporal_weight = fl_alloc(pixels, sizeof(float), "a target", error)) &&
@@ -41,19 +41,19 @@ static bool level_init(FlTargetLevel *level, int width, int height, GError **err
            (level->tiles = fl_alloc(tiles, sizeof(uint32_t), "a target", error));
 }
 
-static void fill_pixel(FlTargetLevel *level, const FlStack *stack, size_t p,
+static void fill_pixel(FlTargetLevel *level, const FlPyramid *pyramid, size_t p,
                        const FlExemplar *exemplar)
 {
-    FlPacked *guide = &level->guide[p];
+    FlCompressed *guide = &level->guide[p];
     const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
-    level->distance[p] = stack->plane[FL_PLANE_DISTANCE][p];
+    level->distance[p] = pyramid->plane[FL_PLANE_DISTANCE][p];
     level->segment[p] =
-        (uint8_t)fl_segment_of(stack->plane[FL_PLANE_INSIDE][p] > 0, level->distance[p],
+        (uint8_t)fl_segment_of(pyramid->plane[FL_PLANE_INSIDE][p] > 0, level->distance[p],
                                exemplar->border_px, exemplar->separate);
-    level->angle[p] = fl_stack_angle(stack, p);
-    guide->c[FL_CH_SHAPE] = fl_pack_channel(stack->plane[FL_PLANE_SHAPE][p]);
-    guide->c[FL_CH_EXT_PLUS] = fl_pack_channel(stack->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
-    guide->c[FL_CH_EXT_MINUS] = fl_pack_channel(stack->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
+    level->angle[p] = fl_pyramid_angle(pyramid, p);
+    guide->c[FL_CH_SHAPE] = fl_pack_channel(pyramid->plane[FL_GUIDE_PLANE_SHAPE][p]);
+    guide->c[FL_CH_EXT_PLUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
+    guide->c[FL_CH_EXT_MINUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
 }
 
 /* Bit-reversed order of a 4x4 pattern: tiles of consecutive classes are far from each other. */
@@ -83,12 +83,12 @@ static void list_tiles(FlTargetLevel *level)
     level->n_tiles[FL_TILE_CLASSES] = n;
 }
 
-static void fill_level(FlTargetLevel *level, const FlStack *stack, const FlExemplar *exemplar)
+static void fill_level(FlTargetLevel *level, const FlPyramid *pyramid, const FlExemplar *exemplar)
 {
     const size_t pixels = (size_t)level->width * level->height;
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < pixels; p++)
-        fill_pixel(level, stack, p, exemplar);
+        fill_pixel(level, pyramid, p, exemplar);
     for (size_t p = 0; p < pixels; p++)
         level->n_inside[level->segment[p]]++;
     list_tiles(level);
@@ -98,18 +98,18 @@ bool fl_target_init(FlTarget *target, const FlGuides *guides, const float *shape
                     int n_levels, const FlExemplar *exemplar, GError **error)
 {
     *target = (FlTarget){.rect = rect, .n_levels = n_levels};
-    g_auto(FlStack) fine = {0};
-    if (!fl_stack_init(&fine, rect.width, rect.height, FL_PLANE_R, error))
+    g_auto(FlPyramid) fine = {0};
+    if (!fl_pyramid_init(&fine, rect.width, rect.height, FL_PLANE_R, error))
         return false;
-    fl_stack_fill(&fine, guides, shape, rect);
+    fl_pyramid_fill(&fine, guides, shape, rect);
     for (int l = 0; l < n_levels; l++) {
         if (l > 0) {
-            FlStack coarse;
-            if (!fl_stack_init(&coarse, (fine.width + 1) / 2, (fine.height + 1) / 2, FL_PLANE_R,
-                               error))
+            FlPyramid coarse;
+            if (!fl_pyramid_init(&coarse, (fine.width + 1) / 2, (fine.height + 1) / 2, FL_PLANE_R,
+                                 error))
                 return false;
-            fl_stack_halve(&fine, &coarse);
-            fl_stack_clear(&fine);
+            fl_pyramid_halve(&fine, &coarse);
+            fl_pyramid_clear(&fine);
             fine = coarse;
         }
         if (!level_init(&target->level[l], fine.width, fine.height, error))
@@ -180,7 +180,7 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
     for (size_t p = 0; p < pixels; p++) {
         const float w_temporal = params->w_temp * level->temporal_weight[p];
         const float w = w_texture + w_temporal;
-        FlPacked *guide = &level->guide[p];
+        FlCompressed *guide = &level->guide[p];
         for (int c = 0; c < 3; c++) {
             const float mean = w > 0 ? (w_texture * level->colour[3 * p + c] +
                                         w_temporal * level->temporal[3 * p + c]) /
@@ -208,7 +208,7 @@ void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *p
         gather_at_border(level, x, y, patch);
         return;
     }
-    const FlPacked *centre = level->guide + (size_t)y * level->width + x;
+    const FlCompressed *centre = level->guide + (size_t)y * level->width + x;
     for (int k = 0; k < FL_PATCH_PIXELS; k++)
         patch->guide[k] = centre[level->around[k]];
 }

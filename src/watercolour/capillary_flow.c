@@ -90,6 +90,6 @@ void fl_capillary_flow(FlSheet *sheet, const FlFlow *flow)
     if (flow->absorb > 0)
         soak(sheet, flow->absorb);
     find_fluxes(sheet, flow);
-    fl_carry(sheet, flow->carry);
+    fl_advect(sheet, flow->carry);
     wet_surface(sheet, flow->sigma);
 }

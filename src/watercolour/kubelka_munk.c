@@ -7,26 +7,26 @@
  * With q = sqrt(K (K + 2 S)), D = (S + K) sinh(q x) + q cosh(q x):  R = S sinh(q x) / D, T = q / D.
  * That is the paper's R = sinh(b S x) / c, T = b / c for a = 1 + K / S, b = sqrt(a a - 1).
  */
-FlLayer fl_km_layer(double absorption, double scattering, double thickness)
+FlKmLayer fl_km_layer(double absorption, double scattering, double thickness)
 {
     const double q = sqrt(absorption * (absorption + 2 * scattering));
     const double qx = q * thickness;
     if (qx < 1e-9) {
         const double sx = scattering * thickness;
-        return (FlLayer){sx / (1 + sx), 1 / (1 + sx)};
+        return (FlKmLayer){sx / (1 + sx), 1 / (1 + sx)};
     }
     if (qx > 300) // sinh and cosh would overflow; nothing comes through
-        return (FlLayer){scattering / (scattering + absorption + q), 0};
+        return (FlKmLayer){scattering / (scattering + absorption + q), 0};
     const double sh = sinh(qx), d = (scattering + absorption) * sh + q * cosh(qx);
-    return (FlLayer){scattering * sh / d, q / d};
+    return (FlKmLayer){scattering * sh / d, q / d};
 }
 
-FlLayer fl_km_over(FlLayer upper, FlLayer lower)
+FlKmLayer fl_km_over(FlKmLayer upper, FlKmLayer lower)
 {
     const double between = 1 - upper.reflectance * lower.reflectance;
-    return (FlLayer){upper.reflectance +
-                         upper.transmittance * upper.transmittance * lower.reflectance / between,
-                     upper.transmittance * lower.transmittance / between};
+    return (FlKmLayer){upper.reflectance +
+                           upper.transmittance * upper.transmittance * lower.reflectance / between,
+                       upper.transmittance * lower.transmittance / between};
 }
 
 static double acoth(double x)

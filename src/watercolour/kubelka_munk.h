@@ -5,15 +5,15 @@
 #include "watercolour/recipe.h"
 
 /** What a layer sends back and lets through, of light of one channel; 0..1. */
-typedef struct FlLayer {
+typedef struct FlKmLayer {
     double reflectance, transmittance;
-} FlLayer;
+} FlKmLayer;
 
 /** A layer of absorption K >= 0, scattering S >= 0 and thickness x >= 0. */
-FlLayer fl_km_layer(double absorption, double scattering, double thickness);
+FlKmLayer fl_km_layer(double absorption, double scattering, double thickness);
 
 /** The upper layer on the lower one. */
-FlLayer fl_km_over(FlLayer upper, FlLayer lower);
+FlKmLayer fl_km_over(FlKmLayer upper, FlKmLayer lower);
 
 /**
  * K and S of a pigment that shows `over_white` and `over_black` at thickness 1.

@@ -1,7 +1,7 @@
 #include "watercolour/recipe.h"
 
 #include "base/limits.h"
-#include "style/bundle.h"
+#include "style/style_folder.h"
 #include "watercolour/keylines.h"
 #include "watercolour/kubelka_munk.h"
 

@@ -2,8 +2,8 @@
 #include <fluidy/watercolour.h>
 
 #include "base/alloc.h"
-#include "base/room.h"
-#include "style/write.h"
+#include "base/headroom.h"
+#include "style/write_style.h"
 #include "watercolour/brush.h"
 #include "watercolour/dust.h"
 #include "watercolour/scan.h"
@@ -119,7 +119,8 @@ static bool paint(FlStyle *style, const FlRecipe *recipe, FlWatercolourProgress 
 bool fl_watercolour_simulate(const char *recipe_path, const char *folder, bool overwrite,
                              FlWatercolourProgress progress, void *data, GError **error)
 {
-    g_autoptr(FlRecipe) recipe = fl_room_check(error) ? fl_recipe_load(recipe_path, error) : NULL;
+    g_autoptr(FlRecipe) recipe =
+        fl_headroom_check(error) ? fl_recipe_load(recipe_path, error) : NULL;
     if (!recipe || !fl_style_may_write(folder, overwrite, error))
         return false;
     g_autoptr(FlStyle) style = new_style(recipe, recipe_path, error);

@@ -28,7 +28,7 @@ void fl_move_pigment(FlSheet *sheet);
 void fl_find_concentration(FlSheet *sheet, const float *g, float share);
 
 /** Moves the water in the paper by flux_u and flux_v, and a share (0..1) of its pigment with it. */
-void fl_carry(FlSheet *sheet, float share);
+void fl_advect(FlSheet *sheet, float share);
 
 /** Spreads floating pigment through the water in the paper. Conserves it to rounding. */
 void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow *flow);

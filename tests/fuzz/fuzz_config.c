@@ -11,8 +11,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     g_assert_true((config == NULL) == (error != NULL));
     FlRenderOptions options = {0};
     for (int r = -1; config && r < config->n_rules; r++) {
-        g_auto(FlTreatment) treatment = {0};
-        g_assert_true(fl_config_treatment(config, r, "hair", &options, &treatment, NULL));
+        g_auto(FlRegionSettings) settings = {0};
+        g_assert_true(fl_config_region_settings(config, r, "hair", &options, &settings, NULL));
     }
     fuzz_file_end(fd);
     return 0;

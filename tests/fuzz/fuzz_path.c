@@ -1,5 +1,5 @@
 /* The lint of path data. */
-#include "frames/pathdata.h"
+#include "svg/path_data.h"
 #include "fuzz.h"
 #include <string.h>
 

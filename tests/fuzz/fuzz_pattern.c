@@ -1,8 +1,8 @@
 /* Names with frame numbers, and ranges of numbers. */
-#include "frames/pattern.h"
-#include "frames/range.h"
+#include "io/pattern.h"
+#include "io/frame_range.h"
 #include "fuzz.h"
-#include "output/name.h"
+#include "io/output_name.h"
 
 static void as_input(const char *text)
 {

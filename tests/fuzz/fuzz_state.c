@@ -1,19 +1,19 @@
 /* The state of an earlier render, its checksum made right, and a region's field. */
-#include "base/pack.h"
+#include "base/compress.h"
 #include "fuzz.h"
-#include "render/state.h"
-#include "synth/past.h"
+#include "job/checkpoint.h"
+#include "synth/synth_state.h"
 #include <string.h>
 
 static void check_state(const uint8_t *data, size_t size)
 {
     g_autoptr(GByteArray) file = g_byte_array_new();
-    const uint32_t sum = fl_state_sum(data, size);
+    const uint32_t sum = fl_checkpoint_sum(data, size);
     g_byte_array_append(file, data, (guint)size);
     g_byte_array_append(file, (const uint8_t *)&sum, sizeof sum);
     g_autoptr(GBytes) bytes = g_bytes_new(file->data, file->len);
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlState) state = fl_state_parse(bytes, "fuzz.state", &error);
+    g_autoptr(FlCheckpoint) state = fl_checkpoint_parse(bytes, "fuzz.state", &error);
     g_assert_true((state == NULL) == (error != NULL));
     if (state) {
         g_autofree char *same = fl_fingerprint_difference(state->print, state->print);
@@ -28,23 +28,23 @@ static void check_past(GBytes *bytes)
     const FlExemplarLevel level = {.width = 40, .height = 30, .n_frames = 5};
     uint8_t mask[SIDE * SIDE], rgb[3 * SIDE * SIDE];
     g_autoptr(GError) error = NULL;
-    FlSynthPast past = {.mask = mask, .rgb = rgb};
-    const bool read = fl_synth_past_unpack(&past, bytes, &level, SIDE, SIDE, &error);
+    FlSynthState state = {.mask = mask, .rgb = rgb};
+    const bool read = fl_synth_state_unpack(&state, bytes, &level, SIDE, SIDE, &error);
     g_assert_true(read == (error == NULL));
-    for (int p = 0; p < past.nnf.width * past.nnf.height && read && past.valid; p++)
-        g_assert_cmpint(past.nnf.match[p].frame, <, level.n_frames);
-    fl_nnf_clear(&past.nnf);
+    for (int p = 0; p < state.nnf.width * state.nnf.height && read && state.valid; p++)
+        g_assert_cmpint(state.nnf.match[p].frame, <, level.n_frames);
+    fl_nnf_clear(&state.nnf);
 }
 
 /* The bytes as they are, and with all behind the header packed as a state's are. */
 static void check_pasts(const uint8_t *data, size_t size)
 {
-    const size_t header = MIN(size, FL_PAST_HEADER);
+    const size_t header = MIN(size, FL_SYNTH_STATE_HEADER);
     const FlSpan part = {(void *)(uintptr_t)(data + header), size - header};
-    const size_t room = fl_pack_room(&part, 1);
+    const size_t room = fl_compress_bound(&part, 1);
     g_autofree uint8_t *packed = g_malloc(header + room);
     memcpy(packed, data, header);
-    const size_t used = fl_pack(&part, 1, packed + header, room);
+    const size_t used = fl_compress(&part, 1, packed + header, room);
     g_assert_cmpint(used, >, 0);
     g_autoptr(GBytes) plain = g_bytes_new(data, size);
     g_autoptr(GBytes) whole = g_bytes_new(packed, header + used);

@@ -1,5 +1,5 @@
 /* A drawing: read, normalised, its leaves found, their paint asked for and one of them drawn. */
-#include "frames/svg.h"
+#include "svg/svg_frame.h"
 #include "fuzz.h"
 
 #define MOST_LEAVES 8 // to keep an input's time short

@@ -4,7 +4,8 @@
 #include <arm_neon.h>
 
 uint32_t fl_patch_distance_neon(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                const FlPacked *target, const FlPacked *rest, uint32_t limit)
+                                const FlCompressed *target, const FlCompressed *rest,
+                                uint32_t limit)
 {
     static const uint8_t orders[2][8] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 5, 4, 6, 7}};
     static const uint16_t colours[8] = {0xffff, 0xffff, 0xffff, 0, 0, 0, 0, 0};

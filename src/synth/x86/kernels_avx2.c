@@ -34,7 +34,7 @@ static inline __m256i weights_of(__m256i target, __m256i rest)
 }
 
 /* The weights of the other channels, where those of the colours are 0. */
-static inline __m256i load_rest(const FlPacked *rest)
+static inline __m256i load_rest(const FlCompressed *rest)
 {
     const __m128i others = _mm_setr_epi16(0, 0, 0, -1, -1, -1, 0, 0);
     return _mm256_broadcastsi128_si256(
@@ -48,19 +48,19 @@ static inline __m256i two_terms(__m128i texels, __m256i target, __m256i weight)
     return _mm256_madd_epi16(d, _mm256_mulhrs_epi16(d, weight));
 }
 
-static inline __m256i load_target(const FlPacked *target)
+static inline __m256i load_target(const FlCompressed *target)
 {
     return _mm256_load_si256((const __m256i *)target);
 }
 
 /* The last pixel of 25, beside nothing. */
-static inline __m256i load_last(const FlPacked *target)
+static inline __m256i load_last(const FlCompressed *target)
 {
     return _mm256_zextsi128_si256(_mm_load_si128((const __m128i *)(target + 24)));
 }
 
 /* Texels beyond the 25th count for nothing. */
-static inline __m256i last_term(__m128i texel, const FlPacked *target, __m256i rest)
+static inline __m256i last_term(__m128i texel, const FlCompressed *target, __m256i rest)
 {
     const __m256i t = load_last(target);
     const __m256i terms = two_terms(texel, t, weights_of(t, rest));
@@ -76,7 +76,8 @@ static inline uint32_t sum_of(__m256i v)
 }
 
 uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                const FlPacked *target, const FlPacked *rest, uint32_t limit)
+                                const FlCompressed *target, const FlCompressed *rest,
+                                uint32_t limit)
 {
     const __m128i order = order_of(opposed);
     const __m256i others = load_rest(rest);
@@ -92,8 +93,8 @@ uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, b
     return sum_of(_mm256_add_epi32(sum, last_term(_mm_shuffle_epi8(texel, order), target, others)));
 }
 
-void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
-                        const FlPacked *rest, uint32_t limit, uint32_t distance[2])
+void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
+                        const FlCompressed *rest, uint32_t limit, uint32_t distance[2])
 {
     const __m128i turned = order_of(2);
     const __m256i others = load_rest(rest);

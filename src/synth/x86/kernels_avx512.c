@@ -26,7 +26,7 @@ static inline __m512i weights_of(__m512i target, __m512i rest)
 }
 
 /* The weights of the other channels of four pixels. */
-static inline __m512i load_rest(const FlPacked *rest)
+static inline __m512i load_rest(const FlCompressed *rest)
 {
     const __m128i others = _mm_setr_epi16(0, 0, 0, -1, -1, -1, 0, 0);
     return _mm512_broadcast_i32x4(_mm_and_si128(others, _mm_loadu_si128((const __m128i *)rest)));
@@ -40,7 +40,7 @@ static inline __m512i four_terms(__m256i texels, __m512i target, __m512i weight)
 }
 
 /* The last pixel of 25; the texel stands alone. */
-static inline __m512i last_term(__m128i texel, const FlPacked *target, __m512i rest)
+static inline __m512i last_term(__m128i texel, const FlCompressed *target, __m512i rest)
 {
     const __m512i t = _mm512_zextsi128_si512(_mm_load_si128((const __m128i *)(target + 24)));
     const __m512i terms = four_terms(_mm256_zextsi128_si256(texel), t, weights_of(t, rest));
@@ -65,7 +65,8 @@ static inline __m128i opposed_order(void)
 }
 
 uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                  const FlPacked *target, const FlPacked *rest, uint32_t limit)
+                                  const FlCompressed *target, const FlCompressed *rest,
+                                  uint32_t limit)
 {
     const __m128i straight = _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     const __m128i one = opposed ? opposed_order() : straight;
@@ -83,8 +84,8 @@ uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets,
     return sum_of(_mm512_add_epi32(sum, last_term(_mm_shuffle_epi8(texel, one), target, others)));
 }
 
-void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlPacked *target,
-                          const FlPacked *rest, uint32_t limit, uint32_t distance[2])
+void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
+                          const FlCompressed *rest, uint32_t limit, uint32_t distance[2])
 {
     const __m256i turned = _mm256_broadcastsi128_si256( // two pixels change places, extents too
         _mm_setr_epi8(8, 9, 10, 11, 13, 12, 14, 15, 0, 1, 2, 3, 5, 4, 6, 7));

@@ -1,0 +1,35 @@
+/* The blend modes of SVG [Compositing and Blending Level 1, §10]. */
+#ifndef FLUIDY_BASE_BLEND_MODE_H
+#define FLUIDY_BASE_BLEND_MODE_H
+
+#include <stdint.h>
+
+/** How a colour is mixed with what lies below it. */
+typedef enum FlBlendMode {
+    FL_BLEND_MODE_OVER, // "normal"
+    FL_BLEND_MODE_MULTIPLY,
+    FL_BLEND_MODE_SCREEN,
+    FL_BLEND_MODE_OVERLAY,
+    FL_BLEND_MODE_DARKEN,
+    FL_BLEND_MODE_LIGHTEN,
+    FL_BLEND_MODE_DODGE,
+    FL_BLEND_MODE_BURN,
+    FL_BLEND_MODE_HARD_LIGHT,
+    FL_BLEND_MODE_SOFT_LIGHT,
+    FL_BLEND_MODE_DIFFERENCE,
+    FL_BLEND_MODE_EXCLUSION,
+    FL_BLEND_MODE_HUE,
+    FL_BLEND_MODE_SATURATION,
+    FL_BLEND_MODE_COLOUR,
+    FL_BLEND_MODE_LUMINOSITY,
+    FL_N_MIXES
+} FlBlendMode;
+
+/**
+ * The colour which, laid over sRGB `below` as usual, shows `rgb` mixed with it: changes rgb.
+ *
+ * drawn is the opacity of what lies below, 0..255: where nothing does, every colour stays.
+ */
+void fl_blend_mode_apply(FlBlendMode mix, const uint8_t below[3], int drawn, uint8_t rgb[3]);
+
+#endif

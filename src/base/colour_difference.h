@@ -1,0 +1,16 @@
+/* How alike two colours look. */
+#ifndef FLUIDY_BASE_COLOUR_DIFFERENCE_H
+#define FLUIDY_BASE_COLOUR_DIFFERENCE_H
+
+#include <stdint.h>
+
+/** CIE 1976 L*a*b* of an sRGB colour, D65. */
+void fl_lab(const uint8_t rgb[3], float lab[3]);
+
+/** CIE76 difference: 2 is just seen, 10 is another tone, 30 another colour. */
+float fl_colour_difference(const uint8_t a[3], const uint8_t b[3]);
+
+/** A plain word such as "brown" or "dark-green"; static storage. */
+const char *fl_colour_word(const uint8_t rgb[3]);
+
+#endif

@@ -1,0 +1,14 @@
+/* Numbers as colours. */
+#ifndef FLUIDY_BASE_COLOUR_MAP_H
+#define FLUIDY_BASE_COLOUR_MAP_H
+
+#include <stdint.h>
+
+/** 0 … 1 from dark violet over green to yellow, of even steps in lightness; beyond is cut. */
+void fl_colour_map(float value, uint8_t rgb[3]);
+
+/** A vector as a colour: its direction is the hue, its length as a share of `most` the saturation.
+ */
+void fl_colour_wheel(float u, float v, float most, uint8_t rgb[3]);
+
+#endif

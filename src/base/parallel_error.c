@@ -1,0 +1,18 @@
+#include "base/parallel_error.h"
+
+void fl_parallel_error_keep(GError **first, GError *mine)
+{
+    static GMutex mutex;
+    g_mutex_lock(&mutex);
+    if (!*first)
+        *first = g_steal_pointer(&mine);
+    g_mutex_unlock(&mutex);
+    g_clear_error(&mine);
+}
+
+bool fl_parallel_error_tell(GError **error, GError *first)
+{
+    if (first)
+        g_propagate_error(error, first);
+    return first == NULL;
+}

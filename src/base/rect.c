@@ -1,0 +1,74 @@
+#include "base/rect.h"
+
+#include <string.h>
+
+bool fl_is_blank(const uint8_t *bytes, size_t n)
+{
+    uint8_t any = 0;
+    for (size_t i = 0; i < n; i++)
+        any |= bytes[i];
+    return any == 0;
+}
+
+/* Of a row that is not blank. */
+static FlColumns span_of(const uint8_t *row, int width)
+{
+    FlColumns span = {0, width};
+    while (!row[span.first])
+        span.first++;
+    while (!row[span.last - 1])
+        span.last--;
+    return span;
+}
+
+FlRect fl_rect_within(const uint8_t *plane, int width, FlRect part)
+{
+    int left = part.width, right = -1, top = part.height, bottom = -1;
+    for (int y = 0; y < part.height; y++) {
+        const uint8_t *row = plane + (size_t)(part.y + y) * width + part.x;
+        if (fl_is_blank(row, (size_t)part.width)) // as most rows of most planes
+            continue;
+        const FlColumns span = span_of(row, part.width);
+        left = MIN(left, span.first), right = MAX(right, span.last - 1);
+        top = MIN(top, y), bottom = y;
+    }
+    return right < 0 ? (FlRect){0, 0, 0, 0}
+                     : (FlRect){part.x + left, part.y + top, right - left + 1, bottom - top + 1};
+}
+
+FlRect fl_rect_of(const uint8_t *plane, int width, int height)
+{
+    return fl_rect_within(plane, width, (FlRect){0, 0, width, height});
+}
+
+void fl_rect_copy(const void *from, FlRect from_box, void *to, FlRect to_box, size_t pixel_bytes)
+{
+    const int x0 = MAX(from_box.x, to_box.x);
+    const int x1 = MIN(from_box.x + from_box.width, to_box.x + to_box.width);
+    const int y0 = MAX(from_box.y, to_box.y);
+    const int y1 = MIN(from_box.y + from_box.height, to_box.y + to_box.height);
+    const size_t from_row = pixel_bytes * (size_t)from_box.width;
+    const size_t to_row = pixel_bytes * (size_t)to_box.width;
+    for (int y = y0; y < y1 && x0 < x1; y++)
+        memcpy((char *)to + (size_t)(y - to_box.y) * to_row + pixel_bytes * (size_t)(x0 - to_box.x),
+               (const char *)from + (size_t)(y - from_box.y) * from_row +
+                   pixel_bytes * (size_t)(x0 - from_box.x),
+               pixel_bytes * (size_t)(x1 - x0));
+}
+
+void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height)
+{
+    const FlRect box = fl_rect_of(plane, width, height);
+    *area = (FlArea){box, g_new0(FlColumns, MAX(box.height, 1))};
+    for (int y = 0; y < box.height; y++) {
+        const uint8_t *row = plane + (size_t)(box.y + y) * width + box.x;
+        if (!fl_is_blank(row, (size_t)box.width))
+            area->row[y] = span_of(row, box.width);
+    }
+}
+
+void fl_area_clear(FlArea *area)
+{
+    g_free(area->row);
+    *area = (FlArea){0};
+}

@@ -1,0 +1,64 @@
+/* A rectangle of pixels within a frame, and what of it is taken. */
+#ifndef FLUIDY_BASE_RECT_H
+#define FLUIDY_BASE_RECT_H
+
+#include <glib.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/** Whether n bytes are 0, seen without looking for where the first other one is. */
+bool fl_is_blank(const uint8_t *bytes, size_t n);
+
+/** Columns x … x + width - 1, rows y … y + height - 1; empty if a size is 0. */
+typedef struct FlRect {
+    int x, y, width, height;
+} FlRect;
+
+/** The smallest box that holds every nonzero byte of a width * height plane; {0, 0, 0, 0}: none. */
+FlRect fl_rect_of(const uint8_t *plane, int width, int height);
+
+/** The same of those in a part of a plane that is `width` wide. */
+FlRect fl_rect_within(const uint8_t *plane, int width, FlRect part);
+
+/** Copies the pixels that two boxes of a frame share, of some bytes each; from and to hold a box.
+ */
+void fl_rect_copy(const void *from, FlRect from_box, void *to, FlRect to_box, size_t pixel_bytes);
+
+/** Columns first … last - 1; none if first >= last. */
+typedef struct FlColumns {
+    int first, last;
+} FlColumns;
+
+/** Where something is in a frame: many shapes are far smaller than the box around them. */
+typedef struct FlArea {
+    FlRect box;
+    FlColumns *row; // of each row of the box, within 0 … box.width; NULL: rows are full
+} FlArea;
+
+/** Where a width * height plane is not 0: in each row from its first such byte to the last one. */
+void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height);
+void fl_area_clear(FlArea *area);
+
+/** What row y of the box has. */
+static inline FlColumns fl_area_row(const FlArea *area, int y)
+{
+    return area->row ? area->row[y] : (FlColumns){0, area->box.width};
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlArea, fl_area_clear)
+
+#define FL_WORTH_THREADS ((size_t)1 << 15) // pixels; fewer are done before other threads are awake
+
+static inline size_t fl_rect_pixels(FlRect box)
+{
+    return (size_t)box.width * (size_t)box.height;
+}
+
+/** A side of half the size; halves count as whole pixels. */
+static inline int fl_half_side(int px)
+{
+    return (px + 1) / 2;
+}
+
+#endif

@@ -1,0 +1,3 @@
+#define ROWS(name) name##_avx2
+#define ROWS_NAME "avx2"
+#include "base/row_kernels.inc"

@@ -1,3 +1,0 @@
-#define ROWS(name) name##_avx2
-#define ROWS_NAME "avx2"
-#include "base/rows.inc"

@@ -1,3 +1,0 @@
-#define ROWS(name) name##_avx512
-#define ROWS_NAME "avx512"
-#include "base/rows.inc"

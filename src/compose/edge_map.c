@@ -1,0 +1,370 @@
+#include "compose/edge_map.h"
+
+#include "base/alloc.h"
+#include "base/parallel_error.h"
+#include "compose/closing.h"
+#include "compose/detail.h"
+#include "compose/interior.h"
+#include <string.h>
+
+#define SHOWN 128      // coverage from which on a shape is uppermost
+#define TRAP_PX 4      // neighbours overlap by so much at most where a program traps them
+#define MOST_RUNS 4095 // whose overlaps are known
+#define TILE_PX 128    // a tile and what is around it fit into a processor's own cache
+
+/** Whether a run hides what it lies over. Shading does not: the edges below it are seen. */
+static bool hides(const FlPlan *plan, const FlDraw *draw)
+{
+    const bool painted = plan->painter_of[draw->region] >= 0;
+    return draw->mix == FL_BLEND_MODE_OVER && draw->alpha >= SHOWN &&
+           (painted || draw->alpha == 255);
+}
+
+/** Where pixel 0 of row y of a box is in the frame. */
+static size_t in_frame(const FlEdgeMap *edges, FlRect box, int y)
+{
+    return (size_t)(box.y + y) * (size_t)fl_drawing_width(edges->plan->drawing) + (size_t)box.x;
+}
+
+/** The coverage of a run from column 0 of row y of its box on. */
+static const uint8_t *coverage_row(const FlDraw *draw, int y)
+{
+    return draw->coverage + (size_t)y * (size_t)draw->area.box.width;
+}
+
+/** Whether a shape, whose rows these are, holds the corners of a square of TRAP_PX. */
+static bool holds_square(const uint8_t *upper, const uint8_t *lower)
+{
+    return upper[0] >= SHOWN && upper[TRAP_PX] >= SHOWN && lower[0] >= SHOWN &&
+           lower[TRAP_PX] >= SHOWN;
+}
+
+/** The run that is uppermost at all corners of the one from pixel i on; 0: none. */
+static uint16_t top_of_square(const uint16_t *top, size_t i, size_t width)
+{
+    const size_t down = i + TRAP_PX * width;
+    const bool same =
+        top[i + TRAP_PX] == top[i] && top[down] == top[i] && top[down + TRAP_PX] == top[i];
+    return same ? top[i] : 0;
+}
+
+/** Notes which runs a run, put over those below it, overlaps in some square of TRAP_PX. */
+static void note_overlaps(FlEdgeMap *edges, int draw)
+{
+    const FlDraw *r = &edges->draws->draw[draw];
+    const size_t width = (size_t)fl_drawing_width(edges->plan->drawing), n = (size_t)edges->n;
+    for (int y = 0; y < r->area.box.height - TRAP_PX; y++) {
+        const size_t row = in_frame(edges, r->area.box, y), own = (size_t)draw + 1;
+        const uint8_t *upper = coverage_row(r, y), *lower = coverage_row(r, y + TRAP_PX);
+        const FlColumns span = fl_area_row(&r->area, y);
+        for (int x = span.first; x + TRAP_PX < span.last; x++) {
+            if (!holds_square(upper + x, lower + x))
+                continue;
+            const size_t other = top_of_square(edges->top, row + (size_t)x, width);
+            edges->overlap[own * n + other] = edges->overlap[other * n + own] = true;
+        }
+    }
+}
+
+static void put_on_top(FlEdgeMap *edges, int draw)
+{
+    const FlDraw *r = &edges->draws->draw[draw];
+    for (int y = 0; y < r->area.box.height; y++) {
+        const uint8_t *coverage = coverage_row(r, y);
+        uint16_t *top = edges->top + in_frame(edges, r->area.box, y);
+        const FlColumns span = fl_area_row(&r->area, y);
+        for (int x = span.first; x < span.last; x++)
+            if (coverage[x] >= SHOWN)
+                top[x] = (uint16_t)(draw + 1);
+    }
+}
+
+bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlDrawList *draws, GError **error)
+{
+    const size_t pixels =
+        (size_t)fl_drawing_width(plan->drawing) * (size_t)fl_drawing_height(plan->drawing);
+    *edges = (FlEdgeMap){.plan = plan, .draws = draws};
+    edges->n = MIN(draws->n, MOST_RUNS) + 1;
+    const size_t pairs = (size_t)edges->n * (size_t)edges->n;
+    if (!(edges->top = fl_alloc(pixels, sizeof *edges->top, "a matte", error)) ||
+        !(edges->overlap = fl_alloc(pairs, sizeof *edges->overlap, "a matte", error)))
+        return false;
+    for (int r = 0; r < edges->n - 1; r++) {
+        note_overlaps(edges, r);
+        if (hides(plan, &draws->draw[r]))
+            put_on_top(edges, r);
+    }
+    return true;
+}
+
+void fl_edges_clear(FlEdgeMap *edges)
+{
+    free(edges->top);
+    free(edges->overlap);
+    *edges = (FlEdgeMap){0};
+}
+
+/** A part of a run's box that is closed by itself, and room for it. */
+typedef struct Tile {
+    FlRect part;                // what is closed, with what may change it
+    FlRect around;              // with what the shares are of
+    int16_t *amounts, *inside;  // of part
+    uint8_t *detail;            // of part
+    uint8_t *share, *meets;     // of part: of the edges that are closed, and of all
+    uint8_t *coverage, *others; // of around
+} Tile;
+
+static FlRect grown(FlRect box, int px, FlRect limit)
+{
+    const int x0 = MAX(box.x - px, limit.x),
+              x1 = MIN(box.x + box.width + px, limit.x + limit.width);
+    const int y0 = MAX(box.y - px, limit.y);
+    const int y1 = MIN(box.y + box.height + px, limit.y + limit.height);
+    return (FlRect){x0, y0, x1 - x0, y1 - y0};
+}
+
+/** What of a part of the frame a shape takes up; empty: nothing. */
+static FlRect shape_in(const FlDraw *draw, FlRect part)
+{
+    const FlRect all = draw->area.box, both = grown(part, 0, all);
+    if (both.width <= 0 || both.height <= 0)
+        return (FlRect){0};
+    FlRect box = fl_rect_within(draw->coverage, all.width,
+                                (FlRect){both.x - all.x, both.y - all.y, both.width, both.height});
+    box.x += all.x, box.y += all.y;
+    return box;
+}
+
+static void tile_clear(Tile *tile)
+{
+    free(tile->amounts);
+    free(tile->inside);
+    free(tile->detail);
+    free(tile->share);
+    free(tile->meets);
+    free(tile->coverage);
+    free(tile->others);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Tile, tile_clear)
+
+static bool tile_init(Tile *tile, const FlEdgeMap *edges, int draw, FlRect box, int radius_px,
+                      GError **error)
+{
+    const FlRect frame = {0, 0, fl_drawing_width(edges->plan->drawing),
+                          fl_drawing_height(edges->plan->drawing)};
+    const FlRect part =
+        shape_in(&edges->draws->draw[draw], grown(box, fl_closing_reach(radius_px), frame));
+    *tile = (Tile){.part = part, .around = grown(part, radius_px, frame)};
+    const size_t n = fl_rect_pixels(part), around = fl_rect_pixels(tile->around);
+    return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
+           (tile->inside = fl_alloc(n, sizeof *tile->inside, "a matte", error)) &&
+           (tile->detail = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->share = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->meets = fl_alloc(n, 1, "a matte", error)) &&
+           (tile->coverage = fl_alloc(around, 1, "a matte", error)) &&
+           (tile->others = fl_alloc(around, 1, "a matte", error));
+}
+
+/** Where the part is in what is around it. */
+static FlRect part_of(const Tile *tile)
+{
+    const FlRect around = tile->around, part = tile->part;
+    return (FlRect){part.x - around.x, part.y - around.y, part.width, part.height};
+}
+
+/** The share of the edges of a run, with all others or with those that it does not overlap. */
+static bool find_share(Tile *tile, const FlEdgeMap *edges, int draw, bool with_all, int radius_px,
+                       uint8_t *share, GError **error)
+{
+    const bool *overlap = edges->overlap + (size_t)(draw + 1) * (size_t)edges->n;
+    const FlRect around = tile->around;
+    uint8_t *others = tile->others, any = 0;
+    for (int y = 0; y < around.height; y++) {
+        const uint16_t *row = edges->top + in_frame(edges, around, y);
+        for (int x = 0; x < around.width; x++) {
+            const bool other = row[x] && row[x] != draw + 1 && (with_all || !overlap[row[x]]);
+            any |= *others++ = other ? 255 : 0;
+        }
+    }
+    memset(share, 0, fl_rect_pixels(tile->part));
+    if (!any)
+        return true;
+    return fl_closing_share(tile->coverage, tile->others, around.width, around.height,
+                            part_of(tile), radius_px, share, error);
+}
+
+/** The share of the edges that are closed: of details all, else those with runs below or above
+ * which the run does not lie. */
+static bool find_closed(Tile *tile, const FlEdgeMap *edges, int draw, int radius_px, GError **error)
+{
+    const size_t n = fl_rect_pixels(tile->part);
+    if (!find_share(tile, edges, draw, false, radius_px, tile->share, error))
+        return false;
+    if (fl_is_blank(tile->detail, n))
+        return true;
+    if (!find_share(tile, edges, draw, true, radius_px, tile->meets, error))
+        return false;
+    for (size_t i = 0; i < n; i++)
+        tile->share[i] = (uint8_t)MAX(tile->share[i], tile->meets[i] * tile->detail[i] / 255);
+    return true;
+}
+
+/** Whether a run is seen at a pixel: nothing that hides it lies over it. */
+static bool is_seen(uint8_t coverage, uint16_t top, int draw)
+{
+    return coverage >= SHOWN && top <= draw + 1;
+}
+
+/** What is known of a run, of its box, before it is closed. */
+typedef struct Before {
+    const int16_t *amounts;
+    const uint8_t *detail;
+} Before;
+
+static void fill_tile(Tile *tile, const FlDraw *draw, const Before *before)
+{
+    const FlRect all = draw->area.box, around = tile->around;
+    fl_rect_copy(before->amounts, all, tile->amounts, tile->part, sizeof *tile->amounts);
+    fl_rect_copy(before->detail, all, tile->detail, tile->part, 1);
+    fl_rect_copy(draw->coverage, all, tile->coverage, around, 1);
+    fl_closing_inside(tile->coverage, around.width, around.height, part_of(tile), tile->inside);
+}
+
+static bool close_tile(const FlEdgeMap *edges, int draw, FlRect box, int radius_px,
+                       const Before *before, int16_t *closed, GError **error)
+{
+    g_auto(Tile) tile = {0};
+    const FlRect all = edges->draws->draw[draw].area.box;
+    if (!tile_init(&tile, edges, draw, box, radius_px, error))
+        return false;
+    fill_tile(&tile, &edges->draws->draw[draw], before);
+    const FlRect part = tile.part;
+    if (!find_closed(&tile, edges, draw, radius_px, error) ||
+        !fl_closing_apply(tile.amounts, tile.inside, tile.share, part, radius_px, error))
+        return false;
+    for (int y = box.y; y < box.y + box.height; y++)
+        memcpy(closed + (size_t)(y - all.y) * (size_t)all.width + (box.x - all.x),
+               tile.amounts + (size_t)(y - part.y) * (size_t)part.width + (box.x - part.x),
+               (size_t)box.width * sizeof *closed);
+    return true;
+}
+
+/** All tiles in which the shape is: many shapes are far smaller than their box. */
+static bool close_tiles(const FlEdgeMap *edges, int draw, int radius_px, const Before *before,
+                        int16_t *closed, GError **error)
+{
+    const FlRect all = edges->draws->draw[draw].area.box;
+    const int columns = (all.width + TILE_PX - 1) / TILE_PX;
+    const int rows = (all.height + TILE_PX - 1) / TILE_PX;
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int t = 0; t < columns * rows; t++) {
+        GError *mine = NULL;
+        const FlRect corner = {all.x + t % columns * TILE_PX, all.y + t / columns * TILE_PX, 0, 0};
+        const FlRect tile = {corner.x, corner.y, MIN(TILE_PX, all.x + all.width - corner.x),
+                             MIN(TILE_PX, all.y + all.height - corner.y)};
+        const FlRect box = shape_in(&edges->draws->draw[draw], tile);
+        if (box.width > 0 && !close_tile(edges, draw, box, radius_px, before, closed, &mine))
+            fl_parallel_error_keep(&first, mine);
+    }
+    return fl_parallel_error_tell(error, first);
+}
+
+/** How far each pixel of a run's box is of a small detail, as of fl_detail_find(). */
+static uint8_t *find_detail(const FlEdgeMap *edges, int draw, int radius_px, GError **error)
+{
+    const FlDraw *r = &edges->draws->draw[draw];
+    const FlRect box = r->area.box;
+    g_autofree uint8_t *seen = fl_alloc(fl_rect_pixels(box), 1, "a matte", error);
+    g_autofree uint8_t *detail = seen ? fl_alloc(fl_rect_pixels(box), 1, "a matte", error) : NULL;
+    for (int y = 0; detail && y < box.height; y++) {
+        const FlColumns span = fl_area_row(&r->area, y);
+        const uint8_t *coverage = coverage_row(r, y);
+        const uint16_t *top = edges->top + in_frame(edges, box, y);
+        uint8_t *row = seen + (size_t)y * (size_t)box.width;
+        for (int x = span.first; x < span.last; x++)
+            row[x] = is_seen(coverage[x], top[x], draw) ? 255 : 0;
+    }
+    return detail && fl_detail_find(seen, box.width, box.height, radius_px, detail, error)
+               ? g_steal_pointer(&detail)
+               : NULL;
+}
+
+bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPainter *painter, int16_t *amounts,
+                    GError **error)
+{
+    const FlRegionSettings *t = &painter->settings;
+    const FlRenderOptions *options = &edges->plan->options;
+    const size_t n = fl_rect_pixels(edges->draws->draw[draw].area.box);
+    if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || options->gap > 0 ||
+        options->feather > 0 || n == 0 || draw >= edges->n - 1)
+        return true;
+    const float border = painter->style->exemplar->border_px;
+    const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
+    g_autofree int16_t *copy = fl_alloc(n, sizeof *copy, "a layer", error);
+    g_autofree uint8_t *detail = copy ? find_detail(edges, draw, radius, error) : NULL;
+    if (!detail)
+        return false;
+    memcpy(copy, amounts, n * sizeof *copy);
+    return close_tiles(edges, draw, radius, &(Before){copy, detail}, amounts, error);
+}
+
+/** 255 where a run is all that is seen, else 0; of a box that may be larger than the run's. */
+static uint8_t *own_pixels(const FlEdgeMap *edges, int draw, FlRect box, GError **error)
+{
+    uint8_t *own = fl_alloc(fl_rect_pixels(box), 1, "a matte", error);
+    const FlArea *area = &edges->draws->draw[draw].area;
+    for (int y = 0; own && y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const uint8_t *coverage = coverage_row(&edges->draws->draw[draw], y);
+        const uint16_t *top = edges->top + in_frame(edges, area->box, y);
+        uint8_t *row = own + (size_t)(area->box.y + y - box.y) * (size_t)box.width;
+        row += area->box.x - box.x;
+        for (int x = span.first; x < span.last; x++)
+            row[x] = coverage[x] == 255 && top[x] <= draw + 1 ? 255 : 0;
+    }
+    return own;
+}
+
+/** Counts the amounts of a run deep enough inside what is seen of it. */
+static bool count_inner(const FlEdgeMap *edges, int draw, const int16_t *amounts,
+                        FlAmountCounts *counts, GError **error)
+{
+    enum { MARGIN_PX = 2 };
+    const FlArea *area = &edges->draws->draw[draw].area;
+    const FlRect frame = {0, 0, fl_drawing_width(edges->plan->drawing),
+                          fl_drawing_height(edges->plan->drawing)};
+    const FlRect box = grown(area->box, MARGIN_PX, frame);
+    g_autofree uint8_t *inner = g_malloc((size_t)box.width);
+    g_autofree uint8_t *own = own_pixels(edges, draw, box, error);
+    for (int y = 0; own && y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const int16_t *row = amounts + (size_t)y * (size_t)area->box.width;
+        const uint8_t *within = inner + (area->box.x - box.x);
+        fl_interior_row(own, box.width, box.height, area->box.y + y - box.y, MARGIN_PX, inner);
+        for (int x = span.first; x < span.last; x++)
+            if (within[x] == 255 && row[x] >= 0)
+                counts->count[row[x]]++, counts->total++;
+    }
+    return own;
+}
+
+bool fl_edges_level(const FlEdgeMap *edges, int draw, int16_t *amounts, GError **error)
+{
+    const FlArea *area = &edges->draws->draw[draw].area;
+    const FlRect box = area->box;
+    g_autofree FlAmountCounts *counts = g_new0(FlAmountCounts, 1);
+    if (!count_inner(edges, draw, amounts, counts, error))
+        return false;
+    const int exposure =
+        CLAMP(fl_counts_exposure(counts), FL_EXPOSURE_ONE * 2 / 3, FL_EXPOSURE_ONE * 3 / 2);
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        int16_t *row = amounts + (size_t)y * box.width;
+        for (int x = span.first; x < span.last; x++)
+            if (row[x] > 0)
+                row[x] = (int16_t)MIN(row[x] * exposure / FL_EXPOSURE_ONE, FL_AMOUNTS - 1);
+    }
+    return true;
+}

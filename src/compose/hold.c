@@ -1,0 +1,96 @@
+#include "compose/hold.h"
+
+#include <string.h>
+
+/** The hold of a region that is painted, else the film's. */
+static int hold_of(const FlPlan *plan, int region)
+{
+    const int p = plan->painter_of[region];
+    return p >= 0 ? plan->painters[p].settings.hold : plan->hold;
+}
+
+static void insert(GArray *draws, int at, FlDraw *draw)
+{
+    g_array_insert_val(draws, (guint)at, *draw);
+    *draw = (FlDraw){.region = draw->region}; // its pictures have a new owner
+}
+
+/** Index of the last run of a region, -1 if it has none. */
+static int last_of(const GArray *draws, int region)
+{
+    for (int r = (int)draws->len - 1; r >= 0; r--)
+        if (g_array_index(draws, FlDraw, r).region == region)
+            return r;
+    return -1;
+}
+
+/** Where run k of an earlier frame goes that has no counterpart. */
+static int place_of(const GArray *draws, const FlDrawList *earlier, int k)
+{
+    for (int below = k; below >= 0; below--) {
+        const int last = last_of(draws, earlier->draw[below].region);
+        if (last >= 0)
+            return last + 1;
+    }
+    return 0;
+}
+
+/** The lowest run of a region that is not taken yet. */
+static FlDraw *first_left(const FlDrawList *draws, int region)
+{
+    for (int r = 0; r < draws->n; r++)
+        if (draws->draw[r].region == region && draws->draw[r].coverage)
+            return &draws->draw[r];
+    return NULL;
+}
+
+/** Whether a region's runs are taken from frame `from` when frame `now` is shown. */
+static bool is_from(const FlPlan *plan, int region, int frame, int from, int now)
+{
+    const int shown = frame - frame % hold_of(plan, region);
+    return shown == from && shown != now;
+}
+
+/** Puts the runs of the regions that show `from` in the place of what they have in runs. */
+static bool replace(const FlPlan *plan, GArray *draws, int frame, int from, int now, GError **error)
+{
+    g_autoptr(FlDrawList) earlier = fl_drawing_draw_list(plan->drawing, from, error);
+    if (!earlier)
+        return false;
+    for (int r = 0; r < (int)draws->len; r++) {
+        FlDraw *draw = &g_array_index(draws, FlDraw, r);
+        if (!is_from(plan, draw->region, frame, from, now))
+            continue;
+        FlDraw *then = first_left(earlier, draw->region);
+        fl_draw_clear(draw);
+        if (then)
+            *draw = *then, *then = (FlDraw){.region = draw->region};
+        else
+            g_array_remove_index(draws, (guint)r--);
+    }
+    for (int k = 0; k < earlier->n; k++)
+        if (earlier->draw[k].coverage && is_from(plan, earlier->draw[k].region, frame, from, now))
+            insert(draws, place_of(draws, earlier, k), &earlier->draw[k]);
+    return true;
+}
+
+FlDrawList *fl_hold_draw_list(const FlPlan *plan, int frame, GError **error)
+{
+    const int now = frame - frame % plan->hold;
+    g_autoptr(FlDrawList) shown = fl_drawing_draw_list(plan->drawing, now, error);
+    if (!shown)
+        return NULL;
+    g_autoptr(GHashTable) done = g_hash_table_new(NULL, NULL);
+    GArray *draws = g_array_new(FALSE, FALSE, sizeof(FlDraw));
+    g_array_append_vals(draws, shown->draw, (guint)shown->n);
+    bool good = true;
+    for (int p = 0; p < plan->n_painters && good; p++) {
+        const int from = frame - frame % plan->painters[p].settings.hold;
+        if (from != now && g_hash_table_add(done, GINT_TO_POINTER(from)))
+            good = replace(plan, draws, frame, from, now, error);
+    }
+    g_free(shown->draw);
+    shown->n = (int)draws->len;
+    shown->draw = (FlDraw *)g_array_free(draws, FALSE);
+    return good ? g_steal_pointer(&shown) : NULL;
+}

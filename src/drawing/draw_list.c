@@ -1,0 +1,358 @@
+#include "base/alloc.h"
+#include "drawing/drawing_data.h"
+#include "drawing/raster.h"
+#include <math.h>
+#include <string.h>
+
+/*
+ * Steps of the same region and paint go into one run. A step may also join an earlier run if it
+ * meets nothing in between: a board of twenty discs of three colours is a few runs, not sixty.
+ */
+typedef struct Run {
+    int region;
+    bool flat;
+    uint8_t rgb[3], alpha, drawn, mix;
+    GArray *steps; // indices
+} Run;
+
+static void run_clear(void *data)
+{
+    g_array_unref(((Run *)data)->steps);
+}
+
+static bool boxes_meet(const float a[4], const float b[4])
+{
+    return a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
+}
+
+static bool meets(const Run *draw, const FlDrawingFrame *frame, const FlStep *step)
+{
+    for (guint i = 0; i < draw->steps->len; i++)
+        if (boxes_meet(frame->step[g_array_index(draw->steps, int, i)].box, step->box))
+            return true;
+    return false;
+}
+
+/** Whether step can be drawn with run: two that show what is below only where they do not overlap.
+ */
+static bool fits(const Run *draw, const FlDrawingFrame *frame, const FlStep *step)
+{
+    if (draw->region != step->region || draw->flat != step->flat || draw->alpha != step->alpha ||
+        draw->drawn != step->drawn || draw->mix != step->mix ||
+        (step->flat && memcmp(draw->rgb, step->rgb, 3) != 0))
+        return false;
+    return (step->alpha == 255 && step->mix == FL_BLEND_MODE_OVER) || !meets(draw, frame, step);
+}
+
+/** The runs of a frame; region < 0: all of them. */
+static GArray *plan(const FlDrawingFrame *frame, int region)
+{
+    GArray *draws = g_array_new(FALSE, FALSE, sizeof(Run));
+    g_array_set_clear_func(draws, run_clear);
+    for (int i = 0; i < frame->n; i++) {
+        const FlStep *step = &frame->step[i];
+        if (region >= 0 && step->region != region)
+            continue;
+        Run *found = NULL;
+        for (guint r = draws->len; r-- > 0 && !found;) {
+            Run *draw = &g_array_index(draws, Run, r);
+            if (fits(draw, frame, step))
+                found = draw;
+            else if (meets(draw, frame, step))
+                break;
+        }
+        if (!found) {
+            const Run draw = {
+                step->region, step->flat, {step->rgb[0], step->rgb[1], step->rgb[2]}, step->alpha,
+                step->drawn,  step->mix,  g_array_new(FALSE, FALSE, sizeof(int))};
+            g_array_append_val(draws, draw);
+            found = &g_array_index(draws, Run, draws->len - 1);
+        }
+        g_array_append_val(found->steps, i);
+    }
+    return draws;
+}
+
+/** A frame opened for drawing. */
+typedef struct Stage {
+    const FlDrawing *drawing;
+    const FlDrawingFrame *frame;
+    FlSvg *svg;
+    cairo_surface_t *coverage, *picture; // scratch, blank between runs; picture may be NULL
+} Stage;
+
+static void stage_clear(Stage *stage)
+{
+    fl_svg_free(stage->svg);
+    if (stage->coverage)
+        cairo_surface_destroy(stage->coverage);
+    if (stage->picture)
+        cairo_surface_destroy(stage->picture);
+}
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Stage, stage_clear)
+
+static bool stage_init(Stage *stage, const FlDrawing *drawing, int frame, GError **error)
+{
+    *stage = (Stage){.drawing = drawing, .frame = &drawing->frame[frame]};
+    const FlSvgOptions options = {stage->frame->canvas, drawing->dpi,
+                                  (const char *const *)stage->frame->whole};
+    stage->svg = fl_svg_open(drawing->sequence->file[frame], drawing->sequence->number[frame],
+                             &options, NULL, error);
+    if (!stage->svg)
+        return false;
+    stage->coverage = fl_surface_new(CAIRO_FORMAT_A8, drawing->width, drawing->height, error);
+    return stage->coverage != NULL;
+}
+
+/** The page's pixels. */
+static FlBounds page_of(const FlDrawing *drawing)
+{
+    return (FlBounds){0, 0, drawing->width, drawing->height};
+}
+
+/** The pixels a step can reach. */
+static FlBounds step_box(const Stage *stage, const FlStep *step)
+{
+    const FlBounds box = {(int)floorf(step->box[0]), (int)floorf(step->box[1]),
+                          (int)ceilf(step->box[2]), (int)ceilf(step->box[3])};
+    return fl_bounds_and(page_of(stage->drawing), box);
+}
+
+/** Those that a run's steps can reach, and others between them. */
+static FlBounds run_box(const Stage *stage, const Run *draw)
+{
+    FlBounds all = {0};
+    for (guint i = 0; i < draw->steps->len; i++)
+        all = fl_bounds_or(
+            all, step_box(stage, &stage->frame->step[g_array_index(draw->steps, int, i)]));
+    return all;
+}
+
+static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *surface,
+                      GError **error)
+{
+    const FlLeaves *leaves = fl_svg_leaves(stage->svg);
+    const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;
+    const guint index = (guint)(step->leaf >= 0 ? step->leaf : -1 - step->leaf);
+    if (index >= list->len) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "%s: changed while it was being painted",
+                    stage->drawing->sequence->file[stage->frame - stage->drawing->frame]);
+        return false;
+    }
+    const FlLeaf *leaf = step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
+                                         : &g_array_index(list, FlUnit, index).leaf;
+    const FlBounds box = step_box(stage, step);
+    cairo_t *cr = cairo_create(surface);
+    cairo_rectangle(cr, box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0);
+    cairo_clip(cr);
+    const bool drawn = fl_svg_draw(stage->svg, leaf, (FlPart)step->part, cr,
+                                   stage->frame->page_width, stage->frame->page_height, error);
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    return drawn;
+}
+
+/** What a drawn opacity is of a thing that is as opaque as `alpha`. */
+static void fill_solid(uint8_t solid[256], uint8_t alpha)
+{
+    for (int v = 0; v < 256; v++)
+        solid[v] = (uint8_t)MIN(255, (v * 255 + alpha / 2) / MAX(alpha, 1));
+}
+
+/** What is drawn into: pixels of a box that holds all of it. */
+typedef struct Room {
+    FlBounds box;
+    uint8_t *coverage;
+    uint8_t *picture; // may be NULL
+} Room;
+
+static size_t room_pixel(const Room *room, int x, int y)
+{
+    const size_t width = (size_t)(room->box.x1 - room->box.x0);
+    return (size_t)(y - room->box.y0) * width + (size_t)(x - room->box.x0);
+}
+
+/** Adds one flat step to a coverage, taking its opacity out. */
+static bool add_flat(const Stage *stage, const FlStep *step, const Room *room, GError **error)
+{
+    if (!draw_step(stage, step, stage->coverage, error))
+        return false;
+    const FlBounds box = step_box(stage, step);
+    const int stride = cairo_image_surface_get_stride(stage->coverage);
+    const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
+    uint8_t solid[256];
+    fill_solid(solid, step->drawn);
+    for (int y = box.y0; y < box.y1; y++) {
+        const unsigned char *in = drawn + (size_t)y * stride + box.x0;
+        uint8_t *out = room->coverage + room_pixel(room, box.x0, y);
+        for (int x = 0; x < box.x1 - box.x0; x++)
+            if (in[x])
+                out[x] = fl_over(solid[in[x]], out[x]);
+    }
+    fl_surface_wipe(stage->coverage, box);
+    return true;
+}
+
+static bool draw_flat(const Stage *stage, const Run *draw, const Room *room, GError **error)
+{
+    for (guint i = 0; i < draw->steps->len; i++)
+        if (!add_flat(stage, &stage->frame->step[g_array_index(draw->steps, int, i)], room, error))
+            return false;
+    return true;
+}
+
+/** Draws the steps of a run on a picture of their own. */
+static bool draw_picture(Stage *stage, const Run *draw, const Room *room, GError **error)
+{
+    const int width = stage->drawing->width, height = stage->drawing->height;
+    if (!stage->picture)
+        stage->picture = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+    if (!stage->picture)
+        return false;
+    for (guint i = 0; i < draw->steps->len; i++)
+        if (!draw_step(stage, &stage->frame->step[g_array_index(draw->steps, int, i)],
+                       stage->picture, error))
+            return false;
+    const int stride = cairo_image_surface_get_stride(stage->picture);
+    const unsigned char *drawn = cairo_image_surface_get_data(stage->picture);
+    uint8_t solid[256];
+    fill_solid(solid, draw->drawn);
+    for (int y = room->box.y0; y < room->box.y1; y++)
+        for (int x = room->box.x0; x < room->box.x1; x++) {
+            const uint32_t pixel = ((const uint32_t *)(drawn + (size_t)y * stride))[x];
+            const size_t p = room_pixel(room, x, y);
+            if (!pixel)
+                continue;
+            uint8_t mine[4];
+            fl_straighten(pixel, solid[pixel >> 24], mine);
+            if (room->picture)
+                memcpy(room->picture + 4 * p, mine, 4);
+            room->coverage[p] = fl_over(mine[3], room->coverage[p]);
+        }
+    fl_surface_wipe(stage->picture, room->box);
+    return true;
+}
+
+/** The mean colour of a picture, by its coverage. */
+static void mean_colour(const uint8_t *picture, size_t n, uint8_t rgb[3])
+{
+    uint64_t sum[3] = {0}, weight = 0;
+    for (size_t p = 0; p < n; p++) {
+        for (int c = 0; c < 3; c++)
+            sum[c] += (uint64_t)picture[4 * p + c] * picture[4 * p + 3];
+        weight += picture[4 * p + 3];
+    }
+    for (int c = 0; c < 3; c++)
+        rgb[c] = (uint8_t)(weight ? (sum[c] + weight / 2) / weight : 0);
+}
+
+static bool draw_in(Stage *stage, const Run *draw, const Room *room, GError **error)
+{
+    return draw->flat ? draw_flat(stage, draw, room, error)
+                      : draw_picture(stage, draw, room, error);
+}
+
+/** Keeps what has been drawn, and no more room than that takes. */
+static bool keep_drawn(const Room *room, FlDraw *out, GError **error)
+{
+    const FlRect from = {room->box.x0, room->box.y0, room->box.x1 - room->box.x0,
+                         room->box.y1 - room->box.y0};
+    fl_area_init(&out->area, room->coverage, from.width, from.height);
+    FlRect *box = &out->area.box;
+    box->x += from.x, box->y += from.y;
+    const size_t n = fl_rect_pixels(*box);
+    if (!(out->coverage = fl_alloc(n, 1, "the mask of a region", error)))
+        return false;
+    fl_rect_copy(room->coverage, from, out->coverage, *box, 1);
+    if (!room->picture)
+        return true;
+    if (!(out->picture = fl_alloc(n, 4, "the picture of a region", error)))
+        return false;
+    fl_rect_copy(room->picture, from, out->picture, *box, 4);
+    mean_colour(out->picture, n, out->rgb);
+    return true;
+}
+
+static bool draw_run(Stage *stage, const Run *draw, FlDraw *out, GError **error)
+{
+    const FlBounds box = run_box(stage, draw);
+    const size_t n = (size_t)(box.x1 - box.x0) * (size_t)(box.y1 - box.y0);
+    *out = (FlDraw){.region = draw->region, .alpha = draw->alpha, .mix = (FlBlendMode)draw->mix};
+    memcpy(out->rgb, draw->rgb, 3);
+    g_autofree uint8_t *coverage = fl_alloc(n, 1, "the mask of a region", error);
+    g_autofree uint8_t *picture =
+        draw->flat || !coverage ? NULL : fl_alloc(n, 4, "the picture of a region", error);
+    const Room room = {box, coverage, picture};
+    if (!coverage || (!draw->flat && !picture))
+        return false;
+    return draw_in(stage, draw, &room, error) && keep_drawn(&room, out, error);
+}
+
+FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error)
+{
+    g_assert(frame >= 0 && frame < drawing->sequence->n);
+    g_auto(Stage) stage = {0};
+    if (!stage_init(&stage, drawing, frame, error))
+        return NULL;
+    g_autoptr(GArray) draws = plan(stage.frame, -1);
+    g_autoptr(FlDrawList) out = g_new0(FlDrawList, 1);
+    out->draw = g_new0(FlDraw, draws->len + 1);
+    for (guint r = 0; r < draws->len; r++) {
+        out->n++;
+        if (!draw_run(&stage, &g_array_index(draws, Run, r), &out->draw[r], error))
+            return NULL;
+    }
+    return g_steal_pointer(&out);
+}
+
+bool fl_drawing_mask(const FlDrawing *drawing, int frame, int region, uint8_t *coverage,
+                     GError **error)
+{
+    memset(coverage, 0, (size_t)drawing->width * drawing->height);
+    g_autoptr(GArray) draws = plan(&drawing->frame[frame], region);
+    if (draws->len == 0)
+        return true;
+    g_auto(Stage) stage = {0};
+    if (!stage_init(&stage, drawing, frame, error))
+        return false;
+    const Room room = {page_of(drawing), coverage, NULL};
+    for (guint r = 0; r < draws->len; r++)
+        if (!draw_in(&stage, &g_array_index(draws, Run, r), &room, error))
+            return false;
+    return true;
+}
+
+void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
+                       uint8_t *coverage)
+{
+    memset(coverage, 0, (size_t)width * (size_t)height);
+    for (int r = 0; r < draws->n; r++) {
+        const FlDraw *draw = &draws->draw[r];
+        const FlRect box = draw->area.box;
+        for (int y = 0; draw->region == region && y < box.height; y++) {
+            const FlColumns span = fl_area_row(&draw->area, y);
+            const uint8_t *from = draw->coverage + (size_t)y * (size_t)box.width;
+            uint8_t *to = coverage + (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
+            for (int x = span.first; x < span.last; x++)
+                to[x] = fl_over(from[x], to[x]);
+        }
+    }
+}
+
+void fl_draw_clear(FlDraw *draw)
+{
+    fl_area_clear(&draw->area);
+    free(draw->coverage);
+    free(draw->picture);
+    draw->coverage = draw->picture = NULL;
+}
+
+void fl_draw_list_free(FlDrawList *draws)
+{
+    if (!draws)
+        return;
+    for (int r = 0; r < draws->n; r++)
+        fl_draw_clear(&draws->draw[r]);
+    g_free(draws->draw);
+    g_free(draws);
+}

@@ -1,0 +1,281 @@
+#include "base/rect.h"
+#include "drawing/drawing_data.h"
+#include "drawing/region_identity.h"
+#include "drawing/region_names.h"
+#include <string.h>
+
+int fl_drawing_frames(const FlDrawing *drawing)
+{
+    return drawing->sequence->n;
+}
+
+int fl_drawing_width(const FlDrawing *drawing)
+{
+    return drawing->width;
+}
+
+int fl_drawing_height(const FlDrawing *drawing)
+{
+    return drawing->height;
+}
+
+/* The files are drawn to the page's size, and steps within their boxes. */
+void fl_drawing_halve(FlDrawing *drawing)
+{
+    drawing->width = fl_half_side(drawing->width), drawing->height = fl_half_side(drawing->height);
+    for (int f = 0; f < drawing->sequence->n; f++) {
+        FlDrawingFrame *frame = &drawing->frame[f];
+        frame->page_width /= 2, frame->page_height /= 2;
+        for (int i = 0; i < frame->n; i++)
+            for (int side = 0; side < 4; side++)
+                frame->step[i].box[side] /= 2;
+    }
+}
+
+int fl_drawing_regions(const FlDrawing *drawing)
+{
+    return (int)drawing->regions->len;
+}
+
+const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region)
+{
+    return &g_array_index(drawing->regions, FlRegion, region);
+}
+
+const char *fl_drawing_name(const FlDrawing *drawing)
+{
+    return drawing->sequence->name;
+}
+
+const char *fl_drawing_file(const FlDrawing *drawing, int frame)
+{
+    return drawing->sequence->file[frame];
+}
+
+int fl_drawing_number(const FlDrawing *drawing, int frame)
+{
+    return drawing->sequence->number[frame];
+}
+
+static void region_clear(void *data)
+{
+    FlRegion *region = data;
+    g_free(region->name);
+    g_free(region->label);
+    g_free(region->paint);
+}
+
+/** "leg_FB/Group" of "leg_FB\nGroup". */
+static char *label_path(const char *labels)
+{
+    return g_strdelimit(g_strdup(labels), "\n", '/');
+}
+
+static char *paint_text(const FlGroup *group)
+{
+    const uint8_t *rgb = group->rgb;
+    switch (group->kind) {
+    case FL_PAINT_FLAT:
+        return g_strdup_printf("#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
+    case FL_PAINT_GRADIENT:
+        return g_strdup("gradient");
+    default:
+        return g_strdup("image");
+    }
+}
+
+static bool is_paintable(const FlGroup *group, const FlRegionRule *rules)
+{
+    const FlPassthrough override =
+        group->rule >= 0 ? rules[group->rule].passthrough : FL_PASSTHROUGH_AUTO;
+    if (override != FL_PASSTHROUGH_AUTO)
+        return override == FL_PASSTHROUGH_NO;
+    return !group->stroke && !group->shade;
+}
+
+static void describe(FlDrawing *drawing, const FlSurvey *survey, const GArray *groups,
+                     const FlRegionRule *rules)
+{
+    g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
+    for (guint r = 0; r < groups->len; r++) {
+        const FlGroup *group = &g_array_index(groups, FlGroup, r);
+        const FlRegion region = {
+            .name = g_strdup(names[r]),
+            .label = label_path(fl_strings_get(&survey->strings, group->label)),
+            .paint = paint_text(group),
+            .paintable = is_paintable(group, rules),
+            .rule = group->rule,
+        };
+        g_array_append_val(drawing->regions, region);
+    }
+}
+
+/** Counts frames, leaves and area of the regions. */
+static void measure(FlDrawing *drawing, const FlSurvey *survey)
+{
+    const guint n = drawing->regions->len;
+    g_autofree int *leaves = g_new(int, n + 1);
+    for (int t = 0; t < survey->n_frames; t++) {
+        memset(leaves, 0, n * sizeof *leaves);
+        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].seen, FlSurveyPart, i);
+            if (s->region < 0)
+                continue;
+            leaves[s->region]++;
+            g_array_index(drawing->regions, FlRegion, s->region).area_px += s->area_px;
+        }
+        for (guint r = 0; r < n; r++) {
+            FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
+            if (leaves[r] > 0 && region->n_present++ == 0)
+                region->first_frame = t;
+            region->n_leaves = MAX(region->n_leaves, leaves[r]);
+        }
+    }
+    for (guint r = 0; r < n; r++) {
+        FlRegion *region = &g_array_index(drawing->regions, FlRegion, r);
+        region->area_px /= MAX(region->n_present, 1);
+    }
+}
+
+/** Where a region ends up when those that it joins join others; in a circle nothing joins. */
+static int end_of(const int *into, guint n, int region)
+{
+    int r = region;
+    for (guint k = 0; k < n && into[r] != r; k++)
+        r = into[r];
+    return into[r] == r ? r : region;
+}
+
+/** Joins a region whose rule says merge_with to the region of that name. */
+static void merge_regions(FlSurvey *survey, GArray *groups, const FlRegionRule *rules)
+{
+    g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
+    g_autofree int *into = g_new(int, groups->len + 1);
+    for (guint r = 0; r < groups->len; r++) {
+        const int rule = g_array_index(groups, FlGroup, r).rule;
+        const char *override = rule >= 0 ? rules[rule].merge_with : NULL;
+        into[r] = (int)r;
+        for (guint q = 0; override && q < groups->len; q++)
+            if (q != r && strcmp(names[q], override) == 0)
+                into[r] = (int)q;
+    }
+    g_autofree int *end = g_new(int, groups->len + 1);
+    for (guint r = 0; r < groups->len; r++)
+        end[r] = end_of(into, groups->len, (int)r);
+    g_autofree int *number = g_new(int, groups->len + 1);
+    guint kept = 0;
+    for (guint r = 0; r < groups->len; r++) {
+        number[r] = (int)kept;
+        if (end[r] == (int)r)
+            g_array_index(groups, FlGroup, kept++) = g_array_index(groups, FlGroup, r);
+    }
+    for (int t = 0; t < survey->n_frames && kept < groups->len; t++)
+        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
+            int *region = &g_array_index(survey->frame[t].seen, FlSurveyPart, i).region;
+            if (*region >= 0)
+                *region = number[end[*region]];
+        }
+    g_array_set_size(groups, kept);
+}
+
+static void remember(FlDrawing *drawing, FlSurvey *survey)
+{
+    drawing->frame = g_new0(FlDrawingFrame, survey->n_frames);
+    for (int t = 0; t < survey->n_frames; t++) {
+        const GArray *seen = survey->frame[t].seen;
+        FlDrawingFrame *frame = &drawing->frame[t];
+        frame->page_width = survey->frame[t].page_width;
+        frame->page_height = survey->frame[t].page_height;
+        frame->canvas = survey->frame[t].canvas;
+        frame->whole = g_steal_pointer(&survey->frame[t].whole);
+        frame->step = g_new0(FlStep, seen->len + 1);
+        for (guint i = 0; i < seen->len; i++) {
+            const FlSurveyPart *s = &g_array_index(seen, FlSurveyPart, i);
+            if (s->region < 0)
+                continue;
+            FlStep *step = &frame->step[frame->n++];
+            *step = (FlStep){.leaf = s->leaf,
+                             .region = (int16_t)s->region,
+                             .part = (uint8_t)s->part,
+                             .flat = s->kind == FL_PAINT_FLAT,
+                             .rgb = {s->rgb[0], s->rgb[1], s->rgb[2]},
+                             .alpha = s->peak,
+                             .drawn = s->peak,
+                             .mix = (uint8_t)s->mix};
+            memcpy(step->box, s->box, sizeof step->box);
+        }
+    }
+}
+
+/** Gives regions that no rule made to the rules that are about them by name. */
+static void apply_names(const FlSurvey *survey, GArray *groups, const FlRegionRule *rules, int n)
+{
+    g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
+    for (guint r = 0; r < groups->len; r++) {
+        FlGroup *group = &g_array_index(groups, FlGroup, r);
+        for (int i = 0; i < n && group->rule < 0; i++)
+            if (rules[i].by_name && strcmp(rules[i].name, names[r]) == 0)
+                group->rule = i;
+    }
+}
+
+static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequence, FlSurvey *survey,
+                            GError **error)
+{
+    g_autoptr(GArray) groups = fl_identify(survey, options);
+    apply_names(survey, groups, options->rules, options->n_rules);
+    merge_regions(survey, groups, options->rules);
+    if (groups->len > INT16_MAX) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                    "%s: %u regions, at most %d are handled; choose another --key",
+                    sequence->file[0], groups->len, INT16_MAX);
+        return NULL;
+    }
+    FlDrawing *drawing = g_new0(FlDrawing, 1);
+    *drawing = (FlDrawing){.sequence = sequence,
+                           .dpi = survey->svg.dpi,
+                           .width = survey->width,
+                           .height = survey->height,
+                           .regions = g_array_new(FALSE, TRUE, sizeof(FlRegion))};
+    g_array_set_clear_func(drawing->regions, region_clear);
+    describe(drawing, survey, groups, options->rules);
+    measure(drawing, survey);
+    remember(drawing, survey);
+    return drawing;
+}
+
+FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings, GError **error)
+{
+    if (!fl_rules_check(options->rules, options->n_rules, error))
+        return NULL;
+    g_autoptr(FlSequence) sequence = fl_sequence_open(
+        options->inputs, options->n_inputs, options->range, options->missing, warnings, error);
+    if (!sequence)
+        return NULL;
+    FlSurvey survey;
+    FlDrawing *drawing = NULL;
+    if (fl_survey_init(&survey, sequence, options, warnings, error))
+        drawing = make_film(options, sequence, &survey, error);
+    if (drawing)
+        g_steal_pointer(&sequence);
+    fl_survey_clear(&survey);
+    return drawing;
+}
+
+static void free_frame(FlDrawingFrame *frame)
+{
+    g_free(frame->step);
+    g_strfreev(frame->whole);
+}
+
+void fl_drawing_free(FlDrawing *drawing)
+{
+    if (!drawing)
+        return;
+    for (int t = 0; t < drawing->sequence->n; t++)
+        free_frame(&drawing->frame[t]);
+    g_free(drawing->frame);
+    fl_sequence_free(drawing->sequence);
+    g_array_unref(drawing->regions);
+    g_free(drawing);
+}

@@ -1,0 +1,168 @@
+#include "drawing/leaf_tracks.h"
+
+#include "base/colour_difference.h"
+#include <math.h>
+#include <stdlib.h>
+
+/*
+ * Leaves of two frames are paired greedily, the most alike first. Only leaves of the same label and
+ * kind are compared; the same paint counts most, then overlap, then the place in the document.
+ * Exporters that keep the tree (lottie-web, SMIL) and those that sort by depth (Zdog) both come
+ * out: there the place is right and the paint may change, here the paint is right and the place
+ * changes.
+ */
+#define GRADUAL 30.0f // CIE76 between frames, for a leaf at the same place in the document
+#define SUBTLE 12.0f  // and for one that is only in the same place in the picture
+#define OVERLAP 0.6f  // of the boxes of such a one, intersection over union
+#define TOO_MANY 4000 // unpaired leaves on a side; beyond that only exact matches are followed
+
+typedef struct Pair {
+    float score;
+    int track, seen;
+} Pair;
+
+static float overlap(const float a[4], const float b[4])
+{
+    const float w = MIN(a[2], b[2]) - MAX(a[0], b[0]), h = MIN(a[3], b[3]) - MAX(a[1], b[1]);
+    if (w <= 0 || h <= 0)
+        return 0;
+    const float both = w * h;
+    return both / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - both);
+}
+
+/** How alike, 0 … 7; -1 if they cannot be the same leaf. */
+static float likeness(const FlSurveyPart *a, const FlSurveyPart *b)
+{
+    const bool same_paint = a->paint == b->paint;
+    const bool same_tree = a->tree == b->tree, same_name = a->name == b->name && a->name > 0;
+    const float difference = same_paint ? 0 : fl_colour_difference(a->rgb, b->rgb);
+    const float shared = overlap(a->box, b->box);
+    if (!same_paint && same_tree && (difference > GRADUAL || (shared < 0.2f && !same_name)))
+        return -1;
+    if (!same_paint && !same_tree && (difference > SUBTLE || shared < OVERLAP))
+        return -1;
+    return (float)(2 * same_paint + same_tree + same_name) + 2 * shared +
+           (1 - MIN(difference, GRADUAL) / GRADUAL);
+}
+
+static int compare_pairs(const void *x, const void *y)
+{
+    const Pair *a = x, *b = y;
+    if (a->score != b->score)
+        return a->score > b->score ? -1 : 1;
+    return a->track != b->track ? a->track - b->track : a->seen - b->seen;
+}
+
+typedef struct Follow {
+    const FlSurvey *survey;
+    const int *label_of;
+    GArray *tracks;
+} Follow;
+
+static void follow_on(Follow *f, int t, int i, int track, int *row)
+{
+    FlTrack *tr = &g_array_index(f->tracks, FlTrack, track);
+    const FlSurveyPart *seen = &g_array_index(f->survey->frame[t].seen, FlSurveyPart, i);
+    const int change[2] = {t, seen->paint};
+    if (tr->paints->len > 0 && tr->last.paint != seen->paint)
+        tr->varies = true;
+    g_array_append_vals(tr->paints, change, 2);
+    tr->last = *seen;
+    tr->last_frame = t;
+    row[i] = track;
+}
+
+static void new_track(Follow *f, int t, int i, int *row)
+{
+    const FlTrack track = {.paints = g_array_new(FALSE, FALSE, sizeof(int)), .last_frame = -1};
+    g_array_append_val(f->tracks, track);
+    follow_on(f, t, i, (int)f->tracks->len - 1, row);
+}
+
+static bool comparable(const Follow *f, const FlSurveyPart *a, const FlSurveyPart *b)
+{
+    return a->stroke == b->stroke && a->thick == b->thick &&
+           f->label_of[a->labels] == f->label_of[b->labels] && (a->leaf < 0) == (b->leaf < 0);
+}
+
+static guint exact_hash(gconstpointer p)
+{
+    const FlSurveyPart *s = p;
+    return (guint)(s->paint * 31 + s->tree * 7919 + s->stroke);
+}
+
+static gboolean exact_equal(gconstpointer p, gconstpointer q)
+{
+    const FlSurveyPart *a = p, *b = q;
+    return a->paint == b->paint && a->tree == b->tree && a->stroke == b->stroke &&
+           a->thick == b->thick && a->labels == b->labels && a->part == b->part;
+}
+
+/** Continues tracks by leaves that kept place and paint. */
+static void pair_exactly(Follow *f, int t, int *row)
+{
+    g_autoptr(GHashTable) known = g_hash_table_new(exact_hash, exact_equal);
+    for (guint k = 0; k < f->tracks->len; k++)
+        g_hash_table_insert(known, &g_array_index(f->tracks, FlTrack, k).last,
+                            GINT_TO_POINTER(k + 1));
+    GArray *seen = f->survey->frame[t].seen;
+    g_autofree int *found = g_new0(int, seen->len + 1);
+    for (guint i = 0; i < seen->len; i++)
+        found[i] =
+            GPOINTER_TO_INT(g_hash_table_lookup(known, &g_array_index(seen, FlSurveyPart, i)));
+    for (guint i = 0; i < seen->len; i++)
+        if (found[i] && g_array_index(f->tracks, FlTrack, found[i] - 1).last_frame < t)
+            follow_on(f, t, (int)i, found[i] - 1, row);
+}
+
+/** Pairs what is left over, the most alike first. */
+static void pair_by_likeness(Follow *f, int t, int *row)
+{
+    GArray *seen = f->survey->frame[t].seen;
+    g_autoptr(GArray) pairs = g_array_new(FALSE, FALSE, sizeof(Pair));
+    int left = 0;
+    for (guint i = 0; i < seen->len; i++)
+        left += row[i] < 0;
+    for (guint k = 0; k < f->tracks->len && left > 0 && left < TOO_MANY; k++) {
+        const FlTrack *track = &g_array_index(f->tracks, FlTrack, k);
+        for (guint i = 0; i < seen->len && track->last_frame < t; i++) {
+            const FlSurveyPart *s = &g_array_index(seen, FlSurveyPart, i);
+            if (row[i] >= 0 || !comparable(f, &track->last, s))
+                continue;
+            const float like = likeness(&track->last, s);
+            const Pair pair = {like - (track->last_frame < t - 1 ? 0.5f : 0), (int)k, (int)i};
+            if (like >= 0)
+                g_array_append_val(pairs, pair);
+        }
+    }
+    g_array_sort(pairs, compare_pairs);
+    for (guint p = 0; p < pairs->len; p++) {
+        const Pair *pair = &g_array_index(pairs, Pair, p);
+        if (row[pair->seen] < 0 && g_array_index(f->tracks, FlTrack, pair->track).last_frame < t)
+            follow_on(f, t, pair->seen, pair->track, row);
+    }
+}
+
+static void track_clear(void *data)
+{
+    g_array_unref(((FlTrack *)data)->paints);
+}
+
+GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***track_of)
+{
+    Follow f = {survey, label_of, g_array_new(FALSE, FALSE, sizeof(FlTrack))};
+    g_array_set_clear_func(f.tracks, track_clear);
+    *track_of = g_new0(int *, survey->n_frames);
+    for (int t = 0; t < survey->n_frames; t++) {
+        const guint n = survey->frame[t].seen->len;
+        int *row = (*track_of)[t] = g_new(int, n + 1);
+        for (guint i = 0; i < n; i++)
+            row[i] = -1;
+        pair_exactly(&f, t, row);
+        pair_by_likeness(&f, t, row);
+        for (guint i = 0; i < n; i++)
+            if (row[i] < 0)
+                new_track(&f, t, (int)i, row);
+    }
+    return f.tracks;
+}

@@ -1,0 +1,76 @@
+#include "drawing/nesting.h"
+
+#define DEEPEST 15
+#define TOO_MANY 600 // leaves in a frame; the search is cubic
+#define LARGE 0.004f // share of the page from which on an inner leaf counts; not a glint in an eye
+#define INSIDE 0.95f // share of a leaf's box that lies in the box of the one it is in
+#define ALWAYS 0.9f  // share of its frames in which a track has the same depth
+#define MOSTLY 0.5f  // share of the film's frames a track is in
+
+static float area(const float b[4])
+{
+    return (b[2] - b[0]) * (b[3] - b[1]);
+}
+
+static bool lies_in(const FlSurveyPart *inner, const FlSurveyPart *outer)
+{
+    const float *a = inner->box, *b = outer->box;
+    const float w = MIN(a[2], b[2]) - MAX(a[0], b[0]), h = MIN(a[3], b[3]) - MAX(a[1], b[1]);
+    return w > 0 && h > 0 && w * h >= INSIDE * area(a);
+}
+
+static bool same_kind(const FlSurveyPart *a, const FlSurveyPart *b, const int *label_of)
+{
+    return a->paint == b->paint && a->stroke == b->stroke &&
+           label_of[a->labels] == label_of[b->labels];
+}
+
+/** Whether something of another paint lies between leaves j < i of a frame and under all of i. */
+static bool is_parted(const FlSurveyPart *seen, int j, int i, const int *label_of)
+{
+    for (int k = j + 1; k < i; k++)
+        if (!same_kind(&seen[k], &seen[i], label_of) && lies_in(&seen[i], &seen[k]))
+            return true;
+    return false;
+}
+
+static void find_levels(const GArray *frame, const int *label_of, float least, int *level)
+{
+    const FlSurveyPart *seen = (const FlSurveyPart *)frame->data;
+    for (int i = 0; i < (int)frame->len; i++) {
+        level[i] = 0;
+        for (int j = 0; j < i && seen[i].area_px >= least; j++)
+            if (level[j] >= level[i] && level[j] < DEEPEST &&
+                same_kind(&seen[i], &seen[j], label_of) && lies_in(&seen[i], &seen[j]) &&
+                is_parted(seen, j, i, label_of))
+                level[i] = level[j] + 1;
+    }
+}
+
+int *fl_nesting(const FlSurvey *survey, int *const *track_of, const int *label_of, int n_tracks)
+{
+    const float least = LARGE * (float)survey->width * (float)survey->height;
+    int(*count)[DEEPEST + 1] = g_malloc0_n((gsize)n_tracks + 1, sizeof *count);
+    int *depth = g_new0(int, n_tracks + 1);
+    for (int t = 0; t < survey->n_frames; t++) {
+        const GArray *frame = survey->frame[t].seen;
+        g_autofree int *level = g_new0(int, frame->len + 1);
+        if (frame->len <= TOO_MANY)
+            find_levels(frame, label_of, least, level);
+        for (guint i = 0; i < frame->len; i++)
+            count[track_of[t][i]][level[i]]++;
+    }
+    for (int k = 0; k < n_tracks; k++) {
+        int best = 1, nested = 0;
+        for (int l = 1; l <= DEEPEST; l++) {
+            nested += count[k][l];
+            best = count[k][l] > count[k][best] ? l : best;
+        }
+        const int frames = nested + count[k][0];
+        if ((float)nested >= ALWAYS * (float)frames &&
+            (float)frames >= MOSTLY * (float)survey->n_frames)
+            depth[k] = best; // the most frequent
+    }
+    g_free(count);
+    return depth;
+}

@@ -1,0 +1,160 @@
+#include "drawing/open_drawing.h"
+
+#include "base/headroom.h"
+#include "base/suggest.h"
+#include <string.h>
+
+/* The rule's wishes that matter to finding regions. The strings stay the config's. */
+static void add_wishes(const FlRule *from, FlRegionRule *rule)
+{
+    g_auto(FlRegionSettings) said = {0};
+    fl_region_settings_init(&said);
+    fl_overrides_apply(&from->overrides, &said);
+    rule->passthrough = said.passthrough;
+    for (int i = 0; said.merge_with && i < from->overrides.n; i++)
+        if (g_str_equal(from->overrides.override[i].key, "merge-with"))
+            rule->merge_with = from->overrides.override[i].value;
+}
+
+static FlRegionRule *rules_of(const FlConfig *config)
+{
+    FlRegionRule *rules = g_new0(FlRegionRule, MAX(config->n_rules, 1));
+    for (int i = 0; i < config->n_rules; i++) {
+        const FlRule *from = &config->rules[i];
+        rules[i] = (FlRegionRule){
+            .name = from->name,
+            .match_fill = (const char *const *)from->match_fill,
+            .match_stroke = (const char *const *)from->match_stroke,
+            .match_id = (const char *const *)from->match_id,
+            .match_class = (const char *const *)from->match_class,
+            .match_label = (const char *const *)from->match_label,
+            .match_layer = (const char *const *)from->match_layer,
+            .tolerance = from->match_tolerance,
+            .by_name = from->by_name,
+        };
+        add_wishes(from, &rules[i]);
+    }
+    return rules;
+}
+
+static bool is_used(const FlDrawing *drawing, int rule, const FlRegionRule *rules)
+{
+    bool used = rules[rule].merge_with != NULL; // its region has become another one
+    for (int r = 0; r < fl_drawing_regions(drawing); r++)
+        used |= fl_drawing_region(drawing, r)->rule == rule;
+    return used;
+}
+
+/* A section that holds for nothing is most often a mistyped name or colour. */
+static void warn_of_unused(const FlDrawing *drawing, const FlConfig *config,
+                           const FlRegionRule *rules, FlWarnings *warnings)
+{
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (int r = 0; r < fl_drawing_regions(drawing); r++)
+        g_ptr_array_add(names, fl_drawing_region(drawing, r)->name);
+    g_ptr_array_add(names, NULL);
+    for (int i = 0; i < config->n_rules; i++) {
+        if (is_used(drawing, i, rules))
+            continue;
+        const FlRule *rule = &config->rules[i];
+        g_autofree char *hint = rule->by_name
+                                    ? fl_did_you_mean(rule->name, (const char *const *)names->pdata)
+                                    : g_strdup("");
+        g_autofree char *place = g_strdup_printf("%s:%d", config->path, rule->line);
+        fl_warnings_add(warnings, place, -1, NULL, "[region %s] holds for nothing in the drawing%s",
+                        rule->name, hint);
+    }
+}
+
+/* A drawing without shapes is most often another than was meant. */
+static void warn_of_nothing(const FlDrawing *drawing, FlWarnings *warnings)
+{
+    for (int r = 0; r < fl_drawing_regions(drawing); r++)
+        if (fl_drawing_region(drawing, r)->paintable)
+            return;
+    fl_warnings_add(warnings, fl_drawing_file(drawing, 0), -1, NULL,
+                    "there is nothing to paint in the drawing%s",
+                    fl_drawing_frames(drawing) > 1 ? ", nor in the other frames" : "");
+}
+
+/* The first of those that say the same of other elements; they count as one. */
+static bool is_first_of_its_kind(const FlWarnings *warnings, int i, int *n_alike)
+{
+    const char *text = fl_warnings_get(warnings, i)->text;
+    *n_alike = 0;
+    for (int k = 0; k < fl_warnings_count(warnings); k++)
+        if (g_str_equal(fl_warnings_get(warnings, k)->text, text)) {
+            if (k < i)
+                return false;
+            ++*n_alike;
+        }
+    return true;
+}
+
+static bool report(const FlWarnings *warnings, const FlRenderOptions *options, GError **error)
+{
+    const int n = fl_warnings_count(warnings);
+    for (int i = 0; i < n; i++) {
+        int n_alike;
+        if (!is_first_of_its_kind(warnings, i, &n_alike))
+            continue;
+        g_autofree char *first = fl_warning_line(fl_warnings_get(warnings, i));
+        g_autofree char *line = n_alike == 1
+                                    ? g_strdup(first)
+                                    : g_strdup_printf("%s; and so for %d more element%s", first,
+                                                      n_alike - 1, n_alike == 2 ? "" : "s");
+        if (options->strict) {
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under --strict)", line,
+                        n, n == 1 ? "" : "s");
+            return false;
+        }
+        if (options->warning)
+            options->warning(line, options->data);
+    }
+    return true;
+}
+
+/* A config beside the drawing is offered, but what nobody asked for is not done. */
+static void offer_config(const FlDrawing *drawing, const FlRenderOptions *options)
+{
+    g_autofree char *folder = g_path_get_dirname(fl_drawing_file(drawing, 0));
+    g_autofree char *path = strcmp(folder, ".") == 0
+                                ? g_strdup("fluidy-svg.conf")
+                                : g_build_filename(folder, "fluidy-svg.conf", NULL);
+    if (options->config || !options->note || !g_file_test(path, G_FILE_TEST_IS_REGULAR))
+        return;
+    g_autofree char *line = g_strdup_printf("%s is not used; -c %s paints by it", path, path);
+    options->note(line, options->data);
+}
+
+FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
+                                   GError **error)
+{
+    if (!fl_headroom_check(error))
+        return NULL;
+    g_autofree FlRegionRule *rules = rules_of(config);
+    FlDrawingOptions wanted = {.inputs = options->inputs,
+                               .n_inputs = (int)g_strv_length((char **)options->inputs),
+                               .range = options->frames,
+                               .missing = options->missing,
+                               .dpi = options->dpi,
+                               .registered = options->registration == FL_REGISTRATION_ON,
+                               .width = options->width,
+                               .height = options->height,
+                               .scale = options->scale,
+                               .strokes = options->stroke,
+                               .key = options->key,
+                               .rules = rules,
+                               .n_rules = config->n_rules};
+    if (options->canvas && !fl_canvas_parse(options->canvas, &wanted.canvas, error))
+        return NULL;
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_autoptr(FlDrawing) drawing = fl_drawing_open(&wanted, warnings, error);
+    if (!drawing)
+        return NULL;
+    offer_config(drawing, options);
+    warn_of_nothing(drawing, warnings);
+    if (!options->frames) // a section may be about something that other frames have
+        warn_of_unused(drawing, config, rules, warnings);
+    return report(warnings, options, error) ? g_steal_pointer(&drawing) : NULL;
+}

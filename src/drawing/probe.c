@@ -1,0 +1,263 @@
+#include "drawing/probe.h"
+
+#include <math.h>
+#include <string.h>
+
+#define THICK 0.03f // width of a stroke, share of the page's longer side, that is no line any more
+#define LOOK_PX 256 // longest side of the small pictures on which a frame is looked over
+
+static void look_clear(void *data)
+{
+    g_free(((FlProbe *)data)->paint);
+}
+
+bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, double page_width, double page_height,
+                         int width, int height, GError **error)
+{
+    *f = (FlFrameProbe){.svg = svg, .full_width = width, .full_height = height};
+    f->factor = MAX(1, (double)MAX(width, height) / LOOK_PX);
+    f->width = page_width / f->factor;
+    f->height = page_height / f->factor;
+    f->all = (FlBounds){0, 0, MAX(1, (int)ceil(width / f->factor)),
+                        MAX(1, (int)ceil(height / f->factor))};
+    f->probes = g_array_new(FALSE, FALSE, sizeof(FlProbe));
+    g_array_set_clear_func(f->probes, look_clear);
+    f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.x1, f->all.y1, error);
+    f->check = f->coverage ? fl_self_check_new(f->all.x1, f->all.y1, error) : NULL;
+    return f->check != NULL;
+}
+
+void fl_frame_probe_clear(FlFrameProbe *f)
+{
+    if (f->probes)
+        g_array_unref(f->probes);
+    fl_svg_free(f->svg);
+    if (f->coverage)
+        cairo_surface_destroy(f->coverage);
+    if (f->full)
+        cairo_surface_destroy(f->full);
+    fl_self_check_free(f->check);
+}
+
+/** Draws a part into the frame's coverage. Returns: its box; the caller wipes it. */
+static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlBounds *box, GError **error)
+{
+    cairo_t *cr = cairo_create(f->coverage);
+    const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->width, f->height, error);
+    cairo_destroy(cr);
+    *box = fl_surface_ink(f->coverage, f->all);
+    return drawn;
+}
+
+static float sum_of(cairo_surface_t *coverage, FlBounds box)
+{
+    const unsigned char *data = cairo_image_surface_get_data(coverage);
+    const int stride = cairo_image_surface_get_stride(coverage);
+    int64_t sum = 0;
+    for (int y = box.y0; y < box.y1; y++)
+        for (int x = box.x0; x < box.x1; x++)
+            sum += data[(size_t)y * stride + x];
+    return (float)sum / 255.0f;
+}
+
+/**
+ * The box of a part whose look on the small picture does not tell: text, which is shaped anew at
+ * each scale, and what is too small to be seen there. Drawn in full size; px of the small picture.
+ */
+static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlBounds *box,
+                        float *area_px, GError **error)
+{
+    const FlBounds all = {0, 0, f->full_width, f->full_height};
+    if (!f->full)
+        f->full = fl_surface_new(CAIRO_FORMAT_A8, all.x1, all.y1, error);
+    if (!f->full)
+        return false;
+    cairo_t *cr = cairo_create(f->full);
+    const bool drawn =
+        fl_svg_draw(f->svg, leaf, part, cr, f->width * f->factor, f->height * f->factor, error);
+    cairo_destroy(cr);
+    const FlBounds ink = fl_surface_ink(f->full, all);
+    *area_px = sum_of(f->full, ink);
+    fl_surface_wipe(f->full, ink);
+    *box = ink.x1 > 0 ? (FlBounds){(int)floor(ink.x0 / f->factor), (int)floor(ink.y0 / f->factor),
+                                   (int)ceil(ink.x1 / f->factor), (int)ceil(ink.y1 / f->factor)}
+                      : ink;
+    return drawn;
+}
+
+/**
+ * Widens the box of a stroke by where it is in full size: the pen that cairo draws thick lines of
+ * next to no length with has so few corners on a small picture that their caps are cut off.
+ */
+static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlBounds *box)
+{
+    const RsvgRectangle r =
+        fl_svg_extents(f->svg, leaf, f->width * f->factor, f->height * f->factor);
+    const FlBounds at =
+        fl_bounds_and(f->all, (FlBounds){(int)floor(r.x / f->factor), (int)floor(r.y / f->factor),
+                                         (int)ceil((r.x + r.width) / f->factor),
+                                         (int)ceil((r.y + r.height) / f->factor)});
+    if (box->x1 == 0 || at.x1 == 0)
+        return;
+    box->x0 = MIN(box->x0, at.x0), box->x1 = MAX(box->x1, at.x1);
+    box->y0 = MIN(box->y0, at.y0), box->y1 = MAX(box->y1, at.y1);
+}
+
+/** Tells the parts of one leaf, from `first` on, of each other; a fill of no area is no part. */
+static void relate_parts(GArray *probes, guint first)
+{
+    bool fill = false, stroke = false;
+    for (guint i = first; i < probes->len; i++) {
+        const FlProbe *probe = &g_array_index(probes, FlProbe, i);
+        *(probe->seen.stroke ? &stroke : &fill) = true;
+    }
+    for (guint i = first; i < probes->len; i++) {
+        FlSurveyPart *seen = &g_array_index(probes, FlProbe, i).seen;
+        seen->has_fill = fill;
+        seen->has_stroke = stroke;
+        seen->thick = seen->thick && !fill;
+    }
+}
+
+static bool look_at(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
+{
+    const guint first = f->probes->len;
+    FlPainted parts[FL_MOST_PARTS];
+    const int n = fl_svg_paint(f->svg, leaf, parts, error);
+    bool good = n >= 0;
+    for (int i = 0; i < n; i++) {
+        const FlPainted *p = &parts[i];
+        FlProbe probe = {.leaf = leaf, .paint = p->paint.key};
+        probe.seen = (FlSurveyPart){.leaf = index,
+                                    .part = p->part,
+                                    .stroke = p->stroke,
+                                    .thick = p->stroke && p->width >= THICK,
+                                    .kind = p->paint.kind,
+                                    .alpha = p->paint.alpha,
+                                    .peak = p->paint.peak,
+                                    .mix = p->mix,
+                                    .unit = index < 0 ? -index : 0,
+                                    .region = -1};
+        memcpy(probe.seen.rgb, p->paint.rgb, 3);
+        good = good && cover(f, leaf, p->part, &probe.box, error);
+        const float opacity = MAX(p->paint.peak, 1) / 255.0f;
+        probe.seen.area_px =
+            (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
+        fl_surface_wipe(f->coverage, probe.box);
+        if (good && (leaf->text || probe.box.x1 == 0)) {
+            good = box_in_full(f, leaf, p->part, &probe.box, &probe.seen.area_px, error);
+            probe.seen.area_px /= opacity;
+        }
+        if (p->width > 0)
+            widen(f, leaf, &probe.box);
+        if (good && probe.box.x1 > 0 && p->paint.alpha > 0)
+            g_array_append_val(f->probes, probe);
+        else
+            g_free(probe.paint);
+    }
+    relate_parts(f->probes, first);
+    return good;
+}
+
+/** Whether any two of the parts from `first` on overlap. */
+static bool overlap(const GArray *probes, guint first)
+{
+    for (guint i = first; i < probes->len; i++)
+        for (guint j = i + 1; j < probes->len; j++)
+            if (fl_bounds_meet(g_array_index(probes, FlProbe, i).box,
+                               g_array_index(probes, FlProbe, j).box))
+                return true;
+    return false;
+}
+
+/** Whether the parts from `first` on, all of a unit, can be drawn one by one: 1, 0, -1 an error. */
+static int is_separable(FlFrameProbe *f, const FlUnit *unit, guint first, GError **error)
+{
+    if (unit->inseparable)
+        return 0;
+    if (!overlap(f->probes, first))
+        return 1;
+    const guint n = f->probes->len - first;
+    g_autofree FlPiece *piece = g_new(FlPiece, n);
+    for (guint i = 0; i < n; i++) {
+        const FlProbe *probe = &g_array_index(f->probes, FlProbe, first + i);
+        piece[i] = (FlPiece){probe->leaf, probe->seen.part, probe->seen.mix};
+    }
+    return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->width, f->height, error);
+}
+
+static bool look_at_leaves(FlFrameProbe *f, GError **error)
+{
+    const FlLeaves *leaves = fl_svg_leaves(f->svg);
+    guint unit = 0;
+    for (guint i = 0; i < leaves->leaf->len; i++) {
+        const guint before = f->probes->len;
+        const FlUnit *u =
+            unit < leaves->unit->len ? &g_array_index(leaves->unit, FlUnit, unit) : NULL;
+        guint end = i + 1;
+        if (u && (guint)u->first == i)
+            end = i + (guint)u->n;
+        else
+            u = NULL;
+        for (; i < end; i++)
+            if (!look_at(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, error))
+                return false;
+        i--;
+        if (!u)
+            continue;
+        const int separable = is_separable(f, u, before, error);
+        if (separable < 0)
+            return false;
+        if (!separable) {
+            if (u->inseparable)
+                g_array_set_size(f->probes, before);
+            for (guint k = before; k < f->probes->len; k++)
+                g_array_index(f->probes, FlProbe, k).seen.unit = 1 + (int)unit;
+            if (!look_at(f, &u->leaf, -1 - (int)unit, error))
+                return false;
+        }
+        unit++;
+    }
+    return true;
+}
+
+/** Stacks the parts once more: how much of each lies over others, and the self-check. */
+static bool stack(FlFrameProbe *f, GError **error)
+{
+    const float page = (float)(f->width * f->height * f->factor * f->factor);
+    g_autoptr(cairo_surface_t) below = fl_surface_new(CAIRO_FORMAT_A8, f->all.x1, f->all.y1, error);
+    if (!below)
+        return false;
+    unsigned char *under = cairo_image_surface_get_data(below);
+    const unsigned char *mine = cairo_image_surface_get_data(f->coverage);
+    const int stride = cairo_image_surface_get_stride(below);
+    for (guint i = 0; i < f->probes->len; i++) {
+        FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
+        FlBounds box;
+        if (probe->seen.unit > 0 && probe->seen.leaf >= 0)
+            continue; // the unit comes after its leaves
+        if (!cover(f, probe->leaf, probe->seen.part, &box, error))
+            return false;
+        const bool fills_page = probe->seen.area_px > 0.95f * page;
+        int64_t sum = 0, covered = 0;
+        for (int y = box.y0; y < box.y1; y++)
+            for (int x = box.x0; x < box.x1; x++) {
+                const size_t p = (size_t)y * stride + x;
+                sum += mine[p];
+                covered += mine[p] * under[p];
+                if (!fills_page)
+                    under[p] = fl_over(mine[p], under[p]);
+            }
+        probe->seen.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
+        if (!fl_self_check_add(f->check, f->svg, probe->leaf, &probe->seen, f->coverage, box,
+                               f->width, f->height, error))
+            return false;
+        fl_surface_wipe(f->coverage, box);
+    }
+    return true;
+}
+
+bool fl_frame_probe_run(FlFrameProbe *f, GError **error)
+{
+    return look_at_leaves(f, error) && stack(f, error);
+}

@@ -1,0 +1,43 @@
+/* A frame looked over on a small picture: its parts, where they are, and what they add up to. */
+#ifndef FLUIDY_DRAWING_PROBE_H
+#define FLUIDY_DRAWING_PROBE_H
+
+#include "drawing/raster.h"
+#include "drawing/self_check.h"
+#include "drawing/survey.h"
+
+/** A part being looked at: as FlSurveyPart, but its strings still belong to the frame. */
+typedef struct FlProbe {
+    FlSurveyPart seen;
+    const FlLeaf *leaf;
+    char *paint;
+    FlBounds box; // px of the small picture
+} FlProbe;
+
+/** What one thread needs for one frame. */
+typedef struct FlFrameProbe {
+    FlSvg *svg;
+    double width, height; // of the page in the small picture
+    double factor;        // px of the picture per px of the small one
+    cairo_surface_t *coverage;
+    cairo_surface_t *full; // in the picture's own size; made when first needed
+    int full_width, full_height;
+    FlBounds all;
+    GArray *probes;
+    FlSelfCheck *check;
+} FlFrameProbe;
+
+/**
+ * Opens what `svg` shows; svg becomes the look's. The page has page_width * page_height px in a
+ * picture of width * height. Clear it with fl_frame_probe_clear(), also after an error.
+ */
+bool fl_frame_probe_init(FlFrameProbe *probe, FlSvg *svg, double page_width, double page_height,
+                         int width, int height, GError **error);
+
+/** Finds the parts, bottom up, and draws them over each other for the self-check. */
+bool fl_frame_probe_run(FlFrameProbe *probe, GError **error);
+
+void fl_frame_probe_clear(FlFrameProbe *probe);
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFrameProbe, fl_frame_probe_clear)
+
+#endif

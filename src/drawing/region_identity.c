@@ -1,0 +1,295 @@
+#include "drawing/region_identity.h"
+
+#include "drawing/leaf_tracks.h"
+#include "drawing/nesting.h"
+#include <stdlib.h>
+#include <string.h>
+
+#define SHADE_ALPHA 192  // a fill this opaque or more is no overlay
+#define SHADE_COVERS 0.8 // share of an overlay that lies over other fills
+#define LINE_ART 0.5     // share of the ink from which on strokes are the drawing
+#define ROUNDING 2       // levels of a channel by which exporters miss a colour from frame to frame
+
+/** What is summed over a region, to say what it is. */
+typedef struct Sum {
+    double area, covered, alpha;
+    bool plain;  // not all of it is mixed with what is below it
+    double best; // area of the paint of the group so far
+} Sum;
+
+typedef struct Work {
+    FlSurvey *survey;
+    const FlDrawingOptions *options;
+    bool paint_strokes;
+    int *label_of;
+    GArray *tracks;
+    int **track_of;
+    int *rule_of;  // per track
+    int *depth_of; // per track: see fl_nesting()
+    int *twin_of;  // per track: the first track whose paints change as its own do
+} Work;
+
+static bool is_near(const uint8_t a[3], const uint8_t b[3])
+{
+    return abs(a[0] - b[0]) <= ROUNDING && abs(a[1] - b[1]) <= ROUNDING &&
+           abs(a[2] - b[2]) <= ROUNDING;
+}
+
+/** The first paint seen that looks the same; a paint that does not is added to firsts. */
+static int first_like(GArray *firsts, const FlSurveyPart *s)
+{
+    for (guint k = 0; k < firsts->len; k++)
+        if (is_near(g_array_index(firsts, FlSurveyPart, k).rgb, s->rgb))
+            return g_array_index(firsts, FlSurveyPart, k).paint;
+    g_array_append_val(firsts, *s);
+    return s->paint;
+}
+
+/** Which flat paints differ by rounding only: paint -> the first like it. To be unref'd. */
+static GHashTable *find_near_paints(const FlSurvey *survey)
+{
+    g_autoptr(GArray) firsts = g_array_new(FALSE, FALSE, sizeof(FlSurveyPart));
+    GHashTable *joined = g_hash_table_new(NULL, NULL);
+    for (int t = 0; t < survey->n_frames; t++)
+        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].seen, FlSurveyPart, i);
+            gpointer key = GINT_TO_POINTER(s->paint);
+            if (s->kind == FL_PAINT_FLAT && !g_hash_table_contains(joined, key))
+                g_hash_table_insert(joined, key, GINT_TO_POINTER(first_like(firsts, s)));
+        }
+    return joined;
+}
+
+static void join_paint(GHashTable *joined, int *paint)
+{
+    gpointer first = NULL;
+    if (g_hash_table_lookup_extended(joined, GINT_TO_POINTER(*paint), NULL, &first))
+        *paint = GPOINTER_TO_INT(first);
+}
+
+/** Gives paints that look the same one number. Tracks are followed before, by the exact paints. */
+static void join_near_paints(Work *w)
+{
+    g_autoptr(GHashTable) joined = find_near_paints(w->survey);
+    for (int t = 0; t < w->survey->n_frames; t++)
+        for (guint i = 0; i < w->survey->frame[t].seen->len; i++)
+            join_paint(joined, &g_array_index(w->survey->frame[t].seen, FlSurveyPart, i).paint);
+    for (guint k = 0; k < w->tracks->len; k++) {
+        FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
+        track->varies = false;
+        for (guint i = 1; i < track->paints->len; i += 2) {
+            int *paint = &g_array_index(track->paints, int, i);
+            join_paint(joined, paint);
+            track->varies |= i > 1 && paint[-2] != *paint;
+        }
+    }
+}
+
+/** Whether strokes are what the drawing consists of: zdog figures, line drawings. */
+static bool is_line_art(const FlSurvey *survey)
+{
+    double strokes = 0, fills = 0;
+    const double page = (double)survey->width * survey->height;
+    for (int t = 0; t < survey->n_frames; t++)
+        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].seen, FlSurveyPart, i);
+            if (s->area_px < 0.95 * page)
+                *(s->stroke ? &strokes : &fills) += s->area_px;
+        }
+    return strokes > LINE_ART * (strokes + fills);
+}
+
+static const char *paint_word(const FlSurvey *survey, const FlSurveyPart *s)
+{
+    switch (s->kind) {
+    case FL_PAINT_FLAT:
+        return fl_strings_get(&survey->strings, s->paint);
+    case FL_PAINT_GRADIENT:
+        return "gradient";
+    case FL_PAINT_IMAGE:
+        return "image";
+    default:
+        return "mixed";
+    }
+}
+
+/** The first rule that a track matches in any frame. */
+static void match_rules(Work *w)
+{
+    const FlStrings *strings = &w->survey->strings;
+    for (int t = 0; t < w->survey->n_frames && w->options->n_rules > 0; t++)
+        for (guint i = 0; i < w->survey->frame[t].seen->len; i++) {
+            const FlSurveyPart *s = &g_array_index(w->survey->frame[t].seen, FlSurveyPart, i);
+            const FlRuleSubject subject = {
+                .ids = fl_strings_get(strings, s->ids),
+                .classes = fl_strings_get(strings, s->classes),
+                .labels = fl_strings_get(strings, s->labels),
+                .layers = fl_strings_get(strings, s->layers),
+                .stroke = s->stroke,
+                .has_fill = s->has_fill,
+                .has_stroke = s->has_stroke,
+                .paint = paint_word(w->survey, s),
+                .rgb = s->rgb,
+            };
+            const int rule = fl_rules_match(w->options->rules, w->options->n_rules, &subject);
+            int *known = &w->rule_of[w->track_of[t][i]];
+            if (rule >= 0 && (*known < 0 || rule < *known))
+                *known = rule;
+        }
+}
+
+/** Whether two tracks have the same paint in all frames both are in, at least in one. */
+static bool change_alike(const FlTrack *a, const FlTrack *b)
+{
+    int common = 0;
+    for (guint i = 0, j = 0; i < a->paints->len && j < b->paints->len;) {
+        const int *x = &g_array_index(a->paints, int, i), *y = &g_array_index(b->paints, int, j);
+        if (x[0] == y[0] && x[1] != y[1])
+            return false;
+        common += x[0] == y[0];
+        i += x[0] <= y[0] ? 2 : 0;
+        j += y[0] <= x[0] ? 2 : 0;
+    }
+    return common > 0;
+}
+
+static void find_twins(Work *w)
+{
+    for (guint k = 0; k < w->tracks->len; k++) {
+        const FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
+        w->twin_of[k] = (int)k;
+        for (guint j = 0; j < k && track->varies; j++) {
+            const FlTrack *other = &g_array_index(w->tracks, FlTrack, j);
+            if (other->varies && w->twin_of[j] == (int)j &&
+                other->last.stroke == track->last.stroke &&
+                w->label_of[other->last.labels] == w->label_of[track->last.labels] &&
+                change_alike(other, track)) {
+                w->twin_of[k] = (int)j;
+                break;
+            }
+        }
+    }
+}
+
+/** Whether a part is a line that is drawn over the paint; thick strokes are limbs, and painted. */
+static bool is_apart(const Work *w, const FlSurveyPart *s)
+{
+    return s->stroke && !w->paint_strokes && !s->thick;
+}
+
+/** What a part's region is known by; equal texts are one region. */
+static char *key_of(const Work *w, const FlSurveyPart *s, int track)
+{
+    const FlTrack *tr = &g_array_index(w->tracks, FlTrack, track);
+    const int label = w->label_of[s->labels];
+    const char *apart = is_apart(w, s) ? "s" : s->mix != FL_BLEND_MODE_OVER ? "m" : "";
+    if (w->rule_of[track] >= 0) // a rule's name makes the region; other rules of that name join
+        return g_strdup_printf("rule %s", w->options->rules[w->rule_of[track]].name);
+    switch (w->options->key) {
+    case FL_KEY_FILL:
+        return g_strdup_printf("fill %s%d", apart, s->paint);
+    case FL_KEY_ID:
+        return g_strdup_printf("id %s%d", apart, w->label_of[s->name]);
+    case FL_KEY_CLASS:
+        return g_strdup_printf("class %s%d", apart, s->classes);
+    case FL_KEY_LABEL:
+        return g_strdup_printf("label %s%d", apart, label);
+    case FL_KEY_TREE:
+        return g_strdup_printf("tree %s%d", apart, s->tree);
+    default:
+        break;
+    }
+    if (tr->varies)
+        return g_strdup_printf("track %d", w->twin_of[track]);
+    const int place = s->kind == FL_PAINT_MIXED || s->kind == FL_PAINT_IMAGE ? s->tree : 0;
+    return g_strdup_printf("%s%d/%d/%d/%d", apart, label, s->paint, place, w->depth_of[track]);
+}
+
+/** Adds a part to its group. */
+static void add_up(const Work *w, const FlSurveyPart *s, FlGroup *group, Sum *sum,
+                   GHashTable *areas)
+{
+    const int64_t key = (int64_t)s->region << 32 | s->paint;
+    double *area = g_hash_table_lookup(areas, &key);
+    if (!area) {
+        int64_t *copy = g_new(int64_t, 1);
+        *copy = key;
+        area = g_new0(double, 1);
+        g_hash_table_insert(areas, copy, area);
+    }
+    *area += s->area_px;
+    if (*area > sum->best) {
+        sum->best = *area;
+        group->kind = s->kind;
+        group->label = w->label_of[s->labels];
+        memcpy(group->rgb, s->rgb, 3);
+    }
+    sum->area += s->area_px;
+    sum->covered += s->covers * s->area_px;
+    sum->alpha = MAX(sum->alpha, s->alpha);
+    sum->plain |= s->mix == FL_BLEND_MODE_OVER;
+    group->stroke = group->stroke && is_apart(w, s);
+}
+
+static GArray *gather(Work *w)
+{
+    GArray *groups = g_array_new(FALSE, FALSE, sizeof(FlGroup));
+    g_autoptr(GArray) sums = g_array_new(FALSE, FALSE, sizeof(Sum));
+    g_autoptr(GHashTable) numbers = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    g_autoptr(GHashTable) areas =
+        g_hash_table_new_full(g_int64_hash, g_int64_equal, g_free, g_free);
+    for (int t = 0; t < w->survey->n_frames; t++)
+        for (guint i = 0; i < w->survey->frame[t].seen->len; i++) {
+            FlSurveyPart *s = &g_array_index(w->survey->frame[t].seen, FlSurveyPart, i);
+            const int track = w->track_of[t][i];
+            if (s->stroke && w->options->strokes == FL_STROKES_DROP && w->rule_of[track] < 0)
+                continue;
+            g_autofree char *key = key_of(w, s, track);
+            gpointer number = NULL;
+            if (!g_hash_table_lookup_extended(numbers, key, NULL, &number)) {
+                const FlGroup group = {.rule = w->rule_of[track], .stroke = true};
+                const Sum sum = {0};
+                number = GINT_TO_POINTER(groups->len);
+                g_hash_table_insert(numbers, g_steal_pointer(&key), number);
+                g_array_append_val(groups, group);
+                g_array_append_val(sums, sum);
+            }
+            s->region = GPOINTER_TO_INT(number);
+            add_up(w, s, &g_array_index(groups, FlGroup, s->region),
+                   &g_array_index(sums, Sum, s->region), areas);
+        }
+    for (guint r = 0; r < groups->len; r++) {
+        const Sum *sum = &g_array_index(sums, Sum, r);
+        g_array_index(groups, FlGroup, r).shade =
+            (sum->alpha < SHADE_ALPHA || !sum->plain) && sum->covered >= SHADE_COVERS * sum->area;
+    }
+    return groups;
+}
+
+GArray *fl_identify(FlSurvey *survey, const FlDrawingOptions *options)
+{
+    Work w = {.survey = survey, .options = options};
+    fl_survey_choose_units(survey);
+    w.paint_strokes = options->strokes == FL_STROKES_PAINT ||
+                      (options->strokes <= FL_STROKES_KEEP && is_line_art(survey));
+    w.label_of = fl_clean_labels(survey);
+    w.tracks = fl_leaf_tracks_find(survey, w.label_of, &w.track_of);
+    join_near_paints(&w);
+    w.depth_of = fl_nesting(survey, w.track_of, w.label_of, (int)w.tracks->len);
+    w.rule_of = g_new(int, w.tracks->len + 1);
+    w.twin_of = g_new(int, w.tracks->len + 1);
+    for (guint k = 0; k < w.tracks->len; k++)
+        w.rule_of[k] = -1;
+    match_rules(&w);
+    find_twins(&w);
+    GArray *groups = gather(&w);
+    for (int t = 0; t < survey->n_frames; t++)
+        g_free(w.track_of[t]);
+    g_free(w.track_of);
+    g_free(w.depth_of);
+    g_free(w.rule_of);
+    g_free(w.twin_of);
+    g_array_unref(w.tracks);
+    g_free(w.label_of);
+    return groups;
+}

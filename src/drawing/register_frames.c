@@ -1,0 +1,156 @@
+#include "drawing/register_frames.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PAGE_PX 1000.0 // of the page on which shapes are measured, one user unit a pixel
+#define SIZE_PX 0.35   // by how much the size of a shape may differ; files have one decimal
+#define MOVE_PX 0.6    // by how much two moves may differ to be one
+
+/** A shape: its paint and where it is, in user units. */
+typedef struct Shape {
+    guint paint; // hash of the key
+    RsvgRectangle box;
+} Shape;
+
+/** What a pair of shapes votes for. */
+typedef struct Vote {
+    double x, y, weight;
+} Vote;
+
+static GArray *measure(const char *path, int number, double dpi, GError **error)
+{
+    const FlSvgOptions options = {.canvas = {0, 0, PAGE_PX, PAGE_PX}, .dpi = dpi};
+    g_autoptr(FlSvg) svg = fl_svg_open(path, number, &options, NULL, error);
+    if (!svg)
+        return NULL;
+    g_autoptr(GArray) shapes = g_array_new(FALSE, FALSE, sizeof(Shape));
+    const GArray *leaves = fl_svg_leaves(svg)->leaf;
+    for (guint i = 0; i < leaves->len; i++) {
+        const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
+        FlPainted parts[FL_MOST_PARTS];
+        const int n = fl_svg_paint(svg, leaf, parts, error);
+        Shape shape = {.box = fl_svg_extents(svg, leaf, PAGE_PX, PAGE_PX)};
+        for (int k = 0; k < n; k++) {
+            shape.paint = shape.paint * 31 + g_str_hash(parts[k].paint.key);
+            fl_paint_clear(&parts[k].paint);
+        }
+        if (n < 0)
+            return NULL;
+        if (n > 0 && shape.box.width > 0 && shape.box.height > 0)
+            g_array_append_val(shapes, shape);
+    }
+    return g_steal_pointer(&shapes);
+}
+
+static GArray *votes_of(const GArray *before, const GArray *now)
+{
+    GArray *votes = g_array_new(FALSE, FALSE, sizeof(Vote));
+    for (guint i = 0; i < before->len; i++)
+        for (guint j = 0; j < now->len; j++) {
+            const Shape *a = &g_array_index(before, Shape, i), *b = &g_array_index(now, Shape, j);
+            if (a->paint != b->paint || fabs(a->box.width - b->box.width) > SIZE_PX ||
+                fabs(a->box.height - b->box.height) > SIZE_PX)
+                continue;
+            const Vote vote = {a->box.x - b->box.x, a->box.y - b->box.y,
+                               (a->box.width + 1) * (a->box.height + 1)};
+            g_array_append_val(votes, vote);
+        }
+    return votes;
+}
+
+static bool agree(const Vote *a, const Vote *b)
+{
+    return fabs(a->x - b->x) <= MOVE_PX && fabs(a->y - b->y) <= MOVE_PX;
+}
+
+static int compare_votes(const void *a, const void *b)
+{
+    const double d = ((const Vote *)b)->weight - ((const Vote *)a)->weight;
+    return d > 0 ? 1 : d < 0 ? -1 : 0;
+}
+
+#define MOST_CANDIDATES 500 // the largest shapes decide
+
+/** The move that most votes agree on; its weight is 0 if there are none. */
+static Vote decide(GArray *votes)
+{
+    Vote best = {0};
+    g_array_sort(votes, compare_votes);
+    for (guint i = 0; i < MIN(votes->len, MOST_CANDIDATES); i++) {
+        const Vote *candidate = &g_array_index(votes, Vote, i);
+        Vote sum = {0};
+        for (guint j = 0; j < votes->len; j++) {
+            const Vote *vote = &g_array_index(votes, Vote, j);
+            if (!agree(candidate, vote))
+                continue;
+            sum.x += vote->x * vote->weight, sum.y += vote->y * vote->weight;
+            sum.weight += vote->weight;
+        }
+        if (sum.weight > best.weight)
+            best = sum;
+    }
+    if (best.weight > 0)
+        best.x /= best.weight, best.y /= best.weight;
+    return best;
+}
+
+/** Widens the page, in the first frame's units, by the shapes of a frame that lies at x, y. */
+static void widen(FlCanvas *page, const GArray *shapes, double x, double y, bool *any)
+{
+    for (guint i = 0; i < shapes->len; i++) {
+        const RsvgRectangle *box = &g_array_index(shapes, Shape, i).box;
+        const double x0 = floor(box->x + x), x1 = ceil(box->x + x + box->width);
+        const double y0 = floor(box->y + y), y1 = ceil(box->y + y + box->height);
+        if (!*any)
+            *page = (FlCanvas){x0, y0, x1 - x0, y1 - y0};
+        const double right = MAX(page->x + page->width, x1);
+        const double bottom = MAX(page->y + page->height, y1);
+        page->x = MIN(page->x, x0), page->y = MIN(page->y, y0);
+        page->width = right - page->x, page->height = bottom - page->y;
+        *any = true;
+    }
+}
+
+/** Where each frame lies, as pairs x, y; the page that they need goes to *page. */
+static double *places_of(const FlSurvey *survey, FlCanvas *page, FlWarnings *warnings,
+                         GError **error)
+{
+    g_autofree double *place = g_new0(double, 2 * (gsize)survey->n_frames);
+    g_autoptr(GArray) before = NULL;
+    bool any = false;
+    for (int t = 0; t < survey->n_frames; t++) {
+        const char *file = survey->sequence->file[t];
+        const int number = survey->sequence->number[t];
+        g_autoptr(GArray) now = measure(file, number, survey->svg.dpi, error);
+        if (!now)
+            return NULL;
+        g_autoptr(GArray) votes = before ? votes_of(before, now) : NULL;
+        const Vote move = votes ? decide(votes) : (Vote){0};
+        if (votes && before->len > 0 && now->len > 0 && move.weight <= 0)
+            fl_warnings_add(warnings, file, number, NULL,
+                            "no shape is as in the frame before: not moved by --register");
+        for (int c = 0; c < 2 && t > 0; c++)
+            place[2 * t + c] = place[2 * (t - 1) + c] + (c ? move.y : move.x);
+        widen(page, now, place[2 * t], place[2 * t + 1], &any);
+        if (now->len > 0 || !before) { // an empty frame is stepped over
+            g_clear_pointer(&before, g_array_unref);
+            before = g_steal_pointer(&now);
+        }
+    }
+    return g_steal_pointer(&place);
+}
+
+bool fl_register(FlSurvey *survey, FlWarnings *warnings, GError **error)
+{
+    FlCanvas page = {0, 0, 1, 1};
+    g_autofree double *place = places_of(survey, &page, warnings, error);
+    if (!place)
+        return false;
+    if (survey->svg.canvas.width > 0)
+        page = survey->svg.canvas;
+    for (int t = 0; t < survey->n_frames; t++)
+        survey->frame[t].canvas =
+            (FlCanvas){page.x - place[2 * t], page.y - place[2 * t + 1], page.width, page.height};
+    return true;
+}

@@ -1,0 +1,250 @@
+#include "drawing/self_check.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define VISIBLE 24   // levels; a pixel that differs by more is seen
+#define MOST_SEEN 12 // pixels that may differ so; rounding at thin edges does
+#define EDGE 8       // one in so many pixels of a masked group may differ: those at the mask's edge
+
+struct FlSelfCheck {
+    int width, height;
+    int allowed; // pixels that differ at the edges of masks, where parts overlap
+    cairo_surface_t *sum;
+    GArray *pieces; // FlPiece: the parts, bottom up
+    uint16_t *top;  // width * height: 1 + index in pieces of the last part drawn there
+};
+
+FlSelfCheck *fl_self_check_new(int width, int height, GError **error)
+{
+    cairo_surface_t *sum = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+    if (!sum)
+        return NULL;
+    FlSelfCheck *check = g_new0(FlSelfCheck, 1);
+    *check = (FlSelfCheck){width,
+                           height,
+                           0,
+                           sum,
+                           g_array_new(FALSE, FALSE, sizeof(FlPiece)),
+                           g_new0(uint16_t, (size_t)width * height)};
+    return check;
+}
+
+void fl_self_check_free(FlSelfCheck *check)
+{
+    if (!check)
+        return;
+    cairo_surface_destroy(check->sum);
+    g_array_unref(check->pieces);
+    g_free(check->top);
+    g_free(check);
+}
+
+/** Lays a premultiplied pixel over another, mixed with it. */
+static void mix_pixel(uint32_t *below, uint32_t pixel, FlBlendMode mix)
+{
+    uint8_t rgb[4], under[4];
+    fl_straighten(pixel, 0, rgb);
+    fl_straighten(*below, 0, under);
+    fl_blend_mode_apply(mix, under, (int)(*below >> 24), rgb);
+    *below = fl_blend(*below, rgb, pixel >> 24);
+}
+
+static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surface,
+                       double page_width, double page_height, GError **error)
+{
+    const int width = cairo_image_surface_get_width(surface);
+    const int height = cairo_image_surface_get_height(surface);
+    const bool plain = piece->mix == FL_BLEND_MODE_OVER;
+    /* A mixed one is drawn apart: librsvg mixes it only with what is in the group around it. */
+    g_autoptr(cairo_surface_t) apart =
+        plain ? NULL : fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+    if (!plain && !apart)
+        return false;
+    cairo_surface_mark_dirty(surface);
+    cairo_t *cr = cairo_create(plain ? surface : apart);
+    const bool drawn =
+        fl_svg_draw(svg, piece->leaf, piece->part, cr, page_width, page_height, error);
+    cairo_destroy(cr);
+    cairo_surface_flush(plain ? surface : apart);
+    uint32_t *below = (uint32_t *)cairo_image_surface_get_data(surface);
+    const uint32_t *pixels = plain ? NULL : (const uint32_t *)cairo_image_surface_get_data(apart);
+    for (size_t p = 0; drawn && pixels && p < (size_t)width * height; p++)
+        if (pixels[p])
+            mix_pixel(&below[p], pixels[p], piece->mix);
+    return drawn;
+}
+
+bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *seen,
+                       cairo_surface_t *coverage, FlBounds box, double page_width,
+                       double page_height, GError **error)
+{
+    const unsigned char *mine = cairo_image_surface_get_data(coverage);
+    const int stride = cairo_image_surface_get_stride(coverage);
+    uint32_t *sum = (uint32_t *)cairo_image_surface_get_data(check->sum);
+    const bool flat = seen->kind == FL_PAINT_FLAT && seen->mix == FL_BLEND_MODE_OVER;
+    const FlPiece piece = {leaf, seen->part, seen->mix};
+    g_array_append_val(check->pieces, piece);
+    const uint16_t index = (uint16_t)MIN(check->pieces->len, UINT16_MAX);
+    for (int y = box.y0; y < box.y1; y++)
+        for (int x = box.x0; x < box.x1; x++) {
+            const size_t p = (size_t)y * check->width + x;
+            const uint8_t cover = mine[(size_t)y * stride + x];
+            if (cover && flat)
+                sum[p] = fl_blend(sum[p], seen->rgb, cover);
+            if (cover)
+                check->top[p] = index;
+        }
+    return flat || draw_piece(svg, &piece, check->sum, page_width, page_height, error);
+}
+
+static int difference(uint32_t a, uint32_t b)
+{
+    int most = 0;
+    for (int c = 0; c < 32; c += 8)
+        most = MAX(most, abs((int)((a >> c) & 255) - (int)((b >> c) & 255)));
+    return most;
+}
+
+/** Draws leaves over each other; NULL with an error. */
+static cairo_surface_t *draw_pieces(FlSvg *svg, const FlPiece *piece, int n, int width, int height,
+                                    double page_width, double page_height, GError **error)
+{
+    g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
+    bool drawn = surface != NULL;
+    for (int i = 0; i < n && drawn; i++)
+        drawn = draw_piece(svg, &piece[i], surface, page_width, page_height, error);
+    if (!drawn)
+        return NULL;
+    return g_steal_pointer(&surface);
+}
+
+static bool is_masked(const FlLeaf *leaf)
+{
+    return strcmp(leaf->layer, leaf->id) != 0;
+}
+
+int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
+                   double page_width, double page_height, GError **error)
+{
+    const int width = check->width, height = check->height;
+    const FlPiece whole = {group, FL_PART_WHOLE, FL_BLEND_MODE_OVER};
+    g_autoptr(cairo_surface_t) one =
+        draw_pieces(svg, &whole, 1, width, height, page_width, page_height, error);
+    g_autoptr(cairo_surface_t) all =
+        one ? draw_pieces(svg, piece, n, width, height, page_width, page_height, error) : NULL;
+    if (!all)
+        return -1;
+    const uint32_t *a = (const uint32_t *)cairo_image_surface_get_data(one);
+    const uint32_t *b = (const uint32_t *)cairo_image_surface_get_data(all);
+    int ink = 0, seen = 0;
+    for (size_t p = 0; p < (size_t)width * height; p++) {
+        ink += a[p] != 0;
+        seen += difference(a[p], b[p]) > VISIBLE;
+    }
+    if (seen * EDGE > ink)
+        return 0;
+    if (is_masked(piece[0].leaf))
+        check->allowed += seen;
+    return 1;
+}
+
+/** How many pixels differ visibly; the worst of them goes to *where. */
+static int compare(const uint32_t *a, const uint32_t *b, size_t n, size_t *where)
+{
+    int seen = 0, most = 0;
+    for (size_t p = 0; p < n; p++) {
+        const int d = difference(a[p], b[p]);
+        seen += d > VISIBLE;
+        *where = d > most ? p : *where;
+        most = MAX(most, d);
+    }
+    return seen;
+}
+
+/** A group (NULL: everything) as the file has it; NULL with an error. */
+static cairo_surface_t *draw_truth(const FlSelfCheck *check, FlSvg *svg, const char *group,
+                                   double page_width, double page_height, GError **error)
+{
+    g_autoptr(cairo_surface_t) truth =
+        fl_surface_new(CAIRO_FORMAT_ARGB32, check->width, check->height, error);
+    if (!truth)
+        return NULL;
+    cairo_t *cr = cairo_create(truth);
+    const bool drawn = fl_svg_draw_group(svg, group, cr, page_width, page_height, error);
+    cairo_destroy(cr);
+    cairo_surface_flush(truth);
+    return drawn ? g_steal_pointer(&truth) : NULL;
+}
+
+/** Whether a group looks as its leaves do. */
+static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, double page_width,
+                       double page_height, GError **error)
+{
+    g_autoptr(GArray) inner = g_array_new(FALSE, FALSE, sizeof(FlPiece));
+    for (guint i = 0; i < check->pieces->len; i++) {
+        const FlPiece *piece = &g_array_index(check->pieces, FlPiece, i);
+        g_auto(GStrv) groups = g_strsplit(piece->leaf->groups, "\n", -1);
+        if (g_strv_contains((const char *const *)groups, group))
+            g_array_append_val(inner, *piece);
+    }
+    g_autoptr(cairo_surface_t) truth =
+        draw_truth(check, svg, group, page_width, page_height, error);
+    g_autoptr(cairo_surface_t) sum =
+        truth ? draw_pieces(svg, (const FlPiece *)inner->data, (int)inner->len, check->width,
+                            check->height, page_width, page_height, error)
+              : NULL;
+    if (!sum)
+        return FL_VERDICT_ERROR;
+    size_t where = 0;
+    const int seen = compare((const uint32_t *)cairo_image_surface_get_data(truth),
+                             (const uint32_t *)cairo_image_surface_get_data(sum),
+                             (size_t)check->width * check->height, &where);
+    return seen > MOST_SEEN + check->allowed ? FL_VERDICT_DIFFERS : FL_VERDICT_ALIKE;
+}
+
+/**
+ * The smallest group around a leaf that does not look as its leaves do: *group, NULL if none. What
+ * is inside a group with a mask cannot be looked at by itself: librsvg draws it without the mask.
+ */
+static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, double page_width,
+                       double page_height, char **group, GError **error)
+{
+    g_auto(GStrv) groups = g_strsplit(leaf->groups, "\n", -1);
+    bool masked = is_masked(leaf);
+    for (guint i = g_strv_length(groups); i-- > 0 && groups[i][0];) {
+        masked = masked && strcmp(groups[i], leaf->layer) != 0;
+        if (masked)
+            continue;
+        const FlVerdict verdict = judge(check, svg, groups[i], page_width, page_height, error);
+        if (verdict == FL_VERDICT_ERROR)
+            return false;
+        if (verdict == FL_VERDICT_ALIKE)
+            continue;
+        *group = g_strdup(groups[i]);
+        return true;
+    }
+    return true;
+}
+
+FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
+                               double page_height, char **group, const char **leaf, GError **error)
+{
+    g_autoptr(cairo_surface_t) truth = draw_truth(check, svg, NULL, page_width, page_height, error);
+    if (!truth)
+        return FL_VERDICT_ERROR;
+    size_t where = 0;
+    const int seen = compare((const uint32_t *)cairo_image_surface_get_data(truth),
+                             (const uint32_t *)cairo_image_surface_get_data(check->sum),
+                             (size_t)check->width * check->height, &where);
+    *group = NULL;
+    *leaf = NULL;
+    if (seen <= MOST_SEEN + check->allowed)
+        return FL_VERDICT_ALIKE;
+    if (check->top[where] == 0)
+        return FL_VERDICT_DIFFERS;
+    const FlLeaf *top = g_array_index(check->pieces, FlPiece, check->top[where] - 1).leaf;
+    *leaf = top->id;
+    return find_group(check, svg, top, page_width, page_height, group, error) ? FL_VERDICT_DIFFERS
+                                                                              : FL_VERDICT_ERROR;
+}

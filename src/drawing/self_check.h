@@ -1,0 +1,51 @@
+/* Do the leaves, drawn one over the other, look like the document? [DESIGN §4] */
+#ifndef FLUIDY_DRAWING_SELF_CHECK_H
+#define FLUIDY_DRAWING_SELF_CHECK_H
+
+#include "drawing/raster.h"
+#include "drawing/survey.h"
+
+/** The picture that the leaves add up to, of one frame. */
+typedef struct FlSelfCheck FlSelfCheck;
+
+typedef enum FlVerdict {
+    FL_VERDICT_ERROR, // of the caller's GError
+    FL_VERDICT_ALIKE,
+    FL_VERDICT_DIFFERS,
+} FlVerdict;
+
+FlSelfCheck *fl_self_check_new(int width, int height, GError **error);
+void fl_self_check_free(FlSelfCheck *check); // NULL is fine
+
+/** Draws the next part over; coverage is its A8 rendering, not 0 in `box` only. */
+bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *seen,
+                       cairo_surface_t *coverage, FlBounds box, double page_width,
+                       double page_height, GError **error);
+
+/**
+ * Compares with the file as it is, whether they differ visibly.
+ *
+ * If they do, *group becomes the id of the smallest group around the topmost part of the worst
+ * place that by itself does not look as its leaves do, to be freed; NULL if there is none. *leaf
+ * becomes that part's id, which is the frame's; NULL if nothing is drawn there.
+ */
+FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
+                               double page_height, char **group, const char **leaf, GError **error);
+
+/** A part to be drawn by fl_looks_alike(). */
+typedef struct FlPiece {
+    const FlLeaf *leaf;
+    FlPart part;
+    FlBlendMode mix;
+} FlPiece;
+
+/**
+ * Whether a group looks the same when its n pieces are drawn over each other one by one: groups
+ * with opacity or a mask do where nothing overlaps, and nearly so where a mask has sharp edges;
+ * pixels that differ at a mask's edge will not count in fl_self_check_finish().
+ * Returns: 1 or 0; -1 with an error.
+ */
+int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
+                   double page_width, double page_height, GError **error);
+
+#endif

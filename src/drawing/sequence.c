@@ -1,0 +1,424 @@
+#include "drawing/sequence.h"
+
+#include "base/suggest.h"
+#include "io/frame_range.h"
+#include "io/pattern.h"
+#include <fnmatch.h>
+#include <string.h>
+
+typedef struct Found {
+    int number;
+    char *path;
+} Found;
+
+static void found_clear(void *data)
+{
+    g_free(((Found *)data)->path);
+}
+
+static GArray *found_new(void)
+{
+    GArray *found = g_array_new(FALSE, FALSE, sizeof(Found));
+    g_array_set_clear_func(found, found_clear);
+    return found;
+}
+
+static void found_add(GArray *found, int number, const char *folder, const char *name)
+{
+    const bool here = strcmp(folder, ".") == 0;
+    const Found f = {number, here ? g_strdup(name) : g_build_filename(folder, name, NULL)};
+    g_array_append_val(found, f);
+}
+
+static bool is_svg(const char *name)
+{
+    g_autofree char *lower = g_ascii_strdown(name, -1);
+    return name[0] != '.' && (g_str_has_suffix(lower, ".svg") || g_str_has_suffix(lower, ".svgz"));
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/** The names in a folder, sorted; NULL with FL_ERROR_INPUT. */
+static GPtrArray *list_folder(const char *folder, GError **error)
+{
+    g_autoptr(GError) reason = NULL;
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, &reason);
+    if (!dir) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", reason->message);
+        return NULL;
+    }
+    GPtrArray *names = g_ptr_array_new_with_free_func(g_free);
+    for (const char *name; (name = g_dir_read_name(dir));)
+        g_ptr_array_add(names, g_strdup(name));
+    g_ptr_array_sort(names, compare_names);
+    return names;
+}
+
+/** A sequence among the names of a folder: those that differ in their number only. */
+typedef struct Group {
+    FlPattern pattern;
+    int n;
+} Group;
+
+static void group_clear(void *data)
+{
+    fl_pattern_clear(&((Group *)data)->pattern);
+}
+
+static GArray *group_names(const GPtrArray *names)
+{
+    GArray *groups = g_array_new(FALSE, FALSE, sizeof(Group));
+    g_array_set_clear_func(groups, group_clear);
+    for (guint i = 0; i < names->len; i++) {
+        const char *name = names->pdata[i];
+        g_auto(FlPattern) p = {0};
+        int number = 0;
+        if (!is_svg(name) || !fl_pattern_of_name(name, &p, &number))
+            continue;
+        guint g = 0;
+        while (g < groups->len &&
+               (strcmp(g_array_index(groups, Group, g).pattern.prefix, p.prefix) != 0 ||
+                strcmp(g_array_index(groups, Group, g).pattern.suffix, p.suffix) != 0))
+            g++;
+        if (g == groups->len) {
+            const Group group = {p, 0};
+            p = (FlPattern){0};
+            g_array_append_val(groups, group);
+        } else {
+            FlPattern *known = &g_array_index(groups, Group, g).pattern;
+            known->width = MAX(known->width, p.width);
+        }
+        g_array_index(groups, Group, g).n++;
+    }
+    return groups;
+}
+
+/** "; did you mean walk_%04d.svg (44 files)?", or a name that is near; names stays as it is. */
+static char *suggestion(GPtrArray *names, const char *wanted)
+{
+    g_autoptr(GArray) groups = group_names(names);
+    g_autofree char *best = NULL;
+    int best_distance = G_MAXINT, best_n = 0;
+    for (guint i = 0; i < groups->len; i++) {
+        const Group *group = &g_array_index(groups, Group, i);
+        g_autofree char *text = fl_pattern_text(&group->pattern);
+        const int distance = fl_edit_distance(wanted, text);
+        if (distance < best_distance) {
+            g_free(best);
+            best = g_steal_pointer(&text);
+            best_distance = distance;
+            best_n = group->n;
+        }
+    }
+    if (!best) {
+        g_ptr_array_add(names, NULL);
+        char *near = fl_did_you_mean(wanted, (const char *const *)names->pdata);
+        g_ptr_array_remove_index(names, names->len - 1);
+        if (*near)
+            return near;
+        g_free(near);
+        return g_strdup("; its folder holds no numbered .svg files");
+    }
+    return g_strdup_printf("; did you mean %s (%d file%s)?", best, best_n, best_n == 1 ? "" : "s");
+}
+
+/** Whether a name fits: to a pattern with a number, or if that is NULL, to wildcards. */
+static bool fits(const char *name, const FlPattern *pattern, const char *wildcards, int *number)
+{
+    return pattern ? fl_pattern_match(pattern, name, number)
+                   : is_svg(name) && fnmatch(wildcards, name, FNM_PERIOD) == 0;
+}
+
+static bool add_fitting(GArray *found, const char *input, const FlPattern *pattern, GError **error)
+{
+    g_autofree char *folder = g_path_get_dirname(input), *base = g_path_get_basename(input);
+    g_autoptr(GPtrArray) names = list_folder(folder, error);
+    if (!names)
+        return false;
+    for (guint i = 0; i < names->len; i++) {
+        int number = 0;
+        if (fits(names->pdata[i], pattern, base, &number))
+            found_add(found, number, folder, names->pdata[i]);
+    }
+    if (found->len == 0) {
+        g_autofree char *hint = suggestion(names, base);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no file fits%s", input, hint);
+    }
+    return found->len > 0;
+}
+
+/** All groups of a folder as text, for the message that asks to choose. */
+static char *group_list(const GArray *groups)
+{
+    GString *text = g_string_new(NULL);
+    for (guint i = 0; i < MIN(groups->len, 4); i++) {
+        const Group *group = &g_array_index(groups, Group, i);
+        g_autofree char *name = fl_pattern_text(&group->pattern);
+        g_string_append_printf(text, "%s%s (%d)", i ? ", " : "", name, group->n);
+    }
+    if (groups->len > 4)
+        g_string_append(text, ", …");
+    return g_string_free(text, FALSE);
+}
+
+static bool add_folder(GArray *found, const char *folder, FlWarnings *warnings, GError **error)
+{
+    g_autoptr(GPtrArray) names = list_folder(folder, error);
+    if (!names)
+        return false;
+    g_autoptr(GArray) groups = group_names(names);
+    int n_svg = 0;
+    for (guint i = 0; i < names->len; i++)
+        n_svg += is_svg(names->pdata[i]);
+    if (n_svg == 0 || groups->len > 1) {
+        g_autofree char *list = group_list(groups);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: %s%s", folder,
+                    n_svg ? "several sequences, name one: " : "no .svg files in this folder", list);
+        return false;
+    }
+    for (guint i = 0; i < names->len; i++) {
+        int number = 0;
+        const char *name = names->pdata[i];
+        g_auto(FlPattern) p = {0};
+        if (!is_svg(name))
+            continue;
+        if (fl_pattern_of_name(name, &p, &number) || (groups->len == 0 && n_svg == 1))
+            found_add(found, number, folder, name);
+        else if (groups->len == 1)
+            fl_warnings_add(warnings, folder, -1, NULL, "%s has no number and is left out", name);
+        else
+            found_add(found, (int)found->len + 1, folder, name);
+    }
+    return true;
+}
+
+/** Gives files named one by one their numbers; 1 … n where a name has none or stems differ. */
+static void number_files(GArray *found)
+{
+    g_auto(FlPattern) first = {0};
+    bool numbered = true;
+    for (guint i = 0; i < found->len; i++) {
+        Found *f = &g_array_index(found, Found, i);
+        g_autofree char *base = g_path_get_basename(f->path);
+        g_auto(FlPattern) p = {0};
+        numbered = numbered && fl_pattern_of_name(base, &p, &f->number);
+        if (!numbered)
+            break;
+        if (i == 0) {
+            first = p;
+            p = (FlPattern){0};
+        } else {
+            numbered = strcmp(p.prefix, first.prefix) == 0 && strcmp(p.suffix, first.suffix) == 0;
+        }
+    }
+    for (guint i = 0; !numbered && i < found->len; i++)
+        g_array_index(found, Found, i).number = (int)i + 1;
+}
+
+static bool add_file(GArray *found, const char *input, GError **error)
+{
+    if (!g_file_test(input, G_FILE_TEST_EXISTS)) {
+        g_autofree char *folder = g_path_get_dirname(input), *base = g_path_get_basename(input);
+        g_autoptr(GPtrArray) names = list_folder(folder, error);
+        if (!names)
+            return false;
+        g_autofree char *hint = suggestion(names, base);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no such file%s", input, hint);
+        return false;
+    }
+    const Found f = {0, g_strdup(input)};
+    g_array_append_val(found, f);
+    return true;
+}
+
+static bool add_input(GArray *found, const char *input, FlWarnings *warnings, GError **error)
+{
+    if (g_file_test(input, G_FILE_TEST_IS_DIR))
+        return add_folder(found, input, warnings, error);
+    if (g_file_test(input, G_FILE_TEST_EXISTS)) { // also a file whose name has a # or * in it
+        add_file(found, input, NULL);
+        number_files(found);
+        return true;
+    }
+    g_autofree char *base = g_path_get_basename(input);
+    g_auto(FlPattern) pattern = {0};
+    bool has_number = false;
+    if (!fl_pattern_parse(base, &pattern, &has_number, error))
+        return false;
+    if (has_number)
+        return add_fitting(found, input, &pattern, error);
+    if (!strpbrk(base, "*?["))
+        return add_file(found, input, error);
+    if (!add_fitting(found, input, NULL, error))
+        return false;
+    number_files(found);
+    return true;
+}
+
+static int compare_found(const void *a, const void *b)
+{
+    const int x = ((const Found *)a)->number, y = ((const Found *)b)->number;
+    return (x > y) - (x < y);
+}
+
+static bool no_number_twice(const GArray *found, GError **error)
+{
+    for (guint i = 1; i < found->len; i++) {
+        const Found *a = &g_array_index(found, Found, i - 1), *b = a + 1;
+        if (a->number == b->number) {
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s and %s are both frame %d", a->path,
+                        b->path, a->number);
+            return false;
+        }
+    }
+    return true;
+}
+
+/** The file of a number, or with hold that of the nearest number before it, else after it. */
+static const Found *look_up(const GArray *found, int number, bool hold)
+{
+    const Found *before = NULL;
+    for (guint i = 0; i < found->len; i++) {
+        const Found *f = &g_array_index(found, Found, i);
+        if (f->number == number)
+            return f;
+        if (f->number > number)
+            return !hold ? NULL : before ? before : f;
+        before = f;
+    }
+    return hold ? before : NULL;
+}
+
+/** "7-9, 12 and 3 more" */
+static char *list_numbers(const GArray *numbers)
+{
+    GString *text = g_string_new(NULL);
+    guint i = 0;
+    for (int parts = 0; i < numbers->len && parts < 6; parts++) {
+        guint j = i;
+        const int *n = &g_array_index(numbers, int, 0);
+        while (j + 1 < numbers->len && n[j + 1] == n[j] + 1)
+            j++;
+        g_string_append_printf(text, "%s%d", i ? ", " : "", n[i]);
+        if (j > i)
+            g_string_append_printf(text, "-%d", n[j]);
+        i = j + 1;
+    }
+    if (i < numbers->len)
+        g_string_append_printf(text, " and %u more", numbers->len - i);
+    return g_string_free(text, FALSE);
+}
+
+static char *shared_name(const Found *first)
+{
+    g_autofree char *base = g_path_get_basename(first->path);
+    g_auto(FlPattern) p = {0};
+    int number = 0;
+    char *name = NULL;
+    if (fl_pattern_of_name(base, &p, &number)) {
+        name = g_strdup(p.prefix);
+    } else {
+        const char *dot = strrchr(base, '.');
+        name = g_strndup(base, dot ? (gsize)(dot - base) : strlen(base));
+    }
+    for (size_t n = strlen(name); n > 0 && strchr("_-. ", name[n - 1]); n--)
+        name[n - 1] = '\0';
+    if (name[0])
+        return name;
+    g_free(name);
+    g_autofree char *absolute = g_canonicalize_filename(first->path, NULL);
+    g_autofree char *folder = g_path_get_dirname(absolute);
+    name = g_path_get_basename(folder);
+    if (name[0] == G_DIR_SEPARATOR) {
+        g_free(name);
+        name = g_strdup("frame");
+    }
+    return name;
+}
+
+/** The found files as a pattern with its folder, for messages. */
+static char *pattern_text(const Found *first)
+{
+    g_autofree char *folder = g_path_get_dirname(first->path);
+    g_autofree char *base = g_path_get_basename(first->path);
+    g_auto(FlPattern) p = {0};
+    int number = 0;
+    if (!fl_pattern_of_name(base, &p, &number))
+        return g_strdup(first->path);
+    g_autofree char *text = fl_pattern_text(&p);
+    return strcmp(folder, ".") == 0 ? g_steal_pointer(&text) : g_build_filename(folder, text, NULL);
+}
+
+/** Takes the wanted numbers from what was found. */
+static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing missing,
+                          FlWarnings *warnings, GError **error)
+{
+    const Found *first = &g_array_index(found, Found, 0);
+    g_autofree char *pattern = pattern_text(first);
+    g_autoptr(GArray) gaps = g_array_new(FALSE, FALSE, sizeof(int));
+    g_autoptr(FlSequence) s = g_new0(FlSequence, 1);
+    s->file = g_new0(char *, wanted->len + 1);
+    s->number = g_new0(int, wanted->len + 1);
+    s->name = shared_name(first);
+    for (guint i = 0; i < wanted->len; i++) {
+        const int number = g_array_index(wanted, int, i);
+        const Found *f = look_up(found, number, missing == FL_MISSING_HOLD);
+        if (!f || f->number != number)
+            g_array_append_val(gaps, number);
+        if (f) {
+            s->file[s->n] = g_strdup(f->path);
+            s->number[s->n++] = number;
+        }
+    }
+    g_autofree char *list = list_numbers(gaps);
+    if ((gaps->len > 0 && missing <= FL_MISSING_ERROR) || s->n == 0) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: no file for frame%s %s; --missing hold or skip goes on without",
+                    first->path, gaps->len > 1 ? "s" : "", list);
+        return NULL;
+    }
+    if (gaps->len > 0)
+        fl_warnings_add(warnings, pattern, -1, NULL, "no file for frame%s %s: %s",
+                        gaps->len > 1 ? "s" : "", list,
+                        missing == FL_MISSING_HOLD ? "the one before is held" : "left out");
+    return g_steal_pointer(&s);
+}
+
+FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char *range,
+                             FlMissing missing, FlWarnings *warnings, GError **error)
+{
+    g_assert(n_inputs >= 1);
+    g_autoptr(GArray) found = found_new();
+    if (n_inputs == 1) {
+        if (!add_input(found, inputs[0], warnings, error))
+            return NULL;
+    } else {
+        for (int i = 0; i < n_inputs; i++)
+            if (!add_file(found, inputs[i], error))
+                return NULL;
+        number_files(found);
+    }
+    g_array_sort(found, compare_found);
+    if (!no_number_twice(found, error))
+        return NULL;
+    const int first = g_array_index(found, Found, 0).number;
+    const int last = g_array_index(found, Found, found->len - 1).number;
+    g_autofree char *all = g_strdup_printf("%d-%d", first, last);
+    g_autoptr(GArray) wanted = fl_range_parse(range ? range : all, first, last, error);
+    return wanted ? choose(found, wanted, missing, warnings, error) : NULL;
+}
+
+void fl_sequence_free(FlSequence *sequence)
+{
+    if (!sequence)
+        return;
+    for (int i = 0; i < sequence->n; i++)
+        g_free(sequence->file[i]);
+    g_free(sequence->file);
+    g_free(sequence->number);
+    g_free(sequence->name);
+    g_free(sequence);
+}

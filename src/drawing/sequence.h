@@ -1,0 +1,37 @@
+/* Which files are the frames of a film, and in which order. */
+#ifndef FLUIDY_DRAWING_SEQUENCE_H
+#define FLUIDY_DRAWING_SEQUENCE_H
+
+#include "base/warnings.h"
+#include <fluidy/error.h>
+#include <fluidy/render.h>
+#include <stdbool.h>
+
+/** The files of a film, in order. A held frame has the file of another number. */
+typedef struct FlSequence {
+    int n;
+    char **file;
+    int *number; // as in the file's name; 1 … n where the names have no number
+    char *name;  // what the names share, such as "walk" of walk_0001.svg; never empty
+} FlSequence;
+
+/**
+ * Finds the frames.
+ *
+ * inputs: one pattern (a_%04d.svg, a_####.svg), one glob, one folder, or n_inputs files. A pattern
+ * is read here and never handed to printf; the folder is listed, so any first number is found.
+ * Files come in the order of their numbers: 2.svg before 10.svg. A number is the last run of digits
+ * of a name before ".svg" or ".svgz".
+ *
+ * range: "1001-1096", "1-96x2", "10-", "1,5,9" and lists of these; NULL: all.
+ *
+ * Returns: NULL with FL_ERROR_USAGE (bad range or pattern) or FL_ERROR_INPUT (nothing found, gaps).
+ */
+FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char *range,
+                             FlMissing missing, FlWarnings *warnings, GError **error);
+
+void fl_sequence_free(FlSequence *sequence); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSequence, fl_sequence_free)
+
+#endif

@@ -1,0 +1,286 @@
+#include "drawing/survey.h"
+
+#include "base/limits.h"
+#include "drawing/probe.h"
+#include "drawing/register_frames.h"
+#include "svg/normalise.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define MOST_SIDE 32767 // px; cairo's limit
+#define MOST_WHOLE 8    // groups of a frame that are taken as one, each after another look
+#define MOST_ROUNDS 3   // in which that spreads to other frames
+
+int fl_strings_add(FlStrings *strings, const char *text)
+{
+    if (!strings->text) {
+        strings->text = g_ptr_array_new_with_free_func(g_free);
+        strings->number = g_hash_table_new(g_str_hash, g_str_equal);
+        fl_strings_add(strings, "");
+    }
+    gpointer known = NULL;
+    if (g_hash_table_lookup_extended(strings->number, text, NULL, &known))
+        return GPOINTER_TO_INT(known);
+    const int number = (int)strings->text->len;
+    char *copy = g_strdup(text);
+    g_ptr_array_add(strings->text, copy);
+    g_hash_table_insert(strings->number, copy, GINT_TO_POINTER(number));
+    return number;
+}
+
+const char *fl_strings_get(const FlStrings *strings, int number)
+{
+    return g_ptr_array_index(strings->text, number);
+}
+
+static void keep(FlSurvey *survey, int t, const FlFrameProbe *f)
+{
+    FlStrings *s = &survey->strings;
+    GArray *seen = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), f->probes->len);
+    for (guint i = 0; i < f->probes->len; i++) {
+        const FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
+        FlSurveyPart one = probe->seen;
+        one.paint = fl_strings_add(s, probe->paint);
+        one.name = fl_strings_add(s, probe->leaf->name);
+        one.labels = fl_strings_add(s, probe->leaf->labels);
+        one.layers = fl_strings_add(s, probe->leaf->layers);
+        one.ids = fl_strings_add(s, probe->leaf->ids);
+        one.classes = fl_strings_add(s, probe->leaf->classes);
+        one.tree = fl_strings_add(s, probe->leaf->tree);
+        const int corner[4] = {probe->box.x0 - 1, probe->box.y0 - 1, probe->box.x1 + 1,
+                               probe->box.y1 + 1};
+        for (int c = 0; c < 4; c++)
+            one.box[c] = (float)(corner[c] * f->factor);
+        g_array_append_val(seen, one);
+    }
+    survey->frame[t].seen = seen;
+}
+
+/** Opens a frame and sets its page in the picture. */
+static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings *warnings,
+                       GError **error)
+{
+    const char *file = survey->sequence->file[t];
+    const int number = survey->sequence->number[t];
+    double width, height;
+    FlSurveyFrame *frame = &survey->frame[t];
+    const FlSvgOptions options = {frame->canvas, survey->svg.dpi,
+                                  (const char *const *)frame->whole};
+    g_autoptr(FlSvg) svg = fl_svg_open(file, number, &options, warnings, error);
+    if (!svg || !fl_svg_size(svg, &width, &height, error))
+        return false;
+    frame->page_width = width * survey->scale;
+    frame->page_height = height * survey->scale;
+    frame->n_nameless = fl_svg_nameless_groups(svg);
+    return fl_frame_probe_init(probe, g_steal_pointer(&svg), frame->page_width, frame->page_height,
+                               survey->width, survey->height, error);
+}
+
+/** Draws a frame leaf by leaf and looks whether it is the drawing; see fl_self_check_finish(). */
+static FlVerdict try_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *warnings,
+                           char **group, const char **leaf, GError **error)
+{
+    if (!open_frame(survey, t, f, warnings, error) || !fl_frame_probe_run(f, error))
+        return FL_VERDICT_ERROR;
+    return fl_self_check_finish(f->check, f->svg, f->width, f->height, group, leaf, error);
+}
+
+/** Takes one more group of a frame as one leaf. */
+static void keep_whole(FlSurveyFrame *frame, const char *group)
+{
+    const guint n = frame->whole ? g_strv_length(frame->whole) : 0;
+    frame->whole = g_renew(char *, frame->whole, n + 2);
+    frame->whole[n] = g_strdup(group);
+    frame->whole[n + 1] = NULL;
+}
+
+static void warn_of_whole(FlWarnings *warnings, const char *file, int number, const char *group)
+{
+    const bool made = g_str_has_prefix(group, FL_GROUP_ID);
+    const int nth = made ? atoi(group + strlen(FL_GROUP_ID)) + 1 : 0;
+    g_autofree char *which =
+        made ? g_strdup_printf("no. %d of the groups without an id, ", nth) : g_strdup("");
+    fl_warnings_add(warnings, file, number, made ? NULL : group,
+                    "%sdrawn shape by shape it does not look like the drawing: taken as one, in "
+                    "every frame",
+                    which);
+}
+
+/** Looks at a frame, anew for each group that has to stay in one piece [DESIGN §4]. */
+static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *warnings,
+                       GError **error)
+{
+    const char *file = survey->sequence->file[t];
+    const int number = survey->sequence->number[t];
+    FlSurveyFrame *frame = &survey->frame[t];
+    for (int tries = 0;; tries++) {
+        g_autofree char *group = NULL;
+        const char *leaf = NULL;
+        const FlVerdict verdict = try_frame(survey, t, f, warnings, &group, &leaf, error);
+        if (verdict == FL_VERDICT_ERROR)
+            return false;
+        if (verdict == FL_VERDICT_DIFFERS && group && tries < MOST_WHOLE) {
+            warn_of_whole(warnings, file, number, group);
+            keep_whole(frame, group);
+            fl_frame_probe_clear(f);
+            *f = (FlFrameProbe){0};
+            continue;
+        }
+        if (verdict == FL_VERDICT_DIFFERS)
+            fl_warnings_add(warnings, file, number, leaf,
+                            "drawn leaf by leaf the frame does not look quite like the drawing");
+        break;
+    }
+    if (fabs(frame->page_width - survey->page_width) > 0.5 ||
+        fabs(frame->page_height - survey->page_height) > 0.5)
+        fl_warnings_add(warnings, file, number, NULL,
+                        "its page is not as large as the first frame's; it keeps its scale");
+    return true;
+}
+
+/**
+ * The scale with which the page leaves no column or row of the picture partly bare: one that is
+ * would be a contour, with the rim of the paint along it. Less than a pixel of the page is cut off.
+ */
+static double cover_scale(double scale, double width, double height, double w, double h)
+{
+    const double rounding = 5e-4; // px; librsvg's own page sizes are off by less
+    return width * scale > w - rounding && height * scale > h - rounding
+               ? scale
+               : MAX(w / width, h / height);
+}
+
+/** Decides the size of the picture from the first frame. */
+static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error)
+{
+    double width, height;
+    const FlSvgOptions options = {survey->frame[0].canvas, survey->svg.dpi, NULL};
+    g_autoptr(FlSvg) svg =
+        fl_svg_open(survey->sequence->file[0], survey->sequence->number[0], &options, NULL, error);
+    if (!svg || !fl_svg_size(svg, &width, &height, error))
+        return false;
+    if (o->scale < 0 || o->width < 0 || o->height < 0 ||
+        (o->scale > 0 && (o->width > 0 || o->height > 0))) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "size: expected a width and a height, or a scale, above 0");
+        return false;
+    }
+    survey->scale = o->scale > 0 ? o->scale : 1;
+    if (o->width > 0 || o->height > 0)
+        survey->scale = MIN(o->width > 0 ? o->width / width : INFINITY,
+                            o->height > 0 ? o->height / height : INFINITY);
+    const double w = MAX(1, round(width * survey->scale)),
+                 h = MAX(1, round(height * survey->scale));
+    if (!(w <= MOST_SIDE && h <= MOST_SIDE)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                    "%s: a picture of %.0f x %.0f px; at most %d px on each side can be drawn",
+                    survey->sequence->file[0], w, h, MOST_SIDE);
+        return false;
+    }
+    if (!fl_limit_check(FL_LIMIT_FRAME, w * h / 1e6, survey->sequence->file[0], error))
+        return false;
+    survey->scale = cover_scale(survey->scale, width, height, w, h);
+    survey->page_width = width * survey->scale;
+    survey->page_height = height * survey->scale;
+    survey->width = (int)w;
+    survey->height = (int)h;
+    return true;
+}
+
+/** Scans the frames that are not scanned yet; false with the error of the first that fails. */
+static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
+{
+    bool good = true;
+#pragma omp parallel for ordered schedule(static, 1)
+    for (int t = 0; t < survey->n_frames; t++) {
+        g_auto(FlFrameProbe) probe = {0};
+        g_autoptr(FlWarnings) remarks = fl_warnings_new();
+        GError *reason = NULL;
+        const bool known = survey->frame[t].seen != NULL;
+        const bool scanned = known || scan_frame(survey, t, &probe, remarks, &reason);
+#pragma omp ordered
+        {
+            if (scanned && !known)
+                keep(survey, t, &probe);
+            if (good)
+                fl_warnings_append(warnings, remarks);
+            if (!scanned && good)
+                g_propagate_error(error, reason);
+            else
+                g_clear_error(&reason);
+            good = good && scanned;
+        }
+    }
+    return good;
+}
+
+static bool has_group(char **groups, const char *group)
+{
+    return groups && g_strv_contains((const char *const *)groups, group);
+}
+
+/** Whether a group of one frame is the one of that id in another: ids made here are numbers. */
+static bool means_the_same(const FlSurveyFrame *from, const FlSurveyFrame *to, const char *group)
+{
+    return !g_str_has_prefix(group, FL_GROUP_ID) || from->n_nameless == to->n_nameless;
+}
+
+/** Takes what is one in some frame as one in all. Returns: the frames that are to be scanned anew.
+ */
+static int spread_whole(FlSurvey *survey)
+{
+    int n = 0;
+    for (int t = 0; t < survey->n_frames; t++) {
+        const FlSurveyFrame *from = &survey->frame[t];
+        for (int i = 0; from->whole && from->whole[i]; i++)
+            for (int to = 0; to < survey->n_frames; to++) {
+                FlSurveyFrame *frame = &survey->frame[to];
+                if (has_group(frame->whole, from->whole[i]) ||
+                    !means_the_same(from, frame, from->whole[i]))
+                    continue;
+                keep_whole(frame, from->whole[i]);
+                n += frame->seen != NULL;
+                g_clear_pointer(&frame->seen, g_array_unref);
+            }
+    }
+    return n;
+}
+
+bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawingOptions *options,
+                    FlWarnings *warnings, GError **error)
+{
+    *survey = (FlSurvey){.sequence = sequence,
+                         .svg = {options->canvas, options->dpi},
+                         .n_frames = sequence->n,
+                         .frame = g_new0(FlSurveyFrame, sequence->n)};
+    fl_strings_add(&survey->strings, "");
+    for (int t = 0; t < survey->n_frames; t++)
+        survey->frame[t].canvas = options->canvas;
+    if ((options->registered && !fl_register(survey, warnings, error)) ||
+        !set_size(survey, options, error))
+        return false;
+    // a region that is one shape in one frame and several in the next would change its paint
+    for (int round = 0; round < MOST_ROUNDS; round++) {
+        if (!scan_frames(survey, warnings, error))
+            return false;
+        if (spread_whole(survey) == 0)
+            return true;
+    }
+    return scan_frames(survey, warnings, error);
+}
+
+void fl_survey_clear(FlSurvey *survey)
+{
+    for (int t = 0; t < survey->n_frames && survey->frame; t++) {
+        if (survey->frame[t].seen)
+            g_array_unref(survey->frame[t].seen);
+        g_strfreev(survey->frame[t].whole);
+    }
+    g_free(survey->frame);
+    if (survey->strings.text) {
+        g_hash_table_unref(survey->strings.number);
+        g_ptr_array_unref(survey->strings.text);
+    }
+    *survey = (FlSurvey){0};
+}

@@ -1,0 +1,66 @@
+/* One pass over the film: what is drawn in every frame, where, and with which paint. */
+#ifndef FLUIDY_DRAWING_SURVEY_H
+#define FLUIDY_DRAWING_SURVEY_H
+
+#include "drawing/drawing.h"
+
+/** Strings as numbers, so that they are kept once and compared fast. 0 is "". */
+typedef struct FlStrings {
+    GPtrArray *text;
+    GHashTable *number;
+} FlStrings;
+
+int fl_strings_add(FlStrings *strings, const char *text);
+const char *fl_strings_get(const FlStrings *strings, int number);
+
+/** A part of a leaf, or a unit, as seen in one frame. Strings are numbers in FlSurvey.strings. */
+typedef struct FlSurveyPart {
+    int leaf; // index of the leaf; of a unit -1 - its index
+    FlPart part;
+    bool stroke;
+    bool has_fill, has_stroke; // of the leaf it is a part of
+    bool thick;                // a stroke without a fill that is a limb rather than a line
+    FlPaintKind kind;
+    uint8_t rgb[3], alpha, peak; // see FlPaint
+    FlBlendMode mix;
+    int paint; // FlPaint.key
+    int name, labels, layers, ids, classes, tree;
+    float box[4];  // x0, y0, x1, y1 of what is drawn, px of the picture; a pixel too wide
+    float area_px; // sum of its coverage
+    float covers;  // share of it that lies over other paint, page-filling ones not counted
+    int unit;      // 1 + index of the unit it is, or is a leaf of, if that is to be drawn as one
+    int region;    // set later; -1: not drawn
+} FlSurveyPart;
+
+typedef struct FlSurveyFrame {
+    GArray *seen;                   // FlSurveyPart, bottom up
+    double page_width, page_height; // px of the picture
+    FlCanvas canvas;                // the frame's page
+    char **whole;                   // FlSvgOptions.whole; NULL: none
+    int n_nameless;                 // groups without an id
+} FlSurveyFrame;
+
+typedef struct FlSurvey {
+    const FlSequence *sequence;
+    FlSvgOptions svg;
+    FlStrings strings;
+    int width, height;              // of the picture, px
+    double page_width, page_height; // of the first frame, px of the picture
+    double scale;                   // px of the picture per px of the drawing
+    int n_frames;
+    FlSurveyFrame *frame;
+} FlSurvey;
+
+/** Returns: false with an error, which names the file. warnings may be NULL. */
+bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawingOptions *options,
+                    FlWarnings *warnings, GError **error);
+
+/**
+ * Decides between units and their leaves, which fl_survey_init() both lists: a group that is drawn
+ * leaf by leaf in other frames, because it only fades for a while, is so in all; another stays one.
+ */
+void fl_survey_choose_units(FlSurvey *survey);
+
+void fl_survey_clear(FlSurvey *survey);
+
+#endif

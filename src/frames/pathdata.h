@@ -1,8 +1,0 @@
-/* The grammar of path data, to find where a broken `d` breaks. */
-#ifndef FLUIDY_FRAMES_PATHDATA_H
-#define FLUIDY_FRAMES_PATHDATA_H
-
-/** Returns: NULL if d is good SVG path data (empty is), else where it goes wrong. */
-const char *fl_path_data_error(const char *d);
-
-#endif

@@ -1,0 +1,429 @@
+/*
+ * The way forward through a sequence. Every stage asks the one before for the frames it needs, in
+ * order, and each stage keeps a window of them:
+ *
+ *   outline_of   mask, box, distance
+ *   distance_of  the distance smoothed along time and in space, if asked for [P21 §4.1]
+ *   motion_of    the flow of one interval
+ *   finish_frame the flow smoothed along time [F21 App. A], direction, extent; into the spill
+ *
+ * For one region is often most of a film, the outline of one frame, the motion of an earlier one
+ * and the end of a yet earlier one are made side by side: none needs what the others make.
+ */
+#include "base/parallel_error.h"
+#include "guides/blur.h"
+#include "guides/direction.h"
+#include "guides/extent.h"
+#include "guides/flow.h"
+#include "guides/gauss.h"
+#include "guides/guide_sequence.h"
+#include "guides/plane_store.h"
+#include <math.h>
+#include <string.h>
+
+/** The flow of one frame before smoothing. */
+typedef struct Motion {
+    int frame;   // -1: the slot is free
+    float *flow; // interleaved, of the outline's box; NULL: nothing moves
+} Motion;
+
+typedef struct OutlineSlot {
+    int frame; // -1: the slot is free
+    FlOutline *outline;
+} OutlineSlot;
+
+typedef struct Smoothed {
+    int frame;
+    float *distance;
+} Smoothed;
+
+typedef struct Builder {
+    FlGuideSequence *sequence;
+    bool smooths;                     // distances, before flow is made from them
+    int flow_radius, dist_radius;     // frames on either side
+    float *flow_weight, *dist_weight; // radius + 1
+    int n_slots;
+    OutlineSlot *outlines; // frame f is in slot f % n_slots, as below
+    Motion *motions;
+    Smoothed smoothed[3];
+    uint8_t *mask; // room for a frame
+    float *given;  // room for the flow of a frame
+    FlExtent *extent;
+    bool previous_moves; // of the frame that was finished last
+} Builder;
+
+static void builder_clear(Builder *b)
+{
+    for (int s = 0; s < b->n_slots; s++) {
+        fl_outline_unref(b->outlines[s].outline);
+        g_free(b->motions[s].flow);
+    }
+    for (int s = 0; s < 3; s++)
+        g_free(b->smoothed[s].distance);
+    g_free(b->outlines);
+    g_free(b->motions);
+    g_free(b->flow_weight);
+    g_free(b->dist_weight);
+    g_free(b->mask);
+    g_free(b->given);
+    fl_extent_free(b->extent);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Builder, builder_clear)
+
+static float *temporal_weights(float sigma_frames, int *radius)
+{
+    *radius = sigma_frames > 0.0f ? (int)(3.0f * sigma_frames) : 0;
+    float *weight = g_new(float, *radius + 1);
+    weight[0] = 1.0f;
+    if (*radius > 0)
+        fl_gauss_weights(weight, *radius, sigma_frames);
+    return weight;
+}
+
+static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
+{
+    const FlGuideSource *source = &sequence->source;
+    const size_t n = (size_t)source->width * source->height;
+    *b = (Builder){.sequence = sequence};
+    b->flow_weight = temporal_weights(sequence->params.flow_sigma_frames, &b->flow_radius);
+    b->dist_weight = temporal_weights(sequence->params.dist_sigma_frames, &b->dist_radius);
+    b->smooths = b->dist_radius > 0 || sequence->params.dist_sigma_px > 0.0f;
+    const int n_slots = 2 * (b->flow_radius + b->dist_radius) + 6;
+    b->outlines = g_new0(OutlineSlot, n_slots);
+    b->motions = g_new0(Motion, n_slots);
+    b->n_slots = n_slots;
+    for (int s = 0; s < n_slots; s++)
+        b->outlines[s].frame = b->motions[s].frame = -1;
+    for (int s = 0; s < 3; s++)
+        b->smoothed[s].frame = -1;
+    b->mask = g_try_malloc(n);
+    b->given = source->flow ? g_try_new(float, 2 * n) : NULL;
+    if (!b->mask || (source->flow && !b->given))
+        return fl_guide_sequence_no_memory(b->sequence, error);
+    b->extent = fl_extent_new(source->width, source->height, error);
+    return b->extent;
+}
+
+/** *outline stays the builder's; NULL beyond either end. */
+static bool outline_of(Builder *b, int frame, FlOutline **outline, GError **error)
+{
+    const FlGuideSource *source = &b->sequence->source;
+    *outline = NULL;
+    if (frame < 0 || frame >= source->n_frames)
+        return true;
+    OutlineSlot *slot = &b->outlines[frame % b->n_slots];
+    if (slot->frame != frame) {
+        const OutlineSlot *last = &b->outlines[(frame + b->n_slots - 1) % b->n_slots];
+        if (!source->mask(source->data, frame, b->mask, error))
+            return false;
+        FlOutline *fresh = last->outline && fl_outline_equal(last->outline, b->mask)
+                               ? fl_outline_ref(last->outline)
+                               : fl_outline_new(b->mask, source->width, source->height, error);
+        if (!fresh)
+            return false;
+        fl_outline_unref(slot->outline);
+        *slot = (OutlineSlot){frame, fresh};
+    }
+    *outline = slot->outline;
+    return true;
+}
+
+/** Weighted mean of the distances around a frame, frames without a shape left out. */
+static bool mean_distance(Builder *b, int frame, float *distance, GError **error)
+{
+    const size_t n = (size_t)b->sequence->source.width * b->sequence->source.height;
+    float norm = 0.0f;
+    memset(distance, 0, n * sizeof *distance);
+    for (int k = -b->dist_radius; k <= b->dist_radius; k++) {
+        FlOutline *outline;
+        if (!outline_of(b, frame + k, &outline, error))
+            return false;
+        if (!outline || outline->empty)
+            continue;
+        const float weight = b->dist_weight[ABS(k)];
+        norm += weight;
+        for (size_t p = 0; p < n; p++)
+            distance[p] += weight * outline->distance[p];
+    }
+    for (size_t p = 0; p < n; p++)
+        distance[p] /= norm;
+    return true;
+}
+
+static bool smooth_distance(Builder *b, int frame, float *distance, GError **error)
+{
+    const FlGuideSource *source = &b->sequence->source;
+    const float sigma = b->sequence->params.dist_sigma_px;
+    return mean_distance(b, frame, distance, error) &&
+           (sigma <= 0.0f || fl_blur(distance, source->width, source->height, sigma, error));
+}
+
+/** The frame with the distance field that its motion is taken from. */
+static bool distance_of(Builder *b, int frame, FlFlowFrame *out, GError **error)
+{
+    FlOutline *outline;
+    if (!outline_of(b, frame, &outline, error))
+        return false;
+    *out = (FlFlowFrame){outline, outline ? outline->distance : NULL};
+    if (!outline || outline->empty || !b->smooths)
+        return true;
+    Smoothed *slot = &b->smoothed[frame % 3];
+    const size_t n = (size_t)outline->frame_width * outline->frame_height;
+    if (slot->frame != frame) {
+        if (!slot->distance && !(slot->distance = g_try_new(float, n)))
+            return fl_guide_sequence_no_memory(b->sequence, error);
+        slot->frame = -1;
+        if (!smooth_distance(b, frame, slot->distance, error))
+            return false;
+        slot->frame = frame;
+    }
+    out->distance = slot->distance;
+    return true;
+}
+
+static bool construct_motion(Builder *b, int frame, float **flow, GError **error)
+{
+    const FlGuideSource *source = &b->sequence->source;
+    const float limit = b->sequence->params.flow_limit * (float)MAX(source->width, source->height);
+    FlFlowFrame now, before, after;
+    if (!distance_of(b, frame - 1, &before, error) || !distance_of(b, frame, &now, error) ||
+        !distance_of(b, frame + 1, &after, error))
+        return false;
+    if (now.outline->empty || (!b->smooths && now.outline == before.outline))
+        return true;
+    g_autofree float *fresh = g_try_new(float, 2 * fl_rect_pixels(now.outline->box));
+    bool moves;
+    if (!fresh)
+        return fl_guide_sequence_no_memory(b->sequence, error);
+    if (!fl_flow_construct(&now, &before, &after, limit, fresh, &moves, error))
+        return false;
+    *flow = moves ? g_steal_pointer(&fresh) : NULL;
+    return true;
+}
+
+static bool motion_of(Builder *b, int frame, const Motion **motion, GError **error)
+{
+    Motion *slot = &b->motions[frame % b->n_slots];
+    if (slot->frame != frame) {
+        g_clear_pointer(&slot->flow, g_free);
+        if (!construct_motion(b, frame, &slot->flow, error))
+            return false;
+        slot->frame = frame;
+    }
+    *motion = slot;
+    return true;
+}
+
+/** Adds weight times a frame's motion to the flow of another, where both masks have the pixel. */
+static void add_motion(const FlOutline *to, const FlOutline *from, const float *motion,
+                       float weight, float *flow, float *norm)
+{
+    const FlRect *a = &to->box, *b = &from->box;
+    const int left = MAX(a->x, b->x), right = MIN(a->x + a->width, b->x + b->width);
+    const int top = MAX(a->y, b->y), bottom = MIN(a->y + a->height, b->y + b->height);
+    for (int y = top; y < bottom; y++) {
+        size_t p = (y - a->y) * (size_t)a->width + left - a->x;
+        size_t q = (y - b->y) * (size_t)b->width + left - b->x;
+        for (int x = left; x < right; x++, p++, q++) {
+            if (!(to->coverage[p] & from->coverage[q] & FL_INSIDE))
+                continue;
+            norm[p] += weight;
+            if (motion) {
+                flow[2 * p] += weight * motion[2 * q];
+                flow[2 * p + 1] += weight * motion[2 * q + 1];
+            }
+        }
+    }
+}
+
+/** *flow: NULL if nothing moves in the whole window, else of outline's box, to be freed. */
+static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float **flow,
+                          GError **error)
+{
+    const int first = MAX(frame - b->flow_radius, 0);
+    const int last = MIN(frame + b->flow_radius, b->sequence->source.n_frames - 1);
+    bool moves = false;
+    for (int k = first; k <= last; k++) { // in order, for the windows go forward only
+        const Motion *motion;
+        if (!motion_of(b, k, &motion, error))
+            return false;
+        moves |= motion->flow != NULL;
+    }
+    if (!moves)
+        return true;
+    const size_t n = fl_rect_pixels(outline->box);
+    g_autofree float *sum = g_try_new0(float, 2 * n), *norm = g_try_new0(float, n);
+    if (!sum || !norm)
+        return fl_guide_sequence_no_memory(b->sequence, error);
+    for (int k = first; k <= last; k++) {
+        const FlOutline *from = b->outlines[k % b->n_slots].outline;
+        add_motion(outline, from, b->motions[k % b->n_slots].flow, b->flow_weight[ABS(k - frame)],
+                   sum, norm);
+    }
+    for (size_t p = 0; p < n; p++)
+        if (norm[p] > 0.0f)
+            sum[2 * p] /= norm[p], sum[2 * p + 1] /= norm[p];
+    *flow = g_steal_pointer(&sum);
+    return true;
+}
+
+/** The flow that somebody gives, cropped to the shape. */
+static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **flow,
+                       GError **error)
+{
+    const FlGuideSource *source = &b->sequence->source;
+    const FlRect *box = &outline->box;
+    if (!source->flow(source->data, frame, b->given, error))
+        return false;
+    float *out = *flow = g_try_new0(float, 2 * fl_rect_pixels(*box));
+    if (!out)
+        return fl_guide_sequence_no_memory(b->sequence, error);
+    for (int y = 0; y < box->height; y++)
+        for (int x = 0; x < box->width; x++, out += 2) {
+            const float *in = b->given + 2 * ((box->y + y) * (size_t)source->width + box->x + x);
+            if (!isfinite(in[0]) || !isfinite(in[1])) {
+                g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                            "the flow of frame %d is not a number at column %d, row %d", frame,
+                            box->x + x, box->y + y);
+                return false;
+            }
+            if (fl_outline_contains(outline, box->x + x, box->y + y))
+                out[0] = in[0], out[1] = in[1];
+        }
+    return true;
+}
+
+/** Stores coverage and direction; the outline's normals are made if they are not yet. */
+static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *flow, GError **error)
+{
+    const size_t n = fl_rect_pixels(outline->box);
+    g_autofree uint8_t *shape = g_try_malloc0(2 * n);
+    if (!shape)
+        return fl_guide_sequence_no_memory(b->sequence, error);
+    memcpy(shape, outline->coverage, n);
+    if (!outline->empty) {
+        if (!outline->normal && !fl_outline_normals(outline, error))
+            return false;
+        fl_direction(outline->coverage, flow, outline->normal, n, b->sequence->params.still_px,
+                     shape + n);
+    }
+    b->sequence->frames[frame].holder[FL_GUIDE_PLANE_SHAPE] = frame;
+    return fl_spill_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_SHAPE),
+                        shape, 2 * n, error);
+}
+
+/** Stores the flow and the extent up to this frame; flow may be NULL. */
+static bool put_motion(Builder *b, int frame, const FlOutline *outline, const float *flow,
+                       GError **error)
+{
+    FlFrameRecord *record = &b->sequence->frames[frame];
+    const size_t n = fl_rect_pixels(outline->box);
+    g_autofree int32_t *fixed = g_try_new(int32_t, 2 * n), *norm = g_try_new(int32_t, n);
+    if (!fixed || !norm)
+        return fl_guide_sequence_no_memory(b->sequence, error);
+    for (size_t k = 0; k < 2 * n && flow; k++)
+        fixed[k] = fl_flow_to_fixed(flow[k]);
+    // the flow of a frame that nothing precedes stands in for one; no motion has happened yet
+    const bool counts = flow && frame > 0 && !record[-1].empty;
+    fl_extent_step(b->extent, &record->box, outline->coverage, &record->box, counts ? fixed : NULL,
+                   norm);
+    record->holder[FL_GUIDE_PLANE_PLUS] = frame;
+    if (flow)
+        record->holder[FL_GUIDE_PLANE_FLOW] = frame;
+    return fl_plane_store_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_PLUS),
+                              norm, n, 1, error) &&
+           (!flow ||
+            fl_plane_store_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_FLOW),
+                               fixed, 2 * n, 2, error));
+}
+
+static bool finish_frame(Builder *b, int frame, GError **error)
+{
+    FlFrameRecord *record = &b->sequence->frames[frame];
+    FlOutline *outline;
+    g_autofree float *flow = NULL;
+    if (!outline_of(b, frame, &outline, error))
+        return false;
+    // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
+    *record = (FlFrameRecord){outline->box, outline->empty, {-1, -1, -1, -1}};
+    if (outline->box.width == 0) {
+        fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);
+        return true;
+    }
+    if (!outline->empty &&
+        !(b->sequence->source.flow ? given_flow(b, frame, outline, &flow, error)
+                                   : smooth_motion(b, frame, outline, &flow, error)))
+        return false;
+    const OutlineSlot *last = &b->outlines[(frame + b->n_slots - 1) % b->n_slots];
+    const bool still = frame > 0 && last->outline == outline && !flow && !b->previous_moves;
+    b->previous_moves = flow != NULL;
+    if (still) { // as before in every respect
+        memcpy(record->holder, record[-1].holder, sizeof record->holder);
+        return true;
+    }
+    return put_shape(b, frame, outline, flow, error) && put_motion(b, frame, outline, flow, error);
+}
+
+/** The last frame whose outline the motion of a frame needs. */
+static int last_outline(const Builder *b, int frame)
+{
+    return frame + 1 + b->dist_radius;
+}
+
+static bool prepare_outline(Builder *b, int frame, GError **error)
+{
+    FlOutline *outline;
+    return outline_of(b, frame, &outline, error);
+}
+
+static bool prepare_motion(Builder *b, int frame, GError **error)
+{
+    const FlGuideSource *source = &b->sequence->source;
+    const Motion *motion;
+    return source->flow || frame >= source->n_frames || motion_of(b, frame, &motion, error);
+}
+
+/** What the first step finds, in order. */
+static bool prepare_first(Builder *b, GError **error)
+{
+    for (int frame = 0; frame <= last_outline(b, b->flow_radius); frame++)
+        if (!prepare_outline(b, frame, error))
+            return false;
+    for (int frame = 0; frame < b->flow_radius; frame++)
+        if (!prepare_motion(b, frame, error))
+            return false;
+    return true;
+}
+
+/** Finishes a frame, and prepares what the next step finds: the last motion that the next frame
+ * needs, and the last outline that the motion after that one needs. */
+static bool step(Builder *b, int frame, GError **error)
+{
+    const int motion = frame + 1 + b->flow_radius, outline = last_outline(b, motion + 1);
+    GError *first = NULL, *of_frame = NULL, *of_motion = NULL, *of_outline = NULL;
+#pragma omp parallel sections
+    {
+#pragma omp section
+        (void)prepare_outline(b, outline, &of_outline);
+#pragma omp section
+        (void)prepare_motion(b, motion, &of_motion);
+#pragma omp section
+        (void)(frame >= 0 && finish_frame(b, frame, &of_frame));
+    }
+    fl_parallel_error_keep(&first, of_frame); // the earliest frame's
+    fl_parallel_error_keep(&first, of_motion);
+    fl_parallel_error_keep(&first, of_outline);
+    return fl_parallel_error_tell(error, first);
+}
+
+bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error)
+{
+    g_auto(Builder) builder = {0};
+    if (!builder_init(&builder, sequence, error) || !prepare_first(&builder, error))
+        return false;
+    for (int frame = -1; frame < sequence->source.n_frames; frame++)
+        if (!step(&builder, frame, error))
+            return false;
+    return true;
+}

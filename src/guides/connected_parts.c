@@ -1,0 +1,71 @@
+#include "guides/connected_parts.h"
+
+#include "guides/guides.h"
+
+/** The oldest label that a label stands for; halves the way to it for the next time. */
+static int32_t root_of(GArray *parents, int32_t label)
+{
+    int32_t *parent = (int32_t *)(void *)parents->data;
+    while (parent[label] != label)
+        label = parent[label] = parent[parent[label]];
+    return label;
+}
+
+static int32_t join(GArray *parents, int32_t a, int32_t b)
+{
+    a = root_of(parents, a), b = root_of(parents, b);
+    g_array_index(parents, int32_t, MAX(a, b)) = MIN(a, b);
+    return MIN(a, b);
+}
+
+/** Gives every pixel a preliminary label, from the left or from above, and notes which are one. */
+static void label_pixels(const uint8_t *coverage, int width, int height, int32_t *part,
+                         GArray *parents)
+{
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++, part++, coverage++) {
+            if (*coverage < FL_INSIDE) {
+                *part = 0;
+                continue;
+            }
+            const int32_t left = x > 0 ? part[-1] : 0, up = y > 0 ? part[-width] : 0;
+            if (left && up && left != up) {
+                *part = join(parents, left, up);
+            } else if (left || up) {
+                *part = left ? left : up;
+            } else {
+                *part = (int32_t)parents->len;
+                g_array_append_val(parents, *part);
+            }
+        }
+}
+
+bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *coverage, int width,
+                             int height, GError **error)
+{
+    const size_t n = (size_t)width * height;
+    *parts = (FlConnectedParts){.part = g_try_new(int32_t, n)};
+    if (!parts->part) {
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                    "not enough memory for the parts of a mask of %dx%d pixels", width, height);
+        return false;
+    }
+    const int32_t outside = 0;
+    g_autoptr(GArray) parents = g_array_new(FALSE, FALSE, sizeof(int32_t));
+    g_array_append_val(parents, outside);
+    label_pixels(coverage, width, height, parts->part, parents);
+    g_autofree int32_t *number = g_new0(int32_t, parents->len);
+    for (guint label = 1; label < parents->len; label++) { // a root comes before its labels
+        const int32_t root = root_of(parents, (int32_t)label);
+        number[label] = root == (int32_t)label ? ++parts->n_parts : number[root];
+    }
+    for (size_t p = 0; p < n; p++)
+        parts->part[p] = number[parts->part[p]];
+    return true;
+}
+
+void fl_connected_parts_clear(FlConnectedParts *parts)
+{
+    g_free(parts->part);
+    *parts = (FlConnectedParts){0};
+}

@@ -1,0 +1,242 @@
+#include "guides/guide_sequence.h"
+
+#include "guides/distance.h"
+#include "guides/extent.h"
+#include "guides/plane_store.h"
+#include <string.h>
+
+bool fl_guide_sequence_no_memory(const FlGuideSequence *sequence, GError **error)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                "not enough memory for the guides of %dx%d pixels", sequence->source.width,
+                sequence->source.height);
+    return false;
+}
+
+bool fl_guide_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *coverage_angle,
+                             GError **error)
+{
+    const FlFrameRecord *record = &sequence->frames[frame];
+    return fl_spill_get(
+        sequence->spill,
+        fl_guide_plane_block(record->holder[FL_GUIDE_PLANE_SHAPE], FL_GUIDE_PLANE_SHAPE),
+        coverage_angle, 2 * fl_rect_pixels(record->box), error);
+}
+
+bool fl_guide_sequence_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane,
+                             int32_t *values, GError **error)
+{
+    const FlFrameRecord *record = &sequence->frames[frame];
+    const size_t step = plane == FL_GUIDE_PLANE_FLOW ? 2 : 1;
+    return fl_plane_store_get(sequence->spill, fl_guide_plane_block(record->holder[plane], plane),
+                              values, step * fl_rect_pixels(record->box), step, error);
+}
+
+/** One frame of the way back: the sum goes from frame + 1 to frame. Room: three frames. */
+static bool step_back(FlGuideSequence *sequence, int frame, FlExtent *extent, uint8_t *shape,
+                      int32_t *flow, int32_t *norm, GError **error)
+{
+    FlFrameRecord *record = &sequence->frames[frame];
+    const FlFrameRecord *next = frame + 1 < sequence->source.n_frames ? record + 1 : NULL;
+    const bool moves = next && next->holder[FL_GUIDE_PLANE_FLOW] >= 0;
+    if (record->empty) {
+        fl_extent_step(extent, &(FlRect){0}, NULL, NULL, NULL, NULL);
+        return true;
+    }
+    if (next && !moves &&
+        next->holder[FL_GUIDE_PLANE_SHAPE] == record->holder[FL_GUIDE_PLANE_SHAPE]) {
+        record->holder[FL_GUIDE_PLANE_MINUS] = next->holder[FL_GUIDE_PLANE_MINUS];
+        return true;
+    }
+    if (!fl_guide_sequence_shape(sequence, frame, shape, error) ||
+        (moves && !fl_guide_sequence_plane(sequence, frame + 1, FL_GUIDE_PLANE_FLOW, flow, error)))
+        return false;
+    fl_extent_step(extent, &record->box, shape, moves ? &next->box : NULL, moves ? flow : NULL,
+                   norm);
+    record->holder[FL_GUIDE_PLANE_MINUS] = frame;
+    return fl_plane_store_put(sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_MINUS),
+                              norm, fl_rect_pixels(record->box), 1, error);
+}
+
+/** The extents to come need the whole future: one pass from the last frame to the first. */
+static bool look_back(FlGuideSequence *sequence, GError **error)
+{
+    const FlGuideSource *source = &sequence->source;
+    const size_t n = (size_t)source->width * source->height;
+    g_autoptr(FlExtent) extent = fl_extent_new(source->width, source->height, error);
+    if (!extent)
+        return false;
+    g_autofree uint8_t *shape = g_try_malloc(2 * n);
+    g_autofree int32_t *flow = g_try_new(int32_t, 2 * n), *norm = g_try_new(int32_t, n);
+    if (!shape || !flow || !norm)
+        return fl_guide_sequence_no_memory(sequence, error);
+    for (int frame = source->n_frames - 1; frame >= 0; frame--)
+        if (!step_back(sequence, frame, extent, shape, flow, norm, error))
+            return false;
+    return true;
+}
+
+FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuideParams *params,
+                                       GError **error)
+{
+    g_assert(source->width >= 1 && source->height >= 1 && source->n_frames >= 0);
+    if (source->width > INT16_MAX || source->height > INT16_MAX) {
+        g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                    "frames of %dx%d pixels are too large, at most %d are possible", source->width,
+                    source->height, INT16_MAX);
+        return NULL;
+    }
+    g_autoptr(FlGuideSequence) sequence = g_new(FlGuideSequence, 1);
+    *sequence = (FlGuideSequence){.source = *source, .params = *params};
+    g_mutex_init(&sequence->lock);
+    sequence->frames = g_new0(FlFrameRecord, source->n_frames);
+    sequence->spill = fl_spill_new((size_t)source->n_frames * FL_N_GUIDE_PLANES, error);
+    if (!sequence->spill || !fl_guide_sequence_build(sequence, error) ||
+        !look_back(sequence, error))
+        return NULL;
+    return g_steal_pointer(&sequence);
+}
+
+void fl_guide_sequence_free(FlGuideSequence *sequence)
+{
+    if (!sequence)
+        return;
+    fl_spill_free(sequence->spill);
+    g_mutex_clear(&sequence->lock);
+    g_free(sequence->distance);
+    g_free(sequence->frames);
+    g_free(sequence);
+}
+
+/** Puts a cropped plane of integers of 1 / one px into one of the whole frame; channels: 1 or 2. */
+static void place_fixed(const FlRect *box, const int32_t *crop, int channels, int one, int width,
+                        float *plane)
+{
+    const float scale = 1.0f / (float)one;
+    const size_t n = (size_t)box->width * channels;
+    for (int y = 0; y < box->height; y++) {
+        float *row = plane + ((box->y + y) * (size_t)width + box->x) * channels;
+        for (size_t k = 0; k < n; k++)
+            row[k] = (float)*crop++ * scale;
+    }
+}
+
+static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane, int32_t *room,
+                      float *out, GError **error)
+{
+    const FlFrameRecord *record = &sequence->frames[frame];
+    if (record->holder[plane] < 0)
+        return true;
+    if (!fl_guide_sequence_plane(sequence, frame, plane, room, error))
+        return false;
+    const bool flow = plane == FL_GUIDE_PLANE_FLOW;
+    place_fixed(&record->box, room, flow ? 2 : 1, flow ? FL_FLOW_ONE : FL_EXTENT_ONE,
+                sequence->source.width, out);
+    return true;
+}
+
+static bool recall_distance(FlGuideSequence *sequence, int32_t holder, float *distance,
+                            size_t bytes)
+{
+    G_GNUC_UNUSED g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
+    const bool known = sequence->distance && sequence->holder == holder;
+    if (known)
+        memcpy(distance, sequence->distance, bytes);
+    return known;
+}
+
+/** Until it is asked for again, if it will be. */
+static void keep_distance(FlGuideSequence *sequence, bool again, int32_t holder,
+                          const float *distance, size_t bytes)
+{
+    G_GNUC_UNUSED g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
+    if (!again)
+        g_clear_pointer(&sequence->distance, g_free);
+    else if (sequence->distance && sequence->holder == holder)
+        return;
+    else if (sequence->distance || (sequence->distance = g_try_malloc(bytes)))
+        memcpy(sequence->distance, distance, bytes), sequence->holder = holder;
+}
+
+/** The frame that has a frame's shape; -1: there is none. */
+static int32_t shape_holder(const FlGuideSequence *sequence, int frame)
+{
+    const bool exists = frame < sequence->source.n_frames;
+    return exists ? sequence->frames[frame].holder[FL_GUIDE_PLANE_SHAPE] : -1;
+}
+
+/** The distance of a shape that the next frame has as well, as still ones do, is kept. */
+static bool get_distance(FlGuideSequence *sequence, int frame, const uint8_t *mask, float *distance,
+                         GError **error)
+{
+    const int w = sequence->source.width, h = sequence->source.height;
+    const size_t bytes = (size_t)w * h * sizeof *distance;
+    const int32_t holder = shape_holder(sequence, frame);
+    if (!recall_distance(sequence, holder, distance, bytes) &&
+        !fl_distance(mask, w, h, distance, error))
+        return false;
+    keep_distance(sequence, shape_holder(sequence, frame + 1) == holder, holder, distance, bytes);
+    return true;
+}
+
+bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
+                           GError **error)
+{
+    const int w = sequence->source.width, h = sequence->source.height;
+    g_assert(frame >= 0 && frame < sequence->source.n_frames);
+    g_assert(guides->width == w && guides->height == h);
+    const size_t n = (size_t)w * h;
+    memset(guides->mask, 0, n);
+    memset(guides->angle, 0, n);
+    memset(guides->flow, 0, 2 * n * sizeof *guides->flow);
+    memset(guides->ext_plus, 0, n * sizeof *guides->ext_plus);
+    memset(guides->ext_minus, 0, n * sizeof *guides->ext_minus);
+    const FlFrameRecord *record = &sequence->frames[frame];
+    const size_t area = fl_rect_pixels(record->box);
+    if (area > 0) {
+        g_autofree uint8_t *shape = g_try_malloc(2 * area);
+        g_autofree int32_t *room = g_try_new(int32_t, 2 * area);
+        if (!shape || !room)
+            return fl_guide_sequence_no_memory(sequence, error);
+        if (!fl_guide_sequence_shape(sequence, frame, shape, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, room, guides->flow, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, room, guides->ext_plus, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, room, guides->ext_minus, error))
+            return false;
+        fl_rect_copy(shape, record->box, guides->mask, (FlRect){0, 0, w, h}, 1);
+        fl_rect_copy(shape + area, record->box, guides->angle, (FlRect){0, 0, w, h}, 1);
+    }
+    // the lock is what is not const about a sequence
+    return get_distance((FlGuideSequence *)(uintptr_t)sequence, frame, guides->mask,
+                        guides->distance, error);
+}
+
+bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
+{
+    const size_t n = (size_t)width * height;
+    *guides = (FlGuides){.width = width, .height = height};
+    guides->mask = g_try_malloc0(n);
+    guides->distance = g_try_new0(float, n);
+    guides->flow = g_try_new0(float, 2 * n);
+    guides->angle = g_try_malloc0(n);
+    guides->ext_plus = g_try_new0(float, n);
+    guides->ext_minus = g_try_new0(float, n);
+    if (guides->mask && guides->distance && guides->flow && guides->angle && guides->ext_plus &&
+        guides->ext_minus)
+        return true;
+    fl_guides_clear(guides);
+    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                "not enough memory for the guides of %dx%d pixels", width, height);
+    return false;
+}
+
+void fl_guides_clear(FlGuides *guides)
+{
+    g_free(guides->mask);
+    g_free(guides->distance);
+    g_free(guides->flow);
+    g_free(guides->angle);
+    g_free(guides->ext_plus);
+    g_free(guides->ext_minus);
+    *guides = (FlGuides){0};
+}

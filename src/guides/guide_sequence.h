@@ -1,0 +1,54 @@
+/* How the guides of a sequence are kept: shared by the stage that makes them and the one that
+ * reads. */
+#ifndef FLUIDY_GUIDES_GUIDE_SEQUENCE_H
+#define FLUIDY_GUIDES_GUIDE_SEQUENCE_H
+
+#include "base/spill.h"
+#include "guides/guides.h"
+#include "guides/outline.h"
+
+/** What is stored of a frame, cropped to its box. */
+typedef enum FlGuidePlane {
+    FL_GUIDE_PLANE_SHAPE, // coverages, then angles; bytes
+    FL_GUIDE_PLANE_FLOW,  // interleaved, FL_FLOW_ONE a px
+    FL_GUIDE_PLANE_PLUS,  // FL_EXTENT_ONE a px, as is MINUS
+    FL_GUIDE_PLANE_MINUS,
+    FL_N_GUIDE_PLANES,
+} FlGuidePlane;
+
+/** A frame that looks like the one before shares its blocks. */
+typedef struct FlFrameRecord {
+    FlRect box;
+    bool empty;                        // no pixel inside
+    int32_t holder[FL_N_GUIDE_PLANES]; // the frame whose block holds the plane; -1: all 0
+} FlFrameRecord;
+
+struct FlGuideSequence {
+    FlGuideSource source;
+    FlGuideParams params;
+    FlFrameRecord *frames; // source.n_frames
+    FlSpill *spill;        // block of a plane of a frame: FL_N_GUIDE_PLANES * frame + plane
+
+    GMutex lock;     // guards what follows
+    float *distance; // the last one asked for, if the next frame has it too; or NULL
+    int32_t holder;  // of its shape
+};
+
+static inline size_t fl_guide_plane_block(int frame, FlGuidePlane plane)
+{
+    return (size_t)frame * FL_N_GUIDE_PLANES + plane;
+}
+
+/** Reads the masks and fills sequence->frames and spill, forwards, all but the extents to come. */
+bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error);
+
+/** Sets FL_ERROR_NO_MEMORY and returns false. */
+bool fl_guide_sequence_no_memory(const FlGuideSequence *sequence, GError **error);
+
+/** Reads a plane of shape or integers back; the plane must not be all 0. */
+bool fl_guide_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *coverage_angle,
+                             GError **error);
+bool fl_guide_sequence_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane,
+                             int32_t *values, GError **error);
+
+#endif

@@ -1,0 +1,32 @@
+/* Where the parts of a shape are in another frame. */
+#ifndef FLUIDY_GUIDES_PART_TRACKING_H
+#define FLUIDY_GUIDES_PART_TRACKING_H
+
+#include "guides/connected_parts.h"
+#include "guides/outline.h"
+
+typedef enum FlTraceKind {
+    FL_TRACE_LOST,     // the other frame has nothing like it
+    FL_TRACE_OVERLAPS, // some pixel of it is inside there, too: its contour tells the motion
+    FL_TRACE_JUMPS,    // it moved by more than its own size
+} FlTraceKind;
+
+/** One part of a frame's shape, as seen from another frame. */
+typedef struct FlTrace {
+    FlTraceKind kind;
+    float offset[2]; // of a jump: from the other frame's part to this one; px
+} FlTrace;
+
+/**
+ * Looks for the parts of `now` in the other frame, which may be NULL or empty. One that no pixel of
+ * the other frame overlaps is taken to come from the nearest part there that no pixel of `now`
+ * overlaps, if that is between half and twice its size, and its centre at most limit_px away.
+ *
+ * parts are those of now; trace is an array of n_parts + 1 by part number.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_part_tracking_find(const FlOutline *now, const FlConnectedParts *parts,
+                           const FlOutline *other, float limit_px, FlTrace *trace, GError **error);
+
+#endif

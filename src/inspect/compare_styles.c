@@ -1,0 +1,211 @@
+/* Styles beside each other: a film painted in several, and all that are installed. */
+#include <fluidy/compare.h>
+#include <fluidy/style.h>
+
+#include "base/alloc.h"
+#include "drawing/open_drawing.h"
+#include "io/contact_sheet.h"
+#include "io/output_name.h"
+#include "io/picture.h"
+#include "io/png.h"
+#include "style/style_folder.h"
+#include <glib/gstdio.h>
+#include <string.h>
+
+#define SHOWN_PX 320 // larger side of a frame on the sheet
+#define STYLE_COLUMNS 4
+
+/* What is compared: the film, the styles, and where frames are painted meanwhile. */
+typedef struct Comparison {
+    FlRenderOptions options; // complete
+    FlConfig *config;
+    FlDrawing *drawing;
+    char *folder, *pattern; // temporary
+    FlContactSheet contact;
+} Comparison;
+
+static void remove_frames(const Comparison *c)
+{
+    for (int f = 0; c->drawing && f < fl_drawing_frames(c->drawing); f++) {
+        g_autofree char *file =
+            fl_output_name(c->pattern, fl_drawing_number(c->drawing, f), NULL, NULL);
+        if (file)
+            g_unlink(file);
+    }
+    if (c->folder)
+        g_rmdir(c->folder);
+}
+
+static void comparison_clear(Comparison *c)
+{
+    remove_frames(c);
+    fl_drawing_free(c->drawing);
+    fl_config_free(c->config);
+    g_free(c->folder);
+    g_free(c->pattern);
+    fl_contact_sheet_clear(&c->contact);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Comparison, comparison_clear)
+
+static char *make_folder(GError **error)
+{
+    g_autoptr(GError) problem = NULL;
+    char *folder = g_dir_make_tmp("fluidy-XXXXXX", &problem);
+    if (!folder)
+        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: no folder can be made there: %s",
+                    g_get_tmp_dir(), problem->message);
+    return folder;
+}
+
+static bool comparison_init(Comparison *c, const FlRenderOptions *options, int n_styles,
+                            GError **error)
+{
+    *c = (Comparison){.options = *options};
+    if (!c->options.frames)
+        c->options.frames = "~1";
+    if (!(c->config = fl_config_load(options->config, error)))
+        return false;
+    FlRenderOptions complete = c->options;
+    fl_config_complete(c->config, &complete);
+    complete.warning = NULL, complete.note = NULL; // the renders will tell
+    if (!(c->drawing = fl_drawing_from_options(&complete, c->config, error)))
+        return false;
+    if (!(c->folder = make_folder(error)))
+        return false;
+    c->pattern = g_build_filename(c->folder, "%d.png", NULL);
+    const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
+    const double scale = MIN(1, (double)SHOWN_PX / MAX(width, height));
+    return fl_contact_sheet_init(&c->contact, fl_drawing_frames(c->drawing), 1 + n_styles,
+                                 MAX((int)(width * scale), 1), MAX((int)(height * scale), 1),
+                                 error);
+}
+
+static bool show_drawing(const Comparison *c, GError **error)
+{
+    const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
+    g_autofree uint8_t *rgba = fl_alloc((size_t)width * height, 4, "a picture", error);
+    for (int f = 0; rgba && f < fl_drawing_frames(c->drawing); f++) {
+        g_autoptr(FlDrawList) runs = fl_drawing_draw_list(c->drawing, f, error);
+        if (!runs)
+            return false;
+        g_autofree char *name = g_strdup_printf("frame %d", fl_drawing_number(c->drawing, f));
+        fl_draw_list_flat(runs, width, height, rgba);
+        g_autoptr(cairo_surface_t) picture = fl_surface_of(rgba, 4, width, height, error);
+        if (!picture)
+            return false;
+        fl_contact_sheet_put(&c->contact, f, 0, picture);
+        fl_contact_sheet_name_column(&c->contact, f, name);
+    }
+    fl_contact_sheet_name_row(&c->contact, 0, fl_drawing_name(c->drawing), "the drawing");
+    return rgba != NULL;
+}
+
+/* The caller's settings and the style: the last wins. */
+static bool paint(const Comparison *c, const char *style, bool first, GError **error)
+{
+    g_autofree char *line = g_strdup_printf("style %s", style);
+    if (c->options.note)
+        c->options.note(line, c->options.data);
+    const size_t n = c->options.n_settings;
+    g_autofree FlSetting *settings = g_new0(FlSetting, n + 1);
+    memcpy(settings, c->options.settings, n * sizeof *settings);
+    settings[n] = (FlSetting){.name = "style", .value = style};
+    FlRenderOptions options = c->options;
+    options.settings = settings, options.n_settings = n + 1;
+    options.output = c->pattern, options.format = "png", options.overwrite = FL_OVERWRITE_YES;
+    options.layers = options.report = options.stats = options.dump = NULL;
+    options.note = NULL;
+    if (!first)
+        options.warning = NULL; // they are the drawing's
+    return fl_render(&options, error);
+}
+
+static bool show_style(const Comparison *c, const char *style, int row, GError **error)
+{
+    for (int f = 0; f < fl_drawing_frames(c->drawing); f++) {
+        g_autofree char *file =
+            fl_output_name(c->pattern, fl_drawing_number(c->drawing, f), NULL, error);
+        g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
+        g_autoptr(cairo_surface_t) surface =
+            picture ? fl_surface_of(picture->rgba, 4, picture->width, picture->height, error)
+                    : NULL;
+        if (!surface)
+            return false;
+        fl_contact_sheet_put(&c->contact, f, row, surface);
+    }
+    g_autofree char *name = g_path_get_basename(style);
+    fl_contact_sheet_name_row(&c->contact, row, name, "");
+    return true;
+}
+
+bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles, GError **error)
+{
+    g_auto(Comparison) c = {0};
+    const int n = (int)g_strv_length((char **)styles);
+    for (int k = 0; k < n; k++) { // a mistyped one should not be found out after the others
+        g_autofree char *path = fl_style_find(styles[k], error);
+        if (!path)
+            return false;
+    }
+    if ((options->output && !fl_png_named(options->output, "sheets are", error)) ||
+        !comparison_init(&c, options, n, error) || !show_drawing(&c, error))
+        return false;
+    for (int k = 0; k < n; k++)
+        if (!paint(&c, styles[k], k == 0, error) || !show_style(&c, styles[k], k + 1, error))
+            return false;
+    g_autofree char *path = fl_output_of_film(
+        options->output ? options->output : "fluidy/{name}_styles.png", fl_drawing_name(c.drawing));
+    if (!fl_contact_sheet_save(&c.contact, path, options->overwrite == FL_OVERWRITE_YES, error))
+        return false;
+    g_autofree char *line = g_strdup_printf("%d styles: %s", n, path);
+    if (options->note)
+        options->note(line, options->data);
+    return true;
+}
+
+/* ---- what is installed ---------------------------------------------------------------------- */
+
+/* The k-th of STYLE_COLUMNS frames, the last one last. */
+static bool show_recording(const FlContactSheet *contact, const char *name, const FlStyle *style,
+                           int row, GError **error)
+{
+    const size_t pixels = (size_t)style->width * style->height;
+    for (int k = 0; k < STYLE_COLUMNS; k++) {
+        const int frame = (k + 1) * style->n_frames / STYLE_COLUMNS - 1;
+        const uint8_t *rgb = style->rgb + 3 * pixels * (size_t)MAX(frame, 0);
+        g_autoptr(cairo_surface_t) picture =
+            fl_surface_of(rgb, 3, style->width, style->height, error);
+        if (!picture)
+            return false;
+        fl_contact_sheet_put(contact, k, row, picture);
+    }
+    g_autofree char *lines = g_strdup_printf(
+        "%s\n%dx%d, %d frames\n%s", style->name, style->width, style->height, style->n_frames,
+        style->medium == FL_MEDIUM_OPAQUE ? "opaque" : "transparent");
+    fl_contact_sheet_name_row(contact, row, name, lines);
+    return true;
+}
+
+bool fl_style_sheet(const char *path, bool overwrite, GError **error)
+{
+    g_autoptr(GPtrArray) styles = fl_style_list();
+    if (!fl_png_named(path, "sheets are", error))
+        return false;
+    for (guint k = styles->len; k > 0; k--)
+        if (((FlStyleEntry *)styles->pdata[k - 1])->hidden)
+            g_ptr_array_remove_index(styles, k - 1);
+    g_auto(FlContactSheet) contact = {0};
+    if (!fl_contact_sheet_init(&contact, STYLE_COLUMNS, MAX((int)styles->len, 1), 240, 110, error))
+        return false;
+    for (guint k = 0; k < styles->len; k++) {
+        const FlStyleEntry *entry = styles->pdata[k];
+        g_autoptr(GError) problem = NULL;
+        g_autoptr(FlStyle) style = fl_style_load(entry->path, &problem);
+        if (style && !show_recording(&contact, entry->name, style, (int)k, error))
+            return false;
+        if (!style)
+            fl_contact_sheet_name_row(&contact, (int)k, entry->name, problem->message);
+    }
+    return fl_contact_sheet_save(&contact, path, overwrite, error);
+}

@@ -1,0 +1,180 @@
+#include "inspect/dump.h"
+
+#include "base/alloc.h"
+#include "base/colour_map.h"
+#include "guides/flow_file.h"
+#include "io/atomic_file.h"
+#include "io/picture.h"
+#include <math.h>
+#include <string.h>
+
+/* A plane of n floats a pixel, as large as the painter's part of the frame. */
+typedef struct Plane {
+    const char *name;
+    float *values;
+    int n;
+    float low, high; // shown as black and white
+} Plane;
+
+/* Where a frame's dump goes. */
+typedef struct Dump {
+    const char *folder;
+    const FlPainter *painter;
+    int number;
+} Dump;
+
+static char *file_of(const Dump *dump, const char *name, const char *suffix)
+{
+    g_autofree char *leaf = g_strdup_printf("%s_%04d%s", name, dump->number, suffix);
+    return g_build_filename(dump->folder, dump->painter->name, leaf, NULL);
+}
+
+/* The plane in the whole frame. */
+static float *whole(const FlPainter *painter, const Plane *plane, GError **error)
+{
+    const size_t n = (size_t)plane->n, pixels = (size_t)painter->width * painter->height;
+    float *out = fl_alloc(n * pixels, sizeof(float), "a picture", error);
+    if (out)
+        fl_rect_copy(plane->values, painter->rect, out,
+                     (FlRect){0, 0, painter->width, painter->height}, n * sizeof(float));
+    return out;
+}
+
+static bool write_raw(const Dump *dump, const Plane *plane, GError **error)
+{
+    const size_t values = (size_t)plane->n * dump->painter->width * dump->painter->height;
+    g_autofree char *path = file_of(dump, plane->name, ".f32");
+    g_auto(FlAtomicFile) file = {0};
+    if (!fl_atomic_open(&file, path, true, error))
+        return false;
+    fwrite(plane->values, sizeof(float), values, file.stream);
+    return fl_atomic_commit(&file, error);
+}
+
+static uint8_t grey(float value, float low, float high)
+{
+    const float share = high > low ? (value - low) / (high - low) : 0;
+    return (uint8_t)(CLAMP(share, 0, 1) * 255 + 0.5f);
+}
+
+static bool write_picture(const Dump *dump, const Plane *plane, GError **error)
+{
+    const int width = dump->painter->width, height = dump->painter->height;
+    const size_t pixels = (size_t)width * height;
+    g_autofree uint8_t *rgb = fl_alloc(3 * pixels, 1, "a picture", error);
+    if (!rgb)
+        return false;
+    for (size_t p = 0; p < pixels; p++) {
+        const float *v = plane->values + p * plane->n;
+        if (plane->n == 2)
+            fl_colour_wheel(v[0], v[1], plane->high, rgb + 3 * p);
+        else
+            for (int c = 0; c < 3; c++)
+                rgb[3 * p + c] = grey(v[plane->n == 1 ? 0 : c], plane->low, plane->high);
+    }
+    g_autofree char *path = file_of(dump, plane->name, ".png");
+    g_autofree char *folder = g_path_get_dirname(path);
+    g_mkdir_with_parents(folder, 0777);
+    return fl_png_write(path, rgb, width, height, 3, error);
+}
+
+static bool write_plane(const Dump *dump, const Plane *plane, GError **error)
+{
+    Plane shown = *plane;
+    g_autofree float *values = shown.values = whole(dump->painter, plane, error);
+    return values && write_raw(dump, &shown, error) && write_picture(dump, &shown, error);
+}
+
+static float largest(const float *values, size_t n)
+{
+    float most = 0;
+    for (size_t k = 0; k < n; k++)
+        most = MAX(most, fabsf(values[k]));
+    return most;
+}
+
+static bool dump_guides(const Dump *dump, const FlGuides *guides, GError **error)
+{
+    const size_t pixels = (size_t)guides->width * guides->height;
+    g_autofree float *mask = fl_alloc(pixels, sizeof(float), "a picture", error);
+    if (!mask)
+        return false;
+    for (size_t p = 0; p < pixels; p++)
+        mask[p] = guides->mask[p] / 255.0f;
+    const float b = dump->painter->style->exemplar->border_px;
+    const Plane planes[] = {
+        {"mask", mask, 1, 0, 1},
+        {"distance", guides->distance, 1, -b, 2 * b},
+        {"flow", guides->flow, 2, 0, largest(guides->flow, 2 * pixels)},
+        {"ext-plus", guides->ext_plus, 1, 0, largest(guides->ext_plus, pixels)},
+        {"ext-minus", guides->ext_minus, 1, 0, largest(guides->ext_minus, pixels)},
+    };
+    for (size_t k = 0; k < G_N_ELEMENTS(planes); k++)
+        if (!write_plane(dump, &planes[k], error))
+            return false;
+    g_autofree char *flo = file_of(dump, "flow", ".flo");
+    g_autofree float *flow = whole(dump->painter, &planes[2], error);
+    return flow && fl_flow_save(flo, dump->painter->width, dump->painter->height, flow, error);
+}
+
+/* The field as large as the frame, then what it looks like: x, y and frame as red, green, blue. */
+static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error)
+{
+    const int width = dump->painter->width, height = dump->painter->height;
+    const FlExemplarLevel *full = &dump->painter->style->exemplar->level[0];
+    const FlRect part = dump->painter->rect;
+    const size_t pixels = (size_t)width * height;
+    g_autofree float *field = fl_alloc(4 * pixels, sizeof(float), "a picture", error);
+    g_autofree float *shown =
+        field ? fl_alloc(3 * pixels, sizeof(float), "a picture", error) : NULL;
+    if (!shown)
+        return false;
+    for (size_t k = 0; k < 4 * pixels; k++)
+        field[k] = -1;
+    for (int y = 0; y < view->rect.height; y++)
+        for (int x = 0; x < view->rect.width; x++) {
+            const FlMatch m = view->nnf->match[(size_t)y * view->rect.width + x];
+            const size_t p =
+                (size_t)(part.y + view->rect.y + y) * width + part.x + view->rect.x + x;
+            if (m.frame == FL_NO_MATCH)
+                continue;
+            field[4 * p] = m.frame;
+            field[4 * p + 1] = m.x_16 / 16.0f, field[4 * p + 2] = m.y_16 / 16.0f;
+            field[4 * p + 3] = m.theta * (float)(2 * G_PI / FL_ANGLES);
+            shown[3 * p] = field[4 * p + 1] / (float)full->width;
+            shown[3 * p + 1] = field[4 * p + 2] / (float)full->height;
+            shown[3 * p + 2] = field[4 * p] / (float)full->n_frames;
+        }
+    const Plane raw = {"field", field, 4, 0, 1}, picture = {"field", shown, 3, 0, 1};
+    return write_raw(dump, &raw, error) && write_picture(dump, &picture, error);
+}
+
+static bool dump_temporal(const Dump *dump, const FlSynthView *view, GError **error)
+{
+    const FlRect part = dump->painter->rect;
+    const size_t pixels = fl_rect_pixels(part);
+    g_autofree float *weight = fl_alloc(pixels, sizeof(float), "a picture", error);
+    g_autofree float *colour =
+        weight ? fl_alloc(3 * pixels, sizeof(float), "a picture", error) : NULL;
+    if (!colour)
+        return false;
+    for (int y = 0; y < view->rect.height; y++) {
+        const size_t from = (size_t)y * view->rect.width, row = (size_t)view->rect.width;
+        const size_t to = (size_t)(view->rect.y + y) * part.width + view->rect.x;
+        memcpy(weight + to, view->temporal_weight + from, row * sizeof(float));
+        memcpy(colour + 3 * to, view->temporal + 3 * from, 3 * row * sizeof(float));
+    }
+    const Plane planes[] = {{"temporal", colour, 3, 0, 1}, {"temporal-weight", weight, 1, 0, 1}};
+    return write_plane(dump, &planes[0], error) && write_plane(dump, &planes[1], error);
+}
+
+bool fl_dump_frame(const char *folder, const FlPainter *painter, const FlGuides *guides, int number,
+                   GError **error)
+{
+    const Dump dump = {folder, painter, number};
+    if (!dump_guides(&dump, guides, error))
+        return false;
+    if (painter->view.nnf && !dump_field(&dump, &painter->view, error))
+        return false;
+    return !painter->view.temporal || dump_temporal(&dump, &painter->view, error);
+}

@@ -1,0 +1,166 @@
+#include "inspect/guide_pictures.h"
+
+#include "base/alloc.h"
+#include "base/colour_map.h"
+#include "inspect/page_script.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#define ARROW_EVERY 16 // px of the pictures
+
+bool fl_guide_view_init(FlGuideView *view, int width, int height, GError **error)
+{
+    const size_t pixels = (size_t)width * height;
+    *view = (FlGuideView){0};
+    for (int k = 0; k < FL_GUIDE_PICTURES; k++)
+        if (!(view->picture[k] = fl_picture_new(width, height, error)))
+            return false;
+    return (view->flow = fl_alloc(2 * pixels, sizeof(float), "a picture", error)) &&
+           (view->owner = fl_alloc(pixels, sizeof(int16_t), "a picture", error));
+}
+
+void fl_guide_view_clear(FlGuideView *view)
+{
+    for (int k = 0; k < FL_GUIDE_PICTURES; k++)
+        fl_picture_free(view->picture[k]);
+    free(view->flow);
+    free(view->owner);
+    *view = (FlGuideView){0};
+}
+
+void fl_guide_view_reset(FlGuideView *view)
+{
+    const size_t pixels = (size_t)view->picture[0]->width * view->picture[0]->height;
+    for (int k = 0; k < FL_GUIDE_PICTURES; k++)
+        memset(view->picture[k]->rgba, 0, 4 * pixels);
+    memset(view->flow, 0, 2 * sizeof(float) * pixels);
+    memset(view->owner, 0, sizeof(int16_t) * pixels);
+}
+
+/* Where the exemplar's patch of a pixel of the painter's part is from. */
+static FlMatch match_at(const FlSynthView *view, int x, int y)
+{
+    const int column = x - view->rect.x, row = y - view->rect.y;
+    if (!view->nnf || column < 0 || row < 0 || column >= view->rect.width ||
+        row >= view->rect.height)
+        return (FlMatch){.frame = FL_NO_MATCH};
+    return view->nnf->match[(size_t)row * view->rect.width + column];
+}
+
+static void put(const FlGuideView *view, FlGuidePicture which, size_t pixel, const uint8_t rgb[3])
+{
+    memcpy(view->picture[which]->rgba + 4 * pixel, rgb, 3);
+    view->picture[which]->rgba[4 * pixel + 3] = 255;
+}
+
+static void put_match(const FlGuideView *view, const FlPainter *painter, size_t to, FlMatch match)
+{
+    const FlExemplarLevel *full = &painter->style->exemplar->level[0];
+    uint8_t rgb[3];
+    if (match.frame == FL_NO_MATCH)
+        return;
+    fl_colour_map((float)match.frame / (float)MAX(full->n_frames - 1, 1), rgb);
+    put(view, FL_GUIDE_TIME, to, rgb);
+    const uint8_t place[3] = {(uint8_t)(255 * fl_match_x(match) / full->width),
+                              (uint8_t)(255 * fl_match_y(match) / full->height), 128};
+    put(view, FL_GUIDE_PLACE, to, place);
+}
+
+/* One pixel of the pictures, from one of the painter's part. */
+static void put_pixel(FlGuideView *view, const FlPainter *painter, const FlGuides *guides, int x,
+                      int y, size_t to)
+{
+    const FlExemplar *exemplar = painter->style->exemplar;
+    const size_t from = (size_t)y * guides->width + x;
+    const float u = guides->flow[2 * from], v = guides->flow[2 * from + 1];
+    const float shrunk = (float)view->picture[0]->width / (float)painter->width;
+    uint8_t rgb[3];
+    fl_colour_map(guides->distance[from] / (3 * exemplar->border_px), rgb);
+    put(view, FL_GUIDE_DISTANCE, to, rgb);
+    fl_colour_map(guides->ext_plus[from] * exemplar->ext_scale, rgb);
+    put(view, FL_GUIDE_EXT_PLUS, to, rgb);
+    fl_colour_map(guides->ext_minus[from] * exemplar->ext_scale, rgb);
+    put(view, FL_GUIDE_EXT_MINUS, to, rgb);
+    put_match(view, painter, to, match_at(&painter->view, x, y));
+    view->flow[2 * to] = u * shrunk, view->flow[2 * to + 1] = v * shrunk;
+}
+
+void fl_guide_view_add(FlGuideView *view, int p, const FlPainter *painter, const FlGuides *guides)
+{
+    const int width = view->picture[0]->width, height = view->picture[0]->height;
+    for (int row = 0; row < height; row++)
+        for (int column = 0; column < width; column++) {
+            const size_t to = (size_t)row * width + column;
+            const int x = (2 * column + 1) * painter->width / (2 * width) - painter->rect.x;
+            const int y = (2 * row + 1) * painter->height / (2 * height) - painter->rect.y;
+            if (x < 0 || y < 0 || x >= guides->width || y >= guides->height ||
+                guides->mask[(size_t)y * guides->width + x] < FL_INSIDE || view->owner[to] > p + 1)
+                continue;
+            view->owner[to] = (int16_t)(p + 1);
+            put_pixel(view, painter, guides, x, y, to);
+        }
+}
+
+/* The largest flow, px of the pictures per frame. */
+static float fastest(const FlGuideView *view)
+{
+    const size_t pixels = (size_t)view->picture[0]->width * view->picture[0]->height;
+    float most = 0;
+    for (size_t p = 0; p < pixels; p++)
+        most = MAX(most, hypotf(view->flow[2 * p], view->flow[2 * p + 1]));
+    return most;
+}
+
+/* The colours of the flow are those of its share of the fastest. */
+static void colour_flow(const FlGuideView *view, float full)
+{
+    const size_t pixels = (size_t)view->picture[0]->width * view->picture[0]->height;
+    for (size_t p = 0; p < pixels; p++) {
+        uint8_t rgb[3];
+        if (view->owner[p] == 0)
+            continue;
+        fl_colour_wheel(view->flow[2 * p], view->flow[2 * p + 1], full, rgb);
+        put(view, FL_GUIDE_FLOW, p, rgb);
+    }
+}
+
+static void write_arrows(const FlGuideView *view, FILE *out)
+{
+    const int width = view->picture[0]->width, height = view->picture[0]->height;
+    const char *comma = "";
+    fputc('[', out);
+    for (int y = ARROW_EVERY / 2; y < height; y += ARROW_EVERY)
+        for (int x = ARROW_EVERY / 2; x < width; x += ARROW_EVERY) {
+            const size_t p = (size_t)y * width + x;
+            if (view->owner[p] == 0)
+                continue;
+            fprintf(out, "%s%d,%d,", comma, x, y);
+            fl_script_number(out, view->flow[2 * p]);
+            fputc(',', out);
+            fl_script_number(out, view->flow[2 * p + 1]);
+            comma = ",";
+        }
+    fputc(']', out);
+}
+
+bool fl_guide_view_write(const FlGuideView *view, FILE *out, GError **error)
+{
+    static const char *const names[FL_GUIDE_PICTURES] = {"distance",  "flow", "ext_plus",
+                                                         "ext_minus", "time", "place"};
+    const float full = fastest(view);
+    colour_flow(view, MAX(full, FLT_MIN));
+    fputc('{', out);
+    for (int k = 0; k < FL_GUIDE_PICTURES; k++) {
+        fprintf(out, "\"%s\":", names[k]);
+        if (!fl_script_picture(out, view->picture[k], false, error))
+            return false;
+        fputc(',', out);
+    }
+    fputs("\"fastest\":", out);
+    fl_script_number(out, full);
+    fputs(",\"arrows\":", out);
+    write_arrows(view, out);
+    fputc('}', out);
+    return true;
+}

@@ -1,0 +1,41 @@
+/* What the synthesis saw in one frame, all regions in one picture per guide. */
+#ifndef FLUIDY_INSPECT_GUIDE_PICTURES_H
+#define FLUIDY_INSPECT_GUIDE_PICTURES_H
+
+#include "io/picture.h"
+#include "render/painter.h"
+#include <stdio.h>
+
+typedef enum FlGuidePicture {
+    FL_GUIDE_DISTANCE,  // 0 to three widths of the border
+    FL_GUIDE_FLOW,      // direction as hue, the fastest at full strength
+    FL_GUIDE_EXT_PLUS,  // 0 to the exemplar's largest extent
+    FL_GUIDE_EXT_MINUS, // the same
+    FL_GUIDE_TIME,      // the exemplar's frame that each pixel is from, first to last
+    FL_GUIDE_PLACE,     // the place in the exemplar: x as red, y as green
+    FL_GUIDE_PICTURES
+} FlGuidePicture;
+
+/** The pictures of one frame in the making; transparent where no region is. */
+typedef struct FlGuideView {
+    FlPicture *picture[FL_GUIDE_PICTURES];
+    float *flow;    // 2 per pixel: px of the picture per frame
+    int16_t *owner; // 1 + index of the painter whose pixel it is; 0: none
+} FlGuideView;
+
+bool fl_guide_view_init(FlGuideView *view, int width, int height, GError **error);
+void fl_guide_view_clear(FlGuideView *view);
+
+/** Makes the pictures empty again. */
+void fl_guide_view_reset(FlGuideView *view);
+
+/** Adds what painter p, 0 …, has painted from; a higher p hides a lower one, in any order. */
+void fl_guide_view_add(FlGuideView *view, int p, const FlPainter *painter, const FlGuides *guides);
+
+/**
+ * Writes {"distance": picture, …, "fastest": speed, "arrows": [x, y, u, v, …]}, in px of the
+ * pictures per frame. FL_ERROR_NO_MEMORY.
+ */
+bool fl_guide_view_write(const FlGuideView *view, FILE *out, GError **error);
+
+#endif

@@ -1,0 +1,22 @@
+/* Values of JavaScript in a page that is being written. */
+#ifndef FLUIDY_INSPECT_PAGE_SCRIPT_H
+#define FLUIDY_INSPECT_PAGE_SCRIPT_H
+
+#include "io/picture.h"
+#include <stdio.h>
+
+/** A string in quotes, whatever is in it; NULL: null. It can end neither itself nor the script. */
+void fl_script_string(FILE *out, const char *text);
+
+/** A number, with six digits; null if it is not finite. */
+void fl_script_number(FILE *out, double value);
+
+/** "#rrggbb" in quotes. */
+void fl_script_colour(FILE *out, const uint8_t rgb[3]);
+
+/**
+ * A picture as a data URI in quotes, with alpha unless it is opaque. FL_ERROR_NO_MEMORY.
+ */
+bool fl_script_picture(FILE *out, const FlPicture *picture, bool opaque, GError **error);
+
+#endif

@@ -1,0 +1,250 @@
+/* What a drawing is made of, as tables, configs and maps. */
+#include <fluidy/inspect.h>
+
+#include "base/alloc.h"
+#include "base/surface.h"
+#include "drawing/open_drawing.h"
+#include "io/output_name.h"
+#include "io/png.h"
+#include <fluidy/style.h>
+
+#include <math.h>
+#include <string.h>
+
+/* A drawing and what the caller said of it. */
+typedef struct Subject {
+    FlRenderOptions options; // complete
+    FlConfig *config;
+    FlDrawing *drawing;
+} Subject;
+
+static void subject_clear(Subject *subject)
+{
+    fl_drawing_free(subject->drawing);
+    fl_config_free(subject->config);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Subject, subject_clear)
+
+static bool subject_init(Subject *subject, const FlRenderOptions *options, GError **error)
+{
+    *subject = (Subject){.options = *options};
+    subject->config = fl_config_load(options->config, error);
+    if (!subject->config)
+        return false;
+    fl_config_complete(subject->config, &subject->options);
+    subject->drawing = fl_drawing_from_options(&subject->options, subject->config, error);
+    return subject->drawing != NULL;
+}
+
+/* ---- tables ------------------------------------------------------------------------------- */
+
+enum { NAME, PAINT, FRAMES, AREA, SHAPES, PAINTED, SECTION, LABEL, N_COLUMNS };
+
+typedef struct Row {
+    char *cell[N_COLUMNS];
+} Row;
+
+static void row_clear(void *row)
+{
+    for (int c = 0; c < N_COLUMNS; c++)
+        g_free(((Row *)row)->cell[c]);
+}
+
+static Row heading(void)
+{
+    static const char *const words[N_COLUMNS] = {"REGION", "PAINT",   "FRAMES",  "AREA",
+                                                 "SHAPES", "PAINTED", "SECTION", "LAYER"};
+    Row row;
+    for (int c = 0; c < N_COLUMNS; c++)
+        row.cell[c] = g_strdup(words[c]);
+    return row;
+}
+
+static Row describe(const Subject *subject, int region)
+{
+    const FlRegion *r = fl_drawing_region(subject->drawing, region);
+    const char *section = r->rule >= 0 ? subject->config->rules[r->rule].name : "-";
+    return (Row){{g_strdup(r->name), g_strdup(r->paint),
+                  g_strdup_printf("%d/%d", r->n_present, fl_drawing_frames(subject->drawing)),
+                  g_strdup_printf("%.0f", r->area_px), g_strdup_printf("%d", r->n_leaves),
+                  g_strdup(r->paintable ? "yes" : "no"), g_strdup(section),
+                  g_strdup(*r->label ? r->label : "-")}};
+}
+
+/* Numbers stand at the right of their column. */
+static void append_row(GString *text, const Row *row, const int widths[N_COLUMNS])
+{
+    for (int c = 0; c < N_COLUMNS; c++) {
+        const int gap = widths[c] - (int)g_utf8_strlen(row->cell[c], -1);
+        const bool right = c == FRAMES || c == AREA || c == SHAPES;
+        if (c == N_COLUMNS - 1)
+            g_string_append_printf(text, "%s\n", row->cell[c]);
+        else
+            g_string_append_printf(text, "%*s%s%*s  ", right ? gap : 0, "", row->cell[c],
+                                   right ? 0 : gap, "");
+    }
+}
+
+static char *table(const Subject *subject)
+{
+    g_autoptr(GArray) rows = g_array_new(FALSE, FALSE, sizeof(Row));
+    g_array_set_clear_func(rows, row_clear);
+    const Row top = heading();
+    g_array_append_val(rows, top);
+    for (int r = 0; r < fl_drawing_regions(subject->drawing); r++) {
+        const Row row = describe(subject, r);
+        g_array_append_val(rows, row);
+    }
+    int widths[N_COLUMNS] = {0};
+    for (guint i = 0; i < rows->len; i++)
+        for (int c = 0; c < N_COLUMNS; c++)
+            widths[c] = MAX(widths[c], (int)g_utf8_strlen(g_array_index(rows, Row, i).cell[c], -1));
+    GString *text = g_string_new(NULL);
+    for (guint i = 0; i < rows->len; i++)
+        append_row(text, &g_array_index(rows, Row, i), widths);
+    return g_string_free(text, FALSE);
+}
+
+/* ---- configs ------------------------------------------------------------------------------ */
+
+static const char *style_said(const Subject *subject)
+{
+    for (size_t i = subject->options.n_settings; i > 0; i--)
+        if (!subject->options.settings[i - 1].region &&
+            strcmp(subject->options.settings[i - 1].name, "style") == 0)
+            return subject->options.settings[i - 1].value;
+    return NULL;
+}
+
+/* What a config starts with: what was said, else 01, else the first that is found. NULL: none is.
+ */
+static char *style_to_start_with(const Subject *subject)
+{
+    const char *said = style_said(subject);
+    g_autoptr(GPtrArray) found = said ? NULL : fl_style_list();
+    const char *name = said;
+    for (guint i = 0; found && i < found->len; i++) {
+        const FlStyleEntry *entry = g_ptr_array_index(found, i);
+        if (!name || strcmp(entry->name, "01") == 0)
+            name = entry->name;
+    }
+    return g_strdup(name);
+}
+
+static void append_section(GString *text, const Subject *subject, int region)
+{
+    const FlRegion *r = fl_drawing_region(subject->drawing, region);
+    g_string_append_printf(text, "\n[region %s]\n# %s%s%s, %d of %d frames, %.0f px\n", r->name,
+                           r->paint, *r->label ? " in layer " : "", r->label, r->n_present,
+                           fl_drawing_frames(subject->drawing), r->area_px);
+    if (r->paintable)
+        g_string_append(text, "# style = 01\n# tint = fill\n");
+    else
+        g_string_append(text, "# drawn as it is; passthrough = off paints it\n");
+}
+
+static char *config_text(const Subject *subject)
+{
+    g_autofree char *style = style_to_start_with(subject);
+    GString *text = g_string_new("# How the regions are painted; see fluidy-svg.conf(5).\n");
+    g_string_append_printf(text,
+                           "# Lines that start with # say nothing yet.\n\n"
+                           "[project]\nversion = 1\n# background = #ffffff\n\n"
+                           "[defaults]\n%sstyle = %s\n",
+                           style ? "" : "# ", style ? style : "01");
+    for (int r = 0; r < fl_drawing_regions(subject->drawing); r++)
+        append_section(text, subject, r);
+    return g_string_free(text, FALSE);
+}
+
+char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError **error)
+{
+    g_auto(Subject) subject = {0};
+    if (!subject_init(&subject, options, error))
+        return NULL;
+    return listing == FL_LISTING_CONFIG ? config_text(&subject) : table(&subject);
+}
+
+/* ---- maps --------------------------------------------------------------------------------- */
+
+#define LINE_PX 20
+#define LEGEND_PX 280
+
+/* The legend beside the map, as high as it needs to be. */
+static void draw_legend(cairo_t *cr, const FlDrawing *drawing, int left)
+{
+    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(cr, 12);
+    int line = 0;
+    for (int r = 0; r < fl_drawing_regions(drawing); r++) {
+        const FlRegion *region = fl_drawing_region(drawing, r);
+        if (!region->paintable)
+            continue;
+        uint8_t rgb[3];
+        fl_region_colour(drawing, r, rgb);
+        const double y = 8 + LINE_PX * line++;
+        cairo_set_source_rgb(cr, rgb[0] / 255.0, rgb[1] / 255.0, rgb[2] / 255.0);
+        cairo_rectangle(cr, left + 8, y, 14, 14);
+        cairo_fill(cr);
+        cairo_set_source_rgb(cr, 0, 0, 0);
+        cairo_move_to(cr, left + 30, y + 11);
+        cairo_show_text(cr, region->name);
+    }
+}
+
+static int legend_height(const FlDrawing *drawing)
+{
+    int lines = 0;
+    for (int r = 0; r < fl_drawing_regions(drawing); r++)
+        lines += fl_drawing_region(drawing, r)->paintable;
+    return 16 + LINE_PX * lines;
+}
+
+static bool write_map(const Subject *subject, int frame, const char *pattern, GError **error)
+{
+    const FlDrawing *drawing = subject->drawing;
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
+    const int all_width = width + LEGEND_PX, all_height = MAX(height, legend_height(drawing));
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, frame, error);
+    g_autofree uint8_t *map = draws ? fl_alloc((size_t)width * height, 4, "a map", error) : NULL;
+    if (!map)
+        return false;
+    fl_draw_list_map(drawing, draws, map);
+    g_autoptr(cairo_surface_t) picture = fl_surface_of(map, 4, width, height, error);
+    g_autoptr(cairo_surface_t) surface =
+        picture ? fl_surface_new(CAIRO_FORMAT_RGB24, all_width, all_height, error) : NULL;
+    if (!surface)
+        return false;
+    g_autoptr(cairo_t) cr = cairo_create(surface);
+    cairo_set_source_rgb(cr, 1, 1, 1);
+    cairo_paint(cr);
+    cairo_set_source_surface(cr, picture, 0, 0);
+    cairo_paint(cr);
+    draw_legend(cr, drawing, width);
+    g_autofree uint8_t *rgba = fl_surface_bytes(surface, 4, all_height, error);
+    g_autofree char *path = fl_output_name(pattern, fl_drawing_number(drawing, frame), NULL, error);
+    const FlPng png = {.width = all_width, .height = all_height, .rgba = rgba, .opaque = true};
+    const bool overwrite = subject->options.overwrite == FL_OVERWRITE_YES;
+    return rgba && path && fl_png_save(&png, path, overwrite, error);
+}
+
+bool fl_map_regions(const FlRenderOptions *options, GError **error)
+{
+    g_auto(Subject) subject = {0};
+    if (!subject_init(&subject, options, error))
+        return false;
+    g_autofree char *pattern =
+        fl_output_of_film(options->output ? options->output : "fluidy/{name}_map_%04d.png",
+                          fl_drawing_name(subject.drawing));
+    if (!fl_png_named(pattern, "maps are", error))
+        return false;
+    const int n = fl_drawing_frames(subject.drawing);
+    for (int f = 0; f < n; f++)
+        if (!write_map(&subject, f, pattern, error))
+            return false;
+    g_autofree char *line = g_strdup_printf("%d map%s: %s", n, n == 1 ? "" : "s", pattern);
+    if (options->note)
+        options->note(line, options->data);
+    return true;
+}

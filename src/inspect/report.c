@@ -1,0 +1,326 @@
+#include "inspect/report.h"
+
+#include "base/alloc.h"
+#include "inspect/exemplar_use.h"
+#include "inspect/flicker.h"
+#include "inspect/guide_pictures.h"
+#include "inspect/page_script.h"
+#include "inspect/stats.h"
+#include "io/atomic_file.h"
+#include <fluidy/fluidy.h>
+#include <gio/gio.h>
+#include <math.h>
+#include <string.h>
+
+#define MAX_SIDE 480               // px of a picture in the page
+#define MIN_SIDE 240               // rather than smaller ones, not every frame is shown
+#define PAGE_PIXELS (6e6)          // of all painted pictures together: about 12 MB of page
+#define GUIDE_FRAMES 3             // whose guides are shown
+#define MARK "<!-- the frames -->" // where they go in page.html
+
+struct FlReport {
+    const FlPlan *plan;
+    const FlBackground *background;
+    FlAtomicFile file;
+    GBytes *page;
+    int width, height; // of the pictures, px
+    int every;         // every n-th frame has pictures
+    double seconds[3]; // paint, compose, write: sums
+    GMutex lock;       // of view and use
+    FlGuideView view;
+    FlFlicker *flicker;      // by painter
+    double *painter_seconds; // by painter: sum
+    FlExemplarUse *use;      // by recording; those without a box are not used
+};
+
+/* As many pictures, and as large, as the page bears. */
+static void choose_size(FlReport *report)
+{
+    const int width = report->plan->width, height = report->plan->height;
+    const int n = fl_drawing_frames(report->plan->drawing), larger = MAX(width, height);
+    const double smaller = (double)MIN(width, height) / larger;
+    const double side = sqrt(PAGE_PIXELS / (n * smaller));
+    const double shown = MIN(CLAMP(side, MIN_SIDE, MAX_SIDE), larger);
+    report->width = MAX((int)(width * shown / larger + 0.5), 1);
+    report->height = MAX((int)(height * shown / larger + 0.5), 1);
+    const double most = PAGE_PIXELS / ((double)report->width * report->height);
+    report->every = MAX((int)ceil(n / most), 1);
+}
+
+/* The page as it is in the sources, and in it the place of the frames. */
+static const char *page_mark(const FlReport *report)
+{
+    gsize n = 0;
+    const char *text = g_bytes_get_data(report->page, &n);
+    return g_strstr_len(text, (gssize)n, MARK);
+}
+
+static bool begin(FlReport *report, const char *folder, GError **error)
+{
+    g_autofree char *path = g_build_filename(folder, "index.html", NULL);
+    const bool overwrite = report->plan->options.overwrite != FL_OVERWRITE_REFUSE;
+    report->page = g_resources_lookup_data("/fluidy/report/page.html", 0, NULL);
+    if (!fl_atomic_open(&report->file, path, overwrite, error))
+        return false;
+    const char *text = g_bytes_get_data(report->page, NULL);
+    fwrite(text, 1, (size_t)(page_mark(report) - text), report->file.stream);
+    return true;
+}
+
+FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, const char *folder,
+                        GError **error)
+{
+    g_autoptr(FlReport) report = g_new0(FlReport, 1);
+    report->plan = plan, report->background = background;
+    g_mutex_init(&report->lock);
+    report->flicker = g_new0(FlFlicker, MAX(plan->n_painters, 1));
+    report->painter_seconds = g_new0(double, MAX(plan->n_painters, 1));
+    report->use = g_new0(FlExemplarUse, MAX(plan->n_painters, 1));
+    choose_size(report);
+    if (!fl_guide_view_init(&report->view, report->width, report->height, error) ||
+        !begin(report, folder, error))
+        return NULL;
+    return g_steal_pointer(&report);
+}
+
+void fl_report_free(FlReport *report)
+{
+    if (!report)
+        return;
+    for (int p = 0; p < report->plan->n_painters; p++) {
+        fl_flicker_clear(&report->flicker[p]);
+        fl_exemplar_use_clear(&report->use[p]);
+    }
+    g_free(report->flicker);
+    g_free(report->use);
+    g_free(report->painter_seconds);
+    fl_guide_view_clear(&report->view);
+    fl_atomic_clear(&report->file);
+    g_clear_pointer(&report->page, g_bytes_unref);
+    g_mutex_clear(&report->lock);
+    g_free(report);
+}
+
+/* The middles of equal parts of the film, where the drawing is not held. */
+static bool shows_guides(const FlReport *report, int frame)
+{
+    const int n = fl_drawing_frames(report->plan->drawing);
+    for (int k = 0; k < GUIDE_FRAMES; k++) {
+        const int middle = (2 * k + 1) * n / (2 * GUIDE_FRAMES);
+        if (frame == middle - middle % report->plan->hold)
+            return true;
+    }
+    return false;
+}
+
+bool fl_report_wants_view(const FlReport *report, int frame)
+{
+    return report && shows_guides(report, frame);
+}
+
+/* Counts what a painter took from its recording. */
+static bool add_use(FlReport *report, const FlPainter *painter, GError **error)
+{
+    FlExemplarUse *use = report->use;
+    while (use->style && use->style != painter->style)
+        use++;
+    if (!use->style && !fl_exemplar_use_init(use, painter->style, error))
+        return false;
+    fl_exemplar_use_add(use, painter);
+    return true;
+}
+
+bool fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides, GError **error)
+{
+    if (!report)
+        return true;
+    const FlPainter *painter = &report->plan->painters[p];
+    if (frame % painter->settings.hold != 0) { // the picture is the last one
+        report->flicker[p].change = 0;
+        return true;
+    }
+    bool done = true;
+    if (shows_guides(report, frame)) {
+        g_mutex_lock(&report->lock);
+        fl_guide_view_add(&report->view, p, painter, guides);
+        done = add_use(report, painter, error);
+        g_mutex_unlock(&report->lock);
+    }
+    return done && fl_flicker_measure(&report->flicker[p], painter, guides, error);
+}
+
+/* ---- a frame -------------------------------------------------------------------------------- */
+
+static bool write_scaled(FlReport *report, const FlPicture *whole, bool opaque, GError **error)
+{
+    g_autoptr(FlPicture) small = fl_picture_resize(whole, report->width, report->height, error);
+    return small && fl_script_picture(report->file.stream, small, opaque, error);
+}
+
+static bool write_pictures(FlReport *report, const FlComposite *composite, GError **error)
+{
+    FILE *out = report->file.stream;
+    const FlPlan *plan = report->plan;
+    const FlPicture after = {plan->width, plan->height, composite->rgba};
+    g_autoptr(FlPicture) drawn =
+        fl_picture_new(fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
+    if (!drawn)
+        return false;
+    fputs(",after:", out);
+    if (!write_scaled(report, &after, report->background->opaque, error))
+        return false;
+    fl_draw_list_flat(composite->draws, drawn->width, drawn->height, drawn->rgba);
+    fputs(",before:", out);
+    if (!write_scaled(report, drawn, false, error))
+        return false;
+    fl_draw_list_map(plan->drawing, composite->draws, drawn->rgba);
+    fputs(",map:", out);
+    return write_scaled(report, drawn, false, error);
+}
+
+/* [energy, change, seconds] of each painter. */
+static void write_painters(FlReport *report, int frame)
+{
+    FILE *out = report->file.stream;
+    fputs(",painters:[", out);
+    for (int p = 0; p < report->plan->n_painters; p++) {
+        const FlPainter *painter = &report->plan->painters[p];
+        const bool painted = painter->stats.n_levels > 0 && painter->stats.level[0].pixels > 0;
+        fputs(p > 0 ? ",[" : "[", out);
+        fl_script_number(out, painted ? painter->stats.level[0].energy : NAN);
+        fputc(',', out);
+        fl_script_number(out, report->flicker[p].change);
+        fputc(',', out);
+        const bool held = frame % painter->settings.hold != 0;
+        fl_script_number(out, held ? 0 : painter->seconds);
+        report->painter_seconds[p] += held ? 0 : painter->seconds;
+        fputc(']', out);
+    }
+    fputc(']', out);
+}
+
+static void write_seconds(FlReport *report, const FlReportFrame *frame)
+{
+    const double seconds[] = {frame->paint_s, frame->compose_s, frame->write_s};
+    fputs(",seconds:[", report->file.stream);
+    for (size_t k = 0; k < G_N_ELEMENTS(seconds); k++) {
+        report->seconds[k] += seconds[k];
+        fputs(k > 0 ? "," : "", report->file.stream);
+        fl_script_number(report->file.stream, seconds[k]);
+    }
+    fputc(']', report->file.stream);
+}
+
+bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **error)
+{
+    if (!report)
+        return true;
+    FILE *out = report->file.stream;
+    fprintf(out, "<script>frames.push({number:%d",
+            fl_drawing_number(report->plan->drawing, frame->frame));
+    write_seconds(report, frame);
+    write_painters(report, frame->frame);
+    if (frame->frame % report->every == 0 && !write_pictures(report, frame->composite, error))
+        return false;
+    if (shows_guides(report, frame->frame)) {
+        fputs(",guides:", out);
+        if (!fl_guide_view_write(&report->view, out, error))
+            return false;
+        fl_guide_view_reset(&report->view);
+    }
+    fputs("});</script>\n", out);
+    return true;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------ */
+
+static void write_region(const FlReport *report, int r)
+{
+    FILE *out = report->file.stream;
+    const FlPlan *plan = report->plan;
+    const FlRegion *region = fl_drawing_region(plan->drawing, r);
+    const int p = plan->painter_of[r];
+    uint8_t rgb[3];
+    fl_region_colour(plan->drawing, r, rgb);
+    fputs("{name:", out);
+    fl_script_string(out, region->name);
+    fputs(",label:", out);
+    fl_script_string(out, region->label);
+    fputs(",paint:", out);
+    fl_script_string(out, region->paint);
+    fputs(",colour:", out);
+    fl_script_colour(out, rgb);
+    fputs(",area:", out);
+    fl_script_number(out, region->area_px);
+    fprintf(out, ",present:%d,painter:%d", region->n_present, p);
+    if (p >= 0) {
+        g_autofree char *style = g_path_get_basename(plan->painters[p].style->path);
+        fputs(",style:", out);
+        fl_script_string(out, style);
+        fputs(",change:", out);
+        fl_script_number(out, fl_flicker_of_exemplar(plan->painters[p].style->exemplar));
+        fputs(",seconds:", out);
+        fl_script_number(out, report->painter_seconds[p]);
+    }
+    fputs("}", out);
+}
+
+static bool write_uses(const FlReport *report, GError **error)
+{
+    FILE *out = report->file.stream;
+    const char *comma = "";
+    fputs(",uses:[", out);
+    for (int k = 0; k < report->plan->n_painters; k++) {
+        if (report->use[k].total == 0)
+            continue;
+        fputs(comma, out);
+        if (!fl_exemplar_use_write(&report->use[k], out, error))
+            return false;
+        comma = ",";
+    }
+    fputs("]", out);
+    return true;
+}
+
+static bool write_film(const FlReport *report, GError **error)
+{
+    FILE *out = report->file.stream;
+    const FlPlan *plan = report->plan;
+    const double fps = plan->options.fps;
+    fputs("<script>film={name:", out);
+    fl_script_string(out, fl_drawing_name(plan->drawing));
+    fputs(",output:", out);
+    fl_script_string(out, plan->output);
+    fputs(",version:", out);
+    fl_script_string(out, fl_version());
+    fputs(",paper:", out);
+    fl_script_colour(out, report->background->flat);
+    fprintf(out, ",width:%d,height:%d,shown:[%d,%d],every:%d,transparent:%s,fps:", plan->width,
+            plan->height, report->width, report->height, report->every,
+            report->background->none ? "true" : "false");
+    fl_script_number(out, fps > 0 ? fps : 24);
+    fputs(",peak:", out);
+    fl_script_number(out, fl_peak_mib());
+    fputs(",regions:[", out);
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++) {
+        fputs(r > 0 ? "," : "", out);
+        write_region(report, r);
+    }
+    fputs("]", out);
+    const bool done = write_uses(report, error);
+    fputs("};</script>\n", out);
+    return done;
+}
+
+bool fl_report_finish(FlReport *report, GError **error)
+{
+    if (!report)
+        return true;
+    gsize n = 0;
+    const char *text = g_bytes_get_data(report->page, &n);
+    const char *rest = page_mark(report) + strlen(MARK);
+    if (!write_film(report, error))
+        return false;
+    fwrite(rest, 1, n - (size_t)(rest - text), report->file.stream);
+    return fl_atomic_commit(&report->file, error);
+}

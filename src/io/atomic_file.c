@@ -1,0 +1,209 @@
+#include "io/atomic_file.h"
+
+#include "io/lock.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <glib/gstdio.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define MODE 0666 // less the umask
+
+void fl_output_error(GError **error, const char *path, int errno_value)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
+                g_strerror(errno_value));
+}
+
+static void exists_error(GError **error, const char *path)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
+                "%s: exists already; expected a new name, or leave to overwrite", path);
+}
+
+/** Makes the folder and looks whether the name is free. */
+static bool prepare(FlAtomicFile *file, const char *path, bool overwrite, GError **error)
+{
+    g_autofree char *folder = g_path_get_dirname(path);
+    *file = (FlAtomicFile){0};
+    if (!overwrite && g_file_test(path, G_FILE_TEST_EXISTS)) {
+        exists_error(error, path);
+        return false;
+    }
+    if (g_file_test(path, G_FILE_TEST_IS_DIR)) {
+        fl_output_error(error, path, EISDIR);
+        return false;
+    }
+    if (g_mkdir_with_parents(folder, 0777) != 0) {
+        fl_output_error(error, folder, errno);
+        return false;
+    }
+    file->path = g_strdup(path);
+    file->overwrite = overwrite;
+    return true;
+}
+
+/** ".NAME.part" beside the path: the same in each run, so that the next finds what one has left. */
+static char *hidden_name(const char *path)
+{
+    g_autofree char *folder = g_path_get_dirname(path), *base = g_path_get_basename(path);
+    g_autofree char *name = g_strdup_printf(".%s.part", base);
+    return g_build_filename(folder, name, NULL);
+}
+
+/** A locked descriptor of a file without a name in the path's folder, or -1. */
+static int open_nameless(const char *path)
+{
+#ifdef O_TMPFILE
+    g_autofree char *folder = g_path_get_dirname(path);
+    const int fd = open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, MODE);
+    if (fd >= 0)
+        (void)flock(fd, LOCK_EX | LOCK_NB); // for the time when it has its hidden name
+    return fd;
+#else
+    return -1;
+#endif
+}
+
+/** An empty locked file of the hidden name, or -1; an error is set if another run writes it. */
+static int open_hidden(FlAtomicFile *file, GError **error)
+{
+    file->temporary = hidden_name(file->path);
+    int fd = fl_lock_take(file->temporary, file->path, error);
+    struct stat found;
+    if (fd < 0 || fstat(fd, &found) != 0 || found.st_size == 0)
+        return fd;
+    // A new file: what a killed run left may have an ffmpeg that is not done with it.
+    g_unlink(file->temporary);
+    close(fd);
+    return fl_lock_take(file->temporary, file->path, error);
+}
+
+/** Takes the descriptor; -1: that of a hidden file. */
+static bool begin(FlAtomicFile *file, int fd, GError **error)
+{
+    GError *taken = NULL;
+    if (fd < 0)
+        fd = open_hidden(file, &taken);
+    if (fd >= 0) {
+        file->stream = fdopen(fd, "wb");
+        return true;
+    }
+    if (taken)
+        g_propagate_error(error, taken);
+    else
+        fl_output_error(error, file->path, errno);
+    g_clear_pointer(&file->temporary, g_free); // it is the other's
+    fl_atomic_clear(file);
+    return false;
+}
+
+bool fl_atomic_open(FlAtomicFile *file, const char *path, bool overwrite, GError **error)
+{
+    return prepare(file, path, overwrite, error) && begin(file, open_nameless(path), error);
+}
+
+bool fl_atomic_reserve(FlAtomicFile *file, const char *path, bool overwrite, GError **error)
+{
+    return prepare(file, path, overwrite, error) && begin(file, -1, error);
+}
+
+static bool sync_path(const char *path, int flags)
+{
+    const int fd = open(path, flags | O_CLOEXEC);
+    const bool synced = fd >= 0 && fsync(fd) == 0;
+    if (fd >= 0)
+        close(fd);
+    return synced;
+}
+
+static bool sync_file(FlAtomicFile *file)
+{
+    return fflush(file->stream) == 0 && fsync(fileno(file->stream)) == 0;
+}
+
+/** Gives a nameless file a name; errno is EEXIST if the name is taken. */
+static bool name_file(const FlAtomicFile *file, const char *path)
+{
+    char self[64];
+    g_snprintf(self, sizeof self, "/proc/self/fd/%d", fileno(file->stream));
+    return linkat(AT_FDCWD, self, AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0;
+}
+
+/** Renames without replacing; file systems that cannot are asked first. */
+static bool rename_new(const char *from, const char *to)
+{
+#ifdef RENAME_NOREPLACE
+    if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0)
+        return true;
+    if (errno != EINVAL && errno != ENOSYS)
+        return false;
+#endif
+    if (g_file_test(to, G_FILE_TEST_EXISTS)) {
+        errno = EEXIST;
+        return false;
+    }
+    return rename(from, to) == 0;
+}
+
+/** Removes a hidden file that nobody writes any more; an error is set if another run does. */
+static bool remove_left(const char *name, const char *path, GError **error)
+{
+    const int fd = fl_lock_take(name, path, error);
+    const bool removed = fd >= 0 && g_unlink(name) == 0;
+    if (fd >= 0)
+        close(fd);
+    return removed;
+}
+
+/** Gives a nameless file its hidden name, in the place of what a killed run left there. */
+static bool name_hidden(FlAtomicFile *file, GError **error)
+{
+    g_autofree char *name = hidden_name(file->path);
+    while (!name_file(file, name))
+        if (errno != EEXIST || !remove_left(name, file->path, error))
+            return false;
+    file->temporary = g_steal_pointer(&name);
+    return true;
+}
+
+static bool publish(FlAtomicFile *file, GError **error)
+{
+    if (!file->temporary && !file->overwrite)
+        return name_file(file, file->path);
+    if (!file->temporary && !name_hidden(file, error))
+        return false;
+    return file->overwrite ? rename(file->temporary, file->path) == 0
+                           : rename_new(file->temporary, file->path);
+}
+
+bool fl_atomic_commit(FlAtomicFile *file, GError **error)
+{
+    GError *taken = NULL;
+    if (!sync_file(file) || !publish(file, &taken)) {
+        if (taken)
+            g_propagate_error(error, taken);
+        else if (errno == EEXIST)
+            exists_error(error, file->path);
+        else
+            fl_output_error(error, file->path, errno);
+        return false;
+    }
+    g_clear_pointer(&file->temporary, g_free);
+    g_autofree char *folder = g_path_get_dirname(file->path);
+    sync_path(folder, O_RDONLY | O_DIRECTORY); // the name's own safety; not every system can
+    return true;
+}
+
+void fl_atomic_clear(FlAtomicFile *file)
+{
+    if (file->temporary)
+        g_unlink(file->temporary); // while it is locked: then it may be another run's
+    if (file->stream)
+        fclose(file->stream);
+    g_free(file->temporary);
+    g_free(file->path);
+    *file = (FlAtomicFile){0};
+}

@@ -1,0 +1,38 @@
+/* A sheet of pictures in rows and columns, with words beside and above them. */
+#ifndef FLUIDY_IO_CONTACT_SHEET_H
+#define FLUIDY_IO_CONTACT_SHEET_H
+
+#include "base/surface.h"
+#include <stdbool.h>
+
+/** A sheet in the making; white where nothing is put. */
+typedef struct FlContactSheet {
+    cairo_surface_t *surface;
+    int columns, rows;
+    int cell_width, cell_height; // px, of the pictures
+} FlContactSheet;
+
+/** A sheet for columns x rows pictures, shown in cells of this size. FL_ERROR_LIMIT,
+ * FL_ERROR_NO_MEMORY. */
+bool fl_contact_sheet_init(FlContactSheet *contact, int columns, int rows, int cell_width,
+                           int cell_height, GError **error);
+void fl_contact_sheet_clear(FlContactSheet *contact);
+
+/** Puts a picture into the middle of a cell, made smaller where it is larger, over white. */
+void fl_contact_sheet_put(const FlContactSheet *contact, int column, int row,
+                          cairo_surface_t *picture);
+
+/** Words at the left of a row: a line in bold, then lines of small print; text is cut to fit. */
+void fl_contact_sheet_name_row(const FlContactSheet *contact, int row, const char *name,
+                               const char *lines);
+
+/** Words above a column. */
+void fl_contact_sheet_name_column(const FlContactSheet *contact, int column, const char *name);
+
+/** Writes the sheet as a PNG file. FL_ERROR_OUTPUT, FL_ERROR_EXISTS, FL_ERROR_NO_MEMORY. */
+bool fl_contact_sheet_save(const FlContactSheet *contact, const char *path, bool overwrite,
+                           GError **error);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlContactSheet, fl_contact_sheet_clear)
+
+#endif

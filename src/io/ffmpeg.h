@@ -1,0 +1,31 @@
+/* Videos, and pictures other than PNG, through the ffmpeg program: a child process and a pipe. */
+#ifndef FLUIDY_IO_FFMPEG_H
+#define FLUIDY_IO_FFMPEG_H
+
+#include "io/picture.h"
+
+/** A recording that is being read. */
+typedef struct FlFfmpeg FlFfmpeg;
+
+/**
+ * Begins to read frames first, first + step ... last of a file's first video, from 1; last 0: to
+ * the end. No shell is involved and the file cannot name others. Returns: NULL with FL_ERROR_INPUT
+ * set.
+ */
+FlFfmpeg *fl_ffmpeg_open(const char *path, int first, int last, int step, GError **error);
+
+/**
+ * The next frame, which the caller frees. NULL without an error is the end; the child's own words
+ * are in the message if it failed.
+ */
+FlPicture *fl_ffmpeg_read(FlFfmpeg *ffmpeg, GError **error);
+
+/** Ends the child. NULL is fine. */
+void fl_ffmpeg_close(FlFfmpeg *ffmpeg);
+
+/** Frames per second of a file's first video; 0 if ffprobe does not know. */
+double fl_ffmpeg_rate(const char *path);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFfmpeg, fl_ffmpeg_close)
+
+#endif

@@ -1,0 +1,159 @@
+/* OpenRaster files [freedesktop.org, OpenRaster 0.0.5], which Krita, MyPaint and GIMP open. */
+#include "io/atomic_file.h"
+#include "io/formats.h"
+#include "io/png.h"
+
+#include <string.h>
+#include <zip.h>
+
+#define THUMBNAIL_PX 256
+#define DOS_EPOCH 315532800 // 1980-01-01: the same bytes on any day
+
+/** A ZIP archive that grows in memory. What is added must live until it is closed. */
+typedef struct Archive {
+    zip_source_t *memory;
+    zip_t *zip;
+    GPtrArray *parts; // GBytes
+} Archive;
+
+static bool archive_open(Archive *archive)
+{
+    archive->parts = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
+    archive->memory = zip_source_buffer_create(NULL, 0, 0, NULL);
+    if (!archive->memory)
+        return false;
+    zip_source_keep(archive->memory);
+    archive->zip = zip_open_from_source(archive->memory, ZIP_TRUNCATE, NULL);
+    return archive->zip != NULL;
+}
+
+static void archive_clear(Archive *archive)
+{
+    if (archive->zip)
+        zip_discard(archive->zip);
+    if (archive->memory)
+        zip_source_free(archive->memory);
+    g_ptr_array_unref(archive->parts);
+}
+
+/** Stores a part as it is: PNG is deflated already. */
+static bool archive_add(Archive *archive, const char *name, GBytes *bytes)
+{
+    g_ptr_array_add(archive->parts, bytes);
+    zip_source_t *source =
+        zip_source_buffer(archive->zip, g_bytes_get_data(bytes, NULL), g_bytes_get_size(bytes), 0);
+    const zip_int64_t index =
+        source ? zip_file_add(archive->zip, name, source, ZIP_FL_ENC_UTF_8) : -1;
+    if (source && index < 0)
+        zip_source_free(source);
+    return index >= 0 &&
+           zip_set_file_compression(archive->zip, (zip_uint64_t)index, ZIP_CM_STORE, 0) == 0 &&
+           zip_file_set_mtime(archive->zip, (zip_uint64_t)index, DOS_EPOCH, 0) == 0;
+}
+
+static bool add_text(Archive *archive, const char *name, const char *text)
+{
+    return archive_add(archive, name, g_bytes_new(text, strlen(text)));
+}
+
+static bool add_picture(Archive *archive, const char *name, const uint8_t *rgba, int width,
+                        int height, bool fast)
+{
+    const FlPng png = {.width = width, .height = height, .rgba = rgba, .fast = fast};
+    GBytes *bytes = fl_png_encode(&png);
+    return bytes && archive_add(archive, name, bytes);
+}
+
+/** The frame at most THUMBNAIL_PX wide and high: every n-th pixel will do. */
+static bool add_thumbnail(Archive *archive, const FlSinkParams *params, const uint8_t *rgba)
+{
+    const int step = (MAX(params->width, params->height) + THUMBNAIL_PX - 1) / THUMBNAIL_PX;
+    const int width = (params->width + step - 1) / step;
+    const int height = (params->height + step - 1) / step;
+    g_autofree uint8_t *small = g_malloc((size_t)width * height * 4);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            memcpy(small + 4 * ((size_t)y * width + x),
+                   rgba + 4 * ((size_t)y * step * params->width + (size_t)x * step), 4);
+    return add_picture(archive, "Thumbnails/thumbnail.png", small, width, height, true);
+}
+
+/** stack.xml lists the top layer first. */
+static char *stack_xml(const FlSinkParams *params, const FlSinkFrame *frame)
+{
+    g_autoptr(GString) xml = g_string_new("<?xml version='1.0' encoding='UTF-8'?>\n");
+    g_string_append_printf(xml, "<image version=\"0.0.5\" w=\"%d\" h=\"%d\">\n <stack>\n",
+                           params->width, params->height);
+    for (int k = frame->n_layers - 1; k >= 0; k--) {
+        const FlSinkLayer *layer = &frame->layers[k];
+        g_autofree char *name = g_markup_escape_text(layer->name, -1);
+        g_string_append_printf(xml,
+                               "  <layer name=\"%s\" src=\"data/layer%03d.png\" x=\"%d\" y=\"%d\" "
+                               "opacity=\"1.0\" visibility=\"visible\" "
+                               "composite-op=\"svg:src-over\"/>\n",
+                               name, k, layer->x, layer->y);
+    }
+    g_string_append(xml, " </stack>\n</image>\n");
+    return g_string_free(g_steal_pointer(&xml), FALSE);
+}
+
+/** mimetype must be the first part, and stored. Layers without pixels hold one clear pixel. */
+static bool add_parts(Archive *archive, const FlSinkParams *params, const FlSinkFrame *frame)
+{
+    static const uint8_t clear[4] = {0};
+    g_autofree char *xml = stack_xml(params, frame);
+    bool ok =
+        add_text(archive, "mimetype", "image/openraster") && add_text(archive, "stack.xml", xml);
+    for (int k = 0; ok && k < frame->n_layers; k++) {
+        const FlSinkLayer *layer = &frame->layers[k];
+        const bool empty = layer->width == 0 || layer->height == 0;
+        g_autofree char *name = g_strdup_printf("data/layer%03d.png", k);
+        ok = add_picture(archive, name, empty ? clear : layer->rgba, empty ? 1 : layer->width,
+                         empty ? 1 : layer->height, params->fast);
+    }
+    return ok && add_thumbnail(archive, params, frame->rgba) &&
+           add_picture(archive, "mergedimage.png", frame->rgba, params->width, params->height,
+                       params->fast);
+}
+
+/** Completes the archive and writes it to the stream. */
+static bool archive_store(Archive *archive, FILE *stream)
+{
+    char block[65536];
+    zip_int64_t n = 0;
+    if (zip_close(archive->zip) != 0)
+        return false;
+    archive->zip = NULL;
+    if (zip_source_open(archive->memory) != 0)
+        return false;
+    while ((n = zip_source_read(archive->memory, block, sizeof block)) > 0)
+        if (fwrite(block, 1, (size_t)n, stream) != (size_t)n)
+            break;
+    zip_source_close(archive->memory);
+    return n == 0;
+}
+
+static bool ora_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
+{
+    g_autofree char *path = fl_sink_file(&sink->params, frame->number, error);
+    g_auto(FlAtomicFile) file = {0};
+    Archive archive = {0};
+    if (!path || !fl_atomic_open(&file, path, sink->params.overwrite, error))
+        return false;
+    const bool put = archive_open(&archive) && add_parts(&archive, &sink->params, frame) &&
+                     archive_store(&archive, file.stream);
+    archive_clear(&archive);
+    if (put)
+        return fl_atomic_commit(&file, error);
+    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
+                "the archive could not be made; is the disk full?");
+    return false;
+}
+
+const FlSinkFormat fl_sink_ora = {
+    .name = "ora",
+    .suffix = ".ora",
+    .help = "an OpenRaster file per frame, with all layers",
+    .takes_layers = true,
+    .frame = ora_frame,
+};

@@ -1,0 +1,42 @@
+/* Numbered pictures: a folder's or a pattern's files, in order. */
+#ifndef FLUIDY_IO_PICTURE_SERIES_H
+#define FLUIDY_IO_PICTURE_SERIES_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+
+/** Files of one name that differ in a number, by rising number. */
+typedef struct FlSeries {
+    char *prefix, *suffix; // what stands before the number, with the folder, and after it
+    int digits;            // width of the first number, with its leading zeros
+    int n;
+    int *number; // n of them
+    char **path; // n of them
+} FlSeries;
+
+/**
+ * The numbered files of a folder whose names end in one of `endings` (NULL-terminated, lower case,
+ * such as ".png"; letter case aside), grouped into series by prefix and ending.
+ *
+ * Returns: FlSeries, by prefix, perhaps none; NULL with FL_ERROR_STYLE if the folder cannot be
+ * read.
+ */
+GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, GError **error);
+
+/** The series of a pattern, `a_%04d.png` or `a_####.png`. NULL with FL_ERROR_INPUT if none fits. */
+FlSeries *fl_series_of_pattern(const char *pattern, GError **error);
+
+/** Whether a text is such a pattern. */
+bool fl_is_pattern(const char *text);
+
+/** False with FL_ERROR_STYLE set if a number is missing or there twice; it names the file. */
+bool fl_series_check(const FlSeries *series, GError **error);
+
+/** The path of the file with a number, whether it exists or not. */
+char *fl_series_path(const FlSeries *series, int number);
+
+void fl_series_free(FlSeries *series); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSeries, fl_series_free)
+
+#endif

@@ -1,0 +1,98 @@
+#include "io/sink.h"
+#include "base/suggest.h"
+#include "config.h"
+#include "io/formats.h"
+#include "io/output_name.h"
+
+#include <string.h>
+
+static const FlSinkFormat *const formats[] = {
+    &fl_sink_png,  &fl_sink_png16,
+#if HAVE_EXR
+    &fl_sink_exr,
+#endif
+#if HAVE_ORA
+    &fl_sink_ora,
+#endif
+    &fl_sink_mov,  &fl_sink_webm,  &fl_sink_mkv,  &fl_sink_mp4, &fl_sink_gif,
+    &fl_sink_apng, &fl_sink_hash,  &fl_sink_null, NULL,
+};
+
+const FlSinkFormat *const *fl_sink_formats(void)
+{
+    return formats;
+}
+
+static bool has_suffix(const char *path, const char *suffix)
+{
+    const size_t length = strlen(path), end = strlen(suffix);
+    return length > end && g_ascii_strcasecmp(path + length - end, suffix) == 0;
+}
+
+static void no_format(const char *name, const char *path, GError **error)
+{
+    const char *words[G_N_ELEMENTS(formats)] = {NULL};
+    for (int i = 0; formats[i]; i++)
+        words[i] = formats[i]->name;
+    g_autofree char *list = g_strjoinv(", ", (char **)words);
+    const char *dot = name ? NULL : strrchr(path, '.');
+    g_autofree char *hint = fl_did_you_mean(name ? name : dot ? dot + 1 : path, words);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                name ? "%s: an unknown output format; expected one of %s%s"
+                     : "%s: the end of the name means no output format; expected one of %s%s",
+                name ? name : path, list, hint);
+}
+
+const FlSinkFormat *fl_sink_format(const char *name, const char *path, GError **error)
+{
+    for (int i = 0; formats[i]; i++)
+        if (name ? strcmp(name, formats[i]->name) == 0
+                 : formats[i]->suffix && has_suffix(path, formats[i]->suffix))
+            return formats[i];
+    no_format(name, path, error);
+    return NULL;
+}
+
+char *fl_sink_file(const FlSinkParams *params, int number, GError **error)
+{
+    return fl_output_name(params->path, number, NULL, error);
+}
+
+/** A pattern's mistakes show up before any frame is painted. */
+static bool check_path(const FlSinkFormat *format, const FlSinkParams *params, GError **error)
+{
+    g_autofree char *name = format->film ? NULL : fl_sink_file(params, 0, error);
+    return format->film || name;
+}
+
+FlSink *fl_sink_open(const FlSinkFormat *format, const FlSinkParams *params, GError **error)
+{
+    g_autoptr(FlSink) sink = g_new0(FlSink, 1);
+    sink->format = format;
+    sink->params = *params;
+    sink->params.path = g_strdup(params->path);
+    if (!check_path(format, params, error) || (format->open && !format->open(sink, error)))
+        return NULL;
+    return g_steal_pointer(&sink);
+}
+
+bool fl_sink_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
+{
+    return sink->format->frame(sink, frame, error);
+}
+
+bool fl_sink_finish(FlSink *sink, GError **error)
+{
+    sink->finished = !sink->format->finish || sink->format->finish(sink, error);
+    return sink->finished;
+}
+
+void fl_sink_free(FlSink *sink)
+{
+    if (!sink)
+        return;
+    if (sink->format->clear)
+        sink->format->clear(sink);
+    g_free((char *)sink->params.path);
+    g_free(sink);
+}

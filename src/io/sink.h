@@ -1,0 +1,88 @@
+/* Sinks: where finished frames go. One struct of functions per format. */
+#ifndef FLUIDY_IO_SINK_H
+#define FLUIDY_IO_SINK_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** One layer of a frame, straight sRGBA; see compose/layers.h for how layers recompose. */
+typedef struct FlSinkLayer {
+    const char *name;
+    int x, y, width, height; // its place in the frame
+    const uint8_t *rgba;     // width * height * 4
+} FlSinkLayer;
+
+/** A finished frame. Everything is borrowed for the time of the call. */
+typedef struct FlSinkFrame {
+    int number;                // for the file's name
+    const uint8_t *rgba;       // width * height * 4 straight sRGBA
+    const uint16_t *rgba16;    // the same with 16 bits, if the format takes_16; else NULL
+    const FlSinkLayer *layers; // bottom first, if the format takes_layers; else NULL
+    int n_layers;
+    const char *const *text; // keyword, text, …, NULL: notes for formats that have room; or NULL
+} FlSinkFrame;
+
+/** What every frame of a sink has in common. */
+typedef struct FlSinkParams {
+    const char *path;  // a pattern for picture formats, a file for films
+    int width, height; // pixels, >= 1
+    double fps;        // films only, > 0
+    bool opaque;       // no frame has alpha below 255
+    bool overwrite;    // files of the same name may be replaced
+    bool fast;         // intermediate files: larger and sooner written
+} FlSinkParams;
+
+typedef struct FlSink FlSink;
+
+/** A format. The functions get a sink whose params are set; frames come one at a time, in order. */
+typedef struct FlSinkFormat {
+    const char *name;   // the word for --format
+    const char *suffix; // the file name's end that means this format, ".png"; or NULL
+    const char *help;   // one line
+    bool film;          // all frames go into one file
+    bool moving;        // a film to play, beside which its frames are kept unless asked otherwise
+    bool takes_16;      // wants rgba16
+    bool takes_layers;  // wants layers
+    bool (*open)(FlSink *sink, GError **error); // NULL: nothing to do
+    bool (*frame)(FlSink *sink, const FlSinkFrame *frame, GError **error);
+    bool (*finish)(FlSink *sink, GError **error); // NULL: nothing to do
+    void (*clear)(
+        FlSink *sink); // frees `state` and, unfinished, leaves no file; NULL: nothing to do
+} FlSinkFormat;
+
+struct FlSink {
+    const FlSinkFormat *format;
+    FlSinkParams params; // path is the sink's own copy
+    void *state;         // the format's
+    bool finished;
+};
+
+/** All formats of this build, NULL at the end. */
+const FlSinkFormat *const *fl_sink_formats(void);
+
+/**
+ * The format called `name`, or if that is NULL, the one that the path's suffix means.
+ *
+ * Returns: static; NULL with FL_ERROR_USAGE set, which lists the formats.
+ */
+const FlSinkFormat *fl_sink_format(const char *name, const char *path, GError **error);
+
+/** Makes a sink; params is copied. Returns: NULL with FL_ERROR_OUTPUT, _EXISTS or _USAGE set. */
+FlSink *fl_sink_open(const FlSinkFormat *format, const FlSinkParams *params, GError **error);
+
+/** Takes a frame. Returns: false with FL_ERROR_OUTPUT or FL_ERROR_EXISTS set, naming the file. */
+bool fl_sink_frame(FlSink *sink, const FlSinkFrame *frame, GError **error);
+
+/** Completes what is one file. Returns: false with FL_ERROR_OUTPUT or FL_ERROR_EXISTS set. */
+bool fl_sink_finish(FlSink *sink, GError **error);
+
+/** Frees the sink; an unfinished film is gone, finished pictures stay. NULL is fine. */
+void fl_sink_free(FlSink *sink);
+
+/** The file that a frame of this number goes to: to be freed; NULL with FL_ERROR_USAGE set. */
+char *fl_sink_file(const FlSinkParams *params, int number, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSink, fl_sink_free)
+
+#endif

@@ -1,0 +1,181 @@
+/* Films, through the ffmpeg program. */
+#include "io/atomic_file.h"
+#include "io/child_process.h"
+#include "io/formats.h"
+
+#include <string.h>
+
+/** What ffmpeg is told about a film format. */
+typedef struct Codec {
+    const FlSinkFormat *format;
+    const char *muxer;
+    const char *with_alpha;    // words between spaces; NULL: the format has no transparency
+    const char *without_alpha; // the same for opaque frames
+    bool yuv;                  // stored as Rec. 709 luma and chroma; else as sRGB
+} Codec;
+
+typedef struct VideoState {
+    FlAtomicFile file;
+    FlChild *child;
+} VideoState;
+
+/* One palette per frame keeps ffmpeg from holding the whole film, and suits paint that changes. */
+#define PALETTE                                                                                    \
+    "-filter_complex "                                                                             \
+    "[0:v]split[a][b];[a]palettegen=stats_mode=single[p];[b][p]paletteuse=new=1:dither=sierra2_"   \
+    "4a "
+
+static const Codec codecs[] = {
+    {&fl_sink_mov, "mov",
+     "-c:v prores_ks -profile:v 4444 -alpha_bits 16 -vendor apl0 -pix_fmt yuva444p10le",
+     "-c:v prores_ks -profile:v 4444 -vendor apl0 -pix_fmt yuv444p10le", true},
+    {&fl_sink_webm, "webm",
+     "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1 -auto-alt-ref 0 -pix_fmt yuva420p",
+     "-c:v libvpx-vp9 -crf 18 -b:v 0 -row-mt 1 -pix_fmt yuv420p", true},
+    {&fl_sink_mkv, "matroska", "-c:v ffv1 -level 3 -g 1 -slicecrc 1 -pix_fmt bgra",
+     "-c:v ffv1 -level 3 -g 1 -slicecrc 1 -pix_fmt bgr0", false},
+    {&fl_sink_mp4, "mp4", NULL,
+     "-c:v libx264 -crf 16 -preset medium -movflags +faststart -pix_fmt yuv420p", true},
+    {&fl_sink_gif, "gif", PALETTE "-loop 0", PALETTE "-loop 0", false},
+    {&fl_sink_apng, "apng", "-c:v apng -pred mixed -plays 0 -pix_fmt rgba",
+     "-c:v apng -pred mixed -plays 0 -pix_fmt rgb24", false},
+};
+
+static const Codec *codec_of(const FlSinkFormat *format)
+{
+    const Codec *codec = codecs;
+    while (codec->format != format)
+        codec++;
+    return codec;
+}
+
+static void add_words(GPtrArray *arguments, const char *words)
+{
+    g_auto(GStrv) parts = g_strsplit(words, " ", -1);
+    for (char **part = parts; *part; part++)
+        if (**part)
+            g_ptr_array_add(arguments, g_strdup(*part));
+}
+
+/** -xerror: else ffmpeg ends well although the last of a film did not fit onto the disk. */
+static void add_input(GPtrArray *arguments, const FlSinkParams *params)
+{
+    char fps[G_ASCII_DTOSTR_BUF_SIZE];
+    g_ascii_formatd(fps, sizeof fps, "%.6f", params->fps);
+    add_words(arguments,
+              "ffmpeg -hide_banner -loglevel error -xerror -y -f rawvideo -pixel_format rgba");
+    g_ptr_array_add(arguments, g_strdup("-video_size"));
+    g_ptr_array_add(arguments, g_strdup_printf("%dx%d", params->width, params->height));
+    g_ptr_array_add(arguments, g_strdup("-framerate"));
+    g_ptr_array_add(arguments, g_strdup(fps));
+    add_words(arguments, "-i pipe:0 -an");
+}
+
+/**
+ * How colours are stored, and the tags that say so. The tags go onto the frames: ffmpeg's options
+ * for the encoder do not reach ProRes. H.264 cuts odd sizes to even ones.
+ */
+static void add_colour(GPtrArray *arguments, const Codec *codec)
+{
+    static const char convert[] =
+        "scale=flags=accurate_rnd+full_chroma_int:out_color_matrix=bt709:out_range=tv,"
+        "setparams=range=tv:colorspace=bt709:color_primaries=bt709:color_trc=bt709";
+    static const char even[] = "crop=trunc(iw/2)*2:trunc(ih/2)*2:0:0,";
+    if (codec->yuv) {
+        g_ptr_array_add(arguments, g_strdup("-vf"));
+        g_ptr_array_add(arguments, g_strconcat(codec->with_alpha ? "" : even, convert, NULL));
+    }
+    add_words(arguments, "-fflags +bitexact -flags:v +bitexact");
+}
+
+static FlChild *start_ffmpeg(const FlSink *sink, const char *file, GError **error)
+{
+    const Codec *codec = codec_of(sink->format);
+    g_autoptr(GPtrArray) arguments = g_ptr_array_new_with_free_func(g_free);
+    add_input(arguments, &sink->params);
+    add_words(arguments, sink->params.opaque ? codec->without_alpha : codec->with_alpha);
+    add_colour(arguments, codec);
+    add_words(arguments, "-f");
+    g_ptr_array_add(arguments, g_strdup(codec->muxer));
+    g_ptr_array_add(arguments, g_strconcat("file:", file, NULL)); // whatever the name looks like
+    g_ptr_array_add(arguments, NULL);
+    return fl_child_start((const char *const *)arguments->pdata, error);
+}
+
+static bool video_open(FlSink *sink, GError **error)
+{
+    const FlSinkParams *params = &sink->params;
+    g_autofree char *program = g_find_program_in_path("ffmpeg");
+    VideoState *state = g_new0(VideoState, 1);
+    sink->state = state;
+    if (!program) {
+        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT,
+                    "%s: films are written by the ffmpeg program, which is not installed; install "
+                    "it, or write pictures such as film_%%04d.png",
+                    params->path);
+        return false;
+    }
+    if (!params->opaque && !codec_of(sink->format)->with_alpha) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: H.264 has no transparency; expected a background, or a .mov, .webm or "
+                    ".mkv file",
+                    params->path);
+        return false;
+    }
+    if (!fl_atomic_reserve(&state->file, params->path, params->overwrite, error))
+        return false;
+    state->child = start_ffmpeg(sink, state->file.temporary, error);
+    if (!state->child)
+        g_prefix_error(error, "%s: ", params->path);
+    return state->child != NULL;
+}
+
+static bool video_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
+{
+    VideoState *state = sink->state;
+    const size_t bytes = (size_t)sink->params.width * (size_t)sink->params.height * 4;
+    if (fl_child_write(state->child, frame->rgba, bytes, error))
+        return true;
+    g_prefix_error(error, "%s: ", sink->params.path);
+    return false;
+}
+
+static bool video_finish(FlSink *sink, GError **error)
+{
+    VideoState *state = sink->state;
+    if (!fl_child_finish(state->child, error)) {
+        g_prefix_error(error, "%s: ", sink->params.path);
+        return false;
+    }
+    return fl_atomic_commit(&state->file, error);
+}
+
+static void video_clear(FlSink *sink)
+{
+    VideoState *state = sink->state;
+    if (state) {
+        fl_child_free(state->child);
+        fl_atomic_clear(&state->file);
+    }
+    g_clear_pointer(&sink->state, g_free);
+}
+
+#define FILM(word, end, text)                                                                      \
+    const FlSinkFormat fl_sink_##word = {                                                          \
+        .name = #word,                                                                             \
+        .suffix = end,                                                                             \
+        .help = text,                                                                              \
+        .film = true,                                                                              \
+        .moving = true,                                                                            \
+        .open = video_open,                                                                        \
+        .frame = video_frame,                                                                      \
+        .finish = video_finish,                                                                    \
+        .clear = video_clear,                                                                      \
+    }
+
+FILM(mov, ".mov", "a film: ProRes 4444, with alpha");
+FILM(webm, ".webm", "a film: VP9, with alpha");
+FILM(mkv, ".mkv", "a film: FFV1, lossless, with alpha");
+FILM(mp4, ".mp4", "a film: H.264; needs a background");
+FILM(gif, ".gif", "an animated GIF, a palette per frame");
+FILM(apng, ".apng", "an animated PNG, lossless, with alpha");

@@ -1,0 +1,118 @@
+#include "job/checkpoint.h"
+
+#include "base/alloc.h"
+#include "io/atomic_file.h"
+#include <errno.h>
+#include <libdeflate.h>
+#include <string.h>
+
+#define MAGIC "fluidy-svg state 3"
+#define TYPE "(sa(ss)ibaay)" // magic, facts, done, overwrite, painters
+
+FlCheckpoint *fl_checkpoint_new(void)
+{
+    FlCheckpoint *state = g_new0(FlCheckpoint, 1);
+    state->painter = g_ptr_array_new_with_free_func((GDestroyNotify)g_bytes_unref);
+    return state;
+}
+
+void fl_checkpoint_free(FlCheckpoint *state)
+{
+    if (!state)
+        return;
+    fl_fingerprint_free(state->print);
+    g_ptr_array_unref(state->painter);
+    g_free(state);
+}
+
+static GVariant *to_variant(const FlCheckpoint *state)
+{
+    GVariantBuilder facts, painters;
+    g_variant_builder_init(&facts, G_VARIANT_TYPE("a(ss)"));
+    for (guint i = 0; i < state->print->facts->len; i++) {
+        const FlFact *fact = &g_array_index(state->print->facts, FlFact, i);
+        g_variant_builder_add(&facts, "(ss)", fact->name, fact->value);
+    }
+    g_variant_builder_init(&painters, G_VARIANT_TYPE("aay"));
+    for (guint i = 0; i < state->painter->len; i++)
+        g_variant_builder_add_value(
+            &painters,
+            g_variant_new_from_bytes(G_VARIANT_TYPE("ay"), state->painter->pdata[i], TRUE));
+    return g_variant_ref_sink(
+        g_variant_new(TYPE, MAGIC, &facts, state->done, state->overwrite, &painters));
+}
+
+uint32_t fl_checkpoint_sum(const void *data, size_t bytes)
+{
+    return GUINT32_TO_LE(libdeflate_crc32(0, data, bytes));
+}
+
+bool fl_checkpoint_save(const FlCheckpoint *state, const char *path, GError **error)
+{
+    g_autoptr(GVariant) variant = to_variant(state);
+    const size_t bytes = g_variant_get_size(variant);
+    g_autofree void *data = fl_alloc(bytes, 1, "a state", error);
+    g_auto(FlAtomicFile) file = {0};
+    if (!data || !fl_atomic_open(&file, path, true, error))
+        return false;
+    g_variant_store(variant, data);
+    const uint32_t sum = fl_checkpoint_sum(data, bytes);
+    if (fwrite(data, 1, bytes, file.stream) != bytes ||
+        fwrite(&sum, sizeof sum, 1, file.stream) != 1) {
+        fl_output_error(error, path, errno);
+        return false;
+    }
+    return fl_atomic_commit(&file, error);
+}
+
+static FlCheckpoint *from_variant(GVariant *variant)
+{
+    const char *magic, *name, *value;
+    gboolean overwrite;
+    g_autoptr(GVariantIter) facts = NULL, painters = NULL;
+    g_autoptr(FlCheckpoint) state = fl_checkpoint_new();
+    g_variant_get(variant, "(&sa(ss)ibaay)", &magic, &facts, &state->done, &overwrite, &painters);
+    if (!g_str_equal(magic, MAGIC) || state->done < 0)
+        return NULL;
+    state->overwrite = overwrite;
+    state->print = fl_fingerprint_new_empty();
+    while (g_variant_iter_next(facts, "(&s&s)", &name, &value))
+        fl_fingerprint_add(state->print, name, value);
+    for (GVariant *one; (one = g_variant_iter_next_value(painters)); g_variant_unref(one))
+        g_ptr_array_add(state->painter, g_variant_get_data_as_bytes(one));
+    return g_steal_pointer(&state);
+}
+
+FlCheckpoint *fl_checkpoint_parse(GBytes *bytes, const char *path, GError **error)
+{
+    size_t size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    uint32_t sum;
+    FlCheckpoint *state = NULL;
+    if (size >= sizeof sum) {
+        sum = fl_checkpoint_sum(data, size - sizeof sum);
+        g_autoptr(GBytes) knockout = g_bytes_new_from_bytes(bytes, 0, size - sizeof sum);
+        g_autoptr(GVariant) variant =
+            g_variant_ref_sink(g_variant_new_from_bytes(G_VARIANT_TYPE(TYPE), knockout, FALSE));
+        if (memcmp(&sum, data + size - sizeof sum, sizeof sum) == 0 &&
+            g_variant_is_normal_form(variant))
+            state = from_variant(variant);
+    }
+    if (!state)
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: the state of an earlier render cannot be read; -y starts anew", path);
+    return state;
+}
+
+FlCheckpoint *fl_checkpoint_load(const char *path, GError **error)
+{
+    char *contents = NULL;
+    size_t size = 0;
+    g_autoptr(GError) problem = NULL;
+    if (!g_file_get_contents(path, &contents, &size, &problem)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "%s", problem->message);
+        return NULL;
+    }
+    g_autoptr(GBytes) bytes = g_bytes_new_take(contents, size);
+    return fl_checkpoint_parse(bytes, path, error);
+}

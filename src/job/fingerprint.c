@@ -1,0 +1,314 @@
+#include "job/fingerprint.h"
+
+#include "config.h"
+#include "io/output_name.h"
+#include <cairo.h>
+#include <librsvg/rsvg.h>
+#include <string.h>
+
+#define SUM "sha256 " // a value that starts so is no use to a reader
+
+static void clear_fact(FlFact *fact)
+{
+    g_free(fact->name);
+    g_free(fact->value);
+}
+
+FlFingerprint *fl_fingerprint_new_empty(void)
+{
+    FlFingerprint *print = g_new0(FlFingerprint, 1);
+    print->facts = g_array_new(FALSE, TRUE, sizeof(FlFact));
+    g_array_set_clear_func(print->facts, (GDestroyNotify)clear_fact);
+    return print;
+}
+
+void fl_fingerprint_free(FlFingerprint *print)
+{
+    if (!print)
+        return;
+    g_array_unref(print->facts);
+    g_free(print);
+}
+
+void fl_fingerprint_add(FlFingerprint *print, const char *name, const char *value)
+{
+    const FlFact fact = {g_utf8_make_valid(name, -1),
+                         g_utf8_make_valid(value ? value : "not set", -1)};
+    g_array_append_val(print->facts, fact);
+}
+
+static void add_number(FlFingerprint *print, const char *name, double value)
+{
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    fl_fingerprint_add(print, name, g_ascii_dtostr(text, sizeof text, value));
+}
+
+/* ---- files ---------------------------------------------------------------------------------- */
+
+static bool mix_file(GChecksum *sum, const char *path, GError **error)
+{
+    g_autofree char *contents = NULL;
+    size_t bytes;
+    GError *problem = NULL;
+    if (!g_file_get_contents(path, &contents, &bytes, &problem)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", problem->message);
+        g_error_free(problem);
+        return false;
+    }
+    g_checksum_update(sum, (const guchar *)contents, (gssize)bytes);
+    return true;
+}
+
+static void add_sum(FlFingerprint *print, const char *name, GChecksum *sum)
+{
+    g_autofree char *value = g_strconcat(SUM, g_checksum_get_string(sum), NULL);
+    fl_fingerprint_add(print, name, value);
+}
+
+/* The folder of a film may move; the names in it may not. */
+static bool add_file(FlFingerprint *print, const char *path, GError **error)
+{
+    g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
+    g_autofree char *name = g_path_get_basename(path);
+    if (!mix_file(sum, path, error))
+        return false;
+    add_sum(print, name, sum);
+    return true;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* Names and contents of a folder's files, in the order of their names; no folder, no files. */
+static bool mix_folder(GChecksum *sum, const char *folder, GError **error)
+{
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
+    g_autoptr(GPtrArray) names = g_ptr_array_new_with_free_func(g_free);
+    for (const char *name; dir && (name = g_dir_read_name(dir));)
+        g_ptr_array_add(names, g_strdup(name));
+    g_ptr_array_sort(names, by_name);
+    for (guint i = 0; i < names->len; i++) {
+        g_autofree char *path = g_build_filename(folder, names->pdata[i], NULL);
+        if (!g_file_test(path, G_FILE_TEST_IS_REGULAR))
+            continue;
+        g_checksum_update(sum, names->pdata[i], (gssize)strlen(names->pdata[i]) + 1);
+        if (!mix_file(sum, path, error))
+            return false;
+    }
+    return true;
+}
+
+static bool add_style(FlFingerprint *print, const char *path, GError **error)
+{
+    static const char *const parts[] = {"", "frames", "masks", "flow"};
+    g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
+    for (size_t i = 0; i < G_N_ELEMENTS(parts); i++) {
+        g_autofree char *folder = g_build_filename(path, parts[i], NULL);
+        if (!mix_folder(sum, folder, error))
+            return false;
+    }
+    g_autofree char *base = g_path_get_basename(path);
+    g_autofree char *name = g_strconcat("style ", base, NULL);
+    add_sum(print, name, sum);
+    return true;
+}
+
+/* ---- the parts of a plan -------------------------------------------------------------------- */
+
+static void add_versions(FlFingerprint *print)
+{
+    g_autofree char *rsvg =
+        g_strdup_printf("%u.%u.%u", rsvg_major_version, rsvg_minor_version, rsvg_micro_version);
+    fl_fingerprint_add(print, "the version of fluidy-svg", FL_VERSION);
+    fl_fingerprint_add(print, "the version of librsvg", rsvg);
+    fl_fingerprint_add(print, "the version of cairo", cairo_version_string());
+    add_number(print, "the byte order", G_BYTE_ORDER);
+}
+
+static bool add_drawings(FlFingerprint *print, const FlDrawing *drawing, GError **error)
+{
+    add_number(print, "the number of frames", fl_drawing_frames(drawing));
+    print->first_drawing = print->facts->len;
+    for (int f = 0; f < fl_drawing_frames(drawing); f++)
+        if (!add_file(print, fl_drawing_file(drawing, f), error))
+            return false;
+    return true;
+}
+
+static void add_options(FlFingerprint *print, const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    fl_fingerprint_add(print, "the format", plan->format->name);
+    add_number(print, "the first frame's number", fl_drawing_number(plan->drawing, 0));
+    add_number(print, "the width", plan->width);
+    add_number(print, "the height", plan->height);
+    fl_fingerprint_add(print, "canvas", o->canvas);
+    add_number(print, "scale", o->scale);
+    add_number(print, "dpi", o->dpi);
+    add_number(print, "key", o->key);
+    add_number(print, "stroke", o->stroke);
+    add_number(print, "register", o->registration);
+    fl_fingerprint_add(print, "region", o->only_region);
+    fl_fingerprint_add(print, "layers", o->layers);
+    fl_fingerprint_add(print, "paint", o->paint);
+    add_number(print, "merge", o->merge);
+    fl_fingerprint_add(print, "background", o->background);
+    add_number(print, "seed", (double)o->seed);
+    add_number(print, "gap", o->gap);
+    add_number(print, "feather", o->feather);
+    add_number(print, "blend", o->blend);
+    add_number(print, "fps", o->fps);
+    add_number(print, "hold", plan->hold);
+    add_number(print, "loop", o->loop);
+}
+
+/* The files of an option that is a pattern of one file per frame, or one file. */
+static bool add_pattern(FlFingerprint *print, const FlPlan *plan, const char *pattern,
+                        const char *region, GError **error)
+{
+    const int n = fl_output_is_pattern(pattern) ? fl_drawing_frames(plan->drawing) : 1;
+    g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
+    for (int f = 0; f < n; f++) {
+        g_autofree char *file =
+            fl_output_name(pattern, fl_drawing_number(plan->drawing, f), region, error);
+        if (!file)
+            return false;
+        if (g_file_test(file, G_FILE_TEST_IS_REGULAR) && !mix_file(sum, file, error))
+            return false; // what is missing is told where it is used
+    }
+    add_sum(print, pattern, sum);
+    return true;
+}
+
+/* The n-th of words with bars between. */
+static char *word(const char *words, int n)
+{
+    g_auto(GStrv) all = g_strsplit(words, "|", -1);
+    return g_strdup(n >= 0 && n < (int)g_strv_length(all) ? all[n] : "?");
+}
+
+static void add_of_region(FlFingerprint *print, const char *region, const char *name, char *value)
+{
+    g_autofree char *whole = g_strdup_printf("%s of region %s", name, region);
+    fl_fingerprint_add(print, whole, value);
+    g_free(value);
+}
+
+#define TEXT_CHOICE(form, field) word(form, (int)(t->field))
+#define TEXT_DETAIL TEXT_CHOICE
+#define TEXT_PASS(form, field) g_strdup_printf("%d", (int)(t->field))
+#define TEXT_INT(form, field) g_strdup_printf("%d", (int)(t->field))
+#define TEXT_BOOL(form, field) g_strdup((t->field) ? "on" : "off")
+#define TEXT_NAME(form, field) g_strdup(t->field)
+#define TEXT_STYLE(form, field) g_path_get_basename(t->field)
+#define TEXT_TINT(form, field)                                                                     \
+    (t->has_colour ? g_strdup_printf("#%02x%02x%02x", t->colour[0], t->colour[1], t->colour[2])    \
+                   : word(form, (int)(t->field)))
+
+static void add_treatment(FlFingerprint *print, const FlPainter *painter)
+{
+    const FlRegionSettings *t = &painter->settings;
+#define FL_SETTING(type, field, form, ...)                                                         \
+    add_of_region(print, painter->name, #field, TEXT_##type(form, field));
+#include "params/settings.def"
+#undef FL_SETTING
+    for (int i = 0; i < fl_param_count(); i++) {
+        const char *name = fl_param_info(i)->name;
+        add_of_region(print, painter->name, name, fl_params_get(&t->params, name));
+    }
+}
+
+static bool add_painters(FlFingerprint *print, const FlPlan *plan, GError **error)
+{
+    for (int p = 0; p < plan->n_painters; p++) {
+        const FlPainter *painter = &plan->painters[p];
+        add_treatment(print, painter);
+        if (painter->flow_pattern &&
+            !add_pattern(print, plan, painter->flow_pattern, painter->name, error))
+            return false;
+        if (painter->given && !add_pattern(print, plan, painter->given, painter->name, error))
+            return false;
+        bool known = false;
+        for (int q = 0; q < p; q++)
+            known = known || g_str_equal(plan->painters[q].style->path, painter->style->path);
+        if (!known && !add_style(print, painter->style->path, error))
+            return false;
+    }
+    return true;
+}
+
+/* Which leaves a region is made of shows in its figures. */
+static void add_regions(FlFingerprint *print, const FlPlan *plan)
+{
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++) {
+        const FlRegion *region = fl_drawing_region(plan->drawing, r);
+        char area[G_ASCII_DTOSTR_BUF_SIZE];
+        g_autofree char *name = g_strdup_printf("what region %s is made of", region->name);
+        g_autofree char *value =
+            g_strdup_printf("%s, %s, %d leaves in %d frames from %d on, %s px, %s", region->label,
+                            region->paint, region->n_leaves, region->n_present, region->first_frame,
+                            g_ascii_dtostr(area, sizeof area, region->area_px),
+                            plan->painter_of[r] >= 0    ? "painted"
+                            : plan->painter_of[r] == -1 ? "drawn"
+                                                        : "left out");
+        fl_fingerprint_add(print, name, value);
+    }
+}
+
+FlFingerprint *fl_fingerprint_new(const FlPlan *plan, GError **error)
+{
+    g_autoptr(FlFingerprint) print = fl_fingerprint_new_empty();
+    const char *background = plan->options.background;
+    add_versions(print);
+    add_options(print, plan);
+    if (!add_drawings(print, plan->drawing, error))
+        return NULL;
+    add_regions(print, plan); // after what may be the reason
+    if (!add_painters(print, plan, error) || (background && g_str_has_suffix(background, "png") &&
+                                              !add_pattern(print, plan, background, NULL, error)))
+        return NULL;
+    return g_steal_pointer(&print);
+}
+
+/* ---- comparing ------------------------------------------------------------------------------ */
+
+static const FlFact *fact_at(const FlFingerprint *print, guint i)
+{
+    return i < print->facts->len ? &g_array_index(print->facts, FlFact, i) : NULL;
+}
+
+bool fl_fingerprint_check_drawing(const FlFingerprint *print, const FlDrawing *drawing, int frame,
+                                  GError **error)
+{
+    const char *path = fl_drawing_file(drawing, frame);
+    g_autoptr(FlFingerprint) now = fl_fingerprint_new_empty();
+    if (!add_file(now, path, error))
+        return false;
+    const FlFact *before = fact_at(print, print->first_drawing + (guint)frame);
+    if (before && g_str_equal(before->value, fact_at(now, 0)->value))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "%s: has changed since the render began", path);
+    return false;
+}
+
+char *fl_fingerprint_difference(const FlFingerprint *before, const FlFingerprint *now)
+{
+    const guint n = MAX(before->facts->len, now->facts->len);
+    for (guint i = 0; i < n; i++) {
+        const FlFact *old = fact_at(before, i), *new = fact_at(now, i);
+        if (!old)
+            return g_strdup_printf("%s is new", new->name);
+        if (!new)
+            return g_strdup_printf("%s is gone", old->name);
+        if (!g_str_equal(old->name, new->name))
+            return g_strdup_printf("%s has taken the place of %s", new->name, old->name);
+        if (g_str_equal(old->value, new->value))
+            continue;
+        return g_str_has_prefix(new->value, SUM)
+                   ? g_strdup_printf("%s has other contents", new->name)
+                   : g_strdup_printf("%s was %s and is %s", new->name, old->value, new->value);
+    }
+    return NULL;
+}

@@ -1,0 +1,82 @@
+#include "job/mask_store.h"
+
+#include "base/alloc.h"
+#include "base/rect.h"
+#include "base/spill.h"
+#include <string.h>
+
+struct FlMaskStore {
+    int n_frames, width, height;
+    FlSpill *spill;
+    FlRect *boxes; // [region * n_frames + frame]
+    GMutex mutex;  // of the spill
+};
+
+FlMaskStore *fl_mask_store_new(int n_regions, int n_frames, int width, int height, GError **error)
+{
+    const size_t n = (size_t)MAX(n_regions, 1) * n_frames;
+    FlSpill *spill = fl_spill_new(n, error);
+    if (!spill)
+        return NULL;
+    FlMaskStore *masks = g_new0(FlMaskStore, 1);
+    *masks = (FlMaskStore){n_frames, width, height, spill, .boxes = g_new0(FlRect, n)};
+    g_mutex_init(&masks->mutex);
+    return masks;
+}
+
+void fl_mask_store_free(FlMaskStore *masks)
+{
+    if (!masks)
+        return;
+    fl_spill_free(masks->spill);
+    g_mutex_clear(&masks->mutex);
+    g_free(masks->boxes);
+    g_free(masks);
+}
+
+bool fl_mask_store_put(FlMaskStore *masks, int region, int frame, const uint8_t *coverage,
+                       GError **error)
+{
+    const size_t block = (size_t)region * masks->n_frames + frame;
+    const FlRect box = fl_rect_of(coverage, masks->width, masks->height);
+    masks->boxes[block] = box;
+    if (box.width == 0)
+        return true;
+    const size_t bytes = fl_rect_pixels(box);
+    g_autofree uint8_t *cropped = fl_alloc(bytes, 1, "a mask", error);
+    if (!cropped)
+        return false;
+    fl_rect_copy(coverage, (FlRect){0, 0, masks->width, masks->height}, cropped, box, 1);
+    g_mutex_lock(&masks->mutex);
+    const bool kept = fl_spill_put(masks->spill, block, cropped, bytes, error);
+    g_mutex_unlock(&masks->mutex);
+    return kept;
+}
+
+bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect part,
+                       uint8_t *coverage, GError **error)
+{
+    const size_t block = (size_t)region * masks->n_frames + frame;
+    const FlRect box = masks->boxes[block];
+    memset(coverage, 0, fl_rect_pixels(part));
+    if (box.width == 0)
+        return true;
+    g_autofree uint8_t *cropped = fl_alloc(fl_rect_pixels(box), 1, "a mask", error);
+    if (!cropped || !fl_spill_get(masks->spill, block, cropped, fl_rect_pixels(box), error))
+        return false;
+    fl_rect_copy(cropped, box, coverage, part, 1);
+    return true;
+}
+
+FlRect fl_mask_store_extent(const FlMaskStore *masks, int region)
+{
+    int x0 = INT32_MAX, y0 = INT32_MAX, x1 = 0, y1 = 0;
+    for (int f = 0; f < masks->n_frames; f++) {
+        const FlRect box = masks->boxes[(size_t)region * masks->n_frames + f];
+        if (box.width == 0)
+            continue;
+        x0 = MIN(x0, box.x), x1 = MAX(x1, box.x + box.width);
+        y0 = MIN(y0, box.y), y1 = MAX(y1, box.y + box.height);
+    }
+    return x1 > x0 ? (FlRect){x0, y0, x1 - x0, y1 - y0} : (FlRect){0};
+}

@@ -1,0 +1,415 @@
+#include "job/plan.h"
+
+#include "base/alloc.h"
+#include "base/limits.h"
+#include "base/parallel_error.h"
+#include "base/suggest.h"
+#include "drawing/open_drawing.h"
+#include "io/output_name.h"
+#include <math.h>
+#include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+static bool open_film(FlPlan *plan, GError **error)
+{
+    g_auto(FlRegionSettings) general = {0};
+    if (!fl_config_region_settings(plan->config, -1, "", &plan->options, &general, error))
+        return false;
+    plan->hold = general.hold;
+    plan->drawing = fl_drawing_from_options(&plan->options, plan->config, error);
+    return plan->drawing != NULL;
+}
+
+/* Says a line through one of the options' callbacks. */
+G_GNUC_PRINTF(3, 4)
+static void say(const FlPlan *plan, void (*to)(const char *, void *), const char *format, ...)
+{
+    if (!to)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *line = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    to(line, plan->options.data);
+}
+
+static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
+{
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
+        g_ptr_array_add(names, fl_drawing_region(plan->drawing, r)->name);
+    g_ptr_array_add(names, NULL);
+    g_autofree char *list = g_strjoinv(", ", (char **)names->pdata);
+    g_autofree char *hint = fl_did_you_mean(name, (const char *const *)names->pdata);
+    if (*hint)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no region “%s”%s", name, hint);
+    else
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no region “%s”; there are: %s", name,
+                    list);
+    return false;
+}
+
+static bool check_region_names(const FlPlan *plan, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    for (size_t i = 0; i <= o->n_settings; i++) {
+        const char *name = i < o->n_settings ? o->settings[i].region : o->only_region;
+        bool found = name == NULL;
+        for (int r = 0; !found && r < fl_drawing_regions(plan->drawing); r++)
+            found = g_str_equal(fl_drawing_region(plan->drawing, r)->name, name);
+        if (!found)
+            return no_such_region(plan, name, error);
+    }
+    return true;
+}
+
+/* A warning about a style; false, with the error that it is, if there are to be none. */
+G_GNUC_PRINTF(3, 4)
+static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *line = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    if (plan->options.strict)
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s (a warning under --strict)", line);
+    else
+        say(plan, plan->options.warning, "%s", line);
+    return !plan->options.strict;
+}
+
+/* Of a style, said by the first region that is painted with it. */
+static bool warn_of_style(const FlPlan *plan, const FlPainter *painter, GError **error)
+{
+    enum { MUCH_BEYOND = 10 }; // percent
+    const FlStyleInstance *box = painter->style;
+    for (const FlPainter *p = plan->painters; p < painter; p++)
+        if (p->style == box)
+            return true;
+    if (box->exemplar->level[0].n_frames == 1 &&
+        !warn(plan, error, "%s: one frame is used: its paint does not flow", box->path))
+        return false;
+    return box->ink->beyond < MUCH_BEYOND || painter->settings.tint != FL_TINT_FILL ||
+           warn(plan, error,
+                "%s: most of the paint is darker than the paper, but %d %% is lighter, or the "
+                "other way round, and will be bare; --tint keep keeps the recording's colours",
+                box->path, box->ink->beyond);
+}
+
+/* How a region is treated, and whether it is painted at all. */
+static bool treat_region(FlPlan *plan, int region, GError **error)
+{
+    const FlRegion *r = fl_drawing_region(plan->drawing, region);
+    const char *only = plan->options.only_region;
+    FlPainter *painter = &plan->painters[plan->n_painters];
+    FlRegionSettings *settings = &painter->settings;
+    const bool left_out = only && !g_str_equal(only, r->name);
+    if (!fl_config_region_settings(plan->config, r->rule, r->name, &plan->options, settings, error))
+        return false;
+    const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
+    plan->half &= !painted || settings->params.half_size;
+    plan->painter_of[region] = left_out ? -2 : -1;
+    if (!painted || left_out) {
+        fl_region_settings_clear(settings);
+        return true;
+    }
+    painter->region = region;
+    plan->painter_of[region] = plan->n_painters++; // from here on the plan clears it
+    if (!settings->style)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "no style for region “%s”: expected --style NAME, or style = NAME in a config",
+                    r->name);
+    return settings->style != NULL;
+}
+
+/* Half the size is for all regions or for none, also of those that are left out this time: they are
+ * drawn and stacked together. */
+static bool treat_regions(FlPlan *plan, GError **error)
+{
+    const int n = fl_drawing_regions(plan->drawing);
+    plan->painters = g_new0(FlPainter, MAX(n, 1));
+    plan->painter_of = g_new0(int, MAX(n, 1));
+    plan->half = true;
+    for (int r = 0; r < n; r++)
+        if (!treat_region(plan, r, error))
+            return false;
+    plan->half &= plan->n_painters > 0;
+    for (int p = 0; p < plan->n_painters; p++)
+        plan->painters[p].settings.params.half_size = plan->half;
+    return fl_limit_check(FL_LIMIT_REGIONS, plan->n_painters, fl_drawing_name(plan->drawing),
+                          error);
+}
+
+static void choose_size(FlPlan *plan)
+{
+    plan->width = fl_drawing_width(plan->drawing), plan->height = fl_drawing_height(plan->drawing);
+    if (plan->half)
+        fl_drawing_halve(plan->drawing);
+}
+
+static bool equip_painter(FlPlan *plan, FlPainter *painter, GError **error)
+{
+    const FlRegion *r = fl_drawing_region(plan->drawing, painter->region);
+    painter->name = r->name, painter->area_px = r->area_px;
+    painter->masks = plan->masks, painter->drawing = plan->drawing;
+    painter->width = fl_drawing_width(plan->drawing),
+    painter->height = fl_drawing_height(plan->drawing);
+    painter->frame_width = plan->width, painter->frame_height = plan->height;
+    painter->flow_pattern = g_strdup(plan->options.flow);
+    painter->given = plan->options.merge ? plan->options.paint : NULL;
+    painter->loops = plan->options.loop && !painter->given;
+    painter->style = fl_style_cache_get(plan->exemplars, &painter->settings, error);
+    if (!painter->style || !warn_of_style(plan, painter, error))
+        return false;
+    if (plan->options.verbose)
+        say(plan, plan->options.note, "region %s: style %s", r->name, painter->style->path);
+    return true;
+}
+
+static bool equip_painters(FlPlan *plan, GError **error)
+{
+    plan->masks =
+        fl_mask_store_new(fl_drawing_regions(plan->drawing), fl_drawing_frames(plan->drawing),
+                          fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
+    for (int p = 0; plan->masks && p < plan->n_painters; p++)
+        if (!equip_painter(plan, &plan->painters[p], error))
+            return false;
+    memset(plan->paper, 255, sizeof plan->paper);
+    if (plan->n_painters > 0 && plan->masks)
+        memcpy(plan->paper, plan->painters[0].style->paper, sizeof plan->paper);
+    return plan->masks != NULL;
+}
+
+static char *default_output(const FlPlan *plan)
+{
+    const char *suffix = plan->format->suffix ? plan->format->suffix : ".png";
+    return g_strdup_printf("fluidy/{name}%s%s", plan->format->film ? "" : "_%04d", suffix);
+}
+
+/* A film's frames lie beside it: walk_0001.png, … of walk.mov. */
+static char *frames_of_movie(const FlPlan *plan)
+{
+    const char *suffix = plan->movie_format->suffix;
+    const bool named = g_str_has_suffix(plan->movie, suffix);
+    g_autoptr(GString) stem =
+        g_string_new_len(plan->movie, (gssize)(strlen(plan->movie) - (named ? strlen(suffix) : 0)));
+    g_string_replace(stem, "%", "%%", 0);
+    return g_strdup_printf("%s_%%04d.png", stem->str);
+}
+
+static bool keep_frames(FlPlan *plan, GError **error)
+{
+    if (!plan->format->moving || plan->options.no_frames)
+        return true;
+    plan->movie = g_steal_pointer(&plan->output), plan->movie_format = plan->format;
+    plan->output = frames_of_movie(plan);
+    plan->format = fl_sink_format("png", plan->output, error);
+    return plan->format != NULL;
+}
+
+static bool name_output(FlPlan *plan, GError **error)
+{
+    const char *format = plan->options.format, *said = plan->options.output;
+    plan->format = fl_sink_format(format || said ? format : "png", said, error);
+    if (!plan->format)
+        return false;
+    g_autofree char *pattern = said ? g_strdup(said) : default_output(plan);
+    plan->output = fl_output_of_film(pattern, fl_drawing_name(plan->drawing));
+    if (!plan->format->film && !fl_output_is_pattern(plan->output) &&
+        fl_drawing_frames(plan->drawing) > 1) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: one file for %d frames; expected a number in the name, such as %%04d",
+                    plan->output, fl_drawing_frames(plan->drawing));
+        return false;
+    }
+    return keep_frames(plan, error);
+}
+
+/* One name for every region would let the last layer win. */
+static bool check_regions_file(const FlPlan *plan, const char *pattern, GError **error)
+{
+    const char *brace = pattern ? strchr(pattern, '{') : NULL;
+    if (brace && strchr(brace, '}') && !strstr(pattern, "{region}")) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%.*s” is not understood; expected %s",
+                    pattern, (int)(strchr(brace, '}') + 1 - brace), brace, "{region}");
+        return false;
+    }
+    if (!pattern || plan->n_painters < 2 || strstr(pattern, "{region}"))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "%s: one file for %d regions; expected {region} in the name", pattern,
+                plan->n_painters);
+    return false;
+}
+
+/* What the words say together. */
+static bool check_merge(const FlRenderOptions *options, GError **error)
+{
+    const char *wrong = NULL;
+    if (options->merge && !options->paint)
+        wrong = "--merge composes what --paint has written; expected --paint PATTERN too";
+    else if (options->merge && (options->report || options->dump))
+        wrong = "--merge paints nothing that --report or --dump could show; expected it alone";
+    else if (options->paint && !fl_output_is_pattern(options->paint))
+        wrong = "--paint: one file for all frames; expected a number in the name, such as %04d";
+    if (wrong)
+        g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);
+    return !wrong;
+}
+
+static bool make_plan(FlPlan *plan, GError **error)
+{
+    if (!plan->options.inputs || !plan->options.inputs[0]) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
+        return false;
+    }
+    if (!check_merge(&plan->options, error) || !open_film(plan, error) ||
+        !check_region_names(plan, error) || !name_output(plan, error) ||
+        !treat_regions(plan, error))
+        return false;
+    choose_size(plan);
+    return equip_painters(plan, error) && check_regions_file(plan, plan->options.layers, error) &&
+           check_regions_file(plan, plan->options.paint, error);
+}
+
+FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
+{
+    g_autoptr(FlPlan) plan = g_new0(FlPlan, 1);
+    plan->options = *options;
+    plan->exemplars = fl_style_cache_new();
+    plan->config = fl_config_load(options->config, error);
+    if (!plan->config)
+        return NULL;
+    fl_config_complete(plan->config, &plan->options);
+    return make_plan(plan, error) ? g_steal_pointer(&plan) : NULL;
+}
+
+void fl_plan_free(FlPlan *plan)
+{
+    if (!plan)
+        return;
+    for (int p = 0; p < plan->n_painters; p++)
+        fl_painter_clear(&plan->painters[p]);
+    g_free(plan->painters);
+    g_free(plan->painter_of);
+    g_free(plan->output);
+    g_free(plan->movie);
+    fl_style_cache_free(plan->exemplars);
+    fl_mask_store_free(plan->masks);
+    fl_drawing_free(plan->drawing);
+    fl_config_free(plan->config);
+    g_free(plan);
+}
+
+/* One frame's masks of all painted regions. */
+static bool keep_masks(FlPlan *plan, int frame, GError **error)
+{
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
+    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
+    g_autofree uint8_t *mask = draws ? fl_alloc((size_t)width * height, 1, "a mask", error) : NULL;
+    if (!mask)
+        return false;
+    for (int p = 0; p < plan->n_painters; p++) {
+        const int region = plan->painters[p].region;
+        bool drawn = false;
+        for (int r = 0; r < draws->n; r++)
+            drawn = drawn || draws->draw[r].region == region;
+        if (!drawn)
+            continue;
+        fl_draw_list_mask(draws, region, width, height, mask);
+        if (!fl_mask_store_put(plan->masks, region, frame, mask, error))
+            return false;
+    }
+    return true;
+}
+
+static bool make_masks(FlPlan *plan, GError **error)
+{
+    const int n = fl_drawing_frames(plan->drawing);
+    GError *first = NULL;
+    int failed = 0;
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
+    for (int f = 0; f < n; f++) {
+        GError *mine = NULL;
+        if (failed == 0 && !keep_masks(plan, f, &mine))
+            failed++;
+        fl_parallel_error_keep(&first, mine);
+    }
+    return fl_parallel_error_tell(error, first);
+}
+
+/* Everything is as large as the frame or smaller, so that it can be told before it is asked for. */
+static bool check_memory(const FlPlan *plan, GError **error)
+{
+    const double pixels = (double)plan->width * plan->height;
+    double bytes = 20e6 + 100 * pixels; // measured: the libraries, scratch, a frame composed
+    for (int p = 0; p < plan->n_painters; p++)
+        bytes += fl_painter_bytes(&plan->painters[p]);
+    bytes += fl_style_cache_bytes(plan->exemplars);
+    g_autofree char *where =
+        g_strdup_printf("%s, %d regions in %dx%d pixels", fl_drawing_name(plan->drawing),
+                        plan->n_painters, plan->width, plan->height);
+    return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
+}
+
+bool fl_plan_side_by_side(const FlPlan *plan, size_t pixels)
+{
+#ifdef _OPENMP
+    const size_t threads = (size_t)omp_get_max_threads();
+#else
+    const size_t threads = 1;
+#endif
+    return pixels * threads <= (size_t)plan->width * (size_t)plan->height;
+}
+
+static bool is_small(const FlPlan *plan, const FlPainter *painter)
+{
+    return fl_plan_side_by_side(plan,
+                                fl_rect_pixels(fl_mask_store_extent(plan->masks, painter->region)));
+}
+
+static int by_extent(const void *a, const void *b, void *data)
+{
+    const FlPainter *p = *(FlPainter *const *)a, *q = *(FlPainter *const *)b;
+    const FlMaskStore *masks = data;
+    const size_t pixels_p = fl_rect_pixels(fl_mask_store_extent(masks, p->region));
+    const size_t pixels_q = fl_rect_pixels(fl_mask_store_extent(masks, q->region));
+    return (pixels_p < pixels_q) - (pixels_p > pixels_q);
+}
+
+/* The guides of a region use all threads themselves, where it is large enough for that, and their
+ * scratch is as large as the region: small ones go side by side, the largest of them first, so that
+ * none is waited for; the others one after the other. */
+static bool make_guides(FlPlan *plan, GError **error)
+{
+    GError *first = NULL;
+    g_autofree FlPainter **order = g_new(FlPainter *, MAX(plan->n_painters, 1));
+    for (int p = 0; p < plan->n_painters; p++)
+        order[p] = &plan->painters[p];
+    g_qsort_with_data(order, plan->n_painters, sizeof *order, by_extent, plan->masks);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < plan->n_painters; k++) {
+        GError *mine = NULL;
+        if (is_small(plan, order[k]) && !fl_painter_init(order[k], plan->options.seed, &mine))
+            fl_parallel_error_keep(&first, mine);
+    }
+    if (!fl_parallel_error_tell(error, first))
+        return false;
+    for (int p = 0; p < plan->n_painters; p++)
+        if (!is_small(plan, &plan->painters[p]) &&
+            !fl_painter_init(&plan->painters[p], plan->options.seed, error))
+            return false;
+    return true;
+}
+
+bool fl_plan_prepare(FlPlan *plan, GError **error)
+{
+    if (!make_masks(plan, error) || !check_memory(plan, error) || !make_guides(plan, error))
+        return false;
+    for (int p = 0; p < plan->n_painters && !plan->options.merge; p++)
+        fl_synth_measure(plan->painters[p].synth, plan->options.stats || plan->options.report);
+    return true;
+}

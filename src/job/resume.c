@@ -1,0 +1,278 @@
+#include "job/resume.h"
+
+#include "base/parallel_error.h"
+#include "io/lock.h"
+#include "io/output_name.h"
+#include "io/sink.h"
+#include "render/paint_files.h"
+#include <glib/gstdio.h>
+#include <unistd.h>
+
+static char *frame_file(const FlPlan *plan, int frame, GError **error)
+{
+    const FlSinkParams params = {.path = plan->output};
+    return fl_sink_file(&params, fl_drawing_number(plan->drawing, frame), error);
+}
+
+/* Hidden beside the frames, one for each pattern. */
+static char *hidden_file(const FlPlan *plan, const char *suffix)
+{
+    g_autofree char *folder = g_path_get_dirname(plan->output);
+    g_autofree char *base = g_path_get_basename(plan->output);
+    g_autofree char *name = g_strdup_printf(".%s.%s", base, suffix);
+    return g_build_filename(folder, name, NULL);
+}
+
+static bool may_overwrite(const FlPlan *plan)
+{
+    return plan->options.overwrite == FL_OVERWRITE_YES;
+}
+
+/* The state of an earlier run into resume->state, if this one is to go on with it. */
+static bool find_state(FlResume *resume, const FlPlan *plan, FlFingerprint *print, GError **error)
+{
+    if ((may_overwrite(plan) && !plan->options.resume) ||
+        !g_file_test(resume->path, G_FILE_TEST_EXISTS))
+        return true;
+    g_autoptr(GError) problem = NULL;
+    g_autoptr(FlCheckpoint) state = fl_checkpoint_load(resume->path, &problem);
+    g_autofree char *difference =
+        state ? fl_fingerprint_difference(state->print, print) : g_strdup(problem->message);
+    if (!difference) {
+        resume->state = g_steal_pointer(&state);
+        return true;
+    }
+    if (may_overwrite(plan))
+        return true;
+    if (!state)
+        g_propagate_error(error, g_steal_pointer(&problem));
+    else
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: an earlier run painted %d frames, but %s; -y starts anew", plan->output,
+                    state->done, difference);
+    return false;
+}
+
+static bool is_free(const char *file, bool movie, GError **error)
+{
+    if (!g_file_test(file, G_FILE_TEST_EXISTS))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s: exists already; -y overwrites%s", file,
+                movie ? "" : ", --no-clobber keeps what is there");
+    return false;
+}
+
+static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
+{
+    const int number = fl_drawing_number(plan->drawing, frame);
+    for (int p = 0; plan->options.layers && p < plan->n_painters; p++) {
+        const char *region = plan->painters[p].name;
+        g_autofree char *file = fl_output_name(plan->options.layers, number, region, error);
+        if (!file || !is_free(file, false, error))
+            return false;
+    }
+    return true;
+}
+
+static bool paints_are_free(const FlPlan *plan, int frame, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    for (int p = 0; o->paint && !o->merge && p < plan->n_painters; p++) {
+        const FlPainter *painter = &plan->painters[p];
+        g_autofree char *file = fl_paint_file(o->paint, painter, frame, error);
+        if (!file || (frame % painter->settings.hold == 0 && !is_free(file, false, error)))
+            return false;
+    }
+    return true;
+}
+
+/* A frame that is finished must be there, and of another nothing that is not ours. */
+static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, GError **error)
+{
+    g_autofree char *file = resume->path ? frame_file(plan, frame, error) : NULL;
+    if (resume->path && !file)
+        return false;
+    if (frame < resume->first) {
+        if (!file || g_file_test(file, G_FILE_TEST_EXISTS))
+            return true;
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: an earlier run painted it, but it is gone; -y starts anew", file);
+        return false;
+    }
+    return resume->keep_files || fl_resume_replaces(resume, frame) ||
+           ((!file || is_free(file, false, error)) && layers_are_free(plan, frame, error) &&
+            paints_are_free(plan, frame, error));
+}
+
+static bool check_files(const FlResume *resume, const FlPlan *plan, GError **error)
+{
+    const char *movie = resume->path ? plan->movie : plan->output;
+    if (movie && !may_overwrite(plan) && !is_free(movie, true, error))
+        return false;
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
+        if (!check_frame(resume, plan, f, error))
+            return false;
+    return true;
+}
+
+static void tell_start(const FlResume *resume, const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    if (!o->note)
+        return;
+    g_autofree char *line =
+        g_strdup_printf("going on with an earlier run, which painted %d of %d frames",
+                        resume->first, fl_drawing_frames(plan->drawing));
+    o->note(line, o->data);
+}
+
+/* A film without its frames is one file: it is written anew or not at all. */
+static bool check_film(const FlPlan *plan, GError **error)
+{
+    if (plan->options.resume) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: a film cannot be resumed without its frames; expected no --no-frames",
+                    plan->output);
+        return false;
+    }
+    return true;
+}
+
+bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
+{
+    const bool one_file = plan->format->film;
+    *resume = (FlResume){.keep_files = plan->options.overwrite == FL_OVERWRITE_KEEP};
+    if (one_file && !check_film(plan, error))
+        return false;
+    g_autoptr(FlFingerprint) print = fl_fingerprint_new(plan, error);
+    resume->path = one_file ? NULL : hidden_file(plan, "state");
+    if (!print || (resume->path && !find_state(resume, plan, print, error)))
+        return false;
+    resume->found = resume->written = resume->state != NULL;
+    if (!resume->found) {
+        resume->state = fl_checkpoint_new();
+        resume->state->overwrite = may_overwrite(plan);
+    }
+    fl_fingerprint_free(resume->state->print); // it says the same
+    resume->state->print = g_steal_pointer(&print);
+    resume->first = resume->state->done;
+    if (!check_files(resume, plan, error))
+        return false;
+    if (resume->found)
+        tell_start(resume, plan);
+    return true;
+}
+
+bool fl_resume_take(FlResume *resume, const FlPlan *plan, int done, GError **error)
+{
+    GPtrArray *parts = resume->state->painter;
+    GError *first = NULL;
+    if (!resume->path)
+        return true;
+    g_ptr_array_set_size(parts, 0);
+    g_ptr_array_set_size(parts, FL_PAINTER_PARTS * plan->n_painters);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int p = 0; p < plan->n_painters; p++) {
+        GError *mine = NULL;
+        GBytes **mine_parts = (GBytes **)parts->pdata + FL_PAINTER_PARTS * p;
+        if (!fl_painter_save(&plan->painters[p], mine_parts, &mine))
+            fl_parallel_error_keep(&first, mine);
+    }
+    resume->state->done = done;
+    return fl_parallel_error_tell(error, first);
+}
+
+/* Two runs with the same output would mix their frames. */
+static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
+{
+    g_autofree char *folder = g_path_get_dirname(plan->output);
+    g_autofree char *path = hidden_file(plan, "lock");
+    GError *taken = NULL;
+    (void)g_mkdir_with_parents(folder, 0777); // the state, which comes next, tells what is wrong
+    resume->lock = fl_lock_take(path, plan->output, &taken);
+    if (taken) {
+        g_propagate_error(error, taken);
+        return false;
+    }
+    resume->lock_path = g_steal_pointer(&path);
+    return true;
+}
+
+/* Before the state: a run that is killed in between is known to be complete by the next. */
+static void release_lock(FlResume *resume)
+{
+    if (resume->lock_path && resume->lock >= 0) {
+        g_unlink(resume->lock_path);
+        close(resume->lock);
+    }
+    g_clear_pointer(&resume->lock_path, g_free);
+}
+
+bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error)
+{
+    if (!resume->found)
+        return fl_resume_take(resume, plan, 0, error);
+    if (!take_lock(resume, plan, error))
+        return false;
+    GBytes *const *parts = (GBytes *const *)resume->state->painter->pdata;
+    if (resume->state->painter->len != (guint)(FL_PAINTER_PARTS * plan->n_painters)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: has the state of another number of regions; -y starts anew", resume->path);
+        return false;
+    }
+    for (int p = 0; p < plan->n_painters; p++)
+        if (!fl_painter_load(&plan->painters[p], parts + FL_PAINTER_PARTS * p, error))
+            return false;
+    return true;
+}
+
+bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error)
+{
+    if (!fl_fingerprint_check_drawing(resume->state->print, plan->drawing, frame, error))
+        return false;
+    // The first state comes before the first frame: a frame without a state is not known as ours.
+    // It comes no sooner, so that a mistake that shows in the first frame leaves nothing behind.
+    if (!resume->path)
+        return true;
+    if (!resume->lock_path && !take_lock(resume, plan, error))
+        return false;
+    if (resume->written)
+        return true;
+    return resume->written = fl_checkpoint_save(resume->state, resume->path, error);
+}
+
+bool fl_resume_save(FlResume *resume, GError **error)
+{
+    return !resume->path || fl_checkpoint_save(resume->state, resume->path, error);
+}
+
+bool fl_resume_replaces(const FlResume *resume, int frame)
+{
+    const bool in_hand = resume->found && frame == resume->first;
+    return !resume->keep_files && (in_hand || (resume->state && resume->state->overwrite));
+}
+
+bool fl_resume_keeps(const FlResume *resume, const char *file)
+{
+    return resume->keep_files && g_file_test(file, G_FILE_TEST_EXISTS);
+}
+
+const char *fl_resume_advice(const FlResume *resume)
+{
+    return resume->path ? "run again to go on" : "a film without its frames starts anew";
+}
+
+void fl_resume_finish(FlResume *resume)
+{
+    release_lock(resume);
+    if (resume->path)
+        g_unlink(resume->path);
+}
+
+void fl_resume_clear(FlResume *resume)
+{
+    release_lock(resume);
+    g_free(resume->path);
+    fl_checkpoint_free(resume->state);
+    *resume = (FlResume){0};
+}

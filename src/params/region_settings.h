@@ -1,0 +1,88 @@
+/* How a region is treated: what the config and the command line say of it, and what that comes to.
+ */
+#ifndef FLUIDY_PARAMS_REGION_SETTINGS_H
+#define FLUIDY_PARAMS_REGION_SETTINGS_H
+
+#include "params/params.h"
+#include <stdint.h>
+
+/** What a region does to the regions below it. */
+typedef enum FlStacking {
+    FL_STACKING_KNOCKOUT, // they are not there: paper under the paint
+    FL_STACKING_GLAZE,    // its density adds to theirs, as a wash over dry paint
+} FlStacking;
+
+/** What paint does at an edge that its shape shares with others. */
+typedef enum FlEdges {
+    FL_EDGES_CLOSED, // it goes on up to the edge: neither a line of paper nor a double rim
+    FL_EDGES_SOFT,   // as at any other edge
+} FlEdges;
+
+/** The colour of the paint. */
+typedef enum FlTint {
+    FL_TINT_FILL, // the drawing's fill or any other: the picture if there is one, else the flat one
+    FL_TINT_KEEP, // the exemplar's own colours
+} FlTint;
+
+/** Whether a region is painted at all. */
+typedef enum FlPassthrough {
+    FL_PASSTHROUGH_AUTO, // strokes and shading are not
+    FL_PASSTHROUGH_NO,   // it is
+    FL_PASSTHROUGH_YES,  // it is drawn as it is
+} FlPassthrough;
+
+/** How one region is painted, everything decided. */
+typedef struct FlRegionSettings {
+    char *style; // a name or a path; NULL: nobody said
+    FlTint tint;
+    bool has_colour;   // with FL_TINT_FILL: `colour` instead of the drawing's fill
+    uint8_t colour[3]; // sRGB
+    FlDetail detail;
+    FlStacking stacking;
+    FlEdges edges;
+    int hold; // frames, 1..1000
+    bool reverse;
+    FlPassthrough passthrough;
+    char *merge_with; // another region's name; NULL: none
+    FlParams params;
+} FlRegionSettings;
+
+void fl_region_settings_init(FlRegionSettings *settings); // the defaults
+void fl_region_settings_clear(FlRegionSettings *settings);
+
+/**
+ * Sets one thing from text: a key of settings.def or params.def, or "preset". "scale" is read as
+ * style-scale.
+ *
+ * A relative path of a style is taken from `folder`; NULL: the working directory.
+ * Returns: false with FL_ERROR_USAGE; the treatment is then unchanged.
+ */
+bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
+                            const char *folder, GError **error);
+
+/** All keys that fl_region_settings_set() knows, NULL-terminated; static storage. */
+const char *const *fl_region_settings_keys(void);
+
+/** What is said of a region: keys and values in the order of the file, known to be right. */
+typedef struct FlOverride {
+    char *key, *value;
+} FlOverride;
+
+typedef struct FlOverrides {
+    int n;
+    FlOverride *override;
+    char *folder; // relative paths start here; NULL: the working directory
+} FlOverrides;
+
+/** Adds a copy; a key said twice keeps its last value. Errors as fl_region_settings_set(). */
+bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value, GError **error);
+
+void fl_overrides_clear(FlOverrides *overrides);
+
+/** Applies them all, a preset first, then the detail. They were checked when they were added. */
+void fl_overrides_apply(const FlOverrides *overrides, FlRegionSettings *settings);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRegionSettings, fl_region_settings_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlOverrides, fl_overrides_clear)
+
+#endif

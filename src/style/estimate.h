@@ -1,0 +1,40 @@
+/* What a recording does not say itself: its paper, where the paint is, how wide its border is. */
+#ifndef FLUIDY_STYLE_ESTIMATE_H
+#define FLUIDY_STYLE_ESTIMATE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** Frames of one size, one after the other without padding: sRGB, 3 bytes a pixel. */
+typedef struct FlClip {
+    int width, height, n_frames; // each >= 1
+    const uint8_t *rgb;
+} FlClip;
+
+/**
+ * The colour of the bare paper.
+ *
+ * With masks (coverage, n_frames * height * width) it is the median of what is outside of all of
+ * them; without (NULL), the commonest colour along the rim of the first frame, where recordings
+ * begin with the least paint. White if the masks leave less than a thousandth of the clip bare.
+ */
+void fl_paper_estimate(const FlClip *clip, const uint8_t *mask, uint8_t paper[3]);
+
+/**
+ * Finds the paint: the difference from the paper, smoothed and thresholded, its largest connected
+ * parts with their pinholes closed, smoothed again and cut below one half, so that a thin margin of
+ * bare paper belongs to the mask [P21 §4.1.1]. Writes antialiased coverage, n_frames * height *
+ * width.
+ *
+ * A frame without paint gets an empty mask. Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask, GError **error);
+
+/** The share of frame's pixels in the mask, 0..1. */
+double fl_mask_share(const uint8_t *mask, int width, int height);
+
+/** Gaussian blur of a plane in place, its rim repeated; sigma in pixels, > 0. */
+bool fl_blur_plane(float *plane, int width, int height, float sigma, GError **error);
+
+#endif

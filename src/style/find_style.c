@@ -1,0 +1,129 @@
+#include "style/find_style.h"
+
+#include "base/suggest.h"
+#include "config.h"
+#include "style/manifest.h"
+
+#include <string.h>
+
+static void add_folder(GPtrArray *folders, char *folder)
+{
+    if (g_ptr_array_find_with_equal_func(folders, folder, g_str_equal, NULL))
+        g_free(folder);
+    else
+        g_ptr_array_add(folders, folder);
+}
+
+char **fl_style_folders(void)
+{
+    GPtrArray *folders = g_ptr_array_new();
+    const char *own = g_getenv("FLUIDY_STYLES");
+    g_auto(GStrv) listed = g_strsplit(own ? own : "", G_SEARCHPATH_SEPARATOR_S, -1);
+    for (int i = 0; listed[i]; i++)
+        if (listed[i][0])
+            add_folder(folders, g_strdup(listed[i]));
+    add_folder(folders, g_build_filename(g_get_user_data_dir(), "fluidy", "styles", NULL));
+    const char *const *system = g_get_system_data_dirs();
+    for (int i = 0; system[i]; i++)
+        add_folder(folders, g_build_filename(system[i], "fluidy", "styles", NULL));
+    add_folder(folders, g_strdup(FL_STYLE_DIR));
+    add_folder(folders, g_strdup(FL_BUILD_STYLE_DIR));
+    g_ptr_array_add(folders, NULL);
+    return (char **)g_ptr_array_free(folders, FALSE);
+}
+
+bool fl_is_style(const char *folder)
+{
+    g_autofree char *frames = g_build_filename(folder, "frames", NULL);
+    return g_file_test(frames, G_FILE_TEST_IS_DIR);
+}
+
+/* The names of the styles in a folder, unordered. */
+static void collect_names(const char *folder, GPtrArray *names)
+{
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
+    const char *name;
+    while (dir && (name = g_dir_read_name(dir))) {
+        g_autofree char *path = g_build_filename(folder, name, NULL);
+        if (fl_is_style(path))
+            g_ptr_array_add(names, g_strdup(name));
+    }
+}
+
+static void set_not_found(const char *name, char **folders, GError **error)
+{
+    g_autoptr(GPtrArray) names = g_ptr_array_new_with_free_func(g_free);
+    for (int i = 0; folders[i]; i++)
+        collect_names(folders[i], names);
+    g_ptr_array_add(names, NULL);
+    g_autofree char *tail = fl_did_you_mean(name, (const char *const *)names->pdata);
+    g_autofree char *where = g_strjoinv(", ", folders);
+    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "no style “%s” in %s%s", name, where, tail);
+}
+
+char *fl_style_find(const char *name, GError **error)
+{
+    if (strchr(name, G_DIR_SEPARATOR) || fl_is_style(name)) {
+        if (g_file_test(name, G_FILE_TEST_IS_DIR))
+            return g_strdup(name);
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: no such folder: expected a style", name);
+        return NULL;
+    }
+    g_auto(GStrv) folders = fl_style_folders();
+    for (int i = 0; folders[i]; i++) {
+        g_autofree char *path = g_build_filename(folders[i], name, NULL);
+        if (name[0] && fl_is_style(path))
+            return g_steal_pointer(&path);
+    }
+    set_not_found(name, folders, error);
+    return NULL;
+}
+
+static void free_entry(void *data)
+{
+    FlStyleEntry *entry = data;
+    g_free(entry->name);
+    g_free(entry->path);
+    g_free(entry->title);
+    g_free(entry);
+}
+
+static int compare_strings(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+static char *title_of(const char *folder)
+{
+    FlStyle style = {0}; // the strings of which are freed below
+    g_autofree char *file = g_build_filename(folder, "style.ini", NULL);
+    const bool read = g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(&style, file, NULL);
+    char *title = read ? g_steal_pointer(&style.name) : NULL;
+    g_free(style.name), g_free(style.author), g_free(style.licence);
+    g_free(style.made_by), g_free(style.missing_orientations);
+    return title;
+}
+
+GPtrArray *fl_style_list(void)
+{
+    GPtrArray *entries = g_ptr_array_new_with_free_func(free_entry);
+    g_autoptr(GHashTable) seen = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    g_auto(GStrv) folders = fl_style_folders();
+    for (int i = 0; folders[i]; i++) {
+        g_autoptr(GPtrArray) names = g_ptr_array_new_with_free_func(g_free);
+        collect_names(folders[i], names);
+        g_ptr_array_sort(names, compare_strings);
+        for (guint k = 0; k < names->len; k++) {
+            const char *name = g_ptr_array_index(names, k);
+            FlStyleEntry *entry = g_new(FlStyleEntry, 1);
+            *entry = (FlStyleEntry){
+                .name = g_strdup(name),
+                .path = g_build_filename(folders[i], name, NULL),
+                .hidden = !g_hash_table_add(seen, g_strdup(name)),
+            };
+            entry->title = title_of(entry->path);
+            g_ptr_array_add(entries, entry);
+        }
+    }
+    return entries;
+}

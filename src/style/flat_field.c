@@ -1,0 +1,206 @@
+#include "style/flat_field.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { TERMS = 6, ROUNDS = 5, MOST_SAMPLES = 200000, WIDEST = 48 };
+
+static const double NARROWEST = 8; // levels: paper grain is never cut off as paint
+
+static void basis(int x, int y, int width, int height, double term[TERMS])
+{
+    const double u = width > 1 ? 2.0 * x / (width - 1) - 1 : 0;
+    const double v = height > 1 ? 2.0 * y / (height - 1) - 1 : 0;
+    memcpy(term, (double[TERMS]){1, u, v, u * u, u * v, v * v}, TERMS * sizeof(double));
+}
+
+static double gain_at(const FlFlatField *plate, const double term[TERMS], int c)
+{
+    double gain = 0;
+    for (int i = 0; i < TERMS; i++)
+        gain += plate->gain[c][i] * term[i];
+    return CLAMP(gain, plate->low[c], plate->high[c]);
+}
+
+float fl_flat_field_at(const FlFlatField *plate, int x, int y, int c)
+{
+    double term[TERMS];
+    basis(x, y, plate->width, plate->height, term);
+    return (float)(plate->paper[c] * gain_at(plate, term, c));
+}
+
+float fl_flat_field_range(const FlFlatField *plate)
+{
+    float range = 0;
+    for (int c = 0; c < 3; c++) {
+        float low = 255, high = 0;
+        for (int i = 0; i <= 8; i++)
+            for (int j = 0; j <= 8; j++) {
+                const float level = fl_flat_field_at(plate, i * (plate->width - 1) / 8,
+                                                     j * (plate->height - 1) / 8, c);
+                low = MIN(low, level);
+                high = MAX(high, level);
+            }
+        range = MAX(range, high - low);
+    }
+    return range;
+}
+
+/* Normal equations of the least squares for the three channels, which share the matrix. */
+typedef struct Fit {
+    double matrix[TERMS][TERMS], right[3][TERMS];
+    double low[3], high[3]; // of the gains before this round
+    size_t n;
+    uint32_t residual[256]; // histogram of the largest channel's, for the next round's limit
+} Fit;
+
+static void add_sample(Fit *fit, const FlFlatField *plate, const double term[TERMS],
+                       const uint8_t *rgb, double limit)
+{
+    double most = 0, gain[3];
+    for (int c = 0; c < 3; c++) {
+        gain[c] = gain_at(plate, term, c);
+        most = MAX(most, fabs(rgb[c] - plate->paper[c] * gain[c]));
+    }
+    if (most > limit)
+        return;
+    for (int c = 0; c < 3; c++) {
+        fit->low[c] = fit->n ? MIN(fit->low[c], gain[c]) : gain[c];
+        fit->high[c] = fit->n ? MAX(fit->high[c], gain[c]) : gain[c];
+    }
+    fit->n++;
+    fit->residual[(int)MIN(most, 255)]++;
+    for (int i = 0; i < TERMS; i++) {
+        for (int j = 0; j < TERMS; j++)
+            fit->matrix[i][j] += term[i] * term[j];
+        for (int c = 0; c < 3; c++)
+            fit->right[c][i] += term[i] * rgb[c] / MAX(plate->paper[c], 1);
+    }
+}
+
+static void add_samples(Fit *fit, const FlFlatField *plate, const FlClip *clip, const uint8_t *mask,
+                        double limit)
+{
+    const int width = clip->width, height = clip->height;
+    const size_t pixels = (size_t)width * height, all = pixels * clip->n_frames;
+    const size_t step = 1 + all / MOST_SAMPLES;
+    for (size_t i = 0; i < all; i += step) {
+        double term[TERMS];
+        if (mask && mask[i])
+            continue;
+        basis((int)(i % width), (int)(i % pixels / width), width, height, term);
+        add_sample(fit, plate, term, clip->rgb + 3 * i, limit);
+    }
+}
+
+/* Gaussian elimination without pivots: the matrix is positive definite by the ridge. */
+static void solve(Fit *fit, FlFlatField *plate)
+{
+    for (int i = 0; i < TERMS; i++) { // a gain of 1 is a hundredth of the evidence
+        fit->matrix[i][i] += 0.01 * (double)fit->n;
+        for (int c = 0; i == 0 && c < 3; c++)
+            fit->right[c][0] += 0.01 * (double)fit->n;
+    }
+    for (int i = 0; i < TERMS; i++)
+        for (int k = i + 1; k < TERMS; k++) {
+            const double factor = fit->matrix[k][i] / fit->matrix[i][i];
+            for (int j = i; j < TERMS; j++)
+                fit->matrix[k][j] -= factor * fit->matrix[i][j];
+            for (int c = 0; c < 3; c++)
+                fit->right[c][k] -= factor * fit->right[c][i];
+        }
+    for (int c = 0; c < 3; c++)
+        for (int i = TERMS - 1; i >= 0; i--) {
+            double sum = fit->right[c][i];
+            for (int j = i + 1; j < TERMS; j++)
+                sum -= fit->matrix[i][j] * plate->gain[c][j];
+            plate->gain[c][i] = sum / fit->matrix[i][i];
+        }
+}
+
+/* Three times the median residual: what lies further off is paint, or dirt. */
+static double next_limit(const Fit *fit)
+{
+    size_t sum = 0;
+    int median = 0;
+    while (2 * (sum += fit->residual[median]) < fit->n)
+        median++;
+    return CLAMP(3.0 * (median + 1), NARROWEST, WIDEST);
+}
+
+static void set_even(FlFlatField *plate)
+{
+    memset(plate->gain, 0, sizeof plate->gain);
+    for (int c = 0; c < 3; c++) {
+        plate->gain[c][0] = 1;
+        plate->low[c] = 0.67; // light that falls off more is no light
+        plate->high[c] = 1.5;
+    }
+}
+
+void fl_flat_field_fit(FlFlatField *plate, const FlClip *clip, const uint8_t *mask,
+                       const uint8_t paper[3])
+{
+    const size_t all = (size_t)clip->width * clip->height * clip->n_frames;
+    *plate = (FlFlatField){.width = clip->width, .height = clip->height};
+    memcpy(plate->paper, paper, 3);
+    set_even(plate);
+    double limit = WIDEST;
+    Fit last = {0}; // the last round only asks which gains there are at bare places
+    for (int round = 0; round < ROUNDS; round++) {
+        Fit fit = {0};
+        add_samples(&fit, plate, clip, mask, limit);
+        if (fit.n < 100 || fit.n * (1 + all / MOST_SAMPLES) * 20 < all) { // less than 5 % is bare
+            set_even(plate);
+            return;
+        }
+        if (round < ROUNDS - 1)
+            solve(&fit, plate);
+        limit = next_limit(&fit);
+        memcpy(last.low, fit.low, sizeof last.low);
+        memcpy(last.high, fit.high, sizeof last.high);
+    }
+    memcpy(plate->low, last.low, sizeof plate->low);
+    memcpy(plate->high, last.high, sizeof plate->high);
+}
+
+/* The median of paper over plate in the bare part of a frame, as a gain; 1 if too little is bare.
+ */
+static double frame_gain(const FlFlatField *plate, const uint8_t *rgb, const uint8_t *mask, int c)
+{
+    enum { STEPS = 512 }; // of 1/256
+    const int width = plate->width, height = plate->height;
+    uint32_t count[STEPS] = {0}, n = 0, sum = 0;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const size_t i = (size_t)y * width + x;
+            if (mask[i])
+                continue;
+            const double ratio = rgb[3 * i + c] / MAX(1, fl_flat_field_at(plate, x, y, c));
+            count[CLAMP((int)(ratio * 256 + 0.5), 0, STEPS - 1)]++;
+            n++;
+        }
+    int median = 0;
+    while (n && 2 * (sum += count[median]) < n)
+        median++;
+    return n * 50 > (uint32_t)width * height ? CLAMP(median / 256.0, 0.67, 1.5) : 1;
+}
+
+void fl_flat_field_flatten(const FlFlatField *plate, uint8_t *rgb, const uint8_t *mask,
+                           int n_frames)
+{
+    const int width = plate->width, height = plate->height;
+    for (int frame = 0; frame < n_frames; frame++) {
+        const size_t first = (size_t)frame * width * height;
+        for (int c = 0; c < 3; c++) {
+            const double gain = frame_gain(plate, rgb + 3 * first, mask + first, c);
+            uint8_t *level = rgb + 3 * first + c;
+            for (int y = 0; y < height; y++)
+                for (int x = 0; x < width; x++, level += 3) {
+                    const double paper = gain * fl_flat_field_at(plate, x, y, c);
+                    const double flat = *level * plate->paper[c] / MAX(1, paper);
+                    *level = (uint8_t)(MIN(flat, 255) + 0.5);
+                }
+        }
+    }
+}

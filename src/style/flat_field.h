@@ -1,0 +1,35 @@
+/* The bare paper under uneven light: what each pixel would show if there were no paint. */
+#ifndef FLUIDY_STYLE_FLAT_FIELD_H
+#define FLUIDY_STYLE_FLAT_FIELD_H
+
+#include "style/estimate.h"
+
+/** Light that falls off smoothly: a polynomial of degree two over the frame for each channel. */
+typedef struct FlFlatField {
+    int width, height;
+    uint8_t paper[3];       // the paper where the gain is 1
+    double gain[3][6];      // of 1, u, v, u², uv, v²; u and v run from -1 to 1 over the frame
+    double low[3], high[3]; // the gains at bare places; under paint it is never beyond them
+} FlFlatField;
+
+/**
+ * Fits the light to the bare paper: to the pixels outside all masks, or, where mask is NULL, to
+ * those that look like `paper`. Where too little is bare the light is taken as even.
+ */
+void fl_flat_field_fit(FlFlatField *plate, const FlClip *clip, const uint8_t *mask,
+                       const uint8_t paper[3]);
+
+/** What bare paper shows, or would show, at a pixel in channel c, in levels. */
+float fl_flat_field_at(const FlFlatField *plate, int x, int y, int c);
+
+/** The difference of the lightest and darkest point of the plate, in levels. */
+float fl_flat_field_range(const FlFlatField *plate);
+
+/**
+ * Makes the light even and constant: divides rgb (as the clip's) by the plate, and each frame by
+ * what is left of its bare paper's median, so that the paper has its colour everywhere.
+ */
+void fl_flat_field_flatten(const FlFlatField *plate, uint8_t *rgb, const uint8_t *mask,
+                           int n_frames);
+
+#endif

@@ -1,0 +1,37 @@
+/* A recording as somebody has it: a video, a still, numbered pictures, a folder of them. */
+#ifndef FLUIDY_STYLE_RECORDING_H
+#define FLUIDY_STYLE_RECORDING_H
+
+#include "io/picture.h"
+#include "io/picture_series.h"
+#include <fluidy/style.h>
+
+typedef struct FlRecording {
+    char *path;        // as the user named it
+    FlSeries *series;  // numbered pictures, or one still; NULL: a video
+    int number;        // of the first frame that was read
+    int width, height; // of the frames that were read, before crop and scale
+} FlRecording;
+
+/**
+ * Finds out what `path` is; no picture is read yet. A folder that holds a second series called
+ * mask..., or `frames` and `masks` folders, gives that as *masks, to be freed too; else *masks is
+ * NULL. `masks` itself may be NULL: then only the series of masks is wanted from such a folder.
+ *
+ * Returns: NULL with FL_ERROR_INPUT set if there is nothing to read, or more than one series.
+ */
+FlRecording *fl_recording_open(const char *path, FlRecording **masks, GError **error);
+
+void fl_recording_free(FlRecording *source); // NULL is fine
+
+/**
+ * Reads the frames that `how` selects, crops and scales them; all have one size, and together at
+ * most FL_LIMIT_STYLE.
+ *
+ * Returns: (element-type FlPicture); NULL with FL_ERROR_INPUT, _USAGE or _LIMIT set.
+ */
+GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *how, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlRecording, fl_recording_free)
+
+#endif

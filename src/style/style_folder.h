@@ -1,0 +1,53 @@
+/* A style: the folder an artist makes, read into memory. */
+#ifndef FLUIDY_STYLE_STYLE_FOLDER_H
+#define FLUIDY_STYLE_STYLE_FOLDER_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** What a style's paint does over what lies below it. */
+typedef enum FlMedium {
+    FL_MEDIUM_TRANSPARENT, // density over the background, as watercolour
+    FL_MEDIUM_OPAQUE,      // alpha over the background, as gouache or pastel
+} FlMedium;
+
+/** A style in memory. Frames follow each other without padding, rows from the top. */
+typedef struct FlStyle {
+    char *name; // the folder's name, or style.ini's
+    char *path; // the folder
+    char *author, *licence;
+    int width, height, n_frames;
+    float fps;        // frames per second, > 0
+    float border_px;  // width of the boundary region b [F21 §3.1], px of the style, > 0
+    float scale;      // px of the target per px of the style that suits it, > 0
+    uint8_t paper[3]; // sRGB of the bare paper
+    FlMedium medium;
+    uint8_t *rgb;               // n_frames * height * width * 3, sRGB
+    uint8_t *mask;              // n_frames * height * width, coverage 0..255
+    float *flow;                // n_frames * height * width * 2, px per frame; NULL: construct it
+    char *made_by;              // what made the frames, such as a recipe's file name; may be NULL
+    char *missing_orientations; // which ways no outline faces, "none" or NULL, by style.ini
+    unsigned guessed;           // FlGuess bits (manifest.h): what the folder does not say itself
+} FlStyle;
+
+/**
+ * Reads a folder. What it does not say itself is found in its frames: the paper's colour, the
+ * masks, the border; the flow stays NULL.
+ *
+ * Returns: NULL with FL_ERROR_STYLE, naming the file and what was expected; FL_ERROR_LIMIT;
+ * FL_ERROR_INPUT for a flow field; FL_ERROR_NO_MEMORY.
+ */
+FlStyle *fl_style_load(const char *folder, GError **error);
+
+/**
+ * Finds a style by name or path [DESIGN §5]: a path if it has a slash or is a folder, else in
+ * $FLUIDY_STYLES, the user's and the system's data folders, the installed one, the source tree's.
+ */
+char *fl_style_find(const char *name, GError **error);
+
+void fl_style_free(FlStyle *style); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyle, fl_style_free)
+
+#endif

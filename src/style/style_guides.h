@@ -1,0 +1,15 @@
+/* The guides of a style's frames, and how parameters want guides made. */
+#ifndef FLUIDY_STYLE_STYLE_GUIDES_H
+#define FLUIDY_STYLE_STYLE_GUIDES_H
+
+#include "guides/guides.h"
+#include "params/params.h"
+#include "style/style_folder.h"
+
+/** How params want guides made; lengths in pixels are halved at half the size. */
+FlGuideParams fl_guide_params(const FlParams *params);
+
+/** The guides of a style, which must stay as long as they do. NULL with an error of theirs set. */
+FlGuideSequence *fl_style_guides(const FlStyle *style, const FlParams *params, GError **error);
+
+#endif

@@ -1,0 +1,278 @@
+#include "svg/document.h"
+
+#include "base/limits.h"
+#include <errno.h>
+#include <glib/gstdio.h>
+#include <libxml/parser.h>
+#include <string.h>
+#include <zlib.h>
+
+static const char svg_namespace[] = "http://www.w3.org/2000/svg";
+
+bool fl_is(const xmlNode *node, const char *name)
+{
+    return node->type == XML_ELEMENT_NODE && strcmp((const char *)node->name, name) == 0 &&
+           node->ns && strcmp((const char *)node->ns->href, svg_namespace) == 0;
+}
+
+bool fl_is_one_of(const xmlNode *node, const char *const *names)
+{
+    for (int i = 0; names[i]; i++)
+        if (fl_is(node, names[i]))
+            return true;
+    return false;
+}
+
+char *fl_attribute(const xmlNode *node, const char *name)
+{
+    return (char *)xmlGetNoNsProp(node, (const xmlChar *)name);
+}
+
+char *fl_property(const xmlNode *node, const char *name)
+{
+    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    char *value = NULL;
+    if (style && strstr((const char *)style, name)) {
+        g_auto(GStrv) parts = g_strsplit((const char *)style, ";", -1);
+        for (int i = 0; parts[i]; i++) {
+            char *colon = strchr(parts[i], ':');
+            if (!colon)
+                continue;
+            *colon = '\0';
+            if (g_ascii_strcasecmp(g_strstrip(parts[i]), name) == 0) {
+                g_free(value);
+                value = g_strdup(g_strstrip(colon + 1));
+            }
+        }
+    }
+    if (value)
+        return value;
+    g_autoptr(xmlChar) attribute = (xmlChar *)fl_attribute(node, name);
+    return attribute ? g_strstrip(g_strdup((const char *)attribute)) : NULL;
+}
+
+bool fl_document_is_huge(void)
+{
+    return fl_limit(FL_LIMIT_DEPTH) > 250 || fl_limit(FL_LIMIT_PATH) > 9000000 ||
+           fl_limit(FL_LIMIT_ELEMENTS) > 200000;
+}
+
+static double mebibytes(double bytes)
+{
+    return bytes / (1 << 20);
+}
+
+/** Unpacks gzip data; replaces *data. */
+static bool gunzip(const char *path, char **data, gsize *bytes, GError **error)
+{
+    z_stream z = {.next_in = (Bytef *)*data, .avail_in = (uInt)*bytes};
+    GByteArray *out = g_byte_array_new();
+    int status = inflateInit2(&z, 15 + 16);
+    while (status == Z_OK && mebibytes(out->len) <= (double)fl_limit(FL_LIMIT_DRAWING)) {
+        guint8 block[65536];
+        z.next_out = block;
+        z.avail_out = sizeof block;
+        status = inflate(&z, Z_NO_FLUSH);
+        g_byte_array_append(out, block, sizeof block - z.avail_out);
+        if (status == Z_OK && z.avail_in == 0 && z.avail_out > 0)
+            status = Z_DATA_ERROR; // cut short
+    }
+    inflateEnd(&z);
+    if (status != Z_STREAM_END) {
+        if (fl_limit_check(FL_LIMIT_DRAWING, mebibytes(out->len), path, error))
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: damaged gzip data", path);
+        g_byte_array_unref(out);
+        return false;
+    }
+    g_free(*data);
+    *bytes = out->len;
+    *data = (char *)g_byte_array_free(out, FALSE);
+    return true;
+}
+
+static bool read_bytes(const char *path, char **data, gsize *bytes, GError **error)
+{
+    g_autoptr(GError) reason = NULL;
+    GStatBuf info;
+    if (g_stat(path, &info) == 0 &&
+        !fl_limit_check(FL_LIMIT_DRAWING, mebibytes((double)info.st_size), path, error))
+        return false;
+    if (!g_file_get_contents(path, data, bytes, &reason)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", reason->message);
+        return false;
+    }
+    if (*bytes > 2 && (guint8)(*data)[0] == 0x1f && (guint8)(*data)[1] == 0x8b)
+        return gunzip(path, data, bytes, error);
+    return true;
+}
+
+/** Parses; problem gets libxml2's message with its line if the text is no XML. */
+static xmlDoc *parse(const char *data, gsize bytes, const char *path, char **problem)
+{
+    xmlParserCtxt *context = xmlNewParserCtxt();
+    const int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
+                        (fl_document_is_huge() ? XML_PARSE_HUGE : 0);
+    xmlDoc *doc = xmlCtxtReadMemory(context, data, (int)bytes, path, NULL, options);
+    const xmlError *e = xmlCtxtGetLastError(context);
+    if (!doc && problem)
+        *problem = e && e->message ? g_strdup_printf("line %d: %s", e->line, g_strchomp(e->message))
+                                   : g_strdup("no XML");
+    xmlFreeParserCtxt(context);
+    return doc;
+}
+
+static xmlDoc *parse_leniently(const char *data, gsize bytes, const char *path, int number,
+                               FlWarnings *warnings, GError **error)
+{
+    g_autofree char *problem = NULL;
+    xmlDoc *doc = parse(data, bytes, path, &problem);
+    const char *root = doc ? NULL : g_strstr_len(data, (gssize)bytes, "<svg");
+    if (root)
+        doc = parse(root, bytes - (gsize)(root - data), path, NULL);
+    if (doc && root)
+        fl_warnings_add(warnings, path, number, NULL,
+                        "what stands before <svg> is no XML and is left out (%s)", problem);
+    if (!doc)
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: not well-formed: %s", path, problem);
+    return doc;
+}
+
+/** A prefix without a declaration stops librsvg; libxml2 leaves it in the name. */
+static void declare_prefix(xmlNode *root, const xmlChar *name)
+{
+    const char *colon = strchr((const char *)name, ':');
+    if (!colon)
+        return;
+    g_autofree char *prefix = g_strndup((const char *)name, (gsize)(colon - (const char *)name));
+    g_autofree char *href = g_strdup_printf("urn:undeclared:%s", prefix);
+    if (!xmlSearchNs(root->doc, root, (const xmlChar *)prefix))
+        xmlNewNs(root, (const xmlChar *)href, (const xmlChar *)prefix);
+}
+
+/**
+ * Puts the text of entities in for them in declarations of namespaces, where libxml2 leaves them:
+ * Illustrator writes xmlns="&ns_svg;".
+ */
+static void expand_namespaces(xmlDoc *doc, xmlNs *ns)
+{
+    for (; ns; ns = ns->next) {
+        const char *href = (const char *)ns->href;
+        const size_t n = href ? strlen(href) : 0;
+        if (n < 3 || href[0] != '&' || href[n - 1] != ';')
+            continue;
+        g_autofree char *name = g_strndup(href + 1, n - 2);
+        const xmlEntity *entity = xmlGetDocEntity(doc, (const xmlChar *)name);
+        if (!entity || entity->etype != XML_INTERNAL_GENERAL_ENTITY || !entity->content)
+            continue;
+        xmlFree((xmlChar *)ns->href);
+        ns->href = xmlStrdup(entity->content);
+    }
+}
+
+/** Drawings that a page has in its HTML need no namespace there, and lack it when they are saved.
+ */
+static void set_namespace(xmlNode *node, xmlNs *ns)
+{
+    for (; node; node = node->next) {
+        if (node->type != XML_ELEMENT_NODE)
+            continue;
+        if (!node->ns)
+            xmlSetNs(node, ns);
+        set_namespace(node->children, ns);
+    }
+}
+
+/* A document as it is walked through. */
+typedef struct Visit {
+    const char *path;
+    xmlNode *root;
+    int n; // elements so far
+} Visit;
+
+static bool check_length(const Visit *visit, const xmlAttr *a, GError **error)
+{
+    double length = 0;
+    if (!xmlStrEqual(a->name, (const xmlChar *)"d") &&
+        !xmlStrEqual(a->name, (const xmlChar *)"points"))
+        return true;
+    for (const xmlNode *text = a->children; text; text = text->next)
+        length += text->content ? (double)strlen((const char *)text->content) : 0;
+    return fl_limit_check(FL_LIMIT_PATH, length, visit->path, error);
+}
+
+/** Counts the elements from node on and declares prefixes; `depth` is node's, from 1. */
+static bool visit_node(Visit *visit, xmlNode *node, int depth, GError **error)
+{
+    visit->n++;
+    if (!fl_limit_check(FL_LIMIT_ELEMENTS, visit->n, visit->path, error) ||
+        !fl_limit_check(FL_LIMIT_DEPTH, depth, visit->path, error))
+        return false;
+    declare_prefix(visit->root, node->name);
+    expand_namespaces(node->doc, node->nsDef);
+    for (xmlAttr *a = node->properties; a; a = a->next) {
+        if (!a->ns)
+            declare_prefix(visit->root, a->name);
+        if (!check_length(visit, a, error))
+            return false;
+    }
+    for (xmlNode *child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE && !visit_node(visit, child, depth + 1, error))
+            return false;
+    return true;
+}
+
+xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error)
+{
+    g_autofree char *data = NULL;
+    gsize bytes = 0;
+    if (!read_bytes(path, &data, &bytes, error))
+        return NULL;
+    g_autoptr(xmlDoc) doc = parse_leniently(data, bytes, path, number, warnings, error);
+    if (!doc)
+        return NULL;
+    xmlNode *root = xmlDocGetRootElement(doc);
+    if (root)
+        expand_namespaces(doc, root->nsDef);
+    if (root && !root->ns && xmlStrEqual(root->name, (const xmlChar *)"svg")) {
+        set_namespace(root, xmlNewNs(root, (const xmlChar *)svg_namespace, NULL));
+        fl_warnings_add(warnings, path, number, NULL, "it has no xmlns and is taken for SVG");
+    }
+    if (!root || !fl_is(root, "svg")) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: the root is <%s>, expected <svg xmlns=\"%s\">", path,
+                    root ? (const char *)root->name : "", svg_namespace);
+        return NULL;
+    }
+    Visit visit = {path, root, 0};
+    return visit_node(&visit, root, 1, error) ? g_steal_pointer(&doc) : NULL;
+}
+
+char *fl_document_text(xmlDoc *doc, size_t *bytes)
+{
+    xmlChar *text = NULL;
+    int n = 0;
+    xmlDocDumpMemoryEnc(doc, &text, &n, "UTF-8");
+    char *copy = g_malloc((gsize)n + 1);
+    memcpy(copy, text, (size_t)n);
+    copy[n] = '\0';
+    xmlFree(text);
+    *bytes = (size_t)n;
+    return copy;
+}
+
+static void collect_ids(xmlNode *node, GHashTable *ids)
+{
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    if (id && !g_hash_table_contains(ids, id))
+        g_hash_table_insert(ids, g_strdup((const char *)id), node);
+    for (xmlNode *child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE)
+            collect_ids(child, ids);
+}
+
+GHashTable *fl_document_ids(xmlDoc *doc)
+{
+    GHashTable *ids = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    collect_ids(xmlDocGetRootElement(doc), ids);
+    return ids;
+}

@@ -1,0 +1,48 @@
+/* An SVG file as a DOM, read with limits: SVG files are not to be trusted. */
+#ifndef FLUIDY_SVG_DOCUMENT_H
+#define FLUIDY_SVG_DOCUMENT_H
+
+#include "base/warnings.h"
+#include <fluidy/error.h>
+#include <libxml/tree.h>
+#include <stdbool.h>
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlDoc, xmlFreeDoc)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
+
+/**
+ * Reads a .svg or .svgz file. Nothing is fetched and no entity is replaced.
+ *
+ * A prologue that is no XML (Blender 4 writes one) is dropped with a warning; namespace prefixes
+ * nobody declared are declared. number is the frame's, for the warnings.
+ *
+ * Returns: the document, whose root is an <svg>; NULL with FL_ERROR_INPUT (not readable, no SVG;
+ * with the line) or FL_ERROR_LIMIT.
+ */
+xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error);
+
+/** Whether a limit was raised beyond what libxml2 and librsvg allow without being told. */
+bool fl_document_is_huge(void);
+
+/** The document as XML; to be freed with g_free(). */
+char *fl_document_text(xmlDoc *doc, size_t *bytes);
+
+/** A table from id to the first xmlNode of that id; to be unref'd. */
+GHashTable *fl_document_ids(xmlDoc *doc);
+
+/** Whether node is an SVG element of that name. */
+bool fl_is(const xmlNode *node, const char *name);
+
+/** Whether node's name is one of a NULL-terminated list, and node an SVG element. */
+bool fl_is_one_of(const xmlNode *node, const char *const *names);
+
+/** An attribute without a namespace; NULL if absent. To be freed with xmlFree(). */
+char *fl_attribute(const xmlNode *node, const char *name);
+
+/**
+ * A property from `style=""` or else from the attribute of that name, trimmed; NULL if neither sets
+ * it. Style sheets are not looked at. To be freed with g_free().
+ */
+char *fl_property(const xmlNode *node, const char *name);
+
+#endif

@@ -1,0 +1,113 @@
+#include "svg/images.h"
+
+#include "base/limits.h"
+#include <gdk-pixbuf/gdk-pixbuf.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BLOCK 4096 // bytes; most images tell their size in the first
+
+typedef struct Look {
+    const char *path;
+    int number;
+    FlWarnings *warnings;
+} Look;
+
+static void warn(const Look *look, const xmlNode *node, const char *href, const char *text)
+{
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    fl_warnings_add(look->warnings, look->path, look->number, (const char *)id,
+                    "the image \"%.60s\" %s", href, text);
+}
+
+/* Whether `file` is in the folder of the drawing or below it, links followed. */
+static bool is_inside(const char *drawing, const char *file)
+{
+    g_autofree char *real = realpath(drawing, NULL),
+                    *folder = real ? g_path_get_dirname(real) : NULL;
+    const size_t n = folder ? strlen(folder) : 0;
+    return folder && strncmp(file, folder, n) == 0 && (file[n] == '/' || folder[n - 1] == '/');
+}
+
+static bool check_pixels(const Look *look, double width, double height, GError **error)
+{
+    return fl_limit_check(FL_LIMIT_IMAGE, width * height / 1e6, look->path, error);
+}
+
+static void keep_size(GdkPixbufLoader *loader, int width, int height, void *size)
+{
+    ((int *)size)[0] = width, ((int *)size)[1] = height;
+    gdk_pixbuf_loader_set_size(loader, 1, 1); // nobody wants the pixels
+}
+
+/* The size that the image's first bytes tell; 0 x 0 for what is no image. */
+static void size_of_data(const guint8 *data, gsize bytes, int size[2])
+{
+    g_autoptr(GdkPixbufLoader) loader = gdk_pixbuf_loader_new();
+    bool good = true;
+    g_signal_connect(loader, "size-prepared", G_CALLBACK(keep_size), size);
+    for (gsize at = 0; good && size[0] == 0 && at < bytes; at += BLOCK)
+        good = gdk_pixbuf_loader_write(loader, data + at, MIN(BLOCK, bytes - at), NULL);
+    gdk_pixbuf_loader_close(loader, NULL);
+}
+
+static bool check_data(const Look *look, const char *href, GError **error)
+{
+    const char *comma = strchr(href, ',');
+    int size[2] = {0};
+    if (!comma || comma - href < 7 || strncmp(comma - 7, ";base64", 7) != 0)
+        return true; // librsvg shows it as text or not at all
+    gsize bytes = 0;
+    g_autofree guint8 *data = g_base64_decode(comma + 1, &bytes);
+    size_of_data(data, bytes, size);
+    return check_pixels(look, size[0], size[1], error);
+}
+
+static bool check_file(const Look *look, const xmlNode *node, const char *href, GError **error)
+{
+    g_autoptr(GFile) drawing = g_file_new_for_path(look->path);
+    g_autoptr(GFile) folder = g_file_get_parent(drawing);
+    g_autofree char *base = folder ? g_file_get_uri(folder) : g_strdup("file:///");
+    g_autofree char *slash = g_strconcat(base, "/", NULL);
+    g_autofree char *uri = g_uri_resolve_relative(slash, href, G_URI_FLAGS_PARSE_RELAXED, NULL);
+    g_autofree char *file = uri ? g_filename_from_uri(uri, NULL, NULL) : NULL;
+    g_autofree char *real = file ? realpath(file, NULL) : NULL;
+    int width = 0, height = 0;
+    if (!file)
+        warn(look, node, href, "is not in a file and is left out: nothing is fetched");
+    else if (!real)
+        warn(look, node, href, "does not exist and is left out");
+    else if (!is_inside(look->path, real))
+        warn(look, node, href, "is outside the drawing's folder and is left out");
+    else if (gdk_pixbuf_get_file_info(real, &width, &height))
+        return check_pixels(look, width, height, error);
+    return true;
+}
+
+static bool check_node(const Look *look, const xmlNode *node, GError **error)
+{
+    static const char *const images[] = {"image", "feImage", NULL};
+    for (const xmlAttr *a = fl_is_one_of(node, images) ? node->properties : NULL; a; a = a->next) {
+        if (!g_str_has_suffix((const char *)a->name, "href"))
+            continue;
+        g_autoptr(xmlChar) value = xmlNodeListGetString(node->doc, a->children, 1);
+        const char *href = value ? (const char *)value : "";
+        href += strspn(href, " \t\r\n");
+        const bool good = g_ascii_strncasecmp(href, "data:", 5) == 0
+                              ? check_data(look, href, error)
+                              : *href == '#' || !*href || check_file(look, node, href, error);
+        if (!good)
+            return false;
+    }
+    for (const xmlNode *child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE && !check_node(look, child, error))
+            return false;
+    return true;
+}
+
+bool fl_images_check(const xmlDoc *doc, const char *path, int number, FlWarnings *warnings,
+                     GError **error)
+{
+    const Look look = {path, number, warnings};
+    return check_node(&look, xmlDocGetRootElement(doc), error);
+}

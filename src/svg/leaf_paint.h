@@ -1,0 +1,58 @@
+/* What a leaf is painted with, read from what librsvg draws: no CSS engine of our own. */
+#ifndef FLUIDY_SVG_LEAF_PAINT_H
+#define FLUIDY_SVG_LEAF_PAINT_H
+
+#include "base/blend_mode.h"
+#include <glib.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef enum FlPaintKind {
+    FL_PAINT_FLAT,     // one colour
+    FL_PAINT_GRADIENT, // linear or radial
+    FL_PAINT_IMAGE,    // a raster image, a pattern, or the result of a filter
+    FL_PAINT_MIXED,    // several of these
+} FlPaintKind;
+
+/** The parts of a leaf that are drawn apart. */
+typedef enum FlPart {
+    FL_PART_WHOLE,
+    FL_PART_FILL,
+    FL_PART_STROKE,
+} FlPart;
+
+/**
+ * A computed paint. Two are the same paint if their keys are equal: "#rrggbb" for a flat one,
+ * the kind and the stops for a gradient (not its id and not where it lies).
+ */
+typedef struct FlPaint {
+    FlPaintKind kind;
+    uint8_t rgb[3]; // the colour; of a gradient the mean over its stops
+    uint8_t alpha;  // opacity, that of the groups around it included; of a gradient the mean
+    uint8_t peak;   // the opacity where it is most opaque: of a gradient its most opaque stop
+    char *key;      // owned
+} FlPaint;
+
+/** A part of a leaf and its paint. */
+typedef struct FlPainted {
+    FlPart part;
+    bool stroke;     // the part consists of strokes only
+    FlBlendMode mix; // of all of it; OVER if it has several
+    float width;     // of its widest stroke, px of the page it was read on; 0: no stroke
+    FlPaint paint;
+} FlPainted;
+
+#define FL_MOST_PARTS 2
+
+/**
+ * Reads the drawing commands that cairo's script surface wrote for one leaf.
+ *
+ * whole: fill and stroke are not to be taken apart. A leaf whose fill and stroke have the same
+ * opaque paint is one part, and so is one that is mixed with what is below it. Returns: the number
+ * of parts, bottom up; 0 if nothing is drawn.
+ */
+int fl_paint_read(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]);
+
+void fl_paint_clear(FlPaint *paint);
+
+#endif

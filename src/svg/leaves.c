@@ -1,0 +1,312 @@
+#include "svg/leaves.h"
+
+#include "svg/css.h"
+#include "svg/labels.h"
+#include "svg/normalise.h"
+#include <string.h>
+
+/** What a leaf inherits from the groups around it; strings grow inwards and are cut back. */
+typedef struct Walk {
+    GString *labels, *layers, *ids, *groups, *classes, *tree;
+    const char *const *whole;
+    FlLeaves *leaves;
+    FlCss *css;
+    GHashTable *taken; // id -> xmlNode, the first of that id
+    int unit;          // outermost unit around, -1: none
+    char *masked;      // id of the outermost group around with a mask, NULL: none
+    int turn;          // leaves met in it
+    int n_made;        // ids made
+} Walk;
+
+typedef struct Mark {
+    gsize labels, layers, ids, groups, classes, tree;
+} Mark;
+
+static Mark mark(const Walk *w)
+{
+    return (Mark){w->labels->len, w->layers->len,  w->ids->len,
+                  w->groups->len, w->classes->len, w->tree->len};
+}
+
+static void cut_back(Walk *w, Mark m)
+{
+    g_string_truncate(w->labels, m.labels);
+    g_string_truncate(w->layers, m.layers);
+    g_string_truncate(w->ids, m.ids);
+    g_string_truncate(w->groups, m.groups);
+    g_string_truncate(w->classes, m.classes);
+    g_string_truncate(w->tree, m.tree);
+}
+
+static void append(GString *list, const char *item)
+{
+    if (!item || !item[0])
+        return;
+    if (list->len)
+        g_string_append_c(list, '\n');
+    g_string_append(list, item);
+}
+
+static char *authored_id(const xmlNode *node)
+{
+    char *id = fl_attribute(node, "id");
+    if (!id)
+        id = fl_attribute(node, FL_COPIED_ID);
+    if (!id || !g_str_has_prefix(id, FL_GROUP_ID))
+        return id;
+    xmlFree(id);
+    return NULL;
+}
+
+static bool is_container(const xmlNode *node)
+{
+    static const char *const containers[] = {"g", "svg", "a", NULL};
+    return fl_is_one_of(node, containers);
+}
+
+static void append_group(Walk *w, const xmlNode *node)
+{
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    if (id && is_container(node) && g_hash_table_lookup(w->taken, id) == node)
+        append(w->groups, (const char *)id);
+}
+
+static void enter(Walk *w, const xmlNode *node, int index)
+{
+    g_autoptr(xmlChar) id = (xmlChar *)authored_id(node);
+    g_autoptr(xmlChar) classes = (xmlChar *)fl_attribute(node, "class");
+    bool is_layer = false;
+    g_autofree char *label = fl_label_of(node, (const char *)id, &is_layer);
+    append(w->labels, label);
+    if (label && (is_layer || w->layers->len == 0))
+        append(w->layers, label);
+    append(w->ids, (const char *)id);
+    append_group(w, node);
+    g_auto(GStrv) words = g_strsplit_set(classes ? (const char *)classes : "", " \t\r\n", -1);
+    for (int i = 0; words[i]; i++)
+        append(w->classes, words[i]);
+    g_string_append_printf(w->tree, w->tree->len ? "/%d" : "%d", index);
+}
+
+/** The node's id if it is the first of that id, else a new one, which goes into the document. */
+static char *give_id(Walk *w, xmlNode *node)
+{
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    if (id && id[0] && g_hash_table_lookup(w->taken, id) == node)
+        return g_strdup((const char *)id);
+    char *made = NULL;
+    do {
+        g_free(made);
+        made = g_strdup_printf("fl-leaf-%d", w->n_made++);
+    } while (g_hash_table_contains(w->taken, made));
+    g_hash_table_insert(w->taken, g_strdup(made), node);
+    xmlSetProp(node, (const xmlChar *)"id", (const xmlChar *)made);
+    return made;
+}
+
+static bool has_text(const xmlNode *node)
+{
+    bool found = fl_is(node, "text");
+    for (const xmlNode *child = node->children; child && !found; child = child->next)
+        found = child->type == XML_ELEMENT_NODE && has_text(child);
+    return found;
+}
+
+static FlLeaf make_leaf(Walk *w, xmlNode *node)
+{
+    g_autoptr(xmlChar) name = (xmlChar *)authored_id(node);
+    static const char *const unsplit[] = {"text", "image", "use", "g", "svg", "a", NULL};
+    static const char *const markers[] = {"marker", "marker-start", "marker-mid", "marker-end",
+                                          NULL};
+    bool whole = fl_is_one_of(node, unsplit);
+    for (int i = 0; markers[i] && !whole; i++) {
+        g_autofree char *marker = fl_property(node, markers[i]);
+        whole = marker && strcmp(marker, "none") != 0;
+    }
+    char *id = give_id(w, node);
+    return (FlLeaf){
+        .id = id,
+        .layer = g_strdup(w->masked ? w->masked : id),
+        .turn = w->masked ? w->turn++ : -1,
+        .name = g_strdup(name ? (const char *)name : ""),
+        .labels = g_strdup(w->labels->str),
+        .layers = g_strdup(w->layers->str),
+        .ids = g_strdup(w->ids->str),
+        .groups = g_strdup(w->groups->str),
+        .classes = g_strdup(w->classes->str),
+        .tree = g_strdup(w->tree->str),
+        .unit = w->unit,
+        .text = has_text(node),
+        .whole = whole,
+    };
+}
+
+static bool is_set(const xmlNode *node, const char *name)
+{
+    g_autofree char *value = fl_property(node, name);
+    return value && strcmp(value, "none") != 0 && strcmp(value, "normal") != 0 && value[0];
+}
+
+static bool is_hidden(const xmlNode *node)
+{
+    g_autofree char *display = fl_property(node, "display");
+    return display && g_str_has_prefix(display, "none");
+}
+
+static bool is_drawn(const xmlNode *node)
+{
+    static const char *const drawn[] = {"path",    "rect", "circle", "ellipse", "line", "polyline",
+                                        "polygon", "text", "image",  "use",     NULL};
+    return fl_is_one_of(node, drawn);
+}
+
+static bool is_translucent(const xmlNode *node)
+{
+    g_autofree char *opacity = fl_property(node, "opacity");
+    const double value = opacity ? g_ascii_strtod(opacity, NULL) : 1;
+    return opacity && (strchr(opacity, '%') ? value / 100 : value) < 1;
+}
+
+static bool has_mask(const Walk *w, const xmlNode *node)
+{
+    return is_set(node, "mask") || fl_css_look_up(w->css, node) & FL_CSS_MASK;
+}
+
+/** Whether a group is drawn as one also where its shapes do not overlap. */
+static bool is_inseparable(const Walk *w, const xmlNode *node)
+{
+    return is_set(node, "filter") || is_set(node, "mix-blend-mode") ||
+           fl_css_look_up(w->css, node) & (FL_CSS_FILTER | FL_CSS_BLEND);
+}
+
+/** Whether a group may have to be drawn as one. */
+static bool is_unit(const Walk *w, const xmlNode *node)
+{
+    return is_inseparable(w, node) || has_mask(w, node) || is_translucent(node) ||
+           fl_css_look_up(w->css, node) & FL_CSS_OPACITY;
+}
+
+static void walk(Walk *w, xmlNode *node);
+
+/**
+ * Walks a group with a mask. librsvg draws the mask's content only if the group itself, or one
+ * around it, is the layer it renders; its leaves are then shown in turn, the others being
+ * transparent.
+ */
+static void walk_masked(Walk *w, xmlNode *node)
+{
+    w->masked = give_id(w, node);
+    w->turn = 0;
+    const guint first = w->leaves->leaf->len;
+    walk(w, node);
+    if (w->leaves->leaf->len == first + 1)
+        g_array_index(w->leaves->leaf, FlLeaf, first).turn = -1;
+    g_clear_pointer(&w->masked, g_free);
+}
+
+static void walk_group(Walk *w, xmlNode *node)
+{
+    if (!w->masked && has_mask(w, node))
+        walk_masked(w, node);
+    else
+        walk(w, node);
+}
+
+/** Walks a group that may have to be drawn as one; it is a unit if it has two leaves or more. */
+static void walk_unit(Walk *w, xmlNode *node)
+{
+    FlLeaves *leaves = w->leaves;
+    const int first = (int)leaves->leaf->len;
+    w->unit = (int)leaves->unit->len;
+    walk_group(w, node);
+    w->unit = -1;
+    const int n = (int)leaves->leaf->len - first;
+    if (n < 2) {
+        for (int i = 0; i < n; i++)
+            g_array_index(leaves->leaf, FlLeaf, first + i).unit = -1;
+        return;
+    }
+    const FlUnit unit = {make_leaf(w, node), first, n, is_inseparable(w, node)};
+    g_array_append_val(leaves->unit, unit);
+}
+
+static void walk(Walk *w, xmlNode *node)
+{
+    int index = -1;
+    for (xmlNode *child = node->children; child; child = child->next) {
+        if (child->type != XML_ELEMENT_NODE)
+            continue;
+        index++;
+        if (fl_is_undrawn(child) || is_hidden(child))
+            continue;
+        const Mark m = mark(w);
+        enter(w, child, index);
+        if (is_drawn(child) || fl_is_whole(child, w->whole)) {
+            const FlLeaf leaf = make_leaf(w, child);
+            g_array_append_val(w->leaves->leaf, leaf);
+        } else if (is_container(child) && w->unit < 0 && is_unit(w, child)) {
+            walk_unit(w, child);
+        } else if (is_container(child)) {
+            walk_group(w, child);
+        }
+        cut_back(w, m);
+    }
+}
+
+static void leaf_clear(void *data)
+{
+    FlLeaf *leaf = data;
+    g_free(leaf->id);
+    g_free(leaf->layer);
+    g_free(leaf->name);
+    g_free(leaf->labels);
+    g_free(leaf->layers);
+    g_free(leaf->ids);
+    g_free(leaf->groups);
+    g_free(leaf->classes);
+    g_free(leaf->tree);
+}
+
+static void unit_clear(void *data)
+{
+    leaf_clear(&((FlUnit *)data)->leaf);
+}
+
+FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
+{
+    FlLeaves *leaves = g_new0(FlLeaves, 1);
+    leaves->leaf = g_array_new(FALSE, FALSE, sizeof(FlLeaf));
+    leaves->unit = g_array_new(FALSE, FALSE, sizeof(FlUnit));
+    g_array_set_clear_func(leaves->leaf, leaf_clear);
+    g_array_set_clear_func(leaves->unit, unit_clear);
+    Walk w = {.labels = g_string_new(NULL),
+              .layers = g_string_new(NULL),
+              .ids = g_string_new(NULL),
+              .groups = g_string_new(NULL),
+              .whole = whole,
+              .classes = g_string_new(NULL),
+              .tree = g_string_new(NULL),
+              .leaves = leaves,
+              .css = fl_css_new(doc),
+              .unit = -1};
+    w.taken = fl_document_ids(doc);
+    walk(&w, xmlDocGetRootElement(doc));
+    g_hash_table_unref(w.taken);
+    fl_css_free(w.css);
+    g_string_free(w.labels, TRUE);
+    g_string_free(w.layers, TRUE);
+    g_string_free(w.ids, TRUE);
+    g_string_free(w.groups, TRUE);
+    g_string_free(w.classes, TRUE);
+    g_string_free(w.tree, TRUE);
+    return leaves;
+}
+
+void fl_leaves_free(FlLeaves *leaves)
+{
+    if (!leaves)
+        return;
+    g_array_unref(leaves->leaf);
+    g_array_unref(leaves->unit);
+    g_free(leaves);
+}

@@ -1,0 +1,53 @@
+/* The leaves of a normalised document: what is drawn, one shape at a time, from the bottom up. */
+#ifndef FLUIDY_SVG_LEAVES_H
+#define FLUIDY_SVG_LEAVES_H
+
+#include "svg/document.h"
+
+/**
+ * One thing to draw: a shape, a text, an image; or a group that is drawn as one.
+ *
+ * Lists are joined with '\n', outermost first, and "" if empty. Nothing is NULL.
+ */
+typedef struct FlLeaf {
+    char *id;      // in the normalised document, unique
+    char *layer;   // id of what is rendered for it: the outermost group around with a mask, else id
+    int turn;      // its place among the leaves of such a group; -1: it is alone there
+    char *name;    // the id the author gave it, or ""
+    char *labels;  // what names it and the groups around it: layer labels, telling ids
+    char *layers;  // the layers among them; the outermost group if there are none
+    char *ids;     // every authored id, its own last
+    char *groups;  // ids, in the document, of the groups around it and of itself if it is one
+    char *classes; // every class word
+    char *tree;    // child indices from the root, "0/3/1"
+    int unit;      // index of the group it may have to be drawn with, -1: none
+    bool text;     // has text, whose shape depends on the scale
+    bool whole;    // has markers, text runs or images: fill and stroke are not taken apart
+} FlLeaf;
+
+/**
+ * A group with opacity, a mask, a filter or a blend mode: more than one shape in it cannot be drawn
+ * one by one where they overlap.
+ */
+typedef struct FlUnit {
+    FlLeaf leaf;
+    int first, n;     // its leaves
+    bool inseparable; // a filter or blend mode: also where they do not overlap
+} FlUnit;
+
+typedef struct FlLeaves {
+    GArray *leaf; // FlLeaf
+    GArray *unit; // FlUnit
+} FlLeaves;
+
+/**
+ * Lists the leaves and gives ids to those without. Content with display: none is left out. Elements
+ * of `whole`, see fl_is_whole(), are leaves.
+ */
+FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole);
+
+void fl_leaves_free(FlLeaves *leaves); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlLeaves, fl_leaves_free)
+
+#endif

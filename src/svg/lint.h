@@ -1,0 +1,13 @@
+/* Looks for what librsvg draws differently from a browser without a word, and says so. */
+#ifndef FLUIDY_SVG_LINT_H
+#define FLUIDY_SVG_LINT_H
+
+#include "svg/document.h"
+
+/**
+ * Adds a warning for each trap in the document, and mends one: a reference with a page address,
+ * url(page.html#a), becomes url(#a) if the document has that id.
+ */
+void fl_lint(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
+
+#endif

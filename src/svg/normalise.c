@@ -1,0 +1,263 @@
+#include "svg/normalise.h"
+
+#include "base/limits.h"
+#include <string.h>
+
+/** Shown elements, from the outermost <use> inwards; an element twice is a circle. */
+typedef struct Chain {
+    const struct Chain *outer;
+    const xmlNode *shown;
+} Chain;
+
+typedef struct Work {
+    const char *const *whole;
+    const char *path;
+    int number;
+    FlWarnings *warnings;
+    GHashTable *ids; // id -> xmlNode, the first of that id
+    int n_copied;
+} Work;
+
+bool fl_is_undrawn(const xmlNode *node)
+{
+    static const char *const undrawn[] = {
+        "defs",   "symbol",         "clipPath",       "mask",     "pattern",
+        "marker", "linearGradient", "radialGradient", "filter",   "style",
+        "script", "title",          "desc",           "metadata", NULL};
+    return fl_is_one_of(node, undrawn);
+}
+
+static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
+{
+    static const char *const groups[] = {"g", "svg", "a", "use", NULL};
+    for (xmlNode *child = node->children; child; child = child->next) {
+        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
+            continue;
+        g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(child, "id");
+        if (!id && fl_is_one_of(child, groups)) {
+            g_autofree char *made = NULL;
+            do {
+                g_free(made);
+                made = g_strdup_printf(FL_GROUP_ID "%d", (*n_made)++);
+            } while (g_hash_table_contains(ids, made));
+            xmlSetProp(child, (const xmlChar *)"id", (const xmlChar *)made);
+        }
+        name_groups(child, ids, n_made);
+    }
+}
+
+int fl_document_name_groups(xmlDoc *doc)
+{
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    int n_made = 0;
+    name_groups(xmlDocGetRootElement(doc), ids, &n_made);
+    return n_made;
+}
+
+bool fl_is_whole(const xmlNode *node, const char *const *whole)
+{
+    if (!whole)
+        return false;
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    return id && g_strv_contains(whole, (const char *)id);
+}
+
+/** Takes href or xlink:href, whatever the prefix, off node; to be freed with xmlFree(). */
+static xmlChar *take_reference(xmlNode *node)
+{
+    xmlAttr *attribute = xmlHasNsProp(node, (const xmlChar *)"href", NULL);
+    if (!attribute)
+        attribute = xmlHasNsProp(node, (const xmlChar *)"href",
+                                 (const xmlChar *)"http://www.w3.org/1999/xlink");
+    xmlChar *href = attribute ? xmlNodeListGetString(node->doc, attribute->children, 1) : NULL;
+    if (href && href[0] == '#')
+        xmlRemoveProp(attribute);
+    return href;
+}
+
+static bool speaks(const char *languages)
+{
+    g_auto(GStrv) asked = g_strsplit(languages, ",", -1);
+    const gchar *const *spoken = g_get_language_names();
+    for (int i = 0; asked[i]; i++) {
+        const char *language = g_strstrip(asked[i]);
+        const size_t n = strcspn(language, "-_");
+        for (int j = 0; spoken[j]; j++)
+            if (n > 0 && g_ascii_strncasecmp(spoken[j], language, n) == 0)
+                return true;
+    }
+    return false;
+}
+
+/** Whether librsvg has all features of a list; diagrams.net asks for those of foreign content. */
+static bool has_features(const char *features)
+{
+    static const char *const lacking[] = {"#Extensibility", "#Animation", "#Script", "Events",
+                                          NULL};
+    for (int i = 0; lacking[i]; i++)
+        if (strstr(features, lacking[i]))
+            return false;
+    return true;
+}
+
+static bool is_eligible(const xmlNode *node)
+{
+    g_autoptr(xmlChar) features = (xmlChar *)fl_attribute(node, "requiredFeatures");
+    if (features && !has_features((const char *)features))
+        return false;
+    g_autoptr(xmlChar) extensions = (xmlChar *)fl_attribute(node, "requiredExtensions");
+    g_autoptr(xmlChar) languages = (xmlChar *)fl_attribute(node, "systemLanguage");
+    return !extensions && (!languages || speaks((const char *)languages));
+}
+
+/** What is not eligible goes into a <defs>, where references to it still find it. */
+static void resolve_switch(xmlNode *node)
+{
+    bool chosen = false;
+    xmlNode *defs = xmlNewDocNode(node->doc, node->ns, (const xmlChar *)"defs", NULL);
+    for (xmlNode *child = node->children, *next; child; child = next) {
+        next = child->next;
+        if (child->type != XML_ELEMENT_NODE)
+            continue;
+        if (!chosen && is_eligible(child)) {
+            chosen = true;
+        } else {
+            xmlUnlinkNode(child);
+            xmlAddChild(defs, child);
+        }
+    }
+    xmlAddChild(node, defs);
+    xmlNodeSetName(node, (const xmlChar *)"g");
+}
+
+/** Ids must stay unique: those of a copy are kept aside as FL_COPIED_ID. Returns: elements. */
+static int put_ids_aside(xmlNode *node)
+{
+    int n = 1;
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    if (id) {
+        xmlUnsetProp(node, (const xmlChar *)"id");
+        xmlSetProp(node, (const xmlChar *)FL_COPIED_ID, id);
+    }
+    for (xmlNode *child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE)
+            n += put_ids_aside(child);
+    return n;
+}
+
+/** Takes an attribute off node. Returns: its value, to be freed with xmlFree(), or NULL. */
+static xmlChar *take(xmlNode *node, const char *name)
+{
+    xmlChar *value = (xmlChar *)fl_attribute(node, name);
+    if (value)
+        xmlUnsetProp(node, (const xmlChar *)name);
+    return value;
+}
+
+static bool is_zero(const xmlChar *length)
+{
+    return length && g_ascii_strtod((const char *)length, NULL) == 0;
+}
+
+static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const xmlChar *height)
+{
+    const bool symbol = fl_is(shown, "symbol");
+    g_autofree char *overflow = fl_property(shown, "overflow");
+    if (symbol)
+        xmlNodeSetName(shown, (const xmlChar *)"svg");
+    if (symbol && !overflow) // librsvg cuts <svg> off at its edge, <symbol> only on request
+        xmlSetProp(shown, (const xmlChar *)"overflow", (const xmlChar *)"visible");
+    if (symbol || fl_is(shown, "svg")) {
+        if (width || symbol)
+            xmlSetProp(shown, (const xmlChar *)"width", width ? width : (const xmlChar *)"100%");
+        if (height || symbol)
+            xmlSetProp(shown, (const xmlChar *)"height", height ? height : (const xmlChar *)"100%");
+    }
+    xmlAddChild(use, shown);
+}
+
+static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **error);
+
+/** Moves by x and y, which may have units: a nested <svg> of the same size does just that. */
+static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
+{
+    if ((!x || is_zero(x)) && (!y || is_zero(y)))
+        return use;
+    xmlNode *svg = xmlNewChild(use, use->ns, (const xmlChar *)"svg", NULL);
+    xmlSetProp(svg, (const xmlChar *)"x", x ? x : (const xmlChar *)"0");
+    xmlSetProp(svg, (const xmlChar *)"y", y ? y : (const xmlChar *)"0");
+    xmlSetProp(svg, (const xmlChar *)"overflow", (const xmlChar *)"visible");
+    return svg;
+}
+
+static bool is_circle(const xmlNode *use, const xmlNode *target, const Chain *chain)
+{
+    for (const Chain *c = chain; c; c = c->outer)
+        if (c->shown == target)
+            return true;
+    while (use && use != target)
+        use = use->parent;
+    return use != NULL;
+}
+
+static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **error)
+{
+    g_autoptr(xmlChar) href = take_reference(use);
+    if (href && href[0] != '#')
+        return true; // another file: librsvg draws it, as one leaf
+    g_autoptr(xmlChar) x = take(use, "x"), y = take(use, "y");
+    g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
+    xmlNode *target = href ? g_hash_table_lookup(work->ids, href + 1) : NULL;
+    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(use, "id");
+    xmlNodeSetName(use, (const xmlChar *)"g");
+    if (target && is_circle(use, target, chain)) {
+        const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);
+        fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : (const char *)id,
+                        "<use> of \"%s\" shows itself and is left out", href);
+        return true;
+    }
+    if (!target || is_zero(width) || is_zero(height))
+        return true; // nothing is drawn
+    xmlNode *copy = xmlDocCopyNode(target, use->doc, 1);
+    work->n_copied += put_ids_aside(copy);
+    show_copy(place(use, x, y), copy, width, height);
+    if (!fl_limit_check(FL_LIMIT_ELEMENTS, work->n_copied, work->path, error))
+        return false;
+    const Chain inner = {chain, target};
+    return normalise(work, use, &inner, error);
+}
+
+static bool is_shallow(const Work *work, const xmlNode *node, GError **error)
+{
+    int depth = 0;
+    for (; node; node = node->parent)
+        depth++;
+    return fl_limit_check(FL_LIMIT_DEPTH, depth, work->path, error);
+}
+
+static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **error)
+{
+    if (!is_shallow(work, node, error))
+        return false;
+    for (xmlNode *child = node->children, *next; child; child = next) {
+        next = child->next;
+        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child) ||
+            fl_is_whole(child, work->whole))
+            continue;
+        if (fl_is(child, "switch"))
+            resolve_switch(child);
+        const bool good = fl_is(child, "use") ? resolve_use(work, child, chain, error)
+                                              : normalise(work, child, chain, error);
+        if (!good)
+            return false;
+    }
+    return true;
+}
+
+bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
+                           FlWarnings *warnings, GError **error)
+{
+    g_autoptr(GHashTable) ids = fl_document_ids(doc);
+    Work work = {whole, path, number, warnings, ids, 0};
+    return normalise(&work, xmlDocGetRootElement(doc), NULL, error);
+}

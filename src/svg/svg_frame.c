@@ -1,0 +1,317 @@
+#include "svg/svg_frame.h"
+
+#include "svg/images.h"
+#include "svg/lint.h"
+#include "svg/normalise.h"
+#include <cairo-script.h>
+#include <math.h>
+#include <string.h>
+
+// Size of the page on which paints are read: small, for filters and masks are pixels; what is too
+// small to be drawn there is read once more on a large one. Something larger that is not drawn is
+// hidden, by a mask most often, and a mask as large as that page costs more than all the rest.
+#define PROBE_PX 256.0
+#define LARGE_PROBE_PX 4096.0
+#define SMALL_PX 4.0
+#define PROBE_TURN                                                                                 \
+    0.3 // rad: cairo's script surface fails for fills with axis-parallel edges only,
+        // boxes excepted
+
+struct FlSvg {
+    char *path;
+    double dpi;
+    xmlDoc *doc;
+    char *original; // the text before it was normalised
+    size_t original_bytes;
+    RsvgHandle *handle; // of the normalised document
+    RsvgHandle *before; // of the original, made when first needed
+    bool has_images;
+    int n_nameless;       // groups without an id
+    GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
+    FlLeaves *leaves;
+};
+
+static void set_rsvg_error(const FlSvg *svg, const GError *reason, GError **error)
+{
+    g_autofree char *message = g_strchomp(g_strdup(reason ? reason->message : "unknown error"));
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be drawn: %s", svg->path, message);
+}
+
+static RsvgHandle *make_handle(const FlSvg *svg, const char *text, size_t bytes, GError **error)
+{
+    g_autoptr(GError) reason = NULL;
+    g_autoptr(GFile) file = g_file_new_for_path(svg->path);
+    g_autoptr(GInputStream) stream = g_memory_input_stream_new_from_data(text, (gssize)bytes, NULL);
+    const RsvgHandleFlags flags =
+        fl_document_is_huge() ? RSVG_HANDLE_FLAG_UNLIMITED : RSVG_HANDLE_FLAGS_NONE;
+    RsvgHandle *handle = rsvg_handle_new_from_stream_sync(stream, file, flags, NULL, &reason);
+    if (!handle)
+        set_rsvg_error(svg, reason, error);
+    else
+        rsvg_handle_set_dpi(handle, svg->dpi);
+    return handle;
+}
+
+/** What a handle is for. */
+typedef enum Purpose {
+    TO_DRAW,
+    TO_READ, // cairo's script surface would pack every image: they are one pixel each
+} Purpose;
+
+static int variant_key(FlPart part, int turn, Purpose purpose)
+{
+    return ((turn + 1) * 3 + (int)part) * 2 + (int)purpose;
+}
+
+/** Adds declarations that win over the style sheets to the style of the leaves. */
+static void declare(const xmlDoc *doc, const FlLeaves *leaves, FlPart part, int turn)
+{
+    static const char *const parts[] = {"", ";stroke:none !important", ";fill:none !important"};
+    g_autoptr(GHashTable) ids = fl_document_ids((xmlDoc *)doc);
+    for (guint i = 0; i < leaves->leaf->len; i++) {
+        const FlLeaf *leaf = &g_array_index(leaves->leaf, FlLeaf, i);
+        xmlNode *node = g_hash_table_lookup(ids, leaf->id);
+        g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+        const bool hidden = turn >= 0 && leaf->turn >= 0 && leaf->turn != turn;
+        g_autofree char *all = g_strconcat(style ? (const char *)style : "", parts[part],
+                                           hidden ? ";opacity:0 !important" : "", NULL);
+        xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)all);
+    }
+}
+
+/** Makes every image one grey pixel. */
+static void shrink_images(xmlNode *node)
+{
+    static const char *const pixel =
+        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCB"
+        "d81ytgAAAABJRU5ErkJggg==";
+    for (; node; node = node->next) {
+        if (fl_is(node, "image")) {
+            xmlNs *xlink =
+                xmlSearchNsByHref(node->doc, node, (const xmlChar *)"http://www.w3.org/1999/xlink");
+            xmlUnsetNsProp(node, xlink, (const xmlChar *)"href");
+            xmlSetProp(node, (const xmlChar *)"href", (const xmlChar *)pixel);
+        }
+        if (node->type == XML_ELEMENT_NODE)
+            shrink_images(node->children);
+    }
+}
+
+/** The handle for this part of the leaves of this turn. */
+static RsvgHandle *handle_of(FlSvg *svg, FlPart part, int turn, Purpose purpose, GError **error)
+{
+    if (!svg->has_images)
+        purpose = TO_DRAW;
+    if (part == FL_PART_WHOLE && turn < 0 && purpose == TO_DRAW)
+        return svg->handle;
+    gpointer key = GINT_TO_POINTER(variant_key(part, turn, purpose));
+    RsvgHandle *handle = g_hash_table_lookup(svg->variants, key);
+    if (handle)
+        return handle;
+    g_autoptr(xmlDoc) copy = xmlCopyDoc(svg->doc, 1);
+    declare(copy, svg->leaves, part, turn);
+    if (purpose == TO_READ)
+        shrink_images(copy->children);
+    size_t bytes = 0;
+    g_autofree char *text = fl_document_text(copy, &bytes);
+    handle = make_handle(svg, text, bytes, error);
+    if (handle)
+        g_hash_table_insert(svg->variants, key, handle);
+    return handle;
+}
+
+static bool has_images(const xmlNode *node)
+{
+    bool found = false;
+    for (; node && !found; node = node->next)
+        found =
+            fl_is(node, "image") || (node->type == XML_ELEMENT_NODE && has_images(node->children));
+    return found;
+}
+
+static void set_number(xmlNode *node, const char *name, double value)
+{
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    g_ascii_dtostr(text, sizeof text, value);
+    xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)text);
+}
+
+static void set_canvas(xmlNode *root, const FlCanvas *canvas)
+{
+    char n[4][G_ASCII_DTOSTR_BUF_SIZE];
+    g_autofree char *box =
+        g_strdup_printf("%s %s %s %s", g_ascii_dtostr(n[0], sizeof n[0], canvas->x),
+                        g_ascii_dtostr(n[1], sizeof n[1], canvas->y),
+                        g_ascii_dtostr(n[2], sizeof n[2], canvas->width),
+                        g_ascii_dtostr(n[3], sizeof n[3], canvas->height));
+    xmlSetProp(root, (const xmlChar *)"viewBox", (const xmlChar *)box);
+    set_number(root, "width", canvas->width);
+    set_number(root, "height", canvas->height);
+}
+
+FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
+                   GError **error)
+{
+    g_autoptr(FlSvg) svg = g_new0(FlSvg, 1);
+    svg->path = g_strdup(path);
+    svg->dpi = options->dpi > 0 ? options->dpi : 96;
+    svg->doc = fl_document_read(path, number, warnings, error);
+    if (!svg->doc)
+        return NULL;
+    if (options->canvas.width > 0)
+        set_canvas(xmlDocGetRootElement(svg->doc), &options->canvas);
+    fl_lint(svg->doc, path, number, warnings);
+    if (!fl_images_check(svg->doc, path, number, warnings, error))
+        return NULL;
+    svg->n_nameless = fl_document_name_groups(svg->doc);
+    svg->original = fl_document_text(svg->doc, &svg->original_bytes);
+    if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
+        return NULL;
+    svg->leaves = fl_leaves_new(svg->doc, options->whole);
+    svg->has_images = has_images(svg->doc->children);
+    svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
+    size_t bytes = 0;
+    g_autofree char *text = fl_document_text(svg->doc, &bytes);
+    svg->handle = make_handle(svg, text, bytes, error);
+    return svg->handle ? g_steal_pointer(&svg) : NULL;
+}
+
+void fl_svg_free(FlSvg *svg)
+{
+    if (!svg)
+        return;
+    g_clear_object(&svg->handle);
+    g_clear_object(&svg->before);
+    g_clear_pointer(&svg->variants, g_hash_table_unref);
+    fl_leaves_free(svg->leaves);
+    if (svg->doc)
+        xmlFreeDoc(svg->doc);
+    g_free(svg->original);
+    g_free(svg->path);
+    g_free(svg);
+}
+
+bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error)
+{
+    RsvgHandle *handle = svg->handle;
+    if (rsvg_handle_get_intrinsic_size_in_pixels(handle, width, height) && *width > 0 &&
+        *height > 0)
+        return true;
+    gboolean has_width, has_height, has_box;
+    RsvgLength w, h;
+    RsvgRectangle box = {0};
+    rsvg_handle_get_intrinsic_dimensions(handle, &has_width, &w, &has_height, &h, &has_box, &box);
+    *width = box.width;
+    *height = box.height;
+    if (has_box && box.width > 0 && box.height > 0)
+        return true;
+    g_set_error(
+        error, FL_ERROR, FL_ERROR_INPUT,
+        "%s: the drawing has no size and no viewBox; give one, such as --canvas 1920x1080, or let "
+        "--register find one",
+        svg->path);
+    return false;
+}
+
+int fl_svg_nameless_groups(const FlSvg *svg)
+{
+    return svg->n_nameless;
+}
+
+const FlLeaves *fl_svg_leaves(const FlSvg *svg)
+{
+    return svg->leaves;
+}
+
+static bool draw_for(FlSvg *svg, const FlLeaf *leaf, FlPart part, Purpose purpose, cairo_t *cr,
+                     double width, double height, GError **error)
+{
+    g_autoptr(GError) reason = NULL;
+    RsvgHandle *handle = handle_of(svg, part, leaf->turn, purpose, error);
+    g_autofree char *layer = g_strconcat("#", leaf->layer, NULL);
+    const RsvgRectangle page = {0, 0, width, height};
+    if (handle && rsvg_handle_render_layer(handle, cr, layer, &page, &reason))
+        return true;
+    if (handle) {
+        set_rsvg_error(svg, reason, error);
+        g_prefix_error(error, "#%s in ", leaf->id);
+    }
+    return false;
+}
+
+bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
+                 double height, GError **error)
+{
+    return draw_for(svg, leaf, part, TO_DRAW, cr, width, height, error);
+}
+
+RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, double height)
+{
+    g_autofree char *layer = g_strconcat("#", leaf->id, NULL);
+    const RsvgRectangle page = {0, 0, width, height};
+    RsvgRectangle box = {0};
+    if (!rsvg_handle_get_geometry_for_layer(svg->handle, layer, &page, &box, NULL, NULL))
+        return (RsvgRectangle){0};
+    return box;
+}
+
+static cairo_status_t append_script(void *text, const unsigned char *data, unsigned n)
+{
+    g_string_append_len(text, (const char *)data, n);
+    return CAIRO_STATUS_SUCCESS;
+}
+
+/** The commands that draw a leaf, as text; to be freed. */
+static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, double size, GError **error)
+{
+    GString *text = g_string_new(NULL);
+    cairo_device_t *device = cairo_script_create_for_stream(append_script, text);
+    g_autoptr(cairo_surface_t) surface =
+        cairo_script_surface_create(device, CAIRO_CONTENT_COLOR_ALPHA, size, size);
+    cairo_t *cr = cairo_create(surface);
+    cairo_translate(cr, size / 4, 0);
+    cairo_rotate(cr, PROBE_TURN);
+    const bool drawn = draw_for(svg, leaf, part, TO_READ, cr, size, size, error);
+    cairo_destroy(cr);
+    cairo_surface_finish(surface);
+    cairo_device_finish(device);
+    cairo_device_destroy(device);
+    return g_string_free(text, !drawn);
+}
+
+static bool is_small(FlSvg *svg, const FlLeaf *leaf, double size)
+{
+    const RsvgRectangle box = fl_svg_extents(svg, leaf, size, size);
+    return box.width < SMALL_PX || box.height < SMALL_PX;
+}
+
+int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error)
+{
+    for (double size = PROBE_PX; size <= LARGE_PROBE_PX; size *= LARGE_PROBE_PX / PROBE_PX) {
+        g_autofree char *script = script_of(svg, leaf, FL_PART_WHOLE, size, NULL);
+        // It also fails for some fills without an area; such a leaf is its stroke.
+        if (!script)
+            script = script_of(svg, leaf, FL_PART_STROKE, size, error);
+        const int n = script ? fl_paint_read(script, leaf->whole, parts) : -1;
+        for (int i = 0; i < n; i++)
+            parts[i].width /= (float)size;
+        if (n != 0 || !is_small(svg, leaf, size))
+            return n;
+    }
+    return 0;
+}
+
+bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
+                       GError **error)
+{
+    if (!svg->before)
+        svg->before = make_handle(svg, svg->original, svg->original_bytes, error);
+    g_autoptr(GError) reason = NULL;
+    g_autofree char *layer = id ? g_strconcat("#", id, NULL) : NULL;
+    const RsvgRectangle page = {0, 0, width, height};
+    if (svg->before && rsvg_handle_render_layer(svg->before, cr, layer, &page, &reason))
+        return true;
+    if (svg->before)
+        set_rsvg_error(svg, reason, error);
+    return false;
+}

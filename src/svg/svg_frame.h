@@ -1,0 +1,69 @@
+/* One frame: an SVG file, normalised, whose leaves can be drawn one by one. */
+#ifndef FLUIDY_SVG_SVG_FRAME_H
+#define FLUIDY_SVG_SVG_FRAME_H
+
+#include "base/cleanup.h"
+#include "svg/leaf_paint.h"
+#include "svg/leaves.h"
+
+/** The page of drawings that do not say their size, in user units. */
+typedef struct FlCanvas {
+    double x, y, width, height; // width 0: as the file says
+} FlCanvas;
+
+/** Reads "WxH" or "WxH+X+Y" in px. FL_ERROR_USAGE. */
+bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error);
+
+typedef struct FlSvgOptions {
+    FlCanvas canvas;
+    double dpi;               // of mm, cm, in, pt; 0: 96
+    const char *const *whole; // ids of groups that are drawn as one leaf; NULL: none
+} FlSvgOptions;
+
+/** A frame. It belongs to one thread at a time; different frames may be in different threads. */
+typedef struct FlSvg FlSvg;
+
+/** Reads, normalises and parses. Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT. */
+FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
+                   GError **error);
+
+void fl_svg_free(FlSvg *svg); // NULL is fine
+
+/**
+ * The page in px: width and height of the file, else of its viewBox.
+ * Returns: false with FL_ERROR_INPUT, which asks for --canvas, if it has neither.
+ */
+bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error);
+
+/** How many groups have no id; in documents with as many the ones made for them mean the same. */
+int fl_svg_nameless_groups(const FlSvg *svg);
+
+/** The leaves, bottom up; they belong to svg. */
+const FlLeaves *fl_svg_leaves(const FlSvg *svg);
+
+/**
+ * What a leaf is painted with. FlPainted.width is a share of the page's longer side.
+ * Returns: the number of parts, bottom up, 0 if nothing is drawn; -1 with FL_ERROR_INPUT.
+ */
+int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error);
+
+/**
+ * Draws a part of a leaf where it is in the picture, with all that applies to it (clip, mask,
+ * groups). width and height are what the page is scaled to, px.
+ */
+bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
+                 double height, GError **error);
+
+/**
+ * The box of a leaf, its strokes included and clips not, in px of a page of width x height; empty
+ * if it has none.
+ */
+RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, double height);
+
+/** Draws a group of that id (NULL: everything) as it was before the file was normalised. */
+bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
+                       GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSvg, fl_svg_free)
+
+#endif

@@ -1,0 +1,158 @@
+#include "synth/synth_state.h"
+
+#include "base/alloc.h"
+#include "base/compress.h"
+#include <assert.h>
+#include <string.h>
+
+/* The bytes start with this; the packed field, mask and picture follow. Each match is stored as
+ * its difference from the one before, which in a coherent field is mostly the same: a state is a
+ * quarter smaller for it, and made in two thirds of the time. */
+typedef struct Header {
+    int32_t frame, valid;
+    int32_t x, y, width, height;
+} Header;
+
+static_assert(sizeof(Header) == FL_SYNTH_STATE_HEADER, "the header has no padding");
+
+enum { FIELD, MASK, PICTURE, N_PARTS };
+
+static FlMatch minus(FlMatch a, FlMatch b)
+{
+    return (FlMatch){.x_16 = (uint16_t)(a.x_16 - b.x_16),
+                     .y_16 = (uint16_t)(a.y_16 - b.y_16),
+                     .frame = (int16_t)(a.frame - b.frame),
+                     .theta = (uint8_t)(a.theta - b.theta)};
+}
+
+static FlMatch plus(FlMatch a, FlMatch b)
+{
+    return (FlMatch){.x_16 = (uint16_t)(a.x_16 + b.x_16),
+                     .y_16 = (uint16_t)(a.y_16 + b.y_16),
+                     .frame = (int16_t)(a.frame + b.frame),
+                     .theta = (uint8_t)(a.theta + b.theta)};
+}
+
+/* Each match but the first minus the one before; to be freed with g_free(). NULL without memory. */
+static FlMatch *differences(const FlNnf *nnf)
+{
+    const size_t n = (size_t)nnf->width * (size_t)nnf->height;
+    FlMatch *out = g_try_new(FlMatch, MAX(n, 1));
+    for (size_t p = 0; out && p < n; p++)
+        out[p] = p > 0 ? minus(nnf->match[p], nnf->match[p - 1]) : nnf->match[p];
+    return out;
+}
+
+static void add_up(FlNnf *nnf)
+{
+    const size_t n = (size_t)nnf->width * (size_t)nnf->height;
+    for (size_t p = 1; p < n; p++)
+        nnf->match[p] = plus(nnf->match[p], nnf->match[p - 1]);
+}
+
+/* `matches`: as they are packed. */
+static void parts_of(const FlSynthState *state, FlMatch *matches, int width, int height,
+                     FlSpan parts[N_PARTS])
+{
+    const size_t pixels = (size_t)width * height;
+    const size_t field = (size_t)state->nnf.width * (size_t)state->nnf.height * sizeof *matches;
+    parts[FIELD] = (FlSpan){matches, field};
+    parts[MASK] = (FlSpan){state->mask, pixels};
+    parts[PICTURE] = (FlSpan){state->rgb, 3 * pixels};
+}
+
+GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GError **error)
+{
+    const FlRect rect = state->valid ? state->rect : (FlRect){0};
+    const Header header = {state->frame, state->valid, rect.x, rect.y, rect.width, rect.height};
+    g_autofree FlMatch *matches = state->valid ? differences(&state->nnf) : NULL;
+    FlSpan parts[N_PARTS];
+    parts_of(state, matches, width, height, parts);
+    const size_t room = state->valid ? fl_compress_bound(parts, N_PARTS) : 0;
+    g_autofree uint8_t *bytes = fl_headroom_left() ? g_try_malloc(sizeof header + room) : NULL;
+    const size_t packed =
+        bytes && matches ? fl_compress(parts, N_PARTS, bytes + sizeof header, room) : 0;
+    if (!bytes || (state->valid && packed == 0)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a state");
+        return NULL;
+    }
+    memcpy(bytes, &header, sizeof header);
+    bytes = g_realloc(bytes, sizeof header + packed); // it is kept, the room is not
+    return g_bytes_new_take(g_steal_pointer(&bytes), sizeof header + packed);
+}
+
+GBytes *fl_synth_state_later(GBytes *bytes, int frame)
+{
+    size_t size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    uint8_t *copy = g_memdup2(data, size);
+    Header header;
+    memcpy(&header, copy, sizeof header);
+    header.frame = frame;
+    memcpy(copy, &header, sizeof header);
+    return g_bytes_new_take(copy, size);
+}
+
+static bool damaged(GError **error, const char *what)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "a region's state is damaged: %s", what);
+    return false;
+}
+
+/* Whether a rectangle has pixels, and all of them in the frame. */
+static bool fits(const Header *h, int width, int height)
+{
+    return h->x >= 0 && h->y >= 0 && h->width >= 1 && h->height >= 1 && h->width <= width &&
+           h->height <= height && h->x <= width - h->width && h->y <= height - h->height;
+}
+
+static bool matches_fit(const FlNnf *nnf, const FlExemplarLevel *level)
+{
+    for (size_t p = 0; p < (size_t)nnf->width * nnf->height; p++) {
+        const FlMatch m = nnf->match[p];
+        if (m.frame != FL_NO_MATCH &&
+            (m.frame < 0 || m.frame >= level->n_frames || m.x_16 > 16 * (level->width - 1) ||
+             m.y_16 > 16 * (level->height - 1)))
+            return false;
+    }
+    return true;
+}
+
+/* The field and the pictures of a last frame that had paint. */
+static bool unpack_frame(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
+                         int width, int height, GError **error)
+{
+    size_t size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    if (!fl_nnf_init(&state->nnf, state->rect.width, state->rect.height, error))
+        return false;
+    FlSpan parts[N_PARTS];
+    parts_of(state, state->nnf.match, width, height, parts);
+    const bool whole = fl_decompress(data + sizeof(Header), size - sizeof(Header), parts, N_PARTS);
+    add_up(&state->nnf);
+    if (whole && matches_fit(&state->nnf, level))
+        return true;
+    fl_nnf_clear(&state->nnf);
+    return damaged(error,
+                   whole ? "its field points outside the style" : "its pictures cannot be read");
+}
+
+bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
+                           int width, int height, GError **error)
+{
+    size_t size;
+    const uint8_t *data = g_bytes_get_data(bytes, &size);
+    Header h;
+    state->nnf = (FlNnf){0};
+    if (size < sizeof h)
+        return damaged(error, "it is cut short");
+    memcpy(&h, data, sizeof h);
+    if (h.frame < 0 || (h.valid != 0 && h.valid != 1))
+        return damaged(error, "it does not start as a state does");
+    if (h.valid && !fits(&h, width, height))
+        return damaged(error, "its field lies outside the frame");
+    state->frame = h.frame;
+    state->valid = h.valid;
+    state->rect = (FlRect){h.x, h.y, h.width, h.height};
+    return !state->valid || unpack_frame(state, bytes, level, width, height, error);
+}

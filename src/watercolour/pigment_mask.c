@@ -1,0 +1,134 @@
+#include "watercolour/pigment_mask.h"
+
+#include "base/alloc.h"
+
+#include <math.h>
+#include <string.h>
+
+#define FAR 1e9f // squared cells; more than any picture has
+
+/* A box blur of one line; the window is cut at the ends. */
+static void blur_line(float *line, int n, ptrdiff_t stride, int radius, float *copy)
+{
+    for (int i = 0; i < n; i++)
+        copy[i] = line[i * stride];
+    for (int i = 0; i < n; i++) {
+        const int first = MAX(0, i - radius), last = MIN(n - 1, i + radius);
+        float sum = 0;
+        for (int k = first; k <= last; k++)
+            sum += copy[k];
+        line[i * stride] = sum / (float)(last - first + 1);
+    }
+}
+
+/* Three box blurs are a Gaussian, near enough. */
+static void blur(float *grid, int width, int height, int radius, float *line)
+{
+    for (int pass = 0; pass < 3; pass++) {
+        for (int j = 0; j < height; j++)
+            blur_line(grid + (size_t)j * width, width, 1, radius, line);
+        for (int i = 0; i < width; i++)
+            blur_line(grid + i, height, width, radius, line);
+    }
+}
+
+/* Marks the connected part of equal cells that holds `start`; its members go to queue. */
+static int collect_part(const uint8_t *mask, uint8_t *seen, int width, int height, int start,
+                        int *queue)
+{
+    int n = 0;
+    queue[n++] = start;
+    seen[start] = 1;
+    for (int at = 0; at < n; at++) {
+        const int x = queue[at] % width, y = queue[at] / width;
+        const int near[4] = {x > 0 ? queue[at] - 1 : -1, x < width - 1 ? queue[at] + 1 : -1,
+                             y > 0 ? queue[at] - width : -1,
+                             y < height - 1 ? queue[at] + width : -1};
+        for (int k = 0; k < 4; k++)
+            if (near[k] >= 0 && !seen[near[k]] && mask[near[k]] == mask[start]) {
+                seen[near[k]] = 1;
+                queue[n++] = near[k];
+            }
+    }
+    return n;
+}
+
+static void drop_small_parts(uint8_t *mask, uint8_t *seen, int *queue, int width, int height,
+                             const FlExtract *how)
+{
+    memset(seen, 0, (size_t)width * height);
+    for (int i = 0; i < width * height; i++) {
+        if (seen[i])
+            continue;
+        const int n = collect_part(mask, seen, width, height, i, queue);
+        if (n < (mask[i] ? how->speck : how->hole)) {
+            const uint8_t other = !mask[i];
+            for (int k = 0; k < n; k++)
+                mask[queue[k]] = other;
+        }
+    }
+}
+
+/*
+ * Lower envelope of parabolas: squared distances along one line [Felzenszwalb & Huttenlocher].
+ * Whole cells are enough here, and exact, so that styles rebuild to the same bytes whatever becomes
+ * of the sub-pixel distances of the guides.
+ */
+static void distance_line(float *line, int n, ptrdiff_t stride, float *copy, int *at, float *from)
+{
+    for (int i = 0; i < n; i++)
+        copy[i] = line[i * stride];
+    int top = 0;
+    at[0] = 0, from[0] = -FAR, from[1] = FAR;
+    for (int q = 1; q < n; q++) {
+        float cross;
+        while ((cross = (copy[q] + (float)q * (float)q - copy[at[top]] -
+                         (float)at[top] * (float)at[top]) /
+                        (float)(2 * (q - at[top]))) <= from[top])
+            top--;
+        at[++top] = q;
+        from[top] = cross, from[top + 1] = FAR;
+    }
+    for (int i = 0, k = 0; i < n; i++) {
+        while (from[k + 1] < (float)i)
+            k++;
+        line[i * stride] = copy[at[k]] + (float)(i - at[k]) * (float)(i - at[k]);
+    }
+}
+
+/* Squared distance to the nearest cell where the mask is `value`. */
+static void distance_to(const uint8_t *mask, uint8_t value, int width, int height, float *squared,
+                        float *lines)
+{
+    const int longest = MAX(width, height) + 2;
+    int *at = (int *)(lines + 2 * longest);
+    for (int i = 0; i < width * height; i++)
+        squared[i] = mask[i] == value ? 0 : FAR;
+    for (int i = 0; i < width; i++)
+        distance_line(squared + i, height, width, lines, at, lines + longest);
+    for (int j = 0; j < height; j++)
+        distance_line(squared + (size_t)j * width, width, 1, lines, at, lines + longest);
+}
+
+bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *how, float *distance,
+                     GError **error)
+{
+    const size_t cells = (size_t)width * height;
+    g_autofree uint8_t *mask = fl_alloc(cells, 2, "a mask", error);
+    g_autofree int *queue = mask ? fl_alloc(cells, sizeof(int), "a mask", error) : NULL;
+    g_autofree float *lines =
+        queue ? fl_alloc((size_t)MAX(width, height) + 2, 3 * sizeof(float), "a mask", error) : NULL;
+    if (!lines)
+        return false;
+    if (how->blur > 0)
+        blur(thickness, width, height, how->blur, lines);
+    for (size_t i = 0; i < cells; i++)
+        mask[i] = thickness[i] > how->threshold;
+    drop_small_parts(mask, mask + cells, queue, width, height, how);
+    distance_to(mask, 1, width, height, distance, lines);
+    distance_to(mask, 0, width, height, thickness, lines);
+    for (size_t i = 0; i < cells; i++)
+        distance[i] =
+            (mask[i] ? sqrtf(thickness[i]) - 0.5f : 0.5f - sqrtf(distance[i])) + how->margin;
+    return true;
+}
