@@ -47,7 +47,7 @@ static uint16_t *find_tops(const FlPlan *plan, const FlDrawList *draws)
     uint16_t *top = g_new0(uint16_t, width * (size_t)fl_drawing_height(plan->drawing));
     for (int r = 0; r < draws->n; r++) {
         const FlDraw *draw = &draws->draw[r];
-        const bool plain = plan->painter_of[draw->region] >= 0 && !draw->picture &&
+        const bool plain = plan->painted_of[draw->region] >= 0 && !draw->picture &&
                            draw->alpha == 255 && draw->mix == FL_BLEND_MODE_OVER;
         const int first = first_like(draws, r);
         const FlRect box = draw->area.box;
@@ -159,11 +159,11 @@ static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture,
     g_autofree uint16_t *top = find_tops(plan, draws);
     for (int r = 0; r < draws->n; r++) {
         uint8_t median[3];
-        if (plan->painter_of[draws->draw[r].region] < 0 || first_like(draws, r) < r)
+        if (plan->painted_of[draws->draw[r].region] < 0 || first_like(draws, r) < r)
             continue;
-        const FlPainter *painter = &plan->painters[plan->painter_of[draws->draw[r].region]];
+        const FlRegionPlan *painted = &plan->painted[plan->painted_of[draws->draw[r].region]];
         const Look look = look_at(picture, top, (uint16_t)(r + 1), plan->paper,
-                                  painter->style->exemplar->border_px);
+                                  painted->style->exemplar->border_px);
         if (look.total < ENOUGH)
             continue;
         for (int c = 0; c < 3; c++)

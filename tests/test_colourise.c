@@ -1,5 +1,5 @@
 #include "compose/colourise.h"
-#include "compose/density.h"
+#include "base/density.h"
 #include "delta_e.h"
 #include "io/picture.h"
 

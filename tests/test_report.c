@@ -65,10 +65,10 @@ static void a_picture_is_a_data_uri(void)
 enum { WIDTH = 12, HEIGHT = 5 };
 
 /* Stripes that have moved by shift px, in a mask that fills the frame. */
-static void paint_stripes(FlPainter *painter, FlGuides *guides, int shift, float flow)
+static void paint_stripes(FlPaintedRegion *painted, FlGuides *guides, int shift, float flow)
 {
     for (int p = 0; p < WIDTH * HEIGHT; p++) {
-        memset(painter->painted + 3 * p, (p % WIDTH + WIDTH - shift) % 4 * 60, 3);
+        memset(painted->painted + 3 * p, (p % WIDTH + WIDTH - shift) % 4 * 60, 3);
         guides->mask[p] = 255;
         guides->flow[2 * p] = flow;
         guides->flow[2 * p + 1] = 0;
@@ -78,18 +78,18 @@ static void paint_stripes(FlPainter *painter, FlGuides *guides, int shift, float
 static void paint_that_moves_with_its_region_does_not_flicker(void)
 {
     uint8_t part[3 * WIDTH * HEIGHT];
-    FlPainter painter = {.painted = part};
+    FlPaintedRegion painted = {.painted = part};
     g_auto(FlGuides) guides = {0};
     g_assert_true(fl_guides_init(&guides, WIDTH, HEIGHT, NULL));
     FlFlicker flicker = {0};
-    paint_stripes(&painter, &guides, 0, 2);
-    g_assert_true(fl_flicker_measure(&flicker, &painter, &guides, NULL));
+    paint_stripes(&painted, &guides, 0, 2);
+    g_assert_true(fl_flicker_measure(&flicker, &painted, &guides, NULL));
     g_assert_true(isnan(flicker.change)); // nothing came before
-    paint_stripes(&painter, &guides, 2, 0);
-    g_assert_true(fl_flicker_measure(&flicker, &painter, &guides, NULL));
+    paint_stripes(&painted, &guides, 2, 0);
+    g_assert_true(fl_flicker_measure(&flicker, &painted, &guides, NULL));
     g_assert_cmpfloat(flicker.change, ==, 0);
-    paint_stripes(&painter, &guides, 4, 0);
-    g_assert_true(fl_flicker_measure(&flicker, &painter, &guides, NULL));
+    paint_stripes(&painted, &guides, 4, 0);
+    g_assert_true(fl_flicker_measure(&flicker, &painted, &guides, NULL));
     g_assert_cmpfloat(flicker.change, ==, 120);
     fl_flicker_clear(&flicker);
 }

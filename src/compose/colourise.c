@@ -1,6 +1,6 @@
 #include "compose/colourise.h"
+#include "base/density.h"
 #include "base/row_kernels.h"
-#include "compose/density.h"
 #include "compose/layer_blend.h"
 
 #include <string.h>

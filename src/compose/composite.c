@@ -1,129 +1,67 @@
 #include "compose/composite.h"
 
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/schedule.h"
 #include "compose/colourise.h"
 #include "compose/edge_map.h"
 #include "compose/enlarge.h"
 #include "compose/exposure.h"
 #include "compose/holes.h"
-#include "io/output_name.h"
-#include "io/picture.h"
-#include "params/text.h"
 #include <string.h>
 
 #define BLEED_PX 8 // how far colours reach into transparency, for whoever scales the frames
 
-static char *backdrop_file(const FlBackground *background, const FlPlan *plan, int frame,
-                           GError **error)
+static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegion *painted,
+                                const FlDraw *draw)
 {
-    const int number = fl_drawing_number(plan->drawing, frame);
-    return fl_output_is_pattern(background->pattern)
-               ? fl_output_name(background->pattern, number, NULL, error)
-               : g_strdup(background->pattern);
-}
-
-/* Whether all pictures of the background are opaque; one that cannot be read is told when it is
- * its turn. */
-static bool pictures_are_opaque(const FlBackground *background, const FlPlan *plan)
-{
-    const int n = fl_output_is_pattern(background->pattern) ? fl_drawing_frames(plan->drawing) : 1;
-    for (int f = 0; f < n; f++) {
-        g_autofree char *file = backdrop_file(background, plan, f, NULL);
-        if (file && !fl_picture_is_opaque(file))
-            return false;
-    }
-    return true;
-}
-
-bool fl_background_init(FlBackground *background, const FlPlan *plan, GError **error)
-{
-    const char *said = plan->options.background;
-    *background = (FlBackground){.opaque = true};
-    memcpy(background->flat, plan->paper, 3);
-    memcpy(background->paper, plan->paper, 3);
-    if (!said)
-        return true;
-    if (g_str_equal(said, "none")) {
-        background->none = true, background->opaque = false;
-    } else if (fl_text_colour(said, background->flat)) {
-        memcpy(background->paper, background->flat, 3);
-    } else if (g_str_has_suffix(said, ".png") || g_str_has_suffix(said, ".PNG")) {
-        background->pattern = said;
-        background->opaque = pictures_are_opaque(background, plan);
-    } else {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "background '%s': expected #rrggbb, none, a PNG file or a pattern of them",
-                    said);
-        return false;
-    }
-    return true;
-}
-
-/* The background's picture of a frame, in the frame's size. */
-static FlPicture *backdrop_picture(const FlBackground *background, const FlPlan *plan, int frame,
-                                   GError **error)
-{
-    g_autofree char *file = backdrop_file(background, plan, frame, error);
-    g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
-    const int width = plan->width, height = plan->height;
-    if (picture && (picture->width != width || picture->height != height))
-        return fl_picture_resize(picture, width, height, error);
-    return g_steal_pointer(&picture);
-}
-
-static FlColouring colouring_of(const FlPlan *plan, const FlBackground *background,
-                                const FlPainter *painter, const FlDraw *draw)
-{
-    const FlRegionSettings *t = &painter->settings;
+    const FlRegionSettings *t = painted->settings;
     FlColouring how = {.tint = t->tint,
                        .picture = t->has_colour ? NULL : draw->picture,
-                       .medium = painter->style->medium,
-                       .linear = plan->options.blend == FL_BLEND_LINEAR};
+                       .medium = painted->style->medium,
+                       .linear = input->linear};
     memcpy(how.fill, t->has_colour ? t->colour : draw->rgb, 3);
-    memcpy(how.paper, background->paper, 3);
+    memcpy(how.paper, input->background->paper, 3);
     return how;
 }
 
-static FlPaintedPart painted_by(const FlPainter *painter)
+static FlPaintedPart part_of(const FlPaintedRegion *painted)
 {
-    return (FlPaintedPart){painter->painted, painter->rect};
+    return (FlPaintedPart){painted->painted, painted->rect};
 }
 
 /* How much paint each pixel of a run's box has; to be freed with free(). */
-static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPainter *painter, int exposure,
-                           GError **error)
+static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion *painted,
+                           int exposure, GError **error)
 {
-    const bool keep = painter->settings.tint == FL_TINT_KEEP;
+    const bool keep = painted->settings->tint == FL_TINT_KEEP;
     const FlDraw *draw = &edges->draws->draw[r];
-    const FlPaintedPart painted = painted_by(painter);
+    const FlPaintedPart part = part_of(painted);
     g_autofree int16_t *amounts =
         fl_alloc(fl_rect_pixels(draw->area.box), sizeof *amounts, "a layer", error);
     if (!amounts)
         return NULL;
-    fl_colourise_amounts(painter->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &painted,
+    fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
                          draw->coverage, &draw->area, amounts);
-    if (!fl_edges_close(edges, r, painter, amounts, error) ||
+    if (!fl_edges_close(edges, r, painted, amounts, error) ||
         (!keep && !fl_edges_level(edges, r, amounts, error)))
         return NULL;
     return g_steal_pointer(&amounts);
 }
 
-static bool paint_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                        const FlEdgeMap *edges, int r, const FlPainter *painter, int exposure,
-                        GError **error)
+static bool paint_layer(FlLayer *layer, const FlComposeInput *input, const FlEdgeMap *edges, int r,
+                        const FlPaintedRegion *painted, int exposure, GError **error)
 {
     const FlDraw *draw = &edges->draws->draw[r];
-    const FlColouring how = colouring_of(plan, background, painter, draw);
-    const FlPaintedPart painted = painted_by(painter);
-    g_autofree int16_t *amounts = amounts_of(edges, r, painter, exposure, error);
+    const FlColouring how = colouring_of(input, painted, draw);
+    const FlPaintedPart part = part_of(painted);
+    g_autofree int16_t *amounts = amounts_of(edges, r, painted, exposure, error);
     uint8_t *knockout =
         amounts ? fl_alloc(fl_rect_pixels(layer->area.box), 1, "a layer", error) : NULL;
     if (!knockout)
         return false;
     layer->knockout = knockout;
-    layer->stacking = painter->settings.stacking;
-    fl_colourise(painter->style->ink, &how, &painted, amounts, &layer->area, layer->rgba);
+    layer->stacking = painted->settings->stacking;
+    fl_colourise(painted->style->ink, &how, &part, amounts, &layer->area, layer->rgba);
     fl_colourise_knockout(amounts, &layer->area, knockout);
     return fl_holes_close(knockout, draw->coverage, &layer->area, error);
 }
@@ -139,11 +77,11 @@ static void clear_layer(FlLayer *layer, bool with_coverage)
 }
 
 /* In the size of the film. */
-static bool fill_film_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                            const FlEdgeMap *edges, int r, const int *exposures, GError **error)
+static bool fill_film_layer(FlLayer *layer, const FlComposeInput *input, const FlEdgeMap *edges,
+                            int r, const int *exposures, GError **error)
 {
     const FlDraw *draw = &edges->draws->draw[r];
-    const int p = plan->painter_of[draw->region];
+    const int p = input->painted_of[draw->region];
     const FlRect box = draw->area.box;
     *layer = (FlLayer){.area = {box, g_memdup2(draw->area.row, box.height * sizeof(FlColumns))},
                        .coverage = draw->coverage,
@@ -153,107 +91,116 @@ static bool fill_film_layer(FlLayer *layer, const FlPlan *plan, const FlBackgrou
     if (!(layer->rgba = fl_alloc(4 * fl_rect_pixels(box), 1, "a layer", error)))
         return false;
     if (p >= 0)
-        return paint_layer(layer, plan, background, edges, r, &plan->painters[p], exposures[p],
-                           error);
+        return paint_layer(layer, input, edges, r, input->painted[p], exposures[p], error);
     fl_colourise_plain(draw->picture, draw->rgb, draw->coverage, &layer->area, layer->rgba);
     return true;
 }
 
 /* In the size of the frame. */
-static bool fill_layer(FlLayer *layer, const FlPlan *plan, const FlBackground *background,
-                       const FlEdgeMap *edges, int r, const int *exposures, GError **error)
+static bool fill_layer(FlLayer *layer, const FlComposeInput *input, const FlEdgeMap *edges, int r,
+                       const int *exposures, GError **error)
 {
-    if (!plan->half)
-        return fill_film_layer(layer, plan, background, edges, r, exposures, error);
+    if (!input->half)
+        return fill_film_layer(layer, input, edges, r, exposures, error);
     FlLayer half;
-    const bool done = fill_film_layer(&half, plan, background, edges, r, exposures, error) &&
-                      fl_layer_double(&half, plan->width, plan->height, layer, error);
+    const bool done = fill_film_layer(&half, input, edges, r, exposures, error) &&
+                      fl_layer_double(&half, input->width, input->height, layer, error);
     clear_layer(&half, false);
     return done;
 }
 
 /* The region's name, with a number from its second layer on. */
-static char *layer_name(const FlPlan *plan, const FlDrawList *draws, int draw)
+static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, int draw)
 {
     int earlier = 0;
     for (int r = 0; r < draw; r++)
         earlier += draws->draw[r].region == draws->draw[draw].region;
-    const char *name = fl_drawing_region(plan->drawing, draws->draw[draw].region)->name;
+    const char *name = fl_drawing_region(input->drawing, draws->draw[draw].region)->name;
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
-/* Side by side, those of the layers that are small enough; run: of each layer. */
-static bool fill_small(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                       const FlEdgeMap *edges, const int *exposures, const int *draw,
-                       GError **error)
+/* The layers of a frame in the making. */
+typedef struct Stack {
+    FlComposite *composite;
+    const FlComposeInput *input;
+    const FlEdgeMap *edges;
+    const int *exposures;
+    int *draw; // the index in the draw list of each layer
+} Stack;
+
+static bool fill_one(void *data, int k, int thread, GError **error)
 {
-    GError *first = NULL;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int k = 0; k < composite->n_layers; k++) {
-        GError *mine = NULL;
-        if (fl_plan_side_by_side(plan, fl_rect_pixels(edges->draws->draw[draw[k]].area.box)) &&
-            !fill_layer(&composite->layers[k], plan, background, edges, draw[k], exposures, &mine))
-            fl_parallel_error_keep(&first, mine);
-    }
-    return fl_parallel_error_tell(error, first);
+    const Stack *stack = data;
+    return fill_layer(&stack->composite->layers[k], stack->input, stack->edges, stack->draw[k],
+                      stack->exposures, error);
 }
 
-/* A layer for each run that is not left out. */
-static bool fill_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                        const FlEdgeMap *edges, const int *exposures, GError **error)
+/* Small layers side by side, large ones by all threads together. */
+static bool fill_all(Stack *stack, GError **error)
+{
+    const int n = stack->composite->n_layers;
+    const size_t frame = (size_t)stack->input->width * (size_t)stack->input->height;
+    g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(n, 1));
+    for (int k = 0; k < n; k++) {
+        const FlRect box = stack->composite->draws->draw[stack->draw[k]].area.box;
+        const size_t pixels = fl_rect_pixels(box);
+        items[k] = (FlWorkItem){k, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
+    }
+    return fl_schedule_run(items, n, fill_one, stack, error);
+}
+
+/* A layer for each draw that is not left out. */
+static bool fill_layers(FlComposite *composite, const FlComposeInput *input, const FlEdgeMap *edges,
+                        const int *exposures, GError **error)
 {
     const FlDrawList *draws = composite->draws;
     composite->layers = g_new0(FlLayer, MAX(draws->n, 1));
-    composite->enlarged = plan->half;
+    composite->enlarged = input->half;
     composite->names = g_new0(char *, draws->n + 1);
     g_autofree int *draw = g_new0(int, MAX(draws->n, 1));
     for (int r = 0; r < draws->n; r++)
-        if (plan->painter_of[draws->draw[r].region] != -2) {
-            composite->names[composite->n_layers] = layer_name(plan, draws, r);
+        if (input->painted_of[draws->draw[r].region] != FL_LEFT_OUT) {
+            composite->names[composite->n_layers] = layer_name(input, draws, r);
             draw[composite->n_layers++] = r;
         }
-    if (!fill_small(composite, plan, background, edges, exposures, draw, error))
-        return false;
-    for (int k = 0; k < composite->n_layers; k++)
-        if (!fl_plan_side_by_side(plan, fl_rect_pixels(edges->draws->draw[draw[k]].area.box)) &&
-            !fill_layer(&composite->layers[k], plan, background, edges, draw[k], exposures, error))
-            return false;
-    return true;
+    Stack stack = {composite, input, edges, exposures, draw};
+    return fill_all(&stack, error);
 }
 
-static bool make_layers(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                        int frame, GError **error)
+static bool make_layers(FlComposite *composite, const FlComposeInput *input, GError **error)
 {
-    g_autofree int *exposures = g_new0(int, MAX(plan->n_painters, 1));
+    g_autofree int *exposures = g_new0(int, MAX(input->n_painted, 1));
     g_auto(FlEdgeMap) edges = {0};
-    if (!fl_exposures_find(plan, composite->draws, frame, exposures, error) ||
-        !fl_edges_init(&edges, plan, composite->draws, error) ||
-        !fill_layers(composite, plan, background, &edges, exposures, error))
+    if (!fl_exposures_find(input, composite->draws, exposures, error) ||
+        !fl_edges_init(&edges, input, composite->draws, error) ||
+        !fill_layers(composite, input, &edges, exposures, error))
         return false;
-    FlStackParams params = {.linear = plan->options.blend == FL_BLEND_LINEAR,
-                            .gap_px = (float)MAX(plan->options.gap, 0),
-                            .feather_px = (float)MAX(plan->options.feather, 0)};
-    memcpy(params.paper, background->paper, 3);
-    return fl_layers_resolve(composite->layers, composite->n_layers, plan->width, plan->height,
+    FlStackParams params = {
+        .linear = input->linear, .gap_px = input->gap_px, .feather_px = input->feather_px};
+    memcpy(params.paper, input->background->paper, 3);
+    return fl_layers_resolve(composite->layers, composite->n_layers, input->width, input->height,
                              &params, error);
 }
 
-static bool compose(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                    int frame, bool with_16, GError **error)
+static bool compose(FlComposite *composite, const FlComposeInput *input, int frame, bool with_16,
+                    GError **error)
 {
-    const int width = plan->width, height = plan->height;
+    const FlBackground *background = input->background;
+    const int width = input->width, height = input->height;
     const size_t values = 4 * (size_t)width * height;
     FlBackdrop backdrop = {.flat = {background->flat[0], background->flat[1], background->flat[2],
                                     background->none ? 0 : 255}};
     g_autoptr(FlPicture) picture =
-        background->pattern ? backdrop_picture(background, plan, frame, error) : NULL;
+        background->pattern
+            ? fl_background_picture(background, input->drawing, frame, width, height, error)
+            : NULL;
     if (background->pattern && !picture)
         return false;
     backdrop.rgba = picture ? picture->rgba : NULL;
     if (!(composite->rgba = fl_alloc(values, 1, "a frame", error)) ||
         (with_16 && !(composite->rgba16 = fl_alloc(values, 2, "a frame", error))))
         return false;
-    const bool linear = plan->options.blend == FL_BLEND_LINEAR;
+    const bool linear = input->linear;
     fl_layers_compose(composite->layers, composite->n_layers, &backdrop, width, height, linear,
                       composite->rgba);
     if (with_16)
@@ -262,12 +209,11 @@ static bool compose(FlComposite *composite, const FlPlan *plan, const FlBackgrou
     return background->opaque || fl_layers_bleed(composite->rgba, width, height, BLEED_PX, error);
 }
 
-bool fl_composite_init(FlComposite *composite, const FlPlan *plan, const FlBackground *background,
-                       int frame, FlDrawList *draws, bool with_16, GError **error)
+bool fl_composite_init(FlComposite *composite, const FlComposeInput *input, int frame,
+                       FlDrawList *draws, bool with_16, GError **error)
 {
     *composite = (FlComposite){.draws = draws};
-    return make_layers(composite, plan, background, frame, error) &&
-           compose(composite, plan, background, frame, with_16, error);
+    return make_layers(composite, input, error) && compose(composite, input, frame, with_16, error);
 }
 
 void fl_composite_clear(FlComposite *composite)

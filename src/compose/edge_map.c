@@ -13,9 +13,9 @@
 #define TILE_PX 128    // a tile and what is around it fit into a processor's own cache
 
 /** Whether a run hides what it lies over. Shading does not: the edges below it are seen. */
-static bool hides(const FlPlan *plan, const FlDraw *draw)
+static bool hides(const FlComposeInput *input, const FlDraw *draw)
 {
-    const bool painted = plan->painter_of[draw->region] >= 0;
+    const bool painted = input->painted_of[draw->region] >= 0;
     return draw->mix == FL_BLEND_MODE_OVER && draw->alpha >= SHOWN &&
            (painted || draw->alpha == 255);
 }
@@ -23,7 +23,7 @@ static bool hides(const FlPlan *plan, const FlDraw *draw)
 /** Where pixel 0 of row y of a box is in the frame. */
 static size_t in_frame(const FlEdgeMap *edges, FlRect box, int y)
 {
-    return (size_t)(box.y + y) * (size_t)fl_drawing_width(edges->plan->drawing) + (size_t)box.x;
+    return (size_t)(box.y + y) * (size_t)fl_drawing_width(edges->input->drawing) + (size_t)box.x;
 }
 
 /** The coverage of a run from column 0 of row y of its box on. */
@@ -52,7 +52,7 @@ static uint16_t top_of_square(const uint16_t *top, size_t i, size_t width)
 static void note_overlaps(FlEdgeMap *edges, int draw)
 {
     const FlDraw *r = &edges->draws->draw[draw];
-    const size_t width = (size_t)fl_drawing_width(edges->plan->drawing), n = (size_t)edges->n;
+    const size_t width = (size_t)fl_drawing_width(edges->input->drawing), n = (size_t)edges->n;
     for (int y = 0; y < r->area.box.height - TRAP_PX; y++) {
         const size_t row = in_frame(edges, r->area.box, y), own = (size_t)draw + 1;
         const uint8_t *upper = coverage_row(r, y), *lower = coverage_row(r, y + TRAP_PX);
@@ -79,11 +79,12 @@ static void put_on_top(FlEdgeMap *edges, int draw)
     }
 }
 
-bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlDrawList *draws, GError **error)
+bool fl_edges_init(FlEdgeMap *edges, const FlComposeInput *input, const FlDrawList *draws,
+                   GError **error)
 {
     const size_t pixels =
-        (size_t)fl_drawing_width(plan->drawing) * (size_t)fl_drawing_height(plan->drawing);
-    *edges = (FlEdgeMap){.plan = plan, .draws = draws};
+        (size_t)fl_drawing_width(input->drawing) * (size_t)fl_drawing_height(input->drawing);
+    *edges = (FlEdgeMap){.input = input, .draws = draws};
     edges->n = MIN(draws->n, MOST_RUNS) + 1;
     const size_t pairs = (size_t)edges->n * (size_t)edges->n;
     if (!(edges->top = fl_alloc(pixels, sizeof *edges->top, "a matte", error)) ||
@@ -91,7 +92,7 @@ bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlDrawList *draws
         return false;
     for (int r = 0; r < edges->n - 1; r++) {
         note_overlaps(edges, r);
-        if (hides(plan, &draws->draw[r]))
+        if (hides(input, &draws->draw[r]))
             put_on_top(edges, r);
     }
     return true;
@@ -151,8 +152,8 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Tile, tile_clear)
 static bool tile_init(Tile *tile, const FlEdgeMap *edges, int draw, FlRect box, int radius_px,
                       GError **error)
 {
-    const FlRect frame = {0, 0, fl_drawing_width(edges->plan->drawing),
-                          fl_drawing_height(edges->plan->drawing)};
+    const FlRect frame = {0, 0, fl_drawing_width(edges->input->drawing),
+                          fl_drawing_height(edges->input->drawing)};
     const FlRect part =
         shape_in(&edges->draws->draw[draw], grown(box, fl_closing_reach(radius_px), frame));
     *tile = (Tile){.part = part, .around = grown(part, radius_px, frame)};
@@ -291,16 +292,15 @@ static uint8_t *find_detail(const FlEdgeMap *edges, int draw, int radius_px, GEr
                : NULL;
 }
 
-bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPainter *painter, int16_t *amounts,
-                    GError **error)
+bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *painted,
+                    int16_t *amounts, GError **error)
 {
-    const FlRegionSettings *t = &painter->settings;
-    const FlRenderOptions *options = &edges->plan->options;
+    const FlRegionSettings *t = painted->settings;
     const size_t n = fl_rect_pixels(edges->draws->draw[draw].area.box);
-    if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || options->gap > 0 ||
-        options->feather > 0 || n == 0 || draw >= edges->n - 1)
+    if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || edges->input->gap_px > 0 ||
+        edges->input->feather_px > 0 || n == 0 || draw >= edges->n - 1)
         return true;
-    const float border = painter->style->exemplar->border_px;
+    const float border = painted->style->exemplar->border_px;
     const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
     g_autofree int16_t *copy = fl_alloc(n, sizeof *copy, "a layer", error);
     g_autofree uint8_t *detail = copy ? find_detail(edges, draw, radius, error) : NULL;
@@ -333,8 +333,8 @@ static bool count_inner(const FlEdgeMap *edges, int draw, const int16_t *amounts
 {
     enum { MARGIN_PX = 2 };
     const FlArea *area = &edges->draws->draw[draw].area;
-    const FlRect frame = {0, 0, fl_drawing_width(edges->plan->drawing),
-                          fl_drawing_height(edges->plan->drawing)};
+    const FlRect frame = {0, 0, fl_drawing_width(edges->input->drawing),
+                          fl_drawing_height(edges->input->drawing)};
     const FlRect box = grown(area->box, MARGIN_PX, frame);
     g_autofree uint8_t *inner = g_malloc((size_t)box.width);
     g_autofree uint8_t *own = own_pixels(edges, draw, box, error);

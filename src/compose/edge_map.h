@@ -2,15 +2,15 @@
 #ifndef FLUIDY_COMPOSE_EDGE_MAP_H
 #define FLUIDY_COMPOSE_EDGE_MAP_H
 
+#include "compose/compose_input.h"
 #include "compose/layers.h"
-#include "job/plan.h"
 
 /**
  * How the shapes of a frame lie. Those count, too, that are left out of the picture: a region alone
  * has the layer that it has among others.
  */
 typedef struct FlEdgeMap {
-    const FlPlan *plan;
+    const FlComposeInput *input;
     const FlDrawList *draws;
     uint16_t *top; // a whole frame: 1 + the uppermost run, 0: none
     int n;         // runs that count, and one: the lowest few thousand
@@ -18,7 +18,8 @@ typedef struct FlEdgeMap {
 } FlEdgeMap;
 
 /** Everything is borrowed. FL_ERROR_NO_MEMORY. */
-bool fl_edges_init(FlEdgeMap *edges, const FlPlan *plan, const FlDrawList *draws, GError **error);
+bool fl_edges_init(FlEdgeMap *edges, const FlComposeInput *input, const FlDrawList *draws,
+                   GError **error);
 void fl_edges_clear(FlEdgeMap *edges);
 
 /**
@@ -30,8 +31,8 @@ void fl_edges_clear(FlEdgeMap *edges);
  * amounts: of the run's box, below 0 outside the shape. Several threads may call it at once.
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
-bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPainter *painter, int16_t *amounts,
-                    GError **error);
+bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *painted,
+                    int16_t *amounts, GError **error);
 
 /**
  * Brings the median of the amounts, where the run is seen, to one, by a factor of 2/3 … 3/2: what

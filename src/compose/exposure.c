@@ -7,20 +7,20 @@
 #define NOBODY UINT16_MAX
 #define ENOUGH 64 // pixels of a region from which its tone is that of what is seen of it
 
-/* Which painter each pixel shows, NOBODY where it is none or several. What is translucent leaves
- * what is below it in sight; regions that are not painted this time hide all the same, so that one
- * that is painted alone has the tone it has among others. */
-static uint16_t *find_owners(const FlPlan *plan, const FlDrawList *draws, GError **error)
+/* Which painted region each pixel shows, NOBODY where it is none or several. What is translucent
+ * leaves what is below it in sight; regions that are not painted this time hide all the same, so
+ * that one that is painted alone has the exposure it has among others. */
+static uint16_t *find_owners(const FlComposeInput *input, const FlDrawList *draws, GError **error)
 {
-    const size_t width = (size_t)fl_drawing_width(plan->drawing);
-    const size_t n = width * (size_t)fl_drawing_height(plan->drawing);
+    const size_t width = (size_t)fl_drawing_width(input->drawing);
+    const size_t n = width * (size_t)fl_drawing_height(input->drawing);
     uint16_t *owner = fl_alloc(n, sizeof *owner, "a matte", error);
     if (!owner)
         return NULL;
     memset(owner, 0xff, n * sizeof *owner);
     for (int r = 0; r < draws->n; r++) {
         const FlDraw *draw = &draws->draw[r];
-        const int p = plan->painter_of[draw->region];
+        const int p = input->painted_of[draw->region];
         if (draw->alpha < 255 || draw->mix != FL_BLEND_MODE_OVER)
             continue;
         const FlRect box = draw->area.box;
@@ -36,43 +36,54 @@ static uint16_t *find_owners(const FlPlan *plan, const FlDrawList *draws, GError
     return owner;
 }
 
-static bool find_tone(const FlPlan *plan, int p, const uint16_t *owner, int frame, int *exposure,
-                      GError **error)
+/* The whole shape of a region in its rectangle. */
+static bool whole_shape(const FlComposeInput *input, const FlDrawList *draws,
+                        const FlPaintedRegion *painted, uint8_t *mask, GError **error)
 {
-    const FlPainter *painter = &plan->painters[p];
-    const FlRect rect = painter->rect;
-    const int shown = frame - frame % painter->settings.hold;
+    const int width = fl_drawing_width(input->drawing), height = fl_drawing_height(input->drawing);
+    g_autofree uint8_t *whole = fl_alloc((size_t)width * (size_t)height, 1, "a mask", error);
+    if (!whole)
+        return false;
+    fl_draw_list_mask(draws, painted->region, width, height, whole);
+    fl_rect_copy(whole, (FlRect){0, 0, width, height}, mask, painted->rect, 1);
+    return true;
+}
+
+static bool find_exposure(const FlComposeInput *input, const FlDrawList *draws, int p,
+                          const uint16_t *owner, int *exposure, GError **error)
+{
+    const FlPaintedRegion *painted = input->painted[p];
+    const FlRect rect = painted->rect;
     g_autofree uint8_t *mask = fl_alloc(fl_rect_pixels(rect), 1, "a mask", error);
     if (!mask)
         return false;
     int seen = 0;
     for (int y = 0; y < rect.height; y++) {
         const uint16_t *row =
-            owner + (size_t)(rect.y + y) * fl_drawing_width(plan->drawing) + rect.x;
+            owner + (size_t)(rect.y + y) * fl_drawing_width(input->drawing) + rect.x;
         for (int x = 0; x < rect.width; x++) {
             mask[(size_t)y * rect.width + x] = row[x] == p ? 255 : 0;
             seen += row[x] == p;
         }
     }
-    if (seen < ENOUGH &&
-        !fl_mask_store_get(painter->masks, painter->region, shown, rect, mask, error))
+    if (seen < ENOUGH && !whole_shape(input, draws, painted, mask, error))
         return false;
     *exposure =
-        fl_ink_exposure(painter->style->ink, painter->painted, mask, rect.width, rect.height);
+        fl_ink_exposure(painted->style->ink, painted->painted, mask, rect.width, rect.height);
     return true;
 }
 
-bool fl_exposures_find(const FlPlan *plan, const FlDrawList *draws, int frame, int *exposures,
+bool fl_exposures_find(const FlComposeInput *input, const FlDrawList *draws, int *exposures,
                        GError **error)
 {
-    g_autofree uint16_t *owner = find_owners(plan, draws, error);
+    g_autofree uint16_t *owner = find_owners(input, draws, error);
     if (!owner)
         return false;
     GError *first = NULL;
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int p = 0; p < plan->n_painters; p++) {
+    for (int p = 0; p < input->n_painted; p++) {
         GError *mine = NULL;
-        if (!find_tone(plan, p, owner, frame, &exposures[p], &mine))
+        if (!find_exposure(input, draws, p, owner, &exposures[p], &mine))
             fl_parallel_error_keep(&first, mine);
     }
     return fl_parallel_error_tell(error, first);

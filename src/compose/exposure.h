@@ -1,17 +1,17 @@
-/* How much every painted region of a frame is toned, so that its paint has the drawing's colour. */
+/* How much paint every region of a frame gets, so that its median has the drawing's colour. */
 #ifndef FLUIDY_COMPOSE_EXPOSURE_H
 #define FLUIDY_COMPOSE_EXPOSURE_H
 
-#include "job/plan.h"
+#include "compose/compose_input.h"
 
 /**
- * The tone (of fl_ink_exposure()) of each painter: by what is seen of its region, if that is
+ * The exposure (of fl_ink_exposure()) of each painted region: by what is seen of it, if that is
  * enough, else by the whole shape. Paint is not the same near a contour as inside, and a hidden
  * part should have no say in the colour.
  *
- * tones gets plan->n_painters values.
+ * exposures gets input->n_painted values. FL_ERROR_NO_MEMORY.
  */
-bool fl_exposures_find(const FlPlan *plan, const FlDrawList *draws, int frame, int *exposures,
+bool fl_exposures_find(const FlComposeInput *input, const FlDrawList *draws, int *exposures,
                        GError **error);
 
 #endif

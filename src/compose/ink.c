@@ -1,5 +1,5 @@
 #include "compose/ink.h"
-#include "compose/density.h"
+#include "base/density.h"
 #include "compose/interior.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 #include "compose/layer_blend.h"
-#include "compose/density.h"
+#include "base/density.h"
 
 #include <glib.h>
 #include <stdlib.h>

@@ -19,30 +19,30 @@ typedef struct Plane {
 /* Where a frame's dump goes. */
 typedef struct Dump {
     const char *folder;
-    const FlPainter *painter;
+    const FlPaintedRegion *painted;
     int number;
 } Dump;
 
 static char *file_of(const Dump *dump, const char *name, const char *suffix)
 {
     g_autofree char *leaf = g_strdup_printf("%s_%04d%s", name, dump->number, suffix);
-    return g_build_filename(dump->folder, dump->painter->name, leaf, NULL);
+    return g_build_filename(dump->folder, dump->painted->name, leaf, NULL);
 }
 
 /* The plane in the whole frame. */
-static float *whole(const FlPainter *painter, const Plane *plane, GError **error)
+static float *whole(const FlPaintedRegion *painted, const Plane *plane, GError **error)
 {
-    const size_t n = (size_t)plane->n, pixels = (size_t)painter->width * painter->height;
+    const size_t n = (size_t)plane->n, pixels = (size_t)painted->width * painted->height;
     float *out = fl_alloc(n * pixels, sizeof(float), "a picture", error);
     if (out)
-        fl_rect_copy(plane->values, painter->rect, out,
-                     (FlRect){0, 0, painter->width, painter->height}, n * sizeof(float));
+        fl_rect_copy(plane->values, painted->rect, out,
+                     (FlRect){0, 0, painted->width, painted->height}, n * sizeof(float));
     return out;
 }
 
 static bool write_raw(const Dump *dump, const Plane *plane, GError **error)
 {
-    const size_t values = (size_t)plane->n * dump->painter->width * dump->painter->height;
+    const size_t values = (size_t)plane->n * dump->painted->width * dump->painted->height;
     g_autofree char *path = file_of(dump, plane->name, ".f32");
     g_auto(FlAtomicFile) file = {0};
     if (!fl_atomic_open(&file, path, true, error))
@@ -59,7 +59,7 @@ static uint8_t grey(float value, float low, float high)
 
 static bool write_picture(const Dump *dump, const Plane *plane, GError **error)
 {
-    const int width = dump->painter->width, height = dump->painter->height;
+    const int width = dump->painted->width, height = dump->painted->height;
     const size_t pixels = (size_t)width * height;
     g_autofree uint8_t *rgb = fl_alloc(3 * pixels, 1, "a picture", error);
     if (!rgb)
@@ -81,7 +81,7 @@ static bool write_picture(const Dump *dump, const Plane *plane, GError **error)
 static bool write_plane(const Dump *dump, const Plane *plane, GError **error)
 {
     Plane shown = *plane;
-    g_autofree float *values = shown.values = whole(dump->painter, plane, error);
+    g_autofree float *values = shown.values = whole(dump->painted, plane, error);
     return values && write_raw(dump, &shown, error) && write_picture(dump, &shown, error);
 }
 
@@ -101,7 +101,7 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, GError **error
         return false;
     for (size_t p = 0; p < pixels; p++)
         mask[p] = guides->mask[p] / 255.0f;
-    const float b = dump->painter->style->exemplar->border_px;
+    const float b = dump->painted->style->exemplar->border_px;
     const Plane planes[] = {
         {"mask", mask, 1, 0, 1},
         {"distance", guides->distance, 1, -b, 2 * b},
@@ -113,16 +113,16 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, GError **error
         if (!write_plane(dump, &planes[k], error))
             return false;
     g_autofree char *flo = file_of(dump, "flow", ".flo");
-    g_autofree float *flow = whole(dump->painter, &planes[2], error);
-    return flow && fl_flow_save(flo, dump->painter->width, dump->painter->height, flow, error);
+    g_autofree float *flow = whole(dump->painted, &planes[2], error);
+    return flow && fl_flow_save(flo, dump->painted->width, dump->painted->height, flow, error);
 }
 
 /* The field as large as the frame, then what it looks like: x, y and frame as red, green, blue. */
 static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error)
 {
-    const int width = dump->painter->width, height = dump->painter->height;
-    const FlExemplarLevel *full = &dump->painter->style->exemplar->level[0];
-    const FlRect part = dump->painter->rect;
+    const int width = dump->painted->width, height = dump->painted->height;
+    const FlExemplarLevel *full = &dump->painted->style->exemplar->level[0];
+    const FlRect part = dump->painted->rect;
     const size_t pixels = (size_t)width * height;
     g_autofree float *field = fl_alloc(4 * pixels, sizeof(float), "a picture", error);
     g_autofree float *shown =
@@ -151,7 +151,7 @@ static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error
 
 static bool dump_temporal(const Dump *dump, const FlSynthView *view, GError **error)
 {
-    const FlRect part = dump->painter->rect;
+    const FlRect part = dump->painted->rect;
     const size_t pixels = fl_rect_pixels(part);
     g_autofree float *weight = fl_alloc(pixels, sizeof(float), "a picture", error);
     g_autofree float *colour =
@@ -168,13 +168,13 @@ static bool dump_temporal(const Dump *dump, const FlSynthView *view, GError **er
     return write_plane(dump, &planes[0], error) && write_plane(dump, &planes[1], error);
 }
 
-bool fl_dump_frame(const char *folder, const FlPainter *painter, const FlGuides *guides, int number,
-                   GError **error)
+bool fl_dump_frame(const char *folder, const FlPaintedRegion *painted, const FlGuides *guides,
+                   int number, GError **error)
 {
-    const Dump dump = {folder, painter, number};
+    const Dump dump = {folder, painted, number};
     if (!dump_guides(&dump, guides, error))
         return false;
-    if (painter->view.nnf && !dump_field(&dump, &painter->view, error))
+    if (painted->view.nnf && !dump_field(&dump, &painted->view, error))
         return false;
-    return !painter->view.temporal || dump_temporal(&dump, &painter->view, error);
+    return !painted->view.temporal || dump_temporal(&dump, &painted->view, error);
 }

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_INSPECT_DUMP_H
 #define FLUIDY_INSPECT_DUMP_H
 
-#include "render/painter.h"
+#include "compose/painted_region.h"
 
 /**
  * Writes a painter's guides, field and T_temp of the frame it has just painted into
@@ -21,7 +21,7 @@
  *
  * Returns: false with FL_ERROR_OUTPUT set.
  */
-bool fl_dump_frame(const char *folder, const FlPainter *painter, const FlGuides *guides, int number,
-                   GError **error);
+bool fl_dump_frame(const char *folder, const FlPaintedRegion *painted, const FlGuides *guides,
+                   int number, GError **error);
 
 #endif

@@ -22,9 +22,9 @@ void fl_exemplar_use_clear(FlExemplarUse *use)
     *use = (FlExemplarUse){0};
 }
 
-void fl_exemplar_use_add(FlExemplarUse *use, const FlPainter *painter)
+void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted)
 {
-    const FlNnf *nnf = painter->view.nnf;
+    const FlNnf *nnf = painted->view.nnf;
     const FlExemplarLevel *full = &use->style->exemplar->level[0];
     if (!nnf)
         return;

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_INSPECT_EXEMPLAR_USE_H
 #define FLUIDY_INSPECT_EXEMPLAR_USE_H
 
-#include "render/painter.h"
+#include "compose/painted_region.h"
 #include <stdio.h>
 
 /** How often each part of one recording was used. */
@@ -18,7 +18,7 @@ bool fl_exemplar_use_init(FlExemplarUse *use, const FlStyleInstance *box, GError
 void fl_exemplar_use_clear(FlExemplarUse *use);
 
 /** Counts the matches of a painter that paints from use->box; a painter without a view has none. */
-void fl_exemplar_use_add(FlExemplarUse *use, const FlPainter *painter);
+void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted);
 
 /**
  * Writes {"style": name, "picture": …, "frames": [share, …]}: the use of each place over the

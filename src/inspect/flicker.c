@@ -34,7 +34,7 @@ static double compare(const FlFlicker *before, const FlFlicker *now, int width, 
     return n > 0 ? (double)sum / (double)n : NAN;
 }
 
-bool fl_flicker_measure(FlFlicker *flicker, const FlPainter *painter, const FlGuides *guides,
+bool fl_flicker_measure(FlFlicker *flicker, const FlPaintedRegion *painted, const FlGuides *guides,
                         GError **error)
 {
     const size_t pixels = (size_t)guides->width * guides->height;
@@ -47,7 +47,7 @@ bool fl_flicker_measure(FlFlicker *flicker, const FlPainter *painter, const FlGu
     }
     memcpy(now.mask, guides->mask, pixels);
     for (size_t p = 0; p < pixels; p++)
-        now.luma[p] = luma_of(painter->painted + 3 * p);
+        now.luma[p] = luma_of(painted->painted + 3 * p);
     for (size_t k = 0; k < 2 * pixels; k++)
         now.motion[k] = (int16_t)lrintf(CLAMP(guides->flow[k], -32000, 32000));
     if (flicker->luma)

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_INSPECT_FLICKER_H
 #define FLUIDY_INSPECT_FLICKER_H
 
-#include "render/painter.h"
+#include "compose/painted_region.h"
 
 /** What a painter's last frame was like: rect.width * rect.height of the painter. */
 typedef struct FlFlicker {
@@ -20,7 +20,7 @@ void fl_flicker_clear(FlFlicker *flicker);
  * Sets flicker->change to the mean absolute difference of luma, in levels of 255, over the pixels
  * that lie in the region before and after; NAN if there are none. FL_ERROR_NO_MEMORY.
  */
-bool fl_flicker_measure(FlFlicker *flicker, const FlPainter *painter, const FlGuides *guides,
+bool fl_flicker_measure(FlFlicker *flicker, const FlPaintedRegion *painted, const FlGuides *guides,
                         GError **error);
 
 /** The same of the exemplar itself, which is not moved: mean over its frames; NAN if it has one. */

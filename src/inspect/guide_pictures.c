@@ -54,9 +54,10 @@ static void put(const FlGuideView *view, FlGuidePicture which, size_t pixel, con
     view->picture[which]->rgba[4 * pixel + 3] = 255;
 }
 
-static void put_match(const FlGuideView *view, const FlPainter *painter, size_t to, FlMatch match)
+static void put_match(const FlGuideView *view, const FlPaintedRegion *painted, size_t to,
+                      FlMatch match)
 {
-    const FlExemplarLevel *full = &painter->style->exemplar->level[0];
+    const FlExemplarLevel *full = &painted->style->exemplar->level[0];
     uint8_t rgb[3];
     if (match.frame == FL_NO_MATCH)
         return;
@@ -68,13 +69,13 @@ static void put_match(const FlGuideView *view, const FlPainter *painter, size_t 
 }
 
 /* One pixel of the pictures, from one of the painter's part. */
-static void put_pixel(FlGuideView *view, const FlPainter *painter, const FlGuides *guides, int x,
-                      int y, size_t to)
+static void put_pixel(FlGuideView *view, const FlPaintedRegion *painted, const FlGuides *guides,
+                      int x, int y, size_t to)
 {
-    const FlExemplar *exemplar = painter->style->exemplar;
+    const FlExemplar *exemplar = painted->style->exemplar;
     const size_t from = (size_t)y * guides->width + x;
     const float u = guides->flow[2 * from], v = guides->flow[2 * from + 1];
-    const float shrunk = (float)view->picture[0]->width / (float)painter->width;
+    const float shrunk = (float)view->picture[0]->width / (float)painted->width;
     uint8_t rgb[3];
     fl_colour_map(guides->distance[from] / (3 * exemplar->border_px), rgb);
     put(view, FL_GUIDE_DISTANCE, to, rgb);
@@ -82,23 +83,24 @@ static void put_pixel(FlGuideView *view, const FlPainter *painter, const FlGuide
     put(view, FL_GUIDE_EXT_PLUS, to, rgb);
     fl_colour_map(guides->ext_minus[from] * exemplar->ext_scale, rgb);
     put(view, FL_GUIDE_EXT_MINUS, to, rgb);
-    put_match(view, painter, to, match_at(&painter->view, x, y));
+    put_match(view, painted, to, match_at(&painted->view, x, y));
     view->flow[2 * to] = u * shrunk, view->flow[2 * to + 1] = v * shrunk;
 }
 
-void fl_guide_view_add(FlGuideView *view, int p, const FlPainter *painter, const FlGuides *guides)
+void fl_guide_view_add(FlGuideView *view, int p, const FlPaintedRegion *painted,
+                       const FlGuides *guides)
 {
     const int width = view->picture[0]->width, height = view->picture[0]->height;
     for (int row = 0; row < height; row++)
         for (int column = 0; column < width; column++) {
             const size_t to = (size_t)row * width + column;
-            const int x = (2 * column + 1) * painter->width / (2 * width) - painter->rect.x;
-            const int y = (2 * row + 1) * painter->height / (2 * height) - painter->rect.y;
+            const int x = (2 * column + 1) * painted->width / (2 * width) - painted->rect.x;
+            const int y = (2 * row + 1) * painted->height / (2 * height) - painted->rect.y;
             if (x < 0 || y < 0 || x >= guides->width || y >= guides->height ||
                 guides->mask[(size_t)y * guides->width + x] < FL_INSIDE || view->owner[to] > p + 1)
                 continue;
             view->owner[to] = (int16_t)(p + 1);
-            put_pixel(view, painter, guides, x, y, to);
+            put_pixel(view, painted, guides, x, y, to);
         }
 }
 

@@ -2,8 +2,8 @@
 #ifndef FLUIDY_INSPECT_GUIDE_PICTURES_H
 #define FLUIDY_INSPECT_GUIDE_PICTURES_H
 
+#include "compose/painted_region.h"
 #include "io/picture.h"
-#include "render/painter.h"
 #include <stdio.h>
 
 typedef enum FlGuidePicture {
@@ -30,7 +30,8 @@ void fl_guide_view_clear(FlGuideView *view);
 void fl_guide_view_reset(FlGuideView *view);
 
 /** Adds what painter p, 0 …, has painted from; a higher p hides a lower one, in any order. */
-void fl_guide_view_add(FlGuideView *view, int p, const FlPainter *painter, const FlGuides *guides);
+void fl_guide_view_add(FlGuideView *view, int p, const FlPaintedRegion *painted,
+                       const FlGuides *guides);
 
 /**
  * Writes {"distance": picture, …, "fastest": speed, "arrows": [x, y, u, v, …]}, in px of the

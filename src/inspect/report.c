@@ -73,9 +73,9 @@ FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, cons
     g_autoptr(FlReport) report = g_new0(FlReport, 1);
     report->plan = plan, report->background = background;
     g_mutex_init(&report->lock);
-    report->flicker = g_new0(FlFlicker, MAX(plan->n_painters, 1));
-    report->painter_seconds = g_new0(double, MAX(plan->n_painters, 1));
-    report->use = g_new0(FlExemplarUse, MAX(plan->n_painters, 1));
+    report->flicker = g_new0(FlFlicker, MAX(plan->n_painted, 1));
+    report->painter_seconds = g_new0(double, MAX(plan->n_painted, 1));
+    report->use = g_new0(FlExemplarUse, MAX(plan->n_painted, 1));
     choose_size(report);
     if (!fl_guide_view_init(&report->view, report->width, report->height, error) ||
         !begin(report, folder, error))
@@ -87,7 +87,7 @@ void fl_report_free(FlReport *report)
 {
     if (!report)
         return;
-    for (int p = 0; p < report->plan->n_painters; p++) {
+    for (int p = 0; p < report->plan->n_painted; p++) {
         fl_flicker_clear(&report->flicker[p]);
         fl_exemplar_use_clear(&report->use[p]);
     }
@@ -119,34 +119,34 @@ bool fl_report_wants_view(const FlReport *report, int frame)
 }
 
 /* Counts what a painter took from its recording. */
-static bool add_use(FlReport *report, const FlPainter *painter, GError **error)
+static bool add_use(FlReport *report, const FlPaintedRegion *painted, GError **error)
 {
     FlExemplarUse *use = report->use;
-    while (use->style && use->style != painter->style)
+    while (use->style && use->style != painted->style)
         use++;
-    if (!use->style && !fl_exemplar_use_init(use, painter->style, error))
+    if (!use->style && !fl_exemplar_use_init(use, painted->style, error))
         return false;
-    fl_exemplar_use_add(use, painter);
+    fl_exemplar_use_add(use, painted);
     return true;
 }
 
-bool fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides, GError **error)
+bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, int frame,
+                      const FlGuides *guides, GError **error)
 {
     if (!report)
         return true;
-    const FlPainter *painter = &report->plan->painters[p];
-    if (frame % painter->settings.hold != 0) { // the picture is the last one
+    if (frame % painted->settings->hold != 0) { // the picture is the last one
         report->flicker[p].change = 0;
         return true;
     }
     bool done = true;
     if (shows_guides(report, frame)) {
         g_mutex_lock(&report->lock);
-        fl_guide_view_add(&report->view, p, painter, guides);
-        done = add_use(report, painter, error);
+        fl_guide_view_add(&report->view, p, painted, guides);
+        done = add_use(report, painted, error);
         g_mutex_unlock(&report->lock);
     }
-    return done && fl_flicker_measure(&report->flicker[p], painter, guides, error);
+    return done && fl_flicker_measure(&report->flicker[p], painted, guides, error);
 }
 
 /* ---- a frame -------------------------------------------------------------------------------- */
@@ -179,21 +179,21 @@ static bool write_pictures(FlReport *report, const FlComposite *composite, GErro
 }
 
 /* [energy, change, seconds] of each painter. */
-static void write_painters(FlReport *report, int frame)
+static void write_painters(FlReport *report, const FlReportFrame *frame)
 {
     FILE *out = report->file.stream;
     fputs(",painters:[", out);
-    for (int p = 0; p < report->plan->n_painters; p++) {
-        const FlPainter *painter = &report->plan->painters[p];
-        const bool painted = painter->stats.n_levels > 0 && painter->stats.level[0].pixels > 0;
+    for (int p = 0; p < report->plan->n_painted; p++) {
+        const FlPaintedRegion *painted = frame->painted[p];
+        const bool searched = painted->stats.n_levels > 0 && painted->stats.level[0].pixels > 0;
         fputs(p > 0 ? ",[" : "[", out);
-        fl_script_number(out, painted ? painter->stats.level[0].energy : NAN);
+        fl_script_number(out, searched ? painted->stats.level[0].energy : NAN);
         fputc(',', out);
         fl_script_number(out, report->flicker[p].change);
         fputc(',', out);
-        const bool held = frame % painter->settings.hold != 0;
-        fl_script_number(out, held ? 0 : painter->seconds);
-        report->painter_seconds[p] += held ? 0 : painter->seconds;
+        const bool held = frame->frame % painted->settings->hold != 0;
+        fl_script_number(out, held ? 0 : painted->seconds);
+        report->painter_seconds[p] += held ? 0 : painted->seconds;
         fputc(']', out);
     }
     fputc(']', out);
@@ -219,7 +219,7 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
     fprintf(out, "<script>frames.push({number:%d",
             fl_drawing_number(report->plan->drawing, frame->frame));
     write_seconds(report, frame);
-    write_painters(report, frame->frame);
+    write_painters(report, frame);
     if (frame->frame % report->every == 0 && !write_pictures(report, frame->composite, error))
         return false;
     if (shows_guides(report, frame->frame)) {
@@ -239,7 +239,7 @@ static void write_region(const FlReport *report, int r)
     FILE *out = report->file.stream;
     const FlPlan *plan = report->plan;
     const FlRegion *region = fl_drawing_region(plan->drawing, r);
-    const int p = plan->painter_of[r];
+    const int p = plan->painted_of[r];
     uint8_t rgb[3];
     fl_region_colour(plan->drawing, r, rgb);
     fputs("{name:", out);
@@ -254,11 +254,11 @@ static void write_region(const FlReport *report, int r)
     fl_script_number(out, region->area_px);
     fprintf(out, ",present:%d,painter:%d", region->n_present, p);
     if (p >= 0) {
-        g_autofree char *style = g_path_get_basename(plan->painters[p].style->path);
+        g_autofree char *style = g_path_get_basename(plan->painted[p].style->path);
         fputs(",style:", out);
         fl_script_string(out, style);
         fputs(",change:", out);
-        fl_script_number(out, fl_flicker_of_exemplar(plan->painters[p].style->exemplar));
+        fl_script_number(out, fl_flicker_of_exemplar(plan->painted[p].style->exemplar));
         fputs(",seconds:", out);
         fl_script_number(out, report->painter_seconds[p]);
     }
@@ -270,7 +270,7 @@ static bool write_uses(const FlReport *report, GError **error)
     FILE *out = report->file.stream;
     const char *comma = "";
     fputs(",uses:[", out);
-    for (int k = 0; k < report->plan->n_painters; k++) {
+    for (int k = 0; k < report->plan->n_painted; k++) {
         if (report->use[k].total == 0)
             continue;
         fputs(comma, out);

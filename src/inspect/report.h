@@ -12,6 +12,7 @@ typedef struct FlReport FlReport;
 typedef struct FlReportFrame {
     int frame; // index into the film
     const FlComposite *composite;
+    const FlPaintedRegion *const *painted; // plan->n_painted of them
     double paint_s, compose_s, write_s;
 } FlReportFrame;
 
@@ -26,14 +27,15 @@ FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, cons
 
 void fl_report_free(FlReport *report); // NULL is fine
 
-/** Whether fl_report_guides() will look at the painters' views of a frame; NULL does not. */
+/** Whether fl_report_guides() will look at the views of a frame; a NULL report does not. */
 bool fl_report_wants_view(const FlReport *report, int frame);
 
 /**
- * Tells what painter p has just painted the frame from. Any thread may call it, in any order of the
- * painters; a NULL report is told nothing. FL_ERROR_NO_MEMORY.
+ * Tells from what the p-th region has just been painted. Any thread may call it, in any order of
+ * the regions; a NULL report is told nothing. FL_ERROR_NO_MEMORY.
  */
-bool fl_report_guides(FlReport *report, int p, int frame, const FlGuides *guides, GError **error);
+bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, int frame,
+                      const FlGuides *guides, GError **error);
 
 /** Tells a report, or NULL, of a finished frame; frames come in order. FL_ERROR_INPUT,
  * FL_ERROR_NO_MEMORY. */

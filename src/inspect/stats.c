@@ -2,13 +2,13 @@
 
 #include <sys/resource.h>
 
-bool fl_stats_init(FlStats *stats, const FlPlan *plan, GError **error)
+bool fl_stats_init(FlStats *stats, const FlRenderOptions *options, GError **error)
 {
     *stats = (FlStats){0};
-    if (!plan->options.stats)
+    if (!options->stats)
         return true;
-    const bool overwrite = plan->options.overwrite != FL_OVERWRITE_REFUSE;
-    stats->open = fl_atomic_open(&stats->file, plan->options.stats, overwrite, error);
+    const bool overwrite = options->overwrite != FL_OVERWRITE_REFUSE;
+    stats->open = fl_atomic_open(&stats->file, options->stats, overwrite, error);
     return stats->open;
 }
 
@@ -24,15 +24,13 @@ static void pair(FILE *out, const char *name, double value)
     fprintf(out, ", \"%s\": %s", name, number(buffer, value));
 }
 
-static void level_line(FILE *out, const FlPlan *plan, const FlPainter *painter, int frame,
-                       int level)
+static void level_line(FILE *out, const FlPaintedRegion *painted, int frame_number, int level)
 {
-    const FlLevelStats *s = &painter->stats.level[level];
+    const FlLevelStats *s = &painted->stats.level[level];
     fprintf(out,
             "{\"frame\": %d, \"region\": \"%s\", \"level\": %d, \"width\": %d, \"height\": %d, "
             "\"pixels\": %d, \"rounds\": %d",
-            fl_drawing_number(plan->drawing, frame), painter->name, level, s->width, s->height,
-            s->pixels, s->rounds);
+            frame_number, painted->name, level, s->width, s->height, s->pixels, s->rounds);
     pair(out, "energy_start", s->energy_start);
     pair(out, "energy", s->energy);
     pair(out, "texture", s->texture);
@@ -54,17 +52,17 @@ double fl_peak_mib(void)
     return (double)usage.ru_maxrss / 1024;
 }
 
-void fl_stats_frame(FlStats *stats, const FlPlan *plan, int frame, double paint_s, double compose_s,
-                    double write_s)
+void fl_stats_frame(FlStats *stats, const FlPaintedRegion *const *painted, int n, int frame_number,
+                    double paint_s, double compose_s, double write_s)
 {
     stats->paint_s += paint_s, stats->compose_s += compose_s, stats->write_s += write_s;
     if (!stats->open)
         return;
     FILE *out = stats->file.stream;
-    for (int p = 0; p < plan->n_painters; p++)
-        for (int l = plan->painters[p].stats.n_levels - 1; l >= 0; l--)
-            level_line(out, plan, &plan->painters[p], frame, l);
-    fprintf(out, "{\"frame\": %d", fl_drawing_number(plan->drawing, frame));
+    for (int p = 0; p < n; p++)
+        for (int l = painted[p]->stats.n_levels - 1; l >= 0; l--)
+            level_line(out, painted[p], frame_number, l);
+    fprintf(out, "{\"frame\": %d", frame_number);
     pair(out, "paint_seconds", paint_s);
     pair(out, "compose_seconds", compose_s);
     pair(out, "write_seconds", write_s);

@@ -2,8 +2,9 @@
 #ifndef FLUIDY_INSPECT_STATS_H
 #define FLUIDY_INSPECT_STATS_H
 
+#include "compose/painted_region.h"
 #include "io/atomic_file.h"
-#include "job/plan.h"
+#include <fluidy/render.h>
 
 /** Seconds by stage, and the file of --stats, which appears under its name when it is whole. */
 typedef struct FlStats {
@@ -12,12 +13,15 @@ typedef struct FlStats {
     double read_s, guides_s, paint_s, compose_s, write_s;
 } FlStats;
 
-/** Begins the file if the plan wants one. */
-bool fl_stats_init(FlStats *stats, const FlPlan *plan, GError **error);
+/** Begins the file, if options ask for one. */
+bool fl_stats_init(FlStats *stats, const FlRenderOptions *options, GError **error);
 
-/** A line for each region and level that was painted in the frame, then one for the frame. */
-void fl_stats_frame(FlStats *stats, const FlPlan *plan, int frame, double paint_s, double compose_s,
-                    double write_s);
+/**
+ * A line for each of the n regions and each level that was painted in the frame of that number,
+ * then one for the frame and the seconds it took.
+ */
+void fl_stats_frame(FlStats *stats, const FlPaintedRegion *const *painted, int n, int number,
+                    double paint_s, double compose_s, double write_s);
 
 /** One line about the whole render: seconds of each stage, memory. To be freed. */
 char *fl_stats_summary(const FlStats *stats, int n_frames);

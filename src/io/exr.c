@@ -1,5 +1,5 @@
 /* Layered OpenEXR files, half float. */
-#include "compose/density.h"
+#include "base/density.h"
 #include "io/atomic_file.h"
 #include "io/formats.h"
 

@@ -207,33 +207,34 @@ static void add_of_region(FlFingerprint *print, const char *region, const char *
     (t->has_colour ? g_strdup_printf("#%02x%02x%02x", t->colour[0], t->colour[1], t->colour[2])    \
                    : word(form, (int)(t->field)))
 
-static void add_treatment(FlFingerprint *print, const FlPainter *painter)
+static void add_settings(FlFingerprint *print, const FlRegionPlan *painted)
 {
-    const FlRegionSettings *t = &painter->settings;
+    const FlRegionSettings *t = &painted->settings;
 #define FL_SETTING(type, field, form, ...)                                                         \
-    add_of_region(print, painter->name, #field, TEXT_##type(form, field));
+    add_of_region(print, painted->name, #field, TEXT_##type(form, field));
 #include "params/settings.def"
 #undef FL_SETTING
     for (int i = 0; i < fl_param_count(); i++) {
         const char *name = fl_param_info(i)->name;
-        add_of_region(print, painter->name, name, fl_params_get(&t->params, name));
+        add_of_region(print, painted->name, name, fl_params_get(&t->params, name));
     }
 }
 
-static bool add_painters(FlFingerprint *print, const FlPlan *plan, GError **error)
+static bool add_painted(FlFingerprint *print, const FlPlan *plan, GError **error)
 {
-    for (int p = 0; p < plan->n_painters; p++) {
-        const FlPainter *painter = &plan->painters[p];
-        add_treatment(print, painter);
-        if (painter->flow_pattern &&
-            !add_pattern(print, plan, painter->flow_pattern, painter->name, error))
+    for (int p = 0; p < plan->n_painted; p++) {
+        const FlRegionPlan *painted = &plan->painted[p];
+        add_settings(print, painted);
+        if (painted->flow_files &&
+            !add_pattern(print, plan, painted->flow_files, painted->name, error))
             return false;
-        if (painter->given && !add_pattern(print, plan, painter->given, painter->name, error))
+        if (painted->paint_files &&
+            !add_pattern(print, plan, painted->paint_files, painted->name, error))
             return false;
         bool known = false;
         for (int q = 0; q < p; q++)
-            known = known || g_str_equal(plan->painters[q].style->path, painter->style->path);
-        if (!known && !add_style(print, painter->style->path, error))
+            known = known || g_str_equal(plan->painted[q].style->path, painted->style->path);
+        if (!known && !add_style(print, painted->style->path, error))
             return false;
     }
     return true;
@@ -250,9 +251,9 @@ static void add_regions(FlFingerprint *print, const FlPlan *plan)
             g_strdup_printf("%s, %s, %d leaves in %d frames from %d on, %s px, %s", region->label,
                             region->paint, region->n_leaves, region->n_present, region->first_frame,
                             g_ascii_dtostr(area, sizeof area, region->area_px),
-                            plan->painter_of[r] >= 0    ? "painted"
-                            : plan->painter_of[r] == -1 ? "drawn"
-                                                        : "left out");
+                            plan->painted_of[r] >= 0                   ? "painted"
+                            : plan->painted_of[r] == FL_DRAWN_AS_IT_IS ? "drawn"
+                                                                       : "left out");
         fl_fingerprint_add(print, name, value);
     }
 }
@@ -266,8 +267,8 @@ FlFingerprint *fl_fingerprint_new(const FlPlan *plan, GError **error)
     if (!add_drawings(print, plan->drawing, error))
         return NULL;
     add_regions(print, plan); // after what may be the reason
-    if (!add_painters(print, plan, error) || (background && g_str_has_suffix(background, "png") &&
-                                              !add_pattern(print, plan, background, NULL, error)))
+    if (!add_painted(print, plan, error) || (background && g_str_has_suffix(background, "png") &&
+                                             !add_pattern(print, plan, background, NULL, error)))
         return NULL;
     return g_steal_pointer(&print);
 }

@@ -6,11 +6,7 @@
 #include "base/suggest.h"
 #include "drawing/open_drawing.h"
 #include "io/output_name.h"
-#include <math.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 static bool open_film(FlPlan *plan, GError **error)
 {
@@ -81,21 +77,21 @@ static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
 }
 
 /* Of a style, said by the first region that is painted with it. */
-static bool warn_of_style(const FlPlan *plan, const FlPainter *painter, GError **error)
+static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
     enum { MUCH_BEYOND = 10 }; // percent
-    const FlStyleInstance *box = painter->style;
-    for (const FlPainter *p = plan->painters; p < painter; p++)
-        if (p->style == box)
+    const FlStyleInstance *style = painted->style;
+    for (const FlRegionPlan *p = plan->painted; p < painted; p++)
+        if (p->style == style)
             return true;
-    if (box->exemplar->level[0].n_frames == 1 &&
-        !warn(plan, error, "%s: one frame is used: its paint does not flow", box->path))
+    if (style->exemplar->level[0].n_frames == 1 &&
+        !warn(plan, error, "%s: one frame is used: its paint does not flow", style->path))
         return false;
-    return box->ink->beyond < MUCH_BEYOND || painter->settings.tint != FL_TINT_FILL ||
+    return style->ink->beyond < MUCH_BEYOND || painted->settings.tint != FL_TINT_FILL ||
            warn(plan, error,
                 "%s: most of the paint is darker than the paper, but %d %% is lighter, or the "
                 "other way round, and will be bare; --tint keep keeps the recording's colours",
-                box->path, box->ink->beyond);
+                style->path, style->ink->beyond);
 }
 
 /* How a region is treated, and whether it is painted at all. */
@@ -103,20 +99,20 @@ static bool treat_region(FlPlan *plan, int region, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, region);
     const char *only = plan->options.only_region;
-    FlPainter *painter = &plan->painters[plan->n_painters];
-    FlRegionSettings *settings = &painter->settings;
+    FlRegionPlan *chosen = &plan->painted[plan->n_painted];
+    FlRegionSettings *settings = &chosen->settings;
     const bool left_out = only && !g_str_equal(only, r->name);
     if (!fl_config_region_settings(plan->config, r->rule, r->name, &plan->options, settings, error))
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;
-    plan->painter_of[region] = left_out ? -2 : -1;
+    plan->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;
     if (!painted || left_out) {
         fl_region_settings_clear(settings);
         return true;
     }
-    painter->region = region;
-    plan->painter_of[region] = plan->n_painters++; // from here on the plan clears it
+    chosen->region = region;
+    plan->painted_of[region] = plan->n_painted++; // from here on the plan clears it
     if (!settings->style)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "no style for region “%s”: expected --style NAME, or style = NAME in a config",
@@ -129,17 +125,21 @@ static bool treat_region(FlPlan *plan, int region, GError **error)
 static bool treat_regions(FlPlan *plan, GError **error)
 {
     const int n = fl_drawing_regions(plan->drawing);
-    plan->painters = g_new0(FlPainter, MAX(n, 1));
-    plan->painter_of = g_new0(int, MAX(n, 1));
+    plan->painted = g_new0(FlRegionPlan, MAX(n, 1));
+    plan->painted_of = g_new0(int, MAX(n, 1));
     plan->half = true;
     for (int r = 0; r < n; r++)
         if (!treat_region(plan, r, error))
             return false;
-    plan->half &= plan->n_painters > 0;
-    for (int p = 0; p < plan->n_painters; p++)
-        plan->painters[p].settings.params.half_size = plan->half;
-    return fl_limit_check(FL_LIMIT_REGIONS, plan->n_painters, fl_drawing_name(plan->drawing),
-                          error);
+    plan->hold_of = g_new0(int, MAX(n, 1));
+    for (int r = 0; r < n; r++)
+        plan->hold_of[r] = plan->painted_of[r] >= 0
+                               ? plan->painted[plan->painted_of[r]].settings.hold
+                               : plan->hold;
+    plan->half &= plan->n_painted > 0;
+    for (int p = 0; p < plan->n_painted; p++)
+        plan->painted[p].settings.params.half_size = plan->half;
+    return fl_limit_check(FL_LIMIT_REGIONS, plan->n_painted, fl_drawing_name(plan->drawing), error);
 }
 
 static void choose_size(FlPlan *plan)
@@ -149,36 +149,32 @@ static void choose_size(FlPlan *plan)
         fl_drawing_halve(plan->drawing);
 }
 
-static bool equip_painter(FlPlan *plan, FlPainter *painter, GError **error)
+static bool equip_region(FlPlan *plan, FlRegionPlan *painted, GError **error)
 {
-    const FlRegion *r = fl_drawing_region(plan->drawing, painter->region);
-    painter->name = r->name, painter->area_px = r->area_px;
-    painter->masks = plan->masks, painter->drawing = plan->drawing;
-    painter->width = fl_drawing_width(plan->drawing),
-    painter->height = fl_drawing_height(plan->drawing);
-    painter->frame_width = plan->width, painter->frame_height = plan->height;
-    painter->flow_pattern = g_strdup(plan->options.flow);
-    painter->given = plan->options.merge ? plan->options.paint : NULL;
-    painter->loops = plan->options.loop && !painter->given;
-    painter->style = fl_style_cache_get(plan->exemplars, &painter->settings, error);
-    if (!painter->style || !warn_of_style(plan, painter, error))
+    const FlRegion *r = fl_drawing_region(plan->drawing, painted->region);
+    painted->name = r->name, painted->area_px = r->area_px;
+    painted->flow_files = plan->options.flow;
+    painted->paint_files = plan->options.merge ? plan->options.paint : NULL;
+    painted->loops = plan->options.loop && !painted->paint_files;
+    painted->style = fl_style_cache_get(plan->styles, &painted->settings, error);
+    if (!painted->style || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
-        say(plan, plan->options.note, "region %s: style %s", r->name, painter->style->path);
+        say(plan, plan->options.note, "region %s: style %s", r->name, painted->style->path);
     return true;
 }
 
-static bool equip_painters(FlPlan *plan, GError **error)
+static bool equip_regions(FlPlan *plan, GError **error)
 {
     plan->masks =
         fl_mask_store_new(fl_drawing_regions(plan->drawing), fl_drawing_frames(plan->drawing),
                           fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
-    for (int p = 0; plan->masks && p < plan->n_painters; p++)
-        if (!equip_painter(plan, &plan->painters[p], error))
+    for (int p = 0; plan->masks && p < plan->n_painted; p++)
+        if (!equip_region(plan, &plan->painted[p], error))
             return false;
     memset(plan->paper, 255, sizeof plan->paper);
-    if (plan->n_painters > 0 && plan->masks)
-        memcpy(plan->paper, plan->painters[0].style->paper, sizeof plan->paper);
+    if (plan->n_painted > 0 && plan->masks)
+        memcpy(plan->paper, plan->painted[0].style->paper, sizeof plan->paper);
     return plan->masks != NULL;
 }
 
@@ -236,11 +232,11 @@ static bool check_regions_file(const FlPlan *plan, const char *pattern, GError *
                     pattern, (int)(strchr(brace, '}') + 1 - brace), brace, "{region}");
         return false;
     }
-    if (!pattern || plan->n_painters < 2 || strstr(pattern, "{region}"))
+    if (!pattern || plan->n_painted < 2 || strstr(pattern, "{region}"))
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                 "%s: one file for %d regions; expected {region} in the name", pattern,
-                plan->n_painters);
+                plan->n_painted);
     return false;
 }
 
@@ -271,7 +267,7 @@ static bool make_plan(FlPlan *plan, GError **error)
         !treat_regions(plan, error))
         return false;
     choose_size(plan);
-    return equip_painters(plan, error) && check_regions_file(plan, plan->options.layers, error) &&
+    return equip_regions(plan, error) && check_regions_file(plan, plan->options.layers, error) &&
            check_regions_file(plan, plan->options.paint, error);
 }
 
@@ -279,7 +275,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
 {
     g_autoptr(FlPlan) plan = g_new0(FlPlan, 1);
     plan->options = *options;
-    plan->exemplars = fl_style_cache_new();
+    plan->styles = fl_style_cache_new();
     plan->config = fl_config_load(options->config, error);
     if (!plan->config)
         return NULL;
@@ -291,13 +287,14 @@ void fl_plan_free(FlPlan *plan)
 {
     if (!plan)
         return;
-    for (int p = 0; p < plan->n_painters; p++)
-        fl_painter_clear(&plan->painters[p]);
-    g_free(plan->painters);
-    g_free(plan->painter_of);
+    for (int p = 0; p < plan->n_painted; p++)
+        fl_region_settings_clear(&plan->painted[p].settings);
+    g_free(plan->painted);
+    g_free(plan->painted_of);
+    g_free(plan->hold_of);
     g_free(plan->output);
     g_free(plan->movie);
-    fl_style_cache_free(plan->exemplars);
+    fl_style_cache_free(plan->styles);
     fl_mask_store_free(plan->masks);
     fl_drawing_free(plan->drawing);
     fl_config_free(plan->config);
@@ -312,8 +309,8 @@ static bool keep_masks(FlPlan *plan, int frame, GError **error)
     g_autofree uint8_t *mask = draws ? fl_alloc((size_t)width * height, 1, "a mask", error) : NULL;
     if (!mask)
         return false;
-    for (int p = 0; p < plan->n_painters; p++) {
-        const int region = plan->painters[p].region;
+    for (int p = 0; p < plan->n_painted; p++) {
+        const int region = plan->painted[p].region;
         bool drawn = false;
         for (int r = 0; r < draws->n; r++)
             drawn = drawn || draws->draw[r].region == region;
@@ -326,7 +323,7 @@ static bool keep_masks(FlPlan *plan, int frame, GError **error)
     return true;
 }
 
-static bool make_masks(FlPlan *plan, GError **error)
+bool fl_plan_rasterise(FlPlan *plan, GError **error)
 {
     const int n = fl_drawing_frames(plan->drawing);
     GError *first = NULL;
@@ -339,77 +336,4 @@ static bool make_masks(FlPlan *plan, GError **error)
         fl_parallel_error_keep(&first, mine);
     }
     return fl_parallel_error_tell(error, first);
-}
-
-/* Everything is as large as the frame or smaller, so that it can be told before it is asked for. */
-static bool check_memory(const FlPlan *plan, GError **error)
-{
-    const double pixels = (double)plan->width * plan->height;
-    double bytes = 20e6 + 100 * pixels; // measured: the libraries, scratch, a frame composed
-    for (int p = 0; p < plan->n_painters; p++)
-        bytes += fl_painter_bytes(&plan->painters[p]);
-    bytes += fl_style_cache_bytes(plan->exemplars);
-    g_autofree char *where =
-        g_strdup_printf("%s, %d regions in %dx%d pixels", fl_drawing_name(plan->drawing),
-                        plan->n_painters, plan->width, plan->height);
-    return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
-}
-
-bool fl_plan_side_by_side(const FlPlan *plan, size_t pixels)
-{
-#ifdef _OPENMP
-    const size_t threads = (size_t)omp_get_max_threads();
-#else
-    const size_t threads = 1;
-#endif
-    return pixels * threads <= (size_t)plan->width * (size_t)plan->height;
-}
-
-static bool is_small(const FlPlan *plan, const FlPainter *painter)
-{
-    return fl_plan_side_by_side(plan,
-                                fl_rect_pixels(fl_mask_store_extent(plan->masks, painter->region)));
-}
-
-static int by_extent(const void *a, const void *b, void *data)
-{
-    const FlPainter *p = *(FlPainter *const *)a, *q = *(FlPainter *const *)b;
-    const FlMaskStore *masks = data;
-    const size_t pixels_p = fl_rect_pixels(fl_mask_store_extent(masks, p->region));
-    const size_t pixels_q = fl_rect_pixels(fl_mask_store_extent(masks, q->region));
-    return (pixels_p < pixels_q) - (pixels_p > pixels_q);
-}
-
-/* The guides of a region use all threads themselves, where it is large enough for that, and their
- * scratch is as large as the region: small ones go side by side, the largest of them first, so that
- * none is waited for; the others one after the other. */
-static bool make_guides(FlPlan *plan, GError **error)
-{
-    GError *first = NULL;
-    g_autofree FlPainter **order = g_new(FlPainter *, MAX(plan->n_painters, 1));
-    for (int p = 0; p < plan->n_painters; p++)
-        order[p] = &plan->painters[p];
-    g_qsort_with_data(order, plan->n_painters, sizeof *order, by_extent, plan->masks);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int k = 0; k < plan->n_painters; k++) {
-        GError *mine = NULL;
-        if (is_small(plan, order[k]) && !fl_painter_init(order[k], plan->options.seed, &mine))
-            fl_parallel_error_keep(&first, mine);
-    }
-    if (!fl_parallel_error_tell(error, first))
-        return false;
-    for (int p = 0; p < plan->n_painters; p++)
-        if (!is_small(plan, &plan->painters[p]) &&
-            !fl_painter_init(&plan->painters[p], plan->options.seed, error))
-            return false;
-    return true;
-}
-
-bool fl_plan_prepare(FlPlan *plan, GError **error)
-{
-    if (!make_masks(plan, error) || !check_memory(plan, error) || !make_guides(plan, error))
-        return false;
-    for (int p = 0; p < plan->n_painters && !plan->options.merge; p++)
-        fl_synth_measure(plan->painters[p].synth, plan->options.stats || plan->options.report);
-    return true;
 }

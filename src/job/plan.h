@@ -2,22 +2,37 @@
 #ifndef FLUIDY_JOB_PLAN_H
 #define FLUIDY_JOB_PLAN_H
 
+#include "drawing/drawing.h"
 #include "io/sink.h"
+#include "job/mask_store.h"
+#include "job/style_cache.h"
 #include "params/config.h"
-#include "render/painter.h"
+
+/** How one region is painted. */
+typedef struct FlRegionPlan {
+    int region;       // index into the drawing's regions
+    const char *name; // borrowed
+    double area_px;   // mean, for sharing out the work
+    FlRegionSettings settings;
+    const FlStyleInstance *style; // borrowed
+    const char *paint_files;      // borrowed pattern of files that have its paint; NULL: it paints
+    const char *flow_files;       // the same of flow files; NULL: flow is made from the masks
+    bool loops;                   // the film's end leads into its beginning
+} FlRegionPlan;
 
 typedef struct FlPlan {
     FlRenderOptions options; // with what the config says filled in
     FlConfig *config;
     FlDrawing *drawing;
     FlMaskStore *masks;
-    FlStyleCache *exemplars;
-    int n_painters;
-    FlPainter *painters;
-    int *painter_of;   // by region; -1: drawn as it is, -2: left out
+    FlStyleCache *styles;
+    int n_painted;
+    FlRegionPlan *painted;
+    int *painted_of;   // by region: index into painted, FL_DRAWN_AS_IT_IS or FL_LEFT_OUT
+    int *hold_of;      // by region: frames; that of the film where it is not painted
     int hold;          // the drawing itself is shown on every hold-th frame
     int width, height; // of the frames
-    bool half;         // drafts: the film has half their size, and what is painted is enlarged
+    bool half;         // drafts: the drawing has half their size, and what is painted is enlarged
     char *output;      // pattern or file
     const FlSinkFormat *format;
     char *movie; // the film that the frames are put together to; NULL: none
@@ -35,15 +50,8 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error);
 
 void fl_plan_free(FlPlan *plan); // NULL is fine
 
-/** Rasterises every frame's masks and makes the guides of every painted region. */
-bool fl_plan_prepare(FlPlan *plan, GError **error);
-
-/**
- * Whether as many areas of that many pixels as there are threads fit into a frame: such areas are
- * worked on side by side, a thread each, and larger ones by all threads together, so that scratch
- * never takes more than a whole frame's would.
- */
-bool fl_plan_side_by_side(const FlPlan *plan, size_t pixels);
+/** Rasterises every frame's masks of the painted regions into plan->masks. */
+bool fl_plan_rasterise(FlPlan *plan, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
 

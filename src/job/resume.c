@@ -1,10 +1,9 @@
 #include "job/resume.h"
 
-#include "base/parallel_error.h"
 #include "io/lock.h"
 #include "io/output_name.h"
 #include "io/sink.h"
-#include "render/paint_files.h"
+#include "job/paint_files.h"
 #include <glib/gstdio.h>
 #include <unistd.h>
 
@@ -65,8 +64,8 @@ static bool is_free(const char *file, bool movie, GError **error)
 static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
 {
     const int number = fl_drawing_number(plan->drawing, frame);
-    for (int p = 0; plan->options.layers && p < plan->n_painters; p++) {
-        const char *region = plan->painters[p].name;
+    for (int p = 0; plan->options.layers && p < plan->n_painted; p++) {
+        const char *region = plan->painted[p].name;
         g_autofree char *file = fl_output_name(plan->options.layers, number, region, error);
         if (!file || !is_free(file, false, error))
             return false;
@@ -77,10 +76,10 @@ static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
 static bool paints_are_free(const FlPlan *plan, int frame, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
-    for (int p = 0; o->paint && !o->merge && p < plan->n_painters; p++) {
-        const FlPainter *painter = &plan->painters[p];
-        g_autofree char *file = fl_paint_file(o->paint, painter, frame, error);
-        if (!file || (frame % painter->settings.hold == 0 && !is_free(file, false, error)))
+    for (int p = 0; o->paint && !o->merge && p < plan->n_painted; p++) {
+        const FlRegionPlan *painted = &plan->painted[p];
+        g_autofree char *file = fl_paint_file(o->paint, plan->drawing, painted, frame, error);
+        if (!file || (frame % painted->settings.hold == 0 && !is_free(file, false, error)))
             return false;
     }
     return true;
@@ -163,25 +162,6 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
     return true;
 }
 
-bool fl_resume_take(FlResume *resume, const FlPlan *plan, int done, GError **error)
-{
-    GPtrArray *parts = resume->state->painter;
-    GError *first = NULL;
-    if (!resume->path)
-        return true;
-    g_ptr_array_set_size(parts, 0);
-    g_ptr_array_set_size(parts, FL_PAINTER_PARTS * plan->n_painters);
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int p = 0; p < plan->n_painters; p++) {
-        GError *mine = NULL;
-        GBytes **mine_parts = (GBytes **)parts->pdata + FL_PAINTER_PARTS * p;
-        if (!fl_painter_save(&plan->painters[p], mine_parts, &mine))
-            fl_parallel_error_keep(&first, mine);
-    }
-    resume->state->done = done;
-    return fl_parallel_error_tell(error, first);
-}
-
 /* Two runs with the same output would mix their frames. */
 static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
 {
@@ -208,22 +188,9 @@ static void release_lock(FlResume *resume)
     g_clear_pointer(&resume->lock_path, g_free);
 }
 
-bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error)
+bool fl_resume_start(FlResume *resume, const FlPlan *plan, GError **error)
 {
-    if (!resume->found)
-        return fl_resume_take(resume, plan, 0, error);
-    if (!take_lock(resume, plan, error))
-        return false;
-    GBytes *const *parts = (GBytes *const *)resume->state->painter->pdata;
-    if (resume->state->painter->len != (guint)(FL_PAINTER_PARTS * plan->n_painters)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: has the state of another number of regions; -y starts anew", resume->path);
-        return false;
-    }
-    for (int p = 0; p < plan->n_painters; p++)
-        if (!fl_painter_load(&plan->painters[p], parts + FL_PAINTER_PARTS * p, error))
-            return false;
-    return true;
+    return !resume->found || take_lock(resume, plan, error);
 }
 
 bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error)

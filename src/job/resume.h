@@ -4,6 +4,7 @@
 #define FLUIDY_JOB_RESUME_H
 
 #include "job/checkpoint.h"
+#include "job/plan.h"
 
 typedef struct FlResume {
     char *path;          // of the state; NULL: a film without its frames, which cannot go on
@@ -24,9 +25,9 @@ typedef struct FlResume {
  */
 bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error);
 
-/** Brings the painters, which are prepared, to the frame to start with. FL_ERROR_EXISTS as below.
- */
-bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error);
+/** Takes hold of the files of the earlier run that it goes on with, if any. FL_ERROR_EXISTS as
+ * below. */
+bool fl_resume_start(FlResume *resume, const FlPlan *plan, GError **error);
 
 /**
  * To be called when a frame is painted and before any of its files is written. FL_ERROR_CHANGED if
@@ -34,9 +35,6 @@ bool fl_resume_start(FlResume *resume, FlPlan *plan, GError **error);
  * the same frames, FL_ERROR_OUTPUT.
  */
 bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error);
-
-/** Takes the painters' states as they are after `done` frames. FL_ERROR_NO_MEMORY. */
-bool fl_resume_take(FlResume *resume, const FlPlan *plan, int done, GError **error);
 
 /** Writes what was taken, after the frame's files. FL_ERROR_OUTPUT. */
 bool fl_resume_save(FlResume *resume, GError **error);

@@ -4,31 +4,31 @@
 #include <string.h>
 
 struct FlStyleCache {
-    GPtrArray *boxes; // of FlStyleInstance
+    GPtrArray *instances; // of FlStyleInstance
 };
 
-static void paintbox_free(FlStyleInstance *box)
+static void style_instance_free(FlStyleInstance *instance)
 {
-    g_free(box->path);
-    fl_exemplar_free(box->exemplar);
-    fl_ink_free(box->ink);
-    g_free(box);
+    g_free(instance->path);
+    fl_exemplar_free(instance->exemplar);
+    fl_ink_free(instance->ink);
+    g_free(instance);
 }
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleInstance, paintbox_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleInstance, style_instance_free)
 
 FlStyleCache *fl_style_cache_new(void)
 {
-    FlStyleCache *exemplars = g_new0(FlStyleCache, 1);
-    exemplars->boxes = g_ptr_array_new_with_free_func((GDestroyNotify)paintbox_free);
-    return exemplars;
+    FlStyleCache *cache = g_new0(FlStyleCache, 1);
+    cache->instances = g_ptr_array_new_with_free_func((GDestroyNotify)style_instance_free);
+    return cache;
 }
 
-void fl_style_cache_free(FlStyleCache *exemplars)
+void fl_style_cache_free(FlStyleCache *cache)
 {
-    if (!exemplars)
+    if (!cache)
         return;
-    g_ptr_array_unref(exemplars->boxes);
-    g_free(exemplars);
+    g_ptr_array_unref(cache->instances);
+    g_free(cache);
 }
 
 static bool same_params(const FlParams *a, const FlParams *b)
@@ -52,43 +52,43 @@ static FlStyleInstance *load(const char *path, const FlRegionSettings *settings,
     if (!style)
         return NULL;
     g_clear_pointer(&whole, fl_style_free); // recordings are large
-    g_autoptr(FlStyleInstance) box = g_new0(FlStyleInstance, 1);
-    *box = (FlStyleInstance){.path = g_strdup(path),
-                             .params = *params,
-                             .reverse = settings->reverse,
-                             .medium = style->medium};
-    memcpy(box->paper, style->paper, sizeof box->paper);
-    if (!(box->ink = fl_ink_of_style(style, error)) ||
-        !(box->exemplar = fl_exemplar_new(style, params, error)))
+    g_autoptr(FlStyleInstance) instance = g_new0(FlStyleInstance, 1);
+    *instance = (FlStyleInstance){.path = g_strdup(path),
+                                  .params = *params,
+                                  .reverse = settings->reverse,
+                                  .medium = style->medium};
+    memcpy(instance->paper, style->paper, sizeof instance->paper);
+    if (!(instance->ink = fl_ink_of_style(style, error)) ||
+        !(instance->exemplar = fl_exemplar_new(style, params, error)))
         return NULL;
-    return g_steal_pointer(&box);
+    return g_steal_pointer(&instance);
 }
 
-const FlStyleInstance *fl_style_cache_get(FlStyleCache *exemplars, const FlRegionSettings *settings,
+const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSettings *settings,
                                           GError **error)
 {
     g_autofree char *path = fl_style_find(settings->style, error);
     if (!path)
         return NULL;
-    for (guint i = 0; i < exemplars->boxes->len; i++) {
-        const FlStyleInstance *box = exemplars->boxes->pdata[i];
-        if (g_str_equal(box->path, path) && box->reverse == settings->reverse &&
-            same_params(&box->params, &settings->params))
-            return box;
+    for (guint i = 0; i < cache->instances->len; i++) {
+        const FlStyleInstance *instance = cache->instances->pdata[i];
+        if (g_str_equal(instance->path, path) && instance->reverse == settings->reverse &&
+            same_params(&instance->params, &settings->params))
+            return instance;
     }
-    FlStyleInstance *box = load(path, settings, error);
-    if (box)
-        g_ptr_array_add(exemplars->boxes, box);
-    return box;
+    FlStyleInstance *instance = load(path, settings, error);
+    if (instance)
+        g_ptr_array_add(cache->instances, instance);
+    return instance;
 }
 
-double fl_style_cache_bytes(const FlStyleCache *exemplars)
+double fl_style_cache_bytes(const FlStyleCache *cache)
 {
     const double of_window = 50, of_rest = 9; // measured: with its rotations; while it is read
     double bytes = 0;
-    for (guint i = 0; i < exemplars->boxes->len; i++) {
-        const FlStyleInstance *box = exemplars->boxes->pdata[i];
-        const FlExemplarLevel *full = &box->exemplar->level[0];
+    for (guint i = 0; i < cache->instances->len; i++) {
+        const FlStyleInstance *instance = cache->instances->pdata[i];
+        const FlExemplarLevel *full = &instance->exemplar->level[0];
         bytes += (double)full->width * full->height *
                  (of_window * full->window + of_rest * (full->n_frames - full->window));
     }
@@ -108,11 +108,10 @@ static int window_at(int spare, int frame, int n_frames, bool loops)
     return n_frames > 1 ? (int)((int64_t)MIN(spare, n_frames - 1) * frame / (n_frames - 1)) : 0;
 }
 
-bool fl_style_cache_seek(FlStyleCache *exemplars, int frame, int n_frames, bool loops,
-                         GError **error)
+bool fl_style_cache_seek(FlStyleCache *cache, int frame, int n_frames, bool loops, GError **error)
 {
-    for (guint i = 0; i < exemplars->boxes->len; i++) {
-        FlExemplar *exemplar = ((FlStyleInstance *)exemplars->boxes->pdata[i])->exemplar;
+    for (guint i = 0; i < cache->instances->len; i++) {
+        FlExemplar *exemplar = ((FlStyleInstance *)cache->instances->pdata[i])->exemplar;
         const FlExemplarLevel *full = &exemplar->level[0];
         const int first = window_at(full->n_frames - full->window, frame, n_frames, loops);
         if (!fl_exemplar_seek(exemplar, first, error))

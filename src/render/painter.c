@@ -4,7 +4,7 @@
 #include "base/rng.h"
 #include "guides/flow_file.h"
 #include "io/output_name.h"
-#include "render/paint_files.h"
+#include "job/paint_files.h"
 #include <string.h>
 
 #define WRAP 24 // pictures of a loop that its guides see beyond each end
@@ -13,21 +13,21 @@
 static int frame_of(const FlPainter *painter, int picture)
 {
     const int n = painter->n_pictures;
-    return (picture - painter->wrap + n) % n * painter->settings.hold;
+    return (picture - painter->wrap + n) % n * painter->plan->settings.hold;
 }
 
 static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
 {
     const FlPainter *painter = data;
-    return fl_mask_store_get(painter->masks, painter->region, frame_of(painter, frame),
-                             painter->rect, coverage, error);
+    return fl_mask_store_get(painter->masks, painter->plan->region, frame_of(painter, frame),
+                             painter->result.rect, coverage, error);
 }
 
 /* The flow of the whole frame: files have the size of the film's frames, drafts half of it. */
 static bool load_flow(const FlPainter *painter, const char *file, float *flow, GError **error)
 {
     const int width = painter->frame_width, height = painter->frame_height;
-    if (width == painter->width && height == painter->height)
+    if (width == painter->result.width && height == painter->result.height)
         return fl_flow_load(file, width, height, flow, error);
     g_autofree float *full =
         fl_alloc(2 * (size_t)width * height, sizeof(float), "a flow field", error);
@@ -41,26 +41,27 @@ static bool painter_flow(void *data, int frame, float *flow, GError **error)
 {
     const FlPainter *painter = data;
     const int number = fl_drawing_number(painter->drawing, frame_of(painter, frame));
-    const size_t pixels = (size_t)painter->width * painter->height;
+    const size_t pixels = (size_t)painter->result.width * painter->result.height;
     g_autofree float *whole = fl_alloc(2 * pixels, sizeof(float), "a flow field", error);
     g_autofree char *file =
-        whole ? fl_output_name(painter->flow_pattern, number, painter->name, error) : NULL;
+        whole ? fl_output_name(painter->plan->flow_files, number, painter->plan->name, error)
+              : NULL;
     if (!file || !load_flow(painter, file, whole, error))
         return false;
-    fl_rect_copy(whole, (FlRect){0, 0, painter->width, painter->height}, flow, painter->rect,
-                 2 * sizeof(float));
+    fl_rect_copy(whole, (FlRect){0, 0, painter->result.width, painter->result.height}, flow,
+                 painter->result.rect, 2 * sizeof(float));
     return true;
 }
 
 /* Where guides come from: the masks of the painter's rectangle, and its flow files. */
 static FlGuideSource source_of(FlPainter *painter)
 {
-    const FlRect rect = painter->rect;
+    const FlRect rect = painter->result.rect;
     return (FlGuideSource){.width = rect.width,
                            .height = rect.height,
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
                            .mask = painter_mask,
-                           .flow = painter->flow_pattern ? painter_flow : NULL,
+                           .flow = painter->plan->flow_files ? painter_flow : NULL,
                            .data = painter};
 }
 
@@ -68,13 +69,13 @@ static FlGuideSource source_of(FlPainter *painter)
  * cropped frame has the same pyramid as the whole one. */
 static FlRect cropped(const FlPainter *painter)
 {
-    const int levels =
-        MIN(painter->style->exemplar->n_levels, fl_levels_of(painter->width, painter->height));
+    const int levels = MIN(painter->plan->style->exemplar->n_levels,
+                           fl_levels_of(painter->result.width, painter->result.height));
     const int grid = 1 << (levels - 1), room = (FL_PATCH_RADIUS + 1) * grid;
-    const FlRect ever = fl_mask_store_extent(painter->masks, painter->region);
+    const FlRect ever = fl_mask_store_extent(painter->masks, painter->plan->region);
     const int x0 = MAX(ever.x - room, 0) / grid * grid, y0 = MAX(ever.y - room, 0) / grid * grid;
-    const int x1 = MIN(ever.x + ever.width + room, painter->width);
-    const int y1 = MIN(ever.y + ever.height + room, painter->height);
+    const int x1 = MIN(ever.x + ever.width + room, painter->result.width);
+    const int y1 = MIN(ever.y + ever.height + room, painter->result.height);
     return (FlRect){x0, y0, x1 - x0, y1 - y0};
 }
 
@@ -85,46 +86,62 @@ double fl_painter_bytes(const FlPainter *painter)
 
 static bool make_picture(FlPainter *painter, GError **error)
 {
-    painter->painted = fl_alloc(3 * fl_rect_pixels(painter->rect), 1, "a painted region", error);
-    return painter->painted != NULL;
+    painter->result.painted =
+        fl_alloc(3 * fl_rect_pixels(painter->result.rect), 1, "a painted region", error);
+    return painter->result.painted != NULL;
 }
 
-bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error)
+void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region)
 {
-    painter->n_pictures = (fl_drawing_frames(painter->drawing) - 1) / painter->settings.hold + 1;
-    painter->wrap = painter->loops ? MIN(painter->n_pictures, WRAP) : 0;
-    painter->rect = cropped(painter);
-    if (painter->given)
+    *painter = (FlPainter){.plan = region,
+                           .masks = plan->masks,
+                           .drawing = plan->drawing,
+                           .frame_width = plan->width,
+                           .frame_height = plan->height,
+                           .result = {.region = region->region,
+                                      .name = region->name,
+                                      .settings = &region->settings,
+                                      .style = region->style,
+                                      .width = fl_drawing_width(plan->drawing),
+                                      .height = fl_drawing_height(plan->drawing)}};
+    painter->n_pictures = (fl_drawing_frames(plan->drawing) - 1) / region->settings.hold + 1;
+    painter->wrap = region->loops ? MIN(painter->n_pictures, WRAP) : 0;
+    painter->result.rect = cropped(painter);
+}
+
+bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
+{
+    const FlRegionPlan *plan = painter->plan;
+    if (plan->paint_files)
         return make_picture(painter, error);
+    const FlRect rect = painter->result.rect;
     const FlGuideSource source = source_of(painter);
-    const FlGuideParams how = fl_guide_params(&painter->settings.params);
-    const FlSynthSize size = {painter->rect.width, painter->rect.height, painter->width,
-                              painter->height};
+    const FlGuideParams how = fl_guide_params(&plan->settings.params);
+    const FlSynthSize size = {rect.width, rect.height, painter->result.width,
+                              painter->result.height};
     return (painter->guides = fl_guide_sequence_new(&source, &how, error)) &&
-           (painter->synth = fl_synth_new(painter->style->exemplar, &painter->settings.params, size,
-                                          fl_key(seed, g_str_hash(painter->name)), error)) &&
+           (painter->synth = fl_synth_new(plan->style->exemplar, &plan->settings.params, size,
+                                          fl_key(seed, g_str_hash(plan->name)), error)) &&
            make_picture(painter, error) &&
-           (!painter->loops || fl_loop_init(&painter->loop, painter->n_pictures, error));
+           (!plan->loops || fl_loop_init(&painter->loop, painter->n_pictures, error));
 }
 
 void fl_painter_clear(FlPainter *painter)
 {
-    fl_region_settings_clear(&painter->settings);
     fl_guide_sequence_free(painter->guides);
     fl_synth_free(painter->synth);
     fl_loop_clear(&painter->loop);
-    free(painter->painted);
-    g_free(painter->flow_pattern);
+    free(painter->result.painted);
     *painter = (FlPainter){0};
 }
 
-/* The region's picture `index`, held ones counted once, into painter->painted. */
+/* The region's picture `index`, held ones counted once, into painter->result.painted. */
 static bool paint_picture(FlPainter *painter, int index, FlGuides *guides, GError **error)
 {
-    guides->width = painter->rect.width, guides->height = painter->rect.height;
+    guides->width = painter->result.rect.width, guides->height = painter->result.rect.height;
     return fl_guide_sequence_get(painter->guides, painter->wrap + index, guides, error) &&
-           fl_synth_frame(painter->synth, guides, painter->painted, &painter->stats,
-                          painter->wants_view ? &painter->view : NULL, error);
+           fl_synth_frame(painter->synth, guides, painter->result.painted, &painter->result.stats,
+                          painter->wants_view ? &painter->result.view : NULL, error);
 }
 
 bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)
@@ -132,57 +149,61 @@ bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **er
     const FlLoop *loop = &painter->loop;
     return k >= loop->n ||
            (paint_picture(painter, loop->first + k, guides, error) &&
-            fl_loop_keep(&painter->loop, k, painter->painted, painter->rect, error));
+            fl_loop_keep(&painter->loop, k, painter->result.painted, painter->result.rect, error));
 }
 
 /* The paint of a frame that another run has painted. */
 static bool take_paint(FlPainter *painter, int frame, GError **error)
 {
-    g_autofree char *file = fl_paint_file(painter->given, painter, frame, error);
-    return file && fl_paint_load(painter, file, error);
+    g_autofree char *file =
+        fl_paint_file(painter->plan->paint_files, painter->drawing, painter->plan, frame, error);
+    return file && fl_paint_load(&painter->result, file, error);
 }
 
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
-    if (painter->given)
+    if (painter->plan->paint_files)
         return take_paint(painter, frame, error);
-    const int index = frame / painter->settings.hold;
-    if (frame % painter->settings.hold != 0)
+    const int index = frame / painter->plan->settings.hold;
+    if (frame % painter->plan->settings.hold != 0)
         return true;
     if (!paint_picture(painter, index, guides, error) ||
-        !fl_loop_blend(&painter->loop, index, painter->painted, painter->rect, error))
+        !fl_loop_blend(&painter->loop, index, painter->result.painted, painter->result.rect, error))
         return false;
-    painter->seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
+    painter->result.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
     return true;
 }
 
 bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error)
 {
-    const bool holds = painter->settings.hold > 1 && !painter->given;
-    if (painter->given)
+    const bool holds = painter->plan->settings.hold > 1 && !painter->plan->paint_files;
+    if (painter->plan->paint_files)
         parts[0] = g_bytes_new(NULL, 0);
     else if (!(parts[0] = fl_synth_save(painter->synth, error)))
         return false;
-    parts[1] = g_bytes_new(painter->painted, holds ? 3 * fl_rect_pixels(painter->rect) : 0);
+    parts[1] =
+        g_bytes_new(painter->result.painted, holds ? 3 * fl_rect_pixels(painter->result.rect) : 0);
     return true;
 }
 
 bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
 {
-    if (painter->given)
+    if (painter->plan->paint_files)
         return true;
-    const size_t bytes = painter->settings.hold > 1 ? 3 * fl_rect_pixels(painter->rect) : 0;
+    const size_t bytes =
+        painter->plan->settings.hold > 1 ? 3 * fl_rect_pixels(painter->result.rect) : 0;
     if (g_bytes_get_size(parts[1]) != bytes) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "region %s: the picture of an earlier render has another size", painter->name);
+                    "region %s: the picture of an earlier render has another size",
+                    painter->plan->name);
         return false;
     }
     if (!fl_synth_load(painter->synth, parts[0], error)) {
-        g_prefix_error(error, "region %s: ", painter->name);
+        g_prefix_error(error, "region %s: ", painter->plan->name);
         return false;
     }
     if (bytes > 0)
-        memcpy(painter->painted, g_bytes_get_data(parts[1], NULL), bytes);
+        memcpy(painter->result.painted, g_bytes_get_data(parts[1], NULL), bytes);
     return true;
 }

@@ -2,45 +2,34 @@
 #ifndef FLUIDY_RENDER_PAINTER_H
 #define FLUIDY_RENDER_PAINTER_H
 
-#include "drawing/drawing.h"
-#include "job/mask_store.h"
-#include "job/style_cache.h"
+#include "guides/guides.h"
+#include "job/plan.h"
 #include "render/loop.h"
-#include "synth/synth.h"
 
 /** One region that is painted. */
 typedef struct FlPainter {
-    int region;
-    const char *name; // borrowed
-    double area_px;   // mean, for sharing out the work
-    FlRegionSettings settings;
-    const FlStyleInstance *style;  // borrowed
-    const FlMaskStore *masks;      // borrowed
-    const FlDrawing *drawing;      // borrowed
-    int width, height;             // of the film
+    const FlRegionPlan *plan; // borrowed, as masks and drawing are
+    const FlMaskStore *masks;
+    const FlDrawing *drawing;
     int frame_width, frame_height; // of the frames, which flow files have
-    FlRect rect;                   // the part of it in which the region ever is, with some room
-    bool loops;                    // the film's end leads into its beginning
+    FlPaintedRegion result;        // its picture is owned
     FlLoop loop;
     int n_pictures; // held frames counted once
     int wrap; // so many pictures of a loop's end come before its guides, and of its start after
-    const char *given;  // borrowed pattern of files that have its paint; NULL: it paints
-    char *flow_pattern; // of flow files; NULL: the flow is made from the masks
     FlGuideSequence *guides;
     FlSynth *synth;
-    uint8_t *painted; // the last picture, of rect: 3 bytes of sRGB a pixel
-    FlFrameStats stats;
-    bool wants_view; // set by whoever looks at `view`, which keeps a frame's worth of memory
-    FlSynthView view;
-    double seconds; // that the last frame took
+    bool wants_view; // set by whoever looks at result.view, which keeps a frame's worth of memory
 } FlPainter;
 
-/** About how many bytes the painter will take; the masks are known by then. */
+/** Begins with nothing made yet; plan->masks are known by then. */
+void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region);
+void fl_painter_clear(FlPainter *painter);
+
+/** About how many bytes the painter will take. */
 double fl_painter_bytes(const FlPainter *painter);
 
 /** Makes the guides of the whole film. The random numbers depend on seed and the region's name. */
-bool fl_painter_init(FlPainter *painter, uint64_t seed, GError **error);
-void fl_painter_clear(FlPainter *painter);
+bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error);
 
 /**
  * Paints the k-th picture of the lead-in of a loop, in order; beyond painter->loop.n it does

@@ -1,13 +1,6 @@
-#include "compose/hold.h"
+#include "drawing/hold.h"
 
 #include <string.h>
-
-/** The hold of a region that is painted, else the film's. */
-static int hold_of(const FlPlan *plan, int region)
-{
-    const int p = plan->painter_of[region];
-    return p >= 0 ? plan->painters[p].settings.hold : plan->hold;
-}
 
 static void insert(GArray *draws, int at, FlDraw *draw)
 {
@@ -45,21 +38,22 @@ static FlDraw *first_left(const FlDrawList *draws, int region)
 }
 
 /** Whether a region's runs are taken from frame `from` when frame `now` is shown. */
-static bool is_from(const FlPlan *plan, int region, int frame, int from, int now)
+static bool is_from(const int *hold_of, int region, int frame, int from, int now)
 {
-    const int shown = frame - frame % hold_of(plan, region);
+    const int shown = frame - frame % hold_of[region];
     return shown == from && shown != now;
 }
 
 /** Puts the runs of the regions that show `from` in the place of what they have in runs. */
-static bool replace(const FlPlan *plan, GArray *draws, int frame, int from, int now, GError **error)
+static bool replace(const FlDrawing *drawing, const int *hold_of, GArray *draws, int frame,
+                    int from, int now, GError **error)
 {
-    g_autoptr(FlDrawList) earlier = fl_drawing_draw_list(plan->drawing, from, error);
+    g_autoptr(FlDrawList) earlier = fl_drawing_draw_list(drawing, from, error);
     if (!earlier)
         return false;
     for (int r = 0; r < (int)draws->len; r++) {
         FlDraw *draw = &g_array_index(draws, FlDraw, r);
-        if (!is_from(plan, draw->region, frame, from, now))
+        if (!is_from(hold_of, draw->region, frame, from, now))
             continue;
         FlDraw *then = first_left(earlier, draw->region);
         fl_draw_clear(draw);
@@ -69,25 +63,27 @@ static bool replace(const FlPlan *plan, GArray *draws, int frame, int from, int 
             g_array_remove_index(draws, (guint)r--);
     }
     for (int k = 0; k < earlier->n; k++)
-        if (earlier->draw[k].coverage && is_from(plan, earlier->draw[k].region, frame, from, now))
+        if (earlier->draw[k].coverage &&
+            is_from(hold_of, earlier->draw[k].region, frame, from, now))
             insert(draws, place_of(draws, earlier, k), &earlier->draw[k]);
     return true;
 }
 
-FlDrawList *fl_hold_draw_list(const FlPlan *plan, int frame, GError **error)
+FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, int hold, const int *hold_of, int frame,
+                              GError **error)
 {
-    const int now = frame - frame % plan->hold;
-    g_autoptr(FlDrawList) shown = fl_drawing_draw_list(plan->drawing, now, error);
+    const int now = frame - frame % hold;
+    g_autoptr(FlDrawList) shown = fl_drawing_draw_list(drawing, now, error);
     if (!shown)
         return NULL;
     g_autoptr(GHashTable) done = g_hash_table_new(NULL, NULL);
     GArray *draws = g_array_new(FALSE, FALSE, sizeof(FlDraw));
     g_array_append_vals(draws, shown->draw, (guint)shown->n);
     bool good = true;
-    for (int p = 0; p < plan->n_painters && good; p++) {
-        const int from = frame - frame % plan->painters[p].settings.hold;
+    for (int r = 0; r < fl_drawing_regions(drawing) && good; r++) {
+        const int from = frame - frame % hold_of[r];
         if (from != now && g_hash_table_add(done, GINT_TO_POINTER(from)))
-            good = replace(plan, draws, frame, from, now, error);
+            good = replace(drawing, hold_of, draws, frame, from, now, error);
     }
     g_free(shown->draw);
     shown->n = (int)draws->len;

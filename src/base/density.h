@@ -1,7 +1,7 @@
 /* Optical density in fixed point: logarithms of 8-bit colours and the way back, the same
  * everywhere. */
-#ifndef FLUIDY_COMPOSE_DENSITY_H
-#define FLUIDY_COMPOSE_DENSITY_H
+#ifndef FLUIDY_BASE_DENSITY_H
+#define FLUIDY_BASE_DENSITY_H
 
 #include <stdint.h>
 

@@ -1,4 +1,4 @@
-#include "compose/density.h"
+#include "base/density.h"
 
 #include <glib.h>
 #include <math.h>

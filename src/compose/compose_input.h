@@ -1,0 +1,23 @@
+/* What a frame is composed of. */
+#ifndef FLUIDY_COMPOSE_COMPOSE_INPUT_H
+#define FLUIDY_COMPOSE_COMPOSE_INPUT_H
+
+#include "compose/background.h"
+#include "compose/painted_region.h"
+#include "drawing/drawing.h"
+
+/** The painted regions of a frame and how they are stacked. Everything is borrowed. */
+typedef struct FlComposeInput {
+    const FlDrawing *drawing; // in the size in which it is painted
+    const int *painted_of;    // by region: index into painted, FL_DRAWN_AS_IT_IS or FL_LEFT_OUT
+    int n_painted;
+    const FlPaintedRegion *const *painted;
+    const FlBackground *background;
+    int width, height; // of the frame, px
+    bool half;         // the drawing has half that size: layers are enlarged
+    bool linear;       // blend in linear light
+    float gap_px;      // as in FlStackParams
+    float feather_px;
+} FlComposeInput;
+
+#endif

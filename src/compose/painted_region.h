@@ -1,0 +1,37 @@
+/* One region as it was painted in a frame: what the stages after the synthesis know of it. */
+#ifndef FLUIDY_COMPOSE_PAINTED_REGION_H
+#define FLUIDY_COMPOSE_PAINTED_REGION_H
+
+#include "compose/ink.h"
+#include "params/region_settings.h"
+#include "synth/synth.h"
+
+/** What becomes of a region that is not painted, where else the index of its paint is. */
+enum { FL_DRAWN_AS_IT_IS = -1, FL_LEFT_OUT = -2 };
+
+/** A style in use: its recording, packed for the search, and its ink. */
+typedef struct FlStyleInstance {
+    char *path;
+    FlParams params; // that it was packed for
+    bool reverse;
+    FlExemplar *exemplar;
+    FlInk *ink;
+    FlMedium medium;
+    uint8_t paper[3];
+} FlStyleInstance;
+
+/** The picture of a region, and how it came about. */
+typedef struct FlPaintedRegion {
+    int region;                       // index into the drawing's regions
+    const char *name;                 // borrowed, as settings and style are
+    const FlRegionSettings *settings; // how it is painted
+    const FlStyleInstance *style;     // with what
+    int width, height;                // of the drawing as it is painted, px
+    FlRect rect;                      // the part of it in which the region ever is, with some room
+    uint8_t *painted;                 // of rect: 3 bytes of sRGB a pixel, the exemplar's colours
+    FlFrameStats stats;               // of the last frame that was painted, as is what follows
+    FlSynthView view;                 // nnf NULL: nobody wanted it
+    double seconds;
+} FlPaintedRegion;
+
+#endif

@@ -1,0 +1,60 @@
+#include "job/paint_files.h"
+
+#include "base/alloc.h"
+#include "io/output_name.h"
+#include "io/picture.h"
+#include "io/png.h"
+#include <string.h>
+
+char *fl_paint_file(const char *pattern, const FlDrawing *drawing, const FlRegionPlan *region,
+                    int frame, GError **error)
+{
+    const int first = frame - frame % region->settings.hold;
+    return fl_output_name(pattern, fl_drawing_number(drawing, first), region->name, error);
+}
+
+bool fl_paint_save(const FlPaintedRegion *painted, const char *path, bool overwrite, GError **error)
+{
+    const size_t pixels = (size_t)painted->width * painted->height;
+    const uint8_t *paper = painted->style->paper;
+    const FlRect rect = painted->rect;
+    g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "the paint of a region", error);
+    if (!rgba)
+        return false;
+    for (size_t p = 0; p < pixels; p++) // paper, where the region never is
+        memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], 255}, 4);
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++)
+            memcpy(rgba + 4 * ((size_t)(rect.y + y) * (size_t)painted->width + rect.x + x),
+                   painted->painted + 3 * ((size_t)y * rect.width + x), 3);
+    const FlPng png = {
+        .width = painted->width, .height = painted->height, .rgba = rgba, .opaque = true};
+    return fl_png_save(&png, path, overwrite, error);
+}
+
+bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)
+{
+    if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: there is no such file; --paint without --merge writes the paint of “%s”",
+                    path, painted->name);
+        return false;
+    }
+    g_autoptr(FlPicture) picture = fl_picture_read_png(path, error);
+    if (!picture)
+        return false;
+    if (picture->width != painted->width || picture->height != painted->height) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: %dx%d pixels; expected %dx%d, as the frames have", path, picture->width,
+                    picture->height, painted->width, painted->height);
+        return false;
+    }
+    const FlRect rect = painted->rect;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t from = (size_t)(rect.y + y) * (size_t)painted->width + rect.x + x;
+            memcpy(painted->painted + 3 * ((size_t)y * rect.width + x), picture->rgba + 4 * from,
+                   3);
+        }
+    return true;
+}

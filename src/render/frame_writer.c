@@ -1,0 +1,129 @@
+#include "render/frame_writer.h"
+
+#include "base/alloc.h"
+#include "io/output_name.h"
+#include "io/picture.h"
+#include "io/png.h"
+#include "job/paint_files.h"
+
+/* Layers as files of the whole frame's size, so that any program can stack them. */
+static bool write_layers(const FlFrameWriter *writer, const FlComposite *composite, int frame,
+                         GError **error)
+{
+    const FlPlan *plan = writer->plan;
+    const int width = plan->width, height = plan->height;
+    for (int k = 0; k < composite->n_layers; k++) {
+        const FlLayer *layer = &composite->layers[k];
+        g_autofree uint8_t *rgba = fl_alloc(4 * (size_t)width * height, 1, "a layer", error);
+        g_autofree char *path =
+            rgba ? fl_output_name(plan->options.layers, fl_drawing_number(plan->drawing, frame),
+                                  composite->names[k], error)
+                 : NULL;
+        if (!path)
+            return false;
+        fl_rect_copy(layer->rgba, layer->area.box, rgba, (FlRect){0, 0, width, height}, 4);
+        const FlPng png = {.width = width, .height = height, .rgba = rgba};
+        if (!fl_resume_keeps(writer->resume, path) &&
+            !fl_png_save(&png, path, fl_resume_replaces(writer->resume, frame), error))
+            return false;
+    }
+    return true;
+}
+
+bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *const *painted,
+                           int frame, GError **error)
+{
+    const FlRenderOptions *o = &writer->plan->options;
+    for (int p = 0; o->paint && !o->merge && p < writer->plan->n_painted; p++) {
+        const FlRegionPlan *region = &writer->plan->painted[p];
+        g_autofree char *path =
+            fl_paint_file(o->paint, writer->plan->drawing, region, frame, error);
+        if (!path)
+            return false;
+        if (frame % region->settings.hold == 0 && !fl_resume_keeps(writer->resume, path) &&
+            !fl_paint_save(painted[p], path, fl_resume_replaces(writer->resume, frame), error))
+            return false;
+    }
+    return true;
+}
+
+bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, int frame,
+                           GError **error)
+{
+    g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, MAX(composite->n_layers, 1));
+    for (int k = 0; k < composite->n_layers; k++) {
+        const FlLayer *from = &composite->layers[k];
+        layers[k] = (FlSinkLayer){composite->names[k],  from->area.box.x,      from->area.box.y,
+                                  from->area.box.width, from->area.box.height, from->rgba};
+    }
+    const FlSinkFrame out = {.number = fl_drawing_number(writer->plan->drawing, frame),
+                             .rgba = composite->rgba,
+                             .rgba16 = composite->rgba16,
+                             .layers = layers,
+                             .n_layers = composite->n_layers};
+    if (writer->plan->options.layers && !write_layers(writer, composite, frame, error))
+        return false;
+    if (writer->sink->format->film)
+        return fl_sink_frame(writer->sink, &out, error);
+    g_autofree char *file = fl_sink_file(&writer->sink->params, out.number, error);
+    writer->sink->params.overwrite = fl_resume_replaces(writer->resume, frame);
+    return file &&
+           (fl_resume_keeps(writer->resume, file) || fl_sink_frame(writer->sink, &out, error)) &&
+           (!writer->movie || fl_sink_frame(writer->movie, &out, error));
+}
+
+/* The film takes the frames of an earlier run from their files. */
+static bool recall_frames(FlFrameWriter *writer, GError **error)
+{
+    for (int f = 0; writer->movie && f < writer->resume->first; f++) {
+        const int number = fl_drawing_number(writer->plan->drawing, f);
+        g_autofree char *file = fl_sink_file(&writer->sink->params, number, error);
+        g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
+        if (!picture)
+            return false;
+        const FlSinkFrame out = {.number = number, .rgba = picture->rgba};
+        if (picture->width != writer->movie->params.width ||
+            picture->height != writer->movie->params.height) {
+            g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                        "%s: %dx%d pixels, but an earlier run painted %dx%d; -y starts anew", file,
+                        picture->width, picture->height, writer->movie->params.width,
+                        writer->movie->params.height);
+            return false;
+        }
+        if (!fl_sink_frame(writer->movie, &out, error))
+            return false;
+    }
+    return true;
+}
+
+bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlResume *resume,
+                          bool opaque, GError **error)
+{
+    *writer = (FlFrameWriter){.plan = plan, .resume = resume};
+    FlSinkParams params = {.path = plan->output,
+                           .width = plan->width,
+                           .height = plan->height,
+                           .fps = plan->options.fps > 0 ? plan->options.fps : 24,
+                           .opaque = opaque,
+                           .fast = plan->half, // drafts are looked at and thrown away
+                           .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
+    writer->sink = fl_sink_open(plan->format, &params, error);
+    if (!writer->sink || !plan->movie)
+        return writer->sink != NULL;
+    params.path = plan->movie;
+    writer->movie = fl_sink_open(plan->movie_format, &params, error);
+    return writer->movie && recall_frames(writer, error);
+}
+
+bool fl_frame_writer_finish(FlFrameWriter *writer, GError **error)
+{
+    return fl_sink_finish(writer->sink, error) &&
+           (!writer->movie || fl_sink_finish(writer->movie, error));
+}
+
+void fl_frame_writer_clear(FlFrameWriter *writer)
+{
+    fl_sink_free(writer->sink);
+    fl_sink_free(writer->movie);
+    *writer = (FlFrameWriter){0};
+}

@@ -1,0 +1,35 @@
+/* Files of finished frames: the frames themselves, their layers, paint, and the film. */
+#ifndef FLUIDY_RENDER_FRAME_WRITER_H
+#define FLUIDY_RENDER_FRAME_WRITER_H
+
+#include "compose/composite.h"
+#include "job/plan.h"
+#include "job/resume.h"
+
+typedef struct FlFrameWriter {
+    const FlPlan *plan;     // borrowed
+    const FlResume *resume; // borrowed: says which files to keep and which to replace
+    FlSink *sink;
+    FlSink *movie; // NULL: the frames alone
+} FlFrameWriter;
+
+/**
+ * Opens the outputs of a plan; a film takes the frames of an earlier run from their files.
+ * FL_ERROR_OUTPUT, FL_ERROR_CHANGED.
+ */
+bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlResume *resume,
+                          bool opaque, GError **error);
+void fl_frame_writer_clear(FlFrameWriter *writer);
+
+/** Writes the paint of regions that were painted in the frame, if files of it are asked for. */
+bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *const *painted,
+                           int frame, GError **error);
+
+/** Writes a frame and its layers. */
+bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, int frame,
+                           GError **error);
+
+/** Completes outputs that are one file. */
+bool fl_frame_writer_finish(FlFrameWriter *writer, GError **error);
+
+#endif

@@ -1,0 +1,143 @@
+#include "render/painters.h"
+
+#include "base/limits.h"
+#include "base/parallel_error.h"
+#include "base/schedule.h"
+#include <math.h>
+
+/* Everything is as large as the frame or smaller, so that it can be told before it is asked for. */
+static bool check_memory(const FlPainters *painters, GError **error)
+{
+    const FlPlan *plan = painters->plan;
+    const double pixels = (double)plan->width * plan->height;
+    double bytes = 20e6 + 100 * pixels; // measured: the libraries, scratch, a frame composed
+    for (int p = 0; p < painters->n; p++)
+        bytes += fl_painter_bytes(&painters->painter[p]);
+    bytes += fl_style_cache_bytes(plan->styles);
+    g_autofree char *where =
+        g_strdup_printf("%s, %d regions in %dx%d pixels", fl_drawing_name(plan->drawing),
+                        painters->n, plan->width, plan->height);
+    return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
+}
+
+static bool make_guides_of_one(void *data, int p, int thread, GError **error)
+{
+    FlPainters *painters = data;
+    return fl_painter_prepare(&painters->painter[p], painters->plan->options.seed, error);
+}
+
+/* The guides of a region use all threads themselves, where it is large enough for that, and their
+ * scratch is as large as the region. */
+static bool make_guides(FlPainters *painters, GError **error)
+{
+    const FlPlan *plan = painters->plan;
+    const size_t frame = (size_t)plan->width * (size_t)plan->height;
+    g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
+    for (int p = 0; p < painters->n; p++) {
+        const FlRect extent = fl_mask_store_extent(plan->masks, plan->painted[p].region);
+        const size_t pixels = fl_rect_pixels(extent);
+        items[p] = (FlWorkItem){p, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
+    }
+    return fl_schedule_run(items, painters->n, make_guides_of_one, painters, error);
+}
+
+static bool make_scratch(FlPainters *painters, GError **error)
+{
+    const FlDrawing *drawing = painters->plan->drawing;
+    painters->n_scratch = CLAMP(fl_schedule_threads(), 1, MAX(painters->n, 1));
+    painters->scratch = g_new0(FlGuides, painters->n_scratch);
+    for (int k = 0; k < painters->n_scratch; k++)
+        if (!fl_guides_init(&painters->scratch[k], fl_drawing_width(drawing),
+                            fl_drawing_height(drawing), error))
+            return false;
+    return true;
+}
+
+bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error)
+{
+    *painters = (FlPainters){.plan = plan, .n = plan->n_painted};
+    painters->painter = g_new0(FlPainter, MAX(painters->n, 1));
+    for (int p = 0; p < painters->n; p++)
+        fl_painter_init(&painters->painter[p], plan, &plan->painted[p]);
+    if (!check_memory(painters, error) || !make_guides(painters, error))
+        return false;
+    for (int p = 0; p < painters->n && !plan->options.merge; p++)
+        fl_synth_measure(painters->painter[p].synth, plan->options.stats || plan->options.report);
+    return make_scratch(painters, error);
+}
+
+void fl_painters_clear(FlPainters *painters)
+{
+    for (int p = 0; p < painters->n; p++)
+        fl_painter_clear(&painters->painter[p]);
+    for (int k = 0; k < painters->n_scratch; k++)
+        fl_guides_clear(&painters->scratch[k]);
+    g_free(painters->painter);
+    g_free(painters->scratch);
+    *painters = (FlPainters){0};
+}
+
+/* A step of all painters. */
+typedef struct Step {
+    FlPainters *painters;
+    int step;
+    FlPainterWork work;
+    void *data;
+} Step;
+
+static bool do_one(void *data, int p, int thread, GError **error)
+{
+    const Step *step = data;
+    return step->work(step->data, p, step->step, &step->painters->scratch[thread], error);
+}
+
+/* A region as large as a thread's share of the film is painted by all threads together. The others
+ * begin with those that took longest in the last frame. */
+bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *data,
+                      GError **error)
+{
+    double total = 0, most = 0;
+    for (int p = 0; p < painters->n; p++) {
+        total += painters->plan->painted[p].area_px;
+        most = MAX(most, painters->plan->painted[p].area_px);
+    }
+    g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
+    for (int p = 0; p < painters->n; p++) {
+        const double area = painters->plan->painted[p].area_px;
+        const double seconds = painters->painter[p].result.seconds;
+        items[p] = (FlWorkItem){p, seconds + 1e-9 * area / MAX(most, 1),
+                                fl_schedule_is_large(area, total)};
+    }
+    Step all = {painters, step, work, data};
+    return fl_schedule_run(items, painters->n, do_one, &all, error);
+}
+
+bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **error)
+{
+    GError *first = NULL;
+    g_ptr_array_set_size(states, 0);
+    g_ptr_array_set_size(states, FL_PAINTER_PARTS * painters->n);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int p = 0; p < painters->n; p++) {
+        GError *mine = NULL;
+        GBytes **parts = (GBytes **)states->pdata + FL_PAINTER_PARTS * p;
+        if (!fl_painter_save(&painters->painter[p], parts, &mine))
+            fl_parallel_error_keep(&first, mine);
+    }
+    return fl_parallel_error_tell(error, first);
+}
+
+bool fl_painters_load(FlPainters *painters, const GPtrArray *states, const char *path,
+                      GError **error)
+{
+    GBytes *const *parts = (GBytes *const *)states->pdata;
+    if (states->len != (guint)(FL_PAINTER_PARTS * painters->n)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: has the state of another number of regions; -y starts anew", path);
+        return false;
+    }
+    for (int p = 0; p < painters->n; p++)
+        if (!fl_painter_load(&painters->painter[p], parts + FL_PAINTER_PARTS * p, error))
+            return false;
+    return true;
+}
