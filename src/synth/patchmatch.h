@@ -2,40 +2,7 @@
 #ifndef FLUIDY_SYNTH_PATCHMATCH_H
 #define FLUIDY_SYNTH_PATCHMATCH_H
 
-#include "synth/occurrence.h"
-
-/** What a search on one level works with; nothing is owned. */
-typedef struct FlSearch {
-    const FlExemplarLevel *level;
-    const FlTargetLevel *target;
-    const FlParams *params;
-    const FlCostScale *scale;
-    const FlKernels *kernels;
-    FlNnf *nnf;     // in and out; every pixel of the target has a valid match
-    uint32_t *cost; // width * height: cost of the match without uniformity and coherence
-    FlOccurrence *map;
-    uint64_t key; // of the random search
-} FlSearch;
-
-/** Counters of a search. */
-typedef struct FlSearchCounts {
-    uint64_t drawn;    // matches that were thought of, most of which are ruled out at once
-    uint64_t tried;    // patch distances started
-    uint64_t accepted; // matches that changed
-} FlSearchCounts;
-
-/**
- * Cost of a rotated exemplar patch against a gathered target patch: all but uniformity and
- * coherence; once above limit, any number above limit.
- */
-uint32_t fl_patch_cost(const FlSearch *search, const FlTargetPatch *patch, uint8_t target_angle,
-                       const FlTexel *centre, uint8_t theta, uint32_t limit);
-
-/** Texture, guides and direction of a match: all but uniformity and coherence. */
-uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
-
-/** Fills search->cost for a field; pixels outside get UINT32_MAX. */
-void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost);
+#include "synth/patch_cost.h"
 
 /**
  * Sweeps over the field. Tiles of 4x4 pixels in 16 classes are worked on class by class: tiles of

@@ -1,4 +1,4 @@
-#include "synth/visit.h"
+#include "synth/tile_search.h"
 
 #include "base/rng.h"
 
@@ -29,7 +29,7 @@ typedef struct Candidate {
 /* One pixel being matched. */
 typedef struct Visit {
     FlTries tries;
-    const FlVisitPlan *plan;
+    const FlTileSearch *plan;
     const FlSearch *search;
     int x, y;
     size_t pixel;
@@ -47,7 +47,7 @@ typedef struct Visit {
     Candidate candidate[FL_MAX_TRIES];
 } Visit;
 
-void fl_visit_plan_init(FlVisitPlan *plan, const FlSearch *search)
+void fl_tile_search_init(FlTileSearch *plan, const FlSearch *search)
 {
     const FlExemplarLevel *level = search->level;
     const FlParams *params = search->params;
@@ -116,7 +116,7 @@ static void find_expected(Visit *visit)
     }
 }
 
-static void draw(Visit *visit, const FlVisitPlan *plan, size_t pixel, uint64_t key)
+static void draw(Visit *visit, const FlTileSearch *plan, size_t pixel, uint64_t key)
 {
     const FlSearch *search = plan->search;
     const FlTexel *first = fl_exemplar_at(search->level, 0, 0, search->level->first);
@@ -290,8 +290,8 @@ static int list_pixels(const FlTargetLevel *target, uint32_t tile, bool backward
     return n;
 }
 
-void fl_visit_tiles(const FlVisitPlan *plan, const uint32_t *tiles, int n, bool backwards,
-                    uint64_t key, FlSearchCounts *counts)
+void fl_tile_search_run(const FlTileSearch *plan, const uint32_t *tiles, int n, bool backwards,
+                        uint64_t key, FlSearchCounts *counts)
 {
     size_t pixels[FL_TILES_AT_ONCE * FL_TILE * FL_TILE];
     Visit visits[3];

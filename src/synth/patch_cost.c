@@ -1,0 +1,43 @@
+#include "synth/patch_cost.h"
+
+/* The source flow, rotated, opposes the target's: past and future motion change roles [F21 §3.3].
+ */
+static bool opposes(uint8_t turn)
+{
+    return turn > 64 && turn < 192;
+}
+
+uint32_t fl_patch_cost(const FlSearch *search, const FlTargetPatch *patch, uint8_t target_angle,
+                       const FlTexel *centre, uint8_t theta, uint32_t limit)
+{
+    const uint8_t turn = (uint8_t)(theta + centre->c[FL_CH_ANGLE] - target_angle);
+    const uint32_t direction = search->params->rotate ? search->scale->direction[turn] : 0;
+    if (direction > limit)
+        return direction;
+    return direction + search->kernels->patch_distance(centre, search->level->offsets[theta],
+                                                       opposes(turn), patch->guide,
+                                                       &search->target->rest, limit - direction);
+}
+
+uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match)
+{
+    FlTargetPatch patch;
+    fl_target_gather(search->target, x, y, &patch);
+    const FlTexel *centre =
+        fl_exemplar_at(search->level, fl_match_x(match), fl_match_y(match), match.frame);
+    return fl_patch_cost(search, &patch,
+                         search->target->angle[(size_t)y * search->target->width + x], centre,
+                         match.theta, UINT32_MAX >> 1);
+}
+
+void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost)
+{
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int y = 0; y < nnf->height; y++)
+        for (int x = 0; x < nnf->width; x++) {
+            const size_t p = (size_t)y * nnf->width + x;
+            cost[p] = nnf->match[p].frame == FL_NO_MATCH
+                          ? UINT32_MAX
+                          : fl_match_cost(search, x, y, nnf->match[p]);
+        }
+}
