@@ -57,6 +57,22 @@ exported_symbols() {
     nm -D --defined-only "$build/src/libfluidy.so" | awk '{print $3}' | sed 's/@.*//' | grep -v '^fl_'
 }
 
+# One meaning, one name: no two files of the sources are called alike, and no two types.
+names_are_unique() {
+    git ls-files 'src/*.c' 'src/*.h' 'src/*.inc' | sed 's|.*/||' | sort | uniq -d |
+        sed 's/$/: two files have this name/'
+    git grep -hoE '^(typedef (struct|enum|union) Fl[A-Za-z]+ \{|struct Fl[A-Za-z]+ \{)' -- 'src/*.h' 'src/*.c' 'include/*.h' |
+        grep -oE 'Fl[A-Za-z]+' | sort | uniq -d | sed 's/$/: two types have this name/'
+}
+
+# Every work that a comment cites is in the list.
+references_are_listed() {
+    git grep -ohE '\[[A-Z][A-Za-z]*[0-9]{2}' -- src include | tr -d '[' | sort -u | while read -r tag; do
+        grep -q "^| $tag " src/REFERENCES.md || echo "REFERENCES.md has no $tag"
+    done
+    git grep -nE '\[DESIGN' -- src include
+}
+
 header_guards() {
     local file guard
     for file in $(git ls-files '*.h'); do
@@ -157,6 +173,8 @@ report 'a folder includes headers of itself and the folders above it' layering
 report 'the programs use base, params and public headers only' programs_stay_outside
 report 'every exported symbol starts with fl_' exported_symbols
 report 'include guards are the path' header_guards
+report 'no two files or types have one name' names_are_unique
+report 'every work that is cited is in REFERENCES.md' references_are_listed
 report 'no path of a workplace is committed' foreign_paths
 report '--help fits one screen' help_fits_one_screen "$build/src/cli/fluidy-svg"
 report 'CI runs the test command of the README' readme_test_command

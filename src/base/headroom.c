@@ -1,11 +1,9 @@
 #include "base/headroom.h"
 
+#include "base/schedule.h"
 #include <pthread.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #define MIB ((size_t)1 << 20)
 #define OF_LIBRARIES (24 * MIB) // measured: a drawing is read with 16
@@ -14,11 +12,7 @@
 static size_t of_stacks(void)
 {
     size_t stack = 8 * MIB;
-#ifdef _OPENMP
-    const size_t others = (size_t)omp_get_max_threads() - 1;
-#else
-    const size_t others = 0;
-#endif
+    const size_t others = (size_t)fl_schedule_threads() - 1;
     pthread_attr_t attributes;
     if (pthread_getattr_default_np(&attributes) == 0) {
         pthread_attr_getstacksize(&attributes, &stack);

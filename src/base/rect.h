@@ -48,8 +48,6 @@ static inline FlColumns fl_area_row(const FlArea *area, int y)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlArea, fl_area_clear)
 
-#define FL_WORTH_THREADS ((size_t)1 << 15) // pixels; fewer are done before other threads are awake
-
 static inline size_t fl_rect_pixels(FlRect box)
 {
     return (size_t)box.width * (size_t)box.height;

@@ -1,6 +1,7 @@
 #include "compose/layers.h"
 #include "base/alloc.h"
 #include "base/row_kernels.h"
+#include "base/schedule.h"
 #include "compose/layer_blend.h"
 #include "compose/visibility.h"
 
@@ -49,7 +50,7 @@ static void resolve_rows(const FlLayer *layer, Above *above)
 {
     const FlRect box = layer->area.box;
     const bool knocks = knocks_out(layer);
-#pragma omp parallel for schedule(static) if (fl_rect_pixels(box) > FL_WORTH_THREADS)
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(box)))
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
         const size_t i = (size_t)(box.y + y) * above->width + box.x + span.first;

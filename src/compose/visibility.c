@@ -1,5 +1,6 @@
 #include "compose/visibility.h"
 
+#include "base/schedule.h"
 #include <math.h>
 #include <string.h>
 
@@ -56,7 +57,7 @@ void fl_visibility_visible(const FlVisibleShape *shape, const uint8_t *above, in
     const FlRect box = shape->area->box;
     const Plane lower = {shape->coverage, box, width, height};
     const Plane upper = {above, {0, 0, width, height}, width, height};
-#pragma omp parallel for schedule(static) if (fl_rect_pixels(box) > FL_WORTH_THREADS)
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(box)))
     for (int row = 0; row < box.height; row++) {
         const FlColumns span = fl_area_row(shape->area, row);
         const int y = box.y + row;

@@ -29,7 +29,7 @@ typedef struct FlDrawingOptions {
     int n_rules;
 } FlDrawingOptions;
 
-/** A region: the leaves that are one area of paint through the whole film [DESIGN §4]. */
+/** A region: the leaves that are one area of paint through the whole film. */
 typedef struct FlRegion {
     char *name;      // unique, made of [a-z0-9-], stable for the same input; used in file names
     char *label;     // the layer label path without frame numbers; "" if the drawing has none

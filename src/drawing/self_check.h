@@ -1,4 +1,4 @@
-/* Do the leaves, drawn one over the other, look like the document? [DESIGN §4] */
+/* Do the leaves, drawn one over the other, look like the document? */
 #ifndef FLUIDY_DRAWING_SELF_CHECK_H
 #define FLUIDY_DRAWING_SELF_CHECK_H
 

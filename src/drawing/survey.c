@@ -107,7 +107,7 @@ static void warn_of_whole(FlWarnings *warnings, const char *file, int number, co
                     which);
 }
 
-/** Looks at a frame, anew for each group that has to stay in one piece [DESIGN §4]. */
+/** Looks at a frame, anew for each group that has to stay in one piece. */
 static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *warnings,
                        GError **error)
 {

@@ -41,7 +41,7 @@ typedef struct FlStyle {
 FlStyle *fl_style_load(const char *folder, GError **error);
 
 /**
- * Finds a style by name or path [DESIGN §5]: a path if it has a slash or is a folder, else in
+ * Finds a style by name or path: a path if it has a slash or is a folder, else in
  * $FLUIDY_STYLES, the user's and the system's data folders, the installed one, the source tree's.
  */
 char *fl_style_find(const char *name, GError **error);
