@@ -92,6 +92,7 @@ head -c 1100000 /dev/zero | tr '\0' '#' >long.conf
 { printf PIEH && le 48 48 && for _ in $(seq 4608); do printf '\0\0\300\177'; done; } >nan_1.flo
 echo hello >text_1.flo
 png clear.png 48x48 red@0
+ln -s good/a_1.svg link.svg
 touch taken
 
 # Status, message (a glob) and arguments; every row also has -s STYLE in front.
@@ -122,7 +123,7 @@ table() {
 2|film.mp4: H.264 has no transparency; *|good -b clear.png -o film.mp4
 2|film.mov: a film cannot be resumed without its frames; *|good --resume --no-frames -o film.mov
 2|x.bmp: *|good -o x.bmp
-2|x_%s.png: "%s.p" is not understood; expected one %04d *|good -o x_%s.png
+2|x_%s.png: “%s.p” is no frame number; expected %d, %04d or ####*|good -o x_%s.png
 2|x_%d_%d.png: *|good -o x_%d_%d.png
 2|x_{region}.png: {region} has no meaning here; *|good -o x_{region}.png
 2|x_{rgion}.png: “{rgion}” is not understood; expected {region}|good --layers x_{rgion}.png
@@ -131,15 +132,21 @@ table() {
 2|--merge paints nothing that --report or --dump could show*|good --merge --paint {region}_%d.png --dump d
 1|gone/red-aa3311_1.png: there is no such file; --paint without --merge writes*|good --merge --paint gone/{region}_%d.png
 1|odd/frames/0001.png: 64x48 pixels; expected 48x48*|good --merge --paint odd/frames/%04d.png -f 1
+2|good/a_1.svg: is read by this render; expected another name *|good -y --format png -o good/a_%d.svg
+2|./good/a_1.svg: is read by this render; *|good/a_1.svg -y --format hash -o ./good/a_1.svg
+2|clear.png: is read by this render; *|good -y -b clear.png -o clear.png -f 1
+2|good/a_1.svg: is read by this render; *|good -y --stats good/a_1.svg -o y_%d.png
+2|good/a_1.svg: is read by this render; *|good -y --layers good/a_%d.svg -o y_%d.png -f 1
+2|link.svg: is read by this render; *|link.svg -y --format png -o link.svg
 2|x.mp4: maps are PNG files; expected .png|good --check -o x.mp4
 1|taken: cannot be written: Not a directory|good -o taken/x_%d.png
 1|taken: *|good --report taken -o x_%d.png
 1|-x: no such file*|-- -x
 1|nowhere: *|nowhere
 1|none: no .svg files *|none
-2|%q.svg: "%q." is no frame number; expected %d, %04d or ####|good/%q.svg
+2|%q.svg: “%q.s” is no frame number; expected %d, %04d or ####*|good/%q.svg
 2|%99999d.svg: *|good/%99999d.svg
-2|a_%d_%d.svg: two places for the frame number; expected one|good/a_%d_%d.svg
+2|a_%d_%d.svg: “%d.s” is a second frame number; expected one|good/a_%d_%d.svg
 1|good/a_1.svg and good/a_1.svg are both frame 1|good/a_1.svg good/a_1.svg
 1|*no file for frames 2-3; --missing *|gap
 1|nosize/a_1.svg: *--canvas 1920x1080*|nosize

@@ -19,14 +19,12 @@
 #include "config.h"
 #include "params/params.h"
 #include "synth/synth.h"
+#include "threads.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/resource.h>
 #include <time.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 #define FRAMES_MEASURED 3 // for the statistics
 
@@ -192,7 +190,7 @@ static FlDetail detail_of_word(void)
 
 static bool run_case(const Case *c, Figures *f, GError **error)
 {
-    g_autofree char *folder = g_build_filename(FL_BUILD_STYLE_DIR, c->style, NULL);
+    g_autofree char *folder = g_build_filename(STYLES, c->style, NULL);
     g_autoptr(FlParams) params = fl_params_new();
     fl_params_detail(params, detail_of_word());
     g_autoptr(FlStyle) style = fl_style_load(folder, error);

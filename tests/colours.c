@@ -12,9 +12,9 @@
 #include "base/alloc.h"
 #include "delta_e.h"
 #include "guides/distance.h"
+#include "io/png.h"
 #include "job/plan.h"
 #include "scratch.h"
-#include "io/picture.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -174,8 +174,8 @@ static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture,
         if (d > BOUND)
             printf("  frame %d, %s: #%02x%02x%02x for #%02x%02x%02x, %.1f, %d pixels\n",
                    fl_drawing_number(plan->drawing, frame),
-                   fl_drawing_region(plan->drawing, draws->draw[r].region)->name, median[0], median[1],
-                   median[2], fill[0], fill[1], fill[2], d, look.total);
+                   fl_drawing_region(plan->drawing, draws->draw[r].region)->name, median[0],
+                   median[1], median[2], fill[0], fill[1], fill[2], d, look.total);
         if (look.contrast.n >= LARGE)
             tally->large++, tally->shares += deviation(&look.contrast) / tally->of_style;
     }

@@ -109,6 +109,18 @@ chmod +x bin/ffmpeg
 PATH=$PWD/bin:$PATH "$program" film -s "$style" -o film.mov --progress none >out 2>err
 [ $? = 1 ] && says 'ffmpeg stopped: no such codec' && [ -z "$(find . -name '*.mov')" ]
 result $? 'an ffmpeg that dies is quoted, and no film is left'
+printf '#!/bin/sh\ntouch hangs\nexec sleep 1000\n' >bin/ffmpeg
+PATH=$PWD/bin:$PATH "$program" film -s "$style" -o hung/film.mov --progress none >out 2>err &
+job=$!
+for _ in {1..200}; do
+    [ -e hangs ] && [ -e hung/film_0006.png ] && break
+    sleep 0.05
+done
+sleep 0.2
+kill -TERM $job
+wait $job
+[ $? = 75 ] && says 'ffmpeg was at work: interrupted' && [ ! -e hung/film.mov ] && [ ! -e hung/.film.mov.part ]
+result $? 'a signal ends the wait for an ffmpeg that hangs'
 
 # tight KIB: one frame with that much address space is painted, or refused in one line.
 tight() {

@@ -1,8 +1,9 @@
 #!/bin/sh
 # Against the installed library, a program that knows pkg-config only compiles, links and runs, and the
-# installed programs find it wherever it lies. usage: pkgconfig.sh BUILD-DIR
+# installed programs find it wherever it lies. usage: pkgconfig.sh BUILD-DIR SOURCE-DIR
 set -eu
 build=$1
+source=$2
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cat >"$folder/program.c" <<'EOF'
@@ -28,3 +29,9 @@ version=$(LD_LIBRARY_PATH=$(pkg-config --variable=libdir fluidy) ./program)
 "$(find . -path "*/bin/fluidy-svg")" --version >said
 "$(find . -path "*/bin/fluidy-style")" --version >>said
 [ "$(grep -c "$version" said)" = 2 ]
+# Nothing that is installed looks into the folder that it was built in.
+strings -a "$(find . -name 'libfluidy.so.*.*.*')" >said
+grep -q 'fluidy/styles' said
+if grep -F -e "$source" -e "$(realpath "$build")" said; then
+    exit 1
+fi

@@ -114,6 +114,9 @@ flock 9
 paint both -y
 [ $? = 1 ] && says 'both/w_%04d.png: another run is writing it' && [ ! -e both/w_0001.png ]
 result $? 'of two runs that would write the same frames the second is told'
+"$program" film -s "$style" -o both/w_####.png -y --progress none >out 2>err
+[ $? = 1 ] && says 'both/w_####.png: another run is writing it' && [ ! -e both/w_0001.png ]
+result $? 'also if it spells their names otherwise'
 exec 9>&-
 paint both && same both whole
 result $? 'and a lock that a killed run left does no harm'
@@ -189,6 +192,15 @@ done
 "$program" film -s "$style" -o dead/w.mkv >out 2>err && grep -q 'going on' err &&
     cmp -s dead/w.mkv played.mkv && rm dead/w.mkv && same dead whole
 result $? 'so does one that was killed twice, and leaves nothing else'
+# An ffmpeg that is slow to start, of a run that was killed, does not touch what the next one wrote.
+mkdir slow bin
+ffmpeg=$(command -v ffmpeg)
+printf '#!/bin/sh\ntrap "" HUP TERM\n(sleep 3; exec "%s" "$@" </dev/null) &\nwait\n' "$ffmpeg" >bin/ffmpeg
+chmod +x bin/ffmpeg
+PATH=$PWD/bin:$PATH output=w.mkv stop slow KILL 2
+"$program" film -s "$style" -o slow/w.mkv >out 2>err && sleep 3.5 &&
+    cmp -s slow/w.mkv played.mkv && rm slow/w.mkv && same slow whole
+result $? 'and a late ffmpeg of the killed run does no harm'
 mkdir one
 exec 9>one/.w.mkv.part
 flock 9

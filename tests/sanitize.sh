@@ -1,6 +1,6 @@
 #!/bin/bash
 # Runs tests in a build that watches memory, threads or arithmetic, or has the sources analysed.
-# usage: sanitize.sh address|thread|memcheck|analysers BUILD-DIR, in the source folder; each has a
+# usage: sanitize.sh address|thread|memcheck|analysers|bare BUILD-DIR, in the source folder; each has a
 # folder of its own, but memcheck and analysers may share the one of an ordinary build.
 #
 # address: the whole suite, AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer.
@@ -8,6 +8,7 @@
 #   tells clang's what OpenMP orders, and tsan_glib.c what GLib does. GLib's own slices, handed from
 #   a thread that has ended to the next, would be taken for shared.
 #   It also fails if clang warns of anything; .ci/run builds with gcc so.
+# bare: every optional feature off; what is left is built without warnings, and paints.
 # memcheck: a short render in valgrind.
 # analysers: cppcheck and clang-tidy; tests/cppcheck.supp and .clang-tidy say what is left out.
 set -eu
@@ -32,6 +33,11 @@ address)
     export LSAN_OPTIONS=suppressions=$source/tests/lsan.supp:print_suppressions=0
     # a library with a sanitizer is not for programs without: no test of pkg-config
     meson test -C "$build" --no-rebuild --no-suite headers --timeout-multiplier 6 --print-errorlogs
+    ;;
+bare)
+    make_build --werror -Dopenmp=disabled -Dsimd=disabled -Dexr=disabled -Dora=disabled -Dman=disabled
+    ninja -C "$build"
+    meson test -C "$build" --no-rebuild --suite unit --suite kernels --print-errorlogs
     ;;
 thread)
     export CC=clang

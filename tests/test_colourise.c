@@ -1,7 +1,7 @@
-#include "compose/colourise.h"
 #include "base/density.h"
+#include "compose/colourise.h"
 #include "delta_e.h"
-#include "io/picture.h"
+#include "io/png.h"
 
 #include <string.h>
 

@@ -1,11 +1,9 @@
 #include "guides/flow_file.h"
 #include "guides/laplace.h"
+#include "threads.h"
 #include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 enum { W = 120, H = 100 };
 

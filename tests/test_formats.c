@@ -1,7 +1,7 @@
 #include "base/rng.h"
 #include "config.h"
+#include "io/png.h"
 #include "io/sink.h"
-#include "io/picture.h"
 
 #include <gio/gio.h>
 #include <glib/gstdio.h>

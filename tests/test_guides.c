@@ -1,11 +1,9 @@
 #include "guide_shapes.h"
 #include "guides/guides.h"
 #include "guides/plane_store.h"
+#include "threads.h"
 #include <math.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
 enum { W = 64, H = 48 };
 

@@ -1,6 +1,6 @@
 /* Drawings that are held, and films that are repeated: how the paint lives through them. */
+#include "io/png.h"
 #include "scratch.h"
-#include "io/picture.h"
 #include "synth/shift.h"
 #include <fluidy/fluidy.h>
 #include <math.h>

@@ -1,9 +1,9 @@
+#include "io/png.h"
 #include "style/border.h"
-#include "style/style_folder.h"
 #include "style/estimate.h"
-#include "io/picture.h"
 #include "style/flat_field.h"
 #include "style/stabilise.h"
+#include "style/style_folder.h"
 
 #include <fluidy/style.h>
 #include <glib/gstdio.h>

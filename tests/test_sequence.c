@@ -73,7 +73,7 @@ static void a_percent_sign_is_never_a_format(void)
     touch(folder, "100%_1.svg 100%_2.svg");
     assert_numbers(folder, "100%%_%d.svg", NULL, FL_MISSING_ERROR, "1 2");
     assert_message(folder, "x_%s%n.svg", NULL, "is no frame number");
-    assert_message(folder, "%d_%d.svg", NULL, "two places");
+    assert_message(folder, "%d_%d.svg", NULL, "second frame number");
 }
 
 static void gaps_are_listed_held_or_skipped(void)

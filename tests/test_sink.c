@@ -1,8 +1,6 @@
 #include "io/atomic_file.h"
-#include "io/output_name.h"
 #include "io/png.h"
 #include "io/sink.h"
-#include "io/picture.h"
 
 #include <glib/gstdio.h>
 #include <string.h>
@@ -51,37 +49,6 @@ static void fill(uint8_t *rgba, int seed)
 {
     for (int i = 0; i < 4 * W * H; i++)
         rgba[i] = (uint8_t)(i * 37 + seed * 11);
-}
-
-static void assert_name(const char *pattern, int number, const char *region, const char *expected)
-{
-    g_autoptr(GError) error = NULL;
-    g_autofree char *name = fl_output_name(pattern, number, region, &error);
-    if (expected)
-        g_assert_no_error(error);
-    else
-        g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
-    g_assert_cmpstr(name, ==, expected);
-}
-
-static void names_are_made_from_patterns(void)
-{
-    assert_name("out/a_%04d.png", 12, NULL, "out/a_0012.png");
-    assert_name("a.####.png", 12, NULL, "a.0012.png");
-    assert_name("a_%d.png", 12, NULL, "a_12.png");
-    assert_name("a_%02d.png", 1234, NULL, "a_1234.png");
-    assert_name("100%%_#.png", 3, NULL, "100%_3.png");
-    assert_name("take#1_%03d.png", 3, NULL, "take#1_003.png");
-    assert_name("{region}/%04d.png", 3, "hair", "hair/0003.png");
-    assert_name("film.mov", 3, NULL, "film.mov");
-    assert_name("%s.png", 3, NULL, NULL);
-    assert_name("%04d_%04d.png", 3, NULL, NULL);
-    assert_name("%n%n%n", 3, NULL, NULL);
-    assert_name("%", 3, NULL, NULL);
-    assert_name("{region}.png", 3, NULL, NULL);
-    g_assert_true(fl_output_is_pattern("a_%04d.png"));
-    g_assert_true(fl_output_is_pattern("a_#.png"));
-    g_assert_false(fl_output_is_pattern("100%%.png"));
 }
 
 static void a_png_reads_back_as_it_was_written(void)
@@ -236,7 +203,6 @@ static void an_unknown_format_lists_those_there_are(void)
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
-    g_test_add_func("/sink/names-are-made-from-patterns", names_are_made_from_patterns);
     g_test_add_func("/sink/a-png-reads-back-as-it-was-written", a_png_reads_back_as_it_was_written);
     g_test_add_func("/sink/sixteen-bit-files-keep-all-bits", sixteen_bit_files_keep_all_bits);
     g_test_add_func("/sink/an-existing-file-is-kept-unless-overwriting-is-allowed",

@@ -1,10 +1,11 @@
 #include "guides/flow_file.h"
-#include "style/style_folder.h"
+#include "io/png.h"
 #include "style/estimate.h"
 #include "style/find_style.h"
 #include "style/manifest.h"
 #include "style/paint_frames.h"
-#include "io/picture.h"
+#include "style/resample.h"
+#include "style/style_folder.h"
 
 #include <glib/gstdio.h>
 #include <math.h>
@@ -253,8 +254,10 @@ static void a_clip_over_the_limit_says_how_to_make_it_smaller(void)
     const FlPicture first = {.width = 1000, .height = 1000};
     g_assert_false(fl_style_allocate(style, &first, 32, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_LIMIT);
-    g_assert_nonnull(strstr(error->message, "32 frames of 1000x1000 (fluidy-style import --scale or"));
-    g_assert_nonnull(strstr(error->message, "more than the limit of 31; --limit style=N raises it"));
+    g_assert_nonnull(
+        strstr(error->message, "32 frames of 1000x1000 (fluidy-style import --scale or"));
+    g_assert_nonnull(
+        strstr(error->message, "more than the limit of 31; --limit style=N raises it"));
 }
 
 static void a_style_is_found_by_name_in_fluidy_styles(void)

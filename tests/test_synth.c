@@ -1,7 +1,7 @@
 #include "small_style.h"
 #include "synth/synth.h"
 #include "synth/vote.h"
-#include <omp.h>
+#include "threads.h"
 
 /* Paints three frames; the third is returned. */
 static uint8_t *painted(int threads)

@@ -1,4 +1,5 @@
 /* The paint simulation: what each stage conserves, the colours, and recipes. */
+#include "threads.h"
 #include "watercolour/brush.h"
 #include "watercolour/kubelka_munk.h"
 #include "watercolour/stages.h"
@@ -7,11 +8,6 @@
 #include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#else
-#define omp_set_num_threads(n) (void)(n)
-#endif
 
 enum { SIDE = 48 };
 

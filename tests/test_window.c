@@ -1,6 +1,6 @@
 #include "small_style.h"
 #include "synth/synth.h"
-#include <omp.h>
+#include "threads.h"
 #include <sys/mman.h>
 #include <unistd.h>
 

@@ -140,12 +140,15 @@ typedef struct FlRenderOptions {
     /** Called after every frame of a stage, from the calling thread; false stops the render with
      *  FL_ERROR_INTERRUPTED. NULL: nothing is called. */
     bool (*progress)(const FlProgress *progress, void *data);
+    /** Called now and then, from any thread, while another program is waited for; true stops the
+     *  render with FL_ERROR_INTERRUPTED. NULL: nothing is called. */
+    bool (*stopped)(void *data);
     /** Called with one line about something odd in the input; the message has no line feed. */
     void (*warning)(const char *message, void *data);
     /** Called with one line about what was done, such as where the frames are. */
     void (*note)(const char *message, void *data);
     bool verbose; /**< notes about decisions as well: which style, size and flow a region got */
-    void *data;   /**< handed to progress, warning and note */
+    void *data;   /**< handed to progress, stopped, warning and note */
 } FlRenderOptions;
 
 /**

@@ -1,6 +1,7 @@
 /* fluidy-svg: words and exit codes only; the work is in the library. */
 #include "args.h"
 #include "progress.h"
+#include "wait.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -32,6 +33,11 @@ static bool show_progress(const FlProgress *progress, void *data)
     Voice *voice = data;
     fl_meter_show(&voice->meter, progress);
     return !stop;
+}
+
+static bool was_stopped(void *data)
+{
+    return stop;
 }
 
 static void show_warning(const char *message, void *data)
@@ -121,6 +127,7 @@ static int work(FlArgs *args)
     Voice voice = {.quiet = args->quiet};
     fl_meter_init(&voice.meter, args->quiet ? FL_PROGRESS_NONE : args->progress, stderr);
     args->render.progress = show_progress;
+    args->render.stopped = was_stopped;
     args->render.warning = show_warning;
     args->render.note = show_note;
     args->render.data = &voice;
@@ -177,6 +184,7 @@ static void fill_standard_streams(void)
 
 int main(int argc, char **argv)
 {
+    fl_wait_asleep(argv);
     fill_standard_streams();
     setlocale(LC_CTYPE, "");
     FlArgs args;

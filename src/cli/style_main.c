@@ -2,6 +2,7 @@
 #include "style_commands.h"
 
 #include "base/suggest.h"
+#include "wait.h"
 #include "words.h"
 
 #include <locale.h>
@@ -89,6 +90,7 @@ static bool run_command(const FlStyleCommand *command, char **argv, GError **err
 
 int main(int argc, char **argv)
 {
+    fl_wait_asleep(argv);
     setlocale(LC_CTYPE, "");
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 ||
         strcmp(argv[1], "help") == 0)

@@ -1,14 +1,16 @@
 #include "compose/background.h"
 
-#include "io/output_name.h"
+#include "io/pattern.h"
+#include "io/png.h"
 #include "params/text.h"
+#include "style/resample.h"
 #include <string.h>
 
 static char *backdrop_file(const FlBackground *background, const FlDrawing *drawing, int frame,
                            GError **error)
 {
     const int number = fl_drawing_number(drawing, frame);
-    return fl_output_is_pattern(background->pattern)
+    return fl_input_is_pattern(background->pattern)
                ? fl_output_name(background->pattern, number, NULL, error)
                : g_strdup(background->pattern);
 }
@@ -17,7 +19,7 @@ static char *backdrop_file(const FlBackground *background, const FlDrawing *draw
  * its turn. */
 static bool pictures_are_opaque(const FlBackground *background, const FlDrawing *drawing)
 {
-    const int n = fl_output_is_pattern(background->pattern) ? fl_drawing_frames(drawing) : 1;
+    const int n = fl_input_is_pattern(background->pattern) ? fl_drawing_frames(drawing) : 1;
     for (int f = 0; f < n; f++) {
         g_autofree char *file = backdrop_file(background, drawing, f, NULL);
         if (file && !fl_picture_is_opaque(file))

@@ -2,8 +2,8 @@
 #ifndef FLUIDY_COMPOSE_BACKGROUND_H
 #define FLUIDY_COMPOSE_BACKGROUND_H
 
+#include "base/picture.h"
 #include "drawing/drawing.h"
-#include "io/picture.h"
 
 typedef struct FlBackground {
     bool none;           // transparent

@@ -245,10 +245,9 @@ static bool add_input(GArray *found, const char *input, FlWarnings *warnings, GE
     }
     g_autofree char *base = g_path_get_basename(input);
     g_auto(FlPattern) pattern = {0};
-    bool has_number = false;
-    if (!fl_pattern_parse(base, &pattern, &has_number, error))
+    if (!fl_pattern_parse(base, &pattern, error))
         return false;
-    if (has_number)
+    if (pattern.width > 0)
         return add_fitting(found, input, &pattern, error);
     if (!strpbrk(base, "*?["))
         return add_file(found, input, error);

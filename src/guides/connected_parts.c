@@ -1,5 +1,6 @@
 #include "guides/connected_parts.h"
 
+#include "base/alloc.h"
 #include "guides/guides.h"
 
 /** The oldest label that a label stands for; halves the way to it for the next time. */
@@ -44,17 +45,18 @@ bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *coverage, i
                              int height, GError **error)
 {
     const size_t n = (size_t)width * height;
-    *parts = (FlConnectedParts){.part = g_try_new(int32_t, n)};
-    if (!parts->part) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                    "not enough memory for the parts of a mask of %dx%d pixels", width, height);
+    *parts =
+        (FlConnectedParts){.part = fl_alloc(n, sizeof *parts->part, "the parts of a mask", error)};
+    if (!parts->part)
         return false;
-    }
     const int32_t outside = 0;
     g_autoptr(GArray) parents = g_array_new(FALSE, FALSE, sizeof(int32_t));
     g_array_append_val(parents, outside);
     label_pixels(coverage, width, height, parts->part, parents);
-    g_autofree int32_t *number = g_new0(int32_t, parents->len);
+    g_autofree int32_t *number =
+        fl_alloc(parents->len, sizeof *number, "the parts of a mask", error);
+    if (!number)
+        return false;
     for (guint label = 1; label < parents->len; label++) { // a root comes before its labels
         const int32_t root = root_of(parents, (int32_t)label);
         number[label] = root == (int32_t)label ? ++parts->n_parts : number[root];

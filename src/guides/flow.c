@@ -1,5 +1,6 @@
 #include "guides/flow.h"
 
+#include "base/alloc.h"
 #include "guides/guides.h"
 #include "guides/laplace.h"
 #include "guides/part_tracking.h"
@@ -32,9 +33,11 @@ static bool traces_init(Traces *traces, const FlOutline *now, const FlOutline *b
     FlConnectedParts *parts = &traces->parts;
     if (!fl_connected_parts_init(parts, now->coverage, now->box.width, now->box.height, error))
         return false;
-    traces->before = g_new(FlTrace, parts->n_parts + 1);
-    traces->after = g_new(FlTrace, parts->n_parts + 1);
-    traces->fixed = g_new0(uint32_t, parts->n_parts + 1);
+    const size_t n = (size_t)parts->n_parts + 1;
+    if (!(traces->before = fl_alloc(n, sizeof *traces->before, "a flow", error)) ||
+        !(traces->after = fl_alloc(n, sizeof *traces->after, "a flow", error)) ||
+        !(traces->fixed = fl_alloc(n, sizeof *traces->fixed, "a flow", error)))
+        return false;
     return fl_part_tracking_find(now, parts, before, limit_px, traces->before, error) &&
            fl_part_tracking_find(now, parts, after, limit_px, traces->after, error);
 }
@@ -108,12 +111,9 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
     const FlRect *box = &now->outline->box;
     const size_t n = fl_rect_pixels(*box);
     g_auto(Traces) traces = {0};
-    g_autofree uint8_t *cell = g_try_malloc(n);
-    if (!cell) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a flow");
-        return false;
-    }
-    if (!traces_init(&traces, now->outline, before->outline, after->outline, limit_px, error))
+    g_autofree uint8_t *cell = fl_alloc(n, sizeof *cell, "a flow", error);
+    if (!cell ||
+        !traces_init(&traces, now->outline, before->outline, after->outline, limit_px, error))
         return false;
     memset(flow, 0, 2 * n * sizeof *flow);
     fix_velocities(now, before, after, limit_px, &traces, cell, flow);
@@ -131,12 +131,10 @@ bool fl_outline_normals(FlOutline *outline, GError **error)
 {
     const FlRect *box = &outline->box;
     const size_t n = fl_rect_pixels(*box);
-    g_autofree uint8_t *cell = g_try_malloc(n);
-    g_autofree float *normal = g_try_new0(float, 2 * n);
-    if (!cell || !normal) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for normals");
+    g_autofree uint8_t *cell = fl_alloc(n, sizeof *cell, "normals", error);
+    g_autofree float *normal = cell ? fl_alloc(2 * n, sizeof *normal, "normals", error) : NULL;
+    if (!normal)
         return false;
-    }
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++) {
             const size_t p = y * (size_t)box->width + x;

@@ -1,5 +1,6 @@
 #include "guides/part_tracking.h"
 
+#include "base/alloc.h"
 #include <math.h>
 
 /** One part of a frame's shape. */
@@ -11,11 +12,11 @@ typedef struct Blob {
 
 /** The blobs of an outline by part number; entry 0 is unused. To be freed with g_free(). */
 static Blob *measure_blobs(const FlOutline *outline, const FlConnectedParts *parts,
-                           const FlOutline *other)
+                           const FlOutline *other, GError **error)
 {
     const FlRect *box = &outline->box;
-    Blob *blobs = g_new0(Blob, parts->n_parts + 1);
-    for (int y = 0; y < box->height; y++)
+    Blob *blobs = fl_alloc((size_t)parts->n_parts + 1, sizeof *blobs, "a flow", error);
+    for (int y = 0; blobs && y < box->height; y++)
         for (int x = 0; x < box->width; x++) {
             const int part = parts->part[y * (size_t)box->width + x];
             if (part == 0)
@@ -24,7 +25,7 @@ static Blob *measure_blobs(const FlOutline *outline, const FlConnectedParts *par
             blob->x += box->x + x, blob->y += box->y + y, blob->area += 1.0;
             blob->overlaps |= fl_outline_contains(other, box->x + x, box->y + y);
         }
-    for (int part = 1; part <= parts->n_parts; part++)
+    for (int part = 1; blobs && part <= parts->n_parts; part++)
         blobs[part].x /= blobs[part].area, blobs[part].y /= blobs[part].area;
     return blobs;
 }
@@ -54,8 +55,8 @@ static bool trace_jumps(const FlOutline *now, const FlConnectedParts *parts, con
     if (!fl_connected_parts_init(&other_parts, other->coverage, other->box.width, other->box.height,
                                  error))
         return false;
-    g_autofree Blob *others = measure_blobs(other, &other_parts, now);
-    for (int part = 1; part <= parts->n_parts; part++) {
+    g_autofree Blob *others = measure_blobs(other, &other_parts, now, error);
+    for (int part = 1; others && part <= parts->n_parts; part++) {
         if (trace[part].kind != FL_TRACE_LOST)
             continue;
         const Blob *from = find_origin(&blobs[part], others, other_parts.n_parts, limit_px);
@@ -64,7 +65,7 @@ static bool trace_jumps(const FlOutline *now, const FlConnectedParts *parts, con
                 (FlTrace){FL_TRACE_JUMPS,
                           {(float)(blobs[part].x - from->x), (float)(blobs[part].y - from->y)}};
     }
-    return true;
+    return others != NULL;
 }
 
 bool fl_part_tracking_find(const FlOutline *now, const FlConnectedParts *parts,
@@ -75,7 +76,9 @@ bool fl_part_tracking_find(const FlOutline *now, const FlConnectedParts *parts,
     if (!other || other->empty)
         return true;
     bool all = true;
-    g_autofree Blob *blobs = measure_blobs(now, parts, other);
+    g_autofree Blob *blobs = measure_blobs(now, parts, other, error);
+    if (!blobs)
+        return false;
     for (int part = 1; part <= parts->n_parts; part++) {
         if (blobs[part].overlaps)
             trace[part].kind = FL_TRACE_OVERLAPS;

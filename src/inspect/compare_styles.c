@@ -5,58 +5,32 @@
 #include "base/alloc.h"
 #include "drawing/open_drawing.h"
 #include "io/contact_sheet.h"
-#include "io/output_name.h"
-#include "io/picture.h"
+#include "io/pattern.h"
 #include "io/png.h"
+#include "io/render_frames.h"
 #include "style/style_folder.h"
-#include <glib/gstdio.h>
 #include <string.h>
 
 #define SHOWN_PX 320 // larger side of a frame on the sheet
 #define STYLE_COLUMNS 4
 
-/* What is compared: the film, the styles, and where frames are painted meanwhile. */
+/* What is compared: the film, the styles, and the sheet. */
 typedef struct Comparison {
     FlRenderOptions options; // complete
     FlConfig *config;
     FlDrawing *drawing;
-    char *folder, *pattern; // temporary
     FlContactSheet contact;
+    int row, column; // where the next painted frame goes
 } Comparison;
-
-static void remove_frames(const Comparison *c)
-{
-    for (int f = 0; c->drawing && f < fl_drawing_frames(c->drawing); f++) {
-        g_autofree char *file =
-            fl_output_name(c->pattern, fl_drawing_number(c->drawing, f), NULL, NULL);
-        if (file)
-            g_unlink(file);
-    }
-    if (c->folder)
-        g_rmdir(c->folder);
-}
 
 static void comparison_clear(Comparison *c)
 {
-    remove_frames(c);
     fl_drawing_free(c->drawing);
     fl_config_free(c->config);
-    g_free(c->folder);
-    g_free(c->pattern);
     fl_contact_sheet_clear(&c->contact);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Comparison, comparison_clear)
-
-static char *make_folder(GError **error)
-{
-    g_autoptr(GError) problem = NULL;
-    char *folder = g_dir_make_tmp("fluidy-XXXXXX", &problem);
-    if (!folder)
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: no folder can be made there: %s",
-                    g_get_tmp_dir(), problem->message);
-    return folder;
-}
 
 static bool comparison_init(Comparison *c, const FlRenderOptions *options, int n_styles,
                             GError **error)
@@ -71,9 +45,6 @@ static bool comparison_init(Comparison *c, const FlRenderOptions *options, int n
     complete.warning = NULL, complete.note = NULL; // the renders will tell
     if (!(c->drawing = fl_drawing_from_options(&complete, c->config, error)))
         return false;
-    if (!(c->folder = make_folder(error)))
-        return false;
-    c->pattern = g_build_filename(c->folder, "%d.png", NULL);
     const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
     const double scale = MIN(1, (double)SHOWN_PX / MAX(width, height));
     return fl_contact_sheet_init(&c->contact, fl_drawing_frames(c->drawing), 1 + n_styles,
@@ -101,8 +72,17 @@ static bool show_drawing(const Comparison *c, GError **error)
     return rgba != NULL;
 }
 
+static bool show_frame(void *taker, const FlSinkFrame *frame, int width, int height, GError **error)
+{
+    Comparison *c = taker;
+    g_autoptr(cairo_surface_t) surface = fl_surface_of(frame->rgba, 4, width, height, error);
+    if (surface)
+        fl_contact_sheet_put(&c->contact, c->column++, c->row, surface);
+    return surface != NULL;
+}
+
 /* The caller's settings and the style: the last wins. */
-static bool paint(const Comparison *c, const char *style, bool first, GError **error)
+static bool paint(Comparison *c, const char *style, int row, GError **error)
 {
     g_autofree char *line = g_strdup_printf("style %s", style);
     if (c->options.note)
@@ -113,27 +93,12 @@ static bool paint(const Comparison *c, const char *style, bool first, GError **e
     settings[n] = (FlSetting){.name = "style", .value = style};
     FlRenderOptions options = c->options;
     options.settings = settings, options.n_settings = n + 1;
-    options.output = c->pattern, options.format = "png", options.overwrite = FL_OVERWRITE_YES;
-    options.layers = options.report = options.stats = options.dump = NULL;
     options.note = NULL;
-    if (!first)
+    if (row > 1)
         options.warning = NULL; // they are the drawing's
-    return fl_render(&options, error);
-}
-
-static bool show_style(const Comparison *c, const char *style, int row, GError **error)
-{
-    for (int f = 0; f < fl_drawing_frames(c->drawing); f++) {
-        g_autofree char *file =
-            fl_output_name(c->pattern, fl_drawing_number(c->drawing, f), NULL, error);
-        g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
-        g_autoptr(cairo_surface_t) surface =
-            picture ? fl_surface_of(picture->rgba, 4, picture->width, picture->height, error)
-                    : NULL;
-        if (!surface)
-            return false;
-        fl_contact_sheet_put(&c->contact, f, row, surface);
-    }
+    c->row = row, c->column = 0;
+    if (!fl_render_frames(&options, show_frame, c, error))
+        return false;
     g_autofree char *name = g_path_get_basename(style);
     fl_contact_sheet_name_row(&c->contact, row, name, "");
     return true;
@@ -152,7 +117,7 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
         !comparison_init(&c, options, n, error) || !show_drawing(&c, error))
         return false;
     for (int k = 0; k < n; k++)
-        if (!paint(&c, styles[k], k == 0, error) || !show_style(&c, styles[k], k + 1, error))
+        if (!paint(&c, styles[k], k + 1, error))
             return false;
     g_autofree char *path = fl_output_of_film(
         options->output ? options->output : "fluidy/{name}_styles.png", fl_drawing_name(c.drawing));

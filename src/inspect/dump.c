@@ -4,7 +4,7 @@
 #include "base/colour_map.h"
 #include "guides/flow_file.h"
 #include "io/atomic_file.h"
-#include "io/picture.h"
+#include "io/png.h"
 #include <math.h>
 #include <string.h>
 

@@ -2,8 +2,8 @@
 #ifndef FLUIDY_INSPECT_GUIDE_PICTURES_H
 #define FLUIDY_INSPECT_GUIDE_PICTURES_H
 
+#include "base/picture.h"
 #include "compose/painted_region.h"
-#include "io/picture.h"
 #include <stdio.h>
 
 typedef enum FlGuidePicture {

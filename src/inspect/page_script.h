@@ -2,7 +2,7 @@
 #ifndef FLUIDY_INSPECT_PAGE_SCRIPT_H
 #define FLUIDY_INSPECT_PAGE_SCRIPT_H
 
-#include "io/picture.h"
+#include "base/picture.h"
 #include <stdio.h>
 
 /** A string in quotes, whatever is in it; NULL: null. It can end neither itself nor the script. */

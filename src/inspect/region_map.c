@@ -4,7 +4,7 @@
 #include "base/alloc.h"
 #include "base/surface.h"
 #include "drawing/open_drawing.h"
-#include "io/output_name.h"
+#include "io/pattern.h"
 #include "io/png.h"
 #include <fluidy/style.h>
 

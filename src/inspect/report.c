@@ -7,6 +7,7 @@
 #include "inspect/page_script.h"
 #include "inspect/stats.h"
 #include "io/atomic_file.h"
+#include "style/resample.h"
 #include <fluidy/fluidy.h>
 #include <gio/gio.h>
 #include <math.h>

@@ -67,17 +67,18 @@ static int open_nameless(const char *path)
 #endif
 }
 
-/** An empty locked file of the hidden name, or -1; an error is set if another run writes it. */
+/**
+ * A new locked file of the hidden name, or -1; an error is set if another run writes it. What a
+ * killed run left goes: a program that it has started may not be done with that.
+ */
 static int open_hidden(FlAtomicFile *file, GError **error)
 {
     file->temporary = hidden_name(file->path);
-    int fd = fl_lock_take(file->temporary, file->path, error);
-    struct stat found;
-    if (fd < 0 || fstat(fd, &found) != 0 || found.st_size == 0)
-        return fd;
-    // A new file: what a killed run left may have an ffmpeg that is not done with it.
+    const int left = fl_lock_take(file->temporary, file->path, error);
+    if (left < 0)
+        return -1;
     g_unlink(file->temporary);
-    close(fd);
+    close(left);
     return fl_lock_take(file->temporary, file->path, error);
 }
 

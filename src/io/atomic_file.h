@@ -29,7 +29,7 @@ typedef struct FlAtomicFile {
  */
 bool fl_atomic_open(FlAtomicFile *file, const char *path, bool overwrite, GError **error);
 
-/** The same for a program that writes the file itself, to file->temporary: it has that name. */
+/** The same for a program that writes the file itself: it has the name file->temporary. */
 bool fl_atomic_reserve(FlAtomicFile *file, const char *path, bool overwrite, GError **error);
 
 /**

@@ -1,22 +1,39 @@
 #include "io/child_process.h"
 
 #include <errno.h>
-#include <gio/gio.h>
 #include <glib/gstdio.h>
+#include <poll.h>
+#include <signal.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+#define LIMIT_S 60
+#define LONGEST_PAUSE_MS 100
+#define LEAST_WORK 0.01 // of a processor: what waits for something may wake now and then
 
 struct FlChild {
-    GSubprocess *process;
     char *program;
-    int input;  // our end of its standard input, -1: closed
+    FlChildStream stream;
+    FlPatience patience;
+    GPid pid;   // 0: it has ended, with `status`
+    int status; // as waitpid() has it
+    int ours;   // our end of the stream, -1: closed
     int errors; // a nameless file with its standard error: a pipe that nobody reads could block it
 };
 
-static void own_group(void *data)
+/* In the child, before the program. */
+static void set_up(void *data)
 {
     setpgid(0, 0);
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+#endif
 }
 
 static int nameless_file(void)
@@ -28,97 +45,191 @@ static int nameless_file(void)
     return fd;
 }
 
-FlChild *fl_child_start(const char *const *arguments, GError **error)
+static int error_code(const FlChild *child)
 {
-    g_autoptr(FlChild) child = g_new0(FlChild, 1);
-    int ends[2];
-    child->program = g_strdup(arguments[0]);
-    child->input = -1;
+    return child->stream == FL_CHILD_INPUT ? FL_ERROR_OUTPUT : FL_ERROR_INPUT;
+}
+
+static bool spawn(FlChild *child, const char *const *arguments, int theirs, int file,
+                  GError **error)
+{
+    const bool fed = child->stream == FL_CHILD_INPUT;
+    const int target = 3;
+    const GSpawnFlags flags = G_SPAWN_SEARCH_PATH | G_SPAWN_DO_NOT_REAP_CHILD |
+                              (fed ? G_SPAWN_STDOUT_TO_DEV_NULL : G_SPAWN_DEFAULT);
+    g_autoptr(GError) trouble = NULL;
+    if (g_spawn_async_with_pipes_and_fds(
+            NULL, arguments, NULL, flags, set_up, NULL, fed ? theirs : -1, fed ? -1 : theirs,
+            child->errors, &file, &target, file >= 0, &child->pid, NULL, NULL, NULL, &trouble))
+        return true;
+    child->pid = 0;
+    g_set_error(error, FL_ERROR, error_code(child), "%s: cannot be started: %s", child->program,
+                trouble->message);
+    return false;
+}
+
+FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int file,
+                        const FlPatience *patience, GError **error)
+{
+    g_autoptr(FlChild) child = g_new(FlChild, 1);
+    *child = (FlChild){.program = g_strdup(arguments[0]), .stream = stream, .ours = -1};
+    child->patience = patience ? *patience : (FlPatience){0};
     child->errors = nameless_file();
+    int ends[2];
     /* A socket instead of a pipe: writing to one whose reader is gone need not raise SIGPIPE. */
     if (child->errors < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be started: %s", arguments[0],
+        g_set_error(error, FL_ERROR, error_code(child), "%s: cannot be started: %s", arguments[0],
                     g_strerror(errno));
         return NULL;
     }
-    child->input = ends[0];
-    g_autoptr(GSubprocessLauncher) launcher =
-        g_subprocess_launcher_new(G_SUBPROCESS_FLAGS_STDOUT_SILENCE);
-    g_autoptr(GError) trouble = NULL;
-    g_subprocess_launcher_take_stdin_fd(launcher, ends[1]);
-    g_subprocess_launcher_take_stderr_fd(launcher, dup(child->errors));
-    g_subprocess_launcher_set_child_setup(launcher, own_group, NULL, NULL);
-    child->process = g_subprocess_launcher_spawnv(launcher, arguments, &trouble);
-    if (!child->process) {
-        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be started: %s", arguments[0],
-                    trouble->message);
-        return NULL;
-    }
-    return g_steal_pointer(&child);
+    child->ours = ends[0];
+    const bool started = spawn(child, arguments, ends[1], file, error);
+    close(ends[1]);
+    return started ? g_steal_pointer(&child) : NULL;
 }
 
-/** The last line of what the child said, without white space at its ends; to be freed. */
-static char *last_words(const FlChild *child)
+char *fl_child_words(const FlChild *child)
 {
     char text[1024] = "";
     const off_t end = lseek(child->errors, 0, SEEK_END);
     const off_t start = MAX(end - (off_t)sizeof text + 1, 0);
     const ssize_t n = pread(child->errors, text, sizeof text - 1, start);
     text[MAX(n, 0)] = '\0';
-    g_strchomp(text);
-    const char *line = strrchr(text, '\n');
-    return g_strstrip(g_utf8_make_valid(line ? line + 1 : text, -1));
+    return g_strchomp(g_utf8_make_valid(text, -1));
 }
 
-/** Waits, and sets the error from what the child said. */
+static bool has_ended(FlChild *child)
+{
+    const pid_t ended = child->pid ? waitpid(child->pid, &child->status, WNOHANG) : 0;
+    if (ended < 0 && errno == ECHILD)
+        child->status = 0; // somebody else has waited for it
+    if (ended != 0)
+        child->pid = 0;
+    return child->pid == 0;
+}
+
+static void kill_child(FlChild *child)
+{
+    if (has_ended(child))
+        return;
+    kill(child->pid, SIGKILL);
+    while (waitpid(child->pid, &child->status, 0) < 0 && errno == EINTR)
+        ;
+    child->pid = 0;
+}
+
+/* Processor seconds that the child has taken. */
+static double worked_s(const FlChild *child)
+{
+    clockid_t clock;
+    struct timespec time = {0};
+    if (child->pid && clock_getcpuclockid(child->pid, &clock) == 0)
+        (void)clock_gettime(clock, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* Kills the child. */
+static bool give_up(FlChild *child, int code, const char *why, GError **error)
+{
+    kill_child(child);
+    g_set_error(error, FL_ERROR, code, "%s %s", child->program, why);
+    return false;
+}
+
+/* Until the stream has one of the events; 0: until the child has ended. */
+static bool wait_for(FlChild *child, short events, GError **error)
+{
+    const FlPatience *patience = &child->patience;
+    const double limit_s = patience->limit_s > 0 ? patience->limit_s : LIMIT_S;
+    double worked = worked_s(child);
+    gint64 since = g_get_monotonic_time();
+    for (int pause_ms = events ? LONGEST_PAUSE_MS : 1;; pause_ms *= 2) {
+        struct pollfd stream = {.fd = child->ours, .events = events};
+        pause_ms = MIN(pause_ms, LONGEST_PAUSE_MS);
+        if (!events && has_ended(child))
+            return true;
+        if (poll(&stream, events ? 1 : 0, pause_ms) > 0)
+            return true;
+        if (patience->stopped && patience->stopped(patience->data))
+            return give_up(child, FL_ERROR_INTERRUPTED, "was at work: interrupted", error);
+        if ((double)(g_get_monotonic_time() - since) < limit_s * 1e6)
+            continue;
+        if (worked_s(child) - worked < LEAST_WORK * limit_s)
+            return give_up(child, error_code(child), "does not go on: it was ended", error);
+        worked = worked_s(child), since = g_get_monotonic_time();
+    }
+}
+
+/* Waits for the end of a child that failed, and quotes it. */
 static bool report_death(FlChild *child, GError **error)
 {
-    g_subprocess_wait(child->process, NULL, NULL);
-    g_autofree char *words = last_words(child);
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s stopped: %s", child->program,
-                *words ? words : "it did not say why");
+    if (!wait_for(child, 0, error))
+        return false;
+    g_autofree char *words = fl_child_words(child);
+    const char *line = strrchr(words, '\n');
+    g_set_error(error, FL_ERROR, error_code(child), "%s stopped: %s", child->program,
+                !*words ? "it did not say why"
+                : line  ? line + 1
+                        : words);
     return false;
 }
 
 bool fl_child_write(FlChild *child, const void *data, size_t bytes, GError **error)
 {
     for (const char *at = data; bytes > 0;) {
-        const ssize_t n = send(child->input, at, bytes, MSG_NOSIGNAL);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
+        const ssize_t n = send(child->ours, at, bytes, MSG_NOSIGNAL | MSG_DONTWAIT);
+        if (n < 0 && (errno == EINTR || errno == EAGAIN || errno == EWOULDBLOCK)) {
+            if (!wait_for(child, POLLOUT, error))
+                return false;
+        } else if (n <= 0) {
             return report_death(child, error);
-        at += n, bytes -= (size_t)n;
+        } else {
+            at += n, bytes -= (size_t)n;
+        }
     }
     return true;
 }
 
-static void end_input(FlChild *child)
+bool fl_child_read(FlChild *child, void *data, size_t bytes, size_t *got, GError **error)
 {
-    if (child->input >= 0)
-        close(child->input);
-    child->input = -1;
+    for (*got = 0; *got < bytes;) {
+        const ssize_t n = recv(child->ours, (char *)data + *got, bytes - *got, MSG_DONTWAIT);
+        if (n < 0 && (errno == EINTR || errno == EAGAIN || errno == EWOULDBLOCK)) {
+            if (!wait_for(child, POLLIN, error))
+                return false;
+        } else if (n <= 0) {
+            return true;
+        } else {
+            *got += (size_t)n;
+        }
+    }
+    return true;
+}
+
+static void close_stream(FlChild *child)
+{
+    if (child->ours >= 0)
+        close(child->ours);
+    child->ours = -1;
 }
 
 bool fl_child_finish(FlChild *child, GError **error)
 {
-    end_input(child);
-    g_subprocess_wait(child->process, NULL, NULL);
-    return g_subprocess_get_successful(child->process) || report_death(child, error);
+    close_stream(child);
+    if (!wait_for(child, 0, error))
+        return false;
+    return (WIFEXITED(child->status) && WEXITSTATUS(child->status) == 0) ||
+           report_death(child, error);
 }
 
 void fl_child_free(FlChild *child)
 {
     if (!child)
         return;
-    if (child->process && g_subprocess_get_identifier(child->process)) {
-        g_subprocess_force_exit(child->process);
-        g_subprocess_wait(child->process, NULL, NULL);
-    }
-    end_input(child);
+    kill_child(child);
+    close_stream(child);
     if (child->errors >= 0)
         close(child->errors);
-    g_clear_object(&child->process);
     g_free(child->program);
     g_free(child);
 }

@@ -1,4 +1,4 @@
-/* A program that reads what we write: a child process at the end of a pipe, without a shell. */
+/* Another program, without a shell, that we feed or read: a child process at the end of a pipe. */
 #ifndef FLUIDY_IO_CHILD_PROCESS_H
 #define FLUIDY_IO_CHILD_PROCESS_H
 
@@ -8,20 +8,48 @@
 
 typedef struct FlChild FlChild;
 
+/** Which of its standard streams is ours; the other one is /dev/null. */
+typedef enum FlChildStream {
+    FL_CHILD_INPUT,  // we write; what goes wrong is FL_ERROR_OUTPUT
+    FL_CHILD_OUTPUT, // we read; what goes wrong is FL_ERROR_INPUT
+} FlChildStream;
+
+/** How long a child is waited for. All 0: as long as it works. */
+typedef struct FlPatience {
+    double limit_s;              // for which it may neither take nor give a byte nor compute; 0: 60
+    bool (*stopped)(void *data); // asked every tenth of a second, from any thread; or NULL
+    void *data;
+} FlPatience;
+
+/** The name under which a child finds the file that it is given, to open it as often as it likes.
+ */
+#define FL_CHILD_FILE "/dev/fd/3"
+
 /**
  * Starts arguments[0], looked up in $PATH, in a process group of its own, so that an interrupt from
- * the terminal reaches us first. Returns: NULL with FL_ERROR_OUTPUT set.
+ * the terminal reaches us first; it ends when we are killed. file is a descriptor that stays the
+ * caller's, or -1; patience is copied, NULL: all 0. Returns: NULL with the error set.
  */
-FlChild *fl_child_start(const char *const *arguments, GError **error);
+FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int file,
+                        const FlPatience *patience, GError **error);
 
-/** Writes all bytes to its standard input. A dead child is no signal but FL_ERROR_OUTPUT. */
+/*
+ * Each of these returns false with FL_ERROR_INTERRUPTED if the patience was told to stop, or the
+ * stream's error if the child hangs, which then is killed, or dies: that quotes the last line that
+ * it wrote to its standard error.
+ */
+
+/** Writes all bytes. A dead child is no signal but an error. */
 bool fl_child_write(FlChild *child, const void *data, size_t bytes, GError **error);
 
-/**
- * Ends the input and waits. Returns: false with FL_ERROR_OUTPUT set, which quotes the last line
- * that the child wrote to its standard error, if it failed.
- */
+/** Reads bytes, *got fewer of them at the end of what the child writes, however it ended. */
+bool fl_child_read(FlChild *child, void *data, size_t bytes, size_t *got, GError **error);
+
+/** Closes the stream and waits for the end. */
 bool fl_child_finish(FlChild *child, GError **error);
+
+/** The last kilobyte that the child wrote to its standard error; to be freed. */
+char *fl_child_words(const FlChild *child);
 
 /** Kills the child if it still runs. NULL is fine. */
 void fl_child_free(FlChild *child);

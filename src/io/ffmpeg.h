@@ -2,7 +2,7 @@
 #ifndef FLUIDY_IO_FFMPEG_H
 #define FLUIDY_IO_FFMPEG_H
 
-#include "io/picture.h"
+#include "base/picture.h"
 
 /** A recording that is being read. */
 typedef struct FlFfmpeg FlFfmpeg;

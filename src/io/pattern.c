@@ -3,6 +3,7 @@
 #include <string.h>
 
 #define MOST_DIGITS 9 // so that a number fits an int
+#define MOST_WIDTH 19
 
 void fl_pattern_clear(FlPattern *pattern)
 {
@@ -10,61 +11,75 @@ void fl_pattern_clear(FlPattern *pattern)
     g_clear_pointer(&pattern->suffix, g_free);
 }
 
+/** Where the number stands in a name. */
+typedef struct Place {
+    size_t at, length; // length 0: nowhere
+    int width;
+} Place;
+
 /** Length of the conversion "%d" or "%04d" at s, 0 if there is none; its width goes to *width. */
 static size_t conversion(const char *s, int *width)
 {
     size_t n = 1;
     while (g_ascii_isdigit(s[n]))
         n++;
-    if (s[0] != '%' || s[n] != 'd' || n > 3)
+    if (s[0] != '%' || s[n] != 'd' || g_ascii_strtoull(s + 1, NULL, 10) > MOST_WIDTH)
         return 0;
-    const int digits = (int)g_ascii_strtoll(s + 1, NULL, 10);
-    *width = CLAMP(digits, 1, MOST_DIGITS);
+    *width = MAX((int)g_ascii_strtoull(s + 1, NULL, 10), 1);
     return n + 1;
 }
 
-/** Reads name into the text before and after the number. Returns: numbers found, -1 on an error. */
-static int split(const char *name, GString *text[3], int *width, GError **error)
+static Place last_hashes(const char *name)
 {
-    int part = 0;
-    for (const char *s = name; *s;) {
-        const size_t n = *s == '#' ? strspn(s, "#") : conversion(s, width);
-        if (s[0] == '%' && s[1] == '%') {
-            g_string_append_c(text[part], '%');
-            s += 2;
-        } else if (n > 0) {
-            if (*s == '#')
-                *width = (int)MIN(n, MOST_DIGITS);
-            part = MIN(part + 1, 2);
-            s += n;
-        } else if (*s == '%') {
-            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                        "%s: \"%.3s\" is no frame number; expected %%d, %%04d or ####", name, s);
-            return -1;
-        } else {
-            g_string_append_c(text[part], *s++);
-        }
-    }
-    if (part == 2) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: two places for the frame number; expected one", name);
-        return -1;
-    }
-    return part;
+    const char *end = strrchr(name, '#'), *first = end;
+    if (!end)
+        return (Place){0};
+    while (first > name && first[-1] == '#')
+        first--;
+    const size_t n = (size_t)(end + 1 - first);
+    return (Place){(size_t)(first - name), n, (int)MIN(n, MOST_WIDTH)};
 }
 
-bool fl_pattern_parse(const char *name, FlPattern *pattern, bool *has_number, GError **error)
+static bool find_number(const char *name, Place *place, GError **error)
 {
-    GString *text[3] = {g_string_new(NULL), g_string_new(NULL), g_string_new(NULL)};
-    int width = 1;
-    const int numbers = split(name, text, &width, error);
-    *has_number = numbers == 1;
+    *place = (Place){0};
+    for (const char *s = strchr(name, '%'); s; s = strchr(s, '%')) {
+        int width = 0;
+        const size_t n = s[1] == '%' ? 2 : conversion(s, &width);
+        if (n == 0 || (width > 0 && place->length > 0)) {
+            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                        n ? "%s: “%.4s” is a second frame number; expected one"
+                          : "%s: “%.4s” is no frame number; expected %%d, %%04d or ####, and "
+                            "%%%% for a percent sign",
+                        name, s);
+            return false;
+        }
+        if (width > 0)
+            *place = (Place){(size_t)(s - name), n, width};
+        s += n;
+    }
+    if (place->length == 0)
+        *place = last_hashes(name);
+    return true;
+}
+
+/** The text of n bytes with one percent sign for two; to be freed. */
+static char *plain(const char *text, size_t n)
+{
+    GString *out = g_string_new_len(text, (gssize)n);
+    g_string_replace(out, "%%", "%", 0);
+    return g_string_free(out, FALSE);
+}
+
+bool fl_pattern_parse(const char *name, FlPattern *pattern, GError **error)
+{
+    Place place;
     *pattern = (FlPattern){0};
-    if (*has_number)
-        *pattern = (FlPattern){g_strdup(text[0]->str), g_strdup(text[1]->str), width};
-    for (int i = 0; i < 3; i++)
-        g_string_free(text[i], TRUE);
-    return numbers >= 0;
+    if (!find_number(name, &place, error))
+        return false;
+    const size_t end = place.length ? place.at : strlen(name), next = end + place.length;
+    *pattern = (FlPattern){plain(name, end), plain(name + next, strlen(name + next)), place.width};
+    return true;
 }
 
 bool fl_pattern_match(const FlPattern *pattern, const char *name, int *number)
@@ -76,12 +91,14 @@ bool fl_pattern_match(const FlPattern *pattern, const char *name, int *number)
         return false;
     const char *digits = name + before;
     const size_t n = length - before - after;
-    if (strspn(digits, "0123456789") < n || n > MOST_DIGITS || n < (size_t)pattern->width)
+    if (strspn(digits, "0123456789") < n || n < (size_t)pattern->width ||
+        n > (size_t)MAX(MOST_DIGITS, pattern->width))
         return false;
     if (pattern->width > 1 && n > (size_t)pattern->width && digits[0] == '0')
         return false; // a_00001.svg is not of a_%04d.svg
-    *number = (int)g_ascii_strtoll(digits, NULL, 10);
-    return true;
+    const gint64 value = g_ascii_strtoll(digits, NULL, 10);
+    *number = (int)MIN(value, G_MAXINT);
+    return value <= G_MAXINT;
 }
 
 bool fl_pattern_of_name(const char *name, FlPattern *pattern, int *number)
@@ -102,9 +119,63 @@ bool fl_pattern_of_name(const char *name, FlPattern *pattern, int *number)
     return true;
 }
 
+/** The text as a pattern has it, which always has a conversion if it has a number. */
+static void append_literal(GString *to, const char *text)
+{
+    g_autoptr(GString) escaped = g_string_new(text);
+    g_string_replace(escaped, "%", "%%", 0);
+    g_string_append(to, escaped->str);
+}
+
 char *fl_pattern_text(const FlPattern *pattern)
 {
+    GString *text = g_string_new(NULL);
+    append_literal(text, pattern->prefix);
     if (pattern->width == 1)
-        return g_strdup_printf("%s%%d%s", pattern->prefix, pattern->suffix);
-    return g_strdup_printf("%s%%0%dd%s", pattern->prefix, pattern->width, pattern->suffix);
+        g_string_append(text, "%d");
+    else if (pattern->width > 1)
+        g_string_append_printf(text, "%%0%dd", pattern->width);
+    append_literal(text, pattern->suffix);
+    return g_string_free(text, FALSE);
+}
+
+char *fl_pattern_name(const FlPattern *pattern, int number)
+{
+    if (pattern->width == 0)
+        return g_strdup(pattern->prefix);
+    return g_strdup_printf("%s%0*d%s", pattern->prefix, pattern->width, number, pattern->suffix);
+}
+
+bool fl_output_is_pattern(const char *text)
+{
+    Place place;
+    return find_number(text, &place, NULL) && place.length > 0;
+}
+
+bool fl_input_is_pattern(const char *text)
+{
+    return fl_output_is_pattern(text) && !g_file_test(text, G_FILE_TEST_EXISTS);
+}
+
+char *fl_output_name(const char *text, int number, const char *region, GError **error)
+{
+    g_auto(FlPattern) pattern = {0};
+    if (!fl_pattern_parse(text, &pattern, error))
+        return NULL;
+    g_autofree char *name = fl_pattern_name(&pattern, number);
+    if (!strstr(name, "{region}"))
+        return g_steal_pointer(&name);
+    if (!region) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: {region} has no meaning here; it belongs in the name of layers", text);
+        return NULL;
+    }
+    g_auto(GStrv) parts = g_strsplit(name, "{region}", -1);
+    return g_strjoinv(region, parts);
+}
+
+char *fl_output_of_film(const char *pattern, const char *film)
+{
+    g_auto(GStrv) parts = g_strsplit(pattern, "{name}", -1);
+    return g_strjoinv(film, parts);
 }

@@ -1,4 +1,11 @@
-/* Names with a frame number in them: "walk_0012.svg" is "walk_" + 12 + ".svg". */
+/*
+ * Names with a frame number in them, of files that are read and of files that are written:
+ * "walk_0012.svg" is "walk_" + 12 + ".svg".
+ *
+ * In a pattern %d, %4d or %04d stands for the number, with at least that many digits and zeros in
+ * front; "%%" is a percent sign. Where there is none of these, the last run of '#' stands for a
+ * number of as many digits. Everything else is itself. No pattern is ever given to printf.
+ */
 #ifndef FLUIDY_IO_PATTERN_H
 #define FLUIDY_IO_PATTERN_H
 
@@ -7,19 +14,15 @@
 
 /** A name taken apart at its frame number. */
 typedef struct FlPattern {
-    char *prefix, *suffix; // without folder
-    int width;             // digits at least; 1: any number of digits, also with leading zeros
+    char *prefix, *suffix;
+    int width; // digits at least; 1: any number of digits, also with leading zeros; 0: no number,
+               // the prefix is all
 } FlPattern;
 
-/**
- * Reads a_%04d.svg, a_%d.svg or a_####.svg; "%%" is a percent sign.
- *
- * name is without folder. has_number tells whether there is a place for the number; if not, the
- * pattern is left empty. Returns: false with FL_ERROR_USAGE for two numbers or another conversion.
- */
-bool fl_pattern_parse(const char *name, FlPattern *pattern, bool *has_number, GError **error);
+/** Reads a pattern. Returns: false with FL_ERROR_USAGE for two numbers or another conversion. */
+bool fl_pattern_parse(const char *text, FlPattern *pattern, GError **error);
 
-/** Whether name fits; its number goes to *number. */
+/** Whether name fits the pattern, which has a number; the name's goes to *number. */
 bool fl_pattern_match(const FlPattern *pattern, const char *name, int *number);
 
 /**
@@ -28,10 +31,28 @@ bool fl_pattern_match(const FlPattern *pattern, const char *name, int *number);
  */
 bool fl_pattern_of_name(const char *name, FlPattern *pattern, int *number);
 
-/** "walk_%04d.svg"; to be freed. */
+/** "walk_%04d.svg": the same text for all spellings of a pattern; to be freed. */
 char *fl_pattern_text(const FlPattern *pattern);
 
+/** The name with a number, which may be negative; to be freed. */
+char *fl_pattern_name(const FlPattern *pattern, int number);
+
 void fl_pattern_clear(FlPattern *pattern);
+
+/**
+ * The file name of a frame, and in the place of every {region} the region, which may be NULL: then
+ * {region} is an error. Returns: to be freed; NULL with FL_ERROR_USAGE set.
+ */
+char *fl_output_name(const char *pattern, int number, const char *region, GError **error);
+
+/** The pattern with the film's name in place of {name}; to be freed. */
+char *fl_output_of_film(const char *pattern, const char *film);
+
+/** Whether the pattern has a place for the frame number, so that frames get files of their own. */
+bool fl_output_is_pattern(const char *pattern);
+
+/** The same for a name of files to read: a file that has just this name is that file. */
+bool fl_input_is_pattern(const char *pattern);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlPattern, fl_pattern_clear)
 

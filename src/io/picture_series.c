@@ -1,6 +1,7 @@
 #include "io/picture_series.h"
 
-#include <stdlib.h>
+#include "io/pattern.h"
+
 #include <string.h>
 
 /* A file name taken apart at its last run of digits. */
@@ -17,30 +18,31 @@ static void clear_name(void *data)
     g_free(name->suffix);
 }
 
-static const char *ending_of(const char *file, const char *const *endings)
+static bool is_ending(const char *suffix, const char *const *endings)
 {
-    g_autofree char *lower = g_ascii_strdown(file, -1);
     for (; *endings; endings++)
-        if (g_str_has_suffix(lower, *endings))
-            return file + strlen(file) - strlen(*endings);
-    return NULL;
+        if (g_ascii_strcasecmp(suffix, *endings) == 0)
+            return true;
+    return false;
 }
 
-/* The number must stand right before the ending, at most 9 digits. */
-static bool split_name(Name *name, const char *folder, const char *file, const char *const *endings)
+/* Whether a file's name fits the pattern; NULL: has its number right before one of the endings. */
+static bool split_name(Name *name, const char *folder, const char *file, const FlPattern *wanted,
+                       const char *const *endings)
 {
-    const char *end = ending_of(file, endings), *start = end;
-    while (start && start > file && g_ascii_isdigit(start[-1]))
-        start--;
-    if (!end || start == end || end - start > 9)
+    g_auto(FlPattern) own = {0};
+    int number;
+    if (wanted ? !fl_pattern_match(wanted, file, &number)
+               : !fl_pattern_of_name(file, &own, &number) || !is_ending(own.suffix, endings))
         return false;
-    g_autofree char *stem = g_strndup(file, (gsize)(start - file));
+    const char *prefix = wanted ? wanted->prefix : own.prefix;
+    const char *suffix = wanted ? wanted->suffix : own.suffix;
     *name = (Name){
         .path = g_build_filename(folder, file, NULL),
-        .prefix = g_strconcat(folder, G_DIR_SEPARATOR_S, stem, NULL),
-        .suffix = g_strdup(end),
-        .number = atoi(start),
-        .digits = (int)(end - start),
+        .prefix = g_strconcat(folder, G_DIR_SEPARATOR_S, prefix, NULL),
+        .suffix = g_strdup(suffix),
+        .number = number,
+        .digits = (int)(strlen(file) - strlen(prefix) - strlen(suffix)),
     };
     return true;
 }
@@ -85,7 +87,9 @@ void fl_series_free(FlSeries *series)
     g_free(series);
 }
 
-GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, GError **error)
+/* The names of a folder that are taken, in order. */
+static GArray *list_names(const char *folder, const FlPattern *wanted, const char *const *endings,
+                          GError **error)
 {
     g_autoptr(GError) below = NULL;
     g_autoptr(GDir) dir = g_dir_open(folder, 0, &below);
@@ -94,16 +98,23 @@ GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, G
                     below->message);
         return NULL;
     }
-    g_autoptr(GArray) names = g_array_new(FALSE, FALSE, sizeof(Name));
+    GArray *names = g_array_new(FALSE, FALSE, sizeof(Name));
     g_array_set_clear_func(names, clear_name);
     const char *file;
     while ((file = g_dir_read_name(dir))) {
         Name name;
-        if (file[0] != '.' && split_name(&name, folder, file, endings))
+        if (file[0] != '.' && split_name(&name, folder, file, wanted, endings))
             g_array_append_val(names, name);
     }
     g_array_sort(names, compare_names);
+    return names;
+}
 
+GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, GError **error)
+{
+    g_autoptr(GArray) names = list_names(folder, NULL, endings, error);
+    if (!names)
+        return NULL;
     GPtrArray *all = g_ptr_array_new_with_free_func((GDestroyNotify)fl_series_free);
     const Name *name = (const Name *)names->data;
     for (guint i = 0, first = 0; i < names->len; i++)
@@ -115,53 +126,22 @@ GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, G
     return all;
 }
 
-/* Where the pattern's number stands and how long it is; false if there is none. */
-static bool find_number(const char *pattern, const char **start, size_t *length)
+FlSeries *fl_series_of_pattern(const char *text, GError **error)
 {
-    const char *slash = strrchr(pattern, '/');
-    const char *base = slash ? slash + 1 : pattern;
-    const char *percent = strchr(base, '%');
-    if (percent) {
-        *start = percent;
-        *length = strspn(percent + 1, "0123456789") + 2;
-        return percent[*length - 1] == 'd';
-    }
-    *start = strchr(base, '#');
-    *length = *start ? strspn(*start, "#") : 0;
-    return *start;
-}
-
-bool fl_is_pattern(const char *text)
-{
-    const char *start;
-    size_t length;
-    return find_number(text, &start, &length);
-}
-
-FlSeries *fl_series_of_pattern(const char *pattern, GError **error)
-{
-    const char *start;
-    size_t length;
-    if (!find_number(pattern, &start, &length)) {
+    g_autofree char *folder = g_path_get_dirname(text), *base = g_path_get_basename(text);
+    g_auto(FlPattern) pattern = {0};
+    if (!fl_pattern_parse(base, &pattern, error))
+        return NULL;
+    if (pattern.width == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: expected a pattern with a number, such as paint_%%04d.png", pattern);
+                    "%s: expected a pattern with a number, such as paint_%%04d.png", text);
         return NULL;
     }
-    g_autofree char *folder = g_path_get_dirname(pattern);
-    g_autofree char *stem = g_strndup(pattern, (gsize)(start - pattern));
-    g_autofree char *base = strrchr(stem, '/') ? g_strdup(strrchr(stem, '/') + 1) : g_strdup(stem);
-    g_autofree char *prefix = g_strconcat(folder, G_DIR_SEPARATOR_S, base, NULL);
-    const char *endings[] = {start + length, NULL};
-    g_autofree char *lower = g_ascii_strdown(endings[0], -1);
-    endings[0] = lower;
-    g_autoptr(GPtrArray) all = fl_series_in_folder(folder, endings, error);
-    for (guint i = 0; all && i < all->len; i++) {
-        FlSeries *series = g_ptr_array_index(all, i);
-        if (strcmp(series->prefix, prefix) == 0)
-            return g_ptr_array_steal_index(all, i);
-    }
-    if (all)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no file has a name like this", pattern);
+    g_autoptr(GArray) names = list_names(folder, &pattern, NULL, error);
+    if (names && names->len > 0)
+        return make_series((const Name *)names->data, (int)names->len);
+    if (names)
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no file has a name like this", text);
     return NULL;
 }
 

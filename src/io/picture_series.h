@@ -23,11 +23,11 @@ typedef struct FlSeries {
  */
 GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, GError **error);
 
-/** The series of a pattern, `a_%04d.png` or `a_####.png`. NULL with FL_ERROR_INPUT if none fits. */
+/**
+ * The series of a pattern such as `a_%04d.png`, see output/pattern.h. Returns: NULL with
+ * FL_ERROR_INPUT if no file fits, or FL_ERROR_USAGE.
+ */
 FlSeries *fl_series_of_pattern(const char *pattern, GError **error);
-
-/** Whether a text is such a pattern. */
-bool fl_is_pattern(const char *text);
 
 /** False with FL_ERROR_STYLE set if a number is missing or there twice; it names the file. */
 bool fl_series_check(const FlSeries *series, GError **error);

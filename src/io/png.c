@@ -1,6 +1,5 @@
 #include "io/png.h"
 #include "io/atomic_file.h"
-#include "io/formats.h"
 
 #include <errno.h>
 #include <libdeflate.h>
@@ -206,35 +205,66 @@ bool fl_png_save(const FlPng *picture, const char *path, bool overwrite, GError 
     return false;
 }
 
-static bool png_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
+FlPicture *fl_picture_read_png(const char *path, GError **error)
 {
-    g_autofree char *path = fl_sink_file(&sink->params, frame->number, error);
-    const bool deep = sink->format->takes_16;
-    const FlPng png = {
-        .width = sink->params.width,
-        .height = sink->params.height,
-        .rgba = deep ? NULL : frame->rgba,
-        .rgba16 = deep ? frame->rgba16 : NULL,
-        .opaque = sink->params.opaque,
-        .fast = sink->params.fast,
-        .text = frame->text,
-    };
-    return path && fl_png_save(&png, path, sink->params.overwrite, error);
+    png_image png = {.version = PNG_IMAGE_VERSION};
+    if (!png_image_begin_read_from_file(&png, path)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as a PNG picture: %s",
+                    path, png.message);
+        return NULL;
+    }
+    png.format = PNG_FORMAT_RGBA;
+    png.flags |= PNG_IMAGE_FLAG_16BIT_sRGB; // else 16-bit files without gAMA count as linear
+    g_autoptr(FlPicture) picture = png.width > INT32_MAX || png.height > INT32_MAX
+                                       ? NULL
+                                       : fl_picture_new((int)png.width, (int)png.height, error);
+    if (!picture)
+        g_prefix_error(error, "%s: ", path);
+    else if (!png_image_finish_read(&png, NULL, picture->rgba, 0, NULL)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: a damaged PNG picture: %s", path,
+                    png.message);
+        g_clear_pointer(&picture, fl_picture_free);
+    }
+    png_image_free(&png);
+    return g_steal_pointer(&picture);
 }
 
-const FlSinkFormat fl_sink_png = {
-    .name = "png",
-    .suffix = ".png",
-    .help = "a PNG file per frame, 8 bits a channel",
-    .frame = png_frame,
-};
+bool fl_picture_is_opaque(const char *path)
+{
+    png_image png = {.version = PNG_IMAGE_VERSION};
+    const bool known = png_image_begin_read_from_file(&png, path) != 0;
+    const bool may_be_transparent = known && (png.format & PNG_FORMAT_FLAG_ALPHA) != 0;
+    png_image_free(&png);
+    g_autoptr(FlPicture) picture = may_be_transparent ? fl_picture_read_png(path, NULL) : NULL;
+    const size_t pixels = picture ? (size_t)picture->width * picture->height : 0;
+    for (size_t p = 0; p < pixels; p++)
+        if (picture->rgba[4 * p + 3] < 255)
+            return false;
+    return true;
+}
 
-const FlSinkFormat fl_sink_png16 = {
-    .name = "png16",
-    .help = "a PNG file per frame, 16 bits a channel",
-    .takes_16 = true,
-    .frame = png_frame,
-};
+bool fl_png_write(const char *path, const uint8_t *data, int width, int height, int channels,
+                  GError **error)
+{
+    const png_uint_32 formats[] = {0, PNG_FORMAT_GRAY, 0, PNG_FORMAT_RGB, PNG_FORMAT_RGBA};
+    png_image png = {.version = PNG_IMAGE_VERSION,
+                     .width = (png_uint_32)width,
+                     .height = (png_uint_32)height,
+                     .format = formats[channels]};
+    // Filters and level as the library's own default: the file is written once and kept.
+    png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
+    g_autofree uint8_t *file = g_try_malloc(bytes);
+    if (!file || !png_image_write_to_memory(&png, file, &bytes, 0, data, 0, NULL)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot make the PNG picture: %s", path,
+                    file ? png.message : "not enough memory");
+        return false;
+    }
+    g_auto(FlAtomicFile) out = {0};
+    if (!fl_atomic_open(&out, path, true, error))
+        return false;
+    fwrite(file, 1, bytes, out.stream); // what goes wrong shows when the file is synced
+    return fl_atomic_commit(&out, error);
+}
 
 bool fl_png_named(const char *path, const char *what, GError **error)
 {

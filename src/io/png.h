@@ -1,10 +1,9 @@
-/* PNG files. */
+/* PNG files in and out. */
 #ifndef FLUIDY_IO_PNG_H
 #define FLUIDY_IO_PNG_H
 
-#include <fluidy/error.h>
+#include "base/picture.h"
 #include <stdbool.h>
-#include <stdint.h>
 
 /** A picture to be written as PNG; one of rgba and rgba16 is set. */
 typedef struct FlPng {
@@ -28,5 +27,23 @@ bool fl_png_named(const char *path, const char *what, GError **error);
 
 /** The bytes of the file that fl_png_save() writes; NULL if memory is short. */
 GBytes *fl_png_encode(const FlPng *png);
+
+/**
+ * Reads a PNG file of any kind: 8 or 16 bit, grey, palette, with or without alpha.
+ *
+ * Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT set, naming the file.
+ */
+FlPicture *fl_picture_read_png(const char *path, GError **error);
+
+/** Whether a PNG file has no pixel that is even partly transparent; true if it cannot be read. */
+bool fl_picture_is_opaque(const char *path);
+
+/**
+ * Writes `channels` (1 grey, 3 sRGB, 4 sRGBA) interleaved bytes as a PNG file that is kept:
+ * with the filters that make it small, in place of one of that name. Returns: false with
+ * FL_ERROR_OUTPUT set, naming the file.
+ */
+bool fl_png_write(const char *path, const uint8_t *data, int width, int height, int channels,
+                  GError **error);
 
 #endif

@@ -2,7 +2,7 @@
 #include "base/suggest.h"
 #include "config.h"
 #include "io/formats.h"
-#include "io/output_name.h"
+#include "io/pattern.h"
 
 #include <string.h>
 

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_IO_SINK_H
 #define FLUIDY_IO_SINK_H
 
+#include "io/child_process.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -23,14 +24,26 @@ typedef struct FlSinkFrame {
     const char *const *text; // keyword, text, …, NULL: notes for formats that have room; or NULL
 } FlSinkFrame;
 
+/** Gets a frame of width * height pixels. Returns: false with the error set ends the render. */
+typedef bool (*FlTakeFrame)(void *taker, const FlSinkFrame *frame, int width, int height,
+                            GError **error);
+
+/** Who gets frames that stay in memory. */
+typedef struct FlFrameTaker {
+    FlTakeFrame take; // NULL: nobody
+    void *data;       // is handed to take
+} FlFrameTaker;
+
 /** What every frame of a sink has in common. */
 typedef struct FlSinkParams {
-    const char *path;  // a pattern for picture formats, a file for films
-    int width, height; // pixels, >= 1
-    double fps;        // films only, > 0
-    bool opaque;       // no frame has alpha below 255
-    bool overwrite;    // files of the same name may be replaced
-    bool fast;         // intermediate files: larger and sooner written
+    const char *path;    // a pattern for picture formats, a file for films
+    int width, height;   // pixels, >= 1
+    double fps;          // films only, > 0
+    bool opaque;         // no frame has alpha below 255
+    bool overwrite;      // files of the same name may be replaced
+    bool fast;           // intermediate files: larger and sooner written
+    FlPatience patience; // with a program that writes the film
+    FlFrameTaker taker;  // of frames that stay in memory
 } FlSinkParams;
 
 typedef struct FlSink FlSink;

@@ -3,7 +3,10 @@
 #include "io/child_process.h"
 #include "io/formats.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <string.h>
+#include <unistd.h>
 
 /** What ffmpeg is told about a film format. */
 typedef struct Codec {
@@ -88,7 +91,11 @@ static void add_colour(GPtrArray *arguments, const Codec *codec)
     add_words(arguments, "-fflags +bitexact -flags:v +bitexact");
 }
 
-static FlChild *start_ffmpeg(const FlSink *sink, const char *file, GError **error)
+/**
+ * ffmpeg gets the file itself: one that is slow to start, of a run that was killed, would open by
+ * its name what the next run writes. It gets it opened once more, for the lock is ours alone.
+ */
+static FlChild *start_ffmpeg(const FlSink *sink, const FlAtomicFile *file, GError **error)
 {
     const Codec *codec = codec_of(sink->format);
     g_autoptr(GPtrArray) arguments = g_ptr_array_new_with_free_func(g_free);
@@ -97,9 +104,17 @@ static FlChild *start_ffmpeg(const FlSink *sink, const char *file, GError **erro
     add_colour(arguments, codec);
     add_words(arguments, "-f");
     g_ptr_array_add(arguments, g_strdup(codec->muxer));
-    g_ptr_array_add(arguments, g_strconcat("file:", file, NULL)); // whatever the name looks like
+    add_words(arguments, "file:" FL_CHILD_FILE);
     g_ptr_array_add(arguments, NULL);
-    return fl_child_start((const char *const *)arguments->pdata, error);
+    const int fd = open(file->temporary, O_RDWR | O_CLOEXEC);
+    if (fd < 0) {
+        g_set_error_literal(error, FL_ERROR, FL_ERROR_OUTPUT, g_strerror(errno));
+        return NULL;
+    }
+    FlChild *child = fl_child_start((const char *const *)arguments->pdata, FL_CHILD_INPUT, fd,
+                                    &sink->params.patience, error);
+    close(fd);
+    return child;
 }
 
 static bool video_open(FlSink *sink, GError **error)
@@ -124,7 +139,7 @@ static bool video_open(FlSink *sink, GError **error)
     }
     if (!fl_atomic_reserve(&state->file, params->path, params->overwrite, error))
         return false;
-    state->child = start_ffmpeg(sink, state->file.temporary, error);
+    state->child = start_ffmpeg(sink, &state->file, error);
     if (!state->child)
         g_prefix_error(error, "%s: ", params->path);
     return state->child != NULL;

@@ -1,7 +1,7 @@
 #include "job/fingerprint.h"
 
 #include "config.h"
-#include "io/output_name.h"
+#include "io/pattern.h"
 #include <cairo.h>
 #include <librsvg/rsvg.h>
 #include <string.h>
@@ -168,11 +168,13 @@ static void add_options(FlFingerprint *print, const FlPlan *plan)
 static bool add_pattern(FlFingerprint *print, const FlPlan *plan, const char *pattern,
                         const char *region, GError **error)
 {
-    const int n = fl_output_is_pattern(pattern) ? fl_drawing_frames(plan->drawing) : 1;
+    const bool itself = g_file_test(pattern, G_FILE_TEST_EXISTS);
+    const int n = fl_input_is_pattern(pattern) ? fl_drawing_frames(plan->drawing) : 1;
     g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
     for (int f = 0; f < n; f++) {
         g_autofree char *file =
-            fl_output_name(pattern, fl_drawing_number(plan->drawing, f), region, error);
+            itself ? g_strdup(pattern)
+                   : fl_output_name(pattern, fl_drawing_number(plan->drawing, f), region, error);
         if (!file)
             return false;
         if (g_file_test(file, G_FILE_TEST_IS_REGULAR) && !mix_file(sum, file, error))

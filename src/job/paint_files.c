@@ -1,8 +1,7 @@
 #include "job/paint_files.h"
 
 #include "base/alloc.h"
-#include "io/output_name.h"
-#include "io/picture.h"
+#include "io/pattern.h"
 #include "io/png.h"
 #include <string.h>
 

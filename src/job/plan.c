@@ -5,7 +5,7 @@
 #include "base/parallel_error.h"
 #include "base/suggest.h"
 #include "drawing/open_drawing.h"
-#include "io/output_name.h"
+#include "io/pattern.h"
 #include <string.h>
 
 static bool open_film(FlPlan *plan, GError **error)

@@ -1,7 +1,7 @@
 #include "job/resume.h"
 
 #include "io/lock.h"
-#include "io/output_name.h"
+#include "io/pattern.h"
 #include "io/sink.h"
 #include "job/paint_files.h"
 #include <glib/gstdio.h>
@@ -13,11 +13,15 @@ static char *frame_file(const FlPlan *plan, int frame, GError **error)
     return fl_sink_file(&params, fl_drawing_number(plan->drawing, frame), error);
 }
 
-/* Hidden beside the frames, one for each pattern. */
+/* Hidden beside the frames, one for each pattern, however it is spelt. */
 static char *hidden_file(const FlPlan *plan, const char *suffix)
 {
     g_autofree char *folder = g_path_get_dirname(plan->output);
-    g_autofree char *base = g_path_get_basename(plan->output);
+    g_auto(FlPattern) pattern = {0};
+    g_autofree char *text = fl_pattern_parse(plan->output, &pattern, NULL)
+                                ? fl_pattern_text(&pattern)
+                                : g_strdup(plan->output);
+    g_autofree char *base = g_path_get_basename(text);
     g_autofree char *name = g_strdup_printf(".%s.%s", base, suffix);
     return g_build_filename(folder, name, NULL);
 }

@@ -1,8 +1,8 @@
 #include "render/frame_writer.h"
 
 #include "base/alloc.h"
-#include "io/output_name.h"
-#include "io/picture.h"
+#include "io/formats.h"
+#include "io/pattern.h"
 #include "io/png.h"
 #include "job/paint_files.h"
 
@@ -97,17 +97,20 @@ static bool recall_frames(FlFrameWriter *writer, GError **error)
 }
 
 bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlResume *resume,
-                          bool opaque, GError **error)
+                          bool opaque, FlFrameTaker taker, GError **error)
 {
     *writer = (FlFrameWriter){.plan = plan, .resume = resume};
-    FlSinkParams params = {.path = plan->output,
-                           .width = plan->width,
-                           .height = plan->height,
-                           .fps = plan->options.fps > 0 ? plan->options.fps : 24,
-                           .opaque = opaque,
-                           .fast = plan->half, // drafts are looked at and thrown away
-                           .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
-    writer->sink = fl_sink_open(plan->format, &params, error);
+    FlSinkParams params = {
+        .path = plan->output,
+        .width = plan->width,
+        .height = plan->height,
+        .fps = plan->options.fps > 0 ? plan->options.fps : 24,
+        .opaque = opaque,
+        .patience = {.stopped = plan->options.stopped, .data = plan->options.data},
+        .taker = taker,
+        .fast = plan->half, // drafts are looked at and thrown away
+        .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
+    writer->sink = fl_sink_open(taker.take ? &fl_sink_taken : plan->format, &params, error);
     if (!writer->sink || !plan->movie)
         return writer->sink != NULL;
     params.path = plan->movie;

@@ -14,11 +14,11 @@ typedef struct FlFrameWriter {
 } FlFrameWriter;
 
 /**
- * Opens the outputs of a plan; a film takes the frames of an earlier run from their files.
- * FL_ERROR_OUTPUT, FL_ERROR_CHANGED.
+ * Opens the outputs of a plan, or only the taker if there is one; a film takes the frames of an
+ * earlier run from their files. FL_ERROR_OUTPUT, FL_ERROR_CHANGED.
  */
 bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlResume *resume,
-                          bool opaque, GError **error);
+                          bool opaque, FlFrameTaker taker, GError **error);
 void fl_frame_writer_clear(FlFrameWriter *writer);
 
 /** Writes the paint of regions that were painted in the frame, if files of it are asked for. */

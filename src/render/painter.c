@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "guides/flow_file.h"
-#include "io/output_name.h"
+#include "io/pattern.h"
 #include "job/paint_files.h"
 #include <string.h>
 

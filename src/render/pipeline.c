@@ -6,6 +6,8 @@
 #include "inspect/dump.h"
 #include "inspect/report.h"
 #include "inspect/stats.h"
+#include "io/render_frames.h"
+#include "job/guard.h"
 #include "job/plan.h"
 #include "job/resume.h"
 #include "render/frame_writer.h"
@@ -21,6 +23,7 @@ typedef struct Pipeline {
     FlPainters painters;
     const FlPaintedRegion **painted; // what they have painted
     FlFrameWriter writer;
+    FlFrameTaker taker; // instead of files, if there is one
     FlStats stats;
     FlReport *report;          // NULL: not asked for
     FlTask drawing, writing;   // what goes on beside the painting
@@ -285,7 +288,7 @@ static bool prepare(Pipeline *pipeline, GError **error)
     const double read_s = seconds_since(pipeline->start);
     if (!check(pipeline, error) ||
         !fl_frame_writer_init(&pipeline->writer, pipeline->plan, &pipeline->resume,
-                              pipeline->background.opaque, error) ||
+                              pipeline->background.opaque, pipeline->taker, error) ||
         !fl_stats_init(&pipeline->stats, &pipeline->plan->options, error) ||
         !open_report(pipeline, error) || !make_painters(pipeline, error) ||
         !lead_in(pipeline, error) || !restore_state(pipeline, error))
@@ -347,16 +350,32 @@ static void clear(Pipeline *pipeline)
     fl_plan_free(pipeline->plan);
 }
 
-bool fl_render(const FlRenderOptions *options, GError **error)
+static bool render(const FlRenderOptions *options, FlFrameTaker taker, GError **error)
 {
-    Pipeline pipeline = {.drawn = -1, .start = g_get_monotonic_time()};
+    Pipeline pipeline = {.taker = taker, .drawn = -1, .start = g_get_monotonic_time()};
     const int threads = fl_schedule_threads();
     if (options->threads > 0)
         (void)fl_schedule_set_threads(options->threads);
     pipeline.plan = fl_plan_new(options, error);
-    const bool done =
-        pipeline.plan && (options->dry_run ? rehearse(&pipeline, error) : run(&pipeline, error));
+    const bool done = pipeline.plan && fl_guard_inputs(pipeline.plan, error) &&
+                      (options->dry_run ? rehearse(&pipeline, error) : run(&pipeline, error));
     clear(&pipeline);
     (void)fl_schedule_set_threads(threads);
     return done;
+}
+
+bool fl_render(const FlRenderOptions *options, GError **error)
+{
+    return render(options, (FlFrameTaker){0}, error);
+}
+
+bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *taker, GError **error)
+{
+    FlRenderOptions without_files = *options;
+    without_files.output = NULL, without_files.format = "null";
+    without_files.overwrite = FL_OVERWRITE_YES, without_files.resume = false;
+    without_files.layers = without_files.report = without_files.stats = without_files.dump = NULL;
+    if (!options->merge)
+        without_files.paint = NULL;
+    return render(&without_files, (FlFrameTaker){take, taker}, error);
 }

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel_error.h"
-#include "io/picture.h"
+#include "style/resample.h"
 
 #include <math.h>
 #include <string.h>

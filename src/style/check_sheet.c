@@ -1,7 +1,7 @@
 #include "style/check_sheet.h"
 
 #include "base/surface.h"
-#include "io/picture.h"
+#include "io/png.h"
 
 #include <math.h>
 

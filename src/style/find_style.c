@@ -14,6 +14,17 @@ static void add_folder(GPtrArray *folders, char *folder)
         g_ptr_array_add(folders, folder);
 }
 
+/* ../share of the folder that the program is in: a package that was moved has its styles there, and
+ * so has the build folder. */
+static void add_beside_program(GPtrArray *folders)
+{
+    g_autofree char *program = g_file_read_link("/proc/self/exe", NULL);
+    if (!program)
+        return;
+    g_autofree char *folder = g_path_get_dirname(program), *above = g_path_get_dirname(folder);
+    add_folder(folders, g_build_filename(above, "share", "fluidy", "styles", NULL));
+}
+
 char **fl_style_folders(void)
 {
     GPtrArray *folders = g_ptr_array_new();
@@ -27,7 +38,7 @@ char **fl_style_folders(void)
     for (int i = 0; system[i]; i++)
         add_folder(folders, g_build_filename(system[i], "fluidy", "styles", NULL));
     add_folder(folders, g_strdup(FL_STYLE_DIR));
-    add_folder(folders, g_strdup(FL_BUILD_STYLE_DIR));
+    add_beside_program(folders);
     g_ptr_array_add(folders, NULL);
     return (char **)g_ptr_array_free(folders, FALSE);
 }

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_STYLE_PAINT_FRAMES_H
 #define FLUIDY_STYLE_PAINT_FRAMES_H
 
-#include "io/picture.h"
+#include "base/picture.h"
 #include "style/style_folder.h"
 
 /** Room for n_frames frames of a picture's size. NULL pixels before. False: _LIMIT or _NO_MEMORY.

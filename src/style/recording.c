@@ -2,7 +2,10 @@
 
 #include "base/limits.h"
 #include "io/ffmpeg.h"
+#include "io/pattern.h"
+#include "io/png.h"
 #include "style/find_style.h"
+#include "style/resample.h"
 #include "style/style_folder.h"
 
 #include <math.h>
@@ -130,7 +133,7 @@ FlRecording *fl_recording_open(const char *path, FlRecording **masks, GError **e
         return open_any_folder(path, masks, error);
     if (g_file_test(path, G_FILE_TEST_EXISTS))
         return new_source(path, is_still(path) ? one_still(path) : NULL);
-    if (fl_is_pattern(path)) {
+    if (fl_input_is_pattern(path)) {
         FlSeries *series = fl_series_of_pattern(path, error);
         return series ? new_source(path, series) : NULL;
     }

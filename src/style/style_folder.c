@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "guides/flow_file.h"
 #include "io/picture_series.h"
+#include "io/png.h"
 #include "style/border.h"
 #include "style/estimate.h"
 #include "style/find_style.h"

@@ -1,7 +1,7 @@
 #include "style/write_style.h"
 
 #include "io/lock.h"
-#include "io/picture.h"
+#include "io/png.h"
 #include "style/manifest.h"
 
 #include <errno.h>

@@ -1,15 +1,13 @@
 /* Names with frame numbers, and ranges of numbers. */
-#include "io/pattern.h"
-#include "io/frame_range.h"
 #include "fuzz.h"
-#include "io/output_name.h"
+#include "io/frame_range.h"
+#include "io/pattern.h"
 
 static void as_input(const char *text)
 {
     g_auto(FlPattern) pattern = {0};
-    bool has_number = false;
     int number = 0;
-    if (fl_pattern_parse(text, &pattern, &has_number, NULL) && has_number) {
+    if (fl_pattern_parse(text, &pattern, NULL) && pattern.width > 0) {
         G_GNUC_UNUSED g_autofree char *shown = fl_pattern_text(&pattern);
         fl_pattern_match(&pattern, text, &number);
     }

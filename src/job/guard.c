@@ -1,0 +1,112 @@
+#include "job/guard.h"
+
+#include "io/pattern.h"
+#include "job/paint_files.h"
+#include <sys/stat.h>
+
+/* A file whatever its name, as a key; to be freed. */
+static char *key_of(const struct stat *status)
+{
+    return g_strdup_printf("%ju:%ju", (uintmax_t)status->st_dev, (uintmax_t)status->st_ino);
+}
+
+/* A link and what it leads to are both read; what is not there is told by whoever reads it. */
+static void add_file(GHashTable *inputs, const char *path)
+{
+    struct stat status;
+    if (path && lstat(path, &status) == 0)
+        g_hash_table_add(inputs, key_of(&status));
+    if (path && stat(path, &status) == 0)
+        g_hash_table_add(inputs, key_of(&status));
+}
+
+static void add_style(GHashTable *inputs, const char *folder)
+{
+    static const char *const parts[] = {"", "frames", "masks", "flow"};
+    for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
+        g_autofree char *part = g_build_filename(folder, parts[k], NULL);
+        g_autoptr(GDir) dir = g_dir_open(part, 0, NULL);
+        const char *name;
+        while (dir && (name = g_dir_read_name(dir))) {
+            g_autofree char *path = g_build_filename(part, name, NULL);
+            add_file(inputs, path);
+        }
+    }
+}
+
+/* The files of an option that may name one per frame and region. */
+static void add_named(GHashTable *inputs, const FlPlan *plan, const char *pattern)
+{
+    add_file(inputs, pattern);
+    for (int f = 0; pattern && f < fl_drawing_frames(plan->drawing); f++)
+        for (int p = 0; p < MAX(plan->n_painted, 1); p++) {
+            const char *region = p < plan->n_painted ? plan->painted[p].name : NULL;
+            const int number = fl_drawing_number(plan->drawing, f);
+            g_autofree char *path = fl_output_name(pattern, number, region, NULL);
+            add_file(inputs, path);
+        }
+}
+
+static GHashTable *collect_inputs(const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    GHashTable *inputs = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
+        add_file(inputs, fl_drawing_file(plan->drawing, f));
+    for (int p = 0; p < plan->n_painted; p++)
+        if (p == 0 || plan->painted[p].style != plan->painted[p - 1].style)
+            add_style(inputs, plan->painted[p].style->path);
+    add_file(inputs, o->config);
+    add_named(inputs, plan, o->background);
+    add_named(inputs, plan, o->flow);
+    if (o->merge)
+        add_named(inputs, plan, o->paint);
+    return inputs;
+}
+
+/* A link that is written to is replaced itself. Takes the name; NULL: a mistake told elsewhere. */
+static bool may_write(GHashTable *inputs, char *name, GError **error)
+{
+    g_autofree char *path = name;
+    struct stat status;
+    if (!path || lstat(path, &status) != 0)
+        return true;
+    g_autofree char *key = key_of(&status);
+    if (!g_hash_table_contains(inputs, key))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "%s: is read by this render; expected another name for what it writes", path);
+    return false;
+}
+
+static bool check_frame(const FlPlan *plan, GHashTable *inputs, int frame, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    const int number = fl_drawing_number(plan->drawing, frame);
+    if (!plan->format->film &&
+        !may_write(inputs, fl_output_name(plan->output, number, NULL, NULL), error))
+        return false;
+    for (int p = 0; p < plan->n_painted; p++) {
+        const FlRegionPlan *region = &plan->painted[p];
+        if (o->layers &&
+            !may_write(inputs, fl_output_name(o->layers, number, region->name, NULL), error))
+            return false;
+        if (o->paint && !o->merge &&
+            !may_write(inputs, fl_paint_file(o->paint, plan->drawing, region, frame, NULL), error))
+            return false;
+    }
+    return true;
+}
+
+bool fl_guard_inputs(const FlPlan *plan, GError **error)
+{
+    g_autoptr(GHashTable) inputs = collect_inputs(plan);
+    if ((plan->format->film && !may_write(inputs, g_strdup(plan->output), error)) ||
+        !may_write(inputs, g_strdup(plan->movie), error) ||
+        !may_write(inputs, g_strdup(plan->options.stats), error))
+        return false;
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
+        if (!check_frame(plan, inputs, f, error))
+            return false;
+    return true;
+}
