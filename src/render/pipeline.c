@@ -6,12 +6,12 @@
 #include "inspect/dump.h"
 #include "inspect/report.h"
 #include "inspect/stats.h"
-#include "io/render_frames.h"
 #include "job/guard.h"
 #include "job/plan.h"
 #include "job/resume.h"
 #include "render/frame_writer.h"
 #include "render/painters.h"
+#include "render/render_frames.h"
 #include "render/summary.h"
 #include <fluidy/fluidy.h>
 

@@ -7,7 +7,7 @@
 #include "io/contact_sheet.h"
 #include "io/pattern.h"
 #include "io/png.h"
-#include "io/render_frames.h"
+#include "render/render_frames.h"
 #include "style/style_folder.h"
 #include <string.h>
 

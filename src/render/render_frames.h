@@ -1,6 +1,6 @@
 /* A render whose frames stay in memory. */
-#ifndef FLUIDY_IO_RENDER_FRAMES_H
-#define FLUIDY_IO_RENDER_FRAMES_H
+#ifndef FLUIDY_RENDER_RENDER_FRAMES_H
+#define FLUIDY_RENDER_RENDER_FRAMES_H
 
 #include "io/sink.h"
 #include <fluidy/render.h>
