@@ -1,4 +1,5 @@
-/* Build step: copies a man page and puts the tables of params.def and settings.def into it. */
+/* Build step: copies a man page and puts what options.def and params.def say into it. */
+#include <ctype.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -64,31 +65,184 @@ static void print_parameters(void)
 #undef FL_PARAM
 }
 
-/* "knockout|glaze" as knockout | glaze; a name stays one argument. */
-static void print_setting(const char *field, const char *form, const char *preset, const char *help)
+/* What options.def says of an option. */
+typedef struct Option {
+    const char *name;
+    char letter;
+    const char *type, *value, *unit;
+    double min, max;
+    const char *preset, *section, *group, *help;
+    bool described, ranged; // by lines of the page
+} Option;
+
+static Option options[] = {
+#define FL_OPTION(scope, type, field, name, letter, value, unit, min, max, preset, section, bytes, \
+                  group, help)                                                                     \
+    {name, letter, #type, value, unit, min, max, preset, #section, #group, help, false, false},
+#include "params/options.def"
+#undef FL_OPTION
+};
+
+enum { N_OPTIONS = sizeof options / sizeof *options };
+
+static bool is(const char *a, const char *b)
 {
-    fputs(".It Ic ", stdout);
-    print_name(field);
-    fputs(" No = Ar ", stdout);
-    for (; *form; form++)
-        *form == '|' ? fputs(" | ", stdout) : putchar(*form);
-    putchar('\n');
-    if (*preset) {
-        print_text(help);
-        printf("\n.Pq default Cm %s .\n", preset);
-    } else {
-        print_line(help);
+    return strcmp(a, b) == 0;
+}
+
+static bool is_flag(const Option *o)
+{
+    return is(o->type, "FLAG") || is(o->type, "SWITCH") || !*o->value;
+}
+
+static bool is_number(const Option *o)
+{
+    return is(o->type, "INT") || is(o->type, "REAL") || is(o->type, "COUNT");
+}
+
+/* "knockout|NAME" as Cm knockout | Ar name: what is in capitals is to be replaced. */
+static void print_value(const char *value)
+{
+    bool was_word = false;
+    for (const char *part = value; *part;
+         part += strcspn(part, "|") + (strchr(part, '|') != NULL)) {
+        const int length = (int)strcspn(part, "|");
+        const bool word = islower((unsigned char)*part);
+        const bool capitals = length < 2 || (isupper((unsigned char)part[1]) && *part != '#');
+        if (part != value)
+            fputs(" | ", stdout);
+        if (part == value || word != was_word)
+            fputs(word ? "Cm " : "Ar ", stdout);
+        for (int i = 0; i < length; i++)
+            putchar(capitals ? tolower((unsigned char)part[i]) : part[i]);
+        was_word = word;
     }
+}
+
+static void print_argument(const Option *o)
+{
+    fputs(".It Fl ", stdout);
+    if (o->letter)
+        printf("%c , ", o->letter);
+    printf("-%s", o->name);
+    if (!is_flag(o)) {
+        putchar(' ');
+        print_value(o->value);
+    }
+    putchar('\n');
+}
+
+/* "1 to 32767 px; the default is 24." */
+static void print_range(const Option *o)
+{
+    const bool number = is_number(o);
+    if (number)
+        printf("%.16g to %.16g%s%s", o->min, o->max, *o->unit ? " " : "", o->unit);
+    if (*o->preset)
+        printf("%s\n.Cm %s .\n", number ? ";\nthe default is" : "The default is", o->preset);
+    else
+        puts(".");
+}
+
+static void print_key(const Option *o)
+{
+    printf(".It Ic %s No = ", o->name);
+    print_value(o->value);
+    putchar('\n');
+}
+
+static void print_project(void)
+{
+    for (int i = 0; i < N_OPTIONS; i++)
+        if (is(options[i].section, "PROJECT"))
+            print_key(&options[i]);
+}
+
+/* The help, with the words where it says {}. */
+static void print_help(const Option *o)
+{
+    char text[512], *out = text;
+    const char *const end = text + sizeof text - 8;
+    for (const char *in = o->help; *in && out < end; in++) {
+        if (in[0] != '{' || in[1] != '}') {
+            *out++ = *in;
+            continue;
+        }
+        const char *const last = strrchr(o->value, '|');
+        for (const char *v = o->value; *v && out < end; v++)
+            out += *v != '|' ? (*out = *v, 1) : sprintf(out, v == last ? " or " : ", ");
+        in++;
+    }
+    *out = '\0';
+    print_text(text);
 }
 
 static void print_settings(void)
 {
-#define FL_SETTING(type, field, form, preset, help) print_setting(#field, form, preset, help);
-#include "params/settings.def"
-#undef FL_SETTING
+    for (int i = 0; i < N_OPTIONS; i++) {
+        const Option *o = &options[i];
+        if (!is(o->section, "REGION"))
+            continue;
+        print_key(o);
+        print_help(o);
+        if (is_number(o))
+            printf("\n.Pq %.16g to %.16g, default Cm %s .\n", o->min, o->max, o->preset);
+        else if (*o->preset)
+            printf("\n.Pq default Cm %s .\n", o->preset);
+        else
+            puts(".");
+    }
 }
 
-/* usage: fill PAGE > FILLED-PAGE; the lines @PARAMETERS@ and @SETTINGS@ are replaced. */
+/* A line of the page that begins with @. Returns: false if it asks for what there is not. */
+static bool fill(char *line)
+{
+    char what[16] = "", name[64] = "";
+    if (is(line, "@PARAMETERS@\n"))
+        return print_parameters(), true;
+    if (is(line, "@PROJECT@\n"))
+        return print_project(), true;
+    if (is(line, "@SETTINGS@\n"))
+        return print_settings(), true;
+    if (sscanf(line, "@%15s %63[a-z-]@", what, name) != 2)
+        return false;
+    for (int i = 0; i < N_OPTIONS; i++) {
+        if (!is(options[i].name, name))
+            continue;
+        options[i].described |= is(what, "OPTION");
+        options[i].ranged |= is(what, "RANGE");
+        if (!is(what, "OPTION"))
+            return print_range(&options[i]), is(what, "RANGE");
+        return print_argument(&options[i]), true;
+    }
+    return false;
+}
+
+/* A page that describes one option describes them all. */
+static bool complete(const char *page)
+{
+    bool any = false, all = true;
+    for (int i = 0; i < N_OPTIONS; i++)
+        any = any || options[i].described;
+    for (int i = 0; any && i < N_OPTIONS; i++) {
+        if (options[i].described || is(options[i].group, "CONFIG_ONLY"))
+            continue;
+        fprintf(stderr, "%s: expected a line @OPTION %s@\n", page, options[i].name);
+        all = false;
+    }
+    for (int i = 0; any && i < N_OPTIONS; i++) {
+        const Option *o = &options[i];
+        if (o->ranged || is_flag(o) || is(o->group, "CONFIG_ONLY") || is(o->name, "height") ||
+            (!is_number(o) && !*o->preset))
+            continue;
+        fprintf(stderr, "%s: expected a line @RANGE %s@\n", page, o->name);
+        all = false;
+    }
+    return all;
+}
+
+/* usage: fill PAGE > FILLED-PAGE. Lines that are replaced: @PARAMETERS@, @PROJECT@ and @SETTINGS@
+ * are lists; @OPTION name@ begins an item; @RANGE name@ is a sentence. */
 int main(int argc, char **argv)
 {
     FILE *page = argc == 2 ? fopen(argv[1], "r") : NULL;
@@ -97,13 +251,15 @@ int main(int argc, char **argv)
         return 1;
     }
     char line[1024];
-    while (fgets(line, sizeof line, page))
-        if (strcmp(line, "@PARAMETERS@\n") == 0)
-            print_parameters();
-        else if (strcmp(line, "@SETTINGS@\n") == 0)
-            print_settings();
-        else
+    bool fine = true;
+    while (fgets(line, sizeof line, page)) {
+        if (*line != '@') {
             fputs(line, stdout);
+        } else if (!fill(line)) {
+            fprintf(stderr, "%s: not understood: %s", argv[1], line);
+            fine = false;
+        }
+    }
     fclose(page);
-    return ferror(stdout) ? 1 : 0;
+    return fine && complete(argv[1]) && !ferror(stdout) ? 0 : 1;
 }

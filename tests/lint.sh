@@ -159,6 +159,18 @@ config_keys_are_documented() {
         done
 }
 
+# What a render is told is in the table of options, but for what no option says.
+options_are_in_the_table() {
+    local field
+    sed -n '/^typedef struct FlRenderOptions/,/^} FlRenderOptions/p' include/fluidy/render.h |
+        sed -E ':a;N;$!ba; s@/\*([^*]|\*+[^*/])*\*+/@@g; s/^[^{]*\{//; s/\}.*//' | tr '\n' ' ' |
+        tr ';,' '\n\n' | grep -v '(' | grep -oE '[a-z_0-9]+ *$' | tr -d ' ' |
+        grep -vxE 'inputs|settings|n_settings|data' | while read -r field; do
+        grep -qE "^FL_OPTION\(RENDER, [A-Z]+, $field," src/params/options.def ||
+            echo "FlRenderOptions has $field, options.def has not"
+    done
+}
+
 limits_are_documented() {
     local name preset
     sed -nE 's/^FL_LIMIT\([A-Z]+, "([a-z]+)", ([0-9]+),.*/\1 \2/p' src/base/limits.def |
@@ -175,6 +187,7 @@ report 'every exported symbol starts with fl_' exported_symbols
 report 'include guards are the path' header_guards
 report 'no two files or types have one name' names_are_unique
 report 'every work that is cited is in REFERENCES.md' references_are_listed
+report 'options.def has every field of FlRenderOptions' options_are_in_the_table
 report 'no path of a workplace is committed' foreign_paths
 report '--help fits one screen' help_fits_one_screen "$build/src/cli/fluidy-svg"
 report 'CI runs the test command of the README' readme_test_command

@@ -40,9 +40,9 @@ static void a_mistake_is_named_with_file_and_line(void)
                                         "“background”?"},
         {"[project]\nbackground = #12", ":2: background: “#12” is not a colour #RRGGBB"},
         {"[project]\nfps = 0", ":2: fps: “0” is not a number from 0.01 to 1000 frames per second"},
-        {"[project]\nloop = of", ":2: loop: “of” is not on or off"},
-        {"[project]\nseed = -3", ":2: seed: “-3” is not an integer from 1 on"},
-        {"[project]\nmissing = drop", ":2: missing: “drop” is not one of error, hold, skip"},
+        {"[project]\nloop = of", ":2: loop: “of” is not off or on; did you mean “off”?"},
+        {"[project]\nseed = -3", ":2: seed: “-3” is not an integer from 1 to 9007199254740991"},
+        {"[project]\nmissing = drop", ":2: missing: “drop” is not error, hold or skip"},
         {"[defaults]\n\n# styles\nstyel = 01", ":4: [defaults] has no key “styel”; did you mean "
                                                "“style”?"},
         {"[defaults]\nstyle 01", ":2: “style 01” is neither “[section]” nor “key = value”"},
@@ -160,9 +160,9 @@ static void detail_is_between_preset_and_parameters(void)
 
 static void the_options_win_over_the_project(void)
 {
-    g_autoptr(FlConfig) config =
-        load("[project]\nfps = 12\nseed = 5\nloop = on\ngap = 3\nstroke = drop\nmissing = hold\nkey = id\n"
-             "background = #ffffff\n");
+    g_autoptr(FlConfig) config = load("[project]\nfps = 12\nseed = 5\nloop = on\ngap = 3\nstroke = "
+                                      "drop\nmissing = hold\nkey = id\n"
+                                      "background = #ffffff\n");
     FlRenderOptions options = {.fps = 30, .missing = FL_MISSING_ERROR, .gap = -1};
     fl_config_complete(config, &options);
     g_assert_cmpfloat(options.fps, ==, 30);

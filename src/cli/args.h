@@ -46,23 +46,4 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error);
 
 void fl_args_clear(FlArgs *args);
 
-/** Options that belong together; entries end with an empty one. */
-typedef struct FlArgGroup {
-    const char *title;
-    const GOptionEntry *entries;
-} FlArgGroup;
-
-/** Every option, in the groups of --help-all; one without entries ends the list. */
-const FlArgGroup *fl_args_groups(void);
-
-/** What an option's value may be, such as "draft normal fine"; NULL: not a choice of words. Free.
- */
-char *fl_args_words(const char *long_name);
-
-/** Turns GOption's error about an unknown option into ours, with the option that is nearest. */
-void fl_args_suggest(GError **error);
-
-/** The text of --help, or of --help-all; to be freed with g_free(). */
-char *fl_args_help(bool all);
-
 #endif

@@ -1,5 +1,6 @@
 /* fluidy-svg: words and exit codes only; the work is in the library. */
 #include "args.h"
+#include "help.h"
 #include "progress.h"
 #include "wait.h"
 
@@ -40,12 +41,19 @@ static bool was_stopped(void *data)
     return stop;
 }
 
+/* In the words of the command line. */
+static void say(Voice *voice, const char *kind, const char *message)
+{
+    g_autofree char *line = fl_help_translate(message);
+    if (!voice->quiet)
+        fl_meter_say(&voice->meter, kind, line);
+}
+
 static void show_warning(const char *message, void *data)
 {
     Voice *voice = data;
     voice->n_warnings++;
-    if (!voice->quiet)
-        fl_meter_say(&voice->meter, "warning", message);
+    say(voice, "warning", message);
 }
 
 /* At the end, when they may have gone from the screen. */
@@ -59,15 +67,13 @@ static void recall_warnings(Voice *voice)
 
 static void show_note(const char *message, void *data)
 {
-    Voice *voice = data;
-    if (!voice->quiet)
-        fl_meter_say(&voice->meter, "note", message);
+    say(data, "note", message);
 }
 
 /* One line, whatever the library below wrote. */
 static int fail(const GError *error)
 {
-    g_autofree char *line = g_strstrip(g_strdup(error->message));
+    g_autofree char *line = g_strstrip(fl_help_translate(error->message));
     fprintf(stderr, "fluidy-svg: %s\n", g_strdelimit(line, "\r\n", ' '));
     if (g_error_matches(error, FL_ERROR, FL_ERROR_INTERRUPTED))
         return INTERRUPTED;
@@ -161,7 +167,7 @@ static int run(FlArgs *args)
         return print(text);
     case FL_COMMAND_HELP:
     case FL_COMMAND_HELP_ALL:
-        text = fl_args_help(args->task == FL_COMMAND_HELP_ALL);
+        text = fl_help_text(args->task == FL_COMMAND_HELP_ALL);
         return print(text);
     case FL_COMMAND_LIST_STYLES:
         return list_styles(args);

@@ -21,6 +21,25 @@ void fl_words_unknown(const char *const *names, const char *help, GError **error
                     help);
 }
 
+char *fl_words_translate(const char *message, char *(*flag)(const char *name, void *data),
+                         void *data)
+{
+    static const char open[] = "‘", close[] = "’";
+    GString *text = g_string_new(NULL);
+    for (const char *begin; (begin = strstr(message, open));) {
+        g_string_append_len(text, message, begin - message);
+        begin += strlen(open);
+        const size_t n = strspn(begin, "abcdefghijklmnopqrstuvwxyz-");
+        g_autofree char *name = g_strndup(begin, n);
+        g_autofree char *words =
+            g_str_has_prefix(begin + n, close) && n > 0 ? flag(name, data) : NULL;
+        g_string_append(text, words ? words : open);
+        message = words ? begin + n + strlen(close) : begin;
+    }
+    g_string_append(text, message);
+    return g_string_free(text, FALSE);
+}
+
 void fl_words_drop_separator(char **words)
 {
     while (*words && strcmp(*words, "--") != 0)

@@ -10,6 +10,15 @@
  */
 void fl_words_unknown(const char *const *names, const char *help, GError **error);
 
+/**
+ * Puts the words of the command line where a message of the library names an option, ‘name’.
+ *
+ * flag returns "--name" or NULL, if the program has no such option: the text then stays as it is.
+ * Returns: to be freed with g_free().
+ */
+char *fl_words_translate(const char *message, char *(*flag)(const char *name, void *data),
+                         void *data);
+
 /** GOption keeps "--" before a word that begins with a dash; it has served its purpose. */
 void fl_words_drop_separator(char **words);
 

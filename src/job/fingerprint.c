@@ -137,31 +137,32 @@ static bool add_drawings(FlFingerprint *print, const FlDrawing *drawing, GError 
     return true;
 }
 
+void fl_fingerprint_add_options(FlFingerprint *print, FlOptionScope scope, const void *object,
+                                const char *region)
+{
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->scope != scope || option->bytes != FL_BYTES_VALUE)
+            continue;
+        g_autofree char *value = fl_option_get(option, object);
+        // the folder of a style may move; its contents may not change
+        g_autofree char *base =
+            value && option->type == FL_OPTION_STYLE ? g_path_get_basename(value) : NULL;
+        g_autofree char *name =
+            region ? g_strdup_printf("%s of region %s", option->name, region) : NULL;
+        fl_fingerprint_add(print, name ? name : option->name, base ? base : value);
+    }
+}
+
+/* What an option's value leads to, and then the values. */
 static void add_options(FlFingerprint *print, const FlPlan *plan)
 {
-    const FlRenderOptions *o = &plan->options;
     fl_fingerprint_add(print, "the format", plan->format->name);
     add_number(print, "the first frame's number", fl_drawing_number(plan->drawing, 0));
     add_number(print, "the width", plan->width);
     add_number(print, "the height", plan->height);
-    fl_fingerprint_add(print, "canvas", o->canvas);
-    add_number(print, "scale", o->scale);
-    add_number(print, "dpi", o->dpi);
-    add_number(print, "key", o->key);
-    add_number(print, "stroke", o->stroke);
-    add_number(print, "register", o->registration);
-    fl_fingerprint_add(print, "region", o->only_region);
-    fl_fingerprint_add(print, "layers", o->layers);
-    fl_fingerprint_add(print, "paint", o->paint);
-    add_number(print, "merge", o->merge);
-    fl_fingerprint_add(print, "background", o->background);
-    add_number(print, "seed", (double)o->seed);
-    add_number(print, "gap", o->gap);
-    add_number(print, "feather", o->feather);
-    add_number(print, "blend", o->blend);
-    add_number(print, "fps", o->fps);
-    add_number(print, "hold", plan->hold);
-    add_number(print, "loop", o->loop);
+    add_number(print, "the hold", plan->hold);
+    fl_fingerprint_add_options(print, FL_SCOPE_RENDER, &plan->options, NULL);
 }
 
 /* The files of an option that is a pattern of one file per frame, or one file. */
@@ -184,49 +185,11 @@ static bool add_pattern(FlFingerprint *print, const FlPlan *plan, const char *pa
     return true;
 }
 
-/* The n-th of words with bars between. */
-static char *word(const char *words, int n)
-{
-    g_auto(GStrv) all = g_strsplit(words, "|", -1);
-    return g_strdup(n >= 0 && n < (int)g_strv_length(all) ? all[n] : "?");
-}
-
-static void add_of_region(FlFingerprint *print, const char *region, const char *name, char *value)
-{
-    g_autofree char *whole = g_strdup_printf("%s of region %s", name, region);
-    fl_fingerprint_add(print, whole, value);
-    g_free(value);
-}
-
-#define TEXT_CHOICE(form, field) word(form, (int)(t->field))
-#define TEXT_DETAIL TEXT_CHOICE
-#define TEXT_PASS(form, field) g_strdup_printf("%d", (int)(t->field))
-#define TEXT_INT(form, field) g_strdup_printf("%d", (int)(t->field))
-#define TEXT_BOOL(form, field) g_strdup((t->field) ? "on" : "off")
-#define TEXT_NAME(form, field) g_strdup(t->field)
-#define TEXT_STYLE(form, field) g_path_get_basename(t->field)
-#define TEXT_TINT(form, field)                                                                     \
-    (t->has_colour ? g_strdup_printf("#%02x%02x%02x", t->colour[0], t->colour[1], t->colour[2])    \
-                   : word(form, (int)(t->field)))
-
-static void add_settings(FlFingerprint *print, const FlRegionPlan *painted)
-{
-    const FlRegionSettings *t = &painted->settings;
-#define FL_SETTING(type, field, form, ...)                                                         \
-    add_of_region(print, painted->name, #field, TEXT_##type(form, field));
-#include "params/settings.def"
-#undef FL_SETTING
-    for (int i = 0; i < fl_param_count(); i++) {
-        const char *name = fl_param_info(i)->name;
-        add_of_region(print, painted->name, name, fl_params_get(&t->params, name));
-    }
-}
-
 static bool add_painted(FlFingerprint *print, const FlPlan *plan, GError **error)
 {
     for (int p = 0; p < plan->n_painted; p++) {
         const FlRegionPlan *painted = &plan->painted[p];
-        add_settings(print, painted);
+        fl_fingerprint_add_options(print, FL_SCOPE_REGION, &painted->settings, painted->name);
         if (painted->flow_files &&
             !add_pattern(print, plan, painted->flow_files, painted->name, error))
             return false;

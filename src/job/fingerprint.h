@@ -4,6 +4,7 @@
 #define FLUIDY_JOB_FINGERPRINT_H
 
 #include "job/plan.h"
+#include "params/options.h"
 
 /** One thing, such as "w-temp of region hair" and "50"; of a file's contents a SHA-256 sum. UTF-8.
  */
@@ -33,6 +34,13 @@ void fl_fingerprint_free(FlFingerprint *print); // NULL is fine
 
 /** value NULL: it is not set. Both are copied. */
 void fl_fingerprint_add(FlFingerprint *print, const char *name, const char *value);
+
+/**
+ * Adds every option of the table that decides bytes by its value. object: FlRenderOptions with the
+ * config's filled in, or the FlRegionSettings of `region`.
+ */
+void fl_fingerprint_add_options(FlFingerprint *print, FlOptionScope scope, const void *object,
+                                const char *region);
 
 /** Whether a frame's drawing is still as it was. FL_ERROR_CHANGED, or an error about reading it. */
 bool fl_fingerprint_check_drawing(const FlFingerprint *print, const FlDrawing *drawing, int frame,

@@ -2,9 +2,9 @@
 
 #include "base/suggest.h"
 #include "params/key_file.h"
+#include "params/options.h"
 #include "params/text.h"
 
-#include <stddef.h>
 #include <string.h>
 
 /* Where the reader is: nothing may stand above the first section. */
@@ -98,137 +98,29 @@ static bool read_section(void *data, const char *name, int line, GError **error)
 
 /* ---- [project] --------------------------------------------------------------------------- */
 
-static char *path_from(const Reader *reader, const char *value)
-{
-    return g_path_is_absolute(value) ? g_strdup(value)
-                                     : g_build_filename(reader->folder, value, NULL);
-}
-
 static bool set_version(Reader *reader, const char *value, GError **error)
 {
     return strcmp(value, "1") == 0 ||
            usage(error, "version: “%s” is not 1, the only version there is", value);
 }
 
-/* The config owns what [project] says. */
-static const char *own(Reader *reader, char *string)
-{
-    g_ptr_array_add(reader->config->strings, string);
-    return string;
-}
-
-static bool set_background(Reader *reader, const char *value, GError **error)
-{
-    uint8_t rgb[3];
-    const bool word = fl_text_colour(value, rgb) || strcmp(value, "none") == 0;
-    if (*value == '#' && !word)
-        return usage(error, "background: “%s” is not a colour #RRGGBB", value);
-    reader->config->project.background =
-        own(reader, word ? g_strdup(value) : path_from(reader, value));
-    return true;
-}
-
-typedef enum ProjectKind { TEXT, FILE_PATTERN, NUMBER, WORD } ProjectKind;
-
-/* Keys whose value goes into a field of FlRenderOptions; the first word of a WORD has the value 1.
- */
-static const struct ProjectKey {
-    const char *key;
-    ProjectKind kind;
-    size_t offset;
-    const char *form;
-    double min, max;
-} project_keys[] = {
-#define AT(field) offsetof(FlRenderOptions, field)
-    {"blend", WORD, AT(blend), "srgb|linear"},
-    {"canvas", TEXT, AT(canvas)},
-    {"feather", NUMBER, AT(feather), "px", 0, 32},
-    {"fps", NUMBER, AT(fps), "frames per second", 0.01, 1000},
-    {"frames", TEXT, AT(frames)},
-    {"gap", NUMBER, AT(gap), "px", 0, 32},
-    {"key", WORD, AT(key), "auto|fill|id|class|label|tree"},
-    {"layers", FILE_PATTERN, AT(layers)},
-    {"missing", WORD, AT(missing), "error|hold|skip"},
-    {"output", FILE_PATTERN, AT(output)},
-    {"register", WORD, AT(registration), "off|on"},
-    {"stroke", WORD, AT(stroke), "keep|paint|drop"},
-#undef AT
-};
-
-static bool set_number(const struct ProjectKey *key, double *field, const char *value,
-                       GError **error)
-{
-    return (fl_text_number(value, field) && *field >= key->min && *field <= key->max) ||
-           usage(error, "%s: “%s” is not a number from %g to %g %s", key->key, value, key->min,
-                 key->max, key->form);
-}
-
-static bool set_word(const struct ProjectKey *key, int *field, const char *value, GError **error)
-{
-    if (fl_text_choice(value, key->form, field)) {
-        ++*field;
-        return true;
-    }
-    g_auto(GStrv) words = g_strsplit(key->form, "|", -1);
-    g_autofree char *list = g_strjoinv(", ", words);
-    g_autofree char *hint = fl_did_you_mean(value, (const char *const *)words);
-    return usage(error, "%s: “%s” is not one of %s%s", key->key, value, list, hint);
-}
-
-static bool set_project_field(Reader *reader, const struct ProjectKey *key, const char *value,
-                              GError **error)
-{
-    void *const field = (char *)&reader->config->project + key->offset;
-    switch (key->kind) {
-    case TEXT:
-        *(const char **)field = own(reader, g_strdup(value));
-        return true;
-    case FILE_PATTERN:
-        *(const char **)field = own(reader, path_from(reader, value));
-        return true;
-    case NUMBER:
-        return set_number(key, field, value, error);
-    case WORD:
-        return set_word(key, field, value, error);
-    }
-    g_assert_not_reached();
-}
-
-static bool set_seed(Reader *reader, const char *value, GError **error)
-{
-    guint64 seed = 0;
-    if (!g_ascii_string_to_unsigned(value, 10, 1, G_MAXUINT64, &seed, NULL))
-        return usage(error, "seed: “%s” is not an integer from 1 on", value);
-    reader->config->project.seed = seed;
-    return true;
-}
-
-static bool set_loop(Reader *reader, const char *value, GError **error)
-{
-    return fl_text_bool(value, &reader->config->project.loop) ||
-           usage(error, "loop: “%s” is not on or off", value);
-}
-
 static bool set_project(Reader *reader, const char *key, const char *value, GError **error)
 {
-    static const struct {
-        const char *key;
-        bool (*set)(Reader *, const char *, GError **);
-    } others[] = {{"version", set_version},
-                  {"background", set_background},
-                  {"seed", set_seed},
-                  {"loop", set_loop}};
+    FlConfig *config = reader->config;
+    if (strcmp(key, "version") == 0)
+        return set_version(reader, value, error);
+    const FlOption *option = fl_option_find(FL_SCOPE_RENDER, key);
+    if (option && option->section == FL_SECTION_PROJECT) {
+        if (fl_option_set(option, value, reader->folder, &config->project, config->strings, error))
+            return true;
+        g_prefix_error(error, "%s: ", key);
+        return false;
+    }
     g_autoptr(GPtrArray) known = g_ptr_array_new();
-    for (size_t i = 0; i < G_N_ELEMENTS(others); i++) {
-        if (strcmp(others[i].key, key) == 0)
-            return others[i].set(reader, value, error);
-        g_ptr_array_add(known, (gpointer)others[i].key);
-    }
-    for (size_t i = 0; i < G_N_ELEMENTS(project_keys); i++) {
-        if (strcmp(project_keys[i].key, key) == 0)
-            return set_project_field(reader, &project_keys[i], value, error);
-        g_ptr_array_add(known, (gpointer)project_keys[i].key);
-    }
+    g_ptr_array_add(known, (gpointer) "version");
+    for (int i = 0; i < fl_option_count(); i++)
+        if (fl_option_at(i)->section == FL_SECTION_PROJECT)
+            g_ptr_array_add(known, (gpointer)fl_option_at(i)->name);
     g_ptr_array_add(known, NULL);
     g_autofree char *hint = fl_did_you_mean(key, (const char *const *)known->pdata);
     return usage(error, "[project] has no key “%s”%s", key, hint);
@@ -390,34 +282,27 @@ void fl_config_free(FlConfig *config)
 }
 
 /* The option, else what [project] says, else the default. */
-#define COMPLETE(field, fallback)                                                                  \
-    do {                                                                                           \
-        if (options->field == 0)                                                                   \
-            options->field = config->project.field;                                                \
-        if (options->field == 0)                                                                   \
-            options->field = fallback;                                                             \
-    } while (0)
+static void complete(const FlConfig *config, const FlOption *option, FlRenderOptions *options)
+{
+    if (!fl_option_is_set(option, options))
+        fl_option_copy(option, &config->project, options);
+    if (fl_option_is_set(option, options) || !*option->preset)
+        return;
+    if (!fl_option_set(option, option->preset, NULL, options, config->strings, NULL))
+        g_error("options.def: %s: the default is not one of its values", option->name);
+}
 
 void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
 {
-    COMPLETE(background, NULL);
-    COMPLETE(canvas, NULL);
-    COMPLETE(frames, NULL);
-    COMPLETE(output, NULL);
-    COMPLETE(layers, NULL);
-    COMPLETE(missing, FL_MISSING_ERROR);
-    COMPLETE(key, FL_KEY_AUTO);
-    COMPLETE(registration, FL_REGISTRATION_OFF);
-    COMPLETE(stroke, FL_STROKES_KEEP);
-    COMPLETE(blend, FL_BLEND_SRGB);
-    COMPLETE(loop, false);
-    COMPLETE(gap, 0);
-    COMPLETE(feather, 0);
-    COMPLETE(seed, 1);
-    COMPLETE(fps, 24);
-    COMPLETE(dpi, 96);
-    options->gap = MAX(options->gap, 0);
-    options->feather = MAX(options->feather, 0);
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->scope != FL_SCOPE_RENDER)
+            continue;
+        complete(config, option, options);
+        double *number = (double *)((char *)options + option->offset);
+        if (option->type == FL_OPTION_REAL)
+            *number = MAX(*number, 0); // less is a 0 that was said
+    }
 }
 
 /* Settings go through wishes, so that a preset among them comes first. */

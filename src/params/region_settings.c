@@ -1,57 +1,27 @@
 #include "params/region_settings.h"
 
 #include "base/suggest.h"
+#include "params/options.h"
 #include "params/text.h"
 
-#include <stddef.h>
-#include <stdio.h>
 #include <string.h>
 
-typedef enum Kind { CHOICE, DETAIL, BOOL, INT, STYLE, TINT, PASS, NAME } Kind;
-
-static const struct Setting {
-    const char *field;
-    Kind kind;
-    size_t offset;
-    const char *form, *preset;
-} table[] = {
-#define FL_SETTING(type, field, form, preset, help)                                                \
-    {#field, type, offsetof(FlRegionSettings, field), form, preset},
-#include "params/settings.def"
-#undef FL_SETTING
-};
-
-/* Words that are keys as well, but no field of their own. */
-static const char *const other_keys[] = {"preset", "scale"};
+/* A key of a region that is no option of its own: style-scale. */
+#define SCALE "scale"
 
 const char *const *fl_region_settings_keys(void)
 {
     static const char **keys;
-    static gsize ready;
-    if (g_once_init_enter(&ready)) {
-        const int n_params = fl_param_count();
-        keys = g_new0(const char *, G_N_ELEMENTS(table) + G_N_ELEMENTS(other_keys) + n_params + 1);
+    if (g_once_init_enter(&keys)) {
+        const char **made = g_new0(const char *, fl_option_count() + 2);
         int n = 0;
-        for (size_t i = 0; i < G_N_ELEMENTS(table); i++) {
-            g_autofree char *key = g_strdelimit(g_strdup(table[i].field), "_", '-');
-            keys[n++] = g_intern_string(key);
-        }
-        for (size_t i = 0; i < G_N_ELEMENTS(other_keys); i++)
-            keys[n++] = other_keys[i];
-        for (int i = 0; i < n_params; i++)
-            keys[n++] = fl_param_info(i)->name;
-        g_once_init_leave(&ready, 1);
+        for (int i = 0; i < fl_option_count(); i++)
+            if (fl_option_at(i)->section == FL_SECTION_REGION)
+                made[n++] = fl_option_at(i)->name;
+        made[n++] = SCALE;
+        g_once_init_leave(&keys, made);
     }
     return keys;
-}
-
-static const struct Setting *find_setting(const char *key)
-{
-    g_autofree char *field = g_strdelimit(g_strdup(key), "-", '_');
-    for (size_t i = 0; i < G_N_ELEMENTS(table); i++)
-        if (strcmp(table[i].field, field) == 0)
-            return &table[i];
-    return NULL;
 }
 
 static void replace_string(char **field, char *value)
@@ -95,12 +65,6 @@ static bool set_passthrough(FlPassthrough *passthrough, const char *value)
     return true;
 }
 
-static bool set_int(int *field, const char *form, const char *value)
-{
-    int min = 0, max = 0;
-    return sscanf(form, "%d-%d", &min, &max) == 2 && fl_text_integer(value, min, max, field);
-}
-
 static bool set_detail(FlRegionSettings *settings, const char *form, const char *value)
 {
     int detail = 0;
@@ -111,68 +75,50 @@ static bool set_detail(FlRegionSettings *settings, const char *form, const char 
     return true;
 }
 
-static bool store(FlRegionSettings *settings, const struct Setting *setting, const char *value,
+static bool store(FlRegionSettings *settings, const FlOption *option, const char *value,
                   const char *folder)
 {
-    void *const field = (char *)settings + setting->offset;
-    switch (setting->kind) {
-    case CHOICE:
-        return fl_text_choice(value, setting->form, field);
-    case DETAIL:
-        return set_detail(settings, setting->form, value);
-    case BOOL:
+    void *const field = (char *)settings + option->offset;
+    switch (option->type) {
+    case FL_OPTION_CHOICE:
+        return fl_text_choice(value, option->value, field);
+    case FL_OPTION_DETAIL:
+        return set_detail(settings, option->value, value);
+    case FL_OPTION_BOOL:
         return fl_text_bool(value, field);
-    case INT:
-        return set_int(field, setting->form, value);
-    case TINT:
+    case FL_OPTION_INT:
+        return fl_text_integer(value, option->min, option->max, field);
+    case FL_OPTION_TINT:
         return set_tint(settings, value);
-    case PASS:
+    case FL_OPTION_PASS:
         return set_passthrough(field, value);
-    case STYLE:
+    case FL_OPTION_STYLE:
         replace_string(field, style_path(value, folder));
         return true;
-    case NAME:
+    case FL_OPTION_NAME:
         replace_string(field, *value ? g_strdup(value) : NULL);
         return true;
+    default:
+        g_assert_not_reached();
     }
-    g_assert_not_reached();
-}
-
-/* "knockout or glaze", "fill, keep or #RRGGBB", "1 to 1000", with the nearest word if there is one.
- */
-static void set_form_error(const struct Setting *setting, const char *value, GError **error)
-{
-    g_autofree char *name = g_strdelimit(g_strdup(setting->field), "_", '-');
-    g_auto(GStrv) words = g_strsplit(setting->form, setting->kind == INT ? "-" : "|", -1);
-    const guint n = g_strv_length(words);
-    g_autofree char *hint =
-        setting->kind == INT ? g_strdup("") : fl_did_you_mean(value, (const char *const *)words);
-    g_autofree char *last = g_steal_pointer(&words[n - 1]);
-    g_autofree char *others = g_strjoinv(", ", words);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not %s%s %s %s%s", name, value,
-                setting->kind == INT ? "an integer from " : "", others,
-                setting->kind == INT ? "to" : "or", last, hint);
-}
-
-static bool is_scale(const char *key)
-{
-    return strcmp(key, "scale") == 0;
 }
 
 bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
                             const char *folder, GError **error)
 {
-    if (strcmp(key, "preset") == 0)
+    const bool scale = strcmp(key, SCALE) == 0;
+    const FlOption *option = fl_option_find(FL_SCOPE_REGION, key);
+    if (scale || (option && option->type == FL_OPTION_PARAM))
+        return fl_params_set(&settings->params, scale ? "style-scale" : key, value, error);
+    if (option && option->type == FL_OPTION_PRESET)
         return fl_params_preset(&settings->params, value, error);
-    const struct Setting *setting = find_setting(key);
-    if (setting) {
-        const bool fits = store(settings, setting, value, folder);
-        if (!fits)
-            set_form_error(setting, value, error);
-        return fits;
+    if (option) {
+        if (store(settings, option, value, folder))
+            return true;
+        fl_option_reject(option, value, error);
+        g_prefix_error(error, "%s: ", key);
+        return false;
     }
-    if (is_scale(key) || fl_param_find(key) >= 0)
-        return fl_params_set(&settings->params, is_scale(key) ? "style-scale" : key, value, error);
     g_autofree char *hint = fl_did_you_mean(key, fl_region_settings_keys());
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no key “%s”%s", key, hint);
     return false;
@@ -182,9 +128,12 @@ void fl_region_settings_init(FlRegionSettings *settings)
 {
     *settings = (FlRegionSettings){0};
     fl_params_defaults(&settings->params);
-    for (size_t i = 0; i < G_N_ELEMENTS(table); i++)
-        if (!store(settings, &table[i], table[i].preset, NULL))
-            g_error("settings.def: %s: the default is not one of its values", table[i].field);
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->scope == FL_SCOPE_REGION && option->type != FL_OPTION_PARAM &&
+            option->type != FL_OPTION_PRESET && !store(settings, option, option->preset, NULL))
+            g_error("options.def: %s: the default is not one of its values", option->name);
+    }
 }
 
 void fl_region_settings_clear(FlRegionSettings *settings)

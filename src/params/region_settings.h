@@ -51,8 +51,7 @@ void fl_region_settings_init(FlRegionSettings *settings); // the defaults
 void fl_region_settings_clear(FlRegionSettings *settings);
 
 /**
- * Sets one thing from text: a key of settings.def or params.def, or "preset". "scale" is read as
- * style-scale.
+ * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.
  * Returns: false with FL_ERROR_USAGE; the treatment is then unchanged.

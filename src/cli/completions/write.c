@@ -1,6 +1,6 @@
 /* Writes what a shell needs to complete a command line, from the tables of options. Runs when the
  * programs are built: write-completions bash|zsh|fish fluidy-svg|fluidy-style */
-#include "cli/args.h"
+#include "cli/help.h"
 #include "cli/style_commands.h"
 
 #include <stdio.h>
@@ -30,17 +30,37 @@ static bool is_path(const char *value)
     return false;
 }
 
+/* All options of fluidy-svg; an empty one ends them. */
+static const GOptionEntry *svg_entries(void)
+{
+    static GOptionEntry *entries;
+    if (entries)
+        return entries;
+    entries = g_new0(GOptionEntry, fl_option_count() + 1);
+    for (int i = 0, n = 0; i < fl_option_count(); i++)
+        if (fl_option_at(i)->group != FL_GROUP_CONFIG_ONLY)
+            entries[n++] = fl_help_entry(fl_option_at(i));
+    return entries;
+}
+
+/* No option of fluidy-style has the name of one whose value is a word. */
+static char *words_of(const GOptionEntry *entry)
+{
+    const FlOption *option = fl_option_find_argument(entry->long_name);
+    return option ? fl_option_words(option) : NULL;
+}
+
 static Option option_of(const GOptionEntry *entry)
 {
     Option option = {entry->long_name, entry->short_name, entry->description, ANYTHING, NULL};
     if (!entry->arg_description)
         option.kind = NOTHING;
-    else if ((option.words = fl_args_words(entry->long_name)))
-        option.kind = WORDS;
     else if (strcmp(entry->arg_description, "NAME|DIR") == 0)
         option.kind = STYLES;
     else if (is_path(entry->arg_description))
         option.kind = FILES;
+    else if ((option.words = words_of(entry)))
+        option.kind = WORDS;
     return option;
 }
 
@@ -107,14 +127,11 @@ static void bash_begin(const char *function)
 
 static void bash_svg(void)
 {
-    const FlArgGroup *groups = fl_args_groups();
     bash_begin("_fluidy_svg");
     printf("    case $prev in\n");
-    for (int g = 0; groups[g].entries; g++)
-        bash_values(groups[g].entries, "    ");
+    bash_values(svg_entries(), "    ");
     printf("    esac\n    if [[ $cur == -* ]]; then\n        COMPREPLY=($(compgen -W '");
-    for (int g = 0; groups[g].entries; g++)
-        bash_names(groups[g].entries);
+    bash_names(svg_entries());
     printf("' -- \"$cur\"))\n    else\n        COMPREPLY=($(compgen -f -- \"$cur\"))\n    fi\n}\n"
            "complete -o filenames -F _fluidy_svg fluidy-svg\n");
 }
@@ -175,12 +192,10 @@ static void zsh_styles(void)
 
 static void zsh_svg(void)
 {
-    const FlArgGroup *groups = fl_args_groups();
     printf("#compdef fluidy-svg\n\n");
     zsh_styles();
     printf("_arguments -s -S \\\n");
-    for (int g = 0; groups[g].entries; g++)
-        zsh_options(groups[g].entries, "    ");
+    zsh_options(svg_entries(), "    ");
     printf("    '*:input:_files'\n");
 }
 
@@ -226,9 +241,7 @@ static void fish_options(const char *program, const char *condition, const GOpti
 
 static void fish_svg(void)
 {
-    const FlArgGroup *groups = fl_args_groups();
-    for (int g = 0; groups[g].entries; g++)
-        fish_options("fluidy-svg", "", groups[g].entries);
+    fish_options("fluidy-svg", "", svg_entries());
 }
 
 static void fish_style(void)

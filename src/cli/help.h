@@ -1,0 +1,19 @@
+/* What is said about options: the help, and which one was meant. */
+#ifndef FLUIDY_CLI_HELP_H
+#define FLUIDY_CLI_HELP_H
+
+#include "params/options.h"
+
+/** An option in GOption's terms, without what reads it. The strings live as long as the program. */
+GOptionEntry fl_help_entry(const FlOption *option);
+
+/** The text of --help, or of --help-all; to be freed with g_free(). */
+char *fl_help_text(bool all);
+
+/** Turns GOption's error about an unknown option into ours, with the option that is nearest. */
+void fl_help_suggest(GError **error);
+
+/** A message of the library in the words of the command line: ‘canvas’ as --canvas. To be freed. */
+char *fl_help_translate(const char *message);
+
+#endif

@@ -1,0 +1,126 @@
+/* The table of options, made from options.def and params.def: what an option is called, what it may
+ * be, where its value goes and whether it decides the bytes of a render. */
+#ifndef FLUIDY_PARAMS_OPTIONS_H
+#define FLUIDY_PARAMS_OPTIONS_H
+
+#include "params/region_settings.h"
+#include <fluidy/render.h>
+#include <stddef.h>
+
+typedef enum FlOptionScope {
+    FL_SCOPE_RENDER,  // FlRenderOptions
+    FL_SCOPE_REGION,  // FlRegionSettings
+    FL_SCOPE_PROGRAM, // the command line alone
+} FlOptionScope;
+
+/** See options.def. FL_OPTION_PARAM is a line of params.def. */
+typedef enum FlOptionType {
+    FL_OPTION_FLAG,
+    FL_OPTION_SWITCH,
+    FL_OPTION_INT,
+    FL_OPTION_COUNT,
+    FL_OPTION_REAL,
+    FL_OPTION_WORD,
+    FL_OPTION_TEXT,
+    FL_OPTION_PATH,
+    FL_OPTION_GROUND,
+    FL_OPTION_CHOICE,
+    FL_OPTION_DETAIL,
+    FL_OPTION_PASS,
+    FL_OPTION_BOOL,
+    FL_OPTION_STYLE,
+    FL_OPTION_TINT,
+    FL_OPTION_NAME,
+    FL_OPTION_PRESET,
+    FL_OPTION_PARAM,
+    FL_OPTION_TASK,
+    FL_OPTION_READ,
+} FlOptionType;
+
+typedef enum FlOptionSection {
+    FL_SECTION_NONE,
+    FL_SECTION_PROJECT,
+    FL_SECTION_REGION, // and [defaults]
+} FlOptionSection;
+
+/** Whether an option decides the painted bytes, and so which render may go on. */
+typedef enum FlOptionBytes {
+    FL_BYTES_NEVER,
+    FL_BYTES_VALUE,  // the fingerprint has its value
+    FL_BYTES_RESULT, // the fingerprint has what follows from it
+} FlOptionBytes;
+
+typedef enum FlOptionGroup {
+    FL_GROUP_COMMON, // those of --help
+    FL_GROUP_INPUT,
+    FL_GROUP_PAINT,
+    FL_GROUP_OUTPUT,
+    FL_GROUP_RUNNING,
+    FL_GROUP_PRESETS,
+    FL_GROUP_PARAMETERS,
+    FL_GROUP_CONFIG_ONLY, // not on the command line
+} FlOptionGroup;
+
+/** A line of the table; strings are static. */
+typedef struct FlOption {
+    const char *name; // with dashes; unique in its scope
+    char letter;      // of the command line; 0: none
+    FlOptionScope scope;
+    FlOptionType type;
+    size_t offset;     // of its field in the struct of its scope
+    const char *value; // words with | between, or placeholders in capitals; "": it takes none
+    const char *unit;
+    double min, max; // inclusive, of numbers
+    const char *preset;
+    FlOptionSection section;
+    FlOptionBytes bytes;
+    FlOptionGroup group;
+    const char *help;
+} FlOption;
+
+int fl_option_count(void);
+
+/** index is 0 … fl_option_count() - 1: the order of options.def, then of params.def. */
+const FlOption *fl_option_at(int index);
+
+/** NULL: there is none. "scale" is an option of a render as well as a key of a region. */
+const FlOption *fl_option_find(FlOptionScope scope, const char *name);
+
+/** The option of the command line: "width" or the letter "W"; NULL: there is none. */
+const FlOption *fl_option_find_argument(const char *name);
+
+/** Whether a value follows on the command line. */
+bool fl_option_takes_value(const FlOption *option);
+
+/** The words that the value may be, such as "draft normal fine"; NULL: no word. To be freed. */
+char *fl_option_words(const FlOption *option);
+
+/** The line of the help, with words and default. To be freed. */
+char *fl_option_help(const FlOption *option);
+
+/** FL_ERROR_USAGE: “value” is not what the option asks for, and what that is. Returns: false. */
+bool fl_option_reject(const FlOption *option, const char *value, GError **error);
+
+/* ---- options of a render --------------------------------------------------------------------- */
+
+/**
+ * Reads a value into the field of an option of FL_SCOPE_RENDER.
+ *
+ * Relative paths start in `folder`; NULL: as they are. Texts are copied, and the copies given to
+ * `strings`. Numbers of 0 are kept as -1: they are said, and win over the config.
+ * Returns: false with FL_ERROR_USAGE without the option's name; the field is then unchanged.
+ */
+bool fl_option_set(const FlOption *option, const char *value, const char *folder,
+                   FlRenderOptions *options, GPtrArray *strings, GError **error);
+
+/** Whether the field is anything but zero. */
+bool fl_option_is_set(const FlOption *option, const FlRenderOptions *options);
+
+void fl_option_copy(const FlOption *option, const FlRenderOptions *from, FlRenderOptions *to);
+
+/* ---- options of a render or a region --------------------------------------------------------- */
+
+/** The value as text: `object` is the struct of its scope. NULL: not set. To be freed. */
+char *fl_option_get(const FlOption *option, const void *object);
+
+#endif

@@ -1,0 +1,207 @@
+/* The table of options: every line is read, told, and in the fingerprint if it decides bytes. */
+#include "params/options.h"
+
+#include "params/config.h"
+#include "job/fingerprint.h"
+#include "scratch.h"
+#include <string.h>
+
+static GPtrArray *strings; // of what was set
+
+/* What only some values make sense for. */
+static const char *const samples[][2] = {
+    {"canvas", "80x80+1+2"}, {"flow", "none_%d.flo"},  {"format", "png16"}, {"frames", "1-2"},
+    {"missing", "skip"},     {"paint", "p_%d.png"},    {"style", "paper"},  {"config", "tint.conf"},
+    {"layers", "l_%d.png"},  {"stats", "figures.txt"},
+};
+
+/* A value that is not the default. */
+static char *another(const FlOption *o)
+{
+    for (size_t i = 0; i < G_N_ELEMENTS(samples); i++)
+        if (strcmp(samples[i][0], o->name) == 0)
+            return g_strdup(samples[i][1]);
+    g_auto(GStrv) words = g_strsplit(o->value, "|", -1);
+    for (int i = 0; words[0] && words[1] && words[i]; i++)
+        if (g_ascii_islower(words[i][0]) && strcmp(words[i], o->preset) != 0)
+            return g_strdup(words[i]);
+    if (o->max <= o->min)
+        return g_strdup("other");
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    const double value = o->max < 2 ? (o->min + o->max) / 2 : o->min + 2;
+    const bool taken = value == g_ascii_strtod(o->preset, NULL);
+    return g_strdup(g_ascii_dtostr(text, sizeof text, taken ? value + 1 : value));
+}
+
+static void set(const FlOption *o, const char *value, FlRenderOptions *options)
+{
+    GError *error = NULL;
+    fl_option_set(o, value, NULL, options, strings, &error);
+    g_assert_no_error(error);
+}
+
+static void set_of_region(const FlOption *o, const char *value, FlRegionSettings *settings)
+{
+    GError *error = NULL;
+    fl_region_settings_set(settings, o->name, value, NULL, &error);
+    g_assert_no_error(error);
+}
+
+static FlFingerprint *print_of(FlOptionScope scope, const void *object)
+{
+    FlFingerprint *print = fl_fingerprint_new_empty();
+    fl_fingerprint_add_options(print, scope, object, scope == FL_SCOPE_REGION ? "sky" : NULL);
+    return print;
+}
+
+static void names_and_letters_are_unique(void)
+{
+    for (int i = 0; i < fl_option_count(); i++)
+        for (int k = 0; k < i; k++) {
+            const FlOption *a = fl_option_at(i), *b = fl_option_at(k);
+            g_assert_true(a->scope != b->scope || strcmp(a->name, b->name) != 0);
+            g_assert_true(!a->letter || a->letter != b->letter);
+        }
+}
+
+static void every_default_is_a_value(void)
+{
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *o = fl_option_at(i);
+        FlRenderOptions options = {0};
+        if (o->scope != FL_SCOPE_RENDER || !*o->preset)
+            continue;
+        set(o, o->preset, &options);
+        options.gap = MAX(options.gap, 0), options.feather = MAX(options.feather, 0);
+        g_autofree char *text = fl_option_get(o, &options);
+        g_assert_cmpstr(text, ==, o->preset);
+    }
+}
+
+static void a_value_out_of_range_is_refused(void)
+{
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *o = fl_option_at(i);
+        if (o->scope != FL_SCOPE_RENDER || o->max <= o->min)
+            continue;
+        g_autoptr(GError) error = NULL;
+        g_autofree char *below = g_strdup_printf("%.16g", o->min - 1);
+        FlRenderOptions options = {0};
+        g_assert_false(fl_option_set(o, below, NULL, &options, strings, &error));
+        g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+        g_assert_nonnull(strstr(error->message, below));
+        g_assert_false(fl_option_is_set(o, &options));
+    }
+}
+
+static void a_key_of_a_project_is_what_the_option_is(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *o = fl_option_at(i);
+        if (o->section != FL_SECTION_PROJECT)
+            continue;
+        g_autofree char *value = another(o);
+        g_autofree char *text = g_strdup_printf("[project]\n%s = %s\n", o->name, value);
+        g_autofree char *path = scratch_write(folder, "shot.conf", text);
+        g_autoptr(FlConfig) config = fl_config_load(path, NULL);
+        g_assert_nonnull(config);
+        FlRenderOptions options = {0}, said = {0};
+        fl_config_complete(config, &options);
+        fl_option_set(o, value, folder, &said, strings, NULL);
+        g_autofree char *is = fl_option_get(o, &options), *wanted = fl_option_get(o, &said);
+        g_assert_cmpstr(is, ==, wanted);
+    }
+}
+
+/* Else a render would go on with pictures of another one. */
+static void the_fingerprint_has_every_option_that_decides_bytes(void)
+{
+    g_autoptr(FlConfig) config = fl_config_load(NULL, NULL);
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *o = fl_option_at(i);
+        if (o->bytes != FL_BYTES_VALUE)
+            continue;
+        g_autofree char *value = another(o), *difference = NULL;
+        FlRenderOptions options = {0};
+        g_auto(FlRegionSettings) settings;
+        fl_region_settings_init(&settings);
+        fl_config_complete(config, &options);
+        const void *object =
+            o->scope == FL_SCOPE_REGION ? (const void *)&settings : (const void *)&options;
+        g_autoptr(FlFingerprint) before = print_of(o->scope, object);
+        if (o->scope == FL_SCOPE_REGION)
+            set_of_region(o, value, &settings);
+        else
+            set(o, value, &options);
+        g_autoptr(FlFingerprint) now = print_of(o->scope, object);
+        difference = fl_fingerprint_difference(before, now);
+        if (!difference)
+            g_error("the fingerprint is the same with %s = %s", o->name, value);
+    }
+}
+
+/* ---- what follows from an option ------------------------------------------------------------- */
+
+static FlFingerprint *print_of_render(const FlRenderOptions *options)
+{
+    GError *error = NULL;
+    g_autoptr(FlPlan) plan = fl_plan_new(options, &error);
+    g_assert_no_error(error);
+    FlFingerprint *print = fl_fingerprint_new(plan, &error);
+    g_assert_no_error(error);
+    return print;
+}
+
+static void write_drawings(const char *folder)
+{
+    const int numbers[] = {1, 2, 4};
+    for (size_t i = 0; i < G_N_ELEMENTS(numbers); i++) {
+        g_autofree char *name = g_strdup_printf("w_%d.svg", numbers[i]);
+        g_free(scratch_svg(folder, name, "<circle cx='50' cy='50' r='30' fill='#aa3311'/>"));
+    }
+    g_free(scratch_write(folder, "tint.conf", "[defaults]\ntint = #123456\n"));
+}
+
+static void the_fingerprint_has_what_follows_from_an_option(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *drawings = g_build_filename(folder, "w_%d.svg", NULL);
+    g_autofree char *style = g_build_filename(g_getenv("FLUIDY_FIXTURES"), "style-small", NULL);
+    const char *const inputs[] = {drawings, NULL};
+    const FlSetting setting = {.name = "style", .value = style};
+    const FlRenderOptions plain = {
+        .inputs = inputs, .settings = &setting, .n_settings = 1, .missing = FL_MISSING_HOLD};
+    write_drawings(folder);
+    g_autoptr(FlFingerprint) before = print_of_render(&plain);
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *o = fl_option_at(i);
+        if (o->scope != FL_SCOPE_RENDER || o->bytes != FL_BYTES_RESULT)
+            continue;
+        FlRenderOptions options = plain;
+        g_autofree char *value = another(o);
+        fl_option_set(o, value, folder, &options, strings, NULL);
+        g_autoptr(FlFingerprint) now = print_of_render(&options);
+        g_autofree char *difference = fl_fingerprint_difference(before, now);
+        if (!difference)
+            g_error("the fingerprint is the same with %s = %s", o->name, value);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    strings = g_ptr_array_new_with_free_func(g_free);
+    g_test_add_func("/options/names-and-letters-are-unique", names_and_letters_are_unique);
+    g_test_add_func("/options/every-default-is-a-value", every_default_is_a_value);
+    g_test_add_func("/options/a-value-out-of-range-is-refused", a_value_out_of_range_is_refused);
+    g_test_add_func("/options/a-key-of-a-project-is-what-the-option-is",
+                    a_key_of_a_project_is_what_the_option_is);
+    g_test_add_func("/options/the-fingerprint-has-every-option-that-decides-bytes",
+                    the_fingerprint_has_every_option_that_decides_bytes);
+    g_test_add_func("/options/the-fingerprint-has-what-follows-from-an-option",
+                    the_fingerprint_has_what_follows_from_an_option);
+    const int status = g_test_run();
+    g_ptr_array_unref(strings);
+    return status;
+}
