@@ -108,14 +108,14 @@ table() {
 2|--seed: “-1” is not an integer *|good --seed -1
 2|--gap: “-1” is not a number from 0 to 32 px|good --gap -1
 2|-j: “0” is not an integer from 1 to 1024|good -j 0
-2|--key: “colour” is not one of auto, fill, *|good --key colour
-2|--blend: “sgrb” is not one of srgb, linear; did you mean “srgb”?|good --blend sgrb
+2|--key: “colour” is not auto, fill, *|good --key colour
+2|--blend: “sgrb” is not srgb or linear; did you mean “srgb”?|good --blend sgrb
 2|--output: the value is missing|good --output=
 2|--region: the value is missing|good --region=
 2|there is no region “red”; there are: red-aa3311|good --region red
 2|frames "3-1": expected numbers and ranges *|good -f 3-1
 2|frames "99999999999": expected *|good -f 99999999999
-1|good/a_1.svg: no file for frame 7; --missing *|good -f 1,7
+1|good/a_1.svg: no file for frame 7; use --missing *|good -f 1,7
 2|canvas '0x0': expected WxH *|good --canvas 0x0
 2|canvas '9x9+1': expected WxH or WxH+X+Y, *|good --canvas 9x9+1
 2|there is no limit “x”*there are: drawing, elements, *|good --limit x=1
@@ -128,7 +128,7 @@ table() {
 2|x_{region}.png: {region} has no meaning here; *|good -o x_{region}.png
 2|x_{rgion}.png: “{rgion}” is not understood; expected {region}|good --layers x_{rgion}.png
 2|--paint: one file for all frames; expected a number in the name*|good --paint x_{region}.png
-2|--merge composes what --paint has written; expected --paint PATTERN*|good --merge
+2|--merge composes what --paint has written; use --paint PATTERN*|good --merge
 2|--merge paints nothing that --report or --dump could show*|good --merge --paint {region}_%d.png --dump d
 1|gone/red-aa3311_1.png: there is no such file; --paint without --merge writes*|good --merge --paint gone/{region}_%d.png
 1|odd/frames/0001.png: 64x48 pixels; expected 48x48*|good --merge --paint odd/frames/%04d.png -f 1
@@ -148,8 +148,8 @@ table() {
 2|%99999d.svg: *|good/%99999d.svg
 2|a_%d_%d.svg: “%d.s” is a second frame number; expected one|good/a_%d_%d.svg
 1|good/a_1.svg and good/a_1.svg are both frame 1|good/a_1.svg good/a_1.svg
-1|*no file for frames 2-3; --missing *|gap
-1|nosize/a_1.svg: *--canvas 1920x1080*|nosize
+1|*no file for frames 2-3; use --missing *|gap
+1|nosize/a_1.svg: *--canvas to give one, such as 1920x1080*|nosize
 1|zero/a_1.svg: *--canvas *|zero
 1|nan/a_1.svg: *|nan
 1|huge/a_1.svg: a picture of 1000000000 x 9 px; at most 32767 px *|huge

@@ -59,7 +59,7 @@ refuses 'a mistake in a config has file and line' 2 'bad.conf:3: *did you mean �
 refuses 'a pattern that fits nothing suggests one' 1 '*did you mean w_%04d.svg*' 'whole/v_%04d.svg' $look
 refuses 'a folder that is not there is named' 1 'nowhere: *' nowhere $look
 refuses 'an empty folder is named' 1 'empty: no .svg files *' empty $look
-refuses 'a gap lists the numbers' 1 '*no file for frame 2; --missing *' gap $look
+refuses 'a gap lists the numbers' 1 '*no file for frame 2; use --missing *' gap $look
 refuses 'frames that do not exist are listed' 1 '*no file for frames 7-9; *' whole -f 7-9 $look
 refuses 'frames that are no numbers are refused' 2 'frames "1-x": expected *' whole -f 1-x $look
 refuses 'a broken file is named with its line' 1 'broken/w_0003.svg: *line *' broken $look
@@ -81,7 +81,7 @@ fi
 refuses 'an output folder that is a file is named' 1 'out*: *Not a directory' whole -o out/w_%d.png $look
 refuses 'an unknown format gets a suggestion' 2 'exxr: an unknown output format; *did you mean “exr”?' --format exxr -s 01 whole
 touch film.mkv
-refuses 'a film that exists stays' 1 'film.mkv: exists already; -y overwrites' -o film.mkv --no-clobber -s 01 whole
+refuses 'a film that exists stays' 1 'film.mkv: already exists; use -y to replace it' -o film.mkv --no-clobber -s 01 whole
 
 refuses 'a mistyped end of a name gets a suggestion' 2 'w_%d.pgn: *did you mean “png”?' whole -o w_%d.pgn $look
 refuses 'a mistyped folder gets a suggestion' 1 'whle: no such file; did you mean “whole”?' whle $look
@@ -115,7 +115,7 @@ grep -qE 'would take about 0:00:0[0-9], 0\.[0-9]+ seconds a frame' err
 result $? 'and how long that would take'
 touch whole/fluidy-svg.conf
 "$program" whole -s 01 --dry-run >out 2>err &&
-    grep -q 'whole/fluidy-svg.conf is not used; -c whole/fluidy-svg.conf paints by it' err &&
+    grep -q 'whole/fluidy-svg.conf is not used; --config whole/fluidy-svg.conf paints by it' err &&
     "$program" whole -s 01 --dry-run -c whole/fluidy-svg.conf >out 2>err && ! grep -q 'not used' err
 result $? 'a config beside the drawing is offered'
 rm whole/fluidy-svg.conf
@@ -140,13 +140,13 @@ result $? '--list-styles is a list and a sheet'
 "$program" whole -s 01 --detail draft -o '{name}/{name}.gif' -q >out 2>err && [ -s w/w.gif ]
 result $? 'the name of the drawing can stand in that of the output'
 refuses 'a sheet that is no PNG is refused' 2 'styles.jpg: sheets are PNG files; *' --list-styles -o styles.jpg
-refuses 'a sheet that exists stays' 1 'styles.png: exists already*' --list-styles -o styles.png
+refuses 'a sheet that exists stays' 1 'styles.png: already exists*' --list-styles -o styles.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' >out 2>err &&
     [ "$(ls a | wc -l)" = 6 ] && [ ! -s out ]
 result $? 'frames and layers are painted'
 cp -r a b
-refuses 'a frame that exists is not painted over' 1 'a/w_1.png: exists already; *' whole -s 01 -o 'a/w_%d.png'
-refuses 'a layer that exists is not painted over' 1 'a/*_1.png: exists already; *' \
+refuses 'a frame that exists is not painted over' 1 'a/w_1.png: already exists; *' whole -s 01 -o 'a/w_%d.png'
+refuses 'a layer that exists is not painted over' 1 'a/*_1.png: already exists; *' \
     whole -s 01 -o 'c/w_%d.png' --layers 'a/{region}_%d.png'
 rm a/w_2.png && touch -d @0 a/w_1.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' --no-clobber -j1 \

@@ -19,7 +19,7 @@ limited() {
     look
     local before=$?
     look --limit "$2=${4:-1}"
-    [ $? = 1 ] && [ $before = 0 ] && says "$3" && says "; --limit $2=N raises it"
+    [ $? = 1 ] && [ $before = 0 ] && says "$3" && says "; use --limit $2=N to raise it"
     result $? "$1"
 }
 
@@ -44,7 +44,7 @@ limited 'so is one that is embedded' image 'x.svg: 1.2 million pixels of an imag
 
 svg x.svg "$shape"
 look -W 2000 --limit frame=3
-[ $? = 1 ] && says 'x.svg: 4 million pixels of a frame, more than the limit of 3; --limit frame=N'
+[ $? = 1 ] && says 'x.svg: 4 million pixels of a frame, more than the limit of 3; use --limit frame=N to raise it'
 result $? 'a frame that is too large is an error'
 look -W 20000
 [ $? = 1 ] && says 'x.svg: 400 million pixels of a frame, more than the limit of 100'
@@ -53,7 +53,7 @@ paint() { # paint ARGUMENT...
     timeout 60 "$program" x.svg -s "$style" -o "${to:-o}/%d.png" --progress none "$@" >out 2>err
 }
 paint --limit style=1 -s 01
-[ $? = 1 ] && says 'million pixels of a style' && says '--limit style=N raises it'
+[ $? = 1 ] && says 'million pixels of a style' && says 'use --limit style=N to raise it'
 result $? 'a style that is too large is an error'
 paint -W 2000 --limit memory=100
 [ $? = 1 ] && says 'MiB of memory for painting' && says '--limit memory=N' && [ ! -e o ]
@@ -93,7 +93,7 @@ for i in 1 2 3 4 5 6 7 8 9; do
 done
 svg x.svg "<defs>$body</defs><use href='#u9'/>"
 look
-[ $? = 1 ] && says 'more than the limit of 200000; --limit elements=N raises it'
+[ $? = 1 ] && says 'more than the limit of 200000; use --limit elements=N to raise it'
 result $? 'a billion copies by <use> are an error'
 {
     echo '<!DOCTYPE svg [<!ENTITY e0 "lol">'

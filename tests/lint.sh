@@ -127,6 +127,8 @@ readme_test_command() {
 readme_messages() {
     local words part
     words=$(cat src/*/*.c | tr '\n' ' ' | sed 's/" *"//g')
+    words=$(cat src/*/*.c | tr '\n' ' ' |
+        sed 's/" *"//g; s/‘overwrite’/-y/g; s/‘\([a-z-]*\)’/--\1/g')
     sed -n '/^<!-- messages -->$/,/^## /s/^| `\([^`]*\)` .*/\1/p' README.md | sed 's/…/\n/g' |
         while read -r part; do
             [ -z "$part" ] || grep -qF -- "$part" <<<"$words" || echo "no message says: $part"
@@ -171,6 +173,12 @@ options_are_in_the_table() {
     done
 }
 
+# Each program has its own words for an option; the library names it, ‘canvas’.
+messages_name_no_flags() {
+    grep -rnE '"[^"]*(--[a-z]| -[a-zA-Z]\b)[^"]*"' --include='*.[ch]' src include |
+        grep -vE '^src/cli/|^src/io/(video|ffmpeg)[a-z_]*.c|ulimit -v'
+}
+
 limits_are_documented() {
     local name preset
     sed -nE 's/^FL_LIMIT\([A-Z]+, "([a-z]+)", ([0-9]+),.*/\1 \2/p' src/base/limits.def |
@@ -188,6 +196,7 @@ report 'include guards are the path' header_guards
 report 'no two files or types have one name' names_are_unique
 report 'every work that is cited is in REFERENCES.md' references_are_listed
 report 'options.def has every field of FlRenderOptions' options_are_in_the_table
+report 'messages of the library name no flags of the programs' messages_name_no_flags
 report 'no path of a workplace is committed' foreign_paths
 report '--help fits one screen' help_fits_one_screen "$build/src/cli/fluidy-svg"
 report 'CI runs the test command of the README' readme_test_command

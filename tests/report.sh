@@ -19,7 +19,7 @@ result $? 'the page refers to no other file'
 grep -q 'uses:\[{style:"01",picture:"data:image/png' page/index.html && ! grep -q 'painters:\[\[0,' page/index.html
 result $? 'the page has energies and the use of the recording'
 "$program" w_%04d.svg -s 01 -q -o 'new_%d.png' --report page 2>err
-[ $? = 1 ] && grep -q 'page/index.html: *exists' err && [ ! -e new_1.png ]
+[ $? = 1 ] && grep -q 'page/index.html: already exists; use -y' err && [ ! -e new_1.png ]
 result $? 'a page that exists stays, and nothing is painted'
 
 # What a visitor does, run by the page itself; the last line of the page tells how it went.

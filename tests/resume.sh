@@ -137,10 +137,10 @@ refused() { # refused SENTENCE MESSAGE ARGUMENT...: status 1, one line, nothing 
     result $? "$sentence"
 }
 refused 'another parameter is no reason to mix frames' 'w-temp of region ' --w-temp 3
-refused 'another seed is told with both values' 'seed was 1 and is 2; -y starts anew' --seed 2
+refused 'another seed is told with both values' 'seed was 1 and is 2; use -y to start anew' --seed 2
 refused 'another size is told' 'the width was 56 and is 28' -W 28
 drawing film/w_0006.svg 56 1
-refused 'a drawing that was changed is named' 'w_0006.svg has other contents; -y starts anew'
+refused 'a drawing that was changed is named' 'w_0006.svg has other contents; use -y to start anew'
 drawing film/w_0006.svg 56 6
 cp -r "$style" other-style
 printf '\n' >>other-style/style.ini
@@ -157,12 +157,12 @@ mv w_0001.png changed/
 later=changed/w_000$(($(ls changed/w_*.png | wc -l) + 2)).png # the next one was in hand
 drawing "$later" 56 1
 paint changed
-[ $? = 1 ] && says "${later#*/}: exists already" && grep -q svg "$later"
+[ $? = 1 ] && says "${later#*/}: already exists" && grep -q svg "$later"
 result $? 'a file that a later frame would replace is refused and left alone'
 rm "$later"
 head -c 100 changed/.w_%04d.png.state >cut && cp cut changed/.w_%04d.png.state
 paint changed
-[ $? = 1 ] && says 'the state of an earlier render cannot be read; -y starts anew'
+[ $? = 1 ] && says 'the state of an earlier render cannot be read; use -y to start anew'
 result $? 'a state that is cut short is told'
 paint changed -y && ! grep -q 'going on' err && same changed whole
 result $? '-y starts anew'
@@ -176,7 +176,7 @@ paint stopped2 -y --resume --seed 2 && ! grep -q 'going on' err && ! same stoppe
 result $? '-y --resume starts anew where it cannot'
 
 "$program" film -s "$style" -o film.gif --no-frames --resume >out 2>err
-[ $? = 2 ] && says 'film.gif: a film cannot be resumed without its frames; expected no --no-frames'
+[ $? = 2 ] && says 'film.gif: a film cannot be resumed without its frames; leave out --no-frames'
 result $? 'a film without frames that should be resumed is refused'
 
 "$program" film -s "$style" -o played/w.mkv -q >out 2>err

@@ -60,7 +60,7 @@ does 'a folder of pictures is imported' import "$small" -o own/ink -f 2-6x2 --li
 { [ "$(ls own/ink/frames | wc -l)" = 3 ] && [ "$(ls own/ink/masks | wc -l)" = 3 ] &&
     grep -q '^fps = 6$' own/ink/style.ini && [ ! -s out ] && grep -q 'paint fills' err; }
 result $? 'with the frames that were asked for, notes on stderr'
-refuses 'a style is not overwritten' 1 'own/ink/frames exists: -y overwrites it' import "$small" -o own/ink
+refuses 'a style is not overwritten' 1 'own/ink/frames: already exists; use -y to replace it' import "$small" -o own/ink
 does 'but for -y' import "$small" -o own/ink -y -q
 { [ "$(ls own/ink/frames | wc -l)" = 6 ] && [ ! -s err ] && [ "$(ls -A own)" = ink ]; }
 result $? 'quietly, and without leftovers'
@@ -77,7 +77,7 @@ does 'check reports on it by name' check ink
 { grep -q '^size       64x48, 6 frames' out && grep -q '^sheet      ink-check.png$' out &&
     [ "$(head -c 4 ink-check.png | tail -c 3)" = PNG ]; }
 result $? 'and draws a picture sheet'
-refuses 'a sheet is not overwritten' 1 'ink-check.png exists: -y overwrites it' check ink
+refuses 'a sheet is not overwritten' 1 'ink-check.png: already exists; use -y to replace it' check ink
 "$program" check ink --no-sheet --strict >out 2>err
 { [ $? = 1 ] && grep -q '^problem' out && grep -q '^fluidy-style: [0-9]* problem' err; }
 result $? 'under --strict problems are a failure'
@@ -90,7 +90,7 @@ does 'a recipe is simulated' simulate "$dust/recipe.ini" -o dust
     [ "$(tail -1 err)" = 'fluidy-style: frame 3 of 3' ]; }
 result $? 'frame by frame'
 sed 's/^frames = 3/frames = 2/' "$dust/recipe.ini" >short.ini
-refuses 'a simulated style is not overwritten' 1 'dust/frames exists: -y overwrites it' \
+refuses 'a simulated style is not overwritten' 1 'dust/frames: already exists; use -y to replace it' \
     simulate short.ini -o dust
 refuses 'a file is no place for a style' 1 'err: is a file: expected a folder' simulate short.ini -o err
 does 'but for -y' simulate -qy short.ini -o dust

@@ -1,8 +1,8 @@
 /* The table of options: every line is read, told, and in the fingerprint if it decides bytes. */
 #include "params/options.h"
 
-#include "params/config.h"
 #include "job/fingerprint.h"
+#include "params/config.h"
 #include "scratch.h"
 #include <string.h>
 

@@ -255,9 +255,9 @@ static void a_clip_over_the_limit_says_how_to_make_it_smaller(void)
     g_assert_false(fl_style_allocate(style, &first, 32, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_LIMIT);
     g_assert_nonnull(
-        strstr(error->message, "32 frames of 1000x1000 (fluidy-style import --scale or"));
+        strstr(error->message, "32 frames of 1000x1000 (import fewer or smaller"));
     g_assert_nonnull(
-        strstr(error->message, "more than the limit of 31; --limit style=N raises it"));
+        strstr(error->message, "more than the limit of 31; use ‘limit’ style=N to raise it"));
 }
 
 static void a_style_is_found_by_name_in_fluidy_styles(void)

@@ -16,7 +16,13 @@ G_BEGIN_DECLS
 #define FL_ERROR fl_error_quark()
 FL_API GQuark fl_error_quark(void);
 
-/** Codes tell callers what to do next; the message tells people what happened. */
+/**
+ * Codes tell callers what to do next; the message tells people what happened.
+ *
+ * Where a message (also a warning or a note) speaks of an option, its name stands between ‘ and ’,
+ * as in "use ‘canvas’": the name of the option of the program and, but for dashes, of the field. So
+ * a program can put its own words there; nothing else stands in these marks.
+ */
 typedef enum FlError {
     FL_ERROR_USAGE,       /**< an option, a parameter or a config file is wrong: exit status 2 */
     FL_ERROR_INPUT,       /**< an SVG, mask or flow file is missing or broken */

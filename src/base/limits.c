@@ -69,7 +69,8 @@ bool fl_limit_check(FlLimit limit, double wanted, const char *where, GError **er
     if (wanted <= (double)fl_limit(limit))
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                "%s: %.10g %s, more than the limit of %" G_GINT64_FORMAT "; --limit %s=N raises it",
+                "%s: %.10g %s, more than the limit of %" G_GINT64_FORMAT
+                "; use ‘limit’ %s=N to raise it",
                 where, wanted, limits[limit].what, fl_limit(limit), limits[limit].name);
     return false;
 }

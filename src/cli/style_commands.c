@@ -1,5 +1,7 @@
 #include "style_commands.h"
 
+#include "words.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -31,6 +33,21 @@ static const GOptionEntry import_entries[] = {
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "No notes, only errors", NULL},
     {NULL},
 };
+
+/* A letter is enough for what needs no value. */
+static char *flag_of(const char *name, void *entries)
+{
+    for (const GOptionEntry *e = entries; e && e->long_name; e++)
+        if (strcmp(e->long_name, name) == 0)
+            return e->short_name && !e->arg_description ? g_strdup_printf("-%c", e->short_name)
+                                                        : g_strconcat("--", name, NULL);
+    return strcmp(name, "limit") == 0 ? g_strdup("--limit") : NULL;
+}
+
+char *fl_style_command_translate(const GOptionEntry *entries, const char *message)
+{
+    return fl_words_translate(message, flag_of, (gpointer)entries);
+}
 
 static bool usage(GError **error, const char *what, const char *given)
 {
@@ -95,8 +112,10 @@ static bool run_import(char **words, GError **error)
     import.fps = options.fps;
     g_autoptr(GPtrArray) notes = g_ptr_array_new_with_free_func(g_free);
     const bool done = fl_style_import(&import, notes, error);
-    for (guint i = 0; i < notes->len && !options.quiet; i++)
-        fprintf(stderr, "fluidy-style: %s\n", (char *)g_ptr_array_index(notes, i));
+    for (guint i = 0; i < notes->len && !options.quiet; i++) {
+        g_autofree char *note = fl_style_command_translate(import_entries, notes->pdata[i]);
+        fprintf(stderr, "fluidy-style: %s\n", note);
+    }
     return done;
 }
 

@@ -12,6 +12,9 @@ typedef struct FlStyleCommand {
     bool (*run)(char **words, GError **error);
 } FlStyleCommand;
 
+/** A message of the library in the words of a command: ‘paper’ as --paper. To be freed. */
+char *fl_style_command_translate(const GOptionEntry *entries, const char *message);
+
 /** All of them; one without a name ends the list. */
 extern const FlStyleCommand fl_style_commands[];
 

@@ -12,9 +12,9 @@
 enum { DONE = 0, FAILURE = 1, USAGE = 2 };
 
 /* One line, whatever the library below wrote. */
-static int fail(const GError *error)
+static int fail(const GOptionEntry *entries, const GError *error)
 {
-    g_autofree char *line = g_strstrip(g_strdup(error->message));
+    g_autofree char *line = g_strstrip(fl_style_command_translate(entries, error->message));
     fprintf(stderr, "fluidy-style: %s\n", g_strdelimit(line, "\r\n", ' '));
     const bool usage =
         error->domain == G_OPTION_ERROR || g_error_matches(error, FL_ERROR, FL_ERROR_USAGE);
@@ -100,9 +100,9 @@ int main(int argc, char **argv)
     g_autoptr(GError) error = NULL;
     const FlStyleCommand *command = find_command(argv[1], &error);
     if (!command)
-        return fail(error);
+        return fail(NULL, error);
     g_autofree char *program = g_strdup_printf("fluidy-style %s", command->name);
     g_set_prgname(program);
     argv[1] = program;
-    return run_command(command, argv + 1, &error) ? DONE : fail(error);
+    return run_command(command, argv + 1, &error) ? DONE : fail(command->entries, error);
 }

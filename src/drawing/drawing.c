@@ -227,8 +227,8 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     merge_regions(survey, groups, options->rules);
     if (groups->len > INT16_MAX) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "%s: %u regions, at most %d are handled; choose another --key",
-                    sequence->file[0], groups->len, INT16_MAX);
+                    "%s: %u regions, at most %d are handled; use another ‘key’", sequence->file[0],
+                    groups->len, INT16_MAX);
         return NULL;
     }
     FlDrawing *drawing = g_new0(FlDrawing, 1);

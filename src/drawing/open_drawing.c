@@ -104,7 +104,7 @@ static bool report(const FlWarnings *warnings, const FlRenderOptions *options, G
                                     : g_strdup_printf("%s; and so for %d more element%s", first,
                                                       n_alike - 1, n_alike == 2 ? "" : "s");
         if (options->strict) {
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under --strict)", line,
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s (%d warning%s under ‘strict’)", line,
                         n, n == 1 ? "" : "s");
             return false;
         }
@@ -123,7 +123,7 @@ static void offer_config(const FlDrawing *drawing, const FlRenderOptions *option
                                 : g_build_filename(folder, "fluidy-svg.conf", NULL);
     if (options->config || !options->note || !g_file_test(path, G_FILE_TEST_IS_REGULAR))
         return;
-    g_autofree char *line = g_strdup_printf("%s is not used; -c %s paints by it", path, path);
+    g_autofree char *line = g_strdup_printf("%s is not used; ‘config’ %s paints by it", path, path);
     options->note(line, options->data);
 }
 

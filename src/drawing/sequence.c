@@ -375,7 +375,7 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
     g_autofree char *list = list_numbers(gaps);
     if ((gaps->len > 0 && missing <= FL_MISSING_ERROR) || s->n == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: no file for frame%s %s; --missing hold or skip goes on without",
+                    "%s: no file for frame%s %s; use ‘missing’ hold or skip to go on without",
                     first->path, gaps->len > 1 ? "s" : "", list);
         return NULL;
     }

@@ -1,5 +1,6 @@
 #include "io/atomic_file.h"
 
+#include "base/exists.h"
 #include "io/lock.h"
 
 #include <errno.h>
@@ -17,21 +18,13 @@ void fl_output_error(GError **error, const char *path, int errno_value)
                 g_strerror(errno_value));
 }
 
-static void exists_error(GError **error, const char *path)
-{
-    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
-                "%s: exists already; expected a new name, or leave to overwrite", path);
-}
-
 /** Makes the folder and looks whether the name is free. */
 static bool prepare(FlAtomicFile *file, const char *path, bool overwrite, GError **error)
 {
     g_autofree char *folder = g_path_get_dirname(path);
     *file = (FlAtomicFile){0};
-    if (!overwrite && g_file_test(path, G_FILE_TEST_EXISTS)) {
-        exists_error(error, path);
+    if (!overwrite && !fl_exists_not(path, error))
         return false;
-    }
     if (g_file_test(path, G_FILE_TEST_IS_DIR)) {
         fl_output_error(error, path, EISDIR);
         return false;
@@ -187,7 +180,7 @@ bool fl_atomic_commit(FlAtomicFile *file, GError **error)
         if (taken)
             g_propagate_error(error, taken);
         else if (errno == EEXIST)
-            exists_error(error, file->path);
+            fl_exists_error(error, file->path);
         else
             fl_output_error(error, file->path, errno);
         return false;

@@ -99,8 +99,10 @@ FlCheckpoint *fl_checkpoint_parse(GBytes *bytes, const char *path, GError **erro
             state = from_variant(variant);
     }
     if (!state)
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: the state of an earlier render cannot be read; -y starts anew", path);
+        g_set_error(
+            error, FL_ERROR, FL_ERROR_CHANGED,
+            "%s: the state of an earlier render cannot be read; use ‘overwrite’ to start anew",
+            path);
     return state;
 }
 

@@ -35,7 +35,7 @@ bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)
 {
     if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: there is no such file; --paint without --merge writes the paint of “%s”",
+                    "%s: there is no such file; ‘paint’ without ‘merge’ writes the paint of “%s”",
                     path, painted->name);
         return false;
     }

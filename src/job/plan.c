@@ -70,7 +70,7 @@ static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
     g_autofree char *line = g_strdup_vprintf(format, arguments);
     va_end(arguments);
     if (plan->options.strict)
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s (a warning under --strict)", line);
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s (a warning under ‘strict’)", line);
     else
         say(plan, plan->options.warning, "%s", line);
     return !plan->options.strict;
@@ -90,7 +90,7 @@ static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GErro
     return style->ink->beyond < MUCH_BEYOND || painted->settings.tint != FL_TINT_FILL ||
            warn(plan, error,
                 "%s: most of the paint is darker than the paper, but %d %% is lighter, or the "
-                "other way round, and will be bare; --tint keep keeps the recording's colours",
+                "other way round, and will be bare; use ‘tint’ keep for the recording's colours",
                 style->path, style->ink->beyond);
 }
 
@@ -115,7 +115,7 @@ static bool treat_region(FlPlan *plan, int region, GError **error)
     plan->painted_of[region] = plan->n_painted++; // from here on the plan clears it
     if (!settings->style)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "no style for region “%s”: expected --style NAME, or style = NAME in a config",
+                    "no style for region “%s”; use ‘style’ NAME, or style = NAME in a config",
                     r->name);
     return settings->style != NULL;
 }
@@ -245,11 +245,11 @@ static bool check_merge(const FlRenderOptions *options, GError **error)
 {
     const char *wrong = NULL;
     if (options->merge && !options->paint)
-        wrong = "--merge composes what --paint has written; expected --paint PATTERN too";
+        wrong = "‘merge’ composes what ‘paint’ has written; use ‘paint’ PATTERN too";
     else if (options->merge && (options->report || options->dump))
-        wrong = "--merge paints nothing that --report or --dump could show; expected it alone";
+        wrong = "‘merge’ paints nothing that ‘report’ or ‘dump’ could show; use it alone";
     else if (options->paint && !fl_output_is_pattern(options->paint))
-        wrong = "--paint: one file for all frames; expected a number in the name, such as %04d";
+        wrong = "‘paint’: one file for all frames; expected a number in the name, such as %04d";
     if (wrong)
         g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);
     return !wrong;

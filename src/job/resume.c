@@ -1,5 +1,6 @@
 #include "job/resume.h"
 
+#include "base/exists.h"
 #include "io/lock.h"
 #include "io/pattern.h"
 #include "io/sink.h"
@@ -51,17 +52,8 @@ static bool find_state(FlResume *resume, const FlPlan *plan, FlFingerprint *prin
         g_propagate_error(error, g_steal_pointer(&problem));
     else
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: an earlier run painted %d frames, but %s; -y starts anew", plan->output,
-                    state->done, difference);
-    return false;
-}
-
-static bool is_free(const char *file, bool movie, GError **error)
-{
-    if (!g_file_test(file, G_FILE_TEST_EXISTS))
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s: exists already; -y overwrites%s", file,
-                movie ? "" : ", --no-clobber keeps what is there");
+                    "%s: an earlier run painted %d frames, but %s; use ‘overwrite’ to start anew",
+                    plan->output, state->done, difference);
     return false;
 }
 
@@ -71,7 +63,7 @@ static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
     for (int p = 0; plan->options.layers && p < plan->n_painted; p++) {
         const char *region = plan->painted[p].name;
         g_autofree char *file = fl_output_name(plan->options.layers, number, region, error);
-        if (!file || !is_free(file, false, error))
+        if (!file || !fl_exists_not(file, error))
             return false;
     }
     return true;
@@ -83,7 +75,7 @@ static bool paints_are_free(const FlPlan *plan, int frame, GError **error)
     for (int p = 0; o->paint && !o->merge && p < plan->n_painted; p++) {
         const FlRegionPlan *painted = &plan->painted[p];
         g_autofree char *file = fl_paint_file(o->paint, plan->drawing, painted, frame, error);
-        if (!file || (frame % painted->settings.hold == 0 && !is_free(file, false, error)))
+        if (!file || (frame % painted->settings.hold == 0 && !fl_exists_not(file, error)))
             return false;
     }
     return true;
@@ -99,18 +91,19 @@ static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, G
         if (!file || g_file_test(file, G_FILE_TEST_EXISTS))
             return true;
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: an earlier run painted it, but it is gone; -y starts anew", file);
+                    "%s: an earlier run painted it, but it is gone; use ‘overwrite’ to start anew",
+                    file);
         return false;
     }
     return resume->keep_files || fl_resume_replaces(resume, frame) ||
-           ((!file || is_free(file, false, error)) && layers_are_free(plan, frame, error) &&
+           ((!file || fl_exists_not(file, error)) && layers_are_free(plan, frame, error) &&
             paints_are_free(plan, frame, error));
 }
 
 static bool check_files(const FlResume *resume, const FlPlan *plan, GError **error)
 {
     const char *movie = resume->path ? plan->movie : plan->output;
-    if (movie && !may_overwrite(plan) && !is_free(movie, true, error))
+    if (movie && !may_overwrite(plan) && !fl_exists_not(movie, error))
         return false;
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
         if (!check_frame(resume, plan, f, error))
@@ -134,7 +127,7 @@ static bool check_film(const FlPlan *plan, GError **error)
 {
     if (plan->options.resume) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: a film cannot be resumed without its frames; expected no --no-frames",
+                    "%s: a film cannot be resumed without its frames; leave out ‘no-frames’",
                     plan->output);
         return false;
     }

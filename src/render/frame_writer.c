@@ -84,10 +84,11 @@ static bool recall_frames(FlFrameWriter *writer, GError **error)
         const FlSinkFrame out = {.number = number, .rgba = picture->rgba};
         if (picture->width != writer->movie->params.width ||
             picture->height != writer->movie->params.height) {
-            g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                        "%s: %dx%d pixels, but an earlier run painted %dx%d; -y starts anew", file,
-                        picture->width, picture->height, writer->movie->params.width,
-                        writer->movie->params.height);
+            g_set_error(
+                error, FL_ERROR, FL_ERROR_CHANGED,
+                "%s: %dx%d pixels, but an earlier run painted %dx%d; use ‘overwrite’ to start anew",
+                file, picture->width, picture->height, writer->movie->params.width,
+                writer->movie->params.height);
             return false;
         }
         if (!fl_sink_frame(writer->movie, &out, error))

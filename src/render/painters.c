@@ -133,7 +133,8 @@ bool fl_painters_load(FlPainters *painters, const GPtrArray *states, const char 
     GBytes *const *parts = (GBytes *const *)states->pdata;
     if (states->len != (guint)(FL_PAINTER_PARTS * painters->n)) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: has the state of another number of regions; -y starts anew", path);
+                    "%s: has the state of another number of regions; use ‘overwrite’ to start anew",
+                    path);
         return false;
     }
     for (int p = 0; p < painters->n; p++)

@@ -1,4 +1,5 @@
 /* Says of a style what was understood, and what a painter should look into. */
+#include "base/exists.h"
 #include "base/headroom.h"
 #include "style/check_sheet.h"
 #include "style/manifest.h"
@@ -274,10 +275,8 @@ FlStyleReport *fl_style_check(const char *name, const char *sheet, bool overwrit
     g_autofree char *folder = fl_headroom_check(error) ? fl_style_find(name, error) : NULL;
     if (!folder)
         return NULL;
-    if (sheet && !overwrite && g_file_test(sheet, G_FILE_TEST_EXISTS)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s exists: -y overwrites it", sheet);
+    if (sheet && !overwrite && !fl_exists_not(sheet, error))
         return NULL;
-    }
     g_autoptr(FlStyle) style = fl_style_load(folder, error);
     FlParams params;
     fl_params_defaults(&params);

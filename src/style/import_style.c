@@ -116,8 +116,8 @@ static void note_what_was_read(const Import *import, const FlRecording *source, 
          style->n_frames == 1 ? "" : "s", style->width, style->height, how->source, masks);
     if (how->scale == 0 && MAX(source->width, source->height) > MAX(style->width, style->height) &&
         !how->crop[2])
-        note(import, "made smaller: the recording is %dx%d; --scale says otherwise", source->width,
-             source->height);
+        note(import, "made smaller: the recording is %dx%d; use ‘scale’ for another size",
+             source->width, source->height);
 }
 
 static bool read_all(Import *import, GError **error)
@@ -282,15 +282,16 @@ static void add_warnings(const Import *import)
     else if (fabs(last - first) < 0.01)
         note(import, "warning: the paint hardly grows, so it will not flow");
     if (how->whole && !how->paper)
-        note(import, "warning: the colour of the paper is not known and taken as white; --paper "
-                     "gives it");
+        note(import,
+             "warning: the colour of the paper is not known and taken as white; use ‘paper’ "
+             "to give it");
     if (!how->whole && !how->paper && !is_like_paper(style->paper))
         note(import,
-             "warning: #%02x%02x%02x is not like paper; --paper gives the right colour, --whole "
-             "says that paint fills the whole frame",
+             "warning: #%02x%02x%02x is not like paper; use ‘paper’ for the right colour, or "
+             "‘whole’ if paint fills the whole frame",
              style->paper[0], style->paper[1], style->paper[2]);
     if (!how->licence)
-        note(import, "warning: no licence is given; --licence keeps it with the style");
+        note(import, "warning: no licence is given; use ‘licence’ to keep it with the style");
 }
 
 bool fl_style_import(const FlStyleImport *how, GPtrArray *notes, GError **error)

@@ -9,9 +9,9 @@
 bool fl_style_allocate(FlStyle *style, const FlPicture *first, int n_frames, GError **error)
 {
     const size_t pixels = (size_t)first->width * first->height * n_frames;
-    g_autofree char *where = g_strdup_printf(
-        "%s: %d frames of %dx%d (fluidy-style import --scale or --step makes it smaller)",
-        style->path, n_frames, first->width, first->height);
+    g_autofree char *where =
+        g_strdup_printf("%s: %d frames of %dx%d (import fewer or smaller frames)", style->path,
+                        n_frames, first->width, first->height);
     if (!fl_limit_check(FL_LIMIT_STYLE, (double)pixels / 1e6, where, error))
         return false;
     style->width = first->width;

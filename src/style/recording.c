@@ -174,7 +174,7 @@ static bool within_limit(const Reader *reader, int n_frames, GError **error)
 {
     const double pixels = (double)reader->width * reader->height * n_frames;
     g_autofree char *where =
-        g_strdup_printf("%s: %d frames or more of %dx%d (--frames, --step and --scale take less)",
+        g_strdup_printf("%s: %d frames or more of %dx%d (use ‘frames’ or ‘scale’ to take less)",
                         reader->source->path, n_frames, reader->width, reader->height);
     return fl_limit_check(FL_LIMIT_STYLE, pixels / 1e6, where, error);
 }

@@ -1,5 +1,6 @@
 #include "style/write_style.h"
 
+#include "base/exists.h"
 #include "io/lock.h"
 #include "io/png.h"
 #include "style/manifest.h"
@@ -15,10 +16,8 @@ bool fl_style_may_write(const char *folder, bool overwrite, GError **error)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(parts) && !overwrite; i++) {
         g_autofree char *path = g_build_filename(folder, parts[i], NULL);
-        if (g_file_test(path, G_FILE_TEST_EXISTS)) {
-            g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s exists: -y overwrites it", path);
+        if (!fl_exists_not(path, error))
             return false;
-        }
     }
     if (!g_file_test(folder, G_FILE_TEST_EXISTS) || g_file_test(folder, G_FILE_TEST_IS_DIR))
         return true;

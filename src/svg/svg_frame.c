@@ -207,8 +207,8 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
         return true;
     g_set_error(
         error, FL_ERROR, FL_ERROR_INPUT,
-        "%s: the drawing has no size and no viewBox; give one, such as --canvas 1920x1080, or let "
-        "--register find one",
+        "%s: the drawing has no size and no viewBox; use ‘canvas’ to give one, such as 1920x1080, "
+        "or ‘register’ to find one",
         svg->path);
     return false;
 }
