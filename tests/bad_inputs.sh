@@ -186,7 +186,7 @@ table() {
 1|./section/style.ini:1: [stile]: expected [style]|good -s ./section
 1|./number/style.ini:2: border = -3: expected a number from 0.5 to 1000|good -s ./number
 1|./notanumber/style.ini:2: fps = nan: expected a number *|good -s ./notanumber
-1|./nonsense/style.ini:1: "hello" stands before any section: expected [style]|good -s ./nonsense
+1|./nonsense/style.ini:1: “hello” is neither “[section]” nor “key = value”|good -s ./nonsense
 1|./colour/style.ini:2: paper = #12: expected a colour such as #f4efe6|good -s ./colour
 2|hold.conf:2: hold: “0” is not an integer from 1 to 1000|good -c hold.conf
 2|mistyped.conf:2: [region] has no key “match-fil”; did you mean “match-fill”?|good -c mistyped.conf

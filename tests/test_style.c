@@ -146,8 +146,8 @@ static void a_mistake_in_style_ini_is_told_with_its_line(void)
         {"[style]\npaper = white\n", "style.ini:2: paper = white: expected a colour"},
         {"[style]\nfps = 3\nfps = 4\n", "style.ini:3: fps is given a second time"},
         {"[style]\nfps =\n", "style.ini:2: fps = : expected a number"},
-        {"[style]\nfps\n", "style.ini:2: \"fps\": expected \"key = value\""},
-        {"fps = 3\n", "style.ini:1: \"fps = 3\" stands before any section"},
+        {"[style]\nfps\n", "style.ini:2: “fps” is neither “[section]” nor “key = value”"},
+        {"fps = 3\n", "style.ini:1: “fps” stands above the first section"},
     };
     g_autofree char *folder = drop_folder();
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
@@ -254,8 +254,7 @@ static void a_clip_over_the_limit_says_how_to_make_it_smaller(void)
     const FlPicture first = {.width = 1000, .height = 1000};
     g_assert_false(fl_style_allocate(style, &first, 32, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_LIMIT);
-    g_assert_nonnull(
-        strstr(error->message, "32 frames of 1000x1000 (import fewer or smaller"));
+    g_assert_nonnull(strstr(error->message, "32 frames of 1000x1000 (import fewer or smaller"));
     g_assert_nonnull(
         strstr(error->message, "more than the limit of 31; use ‘limit’ style=N to raise it"));
 }

@@ -1,21 +1,9 @@
 #include "drawing/region_rules.h"
 
 #include "base/colour_difference.h"
+#include "params/text.h"
 #include <stdio.h>
 #include <string.h>
-
-static bool parse_hex(const char *digits, uint8_t rgb[3])
-{
-    const size_t n = strlen(digits);
-    if ((n != 3 && n != 6) || strspn(digits, "0123456789abcdefABCDEF") != n)
-        return false;
-    for (int c = 0; c < 3; c++) {
-        const int high = g_ascii_xdigit_value(digits[n == 3 ? c : 2 * c]);
-        const int low = g_ascii_xdigit_value(digits[n == 3 ? c : 2 * c + 1]);
-        rgb[c] = (uint8_t)(high * 16 + low);
-    }
-    return true;
-}
 
 bool fl_css_colour(const char *text, uint8_t rgb[3])
 {
@@ -31,7 +19,7 @@ bool fl_css_colour(const char *text, uint8_t rgb[3])
         {"aqua", {0, 255, 255}},    {"orange", {255, 165, 0}},   {"grey", {128, 128, 128}},
     };
     if (text[0] == '#')
-        return parse_hex(text + 1, rgb);
+        return fl_text_colour(text, rgb);
     unsigned r, g, b;
     char end;
     if (sscanf(text, "rgb( %u , %u , %u %c", &r, &g, &b, &end) == 4 && end == ')' &&

@@ -252,7 +252,7 @@ FlConfig *fl_config_load(const char *path, GError **error)
     };
     config->path = g_strdup(path);
     config->defaults.folder = g_strdup(reader.folder);
-    const FlKeyReader calls = {read_section, read_entry, &reader};
+    const FlKeyReader calls = {read_section, read_entry, &reader, FL_ERROR_USAGE};
     if (!fl_key_file_read(path, &calls, error))
         return NULL;
     for (int i = 0; i < config->n_rules; i++)

@@ -6,7 +6,7 @@
 
 #define LARGEST_BYTES (1 << 20)
 
-static char *load(const char *path, GError **error)
+static char *load(const char *path, FlError mistake, GError **error)
 {
     g_autofree char *text = g_malloc(LARGEST_BYTES + 2);
     FILE *file = fopen(path, "rbe");
@@ -25,7 +25,7 @@ static char *load(const char *path, GError **error)
     }
     text[bytes] = '\0';
     if (!g_utf8_validate(text, (gssize)bytes, NULL)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: the file is not UTF-8 text", path);
+        g_set_error(error, FL_ERROR, (int)mistake, "%s: the file is not UTF-8 text", path);
         return NULL;
     }
     return g_steal_pointer(&text);
@@ -35,7 +35,7 @@ static bool read_section(const FlKeyReader *reader, char *text, int line, GError
 {
     char *end = strchr(text, ']');
     if (!end || end[1] != '\0') {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not a section: “]” must end it",
+        g_set_error(error, FL_ERROR, (int)reader->mistake, "“%s” is not a section: “]” must end it",
                     text);
         return false;
     }
@@ -47,8 +47,8 @@ static bool read_entry(const FlKeyReader *reader, char *text, int line, GError *
 {
     char *equals = strchr(text, '=');
     if (!equals || equals == text) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "“%s” is neither “[section]” nor “key = value”", text);
+        g_set_error(error, FL_ERROR, (int)reader->mistake,
+                    "“%.40s” is neither “[section]” nor “key = value”", text);
         return false;
     }
     *equals = '\0';
@@ -57,7 +57,7 @@ static bool read_entry(const FlKeyReader *reader, char *text, int line, GError *
 
 bool fl_key_file_read(const char *path, const FlKeyReader *reader, GError **error)
 {
-    g_autofree char *text = load(path, error);
+    g_autofree char *text = load(path, reader->mistake, error);
     if (!text)
         return false;
     char *const start = g_str_has_prefix(text, "\xef\xbb\xbf") ? text + 3 : text; // Windows' mark

@@ -1,6 +1,7 @@
 /* A recording becomes a style: read, find the paper and the paint, hold still, flatten, write. */
 #include "base/headroom.h"
 #include "io/ffmpeg.h"
+#include "params/text.h"
 #include "style/border.h"
 #include "style/estimate.h"
 #include "style/flat_field.h"
@@ -52,7 +53,7 @@ static bool check_options(const FlStyleImport *how, uint8_t paper[3], GError **e
         wrong = "the border must be from 0.5 to 1000 px";
     else if (how->fps != 0 && !(how->fps >= 0.01 && how->fps <= 1000))
         wrong = "the frames per second must be from 0.01 to 1000";
-    else if (how->paper && !fl_colour_parse(how->paper, paper))
+    else if (how->paper && !fl_text_colour(how->paper, paper))
         wrong = "the paper must be a colour such as #f4efe6";
     if (wrong)
         g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);

@@ -1,16 +1,10 @@
 #include "style/manifest.h"
 
 #include "base/suggest.h"
+#include "params/key_file.h"
+#include "params/text.h"
 
-#include <math.h>
 #include <string.h>
-
-/* One line "key = value" and where it stands. */
-typedef struct Line {
-    const char *path;
-    int number;
-    char *key, *value;
-} Line;
 
 typedef enum KeyType { TEXT, NUMBER, COLOUR, MEDIUM } KeyType;
 
@@ -34,147 +28,103 @@ static const struct Key {
     {"paper", COLOUR, offsetof(FlStyle, paper), 0, 0, FL_GUESS_PAPER},
 };
 
-G_GNUC_PRINTF(3, 4)
-static bool wrong(const Line *line, GError **error, const char *format, ...)
+/* Where the reader is. */
+typedef struct Reader {
+    FlStyle *style;
+    enum { NOWHERE, STYLE, OTHER } place;
+    unsigned seen; // keys of [style], a bit each
+} Reader;
+
+G_GNUC_PRINTF(2, 3)
+static bool wrong(GError **error, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
     g_autofree char *what = g_strdup_vprintf(format, args);
     va_end(args);
-    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s:%d: %s", line->path, line->number, what);
+    g_set_error_literal(error, FL_ERROR, FL_ERROR_STYLE, what);
     return false;
 }
 
-/* All of `text` as a finite number with a decimal point, in any locale. */
-static bool parse_number(const char *text, double *value)
-{
-    char *end = NULL;
-    *value = g_ascii_strtod(text, &end);
-    return end != text && *end == '\0' && isfinite(*value);
-}
-
-bool fl_colour_parse(const char *text, uint8_t rgb[3])
-{
-    const size_t digits = strlen(text) / 3;
-    if (text[0] != '#' || (strlen(text) != 4 && strlen(text) != 7))
-        return false;
-    for (size_t c = 0; c < 3; c++) {
-        const int high = g_ascii_xdigit_value(text[1 + c * digits]);
-        const int low = g_ascii_xdigit_value(text[c * digits + digits]);
-        if (high < 0 || low < 0)
-            return false;
-        rgb[c] = (uint8_t)(16 * high + low);
-    }
-    return true;
-}
-
-static bool read_number(const Line *line, const struct Key *key, float *field, GError **error)
+static bool read_number(const char *text, const struct Key *key, float *field, GError **error)
 {
     double value;
-    if (!parse_number(line->value, &value) || value < key->min || value > key->max)
-        return wrong(line, error, "%s = %s: expected a number from %g to %g", line->key,
-                     line->value, key->min, key->max);
+    if (!fl_text_number(text, &value) || value < key->min || value > key->max)
+        return wrong(error, "%s = %s: expected a number from %g to %g", key->name, text, key->min,
+                     key->max);
     *field = (float)value;
     return true;
 }
 
-static bool read_medium(const Line *line, FlMedium *medium, GError **error)
+static bool read_medium(const char *text, FlMedium *medium, GError **error)
 {
     const char *const words[] = {"transparent", "opaque", NULL};
     for (int i = 0; words[i]; i++)
-        if (strcmp(line->value, words[i]) == 0) {
+        if (strcmp(text, words[i]) == 0) {
             *medium = (FlMedium)i;
             return true;
         }
-    g_autofree char *tail = fl_did_you_mean(line->value, words);
-    return wrong(line, error, "medium = %s: expected transparent or opaque%s", line->value, tail);
+    g_autofree char *tail = fl_did_you_mean(text, words);
+    return wrong(error, "medium = %s: expected transparent or opaque%s", text, tail);
 }
 
-static bool read_value(FlStyle *style, const Line *line, const struct Key *key, GError **error)
+static bool read_value(FlStyle *style, const struct Key *key, const char *value, GError **error)
 {
     void *field = (char *)style + key->offset;
     switch (key->type) {
     case NUMBER:
-        return read_number(line, key, field, error);
+        return read_number(value, key, field, error);
     case MEDIUM:
-        return read_medium(line, field, error);
+        return read_medium(value, field, error);
     case COLOUR:
-        return fl_colour_parse(line->value, field) ||
-               wrong(line, error, "%s = %s: expected a colour such as #f4efe6", line->key,
-                     line->value);
+        return fl_text_colour(value, field) ||
+               wrong(error, "%s = %s: expected a colour such as #f4efe6", key->name, value);
     case TEXT:
         g_free(*(char **)field);
-        *(char **)field = g_strdup(line->value);
-        return g_utf8_validate(line->value, -1, NULL) ||
-               wrong(line, error, "%s: expected UTF-8 text", line->key);
+        *(char **)field = g_strdup(value);
+        return true;
     }
     g_assert_not_reached();
 }
 
-static bool read_key(FlStyle *style, const Line *line, unsigned *seen, GError **error)
+/* A section of another name is a tool's own, such as a recipe's. */
+static bool read_section(void *data, const char *name, int line, GError **error)
 {
-    const char *names[G_N_ELEMENTS(keys) + 1] = {NULL};
-    for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
-        names[i] = keys[i].name;
-        // NOLINTNEXTLINE(clang-analyzer-core.NonNullParamChecker): split_line() has set it
-        if (strcmp(line->key, keys[i].name) != 0)
-            continue;
-        if (*seen & 1u << i)
-            return wrong(line, error, "%s is given a second time", line->key);
-        *seen |= 1u << i;
-        style->guessed &= ~(unsigned)keys[i].replaces;
-        return read_value(style, line, &keys[i], error);
-    }
-    g_autofree char *all = g_strjoinv(", ", (char **)names);
-    g_autofree char *tail = fl_did_you_mean(line->key, names);
-    return wrong(line, error, "unknown key “%s”: expected one of %s%s", line->key, all, tail);
+    static const char *const sections[] = {"style", NULL};
+    Reader *reader = data;
+    reader->place = strcmp(name, "style") == 0 ? STYLE : OTHER;
+    return reader->place == STYLE || !fl_suggest(name, sections) ||
+           wrong(error, "[%s]: expected [style]", name);
 }
 
-/* Splits "key = value" in place. */
-static bool split_line(Line *line, char *text, GError **error)
+static bool read_key(void *data, const char *name, const char *value, int line, GError **error)
 {
-    char *equals = strchr(text, '=');
-    if (!equals || equals == text)
-        return wrong(line, error, "\"%s\": expected \"key = value\"", text);
-    *equals = '\0';
-    line->key = g_strstrip(text);
-    line->value = g_strstrip(equals + 1);
-    return true;
+    Reader *reader = data;
+    const char *names[G_N_ELEMENTS(keys) + 1] = {NULL};
+    if (reader->place == NOWHERE)
+        return wrong(error, "“%s” stands above the first section: expected [style]", name);
+    for (size_t i = 0; i < G_N_ELEMENTS(keys) && reader->place == STYLE; i++) {
+        names[i] = keys[i].name;
+        if (strcmp(name, keys[i].name) != 0)
+            continue;
+        if (reader->seen & 1u << i)
+            return wrong(error, "%s is given a second time", name);
+        reader->seen |= 1u << i;
+        reader->style->guessed &= ~(unsigned)keys[i].replaces;
+        return read_value(reader->style, &keys[i], value, error);
+    }
+    if (reader->place == OTHER)
+        return true;
+    g_autofree char *all = g_strjoinv(", ", (char **)names);
+    g_autofree char *tail = fl_did_you_mean(name, names);
+    return wrong(error, "unknown key “%s”: expected one of %s%s", name, all, tail);
 }
 
 bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
 {
-    g_autofree char *text = NULL;
-    g_autoptr(GError) below = NULL;
-    if (!g_file_get_contents(path, &text, NULL, &below)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: cannot be read: %s", path,
-                    below->message);
-        return false;
-    }
-    g_auto(GStrv) lines = g_strsplit(text, "\n", -1);
-    bool in_style = false, other = false;
-    unsigned seen = 0;
-    for (int i = 0; lines[i]; i++) {
-        Line line = {path, i + 1, NULL, NULL};
-        char *content = g_strstrip(lines[i]);
-        if (i == 0 && g_str_has_prefix(content, "\xef\xbb\xbf")) // a byte order mark
-            content += 3;
-        if (content[0] == '\0' || content[0] == '#' || content[0] == ';')
-            continue;
-        if (content[0] == '[') {
-            static const char *const sections[] = {"[style]", NULL};
-            in_style = strcmp(content, "[style]") == 0;
-            other = !in_style; // a tool's own section, such as a recipe's
-            if (other && fl_suggest(content, sections))
-                return wrong(&line, error, "%s: expected [style]", content);
-        } else if (in_style) {
-            if (!split_line(&line, content, error) || !read_key(style, &line, &seen, error))
-                return false;
-        } else if (!other)
-            return wrong(&line, error, "\"%s\" stands before any section: expected [style]",
-                         content);
-    }
-    return true;
+    Reader reader = {.style = style};
+    const FlKeyReader calls = {read_section, read_key, &reader, FL_ERROR_STYLE};
+    return fl_key_file_read(path, &calls, error);
 }
 
 char *fl_manifest_text(const FlStyle *style)

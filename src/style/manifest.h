@@ -24,7 +24,4 @@ bool fl_manifest_read(FlStyle *style, const char *path, GError **error);
 /** The text of a style.ini that says what the style holds. Guessed values are left out. */
 char *fl_manifest_text(const FlStyle *style);
 
-/** Reads #rgb or #rrggbb. */
-bool fl_colour_parse(const char *text, uint8_t rgb[3]);
-
 #endif

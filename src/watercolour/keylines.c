@@ -1,11 +1,11 @@
 #include "watercolour/keylines.h"
 
 #include "base/suggest.h"
+#include "params/key_file.h"
+#include "params/text.h"
 
 #include <math.h>
 #include <string.h>
-
-#define LONGEST_FILE (1 << 20) // bytes
 
 typedef struct Entry {
     char *key, *value; // key NULL: the line of a [group], whose name is value
@@ -40,58 +40,36 @@ void fl_keylines_free(FlKeyLines *lines)
     g_free(lines);
 }
 
-static bool parse_line(FlKeyLines *lines, char *text, int number, GError **error)
+static bool add_group(void *data, const char *name, int line, GError **error)
 {
-    g_strstrip(text);
-    const size_t length = strlen(text);
-    Entry entry = {.line = number};
-    char *equals = strchr(text, '=');
-    if (length == 0 || text[0] == '#')
-        return true;
-    if (text[0] == '[' && text[length - 1] == ']') {
-        entry.value = g_strndup(text + 1, length - 2);
-        g_array_append_val(lines->groups, lines->entries->len);
-    } else if (equals && equals > text && lines->groups->len > 0) {
-        entry.key = g_strchomp(g_strndup(text, (gsize)(equals - text)));
-        entry.value = g_strchug(g_strdup(equals + 1));
-    } else {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_INPUT,
-            "%s:%d: “%.40s” is neither a [group], nor key = value in a group, nor a # comment",
-            lines->path, number, text);
-        return false;
-    }
+    FlKeyLines *lines = data;
+    const Entry entry = {.value = g_strdup(name), .line = line};
+    g_array_append_val(lines->groups, lines->entries->len);
     g_array_append_val(lines->entries, entry);
     return true;
 }
 
+static bool add_key(void *data, const char *key, const char *value, int line, GError **error)
+{
+    FlKeyLines *lines = data;
+    const Entry entry = {g_strdup(key), g_strdup(value), line};
+    g_array_append_val(lines->entries, entry);
+    if (lines->groups->len > 0)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "“%s” stands above the first [group]", key);
+    return false;
+}
+
 FlKeyLines *fl_keylines_load(const char *path, GError **error)
 {
-    g_autofree char *text = NULL;
-    g_autoptr(GError) below = NULL;
-    gsize length = 0;
-    if (!g_file_get_contents(path, &text, &length, &below)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read the recipe: %s", path,
-                    below->message);
-        return NULL;
-    }
-    if (length > LONGEST_FILE || !g_utf8_validate(text, (gssize)length, NULL)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: not a recipe: expected UTF-8 text of at most %d bytes", path,
-                    LONGEST_FILE);
-        return NULL;
-    }
     g_autoptr(FlKeyLines) lines = g_new0(FlKeyLines, 1);
     lines->path = g_strdup(path);
     lines->entries = g_array_new(FALSE, FALSE, sizeof(Entry));
     g_array_set_clear_func(lines->entries, clear_entry);
     lines->groups = g_array_new(FALSE, FALSE, sizeof(unsigned));
     lines->asked = g_ptr_array_new();
-    g_auto(GStrv) split = g_strsplit(text, "\n", -1);
-    for (int i = 0; split[i]; i++)
-        if (!parse_line(lines, split[i], i + 1, error))
-            return NULL;
-    return g_steal_pointer(&lines);
+    const FlKeyReader reader = {add_group, add_key, lines, FL_ERROR_INPUT};
+    return fl_key_file_read(path, &reader, error) ? g_steal_pointer(&lines) : NULL;
 }
 
 int fl_keylines_n_groups(const FlKeyLines *lines)
@@ -199,16 +177,9 @@ void fl_keylines_colour(FlKeyLines *lines, const char *key, uint8_t rgb[3])
     const Entry *entry = find(lines, key);
     if (!entry)
         return;
-    char *end = NULL;
-    const char *hex = entry->value[0] == '#' ? entry->value + 1 : "";
-    const uint64_t bits = g_ascii_strtoull(hex, &end, 16);
-    if (strlen(hex) != 6 || !g_ascii_isxdigit(hex[0]) || *end) {
+    if (!fl_text_colour(entry->value, rgb))
         fl_keylines_complain(lines, key, "%s: “%s”: expected a colour such as #f4efe4", key,
                              entry->value);
-        return;
-    }
-    for (int c = 0; c < 3; c++)
-        rgb[c] = (uint8_t)(bits >> (16 - 8 * c));
 }
 
 int fl_keylines_floats(FlKeyLines *lines, const char *key, int least, int most, float min,
