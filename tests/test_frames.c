@@ -372,7 +372,7 @@ static void a_size_comes_from_the_file_the_view_box_or_the_canvas(void)
     g_autoptr(FlSvg) svg = open_svg(path, NULL);
     g_autoptr(GError) error = NULL;
     g_assert_false(fl_svg_size(svg, &width, &height, &error));
-    g_assert_nonnull(strstr(error->message, "--canvas"));
+    g_assert_nonnull(strstr(error->message, "‘canvas’"));
     const FlSvgOptions options = {.canvas = {-5, 0, 30, 20}};
     g_autoptr(FlSvg) sized = fl_svg_open(path, 1, &options, NULL, NULL);
     g_assert_true(fl_svg_size(sized, &width, &height, NULL));
