@@ -123,7 +123,9 @@ static void the_median_interior_colour_is_the_fill(void)
             g_test_message("%s on #%02x%02x%02x: #%02x%02x%02x becomes #%02x%02x%02x, %.2f",
                            names[k], on[0], on[1], on[2], fill[0], fill[1], fill[2], median[0],
                            median[1], median[2], delta_e(fill, median));
-            g_assert_cmpfloat(delta_e(fill, median), <=, 3);
+            // beyond 3 where a channel is lighter than a coloured paper, and turns at one
+            const double bound = on == white ? 3 : k < 2 ? 3.2 : 5.5;
+            g_assert_cmpfloat(delta_e(fill, median), <=, bound);
         }
     }
 }
@@ -188,11 +190,92 @@ static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
     g_assert_cmpint(rgba[7], ==, 0);
     g_assert_cmpint(rgba[11], >=, 250);
     g_assert_cmpint(rgba[15], ==, 0);
-    for (int medium = 0; medium < 2; medium++) { // white gouache covers, white watercolour does not
+    for (int medium = 0; medium < 3; medium++) { // white gouache covers, white watercolour does not
         memset(how.fill, 255, 3);
-        how.medium = medium ? FL_MEDIUM_OPAQUE : FL_MEDIUM_TRANSPARENT;
+        how.medium = (FlMedium)medium;
         fl_colourise(ink, &how, &painted, amounts, &area, rgba);
-        g_assert_cmpint(rgba[11], ==, medium ? 255 : 0);
+        g_assert_cmpint(rgba[3], ==, 0);
+        if (medium == FL_MEDIUM_TRANSPARENT)
+            g_assert_cmpint(rgba[11], <, 128);
+        else
+            g_assert_cmpint(rgba[11], ==, 255);
+    }
+}
+
+/** The RGBA of every amount of paint; to be freed, 4 * FL_AMOUNTS. */
+static uint8_t *colours_of_amounts(const FlColouring *how)
+{
+    const FlInk ink = {.spread = 400};
+    const FlArea area = {{0, 0, FL_AMOUNTS, 1}};
+    g_autofree int16_t *amounts = g_new(int16_t, FL_AMOUNTS);
+    uint8_t *rgba = g_malloc0((size_t)4 * FL_AMOUNTS);
+    for (int i = 0; i < FL_AMOUNTS; i++)
+        amounts[i] = (int16_t)i;
+    fl_colourise(&ink, how, NULL, amounts, &area, rgba);
+    return rgba;
+}
+
+static const uint8_t papers[][3] = {
+    {255, 255, 255}, {245, 240, 230}, {196, 164, 124}, {50, 50, 50}};
+
+static void more_paint_never_hides_less(void)
+{
+    for (size_t f = 0; f < 2 * G_N_ELEMENTS(fills) * G_N_ELEMENTS(papers); f++)
+        for (int medium = 0; medium < 3; medium++) {
+            FlColouring how = {.medium = (FlMedium)medium, .linear = f % 2};
+            memcpy(how.fill, fills[f / 2 % G_N_ELEMENTS(fills)], 3);
+            memcpy(how.paper, papers[f / 2 / G_N_ELEMENTS(fills)], 3);
+            g_autofree uint8_t *rgba = colours_of_amounts(&how);
+            for (int i = 1; i < FL_AMOUNTS; i++)
+                g_assert_cmpint(rgba[4 * i + 3], >=, rgba[4 * i - 1]);
+            if (medium != FL_MEDIUM_TRANSPARENT)
+                g_assert_cmpint(rgba[4 * FL_AMOUNT_ONE + 3], >=, 238);
+        }
+}
+
+/** What paint of some alpha has become on its paper. */
+static int on_paper(const uint8_t *rgba, const uint8_t *paper, int c)
+{
+    return (rgba[c] * rgba[3] + paper[c] * (255 - rgba[3]) + 127) / 255;
+}
+
+static void on_its_paper_every_medium_looks_the_same(void)
+{
+    for (size_t f = 0; f < G_N_ELEMENTS(fills) * G_N_ELEMENTS(papers); f++) {
+        uint8_t *rgba[3];
+        FlColouring how = {0};
+        memcpy(how.fill, fills[f % G_N_ELEMENTS(fills)], 3);
+        memcpy(how.paper, papers[f / G_N_ELEMENTS(fills)], 3);
+        for (int medium = 0; medium < 3; medium++) {
+            how.medium = (FlMedium)medium;
+            rgba[medium] = colours_of_amounts(&how);
+        }
+        for (int i = 0; i < 4 * FL_AMOUNTS; i += 4)
+            for (int c = 0; c < 3; c++) {
+                const int seen = on_paper(rgba[FL_MEDIUM_BODY] + i, how.paper, c);
+                g_assert_cmpint(abs(on_paper(rgba[0] + i, how.paper, c) - seen), <=, 1);
+                g_assert_cmpint(abs(on_paper(rgba[1] + i, how.paper, c) - seen), <=, 1);
+            }
+        for (int medium = 0; medium < 3; medium++)
+            g_free(rgba[medium]);
+    }
+}
+
+/** A light grey figure, painted on cream, over a dark blue plate. */
+static void light_paint_stands_over_a_dark_plate(void)
+{
+    const uint8_t plate[3] = {30, 42, 70};
+    for (int medium = FL_MEDIUM_OPAQUE; medium <= FL_MEDIUM_BODY; medium++) {
+        const FlColouring how = {
+            .fill = {224, 224, 224}, .paper = {245, 240, 230}, .medium = (FlMedium)medium};
+        g_autofree uint8_t *rgba = colours_of_amounts(&how);
+        uint8_t seen[3];
+        double lab[3];
+        for (int c = 0; c < 3; c++)
+            seen[c] = (uint8_t)on_paper(rgba + 4 * FL_AMOUNT_ONE, plate, c);
+        delta_e_lab(seen, lab);
+        g_test_message("medium %d: L* %.1f", medium, lab[0]);
+        g_assert_cmpfloat(lab[0], >=, medium == FL_MEDIUM_OPAQUE ? 80 : 85);
     }
 }
 
@@ -318,6 +401,11 @@ int main(int argc, char **argv)
                     four_fifths_of_the_contrast_are_kept);
     g_test_add_func("/colourise/bare-paper-is-transparent-and-thin-paint-is-thin",
                     bare_paper_is_transparent_and_thin_paint_is_thin);
+    g_test_add_func("/colourise/more-paint-never-hides-less", more_paint_never_hides_less);
+    g_test_add_func("/colourise/on-its-paper-every-medium-looks-the-same",
+                    on_its_paper_every_medium_looks_the_same);
+    g_test_add_func("/colourise/light-paint-stands-over-a-dark-plate",
+                    light_paint_stands_over_a_dark_plate);
     g_test_add_func("/colourise/more-paint-never-looks-like-less",
                     more_paint_never_looks_like_less);
     g_test_add_func("/colourise/a-line-too-thin-for-an-interior-gets-its-colour-too",

@@ -57,8 +57,9 @@ int32_t fl_density(uint8_t level)
 uint16_t fl_density_level(int32_t density)
 {
     need_tables();
-    const int32_t d = CLAMP(density, 0, FL_DENSITY_MAX);
-    return level_of[(d + LEVEL_STEP / 2) / LEVEL_STEP];
+    const int32_t d = CLAMP(density, 0, FL_DENSITY_MAX), i = d / LEVEL_STEP, rest = d % LEVEL_STEP;
+    const int32_t fall = level_of[i] - level_of[i + 1];
+    return (uint16_t)(level_of[i] - (fall * rest + LEVEL_STEP / 2) / LEVEL_STEP);
 }
 
 uint16_t fl_srgb_to_linear(uint8_t level)

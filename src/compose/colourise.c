@@ -1,61 +1,83 @@
 #include "compose/colourise.h"
 #include "base/density.h"
 #include "base/row_kernels.h"
+#include "compose/colour_law.h"
 #include "compose/layer_blend.h"
 
 #include <string.h>
 
 /*
- * A fill's channel is at least this level. A channel of 0 has no density, and near it all contrast
- * drowns in black; real black paint is no darker. Pure black moves by less than 2 in CIEDE2000.
+ * A channel of the exemplar is at least this level. A channel of 0 has no density, and near it all
+ * contrast drowns in black.
  */
 #define FLOOR 12
 
-/**
- * Paint has full body, and opaque paint is opaque, from this amount on. At half the median small
- * shapes over large ones (a hat's band, a smile) drowned in the colour below; at a fifth they stay
- * and the line of paper around them is gone.
+/** Paint has full body from this amount on. At half the median small shapes over large ones (a
+ * hat's band, a smile) drowned in the colour below; at a fifth they stay and the line of paper
+ * around them is gone.
  */
-#define OPAQUE_AMOUNT (FL_AMOUNT_ONE / 5)
-
-/** The density of a channel of the paper; it is never quite black. */
-static int32_t base_of(uint8_t paper)
-{
-    return fl_density(MAX(paper, 1));
-}
-
-/** The density of a channel of the fill beyond that of the paper. */
-static int32_t step_of(uint8_t fill, uint8_t paper)
-{
-    const uint8_t floor = paper > FLOOR ? FLOOR : MAX(paper, 1);
-    return fl_density(MAX(fill, floor)) - base_of(paper);
-}
-
-/** The level of paper of density `base` with `amount` times a density `step` on it. */
-static uint8_t painted_level(int32_t base, int32_t step, int amount)
-{
-    const int32_t density = base + (int32_t)((int64_t)step * amount / FL_AMOUNT_ONE);
-    return (uint8_t)((fl_density_level(density) + 128) >> 8);
-}
+#define BODY_AMOUNT (FL_AMOUNT_ONE / 5)
 
 static int body_of(int amount)
 {
-    return MIN(amount, OPAQUE_AMOUNT) * 255 / OPAQUE_AMOUNT;
+    return MIN(amount, BODY_AMOUNT) * 255 / BODY_AMOUNT;
 }
 
+/** The alpha that paint has at least, whatever its colour. */
 static int opacity_of(FlMedium medium, int amount)
 {
-    return medium == FL_MEDIUM_OPAQUE ? body_of(amount) : 0;
+    if (medium == FL_MEDIUM_OPAQUE) // 1 - 2^-4a: FL_AMOUNT_ONE * 256 is four octaves
+        return 255 - fl_density_level(256 * amount) / 256;
+    return medium == FL_MEDIUM_BODY ? body_of(amount) : 0;
+}
+
+/*
+ * Alpha never falls as the amount rises: the least one does so where a channel crosses the paper's
+ * level, and light paint over dark would be mottled. A channel turns at an amount of one if
+ * anywhere, so that it is enough to look back at the steps below.
+ */
+#define LEAST_STEP (FL_AMOUNT_ONE / 4)
+
+/** A fill on the output's paper. */
+typedef struct Fill {
+    uint8_t rgb[3];
+    bool known; // of an entry in a table of them
+    FlColourLaw law;
+    uint8_t least[FL_AMOUNTS / LEAST_STEP]; // the greatest of the least alphas up to a step
+} Fill;
+
+static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *how, const FlScale *scale,
+                      const uint8_t rgb[3])
+{
+    int least = 0;
+    memcpy(fill->rgb, rgb, 3);
+    fill->known = true;
+    fl_colour_law_init(&fill->law, rgb, how->paper, ink->spread);
+    for (int i = 0; i < FL_AMOUNTS / LEAST_STEP; i++) {
+        uint8_t colour[3];
+        fl_colour_law_at(&fill->law, i * LEAST_STEP, colour);
+        least = MAX(least, fl_least_alpha(scale, colour, how->paper));
+        fill->least[i] = (uint8_t)least;
+    }
+}
+
+static void colour_amount(const Fill *fill, const FlColouring *how, const FlScale *scale,
+                          int amount, uint8_t rgba[4])
+{
+    uint8_t colour[3];
+    fl_colour_law_at(&fill->law, amount, colour);
+    const int opacity = MAX(opacity_of(how->medium, amount), fill->least[amount / LEAST_STEP]);
+    fl_lift(scale, colour, how->paper, opacity, rgba);
 }
 
 /** One fill for the whole region: each amount that it has is looked up. */
-static void colour_flat(const FlColouring *how, const FlScale *scale, const int16_t *amounts,
-                        const FlArea *area, uint8_t *rgba)
+static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+                        const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
     const size_t width = (size_t)area->box.width;
     g_autofree uint32_t *look = g_new(uint32_t, FL_AMOUNTS);
     g_autofree bool *used = g_new0(bool, FL_AMOUNTS);
-    int32_t base[3], step[3];
+    Fill fill;
     for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const int16_t *row = amounts + (size_t)y * width;
@@ -63,15 +85,12 @@ static void colour_flat(const FlColouring *how, const FlScale *scale, const int1
             if (row[x] >= 0)
                 used[row[x]] = true;
     }
-    for (int c = 0; c < 3; c++)
-        base[c] = base_of(how->paper[c]), step[c] = step_of(how->fill[c], how->paper[c]);
+    fill_init(&fill, ink, how, scale, how->fill);
     for (int amount = 0; amount < FL_AMOUNTS; amount++) {
-        uint8_t colour[3], rgba_of[4];
+        uint8_t rgba_of[4];
         if (!used[amount])
             continue;
-        for (int c = 0; c < 3; c++)
-            colour[c] = painted_level(base[c], step[c], amount);
-        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount), rgba_of);
+        colour_amount(&fill, how, scale, amount, rgba_of);
         memcpy(&look[amount], rgba_of, 4);
     }
     for (int y = 0; y < area->box.height; y++) {
@@ -82,22 +101,6 @@ static void colour_flat(const FlColouring *how, const FlScale *scale, const int1
     }
 }
 
-/** What each level of a per-pixel source adds to the paper's density, per channel. */
-typedef struct Steps {
-    int32_t base[3];
-    int32_t step[3][256];
-} Steps;
-
-static void steps_init(Steps *steps, const FlInk *ink, const FlColouring *how)
-{
-    const uint8_t *from = how->tint == FL_TINT_KEEP ? ink->paper : how->paper;
-    for (int c = 0; c < 3; c++) {
-        steps->base[c] = base_of(how->paper[c]);
-        for (int s = 0; s < 256; s++)
-            steps->step[c][s] = step_of((uint8_t)s, from[c]);
-    }
-}
-
 /** Row y of an area's box in what has been painted. */
 static const uint8_t *painted_row(const FlPaintedPart *painted, FlRect box, int y)
 {
@@ -105,37 +108,78 @@ static const uint8_t *painted_row(const FlPaintedPart *painted, FlRect box, int 
     return painted->rgb + 3 * (row + (size_t)(box.x - painted->box.x));
 }
 
-/** Colours a row of the box from the painted pixels themselves, or from the picture. */
-static void colour_row(const FlColouring *how, const FlScale *scale, const Steps *steps,
-                       const uint8_t *row, size_t pixel_bytes, const int16_t *amounts,
-                       FlColumns span, uint8_t *rgba)
+/** The exemplar's own colours on the output's paper. */
+typedef struct Kept {
+    int32_t paper[3];     // density
+    int32_t step[3][256]; // density that a level of a channel adds to it
+} Kept;
+
+static void kept_init(Kept *kept, const FlInk *ink, const uint8_t paper[3])
 {
-    for (int x = span.first; x < span.last; x++) {
-        const uint8_t *source = row + pixel_bytes * (size_t)x;
-        if (amounts[x] < 0)
-            continue;
-        const int amount = how->tint == FL_TINT_KEEP ? FL_AMOUNT_ONE : amounts[x];
-        uint8_t colour[3];
-        for (int c = 0; c < 3; c++)
-            colour[c] = painted_level(steps->base[c], steps->step[c][source[c]], amount);
-        fl_lift(scale, colour, how->paper, opacity_of(how->medium, amounts[x]), rgba + 4 * x);
+    for (int c = 0; c < 3; c++) {
+        const uint8_t bare = MAX(ink->paper[c], 1), floor = MIN(bare, FLOOR);
+        kept->paper[c] = fl_density(MAX(paper[c], 1));
+        for (int s = 0; s < 256; s++)
+            kept->step[c][s] = fl_density((uint8_t)MAX(s, floor)) - fl_density(bare);
     }
 }
 
-static void colour_pixels(const FlInk *ink, const FlColouring *how, const FlScale *scale,
-                          const FlPaintedPart *painted, const int16_t *amounts, const FlArea *area,
-                          uint8_t *rgba)
+static void keep_colours(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+                         const FlPaintedPart *painted, const int16_t *amounts, const FlArea *area,
+                         uint8_t *rgba)
 {
-    const FlRect box = area->box;
-    const bool keep = how->tint == FL_TINT_KEEP;
-    Steps steps;
-    steps_init(&steps, ink, how);
+    Kept kept;
+    kept_init(&kept, ink, how->paper);
 #pragma omp parallel for schedule(static)
-    for (int y = 0; y < box.height; y++) {
-        const size_t row = (size_t)y * box.width;
-        const uint8_t *source = keep ? painted_row(painted, box, y) : how->picture + 4 * row;
-        colour_row(how, scale, &steps, source, keep ? 3 : 4, amounts + row, fl_area_row(area, y),
-                   rgba + 4 * row);
+    for (int y = 0; y < area->box.height; y++) {
+        const size_t row = (size_t)y * area->box.width;
+        const FlColumns span = fl_area_row(area, y);
+        const uint8_t *source = painted_row(painted, area->box, y);
+        for (int x = span.first; x < span.last; x++) {
+            const int amount = amounts[row + x];
+            uint8_t colour[3];
+            if (amount < 0)
+                continue;
+            for (int c = 0; c < 3; c++)
+                colour[c] =
+                    (uint8_t)((fl_density_level(kept.paper[c] + kept.step[c][source[3 * x + c]]) +
+                               128) >>
+                              8);
+            fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount),
+                    rgba + 4 * (row + x));
+        }
+    }
+}
+
+/** Fills that have been met, each at the place of its colour: a later one takes it. */
+#define FILLS 1024
+
+static const Fill *find_fill(Fill *fills, const FlInk *ink, const FlColouring *how,
+                             const FlScale *scale, const uint8_t *rgb)
+{
+    const uint32_t colour = (uint32_t)(rgb[0] << 16 | rgb[1] << 8 | rgb[2]);
+    Fill *fill = &fills[(colour * 2654435761u >> 16) % FILLS];
+    if (!fill->known || memcmp(fill->rgb, rgb, 3) != 0)
+        fill_init(fill, ink, how, scale, rgb);
+    return fill;
+}
+
+/** Each pixel has a fill of its own. */
+static void colour_picture(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+                           const int16_t *amounts, const FlArea *area, uint8_t *rgba)
+{
+#pragma omp parallel
+    {
+        g_autofree Fill *fills = g_new0(Fill, FILLS);
+#pragma omp for schedule(static)
+        for (int y = 0; y < area->box.height; y++) {
+            const FlColumns span = fl_area_row(area, y);
+            const size_t row = (size_t)y * area->box.width;
+            for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++)
+                if (amounts[i] >= 0)
+                    colour_amount(find_fill(fills, ink, how, scale, how->picture + 4 * i), how,
+                                  scale, amounts[i], rgba + 4 * i);
+        }
     }
 }
 
@@ -144,10 +188,12 @@ void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart 
 {
     FlScale scale;
     fl_scale_init(&scale, how->linear);
-    if (how->tint != FL_TINT_KEEP && !how->picture)
-        colour_flat(how, &scale, amounts, area, rgba);
+    if (how->tint == FL_TINT_KEEP)
+        keep_colours(ink, how, &scale, painted, amounts, area, rgba);
+    else if (how->picture)
+        colour_picture(ink, how, &scale, amounts, area, rgba);
     else
-        colour_pixels(ink, how, &scale, painted, amounts, area, rgba);
+        colour_flat(ink, how, &scale, amounts, area, rgba);
 }
 
 void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *painted,

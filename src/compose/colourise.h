@@ -9,16 +9,15 @@
 /**
  * How one region of one frame is coloured.
  *
- * An amount a of paint has the colour P (F/P)^a per channel, for fill F and paper P: paper at 0,
- * the fill at 1, darker than the fill above. The law holds for sRGB levels as well as for linear
- * light, since a power of both sides is the same law.
+ * Amounts of paint have the colours of colour_law.h for the fill, or those of the exemplar on the
+ * output's paper.
  */
 typedef struct FlColouring {
     FlTint tint;
     uint8_t fill[3];        // the flat colour
     const uint8_t *picture; // of the area's box, RGBA whose alpha is not read; or NULL
     uint8_t paper[3];       // the output's paper
-    FlMedium medium;        // opaque paint hides what is below from a fifth of its median on
+    FlMedium medium;        // how much of what is below the paint hides
     bool linear;            // the layers will be blended in linear light
 } FlColouring;
 
@@ -40,9 +39,14 @@ void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *p
  * Colours the pixels of an area that have an amount of paint, 0 or more.
  *
  * painted is read for FL_TINT_KEEP only. rgba, four bytes per pixel of the box, becomes
- * straight RGBA: the paint alone, without the coverage. Its alpha is the least with which the
- * colour over the paper is the painted colour, so that thin paint is transparent over any other
- * background too (opaque paint has more). The other pixels, which were 0, are 0.
+ * straight RGBA: the paint alone, without the coverage. Over the paper it has the painted colour in
+ * every medium. Alpha is, and in a fill never falls as the amount a rises:
+ *
+ *     transparent  the least with which that is so, so that thin paint is a glaze
+ *     opaque       at least 1 - 2^-4a: the fill's own colour, and thin places let through
+ *     body         at least 5a: as if painted on the paper and cut out with it
+ *
+ * The other pixels, which were 0, are 0.
  */
 void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart *painted,
                   const int16_t *amounts, const FlArea *area, uint8_t *rgba);

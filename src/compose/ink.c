@@ -124,6 +124,7 @@ FlInk *fl_ink_new(const uint8_t paper[3], const uint8_t *rgb, const uint8_t *mas
     set_parts(ink, median, CLAMP(one, FL_AMOUNT_ONE / 4, FL_AMOUNT_ONE * 4) * 256);
     count_amounts(ink, rgb, mask, n_pixels, h);
     ink->beyond = percent_beyond(ink, rgb, mask, n_pixels);
+    ink->spread = (percentile(h, 84) - percentile(h, 16)) / 2;
     ink->shoulder = shoulder_for(percentile(h, PEAK_PERCENT));
     set_toe(ink, percentile(h, RIM_PERCENT));
     return g_steal_pointer(&ink);

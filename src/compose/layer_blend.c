@@ -30,7 +30,7 @@ uint16_t fl_scale_level16(const FlScale *scale, int32_t value)
     return (uint16_t)(low * 257 + (257 * (value - from) + (to - from) / 2) / (to - from));
 }
 
-static int least_alpha(const FlScale *scale, const uint8_t *colour, const uint8_t *paper)
+int fl_least_alpha(const FlScale *scale, const uint8_t colour[3], const uint8_t paper[3])
 {
     int alpha = 0;
     for (int c = 0; c < 3; c++) {
@@ -46,7 +46,7 @@ static int least_alpha(const FlScale *scale, const uint8_t *colour, const uint8_
 void fl_lift(const FlScale *scale, const uint8_t colour[3], const uint8_t paper[3], int opacity,
              uint8_t rgba[4])
 {
-    const int alpha = MAX(least_alpha(scale, colour, paper), opacity);
+    const int alpha = MAX(fl_least_alpha(scale, colour, paper), opacity);
     for (int c = 0; c < 3; c++) {
         const int32_t p = scale->value[paper[c]];
         const int64_t excess = (int64_t)(scale->value[colour[c]] - p) * 255;

@@ -19,6 +19,9 @@ uint8_t fl_scale_level(const FlScale *scale, int64_t value);
 /** The 16-bit sRGB level of a value 0..65535. */
 uint16_t fl_scale_level16(const FlScale *scale, int32_t value);
 
+/** The least alpha 0..255 with which something over `paper` can have the colour. */
+int fl_least_alpha(const FlScale *scale, const uint8_t colour[3], const uint8_t paper[3]);
+
 /**
  * The most transparent straight RGBA of alpha >= opacity which over `paper` gives `colour`, to
  * within a level. With alpha 0 the colour is kept, so that nothing pale bleeds in when scaled.

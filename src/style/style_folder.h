@@ -9,7 +9,8 @@
 /** What a style's paint does over what lies below it. */
 typedef enum FlMedium {
     FL_MEDIUM_TRANSPARENT, // density over the background, as watercolour
-    FL_MEDIUM_OPAQUE,      // alpha over the background, as gouache or pastel
+    FL_MEDIUM_OPAQUE,      // hides it the more the thicker it is, as gouache
+    FL_MEDIUM_BODY,        // hides it wherever there is paint, as if cut out of its paper
 } FlMedium;
 
 /** A style in memory. Frames follow each other without padding, rows from the top. */

@@ -1,0 +1,247 @@
+#include "compose/colour_law.h"
+#include "base/density.h"
+#include "compose/ink.h"
+
+/*
+ * P (F/P)^a alone, Beer and Lambert's law per channel, shows no texture where a channel is at an
+ * end: near 0 it has no slope left below one, and at 255 it cannot fall above. So thin paint bends
+ * no more than THIN allows, thick paint counts its density from a white as light as the paper, and
+ * where that changes the lightness too little it is shaded. Counted from the paper itself, a thick
+ * light grey on cream would be lavender. Constants were found on 13 fills in six styles.
+ */
+enum {
+    DARKEST = 14,         // levels; a channel of 0 has no density, and real black is no darker
+    DARKEST_NEGATIVE = 8, // the same in the negative
+    THIN = 113835,        // density of 0.30: thinner paint has slope left in every channel
+    STRAIGHT = 4096,      // density of 0.957: below it the way is straight, and so well divided
+    ROOM = 2836,          // density of exp(-0.03), by which light greys give way to thin paint
+    EVEN_SPREAD = 700,    // spread (0.68) from which on saturated fills are shaded less
+    LIGHT_AT = 5 * 256,   // L* / 256 above the paper's from where on a fill may be light paint,
+    LIGHT_OVER = 13 * 256 // and over which it becomes so altogether
+};
+
+static const int32_t weight[3] = {13933, 46871, 4732}; // of linear light in Y [BT.709], / 65536
+
+#define FRACTION 256 // shares, saturation and L* are in 1/256
+
+static int64_t clamp_share(int64_t share)
+{
+    return CLAMP(share, 0, FRACTION);
+}
+
+/** The integer cube root by Newton's method from above; 0 <= n < 2^60. */
+static int64_t cube_root(int64_t n)
+{
+    int64_t x = 1 << 20, next = x;
+    do {
+        x = next;
+        next = x > 0 ? (2 * x + n / (x * x)) / 3 : 0;
+    } while (next < x);
+    return x;
+}
+
+/** L* + 16 of a luminance 0..65535, by the cube root alone; below L* = 8 it is up to 1 less. */
+static int64_t lightness16(int64_t luminance)
+{
+    return 116 * FRACTION * cube_root(luminance << 44) >> 20;
+}
+
+/** Linear light of a level in 1/256. */
+static int64_t light_of(int32_t level)
+{
+    const int s = level >> 8, rest = level & 255;
+    const int64_t from = fl_srgb_to_linear((uint8_t)s);
+    return rest ? from + (fl_srgb_to_linear((uint8_t)(s + 1)) - from) * rest / 256 : from;
+}
+
+static int64_t luminance_of(const int32_t level[3])
+{
+    int64_t sum = 0;
+    for (int c = 0; c < 3; c++)
+        sum += weight[c] * light_of(level[c]);
+    return sum >> 16;
+}
+
+/** L* + 16 of a colour, 16 for black. */
+static int64_t lightness16_of(const uint8_t rgb[3])
+{
+    const int32_t level[3] = {rgb[0] * 256, rgb[1] * 256, rgb[2] * 256};
+    return MAX(lightness16(luminance_of(level)), 16 * FRACTION);
+}
+
+/** How light a fill is, and how fast an amount more of its own density darkens it. */
+typedef struct Look {
+    int64_t lightness16; // L* + 16
+    int64_t slope;       // L* an amount
+} Look;
+
+/** L* changes by (L* + 16) / 3 for a relative change of luminance, which is that of light: the
+ * power 2.2 of levels. 33312 is 2.2 ln 2 / 3 * 65536. */
+#define L_OF_OCTAVE 33312
+
+static Look look_at(const FlColourCurve *curve)
+{
+    const int64_t luminance = MAX(luminance_of(curve->fill), 1);
+    int64_t mean = 0;
+    for (int c = 0; c < 3; c++)
+        mean += weight[c] * light_of(curve->fill[c]) / luminance * curve->step[c];
+    Look look = {.lightness16 = lightness16(luminance)};
+    look.slope = (look.lightness16 * L_OF_OCTAVE >> 16) * (mean >> 16) >> 16;
+    return look;
+}
+
+/** Takes the fill by its density, for a white of density `white`. */
+static void set_fill(FlColourCurve *curve, int32_t white)
+{
+    for (int c = 0; c < 3; c++) {
+        curve->fill[c] = fl_density_level(curve->density[c]);
+        curve->step[c] = MAX(curve->density[c] - white, 0);
+    }
+}
+
+/** 0 for grey, FRACTION for a primary. */
+static int64_t saturation_of(const uint8_t fill[3])
+{
+    const int most = MAX(MAX(fill[0], fill[1]), fill[2]);
+    const int least = MIN(MIN(fill[0], fill[1]), fill[2]);
+    return most > 0 ? FRACTION * (most - least) / most : 0;
+}
+
+/** The slope in L* that the fill should have: 29, for near white 18. */
+static int64_t wanted_slope(int64_t lightness16, int64_t saturation, int spread)
+{
+    const int64_t whiteness = clamp_share((lightness16 - 94 * FRACTION) / 14) *
+                              clamp_share(FRACTION - saturation * 5 / 2) / FRACTION;
+    const int64_t slope = 29 * (FRACTION - whiteness * 38 / 100);
+    const int64_t uneven = spread > EVEN_SPREAD ? FRACTION - FRACTION * EVEN_SPREAD / spread : 0;
+    return slope - slope * saturation * uneven / (FRACTION * FRACTION);
+}
+
+/** Gives thick paint the shade that it lacks; a thick yellow goes to ochre instead of olive. */
+static void set_shade(FlColourCurve *curve, const Look *look, int64_t slope, const uint8_t fill[3])
+{
+    const int64_t lack = MAX(slope - look->slope, 0);
+    const int64_t shade = (lack << 32) / (look->lightness16 * L_OF_OCTAVE);
+    const int yellow = MAX(MIN(fill[0], fill[1]) - fill[2], 0); // of 255
+    curve->shade[0] = (int32_t)(shade * (25500 - 45 * yellow) / 25500);
+    curve->shade[1] = (int32_t)(shade * (25500 + 16 * yellow) / 25500);
+    curve->shade[2] = (int32_t)shade;
+}
+
+/** The density of a neutral white as light as the paper. */
+static int32_t white_of(const uint8_t paper[3])
+{
+    const int32_t level = weight[0] * paper[0] + weight[1] * paper[1] + weight[2] * paper[2];
+    const int s = level >> 16, rest = level & 65535;
+    const int32_t from = fl_density((uint8_t)MAX(s, 1));
+    return s > 0 && rest > 0
+               ? from + (int32_t)((int64_t)(fl_density((uint8_t)(s + 1)) - from) * rest / 65536)
+               : from;
+}
+
+/** No fill is darker than `darkest`, unless its paper is. */
+static uint8_t lifted(uint8_t fill, uint8_t paper, int darkest)
+{
+    return (uint8_t)MAX(fill, MAX(MIN(darkest, paper), 1));
+}
+
+static void curve_init(FlColourCurve *curve, const uint8_t rgb[3], const uint8_t paper[3],
+                       int darkest, int spread)
+{
+    const int32_t white = white_of(paper);
+    uint8_t fill[3];
+    for (int c = 0; c < 3; c++) {
+        fill[c] = lifted(rgb[c], paper[c], darkest);
+        curve->density[c] = fl_density(fill[c]);
+    }
+    set_fill(curve, white);
+    const int64_t saturation = saturation_of(fill);
+    Look look = look_at(curve);
+    const int64_t slope = wanted_slope(look.lightness16, saturation, spread);
+    const int64_t rise = look.lightness16 - lightness16_of(paper);
+    const int64_t room = clamp_share(FRACTION - look.slope * FRACTION / slope) *
+                         clamp_share(FRACTION - 2 * saturation) / FRACTION *
+                         clamp_share(FRACTION - rise / 3);
+    for (int c = 0; c < 3; c++)
+        curve->density[c] += (int32_t)(ROOM * room / (FRACTION * FRACTION));
+    set_fill(curve, white);
+    look = look_at(curve);
+    set_shade(curve, &look, slope, fill);
+    for (int c = 0; c < 3; c++) {
+        const int32_t thin = curve->density[c] - fl_density(MAX(paper[c], 1));
+        curve->paper[c] = paper[c] * 256;
+        curve->thin[c] = thin < STRAIGHT ? 0 : MIN(thin, THIN);
+    }
+}
+
+/**
+ * How far a channel that is lighter than the paper has come, 0 … 2^30. It turns at an amount of
+ * one, so that half of all paint would be well below the fill if its way were straight: a cubic is
+ * there early. The median of near white moved by up to 4.2 in CIEDE2000, and moves by 2.2.
+ */
+static int64_t rising_share(int amount)
+{
+    const int64_t rest = FL_AMOUNT_ONE - amount;
+    return (1 << 30) - rest * rest * rest;
+}
+
+/** From no paint to the fill, for an amount up to one. */
+static int32_t thin_level(const FlColourCurve *curve, int c, int amount)
+{
+    const int64_t way = curve->fill[c] - curve->paper[c];
+    const int32_t thin = curve->thin[c];
+    if (thin == 0 && way <= 0)
+        return (int32_t)(curve->paper[c] + way * amount / FL_AMOUNT_ONE);
+    if (way > 0)
+        return (int32_t)(curve->paper[c] + (way * rising_share(amount) >> 30));
+    const int32_t full = 65280 - fl_density_level(thin);
+    const int32_t part =
+        65280 - fl_density_level((int32_t)((int64_t)thin * amount / FL_AMOUNT_ONE));
+    return (int32_t)(curve->paper[c] + (way * part - full / 2) / full);
+}
+
+static int32_t thick_level(const FlColourCurve *curve, int c, int amount)
+{
+    const int64_t more = amount - FL_AMOUNT_ONE, two = 2 * FL_AMOUNT_ONE;
+    const int64_t ending = more * two / (two + more);
+    const int64_t density =
+        curve->density[c] + (more * curve->step[c] + ending * curve->shade[c]) / FL_AMOUNT_ONE;
+    return fl_density_level((int32_t)MIN(density, FL_DENSITY_MAX));
+}
+
+static int32_t level_at(const FlColourCurve *curve, int c, int amount)
+{
+    return amount < FL_AMOUNT_ONE ? thin_level(curve, c, amount) : thick_level(curve, c, amount);
+}
+
+/** How far a fill counts as light paint on dark paper: by L*, since by luma magenta is dark. */
+static int32_t light_share(const uint8_t fill[3], const uint8_t paper[3])
+{
+    const int64_t rise = lightness16_of(fill) - lightness16_of(paper);
+    const int64_t u = CLAMP(rise - LIGHT_AT, 0, LIGHT_OVER) * 65536 / LIGHT_OVER;
+    return (int32_t)((u * u >> 16) * (3 * 65536 - 2 * u) >> 16);
+}
+
+void fl_colour_law_init(FlColourLaw *law, const uint8_t fill[3], const uint8_t paper[3], int spread)
+{
+    law->light_share = light_share(fill, paper);
+    if (law->light_share < 65536)
+        curve_init(&law->dark, fill, paper, DARKEST, spread);
+    if (law->light_share == 0)
+        return;
+    uint8_t other_fill[3], other_paper[3];
+    for (int c = 0; c < 3; c++)
+        other_fill[c] = 255 - fill[c], other_paper[c] = 255 - paper[c];
+    curve_init(&law->light, other_fill, other_paper, DARKEST_NEGATIVE, spread);
+}
+
+void fl_colour_law_at(const FlColourLaw *law, int amount, uint8_t colour[3])
+{
+    const int64_t light = law->light_share;
+    for (int c = 0; c < 3; c++) {
+        int64_t level = light < 65536 ? (65536 - light) * level_at(&law->dark, c, amount) : 0;
+        if (light > 0)
+            level += light * (65280 - level_at(&law->light, c, amount));
+        colour[c] = (uint8_t)((level + (1 << 23)) >> 24);
+    }
+}
