@@ -190,7 +190,8 @@ static void bare_paper_is_transparent_and_thin_paint_is_thin(void)
     g_assert_cmpint(rgba[7], ==, 0);
     g_assert_cmpint(rgba[11], >=, 250);
     g_assert_cmpint(rgba[15], ==, 0);
-    for (int medium = 0; medium < 3; medium++) { // white gouache covers, white watercolour does not
+    for (int medium = FL_MEDIUM_TRANSPARENT; medium <= FL_MEDIUM_BODY;
+         medium++) { // white gouache covers, white watercolour does not
         memset(how.fill, 255, 3);
         how.medium = (FlMedium)medium;
         fl_colourise(ink, &how, &painted, amounts, &area, rgba);
@@ -221,7 +222,7 @@ static const uint8_t papers[][3] = {
 static void more_paint_never_hides_less(void)
 {
     for (size_t f = 0; f < 2 * G_N_ELEMENTS(fills) * G_N_ELEMENTS(papers); f++)
-        for (int medium = 0; medium < 3; medium++) {
+        for (int medium = FL_MEDIUM_TRANSPARENT; medium <= FL_MEDIUM_BODY; medium++) {
             FlColouring how = {.medium = (FlMedium)medium, .linear = f % 2};
             memcpy(how.fill, fills[f / 2 % G_N_ELEMENTS(fills)], 3);
             memcpy(how.paper, papers[f / 2 / G_N_ELEMENTS(fills)], 3);
@@ -242,21 +243,23 @@ static int on_paper(const uint8_t *rgba, const uint8_t *paper, int c)
 static void on_its_paper_every_medium_looks_the_same(void)
 {
     for (size_t f = 0; f < G_N_ELEMENTS(fills) * G_N_ELEMENTS(papers); f++) {
-        uint8_t *rgba[3];
+        uint8_t *rgba[FL_MEDIUM_BODY + 1];
         FlColouring how = {0};
         memcpy(how.fill, fills[f % G_N_ELEMENTS(fills)], 3);
         memcpy(how.paper, papers[f / G_N_ELEMENTS(fills)], 3);
-        for (int medium = 0; medium < 3; medium++) {
+        for (int medium = FL_MEDIUM_TRANSPARENT; medium <= FL_MEDIUM_BODY; medium++) {
             how.medium = (FlMedium)medium;
             rgba[medium] = colours_of_amounts(&how);
         }
         for (int i = 0; i < 4 * FL_AMOUNTS; i += 4)
             for (int c = 0; c < 3; c++) {
                 const int seen = on_paper(rgba[FL_MEDIUM_BODY] + i, how.paper, c);
-                g_assert_cmpint(abs(on_paper(rgba[0] + i, how.paper, c) - seen), <=, 1);
-                g_assert_cmpint(abs(on_paper(rgba[1] + i, how.paper, c) - seen), <=, 1);
+                g_assert_cmpint(abs(on_paper(rgba[FL_MEDIUM_TRANSPARENT] + i, how.paper, c) - seen),
+                                <=, 1);
+                g_assert_cmpint(abs(on_paper(rgba[FL_MEDIUM_OPAQUE] + i, how.paper, c) - seen), <=,
+                                1);
             }
-        for (int medium = 0; medium < 3; medium++)
+        for (int medium = FL_MEDIUM_TRANSPARENT; medium <= FL_MEDIUM_BODY; medium++)
             g_free(rgba[medium]);
     }
 }

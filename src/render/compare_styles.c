@@ -147,7 +147,7 @@ static bool show_recording(const FlContactSheet *contact, const char *name, cons
     }
     g_autofree char *lines = g_strdup_printf(
         "%s\n%dx%d, %d frames\n%s", style->name, style->width, style->height, style->n_frames,
-        style->medium == FL_MEDIUM_OPAQUE ? "opaque" : "transparent");
+        style->medium == FL_MEDIUM_AUTO ? "" : fl_medium_word(style->medium));
     fl_contact_sheet_name_row(contact, row, name, lines);
     return true;
 }

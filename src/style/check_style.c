@@ -51,8 +51,7 @@ static void add_given_facts(Check *check)
     add(facts, "size       %dx%d, %d frame%s, %g per second (%s)", style->width, style->height,
         style->n_frames, style->n_frames == 1 ? "" : "s", style->fps,
         how_known(style, FL_GUESS_FPS));
-    add(facts, "medium     %s, scale %g",
-        style->medium == FL_MEDIUM_OPAQUE ? "opaque" : "transparent", style->scale);
+    add(facts, "medium     %s, scale %g", fl_medium_word(style->medium), style->scale);
     add(facts, "paper      #%02x%02x%02x (%s)", style->paper[0], style->paper[1], style->paper[2],
         how_known(style, FL_GUESS_PAPER));
     add(facts, "border     %.1f px (%s)", style->border_px, how_known(style, FL_GUESS_BORDER));

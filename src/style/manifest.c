@@ -58,14 +58,14 @@ static bool read_number(const char *text, const struct Key *key, float *field, G
 
 static bool read_medium(const char *text, FlMedium *medium, GError **error)
 {
-    const char *const words[] = {"transparent", "opaque", NULL};
-    for (int i = 0; words[i]; i++)
-        if (strcmp(text, words[i]) == 0) {
-            *medium = (FlMedium)i;
-            return true;
-        }
-    g_autofree char *tail = fl_did_you_mean(text, words);
-    return wrong(error, "medium = %s: expected transparent or opaque%s", text, tail);
+    int choice = 0;
+    if (fl_text_choice(text, FL_MEDIUM_WORDS, &choice)) {
+        *medium = (FlMedium)choice;
+        return true;
+    }
+    g_auto(GStrv) words = g_strsplit(FL_MEDIUM_WORDS, "|", -1);
+    g_autofree char *tail = fl_did_you_mean(text, (const char *const *)words);
+    return wrong(error, "medium = %s: expected auto, transparent, opaque or body%s", text, tail);
 }
 
 static bool read_value(FlStyle *style, const struct Key *key, const char *value, GError **error)
@@ -148,8 +148,8 @@ char *fl_manifest_text(const FlStyle *style)
                                g_ascii_formatd(number, sizeof number, "%.4g", style->border_px));
     g_string_append_printf(text, "scale = %s\n",
                            g_ascii_formatd(number, sizeof number, "%.4g", style->scale));
-    g_string_append_printf(text, "medium = %s\n",
-                           style->medium == FL_MEDIUM_OPAQUE ? "opaque" : "transparent");
+    if (style->medium != FL_MEDIUM_AUTO)
+        g_string_append_printf(text, "medium = %s\n", fl_medium_word(style->medium));
     if (!(style->guessed & FL_GUESS_PAPER))
         g_string_append_printf(text, "paper = #%02x%02x%02x\n", style->paper[0], style->paper[1],
                                style->paper[2]);

@@ -86,7 +86,7 @@ bool fl_style_check_paint(const FlStyle *style, GError **error)
                                style->paper[0], style->paper[1], style->paper[2]);
     else if (inside == 0)
         what = g_strdup("every mask is empty: expected white where the paint is");
-    else if (painted * 50 < inside && style->medium == FL_MEDIUM_TRANSPARENT)
+    else if (painted * 50 < inside && style->medium <= FL_MEDIUM_TRANSPARENT)
         what = g_strdup_printf("there is no paint under the masks: %.1f %% of their pixels differ "
                                "from the paper, #%02x%02x%02x",
                                100.0 * (double)painted / (double)inside, style->paper[0],

@@ -2,16 +2,10 @@
 #ifndef FLUIDY_STYLE_STYLE_FOLDER_H
 #define FLUIDY_STYLE_STYLE_FOLDER_H
 
+#include "params/medium.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-/** What a style's paint does over what lies below it. */
-typedef enum FlMedium {
-    FL_MEDIUM_TRANSPARENT, // density over the background, as watercolour
-    FL_MEDIUM_OPAQUE,      // hides it the more the thicker it is, as gouache
-    FL_MEDIUM_BODY,        // hides it wherever there is paint, as if cut out of its paper
-} FlMedium;
 
 /** A style in memory. Frames follow each other without padding, rows from the top. */
 typedef struct FlStyle {
@@ -19,11 +13,11 @@ typedef struct FlStyle {
     char *path; // the folder
     char *author, *licence;
     int width, height, n_frames;
-    float fps;        // frames per second, > 0
-    float border_px;  // width of the boundary region b [F21 §3.1], px of the style, > 0
-    float scale;      // px of the target per px of the style that suits it, > 0
-    uint8_t paper[3]; // sRGB of the bare paper
-    FlMedium medium;
+    float fps;                  // frames per second, > 0
+    float border_px;            // width of the boundary region b [F21 §3.1], px of the style, > 0
+    float scale;                // px of the target per px of the style that suits it, > 0
+    uint8_t paper[3];           // sRGB of the bare paper
+    FlMedium medium;            // FL_MEDIUM_AUTO: it does not say
     uint8_t *rgb;               // n_frames * height * width * 3, sRGB
     uint8_t *mask;              // n_frames * height * width, coverage 0..255
     float *flow;                // n_frames * height * width * 2, px per frame; NULL: construct it

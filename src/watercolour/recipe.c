@@ -1,6 +1,7 @@
 #include "watercolour/recipe.h"
 
 #include "base/limits.h"
+#include "params/text.h"
 #include "style/style_folder.h"
 #include "watercolour/keylines.h"
 #include "watercolour/kubelka_munk.h"
@@ -14,7 +15,7 @@ static FlRecipe *defaults(void)
         .name = g_strdup("Untitled"),
         .author = g_strdup("fluidy-svg"),
         .licence = g_strdup("CC0-1.0"),
-        .medium = g_strdup("transparent"),
+        .medium = g_strdup("auto"),
         .missing = g_strdup("none"),
         .oversample = 2,
         .fps = 24,
@@ -81,8 +82,10 @@ static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_string(lines, "licence", &recipe->licence);
     fl_keylines_string(lines, "medium", &recipe->medium);
     fl_keylines_string(lines, "missing-orientations", &recipe->missing);
-    if (strcmp(recipe->medium, "transparent") != 0 && strcmp(recipe->medium, "opaque") != 0)
-        fl_keylines_complain(lines, "medium", "medium: “%s”: expected transparent or opaque",
+    int medium = 0;
+    if (!fl_text_choice(recipe->medium, FL_MEDIUM_WORDS, &medium))
+        fl_keylines_complain(lines, "medium",
+                             "medium: “%s”: expected auto, transparent, opaque or body",
                              recipe->medium);
     float size[2] = {0}, steps[2];
     if (fl_keylines_floats(lines, "size", 2, 2, 16, 4096, size) == 0)

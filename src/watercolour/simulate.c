@@ -71,7 +71,7 @@ static FlStyle *new_style(const FlRecipe *recipe, const char *recipe_path, GErro
         .fps = recipe->fps,
         .border_px = recipe->border,
         .scale = recipe->scale,
-        .medium = strcmp(recipe->medium, "opaque") == 0 ? FL_MEDIUM_OPAQUE : FL_MEDIUM_TRANSPARENT,
+        .medium = fl_medium_of_word(recipe->medium),
     };
     memcpy(style->paper, recipe->paper.colour, sizeof style->paper);
     if (!(style->rgb = fl_alloc(pixels, 3, "the frames of a style", error)) ||

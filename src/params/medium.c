@@ -1,0 +1,16 @@
+#include "params/medium.h"
+
+#include "params/text.h"
+
+const char *fl_medium_word(FlMedium medium)
+{
+    static const char *const words[] = {"auto", "transparent", "opaque", "body"};
+    return words[medium];
+}
+
+FlMedium fl_medium_of_word(const char *word)
+{
+    int medium = FL_MEDIUM_AUTO;
+    fl_text_choice(word, FL_MEDIUM_WORDS, &medium);
+    return (FlMedium)medium;
+}

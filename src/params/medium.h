@@ -1,0 +1,21 @@
+/* Media: what paint does over what lies below it. */
+#ifndef FLUIDY_PARAMS_MEDIUM_H
+#define FLUIDY_PARAMS_MEDIUM_H
+
+typedef enum FlMedium {
+    FL_MEDIUM_AUTO,        // nobody said: what suits the background
+    FL_MEDIUM_TRANSPARENT, // density over the background, as watercolour
+    FL_MEDIUM_OPAQUE,      // hides it the more the thicker it is, as gouache
+    FL_MEDIUM_BODY,        // hides it wherever there is paint, as if cut out of its paper
+} FlMedium;
+
+/** The words, in the enum's order: the form of fl_text_choice(). */
+#define FL_MEDIUM_WORDS "auto|transparent|opaque|body"
+
+/** A medium's word, static. */
+const char *fl_medium_word(FlMedium medium);
+
+/** The medium of a word, AUTO if there is none; for words that are known to be right. */
+FlMedium fl_medium_of_word(const char *word);
+
+#endif
