@@ -222,6 +222,7 @@ rotate = off
 w-temp = 2
 w-bound = 8
 stacking = glaze
+medium = body
 edges = soft
 reverse = on
 hold = 2
@@ -249,6 +250,21 @@ cp plain_1.png paper.png
 "$program" all.d -c example.conf --dry-run >out 2>err &&
     ! grep 'warning:' err | grep -v 'example.conf:8: \[region hair\] holds for nothing'
 result $? 'the example of fluidy-svg.conf(5) is read'
+
+# Paint that leaves its paper is opaque unless somebody says otherwise.
+of_medium() { # of_medium NAME STYLE ARGUMENT...: a frame in medium/NAME.png
+    "$program" whole --frames 1 -s "$2" --detail draft -q -o "medium/$1%d.png" "${@:3}" >out 2>err
+}
+printf '[defaults]\nmedium = transparent\n' >glaze.conf
+of_medium none 01 -b none && of_medium opaque 01 -b none --medium opaque &&
+    of_medium config 01 -b none -c glaze.conf && of_medium glaze 01 -b none --medium transparent &&
+    cmp -s medium/none1.png medium/opaque1.png && cmp -s medium/config1.png medium/glaze1.png &&
+    ! cmp -s medium/none1.png medium/glaze1.png
+result $? 'over nothing paint is opaque unless the config or the command line say otherwise'
+of_medium paper 01 && of_medium paper-glaze 01 --medium transparent &&
+    cmp -s medium/paper1.png medium/paper-glaze1.png && of_medium dust 04 -b none &&
+    of_medium dust-body 04 -b none --medium body && cmp -s medium/dust1.png medium/dust-body1.png
+result $? 'on its paper it is transparent, and charcoal has body as its style says'
 
 # Drafts are made at half the size, all regions or none; their files have that of the frames.
 sides() { # of a PNG file

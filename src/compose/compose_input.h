@@ -15,6 +15,7 @@ typedef struct FlComposeInput {
     const FlBackground *background;
     int width, height; // of the frame, px
     bool half;         // the drawing has half that size: layers are enlarged
+    bool layers_apart; // layers are stored as well, for whoever puts them on something else
     bool linear;       // blend in linear light
     float gap_px;      // as in FlStackParams
     float feather_px;

@@ -11,13 +11,24 @@
 
 #define BLEED_PX 8 // how far colours reach into transparency, for whoever scales the frames
 
+/* Where nobody says, paint that will lie on something else than its paper is opaque. */
+static FlMedium medium_of(const FlComposeInput *input, const FlPaintedRegion *painted)
+{
+    const FlMedium said = painted->settings->medium, of_style = painted->style->medium;
+    if (said != FL_MEDIUM_AUTO || of_style != FL_MEDIUM_AUTO)
+        return said != FL_MEDIUM_AUTO ? said : of_style;
+    const FlBackground *background = input->background;
+    return background->none || background->pattern || input->layers_apart ? FL_MEDIUM_OPAQUE
+                                                                          : FL_MEDIUM_TRANSPARENT;
+}
+
 static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegion *painted,
                                 const FlDraw *draw)
 {
     const FlRegionSettings *t = painted->settings;
     FlColouring how = {.tint = t->tint,
                        .picture = t->has_colour ? NULL : draw->picture,
-                       .medium = painted->style->medium,
+                       .medium = medium_of(input, painted),
                        .linear = input->linear};
     memcpy(how.fill, t->has_colour ? t->colour : draw->rgb, 3);
     memcpy(how.paper, input->background->paper, 3);

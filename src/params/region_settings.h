@@ -3,6 +3,7 @@
 #ifndef FLUIDY_PARAMS_REGION_SETTINGS_H
 #define FLUIDY_PARAMS_REGION_SETTINGS_H
 
+#include "params/medium.h"
 #include "params/params.h"
 #include <stdint.h>
 
@@ -39,6 +40,7 @@ typedef struct FlRegionSettings {
     uint8_t colour[3]; // sRGB
     FlDetail detail;
     FlStacking stacking;
+    FlMedium medium; // FL_MEDIUM_AUTO: the style's, or what the output wants
     FlEdges edges;
     int hold; // frames, 1..1000
     bool reverse;

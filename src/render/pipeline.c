@@ -158,6 +158,7 @@ static FlComposeInput compose_input(const Pipeline *pipeline)
                             .width = plan->width,
                             .height = plan->height,
                             .half = plan->half,
+                            .layers_apart = plan->options.layers || plan->format->takes_layers,
                             .linear = plan->options.blend == FL_BLEND_LINEAR,
                             .gap_px = (float)MAX(plan->options.gap, 0),
                             .feather_px = (float)MAX(plan->options.feather, 0)};
