@@ -13,6 +13,7 @@
 #include "base/parallel_error.h"
 #include "guides/blur.h"
 #include "guides/direction.h"
+#include "guides/displacement.h"
 #include "guides/extent.h"
 #include "guides/flow.h"
 #include "guides/gauss.h"
@@ -47,7 +48,7 @@ typedef struct Builder {
     Motion *motions;
     Smoothed smoothed[3];
     uint8_t *mask; // room for a frame
-    float *given;  // room for the flow of a frame
+    float *given;  // room for the flow or the motion of a frame
     FlExtent *extent;
     bool previous_moves; // of the frame that was finished last
 } Builder;
@@ -98,8 +99,9 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
     for (int s = 0; s < 3; s++)
         b->smoothed[s].frame = -1;
     b->mask = g_try_malloc(n);
-    b->given = source->flow ? g_try_new(float, 2 * n) : NULL;
-    if (!b->mask || (source->flow && !b->given))
+    const bool is_given = source->flow || source->motion;
+    b->given = is_given ? g_try_new(float, 2 * n) : NULL;
+    if (!b->mask || (is_given && !b->given))
         return fl_guide_sequence_no_memory(b->sequence, error);
     b->extent = fl_extent_new(source->width, source->height, error);
     return b->extent;
@@ -338,6 +340,26 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
                                fixed, 2 * n, 2, error));
 }
 
+/** Stores what the drawing does into this frame, if it does anything. */
+static bool put_drawing_motion(Builder *b, int frame, const FlOutline *outline, GError **error)
+{
+    const FlGuideSource *source = &b->sequence->source;
+    const size_t n = 2 * fl_rect_pixels(outline->box);
+    if (!source->motion || outline->empty)
+        return true;
+    if (!source->motion(source->data, frame, b->given, error))
+        return false;
+    g_autofree int32_t *fixed = g_try_new(int32_t, n);
+    if (!fixed)
+        return fl_guide_sequence_no_memory(b->sequence, error);
+    fl_motion_to_fixed(b->given, outline, fixed);
+    if (fl_is_blank((const uint8_t *)fixed, n * sizeof *fixed))
+        return true;
+    b->sequence->frames[frame].holder[FL_GUIDE_PLANE_MOTION] = frame;
+    return fl_plane_store_put(
+        b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_MOTION), fixed, n, 2, error);
+}
+
 static bool finish_frame(Builder *b, int frame, GError **error)
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
@@ -346,7 +368,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     if (!outline_of(b, frame, &outline, error))
         return false;
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
-    *record = (FlFrameRecord){outline->box, outline->empty, {-1, -1, -1, -1}};
+    *record = (FlFrameRecord){outline->box, outline->empty, {-1, -1, -1, -1, -1}};
     if (outline->box.width == 0) {
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);
         return true;
@@ -360,9 +382,12 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     b->previous_moves = flow != NULL;
     if (still) { // as before in every respect
         memcpy(record->holder, record[-1].holder, sizeof record->holder);
-        return true;
+        record->holder[FL_GUIDE_PLANE_MOTION] = -1;
+    } else if (!put_shape(b, frame, outline, flow, error) ||
+               !put_motion(b, frame, outline, flow, error)) {
+        return false;
     }
-    return put_shape(b, frame, outline, flow, error) && put_motion(b, frame, outline, flow, error);
+    return put_drawing_motion(b, frame, outline, error);
 }
 
 /** The last frame whose outline the motion of a frame needs. */

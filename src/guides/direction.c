@@ -11,17 +11,28 @@ static float eighth_turn(float t)
                 s * (-13.461934f + s * (7.3506741f + s * (-3.4798475f + s * 0.85283874f))));
 }
 
-uint8_t fl_angle(float x, float y)
+/** In steps, 0 … 256. */
+static float steps_of(float x, float y)
 {
     const float ax = fabsf(x), ay = fabsf(y);
     if (!(ax > 0.0f) && !(ay > 0.0f))
-        return 0;
+        return 0.0f;
     float turn = ay <= ax ? eighth_turn(ay / ax) : 64.0f - eighth_turn(ax / ay);
     if (x < 0.0f)
         turn = 128.0f - turn;
     if (y < 0.0f)
         turn = 256.0f - turn;
-    return (uint8_t)(unsigned)(turn + 0.5f);
+    return turn;
+}
+
+uint8_t fl_angle(float x, float y)
+{
+    return (uint8_t)(unsigned)(steps_of(x, y) + 0.5f);
+}
+
+int16_t fl_fine_angle(float x, float y)
+{
+    return (int16_t)(uint16_t)(unsigned)(steps_of(x, y) * 256.0f + 0.5f);
 }
 
 /** 0 below still_px, 1 from twice still_px on. */

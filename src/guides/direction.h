@@ -9,6 +9,10 @@
  */
 uint8_t fl_angle(float x, float y);
 
+/** The same in 1/256 of these steps: 65536 a turn, from half a turn back to just below half a turn.
+ */
+int16_t fl_fine_angle(float x, float y);
+
 /**
  * Directions of n pixels: below still_px that of the normal, from twice still_px on that of the
  * flow, between them a smooth blend of both. flow may be NULL: nothing moves. Arrays are

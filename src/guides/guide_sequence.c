@@ -1,5 +1,6 @@
 #include "guides/guide_sequence.h"
 
+#include "guides/displacement.h"
 #include "guides/distance.h"
 #include "guides/extent.h"
 #include "guides/plane_store.h"
@@ -27,7 +28,7 @@ bool fl_guide_sequence_plane(const FlGuideSequence *sequence, int frame, FlGuide
                              int32_t *values, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
-    const size_t step = plane == FL_GUIDE_PLANE_FLOW ? 2 : 1;
+    const size_t step = fl_plane_step(plane);
     return fl_plane_store_get(sequence->spill, fl_guide_plane_block(record->holder[plane], plane),
                               values, step * fl_rect_pixels(record->box), step, error);
 }
@@ -135,6 +136,27 @@ static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane p
     return true;
 }
 
+/** What the drawing does; beside its box nothing is known of it. */
+static bool get_motion(const FlGuideSequence *sequence, int frame, int32_t *room, FlGuides *guides,
+                       GError **error)
+{
+    const FlFrameRecord *record = &sequence->frames[frame];
+    const FlRect whole = {0, 0, guides->width, guides->height};
+    if (!sequence->source.motion)
+        return true;
+    if (record->holder[FL_GUIDE_PLANE_MOTION] < 0)
+        memset(room, 0, 2 * fl_rect_pixels(record->box) * sizeof *room);
+    else if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, room, error))
+        return false;
+    for (size_t k = 0; k < 2 * fl_rect_pixels(whole); k++)
+        guides->motion[k] = FL_MOTION_UNKNOWN;
+    fl_rect_copy(room, record->box, guides->motion, whole, 2 * sizeof *room);
+    guides->has_motion = fl_motion_confine(guides);
+    if (guides->has_motion)
+        fl_motion_turns(guides);
+    return true;
+}
+
 static bool recall_distance(FlGuideSequence *sequence, int32_t holder, float *distance,
                             size_t bytes)
 {
@@ -193,6 +215,7 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
     memset(guides->ext_minus, 0, n * sizeof *guides->ext_minus);
     const FlFrameRecord *record = &sequence->frames[frame];
     const size_t area = fl_rect_pixels(record->box);
+    guides->has_motion = false;
     if (area > 0) {
         g_autofree uint8_t *shape = g_try_malloc(2 * area);
         g_autofree int32_t *room = g_try_new(int32_t, 2 * area);
@@ -205,6 +228,8 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
             return false;
         fl_rect_copy(shape, record->box, guides->mask, (FlRect){0, 0, w, h}, 1);
         fl_rect_copy(shape + area, record->box, guides->angle, (FlRect){0, 0, w, h}, 1);
+        if (!get_motion(sequence, frame, room, guides, error))
+            return false;
     }
     // the lock is what is not const about a sequence
     return get_distance((FlGuideSequence *)(uintptr_t)sequence, frame, guides->mask,
@@ -221,8 +246,10 @@ bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
     guides->angle = g_try_malloc0(n);
     guides->ext_plus = g_try_new0(float, n);
     guides->ext_minus = g_try_new0(float, n);
+    guides->motion = g_try_new0(int32_t, 2 * n);
+    guides->turn = g_try_new0(int16_t, n);
     if (guides->mask && guides->distance && guides->flow && guides->angle && guides->ext_plus &&
-        guides->ext_minus)
+        guides->ext_minus && guides->motion && guides->turn)
         return true;
     fl_guides_clear(guides);
     g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
@@ -238,5 +265,7 @@ void fl_guides_clear(FlGuides *guides)
     g_free(guides->angle);
     g_free(guides->ext_plus);
     g_free(guides->ext_minus);
+    g_free(guides->motion);
+    g_free(guides->turn);
     *guides = (FlGuides){0};
 }

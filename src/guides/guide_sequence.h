@@ -13,6 +13,7 @@ typedef enum FlGuidePlane {
     FL_GUIDE_PLANE_FLOW,  // interleaved, FL_FLOW_ONE a px
     FL_GUIDE_PLANE_PLUS,  // FL_EXTENT_ONE a px, as is MINUS
     FL_GUIDE_PLANE_MINUS,
+    FL_GUIDE_PLANE_MOTION, // interleaved, FL_MOTION_ONE a px
     FL_N_GUIDE_PLANES,
 } FlGuidePlane;
 
@@ -41,6 +42,12 @@ static inline size_t fl_guide_plane_block(int frame, FlGuidePlane plane)
 
 /** Reads the masks and fills sequence->frames and spill, forwards, all but the extents to come. */
 bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error);
+
+/** How many integers a pixel of a plane has. */
+static inline size_t fl_plane_step(FlGuidePlane plane)
+{
+    return plane == FL_GUIDE_PLANE_FLOW || plane == FL_GUIDE_PLANE_MOTION ? 2 : 1;
+}
 
 /** Sets FL_ERROR_NO_MEMORY and returns false. */
 bool fl_guide_sequence_no_memory(const FlGuideSequence *sequence, GError **error);

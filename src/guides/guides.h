@@ -31,11 +31,18 @@ typedef struct FlGuides {
     uint8_t *angle;   // direction of the flow
     float *ext_plus;  // |sum of the flow since the pixel was last outside the mask|, px
     float *ext_minus; // the same, summed from the end of the sequence
+    // How the drawing moves into the frame, where the source says it:
+    bool has_motion; // somewhere in the mask; else the two planes mean nothing
+    int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height
+    int16_t *turn;   // what the drawing turns by with it, 65536 a turn; 0 where that is unknown
 } FlGuides;
+
+#define FL_MOTION_ONE 16384
+#define FL_MOTION_UNKNOWN INT32_MIN // of both components: where motion is unknown, or no mask
 
 #define FL_INSIDE 128
 
-/** A mask sequence, and its flow where somebody gives it. */
+/** A mask sequence, and its flow and the drawing's motion where somebody gives them. */
 typedef struct FlGuideSource {
     int width, height, n_frames;
     /** Writes frame's coverage, width * height bytes. May be called several times for a frame. */
@@ -43,6 +50,13 @@ typedef struct FlGuideSource {
     /** Writes frame's flow, 2 * width * height floats; NULL: constructed from the masks. */
     bool (*flow)(void *data, int frame, float *flow, GError **error);
     void *data;
+    /**
+     * Writes the drawing's true displacement into the frame, 2 * width * height floats,
+     * interleaved: what is at a pixel was so many px before it in the picture painted before; NAN:
+     * unknown. It is taken as it is, neither smoothed nor part of the flow. Frames come in order.
+     * NULL: none is known.
+     */
+    bool (*motion)(void *data, int frame, float *motion, GError **error);
 } FlGuideSource;
 
 /** The guides of a whole sequence. Its memory does not grow with the number of frames (FlSpill). */

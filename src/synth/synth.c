@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "synth/carry.h"
 #include "synth/energy.h"
 #include "synth/shift.h"
 #include "synth/synth_state.h"
@@ -104,7 +105,8 @@ static bool working_rect(const FlSynth *synth, const FlGuides *guides, FlRect *r
     return x1 > x0 && y1 > y0 && x1 - x0 <= synth->width;
 }
 
-/* The previous field in the new rectangle, shifted in the exemplar's time. */
+/* The previous field in the new rectangle, carried along the drawing's motion and shifted in the
+ * exemplar's time. */
 static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *out,
                              GError **error)
 {
@@ -113,20 +115,12 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
     g_autofree uint8_t *angle = fl_alloc(pixels, 1, "a field", error);
     if (!speed || !angle || !fl_nnf_init(out, rect.width, rect.height, error))
         return false;
-    const Previous *previous = &synth->previous;
+    const FlCarry how = {guides, synth->params->carry, synth->params->rotate, synth->frame};
+    fl_nnf_carry(&synth->previous.nnf, synth->previous.rect, &how, rect, &synth->exemplar->level[0],
+                 out, speed);
     for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const size_t p = (size_t)y * rect.width + x;
-            const size_t full = (size_t)(rect.y + y) * synth->width + rect.x + x;
-            const int px = rect.x + x - previous->rect.x, py = rect.y + y - previous->rect.y;
-            const float u = guides->flow[2 * full], v = guides->flow[2 * full + 1];
-            speed[p] = sqrtf(u * u + v * v);
-            angle[p] = guides->angle[full];
-            if (px >= 0 && py >= 0 && px < previous->rect.width && py < previous->rect.height)
-                out->match[p] = previous->nnf.match[(size_t)py * previous->rect.width + px];
-            if (guides->mask[full] < FL_INSIDE)
-                speed[p] = 0;
-        }
+        memcpy(angle + (size_t)y * rect.width,
+               guides->angle + (size_t)(rect.y + y) * synth->width + rect.x, (size_t)rect.width);
     const FlTargetMotion motion = {speed, angle, synth->params->flow_still, synth->boil};
     fl_nnf_shift(out, synth->exemplar, &motion);
     return true;
@@ -415,13 +409,14 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
     return true;
 }
 
-/* The same mask as in the last frame, no flow that somebody could see, and no boil due. */
+/* The same mask as in the last frame, no flow that somebody could see, and no boil due. A motion
+ * that is known is seen after some frames, however slow it is. */
 static bool holds_still(const FlSynth *synth, const FlGuides *guides)
 {
     const size_t pixels = (size_t)synth->width * synth->height;
     const float limit = synth->params->flow_still * synth->params->flow_still;
     if (!synth->params->rest || synth->boil != 0 || !synth->previous.valid ||
-        memcmp(guides->mask, synth->previous.mask, pixels) != 0)
+        fl_drawing_moves(guides) || memcmp(guides->mask, synth->previous.mask, pixels) != 0)
         return false;
     for (size_t p = 0; p < pixels; p++) {
         const float u = guides->flow[2 * p], v = guides->flow[2 * p + 1];

@@ -1,0 +1,135 @@
+#include "synth/carry.h"
+
+#include "synth/rotation.h"
+#include <assert.h>
+#include <math.h>
+
+/* A vector or a place in FL_MOTION_ONE a px. */
+typedef struct Vector {
+    int32_t x, y;
+} Vector;
+
+#define CARRY_ONE 1024
+
+/* What is the same for all pixels of a frame. */
+typedef struct Plan {
+    const FlCarry *how;
+    int left;             // of the motion along the direction, CARRY_ONE is all
+    int32_t x_off, y_off; // 0 … ROUND_ONE: what is added before places are rounded down
+    const FlExemplarLevel *level;
+} Plan;
+
+#define ROUND_BITS 24 // a place of 1/16 px in FL_MOTION_ONE * 16384 a px
+#define ROUND_ONE (1 << ROUND_BITS)
+
+/* The n-th number of Van der Corput's sequence, 0 … ROUND_ONE - 1: the means of any stretch of it
+ * are near 1/2, so that rounding does not drift. */
+static int32_t van_der_corput(int n, int base)
+{
+    double value = 0, digit = 1.0 / base;
+    for (; n > 0; n /= base, digit /= base)
+        value += digit * (n % base);
+    return (int32_t)(value * ROUND_ONE);
+}
+
+static Plan plan_of(const FlCarry *how, const FlExemplarLevel *level)
+{
+    return (Plan){.how = how,
+                  .left = CARRY_ONE - (int)(how->carry * CARRY_ONE + 0.5f),
+                  .x_off = van_der_corput(how->frame, 2),
+                  .y_off = van_der_corput(how->frame, 3),
+                  .level = level};
+}
+
+/* The nearest pixel to a place, and what the place is off its middle. */
+static int nearest(int32_t place, int32_t *rest)
+{
+    const int pixel = (int)(((int64_t)place + FL_MOTION_ONE / 2) >> 14);
+    *rest = (int32_t)(place - (int64_t)pixel * FL_MOTION_ONE);
+    return pixel;
+}
+
+static_assert(FL_MOTION_ONE == 1 << 14, "as fl_turns");
+
+/* A match whose pixel has come `rest` from the middle of the one it belonged to, and turned. */
+static FlMatch carried(const Plan *plan, FlMatch m, Vector rest, int16_t turn)
+{
+    const FlMatch none = {.frame = FL_NO_MATCH};
+    const int64_t c = fl_turns[m.theta][0], s = fl_turns[m.theta][1];
+    const int64_t x = m.x_16 + ((c * rest.x + s * rest.y + plan->x_off) >> ROUND_BITS);
+    const int64_t y = m.y_16 + ((c * rest.y - s * rest.x + plan->y_off) >> ROUND_BITS);
+    if (x < 0 || y < 0 || x > 16 * (plan->level->width - 1) || y > 16 * (plan->level->height - 1))
+        return none;
+    m.x_16 = (uint16_t)x, m.y_16 = (uint16_t)y;
+    if (plan->how->rotate)
+        m.theta = (uint8_t)(m.theta + ((turn + (plan->x_off >> (ROUND_BITS - 8))) >> 8));
+    return m;
+}
+
+/* Splits the motion of a pixel of the frame: what is carried, and in px what is left. */
+static Vector split(const Plan *plan, size_t pixel, float *left_px)
+{
+    const FlGuides *guides = plan->how->guides;
+    const int32_t *u = guides->motion + 2 * pixel;
+    const int16_t *d = fl_turns[guides->angle[pixel]];
+    const int64_t along = ((int64_t)u[0] * d[0] + (int64_t)u[1] * d[1]) >> 14;
+    const int64_t left = along * plan->left / CARRY_ONE;
+    *left_px = fabsf((float)left) / FL_MOTION_ONE;
+    return (Vector){(int32_t)(u[0] - ((left * d[0] + (1 << 13)) >> 14)),
+                    (int32_t)(u[1] - ((left * d[1] + (1 << 13)) >> 14))};
+}
+
+static FlMatch match_at(const FlNnf *nnf, int x, int y)
+{
+    return x >= 0 && y >= 0 && x < nnf->width && y < nnf->height
+               ? nnf->match[(size_t)y * nnf->width + x]
+               : (FlMatch){.frame = FL_NO_MATCH};
+}
+
+static float length_of_flow(const FlGuides *guides, size_t pixel)
+{
+    const float u = guides->flow[2 * pixel], v = guides->flow[2 * pixel + 1];
+    return sqrtf(u * u + v * v);
+}
+
+/* x and y are of the frame, dx and dy from there to the field before. */
+static FlMatch arriving(const Plan *plan, const FlNnf *before, int x, int y, int dx, int dy,
+                        float *speed)
+{
+    const FlGuides *guides = plan->how->guides;
+    const size_t pixel = (size_t)y * guides->width + x;
+    const bool inside = guides->mask[pixel] >= FL_INSIDE;
+    *speed = inside ? length_of_flow(guides, pixel) : 0;
+    if (!guides->has_motion || (inside && guides->motion[2 * pixel] == FL_MOTION_UNKNOWN))
+        return match_at(before, x + dx, y + dy);
+    if (!inside) // what was left behind must not vote beside what has moved on
+        return (FlMatch){.frame = FL_NO_MATCH};
+    Vector rest;
+    const Vector k = split(plan, pixel, speed);
+    const int column = x + dx + nearest(-k.x, &rest.x), row = y + dy + nearest(-k.y, &rest.y);
+    const FlMatch m = match_at(before, column, row);
+    return m.frame == FL_NO_MATCH ? m : carried(plan, m, rest, guides->turn[pixel]);
+}
+
+void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *how, FlRect rect,
+                  const FlExemplarLevel *level, FlNnf *out, float *speed)
+{
+    const Plan plan = plan_of(how, level);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t p = (size_t)y * rect.width + x;
+            out->match[p] =
+                arriving(&plan, before, rect.x + x, rect.y + y, -from.x, -from.y, &speed[p]);
+        }
+}
+
+bool fl_drawing_moves(const FlGuides *guides)
+{
+    const size_t n = guides->has_motion ? (size_t)guides->width * guides->height : 0;
+    for (size_t p = 0; p < n; p++)
+        if (guides->motion[2 * p] != FL_MOTION_UNKNOWN &&
+            (guides->motion[2 * p] | guides->motion[2 * p + 1]) != 0)
+            return true;
+    return false;
+}

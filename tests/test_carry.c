@@ -1,0 +1,212 @@
+/* The last field travels with the drawing: where to, how exactly, and what of it. */
+#include "guides/displacement.h"
+#include "synth/carry.h"
+#include "synth/rotation.h"
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 64, CENTRE = SIDE / 2 };
+
+static const FlRect whole = {0, 0, SIDE, SIDE};
+static const FlExemplarLevel level = {.width = 2 * SIDE, .height = 2 * SIDE};
+
+/* What a drawing does at a place: u, v in px. */
+typedef void (*Motion)(double x, double y, double u[2]);
+
+static void slow(double x, double y, double u[2])
+{
+    u[0] = 0.03, u[1] = -0.02;
+}
+
+static void leap(double x, double y, double u[2])
+{
+    u[0] = 5.25, u[1] = 2;
+}
+
+static void spin(double x, double y, double u[2])
+{
+    const double a = -0.3 * G_PI / 180; // back
+    u[0] = x - (cos(a) * x - sin(a) * y);
+    u[1] = y - (sin(a) * x + cos(a) * y);
+}
+
+static void half_spins(double x, double y, double u[2])
+{
+    if (x < 0)
+        u[0] = u[1] = 0;
+    else
+        spin(x + 100, y, u); // the seam slips
+}
+
+static void unknown(double x, double y, double u[2])
+{
+    u[0] = u[1] = NAN;
+}
+
+static bool all_inside(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    memset(coverage, 255, SIDE * SIDE);
+    return true;
+}
+
+static bool moving(void *data, int frame, float *motion, GError **error)
+{
+    for (int p = 0; p < SIDE * SIDE; p++) {
+        double u[2];
+        (*(Motion *)data)(p % SIDE - CENTRE, p / SIDE - CENTRE, u);
+        motion[2 * p] = (float)u[0], motion[2 * p + 1] = (float)u[1];
+    }
+    return true;
+}
+
+/* A frame that is all paint; its direction is that of angle. */
+static void moving_guides(Motion motion, uint8_t angle, FlGuides *guides)
+{
+    g_autoptr(GError) error = NULL;
+    const FlGuideParams how = {.still_px = 0.05f, .flow_limit = 0.1f};
+    const FlGuideSource source = {SIDE, SIDE, 2, all_inside, NULL, &motion, moving};
+    g_autoptr(FlGuideSequence) sequence = fl_guide_sequence_new(&source, &how, &error);
+    g_assert_true(sequence && fl_guides_init(guides, SIDE, SIDE, &error));
+    g_assert_true(fl_guide_sequence_get(sequence, 1, guides, &error));
+    memset(guides->angle, angle, SIDE * SIDE);
+}
+
+/* Every pixel is painted from as far right and down in the exemplar as it is in the frame. */
+static void coherent_field(FlNnf *nnf)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_true(fl_nnf_init(nnf, SIDE, SIDE, &error));
+    for (int p = 0; p < SIDE * SIDE; p++)
+        nnf->match[p] = (FlMatch){.x_16 = (uint16_t)(16 * (p % SIDE + CENTRE)),
+                                  .y_16 = (uint16_t)(16 * (p / SIDE + CENTRE))};
+}
+
+/* The field after some frames of the same motion; what leaves the frame is known no more. */
+static void carried_on(const FlGuides *guides, float carry, int frames, FlNnf *nnf)
+{
+    g_autoptr(GError) error = NULL;
+    float speed[SIDE * SIDE];
+    coherent_field(nnf);
+    for (int f = 1; f <= frames; f++) {
+        FlNnf next;
+        const FlCarry how = {guides, carry, true, f};
+        g_assert_true(fl_nnf_init(&next, SIDE, SIDE, &error));
+        fl_nnf_carry(nnf, whole, &how, whole, &level, &next, speed);
+        fl_nnf_clear(nnf);
+        *nnf = next;
+    }
+}
+
+#define assert_near(value, expected, tolerance)                                                    \
+    g_assert_cmpfloat_with_epsilon((double)(value), (double)(expected), (double)(tolerance))
+
+/* The match of a pixel, as an offset from the exemplar's middle in px. */
+static FlMatch match_of(const FlNnf *nnf, int x, int y, double place[2])
+{
+    const FlMatch m = nnf->match[(y + CENTRE) * SIDE + x + CENTRE];
+    g_assert_cmpint(m.frame, !=, FL_NO_MATCH);
+    place[0] = m.x_16 / 16.0 - 2 * CENTRE, place[1] = m.y_16 / 16.0 - 2 * CENTRE;
+    return m;
+}
+
+static void slow_motion_carries_as_far_in_the_end(void)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlNnf) nnf = {0};
+    moving_guides(slow, 0, &guides);
+    carried_on(&guides, 1, 300, &nnf);
+    for (int y = -20; y <= 20; y += 10)
+        for (int x = -20; x <= 20; x += 10) {
+            double place[2];
+            g_assert_cmpint(match_of(&nnf, x, y, place).theta, ==, 0);
+            assert_near(place[0], x - 9, 0.5);
+            assert_near(place[1], y + 6, 0.5);
+        }
+}
+
+static void a_slow_spin_carries_and_turns_as_far_in_the_end(void)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlNnf) nnf = {0};
+    moving_guides(spin, 0, &guides);
+    carried_on(&guides, 1, 300, &nnf);
+    for (int y = -15; y <= 15; y += 6)
+        for (int x = -15; x <= 15; x += 6) {
+            double place[2]; // a quarter turn clockwise on the screen: (x, y) was at (y, -x)
+            const FlMatch m = match_of(&nnf, x, y, place);
+            g_assert_cmpint(ABS(m.theta - 64), <=, 2);
+            assert_near(place[0], y, 1);
+            assert_near(place[1], -x, 1);
+        }
+}
+
+static void what_goes_across_is_carried_and_what_goes_along_is_left(void)
+{
+    g_auto(FlGuides) guides = {0};
+    for (int along = 0; along < 2; along++)
+        for (int c = 0; c <= 4; c += 2) {
+            g_auto(FlNnf) before = {0}, after = {0};
+            g_autoptr(GError) error = NULL;
+            float speed[SIDE * SIDE];
+            const float carry = 0.25f * (float)c;
+            const double left = 1 - (double)carry;
+            fl_guides_clear(&guides);
+            moving_guides(leap, along ? 0 : 64, &guides);
+            coherent_field(&before);
+            g_assert_true(fl_nnf_init(&after, SIDE, SIDE, &error));
+            const FlCarry how = {&guides, carry, true, 1};
+            fl_nnf_carry(&before, whole, &how, whole, &level, &after, speed);
+            double place[2];
+            match_of(&after, 3, 4, place);
+            assert_near(place[0], 3 - 5.25 * (along ? (double)carry : 1), 1.0 / 16);
+            assert_near(place[1], 4 - 2 * (along ? 1 : (double)carry), 1.0 / 16);
+            assert_near(speed[CENTRE * SIDE + CENTRE], (along ? 5.25 : 2) * left, 0.001);
+        }
+}
+
+static void what_is_uncovered_has_no_match(void)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlNnf) nnf = {0};
+    moving_guides(leap, 0, &guides);
+    carried_on(&guides, 1, 1, &nnf);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++)
+            g_assert_true((nnf.match[y * SIDE + x].frame == FL_NO_MATCH) == (x < 5 || y < 2));
+}
+
+static void where_motion_is_unknown_nothing_is_carried(void)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlNnf) before = {0}, after = {0};
+    moving_guides(unknown, 0, &guides);
+    g_assert_false(guides.has_motion || fl_drawing_moves(&guides));
+    coherent_field(&before);
+    carried_on(&guides, 1, 3, &after);
+    g_assert_cmpmem(after.match, SIDE * SIDE * sizeof(FlMatch), before.match,
+                    SIDE * SIDE * sizeof(FlMatch));
+}
+
+static void parts_that_move_apart_turn_by_themselves(void)
+{
+    g_auto(FlGuides) guides = {0};
+    moving_guides(half_spins, 0, &guides);
+    g_assert_true(fl_drawing_moves(&guides));
+    for (int p = 0; p < SIDE * SIDE; p++)
+        g_assert_cmpint(ABS(guides.turn[p] - (p % SIDE < CENTRE ? 0 : 55)), <=, 30);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    fl_rotation_init();
+#define TEST(name) g_test_add_func("/carry/" #name, name)
+    TEST(slow_motion_carries_as_far_in_the_end);
+    TEST(a_slow_spin_carries_and_turns_as_far_in_the_end);
+    TEST(what_goes_across_is_carried_and_what_goes_along_is_left);
+    TEST(what_is_uncovered_has_no_match);
+    TEST(where_motion_is_unknown_nothing_is_carried);
+    TEST(parts_that_move_apart_turn_by_themselves);
+#undef TEST
+    return g_test_run();
+}
