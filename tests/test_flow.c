@@ -124,7 +124,7 @@ static void flow_files_come_back_as_they_were_saved(void)
         g_assert_true(g_file_get_contents(path, &bytes, &size, &error));
         g_assert_cmpuint(size, ==, sizes[k]);
         g_assert_true(k == 1 || memcmp(bytes, "PIEH\3\0\0\0\2\0\0\0", 12) == 0);
-        g_assert_true(fl_flow_load(path, 3, 2, back, &error));
+        g_assert_true(fl_flow_load(path, 3, 2, 0, back, &error));
         g_assert_no_error(error);
         g_assert_cmpmem(back, sizeof back, flow, sizeof flow);
         remove_file(path);
@@ -142,16 +142,21 @@ static void flow_of_half_the_size_keeps_what_moves(void)
         g_assert_cmpfloat(half[k], ==, k == 2 ? 1.5f : k == 11 ? -4 : 0);
 }
 
-static void unknown_flow_is_no_flow(void)
+static void unknown_flow_is_what_the_caller_says(void)
 {
     const float flow[4] = {1.666666752e9f, 1.666666752e9f, 1, 2};
     float back[4];
     g_autoptr(GError) error = NULL;
     g_autofree char *path = temporary_path("a.flo");
     g_assert_true(fl_flow_save(path, 2, 1, flow, &error));
-    g_assert_true(fl_flow_load(path, 2, 1, back, &error));
+    g_assert_true(fl_flow_load(path, 2, 1, 0, back, &error));
     g_assert_no_error(error);
     g_assert_true(back[0] == 0.0f && back[1] == 0.0f && back[2] == 1.0f && back[3] == 2.0f);
+    g_assert_true(fl_flow_load(path, 2, 1, NAN, back, &error));
+    g_assert_true(isnan(back[0]) && isnan(back[1]) && back[2] == 1.0f && back[3] == 2.0f);
+    g_assert_true(fl_flow_save(path, 2, 1, back, &error));
+    g_assert_true(fl_flow_load(path, 2, 1, 7, back, &error));
+    g_assert_true(back[0] == 7.0f && back[1] == 7.0f && back[2] == 1.0f && back[3] == 2.0f);
     remove_file(path);
 }
 
@@ -164,7 +169,7 @@ static void assert_rejected(const char *name, const void *contents, gssize bytes
     g_autofree char *path = temporary_path(name);
     if (contents)
         g_assert_true(g_file_set_contents(path, contents, bytes, NULL));
-    g_assert_false(fl_flow_load(path, 2, 1, flow, &error));
+    g_assert_false(fl_flow_load(path, 2, 1, 0, flow, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_assert_true(g_str_has_prefix(error->message, path));
     if (!strstr(error->message, message))
@@ -197,7 +202,7 @@ int main(int argc, char **argv)
     TEST(a_field_is_the_same_on_any_thread_count);
     TEST(flow_files_come_back_as_they_were_saved);
     TEST(flow_of_half_the_size_keeps_what_moves);
-    TEST(unknown_flow_is_no_flow);
+    TEST(unknown_flow_is_what_the_caller_says);
     TEST(broken_flow_files_are_rejected_with_a_reason);
 #undef TEST
     return g_test_run();

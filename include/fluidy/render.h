@@ -95,7 +95,8 @@ typedef struct FlRenderOptions {
     FlMissing missing;
     const char *canvas; /**< "WxH" or "WxH+X+Y" in px, for SVGs without a size; NULL: theirs */
     FlRegistration registration;
-    const char *flow; /**< pattern of flow files; may hold {region}; NULL: made from the masks */
+    const char *flow; /**< pattern of files, one per frame, may hold {region}: the motion into it
+                         from the frame before; NULL: none */
     FlRegionKey key;
     FlStrokes stroke;
     bool strict; /**< a warning is an error: FL_ERROR_INPUT, of a style FL_ERROR_STYLE */

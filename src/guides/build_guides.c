@@ -360,6 +360,22 @@ static bool put_drawing_motion(Builder *b, int frame, const FlOutline *outline, 
         b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_MOTION), fixed, n, 2, error);
 }
 
+/** Stores the flow as it is, for whoever wants to give it back. */
+static bool put_unrounded(Builder *b, int frame, const FlOutline *outline, const float *flow,
+                          GError **error)
+{
+    const size_t n = 2 * fl_rect_pixels(outline->box);
+    if (!flow || !b->sequence->source.keeps_flow)
+        return true;
+    g_autofree int32_t *bits = g_try_new(int32_t, n);
+    if (!bits)
+        return fl_guide_sequence_no_memory(b->sequence, error);
+    memcpy(bits, flow, n * sizeof *bits);
+    b->sequence->frames[frame].holder[FL_PLANE_UNROUNDED] = frame;
+    return fl_plane_store_put(b->sequence->spill, fl_guide_plane_block(frame, FL_PLANE_UNROUNDED),
+                              bits, n, 2, error);
+}
+
 static bool finish_frame(Builder *b, int frame, GError **error)
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
@@ -368,7 +384,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     if (!outline_of(b, frame, &outline, error))
         return false;
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
-    *record = (FlFrameRecord){outline->box, outline->empty, {-1, -1, -1, -1, -1}};
+    *record = (FlFrameRecord){outline->box, outline->empty, {-1, -1, -1, -1, -1, -1}};
     if (outline->box.width == 0) {
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);
         return true;
@@ -384,7 +400,8 @@ static bool finish_frame(Builder *b, int frame, GError **error)
         memcpy(record->holder, record[-1].holder, sizeof record->holder);
         record->holder[FL_GUIDE_PLANE_MOTION] = -1;
     } else if (!put_shape(b, frame, outline, flow, error) ||
-               !put_motion(b, frame, outline, flow, error)) {
+               !put_motion(b, frame, outline, flow, error) ||
+               !put_unrounded(b, frame, outline, flow, error)) {
         return false;
     }
     return put_drawing_motion(b, frame, outline, error);

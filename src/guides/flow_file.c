@@ -10,6 +10,7 @@
 
 enum { FLO_HEADER_BYTES = 12 };
 static const float flo_magic = 202021.25f, flo_unknown = 1e9f, most_px = 1e5f;
+static const float flo_no_value = 1.666666752e9f; // what others write for unknown
 
 static bool is_flo(const char *path)
 {
@@ -61,6 +62,11 @@ static bool check_flo_header(const char *path, const uint8_t *data, size_t bytes
     return true;
 }
 
+static bool is_unknown(float value)
+{
+    return fabsf(value) > flo_unknown && isfinite(value);
+}
+
 static bool check_component(const char *path, float value, size_t index, int width, GError **error)
 {
     if (fabsf(value) <= most_px)
@@ -72,7 +78,8 @@ static bool check_component(const char *path, float value, size_t index, int wid
     return false;
 }
 
-bool fl_flow_load(const char *path, int width, int height, float *flow, GError **error)
+bool fl_flow_load(const char *path, int width, int height, float unknown, float *flow,
+                  GError **error)
 {
     g_autoptr(GError) cause = NULL;
     g_autoptr(GMappedFile) file = g_mapped_file_new(path, FALSE, &cause);
@@ -94,11 +101,13 @@ bool fl_flow_load(const char *path, int width, int height, float *flow, GError *
         return false;
     }
     for (size_t k = 0; k < n; k++) {
-        const float value = float_of_bits(read_u32(data + header + k * sizeof(float)));
-        flow[k] = flo && fabsf(value) > flo_unknown && isfinite(value) ? 0.0f : value;
-        if (!check_component(path, flow[k], k, width, error))
+        flow[k] = float_of_bits(read_u32(data + header + k * sizeof(float)));
+        if (!(flo && is_unknown(flow[k])) && !check_component(path, flow[k], k, width, error))
             return false;
     }
+    for (float *pair = flow; flo && pair < flow + n; pair += 2)
+        if (is_unknown(pair[0]) || is_unknown(pair[1]))
+            pair[0] = pair[1] = unknown;
     return true;
 }
 
@@ -117,7 +126,8 @@ bool fl_flow_save(const char *path, int width, int height, const float *flow, GE
         write_u32(data + 8, (uint32_t)height);
     }
     for (size_t k = 0; k < n; k++)
-        write_u32(data + header + k * sizeof(float), bits_of_float(flow[k]));
+        write_u32(data + header + k * sizeof(float),
+                  bits_of_float(isnan(flow[k]) ? flo_no_value : flow[k]));
     if (!g_file_set_contents_full(path, (const char *)data, (gssize)(header + n * sizeof(float)),
                                   G_FILE_SET_CONTENTS_CONSISTENT, 0666, &cause)) {
         g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot write the flow: %s", path,
@@ -148,7 +158,7 @@ void fl_flow_halve(const float *flow, int width, int height, float *half)
             for (int k = 0; k < 4; k++) { // the fastest: beside a shape nothing moves
                 const float *at = flow + 2 * child[k], speed = at[0] * at[0] + at[1] * at[1];
                 float *to = half + 2 * ((size_t)y * w + x);
-                if (speed > most || k == 0)
+                if (speed > most || k == 0 || isnan(most))
                     most = speed, to[0] = at[0] * 0.5f, to[1] = at[1] * 0.5f;
             }
         }

@@ -9,19 +9,21 @@
  * Reads a flow field of width * height pixels: interleaved u (right), v (down), px per frame.
  *
  * A name that ends in .flo is Middlebury's format: the float 202021.25 ("PIEH"), width and height
- * as 32-bit integers, then the pairs; components above 1e9 there mean "unknown" and become 0. Any
+ * as 32-bit integers, then the pairs; components above 1e9 there mean that it is unknown. Any
  * other name is raw: the pairs alone. All is little-endian, 32-bit floats, row-major.
  *
+ * unknown: what both components become where one of them is unknown, such as 0 or NAN.
  * Returns: false with FL_ERROR_INPUT set, if the file is missing, has another size or holds a
  * component that is not a number or beyond 1e5 px; FL_ERROR_NO_MEMORY.
  */
-bool fl_flow_load(const char *path, int width, int height, float *flow, GError **error);
+bool fl_flow_load(const char *path, int width, int height, float unknown, float *flow,
+                  GError **error);
 
 /** The flow at half the size, as fl_half_side() says; lengths become those of the small frame. */
 void fl_flow_halve(const float *flow, int width, int height, float *half);
 
-/** Writes one, in the format that the name asks for, by way of a temporary file. FL_ERROR_OUTPUT.
- */
+/** Writes one, in the format that the name asks for, by way of a temporary file; NAN is unknown,
+ * which raw files cannot say. FL_ERROR_OUTPUT. */
 bool fl_flow_save(const char *path, int width, int height, const float *flow, GError **error);
 
 #endif

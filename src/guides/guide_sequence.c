@@ -236,6 +236,23 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
                         guides->distance, error);
 }
 
+bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *flow, GError **error)
+{
+    const FlRect whole = {0, 0, sequence->source.width, sequence->source.height};
+    const FlFrameRecord *record = &sequence->frames[frame];
+    g_assert(sequence->source.keeps_flow);
+    memset(flow, 0, 2 * fl_rect_pixels(whole) * sizeof *flow);
+    if (record->holder[FL_PLANE_UNROUNDED] < 0)
+        return true;
+    g_autofree int32_t *bits = g_try_new(int32_t, 2 * fl_rect_pixels(record->box));
+    if (!bits)
+        return fl_guide_sequence_no_memory(sequence, error);
+    if (!fl_guide_sequence_plane(sequence, frame, FL_PLANE_UNROUNDED, bits, error))
+        return false;
+    fl_rect_copy(bits, record->box, flow, whole, 2 * sizeof *flow);
+    return true;
+}
+
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
 {
     const size_t n = (size_t)width * height;

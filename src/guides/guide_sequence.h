@@ -14,6 +14,7 @@ typedef enum FlGuidePlane {
     FL_GUIDE_PLANE_PLUS,  // FL_EXTENT_ONE a px, as is MINUS
     FL_GUIDE_PLANE_MINUS,
     FL_GUIDE_PLANE_MOTION, // interleaved, FL_MOTION_ONE a px
+    FL_PLANE_UNROUNDED,    // the flow's floats, bit by bit, if the source keeps them
     FL_N_GUIDE_PLANES,
 } FlGuidePlane;
 
@@ -46,7 +47,10 @@ bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error);
 /** How many integers a pixel of a plane has. */
 static inline size_t fl_plane_step(FlGuidePlane plane)
 {
-    return plane == FL_GUIDE_PLANE_FLOW || plane == FL_GUIDE_PLANE_MOTION ? 2 : 1;
+    return plane == FL_GUIDE_PLANE_FLOW || plane == FL_GUIDE_PLANE_MOTION ||
+                   plane == FL_PLANE_UNROUNDED
+               ? 2
+               : 1;
 }
 
 /** Sets FL_ERROR_NO_MEMORY and returns false. */

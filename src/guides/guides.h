@@ -57,6 +57,7 @@ typedef struct FlGuideSource {
      * NULL: none is known.
      */
     bool (*motion)(void *data, int frame, float *motion, GError **error);
+    bool keeps_flow; // unrounded, for fl_guide_sequence_flow()
 } FlGuideSource;
 
 /** The guides of a whole sequence. Its memory does not grow with the number of frames (FlSpill). */
@@ -71,6 +72,13 @@ void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 /** Fills `guides`, which the caller made with fl_guides_init() in the sequence's size. */
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error);
+
+/**
+ * The flow that directions were made from, before it was rounded as FlGuides has it: a source that
+ * gives it gets the same guides. flow: 2 * width * height. The source must keep it.
+ */
+bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *flow,
+                            GError **error);
 
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error);
 void fl_guides_clear(FlGuides *guides);

@@ -85,6 +85,13 @@ static bool write_plane(const Dump *dump, const Plane *plane, GError **error)
     return values && write_raw(dump, &shown, error) && write_picture(dump, &shown, error);
 }
 
+static bool write_flo(const Dump *dump, const Plane *plane, GError **error)
+{
+    g_autofree char *flo = file_of(dump, plane->name, ".flo");
+    g_autofree float *flow = whole(dump->painted, plane, error);
+    return flow && fl_flow_save(flo, dump->painted->width, dump->painted->height, flow, error);
+}
+
 static float largest(const float *values, size_t n)
 {
     float most = 0;
@@ -93,7 +100,7 @@ static float largest(const float *values, size_t n)
     return most;
 }
 
-static bool dump_guides(const Dump *dump, const FlGuides *guides, GError **error)
+static bool dump_guides(const Dump *dump, const FlGuides *guides, float *flow, GError **error)
 {
     const size_t pixels = (size_t)guides->width * guides->height;
     g_autofree float *mask = fl_alloc(pixels, sizeof(float), "a picture", error);
@@ -105,16 +112,30 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, GError **error
     const Plane planes[] = {
         {"mask", mask, 1, 0, 1},
         {"distance", guides->distance, 1, -b, 2 * b},
-        {"flow", guides->flow, 2, 0, largest(guides->flow, 2 * pixels)},
+        {"flow", flow, 2, 0, largest(flow, 2 * pixels)},
         {"ext-plus", guides->ext_plus, 1, 0, largest(guides->ext_plus, pixels)},
         {"ext-minus", guides->ext_minus, 1, 0, largest(guides->ext_minus, pixels)},
     };
     for (size_t k = 0; k < G_N_ELEMENTS(planes); k++)
         if (!write_plane(dump, &planes[k], error))
             return false;
-    g_autofree char *flo = file_of(dump, "flow", ".flo");
-    g_autofree float *flow = whole(dump->painted, &planes[2], error);
-    return flow && fl_flow_save(flo, dump->painted->width, dump->painted->height, flow, error);
+    return write_flo(dump, &planes[2], error);
+}
+
+/* What the drawing does, if that is known anywhere. */
+static bool dump_motion(const Dump *dump, const FlGuides *guides, GError **error)
+{
+    const size_t pixels = (size_t)guides->width * guides->height;
+    if (!guides->has_motion)
+        return true;
+    g_autofree float *motion = fl_alloc(2 * pixels, sizeof(float), "a picture", error);
+    if (!motion)
+        return false;
+    for (size_t k = 0; k < 2 * pixels; k++)
+        motion[k] = guides->motion[k] == FL_MOTION_UNKNOWN
+                        ? NAN
+                        : (float)guides->motion[k] * (1.0f / FL_MOTION_ONE);
+    return write_flo(dump, &(Plane){"motion", motion, 2, 0, 0}, error);
 }
 
 /* The field as large as the frame, then what it looks like: x, y and frame as red, green, blue. */
@@ -169,10 +190,10 @@ static bool dump_temporal(const Dump *dump, const FlSynthView *view, GError **er
 }
 
 bool fl_dump_frame(const char *folder, const FlPaintedRegion *painted, const FlGuides *guides,
-                   int number, GError **error)
+                   float *flow, int number, GError **error)
 {
     const Dump dump = {folder, painted, number};
-    if (!dump_guides(&dump, guides, error))
+    if (!dump_guides(&dump, guides, flow, error) || !dump_motion(&dump, guides, error))
         return false;
     if (painted->view.nnf && !dump_field(&dump, &painted->view, error))
         return false;

@@ -12,16 +12,18 @@
  *
  *   mask         0 … 1                              1 float per pixel
  *   distance     px, positive inside                1
- *   flow         px per frame, u then v             2; as .flo too
+ *   flow         px into the frame, u then v        2; as .flo too
+ *   motion       the drawing's own, where known     2; only as .flo
  *   ext-plus     px                                 1
  *   ext-minus    px                                 1
  *   field        frame, x, y (px), theta (radians)  4; all -1 where there is none
  *   temporal     T_temp, r, g, b in 0 … 1           3
  *   temporal-weight  m(q), 0 … 1                    1
  *
+ * flow is that of the region's rect before it was rounded, as fl_guide_sequence_flow() has it.
  * Returns: false with FL_ERROR_OUTPUT set.
  */
 bool fl_dump_frame(const char *folder, const FlPaintedRegion *painted, const FlGuides *guides,
-                   int number, GError **error);
+                   float *flow, int number, GError **error);
 
 #endif

@@ -155,6 +155,7 @@ static bool equip_region(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->name = r->name, painted->area_px = r->area_px;
     painted->flow_files = plan->options.flow;
     painted->paint_files = plan->options.merge ? plan->options.paint : NULL;
+    painted->keeps_flow = plan->options.dump != NULL;
     painted->loops = plan->options.loop && !painted->paint_files;
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, error);
     if (!painted->style || !warn_of_style(plan, painted, error))

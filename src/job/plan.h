@@ -17,6 +17,7 @@ typedef struct FlRegionPlan {
     const FlStyleInstance *style; // borrowed
     const char *paint_files;      // borrowed pattern of files that have its paint; NULL: it paints
     const char *flow_files;       // the same of flow files; NULL: flow is made from the masks
+    bool keeps_flow;              // for a dump
     bool loops;                   // the film's end leads into its beginning
 } FlRegionPlan;
 

@@ -24,33 +24,40 @@ static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **erro
 }
 
 /* The flow of the whole frame: files have the size of the film's frames, drafts half of it. */
-static bool load_flow(const FlPainter *painter, const char *file, float *flow, GError **error)
+static bool load_flow(const FlPainter *painter, const char *file, float unknown, float *flow,
+                      GError **error)
 {
     const int width = painter->frame_width, height = painter->frame_height;
     if (width == painter->result.width && height == painter->result.height)
-        return fl_flow_load(file, width, height, flow, error);
+        return fl_flow_load(file, width, height, unknown, flow, error);
     g_autofree float *full =
         fl_alloc(2 * (size_t)width * height, sizeof(float), "a flow field", error);
-    if (!full || !fl_flow_load(file, width, height, full, error))
+    if (!full || !fl_flow_load(file, width, height, unknown, full, error))
         return false;
     fl_flow_halve(full, width, height, flow);
     return true;
 }
 
-static bool painter_flow(void *data, int frame, float *flow, GError **error)
+/* The flow of a picture from its file, cropped to the painter's rectangle. */
+static bool flow_in_file(const FlPainter *painter, int frame, float unknown, float *flow,
+                         GError **error)
 {
-    const FlPainter *painter = data;
     const int number = fl_drawing_number(painter->drawing, frame_of(painter, frame));
     const size_t pixels = (size_t)painter->result.width * painter->result.height;
     g_autofree float *whole = fl_alloc(2 * pixels, sizeof(float), "a flow field", error);
     g_autofree char *file =
         whole ? fl_output_name(painter->plan->flow_files, number, painter->plan->name, error)
               : NULL;
-    if (!file || !load_flow(painter, file, whole, error))
+    if (!file || !load_flow(painter, file, unknown, whole, error))
         return false;
     fl_rect_copy(whole, (FlRect){0, 0, painter->result.width, painter->result.height}, flow,
                  painter->result.rect, 2 * sizeof(float));
     return true;
+}
+
+static bool painter_flow(void *data, int frame, float *flow, GError **error)
+{
+    return flow_in_file(data, frame, 0, flow, error);
 }
 
 /* Where guides come from: the masks of the painter's rectangle, and its flow files. */
@@ -62,7 +69,8 @@ static FlGuideSource source_of(FlPainter *painter)
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
                            .mask = painter_mask,
                            .flow = painter->plan->flow_files ? painter_flow : NULL,
-                           .data = painter};
+                           .data = painter,
+                           .keeps_flow = painter->plan->keeps_flow};
 }
 
 /* Room for the coarsest patches around the region, on the grid of the coarsest level, so that a
@@ -139,9 +147,15 @@ void fl_painter_clear(FlPainter *painter)
 static bool paint_picture(FlPainter *painter, int index, FlGuides *guides, GError **error)
 {
     guides->width = painter->result.rect.width, guides->height = painter->result.rect.height;
-    return fl_guide_sequence_get(painter->guides, painter->wrap + index, guides, error) &&
+    painter->picture = painter->wrap + index;
+    return fl_guide_sequence_get(painter->guides, painter->picture, guides, error) &&
            fl_synth_frame(painter->synth, guides, painter->result.painted, &painter->result.stats,
                           painter->wants_view ? &painter->result.view : NULL, error);
+}
+
+bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
+{
+    return fl_guide_sequence_flow(painter->guides, painter->picture, flow, error);
 }
 
 bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)

@@ -15,7 +15,8 @@ typedef struct FlPainter {
     FlPaintedRegion result;        // its picture is owned
     FlLoop loop;
     int n_pictures; // held frames counted once
-    int wrap; // so many pictures of a loop's end come before its guides, and of its start after
+    int wrap;    // so many pictures of a loop's end come before its guides, and of its start after
+    int picture; // that was painted last
     FlGuideSequence *guides;
     FlSynth *synth;
     bool wants_view; // set by whoever looks at result.view, which keeps a frame's worth of memory
@@ -43,6 +44,9 @@ bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **er
  * the frame's guides in the size of rect.
  */
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error);
+
+/** The flow of the picture painted last as files give it: 2 floats a pixel of rect. */
+bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error);
 
 /** What a painter needs to go on after the last frame it has painted: see fl_painter_save(). */
 #define FL_PAINTER_PARTS 2

@@ -1,4 +1,5 @@
 /* The whole render, stage by stage: run() is the order of them, render_frame() that of a frame. */
+#include "base/alloc.h"
 #include "base/schedule.h"
 #include "base/task.h"
 #include "compose/composite.h"
@@ -68,6 +69,20 @@ static bool report_progress(const Pipeline *pipeline, const char *stage, int don
 
 /* ---- painting -------------------------------------------------------------------------------- */
 
+/* The guides and matches of a painter's picture, if the frame has a new one. */
+static bool dump_frame(const FlPlan *plan, const FlPainter *painter, int frame,
+                       const FlGuides *guides, GError **error)
+{
+    if (frame % painter->plan->settings.hold != 0)
+        return true;
+    const FlPaintedRegion *painted = &painter->result;
+    g_autofree float *flow =
+        fl_alloc(2 * fl_rect_pixels(painted->rect), sizeof(float), "a flow field", error);
+    return flow && fl_painter_flow(painter, flow, error) &&
+           fl_dump_frame(plan->options.dump, painted, guides, flow,
+                         fl_drawing_number(plan->drawing, frame), error);
+}
+
 static bool paint_one(void *data, int p, int frame, FlGuides *guides, GError **error)
 {
     Pipeline *pipeline = data;
@@ -78,9 +93,7 @@ static bool paint_one(void *data, int p, int frame, FlGuides *guides, GError **e
     if (!fl_painter_frame(painter, frame, guides, error) ||
         !fl_report_guides(pipeline->report, p, &painter->result, frame, guides, error))
         return false;
-    return !dump || frame % painter->plan->settings.hold != 0 ||
-           fl_dump_frame(dump, &painter->result, guides, fl_drawing_number(plan->drawing, frame),
-                         error);
+    return !dump || dump_frame(plan, painter, frame, guides, error);
 }
 
 static bool lead_in_one(void *data, int p, int k, FlGuides *guides, GError **error)

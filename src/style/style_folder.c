@@ -163,8 +163,8 @@ static bool read_flow(FlStyle *style, const char *folder, GError **error)
     style->flow = fl_alloc(pixels * style->n_frames, 2 * sizeof(float), "the flow", error);
     for (int i = 0; i < style->n_frames; i++) {
         const char *path = series->path[MIN(i, series->n - 1)];
-        if (!style->flow ||
-            !fl_flow_load(path, style->width, style->height, style->flow + 2 * i * pixels, error))
+        if (!style->flow || !fl_flow_load(path, style->width, style->height, 0,
+                                          style->flow + 2 * i * pixels, error))
             return false;
     }
     style->guessed &= ~(unsigned)FL_GUESS_FLOW;

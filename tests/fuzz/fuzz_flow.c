@@ -8,7 +8,7 @@ static void check(const char *path)
 {
     float flow[2 * 4 * 4];
     g_autoptr(GError) error = NULL;
-    const bool read = fl_flow_load(path, 4, 4, flow, &error);
+    const bool read = fl_flow_load(path, 4, 4, 0, flow, &error);
     g_assert_true(read == (error == NULL));
     for (int k = 0; read && k < 32; k++)
         g_assert_true(isfinite(flow[k]));
