@@ -18,6 +18,19 @@ for i in 1 2 3 4 5 6; do
     drawing film/w_000$i.svg 56 $i
 done
 
+# flow FILE BYTES: the same displacement of 8 bytes everywhere in a frame of 56 x 56 px.
+flow() {
+    local row='' x
+    for ((x = 0; x < 56; x++)); do
+        row+=$2
+    done
+    printf 'PIEH\x38\0\0\0\x38\0\0\0' >"$1"
+    for ((x = 0; x < 56; x++)); do
+        # shellcheck disable=SC2059 # the escapes are the point
+        printf "$row" >>"$1"
+    done
+}
+
 # paint FOLDER ARGUMENT...: paints the film into the folder; the status is the program's.
 paint() {
     local to=$1

@@ -1,7 +1,13 @@
 #!/bin/bash
-# What is known of how the drawing moves. usage: motion.sh PROGRAM FIXTURES
+# Paint that is carried along the drawing's motion, as files give it. usage: motion.sh PROGRAM FIXTURES
 # shellcheck source-path=SCRIPTDIR source=film.sh
 . "${0%/*}/film.sh"
+
+for i in 1 2 3 4 5 6; do
+    flow slide_$i.flo '\0\0\x60\x40\0\0\0\0' # 3.5 px to the right
+    flow twice_$i.flo '\0\0\xe0\x40\0\0\0\0' # 7 px
+done
+slide='slide_%d.flo'
 disc='--region red-aa3311'
 
 # shellcheck disable=SC2086 # $disc is two words
@@ -9,9 +15,44 @@ paint_disc() {
     paint "$@" $disc
 }
 
-paint whole --dump dump && paint whole_again --flow 'dump/{region}/flow_%04d.flo' &&
-    same whole whole_again
+paint_disc plain
+paint_disc masks --motion masks && same plain masks
+result $? 'what is not known is not carried'
+paint_disc carried -j 1 --flow $slide && ! same plain carried
+result $? 'a flow in files carries the paint'
+for threads in 2 5; do
+    paint_disc threads -y -j $threads --flow $slide && same threads carried
+    result $? "$threads threads carry it as one does"
+done
+paint_disc none --flow $slide --carry 0 && paint_disc all --flow $slide --carry 1 &&
+    ! same none carried && ! same all carried && ! same none all
+result $? 'the share that is carried makes a difference'
+cmp -s carried/w_0001.png plain/w_0001.png
+result $? 'but not in a first frame'
+paint_disc everything --motion masks --flow $slide && ! same everything carried &&
+    ! same everything plain
+result $? 'with the motion of masks a flow is that of everything'
+paint_disc thesis --preset thesis --flow $slide &&
+    paint_disc thesis_masks --preset thesis --motion masks --carry 1 --flow $slide &&
+    same thesis thesis_masks
+result $? 'so it is in the presets of the papers'
+paint_disc held --hold 2 --flow 'twice_%d.flo' &&
+    paint_disc every_second -f 1-6x2 --flow 'twice_%d.flo' &&
+    cmp -s held/w_0003.png every_second/w_0003.png && cmp -s held/w_0005.png every_second/w_0005.png
+result $? 'held frames are carried as in a film without those between'
+paint_disc loop --loop --flow $slide
+result $? 'a loop is carried over its seam'
+paint_disc draft --detail draft --flow $slide && paint_disc draft_plain --detail draft &&
+    ! same draft draft_plain
+result $? 'drafts are carried, too'
+
+paint whole --dump dump --motion masks &&
+    paint whole_again --motion masks --flow 'dump/{region}/flow_%04d.flo' && same whole whole_again
 result $? 'the flow of a dump gives the same frames'
+paint_disc carried_dump --flow $slide --dump carried_motion && same carried_dump carried &&
+    paint_disc carried_again --flow 'carried_motion/{region}/motion_%04d.flo' &&
+    same carried_again carried
+result $? 'so does its motion'
 
 # moves FILE: a plane is not 0 throughout.
 moves() {

@@ -50,6 +50,16 @@ for signal in INT TERM; do
     result $? "the frames after SIG$signal and a second run are those of a whole render"
 done
 
+for i in 1 2 3 4 5 6; do
+    flow slide_$i.flo '\0\0\x60\x40\0\0\0\0'
+done
+moved=(--region red-aa3311 --flow 'slide_%d.flo')
+paint carried_whole "${moved[@]}"
+stop carried INT 3 "${moved[@]}"
+paint carried "${moved[@]}" && grep -q 'going on with an earlier run' err &&
+    same carried carried_whole
+result $? 'paint that is carried goes on as it would have'
+
 stop twice 'INT TERM' 1
 found=$?
 [ $found = 143 ] || [ $found = 75 ] # the second came too late for a render that had ended

@@ -103,6 +103,14 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
     }
 }
 
+static bool set_preset(FlRegionSettings *settings, const char *value, GError **error)
+{
+    if (!fl_params_preset(&settings->params, value, error))
+        return false;
+    settings->motion = strcmp(value, "default") == 0 ? FL_MOTION_AUTO : FL_MOTION_MASKS;
+    return true;
+}
+
 bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
                             const char *folder, GError **error)
 {
@@ -111,7 +119,7 @@ bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const c
     if (scale || (option && option->type == FL_OPTION_PARAM))
         return fl_params_set(&settings->params, scale ? "style-scale" : key, value, error);
     if (option && option->type == FL_OPTION_PRESET)
-        return fl_params_preset(&settings->params, value, error);
+        return set_preset(settings, value, error);
     if (option) {
         if (store(settings, option, value, folder))
             return true;

@@ -19,6 +19,12 @@ typedef enum FlEdges {
     FL_EDGES_SOFT,   // as at any other edge
 } FlEdges;
 
+/** What is known of how the drawing moves. */
+typedef enum FlMotion {
+    FL_MOTION_AUTO,  // its own motion, which carries the paint along
+    FL_MOTION_MASKS, // what outlines show, as in the papers: nothing is carried
+} FlMotion;
+
 /** The colour of the paint. */
 typedef enum FlTint {
     FL_TINT_FILL, // the drawing's fill or any other: the picture if there is one, else the flat one
@@ -42,6 +48,7 @@ typedef struct FlRegionSettings {
     FlStacking stacking;
     FlMedium medium; // FL_MEDIUM_AUTO: the style's, or what the output wants
     FlEdges edges;
+    FlMotion motion;
     int hold; // frames, 1..1000
     bool reverse;
     FlPassthrough passthrough;
@@ -53,7 +60,8 @@ void fl_region_settings_init(FlRegionSettings *settings); // the defaults
 void fl_region_settings_clear(FlRegionSettings *settings);
 
 /**
- * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale.
+ * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale. A preset
+ * sets the motion, too: the papers' know none but that of masks.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.
  * Returns: false with FL_ERROR_USAGE; the treatment is then unchanged.

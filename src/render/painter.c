@@ -5,6 +5,7 @@
 #include "guides/flow_file.h"
 #include "io/pattern.h"
 #include "job/paint_files.h"
+#include <math.h>
 #include <string.h>
 
 #define WRAP 24 // pictures of a loop that its guides see beyond each end
@@ -60,15 +61,23 @@ static bool painter_flow(void *data, int frame, float *flow, GError **error)
     return flow_in_file(data, frame, 0, flow, error);
 }
 
-/* Where guides come from: the masks of the painter's rectangle, and its flow files. */
+static bool painter_motion(void *data, int frame, float *motion, GError **error)
+{
+    return flow_in_file(data, frame, NAN, motion, error);
+}
+
+/* Where guides come from: the masks of the painter's rectangle, and its flow files, which with the
+ * motion of masks are all that is known of it, else what carries the paint. */
 static FlGuideSource source_of(FlPainter *painter)
 {
+    const bool masks = painter->plan->settings.motion == FL_MOTION_MASKS;
     const FlRect rect = painter->result.rect;
     return (FlGuideSource){.width = rect.width,
                            .height = rect.height,
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
                            .mask = painter_mask,
-                           .flow = painter->plan->flow_files ? painter_flow : NULL,
+                           .flow = painter->plan->flow_files && masks ? painter_flow : NULL,
+                           .motion = painter->plan->flow_files && !masks ? painter_motion : NULL,
                            .data = painter,
                            .keeps_flow = painter->plan->keeps_flow};
 }
