@@ -199,12 +199,12 @@ static void run(const FlStyle *style, int row, cairo_surface_t *sheet)
     double entropy, most;
     spread(&field, exemplar, &entropy, &most);
     if (row == 0)
-        printf("%-14s sharp   std  edge  turn motion entropy  most flicker  rest(%.1f)\n", "",
-               want.rest);
-    printf("%-14s %5.2f %5.2f %5.1f %5.2f %6.3f %7.3f %5.1f %7.2f  %.2f\n", variants[row].name,
+        printf("%-14s sharp   std  edge  turn motion entropy  most flicker  rest(%.1f) rim(%.1f)\n", "",
+               want.rest, want.rim);
+    printf("%-14s %5.2f %5.2f %5.1f %5.2f %6.3f %7.3f %5.1f %7.2f  %9.2f %9.1f\n", variants[row].name,
            got.sharp / want.sharp, got.deviation / want.deviation, profile_error(&want, &got),
            field.turn / MAX(field.n_turns, 1), field.motion / field.n, entropy, most,
-           got.flicker / want.flicker, got.rest);
+           got.flicker / want.flicker, got.rest, got.rim);
     fflush(stdout);
     show(drawing, sheet, row);
     film_free(model);

@@ -1,9 +1,11 @@
 #include "scorecard.h"
 
+#include "guides/outline.h"
 #include <math.h>
 #include <string.h>
 
-#define REST_PX 0.1f // px/frame
+#define REST_PX 0.1f     // px/frame
+#define ADVANCE_PX 0.25f // px/frame: an edge that is faster outward advances
 
 Film *film_new(const FlGuideSource *source, const FlGuideParams *how)
 {
@@ -69,8 +71,17 @@ static double mean_of(Mean mean)
 }
 
 typedef struct Sums {
-    Mean gradient, tone, square, depth[DEPTHS], change, rest;
+    Mean gradient, tone, square, depth[DEPTHS], change, rest, leading, others;
 } Sums;
+
+/* Whether the edge at a pixel advances: its flow goes outward. */
+static bool leads(const FlGuides *g, int x, int y)
+{
+    const size_t p = (size_t)y * g->width + x;
+    float in[2];
+    fl_distance_gradient(g->distance, g->width, g->height, x, y, in);
+    return g->flow[2 * p] * in[0] + g->flow[2 * p + 1] * in[1] < -ADVANCE_PX;
+}
 
 static void add_pixel(const Film *drawing, int f, int x, int y, Sums *sums)
 {
@@ -85,6 +96,8 @@ static void add_pixel(const Film *drawing, int f, int x, int y, Sums *sums)
     add(&sums->gradient,
         fabs(here - luminance(drawing, f, x - 1, y)) + fabs(here - luminance(drawing, f, x, y - 1)));
     add(&sums->tone, here);
+    if (g->distance[p] <= 8)
+        add(leads(g, x, y) ? &sums->leading : &sums->others, here);
     add(&sums->square, here * here);
     if (f == 0 || drawing->guides[f - 1].distance[p] < 2)
         return;
@@ -106,6 +119,8 @@ Score film_score(const Film *drawing)
     Score score = {.sharp = mean_of(sums.gradient), .flicker = mean_of(sums.change)};
     score.deviation = sqrt(fmax(mean_of(sums.square) - mean * mean, 0));
     score.rest = mean_of(sums.rest);
+    if (sums.leading.n > 0 && sums.others.n > 0)
+        score.rim = mean_of(sums.leading) - mean_of(sums.others);
     for (int k = 0; k < DEPTHS; k++)
         score.profile[k] = mean_of(sums.depth[k]);
     return score;

@@ -21,6 +21,7 @@ typedef struct Score {
     double profile[DEPTHS]; // mean luminance by depth, 1 px each
     double flicker;         // mean difference of one frame to the next there
     double rest;            // the same where nothing moves faster than 0.1 px/frame; 0: nowhere
+    double rim;             // luminance 2 to 8 px inside edges that advance, minus that of the others
 } Score;
 
 /** An empty film with the guides of a sequence. Exits on errors, which only memory can cause. */
