@@ -30,7 +30,8 @@ static char *another(const FlOption *o)
     char text[G_ASCII_DTOSTR_BUF_SIZE];
     const double value = o->max < 2 ? (o->min + o->max) / 2 : o->min + 2;
     const bool taken = value == g_ascii_strtod(o->preset, NULL);
-    return g_strdup(g_ascii_dtostr(text, sizeof text, taken ? value + 1 : value));
+    const double next = o->max < 2 ? (value + o->max) / 2 : value + 1;
+    return g_strdup(g_ascii_dtostr(text, sizeof text, taken ? next : value));
 }
 
 static void set(const FlOption *o, const char *value, FlRenderOptions *options)
