@@ -37,23 +37,27 @@ static const char *number(const char *s)
     return s;
 }
 
-/** Past the arguments of one command; NULL if they are wrong. Flags of arcs are single digits. */
-static const char *arguments(const char *s, char command, int count)
+/** Past the arguments of one command, whose values go to v; NULL if they are wrong. Flags of arcs
+ * are single digits. */
+static const char *arguments(const char *s, char command, int count, double *v)
 {
     for (int i = 0; i < count; i++) {
         s = i ? skip_comma(s) : s;
         const bool flag = g_ascii_toupper(command) == 'A' && (i == 3 || i == 4);
-        s = !flag ? number(s) : *s == '0' || *s == '1' ? s + 1 : NULL;
-        if (!s)
+        const char *end = !flag ? number(s) : *s == '0' || *s == '1' ? s + 1 : NULL;
+        if (!end)
             return NULL;
+        v[i] = flag ? *s - '0' : g_ascii_strtod(s, NULL);
+        s = end;
     }
     return s;
 }
 
-const char *fl_path_data_error(const char *d)
+const char *fl_path_data_walk(const char *d, FlPathStep *step, void *data)
 {
     static const char commands[] = "MLHVCSQTAZ";
     static const int counts[] = {2, 2, 1, 1, 6, 4, 4, 2, 7, 0};
+    double v[7] = {0};
     const char *s = skip_space(d);
     if (strncmp(s, "none", 4) == 0 && !*skip_space(s + 4))
         return NULL;
@@ -61,17 +65,32 @@ const char *fl_path_data_error(const char *d)
         const char *known = strchr(commands, g_ascii_toupper(*s));
         if (!known || (first && g_ascii_toupper(*s) != 'M'))
             return s;
-        const char command = *s;
+        char command = *s;
         const int count = counts[known - commands];
         s = skip_space(s + 1);
+        if (count == 0)
+            step(data, command, v);
         for (bool more = count > 0; more;) {
-            const char *next = arguments(s, command, count);
+            const char *next = arguments(s, command, count, v);
             if (!next)
                 return s;
+            step(data, command, v);
+            if (g_ascii_toupper(command) == 'M')
+                command = (char)(command - 1); // what follows a move without a word are lines
             s = skip_space(next);
             more = *s && (*s == ',' || !g_ascii_isalpha(*s));
             s = more ? skip_comma(s) : s;
         }
     }
     return NULL;
+}
+
+static void ignore(void *data, char command, const double *v)
+{
+    (void)data, (void)command, (void)v;
+}
+
+const char *fl_path_data_error(const char *d)
+{
+    return fl_path_data_walk(d, ignore, NULL);
 }
