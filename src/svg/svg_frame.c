@@ -149,7 +149,7 @@ static void set_canvas(xmlNode *root, const FlCanvas *canvas)
     set_number(root, "height", canvas->height);
 }
 
-FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
+FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
                    GError **error)
 {
     g_autoptr(FlSvg) svg = g_new0(FlSvg, 1);
@@ -168,6 +168,15 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
         return NULL;
     svg->leaves = fl_leaves_new(svg->doc, options->whole);
+    return g_steal_pointer(&svg);
+}
+
+FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
+                   GError **error)
+{
+    g_autoptr(FlSvg) svg = fl_svg_read(path, number, options, warnings, error);
+    if (!svg)
+        return NULL;
     svg->has_images = has_images(svg->doc->children);
     svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
     size_t bytes = 0;
@@ -221,6 +230,16 @@ int fl_svg_nameless_groups(const FlSvg *svg)
 const FlLeaves *fl_svg_leaves(const FlSvg *svg)
 {
     return svg->leaves;
+}
+
+xmlDoc *fl_svg_document(const FlSvg *svg)
+{
+    return svg->doc;
+}
+
+double fl_svg_dpi(const FlSvg *svg)
+{
+    return svg->dpi;
 }
 
 static bool draw_for(FlSvg *svg, const FlLeaf *leaf, FlPart part, Purpose purpose, cairo_t *cr,

@@ -27,6 +27,10 @@ typedef struct FlSvg FlSvg;
 FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
                    GError **error);
 
+/** The same without what is needed to paint and draw it: for its leaves and its document. */
+FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
+                   GError **error);
+
 void fl_svg_free(FlSvg *svg); // NULL is fine
 
 /**
@@ -40,6 +44,11 @@ int fl_svg_nameless_groups(const FlSvg *svg);
 
 /** The leaves, bottom up; they belong to svg. */
 const FlLeaves *fl_svg_leaves(const FlSvg *svg);
+
+/** The normalised document, in which the leaves have their ids; it belongs to svg. */
+xmlDoc *fl_svg_document(const FlSvg *svg);
+
+double fl_svg_dpi(const FlSvg *svg);
 
 /**
  * What a leaf is painted with. FlPainted.width is a share of the page's longer side.

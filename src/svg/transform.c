@@ -1,0 +1,191 @@
+#include "svg/transform.h"
+
+#include <glib.h>
+#include <math.h>
+#include <string.h>
+
+FlPoint fl_affine_apply(const FlAffine *m, FlPoint p)
+{
+    return (FlPoint){m->xx * p.x + m->xy * p.y + m->x0, m->yx * p.x + m->yy * p.y + m->y0};
+}
+
+FlAffine fl_affine_after(const FlAffine *outer, const FlAffine *inner)
+{
+    const FlPoint at = fl_affine_apply(outer, (FlPoint){inner->x0, inner->y0});
+    return (FlAffine){outer->xx * inner->xx + outer->xy * inner->yx,
+                      outer->yx * inner->xx + outer->yy * inner->yx,
+                      outer->xx * inner->xy + outer->xy * inner->yy,
+                      outer->yx * inner->xy + outer->yy * inner->yy,
+                      at.x,
+                      at.y};
+}
+
+bool fl_affine_invert(const FlAffine *m, FlAffine *inverse)
+{
+    const double d = m->xx * m->yy - m->xy * m->yx;
+    const double size = m->xx * m->xx + m->xy * m->xy + m->yx * m->yx + m->yy * m->yy;
+    *inverse = FL_AFFINE_NONE;
+    if (!(fabs(d) > 1e-9 * size))
+        return false;
+    *inverse = (FlAffine){m->yy / d,
+                          -m->yx / d,
+                          -m->xy / d,
+                          m->xx / d,
+                          (m->xy * m->y0 - m->yy * m->x0) / d,
+                          (m->yx * m->x0 - m->xx * m->y0) / d};
+    return isfinite(inverse->x0) && isfinite(inverse->y0);
+}
+
+/** Taylor's series of the sine (odd) and the cosine, for at most an eighth of a turn. */
+static double series(double x, bool odd)
+{
+    double term = odd ? x : 1, sum = term;
+    for (int k = odd ? 3 : 2; k < 22; k += 2) {
+        term *= -x * x / (double)(k * (k - 1));
+        sum += term;
+    }
+    return sum;
+}
+
+void fl_turn_of_degrees(double degrees, double *sine, double *cosine)
+{
+    const double within = fmod(degrees, 360); // exact
+    const double quarter = floor(within / 90 + 0.5), rest = (within - 90 * quarter) * G_PI / 180;
+    const double s = series(rest, true), c = series(rest, false);
+    const double turned[4][2] = {{s, c}, {c, -s}, {-s, -c}, {-c, s}};
+    const int q = ((int)quarter % 4 + 4) % 4;
+    *sine = turned[q][0], *cosine = turned[q][1];
+}
+
+#define MOST_ARGUMENTS 6
+
+/** A function as it is read: its name, and arguments in px, degrees or plain numbers. */
+typedef struct Call {
+    const char *name;
+    size_t length;
+    double v[MOST_ARGUMENTS];
+    int n;
+} Call;
+
+/** What a unit makes of a number; 0 if it is not known. */
+static double unit_of(const char *s, size_t n)
+{
+    static const struct {
+        const char *name;
+        double factor;
+    } units[] = {{"", 1}, {"px", 1}, {"deg", 1}, {"rad", 180 / G_PI}, {"grad", 0.9}, {"turn", 360}};
+    for (size_t k = 0; k < G_N_ELEMENTS(units); k++)
+        if (strlen(units[k].name) == n && g_ascii_strncasecmp(s, units[k].name, n) == 0)
+            return units[k].factor;
+    return 0;
+}
+
+/** Past one function; NULL if it is none. */
+static const char *read_call(const char *s, Call *call)
+{
+    *call = (Call){.name = s};
+    while (g_ascii_isalnum(*s))
+        s++;
+    call->length = (size_t)(s - call->name);
+    s += strspn(s, " \t\r\n\f");
+    if (call->length == 0 || *s != '(')
+        return NULL;
+    s += 1 + strspn(s + 1, " \t\r\n\f");
+    while (*s && *s != ')') {
+        char *end;
+        if (call->n == MOST_ARGUMENTS)
+            return NULL;
+        const double v = g_ascii_strtod(s, &end);
+        if (end == s || !isfinite(v))
+            return NULL;
+        s = end;
+        while (g_ascii_isalpha(*s) || *s == '%')
+            s++;
+        const double unit = unit_of(end, (size_t)(s - end));
+        if (unit <= 0)
+            return NULL;
+        call->v[call->n++] = v * unit;
+        s += strspn(s, " \t\r\n\f,");
+    }
+    return *s ? s + 1 : NULL;
+}
+
+static bool is_called(const Call *call, const char *name)
+{
+    return strlen(name) == call->length && strncmp(name, call->name, call->length) == 0;
+}
+
+static FlAffine rotation(double degrees)
+{
+    double s, c;
+    fl_turn_of_degrees(degrees, &s, &c);
+    return (FlAffine){c, s, -s, c, 0, 0};
+}
+
+static double tangent(double degrees)
+{
+    double s, c;
+    fl_turn_of_degrees(degrees, &s, &c);
+    return s / c;
+}
+
+static FlAffine rotation_about(double degrees, double x, double y)
+{
+    const FlAffine there = {1, 0, 0, 1, x, y}, back = {1, 0, 0, 1, -x, -y};
+    const FlAffine turn = rotation(degrees), on = fl_affine_after(&there, &turn);
+    return fl_affine_after(&on, &back);
+}
+
+/** What a function does; false if it is not known or has too few or too many arguments. */
+static bool map_of(const Call *call, FlAffine *m)
+{
+    const double *v = call->v;
+    const int n = call->n;
+    if (is_called(call, "matrix") && n == 6)
+        *m = (FlAffine){v[0], v[1], v[2], v[3], v[4], v[5]};
+    else if (is_called(call, "translate") && (n == 1 || n == 2))
+        *m = (FlAffine){1, 0, 0, 1, v[0], n > 1 ? v[1] : 0};
+    else if (is_called(call, "translateX") && n == 1)
+        *m = (FlAffine){1, 0, 0, 1, v[0], 0};
+    else if (is_called(call, "translateY") && n == 1)
+        *m = (FlAffine){1, 0, 0, 1, 0, v[0]};
+    else if (is_called(call, "scale") && (n == 1 || n == 2))
+        *m = (FlAffine){v[0], 0, 0, n > 1 ? v[1] : v[0], 0, 0};
+    else if (is_called(call, "scaleX") && n == 1)
+        *m = (FlAffine){v[0], 0, 0, 1, 0, 0};
+    else if (is_called(call, "scaleY") && n == 1)
+        *m = (FlAffine){1, 0, 0, v[0], 0, 0};
+    else if (is_called(call, "rotate") && n == 1)
+        *m = rotation(v[0]);
+    else if (is_called(call, "rotate") && n == 3)
+        *m = rotation_about(v[0], v[1], v[2]);
+    else if (is_called(call, "skewX") && n == 1)
+        *m = (FlAffine){1, 0, tangent(v[0]), 1, 0, 0};
+    else if (is_called(call, "skewY") && n == 1)
+        *m = (FlAffine){1, tangent(v[0]), 0, 1, 0, 0};
+    else if (is_called(call, "skew") && (n == 1 || n == 2))
+        *m = (FlAffine){1, n > 1 ? tangent(v[1]) : 0, tangent(v[0]), 1, 0, 0};
+    else
+        return false;
+    return true;
+}
+
+bool fl_affine_parse(const char *text, FlAffine *m)
+{
+    FlAffine all = FL_AFFINE_NONE;
+    *m = FL_AFFINE_NONE;
+    const char *s = text + strspn(text, " \t\r\n\f");
+    if (strncmp(s, "none", 4) == 0)
+        return true;
+    while (*s) {
+        Call call;
+        FlAffine one;
+        s = read_call(s, &call);
+        if (!s || !map_of(&call, &one))
+            return false;
+        all = fl_affine_after(&all, &one);
+        s += strspn(s, " \t\r\n\f,");
+    }
+    *m = all;
+    return true;
+}

@@ -1,0 +1,36 @@
+/* Affine maps, and how SVG and CSS write them. */
+#ifndef FLUIDY_SVG_TRANSFORM_H
+#define FLUIDY_SVG_TRANSFORM_H
+
+#include <stdbool.h>
+
+typedef struct FlPoint {
+    double x, y;
+} FlPoint;
+
+/** x' = xx x + xy y + x0, y' = yx x + yy y + y0: matrix(xx yx xy yy x0 y0) of SVG. */
+typedef struct FlAffine {
+    double xx, yx, xy, yy, x0, y0;
+} FlAffine;
+
+#define FL_AFFINE_NONE ((FlAffine){1, 0, 0, 1, 0, 0})
+
+FlPoint fl_affine_apply(const FlAffine *m, FlPoint p);
+
+/** The map that does `inner` first. */
+FlAffine fl_affine_after(const FlAffine *outer, const FlAffine *inner);
+
+/** Returns: false if there is none, because m flattens the plane. */
+bool fl_affine_invert(const FlAffine *m, FlAffine *inverse);
+
+/** Sine and cosine of an angle in degrees, the same on every CPU, to 1e-15. */
+void fl_turn_of_degrees(double degrees, double *sine, double *cosine);
+
+/**
+ * Reads a list of functions, "translate(3 4) rotate(10deg)", of the attribute or of the CSS
+ * property, as librsvg does: in the plane, px, round the origin. "none" and "" are the identity.
+ * Returns: false if something in it is not understood; *m is the identity then.
+ */
+bool fl_affine_parse(const char *text, FlAffine *m);
+
+#endif
