@@ -1,0 +1,50 @@
+#include "base/modes.h"
+
+#include <math.h>
+#include <string.h>
+
+void fl_modes_at(double rx, double ry, double mode[FL_MODES][2])
+{
+    const double all[FL_MODES][2] = {{1, 0}, {0, 1}, {-ry, rx}, {rx, ry}, {rx, -ry}, {ry, rx}};
+    memcpy(mode, all, sizeof all);
+}
+
+void fl_least_squares_add(FlLeastSquares *sum, const double row[FL_MODES], double value,
+                          double weight)
+{
+    for (int i = 0; i < FL_MODES; i++) {
+        for (int j = 0; j < FL_MODES; j++)
+            sum->a[i][j] += weight * row[i] * row[j];
+        sum->b[i] += weight * row[i] * value;
+    }
+}
+
+void fl_least_squares_hold(FlLeastSquares *sum, int k, double ridge)
+{
+    sum->a[k][k] += ridge;
+}
+
+bool fl_least_squares_solve(const FlLeastSquares *sum, double p[FL_MODES])
+{
+    double a[FL_MODES][FL_MODES + 1];
+    for (int i = 0; i < FL_MODES; i++) {
+        memcpy(a[i], sum->a[i], sizeof sum->a[i]);
+        a[i][FL_MODES] = sum->b[i];
+    }
+    for (int i = 0; i < FL_MODES; i++) { // the matrix is positive definite, or not good for this
+        if (!(a[i][i] > 1e-12 * (1e-300 + sum->a[i][i])))
+            return false;
+        for (int k = i + 1; k < FL_MODES; k++) {
+            const double f = a[k][i] / a[i][i];
+            for (int j = i; j <= FL_MODES; j++)
+                a[k][j] -= f * a[i][j];
+        }
+    }
+    for (int i = FL_MODES - 1; i >= 0; i--) {
+        p[i] = a[i][FL_MODES];
+        for (int j = i + 1; j < FL_MODES; j++)
+            p[i] -= a[i][j] * p[j];
+        p[i] /= a[i][i];
+    }
+    return true;
+}

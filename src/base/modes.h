@@ -1,0 +1,28 @@
+/* Affine motion as six modes, found by least squares. */
+#ifndef FLUIDY_BASE_MODES_H
+#define FLUIDY_BASE_MODES_H
+
+#include <stdbool.h>
+
+/** Two translations, the rotation, the scale and two shears. */
+#define FL_MODES 6
+
+/** Normal equations of six unknowns; all 0 to begin with. */
+typedef struct FlLeastSquares {
+    double a[FL_MODES][FL_MODES], b[FL_MODES];
+} FlLeastSquares;
+
+/** What each mode moves the point (rx, ry) by, about the centre and in units of the size. */
+void fl_modes_at(double rx, double ry, double mode[FL_MODES][2]);
+
+/** Adds weight * (row . p - value)². */
+void fl_least_squares_add(FlLeastSquares *sum, const double row[FL_MODES], double value,
+                          double weight);
+
+/** Adds ridge * p_k². */
+void fl_least_squares_hold(FlLeastSquares *sum, int k, double ridge);
+
+/** Returns: false if the unknowns are not determined. */
+bool fl_least_squares_solve(const FlLeastSquares *sum, double p[FL_MODES]);
+
+#endif

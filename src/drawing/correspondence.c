@@ -1,0 +1,395 @@
+#include "drawing/correspondence.h"
+
+#include "drawing/pairing.h"
+#include "drawing/round_host.h"
+#include "drawing/samples.h"
+#include <math.h>
+#include <string.h>
+
+#define STILL_PX 0.02   // outlines that differ by less are where they were
+#define LOCAL 0.002     // share of its extent by which local coordinates may differ
+#define FIT_PX 0.05     // by how much an affine map may miss
+#define FIT_SHARE 0.02  // and which share of the motion
+#define OTHER_START 4.0 // px², mean energy of a node from which on other starts are tried
+#define BETTER 0.25     // share of the energy that another start must get down to
+#define MOST_NODES 4096 // of a subpath, for trying its starts
+#define SAMPLES 4       // of a cubic, half as many as a line is looked at
+#define LIES_ON_PX 0.15 // a line that has grown lies this near to what it has become
+#define LIES_ON 0.05    // and as near as this share of what it has grown by
+
+/** Two leaves, and the shifts of the subpaths of the later one. */
+typedef struct Pair {
+    const FlOutlines *before, *now;
+    const FlGeometry *a, *b;
+    int32_t *shift; // of b's first subpath on
+} Pair;
+
+static bool same_structure(const Pair *p)
+{
+    bool same = p->a->n_subpaths == p->b->n_subpaths;
+    for (int k = 0; k < p->b->n_subpaths && same; k++) {
+        const FlSubpath *s = &p->before->subpath[p->a->first_subpath + k];
+        const FlSubpath *t = &p->now->subpath[p->b->first_subpath + k];
+        same = s->n == t->n && s->closed == t->closed;
+    }
+    return same;
+}
+
+/** The farthest that a sample has come, px. */
+static double most_motion(const FlSamples *s)
+{
+    double most = 0;
+    for (int i = 0; i < s->n; i++)
+        most = MAX(most, fl_distance2(s->before[i], s->now[i]));
+    return sqrt(most);
+}
+
+/** The map of a straight line, which may have turned and stretched but keeps its width. */
+static bool fit_line(const FlSamples *s, FlAffine *back)
+{
+    int end = 0;
+    for (int i = 1; i < s->n; i++)
+        if (fl_distance2(s->now[i], s->now[0]) > fl_distance2(s->now[end], s->now[0]))
+            end = i;
+    const FlPoint a = s->before[0], b = s->now[0];
+    const double was = sqrt(fl_distance2(s->before[end], a)),
+                 is = sqrt(fl_distance2(s->now[end], b));
+    if (!(was > 0.5 && is > 0.5)) { // a dot
+        *back = (FlAffine){1, 0, 0, 1, a.x - b.x, a.y - b.y};
+        return true;
+    }
+    const FlPoint e = {(s->now[end].x - b.x) / is, (s->now[end].y - b.y) / is};
+    const FlPoint f = {(s->before[end].x - a.x) / was, (s->before[end].y - a.y) / was};
+    const double k = was / is;
+    *back = (FlAffine){k * f.x * e.x + f.y * e.y,
+                       k * f.y * e.x - f.x * e.y,
+                       k * f.x * e.y - f.y * e.x,
+                       k * f.y * e.y + f.x * e.x,
+                       0,
+                       0};
+    back->x0 = a.x - back->xx * b.x - back->xy * b.y;
+    back->y0 = a.y - back->yx * b.x - back->yy * b.y;
+    return true;
+}
+
+/** The affine map from now to before that fits best. Returns: whether the samples tell one. */
+static bool fit(const FlSamples *s, FlAffine *back)
+{
+    const FlPoint a = fl_mean_point(s->before, s->n), b = fl_mean_point(s->now, s->n);
+    double xx = 0, xy = 0, yy = 0, px = 0, py = 0, qx = 0, qy = 0;
+    for (int i = 0; i < s->n; i++) {
+        const double x = s->now[i].x - b.x, y = s->now[i].y - b.y;
+        const double u = s->before[i].x - a.x, v = s->before[i].y - a.y;
+        xx += x * x, xy += x * y, yy += y * y;
+        px += u * x, py += u * y, qx += v * x, qy += v * y;
+    }
+    const double d = xx * yy - xy * xy;
+    if (!(d > 1e-6 * (xx + yy) * (xx + yy)))
+        return fit_line(s, back);
+    *back = (FlAffine){(px * yy - py * xy) / d,
+                       (qx * yy - qy * xy) / d,
+                       (py * xx - px * xy) / d,
+                       (qy * xx - qx * xy) / d,
+                       0,
+                       0};
+    back->x0 = a.x - back->xx * b.x - back->xy * b.y;
+    back->y0 = a.y - back->yx * b.x - back->yy * b.y;
+    return true;
+}
+
+static bool fits(const FlSamples *s, const FlAffine *back, double tolerance)
+{
+    bool good = true;
+    for (int i = 0; i < s->n && good; i++)
+        good =
+            fl_distance2(fl_affine_apply(back, s->now[i]), s->before[i]) <= tolerance * tolerance;
+    return good;
+}
+
+/* ---- another start of the same structure ---- */
+
+/** Energy of the nodes, each set about its centre, at a shift; px². */
+static double energy(const FlPoint *a, const FlPoint *b, int n, int shift)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) {
+        const int j = shift >= 0 ? (i + shift) % n : ((-shift - i) % n + n) % n;
+        sum += fl_distance2(a[j], b[i]);
+    }
+    return sum;
+}
+
+static void centre(FlPoint *p, int n)
+{
+    const FlPoint c = fl_mean_point(p, n);
+    for (int i = 0; i < n; i++)
+        p[i].x -= c.x, p[i].y -= c.y;
+}
+
+/** Node i of a subpath drawn backwards from node s is node s - i; its segment i ends there. */
+static int32_t find_shift(const Pair *p, int k)
+{
+    const FlSubpath *s = &p->before->subpath[p->a->first_subpath + k];
+    const FlSubpath *t = &p->now->subpath[p->b->first_subpath + k];
+    const int n = t->n;
+    if (n < 4 || n > MOST_NODES || !t->closed)
+        return 0;
+    g_autofree FlPoint *a = g_new(FlPoint, n), *b = g_new(FlPoint, n);
+    for (int i = 0; i < n; i++) {
+        a[i] = fl_affine_apply(&p->a->ctm, p->before->cubic[s->first + i].p[0]);
+        b[i] = fl_affine_apply(&p->b->ctm, p->now->cubic[t->first + i].p[0]);
+    }
+    centre(a, n), centre(b, n);
+    const double present = energy(a, b, n, 0);
+    if (present <= OTHER_START * n)
+        return 0;
+    double least = BETTER * present;
+    int32_t best = 0;
+    for (int shift = 1; shift <= n; shift++) {
+        const double on = shift < n ? energy(a, b, n, shift) : HUGE_VAL;
+        const double back = energy(a, b, n, -shift);
+        if (on < least)
+            least = on, best = shift;
+        if (back < least)
+            least = back, best = -1 - (shift + n - 1) % n; // node s begins segment s - 1 backwards
+    }
+    return best;
+}
+
+/* ---- lines that grow ---- */
+
+/** A leaf's outline as points a few px apart or less. */
+static GArray *flattened(const FlOutlines *o, const FlGeometry *g)
+{
+    GArray *points = g_array_new(FALSE, FALSE, sizeof(FlPoint));
+    for (int k = 0; k < g->n_subpaths; k++) {
+        const FlSubpath *s = &o->subpath[g->first_subpath + k];
+        for (int c = s->first; c < s->first + s->n; c++)
+            for (int i = 0; i <= 2 * SAMPLES; i++) {
+                const FlPoint p = fl_cubic_at(&o->cubic[c], &g->ctm, (double)i / (2 * SAMPLES));
+                g_array_append_val(points, p);
+            }
+    }
+    return points;
+}
+
+static double length_of(const GArray *points)
+{
+    double sum = 0;
+    for (guint i = 1; i < points->len; i++)
+        if (i % (2 * SAMPLES + 1) != 0) // not from one cubic to the next
+            sum += sqrt(fl_distance2(g_array_index(points, FlPoint, i - 1),
+                                     g_array_index(points, FlPoint, i)));
+    return sum;
+}
+
+static double distance2_to_segment(FlPoint p, FlPoint a, FlPoint b)
+{
+    const double x = b.x - a.x, y = b.y - a.y, l = x * x + y * y;
+    const double t = l > 0 ? CLAMP(((p.x - a.x) * x + (p.y - a.y) * y) / l, 0, 1) : 0;
+    return fl_distance2(p, (FlPoint){a.x + t * x, a.y + t * y});
+}
+
+static bool lies_on(FlPoint p, const GArray *line, double tolerance)
+{
+    const double limit = tolerance * tolerance;
+    bool found = false;
+    for (guint i = 1; i < line->len && !found; i++)
+        found = i % (2 * SAMPLES + 1) != 0 &&
+                distance2_to_segment(p, g_array_index(line, FlPoint, i - 1),
+                                     g_array_index(line, FlPoint, i)) <= limit;
+    return found;
+}
+
+/** Whether one of the ends of the first line is where it was. */
+static bool is_held(const Pair *p)
+{
+    const FlSubpath *s = &p->before->subpath[p->a->first_subpath];
+    const FlSubpath *t = &p->now->subpath[p->b->first_subpath];
+    const double limit = STILL_PX * STILL_PX;
+    return fl_distance2(fl_cubic_at(&p->before->cubic[s->first], &p->a->ctm, 0),
+                        fl_cubic_at(&p->now->cubic[t->first], &p->b->ctm, 0)) < limit ||
+           fl_distance2(fl_cubic_at(&p->before->cubic[s->first + s->n - 1], &p->a->ctm, 1),
+                        fl_cubic_at(&p->now->cubic[t->first + t->n - 1], &p->b->ctm, 1)) < limit;
+}
+
+/**
+ * Whether one outline is the beginning or a part of the other: a line that draws itself, a shape
+ * that ink is added to, or the reverse. What is painted then stays where it is.
+ */
+static bool grows(const Pair *p, bool same)
+{
+    enum { MOST = 4000, LOOKED_AT = 200 }; // cubics; points
+    const bool open = !p->now->subpath[p->b->first_subpath].closed;
+    if (same && (!open || !is_held(p))) // a limb that is foreshortened moves at both ends
+        return false;
+    g_autoptr(GArray) before = flattened(p->before, p->a), now = flattened(p->now, p->b);
+    const double a = length_of(before), b = length_of(now);
+    if (fabs(a - b) <= 0.5 + 0.01 * MAX(a, b) || before->len > (2 * SAMPLES + 1) * MOST ||
+        now->len > (2 * SAMPLES + 1) * MOST)
+        return false;
+    const GArray *small = a < b ? before : now, *large = a < b ? now : before;
+    const double tolerance = MIN(LIES_ON_PX, LIES_ON * fabs(a - b)); // limbs also turn aside
+    guint on = 0, n = 0;
+    for (guint i = 0; i < small->len; i += MAX(3, small->len / LOOKED_AT), n++)
+        on += lies_on(g_array_index(small, FlPoint, i), large, tolerance);
+    return on >= (guint)ceil((open ? 0.95 : 0.7) * n); // of a closed outline the tip moves on
+}
+
+/* ---- one pair ---- */
+
+static bool close_to(FlPoint a, FlPoint b, double tolerance)
+{
+    return fabs(a.x - b.x) <= tolerance && fabs(a.y - b.y) <= tolerance;
+}
+
+/** Whether the local coordinates are the same, so that the transforms tell all. */
+static bool locally_same(const Pair *p)
+{
+    double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
+    bool same = true;
+    for (int pass = 0; pass < 2; pass++) {
+        const double tolerance = LOCAL * MAX(x1 - x0, y1 - y0);
+        for (int k = 0; k < p->b->n_subpaths; k++) {
+            const FlSubpath *s = &p->before->subpath[p->a->first_subpath + k];
+            const FlSubpath *t = &p->now->subpath[p->b->first_subpath + k];
+            for (int i = 0; i < 4 * t->n; i++) {
+                const FlPoint q = p->now->cubic[t->first + i / 4].p[i % 4];
+                x0 = MIN(x0, q.x), x1 = MAX(x1, q.x), y0 = MIN(y0, q.y), y1 = MAX(y1, q.y);
+                same &= pass == 0 ||
+                        close_to(q, p->before->cubic[s->first + i / 4].p[i % 4], tolerance);
+            }
+        }
+    }
+    return same;
+}
+
+static bool by_transform(const Pair *p, FlAffine *back)
+{
+    FlAffine inverse;
+    if (!fl_affine_invert(&p->b->ctm, &inverse) || !locally_same(p))
+        return false;
+    *back = fl_affine_after(&p->a->ctm, &inverse);
+    return fl_affine_invert(&p->a->ctm, &inverse);
+}
+
+static FlMotionKind motion_of_same(const Pair *p, FlAffine *back)
+{
+    for (int k = 0; k < p->b->n_subpaths; k++)
+        p->shift[k] = 0;
+    g_auto(FlSamples) plain = {0};
+    fl_samples_take(&plain, p->before, p->a, p->now, p->b, p->shift);
+    if (most_motion(&plain) < STILL_PX)
+        return FL_MOTION_STILL;
+    if (by_transform(p, back))
+        return FL_MOTION_AFFINE;
+    if (grows(p, true))
+        return FL_MOTION_NEW;
+    for (int k = 0; k < p->b->n_subpaths; k++)
+        p->shift[k] = find_shift(p, k);
+    g_auto(FlSamples) samples = {0};
+    fl_samples_take(&samples, p->before, p->a, p->now, p->b, p->shift);
+    const double tolerance = MAX(FIT_PX, FIT_SHARE * most_motion(&samples));
+    return fit(&samples, back) && fits(&samples, back, tolerance) ? FL_MOTION_AFFINE
+                                                                  : FL_MOTION_SAME;
+}
+
+/** Whether a pair moves too far to be believed. */
+static bool jumps(const FlTwoFrames *f, const FlLeafMeasure *a, const FlLeafMeasure *b)
+{
+    const double dx = (a->x0 + a->x1 - b->x0 - b->x1) / 2, dy = (a->y0 + a->y1 - b->y0 - b->y1) / 2;
+    const double far = sqrt(dx * dx + dy * dy);
+    return far > fl_measure_diagonal(b) / 2 && far > 0.05 * f->side;
+}
+
+static bool are_named_alike(const FlGeometry *a, const FlGeometry *b)
+{
+    return (a->id && a->id == b->id) || (a->labels && a->labels == b->labels);
+}
+
+typedef struct Work {
+    const FlTwoFrames *frames;
+    FlLeafMeasure *before, *now;
+    FlCorrespondence *out;
+} Work;
+
+/** What a region has in each frame; 0 is of what belongs to none. */
+typedef struct Count {
+    int before, now, lost; // leaves; those that nothing has become of
+} Count;
+
+static void settle(const Work *w, int i, const Count *region)
+{
+    const FlTwoFrames *f = w->frames;
+    FlLeafMotion *motion = &w->out->leaf[i];
+    const FlGeometry *b = &f->now->leaf[i];
+    if (motion->before < 0 || !b->usable || !f->before->leaf[motion->before].usable) {
+        const bool paired = motion->before >= 0;
+        motion->kind = !b->usable                   ? FL_MOTION_NONE
+                       : paired || region->lost > 0 ? FL_MOTION_REGISTERED
+                                                    : FL_MOTION_NEW;
+        return;
+    }
+    const Pair p = {f->before, f->now, &f->before->leaf[motion->before], b,
+                    w->out->shift + b->first_subpath};
+    const bool same = same_structure(&p), alone = region->before == 1 && region->now == 1;
+    if (jumps(f, &w->before[motion->before], &w->now[i]) &&
+        !(same && (alone || are_named_alike(p.a, p.b))))
+        motion->kind = FL_MOTION_NONE;
+    else if (same)
+        motion->kind = motion_of_same(&p, &motion->back);
+    else
+        motion->kind = grows(&p, false) ? FL_MOTION_NEW : FL_MOTION_REGISTERED;
+}
+
+/** By region + 1; to be freed. */
+static Count *count_leaves(const Work *w)
+{
+    const FlTwoFrames *f = w->frames;
+    int regions = 0;
+    for (int i = 0; i < f->before->n_leaves; i++)
+        regions = MAX(regions, f->before_look[i].region + 1);
+    for (int i = 0; i < f->now->n_leaves; i++)
+        regions = MAX(regions, f->now_look[i].region + 1);
+    Count *count = g_new0(Count, regions + 1);
+    g_autofree bool *became = g_new0(bool, f->before->n_leaves + 1);
+    for (int i = 0; i < f->now->n_leaves; i++) {
+        count[f->now_look[i].region + 1].now++;
+        if (w->out->leaf[i].before >= 0)
+            became[w->out->leaf[i].before] = true;
+    }
+    for (int i = 0; i < f->before->n_leaves; i++) {
+        Count *c = &count[f->before_look[i].region + 1];
+        c->before++, c->lost += !became[i];
+    }
+    return count;
+}
+
+FlCorrespondence *fl_correspond(const FlTwoFrames *frames)
+{
+    const int n = frames->now->n_leaves;
+    FlCorrespondence *out = g_new0(FlCorrespondence, 1);
+    out->n = n;
+    out->leaf = g_new0(FlLeafMotion, n + 1);
+    out->shift = g_new0(int32_t, frames->now->n_subpaths + 1);
+    g_autofree FlLeafMeasure *before = fl_measure_leaves(frames->before);
+    g_autofree FlLeafMeasure *now = fl_measure_leaves(frames->now);
+    Work w = {frames, before, now, out};
+    g_autofree int *partner = fl_pair_leaves(frames, before, now);
+    for (int i = 0; i < n; i++)
+        out->leaf[i].before = partner[i];
+    g_autofree Count *count = count_leaves(&w);
+    for (int i = 0; i < n; i++)
+        settle(&w, i, &count[frames->now_look[i].region + 1]);
+    fl_turn_round_hosts(frames, before, now, out);
+    return out;
+}
+
+void fl_correspondence_free(FlCorrespondence *correspondence)
+{
+    if (!correspondence)
+        return;
+    g_free(correspondence->leaf);
+    g_free(correspondence->shift);
+    g_free(correspondence);
+}

@@ -1,0 +1,63 @@
+#include "drawing/outlines.h"
+
+#include "drawing/drawing_data.h"
+#include <string.h>
+
+FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **error)
+{
+    const FlDrawingFrame *f = &drawing->frame[frame];
+    const FlSvgOptions options = {f->canvas, drawing->dpi, (const char *const *)f->whole};
+    g_autoptr(FlSvg) svg = fl_svg_read(drawing->sequence->file[frame],
+                                       drawing->sequence->number[frame], &options, NULL, error);
+    return svg ? fl_outlines_new(svg, f->page_width, f->page_height) : NULL;
+}
+
+/** Calls for the leaf of a step, or for all that are drawn as one with it. */
+static void add_leaves(const FlStep *step, const FlOutlines *outlines, GArray *list)
+{
+    const int unit = -1 - step->leaf;
+    FlRegionLeaf one = {.part = (FlPart)step->part, .flat = step->flat};
+    memcpy(one.box, step->box, sizeof one.box);
+    memcpy(one.rgb, step->rgb, sizeof one.rgb);
+    const int first = step->leaf >= 0 ? step->leaf : 0;
+    const int end = step->leaf >= 0 ? step->leaf + 1 : outlines->n_leaves;
+    for (one.leaf = first; one.leaf < MIN(end, outlines->n_leaves); one.leaf++)
+        if (step->leaf >= 0 || outlines->leaf[one.leaf].unit == unit)
+            g_array_append_val(list, one);
+}
+
+GArray *fl_drawing_region_leaves(const FlDrawing *drawing, int frame, int region,
+                                 const FlOutlines *outlines)
+{
+    const FlDrawingFrame *f = &drawing->frame[frame];
+    GArray *list = g_array_new(FALSE, FALSE, sizeof(FlRegionLeaf));
+    for (int i = 0; i < f->n; i++)
+        if (region < 0 || f->step[i].region == region)
+            add_leaves(&f->step[i], outlines, list);
+    return list;
+}
+
+FlLeafLook *fl_drawing_leaf_looks(const FlDrawing *drawing, int frame, const FlOutlines *outlines)
+{
+    const FlDrawingFrame *f = &drawing->frame[frame];
+    FlLeafLook *probe = g_new(FlLeafLook, outlines->n_leaves + 1);
+    for (int i = 0; i < outlines->n_leaves; i++)
+        probe[i] = (FlLeafLook){.region = -1};
+    g_autoptr(GArray) list = g_array_new(FALSE, FALSE, sizeof(FlRegionLeaf));
+    for (int i = 0; i < f->n; i++) {
+        g_array_set_size(list, 0);
+        add_leaves(&f->step[i], outlines, list);
+        for (guint k = 0; k < list->len; k++) {
+            const FlRegionLeaf *leaf = &g_array_index(list, FlRegionLeaf, k);
+            if (probe[leaf->leaf].region < 0)
+                probe[leaf->leaf] = (FlLeafLook){
+                    f->step[i].region, leaf->flat, {leaf->rgb[0], leaf->rgb[1], leaf->rgb[2]}};
+        }
+    }
+    return probe;
+}
+
+bool fl_drawing_same_file(const FlDrawing *drawing, int a, int b)
+{
+    return a == b || strcmp(drawing->sequence->file[a], drawing->sequence->file[b]) == 0;
+}

@@ -1,0 +1,37 @@
+/* The outlines of a film's frames, and which leaves make up a region. */
+#ifndef FLUIDY_DRAWING_OUTLINES_H
+#define FLUIDY_DRAWING_OUTLINES_H
+
+#include "drawing/drawing.h"
+#include "svg/geometry.h"
+
+/** A leaf of a region, or the part of it that the region has. */
+typedef struct FlRegionLeaf {
+    int leaf; // index into the frame's outlines
+    FlPart part;
+    float box[4];   // x0, y0, x1, y1 of what librsvg draws of it, px
+    uint8_t rgb[3]; // its paint, or the mean of it
+    bool flat;
+} FlRegionLeaf;
+
+/** Reads a frame's outlines, in px of the film. Any thread. NULL with an error that names it. */
+FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **error);
+
+/** The leaves of a region in a frame, bottom up; region < 0: of all. An array of FlRegionLeaf. */
+GArray *fl_drawing_region_leaves(const FlDrawing *drawing, int frame, int region,
+                                 const FlOutlines *outlines);
+
+/** What a leaf belongs to and is painted with, by its first part. */
+typedef struct FlLeafLook {
+    int region; // -1: it is not drawn
+    bool flat;
+    uint8_t rgb[3];
+} FlLeafLook;
+
+/** The looks of a frame's leaves, by index; to be freed with g_free(). */
+FlLeafLook *fl_drawing_leaf_looks(const FlDrawing *drawing, int frame, const FlOutlines *outlines);
+
+/** Whether both frames show one file. */
+bool fl_drawing_same_file(const FlDrawing *drawing, int a, int b);
+
+#endif

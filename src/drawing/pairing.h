@@ -1,0 +1,27 @@
+/* The leaves of two frames, paired. */
+#ifndef FLUIDY_DRAWING_PAIRING_H
+#define FLUIDY_DRAWING_PAIRING_H
+
+#include "drawing/correspondence.h"
+
+/** What is compared of a leaf. */
+typedef struct FlLeafMeasure {
+    double x0, y0, x1, y1; // box of its outline, px; empty: x1 < x0
+    uint64_t structure;    // hash of its subpaths' lengths
+} FlLeafMeasure;
+
+/** By leaf; to be freed with g_free(). */
+FlLeafMeasure *fl_measure_leaves(const FlOutlines *outlines);
+
+double fl_measure_diagonal(const FlLeafMeasure *m);
+
+/**
+ * Which leaf before each leaf of now was; -1: none. Where all agree by number, name, place and
+ * structure they are taken one by one.
+ *
+ * Returns: by leaf; to be freed with g_free().
+ */
+int *fl_pair_leaves(const FlTwoFrames *frames, const FlLeafMeasure *before,
+                    const FlLeafMeasure *now);
+
+#endif
