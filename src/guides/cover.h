@@ -1,0 +1,26 @@
+/* Pixels that an outline covers, found without a renderer: to tell leaves apart. */
+#ifndef FLUIDY_GUIDES_COVER_H
+#define FLUIDY_GUIDES_COVER_H
+
+#include "base/rect.h"
+#include "svg/geometry.h"
+
+/** Called for columns first … last - 1 of a row of the rectangle, more than once for some. */
+typedef void FlCoverSpan(void *data, int y, int first, int last);
+
+/** The pixels whose centres lie inside the outline, by its fill rule; coordinates are of rect. */
+void fl_cover_fill(const FlOutlines *outlines, const FlGeometry *g, FlRect rect, FlCoverSpan *span,
+                   void *data);
+
+/** The pixels whose centres lie within reach_px of the outline; closed: open ones are closed, as
+ * they are to be filled. */
+void fl_cover_line(const FlOutlines *outlines, const FlGeometry *g, double reach_px, bool closed,
+                   FlRect rect, FlCoverSpan *span, void *data);
+
+/** The width of the leaf's stroke in px; 0: none that is known. */
+double fl_stroke_px(const FlGeometry *g);
+
+/** How many straight steps of about step_px a cubic is walked in, 1 … 400. */
+int fl_cubic_steps(const FlCubic *cubic, const FlAffine *ctm, double step_px);
+
+#endif

@@ -1,0 +1,37 @@
+/* The motion of every pixel of a region, from the outlines of its leaves. */
+#ifndef FLUIDY_GUIDES_MOTION_H
+#define FLUIDY_GUIDES_MOTION_H
+
+#include "drawing/correspondence.h"
+
+/** A region in two frames. All planes are of `rect`, row-major. */
+typedef struct FlMovingRegion {
+    FlRect rect;                           // in the frame
+    int side;                              // the frame's larger side, px: nothing moves farther
+    const uint8_t *mask_before, *mask_now; // coverage 0..255
+    const FlOutlines *before, *now;
+    const FlCorrespondence *motions; // of all leaves of `now`
+    const GArray *leaves;            // FlRegionLeaf of `now`, bottom up
+} FlMovingRegion;
+
+/** What the pixels' motion comes from, pixels with coverage >= FL_INSIDE. */
+typedef struct FlMotionShares {
+    int64_t exact;      // from outlines
+    int64_t registered; // from masks
+} FlMotionShares;
+
+/**
+ * Writes where every pixel of the region comes from: x - motion is its place in the frame before;
+ * px, interleaved, 2 * area of rect, 0 outside.
+ *
+ * A leaf's outline is believed only if the contour of the region lies along it where librsvg draws
+ * the leaf, or a clip or mask may have changed it; the others, and those whose structure changes,
+ * have the motion of fl_registration(). New leaves and what has grown do not move: what is laid
+ * stays. shares may be NULL.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionShares *shares,
+                         GError **error);
+
+#endif

@@ -1,0 +1,414 @@
+#include "guides/registration.h"
+
+#include "base/alloc.h"
+#include "base/modes.h"
+#include "guides/blur.h"
+#include "guides/flow.h"
+#include "guides/guides.h"
+#include "guides/laplace.h"
+#include "guides/part_tracking.h"
+#include <math.h>
+#include <string.h>
+
+#define MOST_STEPS 12     // of Gauss and Newton
+#define CONVERGED_PX 1e-3 // a step that is shorter ends it
+#define SOFT_PX 3.0       // distances beyond it count less
+#define FIRM 0.002        // ridge of translation and rotation: what cannot be seen stays 0
+#define STIFF 0.06        // of scale and shears
+#define UNSEEN 0.01       // of the largest eigenvalue: a mode that the outline does not show
+#define NOISE_PX 0.05     // mean distance below which nothing has moved
+#define BLUR_PX 0.7f      // of the distances before they are matched
+#define LEAST_POINTS 12   // of a contour
+#define LIMIT_SHARE 0.25f // of the larger side that a part may move
+
+/** A point of the contour, px between pixel centres, with its pixel and its inward normal. */
+typedef struct Point {
+    double x, y, nx, ny;
+    int px, py;
+    double d; // distance before, of where it comes from
+} Point;
+
+typedef struct Work {
+    int width, height;
+    FlOutline *before, *now;
+    FlConnectedParts parts;
+    FlTrace *trace;
+    float *smooth; // the blurred distance before
+    float *flow;   // of the masks, made when first needed
+    float *motion;
+} Work;
+
+static void work_clear(Work *w)
+{
+    fl_outline_unref(w->before);
+    fl_outline_unref(w->now);
+    fl_connected_parts_clear(&w->parts);
+    g_free(w->trace);
+    g_free(w->smooth);
+    g_free(w->flow);
+}
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Work, work_clear)
+
+/** Bilinear distance before at a place, and its gradient. */
+static double sample(const Work *w, double x, double y, double g[2])
+{
+    x = CLAMP(x, 0, w->width - 1.0), y = CLAMP(y, 0, w->height - 1.0);
+    const int ix = MIN((int)x, MAX(w->width - 2, 0)), iy = MIN((int)y, MAX(w->height - 2, 0));
+    const int right = MIN(ix + 1, w->width - 1) - ix, down = MIN(iy + 1, w->height - 1) - iy;
+    const double u = x - ix, v = y - iy;
+    const float *p = w->smooth + (size_t)iy * w->width + ix;
+    const double a = p[0], b = p[right], c = p[(size_t)down * w->width];
+    const double d = p[(size_t)down * w->width + right];
+    g[0] = (b - a) * (1 - v) + (d - c) * v;
+    g[1] = (c - a) * (1 - u) + (d - b) * u;
+    return (a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v;
+}
+
+/** The contours of all parts: arrays of Point by number; to be freed with g_ptr_array_unref(). */
+static GPtrArray *find_points(const Work *w)
+{
+    const FlRect box = w->now->box;
+    GPtrArray *all = g_ptr_array_new_with_free_func((GDestroyNotify)g_array_unref);
+    for (int part = 0; part <= w->parts.n_parts; part++)
+        g_ptr_array_add(all, g_array_new(FALSE, FALSE, sizeof(Point)));
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const int part = w->parts.part[(size_t)y * box.width + x], px = box.x + x,
+                      py = box.y + y;
+            float g[2];
+            if (part == 0 || !fl_outline_is_contour(w->now, px, py))
+                continue;
+            fl_distance_gradient(w->now->distance, w->width, w->height, px, py, g);
+            const double length = sqrt((double)g[0] * g[0] + (double)g[1] * g[1]);
+            if (length < 0.25)
+                continue;
+            const double nx = g[0] / length, ny = g[1] / length;
+            const double d = w->now->distance[(size_t)py * w->width + px];
+            const Point point = {px - d * nx, py - d * ny, nx, ny, px, py, 0};
+            g_array_append_val((GArray *)g_ptr_array_index(all, part), point);
+        }
+    return all;
+}
+
+/** The frame of a part's modes, and what is known of its motion. */
+typedef struct Map {
+    double x, y, size;
+    double p[FL_MODES];
+} Map;
+
+static Map map_of(const GArray *points)
+{
+    Map map = {0};
+    for (guint i = 0; i < points->len; i++) {
+        const Point *q = &g_array_index(points, Point, i);
+        map.x += q->x / points->len, map.y += q->y / points->len;
+    }
+    for (guint i = 0; i < points->len; i++) {
+        const Point *q = &g_array_index(points, Point, i);
+        const double x = q->x - map.x, y = q->y - map.y;
+        map.size += (x * x + y * y) / points->len;
+    }
+    map.size = MAX(sqrt(map.size), 1.0);
+    return map;
+}
+
+static void move(const Map *map, double x, double y, double u[2], double mode[FL_MODES][2])
+{
+    fl_modes_at((x - map->x) / map->size, (y - map->y) / map->size, mode);
+    u[0] = u[1] = 0;
+    for (int k = 0; k < FL_MODES; k++)
+        u[0] += map->p[k] * mode[k][0], u[1] += map->p[k] * mode[k][1];
+}
+
+/** One Jacobi rotation of a symmetric 3x3 matrix, its vectors being the columns of v. */
+static void rotate(double a[3][3], double v[3][3], int i, int j)
+{
+    if (a[i][j] == 0)
+        return;
+    const double theta = (a[j][j] - a[i][i]) / (2 * a[i][j]);
+    const double t = (theta >= 0 ? 1 : -1) / (fabs(theta) + sqrt(theta * theta + 1));
+    const double c = 1 / sqrt(t * t + 1), s = t * c;
+    for (int k = 0; k < 3; k++) {
+        const double p = a[k][i], q = a[k][j];
+        a[k][i] = c * p - s * q, a[k][j] = s * p + c * q;
+    }
+    for (int k = 0; k < 3; k++) {
+        const double p = a[i][k], q = a[j][k];
+        a[i][k] = c * p - s * q, a[j][k] = s * p + c * q;
+        const double e = v[k][i], f = v[k][j];
+        v[k][i] = c * e - s * f, v[k][j] = s * e + c * f;
+    }
+}
+
+/** Holds what the outline does not show of translation and rotation. */
+static void hold_unseen(FlLeastSquares *sum)
+{
+    double a[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, largest = 0, trace = 0;
+    for (int i = 0; i < 3; i++)
+        memcpy(a[i], sum->a[i], sizeof a[i]);
+    for (int sweep = 0; sweep < 8; sweep++)
+        rotate(a, v, 0, 1), rotate(a, v, 0, 2), rotate(a, v, 1, 2);
+    for (int k = 0; k < 3; k++)
+        largest = MAX(largest, a[k][k]), trace += a[k][k];
+    for (int k = 0; k < 3; k++)
+        if (a[k][k] < UNSEEN * largest)
+            for (int i = 0; i < 3; i++)
+                for (int j = 0; j < 3; j++)
+                    sum->a[i][j] += 1e4 * trace * v[i][k] * v[j][k];
+}
+
+/** The mean distance that is left; sets those of the points. */
+static double measure(const Work *w, const Map *map, GArray *points)
+{
+    double sum = 0;
+    for (guint i = 0; i < points->len; i++) {
+        Point *q = &g_array_index(points, Point, i);
+        double u[2], mode[FL_MODES][2], g[2];
+        move(map, q->x, q->y, u, mode);
+        q->d = sample(w, q->x - u[0], q->y - u[1], g);
+        sum += fabs(q->d);
+    }
+    return sum / points->len;
+}
+
+/** One step; false if the equations do not tell. */
+static bool improve(const Work *w, Map *map, const GArray *points, double *step)
+{
+    FlLeastSquares sum = {0};
+    for (guint i = 0; i < points->len; i++) {
+        const Point *q = &g_array_index(points, Point, i);
+        double u[2], mode[FL_MODES][2], g[2], row[FL_MODES];
+        move(map, q->x, q->y, u, mode);
+        const double d = sample(w, q->x - u[0], q->y - u[1], g);
+        double value = -d;
+        for (int k = 0; k < FL_MODES; k++) {
+            row[k] = -(mode[k][0] * g[0] + mode[k][1] * g[1]);
+            value += row[k] * map->p[k];
+        }
+        fl_least_squares_add(&sum, row, value, 1 / (1 + d * d / (SOFT_PX * SOFT_PX)));
+    }
+    hold_unseen(&sum);
+    for (int k = 0; k < FL_MODES; k++)
+        fl_least_squares_hold(&sum, k, points->len * (k < 3 ? FIRM : STIFF));
+    double p[FL_MODES];
+    if (!fl_least_squares_solve(&sum, p))
+        return false;
+    *step = 0;
+    for (int k = 0; k < FL_MODES; k++)
+        *step = MAX(*step, fabs(p[k] - map->p[k]));
+    memcpy(map->p, p, sizeof p);
+    return true;
+}
+
+/** Finds the map from a start. Returns: the mean distance it leaves, HUGE_VAL if none. */
+static double search(const Work *w, Map *map, GArray *points)
+{
+    double step = HUGE_VAL;
+    for (int k = 0; k < MOST_STEPS && step > CONVERGED_PX; k++)
+        if (!improve(w, map, points, &step))
+            return HUGE_VAL;
+    return measure(w, map, points);
+}
+
+/** Centre and area of what a part has below it in the frame before, all of it. */
+static bool centre_before(const Work *w, const FlConnectedParts *before, int part, double c[3])
+{
+    const FlRect box = w->now->box, other = w->before->box;
+    g_autofree bool *below = g_new0(bool, before->n_parts + 1);
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const int bx = box.x + x - other.x, by = box.y + y - other.y;
+            if (w->parts.part[(size_t)y * box.width + x] == part && bx >= 0 && by >= 0 &&
+                bx < other.width && by < other.height)
+                below[before->part[(size_t)by * other.width + bx]] = true;
+        }
+    c[0] = c[1] = c[2] = 0;
+    for (int y = 0; y < other.height; y++)
+        for (int x = 0; x < other.width; x++) {
+            const int p = before->part[(size_t)y * other.width + x];
+            if (p > 0 && below[p])
+                c[0] += other.x + x, c[1] += other.y + y, c[2] += 1;
+        }
+    c[0] /= MAX(c[2], 1), c[1] /= MAX(c[2], 1);
+    return c[2] > 0;
+}
+
+static void centre_now(const Work *w, int part, double c[3])
+{
+    const FlRect box = w->now->box;
+    c[0] = c[1] = c[2] = 0;
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++)
+            if (w->parts.part[(size_t)y * box.width + x] == part)
+                c[0] += box.x + x, c[1] += box.y + y, c[2] += 1;
+    c[0] /= MAX(c[2], 1), c[1] /= MAX(c[2], 1);
+}
+
+/** A start for parts that moved far: the difference of the centres. */
+static bool far_start(const Work *w, int part, Map *map, GError **error)
+{
+    g_auto(FlConnectedParts) before = {0};
+    double a[3], b[3];
+    if (!fl_connected_parts_init(&before, w->before->coverage, w->before->box.width,
+                                 w->before->box.height, error))
+        return false;
+    centre_now(w, part, b);
+    if (centre_before(w, &before, part, a) && a[2] < 2 * b[2] && b[2] < 2 * a[2])
+        map->p[0] = b[0] - a[0], map->p[1] = b[1] - a[1];
+    return true;
+}
+
+/** Fixes what is left of the normal motion on the contour, and diffuses it over the part. */
+static bool fill_part(const Work *w, int part, const Map *map, const GArray *points, GError **error)
+{
+    const FlRect box = w->now->box;
+    const size_t n = fl_rect_pixels(box);
+    g_autofree uint8_t *cell = fl_alloc(n, 1, "a motion", error);
+    g_autofree float *rest = cell ? fl_alloc(2 * n, sizeof(float), "a motion", error) : NULL;
+    if (!rest)
+        return false;
+    for (size_t p = 0; p < n; p++)
+        cell[p] = w->parts.part[p] == part ? FL_CELL_FREE : FL_CELL_OUTSIDE;
+    for (guint i = 0; i < points->len; i++) {
+        const Point *q = &g_array_index(points, Point, i);
+        double u[2], mode[FL_MODES][2], g[2];
+        move(map, q->x, q->y, u, mode);
+        const double d = sample(w, q->x - u[0], q->y - u[1], g);
+        if (g[0] * q->nx + g[1] * q->ny < 0) // faces the other way: this tells nothing
+            continue;
+        const size_t p = (size_t)(q->py - box.y) * box.width + (q->px - box.x);
+        cell[p] = FL_CELL_FIXED;
+        rest[2 * p] = (float)(q->nx * d), rest[2 * p + 1] = (float)(q->ny * d);
+    }
+    if (!fl_laplace_solve(cell, box.width, box.height, 2, rest, error))
+        return false;
+    for (size_t p = 0; p < n; p++) {
+        if (w->parts.part[p] != part)
+            continue;
+        const int x = box.x + (int)(p % box.width), y = box.y + (int)(p / box.width);
+        double u[2], mode[FL_MODES][2];
+        move(map, x, y, u, mode);
+        float *out = w->motion + 2 * ((size_t)y * w->width + x);
+        out[0] = (float)u[0] + rest[2 * p], out[1] = (float)u[1] + rest[2 * p + 1];
+    }
+    return true;
+}
+
+/** Gives a part one motion. */
+static void fill_even(const Work *w, int part, float u, float v)
+{
+    const FlRect box = w->now->box;
+    for (size_t p = 0; p < fl_rect_pixels(box); p++)
+        if (w->parts.part[p] == part) {
+            const size_t at = (box.y + p / box.width) * (size_t)w->width + box.x + p % box.width;
+            w->motion[2 * at] = u, w->motion[2 * at + 1] = v;
+        }
+}
+
+/** Gives a part the flow of the masks. */
+static bool fill_flow(Work *w, int part, GError **error)
+{
+    const FlRect box = w->now->box;
+    const FlFlowFrame now = {w->now, w->now->distance}, before = {w->before, w->before->distance};
+    const FlFlowFrame none = {NULL, NULL};
+    bool moves = false;
+    if (!w->flow) {
+        w->flow = fl_alloc(2 * fl_rect_pixels(box), sizeof(float), "a flow", error);
+        const float limit = LIMIT_SHARE * (float)MAX(w->width, w->height);
+        if (!w->flow || !fl_flow_construct(&now, &before, &none, limit, w->flow, &moves, error))
+            return false;
+    }
+    for (size_t p = 0; p < fl_rect_pixels(box); p++)
+        if (w->parts.part[p] == part)
+            memcpy(w->motion +
+                       2 * ((box.y + p / box.width) * (size_t)w->width + box.x + p % box.width),
+                   w->flow + 2 * p, 2 * sizeof(float));
+    return true;
+}
+
+static bool register_part(Work *w, int part, GArray *points, GError **error)
+{
+    const FlTrace *trace = &w->trace[part];
+    if (trace->kind != FL_TRACE_OVERLAPS) {
+        fill_even(w, part, trace->offset[0], trace->offset[1]); // of a lost one 0
+        return true;
+    }
+    if (points->len < LEAST_POINTS)
+        return fill_flow(w, part, error);
+    Map map = map_of(points);
+    const double start = measure(w, &map, points);
+    if (start < NOISE_PX)
+        return true;
+    Map far = map;
+    if (!far_start(w, part, &far, error))
+        return false;
+    double left = search(w, &map, points);
+    if (far.p[0] != 0 || far.p[1] != 0) {
+        const double other = search(w, &far, points);
+        if (other < left)
+            left = other, map = far;
+    }
+    return left <= start / 2 ? fill_part(w, part, &map, points, error) : fill_flow(w, part, error);
+}
+
+/** Gives the faint pixels around the shape the motion of a neighbour that is inside. */
+static void fill_rim(const Work *w)
+{
+    const FlRect box = w->now->box;
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++) {
+            float *out = w->motion + 2 * ((size_t)y * w->width + x);
+            if (fl_outline_contains(w->now, x, y) ||
+                w->now->coverage[(size_t)(y - box.y) * box.width + x - box.x] == 0)
+                continue;
+            for (int k = 0; k < 9; k++) {
+                const int nx = x + k % 3 - 1, ny = y + k / 3 - 1;
+                if (!fl_outline_contains(w->now, nx, ny))
+                    continue;
+                memcpy(out, w->motion + 2 * ((size_t)ny * w->width + nx), 2 * sizeof *out);
+                break;
+            }
+        }
+}
+
+static bool prepare(Work *w, const uint8_t *before, const uint8_t *now, GError **error)
+{
+    const size_t n = (size_t)w->width * w->height;
+    w->before = fl_outline_new(before, w->width, w->height, error);
+    w->now = w->before ? fl_outline_new(now, w->width, w->height, error) : NULL;
+    if (!w->now)
+        return false;
+    if (w->before->empty || w->now->empty)
+        return true;
+    w->smooth = fl_alloc(n, sizeof(float), "a distance", error);
+    if (!w->smooth)
+        return false;
+    memcpy(w->smooth, w->before->distance, n * sizeof(float));
+    const float limit = LIMIT_SHARE * (float)MAX(w->width, w->height);
+    if (!fl_blur(w->smooth, w->width, w->height, BLUR_PX, error) ||
+        !fl_connected_parts_init(&w->parts, w->now->coverage, w->now->box.width, w->now->box.height,
+                                 error))
+        return false;
+    w->trace = g_new0(FlTrace, w->parts.n_parts + 1);
+    return fl_part_tracking_find(w->now, &w->parts, w->before, limit, w->trace, error);
+}
+
+bool fl_registration(const uint8_t *before, const uint8_t *now, int width, int height,
+                     float *motion, GError **error)
+{
+    g_auto(Work) w = {.width = width, .height = height, .motion = motion};
+    const size_t n = (size_t)width * height;
+    memset(motion, 0, 2 * n * sizeof *motion);
+    if (memcmp(before, now, n) == 0)
+        return true;
+    if (!prepare(&w, before, now, error))
+        return false;
+    if (!w.trace)
+        return true;
+    g_autoptr(GPtrArray) points = find_points(&w);
+    for (int part = 1; part <= w.parts.n_parts; part++)
+        if (!register_part(&w, part, g_ptr_array_index(points, part), error))
+            return false;
+    fill_rim(&w);
+    return true;
+}

@@ -1,0 +1,24 @@
+/* Motion from two masks alone: the affine map that lays one outline over the other. */
+#ifndef FLUIDY_GUIDES_REGISTRATION_H
+#define FLUIDY_GUIDES_REGISTRATION_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/**
+ * The motion into `now` of all its pixels, interleaved, px; 0 where coverage is 0.
+ *
+ * Each connected part that overlaps its past is moved as a whole (translation, rotation and, held
+ * back, scale and shears) so that its contour lies where the distance to the contour before is
+ * least; what is left of the normal motion is diffused inward. Motion that an outline does not
+ * show, such as the turning of a disc, stays 0. Parts that moved by more than their size have the
+ * motion of their centre; new ones none. A part for which that finds nothing has the flow of
+ * fl_flow_construct().
+ *
+ * Masks are width * height coverages. Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_registration(const uint8_t *before, const uint8_t *now, int width, int height,
+                     float *motion, GError **error);
+
+#endif

@@ -1,0 +1,224 @@
+#include "render/motion_source.h"
+
+#include "base/alloc.h"
+#include "base/spill.h"
+#include "guides/guides.h"
+#include <string.h>
+
+#define KEPT 6 // frames in memory; regions that are worked on side by side are near each other
+
+/** A frame's outlines with their looks; counted by whoever uses it. */
+typedef struct Frame {
+    int references;
+    int frame; // -1: free
+    int64_t used;
+    FlOutlines *outlines;
+    FlLeafLook *look;
+} Frame;
+
+/** The leaves of two frames, paired. */
+typedef struct Step {
+    int references;
+    int before, now;
+    int64_t used;
+    FlCorrespondence *motions;
+} Step;
+
+struct FlMotionSource {
+    const FlDrawing *drawing;
+    const FlMaskStore *masks;
+    GMutex lock; // of what follows
+    FlSpill *spill;
+    bool *spilled; // by frame
+    int64_t clock;
+    Frame *frame[KEPT];
+    Step *step[KEPT];
+};
+
+static void frame_unref(Frame *frame)
+{
+    if (!frame || --frame->references > 0)
+        return;
+    fl_outlines_free(frame->outlines);
+    g_free(frame->look);
+    g_free(frame);
+}
+
+static void step_unref(Step *step)
+{
+    if (!step || --step->references > 0)
+        return;
+    fl_correspondence_free(step->motions);
+    g_free(step);
+}
+
+FlMotionSource *fl_motion_source_new(const FlDrawing *drawing, const FlMaskStore *masks,
+                                     GError **error)
+{
+    const size_t n = (size_t)fl_drawing_frames(drawing);
+    FlSpill *spill = fl_spill_new(n, error);
+    if (!spill)
+        return NULL;
+    FlMotionSource *source = g_new0(FlMotionSource, 1);
+    source->drawing = drawing, source->masks = masks, source->spill = spill;
+    source->spilled = g_new0(bool, n + 1);
+    g_mutex_init(&source->lock);
+    return source;
+}
+
+void fl_motion_source_free(FlMotionSource *source)
+{
+    if (!source)
+        return;
+    for (int k = 0; k < KEPT; k++) {
+        frame_unref(source->frame[k]);
+        step_unref(source->step[k]);
+    }
+    fl_spill_free(source->spill);
+    g_free(source->spilled);
+    g_mutex_clear(&source->lock);
+    g_free(source);
+}
+
+static FlOutlines *outlines_from_spill(const FlMotionSource *source, int frame, GError **error)
+{
+    const size_t bytes = fl_spill_bytes(source->spill, (size_t)frame);
+    g_autofree uint8_t *data = fl_alloc(bytes, 1, "the outlines of a frame", error);
+    if (!data || !fl_spill_get(source->spill, (size_t)frame, data, bytes, error))
+        return NULL;
+    return fl_outlines_unpack(data, bytes);
+}
+
+static FlOutlines *outlines_from_file(FlMotionSource *source, int frame, GError **error)
+{
+    g_autoptr(FlOutlines) outlines = fl_drawing_outlines(source->drawing, frame, error);
+    if (!outlines)
+        return NULL;
+    size_t bytes = 0;
+    g_autofree uint8_t *data = fl_outlines_pack(outlines, &bytes);
+    if (!fl_spill_put(source->spill, (size_t)frame, data, bytes, error))
+        return NULL;
+    source->spilled[frame] = true;
+    return g_steal_pointer(&outlines);
+}
+
+/** A frame, to be unref'd; under the lock. */
+static Frame *frame_of(FlMotionSource *source, int frame, GError **error)
+{
+    int oldest = 0;
+    for (int k = 0; k < KEPT; k++) {
+        Frame *f = source->frame[k];
+        if (f && f->frame == frame) {
+            f->used = ++source->clock;
+            f->references++;
+            return f;
+        }
+        if (!f || (source->frame[oldest] && f->used < source->frame[oldest]->used))
+            oldest = k;
+    }
+    FlOutlines *outlines = source->spilled[frame] ? outlines_from_spill(source, frame, error)
+                                                  : outlines_from_file(source, frame, error);
+    if (!outlines)
+        return NULL;
+    Frame *f = g_new0(Frame, 1);
+    *f = (Frame){2, frame, ++source->clock, outlines,
+                 fl_drawing_leaf_looks(source->drawing, frame, outlines)};
+    frame_unref(source->frame[oldest]);
+    source->frame[oldest] = f;
+    return f;
+}
+
+/** How the leaves got from one frame to another, to be unref'd; under the lock. */
+static Step *step_of(FlMotionSource *source, const Frame *before, const Frame *now)
+{
+    int oldest = 0;
+    for (int k = 0; k < KEPT; k++) {
+        Step *s = source->step[k];
+        if (s && s->before == before->frame && s->now == now->frame) {
+            s->used = ++source->clock;
+            s->references++;
+            return s;
+        }
+        if (!s || (source->step[oldest] && s->used < source->step[oldest]->used))
+            oldest = k;
+    }
+    const FlTwoFrames frames = {
+        before->outlines, now->outlines, before->look, now->look,
+        MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing))};
+    Step *s = g_new0(Step, 1);
+    *s = (Step){2, before->frame, now->frame, ++source->clock, fl_correspond(&frames)};
+    step_unref(source->step[oldest]);
+    source->step[oldest] = s;
+    return s;
+}
+
+/** What a region's motion is found from. */
+typedef struct Use {
+    Frame *before, *now;
+    Step *step;
+} Use;
+
+static void release(FlMotionSource *source, const Use *use)
+{
+    g_mutex_lock(&source->lock);
+    frame_unref(use->before);
+    frame_unref(use->now);
+    step_unref(use->step);
+    g_mutex_unlock(&source->lock);
+}
+
+static bool acquire(FlMotionSource *source, int before, int now, Use *use, GError **error)
+{
+    g_mutex_lock(&source->lock);
+    use->before = frame_of(source, before, error);
+    use->now = use->before ? frame_of(source, now, error) : NULL;
+    use->step = use->now ? step_of(source, use->before, use->now) : NULL;
+    g_mutex_unlock(&source->lock);
+    return use->step != NULL;
+}
+
+static bool is_there(const uint8_t *mask, size_t n)
+{
+    bool found = false;
+    for (size_t p = 0; p < n && !found; p++)
+        found = mask[p] >= FL_INSIDE;
+    return found;
+}
+
+bool fl_motion_source_get(FlMotionSource *source, int region, int before, int now, FlRect rect,
+                          float *motion, FlMotionShares *shares, GError **error)
+{
+    const size_t n = fl_rect_pixels(rect);
+    FlMotionShares none = {0, 0};
+    shares = shares ? shares : &none;
+    *shares = none;
+    memset(motion, 0, 2 * n * sizeof *motion);
+    if (fl_drawing_same_file(source->drawing, before, now))
+        return true;
+    g_autofree uint8_t *mask_before = fl_alloc(n, 1, "a mask", error);
+    g_autofree uint8_t *mask_now = mask_before ? fl_alloc(n, 1, "a mask", error) : NULL;
+    if (!mask_now || !fl_mask_store_get(source->masks, region, before, rect, mask_before, error) ||
+        !fl_mask_store_get(source->masks, region, now, rect, mask_now, error))
+        return false;
+    if (!is_there(mask_before, n) || !is_there(mask_now, n))
+        return true;
+    Use use = {0};
+    bool good = acquire(source, before, now, &use, error);
+    if (good) {
+        g_autoptr(GArray) leaves =
+            fl_drawing_region_leaves(source->drawing, now, region, use.now->outlines);
+        const FlMovingRegion moving = {
+            rect,
+            MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing)),
+            mask_before,
+            mask_now,
+            use.before->outlines,
+            use.now->outlines,
+            use.step->motions,
+            leaves,
+        };
+        good = fl_motion_of_region(&moving, motion, shares, error);
+    }
+    release(source, &use);
+    return good;
+}

@@ -1,0 +1,31 @@
+/* Where the regions' exact motion comes from: the outlines of the film's frames. */
+#ifndef FLUIDY_RENDER_MOTION_SOURCE_H
+#define FLUIDY_RENDER_MOTION_SOURCE_H
+
+#include "guides/motion.h"
+#include "job/mask_store.h"
+
+/**
+ * A film's outlines: those of the frames asked for last are in memory, those read before in a
+ * temporary file. Any thread may ask.
+ */
+typedef struct FlMotionSource FlMotionSource;
+
+/** film and masks must stay; masks are filled when motion is asked for. FL_ERROR_OUTPUT. */
+FlMotionSource *fl_motion_source_new(const FlDrawing *drawing, const FlMaskStore *masks,
+                                     GError **error);
+void fl_motion_source_free(FlMotionSource *source); // NULL is fine
+
+/**
+ * The motion of a region from the frame painted before to this one, px of the film, interleaved,
+ * 2 * area of rect: see fl_motion_of_region(). The frames need not be neighbours, and in a loop the
+ * first follows the last. All 0 if the region is in one of them only; shares may be NULL.
+ *
+ * Returns: false with an error that names the file, or FL_ERROR_NO_MEMORY.
+ */
+bool fl_motion_source_get(FlMotionSource *source, int region, int before, int now, FlRect rect,
+                          float *motion, FlMotionShares *shares, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMotionSource, fl_motion_source_free)
+
+#endif
