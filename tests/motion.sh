@@ -1,5 +1,5 @@
 #!/bin/bash
-# Paint that is carried along the drawing's motion, as files give it. usage: motion.sh PROGRAM FIXTURES
+# Paint that is carried along the drawing's motion, of its outlines or as files give it. usage: motion.sh PROGRAM FIXTURES
 # shellcheck source-path=SCRIPTDIR source=film.sh
 . "${0%/*}/film.sh"
 
@@ -15,11 +15,11 @@ paint_disc() {
     paint "$@" $disc
 }
 
-paint_disc plain
-paint_disc masks --motion masks && same plain masks
-result $? 'what is not known is not carried'
-paint_disc carried -j 1 --flow $slide && ! same plain carried
-result $? 'a flow in files carries the paint'
+paint_disc masks --motion masks
+paint_disc plain -j 1 && ! same plain masks
+result $? 'the motion of the outlines carries the paint'
+paint_disc carried -j 1 --flow $slide && same plain carried
+result $? 'as the same motion in files does'
 for threads in 2 5; do
     paint_disc threads -y -j $threads --flow $slide && same threads carried
     result $? "$threads threads carry it as one does"
@@ -27,10 +27,10 @@ done
 paint_disc none --flow $slide --carry 0 && paint_disc all --flow $slide --carry 1 &&
     ! same none carried && ! same all carried && ! same none all
 result $? 'the share that is carried makes a difference'
-cmp -s carried/w_0001.png plain/w_0001.png
+cmp -s carried/w_0001.png masks/w_0001.png
 result $? 'but not in a first frame'
 paint_disc everything --motion masks --flow $slide && ! same everything carried &&
-    ! same everything plain
+    ! same everything masks
 result $? 'with the motion of masks a flow is that of everything'
 paint_disc thesis --preset thesis --flow $slide &&
     paint_disc thesis_masks --preset thesis --motion masks --carry 1 --flow $slide &&
@@ -42,8 +42,8 @@ paint_disc held --hold 2 --flow 'twice_%d.flo' &&
 result $? 'held frames are carried as in a film without those between'
 paint_disc loop --loop --flow $slide
 result $? 'a loop is carried over its seam'
-paint_disc draft --detail draft --flow $slide && paint_disc draft_plain --detail draft &&
-    ! same draft draft_plain
+paint_disc draft --detail draft --flow $slide && paint_disc draft_masks --detail draft --motion masks &&
+    ! same draft draft_masks
 result $? 'drafts are carried, too'
 
 paint whole --dump dump --motion masks &&

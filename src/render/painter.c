@@ -66,18 +66,38 @@ static bool painter_motion(void *data, int frame, float *motion, GError **error)
     return flow_in_file(data, frame, NAN, motion, error);
 }
 
-/* Where guides come from: the masks of the painter's rectangle, and its flow files, which with the
- * motion of masks are all that is known of it, else what carries the paint. */
+/* The drawing's own motion into a picture. Nothing comes before the first one, but in a loop. */
+static bool exact_motion(void *data, int frame, float *motion, GError **error)
+{
+    const FlPainter *painter = data;
+    const int n = painter->n_pictures, hold = painter->plan->settings.hold;
+    const int now = frame_of(painter, frame), last = (n - 1) * hold;
+    const int before = now > 0 ? now - hold : last;
+    const size_t values = 2 * fl_rect_pixels(painter->result.rect);
+    if (now == 0 && !painter->plan->loops) {
+        for (size_t k = 0; k < values; k++)
+            motion[k] = NAN;
+        return true;
+    }
+    return fl_motion_source_get(painter->motion, painter->plan->region, before, now,
+                                painter->result.rect, motion, NULL, error);
+}
+
+/* Where guides come from: the masks of the painter's rectangle, and its motion. Flow files are with
+ * the motion of masks all that is known of it, else what carries the paint. */
 static FlGuideSource source_of(FlPainter *painter)
 {
     const bool masks = painter->plan->settings.motion == FL_MOTION_MASKS;
+    const bool files = painter->plan->flow_files != NULL;
     const FlRect rect = painter->result.rect;
     return (FlGuideSource){.width = rect.width,
                            .height = rect.height,
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
                            .mask = painter_mask,
-                           .flow = painter->plan->flow_files && masks ? painter_flow : NULL,
-                           .motion = painter->plan->flow_files && !masks ? painter_motion : NULL,
+                           .flow = files && masks ? painter_flow : NULL,
+                           .motion = masks   ? NULL
+                                     : files ? painter_motion
+                                             : exact_motion,
                            .data = painter,
                            .keeps_flow = painter->plan->keeps_flow};
 }

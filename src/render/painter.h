@@ -5,12 +5,14 @@
 #include "guides/guides.h"
 #include "job/plan.h"
 #include "render/loop.h"
+#include "render/motion_source.h"
 
 /** One region that is painted. */
 typedef struct FlPainter {
     const FlRegionPlan *plan; // borrowed, as masks and drawing are
     const FlMaskStore *masks;
     const FlDrawing *drawing;
+    FlMotionSource *motion;        // borrowed; NULL: nobody asks for the drawing's own motion
     int frame_width, frame_height; // of the frames, which flow files have
     FlPaintedRegion result;        // its picture is owned
     FlLoop loop;

@@ -53,13 +53,33 @@ static bool make_scratch(FlPainters *painters, GError **error)
     return true;
 }
 
+/* Whether a region is carried along the drawing's own motion. */
+static bool wants_motion(const FlRegionPlan *region)
+{
+    return region->settings.motion == FL_MOTION_AUTO && !region->flow_files && !region->paint_files;
+}
+
+static bool open_motion(FlPainters *painters, GError **error)
+{
+    const FlPlan *plan = painters->plan;
+    bool wanted = false;
+    for (int p = 0; p < plan->n_painted; p++)
+        wanted = wanted || wants_motion(&plan->painted[p]);
+    if (wanted && !(painters->motion = fl_motion_source_new(plan->drawing, plan->masks, error)))
+        return false;
+    for (int p = 0; p < painters->n; p++)
+        painters->painter[p].motion = painters->motion;
+    return true;
+}
+
 bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error)
 {
     *painters = (FlPainters){.plan = plan, .n = plan->n_painted};
     painters->painter = g_new0(FlPainter, MAX(painters->n, 1));
     for (int p = 0; p < painters->n; p++)
         fl_painter_init(&painters->painter[p], plan, &plan->painted[p]);
-    if (!check_memory(painters, error) || !make_guides(painters, error))
+    if (!check_memory(painters, error) || !open_motion(painters, error) ||
+        !make_guides(painters, error))
         return false;
     for (int p = 0; p < painters->n && !plan->options.merge; p++)
         fl_synth_measure(painters->painter[p].synth, plan->options.stats || plan->options.report);
@@ -72,6 +92,7 @@ void fl_painters_clear(FlPainters *painters)
         fl_painter_clear(&painters->painter[p]);
     for (int k = 0; k < painters->n_scratch; k++)
         fl_guides_clear(&painters->scratch[k]);
+    fl_motion_source_free(painters->motion);
     g_free(painters->painter);
     g_free(painters->scratch);
     *painters = (FlPainters){0};

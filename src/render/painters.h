@@ -7,8 +7,9 @@
 typedef struct FlPainters {
     const FlPlan *plan; // borrowed
     int n;
-    FlPainter *painter; // one for each of plan->painted
-    FlGuides *scratch;  // one for each thread
+    FlPainter *painter;     // one for each of plan->painted
+    FlMotionSource *motion; // NULL: nobody asks for it
+    FlGuides *scratch;      // one for each thread
     int n_scratch;
 } FlPainters;
 
