@@ -112,13 +112,13 @@ table() {
 2|--blend: “sgrb” is not srgb or linear; did you mean “srgb”?|good --blend sgrb
 2|--output: the value is missing|good --output=
 2|--region: the value is missing|good --region=
-2|there is no region “red”; there are: red-aa3311|good --region red
+2|no region “red”; the regions are: red-aa3311|good --region red
 2|frames "3-1": expected numbers and ranges *|good -f 3-1
 2|frames "99999999999": expected *|good -f 99999999999
 1|good/a_1.svg: no file for frame 7; use --missing *|good -f 1,7
 2|canvas '0x0': expected WxH *|good --canvas 0x0
 2|canvas '9x9+1': expected WxH or WxH+X+Y, *|good --canvas 9x9+1
-2|there is no limit “x”*there are: drawing, elements, *|good --limit x=1
+2|no limit “x”*the limits are: drawing, elements, *|good --limit x=1
 2|background 'blue': expected #rrggbb, none, *|good -b blue
 2|film.mp4: H.264 has no transparency; *|good -b clear.png -o film.mp4
 2|film.mov: a film cannot be resumed without its frames; *|good --resume --no-frames -o film.mov

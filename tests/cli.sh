@@ -71,7 +71,7 @@ refuses 'an output of no known kind lists the kinds' 2 'w_%d.bmp: *' whole -o w_
 refuses 'an unknown style gets a suggestion' 1 'no style “0l” *did you mean “0?”?' whole -s 0l
 refuses 'no style asks for one' 2 '*--style*' whole
 refuses 'a style that is not there is named' 1 './nowhere: *' whole -s ./nowhere
-refuses 'an unknown region lists the regions' 2 'there is no region “hare”; there are: *' whole --region hare $look
+refuses 'an unknown region lists the regions' 2 'no region “hare”; the regions are: *' whole --region hare $look
 refuses 'a background that is not there is named' 1 'paper.png: *' whole -b paper.png $look
 refuses 'flow that is not there is named' 1 '*flow_*.flo: *' whole --flow flow_%04d.flo $look
 mkdir locked && chmod 0 locked

@@ -66,7 +66,7 @@ paint --limit elements=0
 [ $? = 2 ] && says 'limit elements: “0” is not an integer from 1 to 1000000'
 result $? 'a limit out of range is told the range'
 paint --limit elemnts=9
-[ $? = 2 ] && says 'there is no limit “elemnts”; did you mean “elements”?'
+[ $? = 2 ] && says 'no limit “elemnts”; did you mean “elements”?'
 result $? 'a mistyped limit gets a suggestion'
 
 deep() { # deep N: N groups in each other

@@ -7,19 +7,19 @@
 G_BEGIN_DECLS
 
 /**
- * Paints the same frames in each of the NULL-terminated list of styles, and puts them on one sheet:
- * a row per style below one of the drawing, a column per frame.
+ * Paints the same frames in each style of a NULL-terminated list and puts them on one sheet: the
+ * drawing in the first row, then a row per style; a column per frame.
  *
- * The sheet is options->output, a PNG file (NULL: "fluidy/NAME_styles.png"). Of the options, all
- * that say what is read and how it is painted and run count; frames: NULL means three in the
- * middle. options->note is told where the sheet is. Returns: false with an error of FL_ERROR.
+ * The sheet is options->output, a PNG file (NULL: "fluidy/NAME_styles.png"). Uses the options
+ * about reading, painting and running; frames: NULL means three in the middle. options->note
+ * receives the path of the sheet. Returns: false with an error of FL_ERROR.
  */
 FL_API bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles,
                               GError **error);
 
 /**
- * Draws a sheet of all styles that fl_style_list() finds, a few frames of each, as a PNG file.
- * Styles that cannot be read are named with what is wrong. FL_ERROR_OUTPUT, FL_ERROR_EXISTS, …
+ * Draws a sheet of all styles that fl_style_list() finds, a few frames of each, as a PNG file. The
+ * row of a style that cannot be read shows the error. FL_ERROR_OUTPUT, FL_ERROR_EXISTS, …
  */
 FL_API bool fl_style_sheet(const char *path, bool overwrite, GError **error);
 

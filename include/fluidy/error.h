@@ -30,8 +30,8 @@ typedef enum FlError {
     FL_ERROR_OUTPUT,      /**< a file cannot be written */
     FL_ERROR_EXISTS,      /**< a file that is not ours would be overwritten */
     FL_ERROR_LIMIT,       /**< a file asks for more than the limits allow */
-    FL_ERROR_NO_MEMORY,   /**< memory could not be had */
-    FL_ERROR_CHANGED,     /**< the state of an earlier run does not fit this one */
+    FL_ERROR_NO_MEMORY,   /**< out of memory */
+    FL_ERROR_CHANGED,     /**< the saved state of an earlier run does not match this one */
     FL_ERROR_INTERRUPTED, /**< stopped on request; run again to resume: exit status 75 */
 } FlError;
 

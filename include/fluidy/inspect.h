@@ -1,4 +1,4 @@
-/* What a drawing is made of, before it is painted. */
+/* The regions of a drawing, as lists and maps; nothing is painted. */
 #ifndef FLUIDY_INSPECT_H
 #define FLUIDY_INSPECT_H
 
@@ -12,18 +12,18 @@ typedef enum FlListing {
 } FlListing;
 
 /**
- * The regions of a drawing as text. Of the options, those under "What is read" count, and the
- * config, the size and the warning callback.
+ * The regions of a drawing as text. Uses the options under "What is read", the config, the size
+ * and the warning callback.
  *
  * Returns: to be freed with g_free(); NULL with an error of FL_ERROR.
  */
 FL_API char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError **error);
 
 /**
- * Writes a map of every frame to options->output (NULL: "fluidy/NAME_map_%04d.png"): every region
- * that is painted in a colour of its own, the others grey, with a legend at the right.
+ * Writes a map of every frame to options->output (NULL: "fluidy/NAME_map_%04d.png"): each painted
+ * region in a colour of its own, the others grey, with a legend at the right.
  *
- * options->note is told where the maps are. Returns: false with an error of FL_ERROR.
+ * options->note receives the path of the maps. Returns: false with an error of FL_ERROR.
  */
 FL_API bool fl_map_regions(const FlRenderOptions *options, GError **error);
 

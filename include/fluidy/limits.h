@@ -1,4 +1,4 @@
-/* How much a file may ask for. */
+/* Limits on what an input file may ask for. */
 #ifndef FLUIDY_LIMITS_H
 #define FLUIDY_LIMITS_H
 
@@ -10,9 +10,9 @@ G_BEGIN_DECLS
 
 /**
  * Changes a limit for the whole process, such as "elements=500000"; see fluidy-svg(1) for their
- * names. To be called before anything else: it is not for several threads.
+ * names. Call it before anything else, from one thread.
  *
- * Returns: false with FL_ERROR_USAGE set: no such limit, or no whole number in its range.
+ * Returns: false with FL_ERROR_USAGE set: no such limit, or not an integer in its range.
  */
 FL_API bool fl_limit_set(const char *text, GError **error);
 

@@ -11,15 +11,15 @@ G_BEGIN_DECLS
 
 /** What to do about a gap in the frame numbers. */
 typedef enum FlMissing {
-    FL_MISSING_UNSET, /**< as the config says, else as FL_MISSING_ERROR */
+    FL_MISSING_UNSET, /**< the config's, else FL_MISSING_ERROR */
     FL_MISSING_ERROR, /**< FL_ERROR_INPUT, which lists them */
-    FL_MISSING_HOLD,  /**< the frame before stands still */
+    FL_MISSING_HOLD,  /**< the frame before is repeated */
     FL_MISSING_SKIP,  /**< no output for them */
 } FlMissing;
 
 /** What makes leaves of different frames one region. */
 typedef enum FlRegionKey {
-    FL_KEY_UNSET, /**< as the config says, else as FL_KEY_AUTO */
+    FL_KEY_UNSET, /**< the config's, else FL_KEY_AUTO */
     FL_KEY_AUTO,  /**< the layer label without frame numbers, and the paint; else by overlap */
     FL_KEY_FILL,  /**< the computed paint alone */
     FL_KEY_ID,    /**< the leaf's id, without the frame's number */
@@ -28,26 +28,26 @@ typedef enum FlRegionKey {
     FL_KEY_TREE,  /**< the place in the document tree */
 } FlRegionKey;
 
-/** What becomes of the strokes of the drawing. */
+/** How the strokes of the drawing are rendered. */
 typedef enum FlStrokes {
-    FL_STROKES_UNSET, /**< as the config says, else as FL_STROKES_KEEP */
+    FL_STROKES_UNSET, /**< the config's, else FL_STROKES_KEEP */
     FL_STROKES_KEEP,  /**< drawn over the paint; but painted where the drawing is mostly strokes,
                            and those without a fill that are 3 % of the page's side or wider */
     FL_STROKES_PAINT, /**< painted as regions */
     FL_STROKES_DROP,  /**< left out */
 } FlStrokes;
 
-/** Whether frames are put where they belong. */
+/** Whether frames that an exporter has shifted are registered again. */
 typedef enum FlRegistration {
-    FL_REGISTRATION_UNSET, /**< as the config says, else as FL_REGISTRATION_OFF */
+    FL_REGISTRATION_UNSET, /**< the config's, else FL_REGISTRATION_OFF */
     FL_REGISTRATION_OFF,
-    FL_REGISTRATION_ON, /**< frames were moved so that each drawing begins at 0,0, as OpenToonz
-                           does: moved back so that most of each holds still */
+    FL_REGISTRATION_ON, /**< for exporters that shift each frame to begin at 0,0, as OpenToonz
+                           does: each is moved back so that most of it stands still */
 } FlRegistration;
 
-/** In which light layers are blended. */
+/** The colour space in which layers are blended. */
 typedef enum FlBlendSpace {
-    FL_BLEND_UNSET, /**< as the config says, else as FL_BLEND_SRGB */
+    FL_BLEND_UNSET, /**< the config's, else FL_BLEND_SRGB */
     FL_BLEND_SRGB,  /**< as SVG does it */
     FL_BLEND_LINEAR,
 } FlBlendSpace;
@@ -55,23 +55,23 @@ typedef enum FlBlendSpace {
 /** What to do about output files that exist. */
 typedef enum FlOverwrite {
     FL_OVERWRITE_REFUSE, /**< FL_ERROR_EXISTS before anything is painted */
-    FL_OVERWRITE_YES,    /**< replace them, each at the moment its successor is whole */
-    FL_OVERWRITE_KEEP,   /**< leave them; write only those that are not there */
+    FL_OVERWRITE_YES,    /**< replace each one, once the new file is complete */
+    FL_OVERWRITE_KEEP,   /**< keep them; write only those that are missing */
 } FlOverwrite;
 
-/** What a region is painted with; everything not set is as the config says, else the default. */
+/** A setting of a region, which overrides the config; what neither sets is the default. */
 typedef struct FlSetting {
     const char *region; /**< a region's name; NULL: every region */
     const char *name;   /**< a key of a [region] section: "style", "tint", "w-temp", … */
     const char *value;  /**< as in a config file; paths are relative to the working directory */
 } FlSetting;
 
-/** How far a render is. */
+/** The progress of a render. */
 typedef struct FlProgress {
     const char *stage;  /**< "read", "guides", "paint", "compose"; static */
     const char *region; /**< the region's name; NULL: all of them */
     int region_index;   /**< from 0; -1: all of them */
-    int n_regions;      /**< that are painted; 0: not known yet */
+    int n_regions;      /**< painted regions; 0: not known yet */
     int frame;          /**< the frame's number, as in its file name */
     int done, total;    /**< frames of this stage and region; total 0: not known yet */
     double share;       /**< of the whole render, 0..1 */
@@ -81,8 +81,8 @@ typedef struct FlProgress {
 } FlProgress;
 
 /**
- * Everything a render is told. A zeroed struct asks for all defaults; inputs are required.
- * What is not said here is as the config says; a negative gap or feather says none.
+ * The options of a render. A zeroed struct means all defaults; inputs are required. The config
+ * gives what is not set here; a negative gap or feather means none.
  *
  * Strings belong to the caller and must stay until fl_render() returns. Paths and patterns are
  * relative to the working directory. A pattern has one frame number, written %d, %04d or ####.
@@ -103,7 +103,7 @@ typedef struct FlRenderOptions {
 
     /* How it is painted. */
     const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: none */
-    const FlSetting *settings; /**< win over the config's; in this order, the last wins */
+    const FlSetting *settings; /**< override the config's; of several, the last wins */
     size_t n_settings;
     const char *only_region; /**< paint this one alone, over nothing; NULL: all */
     bool loop;               /**< the end leads into the beginning, for films that are repeated */
@@ -113,11 +113,11 @@ typedef struct FlRenderOptions {
     const char *output; /**< pattern; NULL: the config's, else "fluidy/NAME_%04d.png", NAME from the
                            input */
     const char *format; /**< "png", "png16", "exr", "mov", …; NULL: as the output's name ends */
-    bool no_frames;     /**< of an output that is a film to play, not its frames as PNG beside it */
+    bool no_frames;     /**< if the output is a film, do not write its frames as PNG beside it */
     const char *layers; /**< pattern with {region}: one RGBA file per region too; NULL: none */
     const char
         *paint; /**< the same for the paint itself, before colours and stacking; NULL: none */
-    bool merge; /**< paint nothing: take the files of `paint`, which other runs have written */
+    bool merge; /**< paint nothing: compose the files of `paint` that other runs have written */
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
     int width, height;      /**< px; 0: from the other, by the drawing's aspect; both 0: scale */
     double scale;           /**< px of output per px of the drawing; 0: 1 */
@@ -127,16 +127,16 @@ typedef struct FlRenderOptions {
     FlBlendSpace blend;
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
     FlOverwrite overwrite;
-    /** Go on with an interrupted render although overwrite is FL_OVERWRITE_YES. Else that starts
-     *  anew, and everything else goes on by itself. */
+    /** Resume an interrupted render even with FL_OVERWRITE_YES, which otherwise starts anew. The
+     *  others always resume. */
     bool resume;
     const char *stats;  /**< JSON lines about every frame, region and level; NULL: none */
-    const char *report; /**< a folder for a page to look at, index.html; NULL: none */
+    const char *report; /**< a folder for the HTML report, index.html; NULL: none */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: none */
 
     /* How it runs. */
-    bool dry_run; /**< decide and check everything, tell it, and paint nothing */
+    bool dry_run; /**< check everything, estimate the time, write nothing */
     int threads;  /**< 0: one per processor. The bytes do not depend on it */
     /** Called after every frame of a stage, from the calling thread; false stops the render with
      *  FL_ERROR_INTERRUPTED. NULL: nothing is called. */
@@ -148,18 +148,17 @@ typedef struct FlRenderOptions {
     void (*warning)(const char *message, void *data);
     /** Called with one line about what was done, such as where the frames are. */
     void (*note)(const char *message, void *data);
-    bool verbose; /**< notes about decisions as well: which style, size and flow a region got */
+    bool verbose; /**< notes about decisions too, such as the style of a region */
     void *data;   /**< handed to progress, stopped, warning and note */
 } FlRenderOptions;
 
 /**
- * Renders. Files appear whole, under their final name, one after the other.
+ * Renders. Each file appears under its name when it is complete.
  *
- * While frames are painted, a hidden file beside them, .NAME.state, holds what the next frame
- * needs. It goes when the render is complete. With it, a render that was stopped, or killed, goes
- * on where it was when it is asked for again, and paints the same bytes as one that was not. A
- * film without its frames starts anew. If anything that decides the bytes has changed meanwhile,
- * that is FL_ERROR_CHANGED.
+ * While frames are painted, a hidden file beside them, .NAME.state, holds the state that the next
+ * frame needs; it is removed when the render is complete. The same call resumes a render that was
+ * stopped or killed, and gives the same bytes as an uninterrupted one. A film without its frames
+ * starts anew. FL_ERROR_CHANGED if anything that decides the bytes has changed meanwhile.
  *
  * Returns: false with an error of FL_ERROR; the frames written so far stay.
  */

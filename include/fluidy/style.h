@@ -11,10 +11,10 @@ G_BEGIN_DECLS
 
 /** A style that was found. */
 typedef struct FlStyleEntry {
-    char *name;  /**< the folder's name, by which it is asked for */
+    char *name;  /**< the folder's name, which selects it */
     char *path;  /**< the folder */
     char *title; /**< what style.ini calls it; NULL: nothing */
-    bool hidden; /**< another one of the same name is found before it */
+    bool hidden; /**< a style of the same name is found before it */
 } FlStyleEntry;
 
 /**
@@ -37,10 +37,10 @@ typedef struct FlStyleImport {
     int step;        /**< take every step-th of them, >= 1 */
     int crop[4];     /**< x, y, width, height in px of the source; width 0: everything */
     double scale;    /**< 0.01 to 4; 0: as it is, or made smaller to 640 px */
-    bool flatten;    /**< take uneven and changing light out */
-    bool stabilise;  /**< take small camera shake out */
+    bool flatten;    /**< remove uneven and changing light */
+    bool stabilise;  /**< remove small camera shake */
     bool whole;      /**< the paint fills the whole frame: no paper is looked for */
-    bool overwrite;  /**< replace the style that is in `folder` */
+    bool overwrite;  /**< replace a style in `folder` */
     const char *name, *author, *licence; /**< for style.ini, or NULL */
     const char *paper;                   /**< "#rrggbb"; NULL: found in the recording */
     double border_px;                    /**< width of the border; 0: found in the recording */
@@ -53,10 +53,10 @@ typedef struct FlStyleImport {
     }
 
 /**
- * Makes a style of a recording. Videos, and pictures other than PNG, are read through the `ffmpeg`
- * program. The folder appears whole or not at all.
+ * Makes a style from a recording. Videos, and pictures other than PNG, are read through the
+ * `ffmpeg` program. The folder appears whole or not at all.
  *
- * notes, if not NULL, gets lines (char *) about what was found out, done and is doubtful.
+ * notes, if not NULL, receives lines (char *): what was found and done, and warnings.
  *
  * Returns: false with FL_ERROR_INPUT, _LIMIT, _USAGE, _EXISTS or _OUTPUT set.
  */
@@ -65,13 +65,12 @@ FL_API bool fl_style_import(const FlStyleImport *import, GPtrArray *notes, GErro
 /** What fl_style_check() found. */
 typedef struct FlStyleReport {
     char *text;     /**< the report, lines of plain text */
-    int n_problems; /**< of them, those a painter should look into */
+    int n_problems; /**< lines that begin with "problem" */
 } FlStyleReport;
 
 /**
- * Looks at a style, given by name or folder, and says what was understood: sizes, paper, masks,
- * motion, texture, and problems. Draws it all on a picture sheet if `sheet`, a PNG file, is not
- * NULL.
+ * Measures a style, given by name or folder, and reports sizes, paper, masks, motion, texture and
+ * problems. Draws them on a sheet of pictures too if `sheet`, a PNG file, is not NULL.
  *
  * Returns: to be freed with fl_style_report_free(); NULL with FL_ERROR_STYLE, _EXISTS or _OUTPUT
  * set.

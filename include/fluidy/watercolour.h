@@ -11,11 +11,11 @@ G_BEGIN_DECLS
 typedef void (*FlWatercolourProgress)(int frame, int n_frames, void *data);
 
 /**
- * Runs a recipe and writes what it paints as a style: style.ini, frames/0001.png …, masks/0001.png
- * ….
+ * Simulates a recipe and writes the frames as a style: style.ini, frames/0001.png …,
+ * masks/0001.png ….
  *
- * The folder is made when it does not exist; what else it holds stays. All is written when the last
- * frame is painted, or nothing. The same recipe gives the same bytes on any thread count. progress
+ * Makes the folder if it does not exist; other files in it stay. Writes everything after the last
+ * frame, or nothing. The same recipe gives the same bytes on any thread count. progress
  * may be NULL.
  *
  * Returns: false with FL_ERROR_INPUT (the recipe; its file and line are named), FL_ERROR_EXISTS if

@@ -55,8 +55,8 @@ static inline void *fl_alloc_huge(size_t count, size_t element_bytes, const char
 }
 
 /**
- * The same with anything in it, for a table of which only a part is used at a time: what is not
- * written to takes no memory, and what is no longer needed is given back by fl_release().
+ * The same with undefined contents, for a table of which only a part is used at a time: pages take
+ * memory when they are first written to, until fl_release().
  */
 static inline void *fl_alloc_lazy(size_t count, size_t element_bytes, const char *what,
                                   GError **error)
@@ -71,7 +71,7 @@ static inline void *fl_alloc_lazy(size_t count, size_t element_bytes, const char
     return memory;
 }
 
-/** Gives the whole pages of a part of such a table back; what was in the part is lost. */
+/** Returns the whole pages of a part of such a table to the system; the part becomes undefined. */
 static inline void fl_release(void *part, size_t bytes)
 {
 #ifdef MADV_DONTNEED

@@ -16,10 +16,10 @@ static double soft_light(double b, double s)
     return s <= 0.5 ? b - (1 - 2 * s) * b * (1 - b) : b + (2 * s - 1) * (root - b);
 }
 
-/** The modes that mix each channel by itself: backdrop b, source s. */
-static double mix_channel(FlBlendMode mix, double b, double s)
+/* The separable modes: backdrop b, source s. */
+static double blend_channel(FlBlendMode mode, double b, double s)
 {
-    switch (mix) {
+    switch (mode) {
     case FL_BLEND_MODE_MULTIPLY:
         return b * s;
     case FL_BLEND_MODE_SCREEN:
@@ -57,7 +57,7 @@ static double saturation(const double c[3])
     return MAX(c[0], MAX(c[1], c[2])) - MIN(c[0], MIN(c[1], c[2]));
 }
 
-/** Moves a colour to a luminosity; where channels leave 0..1 towards its grey. */
+/* Sets the luminosity; channels beyond 0..1 are pulled towards the grey of it. */
 static void set_luminosity(double c[3], double l)
 {
     const double shift = l - luminosity(c);
@@ -79,34 +79,35 @@ static void set_saturation(double c[3], double s)
         c[k] = range > 0 ? (c[k] - least) * s / range : 0;
 }
 
-/** The modes that take hue, saturation and luminosity from one or the other; out in s. */
-static void mix_hsl(FlBlendMode mix, const double b[3], double s[3])
+/* The non-separable modes; the result replaces s. */
+static void blend_hsl(FlBlendMode mode, const double b[3], double s[3])
 {
     const double own = luminosity(s);
-    if (mix == FL_BLEND_MODE_HUE)
+    if (mode == FL_BLEND_MODE_HUE)
         set_saturation(s, saturation(b));
-    if (mix == FL_BLEND_MODE_SATURATION || mix == FL_BLEND_MODE_LUMINOSITY) {
+    if (mode == FL_BLEND_MODE_SATURATION || mode == FL_BLEND_MODE_LUMINOSITY) {
         const double wanted = saturation(s);
         for (int k = 0; k < 3; k++)
             s[k] = b[k];
-        if (mix == FL_BLEND_MODE_SATURATION)
+        if (mode == FL_BLEND_MODE_SATURATION)
             set_saturation(s, wanted);
     }
-    set_luminosity(s, mix == FL_BLEND_MODE_LUMINOSITY ? own : luminosity(b));
+    set_luminosity(s, mode == FL_BLEND_MODE_LUMINOSITY ? own : luminosity(b));
 }
 
-void fl_blend_mode_apply(FlBlendMode mix, const uint8_t below[3], int drawn, uint8_t rgb[3])
+void fl_blend_mode_apply(FlBlendMode mode, const uint8_t backdrop[3], int backdrop_alpha,
+                         uint8_t rgb[3])
 {
     double b[3], s[3];
     for (int k = 0; k < 3; k++)
-        b[k] = below[k] / 255.0, s[k] = rgb[k] / 255.0;
-    if (mix >= FL_BLEND_MODE_HUE)
-        mix_hsl(mix, b, s);
+        b[k] = backdrop[k] / 255.0, s[k] = rgb[k] / 255.0;
+    if (mode >= FL_BLEND_MODE_HUE)
+        blend_hsl(mode, b, s);
     else
         for (int k = 0; k < 3; k++)
-            s[k] = mix_channel(mix, b[k], s[k]);
+            s[k] = blend_channel(mode, b[k], s[k]);
     for (int k = 0; k < 3; k++) {
-        const double mixed = rgb[k] + (255 * s[k] - rgb[k]) * drawn / 255;
-        rgb[k] = (uint8_t)CLAMP(mixed + 0.5, 0, 255);
+        const double blended = rgb[k] + (255 * s[k] - rgb[k]) * backdrop_alpha / 255;
+        rgb[k] = (uint8_t)CLAMP(blended + 0.5, 0, 255);
     }
 }

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/** How a colour is mixed with what lies below it. */
+/** How a colour is blended with the backdrop. */
 typedef enum FlBlendMode {
     FL_BLEND_MODE_OVER, // "normal"
     FL_BLEND_MODE_MULTIPLY,
@@ -26,10 +26,11 @@ typedef enum FlBlendMode {
 } FlBlendMode;
 
 /**
- * The colour which, laid over sRGB `below` as usual, shows `rgb` mixed with it: changes rgb.
+ * Replaces the sRGB colour rgb, so that normal compositing over the backdrop shows the blend mode.
  *
- * drawn is the opacity of what lies below, 0..255: where nothing does, every colour stays.
+ * backdrop_alpha is 0..255; rgb stays as it is where that is 0.
  */
-void fl_blend_mode_apply(FlBlendMode mix, const uint8_t below[3], int drawn, uint8_t rgb[3]);
+void fl_blend_mode_apply(FlBlendMode mode, const uint8_t backdrop[3], int backdrop_alpha,
+                         uint8_t rgb[3]);
 
 #endif

@@ -1,10 +1,10 @@
-/* Numbers as colours. */
+/* Colour maps for numbers and vectors. */
 #ifndef FLUIDY_BASE_COLOUR_MAP_H
 #define FLUIDY_BASE_COLOUR_MAP_H
 
 #include <stdint.h>
 
-/** 0 … 1 from dark violet over green to yellow, of even steps in lightness; beyond is cut. */
+/** 0 … 1 from dark violet over green to yellow, in even steps of lightness; clamped. */
 void fl_colour_map(float value, uint8_t rgb[3]);
 
 /** A vector as a colour: its direction is the hue, its length as a share of `most` the saturation.

@@ -6,41 +6,41 @@
 
 #include <lz4frame.h>
 
-static const LZ4F_preferences_t how = {
+static const LZ4F_preferences_t preferences = {
     .frameInfo = {.contentChecksumFlag = LZ4F_contentChecksumEnabled},
     .autoFlush = 1,
 };
 
 size_t fl_compress_bound(const FlSpan *parts, int n)
 {
-    size_t room = LZ4F_HEADER_SIZE_MAX + LZ4F_compressBound(0, &how);
+    size_t capacity = LZ4F_HEADER_SIZE_MAX + LZ4F_compressBound(0, &preferences);
     for (int k = 0; k < n; k++)
-        room += LZ4F_compressBound(parts[k].bytes, &how);
-    return room;
+        capacity += LZ4F_compressBound(parts[k].bytes, &preferences);
+    return capacity;
 }
 
-size_t fl_compress(const FlSpan *parts, int n, uint8_t *to, size_t room)
+size_t fl_compress(const FlSpan *parts, int n, uint8_t *to, size_t capacity)
 {
     LZ4F_cctx *context = NULL;
     if (LZ4F_isError(LZ4F_createCompressionContext(&context, LZ4F_VERSION)))
         return 0;
-    size_t step = LZ4F_compressBegin(context, to, room, &how), used = step;
+    size_t step = LZ4F_compressBegin(context, to, capacity, &preferences), used = step;
     for (int k = 0; k < n && !LZ4F_isError(step); k++) {
-        step = LZ4F_compressUpdate(context, to + used, room - used, parts[k].data, parts[k].bytes,
-                                   NULL);
+        step = LZ4F_compressUpdate(context, to + used, capacity - used, parts[k].data,
+                                   parts[k].bytes, NULL);
         used += step;
     }
     if (!LZ4F_isError(step)) {
-        step = LZ4F_compressEnd(context, to + used, room - used, NULL);
+        step = LZ4F_compressEnd(context, to + used, capacity - used, NULL);
         used += step;
     }
     LZ4F_freeCompressionContext(context);
     return LZ4F_isError(step) ? 0 : used;
 }
 
-/** Fills a part from *from on, which moves on. Returns: whether it is whole. */
-static bool unpack_part(LZ4F_dctx *context, const uint8_t **from, const uint8_t *end, FlSpan part,
-                        size_t *left)
+/* Fills a part and advances *from. Returns: whether the part is full. */
+static bool fill_part(LZ4F_dctx *context, const uint8_t **from, const uint8_t *end, FlSpan part,
+                      size_t *left)
 {
     uint8_t *to = part.data;
     size_t wanted = part.bytes;
@@ -63,8 +63,8 @@ bool fl_decompress(const uint8_t *from, size_t bytes, const FlSpan *parts, int n
     size_t left = 1; // what the frame still needs; 0: it is complete
     bool whole = true;
     for (int k = 0; k < n && whole; k++)
-        whole = unpack_part(context, &from, end, parts[k], &left);
-    uint8_t more; // than the parts have room for
+        whole = fill_part(context, &from, end, parts[k], &left);
+    uint8_t more; // data that no part has a place for: damaged
     while (whole && left > 0 && from < end) {
         size_t out = 1, in = (size_t)(end - from);
         left = LZ4F_decompress(context, &more, &out, from, &in, NULL);

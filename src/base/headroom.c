@@ -6,10 +6,10 @@
 #include <sys/resource.h>
 
 #define MIB ((size_t)1 << 20)
-#define OF_LIBRARIES (24 * MIB) // measured: a drawing is read with 16
-#define OF_SMALL_THINGS (12 * MIB)
+#define LIBRARY_BYTES (24 * MIB) // measured: reading a drawing takes 16
+#define SMALL_BYTES (12 * MIB)
 
-static size_t of_stacks(void)
+static size_t stack_bytes(void)
 {
     size_t stack = 8 * MIB;
     const size_t others = (size_t)fl_schedule_threads() - 1;
@@ -21,27 +21,27 @@ static size_t of_stacks(void)
     return others * stack;
 }
 
-static bool has_room(size_t bytes)
+static bool can_map(size_t bytes)
 {
-    void *room = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    return room != MAP_FAILED && munmap(room, bytes) == 0;
+    void *memory = mmap(NULL, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    return memory != MAP_FAILED && munmap(memory, bytes) == 0;
 }
 
 bool fl_headroom_left(void)
 {
     struct rlimit limit;
     return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
-           has_room(OF_SMALL_THINGS);
+           can_map(SMALL_BYTES);
 }
 
 bool fl_headroom_check(GError **error)
 {
-    const size_t bytes = OF_LIBRARIES + of_stacks();
-    if (has_room(bytes))
+    const size_t bytes = LIBRARY_BYTES + stack_bytes();
+    if (can_map(bytes))
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory to begin: expected room for %zu MiB more; fewer threads or a "
-                "larger limit (ulimit -v) give it",
+                "not enough memory to start: %zu MiB more are needed; use fewer threads or raise "
+                "the limit (ulimit -v)",
                 bytes / MIB);
     return false;
 }

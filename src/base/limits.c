@@ -30,8 +30,8 @@ static bool no_such_limit(const char *name, GError **error)
         names[i] = limits[i].name;
     g_autofree char *list = g_strjoinv(", ", (char **)names);
     g_autofree char *hint = fl_did_you_mean(name, names);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no limit “%s”%s; there are: %s", name,
-                hint, list);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "no limit “%s”%s; the limits are: %s", name, hint,
+                list);
     return false;
 }
 

@@ -1,4 +1,4 @@
-/* How much a file may ask for, as the stages ask: see limits.def. */
+/* Limits on what an input file may ask for: the checks. The table is limits.def. */
 #ifndef FLUIDY_BASE_LIMITS_H
 #define FLUIDY_BASE_LIMITS_H
 
@@ -11,12 +11,12 @@ typedef enum FlLimit {
     FL_N_LIMITS
 } FlLimit;
 
-/** The limit that holds, in the unit of limits.def. */
+/** The current limit, in the unit of limits.def. */
 int64_t fl_limit(FlLimit limit);
 
 /**
- * Whether `wanted`, in the unit of limits.def, is within the limit. `where` names the file or what
- * else asks for it, and starts the message.
+ * Whether `wanted`, in the unit of limits.def, is within the limit. `where`, usually a file's name,
+ * starts the message.
  *
  * Returns: false with FL_ERROR_LIMIT set, which says how to raise the limit.
  */

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A number of MiB in a file of bytes; "max", and whatever else is no number, is no limit. */
+/* MiB, from a file that has bytes; "max", and whatever else is not a number, is unlimited. */
 static int64_t read_mib(const char *path)
 {
     g_autofree char *text = NULL;
@@ -15,8 +15,8 @@ static int64_t read_mib(const char *path)
     return INT64_MAX;
 }
 
-/* The least of a group and of those that it is in. A container may be told the path of its group
- * from outside, but see the group as the root. Cuts `group` down. */
+/* The least limit of a group and its ancestors. A container may see its group's path as it is
+ * outside, but the group itself as the root. Shortens `group`. */
 static int64_t least_on_path(const char *mount, char *group, const char *name)
 {
     int64_t least = INT64_MAX;
@@ -28,7 +28,7 @@ static int64_t least_on_path(const char *mount, char *group, const char *name)
     return least;
 }
 
-/* Of a line "number:controllers:/group"; version 2 has no controllers there. */
+/* The limit of a line "number:controllers:/group"; version 2 has no controllers there. */
 static int64_t group_mib(const char *root, const char *line)
 {
     g_auto(GStrv) field = g_strsplit(line, ":", 3);

@@ -1,4 +1,4 @@
-/* How much memory the process may use. */
+/* The memory that the process may use. */
 #ifndef FLUIDY_BASE_MEMORY_H
 #define FLUIDY_BASE_MEMORY_H
 
@@ -6,7 +6,7 @@
 
 /**
  * MiB, at least 1: the machine's memory, or less where a control group of the process, as that of a
- * container, has a limit. What the system does not tell is no limit.
+ * container, has a limit. What the system does not report is unlimited.
  *
  * root is "/", or a folder with proc/self/cgroup and sys/fs/cgroup as they are there.
  */

@@ -1,15 +1,15 @@
-/* Of several threads' errors, the first one is told. */
+/* Keeps the first error of parallel workers. */
 #ifndef FLUIDY_BASE_PARALLEL_ERROR_H
 #define FLUIDY_BASE_PARALLEL_ERROR_H
 
 #include <glib.h>
 #include <stdbool.h>
 
-/** Moves `mine` (may be NULL) into *first unless there is one already, else frees it. Any thread.
+/** Moves `mine` (may be NULL) into *first, or frees it if there is one already. Any thread.
  */
 void fl_parallel_error_keep(GError **first, GError *mine);
 
-/** Afterwards: moves `first` to `error`. Returns: false; true if there was none. */
+/** After the parallel part: moves `first` to `error`. Returns: true if there was none. */
 bool fl_parallel_error_tell(GError **error, GError *first);
 
 #endif

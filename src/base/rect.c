@@ -10,7 +10,7 @@ bool fl_is_blank(const uint8_t *bytes, size_t n)
     return any == 0;
 }
 
-/* Of a row that is not blank. */
+/* From the first nonzero byte of a row to the last; the row is not blank. */
 static FlColumns span_of(const uint8_t *row, int width)
 {
     FlColumns span = {0, width};
@@ -41,18 +41,19 @@ FlRect fl_rect_of(const uint8_t *plane, int width, int height)
     return fl_rect_within(plane, width, (FlRect){0, 0, width, height});
 }
 
-void fl_rect_copy(const void *from, FlRect from_box, void *to, FlRect to_box, size_t pixel_bytes)
+void fl_rect_copy(const void *from, FlRect from_rect, void *to, FlRect to_rect, size_t pixel_bytes)
 {
-    const int x0 = MAX(from_box.x, to_box.x);
-    const int x1 = MIN(from_box.x + from_box.width, to_box.x + to_box.width);
-    const int y0 = MAX(from_box.y, to_box.y);
-    const int y1 = MIN(from_box.y + from_box.height, to_box.y + to_box.height);
-    const size_t from_row = pixel_bytes * (size_t)from_box.width;
-    const size_t to_row = pixel_bytes * (size_t)to_box.width;
+    const int x0 = MAX(from_rect.x, to_rect.x);
+    const int x1 = MIN(from_rect.x + from_rect.width, to_rect.x + to_rect.width);
+    const int y0 = MAX(from_rect.y, to_rect.y);
+    const int y1 = MIN(from_rect.y + from_rect.height, to_rect.y + to_rect.height);
+    const size_t from_row = pixel_bytes * (size_t)from_rect.width;
+    const size_t to_row = pixel_bytes * (size_t)to_rect.width;
     for (int y = y0; y < y1 && x0 < x1; y++)
-        memcpy((char *)to + (size_t)(y - to_box.y) * to_row + pixel_bytes * (size_t)(x0 - to_box.x),
-               (const char *)from + (size_t)(y - from_box.y) * from_row +
-                   pixel_bytes * (size_t)(x0 - from_box.x),
+        memcpy((char *)to + (size_t)(y - to_rect.y) * to_row +
+                   pixel_bytes * (size_t)(x0 - to_rect.x),
+               (const char *)from + (size_t)(y - from_rect.y) * from_row +
+                   pixel_bytes * (size_t)(x0 - from_rect.x),
                pixel_bytes * (size_t)(x1 - x0));
 }
 

@@ -1,4 +1,4 @@
-/* A rectangle of pixels within a frame, and what of it is taken. */
+/* A rectangle of pixels within a frame, and an area given by the columns of each row. */
 #ifndef FLUIDY_BASE_RECT_H
 #define FLUIDY_BASE_RECT_H
 
@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Whether n bytes are 0, seen without looking for where the first other one is. */
+/** Whether n bytes are 0. Reads all of them, which vectorises. */
 bool fl_is_blank(const uint8_t *bytes, size_t n);
 
 /** Columns x … x + width - 1, rows y … y + height - 1; empty if a size is 0. */
@@ -15,32 +15,31 @@ typedef struct FlRect {
     int x, y, width, height;
 } FlRect;
 
-/** The smallest box that holds every nonzero byte of a width * height plane; {0, 0, 0, 0}: none. */
+/** The smallest rectangle with every nonzero byte of a width * height plane; {0, 0, 0, 0}: none. */
 FlRect fl_rect_of(const uint8_t *plane, int width, int height);
 
-/** The same of those in a part of a plane that is `width` wide. */
+/** The same within a part of a plane that is `width` wide. */
 FlRect fl_rect_within(const uint8_t *plane, int width, FlRect part);
 
-/** Copies the pixels that two boxes of a frame share, of some bytes each; from and to hold a box.
- */
-void fl_rect_copy(const void *from, FlRect from_box, void *to, FlRect to_box, size_t pixel_bytes);
+/** Copies the pixels that two rectangles of a frame share; from and to have one rectangle each. */
+void fl_rect_copy(const void *from, FlRect from_rect, void *to, FlRect to_rect, size_t pixel_bytes);
 
 /** Columns first … last - 1; none if first >= last. */
 typedef struct FlColumns {
     int first, last;
 } FlColumns;
 
-/** Where something is in a frame: many shapes are far smaller than the box around them. */
+/** Where a shape is in a frame; many are far smaller than the rectangle around them. */
 typedef struct FlArea {
     FlRect box;
     FlColumns *row; // of each row of the box, within 0 … box.width; NULL: rows are full
 } FlArea;
 
-/** Where a width * height plane is not 0: in each row from its first such byte to the last one. */
+/** The area of a width * height plane: in each row from the first nonzero byte to the last. */
 void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height);
 void fl_area_clear(FlArea *area);
 
-/** What row y of the box has. */
+/** The columns of row y of the box. */
 static inline FlColumns fl_area_row(const FlArea *area, int y)
 {
     return area->row ? area->row[y] : (FlColumns){0, area->box.width};
@@ -48,9 +47,9 @@ static inline FlColumns fl_area_row(const FlArea *area, int y)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlArea, fl_area_clear)
 
-static inline size_t fl_rect_pixels(FlRect box)
+static inline size_t fl_rect_pixels(FlRect rect)
 {
-    return (size_t)box.width * (size_t)box.height;
+    return (size_t)rect.width * (size_t)rect.height;
 }
 
 /** A side of half the size; halves count as whole pixels. */

@@ -1,4 +1,4 @@
-/* Random numbers as a function of where, never of when: the same bytes on any thread count. */
+/* Random numbers as a function of place, never of time: the same bytes on any thread count. */
 #ifndef FLUIDY_BASE_RNG_H
 #define FLUIDY_BASE_RNG_H
 

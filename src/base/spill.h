@@ -1,4 +1,4 @@
-/* A temporary file of numbered blocks, for what a long film needs but memory should not hold. */
+/* A temporary file of numbered blocks, for data of a long film that should not stay in memory. */
 #ifndef FLUIDY_BASE_SPILL_H
 #define FLUIDY_BASE_SPILL_H
 
@@ -6,15 +6,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Blocks are packed and kept in an unlinked file in $TMPDIR: nothing is left behind. */
+/** Blocks are compressed into an unlinked file in $TMPDIR: nothing is left behind. */
 typedef struct FlSpill FlSpill;
 
-/** Room for blocks 0 … n_blocks - 1. Returns: NULL with FL_ERROR_OUTPUT set. */
+/** For blocks 0 … n_blocks - 1. Returns: NULL with FL_ERROR_OUTPUT set. */
 FlSpill *fl_spill_new(size_t n_blocks, GError **error);
 
 void fl_spill_free(FlSpill *spill); // NULL is fine
 
-/** Stores a block; a block stored again replaces the first. One thread at a time. */
+/** Stores a block, or replaces it. One thread at a time. */
 bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, GError **error);
 
 /** Reads a block of exactly `bytes` bytes, as stored. Several threads may read. */

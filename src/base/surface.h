@@ -1,4 +1,4 @@
-/* Cairo's image surfaces, and bytes in and out of them. */
+/* Cairo's image surfaces: making them, and copying bytes in and out. */
 #ifndef FLUIDY_BASE_SURFACE_H
 #define FLUIDY_BASE_SURFACE_H
 

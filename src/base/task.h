@@ -1,4 +1,4 @@
-/* One piece of work that goes on beside others, in a thread of its own. */
+/* One piece of work in a thread of its own. */
 #ifndef FLUIDY_BASE_TASK_H
 #define FLUIDY_BASE_TASK_H
 
@@ -7,25 +7,26 @@
 
 typedef bool (*FlWork)(void *data, GError **error);
 
-/** All 0: nothing is under way. */
+/** All 0: nothing is running. */
 typedef struct FlTask {
     FlWork work;
     void *data;
     GThread *thread;
     bool failed;
-    GError *error; // of work that failed and was not waited for yet
+    GError *error; // of work that failed, until fl_task_wait()
 } FlTask;
 
 /**
- * Begins work(data), or does it at once unless `beside`. Nothing of the task may be under way; data
- * must stay, and is the work's alone, until fl_task_wait().
+ * Starts work(data) in a thread, or does it at once unless `beside`. The task must be idle; data
+ * belongs to the work until fl_task_wait().
  */
 void fl_task_start(FlTask *task, FlWork work, void *data, bool beside);
 
-/** Waits for it. Returns: whether it went well, also if there was nothing; else with its error. */
+/** Waits for the work. Returns: true if it succeeded or none was started; else false with its
+ * error. */
 bool fl_task_wait(FlTask *task, GError **error);
 
-/** Waits for it and forgets its error. */
+/** Waits for the work and drops its error. */
 void fl_task_clear(FlTask *task);
 
 #endif

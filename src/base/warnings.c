@@ -2,7 +2,7 @@
 
 struct FlWarnings {
     GPtrArray *list;
-    GHashTable *seen; // "element\ntext" -> FlWarning
+    GHashTable *known; // "element\ntext" -> FlWarning
 };
 
 static void warning_free(gpointer data)
@@ -18,7 +18,7 @@ FlWarnings *fl_warnings_new(void)
 {
     FlWarnings *warnings = g_new0(FlWarnings, 1);
     warnings->list = g_ptr_array_new_with_free_func(warning_free);
-    warnings->seen = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    warnings->known = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     return warnings;
 }
 
@@ -26,7 +26,7 @@ void fl_warnings_free(FlWarnings *warnings)
 {
     if (!warnings)
         return;
-    g_hash_table_unref(warnings->seen);
+    g_hash_table_unref(warnings->known);
     g_ptr_array_unref(warnings->list);
     g_free(warnings);
 }
@@ -35,16 +35,16 @@ static void add(FlWarnings *warnings, const char *file, int frame, const char *e
                 const char *text, int n_frames)
 {
     g_autofree char *key = g_strdup_printf("%s\n%s", element, text);
-    FlWarning *known = g_hash_table_lookup(warnings->seen, key);
-    if (known) {
-        known->n_frames += known->last == frame ? 0 : n_frames;
-        known->last = frame;
+    FlWarning *before = g_hash_table_lookup(warnings->known, key);
+    if (before) {
+        before->n_frames += before->last == frame ? 0 : n_frames;
+        before->last = frame;
         return;
     }
     FlWarning *w = g_new0(FlWarning, 1);
     *w = (FlWarning){g_strdup(file), g_strdup(element), g_strdup(text), frame, frame, n_frames};
     g_ptr_array_add(warnings->list, w);
-    g_hash_table_insert(warnings->seen, g_steal_pointer(&key), w);
+    g_hash_table_insert(warnings->known, g_steal_pointer(&key), w);
 }
 
 void fl_warnings_add(FlWarnings *warnings, const char *file, int frame, const char *element,

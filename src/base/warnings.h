@@ -1,30 +1,30 @@
-/* What was odd in the input but did not stop the work; collected, for the caller to show. */
+/* Warnings: what is odd in the input but does not stop the work, collected for the caller. */
 #ifndef FLUIDY_BASE_WARNINGS_H
 #define FLUIDY_BASE_WARNINGS_H
 
 #include <glib.h>
 
-/** One remark. The same remark about the same element in later frames only raises n_frames. */
+/** One warning. The same one about the same element in later frames only raises n_frames. */
 typedef struct FlWarning {
-    char *file;    // the first file it was seen in
+    char *file;    // the first file that caused it
     char *element; // id of the element, "" if it is about the whole file
     char *text;    // one line, without the names above and without a full stop
     int frame;     // number of the first frame, as in its file's name; -1: none
     int last;      // number of the last
-    int n_frames;  // in so many frames, >= 1
+    int n_frames;  // frames that caused it, >= 1
 } FlWarning;
 
-/** A list of remarks. One thread at a time. */
+/** A list of warnings. One thread at a time. */
 typedef struct FlWarnings FlWarnings;
 
 FlWarnings *fl_warnings_new(void);
 void fl_warnings_free(FlWarnings *warnings); // NULL is fine
 
-/** Adds a remark; element may be NULL. warnings may be NULL: the remark is dropped. */
+/** Adds a warning; element may be NULL. If warnings is NULL, it is dropped. */
 void fl_warnings_add(FlWarnings *warnings, const char *file, int frame, const char *element,
                      const char *format, ...) G_GNUC_PRINTF(5, 6);
 
-/** Adds the remarks of `from` in their order. */
+/** Adds the warnings of `from` in their order. */
 void fl_warnings_append(FlWarnings *warnings, const FlWarnings *from);
 
 int fl_warnings_count(const FlWarnings *warnings);
