@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-#define SMALLEST 8 // pixels of a side that is worth searching
+#define SMALLEST 8 // px: the shortest side worth searching
 
 /* Resamples one channel of interleaved bytes; reading and writing pixels are `channels` apart. */
 typedef struct Resampling {
@@ -55,7 +55,7 @@ static void resample_flow(const float *from, const Resampling *r, const Buffers 
         to[p] *= factor;
 }
 
-/* Frame t of the exemplar; all: room for three planes of `third` values. */
+/* Frame t of the exemplar; all: scratch, three planes of `third` values. */
 static void adapt_frame(const FlStyle *style, const FlStyleUse *use, FlStyle *out, int t,
                         float *all, size_t third)
 {

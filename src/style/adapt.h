@@ -14,8 +14,8 @@ typedef struct FlStyleUse {
 } FlStyleUse;
 
 /**
- * Makes the used part. The border width scales with the pictures; flow fields with both size and
- * step.
+ * Copies the used part at its new size. The border width scales with the pictures, flow with both
+ * size and step.
  *
  * Returns: to be freed with fl_style_free(); NULL with FL_ERROR_USAGE if no frame is left or the
  * pictures would be smaller than a patch, or FL_ERROR_NO_MEMORY.

@@ -1,4 +1,4 @@
-/* The picture sheet of fluidy-style check: everything that was understood, to be looked at. */
+/* The sheet of fluidy-style check: frames, masks, flow, plots, facts and problems as a picture. */
 #ifndef FLUIDY_STYLE_CHECK_SHEET_H
 #define FLUIDY_STYLE_CHECK_SHEET_H
 

@@ -1,4 +1,4 @@
-/* Says of a style what was understood, and what a painter should look into. */
+/* Checks a style: reports what was read and measured, and what will paint badly. */
 #include "base/exists.h"
 #include "base/headroom.h"
 #include "style/check_sheet.h"
@@ -10,14 +10,15 @@
 #include <math.h>
 #include <string.h>
 
-/* What the method needs of a style; more in find_frame_problems(). */
-static const float LEAST_PAINT = 0.4f;      // of the last frame
-static const float LEAST_TEXTURE = 2;       // levels; twelve scanned washes have 2.8 to 6.4
-static const float LEAST_GRAIN = 1;         // levels, of paper under thin paint
-static const float LEAST_DIFFERENCE = 1.5f; // levels; the likest blocks of those washes: 2.7 to 6.4
-static const float LEAST_OCTANT = 0.02f;    // of the outline
-static const float MOST_PAPER_RANGE = 6;    // levels
-static const float MOST_EDGE = 0.6f;        // of the interior's density
+/* The limits for a good style; more in find_frame_problems(). */
+static const float LEAST_PAINT = 0.4f; // of the last frame
+static const float LEAST_TEXTURE = 2;  // levels; twelve scanned washes have 2.8 to 6.4
+static const float LEAST_GRAIN = 1;    // levels, of paper under thin paint
+static const float LEAST_DIFFERENCE =
+    1.5f; // levels; the most similar blocks of those washes: 2.7 to 6.4
+static const float LEAST_OCTANT = 0.02f; // of the outline
+static const float MOST_PAPER_RANGE = 6; // levels
+static const float MOST_EDGE = 0.6f;     // of the interior's density
 
 typedef struct Check {
     const FlStyle *style;
@@ -33,7 +34,7 @@ G_GNUC_PRINTF(2, 3) static void add(GPtrArray *lines, const char *format, ...)
     va_end(args);
 }
 
-static const char *how_known(const FlStyle *style, FlGuess guess)
+static const char *origin(const FlStyle *style, FlGuess guess)
 {
     return style->guessed & (unsigned)guess ? "guessed" : "given";
 }
@@ -49,17 +50,16 @@ static void add_given_facts(Check *check)
     if (style->made_by)
         add(facts, "made by    %s", style->made_by);
     add(facts, "size       %dx%d, %d frame%s, %g per second (%s)", style->width, style->height,
-        style->n_frames, style->n_frames == 1 ? "" : "s", style->fps,
-        how_known(style, FL_GUESS_FPS));
+        style->n_frames, style->n_frames == 1 ? "" : "s", style->fps, origin(style, FL_GUESS_FPS));
     add(facts, "medium     %s, scale %g", fl_medium_word(style->medium), style->scale);
     add(facts, "paper      #%02x%02x%02x (%s)", style->paper[0], style->paper[1], style->paper[2],
-        how_known(style, FL_GUESS_PAPER));
-    add(facts, "border     %.1f px (%s)", style->border_px, how_known(style, FL_GUESS_BORDER));
-    add(facts, "masks      %s", how_known(style, FL_GUESS_MASK));
+        origin(style, FL_GUESS_PAPER));
+    add(facts, "border     %.1f px (%s)", style->border_px, origin(style, FL_GUESS_BORDER));
+    add(facts, "masks      %s", origin(style, FL_GUESS_MASK));
     add(facts, "flow       %s", style->flow ? "given" : "guessed from the masks");
 }
 
-/* Medians over the frames: one odd frame should not hide what the clip is like. */
+/* Medians over the frames: one odd frame does not decide. */
 static float median_over_frames(const FlMeasures *measures, size_t field)
 {
     g_autofree float *value = g_new(float, measures->n_frames);
@@ -88,7 +88,7 @@ static bool is_listed(const char *list, const char *name)
     return false;
 }
 
-/* The ways no outline faces, but for those that `known` lists (NULL: none). */
+/* The directions that no outline faces, but for those that `known` lists (NULL: none). */
 static char *missing_octants(const FlMeasures *measures, const char *known)
 {
     g_autoptr(GPtrArray) names = g_ptr_array_new();
@@ -131,7 +131,7 @@ static void add_measured_facts(Check *check)
         add(facts, "paper      %.1f levels of fine detail; its light varies by %.0f",
             m->paper_texture, m->paper_range);
     if (m->n_blocks > 1)
-        add(facts, "variety    %d blocks of 16x16; the likest two differ by %.1f levels",
+        add(facts, "variety    %d blocks of 16x16; the two most similar differ by %.1f levels",
             m->n_blocks, m->alike);
     add(facts, "life       paint changes by %.1f levels from frame to frame", MEDIAN(m, change));
 }
@@ -175,7 +175,7 @@ static void find_frame_problems(Check *check)
         const bool of_motion = tests[i].field == offsetof(FlFrameMeasure, moving) ||
                                tests[i].field == offsetof(FlFrameMeasure, steady);
         if (of_motion && MEDIAN(m, front) < 0.1f)
-            continue; // said once, for the whole clip
+            continue; // find_motion_problems() reports it, once
         g_autofree char *frames = failing_frames(m, tests[i].first, tests[i].field, tests[i].least);
         if (frames)
             add(check->problems, "%s (frame %s)", tests[i].what, frames);
@@ -189,9 +189,7 @@ static void find_mask_problems(Check *check)
     GPtrArray *problems = check->problems;
     const float last = m->frame[m->n_frames - 1].paint;
     if (last < LEAST_PAINT)
-        add(problems,
-            "paint fills %.0f %% of the last frame: 40 %% or more give enough to paint with",
-            100 * last);
+        add(problems, "paint fills %.0f %% of the last frame: expected 40 %% or more", 100 * last);
     for (int side = 0; side < 4; side++)
         if (m->rim[side] > 0)
             add(problems, "the mask touches the frame's %s edge (%.0f %% of it)", sides[side],
@@ -206,8 +204,8 @@ static void find_mask_problems(Check *check)
         add(problems, "no outline is within the frame: edges have no paint of their own");
     else if (missing[0])
         add(problems,
-            "no outline faces %s: such edges are painted with turned ones (missing-orientations = "
-            "in style.ini says that this is known)",
+            "no outline faces %s: such edges are painted with rotated ones (list them as "
+            "missing-orientations in style.ini if you know)",
             missing);
 }
 
@@ -236,7 +234,7 @@ static void find_texture_problems(Check *check)
         add(check->problems,
             "the interior is smooth (%.1f levels of fine detail): it will look flat", m->texture);
     if (m->thin_texture >= 0 && m->thin_texture < LEAST_GRAIN)
-        add(check->problems, "no paper grain is to be seen under thin paint (%.1f levels)",
+        add(check->problems, "no paper grain shows under thin paint (%.1f levels)",
             m->thin_texture);
     if (m->alike >= 0 && m->alike < LEAST_DIFFERENCE)
         add(check->problems, "two blocks of 16x16 px look alike (%.1f levels apart)", m->alike);
@@ -247,7 +245,7 @@ static void find_texture_problems(Check *check)
         add(check->problems, "the light changes by %.0f levels between frames", high - low);
 }
 
-static void look(Check *check)
+static void check_all(Check *check)
 {
     add_given_facts(check);
     add_measured_facts(check);
@@ -286,7 +284,7 @@ FlStyleReport *fl_style_check(const char *name, const char *sheet, bool overwrit
     g_autoptr(GPtrArray) facts = g_ptr_array_new_with_free_func(g_free);
     g_autoptr(GPtrArray) problems = g_ptr_array_new_with_free_func(g_free);
     Check check = {style, measures, facts, problems};
-    look(&check);
+    check_all(&check);
     const FlCheckSheet drawing = {style, measures, guides, facts, problems};
     if (sheet && !fl_check_sheet_write(&drawing, sheet, error))
         return NULL;

@@ -12,7 +12,7 @@ static const float SMOOTH_PX = 1.5f;    // removes grain before the threshold
 static const float MARGIN_PX = 2;       // smooths the outline after it
 static const float MARGIN_CUT = 0.4f;   // below one half: the mask reaches half a pixel further
 static const float FAINTEST = 5;        // a smaller difference from the paper is never paint
-static const float NOISES = 4;          // nor is less than so many times the paper's own unrest
+static const float NOISES = 4;          // nor is less than so many times the paper's noise
 static const float SHARPNESS = 6;       // a strong edge, smoothed, is cut at a sixth of its middle
 static const double KEEP_SHARE = 0.04;  // of the largest part: smaller parts are specks
 static const double HOLE_SHARE = 0.005; // of the largest part: smaller holes are grain
@@ -79,9 +79,9 @@ static bool difference(const FlClip *clip, int frame, const FlFlatField *plate, 
     return true;
 }
 
-/* Otsu's threshold [Otsu79]: the bin that parts a histogram of 256 into the two most different
- * kinds. */
-static int part_histogram(const uint32_t count[256])
+/* Otsu's threshold [Otsu79]: the bin that splits a histogram of 256 into the two most different
+ * classes. */
+static int otsu_threshold(const uint32_t count[256])
 {
     double n = 0, total = 0, below = 0, sum_below = 0, best = -1;
     int between = 0;
@@ -106,25 +106,24 @@ static int part_histogram(const uint32_t count[256])
 
 /*
  * Where paint begins, in levels of difference, from a frame that holds both paint and paper: above
- * the paper's unrest, since thin paint is paint too, and below the middle between the two.
+ * the paper's noise, since thin paint is paint too, and below the middle between the two.
  */
 static float choose_threshold(const float *most, size_t pixels)
 {
     uint32_t count[256] = {0}, bare = 0, sum = 0;
     for (size_t i = 0; i < pixels; i++)
         count[CLAMP((int)most[i], 0, 255)]++;
-    const int between = part_histogram(count);
+    const int between = otsu_threshold(count);
     for (int i = 0; i < between; i++)
         bare += count[i];
     int median = 0;
     while (2 * (sum += count[median]) < bare)
         median++;
-    const float unrest = MIN(NOISES * ((float)median + 0.5f), (float)between);
-    return MAX(FAINTEST, MAX(unrest, (float)between / SHARPNESS));
+    const float noise = MIN(NOISES * ((float)median + 0.5f), (float)between);
+    return MAX(FAINTEST, MAX(noise, (float)between / SHARPNESS));
 }
 
-/* Collects into `part` the 4-connected pixels around `start` whose value is `value`, sets them
- * to 2. */
+/* Collects the 4-connected pixels of `value` around `start` into `part` and sets them to 2. */
 static size_t flood(uint8_t *binary, int width, int height, size_t start, uint8_t value,
                     uint32_t *part)
 {
@@ -145,8 +144,7 @@ static size_t flood(uint8_t *binary, int width, int height, size_t start, uint8_
     return n;
 }
 
-/* Visits the parts of `value`; parts under `least` pixels take the other value. Returns the
- * largest. */
+/* Inverts connected parts of `value` with less than `least` pixels. Returns: the largest part. */
 static size_t drop_small_parts(uint8_t *binary, int width, int height, uint8_t value, size_t least,
                                uint32_t *part)
 {

@@ -1,4 +1,4 @@
-/* What a recording does not say itself: its paper, where the paint is, how wide its border is. */
+/* Estimates from the frames of a recording: the paper's colour and the masks. */
 #ifndef FLUIDY_STYLE_ESTIMATE_H
 #define FLUIDY_STYLE_ESTIMATE_H
 
@@ -15,9 +15,9 @@ typedef struct FlClip {
 /**
  * The colour of the bare paper.
  *
- * With masks (coverage, n_frames * height * width) it is the median of what is outside of all of
- * them; without (NULL), the commonest colour along the rim of the first frame, where recordings
- * begin with the least paint. White if the masks leave less than a thousandth of the clip bare.
+ * With masks (coverage, n_frames * height * width) it is the median of the pixels outside them;
+ * without (NULL), the commonest colour along the rim of the first frame, which has the least paint.
+ * White if the masks leave less than a thousandth of the clip bare.
  */
 void fl_paper_estimate(const FlClip *clip, const uint8_t *mask, uint8_t paper[3]);
 
@@ -31,7 +31,7 @@ void fl_paper_estimate(const FlClip *clip, const uint8_t *mask, uint8_t paper[3]
  */
 bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask, GError **error);
 
-/** The share of frame's pixels in the mask, 0..1. */
+/** The mean coverage of a mask, 0..1. */
 double fl_mask_share(const uint8_t *mask, int width, int height);
 
 /** Gaussian blur of a plane in place, its rim repeated; sigma in pixels, > 0. */

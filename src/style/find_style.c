@@ -106,7 +106,7 @@ static int compare_strings(const void *a, const void *b)
 
 static char *title_of(const char *folder)
 {
-    FlStyle style = {0}; // the strings of which are freed below
+    FlStyle style = {0}; // its strings are freed below
     g_autofree char *file = g_build_filename(folder, "style.ini", NULL);
     const bool read = g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(&style, file, NULL);
     char *title = read ? g_steal_pointer(&style.name) : NULL;

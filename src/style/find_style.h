@@ -1,4 +1,4 @@
-/* Where styles are looked for. */
+/* The search for styles by name. */
 #ifndef FLUIDY_STYLE_FIND_STYLE_H
 #define FLUIDY_STYLE_FIND_STYLE_H
 

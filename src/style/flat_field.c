@@ -96,7 +96,7 @@ static void add_samples(Fit *fit, const FlFlatField *plate, const FlClip *clip, 
 /* Gaussian elimination without pivots: the matrix is positive definite by the ridge. */
 static void solve(Fit *fit, FlFlatField *plate)
 {
-    for (int i = 0; i < TERMS; i++) { // a gain of 1 is a hundredth of the evidence
+    for (int i = 0; i < TERMS; i++) { // a prior of gain 1, with a hundredth of the weight
         fit->matrix[i][i] += 0.01 * (double)fit->n;
         for (int c = 0; i == 0 && c < 3; c++)
             fit->right[c][0] += 0.01 * (double)fit->n;
@@ -118,7 +118,7 @@ static void solve(Fit *fit, FlFlatField *plate)
         }
 }
 
-/* Three times the median residual: what lies further off is paint, or dirt. */
+/* Three times the median residual: beyond it is paint, or dirt. */
 static double next_limit(const Fit *fit)
 {
     size_t sum = 0;
@@ -133,7 +133,7 @@ static void set_even(FlFlatField *plate)
     memset(plate->gain, 0, sizeof plate->gain);
     for (int c = 0; c < 3; c++) {
         plate->gain[c][0] = 1;
-        plate->low[c] = 0.67; // light that falls off more is no light
+        plate->low[c] = 0.67; // a larger fall-off is not due to the light
         plate->high[c] = 1.5;
     }
 }
@@ -146,7 +146,7 @@ void fl_flat_field_fit(FlFlatField *plate, const FlClip *clip, const uint8_t *ma
     memcpy(plate->paper, paper, 3);
     set_even(plate);
     double limit = WIDEST;
-    Fit last = {0}; // the last round only asks which gains there are at bare places
+    Fit last = {0}; // the last round only collects the range of gains at bare places
     for (int round = 0; round < ROUNDS; round++) {
         Fit fit = {0};
         add_samples(&fit, plate, clip, mask, limit);

@@ -7,19 +7,20 @@
 /** Light that falls off smoothly: a polynomial of degree two over the frame for each channel. */
 typedef struct FlFlatField {
     int width, height;
-    uint8_t paper[3];       // the paper where the gain is 1
-    double gain[3][6];      // of 1, u, v, u², uv, v²; u and v run from -1 to 1 over the frame
-    double low[3], high[3]; // the gains at bare places; under paint it is never beyond them
+    uint8_t paper[3];  // the paper where the gain is 1
+    double gain[3][6]; // of 1, u, v, u², uv, v²; u and v run from -1 to 1 over the frame
+    double low[3],
+        high[3]; // the range of gains at bare places; gains under paint are clamped to it
 } FlFlatField;
 
 /**
- * Fits the light to the bare paper: to the pixels outside all masks, or, where mask is NULL, to
- * those that look like `paper`. Where too little is bare the light is taken as even.
+ * Fits the light to the bare paper: to the pixels outside all masks, or, if mask is NULL, to those
+ * that look like `paper`. With too little bare paper it assumes even light.
  */
 void fl_flat_field_fit(FlFlatField *plate, const FlClip *clip, const uint8_t *mask,
                        const uint8_t paper[3]);
 
-/** What bare paper shows, or would show, at a pixel in channel c, in levels. */
+/** The level of bare paper, or of the paper under paint, at a pixel in channel c. */
 float fl_flat_field_at(const FlFlatField *plate, int x, int y, int c);
 
 /** The difference of the lightest and darkest point of the plate, in levels. */

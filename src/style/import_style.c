@@ -1,4 +1,4 @@
-/* A recording becomes a style: read, find the paper and the paint, hold still, flatten, write. */
+/* Imports a recording as a style: read, find paper and paint, stabilise, flatten, write. */
 #include "base/headroom.h"
 #include "io/ffmpeg.h"
 #include "params/text.h"
@@ -14,10 +14,10 @@
 #include <math.h>
 #include <string.h>
 
-static const float UNEVEN_LEVELS = 3; // light that varies less is left alone
-static const float SHAKY_PX = 0.3f;   // so is a camera that moves less
+static const float UNEVEN_LEVELS = 3; // light that varies less needs no note
+static const float SHAKY_PX = 0.3f;   // a camera that moves less is left alone
 
-/* What an import knows while it goes on. */
+/* An import in progress. */
 typedef struct Import {
     const FlStyleImport *how;
     FlStyle *style;
@@ -77,7 +77,7 @@ static void set_facts(Import *import, const FlRecording *source)
     style->scale = 1;
 }
 
-static bool take_pictures(FlStyle *style, GPtrArray *pictures, GError **error)
+static bool store_frames(FlStyle *style, GPtrArray *pictures, GError **error)
 {
     if (!fl_style_allocate(style, g_ptr_array_index(pictures, 0), (int)pictures->len, error))
         return false;
@@ -86,8 +86,8 @@ static bool take_pictures(FlStyle *style, GPtrArray *pictures, GError **error)
     return true;
 }
 
-static bool take_masks(Import *import, FlRecording *masks, const FlRecording *source,
-                       GError **error)
+static bool store_masks(Import *import, FlRecording *masks, const FlRecording *source,
+                        GError **error)
 {
     FlStyle *style = import->style;
     g_autoptr(GPtrArray) pictures = fl_recording_read(masks, import->how, error);
@@ -109,7 +109,7 @@ static bool take_masks(Import *import, FlRecording *masks, const FlRecording *so
     return true;
 }
 
-static void note_what_was_read(const Import *import, const FlRecording *source, const char *masks)
+static void note_source(const Import *import, const FlRecording *source, const char *masks)
 {
     const FlStyleImport *how = import->how;
     const FlStyle *style = import->style;
@@ -132,7 +132,7 @@ static bool read_all(Import *import, GError **error)
         return false;
     set_facts(import, source);
     g_autoptr(GPtrArray) pictures = fl_recording_read(source, how, error);
-    if (!pictures || !take_pictures(import->style, pictures, error))
+    if (!pictures || !store_frames(import->style, pictures, error))
         return false;
     const bool alpha = fl_style_has_alpha(import->style);
     if (alpha && !how->paper)
@@ -140,11 +140,11 @@ static bool read_all(Import *import, GError **error)
     if (alpha)
         fl_style_composite(import->style);
     import->masks_given = alpha || masks;
-    note_what_was_read(import, source,
-                       masks   ? ", with their masks"
-                       : alpha ? ", with their alpha channel as masks"
-                               : "");
-    return !masks || take_masks(import, masks, source, error);
+    note_source(import, source,
+                masks   ? ", with their masks"
+                : alpha ? ", with their alpha channel as masks"
+                        : "");
+    return !masks || store_masks(import, masks, source, error);
 }
 
 /* The paper colour and, unless they are given, the masks. */
@@ -188,7 +188,7 @@ static void cut_rim(FlStyle *style, int rim)
     style->height = height;
 }
 
-static bool hold_still(Import *import, GError **error)
+static bool stabilise_frames(Import *import, GError **error)
 {
     FlStyle *style = import->style;
     const FlClip clip = clip_of(style);
@@ -208,12 +208,12 @@ static bool hold_still(Import *import, GError **error)
     const int rim = (int)ceilf(extent);
     if (2 * rim < MIN(style->width, style->height) / 2)
         cut_rim(style, rim);
-    note(import, "the camera shook by up to %.1f px; that is taken out, and %d px are cut off",
-         extent, rim);
+    note(import, "removed camera shake of up to %.1f px, and cut %d px off every side", extent,
+         rim);
     return true;
 }
 
-static void flatten(Import *import)
+static void flatten_frames(Import *import)
 {
     FlStyle *style = import->style;
     const FlClip clip = clip_of(style);
@@ -222,7 +222,7 @@ static void flatten(Import *import)
     const float range = fl_flat_field_range(&plate);
     fl_flat_field_flatten(&plate, style->rgb, style->mask, style->n_frames);
     if (range > UNEVEN_LEVELS)
-        note(import, "the light varied by %.0f levels over the paper; it is made even", range);
+        note(import, "removed uneven light: it varied by %.0f levels over the paper", range);
 }
 
 /* Paper is light and hardly coloured; anything else is more likely to be paint. */
@@ -234,20 +234,20 @@ static bool is_like_paper(const uint8_t paper[3])
 }
 
 /* The masks follow from the paper and the paper from the masks, so each step finds both again. */
-static bool improve(Import *import, GError **error)
+static bool correct_frames(Import *import, GError **error)
 {
     const FlStyleImport *how = import->how;
     if (!find_paint(import, error))
         return false;
     if (import->masks_given && !fl_style_check_paint(import->style, error))
-        return false; // before bare paper under the masks is taken for paint in a shadow
+        return false; // before it takes bare paper under the masks for paint in a shadow
     if (how->whole || (!how->paper && !is_like_paper(import->style->paper)))
         return true; // nothing to go by
     if (how->stabilise && import->style->n_frames > 1 &&
-        (!hold_still(import, error) || !find_paint(import, error)))
+        (!stabilise_frames(import, error) || !find_paint(import, error)))
         return false;
     if (how->flatten) {
-        flatten(import);
+        flatten_frames(import);
         return find_paint(import, error);
     }
     return true;
@@ -301,7 +301,7 @@ bool fl_style_import(const FlStyleImport *how, GPtrArray *notes, GError **error)
     Import import = {.how = how, .style = style, .notes = notes};
     if (!fl_headroom_check(error) || !check_options(how, style->paper, error) ||
         !fl_style_may_write(how->folder, how->overwrite, error) || !read_all(&import, error) ||
-        !improve(&import, error) || !fl_style_check_paint(style, error) ||
+        !correct_frames(&import, error) || !fl_style_check_paint(style, error) ||
         !find_border(&import, error))
         return false;
     add_warnings(&import);

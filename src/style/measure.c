@@ -32,7 +32,7 @@ static int density(const FlStyle *style, const uint8_t *rgb)
     return most;
 }
 
-/* The work of one pass over the frames, and what it sums up. */
+/* A pass over the frames, and its sums. */
 typedef struct Pass {
     const FlStyle *style;
     FlMeasures *measures;
@@ -188,7 +188,7 @@ static float root(Power power)
     return power.n > 0 ? (float)sqrt(power.sum / power.n) : -1;
 }
 
-/* Fine detail of the last frame, by what it lies on: full paint, thin paint, paper. */
+/* Fine detail of the last frame: of full paint, thin paint and paper. */
 static bool measure_texture(Pass *pass, GError **error)
 {
     const FlStyle *style = pass->style;
@@ -272,7 +272,7 @@ static int compare_floats(const void *a, const void *b)
     return (p > q) - (p < q);
 }
 
-/* How far the means of bare blocks of the first frame lie apart, the outermost tenth left out. */
+/* The range of the means of the first frame's bare blocks, without the outermost tenth. */
 static void measure_light(const FlStyle *style, FlMeasures *measures)
 {
     g_autoptr(GArray) mean = g_array_new(FALSE, FALSE, sizeof(float));

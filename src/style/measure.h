@@ -1,11 +1,11 @@
-/* What a style holds, in numbers: how much paint, how it moves, how rich it is. */
+/* Measurements of a style: how much paint it has, how that moves, how rich its texture is. */
 #ifndef FLUIDY_STYLE_MEASURE_H
 #define FLUIDY_STYLE_MEASURE_H
 
 #include "guides/guides.h"
 #include "style/style_folder.h"
 
-/** Slower paint rests, px per frame; FL_MOVING_PX and faster paint moves. */
+/** Slower paint rests; paint of FL_MOVING_PX and more moves; px per frame. */
 #define FL_RESTING_PX 0.25f
 #define FL_MOVING_PX 0.5f
 #define FL_TOO_FAST_PX 4.0f // a faster front cannot be followed by 5x5 patches
@@ -35,8 +35,8 @@ typedef struct FlMeasures {
     float texture;               // fine detail of the interior, levels (RMS above 2 px blur)
     float thin_texture;          // the same where paint is a tenth to half as dense; -1: nowhere
     float paper_texture;         // the same of bare paper; -1: nothing is bare
-    float alike;                 // RMS difference of the two likest 16x16 blocks; -1: none
-    int n_blocks;                // such blocks of paint in the last frame
+    float alike;                 // RMS difference of the two most similar 16x16 blocks; -1: none
+    int n_blocks;                // 16x16 blocks of paint in the last frame
     float paper_range;           // how unevenly the bare paper is lit, levels
     float edge;                  // density at the outline as a share of the interior's
 } FlMeasures;

@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LARGEST_SIDE = 640 }; // a recording that is larger is made smaller unless told otherwise
+enum { LARGEST_SIDE = 640 }; // a larger recording is scaled down to it by default
 
 static const char *const stills[] = {".png",  ".jpg", ".jpeg", ".tif", ".tiff", ".bmp",
                                      ".webp", ".ppm", ".pgm",  ".tga", NULL};
@@ -57,27 +57,27 @@ static bool is_mask_series(const FlSeries *series)
     return g_str_has_prefix(lower, "mask") || g_str_has_prefix(lower, "matte");
 }
 
-/* Takes the only series of the wanted kind out of a folder's; more than one is ambiguous. */
-static bool take_series(GPtrArray *all, bool masks, const char *folder, FlSeries **taken,
+/* Moves the only series of masks, or of other pictures, out of a folder's list to *found. */
+static bool take_series(GPtrArray *all, bool masks, const char *folder, FlSeries **found,
                         GError **error)
 {
-    *taken = NULL;
+    *found = NULL;
     for (guint i = 0; i < all->len; i++) {
         FlSeries *series = g_ptr_array_index(all, i);
         if (is_mask_series(series) != masks)
             continue;
-        if (*taken) {
+        if (*found) {
             g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                         "%s: two series of pictures, %s and %s: expected one; name it with a "
                         "pattern such as %s%%0%dd%s",
-                        folder, (*taken)->path[0], series->path[0], series->prefix, series->digits,
+                        folder, (*found)->path[0], series->path[0], series->prefix, series->digits,
                         series->suffix);
             return false;
         }
-        *taken = series;
+        *found = series;
     }
     guint index;
-    if (*taken && g_ptr_array_find(all, *taken, &index))
+    if (*found && g_ptr_array_find(all, *found, &index))
         g_ptr_array_steal_index(all, index);
     return true;
 }
@@ -141,7 +141,7 @@ FlRecording *fl_recording_open(const char *path, FlRecording **masks, GError **e
     return NULL;
 }
 
-/* The frames that have been read so far, and what they must agree with. */
+/* The frames read so far, and the size that all must have. */
 typedef struct Reader {
     FlRecording *source;
     const FlStyleImport *how;
@@ -217,7 +217,7 @@ static FlPicture *read_still(const char *path, GError **error)
     if (below)
         g_propagate_error(error, g_steal_pointer(&below));
     else if (!picture && ffmpeg)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: holds no picture", path);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: contains no picture", path);
     return picture;
 }
 
@@ -275,7 +275,7 @@ static bool read_video(Reader *reader, GError **error)
     const int n = (int)reader->pictures->len;
     if (!how->last || n == (how->last - first) / how->step + 1)
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: ends before frame %d: it gave %d frames",
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: ends before frame %d, after %d frames",
                 reader->source->path, how->last, n);
     return false;
 }
@@ -287,8 +287,7 @@ GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *how, GErr
     if (!(source->series ? read_series : read_video)(&reader, error))
         return NULL;
     if (pictures->len == 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: none of its frames is asked for",
-                    source->path);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no frame is selected", source->path);
         return NULL;
     }
     return g_steal_pointer(&pictures);

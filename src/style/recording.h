@@ -1,4 +1,4 @@
-/* A recording as somebody has it: a video, a still, numbered pictures, a folder of them. */
+/* A recording to import: a video, a still, numbered pictures or a folder of them. */
 #ifndef FLUIDY_STYLE_RECORDING_H
 #define FLUIDY_STYLE_RECORDING_H
 
@@ -14,9 +14,9 @@ typedef struct FlRecording {
 } FlRecording;
 
 /**
- * Finds out what `path` is; no picture is read yet. A folder that holds a second series called
- * mask..., or `frames` and `masks` folders, gives that as *masks, to be freed too; else *masks is
- * NULL. `masks` itself may be NULL: then only the series of masks is wanted from such a folder.
+ * Finds out what `path` is; reads no picture yet. In a folder, *masks is a second series called
+ * mask..., or the folder `masks` beside `frames`, to be freed too; else NULL. With masks == NULL,
+ * the result is the series of masks of such a folder.
  *
  * Returns: NULL with FL_ERROR_INPUT set if there is nothing to read, or more than one series.
  */

@@ -7,25 +7,24 @@
 
 enum { REACH = 8, MARGIN = REACH + 2, LEAST_PIXELS = 500, NEWTON_STEPS = 12 };
 
-/* The share of the squared difference from the first frame that may be left for a shift to count.
+/* A shift counts if it leaves less than this share of the squared difference from the first frame.
  */
 static const double CLEARLY_NEARER = 0.8;
 
-/* The least mean squared slope of the bare paper to go by, (levels per px)^2: below it is only
- * noise. */
+/* The least mean squared slope of usable paper, (levels per px)^2: below it is only noise. */
 static const double LEAST_TEXTURE = 0.25;
 
-/* So far may the shifts of two halves of the paper differ, px: else it is no camera that moves. */
+/* If the shifts of two halves of the paper differ more, px, it is not the camera that moves. */
 static const float AGREE_PX = 0.35f;
 
 /* Detail is lightness as a share of its mean over LIGHT_PX of bare paper, times USUAL_LEVELS: a
  * lamp that lights the sheet unevenly, or flickers, makes no detail that a shift could follow. */
 static const float LIGHT_PX = 8, USUAL_LEVELS = 200;
 
-/* The planes of a clip that a frame's detail is found with, a value per pixel. */
+/* The light of a frame, a value per pixel. */
 typedef struct Light {
-    float *near; // how much of the neighbourhood is bare in every frame, 0..1
-    float *mean; // of the lightness of that, of the frame at hand
+    float *bare; // share of the neighbourhood that is bare in every frame, 0..1
+    float *mean; // its mean lightness in the current frame
 } Light;
 
 static bool mean_over_paper(const FlClip *clip, float *plane, const uint8_t *painted,
@@ -48,7 +47,7 @@ static bool read_detail(const FlClip *clip, int frame, const uint8_t *painted, c
         !mean_over_paper(clip, light->mean, painted, error))
         return false;
     for (size_t i = 0; i < pixels; i++)
-        detail[i] *= USUAL_LEVELS * light->near[i] / MAX(1, light->mean[i]);
+        detail[i] *= USUAL_LEVELS * light->bare[i] / MAX(1, light->mean[i]);
     return true;
 }
 
@@ -80,7 +79,7 @@ static float sample(const float *luma, int width, size_t place, FlShift shift)
     return (1 - v) * ((1 - u) * p[0] + u * p[1]) + v * ((1 - u) * p[width] + u * p[width + 1]);
 }
 
-/* What the two frames are compared on. */
+/* Two frames, and the places where they are compared. */
 typedef struct Pair {
     const float *first, *current;
     int width;
@@ -197,10 +196,10 @@ bool fl_shake_estimate(const FlClip *clip, const uint8_t *mask, FlShift *shift, 
         return false;
     const size_t n = find_bare(clip, mask, painted, place);
     float *first = planes, *current = planes + pixels;
-    const Light light = {.near = planes + 2 * pixels, .mean = planes + 3 * pixels};
+    const Light light = {.bare = planes + 2 * pixels, .mean = planes + 3 * pixels};
     for (size_t i = 0; i < pixels; i++)
-        light.near[i] = 1;
-    if (!mean_over_paper(clip, light.near, painted, error) ||
+        light.bare[i] = 1;
+    if (!mean_over_paper(clip, light.bare, painted, error) ||
         !read_detail(clip, 0, painted, &light, first, error))
         return false;
     const size_t n_white = sort_by_square(place, n, clip->width);

@@ -1,4 +1,4 @@
-/* Small camera shake: found on the bare paper, taken out of the frames. */
+/* Small camera shake: estimated on the bare paper, removed from the frames. */
 #ifndef FLUIDY_STYLE_STABILISE_H
 #define FLUIDY_STYLE_STABILISE_H
 
@@ -10,9 +10,9 @@ typedef struct FlShift {
 } FlShift;
 
 /**
- * Finds the shift of every frame from what no mask covers in any frame: paper texture, pencil
- * marks, the sheet's edge. A frame that a shift does not bring clearly nearer to the first gets
- * none. `shift` has n_frames elements; the first is 0. Shakes of up to 8 px are found.
+ * Finds the shift of every frame from the places that no mask ever covers: paper texture, pencil
+ * marks, the sheet's edge. A shift that does not bring a frame clearly nearer to the first is 0.
+ * `shift` has n_frames elements; the first is 0. Shakes of up to 8 px are found.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */

@@ -74,8 +74,7 @@ static bool check_size(const FlPicture *picture, const FlStyle *style, const cha
 static FlPicture *read_picture(const char *path, GError **error)
 {
     FlPicture *picture = fl_picture_read_png(path, error);
-    if (!picture && error &&
-        (*error)->code == FL_ERROR_INPUT) // a style's file: the style is broken
+    if (!picture && error && (*error)->code == FL_ERROR_INPUT) // it is a style's file
         (*error)->code = FL_ERROR_STYLE;
     return picture;
 }
@@ -119,8 +118,7 @@ static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frame
     return true;
 }
 
-/* The masks in order of trust: given, the frames' alpha, found by their difference from the paper.
- */
+/* The masks, by priority: files, the frames' alpha, the difference from the paper. */
 static bool find_masks(FlStyle *style, const FlSeries *frames, GError **error)
 {
     g_autofree char *folder = g_build_filename(style->path, "masks", NULL);

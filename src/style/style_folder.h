@@ -1,4 +1,4 @@
-/* A style: the folder an artist makes, read into memory. */
+/* A style: a folder of recorded paint, read into memory. */
 #ifndef FLUIDY_STYLE_STYLE_FOLDER_H
 #define FLUIDY_STYLE_STYLE_FOLDER_H
 
@@ -15,20 +15,20 @@ typedef struct FlStyle {
     int width, height, n_frames;
     float fps;                  // frames per second, > 0
     float border_px;            // width of the boundary region b [F21 §3.1], px of the style, > 0
-    float scale;                // px of the target per px of the style that suits it, > 0
+    float scale;                // suggested px of the target per px of the style, > 0
     uint8_t paper[3];           // sRGB of the bare paper
-    FlMedium medium;            // FL_MEDIUM_AUTO: it does not say
+    FlMedium medium;            // FL_MEDIUM_AUTO: not given
     uint8_t *rgb;               // n_frames * height * width * 3, sRGB
     uint8_t *mask;              // n_frames * height * width, coverage 0..255
     float *flow;                // n_frames * height * width * 2, px per frame; NULL: construct it
     char *made_by;              // what made the frames, such as a recipe's file name; may be NULL
-    char *missing_orientations; // which ways no outline faces, "none" or NULL, by style.ini
-    unsigned guessed;           // FlGuess bits (manifest.h): what the folder does not say itself
+    char *missing_orientations; // directions that no outline faces, by style.ini; "none" or NULL
+    unsigned guessed;           // FlGuess bits (manifest.h): values that are estimated
 } FlStyle;
 
 /**
- * Reads a folder. What it does not say itself is found in its frames: the paper's colour, the
- * masks, the border; the flow stays NULL.
+ * Reads a folder. Estimates what it lacks from its frames: the paper's colour, the masks, the
+ * border. Without flow files the flow is NULL.
  *
  * Returns: NULL with FL_ERROR_STYLE, naming the file and what was expected; FL_ERROR_LIMIT;
  * FL_ERROR_INPUT for a flow field; FL_ERROR_NO_MEMORY.

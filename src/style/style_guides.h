@@ -1,4 +1,4 @@
-/* The guides of a style's frames, and how parameters want guides made. */
+/* The guides of a style's frames, and the parameters of guides. */
 #ifndef FLUIDY_STYLE_STYLE_GUIDES_H
 #define FLUIDY_STYLE_STYLE_GUIDES_H
 
@@ -6,7 +6,7 @@
 #include "params/params.h"
 #include "style/style_folder.h"
 
-/** How params want guides made; lengths in pixels are halved at half the size. */
+/** The parameters of guides that are among params; lengths in px are halved at half the size. */
 FlGuideParams fl_guide_params(const FlParams *params);
 
 /** The guides of a style, which must stay as long as they do. NULL with an error of theirs set. */

@@ -9,7 +9,7 @@
 #include <glib/gstdio.h>
 #include <unistd.h>
 
-/* What a style's folder holds; the flow of another recording must not stay behind. */
+/* The parts of a style's folder; the flow of another recording must not stay behind. */
 static const char *const parts[] = {"frames", "masks", "flow", "style.ini"};
 
 bool fl_style_may_write(const char *folder, bool overwrite, GError **error)
@@ -87,7 +87,7 @@ static bool move_parts(const char *from, const char *to, GError **error)
         if (!remove_tree(target, error))
             return false;
         if (g_file_test(source, G_FILE_TEST_EXISTS) && g_rename(source, target) != 0)
-            return failed(error, target, "cannot be put in place");
+            return failed(error, target, "cannot be replaced");
     }
     return true;
 }
@@ -102,7 +102,8 @@ static bool remove_parts(const char *folder, GError **error)
     return true;
 }
 
-/* ".NAME.part" beside a folder: the same in each run, so that what a killed one left there goes. */
+/* ".NAME.part" beside a folder: the same in each run, which removes what a killed run left there.
+ */
 static char *hidden_name(const char *folder)
 {
     g_autofree char *parent = g_path_get_dirname(folder), *base = g_path_get_basename(folder);
@@ -115,14 +116,14 @@ bool fl_style_write(const FlStyle *style, const char *folder, bool overwrite, GE
     g_autofree char *absolute = g_canonicalize_filename(folder, NULL);
     g_autofree char *parent = g_path_get_dirname(absolute);
     g_autofree char *beside = hidden_name(absolute);
-    GError *taken = NULL;
+    GError *lock_error = NULL;
     if (!fl_style_may_write(folder, overwrite, error))
         return false;
     if (g_mkdir_with_parents(parent, 0755) != 0)
         return failed(error, parent, "cannot be made");
-    const int lock = fl_lock_take_folder(beside, folder, &taken);
-    if (taken)
-        g_propagate_error(error, taken);
+    const int lock = fl_lock_take_folder(beside, folder, &lock_error);
+    if (lock_error)
+        g_propagate_error(error, lock_error);
     else if (lock < 0)
         failed(error, parent, "cannot be written to");
     if (lock < 0)
