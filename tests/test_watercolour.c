@@ -359,7 +359,7 @@ static void a_recipe_error_names_file_and_line(void)
         {SMALL "[paper]\ncolour = red\n", ":13: [paper] colour: “red”: expected a colour"},
         {SMALL "[flow]\ncarry = 2\n", ":13: [flow] carry: “2”: expected a number from 0 to 1"},
         {SMALL "[flows]\n", ":12: [flows] is not a group of a recipe"},
-        {SMALL "[pigment Mud]\n", ":12: [pigment Mud] is not in the table"},
+        {SMALL "[pigment Mud]\n", ":12: [pigment Mud] is not a known pigment"},
         {SMALL "splash\n", ":12: “splash” is neither"},
         {"[recipe]\nframes = 3\n", ":1: [recipe] size: expected width and height"},
         {"[recipe]\nsize = 32 24\nframes = 3\n", "expected a [recipe] with a size, a [pigment"},

@@ -1,4 +1,4 @@
-/* What passes the faces, passes with its pigment: donor cells, so that pigment is conserved. */
+/* Advection of water with its pigment, by donor cells, which conserve pigment. */
 #include "watercolour/stages.h"
 
 void fl_find_concentration(FlSheet *sheet, const float *g, float share)
@@ -11,7 +11,7 @@ void fl_find_concentration(FlSheet *sheet, const float *g, float share)
         c[i] = s[i] > FL_DRY ? share * g[i] / s[i] : 0;
 }
 
-/* What passes a face with the water has the concentration of the side that it comes from. */
+/* Water that passes a face has the concentration of its donor cell. */
 static inline float carried(float flux, float before, float after)
 {
     return (flux > 0 ? flux : 0) * before + (flux < 0 ? flux : 0) * after;

@@ -69,7 +69,7 @@ void fl_brush_free(FlBrush *brush)
     g_free(brush);
 }
 
-/* An event at one moment: how far its puddle has grown and how fast it does. */
+/* An event at one moment: the growth of its puddle. */
 typedef struct Moment {
     const FlEvent *event;
     const FlTouch *touches; // one for each cell
@@ -78,7 +78,7 @@ typedef struct Moment {
     float scale;            // cells per px
 } Moment;
 
-/* How far inside the puddle a cell lies, px. It grows faster where water runs easily. */
+/* The depth of a cell inside the puddle, px. The puddle grows faster where water runs easily. */
 static inline float depth(const FlSheet *sheet, const Moment *now, int i, int j)
 {
     const size_t at = (size_t)j * sheet->width + i, face = at + (size_t)j;
@@ -96,7 +96,7 @@ static bool out_of_reach(const FlSheet *sheet, const Moment *now, int i, int j)
            !(j < sheet->height - 1 && wet[sheet->width]);
 }
 
-/* How much of the event every cell gets, 0..1. */
+/* The coverage of every cell by the event, 0..1. */
 static void find_cover(const FlSheet *sheet, const Moment *now, float *cover)
 {
     const int width = sheet->width;
@@ -110,7 +110,7 @@ static void find_cover(const FlSheet *sheet, const Moment *now, float *cover)
         }
 }
 
-/* The brush fills up what the paper lacks of its share of water; pigment comes with the water. */
+/* Fills the paper up to the event's share of its capacity; pigment comes with the water. */
 static void pour(FlSheet *sheet, const Moment *now)
 {
     const FlEvent *event = now->event;
@@ -143,9 +143,9 @@ static void lay_down(FlSheet *sheet, const Moment *now)
 }
 
 /* Velocity over a face between two cells: down the slope of the stroke's first outline, fastest
-   near the rim of the puddle, none beyond it; slower and faster with the paper. The slope of the
-   puddle itself would gather pigment wherever the paper slows it down. Where the slope turns, on
-   the line that the brush follows, it begins at 0, or a streak without pigment would open there. */
+   near the rim of the puddle, 0 beyond it, modulated by the paper. The slope of the puddle itself
+   would gather pigment wherever the paper slows it down. The velocity starts at 0 on the line that
+   the brush follows, where the slope turns; otherwise a streak without pigment would open there. */
 static inline float sweep_speed(const Moment *now, FlTouch a, FlTouch b, float depth_px, float open)
 {
     const FlEvent *event = now->event;
@@ -158,7 +158,7 @@ static inline float sweep_speed(const Moment *now, FlTouch a, FlTouch b, float d
     return now->speed * (0.7f + 0.5f * open) * decline * edge * middle * slope;
 }
 
-/* Adds the velocity of the puddle that grows to that of the water. */
+/* Adds the velocity of the growing puddle to that of the water. */
 static void sweep(FlSheet *sheet, const Moment *now)
 {
     const int width = sheet->width;
@@ -185,7 +185,7 @@ static void still_water(FlSheet *sheet)
 void fl_brush_apply(const FlBrush *brush, FlSheet *sheet, float before, float after)
 {
     const float scale = (float)brush->recipe->oversample;
-    if (!brush->recipe->flow.shallow) // water moves as its puddles grow, and stops with them
+    if (!brush->recipe->flow.shallow) // only the growth of puddles moves the water
         still_water(sheet);
     for (int e = 0; e < brush->recipe->n_events; e++) {
         const FlEvent *event = &brush->recipe->events[e];

@@ -4,8 +4,8 @@
  * Beyond the paper: faces differ in permeability, so that fibres and patches shape the front; the
  * flow may grow with a power of the saturation, which gives a porous medium's sharp wetting front
  * instead of a diffuse one; a dry cell resists until its neighbour holds enough (pinning, [MX05]);
- * and the water takes its pigment along, without which paint never follows a front for long:
- * the paper's velocity is free of divergence inside M and so cannot carry anything out to a rim.
+ * and the water carries its pigment, without which paint never follows a front for long: the
+ * paper's velocity is free of divergence inside M and so cannot carry anything out to a rim.
  */
 #include "watercolour/stages.h"
 
@@ -20,8 +20,8 @@ static void soak(FlSheet *sheet, float alpha)
             sheet->s[i] += fmaxf(0, fminf(alpha, sheet->capacity[i] - sheet->s[i]));
 }
 
-/* How readily a cell gives water away, 0..1/4: its share of the capacity to the given power. Four
-   neighbours that take a quarter each cannot empty it. */
+/* The mobility of a cell's water, 0..1/4: its saturation to a power. Four neighbours that take a
+   quarter each cannot empty it. */
 static void find_mobility(const FlSheet *sheet, const FlFlow *flow, float *mobility)
 {
     const size_t cells = (size_t)sheet->width * sheet->height;
@@ -35,23 +35,23 @@ static void find_mobility(const FlSheet *sheet, const FlFlow *flow, float *mobil
     }
 }
 
-/* What a row of faces needs to know of the cells on its two sides, before (a) and after (b). */
+/* The cells on both sides of a row of faces, before (a) and after (b). */
 typedef struct Sides {
     const float *sa, *sb, *ca, *cb, *pin_a, *pin_b, *ma, *mb, *open;
 } Sides;
 
-/* Fluxes from a to b of n faces. The lower side must have room, and resists while it is dry. No
-   branches, so that compilers can do several faces at once. */
+/* Fluxes from a to b of n faces. The receiving side must have spare capacity, and resists while it
+   is dry. No branches, so that it vectorises. */
 static void row_fluxes(Sides x, int n, float sigma, float delta, float *restrict flux)
 {
     for (int i = 0; i < n; i++) {
         const float sa = x.sa[i], sb = x.sb[i];
         const bool forth = sa > sb;
         const float high = forth ? sa : sb, low = forth ? sb : sa;
-        const float room = 0.25f * ((forth ? x.cb[i] : x.ca[i]) - low);
+        const float spare = 0.25f * ((forth ? x.cb[i] : x.ca[i]) - low);
         const float hold = low < FL_DRY ? sigma * (forth ? x.pin_b[i] : x.pin_a[i]) : 0;
         const float want = (forth ? x.ma[i] : x.mb[i]) * x.open[i] * (high - low);
-        const float least = want < room ? want : room;
+        const float least = want < spare ? want : spare;
         const float q = least > 0 && high > hold && low >= delta ? least : 0;
         flux[i] = forth ? q : -q;
     }

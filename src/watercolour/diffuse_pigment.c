@@ -1,7 +1,7 @@
 /* Pigment spreading through standing water; faster for fine pigments, so that two separate. */
 #include "watercolour/stages.h"
 
-/* As much as the drier of the two sides lets through. */
+/* The drier of the two sides limits the exchange. */
 static inline float exchange(float sa, float sb, float ca, float cb, float open)
 {
     return open * (sa < sb ? sa : sb) * (ca - cb);

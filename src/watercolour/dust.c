@@ -3,11 +3,11 @@
  *
  * A stroke of a dry stick leaves grains on the bumps of the paper; near its rim on the highest ones
  * only. How tightly a grain holds, and how deep it lies in the stroke, decide whether it ever
- * breaks off; the core stays. What is loose hops away from the stroke, along swirls and each a
- * little its own way, from bump to bump, for it finds no hold in the hollows. It goes up to its own
- * share of the way that the front of the dust has gone, so that the front runs ahead and a haze
- * stays behind. Some parts of the stroke crumble faster and deeper than others. All random bits are
- * a function of (seed, grain, frame).
+ * breaks off; the core stays. A loose grain hops away from the stroke, along swirls and with a
+ * scatter of its own, from bump to bump, since the hollows do not catch it. It follows the front of
+ * the dust up to its own share of the way, so that the front runs ahead and a haze stays behind.
+ * Some parts of the stroke crumble faster and deeper than others. All random bits are a function of
+ * (seed, grain, frame).
  */
 #include "watercolour/dust.h"
 
@@ -21,10 +21,10 @@ enum { KEY_PLACE = 301, KEY_DRIFT, KEY_SWIRL, KEY_SHAPE, KEY_LUMPS };
 
 typedef struct Grain {
     float x, y;  // cells
-    float lag;   // share of the front's way that it stays behind, 0..1
-    float start; // how far inside the outline it began, px
-    float ease;  // how readily its neighbourhood crumbles, 1 on the average
-    float grip;  // how deep the crumbling must reach to loosen it, in rims of the recipe
+    float lag;   // share of the front's way by which it lags, 0..1
+    float start; // its depth inside the outline at the start, px
+    float ease;  // how easily its neighbourhood crumbles, 1 on average
+    float grip;  // the depth of crumbling that loosens it, in rims of the recipe
 } Grain;
 
 struct FlDustCloud {
@@ -33,7 +33,7 @@ struct FlDustCloud {
     Grain *grains;
 };
 
-/* How far inside the union of the strokes a point lies, px; negative outside. */
+/* The depth of a point inside the union of the strokes, px; negative outside. */
 static float depth_at(const FlRecipe *recipe, float x, float y, float *load)
 {
     float deepest = -1e9f;
@@ -65,7 +65,7 @@ static float ease_at(const FlRecipe *recipe, float x, float y)
     return fmaxf(0.3f, 1 + recipe->dust.lumps * lump);
 }
 
-/* A place within the stroke, likelier on the bumps and where the stick was pressed. */
+/* A random place within the stroke, more likely on bumps and where the stick was pressed. */
 static Grain place_grain(const FlRecipe *recipe, const FlSheet *sheet, uint64_t index)
 {
     FlRng rng = {fl_key(fl_key(recipe->seed, KEY_PLACE), index)};
@@ -110,8 +110,8 @@ void fl_dust_free(FlDustCloud *cloud)
     g_free(cloud);
 }
 
-/* Where dust is blown: away from the stroke, with swirls; about 1 long. The swirls are the curl of
-   a noise: being free of divergence, they do not gather the grains. */
+/* The direction of the drift: away from the stroke, with swirls; about 1 long. The swirls are the
+   curl of a noise, which is free of divergence and so does not gather the grains. */
 static void wind(const FlRecipe *recipe, float x, float y, float out[2])
 {
     const FlDust *dust = &recipe->dust;
@@ -131,8 +131,8 @@ static void wind(const FlRecipe *recipe, float x, float y, float out[2])
     out[1] = dy * norm + dust->swirl * 4 * curl_y;
 }
 
-/* One frame of one grain. The front starts at the outline and runs at the recipe's speed; a grain
-   goes on while it is behind its own share of that. */
+/* Drifts a grain for a frame. The front starts at the outline and moves at the recipe's speed; a
+   grain moves while it is behind its own share of that. */
 static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *grain, int index,
                         int frame)
 {
@@ -154,7 +154,7 @@ static void drift_grain(const FlRecipe *recipe, const FlSheet *sheet, Grain *gra
     const float x = grain->x + way * (blow[0] + dust->scatter * (fl_rng_float(&rng) - 0.5f));
     const float y = grain->y + way * (blow[1] + dust->scatter * (fl_rng_float(&rng) - 0.5f));
     if (fl_rng_float(&rng) > fmaxf(0.1f, 3 * (relief_at(sheet, x, y) - 0.3f)))
-        return; // nothing to cling to there
+        return; // the tooth does not catch it there
     grain->x = x, grain->y = y;
 }
 
@@ -185,7 +185,7 @@ void fl_dust_lay(const FlDustCloud *cloud, FlSheet *sheet)
     for (int k = 0; k < sheet->n_pigments; k++)
         for (size_t i = 0; i < cells; i++)
             sheet->settled[k][i] = 0;
-    for (int i = 0; i < cloud->n; i++) { // in the grains' order: the sums are always the same
+    for (int i = 0; i < cloud->n; i++) { // in order, so that the sums are reproducible
         FlRng rng = {fl_key(fl_key(cloud->recipe->seed, KEY_SHAPE), (uint64_t)i)};
         lay_grain(sheet, sheet->settled[i % sheet->n_pigments], &cloud->grains[i],
                   cloud->recipe->dust.weight * (0.4f + 1.2f * fl_rng_float(&rng)));

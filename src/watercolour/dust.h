@@ -4,7 +4,7 @@
 
 #include "watercolour/brush.h"
 
-/** All grains of a recipe; each has a place of its own from the beginning, lying or drifting. */
+/** All grains of a recipe, each with its place, at rest or drifting. */
 typedef struct FlDustCloud FlDustCloud;
 
 /**
@@ -20,7 +20,7 @@ void fl_dust_free(FlDustCloud *cloud); // NULL is fine
 /** Lets the grains crumble and drift for one frame; frame counts from 0. */
 void fl_dust_drift(FlDustCloud *cloud, const FlSheet *sheet, int frame);
 
-/** Puts the grains on the sheet: `settled` becomes their thickness. Nothing is lost or made. */
+/** Sets the sheet's `settled` to the thickness of the grains. Conserves pigment. */
 void fl_dust_lay(const FlDustCloud *cloud, FlSheet *sheet);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDustCloud, fl_dust_free)

@@ -3,7 +3,7 @@
 
 #define HALF 5 // the kernel is 2 HALF + 1 = 11 wide, about the paper's K = 10
 
-/* Row 2 HALF of Pascal's triangle over its sum: a Gaussian whose every digit is known. */
+/* Row 2 HALF of Pascal's triangle over its sum: a Gaussian that is exact. */
 static const float kernel[2 * HALF + 1] = {1 / 1024.f,   10 / 1024.f,  45 / 1024.f,  120 / 1024.f,
                                            210 / 1024.f, 252 / 1024.f, 210 / 1024.f, 120 / 1024.f,
                                            45 / 1024.f,  10 / 1024.f,  1 / 1024.f};

@@ -15,7 +15,7 @@ FlKmLayer fl_km_layer(double absorption, double scattering, double thickness)
         const double sx = scattering * thickness;
         return (FlKmLayer){sx / (1 + sx), 1 / (1 + sx)};
     }
-    if (qx > 300) // sinh and cosh would overflow; nothing comes through
+    if (qx > 300) // sinh and cosh would overflow; the layer is opaque
         return (FlKmLayer){scattering / (scattering + absorption + q), 0};
     const double sh = sinh(qx), d = (scattering + absorption) * sh + q * cosh(qx);
     return (FlKmLayer){scattering * sh / d, q / d};

@@ -4,7 +4,7 @@
 
 #include "watercolour/recipe.h"
 
-/** What a layer sends back and lets through, of light of one channel; 0..1. */
+/** Reflectance and transmittance of a layer in one channel; 0..1. */
 typedef struct FlKmLayer {
     double reflectance, transmittance;
 } FlKmLayer;

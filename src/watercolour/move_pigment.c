@@ -23,7 +23,7 @@ static float largest_outflow(const FlSheet *sheet)
     return most;
 }
 
-/* What passes a face has the density of the side that it comes from. */
+/* Pigment that passes a face has the density of its donor cell. */
 static inline float passing(float velocity, float before, float after)
 {
     return (velocity > 0 ? velocity : 0) * before + (velocity < 0 ? velocity : 0) * after;

@@ -1,5 +1,4 @@
-/* Smooth noise as a function of place, with nothing but +, * and a hash: the same bits on any CPU.
- */
+/* Smooth noise as a function of place, from +, * and a hash only: the same bits on any CPU. */
 #ifndef FLUIDY_WATERCOLOUR_NOISE_H
 #define FLUIDY_WATERCOLOUR_NOISE_H
 
@@ -9,7 +8,8 @@
  */
 float fl_noise(uint64_t key, float x, float y);
 
-/** A sum of octaves, each of half the size and `gain` times the weight; spread as fl_noise(). */
+/** A sum of octaves, each of half the size and `gain` times the weight; the same range as
+ * fl_noise(). */
 float fl_noise_octaves(uint64_t key, float x, float y, int octaves, float gain);
 
 #endif

@@ -1,4 +1,4 @@
-/* Paper from noise and fibres: bumps, hollows, and where water runs easily. Licence-free. */
+/* Paper from noise and fibres: relief, capacity, permeability. No scanned data, no licence. */
 #include "base/rng.h"
 #include "watercolour/noise.h"
 #include "watercolour/sheet.h"
@@ -12,8 +12,7 @@ static float clamp(float x, float low, float high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Bumps as of a felt: two sizes of noise, creased where they cross 0, and a fine tooth over them.
- */
+/* Bumps like those of felt: two sizes of noise, creased where they cross 0, and a fine tooth. */
 static float bump(uint64_t seed, const FlPaper *paper, float x, float y)
 {
     const float sx = x / (paper->grain_px * paper->stretch), sy = y / paper->grain_px;
@@ -103,7 +102,7 @@ static void make_cells(FlSheet *sheet, const FlRecipe *recipe, const float *fibr
         }
 }
 
-/* A face lets through what both its cells do. */
+/* The permeability of a face is limited by both its cells. */
 static void make_faces(FlSheet *sheet, const float *open)
 {
     const int width = sheet->width, height = sheet->height;

@@ -7,7 +7,7 @@
 
 #define FAR 1e9f // squared cells; more than any picture has
 
-/* A box blur of one line; the window is cut at the ends. */
+/* A box blur of one line; the window is clipped at the ends. */
 static void blur_line(float *line, int n, ptrdiff_t stride, int radius, float *copy)
 {
     for (int i = 0; i < n; i++)
@@ -32,35 +32,35 @@ static void blur(float *grid, int width, int height, int radius, float *line)
     }
 }
 
-/* Marks the connected part of equal cells that holds `start`; its members go to queue. */
-static int collect_part(const uint8_t *mask, uint8_t *seen, int width, int height, int start,
+/* Collects the connected part of equal cells around `start` into queue, and marks it. */
+static int collect_part(const uint8_t *mask, uint8_t *visited, int width, int height, int start,
                         int *queue)
 {
     int n = 0;
     queue[n++] = start;
-    seen[start] = 1;
+    visited[start] = 1;
     for (int at = 0; at < n; at++) {
         const int x = queue[at] % width, y = queue[at] / width;
         const int near[4] = {x > 0 ? queue[at] - 1 : -1, x < width - 1 ? queue[at] + 1 : -1,
                              y > 0 ? queue[at] - width : -1,
                              y < height - 1 ? queue[at] + width : -1};
         for (int k = 0; k < 4; k++)
-            if (near[k] >= 0 && !seen[near[k]] && mask[near[k]] == mask[start]) {
-                seen[near[k]] = 1;
+            if (near[k] >= 0 && !visited[near[k]] && mask[near[k]] == mask[start]) {
+                visited[near[k]] = 1;
                 queue[n++] = near[k];
             }
     }
     return n;
 }
 
-static void drop_small_parts(uint8_t *mask, uint8_t *seen, int *queue, int width, int height,
+static void drop_small_parts(uint8_t *mask, uint8_t *visited, int *queue, int width, int height,
                              const FlExtract *how)
 {
-    memset(seen, 0, (size_t)width * height);
+    memset(visited, 0, (size_t)width * height);
     for (int i = 0; i < width * height; i++) {
-        if (seen[i])
+        if (visited[i])
             continue;
-        const int n = collect_part(mask, seen, width, height, i, queue);
+        const int n = collect_part(mask, visited, width, height, i, queue);
         if (n < (mask[i] ? how->speck : how->hole)) {
             const uint8_t other = !mask[i];
             for (int k = 0; k < n; k++)
@@ -70,9 +70,9 @@ static void drop_small_parts(uint8_t *mask, uint8_t *seen, int *queue, int width
 }
 
 /*
- * Lower envelope of parabolas: squared distances along one line [Felzenszwalb & Huttenlocher].
- * Whole cells are enough here, and exact, so that styles rebuild to the same bytes whatever becomes
- * of the sub-pixel distances of the guides.
+ * Lower envelope of parabolas: squared distances along one line [FH12]. Whole cells suffice here
+ * and are exact, so that styles rebuild to the same bytes even if the sub-pixel distances of the
+ * guides change.
  */
 static void distance_line(float *line, int n, ptrdiff_t stride, float *copy, int *at, float *from)
 {

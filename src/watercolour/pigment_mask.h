@@ -1,4 +1,4 @@
-/* Where the paint is: a mask from the thickness of the pigment. */
+/* The mask of the paint, from the thickness of the pigment. */
 #ifndef FLUIDY_WATERCOLOUR_PIGMENT_MASK_H
 #define FLUIDY_WATERCOLOUR_PIGMENT_MASK_H
 
@@ -10,16 +10,15 @@
 typedef struct FlExtract {
     float threshold; // of the blurred thickness
     int blur;        // radius of the blur, >= 0
-    int speck, hole; // smaller paint and smaller gaps are ignored, cells
-    float margin;    // how far the mask reaches beyond the paint
+    int speck, hole; // smaller specks of paint and smaller gaps are ignored, cells
+    float margin;    // margin of the mask around the paint
 } FlExtract;
 
 /**
  * The signed distance of every cell's centre to the rim of the mask, positive inside, in cells.
  *
  * thickness has width * height values, >= 0, and is blurred in place; distance receives as many.
- * Without any paint, all distances are about minus the size of the picture. Errors:
- * FL_ERROR_NO_MEMORY.
+ * Without paint, all distances are about minus the size of the picture. FL_ERROR_NO_MEMORY.
  */
 bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *how, float *distance,
                      GError **error);

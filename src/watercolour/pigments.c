@@ -1,4 +1,4 @@
-/* The pigments of [C97 fig. 5]; checked against two public programs. */
+/* The pigments of [C97 fig. 5], checked against two public programs. */
 #include "watercolour/kubelka_munk.h"
 
 #include <glib.h>

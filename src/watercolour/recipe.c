@@ -171,7 +171,7 @@ static void read_dust(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "rim", 0, 1000, &dust->rim_px);
 }
 
-/* A pigment of the table by the name of its group, or one that gives its own K and S. */
+/* A pigment of the table, by the name of the group, or one with K and S of its own. */
 static void read_pigment(FlKeyLines *lines, FlRecipe *recipe, const char *name)
 {
     if (recipe->n_pigments == FL_MAX_PIGMENTS) {
@@ -185,7 +185,7 @@ static void read_pigment(FlKeyLines *lines, FlRecipe *recipe, const char *name)
                   fl_keylines_floats(lines, "scattering", 3, 3, 0, 100, pigment->scattering);
     if (!known && n != 6)
         fl_keylines_complain(lines, "absorption",
-                             "is not in the table: expected absorption and scattering, three "
+                             "is not a known pigment: expected absorption and scattering, three "
                              "numbers each");
     fl_keylines_float(lines, "density", 0, 1, &pigment->density);
     fl_keylines_float(lines, "staining", 0.01f, 1000, &pigment->staining);

@@ -1,4 +1,4 @@
-/* A recipe: everything that decides what a simulated style looks like, read from a key file. */
+/* A recipe: all parameters of a simulated style, read from a key file. */
 #ifndef FLUIDY_WATERCOLOUR_RECIPE_H
 #define FLUIDY_WATERCOLOUR_RECIPE_H
 
@@ -23,36 +23,36 @@ typedef struct FlPaper {
     uint8_t colour[3];
     float grain_px;    // size of the bumps of the surface
     float roughness;   // how deep the finest bumps are against the coarse ones, 0..1
-    float stretch;     // bumps are longer along x by this factor
+    float stretch;     // length of the bumps along x over that along y
     float fibres;      // fibres per 100 square px
     float fibre_px;    // their length
     float fibre_curl;  // how much they bend, 0: straight, 1: like ferns
     float fibre_pull;  // how much better water runs along a fibre, 0..0.95
-    float capacity[2]; // cmin, cmax: water that fits between h = 0 and h = 1
-    float patchiness;  // unevenness of the permeability in the large, 0..0.95
+    float capacity[2]; // cmin, cmax: water that a cell holds at h = 0 and at h = 1
+    float patchiness;  // large-scale unevenness of the permeability, 0..0.95
     float patch_px;    // size of its largest patches
-    float pinning;     // how unevenly a dry cell resists wetting, 0..1
-    float shading;     // how much the bumps show in the bare paper, 0..0.2
+    float pinning;     // unevenness of the resistance of dry cells, 0..1
+    float shading;     // contrast of the bumps of bare paper, 0..0.2
 } FlPaper;
 
-/** Something done to the sheet: a stroke that is wet for a while. Lengths in px of the frames. */
+/** A brush stroke that is wet for a while. Lengths in px of the frames. */
 typedef struct FlEvent {
     int n_points;
     float points[FL_MAX_POINTS][2];  // the polyline that the brush follows
-    float radius, wobble, wobble_px; // of the brush; its outline's unevenness and the size of that
-    int hand;                        // strokes of one hand wobble and streak alike
+    float radius, wobble, wobble_px; // of the brush; amplitude and size of its outline's wobble
+    int hand;                        // seed of wobble and streaks
     float growth;                    // of the puddle outward, px per frame
-    float crinkle;                   // share of it that depends on the paper, 0..1
-    float sweep, sweep_px;           // share of that speed that pigment at its rim gets, and how
-                                     // far inside it still gets some
-    float sweep_rim_px;              // within which that speed falls to 0 at the rim itself
+    float crinkle;                   // share of the growth that depends on the paper, 0..1
+    float sweep, sweep_px;           // share of that speed that pigment gets at the rim, and
+                                     // the depth where it falls to 0
+    float sweep_rim_px;              // depth below which it falls to 0 towards the rim
     float from, until;               // frames, 0 to 1 are the warm-up; from == until: once
-    float water;                     // what the brush gives until the paper holds this much, 0..1
+    float water;                     // saturation up to which the brush fills the paper, 0..1
     float rate;                      // share of the missing water given per step, 0..1
     float load[FL_MAX_PIGMENTS];     // pigment per unit of water, >= 0
     float deposit[FL_MAX_PIGMENTS];  // pigment laid down at once, per cell, >= 0
-    float streaks, streak_px;        // unevenness of load and deposit, 0..1; its size
-    float pressure;                  // added to the pressure of the shallow water per step
+    float streaks, streak_px;        // amplitude of streaks in load and deposit, 0..1; their size
+    float pressure;                  // added to that of the shallow water per step
 } FlEvent;
 
 /** Constants of the layers [C97 §4]; rates are per step. See the files of the stages. */
@@ -62,12 +62,12 @@ typedef struct FlFlow {
     int sweeps;
     float edge_darkening;                // eta
     float absorb, epsilon, delta, sigma; // capillary: alpha, epsilon, delta, sigma
-    int diffusions;                      // times that pigment spreads per step
+    int diffusions;                      // diffusion passes per step
     float conduct;                       // share of the largest stable capillary flow, 0..1
     int mobility;                        // power of the saturation in the capillary flow, 0..4
-    float carry;  // share of its pigment that water in the paper takes along, 0..1
+    float carry;  // share of its pigment that water in the paper carries, 0..1
     float settle; // factor on transfer_pigment's rates
-    float evaporation, rim_evaporation; // water lost per step; and at the rim, per dry side
+    float evaporation, rim_evaporation; // water lost per step; at the rim, per dry side
     float thickness;                    // display scale of the pigment
 } FlFlow;
 
@@ -76,10 +76,10 @@ typedef struct FlDust {
     int grains;                      // 0: no dust
     float speed_px, swirl, swirl_px; // drift per frame; share of it that swirls; size of the swirls
     float scatter;                   // share of it that is every grain's own
-    float lumps;                     // how unevenly it crumbles from place to place, 0..1
-    float catch_rate;                // how readily the tooth catches a grain, 0..1
-    float weight;                    // thickness of one grain
-    float rim_px;                    // how deep the crumbling reaches into the stroke
+    float lumps;                     // unevenness of the crumbling, 0..1
+    float catch_rate; // probability per frame that the highest tooth catches a grain, 0..1
+    float weight;     // thickness of one grain
+    float rim_px;     // depth of the crumbling inside the stroke
 } FlDust;
 
 typedef struct FlRecipe {
@@ -89,7 +89,7 @@ typedef struct FlRecipe {
     float fps, border, scale;
     int steps[2], warm_up; // steps before the second and before the last frame; before the first
     uint64_t seed;
-    float mask_threshold, mask_margin; // thickness that counts as paint; bare rim, px
+    float mask_threshold, mask_margin; // least thickness of paint; bare margin, px
     float mask_blur;                   // radius over which the thickness is averaged, px
     FlPaper paper;
     FlFlow flow;

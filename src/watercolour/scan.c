@@ -26,7 +26,7 @@ void fl_scan_free(FlScan *scan)
     g_free(scan);
 }
 
-/* The sheet is lit from the upper left: a slope towards the light is a little brighter. */
+/* Light from the upper left: a slope towards it is a little brighter. */
 static double light(const FlSheet *sheet, const FlRecipe *recipe, int i, int j)
 {
     const float *h = &sheet->relief[(size_t)j * sheet->width + i];

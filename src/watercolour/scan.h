@@ -1,4 +1,4 @@
-/* From the sheet to a picture: Kubelka-Munk colour and mask. */
+/* A picture of the sheet: Kubelka-Munk colour, and the mask. */
 #ifndef FLUIDY_WATERCOLOUR_SCAN_H
 #define FLUIDY_WATERCOLOUR_SCAN_H
 
@@ -17,8 +17,8 @@ FlScan *fl_scan_new(int width, int height, GError **error);
 void fl_scan_free(FlScan *scan); // NULL is fine
 
 /**
- * Draws the sheet and extracts its mask; a mask only ever grows from that of the picture before,
- * which scan still holds. Errors: FL_ERROR_NO_MEMORY.
+ * Draws the sheet and extracts its mask, which includes the mask of the last call: it only grows.
+ * FL_ERROR_NO_MEMORY.
  */
 bool fl_scan_draw(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe, GError **error);
 

@@ -1,4 +1,4 @@
-/* The three layers of [C97 §4] as grids: what a step reads and writes. */
+/* The sheet of paper: the three layers of [C97 §4] as grids. */
 #ifndef FLUIDY_WATERCOLOUR_SHEET_H
 #define FLUIDY_WATERCOLOUR_SHEET_H
 
@@ -18,7 +18,7 @@ typedef struct FlSheet {
     int width, height, n_pigments;
     float *relief;                    // h, 0 < h < 1
     float *capacity;                  // c, of the capillary layer
-    float *pin;                       // how a dry cell resists being wetted, 1 on the average
+    float *pin;                       // resistance of a dry cell to wetting, 1 on average
     float *open_u, *open_v;           // permeability of the faces, 0..1
     uint8_t *wet;                     // M, 0 or 1
     float *u, *v;                     // velocity of the shallow water, cells per step
@@ -26,9 +26,9 @@ typedef struct FlSheet {
     float *s;                         // water in the paper
     float *floating[FL_MAX_PIGMENTS]; // g
     float *settled[FL_MAX_PIGMENTS];  // d
-    float *flux_u, *flux_v;           // what passed the faces in the pass at hand
+    float *flux_u, *flux_v;           // flux over the faces in the current pass
     float *spare[3];      // for a pass that reads the previous field and writes a new one
-    float *concentration; // of the pigment at hand in the water; a row of 0 before and after
+    float *concentration; // of the current pigment in the water; a row of 0 before and after
 } FlSheet;
 
 /** A dry sheet with nothing on it. Returns: NULL with FL_ERROR_NO_MEMORY set. */

@@ -1,4 +1,4 @@
-/* A recipe from beginning to end: the stages of a step, the steps of a frame, the frames. */
+/* The simulation of a recipe: the stages of a step, the steps of a frame, the frames. */
 #include <fluidy/watercolour.h>
 
 #include "base/alloc.h"
@@ -26,7 +26,8 @@ static void step(FlSheet *sheet, const FlRecipe *recipe)
     fl_evaporate(sheet, &recipe->flow);
 }
 
-/* How many steps lead to frame n (0 is the first), as a time-lapse camera that slows down. */
+/* The number of steps before a frame (0 is the first), as of a time-lapse camera that slows down.
+ */
 static int steps_to(const FlRecipe *recipe, int frame)
 {
     if (frame == 0)
@@ -46,14 +47,14 @@ static void run_to(FlSheet *sheet, const FlBrush *brush, const FlRecipe *recipe,
     }
 }
 
-static void crumble(FlSheet *sheet, FlDustCloud *dust, int frame)
+static void lay_dust(FlSheet *sheet, FlDustCloud *dust, int frame)
 {
     if (frame > 0)
         fl_dust_drift(dust, sheet, frame - 1);
     fl_dust_lay(dust, sheet);
 }
 
-/* What the recipe says of the style, with room for its frames. */
+/* The style of a recipe, its frames allocated. */
 static FlStyle *new_style(const FlRecipe *recipe, const char *recipe_path, GError **error)
 {
     const size_t pixels = (size_t)recipe->width * recipe->height * recipe->frames;
@@ -80,16 +81,16 @@ static FlStyle *new_style(const FlRecipe *recipe, const char *recipe_path, GErro
     return g_steal_pointer(&style);
 }
 
-static void keep(FlStyle *style, int frame, const FlScan *scan)
+static void store_frame(FlStyle *style, int frame, const FlScan *scan)
 {
     const size_t pixels = (size_t)scan->width * scan->height;
     memcpy(style->rgb + frame * pixels * 3, scan->rgb, pixels * 3);
     memcpy(style->mask + frame * pixels, scan->mask, pixels);
 }
 
-/* All frames, one after the other. */
-static bool paint(FlStyle *style, const FlRecipe *recipe, FlWatercolourProgress progress,
-                  void *data, GError **error)
+/* Simulates all frames. */
+static bool simulate(FlStyle *style, const FlRecipe *recipe, FlWatercolourProgress progress,
+                     void *data, GError **error)
 {
     const int scale = recipe->oversample;
     g_autoptr(FlSheet) sheet =
@@ -104,12 +105,12 @@ static bool paint(FlStyle *style, const FlRecipe *recipe, FlWatercolourProgress 
         return false;
     for (int frame = 0; frame < recipe->frames; frame++) {
         if (dust)
-            crumble(sheet, dust, frame);
+            lay_dust(sheet, dust, frame);
         else
             run_to(sheet, brush, recipe, frame);
         if (!fl_scan_draw(scan, sheet, recipe, error))
             return false;
-        keep(style, frame, scan);
+        store_frame(style, frame, scan);
         if (progress)
             progress(frame + 1, recipe->frames, data);
     }
@@ -124,6 +125,6 @@ bool fl_watercolour_simulate(const char *recipe_path, const char *folder, bool o
     if (!recipe || !fl_style_may_write(folder, overwrite, error))
         return false;
     g_autoptr(FlStyle) style = new_style(recipe, recipe_path, error);
-    return style && paint(style, recipe, progress, data, error) &&
+    return style && simulate(style, recipe, progress, data, error) &&
            fl_style_write(style, folder, overwrite, error);
 }

@@ -33,13 +33,13 @@ void fl_advect(FlSheet *sheet, float share);
 /** Spreads floating pigment through the water in the paper. Conserves it to rounding. */
 void fl_diffuse_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow *flow);
 
-/** Lets pigment settle on the paper and come off again where it is wet [C97 §4.5]. */
+/** Adsorbs and desorbs pigment where the paper is wet [C97 §4.5]. */
 void fl_transfer_pigment(FlSheet *sheet, const FlPigment *pigments, const FlFlow *flow);
 
 /** Soaks water into the paper and moves it there, with the pigment in it [C97 §4.6]. */
 void fl_capillary_flow(FlSheet *sheet, const FlFlow *flow);
 
-/** Takes water away, most at the rim [MX05]; what a dry cell had in its water settles. */
+/** Evaporates water, most at the rim [MX05]; the pigment of a cell that dries settles. */
 void fl_evaporate(FlSheet *sheet, const FlFlow *flow);
 
 #endif

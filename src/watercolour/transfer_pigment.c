@@ -1,7 +1,7 @@
 /* Settling, granulation and staining [C97 §4.5]. */
 #include "watercolour/stages.h"
 
-/* Without branches, so that compilers can do several cells at once; a dry cell moves nothing. */
+/* No branches, so that it vectorises; a dry cell moves nothing. */
 static void transfer(FlSheet *sheet, float *restrict g, float *restrict d, const FlPigment *pigment,
                      float rate)
 {

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-/* The velocity of a face that may lie outside the sheet, where nothing moves. */
+/* The velocity of a face; 0 outside the sheet. */
 static inline float u_at(const FlSheet *sheet, int i, int j)
 {
     return i < 0 || j < 0 || i > sheet->width || j >= sheet->height
