@@ -8,15 +8,15 @@
 #include <math.h>
 #include <string.h>
 
-/* A plane of n floats a pixel, as large as the painter's part of the frame. */
+/* A plane of n floats per pixel, in the size of painted->rect or of the frame. */
 typedef struct Plane {
     const char *name;
     float *values;
     int n;
-    float low, high; // shown as black and white
+    float low, high; // drawn as black and white
 } Plane;
 
-/* Where a frame's dump goes. */
+/* The destination of a frame's dump. */
 typedef struct Dump {
     const char *folder;
     const FlPaintedRegion *painted;
@@ -29,8 +29,8 @@ static char *file_of(const Dump *dump, const char *name, const char *suffix)
     return g_build_filename(dump->folder, dump->painted->name, leaf, NULL);
 }
 
-/* The plane in the whole frame. */
-static float *whole(const FlPaintedRegion *painted, const Plane *plane, GError **error)
+/* Extends a plane from painted->rect to the whole frame. */
+static float *extend_to_frame(const FlPaintedRegion *painted, const Plane *plane, GError **error)
 {
     const size_t n = (size_t)plane->n, pixels = (size_t)painted->width * painted->height;
     float *out = fl_alloc(n * pixels, sizeof(float), "a picture", error);
@@ -81,14 +81,14 @@ static bool write_picture(const Dump *dump, const Plane *plane, GError **error)
 static bool write_plane(const Dump *dump, const Plane *plane, GError **error)
 {
     Plane shown = *plane;
-    g_autofree float *values = shown.values = whole(dump->painted, plane, error);
+    g_autofree float *values = shown.values = extend_to_frame(dump->painted, plane, error);
     return values && write_raw(dump, &shown, error) && write_picture(dump, &shown, error);
 }
 
 static bool write_flo(const Dump *dump, const Plane *plane, GError **error)
 {
     g_autofree char *flo = file_of(dump, plane->name, ".flo");
-    g_autofree float *flow = whole(dump->painted, plane, error);
+    g_autofree float *flow = extend_to_frame(dump->painted, plane, error);
     return flow && fl_flow_save(flo, dump->painted->width, dump->painted->height, flow, error);
 }
 
@@ -122,7 +122,7 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, float *flow, G
     return write_flo(dump, &planes[2], error);
 }
 
-/* What the drawing does, if that is known anywhere. */
+/* The motion of the drawing, where it is known. */
 static bool dump_motion(const Dump *dump, const FlGuides *guides, GError **error)
 {
     const size_t pixels = (size_t)guides->width * guides->height;
@@ -138,7 +138,7 @@ static bool dump_motion(const Dump *dump, const FlGuides *guides, GError **error
     return write_flo(dump, &(Plane){"motion", motion, 2, 0, 0}, error);
 }
 
-/* The field as large as the frame, then what it looks like: x, y and frame as red, green, blue. */
+/* The field in the frame's size, and a picture of it: x, y and frame as red, green, blue. */
 static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error)
 {
     const int width = dump->painted->width, height = dump->painted->height;

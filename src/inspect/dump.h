@@ -1,4 +1,4 @@
-/* What the synthesis saw, as pictures and as raw data: --dump. */
+/* The guides, the field and T_temp of a frame, as pictures and raw data: --dump. */
 #ifndef FLUIDY_INSPECT_DUMP_H
 #define FLUIDY_INSPECT_DUMP_H
 
@@ -7,7 +7,7 @@
 /**
  * Writes a painter's guides, field and T_temp of the frame it has just painted into
  * folder/REGION/: a PNG to look at and little-endian 32-bit floats to compute with, row-major and
- * as large as the frame, 0 outside the part of it in which the region ever is. Names are
+ * as large as the frame, 0 outside painted->rect. Names are
  * WHAT_NUMBER.png and .f32:
  *
  *   mask         0 … 1                              1 float per pixel

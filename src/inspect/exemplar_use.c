@@ -4,12 +4,12 @@
 #include "base/colour_map.h"
 #include "inspect/page_script.h"
 
-#define HOT 8 // times an even use: the end of the ramp
+#define HOT 8 // times the even use: the end of the colour map
 
-bool fl_exemplar_use_init(FlExemplarUse *use, const FlStyleInstance *box, GError **error)
+bool fl_exemplar_use_init(FlExemplarUse *use, const FlStyleInstance *style, GError **error)
 {
-    const FlExemplarLevel *full = &box->exemplar->level[0];
-    *use = (FlExemplarUse){.style = box};
+    const FlExemplarLevel *full = &style->exemplar->level[0];
+    *use = (FlExemplarUse){.style = style};
     return (use->place =
                 fl_alloc((size_t)full->width * full->height, sizeof(uint32_t), "a count", error)) &&
            (use->frame = fl_alloc((size_t)full->n_frames, sizeof(uint32_t), "a count", error));
@@ -38,7 +38,7 @@ void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted)
     }
 }
 
-/* Matches of the 5x5 pixels around a place: how often the patch there is used. */
+/* Matches in the 5x5 pixels around a place: how often the patch there is used. */
 static uint32_t around(const FlExemplarUse *use, int x, int y)
 {
     const FlExemplarLevel *full = &use->style->exemplar->level[0];
@@ -50,7 +50,7 @@ static uint32_t around(const FlExemplarUse *use, int x, int y)
     return sum;
 }
 
-/* Frames in which paint is at a place. */
+/* The number of frames with paint at a place. */
 static int frames_with_paint(const FlExemplarUse *use, int x, int y)
 {
     const FlExemplarLevel *full = &use->style->exemplar->level[0];
@@ -61,7 +61,7 @@ static int frames_with_paint(const FlExemplarUse *use, int x, int y)
     return n;
 }
 
-/* Grey where nothing was taken, the ramp where something was: its end is HOT times an even use. */
+/* The use as colours over the recording in grey; the colour map ends at HOT times the even use. */
 static FlPicture *picture_of(const FlExemplarUse *use, GError **error)
 {
     const FlExemplarLevel *full = &use->style->exemplar->level[0];
@@ -70,7 +70,7 @@ static FlPicture *picture_of(const FlExemplarUse *use, GError **error)
     for (int y = 0; picture && y < full->height; y++)
         for (int x = 0; x < full->width; x++)
             painted += (uint64_t)frames_with_paint(use, x, y);
-    const double even = (double)use->total / (double)MAX(painted, 1); // matches a painted pixel
+    const double even = (double)use->total / (double)MAX(painted, 1); // matches per painted pixel
     for (int y = 0; picture && y < full->height; y++)
         for (int x = 0; x < full->width; x++) {
             uint8_t *rgba = picture->rgba + 4 * ((size_t)y * full->width + x);

@@ -1,23 +1,23 @@
-/* Which parts of the recordings a painting is made of: repeats show as hot spots. */
+/* How often each part of a recording is used: repeats show as bright spots. */
 #ifndef FLUIDY_INSPECT_EXEMPLAR_USE_H
 #define FLUIDY_INSPECT_EXEMPLAR_USE_H
 
 #include "compose/painted_region.h"
 #include <stdio.h>
 
-/** How often each part of one recording was used. */
+/** Counts of the matches in one recording. */
 typedef struct FlExemplarUse {
-    const FlStyleInstance *style; // borrowed; NULL: not in use yet
+    const FlStyleInstance *style; // borrowed; NULL: unused
     uint32_t *place;              // exemplar's width * height: matches, over all its frames
     uint32_t *frame;              // n_frames: matches
     uint64_t total;
 } FlExemplarUse;
 
-/** Begins to count for a recording. FL_ERROR_NO_MEMORY. */
-bool fl_exemplar_use_init(FlExemplarUse *use, const FlStyleInstance *box, GError **error);
+/** Starts the counts of a recording at 0. FL_ERROR_NO_MEMORY. */
+bool fl_exemplar_use_init(FlExemplarUse *use, const FlStyleInstance *style, GError **error);
 void fl_exemplar_use_clear(FlExemplarUse *use);
 
-/** Counts the matches of a painter that paints from use->box; a painter without a view has none. */
+/** Counts the matches of a region painted from use->style; without a view it has none. */
 void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted);
 
 /**

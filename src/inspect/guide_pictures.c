@@ -38,7 +38,7 @@ void fl_guide_view_reset(FlGuideView *view)
     memset(view->owner, 0, sizeof(int16_t) * pixels);
 }
 
-/* Where the exemplar's patch of a pixel of the painter's part is from. */
+/* The match of a pixel of painted->rect. */
 static FlMatch match_at(const FlSynthView *view, int x, int y)
 {
     const int column = x - view->rect.x, row = y - view->rect.y;
@@ -68,14 +68,14 @@ static void put_match(const FlGuideView *view, const FlPaintedRegion *painted, s
     put(view, FL_GUIDE_PLACE, to, place);
 }
 
-/* One pixel of the pictures, from one of the painter's part. */
+/* Sets one pixel of the pictures from pixel x, y of painted->rect. */
 static void put_pixel(FlGuideView *view, const FlPaintedRegion *painted, const FlGuides *guides,
                       int x, int y, size_t to)
 {
     const FlExemplar *exemplar = painted->style->exemplar;
     const size_t from = (size_t)y * guides->width + x;
     const float u = guides->flow[2 * from], v = guides->flow[2 * from + 1];
-    const float shrunk = (float)view->picture[0]->width / (float)painted->width;
+    const float scale = (float)view->picture[0]->width / (float)painted->width;
     uint8_t rgb[3];
     fl_colour_map(guides->distance[from] / (3 * exemplar->border_px), rgb);
     put(view, FL_GUIDE_DISTANCE, to, rgb);
@@ -84,7 +84,7 @@ static void put_pixel(FlGuideView *view, const FlPaintedRegion *painted, const F
     fl_colour_map(guides->ext_minus[from] * exemplar->ext_scale, rgb);
     put(view, FL_GUIDE_EXT_MINUS, to, rgb);
     put_match(view, painted, to, match_at(&painted->view, x, y));
-    view->flow[2 * to] = u * shrunk, view->flow[2 * to + 1] = v * shrunk;
+    view->flow[2 * to] = u * scale, view->flow[2 * to + 1] = v * scale;
 }
 
 void fl_guide_view_add(FlGuideView *view, int p, const FlPaintedRegion *painted,
@@ -114,7 +114,7 @@ static float fastest(const FlGuideView *view)
     return most;
 }
 
-/* The colours of the flow are those of its share of the fastest. */
+/* Draws the flow, the fastest at full saturation. */
 static void colour_flow(const FlGuideView *view, float full)
 {
     const size_t pixels = (size_t)view->picture[0]->width * view->picture[0]->height;

@@ -1,11 +1,11 @@
-/* Values of JavaScript in a page that is being written. */
+/* Writes JavaScript values into a page. */
 #ifndef FLUIDY_INSPECT_PAGE_SCRIPT_H
 #define FLUIDY_INSPECT_PAGE_SCRIPT_H
 
 #include "base/picture.h"
 #include <stdio.h>
 
-/** A string in quotes, whatever is in it; NULL: null. It can end neither itself nor the script. */
+/** A quoted string; NULL: null. Whatever it contains, it ends neither itself nor the script. */
 void fl_script_string(FILE *out, const char *text);
 
 /** A number, with six digits; null if it is not finite. */

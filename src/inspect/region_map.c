@@ -1,4 +1,4 @@
-/* What a drawing is made of, as tables, configs and maps. */
+/* The regions of a drawing as a table, a config or maps. */
 #include <fluidy/inspect.h>
 
 #include "base/alloc.h"
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A drawing and what the caller said of it. */
+/* A drawing with its options. */
 typedef struct Subject {
     FlRenderOptions options; // complete
     FlConfig *config;
@@ -72,7 +72,7 @@ static Row describe(const Subject *subject, int region)
                   g_strdup(*r->label ? r->label : "-")}};
 }
 
-/* Numbers stand at the right of their column. */
+/* Numbers are right-aligned. */
 static void append_row(GString *text, const Row *row, const int widths[N_COLUMNS])
 {
     for (int c = 0; c < N_COLUMNS; c++) {
@@ -108,7 +108,7 @@ static char *table(const Subject *subject)
 
 /* ---- configs ------------------------------------------------------------------------------ */
 
-static const char *style_said(const Subject *subject)
+static const char *style_option(const Subject *subject)
 {
     for (size_t i = subject->options.n_settings; i > 0; i--)
         if (!subject->options.settings[i - 1].region &&
@@ -117,13 +117,12 @@ static const char *style_said(const Subject *subject)
     return NULL;
 }
 
-/* What a config starts with: what was said, else 01, else the first that is found. NULL: none is.
- */
-static char *style_to_start_with(const Subject *subject)
+/* The style of a new config: the option's, else 01, else the first style found, else NULL. */
+static char *initial_style(const Subject *subject)
 {
-    const char *said = style_said(subject);
-    g_autoptr(GPtrArray) found = said ? NULL : fl_style_list();
-    const char *name = said;
+    const char *option = style_option(subject);
+    g_autoptr(GPtrArray) found = option ? NULL : fl_style_list();
+    const char *name = option;
     for (guint i = 0; found && i < found->len; i++) {
         const FlStyleEntry *entry = g_ptr_array_index(found, i);
         if (!name || strcmp(entry->name, "01") == 0)
@@ -146,10 +145,10 @@ static void append_section(GString *text, const Subject *subject, int region)
 
 static char *config_text(const Subject *subject)
 {
-    g_autofree char *style = style_to_start_with(subject);
+    g_autofree char *style = initial_style(subject);
     GString *text = g_string_new("# How the regions are painted; see fluidy-svg.conf(5).\n");
     g_string_append_printf(text,
-                           "# Lines that start with # say nothing yet.\n\n"
+                           "# Lines that start with # are comments.\n\n"
                            "[project]\nversion = 1\n# background = #ffffff\n\n"
                            "[defaults]\n%sstyle = %s\n",
                            style ? "" : "# ", style ? style : "01");
@@ -171,7 +170,7 @@ char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError 
 #define LINE_PX 20
 #define LEGEND_PX 280
 
-/* The legend beside the map, as high as it needs to be. */
+/* The legend at the right of the map: a line per painted region. */
 static void draw_legend(cairo_t *cr, const FlDrawing *drawing, int left)
 {
     cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);

@@ -14,10 +14,10 @@
 #include <string.h>
 
 #define MAX_SIDE 480               // px of a picture in the page
-#define MIN_SIDE 240               // rather than smaller ones, not every frame is shown
-#define PAGE_PIXELS (6e6)          // of all painted pictures together: about 12 MB of page
-#define GUIDE_FRAMES 3             // whose guides are shown
-#define MARK "<!-- the frames -->" // where they go in page.html
+#define MIN_SIDE 240               // below it, leave out frames instead
+#define PAGE_PIXELS (6e6)          // of all painted pictures together: a page of about 12 MB
+#define GUIDE_FRAMES 3             // frames whose guides are shown
+#define MARK "<!-- the frames -->" // in page.html
 
 struct FlReport {
     const FlPlan *plan;
@@ -31,10 +31,10 @@ struct FlReport {
     FlGuideView view;
     FlFlicker *flicker;      // by painter
     double *painter_seconds; // by painter: sum
-    FlExemplarUse *use;      // by recording; those without a box are not used
+    FlExemplarUse *use;      // by recording; those with style NULL are unused
 };
 
-/* As many pictures, and as large, as the page bears. */
+/* Chooses the size of the pictures, and how many frames have them, within PAGE_PIXELS. */
 static void choose_size(FlReport *report)
 {
     const int width = report->plan->width, height = report->plan->height;
@@ -48,7 +48,7 @@ static void choose_size(FlReport *report)
     report->every = MAX((int)ceil(n / most), 1);
 }
 
-/* The page as it is in the sources, and in it the place of the frames. */
+/* The place of the frames in page.html. */
 static const char *page_mark(const FlReport *report)
 {
     gsize n = 0;
@@ -102,7 +102,7 @@ void fl_report_free(FlReport *report)
     g_free(report);
 }
 
-/* The middles of equal parts of the film, where the drawing is not held. */
+/* The middles of equal parts of the film, or the frames that are held there. */
 static bool shows_guides(const FlReport *report, int frame)
 {
     const int n = fl_drawing_frames(report->plan->drawing);
@@ -119,7 +119,7 @@ bool fl_report_wants_view(const FlReport *report, int frame)
     return report && shows_guides(report, frame);
 }
 
-/* Counts what a painter took from its recording. */
+/* Counts the matches of a region in its recording. */
 static bool add_use(FlReport *report, const FlPaintedRegion *painted, GError **error)
 {
     FlExemplarUse *use = report->use;

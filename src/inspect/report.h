@@ -1,11 +1,11 @@
-/* A page to look at a render: before and after, guides, curves, times. One HTML file. */
+/* The report of a render, one HTML page: before and after, guides, curves, times. */
 #ifndef FLUIDY_INSPECT_REPORT_H
 #define FLUIDY_INSPECT_REPORT_H
 
 #include "compose/composite.h"
 #include "job/plan.h"
 
-/** A report in the making. Its memory does not grow with the number of frames. */
+/** A report being written. Its memory does not grow with the number of frames. */
 typedef struct FlReport FlReport;
 
 /** A frame that has just been written, and the seconds it took. Borrowed for the call. */
@@ -17,9 +17,8 @@ typedef struct FlReportFrame {
 } FlReportFrame;
 
 /**
- * Begins folder/index.html; plan and background must outlive it.
- *
- * Nothing is seen under that name before fl_report_finish(). Returns: to be freed with
+ * Opens folder/index.html; plan and background must outlive the report. The file appears with
+ * fl_report_finish(). Returns: to be freed with
  * fl_report_free(); NULL with FL_ERROR_EXISTS, FL_ERROR_OUTPUT or FL_ERROR_NO_MEMORY.
  */
 FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, const char *folder,
@@ -27,22 +26,22 @@ FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, cons
 
 void fl_report_free(FlReport *report); // NULL is fine
 
-/** Whether fl_report_guides() will look at the views of a frame; a NULL report does not. */
+/** Whether fl_report_guides() needs the views of a frame; false if report is NULL. */
 bool fl_report_wants_view(const FlReport *report, int frame);
 
 /**
- * Tells from what the p-th region has just been painted. Any thread may call it, in any order of
- * the regions; a NULL report is told nothing. FL_ERROR_NO_MEMORY.
+ * Adds the guides and the field of region p, which has just been painted. Any thread, regions in
+ * any order; does nothing if report is NULL. FL_ERROR_NO_MEMORY.
  */
 bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, int frame,
                       const FlGuides *guides, GError **error);
 
-/** Tells a report, or NULL, of a finished frame; frames come in order. FL_ERROR_INPUT,
+/** Adds a finished frame; frames come in order. Does nothing if report is NULL. FL_ERROR_INPUT,
  * FL_ERROR_NO_MEMORY. */
 bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **error);
 
-/** Completes the file; a NULL report has none. FL_ERROR_OUTPUT or FL_ERROR_EXISTS; the name is then
- * as it was. */
+/** Completes the file; does nothing if report is NULL. On FL_ERROR_OUTPUT or FL_ERROR_EXISTS an
+ * older file stays. */
 bool fl_report_finish(FlReport *report, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlReport, fl_report_free)

@@ -1,4 +1,4 @@
-/* Figures of a render as JSON lines: how quality and speed are argued. */
+/* Statistics of a render as JSON lines: energies and times. */
 #ifndef FLUIDY_INSPECT_STATS_H
 #define FLUIDY_INSPECT_STATS_H
 
@@ -6,19 +6,19 @@
 #include "io/atomic_file.h"
 #include <fluidy/render.h>
 
-/** Seconds by stage, and the file of --stats, which appears under its name when it is whole. */
+/** Seconds by stage, and the file of --stats, which appears when it is complete. */
 typedef struct FlStats {
     FlAtomicFile file;
     bool open;
     double read_s, guides_s, paint_s, compose_s, write_s;
 } FlStats;
 
-/** Begins the file, if options ask for one. */
+/** Opens the file, if options name one. */
 bool fl_stats_init(FlStats *stats, const FlRenderOptions *options, GError **error);
 
 /**
- * A line for each of the n regions and each level that was painted in the frame of that number,
- * then one for the frame and the seconds it took.
+ * Writes a line for each of the n regions and each of its levels in a frame, then a line for the
+ * frame with its seconds.
  */
 void fl_stats_frame(FlStats *stats, const FlPaintedRegion *const *painted, int n, int number,
                     double paint_s, double compose_s, double write_s);
@@ -26,7 +26,7 @@ void fl_stats_frame(FlStats *stats, const FlPaintedRegion *const *painted, int n
 /** One line about the whole render: seconds of each stage, memory. To be freed. */
 char *fl_stats_summary(const FlStats *stats, int n_frames);
 
-/** The most memory that the program has had so far, MiB. */
+/** The peak memory of the process so far, MiB. */
 double fl_peak_mib(void);
 
 bool fl_stats_finish(FlStats *stats, GError **error);

@@ -1,4 +1,4 @@
-/* Styles beside each other: a film painted in several, and all that are installed. */
+/* Sheets of styles: a drawing painted in several, and all that are installed. */
 #include <fluidy/compare.h>
 #include <fluidy/style.h>
 
@@ -14,7 +14,7 @@
 #define SHOWN_PX 320 // larger side of a frame on the sheet
 #define STYLE_COLUMNS 4
 
-/* What is compared: the film, the styles, and the sheet. */
+/* A comparison: the drawing and the sheet. */
 typedef struct Comparison {
     FlRenderOptions options; // complete
     FlConfig *config;
@@ -42,7 +42,7 @@ static bool comparison_init(Comparison *c, const FlRenderOptions *options, int n
         return false;
     FlRenderOptions complete = c->options;
     fl_config_complete(c->config, &complete);
-    complete.warning = NULL, complete.note = NULL; // the renders will tell
+    complete.warning = NULL, complete.note = NULL; // the renders repeat them
     if (!(c->drawing = fl_drawing_from_options(&complete, c->config, error)))
         return false;
     const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
@@ -57,11 +57,11 @@ static bool show_drawing(const Comparison *c, GError **error)
     const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
     g_autofree uint8_t *rgba = fl_alloc((size_t)width * height, 4, "a picture", error);
     for (int f = 0; rgba && f < fl_drawing_frames(c->drawing); f++) {
-        g_autoptr(FlDrawList) runs = fl_drawing_draw_list(c->drawing, f, error);
-        if (!runs)
+        g_autoptr(FlDrawList) draws = fl_drawing_draw_list(c->drawing, f, error);
+        if (!draws)
             return false;
         g_autofree char *name = g_strdup_printf("frame %d", fl_drawing_number(c->drawing, f));
-        fl_draw_list_flat(runs, width, height, rgba);
+        fl_draw_list_flat(draws, width, height, rgba);
         g_autoptr(cairo_surface_t) picture = fl_surface_of(rgba, 4, width, height, error);
         if (!picture)
             return false;
@@ -81,7 +81,7 @@ static bool show_frame(void *taker, const FlSinkFrame *frame, int width, int hei
     return surface != NULL;
 }
 
-/* The caller's settings and the style: the last wins. */
+/* Paints all frames in a style, which comes after the caller's settings and so overrides them. */
 static bool paint(Comparison *c, const char *style, int row, GError **error)
 {
     g_autofree char *line = g_strdup_printf("style %s", style);
@@ -95,7 +95,7 @@ static bool paint(Comparison *c, const char *style, int row, GError **error)
     options.settings = settings, options.n_settings = n + 1;
     options.note = NULL;
     if (row > 1)
-        options.warning = NULL; // they are the drawing's
+        options.warning = NULL; // the drawing's, reported once
     c->row = row, c->column = 0;
     if (!fl_render_frames(&options, show_frame, c, error))
         return false;
@@ -108,7 +108,7 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
 {
     g_auto(Comparison) c = {0};
     const int n = (int)g_strv_length((char **)styles);
-    for (int k = 0; k < n; k++) { // a mistyped one should not be found out after the others
+    for (int k = 0; k < n; k++) { // find a mistyped one before painting the others
         g_autofree char *path = fl_style_find(styles[k], error);
         if (!path)
             return false;
@@ -129,9 +129,9 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
     return true;
 }
 
-/* ---- what is installed ---------------------------------------------------------------------- */
+/* ---- installed styles ----------------------------------------------------------------------- */
 
-/* The k-th of STYLE_COLUMNS frames, the last one last. */
+/* STYLE_COLUMNS frames at equal steps, up to the last. */
 static bool show_recording(const FlContactSheet *contact, const char *name, const FlStyle *style,
                            int row, GError **error)
 {
