@@ -131,7 +131,7 @@ table() {
 2|--merge composes what --paint has written; use --paint PATTERN*|good --merge
 2|--merge paints nothing that --report or --dump could show*|good --merge --paint {region}_%d.png --dump d
 1|gone/red-aa3311_1.png: there is no such file; --paint without --merge writes*|good --merge --paint gone/{region}_%d.png
-1|odd/frames/0001.png: 64x48 pixels; expected 48x48*|good --merge --paint odd/frames/%04d.png -f 1
+1|odd/frames/0001.png: 64x48 pixels: expected 48x48*|good --merge --paint odd/frames/%04d.png -f 1
 2|good/a_1.svg: is read by this render; expected another name *|good -y --format png -o good/a_%d.svg
 2|./good/a_1.svg: is read by this render; *|good/a_1.svg -y --format hash -o ./good/a_1.svg
 2|clear.png: is read by this render; *|good -y -b clear.png -o clear.png -f 1

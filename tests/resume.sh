@@ -44,9 +44,9 @@ result $? 'a complete render leaves its frames and nothing else'
 for signal in INT TERM; do
     stop $signal $signal 2
     found=$?
-    [ $found = 75 ] && says 'run again to go on' && [ -e $signal/.w_%04d.png.state ]
+    [ $found = 75 ] && says 'run again to resume' && [ -e $signal/.w_%04d.png.state ]
     result $? "SIG$signal ends a render with status 75 and says what to do"
-    paint $signal && grep -q 'going on with an earlier run' err && same $signal whole
+    paint $signal && grep -q 'resuming an earlier run' err && same $signal whole
     result $? "the frames after SIG$signal and a second run are those of a whole render"
 done
 
@@ -56,7 +56,7 @@ done
 moved=(--region red-aa3311 --flow 'slide_%d.flo')
 paint carried_whole "${moved[@]}"
 stop carried INT 3 "${moved[@]}"
-paint carried "${moved[@]}" && grep -q 'going on with an earlier run' err &&
+paint carried "${moved[@]}" && grep -q 'resuming an earlier run' err &&
     same carried carried_whole
 result $? 'paint that is carried goes on as it would have'
 
@@ -174,15 +174,15 @@ head -c 100 changed/.w_%04d.png.state >cut && cp cut changed/.w_%04d.png.state
 paint changed
 [ $? = 1 ] && says 'the state of an earlier render cannot be read; use -y to start anew'
 result $? 'a state that is cut short is told'
-paint changed -y && ! grep -q 'going on' err && same changed whole
+paint changed -y && ! grep -q 'resuming' err && same changed whole
 result $? '-y starts anew'
 
 rm -rf stopped
 stop stopped INT 2
-paint stopped -y --resume && grep -q 'going on' err && same stopped whole
+paint stopped -y --resume && grep -q 'resuming' err && same stopped whole
 result $? '-y --resume goes on where it can'
 stop stopped2 INT 2
-paint stopped2 -y --resume --seed 2 && ! grep -q 'going on' err && ! same stopped2 whole
+paint stopped2 -y --resume --seed 2 && ! grep -q 'resuming' err && ! same stopped2 whole
 result $? '-y --resume starts anew where it cannot'
 
 "$program" film -s "$style" -o film.gif --no-frames --resume >out 2>err
@@ -194,12 +194,12 @@ result $? 'a film without frames that should be resumed is refused'
 result $? 'a film keeps its frames beside it'
 output=w.mkv stop on TERM 3
 [ $? = 75 ] && [ ! -e on/w.mkv ] && "$program" film -s "$style" -o on/w.mkv >out 2>err &&
-    grep -q 'going on' err && cmp -s on/w.mkv played.mkv && rm on/w.mkv && same on whole
+    grep -q 'resuming' err && cmp -s on/w.mkv played.mkv && rm on/w.mkv && same on whole
 result $? 'an interrupted film goes on and has the same bytes'
 for frame in 1 3; do
     output=w.mkv stop dead KILL $frame
 done
-"$program" film -s "$style" -o dead/w.mkv >out 2>err && grep -q 'going on' err &&
+"$program" film -s "$style" -o dead/w.mkv >out 2>err && grep -q 'resuming' err &&
     cmp -s dead/w.mkv played.mkv && rm dead/w.mkv && same dead whole
 result $? 'so does one that was killed twice, and leaves nothing else'
 # An ffmpeg that is slow to start, of a run that was killed, does not touch what the next one wrote.

@@ -51,7 +51,7 @@ bool fl_checkpoint_save(const FlCheckpoint *state, const char *path, GError **er
 {
     g_autoptr(GVariant) variant = to_variant(state);
     const size_t bytes = g_variant_get_size(variant);
-    g_autofree void *data = fl_alloc(bytes, 1, "a state", error);
+    g_autofree void *data = fl_alloc(bytes, 1, "a saved state", error);
     g_auto(FlAtomicFile) file = {0};
     if (!data || !fl_atomic_open(&file, path, true, error))
         return false;
@@ -91,9 +91,9 @@ FlCheckpoint *fl_checkpoint_parse(GBytes *bytes, const char *path, GError **erro
     FlCheckpoint *state = NULL;
     if (size >= sizeof sum) {
         sum = fl_checkpoint_sum(data, size - sizeof sum);
-        g_autoptr(GBytes) knockout = g_bytes_new_from_bytes(bytes, 0, size - sizeof sum);
+        g_autoptr(GBytes) payload = g_bytes_new_from_bytes(bytes, 0, size - sizeof sum);
         g_autoptr(GVariant) variant =
-            g_variant_ref_sink(g_variant_new_from_bytes(G_VARIANT_TYPE(TYPE), knockout, FALSE));
+            g_variant_ref_sink(g_variant_new_from_bytes(G_VARIANT_TYPE(TYPE), payload, FALSE));
         if (memcmp(&sum, data + size - sizeof sum, sizeof sum) == 0 &&
             g_variant_is_normal_form(variant))
             state = from_variant(variant);

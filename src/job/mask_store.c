@@ -48,9 +48,9 @@ bool fl_mask_store_put(FlMaskStore *masks, int region, int frame, const uint8_t 
         return false;
     fl_rect_copy(coverage, (FlRect){0, 0, masks->width, masks->height}, cropped, box, 1);
     g_mutex_lock(&masks->mutex);
-    const bool kept = fl_spill_put(masks->spill, block, cropped, bytes, error);
+    const bool stored = fl_spill_put(masks->spill, block, cropped, bytes, error);
     g_mutex_unlock(&masks->mutex);
-    return kept;
+    return stored;
 }
 
 bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect part,

@@ -1,4 +1,4 @@
-/* The masks of every region and frame, kept small in a temporary file. */
+/* The masks of every region and frame, compressed in a temporary file. */
 #ifndef FLUIDY_JOB_MASK_STORE_H
 #define FLUIDY_JOB_MASK_STORE_H
 
@@ -13,16 +13,15 @@ typedef struct FlMaskStore FlMaskStore;
 FlMaskStore *fl_mask_store_new(int n_regions, int n_frames, int width, int height, GError **error);
 void fl_mask_store_free(FlMaskStore *masks); // NULL is fine
 
-/** Keeps a mask of width * height bytes. Any thread. */
+/** Stores a mask of width * height bytes. Any thread. */
 bool fl_mask_store_put(FlMaskStore *masks, int region, int frame, const uint8_t *coverage,
                        GError **error);
 
-/** Reads the part of a mask that lies in `part`, part.width * part.height bytes; 0 if none was put.
- */
+/** Reads `part` of a mask, part.width * part.height bytes; all 0 if none was stored. */
 bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect part,
                        uint8_t *coverage, GError **error);
 
-/** Where a region ever is. Returns: {0, 0, 0, 0} if nowhere. */
+/** The rectangle around a region in all frames; {0, 0, 0, 0} if it is never there. */
 FlRect fl_mask_store_extent(const FlMaskStore *masks, int region);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMaskStore, fl_mask_store_free)

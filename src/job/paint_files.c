@@ -20,7 +20,7 @@ bool fl_paint_save(const FlPaintedRegion *painted, const char *path, bool overwr
     g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "the paint of a region", error);
     if (!rgba)
         return false;
-    for (size_t p = 0; p < pixels; p++) // paper, where the region never is
+    for (size_t p = 0; p < pixels; p++) // paper outside painted->rect
         memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], 255}, 4);
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++)
@@ -44,7 +44,7 @@ bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)
         return false;
     if (picture->width != painted->width || picture->height != painted->height) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: %dx%d pixels; expected %dx%d, as the frames have", path, picture->width,
+                    "%s: %dx%d pixels: expected %dx%d as the frames have", path, picture->width,
                     picture->height, painted->width, painted->height);
         return false;
     }

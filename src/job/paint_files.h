@@ -1,23 +1,22 @@
-/* The paint of regions as files: kept by one run, composed by another. */
+/* The paint of regions as files: written by one run, composed by another. */
 #ifndef FLUIDY_JOB_PAINT_FILES_H
 #define FLUIDY_JOB_PAINT_FILES_H
 
 #include "job/plan.h"
 
 /**
- * The file of a region's paint in a frame; frames that are held have the file of the first of them.
+ * The file of a region's paint in a frame; held frames share the file of the first.
  *
  * Returns: to be freed with g_free(); NULL with FL_ERROR_USAGE.
  */
 char *fl_paint_file(const char *pattern, const FlDrawing *drawing, const FlRegionPlan *region,
                     int frame, GError **error);
 
-/** Writes what has been painted of a region, in the exemplar's colours and the frame's size, as
- * PNG. */
+/** Writes the paint of a region, in the exemplar's colours and the frame's size, as PNG. */
 bool fl_paint_save(const FlPaintedRegion *painted, const char *path, bool overwrite,
                    GError **error);
 
-/** Reads the part painted->rect of such a file. FL_ERROR_INPUT, which names it. */
+/** Reads the part painted->rect of such a file. FL_ERROR_INPUT. */
 bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error);
 
 #endif

@@ -8,7 +8,7 @@
 #include "io/pattern.h"
 #include <string.h>
 
-static bool open_film(FlPlan *plan, GError **error)
+static bool open_drawing(FlPlan *plan, GError **error)
 {
     g_auto(FlRegionSettings) general = {0};
     if (!fl_config_region_settings(plan->config, -1, "", &plan->options, &general, error))
@@ -18,9 +18,9 @@ static bool open_film(FlPlan *plan, GError **error)
     return plan->drawing != NULL;
 }
 
-/* Says a line through one of the options' callbacks. */
+/* Sends a line to one of the options' callbacks. */
 G_GNUC_PRINTF(3, 4)
-static void say(const FlPlan *plan, void (*to)(const char *, void *), const char *format, ...)
+static void send_line(const FlPlan *plan, void (*to)(const char *, void *), const char *format, ...)
 {
     if (!to)
         return;
@@ -61,7 +61,7 @@ static bool check_region_names(const FlPlan *plan, GError **error)
     return true;
 }
 
-/* A warning about a style; false, with the error that it is, if there are to be none. */
+/* A warning about a style; false with an error under strict. */
 G_GNUC_PRINTF(3, 4)
 static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
 {
@@ -72,11 +72,11 @@ static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
     if (plan->options.strict)
         g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s (a warning under ‘strict’)", line);
     else
-        say(plan, plan->options.warning, "%s", line);
+        send_line(plan, plan->options.warning, "%s", line);
     return !plan->options.strict;
 }
 
-/* Of a style, said by the first region that is painted with it. */
+/* Warnings about a style, once, with the first region that uses it. */
 static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
     enum { MUCH_BEYOND = 10 }; // percent
@@ -94,8 +94,8 @@ static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GErro
                 style->path, style->ink->beyond);
 }
 
-/* How a region is treated, and whether it is painted at all. */
-static bool treat_region(FlPlan *plan, int region, GError **error)
+/* The settings of a region, and whether it is painted. */
+static bool plan_region(FlPlan *plan, int region, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, region);
     const char *only = plan->options.only_region;
@@ -112,7 +112,7 @@ static bool treat_region(FlPlan *plan, int region, GError **error)
         return true;
     }
     chosen->region = region;
-    plan->painted_of[region] = plan->n_painted++; // from here on the plan clears it
+    plan->painted_of[region] = plan->n_painted++; // from here on, fl_plan_free() clears it
     if (!settings->style)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "no style for region “%s”; use ‘style’ NAME, or style = NAME in a config",
@@ -120,16 +120,16 @@ static bool treat_region(FlPlan *plan, int region, GError **error)
     return settings->style != NULL;
 }
 
-/* Half the size is for all regions or for none, also of those that are left out this time: they are
- * drawn and stacked together. */
-static bool treat_regions(FlPlan *plan, GError **error)
+/* All regions have half the size or none, including those left out this time, since they are
+ * composed together. */
+static bool plan_regions(FlPlan *plan, GError **error)
 {
     const int n = fl_drawing_regions(plan->drawing);
     plan->painted = g_new0(FlRegionPlan, MAX(n, 1));
     plan->painted_of = g_new0(int, MAX(n, 1));
     plan->half = true;
     for (int r = 0; r < n; r++)
-        if (!treat_region(plan, r, error))
+        if (!plan_region(plan, r, error))
             return false;
     plan->hold_of = g_new0(int, MAX(n, 1));
     for (int r = 0; r < n; r++)
@@ -149,7 +149,7 @@ static void choose_size(FlPlan *plan)
         fl_drawing_halve(plan->drawing);
 }
 
-static bool equip_region(FlPlan *plan, FlRegionPlan *painted, GError **error)
+static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, painted->region);
     painted->name = r->name, painted->area_px = r->area_px;
@@ -161,17 +161,17 @@ static bool equip_region(FlPlan *plan, FlRegionPlan *painted, GError **error)
     if (!painted->style || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
-        say(plan, plan->options.note, "region %s: style %s", r->name, painted->style->path);
+        send_line(plan, plan->options.note, "region %s: style %s", r->name, painted->style->path);
     return true;
 }
 
-static bool equip_regions(FlPlan *plan, GError **error)
+static bool choose_styles(FlPlan *plan, GError **error)
 {
     plan->masks =
         fl_mask_store_new(fl_drawing_regions(plan->drawing), fl_drawing_frames(plan->drawing),
                           fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
     for (int p = 0; plan->masks && p < plan->n_painted; p++)
-        if (!equip_region(plan, &plan->painted[p], error))
+        if (!choose_style(plan, &plan->painted[p], error))
             return false;
     memset(plan->paper, 255, sizeof plan->paper);
     if (plan->n_painted > 0 && plan->masks)
@@ -185,7 +185,7 @@ static char *default_output(const FlPlan *plan)
     return g_strdup_printf("fluidy/{name}%s%s", plan->format->film ? "" : "_%04d", suffix);
 }
 
-/* A film's frames lie beside it: walk_0001.png, … of walk.mov. */
+/* The frames of a film are beside it: walk_0001.png, … of walk.mov. */
 static char *frames_of_movie(const FlPlan *plan)
 {
     const char *suffix = plan->movie_format->suffix;
@@ -196,7 +196,7 @@ static char *frames_of_movie(const FlPlan *plan)
     return g_strdup_printf("%s_%%04d.png", stem->str);
 }
 
-static bool keep_frames(FlPlan *plan, GError **error)
+static bool choose_frames(FlPlan *plan, GError **error)
 {
     if (!plan->format->moving || plan->options.no_frames)
         return true;
@@ -208,11 +208,11 @@ static bool keep_frames(FlPlan *plan, GError **error)
 
 static bool name_output(FlPlan *plan, GError **error)
 {
-    const char *format = plan->options.format, *said = plan->options.output;
-    plan->format = fl_sink_format(format || said ? format : "png", said, error);
+    const char *format = plan->options.format, *requested = plan->options.output;
+    plan->format = fl_sink_format(format || requested ? format : "png", requested, error);
     if (!plan->format)
         return false;
-    g_autofree char *pattern = said ? g_strdup(said) : default_output(plan);
+    g_autofree char *pattern = requested ? g_strdup(requested) : default_output(plan);
     plan->output = fl_output_of_film(pattern, fl_drawing_name(plan->drawing));
     if (!plan->format->film && !fl_output_is_pattern(plan->output) &&
         fl_drawing_frames(plan->drawing) > 1) {
@@ -221,10 +221,10 @@ static bool name_output(FlPlan *plan, GError **error)
                     plan->output, fl_drawing_frames(plan->drawing));
         return false;
     }
-    return keep_frames(plan, error);
+    return choose_frames(plan, error);
 }
 
-/* One name for every region would let the last layer win. */
+/* With one name for all regions, each layer would replace the last. */
 static bool check_regions_file(const FlPlan *plan, const char *pattern, GError **error)
 {
     const char *brace = pattern ? strchr(pattern, '{') : NULL;
@@ -241,7 +241,7 @@ static bool check_regions_file(const FlPlan *plan, const char *pattern, GError *
     return false;
 }
 
-/* What the words say together. */
+/* Options that exclude or need each other. */
 static bool check_merge(const FlRenderOptions *options, GError **error)
 {
     const char *wrong = NULL;
@@ -263,12 +263,11 @@ static bool make_plan(FlPlan *plan, GError **error)
                     "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
         return false;
     }
-    if (!check_merge(&plan->options, error) || !open_film(plan, error) ||
-        !check_region_names(plan, error) || !name_output(plan, error) ||
-        !treat_regions(plan, error))
+    if (!check_merge(&plan->options, error) || !open_drawing(plan, error) ||
+        !check_region_names(plan, error) || !name_output(plan, error) || !plan_regions(plan, error))
         return false;
     choose_size(plan);
-    return equip_regions(plan, error) && check_regions_file(plan, plan->options.layers, error) &&
+    return choose_styles(plan, error) && check_regions_file(plan, plan->options.layers, error) &&
            check_regions_file(plan, plan->options.paint, error);
 }
 
@@ -302,8 +301,8 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan);
 }
 
-/* One frame's masks of all painted regions. */
-static bool keep_masks(FlPlan *plan, int frame, GError **error)
+/* Stores the masks of all painted regions in a frame. */
+static bool store_masks(FlPlan *plan, int frame, GError **error)
 {
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
     const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
@@ -332,7 +331,7 @@ bool fl_plan_rasterise(FlPlan *plan, GError **error)
 #pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
     for (int f = 0; f < n; f++) {
         GError *mine = NULL;
-        if (failed == 0 && !keep_masks(plan, f, &mine))
+        if (failed == 0 && !store_masks(plan, f, &mine))
             failed++;
         fl_parallel_error_keep(&first, mine);
     }

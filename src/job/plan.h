@@ -1,4 +1,4 @@
-/* The plan of a render: what is painted with what, decided before the first stroke. */
+/* The plan of a render: which region is painted with which style, settings and output. */
 #ifndef FLUIDY_JOB_PLAN_H
 #define FLUIDY_JOB_PLAN_H
 
@@ -12,17 +12,17 @@
 typedef struct FlRegionPlan {
     int region;       // index into the drawing's regions
     const char *name; // borrowed
-    double area_px;   // mean, for sharing out the work
+    double area_px;   // mean, to balance the work
     FlRegionSettings settings;
     const FlStyleInstance *style; // borrowed
-    const char *paint_files;      // borrowed pattern of files that have its paint; NULL: it paints
-    const char *flow_files;       // the same of flow files; NULL: flow is made from the masks
+    const char *paint_files;      // borrowed: pattern of files of its paint; NULL: it is painted
+    const char *flow_files;       // borrowed: pattern of flow files; NULL: flow from the masks
     bool keeps_flow;              // for a dump
     bool loops;                   // the film's end leads into its beginning
 } FlRegionPlan;
 
 typedef struct FlPlan {
-    FlRenderOptions options; // with what the config says filled in
+    FlRenderOptions options; // completed from the config
     FlConfig *config;
     FlDrawing *drawing;
     FlMaskStore *masks;
@@ -30,20 +30,19 @@ typedef struct FlPlan {
     int n_painted;
     FlRegionPlan *painted;
     int *painted_of;   // by region: index into painted, FL_DRAWN_AS_IT_IS or FL_LEFT_OUT
-    int *hold_of;      // by region: frames; that of the film where it is not painted
-    int hold;          // the drawing itself is shown on every hold-th frame
+    int *hold_of;      // by region: frames; `hold` where it is not painted
+    int hold;          // the drawing changes on every hold-th frame
     int width, height; // of the frames
-    bool half;         // drafts: the drawing has half their size, and what is painted is enlarged
+    bool half;         // drafts: the drawing has half their size, and layers are enlarged
     char *output;      // pattern or file
     const FlSinkFormat *format;
-    char *movie; // the film that the frames are put together to; NULL: none
+    char *movie; // the film made of the frames; NULL: none
     const FlSinkFormat *movie_format;
     uint8_t paper[3];
 } FlPlan;
 
 /**
- * Reads config and drawing and decides how every region is treated; options is what the caller
- * said. Nothing is painted and no output is touched.
+ * Reads config and drawing and settles how every region is painted. Paints nothing, writes nothing.
  *
  * Returns: to be freed with fl_plan_free(); NULL with an error of FL_ERROR.
  */
@@ -51,7 +50,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error);
 
 void fl_plan_free(FlPlan *plan); // NULL is fine
 
-/** Rasterises every frame's masks of the painted regions into plan->masks. */
+/** Rasterises the masks of the painted regions in every frame into plan->masks. */
 bool fl_plan_rasterise(FlPlan *plan, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)

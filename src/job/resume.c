@@ -14,7 +14,7 @@ static char *frame_file(const FlPlan *plan, int frame, GError **error)
     return fl_sink_file(&params, fl_drawing_number(plan->drawing, frame), error);
 }
 
-/* Hidden beside the frames, one for each pattern, however it is spelt. */
+/* A hidden file beside the frames, one for each pattern, however it is spelt. */
 static char *hidden_file(const FlPlan *plan, const char *suffix)
 {
     g_autofree char *folder = g_path_get_dirname(plan->output);
@@ -32,7 +32,7 @@ static bool may_overwrite(const FlPlan *plan)
     return plan->options.overwrite == FL_OVERWRITE_YES;
 }
 
-/* The state of an earlier run into resume->state, if this one is to go on with it. */
+/* Loads the state of an earlier run into resume->state, if this one resumes it. */
 static bool find_state(FlResume *resume, const FlPlan *plan, FlFingerprint *print, GError **error)
 {
     if ((may_overwrite(plan) && !plan->options.resume) ||
@@ -81,7 +81,7 @@ static bool paints_are_free(const FlPlan *plan, int frame, GError **error)
     return true;
 }
 
-/* A frame that is finished must be there, and of another nothing that is not ours. */
+/* The file of a finished frame must exist, that of another must not, unless it is ours. */
 static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, GError **error)
 {
     g_autofree char *file = resume->path ? frame_file(plan, frame, error) : NULL;
@@ -111,18 +111,18 @@ static bool check_files(const FlResume *resume, const FlPlan *plan, GError **err
     return true;
 }
 
-static void tell_start(const FlResume *resume, const FlPlan *plan)
+static void note_resume(const FlResume *resume, const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     if (!o->note)
         return;
     g_autofree char *line =
-        g_strdup_printf("going on with an earlier run, which painted %d of %d frames",
-                        resume->first, fl_drawing_frames(plan->drawing));
+        g_strdup_printf("resuming an earlier run, which painted %d of %d frames", resume->first,
+                        fl_drawing_frames(plan->drawing));
     o->note(line, o->data);
 }
 
-/* A film without its frames is one file: it is written anew or not at all. */
+/* A film without its frames is one file, which cannot be continued. */
 static bool check_film(const FlPlan *plan, GError **error)
 {
     if (plan->options.resume) {
@@ -149,33 +149,33 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
         resume->state = fl_checkpoint_new();
         resume->state->overwrite = may_overwrite(plan);
     }
-    fl_fingerprint_free(resume->state->print); // it says the same
+    fl_fingerprint_free(resume->state->print); // equal to print
     resume->state->print = g_steal_pointer(&print);
     resume->first = resume->state->done;
     if (!check_files(resume, plan, error))
         return false;
     if (resume->found)
-        tell_start(resume, plan);
+        note_resume(resume, plan);
     return true;
 }
 
-/* Two runs with the same output would mix their frames. */
+/* Excludes other runs with the same output, which would mix their frames. */
 static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
 {
     g_autofree char *folder = g_path_get_dirname(plan->output);
     g_autofree char *path = hidden_file(plan, "lock");
-    GError *taken = NULL;
-    (void)g_mkdir_with_parents(folder, 0777); // the state, which comes next, tells what is wrong
-    resume->lock = fl_lock_take(path, plan->output, &taken);
-    if (taken) {
-        g_propagate_error(error, taken);
+    GError *lock_error = NULL;
+    (void)g_mkdir_with_parents(folder, 0777); // saving the state reports an error
+    resume->lock = fl_lock_take(path, plan->output, &lock_error);
+    if (lock_error) {
+        g_propagate_error(error, lock_error);
         return false;
     }
     resume->lock_path = g_steal_pointer(&path);
     return true;
 }
 
-/* Before the state: a run that is killed in between is known to be complete by the next. */
+/* The lock goes before the state: a run killed in between is known to be complete. */
 static void release_lock(FlResume *resume)
 {
     if (resume->lock_path && resume->lock >= 0) {
@@ -194,8 +194,8 @@ bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GEr
 {
     if (!fl_fingerprint_check_drawing(resume->state->print, plan->drawing, frame, error))
         return false;
-    // The first state comes before the first frame: a frame without a state is not known as ours.
-    // It comes no sooner, so that a mistake that shows in the first frame leaves nothing behind.
+    // The first state is saved before the first frame, which is not known as ours without it; no
+    // sooner, so that an error in the first frame leaves nothing behind.
     if (!resume->path)
         return true;
     if (!resume->lock_path && !take_lock(resume, plan, error))
@@ -212,8 +212,8 @@ bool fl_resume_save(FlResume *resume, GError **error)
 
 bool fl_resume_replaces(const FlResume *resume, int frame)
 {
-    const bool in_hand = resume->found && frame == resume->first;
-    return !resume->keep_files && (in_hand || (resume->state && resume->state->overwrite));
+    const bool interrupted = resume->found && frame == resume->first;
+    return !resume->keep_files && (interrupted || (resume->state && resume->state->overwrite));
 }
 
 bool fl_resume_keeps(const FlResume *resume, const char *file)
@@ -223,7 +223,7 @@ bool fl_resume_keeps(const FlResume *resume, const char *file)
 
 const char *fl_resume_advice(const FlResume *resume)
 {
-    return resume->path ? "run again to go on" : "a film without its frames starts anew";
+    return resume->path ? "run again to resume" : "a film without its frames starts anew";
 }
 
 void fl_resume_finish(FlResume *resume)

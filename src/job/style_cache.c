@@ -51,7 +51,7 @@ static FlStyleInstance *load(const char *path, const FlRegionSettings *settings,
     g_autoptr(FlStyle) style = whole ? fl_style_adapt(whole, &use, error) : NULL;
     if (!style)
         return NULL;
-    g_clear_pointer(&whole, fl_style_free); // recordings are large
+    g_clear_pointer(&whole, fl_style_free); // it is large
     g_autoptr(FlStyleInstance) instance = g_new0(FlStyleInstance, 1);
     *instance = (FlStyleInstance){.path = g_strdup(path),
                                   .params = *params,
@@ -84,7 +84,7 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
 
 double fl_style_cache_bytes(const FlStyleCache *cache)
 {
-    const double of_window = 50, of_rest = 9; // measured: with its rotations; while it is read
+    const double of_window = 50, of_rest = 9; // measured: with rotations; while it is loaded
     double bytes = 0;
     for (guint i = 0; i < cache->instances->len; i++) {
         const FlStyleInstance *instance = cache->instances->pdata[i];
@@ -96,9 +96,9 @@ double fl_style_cache_bytes(const FlStyleCache *cache)
 }
 
 /*
- * The window moves with the film, at most a frame of the recording for a frame of the film, as far
- * as the recording goes or, in a loop, there and back. It is a function of the frame alone, so that
- * regions may share it and a render that is interrupted goes on with the same.
+ * The window moves with the film, by at most a frame of the recording per frame, to the end of the
+ * recording or, in a loop, there and back. It is a function of the frame alone, so that regions can
+ * share it and a resumed render has the same.
  */
 static int window_at(int spare, int frame, int n_frames, bool loops)
 {
