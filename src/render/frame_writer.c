@@ -6,7 +6,7 @@
 #include "io/png.h"
 #include "job/paint_files.h"
 
-/* Layers as files of the whole frame's size, so that any program can stack them. */
+/* Writes layers in the whole frame's size, so that any program can stack them. */
 static bool write_layers(const FlFrameWriter *writer, const FlComposite *composite, int frame,
                          GError **error)
 {
@@ -72,8 +72,8 @@ bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, 
            (!writer->movie || fl_sink_frame(writer->movie, &out, error));
 }
 
-/* The film takes the frames of an earlier run from their files. */
-static bool recall_frames(FlFrameWriter *writer, GError **error)
+/* Copies the finished frames of a resumed render into the film. */
+static bool copy_finished_frames(FlFrameWriter *writer, GError **error)
 {
     for (int f = 0; writer->movie && f < writer->resume->first; f++) {
         const int number = fl_drawing_number(writer->plan->drawing, f);
@@ -109,14 +109,14 @@ bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlRes
         .opaque = opaque,
         .patience = {.stopped = plan->options.stopped, .data = plan->options.data},
         .taker = taker,
-        .fast = plan->half, // drafts are looked at and thrown away
+        .fast = plan->half, // nobody keeps drafts
         .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
     writer->sink = fl_sink_open(taker.take ? &fl_sink_taken : plan->format, &params, error);
     if (!writer->sink || !plan->movie)
         return writer->sink != NULL;
     params.path = plan->movie;
     writer->movie = fl_sink_open(plan->movie_format, &params, error);
-    return writer->movie && recall_frames(writer, error);
+    return writer->movie && copy_finished_frames(writer, error);
 }
 
 bool fl_frame_writer_finish(FlFrameWriter *writer, GError **error)

@@ -1,4 +1,4 @@
-/* Files of finished frames: the frames themselves, their layers, paint, and the film. */
+/* Writes finished frames: their files, layers and paint, and the film. */
 #ifndef FLUIDY_RENDER_FRAME_WRITER_H
 #define FLUIDY_RENDER_FRAME_WRITER_H
 
@@ -8,20 +8,20 @@
 
 typedef struct FlFrameWriter {
     const FlPlan *plan;     // borrowed
-    const FlResume *resume; // borrowed: says which files to keep and which to replace
+    const FlResume *resume; // borrowed: which files to keep and which to replace
     FlSink *sink;
     FlSink *movie; // NULL: the frames alone
 } FlFrameWriter;
 
 /**
- * Opens the outputs of a plan, or only the taker if there is one; a film takes the frames of an
- * earlier run from their files. FL_ERROR_OUTPUT, FL_ERROR_CHANGED.
+ * Opens the outputs of a plan, or only the taker if there is one; in a resumed render, copies the
+ * finished frames into the film. FL_ERROR_OUTPUT, FL_ERROR_CHANGED.
  */
 bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlResume *resume,
                           bool opaque, FlFrameTaker taker, GError **error);
 void fl_frame_writer_clear(FlFrameWriter *writer);
 
-/** Writes the paint of regions that were painted in the frame, if files of it are asked for. */
+/** Writes the paint of the regions painted in the frame, if the options name files for it. */
 bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *const *painted,
                            int frame, GError **error);
 
@@ -29,7 +29,7 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
 bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, int frame,
                            GError **error);
 
-/** Completes outputs that are one file. */
+/** Completes the film. */
 bool fl_frame_writer_finish(FlFrameWriter *writer, GError **error);
 
 #endif

@@ -1,4 +1,4 @@
-/* Films that are played over and over: the end of each painted region leads into its beginning. */
+/* Loops: films whose end leads into their beginning, region by region. */
 #ifndef FLUIDY_RENDER_LOOP_H
 #define FLUIDY_RENDER_LOOP_H
 
@@ -9,27 +9,27 @@
 #define FL_LOOP_LONGEST 8
 
 /**
- * The lead-in of one region: its last pictures, painted before the first one, which therefore
- * follows them without a jump. When the film comes to its last pictures again, these take the place
- * of what is painted then, spot by spot, until the last picture is the lead-in's own.
+ * The lead-in of a region: its last pictures, painted before the first one, which therefore follows
+ * them without a jump. At the end of the film the lead-in replaces the pictures painted there, spot
+ * by spot, until the last picture is that of the lead-in.
  */
 typedef struct FlLoop {
     int n;             // pictures of the lead-in; 0: no loop
-    int first;         // the index of the first of them among the region's n_pictures
+    int first;         // index of the first of them among the region's n_pictures
     FlSpill *pictures; // width * height * 3 bytes each
 } FlLoop;
 
-/** n_pictures: that the film has of the region, held ones counted once. FL_ERROR_OUTPUT. */
+/** n_pictures: of the region in the film, held ones counted once. FL_ERROR_OUTPUT. */
 bool fl_loop_init(FlLoop *loop, int n_pictures, GError **error);
 void fl_loop_clear(FlLoop *loop);
 
-/** Keeps the k-th picture of the lead-in, sRGB. FL_ERROR_OUTPUT. */
-bool fl_loop_keep(FlLoop *loop, int k, const uint8_t *rgb, FlRect box, GError **error);
+/** Stores the k-th picture of the lead-in, sRGB. FL_ERROR_OUTPUT. */
+bool fl_loop_keep(FlLoop *loop, int k, const uint8_t *rgb, FlRect rect, GError **error);
 
 /**
- * Turns the region's picture `index` towards the lead-in's; one before the end of the film stays as
- * it is. The spots are fixed in the frame: box is the picture's place in it. FL_ERROR_OUTPUT.
+ * Blends the region's picture `index` into the lead-in's; those before the lead-in stay as they
+ * are. The spots are fixed in the frame; rect is the picture's place in it. FL_ERROR_OUTPUT.
  */
-bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlRect box, GError **error);
+bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlRect rect, GError **error);
 
 #endif

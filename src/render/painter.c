@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-#define WRAP 24 // pictures of a loop that its guides see beyond each end
+#define WRAP 24 // pictures of a loop that guides use beyond each end
 
-/* The frame of the film that a picture of the guides shows. */
+/* The frame of the film that has a picture of the guides. */
 static int frame_of(const FlPainter *painter, int picture)
 {
     const int n = painter->n_pictures;
@@ -24,7 +24,7 @@ static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **erro
                              painter->result.rect, coverage, error);
 }
 
-/* The flow of the whole frame: files have the size of the film's frames, drafts half of it. */
+/* The flow of the whole frame; files have the size of the output, which drafts halve. */
 static bool load_flow(const FlPainter *painter, const char *file, float unknown, float *flow,
                       GError **error)
 {
@@ -83,8 +83,8 @@ static bool exact_motion(void *data, int frame, float *motion, GError **error)
                                 painter->result.rect, motion, NULL, error);
 }
 
-/* Where guides come from: the masks of the painter's rectangle, and its motion. Flow files are with
- * the motion of masks all that is known of it, else what carries the paint. */
+/* The source of the guides: the masks within the painter's rectangle, and the motion. Flow files
+ * replace the flow from the masks under motion = masks, else carry the paint. */
 static FlGuideSource source_of(FlPainter *painter)
 {
     const bool masks = painter->plan->settings.motion == FL_MOTION_MASKS;
@@ -102,8 +102,8 @@ static FlGuideSource source_of(FlPainter *painter)
                            .keeps_flow = painter->plan->keeps_flow};
 }
 
-/* Room for the coarsest patches around the region, on the grid of the coarsest level, so that a
- * cropped frame has the same pyramid as the whole one. */
+/* The rectangle of the region in all frames with a margin of the coarsest patches, on the grid of
+ * the coarsest level, so that the cropped frame has the same pyramid as the whole one. */
 static FlRect cropped(const FlPainter *painter)
 {
     const int levels = MIN(painter->plan->style->exemplar->n_levels,
@@ -195,8 +195,8 @@ bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **er
             fl_loop_keep(&painter->loop, k, painter->result.painted, painter->result.rect, error));
 }
 
-/* The paint of a frame that another run has painted. */
-static bool take_paint(FlPainter *painter, int frame, GError **error)
+/* Loads the paint of a frame that another run has painted. */
+static bool load_paint(FlPainter *painter, int frame, GError **error)
 {
     g_autofree char *file =
         fl_paint_file(painter->plan->paint_files, painter->drawing, painter->plan, frame, error);
@@ -207,7 +207,7 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
 {
     const gint64 start = g_get_monotonic_time();
     if (painter->plan->paint_files)
-        return take_paint(painter, frame, error);
+        return load_paint(painter, frame, error);
     const int index = frame / painter->plan->settings.hold;
     if (frame % painter->plan->settings.hold != 0)
         return true;

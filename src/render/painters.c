@@ -5,7 +5,7 @@
 #include "base/schedule.h"
 #include <math.h>
 
-/* Everything is as large as the frame or smaller, so that it can be told before it is asked for. */
+/* The memory of a render follows from the sizes, so a shortage is known before anything is made. */
 static bool check_memory(const FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
@@ -20,14 +20,14 @@ static bool check_memory(const FlPainters *painters, GError **error)
     return fl_limit_check(FL_LIMIT_MEMORY, ceil(bytes / (1 << 20)), where, error);
 }
 
-static bool make_guides_of_one(void *data, int p, int thread, GError **error)
+static bool make_guides_of(void *data, int p, int thread, GError **error)
 {
     FlPainters *painters = data;
     return fl_painter_prepare(&painters->painter[p], painters->plan->options.seed, error);
 }
 
-/* The guides of a region use all threads themselves, where it is large enough for that, and their
- * scratch is as large as the region. */
+/* The guides of a large region use all threads themselves; their scratch is as large as the
+ * region. */
 static bool make_guides(FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
@@ -38,7 +38,7 @@ static bool make_guides(FlPainters *painters, GError **error)
         const size_t pixels = fl_rect_pixels(extent);
         items[p] = (FlWorkItem){p, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
     }
-    return fl_schedule_run(items, painters->n, make_guides_of_one, painters, error);
+    return fl_schedule_run(items, painters->n, make_guides_of, painters, error);
 }
 
 static bool make_scratch(FlPainters *painters, GError **error)
@@ -112,8 +112,8 @@ static bool do_one(void *data, int p, int thread, GError **error)
     return step->work(step->data, p, step->step, &step->painters->scratch[thread], error);
 }
 
-/* A region as large as a thread's share of the film is painted by all threads together. The others
- * begin with those that took longest in the last frame. */
+/* All threads together paint a region that is larger than a thread's share of the total area. The
+ * others follow, those first that took longest in the last frame. */
 bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *data,
                       GError **error)
 {

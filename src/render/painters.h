@@ -1,4 +1,4 @@
-/* All painters of a render, and which of them work side by side. */
+/* All painters of a render, and their memory and schedule. */
 #ifndef FLUIDY_RENDER_PAINTERS_H
 #define FLUIDY_RENDER_PAINTERS_H
 
@@ -13,13 +13,12 @@ typedef struct FlPainters {
     int n_scratch;
 } FlPainters;
 
-/** What is done for painter p; step is a frame, or a picture of the lead-in. guides is scratch. */
+/** Work for painter p; step is a frame, or a picture of the lead-in. guides is scratch. */
 typedef bool (*FlPainterWork)(void *data, int p, int step, FlGuides *guides, GError **error);
 
 /**
- * Makes the guides of every painted region of a plan whose masks are rasterised, after asking
- * whether there is memory for all of them. FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY, or an error about a
- * file.
+ * Checks the memory limit, then makes the guides of every painted region; the plan's masks are
+ * rasterised. FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY, or an error about a file.
  */
 bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error);
 void fl_painters_clear(FlPainters *painters);
@@ -31,7 +30,7 @@ bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *
 /** The states of all painters as FL_PAINTER_PARTS bytes each, into a list of GBytes. */
 bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **error);
 
-/** The reverse; `path` is the file of the states, for the message. FL_ERROR_CHANGED. */
+/** Restores the states; `path` is their file, for the message. FL_ERROR_CHANGED. */
 bool fl_painters_load(FlPainters *painters, const GPtrArray *states, const char *path,
                       GError **error);
 

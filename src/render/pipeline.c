@@ -1,4 +1,4 @@
-/* The whole render, stage by stage: run() is the order of them, render_frame() that of a frame. */
+/* The whole render: run() has its stages in order, render_frame() those of a frame. */
 #include "base/alloc.h"
 #include "base/schedule.h"
 #include "base/task.h"
@@ -16,23 +16,23 @@
 #include "render/summary.h"
 #include <fluidy/fluidy.h>
 
-/* A render under way. */
+/* A render in progress. */
 typedef struct Pipeline {
     FlPlan *plan;
     FlBackground background;
     FlResume resume;
     FlPainters painters;
-    const FlPaintedRegion **painted; // what they have painted
+    const FlPaintedRegion **painted; // their results
     FlFrameWriter writer;
     FlFrameTaker taker; // instead of files, if there is one
     FlStats stats;
-    FlReport *report;          // NULL: not asked for
-    FlTask drawing, writing;   // what goes on beside the painting
-    int drawn;                 // the frame whose shapes `drawing` draws, or has drawn; -1: none
-    FlDrawList *draws;         // these
-    int finished_frame;        // the last one that was painted
-    FlComposite finished;      // as it was composed, written by `writing`
-    double write_s;            // that it took
+    FlReport *report;          // NULL: none
+    FlTask drawing, writing;   // run beside the painting
+    int drawn;                 // the frame of `draws`, which `drawing` makes; -1: none
+    FlDrawList *draws;         // its shapes
+    int finished_frame;        // the last painted frame
+    FlComposite finished;      // that frame, which `writing` writes
+    double write_s;            // time that this took
     gint64 start, first_frame; // microseconds, as g_get_monotonic_time()
 } Pipeline;
 
@@ -102,7 +102,7 @@ static bool lead_in_one(void *data, int p, int k, FlGuides *guides, GError **err
     return fl_painter_lead_in(&pipeline->painters.painter[p], k, guides, error);
 }
 
-/* The last pictures before the first ones, if the film is a loop. */
+/* If the film is a loop, paints its last pictures before its first ones. */
 static bool lead_in(Pipeline *pipeline, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
@@ -116,8 +116,8 @@ static bool lead_in(Pipeline *pipeline, GError **error)
 
 /* ---- a frame --------------------------------------------------------------------------------- */
 
-/* Drawing and writing need one thread and wait for the disk, so they go on while the next frame is
- * painted; but not where somebody looks at what the painters have. */
+/* Drawing and writing need one thread and wait for the disk, so they run while the next frame is
+ * painted; not with statistics or a report, which read the painters' results after writing. */
 static bool overlaps(const Pipeline *pipeline)
 {
     return fl_schedule_threads() > 1 && !pipeline->stats.open && !pipeline->report;
@@ -151,7 +151,7 @@ static bool write_finished(void *data, GError **error)
     return done;
 }
 
-/* Until the files of the last frame are written. */
+/* Waits until the files of the last frame are written. */
 static bool finish_writing(Pipeline *pipeline, GError **error)
 {
     const bool done = fl_task_wait(&pipeline->writing, error);
@@ -177,8 +177,8 @@ static FlComposeInput compose_input(const Pipeline *pipeline)
                             .feather_px = (float)MAX(plan->options.feather, 0)};
 }
 
-/* The frame with its shapes; all threads paint while these are drawn, and those of the next frame
- * meanwhile and while this one is composed. next: -1: none. */
+/* Paints and composes a frame. Its shapes are drawn beside the painting, those of frame `next` (-1:
+ * none) beside the composing. */
 static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *composite,
                         double *paint_s, GError **error)
 {
@@ -200,7 +200,7 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
     return fl_composite_init(composite, &input, frame, draws, plan->format->takes_16, error);
 }
 
-/* Figures and the report, once the frame's files are written. */
+/* Adds a frame to statistics and report, once its files are written. */
 static bool inspect_frame(Pipeline *pipeline, double paint_s, double compose_s, GError **error)
 {
     if (!fl_task_wait(&pipeline->writing, error))
@@ -211,12 +211,12 @@ static bool inspect_frame(Pipeline *pipeline, double paint_s, double compose_s, 
         pipeline->write_s};
     fl_stats_frame(&pipeline->stats, pipeline->painted, plan->n_painted,
                    fl_drawing_number(plan->drawing, done.frame), paint_s, compose_s, done.write_s);
-    pipeline->write_s = 0; // it is counted
+    pipeline->write_s = 0; // counted in fl_stats_frame()
     return fl_report_frame(pipeline->report, &done, error);
 }
 
-/* The files of the last frame are complete before the state of this one is taken. */
-static bool keep_state(Pipeline *pipeline, int frame, GError **error)
+/* The state after a frame, once the files of the frame before are complete. */
+static bool take_state(Pipeline *pipeline, int frame, GError **error)
 {
     if (!finish_writing(pipeline, error) ||
         !fl_resume_before_files(&pipeline->resume, pipeline->plan, frame, error) ||
@@ -239,10 +239,10 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
     if (!paint_frame(pipeline, frame, next, &composite, &paint_s, error))
         return false;
     const double compose_s = seconds_since(start) - paint_s;
-    if (!keep_state(pipeline, frame, error))
+    if (!take_state(pipeline, frame, error))
         return false;
     if (beside)
-        g_clear_pointer(&composite.draws, fl_draw_list_free); // files are made of the layers
+        g_clear_pointer(&composite.draws, fl_draw_list_free); // the files need the layers only
     pipeline->finished = composite, pipeline->finished_frame = frame;
     composite = (FlComposite){0};
     fl_task_start(&pipeline->writing, write_finished, pipeline, beside);
@@ -276,7 +276,7 @@ static bool open_report(Pipeline *pipeline, GError **error)
     return !folder || pipeline->report;
 }
 
-/* What tells whether the render can begin, before anything is made. */
+/* Checks what could stop the render, before anything is made. */
 static bool check(Pipeline *pipeline, GError **error)
 {
     const FlPlan *plan = pipeline->plan;
@@ -285,7 +285,7 @@ static bool check(Pipeline *pipeline, GError **error)
            fl_resume_init(&pipeline->resume, plan, error);
 }
 
-/* The painters as the earlier run left them, or as they are before the first frame. */
+/* Loads the painters' states of an earlier run, or saves those before the first frame. */
 static bool restore_state(Pipeline *pipeline, GError **error)
 {
     FlResume *resume = &pipeline->resume;
@@ -328,13 +328,13 @@ static bool run(Pipeline *pipeline, GError **error)
     return true;
 }
 
-/* What could still go wrong before the first frame, and how long a frame takes, without touching
- * the output: two frames are painted and thrown away, since a first one takes longer. */
-static bool rehearse(Pipeline *pipeline, GError **error)
+/* A dry run: all checks, then two frames, without output; the second gives the time of a frame,
+ * since a first one takes longer. */
+static bool dry_run(Pipeline *pipeline, GError **error)
 {
     FlPlan *plan = pipeline->plan;
     double frame_s = 0;
-    plan->options.dump = NULL; // it would be written
+    plan->options.dump = NULL; // it would write files
     if (!check(pipeline, error) || !make_painters(pipeline, error))
         return false;
     for (int k = 0; k < 2 && k * plan->hold < fl_drawing_frames(plan->drawing); k++) {
@@ -345,7 +345,7 @@ static bool rehearse(Pipeline *pipeline, GError **error)
             return false;
         frame_s = seconds_since(start);
     }
-    fl_summary_of_rehearsal(plan, frame_s);
+    fl_summary_of_dry_run(plan, frame_s);
     return true;
 }
 
@@ -372,7 +372,7 @@ static bool render(const FlRenderOptions *options, FlFrameTaker taker, GError **
         (void)fl_schedule_set_threads(options->threads);
     pipeline.plan = fl_plan_new(options, error);
     const bool done = pipeline.plan && fl_guard_inputs(pipeline.plan, error) &&
-                      (options->dry_run ? rehearse(&pipeline, error) : run(&pipeline, error));
+                      (options->dry_run ? dry_run(&pipeline, error) : run(&pipeline, error));
     clear(&pipeline);
     (void)fl_schedule_set_threads(threads);
     return done;

@@ -2,7 +2,7 @@
 
 #include "render/loop.h"
 
-static void say(const FlPlan *plan, const char *line)
+static void send_note(const FlPlan *plan, const char *line)
 {
     const FlRenderOptions *o = &plan->options;
     if (o->note)
@@ -21,15 +21,15 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
     g_autofree char *done =
         g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie, and, plan->output);
     g_autofree char *seconds = fl_stats_summary(stats, n);
-    say(plan, done);
-    say(plan, seconds);
+    send_note(plan, done);
+    send_note(plan, seconds);
     if (!plan->options.report)
         return;
-    g_autofree char *page = g_strdup_printf("to look at: %s/index.html", plan->options.report);
-    say(plan, page);
+    g_autofree char *page = g_strdup_printf("report: %s/index.html", plan->options.report);
+    send_note(plan, page);
 }
 
-/* The time of the pictures that are painted; held ones take none. */
+/* An estimate of the time; held frames take none. */
 static char *forecast(const FlPlan *plan, double frame_s)
 {
     const int n = (fl_drawing_frames(plan->drawing) - 1) / plan->hold + 1;
@@ -39,7 +39,7 @@ static char *forecast(const FlPlan *plan, double frame_s)
                            seconds / 3600, seconds / 60 % 60, seconds % 60, frame_s);
 }
 
-void fl_summary_of_rehearsal(const FlPlan *plan, double frame_s)
+void fl_summary_of_dry_run(const FlPlan *plan, double frame_s)
 {
     const int n = fl_drawing_frames(plan->drawing);
     const char *movie = plan->movie ? plan->movie : "", *and = plan->movie ? " and " : "";
@@ -47,6 +47,6 @@ void fl_summary_of_rehearsal(const FlPlan *plan, double frame_s)
         "would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n, plural(n), plan->width,
         plan->height, plan->n_painted, plural(plan->n_painted), movie, and, plan->output);
     g_autofree char *time = forecast(plan, frame_s);
-    say(plan, work);
-    say(plan, time);
+    send_note(plan, work);
+    send_note(plan, time);
 }
