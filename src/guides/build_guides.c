@@ -10,6 +10,7 @@
  * For one region is often most of a film, the outline of one frame, the motion of an earlier one
  * and the end of a yet earlier one are made side by side: none needs what the others make.
  */
+#include "guides/build_guides.h"
 #include "base/parallel_error.h"
 #include "guides/blur.h"
 #include "guides/direction.h"
@@ -17,7 +18,6 @@
 #include "guides/extent.h"
 #include "guides/flow.h"
 #include "guides/gauss.h"
-#include "guides/guide_sequence.h"
 #include "guides/plane_store.h"
 #include <math.h>
 #include <string.h>
@@ -371,9 +371,10 @@ static bool put_unrounded(Builder *b, int frame, const FlOutline *outline, const
     if (!bits)
         return fl_guide_sequence_no_memory(b->sequence, error);
     memcpy(bits, flow, n * sizeof *bits);
-    b->sequence->frames[frame].holder[FL_PLANE_UNROUNDED] = frame;
-    return fl_plane_store_put(b->sequence->spill, fl_guide_plane_block(frame, FL_PLANE_UNROUNDED),
-                              bits, n, 2, error);
+    b->sequence->frames[frame].holder[FL_GUIDE_PLANE_UNROUNDED] = frame;
+    return fl_plane_store_put(b->sequence->spill,
+                              fl_guide_plane_block(frame, FL_GUIDE_PLANE_UNROUNDED), bits, n, 2,
+                              error);
 }
 
 static bool finish_frame(Builder *b, int frame, GError **error)

@@ -1,37 +1,9 @@
-#include "guides/guide_sequence.h"
-
+#include "guides/build_guides.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
 #include "guides/extent.h"
 #include "guides/plane_store.h"
 #include <string.h>
-
-bool fl_guide_sequence_no_memory(const FlGuideSequence *sequence, GError **error)
-{
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory for the guides of %dx%d pixels", sequence->source.width,
-                sequence->source.height);
-    return false;
-}
-
-bool fl_guide_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *coverage_angle,
-                             GError **error)
-{
-    const FlFrameRecord *record = &sequence->frames[frame];
-    return fl_spill_get(
-        sequence->spill,
-        fl_guide_plane_block(record->holder[FL_GUIDE_PLANE_SHAPE], FL_GUIDE_PLANE_SHAPE),
-        coverage_angle, 2 * fl_rect_pixels(record->box), error);
-}
-
-bool fl_guide_sequence_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane,
-                             int32_t *values, GError **error)
-{
-    const FlFrameRecord *record = &sequence->frames[frame];
-    const size_t step = fl_plane_step(plane);
-    return fl_plane_store_get(sequence->spill, fl_guide_plane_block(record->holder[plane], plane),
-                              values, step * fl_rect_pixels(record->box), step, error);
-}
 
 /** One frame of the way back: the sum goes from frame + 1 to frame. Room: three frames. */
 static bool step_back(FlGuideSequence *sequence, int frame, FlExtent *extent, uint8_t *shape,
@@ -242,12 +214,12 @@ bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *f
     const FlFrameRecord *record = &sequence->frames[frame];
     g_assert(sequence->source.keeps_flow);
     memset(flow, 0, 2 * fl_rect_pixels(whole) * sizeof *flow);
-    if (record->holder[FL_PLANE_UNROUNDED] < 0)
+    if (record->holder[FL_GUIDE_PLANE_UNROUNDED] < 0)
         return true;
     g_autofree int32_t *bits = g_try_new(int32_t, 2 * fl_rect_pixels(record->box));
     if (!bits)
         return fl_guide_sequence_no_memory(sequence, error);
-    if (!fl_guide_sequence_plane(sequence, frame, FL_PLANE_UNROUNDED, bits, error))
+    if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_UNROUNDED, bits, error))
         return false;
     fl_rect_copy(bits, record->box, flow, whole, 2 * sizeof *flow);
     return true;

@@ -1,7 +1,7 @@
 /* How the guides of a sequence are kept: shared by the stage that makes them and the one that
  * reads. */
-#ifndef FLUIDY_GUIDES_GUIDE_SEQUENCE_H
-#define FLUIDY_GUIDES_GUIDE_SEQUENCE_H
+#ifndef FLUIDY_GUIDES_GUIDE_PLANES_H
+#define FLUIDY_GUIDES_GUIDE_PLANES_H
 
 #include "base/spill.h"
 #include "guides/guides.h"
@@ -13,8 +13,8 @@ typedef enum FlGuidePlane {
     FL_GUIDE_PLANE_FLOW,  // interleaved, FL_FLOW_ONE a px
     FL_GUIDE_PLANE_PLUS,  // FL_EXTENT_ONE a px, as is MINUS
     FL_GUIDE_PLANE_MINUS,
-    FL_GUIDE_PLANE_MOTION, // interleaved, FL_MOTION_ONE a px
-    FL_PLANE_UNROUNDED,    // the flow's floats, bit by bit, if the source keeps them
+    FL_GUIDE_PLANE_MOTION,    // interleaved, FL_MOTION_ONE a px
+    FL_GUIDE_PLANE_UNROUNDED, // the flow's floats, bit by bit, if the source keeps them
     FL_N_GUIDE_PLANES,
 } FlGuidePlane;
 
@@ -41,14 +41,11 @@ static inline size_t fl_guide_plane_block(int frame, FlGuidePlane plane)
     return (size_t)frame * FL_N_GUIDE_PLANES + plane;
 }
 
-/** Reads the masks and fills sequence->frames and spill, forwards, all but the extents to come. */
-bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error);
-
 /** How many integers a pixel of a plane has. */
 static inline size_t fl_plane_step(FlGuidePlane plane)
 {
     return plane == FL_GUIDE_PLANE_FLOW || plane == FL_GUIDE_PLANE_MOTION ||
-                   plane == FL_PLANE_UNROUNDED
+                   plane == FL_GUIDE_PLANE_UNROUNDED
                ? 2
                : 1;
 }
