@@ -2,6 +2,7 @@
 
 #include "base/compress.h"
 #include <errno.h>
+#include <fcntl.h>
 #include <glib/gstdio.h>
 #include <stdint.h>
 #include <string.h>
@@ -14,34 +15,77 @@ typedef struct Block {
 } Block;
 
 struct FlSpill {
-    int fd;
-    int64_t end;
     size_t n_blocks;
     Block *blocks;
 };
 
-FlSpill *fl_spill_new(size_t n_blocks, GError **error)
+/* The one file of all spills: with one each, a film of many regions had more than a process may
+ * open. What a spill leaves is given back to the file system, but its place in the file is not used
+ * again. */
+static struct {
+    GMutex lock;
+    int n_spills; // that are alive; the file is open while there are any
+    int fd;
+    int64_t end;
+} shared;
+
+static bool open_file(GError **error)
 {
     g_autofree char *name = g_build_filename(g_get_tmp_dir(), "fluidy-XXXXXX", NULL);
-    const int fd = g_mkstemp(name);
-    if (fd < 0) {
+    shared.fd = g_mkstemp_full(name, O_RDWR | O_CLOEXEC, 0600);
+    shared.end = 0;
+    if (shared.fd < 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot make a temporary file: %s",
                     g_get_tmp_dir(), g_strerror(errno));
-        return NULL;
+        return false;
     }
     g_unlink(name);
+    return true;
+}
+
+FlSpill *fl_spill_new(size_t n_blocks, GError **error)
+{
+    g_autoptr(GMutexLocker) locked = g_mutex_locker_new(&shared.lock);
+    if (shared.n_spills == 0 && !open_file(error))
+        return NULL;
+    shared.n_spills++;
     FlSpill *spill = g_new0(FlSpill, 1);
-    *spill = (FlSpill){.fd = fd, .n_blocks = n_blocks, .blocks = g_new0(Block, n_blocks)};
+    *spill = (FlSpill){.n_blocks = n_blocks, .blocks = g_new0(Block, n_blocks)};
     return spill;
+}
+
+/** Gives the room of a block back, where the file system can: best effort. */
+static void give_back(const Block *block)
+{
+#ifdef FALLOC_FL_PUNCH_HOLE
+    if (block->packed_bytes > 0)
+        (void)!fallocate(shared.fd, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, block->offset,
+                         (off_t)block->packed_bytes);
+#else
+    (void)block;
+#endif
 }
 
 void fl_spill_free(FlSpill *spill)
 {
     if (!spill)
         return;
-    close(spill->fd);
+    g_autoptr(GMutexLocker) locked = g_mutex_locker_new(&shared.lock);
+    if (--shared.n_spills == 0)
+        close(shared.fd);
+    for (size_t i = 0; i < spill->n_blocks && shared.n_spills > 0; i++)
+        give_back(&spill->blocks[i]);
     g_free(spill->blocks);
     g_free(spill);
+}
+
+/** A place of its own for a block. */
+static int64_t reserve(size_t bytes)
+{
+    g_autoptr(GMutexLocker) locked = g_mutex_locker_new(&shared.lock);
+    const int64_t offset = shared.end;
+    shared.end += (int64_t)bytes;
+    return offset;
 }
 
 static bool write_all(int fd, const uint8_t *data, size_t bytes, int64_t offset)
@@ -81,13 +125,13 @@ bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, 
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
         return false;
     }
-    if (!write_all(spill->fd, packed, packed_bytes, spill->end)) {
+    const int64_t offset = reserve(packed_bytes);
+    if (!write_all(shared.fd, packed, packed_bytes, offset)) {
         g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot write a temporary file: %s",
                     g_get_tmp_dir(), g_strerror(errno));
         return false;
     }
-    spill->blocks[block] = (Block){spill->end, packed_bytes, bytes};
-    spill->end += (int64_t)packed_bytes;
+    spill->blocks[block] = (Block){offset, packed_bytes, bytes};
     return true;
 }
 
@@ -101,7 +145,7 @@ bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, 
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
         return false;
     }
-    if (!read_all(spill->fd, packed, b->packed_bytes, b->offset) ||
+    if (!read_all(shared.fd, packed, b->packed_bytes, b->offset) ||
         !fl_decompress(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read a temporary file back: %s",
                     g_get_tmp_dir(), g_strerror(errno));

@@ -6,7 +6,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/** Blocks are compressed into an unlinked file in $TMPDIR: nothing is left behind. */
+/** Blocks are compressed into an unlinked file in $TMPDIR, which all spills of the process share:
+ * nothing is left behind. */
 typedef struct FlSpill FlSpill;
 
 /** For blocks 0 … n_blocks - 1. Returns: NULL with FL_ERROR_OUTPUT set. */
