@@ -45,11 +45,18 @@ touch void.svg
 printf '\x1f\x8b\x08garbage' >packed.svg
 printf '\xff\xfe\x00<' >binary.svg
 svg nothing ''
+svg negative "$shape" "width='-4' height='9'"
+mkfifo pipe.svg pipe.png
+own pipeframe && rm pipeframe/frames/0002.png && mkfifo pipeframe/frames/0002.png
+own pipeini && rm -f pipeini/style.ini && mkfifo pipeini/style.ini
 svg broken "<path id='p' d='M1 1h9 x v9z' fill='#aa3311'/>"
 svg lost "<rect id='r' width='9' height='9' fill='url(#g)'/>$shape"
 svg circle "<g id='a'><use href='#a'/>$shape</g>"
 svg animated "<circle id='c' r='16' fill='#aa3311'><animate attributeName='r' to='9'/></circle>"
 svg media "<style>@media print { circle { fill: red } }</style>$shape"
+svg piped "$shape<image id='i' href='../piped/p.png' width='9' height='9'/>" && mkfifo piped/p.png
+svg used "$shape<use href='p.pipe#a'/>" && mkfifo used/p.pipe
+svg escape "$shape<rect id='a&#10;b' width='9' height='9' fill='url(#x&#9;y)'/>"
 svg image "$shape<image id='i' href='gone.png' width='9' height='9'/>"
 echo "x<svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'>$shape</svg>" >prologue.svg
 
@@ -72,6 +79,7 @@ own nonsense 'hello'
 own colour '[style]\npaper = #12'
 
 conf style '[defaults]\nstyle = nowhere'
+conf unused '[region nowhere]\nmatch-id = nowhere'
 conf folder '[defaults]\nstyle = ../no/where'
 conf hold '[defaults]\nhold = 0'
 conf mistyped '[region a]\nmatch-fil = #123456'
@@ -152,6 +160,18 @@ table() {
 1|nosize/a_1.svg: *--canvas to give one, such as 1920x1080*|nosize
 1|zero/a_1.svg: *--canvas *|zero
 1|nan/a_1.svg: *|nan
+1|negative/a_1.svg: the size of the drawing is negative; use --canvas *|negative
+1|pipe.svg: it is a pipe or a device; expected a file|pipe.svg
+1|/dev/zero: it is a pipe or a device; expected a file|/dev/zero
+1|pipe.png: it is a pipe or a device; expected a file|good -b pipe.png
+1|./pipeframe/frames/0002.png: it is a pipe or a device; expected a file|good -s ./pipeframe
+1|./pipeini/style.ini: it is a pipe or a device; expected a file|good -s ./pipeini
+1|piped/a_1.svg: #i: the image "../piped/p.png" is a pipe or a device *under --strict)|piped --strict
+1|used/a_1.svg: *"p.pipe#a" is a pipe or a device and is left out *under --strict)|used --strict
+1|escape/a_1.svg: #a b: fill refers to "#x y", which is not *under --strict)|escape --strict
+1|unused.conf:1: [region nowhere] holds for nothing *under --strict)|good -c unused.conf -f 1 --strict
+1|unused.conf:1: [region nowhere] holds for nothing *under --strict)|good -c unused.conf --preview 1 --strict
+2|x.mp4: flats are PNG files; expected .png|good --flat -o x.mp4
 1|huge/a_1.svg: a picture of 1000000000 x 9 px; at most 32767 px *|huge
 1|twice/a_1.svg: not well-formed: line 2: Attribute a redefined|twice
 1|other/a_2.svg: the root is <svg>, expected <svg xmlns="http://www.w3.org/2000/svg">|other

@@ -106,6 +106,84 @@ result $? 'a billion copies by <use> are an error'
 [ $? != 124 ] && [ "$(wc -l <err)" -le 1 ]
 result $? 'a billion laughs end soon and in little memory'
 
+{
+    echo "<!DOCTYPE svg [<!ENTITY e '$(head -c 60000 /dev/zero | tr '\0' x)'>]>"
+    echo "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'><desc>"
+    printf '&e;%.0s' $(seq 15000)
+    echo "</desc>$shape</svg>"
+} >x.svg
+([ -n "${ASAN_OPTIONS:-}" ] || ulimit -v 2000000 && look)
+[ $? = 1 ] && says "MiB that a drawing's entities stand for, more than the limit of 1; use --limit entities=N"
+result $? 'entities that multiply themselves by being repeated are an error'
+
+# What stopped the libraries below.
+svg x.svg "<g opacity='.5'><rect x='-1e5' width='200' height='200'/></g>$shape"
+look && grep -q aa3311 out
+result $? 'shapes that are parked far off the page in a group with opacity are left out'
+svg x.svg "<pattern id='p' width='9' height='9' patternUnits='userSpaceOnUse'><rect x='-1e6' width='1e5'
+    height='9'/><rect width='5' height='5'/></pattern><marker id='m'><rect x='-1e6' width='3'
+    height='3'/></marker><g opacity='.3'><path d='M9 9h9v9' fill='url(#p)' stroke='red'
+    marker-end='url(#m)'/></g>$shape"
+look && grep -q aa3311 out
+result $? 'so are those in patterns and markers'
+svg x.svg "$(for i in $(seq 8000); do
+    echo "<circle cx='$((i % 47))' cy='$((i % 43))' r='2' fill='#a31'/>"
+done)$shape"
+look && grep -q 8001 out && (ulimit -t 5 && look)
+result $? '8000 shapes are read in a few seconds'
+svg x.svg "<mask id='m'><rect width='40' height='30' fill='#fff'/></mask><g mask='url(#m)'>$(
+    for i in $(seq 2000); do echo "<circle cx='$((i % 47))' cy='$((i % 43))' r='2' fill='#a31'/>"; done
+)</g>"
+(ulimit -t 5 && look) && says 'a group with a mask has too many shapes to paint them apart'
+result $? 'and so are 2000 in a group with a mask, as one region, with a warning'
+svg x.svg "<filter id='f' color-interpolation-filters='sRGB'><feBlend mode='multiply'
+    in2='BackgroundImage'/></filter>$shape<g filter='url(#f)'><circle r='20' fill='#4a9'/></g>"
+look && [ ! -s err ] && grep -q 44aa99 out
+result $? 'a filter that only blends with the background is a blend mode'
+svg x.svg "<filter id='f'><feOffset in='BackgroundImage' dx='9'/></filter>$shape<circle r='20'
+    fill='#4a9' filter='url(#f)'/>"
+look && says 'BackgroundImage is empty: filters do not see what is below'
+result $? 'to another filter the background is empty, with a warning'
+{
+    for i in $(seq 30000); do printf '[region r%d]\nhold = 2\n' "$i"; done
+} >many.conf
+(ulimit -t 20 && look -c many.conf) && grep -q '29980 more sections hold for nothing' err &&
+    [ "$(wc -l <err)" -le 24 ]
+result $? '30000 sections of a config are read fast and told briefly'
+svg x.svg "$(for i in $(seq 400); do
+    printf '<rect width="1" height="1" x="%d" y="%d" fill="#%06x"/>' $((i % 48)) $((i / 48)) $((i * 40000))
+done)"
+(ulimit -n 100 && paint --dry-run && to=few paint -W 48 --limit regions=1000)
+result $? '400 regions are painted with 100 open files'
+rm -rf o few
+
+# What ends the libraries below, or never ends.
+svg x.svg "<style>:lang(x-cn) { }</style><g xml:lang='en'/>$shape"
+look
+status=$?
+if [ $status = 0 ]; then
+    skip 'a drawing that crashes librsvg is an error' 'this librsvg does not'
+    skip 'and a film goes on without it' 'this librsvg does not'
+else
+    [ $status = 1 ] && says 'x.svg: frame 1: the SVG library crashed while it was read (Aborted)'
+    result $? 'a drawing that crashes librsvg is an error'
+    mkdir mixed && cp x.svg mixed/m_2.svg && svg mixed/m_1.svg "$shape" && cp mixed/m_1.svg mixed/m_3.svg
+    "$program" --list-regions mixed --missing hold >out 2>err && says 'mixed/m_2.svg: left out' &&
+        grep -q 'aa3311 *3/3' out && "$program" --list-regions mixed --missing skip >out 2>err &&
+        grep -q 'aa3311 *2/2' out
+    result $? 'and a film goes on without it'
+fi
+body="<pattern id='p0' width='1' height='1'><rect width='1' height='1' fill='red'/></pattern>"
+for i in 1 2 3 4 5 6 7 8 9; do
+    body="$body<pattern id='p$i' width='9' height='9' patternUnits='userSpaceOnUse'>$(
+        printf "<rect width='$i' height='9' fill='url(#p$((i - 1)))'/>%.0s" 1 2 3 4 5 6 7 8 9 10
+    )</pattern>"
+done
+svg x.svg "$body<rect width='48' height='48' fill='url(#p9)'/>"
+look --limit seconds=1
+[ $? = 1 ] && says 'x.svg: frame 1: it took longer than 1 s to read; use --limit seconds=N to allow more'
+result $? 'a drawing that takes too long is an error'
+
 # What a drawing must not see: the same bytes as if it were not there.
 cd ..
 mkdir outside

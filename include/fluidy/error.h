@@ -35,6 +35,15 @@ typedef enum FlError {
     FL_ERROR_INTERRUPTED, /**< stopped on request; run again to resume: exit status 75 */
 } FlError;
 
+/**
+ * A message as one line that is safe to show on a terminal: file names, ids and addresses in it may
+ * hold anything. Line ends become spaces, other control characters and bytes that are not UTF-8
+ * become "\\xNN", and so do marks that turn the direction of text.
+ *
+ * Returns: to be freed with g_free().
+ */
+FL_API char *fl_one_line(const char *text);
+
 G_END_DECLS
 
 #endif

@@ -27,6 +27,15 @@ FL_API char *fl_list_regions(const FlRenderOptions *options, FlListing listing, 
  */
 FL_API bool fl_map_regions(const FlRenderOptions *options, GError **error);
 
+/**
+ * Writes every frame as it is understood, to options->output (NULL: "fluidy/NAME_flat_%04d.png"):
+ * its regions over each other, filled as in the drawing, not painted. What looks different from
+ * the drawing there will do so in paint.
+ *
+ * options->note is told where the pictures are. Returns: false with an error of FL_ERROR.
+ */
+FL_API bool fl_flatten(const FlRenderOptions *options, GError **error);
+
 G_END_DECLS
 
 #endif

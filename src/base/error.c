@@ -1,6 +1,36 @@
 #include <fluidy/error.h>
 
+#include <stdbool.h>
+#include <string.h>
+
 GQuark fl_error_quark(void)
 {
     return g_quark_from_static_string("fl-error-quark");
+}
+
+/** Whether a character does something to a terminal or to the order of what is around it. */
+static bool is_active(gunichar c)
+{
+    return c < 0x20 || (c >= 0x7f && c < 0xa0) || (c >= 0x202a && c <= 0x202e) ||
+           (c >= 0x2066 && c <= 0x2069) || c == 0x2028 || c == 0x2029;
+}
+
+char *fl_one_line(const char *text)
+{
+    g_autofree char *trimmed = g_strstrip(g_strdup(text));
+    GString *line = g_string_new(NULL);
+    for (const char *at = trimmed; *at;) {
+        const gunichar c = g_utf8_get_char_validated(at, -1);
+        const bool valid = c != (gunichar)-1 && c != (gunichar)-2;
+        const char *next = valid ? g_utf8_next_char(at) : at + 1;
+        if (strchr("\n\r\t", *at))
+            g_string_append_c(line, ' ');
+        else if (valid && !is_active(c))
+            g_string_append_len(line, at, next - at);
+        else
+            for (; at < next; at++)
+                g_string_append_printf(line, "\\x%02x", (unsigned char)*at);
+        at = next;
+    }
+    return g_string_free(line, FALSE);
 }

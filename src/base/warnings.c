@@ -59,12 +59,15 @@ void fl_warnings_add(FlWarnings *warnings, const char *file, int frame, const ch
     add(warnings, file, frame, element ? element : "", text, 1);
 }
 
+void fl_warnings_repeat(FlWarnings *warnings, const FlWarning *w)
+{
+    add(warnings, w->file, w->frame, w->element, w->text, w->n_frames);
+}
+
 void fl_warnings_append(FlWarnings *warnings, const FlWarnings *from)
 {
-    for (int i = 0; warnings && i < fl_warnings_count(from); i++) {
-        const FlWarning *w = fl_warnings_get(from, i);
-        add(warnings, w->file, w->frame, w->element, w->text, w->n_frames);
-    }
+    for (int i = 0; warnings && i < fl_warnings_count(from); i++)
+        fl_warnings_repeat(warnings, fl_warnings_get(from, i));
 }
 
 int fl_warnings_count(const FlWarnings *warnings)

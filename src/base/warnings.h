@@ -24,6 +24,9 @@ void fl_warnings_free(FlWarnings *warnings); // NULL is fine
 void fl_warnings_add(FlWarnings *warnings, const char *file, int frame, const char *element,
                      const char *format, ...) G_GNUC_PRINTF(5, 6);
 
+/** Adds a copy of a warning, with its count of frames. */
+void fl_warnings_repeat(FlWarnings *warnings, const FlWarning *w);
+
 /** Adds the warnings of `from` in their order. */
 void fl_warnings_append(FlWarnings *warnings, const FlWarnings *from);
 

@@ -241,7 +241,7 @@ static void take_listing(FlArgs *args)
 static bool needs_input(FlCommand task)
 {
     return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
-           task == FL_COMMAND_CHECK || task == FL_COMMAND_COMPARE;
+           task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT || task == FL_COMMAND_COMPARE;
 }
 
 /* What is tried out is painted fast, and replaces what was tried out before. */

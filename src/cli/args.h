@@ -12,6 +12,7 @@ typedef enum FlCommand {
     FL_COMMAND_LIST_REGIONS,
     FL_COMMAND_LIST_STYLES,
     FL_COMMAND_CHECK,
+    FL_COMMAND_FLAT,
     FL_COMMAND_COMPARE,
 } FlCommand;
 

@@ -73,8 +73,9 @@ static void show_note(const char *message, void *data)
 /* One line, whatever the library below wrote. */
 static int fail(const GError *error)
 {
-    g_autofree char *line = g_strstrip(fl_help_translate(error->message));
-    fprintf(stderr, "fluidy-svg: %s\n", g_strdelimit(line, "\r\n", ' '));
+    g_autofree char *said = fl_help_translate(error->message);
+    g_autofree char *line = fl_one_line(said);
+    fprintf(stderr, "fluidy-svg: %s\n", line);
     if (g_error_matches(error, FL_ERROR, FL_ERROR_INTERRUPTED))
         return INTERRUPTED;
     const bool usage =
@@ -147,6 +148,8 @@ static int work(FlArgs *args)
         status = list_regions(args, &error);
     else if (args->task == FL_COMMAND_CHECK)
         fl_map_regions(&args->render, &error);
+    else if (args->task == FL_COMMAND_FLAT)
+        fl_flatten(&args->render, &error);
     else if (args->task == FL_COMMAND_COMPARE)
         compare_styles(args, &error);
     else

@@ -132,7 +132,8 @@ void fl_meter_say(FlMeter *meter, const char *kind, const char *message)
     fl_meter_hide(meter);
     if (meter->mode != FL_PROGRESS_JSON) {
         const bool warning = strcmp(kind, "warning") == 0;
-        fprintf(meter->stream, "fluidy-svg: %s%s\n", warning ? "warning: " : "", message);
+        g_autofree char *line = fl_one_line(message);
+        fprintf(meter->stream, "fluidy-svg: %s%s\n", warning ? "warning: " : "", line);
         return;
     }
     g_autoptr(GString) json = g_string_new(NULL);

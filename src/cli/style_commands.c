@@ -114,7 +114,8 @@ static bool run_import(char **words, GError **error)
     const bool done = fl_style_import(&import, notes, error);
     for (guint i = 0; i < notes->len && !options.quiet; i++) {
         g_autofree char *note = fl_style_command_translate(import_entries, notes->pdata[i]);
-        fprintf(stderr, "fluidy-style: %s\n", note);
+        g_autofree char *line = fl_one_line(note);
+        fprintf(stderr, "fluidy-style: %s\n", line);
     }
     return done;
 }

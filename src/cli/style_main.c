@@ -14,8 +14,9 @@ enum { DONE = 0, FAILURE = 1, USAGE = 2 };
 /* One line, whatever the library below wrote. */
 static int fail(const GOptionEntry *entries, const GError *error)
 {
-    g_autofree char *line = g_strstrip(fl_style_command_translate(entries, error->message));
-    fprintf(stderr, "fluidy-style: %s\n", g_strdelimit(line, "\r\n", ' '));
+    g_autofree char *said = fl_style_command_translate(entries, error->message);
+    g_autofree char *line = fl_one_line(said);
+    fprintf(stderr, "fluidy-style: %s\n", line);
     const bool usage =
         error->domain == G_OPTION_ERROR || g_error_matches(error, FL_ERROR, FL_ERROR_USAGE);
     return usage ? USAGE : FAILURE;

@@ -1,4 +1,5 @@
 #include "base/rect.h"
+#include "drawing/apart.h"
 #include "drawing/drawing_data.h"
 #include "drawing/region_identity.h"
 #include "drawing/region_names.h"
@@ -244,6 +245,47 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     return drawing;
 }
 
+/** Goes on without a frame, as over a gap in the numbers: with the one before it, or none. */
+static void leave_out(FlSequence *sequence, int frame, FlMissing missing)
+{
+    const int other = frame > 0 ? frame - 1 : 1;
+    g_free(sequence->file[frame]);
+    if (missing == FL_MISSING_HOLD) {
+        sequence->file[frame] = g_strdup(sequence->file[other]);
+        return;
+    }
+    for (int t = frame; t + 1 < sequence->n; t++) {
+        sequence->file[t] = sequence->file[t + 1];
+        sequence->number[t] = sequence->number[t + 1];
+    }
+    sequence->file[--sequence->n] = NULL;
+}
+
+/** Reads all frames; those that crash, hang or ask for too much as `missing` says. */
+static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingOptions *options,
+                        FlWarnings *warnings, GError **error)
+{
+    if (!options->apart)
+        return fl_survey_init(survey, sequence, options, NULL, warnings, error);
+    for (;;) {
+        int bad = -1;
+        GError *reason = NULL;
+        g_autoptr(FlWarnings) remarks = fl_warnings_new();
+        const bool good = fl_scan_init_apart(survey, sequence, options, remarks, &bad, &reason);
+        if (good || bad < 0 || options->missing == FL_MISSING_ERROR || sequence->n < 2) {
+            fl_warnings_append(warnings, remarks);
+            if (reason)
+                g_propagate_error(error, reason);
+            return good;
+        }
+        fl_warnings_add(warnings, sequence->file[bad], sequence->number[bad], NULL,
+                        "left out, as ‘missing’ says: %s", reason->message);
+        g_error_free(reason);
+        leave_out(sequence, bad, options->missing);
+        fl_survey_clear(survey);
+    }
+}
+
 FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings, GError **error)
 {
     if (!fl_rules_check(options->rules, options->n_rules, error))
@@ -254,7 +296,7 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
         return NULL;
     FlSurvey survey;
     FlDrawing *drawing = NULL;
-    if (fl_survey_init(&survey, sequence, options, warnings, error))
+    if (read_frames(&survey, sequence, options, warnings, error))
         drawing = make_film(options, sequence, &survey, error);
     if (drawing)
         g_steal_pointer(&sequence);

@@ -37,25 +37,48 @@ static FlRegionRule *rules_of(const FlConfig *config)
     return rules;
 }
 
-static bool is_used(const FlDrawing *drawing, int rule, const FlRegionRule *rules)
+#define MOST_TOLD 20 // sections that are told one by one
+
+/* Marks the rules that a region of the film is made by. Returns: how many are not marked. */
+static int mark_used(const FlDrawing *drawing, const FlRegionRule *rules, int n, bool *used)
 {
-    bool used = rules[rule].merge_with != NULL; // its region has become another one
+    int unused = 0;
     for (int r = 0; r < fl_drawing_regions(drawing); r++)
-        used |= fl_drawing_region(drawing, r)->rule == rule;
-    return used;
+        if (fl_drawing_region(drawing, r)->rule >= 0)
+            used[fl_drawing_region(drawing, r)->rule] = true;
+    for (int i = 0; i < n; i++) {
+        used[i] |= rules[i].merge_with != NULL; // its region has become another one
+        unused += !used[i];
+    }
+    return unused;
+}
+
+/* A section may be about something that frames have which were not asked for: looks at all. What
+ * cannot be read is told when it is asked for. */
+static int mark_used_elsewhere(const FlDrawingOptions *options, bool *used)
+{
+    FlDrawingOptions all = *options;
+    all.range = NULL;
+    g_autoptr(FlDrawing) drawing = fl_drawing_open(&all, NULL, NULL);
+    return drawing ? mark_used(drawing, options->rules, options->n_rules, used) : 0;
 }
 
 /* A section that holds for nothing is most often a mistyped name or colour. */
 static void warn_of_unused(const FlDrawing *drawing, const FlConfig *config,
-                           const FlRegionRule *rules, FlWarnings *warnings)
+                           const FlDrawingOptions *options, FlWarnings *warnings)
 {
+    g_autofree bool *used = g_new0(bool, MAX(config->n_rules, 1));
+    int unused = mark_used(drawing, options->rules, config->n_rules, used), told = 0;
+    if (unused > 0 && options->range)
+        unused = mark_used_elsewhere(options, used);
     g_autoptr(GPtrArray) names = g_ptr_array_new();
     for (int r = 0; r < fl_drawing_regions(drawing); r++)
         g_ptr_array_add(names, fl_drawing_region(drawing, r)->name);
     g_ptr_array_add(names, NULL);
-    for (int i = 0; i < config->n_rules; i++) {
-        if (is_used(drawing, i, rules))
+    for (int i = 0; i < config->n_rules && unused > 0 && told < MOST_TOLD; i++) {
+        if (used[i])
             continue;
+        told++;
         const FlRule *rule = &config->rules[i];
         g_autofree char *hint = rule->by_name
                                     ? fl_did_you_mean(rule->name, (const char *const *)names->pdata)
@@ -64,6 +87,9 @@ static void warn_of_unused(const FlDrawing *drawing, const FlConfig *config,
         fl_warnings_add(warnings, place, -1, NULL, "[region %s] holds for nothing in the drawing%s",
                         rule->name, hint);
     }
+    if (unused > told && told > 0)
+        fl_warnings_add(warnings, config->path, -1, NULL,
+                        "%d more sections hold for nothing in the drawing", unused - told);
 }
 
 /* A drawing without shapes is most often another than was meant. */
@@ -77,26 +103,26 @@ static void warn_of_nothing(const FlDrawing *drawing, FlWarnings *warnings)
                     fl_drawing_frames(drawing) > 1 ? ", nor in the other frames" : "");
 }
 
-/* The first of those that say the same of other elements; they count as one. */
-static bool is_first_of_its_kind(const FlWarnings *warnings, int i, int *n_alike)
+/* How many warnings have each text: those that say the same of other elements count as one. */
+static GHashTable *count_texts(const FlWarnings *warnings)
 {
-    const char *text = fl_warnings_get(warnings, i)->text;
-    *n_alike = 0;
-    for (int k = 0; k < fl_warnings_count(warnings); k++)
-        if (g_str_equal(fl_warnings_get(warnings, k)->text, text)) {
-            if (k < i)
-                return false;
-            ++*n_alike;
-        }
-    return true;
+    GHashTable *counts = g_hash_table_new(g_str_hash, g_str_equal);
+    for (int i = 0; i < fl_warnings_count(warnings); i++) {
+        char *text = fl_warnings_get(warnings, i)->text;
+        const int n = GPOINTER_TO_INT(g_hash_table_lookup(counts, text));
+        g_hash_table_insert(counts, text, GINT_TO_POINTER(n + 1));
+    }
+    return counts;
 }
 
 static bool report(const FlWarnings *warnings, const FlRenderOptions *options, GError **error)
 {
     const int n = fl_warnings_count(warnings);
+    g_autoptr(GHashTable) counts = count_texts(warnings);
     for (int i = 0; i < n; i++) {
-        int n_alike;
-        if (!is_first_of_its_kind(warnings, i, &n_alike))
+        const char *text = fl_warnings_get(warnings, i)->text;
+        const int n_alike = GPOINTER_TO_INT(g_hash_table_lookup(counts, text));
+        if (!g_hash_table_remove(counts, text))
             continue;
         g_autofree char *first = fl_warning_line(fl_warnings_get(warnings, i));
         g_autofree char *line = n_alike == 1
@@ -138,6 +164,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                .range = options->frames,
                                .missing = options->missing,
                                .dpi = options->dpi,
+                               .apart = true,
                                .registered = options->registration == FL_REGISTRATION_ON,
                                .width = options->width,
                                .height = options->height,
@@ -154,7 +181,6 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
         return NULL;
     offer_config(drawing, options);
     warn_of_nothing(drawing, warnings);
-    if (!options->frames) // a section may be about something that other frames have
-        warn_of_unused(drawing, config, rules, warnings);
+    warn_of_unused(drawing, config, &wanted, warnings);
     return report(warnings, options, error) ? g_steal_pointer(&drawing) : NULL;
 }

@@ -5,10 +5,12 @@
 
 #define VISIBLE 24   // levels; a pixel that differs by more is seen
 #define MOST_SEEN 12 // pixels that may differ so; rounding at thin edges does
+#define GROSS 16     // mean square of the levels that a channel may differ by: 36 dB
 #define EDGE 8       // one in so many pixels of a masked group may differ: those at the mask's edge
 
 struct FlSelfCheck {
     int width, height;
+    bool gross;
     int allowed; // pixels that differ at the edges of masks, where parts overlap
     cairo_surface_t *sum;
     GArray *pieces; // FlPiece: the parts, bottom up
@@ -23,6 +25,7 @@ FlSelfCheck *fl_self_check_new(int width, int height, GError **error)
     FlSelfCheck *check = g_new0(FlSelfCheck, 1);
     *check = (FlSelfCheck){width,
                            height,
+                           false,
                            0,
                            sum,
                            g_array_new(FALSE, FALSE, sizeof(FlPiece)),
@@ -227,6 +230,23 @@ static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf,
     return true;
 }
 
+/** Whether two pictures are less than 36 dB alike. */
+static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n)
+{
+    int64_t sum = 0;
+    for (size_t p = 0; p < n; p++)
+        for (int c = 0; c < 32; c += 8) {
+            const int d = (int)((a[p] >> c) & 255) - (int)((b[p] >> c) & 255);
+            sum += d * d;
+        }
+    return sum > (int64_t)n * 4 * GROSS;
+}
+
+bool fl_self_check_is_gross(const FlSelfCheck *check)
+{
+    return check->gross;
+}
+
 FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
                                double page_height, char **group, const char **leaf, GError **error)
 {
@@ -241,6 +261,9 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width
     *leaf = NULL;
     if (seen <= MOST_SEEN + check->allowed)
         return FL_VERDICT_ALIKE;
+    check->gross = differ_much((const uint32_t *)cairo_image_surface_get_data(truth),
+                               (const uint32_t *)cairo_image_surface_get_data(check->sum),
+                               (size_t)check->width * check->height);
     if (check->top[where] == 0)
         return FL_VERDICT_DIFFERS;
     const FlLeaf *top = g_array_index(check->pieces, FlPiece, check->top[where] - 1).leaf;

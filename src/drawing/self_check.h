@@ -32,6 +32,9 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
 FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
                                double page_height, char **group, const char **leaf, GError **error);
 
+/** Whether they were found to differ so much that the frame cannot be painted like that. */
+bool fl_self_check_is_gross(const FlSelfCheck *check);
+
 /** A part to be drawn by fl_looks_alike(). */
 typedef struct FlPiece {
     const FlLeaf *leaf;

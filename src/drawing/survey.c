@@ -3,10 +3,14 @@
 #include "base/limits.h"
 #include "drawing/probe.h"
 #include "drawing/register_frames.h"
+#include "drawing/watch.h"
 #include "svg/normalise.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
 
 #define MOST_SIDE 32767 // px; cairo's limit
 #define MOST_WHOLE 8    // groups of a frame that are taken as one, each after another look
@@ -86,6 +90,11 @@ static FlVerdict try_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings 
     return fl_self_check_finish(f->check, f->svg, f->width, f->height, group, leaf, error);
 }
 
+static bool has_group(char **groups, const char *group)
+{
+    return groups && g_strv_contains((const char *const *)groups, group);
+}
+
 /** Takes one more group of a frame as one leaf. */
 static void keep_whole(FlSurveyFrame *frame, const char *group)
 {
@@ -101,7 +110,8 @@ static void warn_of_whole(FlWarnings *warnings, const char *file, int number, co
     const int nth = made ? atoi(group + strlen(FL_GROUP_ID)) + 1 : 0;
     g_autofree char *which =
         made ? g_strdup_printf("no. %d of the groups without an id, ", nth) : g_strdup("");
-    fl_warnings_add(warnings, file, number, made ? NULL : group,
+    const bool all = strcmp(group, FL_WHOLE_ALL) == 0;
+    fl_warnings_add(warnings, file, number, made || all ? NULL : group,
                     "%sdrawn shape by shape it does not look like the drawing: taken as one, in "
                     "every frame",
                     which);
@@ -120,6 +130,12 @@ static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *war
         const FlVerdict verdict = try_frame(survey, t, f, warnings, &group, &leaf, error);
         if (verdict == FL_VERDICT_ERROR)
             return false;
+        if (verdict == FL_VERDICT_DIFFERS && (!group || tries >= MOST_WHOLE) &&
+            fl_self_check_is_gross(f->check) && !has_group(frame->whole, FL_WHOLE_ALL)) {
+            g_free(group);
+            group = g_strdup(FL_WHOLE_ALL);
+            tries = 0;
+        }
         if (verdict == FL_VERDICT_DIFFERS && group && tries < MOST_WHOLE) {
             warn_of_whole(warnings, file, number, group);
             keep_whole(frame, group);
@@ -188,6 +204,15 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error
     return true;
 }
 
+static int thread_number(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}
+
 /** Scans the frames that are not scanned yet; false with the error of the first that fails. */
 static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
 {
@@ -198,13 +223,18 @@ static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
         g_autoptr(FlWarnings) remarks = fl_warnings_new();
         GError *reason = NULL;
         const bool known = survey->frame[t].seen != NULL;
+        const int thread = thread_number();
+        fl_watch_tell(survey->watch, thread, t);
         const bool scanned = known || scan_frame(survey, t, &probe, remarks, &reason);
+        fl_watch_tell(survey->watch, thread, -1);
 #pragma omp ordered
         {
             if (scanned && !known)
                 keep(survey, t, &probe);
             if (good)
                 fl_warnings_append(warnings, remarks);
+            if (!scanned && good && survey->watch)
+                atomic_store(&survey->watch->failed, t + 1);
             if (!scanned && good)
                 g_propagate_error(error, reason);
             else
@@ -213,11 +243,6 @@ static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
         }
     }
     return good;
-}
-
-static bool has_group(char **groups, const char *group)
-{
-    return groups && g_strv_contains((const char *const *)groups, group);
 }
 
 /** Whether a group of one frame is the one of that id in another: ids made here are numbers. */
@@ -248,12 +273,14 @@ static int spread_whole(FlSurvey *survey)
 }
 
 bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawingOptions *options,
-                    FlWarnings *warnings, GError **error)
+                    FlWatch *watch, FlWarnings *warnings, GError **error)
 {
     *survey = (FlSurvey){.sequence = sequence,
                          .svg = {options->canvas, options->dpi},
                          .n_frames = sequence->n,
-                         .frame = g_new0(FlSurveyFrame, sequence->n)};
+                         .frame = g_new0(FlSurveyFrame, sequence->n),
+                         .watch = watch};
+    fl_watch_tell(watch, 0, 0);
     fl_strings_add(&survey->strings, "");
     for (int t = 0; t < survey->n_frames; t++)
         survey->frame[t].canvas = options->canvas;

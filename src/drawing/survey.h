@@ -49,11 +49,15 @@ typedef struct FlSurvey {
     double scale;                   // px of the picture per px of the drawing
     int n_frames;
     FlSurveyFrame *frame;
+    struct FlWatch *watch; // told what is being read; may be NULL
 } FlSurvey;
 
-/** Returns: false with an error, which names the file. warnings may be NULL. */
+/**
+ * Reads every frame. `watch`, see regions/watch.h, and warnings may be NULL.
+ * Returns: false with an error, which names the file.
+ */
 bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawingOptions *options,
-                    FlWarnings *warnings, GError **error);
+                    struct FlWatch *watch, FlWarnings *warnings, GError **error);
 
 /**
  * Decides between units and their leaves, which fl_survey_init() both lists: a group that is drawn

@@ -1,5 +1,6 @@
 #include "guides/flow_file.h"
 
+#include "base/file.h"
 #include "base/rect.h"
 
 #include <errno.h>
@@ -81,6 +82,8 @@ static bool check_component(const char *path, float value, size_t index, int wid
 bool fl_flow_load(const char *path, int width, int height, float unknown, float *flow,
                   GError **error)
 {
+    if (!fl_file_check(path, FL_ERROR_INPUT, error))
+        return false;
     g_autoptr(GError) cause = NULL;
     g_autoptr(GMappedFile) file = g_mapped_file_new(path, FALSE, &cause);
     if (!file) {

@@ -65,11 +65,11 @@ static Row describe(const Subject *subject, int region)
 {
     const FlRegion *r = fl_drawing_region(subject->drawing, region);
     const char *section = r->rule >= 0 ? subject->config->rules[r->rule].name : "-";
-    return (Row){{g_strdup(r->name), g_strdup(r->paint),
+    return (Row){{fl_one_line(r->name), fl_one_line(r->paint),
                   g_strdup_printf("%d/%d", r->n_present, fl_drawing_frames(subject->drawing)),
                   g_strdup_printf("%.0f", r->area_px), g_strdup_printf("%d", r->n_leaves),
-                  g_strdup(r->paintable ? "yes" : "no"), g_strdup(section),
-                  g_strdup(*r->label ? r->label : "-")}};
+                  g_strdup(r->paintable ? "yes" : "no"), fl_one_line(section),
+                  fl_one_line(*r->label ? r->label : "-")}};
 }
 
 /* Numbers are right-aligned. */
@@ -134,8 +134,9 @@ static char *initial_style(const Subject *subject)
 static void append_section(GString *text, const Subject *subject, int region)
 {
     const FlRegion *r = fl_drawing_region(subject->drawing, region);
+    g_autofree char *label = fl_one_line(r->label);
     g_string_append_printf(text, "\n[region %s]\n# %s%s%s, %d of %d frames, %.0f px\n", r->name,
-                           r->paint, *r->label ? " in layer " : "", r->label, r->n_present,
+                           r->paint, *label ? " in layer " : "", label, r->n_present,
                            fl_drawing_frames(subject->drawing), r->area_px);
     if (r->paintable)
         g_string_append(text, "# style = 01\n# tint = fill\n");
@@ -228,22 +229,56 @@ static bool write_map(const Subject *subject, int frame, const char *pattern, GE
     return rgba && path && fl_png_save(&png, path, overwrite, error);
 }
 
-bool fl_map_regions(const FlRenderOptions *options, GError **error)
+/* Saves the picture of a frame; false with an error. */
+typedef bool WriteFrame(const Subject *subject, int frame, const char *pattern, GError **error);
+
+/* Saves a picture of every frame; `what`, "map", names one. */
+static bool write_frames(const FlRenderOptions *options, const char *what, WriteFrame *write,
+                         GError **error)
 {
     g_auto(Subject) subject = {0};
     if (!subject_init(&subject, options, error))
         return false;
-    g_autofree char *pattern =
-        fl_output_of_film(options->output ? options->output : "fluidy/{name}_map_%04d.png",
-                          fl_drawing_name(subject.drawing));
-    if (!fl_png_named(pattern, "maps are", error))
+    g_autofree char *usual = g_strdup_printf("fluidy/{name}_%s_%%04d.png", what);
+    g_autofree char *pattern = fl_output_of_film(options->output ? options->output : usual,
+                                                 fl_drawing_name(subject.drawing));
+    g_autofree char *are = g_strdup_printf("%ss are", what);
+    if (!fl_png_named(pattern, are, error))
         return false;
     const int n = fl_drawing_frames(subject.drawing);
     for (int f = 0; f < n; f++)
-        if (!write_map(&subject, f, pattern, error))
+        if (!write(&subject, f, pattern, error))
             return false;
-    g_autofree char *line = g_strdup_printf("%d map%s: %s", n, n == 1 ? "" : "s", pattern);
+    g_autofree char *line = g_strdup_printf("%d %s%s: %s", n, what, n == 1 ? "" : "s", pattern);
     if (options->note)
         options->note(line, options->data);
     return true;
+}
+
+bool fl_map_regions(const FlRenderOptions *options, GError **error)
+{
+    return write_frames(options, "map", write_map, error);
+}
+
+/* ---- flat pictures ------------------------------------------------------------------------ */
+
+static bool write_flat(const Subject *subject, int frame, const char *pattern, GError **error)
+{
+    const FlDrawing *drawing = subject->drawing;
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, frame, error);
+    g_autofree uint8_t *flat =
+        draws ? fl_alloc((size_t)width * height, 4, "a flat picture", error) : NULL;
+    g_autofree char *path =
+        flat ? fl_output_name(pattern, fl_drawing_number(drawing, frame), NULL, error) : NULL;
+    if (!path)
+        return false;
+    fl_draw_list_flat(draws, width, height, flat);
+    const FlPng png = {.width = width, .height = height, .rgba = flat};
+    return fl_png_save(&png, path, subject->options.overwrite == FL_OVERWRITE_YES, error);
+}
+
+bool fl_flatten(const FlRenderOptions *options, GError **error)
+{
+    return write_frames(options, "flat", write_flat, error);
 }

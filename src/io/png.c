@@ -1,4 +1,5 @@
 #include "io/png.h"
+#include "base/file.h"
 #include "io/atomic_file.h"
 
 #include <errno.h>
@@ -208,6 +209,8 @@ bool fl_png_save(const FlPng *picture, const char *path, bool overwrite, GError 
 FlPicture *fl_picture_read_png(const char *path, GError **error)
 {
     png_image png = {.version = PNG_IMAGE_VERSION};
+    if (!fl_file_check(path, FL_ERROR_INPUT, error))
+        return NULL;
     if (!png_image_begin_read_from_file(&png, path)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as a PNG picture: %s",
                     path, png.message);
@@ -232,7 +235,8 @@ FlPicture *fl_picture_read_png(const char *path, GError **error)
 bool fl_picture_is_opaque(const char *path)
 {
     png_image png = {.version = PNG_IMAGE_VERSION};
-    const bool known = png_image_begin_read_from_file(&png, path) != 0;
+    const bool known = fl_file_check(path, FL_ERROR_INPUT, NULL) &&
+                       png_image_begin_read_from_file(&png, path) != 0;
     const bool may_be_transparent = known && (png.format & PNG_FORMAT_FLAG_ALPHA) != 0;
     png_image_free(&png);
     g_autoptr(FlPicture) picture = may_be_transparent ? fl_picture_read_png(path, NULL) : NULL;

@@ -1,5 +1,6 @@
 #include "job/fingerprint.h"
 
+#include "base/file.h"
 #include "config.h"
 #include "io/pattern.h"
 #include <cairo.h>
@@ -50,6 +51,8 @@ static bool mix_file(GChecksum *sum, const char *path, GError **error)
     g_autofree char *contents = NULL;
     size_t bytes;
     GError *problem = NULL;
+    if (!fl_file_check(path, FL_ERROR_INPUT, error))
+        return false;
     if (!g_file_get_contents(path, &contents, &bytes, &problem)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", problem->message);
         g_error_free(problem);

@@ -15,13 +15,15 @@ typedef struct Reader {
     char *folder;
     Place place;
     bool seen[REGION + 1];
-    GHashTable *keys; // of this section
+    GHashTable *keys;     // of this section
+    GHashTable *sections; // name of a region -> line of its section
 } Reader;
 
 static void reader_clear(Reader *reader)
 {
     g_free(reader->folder);
     g_hash_table_unref(reader->keys);
+    g_hash_table_unref(reader->sections);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Reader, reader_clear)
@@ -62,10 +64,10 @@ static bool start_region(Reader *reader, const char *name, int line, GError **er
     FlConfig *config = reader->config;
     if (!*name)
         return usage(error, "a region section needs a name: [region NAME]");
-    for (int i = 0; i < config->n_rules; i++)
-        if (strcmp(config->rules[i].name, name) == 0)
-            return usage(error, "[region %s] was there already, in line %d", name,
-                         config->rules[i].line);
+    const int before = GPOINTER_TO_INT(g_hash_table_lookup(reader->sections, name));
+    if (before)
+        return usage(error, "[region %s] was there already, in line %d", name, before);
+    g_hash_table_insert(reader->sections, g_strdup(name), GINT_TO_POINTER(line));
     config->rules = g_renew(FlRule, config->rules, config->n_rules + 1);
     config->rules[config->n_rules++] = (FlRule){
         .name = g_strdup(name), .line = line, .overrides.folder = g_strdup(reader->folder)};
@@ -249,6 +251,7 @@ FlConfig *fl_config_load(const char *path, GError **error)
         .config = config,
         .folder = g_path_get_dirname(path),
         .keys = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
+        .sections = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
     };
     config->path = g_strdup(path);
     config->defaults.folder = g_strdup(reader.folder);

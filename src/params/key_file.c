@@ -1,5 +1,6 @@
 #include "params/key_file.h"
 
+#include "base/file.h"
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,6 +9,9 @@
 
 static char *load(const char *path, FlError mistake, GError **error)
 {
+    // a config may come from a process of the shell
+    if (mistake != FL_ERROR_USAGE && !fl_file_check(path, mistake, error))
+        return NULL;
     g_autofree char *text = g_malloc(LARGEST_BYTES + 2);
     FILE *file = fopen(path, "rbe");
     const size_t bytes = file ? fread(text, 1, LARGEST_BYTES + 1, file) : 0;

@@ -1,5 +1,6 @@
 #include "svg/document.h"
 
+#include "base/file.h"
 #include "base/limits.h"
 #include <errno.h>
 #include <glib/gstdio.h>
@@ -92,15 +93,14 @@ static bool gunzip(const char *path, char **data, gsize *bytes, GError **error)
 
 static bool read_bytes(const char *path, char **data, gsize *bytes, GError **error)
 {
-    g_autoptr(GError) reason = NULL;
     GStatBuf info;
     if (g_stat(path, &info) == 0 &&
         !fl_limit_check(FL_LIMIT_DRAWING, mebibytes((double)info.st_size), path, error))
         return false;
-    if (!g_file_get_contents(path, data, bytes, &reason)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s", reason->message);
+    const size_t most = (size_t)MIN(fl_limit(FL_LIMIT_DRAWING), 2047) << 20;
+    if (!fl_file_read(path, most, data, bytes, error) ||
+        !fl_limit_check(FL_LIMIT_DRAWING, mebibytes((double)*bytes), path, error))
         return false;
-    }
     if (*bytes > 2 && (guint8)(*data)[0] == 0x1f && (guint8)(*data)[1] == 0x8b)
         return gunzip(path, data, bytes, error);
     return true;
@@ -186,7 +186,9 @@ static void set_namespace(xmlNode *node, xmlNs *ns)
 typedef struct Visit {
     const char *path;
     xmlNode *root;
-    int n; // elements so far
+    int n;                // elements so far
+    double bytes;         // that entities stand for so far
+    GHashTable *entities; // xmlEntity -> bytes it stands for
 } Visit;
 
 static bool check_length(const Visit *visit, const xmlAttr *a, GError **error)
@@ -198,6 +200,36 @@ static bool check_length(const Visit *visit, const xmlAttr *a, GError **error)
     for (const xmlNode *text = a->children; text; text = text->next)
         length += text->content ? (double)strlen((const char *)text->content) : 0;
     return fl_limit_check(FL_LIMIT_PATH, length, visit->path, error);
+}
+
+/**
+ * The bytes that an entity stands for, those in it included; `known` remembers them. One that is in
+ * itself, which is an error for the parsers, counts for nothing there.
+ */
+static double entity_bytes(const Visit *visit, const xmlChar *name)
+{
+    const xmlEntity *entity = xmlGetDocEntity(visit->root->doc, name);
+    double *known = entity ? g_hash_table_lookup(visit->entities, entity) : NULL;
+    if (!entity || !entity->content || known)
+        return known ? *known : 1;
+    known = g_new0(double, 1);
+    g_hash_table_insert(visit->entities, (gpointer)entity, known);
+    double bytes = (double)strlen((const char *)entity->content);
+    for (const char *at = (const char *)entity->content; (at = strchr(at, '&')); at++) {
+        const size_t n = strcspn(at + 1, "; \t\r\n&<");
+        g_autofree char *inner = g_strndup(at + 1, n);
+        bytes += at[n + 1] == ';' && *inner != '#' ? entity_bytes(visit, (xmlChar *)inner) : 0;
+    }
+    return *known = bytes;
+}
+
+/** Adds what the references among nodes, of text or of an attribute, stand for. */
+static bool count_entities(Visit *visit, const xmlNode *node, GError **error)
+{
+    for (; node; node = node->next)
+        if (node->type == XML_ENTITY_REF_NODE)
+            visit->bytes += entity_bytes(visit, node->name);
+    return fl_limit_check(FL_LIMIT_ENTITIES, mebibytes(visit->bytes), visit->path, error);
 }
 
 /** Counts the elements from node on and declares prefixes; `depth` is node's, from 1. */
@@ -212,9 +244,11 @@ static bool visit_node(Visit *visit, xmlNode *node, int depth, GError **error)
     for (xmlAttr *a = node->properties; a; a = a->next) {
         if (!a->ns)
             declare_prefix(visit->root, a->name);
-        if (!check_length(visit, a, error))
+        if (!check_length(visit, a, error) || !count_entities(visit, a->children, error))
             return false;
     }
+    if (!count_entities(visit, node->children, error))
+        return false;
     for (xmlNode *child = node->children; child; child = child->next)
         if (child->type == XML_ELEMENT_NODE && !visit_node(visit, child, depth + 1, error))
             return false;
@@ -243,7 +277,8 @@ xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GEr
                     root ? (const char *)root->name : "", svg_namespace);
         return NULL;
     }
-    Visit visit = {path, root, 0};
+    g_autoptr(GHashTable) entities = g_hash_table_new_full(NULL, NULL, NULL, g_free);
+    Visit visit = {path, root, 0, 0, entities};
     return visit_node(&visit, root, 1, error) ? g_steal_pointer(&doc) : NULL;
 }
 

@@ -1,5 +1,6 @@
 #include "svg/images.h"
 
+#include "base/file.h"
 #include "base/limits.h"
 #include <gdk-pixbuf/gdk-pixbuf.h>
 #include <stdlib.h>
@@ -63,17 +64,34 @@ static bool check_data(const Look *look, const char *href, GError **error)
     return check_pixels(look, size[0], size[1], error);
 }
 
-static bool check_file(const Look *look, const xmlNode *node, const char *href, GError **error)
+/* The file that a reference names, links followed: NULL if it is none, or none that exists. */
+static char *file_of(const Look *look, const char *href, bool *is_file)
 {
     g_autoptr(GFile) drawing = g_file_new_for_path(look->path);
     g_autoptr(GFile) folder = g_file_get_parent(drawing);
     g_autofree char *base = folder ? g_file_get_uri(folder) : g_strdup("file:///");
     g_autofree char *slash = g_strconcat(base, "/", NULL);
-    g_autofree char *uri = g_uri_resolve_relative(slash, href, G_URI_FLAGS_PARSE_RELAXED, NULL);
+    g_autofree char *bare = g_strndup(href, strcspn(href, "#"));
+    g_autofree char *uri = g_uri_resolve_relative(slash, bare, G_URI_FLAGS_PARSE_RELAXED, NULL);
     g_autofree char *file = uri ? g_filename_from_uri(uri, NULL, NULL) : NULL;
-    g_autofree char *real = file ? realpath(file, NULL) : NULL;
+    *is_file = file != NULL;
+    return file ? realpath(file, NULL) : NULL;
+}
+
+/* librsvg would wait for what a pipe or a device gives: the reference is taken out. */
+static bool check_reference(const Look *look, xmlNode *node, xmlAttr *a, const char *href,
+                            GError **error)
+{
+    static const char *const images[] = {"image", "feImage", NULL};
+    bool is_file = false;
+    g_autofree char *real = file_of(look, href, &is_file);
     int width = 0, height = 0;
-    if (!file)
+    if (real && !fl_file_check(real, FL_ERROR_INPUT, NULL)) {
+        warn(look, node, href, "is a pipe or a device and is left out");
+        xmlRemoveProp(a);
+    } else if (!fl_is_one_of(node, images))
+        return true;
+    else if (!is_file)
         warn(look, node, href, "is not in a file and is left out: nothing is fetched");
     else if (!real)
         warn(look, node, href, "does not exist and is left out");
@@ -84,28 +102,29 @@ static bool check_file(const Look *look, const xmlNode *node, const char *href, 
     return true;
 }
 
-static bool check_node(const Look *look, const xmlNode *node, GError **error)
+static bool check_node(const Look *look, xmlNode *node, GError **error)
 {
-    static const char *const images[] = {"image", "feImage", NULL};
-    for (const xmlAttr *a = fl_is_one_of(node, images) ? node->properties : NULL; a; a = a->next) {
+    for (xmlAttr *a = node->properties, *next; a; a = next) {
+        next = a->next;
         if (!g_str_has_suffix((const char *)a->name, "href"))
             continue;
         g_autoptr(xmlChar) value = xmlNodeListGetString(node->doc, a->children, 1);
         const char *href = value ? (const char *)value : "";
         href += strspn(href, " \t\r\n");
-        const bool good = g_ascii_strncasecmp(href, "data:", 5) == 0
-                              ? check_data(look, href, error)
-                              : *href == '#' || !*href || check_file(look, node, href, error);
+        const bool good =
+            g_ascii_strncasecmp(href, "data:", 5) == 0
+                ? check_data(look, href, error)
+                : *href == '#' || !*href || check_reference(look, node, a, href, error);
         if (!good)
             return false;
     }
-    for (const xmlNode *child = node->children; child; child = child->next)
+    for (xmlNode *child = node->children; child; child = child->next)
         if (child->type == XML_ELEMENT_NODE && !check_node(look, child, error))
             return false;
     return true;
 }
 
-bool fl_images_check(const xmlDoc *doc, const char *path, int number, FlWarnings *warnings,
+bool fl_images_check(xmlDoc *doc, const char *path, int number, FlWarnings *warnings,
                      GError **error)
 {
     const Look look = {path, number, warnings};

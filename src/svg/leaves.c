@@ -5,6 +5,10 @@
 #include "svg/normalise.h"
 #include <string.h>
 
+// Shapes of a group with a mask, times the elements of the document: each needs a document of its
+// own. 60,000 take some seconds and 200 MiB.
+#define MOST_MASKED 60000
+
 /** What a leaf inherits from the groups around it; strings grow inwards and are cut back. */
 typedef struct Walk {
     GString *labels, *layers, *ids, *groups, *classes, *tree;
@@ -16,6 +20,7 @@ typedef struct Walk {
     char *masked;      // id of the outermost group around with a mask, NULL: none
     int turn;          // leaves met in it
     int n_made;        // ids made
+    int n_elements;    // of the document
 } Walk;
 
 typedef struct Mark {
@@ -191,7 +196,7 @@ static void walk(Walk *w, xmlNode *node);
 /**
  * Walks a group with a mask. librsvg draws the mask's content only if the group itself, or one
  * around it, is the layer it renders; its leaves are then shown in turn, the others being
- * transparent.
+ * hidden. One of very many leaves is a leaf itself.
  */
 static void walk_masked(Walk *w, xmlNode *node)
 {
@@ -199,9 +204,16 @@ static void walk_masked(Walk *w, xmlNode *node)
     w->turn = 0;
     const guint first = w->leaves->leaf->len;
     walk(w, node);
-    if (w->leaves->leaf->len == first + 1)
+    const guint n = w->leaves->leaf->len - first;
+    if (n == 1)
         g_array_index(w->leaves->leaf, FlLeaf, first).turn = -1;
     g_clear_pointer(&w->masked, g_free);
+    if (n < 2 || (double)n * w->n_elements <= MOST_MASKED)
+        return;
+    g_array_set_size(w->leaves->leaf, first);
+    const FlLeaf one = make_leaf(w, node);
+    g_array_append_val(w->leaves->leaf, one);
+    w->leaves->n_joined++;
 }
 
 static void walk_group(Walk *w, xmlNode *node)
@@ -253,6 +265,23 @@ static void walk(Walk *w, xmlNode *node)
     }
 }
 
+static int count_elements(const xmlNode *node)
+{
+    int n = 0;
+    for (; node; node = node->next)
+        if (node->type == XML_ELEMENT_NODE)
+            n += 1 + count_elements(node->children);
+    return n;
+}
+
+/** Makes the whole document one leaf. */
+static void add_all(Walk *w, xmlNode *root)
+{
+    FlLeaf leaf = make_leaf(w, root);
+    leaf.all = leaf.whole = true;
+    g_array_append_val(w->leaves->leaf, leaf);
+}
+
 static void leaf_clear(void *data)
 {
     FlLeaf *leaf = data;
@@ -290,7 +319,11 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
               .css = fl_css_new(doc),
               .unit = -1};
     w.taken = fl_document_ids(doc);
-    walk(&w, xmlDocGetRootElement(doc));
+    w.n_elements = count_elements(xmlDocGetRootElement(doc));
+    if (whole && g_strv_contains(whole, FL_WHOLE_ALL))
+        add_all(&w, xmlDocGetRootElement(doc));
+    else
+        walk(&w, xmlDocGetRootElement(doc));
     g_hash_table_unref(w.taken);
     fl_css_free(w.css);
     g_string_free(w.labels, TRUE);

@@ -22,6 +22,7 @@ typedef struct FlLeaf {
     char *tree;    // child indices from the root, "0/3/1"
     int unit;      // index of the group it may have to be drawn with, -1: none
     bool text;     // has text, whose shape depends on the scale
+    bool all;      // the whole document, drawn as it was before it was normalised
     bool whole;    // has markers, text runs or images: fill and stroke are not taken apart
 } FlLeaf;
 
@@ -38,6 +39,7 @@ typedef struct FlUnit {
 typedef struct FlLeaves {
     GArray *leaf; // FlLeaf
     GArray *unit; // FlUnit
+    int n_joined; // groups with a mask that are one leaf because they have too many shapes
 } FlLeaves;
 
 /**

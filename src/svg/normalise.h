@@ -8,6 +8,8 @@
 /** The attribute that keeps the id of what a <use> copied: the copy itself has none. */
 #define FL_COPIED_ID "data-fl-id"
 
+#define FL_WHOLE_ALL "*" // in place of an id: the whole document is to stay in one piece
+
 #define FL_GROUP_ID "fl-group-" // and a number: the ids that groups without one get
 
 /** Gives an id to every drawn <g>, <svg>, <a> and <use> that has none, in document order. */

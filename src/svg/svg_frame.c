@@ -1,8 +1,12 @@
 #include "svg/svg_frame.h"
 
+#include "base/surface.h"
+#include "svg/branch.h"
+#include "svg/filter_background.h"
 #include "svg/images.h"
 #include "svg/lint.h"
 #include "svg/normalise.h"
+#include "svg/paint_probe.h"
 #include <cairo-script.h>
 #include <math.h>
 #include <string.h>
@@ -13,9 +17,7 @@
 #define PROBE_PX 256.0
 #define LARGE_PROBE_PX 4096.0
 #define SMALL_PX 4.0
-#define PROBE_TURN                                                                                 \
-    0.3 // rad: cairo's script surface fails for fills with axis-parallel edges only,
-        // boxes excepted
+#define FAR_PX 9000.0 // cairo's script surface stops the program at boxes much farther off
 
 struct FlSvg {
     char *path;
@@ -23,17 +25,37 @@ struct FlSvg {
     xmlDoc *doc;
     char *original; // the text before it was normalised
     size_t original_bytes;
-    RsvgHandle *handle; // of the normalised document
-    RsvgHandle *before; // of the original, made when first needed
-    bool has_images;
+    RsvgHandle *handle;   // of the normalised document
+    RsvgHandle *before;   // of the original, made when first needed
+    bool has_probe;       // paints are read from a document apart
     int n_nameless;       // groups without an id
     GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
     FlLeaves *leaves;
 };
 
+/** What librsvg's and cairo's names of errors mean; other messages are sentences already. */
+static const char *plain_words(const char *message)
+{
+    static const char *const words[][2] = {
+        {"NoMemory",
+         "librsvg says that memory is short; it means a filter, or too large a picture"},
+        {"FreetypeError", "a text is too large, or its font is broken"},
+        {"InvalidSize", "a picture in it would be too large"},
+        {"InvalidMatrix", "a transform in it cannot be inverted"},
+        {"InstancingLimit", "<use> or patterns in it show too many elements"},
+        {"MaxReferencesExceeded", "<use> or patterns in it show too many elements"},
+        {"XML_ERR_INTERNAL_ERROR", "it is not well-formed"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+        if (strstr(message, words[i][0]))
+            return words[i][1];
+    return message;
+}
+
 static void set_rsvg_error(const FlSvg *svg, const GError *reason, GError **error)
 {
-    g_autofree char *message = g_strchomp(g_strdup(reason ? reason->message : "unknown error"));
+    g_autofree char *said = g_strchomp(g_strdup(reason ? reason->message : "unknown error"));
+    const char *message = plain_words(said);
     g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be drawn: %s", svg->path, message);
 }
 
@@ -55,7 +77,7 @@ static RsvgHandle *make_handle(const FlSvg *svg, const char *text, size_t bytes,
 /** What a handle is for. */
 typedef enum Purpose {
     TO_DRAW,
-    TO_READ, // cairo's script surface would pack every image: they are one pixel each
+    TO_READ, // see fl_paint_probe_prepare()
 } Purpose;
 
 static int variant_key(FlPart part, int turn, Purpose purpose)
@@ -67,6 +89,8 @@ static int variant_key(FlPart part, int turn, Purpose purpose)
 static void declare(const xmlDoc *doc, const FlLeaves *leaves, FlPart part, int turn)
 {
     static const char *const parts[] = {"", ";stroke:none !important", ";fill:none !important"};
+    // a hidden shape counts for the box of the group, as it must, and takes no surface of its own
+    static const char *const hide[] = {";visibility:hidden !important", ";opacity:0 !important"};
     g_autoptr(GHashTable) ids = fl_document_ids((xmlDoc *)doc);
     for (guint i = 0; i < leaves->leaf->len; i++) {
         const FlLeaf *leaf = &g_array_index(leaves->leaf, FlLeaf, i);
@@ -74,33 +98,15 @@ static void declare(const xmlDoc *doc, const FlLeaves *leaves, FlPart part, int 
         g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
         const bool hidden = turn >= 0 && leaf->turn >= 0 && leaf->turn != turn;
         g_autofree char *all = g_strconcat(style ? (const char *)style : "", parts[part],
-                                           hidden ? ";opacity:0 !important" : "", NULL);
+                                           hidden ? hide[leaf->whole] : "", NULL);
         xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)all);
-    }
-}
-
-/** Makes every image one grey pixel. */
-static void shrink_images(xmlNode *node)
-{
-    static const char *const pixel =
-        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCB"
-        "d81ytgAAAABJRU5ErkJggg==";
-    for (; node; node = node->next) {
-        if (fl_is(node, "image")) {
-            xmlNs *xlink =
-                xmlSearchNsByHref(node->doc, node, (const xmlChar *)"http://www.w3.org/1999/xlink");
-            xmlUnsetNsProp(node, xlink, (const xmlChar *)"href");
-            xmlSetProp(node, (const xmlChar *)"href", (const xmlChar *)pixel);
-        }
-        if (node->type == XML_ELEMENT_NODE)
-            shrink_images(node->children);
     }
 }
 
 /** The handle for this part of the leaves of this turn. */
 static RsvgHandle *handle_of(FlSvg *svg, FlPart part, int turn, Purpose purpose, GError **error)
 {
-    if (!svg->has_images)
+    if (!svg->has_probe)
         purpose = TO_DRAW;
     if (part == FL_PART_WHOLE && turn < 0 && purpose == TO_DRAW)
         return svg->handle;
@@ -111,22 +117,13 @@ static RsvgHandle *handle_of(FlSvg *svg, FlPart part, int turn, Purpose purpose,
     g_autoptr(xmlDoc) copy = xmlCopyDoc(svg->doc, 1);
     declare(copy, svg->leaves, part, turn);
     if (purpose == TO_READ)
-        shrink_images(copy->children);
+        fl_paint_probe_prepare(copy);
     size_t bytes = 0;
     g_autofree char *text = fl_document_text(copy, &bytes);
     handle = make_handle(svg, text, bytes, error);
     if (handle)
         g_hash_table_insert(svg->variants, key, handle);
     return handle;
-}
-
-static bool has_images(const xmlNode *node)
-{
-    bool found = false;
-    for (; node && !found; node = node->next)
-        found =
-            fl_is(node, "image") || (node->type == XML_ELEMENT_NODE && has_images(node->children));
-    return found;
 }
 
 static void set_number(xmlNode *node, const char *name, double value)
@@ -165,6 +162,7 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
         return NULL;
     svg->n_nameless = fl_document_name_groups(svg->doc);
     svg->original = fl_document_text(svg->doc, &svg->original_bytes);
+    fl_document_drop_background(svg->doc, path, number, warnings);
     if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
         return NULL;
     svg->leaves = fl_leaves_new(svg->doc, options->whole);
@@ -177,7 +175,12 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     g_autoptr(FlSvg) svg = fl_svg_read(path, number, options, warnings, error);
     if (!svg)
         return NULL;
-    svg->has_images = has_images(svg->doc->children);
+    if (svg->leaves->n_joined > 0)
+        fl_warnings_add(
+            warnings, path, number, NULL,
+            "a group with a mask has too many shapes to paint them apart: taken as one");
+    svg->has_probe = fl_paint_probe_is_needed(svg->doc);
+    fl_document_branch(svg->doc);
     svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
     size_t bytes = 0;
     g_autofree char *text = fl_document_text(svg->doc, &bytes);
@@ -214,11 +217,16 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
     *height = box.height;
     if (has_box && box.width > 0 && box.height > 0)
         return true;
-    g_set_error(
-        error, FL_ERROR, FL_ERROR_INPUT,
-        "%s: the drawing has no size and no viewBox; use ‘canvas’ to give one, such as 1920x1080, "
-        "or ‘register’ to find one",
-        svg->path);
+    const xmlNode *root = xmlDocGetRootElement(svg->doc);
+    g_autofree char *w_said = fl_property(root, "width"), *h_said = fl_property(root, "height");
+    const bool negative = (w_said && *w_said == '-') || (h_said && *h_said == '-');
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                "%s: %s; use ‘canvas’ to give one, such as 1920x1080, or ‘register’ to find one",
+                svg->path,
+                negative ? "the size of the drawing is negative"
+                : (has_width && w.length == 0) || (has_height && h.length == 0)
+                    ? "the size of the drawing is 0"
+                    : "the drawing has no size and no viewBox");
     return false;
 }
 
@@ -258,10 +266,44 @@ static bool draw_for(FlSvg *svg, const FlLeaf *leaf, FlPart part, Purpose purpos
     return false;
 }
 
+bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
+                       GError **error)
+{
+    if (!svg->before)
+        svg->before = make_handle(svg, svg->original, svg->original_bytes, error);
+    g_autoptr(GError) reason = NULL;
+    g_autofree char *layer = id ? g_strconcat("#", id, NULL) : NULL;
+    const RsvgRectangle page = {0, 0, width, height};
+    if (svg->before && rsvg_handle_render_layer(svg->before, cr, layer, &page, &reason))
+        return true;
+    if (svg->before)
+        set_rsvg_error(svg, reason, error);
+    return false;
+}
+
+/**
+ * Draws everything by way of a picture of its own: filters that look at what is below need one with
+ * colours.
+ */
+static bool draw_all(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)
+{
+    g_autoptr(cairo_surface_t) picture = fl_surface_new(
+        CAIRO_FORMAT_ARGB32, MAX(1, (int)ceil(width)), MAX(1, (int)ceil(height)), error);
+    if (!picture)
+        return false;
+    cairo_t *inner = cairo_create(picture);
+    const bool drawn = fl_svg_draw_group(svg, NULL, inner, width, height, error);
+    cairo_destroy(inner);
+    cairo_set_source_surface(cr, picture, 0, 0);
+    cairo_paint(cr);
+    return drawn;
+}
+
 bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
                  double height, GError **error)
 {
-    return draw_for(svg, leaf, part, TO_DRAW, cr, width, height, error);
+    return leaf->all ? draw_all(svg, cr, width, height, error)
+                     : draw_for(svg, leaf, part, TO_DRAW, cr, width, height, error);
 }
 
 RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, double height)
@@ -269,6 +311,8 @@ RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, doubl
     g_autofree char *layer = g_strconcat("#", leaf->id, NULL);
     const RsvgRectangle page = {0, 0, width, height};
     RsvgRectangle box = {0};
+    if (leaf->all)
+        return page;
     if (!rsvg_handle_get_geometry_for_layer(svg->handle, layer, &page, &box, NULL, NULL))
         return (RsvgRectangle){0};
     return box;
@@ -288,8 +332,10 @@ static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, double size,
     g_autoptr(cairo_surface_t) surface =
         cairo_script_surface_create(device, CAIRO_CONTENT_COLOR_ALPHA, size, size);
     cairo_t *cr = cairo_create(surface);
-    cairo_translate(cr, size / 4, 0);
-    cairo_rotate(cr, PROBE_TURN);
+    if (!svg->has_probe) {
+        cairo_translate(cr, size / 4, 0);
+        cairo_rotate(cr, FL_PAINT_PROBE_TURN);
+    }
     const bool drawn = draw_for(svg, leaf, part, TO_READ, cr, size, size, error);
     cairo_destroy(cr);
     cairo_surface_finish(surface);
@@ -298,15 +344,28 @@ static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, double size,
     return g_string_free(text, !drawn);
 }
 
-static bool is_small(FlSvg *svg, const FlLeaf *leaf, double size)
+static bool is_small(RsvgRectangle box)
 {
-    const RsvgRectangle box = fl_svg_extents(svg, leaf, size, size);
     return box.width < SMALL_PX || box.height < SMALL_PX;
+}
+
+/** Whether a box is parked far left of the page or above it. */
+static bool is_far(RsvgRectangle box)
+{
+    return box.x + box.width < -FAR_PX || box.y + box.height < -FAR_PX;
 }
 
 int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error)
 {
+    if (leaf->all) {
+        parts[0] = (FlPainted){.part = FL_PART_WHOLE,
+                               .paint = {FL_PAINT_MIXED, {0}, 255, 255, g_strdup("mixed")}};
+        return 1;
+    }
     for (double size = PROBE_PX; size <= LARGE_PROBE_PX; size *= LARGE_PROBE_PX / PROBE_PX) {
+        const RsvgRectangle box = fl_svg_extents(svg, leaf, size, size);
+        if (is_far(box))
+            return 0;
         g_autofree char *script = script_of(svg, leaf, FL_PART_WHOLE, size, NULL);
         // It also fails for some fills without an area; such a leaf is its stroke.
         if (!script)
@@ -314,23 +373,8 @@ int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
         const int n = script ? fl_paint_read(script, leaf->whole, parts) : -1;
         for (int i = 0; i < n; i++)
             parts[i].width /= (float)size;
-        if (n != 0 || !is_small(svg, leaf, size))
+        if (n != 0 || !is_small(box))
             return n;
     }
     return 0;
-}
-
-bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
-                       GError **error)
-{
-    if (!svg->before)
-        svg->before = make_handle(svg, svg->original, svg->original_bytes, error);
-    g_autoptr(GError) reason = NULL;
-    g_autofree char *layer = id ? g_strconcat("#", id, NULL) : NULL;
-    const RsvgRectangle page = {0, 0, width, height};
-    if (svg->before && rsvg_handle_render_layer(svg->before, cr, layer, &page, &reason))
-        return true;
-    if (svg->before)
-        set_rsvg_error(svg, reason, error);
-    return false;
 }

@@ -1,0 +1,25 @@
+/* Files that others name: read without waiting for what never comes, or for more than there is
+ * room. */
+#ifndef FLUIDY_BASE_FILE_H
+#define FLUIDY_BASE_FILE_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+
+/**
+ * Whether what stands at `path` can be read to its end: neither a pipe, whose writer may never
+ * come, nor a device. A path with nothing at it passes: opening it says so better.
+ *
+ * Returns: false with an error of `code` that starts with the path.
+ */
+bool fl_file_check(const char *path, FlError code, GError **error);
+
+/**
+ * Reads a whole file of at most `most` bytes, whatever size it says it has.
+ *
+ * *data ends with a NUL after *bytes bytes, which are 1 more than `most` if there is more; free it
+ * with g_free(). Returns: false with FL_ERROR_INPUT.
+ */
+bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GError **error);
+
+#endif

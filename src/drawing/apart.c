@@ -1,0 +1,368 @@
+#include "drawing/apart.h"
+
+#include "base/limits.h"
+#include "drawing/watch.h"
+#include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#define TICK_MS 100
+
+/* ---- what the child hands back ------------------------------------------------------------- */
+
+static void put(GByteArray *out, const void *data, size_t bytes)
+{
+    g_byte_array_append(out, data, (guint)bytes);
+}
+
+static void put_int(GByteArray *out, int value)
+{
+    put(out, &value, sizeof value);
+}
+
+static void put_text(GByteArray *out, const char *text)
+{
+    put(out, text, strlen(text) + 1);
+}
+
+static void put_frame(GByteArray *out, const FlSurveyFrame *frame)
+{
+    const FlSurveyFrame plain = {NULL, frame->page_width, frame->page_height, frame->canvas,
+                                 NULL, frame->n_nameless};
+    put(out, &plain, sizeof plain);
+    const int n = frame->whole ? (int)g_strv_length(frame->whole) : 0;
+    put_int(out, n);
+    for (int i = 0; i < n; i++)
+        put_text(out, frame->whole[i]);
+    put_int(out, (int)frame->seen->len);
+    put(out, frame->seen->data, frame->seen->len * sizeof(FlSurveyPart));
+}
+
+/** Everything of a scan but what it was made from. */
+static void put_scan(GByteArray *out, const FlSurvey *survey)
+{
+    put(out, survey, sizeof *survey);
+    put_int(out, (int)survey->strings.text->len);
+    for (guint i = 0; i < survey->strings.text->len; i++)
+        put_text(out, fl_strings_get(&survey->strings, (int)i));
+    for (int t = 0; t < survey->n_frames; t++)
+        put_frame(out, &survey->frame[t]);
+}
+
+static void put_warnings(GByteArray *out, const FlWarnings *warnings)
+{
+    put_int(out, fl_warnings_count(warnings));
+    for (int i = 0; i < fl_warnings_count(warnings); i++) {
+        const FlWarning *w = fl_warnings_get(warnings, i);
+        put_text(out, w->file);
+        put_text(out, w->element);
+        put_text(out, w->text);
+        put(out, &w->frame, 3 * sizeof(int)); // frame, last, n_frames
+    }
+}
+
+/* ---- and how it is taken ------------------------------------------------------------------- */
+
+/** What is left to be read; the child is not trusted to have written it right. */
+typedef struct Reader {
+    const char *at, *end;
+    bool good;
+} Reader;
+
+static void take(Reader *r, void *data, size_t bytes)
+{
+    r->good = r->good && (size_t)(r->end - r->at) >= bytes;
+    if (r->good)
+        memcpy(data, r->at, bytes);
+    else
+        memset(data, 0, bytes);
+    r->at += r->good ? bytes : 0;
+}
+
+static int take_count(Reader *r)
+{
+    int n = 0;
+    take(r, &n, sizeof n);
+    r->good = r->good && n >= 0 && n <= r->end - r->at;
+    return r->good ? n : 0;
+}
+
+static const char *take_text(Reader *r)
+{
+    const char *text = r->at;
+    const char *end = r->good ? memchr(text, '\0', (size_t)(r->end - r->at)) : NULL;
+    r->good = end != NULL;
+    if (!end)
+        return "";
+    r->at = end + 1;
+    return text;
+}
+
+static void take_frame(Reader *r, FlSurveyFrame *frame)
+{
+    take(r, frame, sizeof *frame);
+    frame->whole = NULL;
+    const int n = take_count(r);
+    if (n > 0)
+        frame->whole = g_new0(char *, (size_t)n + 1);
+    for (int i = 0; i < n; i++)
+        frame->whole[i] = g_strdup(take_text(r));
+    const int n_seen = take_count(r);
+    frame->seen = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), (guint)n_seen);
+    for (int i = 0; i < n_seen && r->good; i++) {
+        FlSurveyPart seen;
+        take(r, &seen, sizeof seen);
+        g_array_append_val(frame->seen, seen);
+    }
+}
+
+static void take_scan(Reader *r, FlSurvey *survey, const FlSequence *sequence)
+{
+    take(r, survey, sizeof *survey);
+    survey->sequence = sequence;
+    survey->strings = (FlStrings){0};
+    survey->watch = NULL;
+    survey->n_frames = sequence->n;
+    survey->frame = g_new0(FlSurveyFrame, sequence->n);
+    const int n = take_count(r);
+    for (int i = 0; i < n; i++)
+        fl_strings_add(&survey->strings, take_text(r));
+    for (int t = 0; t < survey->n_frames; t++)
+        take_frame(r, &survey->frame[t]);
+}
+
+static void take_warnings(Reader *r, FlWarnings *warnings)
+{
+    const int n = take_count(r);
+    for (int i = 0; i < n && r->good; i++) {
+        FlWarning w = {.file = (char *)take_text(r),
+                       .element = (char *)take_text(r),
+                       .text = (char *)take_text(r)};
+        take(r, &w.frame, 3 * sizeof(int));
+        if (warnings && r->good)
+            fl_warnings_repeat(warnings, &w);
+    }
+}
+
+/* ---- the child ----------------------------------------------------------------------------- */
+
+/** Whether nothing but this thread would be missing in a child. */
+static bool is_alone(void)
+{
+    g_autoptr(GDir) tasks = g_dir_open("/proc/self/task", 0, NULL);
+    int n = 0;
+    while (tasks && g_dir_read_name(tasks))
+        n++;
+    return n == 1;
+}
+
+static bool write_all(int fd, const GByteArray *data)
+{
+    size_t done = 0;
+    while (done < data->len) {
+        const ssize_t n = write(fd, data->data + done, data->len - done);
+        if (n <= 0)
+            return false;
+        done += (size_t)n;
+    }
+    return true;
+}
+
+/** What the parent does with signals and standard error is not the child's business. */
+static void settle(void)
+{
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
+    for (size_t i = 0; i < G_N_ELEMENTS(signals); i++)
+        signal(signals[i], SIG_DFL);
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    prctl(PR_SET_DUMPABLE, 0); // a core of it helps nobody
+    const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (null >= 0)
+        dup2(null, STDERR_FILENO); // the panics of libraries
+}
+
+G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawingOptions *options,
+                                     FlWatch *watch, int fd)
+{
+    settle();
+    GError *problem = NULL;
+    FlSurvey survey = {0};
+    FlWarnings *warnings = fl_warnings_new();
+    GByteArray *out = g_byte_array_new();
+    const bool good = fl_survey_init(&survey, sequence, options, watch, warnings, &problem);
+    put_int(out, good);
+    if (good) {
+        put_scan(out, &survey);
+    } else {
+        put_int(out, problem->domain == FL_ERROR ? problem->code : FL_ERROR_INPUT);
+        put_text(out, problem->message);
+    }
+    put_warnings(out, warnings);
+    _exit(write_all(fd, out) ? 0 : 1);
+}
+
+/* ---- the parent ---------------------------------------------------------------------------- */
+
+/** The one frame that is being read; -1 if there are several or none. */
+static int only_frame(FlWatch *watch)
+{
+    int found = -1, n = 0;
+    for (int i = 0; i < FL_WATCHED; i++)
+        if (atomic_load(&watch->frame[i]) > 0) {
+            found = atomic_load(&watch->frame[i]) - 1;
+            n++;
+        }
+    return n == 1 ? found : -1;
+}
+
+/** A frame that is being read for too long; -1 if there is none. */
+static int late_frame(FlWatch *watch)
+{
+    const gint64 most_us = fl_limit(FL_LIMIT_SECONDS) * G_USEC_PER_SEC;
+    for (int i = 0; i < FL_WATCHED; i++)
+        if (atomic_load(&watch->frame[i]) > 0 &&
+            g_get_monotonic_time() - atomic_load(&watch->since_us[i]) > most_us)
+            return atomic_load(&watch->frame[i]) - 1;
+    return -1;
+}
+
+/** Waits until the child ends. Returns: its status; *late is the frame it was ended for, or -1. */
+static int wait_for(pid_t child, int alive, FlWatch *watch, int *late)
+{
+    int status = 0;
+    struct pollfd end = {.fd = alive, .events = POLLIN};
+    *late = -1;
+    while (poll(&end, 1, TICK_MS) <= 0)
+        if (*late < 0 && (*late = late_frame(watch)) >= 0)
+            kill(child, SIGKILL);
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+        ;
+    return status;
+}
+
+/** Makes the child. Returns: false if there is none; the caller then does its work. */
+static bool start(const FlSequence *sequence, const FlDrawingOptions *options, FlWatch *watch,
+                  int fd, bool one_thread, pid_t *child, int *alive)
+{
+    int ends[2];
+    if (pipe(ends) != 0)
+        return false;
+    *child = fork();
+    if (*child == 0) {
+        close(ends[0]);
+#ifdef _OPENMP
+        if (one_thread)
+            omp_set_num_threads(1);
+#endif
+        be_child(sequence, options, watch, fd);
+    }
+    close(ends[1]);
+    *alive = ends[0];
+    if (*child < 0)
+        close(ends[0]);
+    return *child > 0;
+}
+
+static bool take_all(int fd, FlSurvey *survey, const FlSequence *sequence, FlWatch *watch,
+                     FlWarnings *warnings, int *bad, GError **error)
+{
+    const off_t bytes = lseek(fd, 0, SEEK_END);
+    void *data = bytes > 0 ? mmap(NULL, (size_t)bytes, PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
+    if (data == MAP_FAILED) {
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to read the drawing");
+        return false;
+    }
+    Reader r = {data, (const char *)data + bytes, true};
+    int good = 0, code = FL_ERROR_INPUT;
+    take(&r, &good, sizeof good);
+    if (good) {
+        take_scan(&r, survey, sequence);
+    } else {
+        take(&r, &code, sizeof code);
+        g_set_error(error, FL_ERROR, code, "%s", take_text(&r));
+        *bad = code == FL_ERROR_LIMIT ? atomic_load(&watch->failed) - 1 : -1;
+    }
+    take_warnings(&r, warnings);
+    munmap(data, (size_t)bytes);
+    if (good && !r.good)
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: what was read of it is damaged",
+                    sequence->file[0]);
+    return good && r.good;
+}
+
+static bool tell_end(const FlSequence *sequence, int frame, int status, bool late, GError **error)
+{
+    const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (number == SIGINT || number == SIGTERM || number == SIGHUP) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted");
+        return false;
+    }
+    g_autofree char *why =
+        late ? g_strdup_printf(
+                   "it took longer than %d s to read; use ‘limit’ seconds=N to allow more",
+                   (int)fl_limit(FL_LIMIT_SECONDS))
+             : g_strdup_printf("the SVG library crashed while it was read (%s)",
+                               number ? g_strsignal(number) : "it ended");
+    g_set_error(error, FL_ERROR, late ? FL_ERROR_LIMIT : FL_ERROR_INPUT, "%s: frame %d: %s",
+                sequence->file[MAX(frame, 0)], sequence->number[MAX(frame, 0)], why);
+    return false;
+}
+
+/** One try; *again asks for another with one thread, to know which frame it was. */
+static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDrawingOptions *options,
+                      FlWatch *watch, bool *one_thread, bool *again, FlWarnings *warnings, int *bad,
+                      GError **error)
+{
+    int alive = -1, late = -1;
+    pid_t child = -1;
+    memset(watch, 0, sizeof *watch);
+    *again = false;
+    const int fd = memfd_create("fluidy-scan", MFD_CLOEXEC);
+    if (fd < 0 || !start(sequence, options, watch, fd, *one_thread, &child, &alive)) {
+        if (fd >= 0)
+            close(fd);
+        return fl_survey_init(survey, sequence, options, NULL, warnings, error);
+    }
+    const int status = wait_for(child, alive, watch, &late);
+    close(alive);
+    bool good = false;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+        good = take_all(fd, survey, sequence, watch, warnings, bad, error);
+    } else {
+        *bad = late >= 0 ? late : only_frame(watch);
+        *again = *bad < 0 && !*one_thread;
+        *one_thread = true;
+        if (!*again)
+            tell_end(sequence, *bad, status, late >= 0, error);
+    }
+    close(fd);
+    return good;
+}
+
+bool fl_scan_init_apart(FlSurvey *survey, const FlSequence *sequence,
+                        const FlDrawingOptions *options, FlWarnings *warnings, int *bad,
+                        GError **error)
+{
+    *bad = -1;
+    *survey = (FlSurvey){0};
+    FlWatch *watch = is_alone() ? mmap(NULL, sizeof *watch, PROT_READ | PROT_WRITE,
+                                       MAP_SHARED | MAP_ANONYMOUS, -1, 0)
+                                : MAP_FAILED;
+    if (watch == MAP_FAILED)
+        return fl_survey_init(survey, sequence, options, NULL, warnings, error);
+    bool again = true, one_thread = false, good = false;
+    while (again)
+        good =
+            try_apart(survey, sequence, options, watch, &one_thread, &again, warnings, bad, error);
+    munmap(watch, sizeof *watch);
+    return good;
+}

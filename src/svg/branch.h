@@ -1,0 +1,17 @@
+/* Long rows of siblings as trees, so that one shape among thousands is found fast. */
+#ifndef FLUIDY_SVG_BRANCH_H
+#define FLUIDY_SVG_BRANCH_H
+
+#include "svg/document.h"
+
+/**
+ * Puts the children of groups that have many into nested groups of a few each. To render one shape
+ * librsvg visits all siblings of it and of the groups around it: n shapes in a row took n * n
+ * visits, and take n log n in a tree.
+ *
+ * Nothing looks different. The document stays as it is if its style sheets could tell the groups
+ * that are put in: by a selector for <g>, for children or for siblings.
+ */
+void fl_document_branch(xmlDoc *doc);
+
+#endif

@@ -1,0 +1,95 @@
+#include "svg/paint_probe.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static const char *const shapes[] = {"g",      "svg",     "a",    "path",     "rect",
+                                     "circle", "ellipse", "line", "polyline", "polygon",
+                                     "text",   "image",   "use",  NULL};
+
+/** Whether librsvg may draw a node, or what it fills, on a surface apart. */
+static bool is_apart(const xmlNode *node)
+{
+    static const char *const elements[] = {"image", "pattern", "style", NULL};
+    static const char *const words[] = {"opacity", "mask", "filter", "mix-blend-mode", "isolation"};
+    if (fl_is_one_of(node, elements))
+        return true;
+    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    bool apart = false;
+    for (size_t i = 0; i < G_N_ELEMENTS(words) && !apart; i++)
+        apart = xmlHasProp((xmlNode *)node, (const xmlChar *)words[i]) ||
+                (style && strstr((const char *)style, words[i]));
+    return apart;
+}
+
+static bool has_apart(const xmlNode *node)
+{
+    for (; node; node = node->next)
+        if (node->type == XML_ELEMENT_NODE && (is_apart(node) || has_apart(node->children)))
+            return true;
+    return false;
+}
+
+bool fl_paint_probe_is_needed(xmlDoc *doc)
+{
+    return has_apart(xmlDocGetRootElement(doc));
+}
+
+/** Makes every image one grey pixel. */
+static void shrink_images(xmlNode *node)
+{
+    static const char *const pixel =
+        "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGNoAAAAggCB"
+        "d81ytgAAAABJRU5ErkJggg==";
+    for (; node; node = node->next) {
+        if (fl_is(node, "image")) {
+            xmlNs *xlink =
+                xmlSearchNsByHref(node->doc, node, (const xmlChar *)"http://www.w3.org/1999/xlink");
+            xmlUnsetNsProp(node, xlink, (const xmlChar *)"href");
+            xmlSetProp(node, (const xmlChar *)"href", (const xmlChar *)pixel);
+        }
+        if (node->type == XML_ELEMENT_NODE)
+            shrink_images(node->children);
+    }
+}
+
+/** Turns the children of a node about its middle, if its viewBox tells that. */
+static void turn_children(xmlNode *node)
+{
+    g_autoptr(xmlChar) view = (xmlChar *)fl_attribute(node, "viewBox");
+    double box[4] = {0};
+    char *s = (char *)view;
+    for (int i = 0; s && i < 4; i++) {
+        box[i] = g_ascii_strtod(s + strspn(s, ", \t\r\n"), &s);
+    }
+    char n[3][G_ASCII_DTOSTR_BUF_SIZE];
+    g_autofree char *turn = g_strdup_printf(
+        "rotate(%s %s %s)", g_ascii_dtostr(n[0], sizeof n[0], FL_PAINT_PROBE_TURN * 180 / G_PI),
+        g_ascii_dtostr(n[1], sizeof n[1], box[0] + box[2] / 2),
+        g_ascii_dtostr(n[2], sizeof n[2], box[1] + box[3] / 2));
+    for (xmlNode *child = node->children; child; child = child->next) {
+        if (!fl_is_one_of(child, shapes))
+            continue;
+        g_autoptr(xmlChar) own = (xmlChar *)fl_attribute(child, "transform");
+        g_autofree char *both = g_strconcat(turn, " ", own ? (const char *)own : "", NULL);
+        xmlSetProp(child, (const xmlChar *)"transform", (const xmlChar *)both);
+    }
+}
+
+static void turn_patterns(xmlNode *node)
+{
+    for (; node; node = node->next) {
+        if (fl_is(node, "pattern"))
+            turn_children(node);
+        else if (node->type == XML_ELEMENT_NODE)
+            turn_patterns(node->children);
+    }
+}
+
+void fl_paint_probe_prepare(xmlDoc *doc)
+{
+    xmlNode *root = xmlDocGetRootElement(doc);
+    shrink_images(root);
+    turn_children(root);
+    turn_patterns(root->children);
+}
