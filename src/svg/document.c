@@ -106,9 +106,20 @@ static bool read_bytes(const char *path, char **data, gsize *bytes, GError **err
     return true;
 }
 
+/** libxml2 starts itself with its first parser, which threads must not do at once. */
+static void start_parser(void)
+{
+    static gsize started;
+    if (g_once_init_enter(&started)) {
+        xmlInitParser();
+        g_once_init_leave(&started, 1);
+    }
+}
+
 /** Parses; problem gets libxml2's message with its line if the text is no XML. */
 static xmlDoc *parse(const char *data, gsize bytes, const char *path, char **problem)
 {
+    start_parser();
     xmlParserCtxt *context = xmlNewParserCtxt();
     const int options = XML_PARSE_NONET | XML_PARSE_NOERROR | XML_PARSE_NOWARNING |
                         (fl_document_is_huge() ? XML_PARSE_HUGE : 0);
