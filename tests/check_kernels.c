@@ -592,6 +592,8 @@ int main(int argc, char **argv)
         if (!available(levels[v]))
             continue;
         fl_kernels_init(&versions[v], levels[v]);
+        if (v > 0 && strcmp(versions[v].name, versions[0].name) == 0)
+            continue; // built without that instruction set
         if (time)
             time_version(&versions[v]), time_rows(fl_row_kernels_for(levels[v]));
         else

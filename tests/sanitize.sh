@@ -63,7 +63,7 @@ thread)
 memcheck)
     make_build
     ninja -C "$build" src/cli/fluidy-svg
-    FLUIDY_CPU_MASK=3 valgrind -q --error-exitcode=66 "${render[@]}" -j 1 fixtures/animations/snowman-wave-layers
+    FLUIDY_CPU_MASK=3 valgrind -q --suppressions=tests/memcheck.supp --error-exitcode=66 "${render[@]}" -j 1 fixtures/animations/snowman-wave-layers
     ;;
 analysers)
     make_build

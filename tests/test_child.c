@@ -79,8 +79,8 @@ static void a_wait_can_be_interrupted(void)
 static void a_child_that_computes_is_waited_for(void)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlChild) child = start("n=0; while [ $n -lt 200000 ]; do n=$((n + 1)); done",
-                                     FL_CHILD_INPUT, &(FlPatience){.limit_s = 0.05});
+    g_autoptr(FlChild) child = start("n=0; while [ $n -lt 700000 ]; do n=$((n + 1)); done",
+                                     FL_CHILD_INPUT, &(FlPatience){.limit_s = 0.7});
     fl_child_finish(child, &error);
     g_assert_no_error(error);
 }

@@ -48,7 +48,7 @@ static void put_frame(GByteArray *out, const FlSurveyFrame *frame)
 }
 
 /** Everything of a scan but what it was made from. */
-static void put_scan(GByteArray *out, const FlSurvey *survey)
+static void put_survey(GByteArray *out, const FlSurvey *survey)
 {
     put(out, survey, sizeof *survey);
     put_int(out, (int)survey->strings.text->len);
@@ -125,7 +125,7 @@ static void take_frame(Reader *r, FlSurveyFrame *frame)
     }
 }
 
-static void take_scan(Reader *r, FlSurvey *survey, const FlSequence *sequence)
+static void take_survey(Reader *r, FlSurvey *survey, const FlSequence *sequence)
 {
     take(r, survey, sizeof *survey);
     survey->sequence = sequence;
@@ -201,7 +201,7 @@ G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawing
     const bool good = fl_survey_init(&survey, sequence, options, watch, warnings, &problem);
     put_int(out, good);
     if (good) {
-        put_scan(out, &survey);
+        put_survey(out, &survey);
     } else {
         put_int(out, problem->domain == FL_ERROR ? problem->code : FL_ERROR_INPUT);
         put_text(out, problem->message);
@@ -285,7 +285,7 @@ static bool take_all(int fd, FlSurvey *survey, const FlSequence *sequence, FlWat
     int good = 0, code = FL_ERROR_INPUT;
     take(&r, &good, sizeof good);
     if (good) {
-        take_scan(&r, survey, sequence);
+        take_survey(&r, survey, sequence);
     } else {
         take(&r, &code, sizeof code);
         g_set_error(error, FL_ERROR, code, "%s", take_text(&r));
@@ -348,9 +348,9 @@ static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDraw
     return good;
 }
 
-bool fl_scan_init_apart(FlSurvey *survey, const FlSequence *sequence,
-                        const FlDrawingOptions *options, FlWarnings *warnings, int *bad,
-                        GError **error)
+bool fl_survey_init_apart(FlSurvey *survey, const FlSequence *sequence,
+                          const FlDrawingOptions *options, FlWarnings *warnings, int *bad,
+                          GError **error)
 {
     *bad = -1;
     *survey = (FlSurvey){0};

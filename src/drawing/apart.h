@@ -12,8 +12,8 @@
  * *bad becomes the index of the frame that crashed, hung or went beyond a limit, else -1. A process
  * that has other threads already does not fork: it reads the film itself.
  */
-bool fl_scan_init_apart(FlSurvey *survey, const FlSequence *sequence,
-                        const FlDrawingOptions *options, FlWarnings *warnings, int *bad,
-                        GError **error);
+bool fl_survey_init_apart(FlSurvey *survey, const FlSequence *sequence,
+                          const FlDrawingOptions *options, FlWarnings *warnings, int *bad,
+                          GError **error);
 
 #endif

@@ -271,7 +271,7 @@ static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingO
         int bad = -1;
         GError *reason = NULL;
         g_autoptr(FlWarnings) remarks = fl_warnings_new();
-        const bool good = fl_scan_init_apart(survey, sequence, options, remarks, &bad, &reason);
+        const bool good = fl_survey_init_apart(survey, sequence, options, remarks, &bad, &reason);
         if (good || bad < 0 || options->missing == FL_MISSING_ERROR || sequence->n < 2) {
             fl_warnings_append(warnings, remarks);
             if (reason)

@@ -20,7 +20,7 @@ typedef struct FlDrawingOptions {
     FlMissing missing;
     FlCanvas canvas;   // of drawings without a size
     double dpi;        // 0: 96
-    bool apart;        // read in a process apart, see fl_scan_init_apart()
+    bool apart;        // read in a process apart, see fl_survey_init_apart()
     bool registered;   // put frames that were moved to 0,0 where they belong, see fl_register()
     int width, height; // of the picture, px; 0: as the drawing says; both: what fits in, filled up
     double scale;      // px per px of the drawing; 0: 1; not together with width or height

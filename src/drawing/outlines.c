@@ -40,7 +40,7 @@ GArray *fl_drawing_region_leaves(const FlDrawing *drawing, int frame, int region
 FlLeafLook *fl_drawing_leaf_looks(const FlDrawing *drawing, int frame, const FlOutlines *outlines)
 {
     const FlDrawingFrame *f = &drawing->frame[frame];
-    FlLeafLook *probe = g_new(FlLeafLook, outlines->n_leaves + 1);
+    FlLeafLook *probe = g_new0(FlLeafLook, outlines->n_leaves + 1);
     for (int i = 0; i < outlines->n_leaves; i++)
         probe[i] = (FlLeafLook){.region = -1};
     g_autoptr(GArray) list = g_array_new(FALSE, FALSE, sizeof(FlRegionLeaf));

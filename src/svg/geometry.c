@@ -123,7 +123,9 @@ static void enter_viewport(const Reader *reader, const xmlNode *node, Surrounds 
         s->height = length_in(reader, node, "height", h, h, broken);
         s->ctm = fl_affine_after(&s->ctm, &place);
         g_autofree char *overflow = fl_property(node, "overflow");
-        s->clipped |= !overflow || (strcmp(overflow, "visible") != 0 && strcmp(overflow, "auto"));
+        const bool shown =
+            overflow && (g_str_equal(overflow, "visible") || g_str_equal(overflow, "auto"));
+        s->clipped |= !shown;
     }
     if (box[2] > 0 && box[3] > 0) {
         const FlAffine fit = fit_box(box, s->width, s->height, (const char *)ratio);
