@@ -1,8 +1,8 @@
 #include "watercolour/brush.h"
 
 #include "base/alloc.h"
+#include "base/noise.h"
 #include "base/rng.h"
-#include "watercolour/noise.h"
 
 #include <math.h>
 #include <string.h>

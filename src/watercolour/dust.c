@@ -12,8 +12,8 @@
 #include "watercolour/dust.h"
 
 #include "base/alloc.h"
+#include "base/noise.h"
 #include "base/rng.h"
-#include "watercolour/noise.h"
 
 #include <math.h>
 

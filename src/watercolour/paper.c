@@ -1,6 +1,7 @@
 /* Paper from noise and fibres: relief, capacity, permeability. No scanned data, no licence. */
+#include "base/fibre.h"
+#include "base/noise.h"
 #include "base/rng.h"
-#include "watercolour/noise.h"
 #include "watercolour/sheet.h"
 
 #include <math.h>
@@ -22,45 +23,16 @@ static float bump(uint64_t seed, const FlPaper *paper, float x, float y)
     return 0.5f + 0.30f * coarse + 0.10f * crease + 0.22f * paper->roughness * tooth;
 }
 
-/* One fibre: a line that turns a little all the way, as wide as a px. Turned without sin and cos,
-   whose last bit differs between C libraries. */
-static void draw_fibre(float *grid, int width, int height, FlRng *rng, const FlPaper *paper,
-                       float scale)
-{
-    float x = fl_rng_float(rng) * (float)width, y = fl_rng_float(rng) * (float)height;
-    float dx = fl_rng_float(rng) - 0.5f, dy = fl_rng_float(rng) - 0.5f;
-    const float length = paper->fibre_px * scale, curl = paper->fibre_curl;
-    float turn = (fl_rng_float(rng) - 0.5f) * 0.05f * curl;
-    const float strength = 0.4f + 0.6f * fl_rng_float(rng);
-    const int steps = (int)(length * (0.4f + 1.2f * fl_rng_float(rng)));
-    const float radius = 0.5f * scale * (0.6f + 0.6f * fl_rng_float(rng));
-    const int reach = (int)radius + 1;
-    for (int i = 0; i < steps; i++) {
-        const float norm = 1 / sqrtf(dx * dx + dy * dy + 1e-12f);
-        dx *= norm, dy *= norm;
-        x += dx, y += dy;
-        turn = clamp(turn + (fl_rng_float(rng) - 0.5f) * 0.03f * curl, -0.08f, 0.08f);
-        const float turned = dx - turn * dy;
-        dy += turn * dx, dx = turned;
-        for (int j = (int)y - reach; j <= (int)y + reach; j++)
-            for (int k = (int)x - reach; k <= (int)x + reach; k++) {
-                if (j < 0 || k < 0 || j >= height || k >= width)
-                    continue;
-                const float ex = (float)k - x, ey = (float)j - y;
-                const float near = strength * (1 - (ex * ex + ey * ey) / (radius * radius + 1));
-                float *cell = &grid[(size_t)j * width + k];
-                *cell = near > *cell ? near : *cell;
-            }
-    }
-}
-
 static void draw_fibres(FlSheet *sheet, const FlRecipe *recipe, float *grid)
 {
     const float scale = (float)recipe->oversample;
+    const FlFibre how = {recipe->paper.fibre_px, recipe->paper.fibre_curl, scale};
     const int n = (int)(recipe->paper.fibres * (float)recipe->width * (float)recipe->height / 100);
     for (int i = 0; i < n; i++) {
         FlRng rng = {fl_key(fl_key(recipe->seed, KEY_FIBRES), (uint64_t)i)};
-        draw_fibre(grid, sheet->width, sheet->height, &rng, &recipe->paper, scale);
+        const float x = fl_rng_float(&rng) * (float)sheet->width;
+        const float y = fl_rng_float(&rng) * (float)sheet->height;
+        fl_fibre_draw(grid, sheet->width, sheet->height, x, y, &how, &rng);
     }
 }
 

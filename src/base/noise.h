@@ -1,6 +1,6 @@
 /* Smooth noise as a function of place, from +, * and a hash only: the same bits on any CPU. */
-#ifndef FLUIDY_WATERCOLOUR_NOISE_H
-#define FLUIDY_WATERCOLOUR_NOISE_H
+#ifndef FLUIDY_BASE_NOISE_H
+#define FLUIDY_BASE_NOISE_H
 
 #include <stdint.h>
 

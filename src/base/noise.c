@@ -1,4 +1,4 @@
-#include "watercolour/noise.h"
+#include "base/noise.h"
 
 #include "base/rng.h"
 
