@@ -394,6 +394,7 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     const FlOcclusion layer = {z->rgba + at, z->rgba + ROW, n % 2 ? z->rgba + 3 : NULL, n,
                                n % 5 > 0};
     rows->occlude(&layer, z->sum[2] + at, z->above + at, z->area + at, n);
+    rows->multiply(z->above + at, z->rgba + at, n);
 }
 
 static void rows_are_those_of_c(const void *version)
@@ -541,6 +542,7 @@ static void time_rows(const FlRowKernels *rows)
     TIME("share", rows->share(z.f[2], z.f[1], z.rgba, ROW));
     const FlOcclusion layer = {z.rgba, z.rgba + ROW, z.rgba + 2 * ROW, 200, true};
     TIME("occlude", rows->occlude(&layer, z.sum[2], z.above, z.area, ROW));
+    TIME("multiply", rows->multiply(z.above, z.rgba, ROW));
     TIME("straighten", rows->straighten(rgb, z.f[2], z.f[1], z.rgba, ROW));
 }
 

@@ -98,6 +98,9 @@ typedef struct FlRowKernels {
     void (*occlude)(const FlOcclusion *layer, uint32_t *rgba, uint16_t *paint, uint8_t *area,
                     int n);
 
+    /** Paper: values[i] *= factor[i] / 32768, rounded, at most 255. */
+    void (*multiply)(const uint16_t *factor, uint8_t *values, int n);
+
     const char *name; // "c", "avx2", …
 } FlRowKernels;
 

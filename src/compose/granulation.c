@@ -1,0 +1,55 @@
+#include "compose/granulation.h"
+
+#include "base/density.h"
+#include "compose/ink.h"
+#include <math.h>
+
+#define STEP 64 // amounts that are as easily moved
+#define STEPS (FL_AMOUNTS / STEP)
+
+/* What a height of 1 / FL_TOOTH_ONE does to an amount: wet paint gets that much less, as density;
+ * dry paint that much more, of FL_AMOUNT_ONE * 64. */
+static void fill_strengths(float granulation, int32_t strength[STEPS])
+{
+    for (int i = 0; i < STEPS; i++) {
+        const float a = (float)(i * STEP + STEP / 2) / FL_AMOUNT_ONE;
+        const float share = CLAMP(1.3f - .45f * a, .25f, 1.3f) * fminf(1, a / .3f);
+        const float wet = granulation * share * 1.442695f * FL_DENSITY_ONE / FL_TOOTH_ONE;
+        const float dry = granulation * 1.2f / (.6f + .4f * a) * 65536 / FL_TOOTH_ONE;
+        strength[i] = (int32_t)lrintf(granulation > 0 ? wet : -dry);
+    }
+}
+
+static int wet_amount(int amount, int32_t less)
+{
+    const int64_t factor = fl_density_level(FL_DENSITY_ONE + less); // 128 * 255 is one
+    return (int)((amount * factor + 128 * 255 / 2) / (128 * 255));
+}
+
+static int dry_amount(int amount, int32_t more)
+{
+    const int64_t factor = CLAMP(65536 + more, 0, 2 * 65536);
+    return (int)((amount * factor + 32768) >> 16);
+}
+
+void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts)
+{
+    int32_t strength[STEPS];
+    const FlRect box = area->box;
+    if (!tooth.height || granulation == 0)
+        return;
+    fill_strengths(granulation, strength);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const int8_t *height = tooth.height + (size_t)(box.y + y) * tooth.stride + (size_t)box.x;
+        int16_t *row = amounts + (size_t)y * (size_t)box.width;
+        for (int x = span.first; x < span.last; x++) {
+            if (row[x] <= 0)
+                continue;
+            const int32_t by = strength[row[x] / STEP] * height[x];
+            const int amount = granulation > 0 ? wet_amount(row[x], by) : dry_amount(row[x], by);
+            row[x] = (int16_t)MIN(amount, FL_AMOUNTS - 1);
+        }
+    }
+}

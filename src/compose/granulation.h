@@ -1,0 +1,17 @@
+/* Granulation and tooth: paint settles in the hollows of the paper, or catches on its peaks. */
+#ifndef FLUIDY_COMPOSE_GRANULATION_H
+#define FLUIDY_COMPOSE_GRANULATION_H
+
+#include "base/rect.h"
+#include "compose/paper_sheet.h"
+
+/**
+ * Changes the amounts of paint of an area by the tooth of the paper below them; those below 0 stay.
+ *
+ * granulation is -1..1. Above 0 paint is wet and settles in hollows, least where it is thick; below
+ * 0 it is dry, catches on peaks and leaves hollows bare. 0 or a flat tooth: nothing happens. The
+ * mean amount stays to within 2 % up to .2.
+ */
+void fl_granulate(float granulation, FlTooth tooth, const FlArea *area, int16_t *amounts);
+
+#endif

@@ -1,0 +1,198 @@
+#include "compose/paper_height.h"
+
+#include "base/fibre.h"
+#include "base/noise.h"
+#include <math.h>
+#include <string.h>
+
+enum {
+    KEY_WARP_X = 201,
+    KEY_WARP_Y,
+    KEY_BUMPS,
+    KEY_CREASES,
+    KEY_TOOTH,
+    KEY_FIBRES,
+    KEY_LINES,
+    KEY_BREAKS,
+    KEY_CHAINS,
+    KEY_CLOUD,
+    KEY_WARMTH,
+    KEY_FLECKS,
+};
+
+// clang-format off
+/* Matched with scans by eye, by the deviation of L* and by the spectrum. mean, dev, slope_dev and
+ * fine_dev are those of the sum over a large sheet; they do not depend on the picture, or a crop of
+ * it would have another paper. */
+static const FlPaperGrain grains[FL_PAPER_KINDS] = {
+    [FL_PAPER_COLD] = {.grain = 7, .stretch = 1.35f, .warp = .35f, .crease = .30f, .tooth = .30f,
+                       .tooth_stretch = 1, .fibre = .15f, .fibres = 2.2f, .fibre_px = 26, .fibre_mean = 0.049f, .fibre_dev = 0.157f,
+                       .mean = 0.146f, .dev = 0.639f, .slope_dev = 0.507f, .fine_dev = 0.863f,
+                       .relief = .017f, .cloud = .005f, .streak = .002f, .warm = .004f,
+                       .colour = {0xf5, 0xf0, 0xe6}},
+    [FL_PAPER_HOT] = {.grain = 8, .stretch = 1.3f, .warp = .35f, .crease = .12f, .tooth = .65f,
+                      .tooth_stretch = 1.3f, .fibre = .40f, .fibres = 2.2f, .fibre_px = 26, .fibre_mean = 0.049f, .fibre_dev = 0.157f,
+                      .mean = 0.058f, .dev = 0.674f, .slope_dev = 0.513f, .fine_dev = 0.849f,
+                      .relief = .0105f, .cloud = .006f, .streak = .003f, .warm = .004f,
+                      .colour = {0xf8, 0xf5, 0xee}},
+    [FL_PAPER_ROUGH] = {.grain = 11, .stretch = 1.15f, .warp = .2f, .crease = .25f, .tooth = .50f,
+                        .tooth_stretch = 1, .fibre = .30f, .fibres = 4, .fibre_px = 16, .fibre_mean = 0.054f, .fibre_dev = 0.165f,
+                        .mean = 0.122f, .dev = 0.661f, .slope_dev = 0.459f, .fine_dev = 0.777f,
+                        .relief = .024f, .cloud = .006f, .streak = .002f, .warm = .004f,
+                        .colour = {0xf3, 0xee, 0xe4}},
+    [FL_PAPER_LAID] = {.grain = 7, .stretch = 1.5f, .warp = .35f, .crease = .15f, .tooth = .55f,
+                       .tooth_stretch = 1, .fibre = .40f, .fibres = 4, .fibre_px = 16, .fibre_mean = 0.054f, .fibre_dev = 0.165f,
+                       .laid = .8f, .line = 8.5f,
+                       .mean = 0.029f, .dev = 0.579f, .slope_dev = 0.529f, .fine_dev = 0.872f,
+                       .relief = .0125f, .cloud = .008f, .streak = .003f, .warm = .006f,
+                       .flecks = .05f, .colour = {0xee, 0xe6, 0xd4}, .tinted = true},
+    [FL_PAPER_KRAFT] = {.grain = 6, .stretch = 2.2f, .warp = .35f, .crease = .15f, .tooth = .95f,
+                        .tooth_stretch = 1.9f, .fibre = .55f, .fibres = 9, .fibre_px = 11, .fibre_mean = 0.083f, .fibre_dev = 0.199f,
+                        .laid = .1f, .line = 6,
+                        .mean = 0.050f, .dev = 0.580f, .slope_dev = 0.586f, .fine_dev = 0.894f,
+                        .relief = .019f, .cloud = .013f, .streak = .009f, .warm = .012f,
+                        .flecks = .09f, .colour = {0xc4, 0xa4, 0x7c}, .tinted = true},
+};
+// clang-format on
+
+const FlPaperGrain *fl_paper_grain(FlPaperKind kind)
+{
+    return &grains[kind];
+}
+
+static float clamp(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* ---- laid lines ------------------------------------------------------------------------------ */
+
+#define CHAIN_PX 104 // between the wires across the lines
+
+/* The lines of the mould are bent and come and go. */
+static float line_at(const FlPaperPlace *place, float x, float y)
+{
+    const uint64_t seed = place->seed;
+    const float bend = fl_noise(fl_key(seed, KEY_LINES), x / 55, y / 14);
+    const float turn = y / place->grain->line + .45f * bend;
+    const float wave = 4 * fabsf(turn - floorf(turn) - .5f) - 1;
+    const float strength = fl_noise(fl_key(seed, KEY_BREAKS), x / 22, y / 8);
+    return wave * clamp(.55f + 1.1f * strength, 0, 1.7f);
+}
+
+static float chain_at(const FlPaperPlace *place, float x, float y)
+{
+    const float sway = 5 * fl_noise(fl_key(place->seed, KEY_CHAINS), x / CHAIN_PX, y / 160);
+    const float turn = (x + sway) / CHAIN_PX;
+    const float distance = CHAIN_PX * fabsf(turn - floorf(turn) - .5f);
+    return -fmaxf(0, 1 - distance / 3.5f);
+}
+
+/* ---- fibres ---------------------------------------------------------------------------------- */
+
+#define CELL_PX 64 // of the sheet: longer than the longest fibre
+
+/* Fibres of each cell, from a key of its own, in the rows that `part` has. */
+static void draw_cells(const FlPaperPlace *place, FlRect part, float *grid)
+{
+    const FlPaperGrain *grain = place->grain;
+    const FlFibre how = {grain->fibre_px, 1, place->scale};
+    const float cell = CELL_PX * place->scale;
+    const int n = (int)(grain->fibres * CELL_PX * CELL_PX / 1000);
+    const int first_row = (int)floorf((float)part.y / cell) - 1;
+    const int last_row = (int)floorf((float)(part.y + part.height) / cell) + 1;
+    const int first = (int)floorf((float)part.x / cell) - 1;
+    const int last = (int)floorf((float)(part.x + part.width) / cell) + 1;
+    for (int j = first_row; j <= last_row; j++)
+        for (int i = first; i <= last; i++) {
+            const uint64_t at = (uint64_t)(uint32_t)i << 32 | (uint32_t)j;
+            FlRng rng = {fl_key(fl_key(place->seed, KEY_FIBRES), at)};
+            for (int k = 0; k < n; k++) {
+                const float x = ((float)i + fl_rng_float(&rng)) * cell - (float)part.x;
+                const float y = ((float)j + fl_rng_float(&rng)) * cell - (float)part.y;
+                fl_fibre_draw(grid, part.width, part.height, x, y, &how, &rng);
+            }
+        }
+}
+
+static void centre_fibres(const FlPaperGrain *grain, float *fibres, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        fibres[i] = (fibres[i] - grain->fibre_mean) / grain->fibre_dev;
+}
+
+void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres)
+{
+    const int rows = (int)(CELL_PX * place->scale) + 1; // of a band, which is a thread's
+    const int first = (int)floorf((float)box.y / (float)rows);
+    const int last = (box.y + box.height - 1 + rows) / rows;
+    memset(fibres, 0, fl_rect_pixels(box) * sizeof *fibres);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int band = first; band <= last; band++) {
+        const int y0 = band * rows < box.y ? box.y : band * rows;
+        const int y1 =
+            (band + 1) * rows < box.y + box.height ? (band + 1) * rows : box.y + box.height;
+        if (y0 >= y1)
+            continue;
+        float *grid = fibres + (size_t)(y0 - box.y) * (size_t)box.width;
+        draw_cells(place, (FlRect){box.x, y0, box.width, y1 - y0}, grid);
+        centre_fibres(place->grain, grid, (size_t)(y1 - y0) * (size_t)box.width);
+    }
+}
+
+/* ---- height ---------------------------------------------------------------------------------- */
+
+/* Bumps as of a felt, bent so that they are not round, creased where they meet. x and y are px of
+ * the sheet. */
+static float surface_at(const FlPaperPlace *place, float x, float y, float fibre)
+{
+    const FlPaperGrain *p = place->grain;
+    const uint64_t seed = place->seed;
+    const float wx = x / (2.2f * p->grain), wy = y / (2.2f * p->grain);
+    const float bent_x = x + p->warp * p->grain * fl_noise(fl_key(seed, KEY_WARP_X), wx, wy);
+    const float bent_y = y + p->warp * p->grain * fl_noise(fl_key(seed, KEY_WARP_Y), wx, wy);
+    const float gx = bent_x / (p->grain * p->stretch), gy = bent_y / p->grain;
+    const float bump =
+        fl_noise_octaves(fl_key(seed, KEY_BUMPS), gx, gy, p->grain > 10 ? 3 : 2, .55f);
+    const float crease =
+        1 - 2.5f * fabsf(fl_noise(fl_key(seed, KEY_CREASES), 1.7f * gx, 1.7f * gy));
+    const float tooth =
+        fl_noise_octaves(fl_key(seed, KEY_TOOTH), x / (2.2f * p->tooth_stretch), y / 2.2f, 2, .8f);
+    const float h =
+        1.6f * bump + 1.6f * p->crease * crease + 1.3f * p->tooth * tooth + .5f * p->fibre * fibre;
+    return p->laid > 0
+               ? .75f * h + p->laid * (.9f * line_at(place, x, y) + .9f * chain_at(place, x, y))
+               : h;
+}
+
+void fl_paper_height(const FlPaperPlace *place, FlRect box, const float *fibres, float *height)
+{
+    const float px = 1 / place->scale, mean = place->grain->mean, dev = place->grain->dev;
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < box.height; y++)
+        for (int x = 0; x < box.width; x++) {
+            const size_t at = (size_t)y * (size_t)box.width + (size_t)x;
+            const float h =
+                surface_at(place, (float)(box.x + x) * px, (float)(box.y + y) * px, fibres[at]);
+            height[at] = (h - mean) / dev;
+        }
+}
+
+float fl_paper_cloud(const FlPaperPlace *place, float x, float y)
+{
+    const float px = 1 / place->scale;
+    return fl_noise_octaves(fl_key(place->seed, KEY_CLOUD), x * px / 90, y * px / 70, 3, .6f);
+}
+
+float fl_paper_warmth(const FlPaperPlace *place, float x, float y)
+{
+    const float px = 1 / place->scale;
+    return fl_noise_octaves(fl_key(place->seed, KEY_WARMTH), x * px / 28, y * px / 22, 3, .8f);
+}
+
+float fl_paper_fleck(const FlPaperPlace *place, float x, float y)
+{
+    const float px = 1 / place->scale;
+    const float n = fl_noise(fl_key(place->seed, KEY_FLECKS), x * px / 3.1f, y * px / 2.4f);
+    return clamp((n - .95f) * 4, 0, 1);
+}

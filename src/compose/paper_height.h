@@ -1,0 +1,64 @@
+/* The surface of a sheet of paper as a function of place: bumps, creases, tooth, lines, fibres. */
+#ifndef FLUIDY_COMPOSE_PAPER_HEIGHT_H
+#define FLUIDY_COMPOSE_PAPER_HEIGHT_H
+
+#include "base/rect.h"
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** Papers that are made; FL_PAPER_WORDS in their order. */
+typedef enum FlPaperKind {
+    FL_PAPER_COLD, // cold-pressed watercolour paper
+    FL_PAPER_HOT,  // hot-pressed: smooth
+    FL_PAPER_ROUGH,
+    FL_PAPER_LAID,
+    FL_PAPER_KRAFT,
+    FL_PAPER_KINDS,
+} FlPaperKind;
+
+#define FL_PAPER_WORDS "cold|hot|rough|laid|kraft"
+
+/** What a kind of paper is made of. Lengths are px of a sheet of scale 1. */
+typedef struct FlPaperGrain {
+    float grain, stretch, warp;         // of the bumps: size, how much wider than high, bend
+    float crease, tooth, tooth_stretch; // weights of finer things
+    float fibre;                        // weight of fibres in the height
+    float fibres, fibre_px;             // their number in 1000 square px, their length
+    float fibre_mean, fibre_dev;        // of what they cover, as drawn
+    float laid, line;                   // weight of laid lines and their distance; 0: none
+    float mean, dev, slope_dev;         // of the height, and of its slope once it is normalised
+    float fine_dev;                     // of what is finer than 4 px in it
+    float relief, cloud, streak, warm;  // shares of light: of the relief, of slow clouds, of
+                                        // fibres, and of blue that comes and goes
+    float flecks;                       // how dark flecks are; 0: none
+    uint8_t colour[3];                  // sRGB; of tinted papers, see `tinted`
+    bool tinted;                        // it is no white paper: its colour is the ground
+} FlPaperGrain;
+
+const FlPaperGrain *fl_paper_grain(FlPaperKind kind);
+
+/** A sheet: the same seed and scale are the same surface, however much of it is asked for. */
+typedef struct FlPaperPlace {
+    const FlPaperGrain *grain;
+    uint64_t seed;
+    float scale; // output px per px of the sheet, > 0
+} FlPaperPlace;
+
+/**
+ * The height in each pixel of a box: mean 0, deviation 1 over the whole sheet, up is towards the
+ * eye. fibres is of the box: of fl_paper_fibres().
+ */
+void fl_paper_height(const FlPaperPlace *place, FlRect box, const float *fibres, float *height);
+
+/** The fibres in each pixel of a box: mean 0, deviation about 1. */
+void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres);
+
+/** Slow changes of the paper's light, and of how warm it is: each of deviation about a half. */
+float fl_paper_cloud(const FlPaperPlace *place, float x, float y);
+float fl_paper_warmth(const FlPaperPlace *place, float x, float y);
+
+/** How much of a fleck is at a place, 0..1. */
+float fl_paper_fleck(const FlPaperPlace *place, float x, float y);
+
+#endif

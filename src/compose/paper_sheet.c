@@ -1,0 +1,294 @@
+#include "compose/paper_sheet.h"
+
+#include "base/alloc.h"
+#include "base/picture.h"
+#include "base/rng.h"
+#include "base/row_kernels.h"
+#include "compose/paper_file.h"
+#include "guides/blur.h"
+#include "params/text.h"
+#include <math.h>
+#include <string.h>
+
+#define FINE_PX 4      // what is wider belongs to no tooth
+#define TOOTH_END 2.2f // standard deviations
+#define SLOW_PX 8      // clouds and warmth are known every so many px
+#define ROOM_PX 256    // that the sheet is larger than a frame if other parts of it are wanted
+#define PICTURE_ONE 240
+
+static float clamp(float x, float low, float high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* ---- making ---------------------------------------------------------------------------------- */
+
+/* What a sheet is made from: planes of the sheet and a margin for blur and slope. */
+typedef struct Surface {
+    FlPaperPlace place;
+    float relief;
+    int margin;
+    FlRect box; // the sheet and the margin
+    float *fibres, *height, *smooth;
+    FlRect slow; // a point every SLOW_PX
+    float *cloud, *warmth;
+} Surface;
+
+static void surface_clear(Surface *surface)
+{
+    free(surface->fibres);
+    free(surface->height);
+    free(surface->smooth);
+    free(surface->cloud);
+    free(surface->warmth);
+}
+
+static bool surface_alloc(Surface *surface, GError **error)
+{
+    const size_t n = fl_rect_pixels(surface->box), slow = fl_rect_pixels(surface->slow);
+    return (surface->fibres = fl_alloc(n, sizeof(float), "a sheet of paper", error)) &&
+           (surface->height = fl_alloc(n, sizeof(float), "a sheet of paper", error)) &&
+           (surface->smooth = fl_alloc(n, sizeof(float), "a sheet of paper", error)) &&
+           (surface->cloud = fl_alloc(slow, sizeof(float), "a sheet of paper", error)) &&
+           (surface->warmth = fl_alloc(slow, sizeof(float), "a sheet of paper", error));
+}
+
+static void fill_slow(Surface *surface)
+{
+#pragma omp parallel for schedule(static)
+    for (int j = 0; j < surface->slow.height; j++)
+        for (int i = 0; i < surface->slow.width; i++) {
+            const size_t at = (size_t)j * (size_t)surface->slow.width + (size_t)i;
+            const float x = (float)(i * SLOW_PX), y = (float)(j * SLOW_PX);
+            surface->cloud[at] = fl_paper_cloud(&surface->place, x, y);
+            surface->warmth[at] = fl_paper_warmth(&surface->place, x, y);
+        }
+}
+
+static bool surface_make(Surface *surface, const FlPaperSheet *sheet, GError **error)
+{
+    const int m = surface->margin;
+    const size_t n = (size_t)(sheet->width + 2 * m) * (size_t)(sheet->height + 2 * m);
+    surface->box = (FlRect){-m, -m, sheet->width + 2 * m, sheet->height + 2 * m};
+    surface->slow = (FlRect){0, 0, sheet->width / SLOW_PX + 2, sheet->height / SLOW_PX + 2};
+    if (!surface_alloc(surface, error))
+        return false;
+    fl_paper_fibres(&surface->place, surface->box, surface->fibres);
+    fl_paper_height(&surface->place, surface->box, surface->fibres, surface->height);
+    fill_slow(surface);
+    memcpy(surface->smooth, surface->height, n * sizeof(float));
+    return fl_blur(surface->smooth, surface->box.width, surface->box.height,
+                   FINE_PX * surface->place.scale, error);
+}
+
+static float slow_at(const Surface *surface, const float *plane, int x, int y)
+{
+    const size_t at = (size_t)(y / SLOW_PX) * (size_t)surface->slow.width + (size_t)(x / SLOW_PX);
+    const float *upper = plane + at, *lower = upper + surface->slow.width;
+    const float tx = (float)(x % SLOW_PX) / SLOW_PX, ty = (float)(y % SLOW_PX) / SLOW_PX;
+    const float a = upper[0] + (upper[1] - upper[0]) * tx;
+    const float b = lower[0] + (lower[1] - lower[0]) * tx;
+    return a + (b - a) * ty;
+}
+
+/* The light comes from the upper left; hollows are darker, as scans are skewed that way. */
+static float light_at(const Surface *surface, const float *height)
+{
+    const float half = .5f * surface->place.scale;
+    const int row = surface->box.width;
+    const float dx = (height[1] - height[-1]) * half, dy = (height[row] - height[-row]) * half;
+    const float slope = (.55f * dx + .85f * dy) / surface->place.grain->slope_dev;
+    const float light = .8f * slope + .35f * height[0];
+    return light * (light < 0 ? 1.2f : .85f);
+}
+
+static uint16_t factor_of(float share)
+{
+    return (uint16_t)(clamp(1 + share, 0, 1.99f) * FL_PAPER_ONE + .5f);
+}
+
+static void fill_pixel(const Surface *surface, int x, int y, uint16_t factor[4], int8_t *tooth)
+{
+    const FlPaperGrain *grain = surface->place.grain;
+    const size_t at =
+        (size_t)(y + surface->margin) * (size_t)surface->box.width + (size_t)(x + surface->margin);
+    const float fibre = surface->fibres[at], height = surface->height[at];
+    const float light = (light_at(surface, surface->height + at) + .12f) / .9f;
+    const float fleck = grain->flecks > 0 ? fl_paper_fleck(&surface->place, (float)x, (float)y) : 0;
+    const float warm = .5f * slow_at(surface, surface->warmth, x, y) + .25f * fibre;
+    const float share = grain->relief * light +
+                        grain->cloud * slow_at(surface, surface->cloud, x, y) +
+                        .5f * grain->streak * fibre - grain->flecks * fleck;
+    const float fine = (height - surface->smooth[at]) / grain->fine_dev;
+    factor[0] = factor_of(surface->relief * share);
+    factor[1] = factor_of(surface->relief * (share - .3f * grain->warm * warm));
+    factor[2] = factor_of(surface->relief * (share - 1.6f * grain->warm * warm));
+    factor[3] = FL_PAPER_ONE;
+    *tooth = (int8_t)lrintf(clamp(fine, -TOOTH_END, TOOTH_END) * FL_TOOTH_ONE);
+}
+
+static bool make_kind(FlPaperSheet *sheet, const FlPaperPlace *place, float relief, GError **error)
+{
+    Surface surface = {
+        .place = *place, .relief = relief, .margin = (int)ceilf(3 * FINE_PX * place->scale) + 1};
+    const bool made = surface_make(&surface, sheet, error);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < (made ? sheet->height : 0); y++)
+        for (int x = 0; x < sheet->width; x++) {
+            const size_t at = (size_t)y * (size_t)sheet->width + (size_t)x;
+            fill_pixel(&surface, x, y, sheet->factor + 4 * at, sheet->tooth[0] + at);
+        }
+    surface_clear(&surface);
+    return made;
+}
+
+/* For drafts: the mean of four, so that they show the same sheet. */
+static void halve_tooth(FlPaperSheet *sheet)
+{
+    const int width = fl_half_side(sheet->width), height = fl_half_side(sheet->height);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const int x1 = MIN(2 * x + 1, sheet->width - 1), y1 = MIN(2 * y + 1, sheet->height - 1);
+            const int8_t *upper = sheet->tooth[0] + 2 * (size_t)y * (size_t)sheet->width;
+            const int8_t *lower = sheet->tooth[0] + (size_t)y1 * (size_t)sheet->width;
+            const int sum = upper[2 * x] + upper[x1] + lower[2 * x] + lower[x1];
+            sheet->tooth[1][(size_t)y * (size_t)width + (size_t)x] = (int8_t)(sum / 4);
+        }
+}
+
+static bool sheet_alloc(FlPaperSheet *sheet, GError **error)
+{
+    const size_t n = (size_t)sheet->width * (size_t)sheet->height;
+    const size_t half = (size_t)fl_half_side(sheet->width) * (size_t)fl_half_side(sheet->height);
+    return (sheet->factor = fl_alloc(4 * n, sizeof *sheet->factor, "a sheet of paper", error)) &&
+           (sheet->tooth[0] = fl_alloc(n, 1, "a sheet of paper", error)) &&
+           (sheet->tooth[1] = fl_alloc(half, 1, "a sheet of paper", error));
+}
+
+static bool is_file(const char *paper)
+{
+    return g_str_has_suffix(paper, ".png") || g_str_has_suffix(paper, ".PNG");
+}
+
+static bool make(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
+                 GError **error)
+{
+    const FlPaperPlace place = {fl_paper_grain((FlPaperKind)MAX(kind, 0)), choice->seed, scale};
+    if (!sheet_alloc(sheet, error) ||
+        !(kind >= 0
+              ? make_kind(sheet, &place, (float)choice->relief, error)
+              : fl_paper_file_fill(sheet, choice->paper, scale, (float)choice->relief, error)))
+        return false;
+    halve_tooth(sheet);
+    return true;
+}
+
+const uint8_t *fl_paper_ground(const char *paper)
+{
+    int kind = 0;
+    if (!paper || !fl_text_choice(paper, FL_PAPER_WORDS, &kind))
+        return NULL;
+    const FlPaperGrain *grain = fl_paper_grain((FlPaperKind)kind);
+    return grain->tinted ? grain->colour : NULL;
+}
+
+bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int height,
+                         FlPaperSheet **sheet, GError **error)
+{
+    const char *paper = choice->paper ? choice->paper : "auto";
+    const bool is_auto = g_str_equal(paper, "auto");
+    int kind = -1;
+    *sheet = NULL;
+    if (g_str_equal(paper, "none"))
+        return true;
+    if (is_auto)
+        kind = FL_PAPER_COLD;
+    else if (!fl_text_choice(paper, FL_PAPER_WORDS, &kind) && !is_file(paper)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "paper '%s': expected none, cold, hot, rough, laid, kraft or a PNG file",
+                    paper);
+        return false;
+    }
+    const float scale =
+        choice->scale > 0 ? (float)choice->scale : fmaxf(1, (float)MAX(width, height) / 1280);
+    const int room = choice->boil > 0 ? ROOM_PX : 0;
+    g_autoptr(FlPaperSheet) made = g_new0(FlPaperSheet, 1);
+    *made = (FlPaperSheet){.width = width + room,
+                           .height = height + room,
+                           .boil = choice->boil,
+                           .seed = choice->seed,
+                           .lights = (!is_auto || plain) && choice->relief > 0};
+    if (!make(made, choice, kind, scale, error))
+        return false;
+    *sheet = g_steal_pointer(&made);
+    return true;
+}
+
+void fl_paper_sheet_free(FlPaperSheet *sheet)
+{
+    if (!sheet)
+        return;
+    free(sheet->factor);
+    free(sheet->tooth[0]);
+    free(sheet->tooth[1]);
+    g_free(sheet);
+}
+
+/* ---- use ------------------------------------------------------------------------------------- */
+
+int fl_paper_sheet_since(const FlPaperSheet *sheet, int frame)
+{
+    return sheet->boil > 0 ? frame / sheet->boil * sheet->boil : 0;
+}
+
+void fl_paper_sheet_origin(const FlPaperSheet *sheet, int frame, int *x, int *y)
+{
+    const int sheets = sheet->boil > 0 ? frame / sheet->boil : 0;
+    FlRng rng = {fl_key(sheet->seed, (uint64_t)sheets)};
+    *x = sheet->boil > 0 ? 2 * (int)fl_rng_below(&rng, ROOM_PX / 2) : 0;
+    *y = sheet->boil > 0 ? 2 * (int)fl_rng_below(&rng, ROOM_PX / 2) : 0;
+}
+
+static void light_row16(const uint16_t *factor, uint16_t *rgba, int n)
+{
+    for (int i = 0; i < n; i++)
+        rgba[i] =
+            (uint16_t)MIN(((uint64_t)rgba[i] * factor[i] + FL_PAPER_ONE / 2) / FL_PAPER_ONE, 65535);
+}
+
+void fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int height,
+                          uint8_t *rgba, uint16_t *rgba16)
+{
+    int x0, y0;
+    fl_paper_sheet_origin(sheet, frame, &x0, &y0);
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < height; y++) {
+        const size_t row = 4 * (size_t)y * (size_t)width;
+        const uint16_t *factor =
+            sheet->factor + 4 * ((size_t)(y + y0) * (size_t)sheet->width + (size_t)x0);
+        if (rgba)
+            fl_row_kernels()->multiply(factor, rgba + row, 4 * width);
+        if (rgba16)
+            light_row16(factor, rgba16 + row, 4 * width);
+    }
+}
+
+void fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
+                            uint8_t *rgba)
+{
+    memset(rgba, PICTURE_ONE, 4 * (size_t)width * (size_t)height);
+    fl_paper_sheet_light(sheet, frame, width, height, rgba, NULL);
+    for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
+        rgba[4 * i + 3] = 255;
+}
+
+FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame, bool half)
+{
+    int x0, y0;
+    if (!sheet)
+        return (FlTooth){0};
+    fl_paper_sheet_origin(sheet, frame, &x0, &y0);
+    const int by = half ? 2 : 1;
+    const size_t stride = (size_t)(half ? fl_half_side(sheet->width) : sheet->width);
+    return (FlTooth){sheet->tooth[half] + (size_t)(y0 / by) * stride + (size_t)(x0 / by), stride};
+}

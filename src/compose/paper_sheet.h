@@ -1,0 +1,79 @@
+/* The sheet of paper under a film: its light, which is multiplied into the frames, and its tooth,
+ * on which paint settles. */
+#ifndef FLUIDY_COMPOSE_PAPER_SHEET_H
+#define FLUIDY_COMPOSE_PAPER_SHEET_H
+
+#include "compose/paper_height.h"
+
+/** Which paper. */
+typedef struct FlPaperChoice {
+    const char *paper; // a word of FL_PAPER_WORDS, a PNG file, "none" or "auto"; NULL: "auto"
+    double scale;      // output px per px of the sheet; 0: as wide as the frame asks for
+    double relief;     // strength of its light, 0..2
+    uint64_t seed;
+    int boil; // frames after which another sheet is taken; 0: never
+} FlPaperChoice;
+
+#define FL_PAPER_ONE 32768 // a factor of one
+#define FL_TOOTH_ONE 57    // a height of one standard deviation
+
+/**
+ * A sheet of paper, made once for a film. Every frame has the same part of it; with boil, parts
+ * that are taken by chance.
+ */
+typedef struct FlPaperSheet {
+    int width, height; // the frame's, and with boil some room
+    uint16_t *factor;  // width * height * 4: of R, G, B, and FL_PAPER_ONE for alpha
+    int8_t *tooth[2];  // width * height: the fine part of the height; the same at half the size
+    int boil;
+    uint64_t seed;
+    bool lights; // the frames are multiplied by it: said, or there is no other background
+} FlPaperSheet;
+
+/** The word for a paper that is made and tinted, and so is the ground of a film: its colour. */
+const uint8_t *fl_paper_ground(const char *paper);
+
+/**
+ * Makes the sheet for frames of a size. `plain`: they lie on paper and nothing else, so that "auto"
+ * is cold; else it has its tooth alone.
+ *
+ * *sheet becomes NULL if the paper is none; to be freed with fl_paper_sheet_free().
+ * Returns: false with FL_ERROR_USAGE, FL_ERROR_INPUT about the file, FL_ERROR_NO_MEMORY.
+ */
+bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int height,
+                         FlPaperSheet **sheet, GError **error);
+
+void fl_paper_sheet_free(FlPaperSheet *sheet); // NULL is fine
+
+/** The first frame that has the same part of the sheet. */
+int fl_paper_sheet_since(const FlPaperSheet *sheet, int frame);
+
+/** Where a frame begins in the sheet: even numbers. */
+void fl_paper_sheet_origin(const FlPaperSheet *sheet, int frame, int *x, int *y);
+
+/**
+ * Lays a frame's straight sRGBA, one of the two, on the sheet: colours are multiplied by its light,
+ * in sRGB levels, alpha stays.
+ */
+void fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int height,
+                          uint8_t *rgba, uint16_t *rgba16);
+
+/**
+ * The light of a frame's sheet as an opaque picture to multiply by: level 240 stands for one, since
+ * the light is above and below it. rgba: width * height * 4.
+ */
+void fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
+                            uint8_t *rgba);
+
+/** The tooth of a frame, for whoever paints on it; borrowed. */
+typedef struct FlTooth {
+    const int8_t *height; // FL_TOOTH_ONE is a standard deviation; NULL: flat
+    size_t stride;        // of its rows
+} FlTooth;
+
+/** half: of a frame that is painted at half the size. sheet may be NULL. */
+FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame, bool half);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPaperSheet, fl_paper_sheet_free)
+
+#endif

@@ -1,0 +1,152 @@
+#include "compose/unevenness.h"
+
+#include "base/density.h"
+#include "base/noise.h"
+#include "base/rng.h"
+#include "compose/ink.h"
+#include <math.h>
+
+enum { KEY_LOAD = 301, KEY_WARP_X, KEY_WARP_Y, KEY_PLAY };
+
+#define STEP 8 // px between points at which noise is known
+
+void fl_anchors_find(const FlDrawList *draws, int n_regions, FlAnchor *anchors)
+{
+    g_autofree uint64_t *sums = g_new0(uint64_t, 3 * (size_t)MAX(n_regions, 1));
+    for (int r = 0; r < draws->n; r++) {
+        const FlDraw *draw = &draws->draw[r];
+        uint64_t *sum = sums + 3 * (size_t)draw->region;
+        for (int y = 0; y < draw->area.box.height; y++) {
+            const FlColumns span = fl_area_row(&draw->area, y);
+            const uint8_t *row = draw->coverage + (size_t)y * (size_t)draw->area.box.width;
+            uint64_t covered = 0, across = 0;
+            for (int x = span.first; x < span.last; x++)
+                covered += row[x], across += (uint64_t)row[x] * (uint64_t)x;
+            sum[0] += covered;
+            sum[1] += across + covered * (uint64_t)draw->area.box.x;
+            sum[2] += covered * (uint64_t)(draw->area.box.y + y);
+        }
+    }
+    for (int k = 0; k < n_regions; k++) {
+        const uint64_t *sum = sums + 3 * (size_t)k, n = MAX(sum[0], 1);
+        anchors[k] = (FlAnchor){(int32_t)(16 * sum[1] / n), (int32_t)(16 * sum[2] / n),
+                                (double)sum[0] / 255};
+    }
+}
+
+/* ---- slow fields ----------------------------------------------------------------------------- */
+
+/* Noise at a place that is counted from the anchor, in px of the sheet. */
+typedef float (*SlowNoise)(uint64_t key, float x, float y);
+
+/* As the brush is emptied and filled again, here and there. */
+static float load_noise(uint64_t key, float x, float y)
+{
+    const float wx = x / 60, wy = y / 60;
+    const float u = x + 30 * fl_noise(fl_key(key, KEY_WARP_X), wx, wy);
+    const float v = y + 30 * fl_noise(fl_key(key, KEY_WARP_Y), wx, wy);
+    return fl_noise_octaves(fl_key(key, KEY_LOAD), u / 95, v / 75, 3, .55f);
+}
+
+static float play_noise(uint64_t key, float x, float y)
+{
+    return fl_noise_octaves(fl_key(key, KEY_PLAY), x / 70, y / 55, 3, .6f);
+}
+
+/* Points every STEP px of a box, and one beyond its end: in 1 / 4096. */
+typedef struct Points {
+    int width, height;
+    int32_t *value;
+} Points;
+
+static Points make_points(const FlUneven *where, FlRect box, SlowNoise noise)
+{
+    Points points = {box.width / STEP + 2, box.height / STEP + 2, NULL};
+    points.value = g_new(int32_t, (size_t)points.width * (size_t)points.height);
+    const float px = 1 / where->scale;
+    for (int j = 0; j < points.height; j++)
+        for (int i = 0; i < points.width; i++) {
+            const float x = (float)(16 * (box.x + i * STEP) - where->anchor.x) / 16;
+            const float y = (float)(16 * (box.y + j * STEP) - where->anchor.y) / 16;
+            const float n = CLAMP(noise(where->key, x * px, y * px), -1.98f, 1.98f);
+            points.value[j * points.width + i] = (int32_t)lrintf(4096 * n);
+        }
+    return points;
+}
+
+/* A row of a box between the points, in 1 / (64 * STEP * STEP) as a whole: 64 is one. */
+static void fill_row(const Points *points, int y, int width, int16_t *row)
+{
+    const int32_t *upper = points->value + (y / STEP) * points->width;
+    const int32_t *lower = upper + points->width;
+    const int ty = y % STEP;
+    for (int i = 0; i * STEP < width; i++) {
+        const int32_t left = upper[i] * (STEP - ty) + lower[i] * ty;
+        const int32_t right = upper[i + 1] * (STEP - ty) + lower[i + 1] * ty;
+        const int n = MIN(STEP, width - i * STEP);
+        for (int k = 0; k < n; k++)
+            row[i * STEP + k] =
+                (int16_t)((left * (STEP - k) + right * k) / (4096 / FL_PLAY_ONE * STEP * STEP));
+    }
+}
+
+/* ---- load and pigments ----------------------------------------------------------------------- */
+
+/* Of a region of 60 px a side and more all of it, at 20 px nothing. */
+static float share_of_size(const FlUneven *where)
+{
+    const float side = (float)sqrt(where->anchor.area) / where->scale;
+    return CLAMP((side - 20) / 40, 0, 1);
+}
+
+static void load_row(const int16_t *noise, const uint16_t *factor, FlColumns span, int16_t *amounts)
+{
+    for (int x = span.first; x < span.last; x++) {
+        if (amounts[x] <= 0)
+            continue;
+        const uint32_t times = factor[noise[x] + 2 * FL_PLAY_ONE];
+        const uint32_t amount = ((uint32_t)amounts[x] * times + 64 * 255 / 2) / (64 * 255);
+        amounts[x] = (int16_t)MIN(amount, FL_AMOUNTS - 1);
+    }
+}
+
+void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int16_t *amounts)
+{
+    const float strength = load * share_of_size(where) * 1.442695f;
+    if (strength <= 0)
+        return;
+    const Points points = make_points(where, area->box, load_noise);
+    uint16_t factor[4 * FL_PLAY_ONE]; // of a noise of -2 to below 2; 64 * 255 is one
+    for (int i = 0; i < 4 * FL_PLAY_ONE; i++) {
+        const float noise = (float)(i - 2 * FL_PLAY_ONE) / FL_PLAY_ONE;
+        const float more = strength * (.9f * noise - .1f) * FL_DENSITY_ONE;
+        factor[i] = fl_density_level(2 * FL_DENSITY_ONE - (int32_t)lrintf(more));
+    }
+#pragma omp parallel
+    {
+        g_autofree int16_t *noise = g_new(int16_t, area->box.width);
+#pragma omp for schedule(static)
+        for (int y = 0; y < area->box.height; y++) {
+            fill_row(&points, y, area->box.width, noise);
+            load_row(noise, factor, fl_area_row(area, y),
+                     amounts + (size_t)y * (size_t)area->box.width);
+        }
+    }
+    g_free(points.value);
+}
+
+void fl_play_of_pigments(const FlUneven *where, FlRect box, int8_t *play)
+{
+    const Points points = make_points(where, box, play_noise);
+#pragma omp parallel
+    {
+        g_autofree int16_t *row = g_new(int16_t, box.width);
+#pragma omp for schedule(static)
+        for (int y = 0; y < box.height; y++) {
+            fill_row(&points, y, box.width, row);
+            for (int x = 0; x < box.width; x++)
+                play[(size_t)y * (size_t)box.width + (size_t)x] = (int8_t)row[x];
+        }
+    }
+    g_free(points.value);
+}

@@ -1,0 +1,35 @@
+/* A hand's unevenness: how much paint the brush holds, and which of two pigments prevails, change
+ * slowly from place to place of a region. */
+#ifndef FLUIDY_COMPOSE_UNEVENNESS_H
+#define FLUIDY_COMPOSE_UNEVENNESS_H
+
+#include "drawing/drawing.h"
+
+/** Where a region is in a frame: what is uneven in it moves along with its middle. */
+typedef struct FlAnchor {
+    int32_t x, y; // of the middle of its shapes, 1/16 px
+    double area;  // px
+} FlAnchor;
+
+/** The anchors of all regions, by region; of those that are not in the frame anything. */
+void fl_anchors_find(const FlDrawList *draws, int n_regions, FlAnchor *anchors);
+
+/** A region of a frame that has something uneven. */
+typedef struct FlUneven {
+    uint64_t key;    // of the film's seed and the region's name
+    FlAnchor anchor; // of the region
+    float scale;     // px of the frame per px of the sheet of paper, on which sizes are measured
+} FlUneven;
+
+/**
+ * Multiplies the amounts of paint of an area by a slow factor around one: load 0..1 is how far it
+ * goes. Small regions, which are one touch of the brush, have less of it.
+ */
+void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int16_t *amounts);
+
+#define FL_PLAY_ONE 64 // twice the standard deviation of the play of two pigments
+
+/** Which of two pigments prevails in each pixel of a box: -2 to below 2, in 1 / FL_PLAY_ONE. */
+void fl_play_of_pigments(const FlUneven *where, FlRect box, int8_t *play);
+
+#endif

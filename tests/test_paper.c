@@ -1,0 +1,350 @@
+/* Paper: a sheet looks like the scans it was matched with, is the same everywhere, and paint lies
+ * on it. */
+#include "compose/granulation.h"
+#include "compose/ink.h"
+#include "compose/unevenness.h"
+#include "delta_e.h"
+#include "io/png.h"
+#include "scratch.h"
+#include "threads.h"
+#include <string.h>
+
+#define SIDE 480
+
+static const char *const words[FL_PAPER_KINDS] = {"cold", "hot", "rough", "laid", "kraft"};
+
+static FlPaperSheet *sheet_of(const char *paper, uint64_t seed, int width, int height, int boil)
+{
+    GError *error = NULL;
+    FlPaperSheet *sheet = NULL;
+    const FlPaperChoice choice = {
+        .paper = paper, .scale = 1, .relief = 1, .seed = seed, .boil = boil};
+    fl_paper_sheet_make(&choice, true, width, height, &sheet, &error);
+    g_assert_no_error(error);
+    g_assert_nonnull(sheet);
+    return sheet;
+}
+
+/* L* of bare paper, SIDE * SIDE. */
+static double *lightness_of(const FlPaperSheet *sheet, const uint8_t colour[3])
+{
+    double *light = g_new(double, SIDE *SIDE);
+    g_autofree uint16_t *rgba = g_new(uint16_t, 4 * SIDE * SIDE);
+    for (int i = 0; i < SIDE * SIDE; i++)
+        for (int c = 0; c < 4; c++)
+            rgba[4 * i + c] = (uint16_t)(257 * (c < 3 ? colour[c] : 255));
+    fl_paper_sheet_light(sheet, 0, SIDE, SIDE, NULL, rgba);
+    static double linear[65536];
+    for (int i = 0; i < 65536 && linear[65535] == 0; i++) {
+        const double s = i / 65535.0;
+        linear[i] = s <= .04045 ? s / 12.92 : pow((s + .055) / 1.055, 2.4);
+    }
+    for (int i = 0; i < SIDE * SIDE; i++)
+        light[i] = 116 * cbrt(.2126729 * linear[rgba[4 * i]] + .7151522 * linear[rgba[4 * i + 1]] +
+                              .0721750 * linear[rgba[4 * i + 2]]) -
+                   16;
+    return light;
+}
+
+static double deviation_of(const double *values, double *mean)
+{
+    double sum = 0, squares = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        sum += values[i], squares += values[i] * values[i];
+    *mean = sum / (SIDE * SIDE);
+    return sqrt(squares / (SIDE * SIDE) - *mean * *mean);
+}
+
+static double correlation(const double *values, double mean, double deviation, int dx, int dy)
+{
+    double sum = 0;
+    for (int y = 0; y + dy < SIDE; y++)
+        for (int x = 0; x + dx < SIDE; x++)
+            sum += (values[y * SIDE + x] - mean) * (values[(y + dy) * SIDE + x + dx] - mean);
+    return sum / (deviation * deviation * (SIDE - dx) * (SIDE - dy));
+}
+
+static void lightness_deviates_as_in_scans(void)
+{
+    static const double wanted[FL_PAPER_KINDS] = {1.5, 1.0, 2.0, 1.1, 1.4};
+    for (int kind = 0; kind < FL_PAPER_KINDS; kind++)
+        for (uint64_t seed = 1; seed <= 3; seed++) {
+            double mean;
+            g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], seed, SIDE, SIDE, 0);
+            g_autofree double *light =
+                lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
+            const double deviation = deviation_of(light, &mean);
+            g_test_message("%s, seed %d: L* %.2f, deviation %.3f", words[kind], (int)seed, mean,
+                           deviation);
+            g_assert_cmpfloat_with_epsilon(deviation, wanted[kind], .1 * wanted[kind]);
+        }
+}
+
+static void nothing_repeats(void)
+{
+    for (int kind = 0; kind < FL_PAPER_KINDS; kind++) {
+        double mean, most = 0;
+        g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], 1, SIDE, SIDE, 0);
+        g_autofree double *light = lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
+        const double deviation = deviation_of(light, &mean);
+        for (int lag = 40; lag < 160; lag++) {
+            most = MAX(most, fabs(correlation(light, mean, deviation, lag, 0)));
+            most = MAX(most, fabs(correlation(light, mean, deviation, 0, lag)));
+        }
+        g_test_message("%s: correlation from 40 px on at most %.3f", words[kind], most);
+        g_assert_cmpfloat(most, <, .1);
+    }
+}
+
+/* The bands of a Laplace pyramid of tents, coarse to fine: waves of about 32 px and more, 16, 8, 4.
+ */
+static void most_of_it_is_in_waves_of_4_to_16_px(void)
+{
+    for (int kind = 0; kind < FL_PAPER_KINDS; kind++) {
+        double mean;
+        g_autoptr(FlPaperSheet) sheet = sheet_of(words[kind], 1, SIDE, SIDE, 0);
+        g_autofree double *light = lightness_of(sheet, fl_paper_grain((FlPaperKind)kind)->colour);
+        const double deviation = deviation_of(light, &mean);
+        double sum = 0; // of means over 16 px squares, whose deviation is that of long waves
+        for (int y = 0; y < SIDE; y += 16)
+            for (int x = 0; x < SIDE; x += 16) {
+                double square = 0;
+                for (int k = 0; k < 256; k++)
+                    square += light[(y + k / 16) * SIDE + x + k % 16] - mean;
+                sum += square / 256 * square / 256;
+            }
+        const double share = sum / (SIDE / 16 * SIDE / 16) / (deviation * deviation);
+        g_test_message("%s: energy of waves longer than 32 px %.3f", words[kind], share);
+        g_assert_cmpfloat(share, <, .15);
+        g_assert_cmpfloat(share, >, .002);
+    }
+}
+
+static void a_sheet_is_a_function_of_place(void)
+{
+    g_autoptr(FlPaperSheet) large = sheet_of("laid", 7, SIDE, 300, 0);
+    g_autoptr(FlPaperSheet) small = sheet_of("laid", 7, 100, 90, 0);
+    for (size_t y = 0; y < 90; y++) {
+        g_assert_cmpmem(small->factor + 400 * y, 800, large->factor + 4 * SIDE * y, 800);
+        g_assert_cmpmem(small->tooth[0] + 100 * y, 100, large->tooth[0] + SIDE * y, 100);
+    }
+    g_autoptr(FlPaperSheet) other = sheet_of("laid", 8, 100, 90, 0);
+    g_assert_cmpint(memcmp(other->factor, small->factor, 800), !=, 0);
+}
+
+static void threads_do_not_matter(void)
+{
+    const int threads = omp_get_max_threads();
+    for (int kind = 0; kind < FL_PAPER_KINDS; kind++) {
+        omp_set_num_threads(1);
+        g_autoptr(FlPaperSheet) one = sheet_of(words[kind], 1, 301, 203, 0);
+        omp_set_num_threads(3);
+        g_autoptr(FlPaperSheet) three = sheet_of(words[kind], 1, 301, 203, 0);
+        g_assert_cmpmem(one->factor, 301 * 203 * 8, three->factor, 301 * 203 * 8);
+        g_assert_cmpmem(one->tooth[0], 301 * 203, three->tooth[0], 301 * 203);
+    }
+    omp_set_num_threads(threads);
+}
+
+/* So that a sheet found wrong on one machine is found wrong on all. */
+static void a_sheet_is_known(void)
+{
+    g_autoptr(FlPaperSheet) sheet = sheet_of("cold", 1, 200, 200, 0);
+    g_autofree char *sum =
+        g_compute_checksum_for_data(G_CHECKSUM_SHA256, (const guchar *)sheet->tooth[0], 200 * 200);
+    g_assert_cmpstr(sum, ==, "6e3643d53cdda1a56f22f412a8be4a828fd87649f378bcc217f5a34e232cb270");
+}
+
+static void all_frames_have_the_same_sheet_unless_it_boils(void)
+{
+    int x, y, u, v;
+    g_autoptr(FlPaperSheet) still = sheet_of("hot", 1, 60, 40, 0);
+    fl_paper_sheet_origin(still, 1234, &x, &y);
+    g_assert_true(x == 0 && y == 0 && fl_paper_sheet_since(still, 1234) == 0);
+    g_autoptr(FlPaperSheet) boiling = sheet_of("hot", 1, 60, 40, 3);
+    for (int frame = 0; frame < 300; frame++) {
+        const int since = fl_paper_sheet_since(boiling, frame);
+        fl_paper_sheet_origin(boiling, frame, &x, &y);
+        fl_paper_sheet_origin(boiling, since, &u, &v);
+        g_assert_true(since == frame / 3 * 3 && x == u && y == v && x % 2 == 0 && y % 2 == 0);
+        g_assert_true(x >= 0 && x + 60 <= boiling->width && y >= 0 && y + 40 <= boiling->height);
+    }
+    fl_paper_sheet_origin(boiling, 0, &x, &y);
+    fl_paper_sheet_origin(boiling, 3, &u, &v);
+    g_assert_true(x != u || y != v);
+}
+
+static void light_leaves_alpha_alone(void)
+{
+    g_autoptr(FlPaperSheet) sheet = sheet_of("rough", 1, 64, 64, 0);
+    uint8_t rgba[64 * 64 * 4], black[64 * 64 * 4] = {0};
+    for (size_t i = 0; i < sizeof rgba; i++)
+        rgba[i] = i % 4 == 3 ? (uint8_t)(i / 4) : 200;
+    fl_paper_sheet_light(sheet, 0, 64, 64, rgba, NULL);
+    fl_paper_sheet_light(sheet, 0, 64, 64, black, NULL);
+    int changed = 0;
+    for (size_t i = 0; i < sizeof rgba; i++) {
+        const int wanted = (200 * sheet->factor[i] + FL_PAPER_ONE / 2) / FL_PAPER_ONE;
+        g_assert_cmpint(rgba[i], ==, i % 4 == 3 ? (uint8_t)(i / 4) : MIN(wanted, 255));
+        g_assert_cmpint(black[i], ==, 0);
+        changed += i % 4 != 3 && rgba[i] != 200;
+    }
+    g_assert_cmpint(changed, >, 64 * 64);
+}
+
+static void papers_are_chosen(void)
+{
+    FlPaperSheet *sheet = NULL;
+    FlPaperChoice choice = {.paper = "none", .relief = 1};
+    g_assert_true(fl_paper_sheet_make(&choice, true, 20, 20, &sheet, NULL));
+    g_assert_null(sheet);
+    choice.paper = NULL;
+    for (int plain = 0; plain < 2; plain++) { // over a background paint has tooth alone
+        g_assert_true(fl_paper_sheet_make(&choice, plain, 20, 20, &sheet, NULL));
+        g_assert_cmpint(sheet->lights, ==, plain);
+        fl_paper_sheet_free(sheet);
+    }
+    g_autoptr(GError) error = NULL;
+    choice.paper = "could";
+    g_assert_false(fl_paper_sheet_make(&choice, true, 20, 20, &sheet, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+    g_assert_nonnull(fl_paper_ground("kraft"));
+    g_assert_null(fl_paper_ground("cold"));
+    g_assert_null(fl_paper_ground(NULL));
+}
+
+static void a_file_is_laid_side_by_side(void)
+{
+    GError *error = NULL;
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *path = g_build_filename(folder, "scan.png", NULL);
+    uint8_t rgb[32 * 24 * 3];
+    for (int i = 0; i < 32 * 24 * 3; i++)
+        rgb[i] = (uint8_t)(200 + (i / 3 * 37 % 11) - 5);
+    fl_png_write(path, rgb, 32, 24, 3, &error);
+    g_assert_no_error(error);
+    g_autoptr(FlPaperSheet) sheet = sheet_of(path, 1, 100, 60, 0);
+    for (int y = 24; y < 60; y++)
+        g_assert_cmpmem(sheet->factor + 400 * y, 800, sheet->factor + 400 * (y - 24), 800);
+    g_assert_cmpmem(sheet->tooth[0], 32, sheet->tooth[0] + 32, 32);
+    double mean = 0;
+    for (int i = 0; i < 32 * 24; i++)
+        mean += sheet->factor[4 * (i / 32 * 100 + i % 32)] / (32 * 24.0 * FL_PAPER_ONE);
+    g_assert_cmpfloat_with_epsilon(mean, 1, .001);
+}
+
+/* ---- paint on it ----------------------------------------------------------------------------- */
+
+static double mean_granulated(const FlPaperSheet *sheet, float granulation, int amount,
+                              double *deviation)
+{
+    g_autofree int16_t *amounts = g_new(int16_t, SIDE * SIDE);
+    const FlArea area = {{0, 0, SIDE, SIDE}, NULL};
+    double sum = 0, squares = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        amounts[i] = (int16_t)(i % 9 == 0 ? -1 : amount);
+    fl_granulate(granulation, fl_paper_sheet_tooth(sheet, 0, false), &area, amounts);
+    int n = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        g_assert_true(amounts[i] < FL_AMOUNTS && (amounts[i] == -1) == (i % 9 == 0));
+        if (amounts[i] >= 0)
+            n++, sum += amounts[i], squares += (double)amounts[i] * amounts[i];
+    }
+    *deviation = sqrt(squares / n - sum / n * sum / n);
+    return sum / n;
+}
+
+static void granulation_keeps_the_tone(void)
+{
+    g_autoptr(FlPaperSheet) sheet = sheet_of("cold", 1, SIDE, SIDE, 0);
+    const int amounts[] = {100, 400, 1024, 2048, 5000, FL_AMOUNTS - 1};
+    double deviation;
+    for (size_t k = 0; k < G_N_ELEMENTS(amounts); k++)
+        for (int g = -35; g <= 14; g += 7) {
+            const double mean =
+                mean_granulated(sheet, (float)g / 100, amounts[k], &deviation) / amounts[k];
+            g_test_message("amount %d, granulation %.2f: mean %.4f, deviation %.3f", amounts[k],
+                           g / 100.0, mean, deviation / amounts[k]);
+            if (amounts[k] < 5000) // which end at FL_AMOUNTS - 1
+                g_assert_cmpfloat_with_epsilon(mean, 1, .02);
+            g_assert_true((deviation > 0) == (g != 0) || amounts[k] < 400);
+        }
+}
+
+static void wet_paint_settles_and_dry_paint_catches(void)
+{
+    int8_t heights[3] = {-2 * FL_TOOTH_ONE, 0, 2 * FL_TOOTH_ONE};
+    const FlTooth tooth = {heights, 3};
+    const FlArea area = {{0, 0, 3, 1}, NULL};
+    int16_t wet[3] = {1024, 1024, 1024}, dry[3] = {300, 300, 300}, flat[3] = {1024, 5, -1};
+    fl_granulate(.14f, tooth, &area, wet);
+    g_assert_true(wet[0] > 1200 && wet[1] == 1024 && wet[2] < 880);
+    fl_granulate(-.35f, tooth, &area, dry);
+    g_assert_true(dry[0] == 0 && dry[1] == 300 && dry[2] > 500);
+    fl_granulate(.14f, (FlTooth){0}, &area, flat);
+    fl_granulate(0, tooth, &area, flat);
+    g_assert_true(flat[0] == 1024 && flat[1] == 5 && flat[2] == -1);
+}
+
+/* A draft is painted on the same sheet: its tooth is the mean of that of the frame. */
+static void drafts_have_the_same_tooth(void)
+{
+    g_autoptr(FlPaperSheet) sheet = sheet_of("cold", 1, 101, 63, 2);
+    for (int frame = 0; frame < 8; frame += 2) {
+        const FlTooth whole = fl_paper_sheet_tooth(sheet, frame, false);
+        const FlTooth half = fl_paper_sheet_tooth(sheet, frame, true);
+        for (size_t y = 0; y < 31; y++)
+            for (size_t x = 0; x < 50; x++) {
+                const int8_t *at = whole.height + 2 * y * whole.stride + 2 * x;
+                const int sum = at[0] + at[1] + at[whole.stride] + at[whole.stride + 1];
+                g_assert_cmpint(half.height[y * half.stride + x], ==, sum / 4);
+            }
+    }
+}
+
+static void load_moves_along_with_its_region(void)
+{
+    g_autofree int16_t *here = g_new(int16_t, 200 * 150), *there = g_new(int16_t, 200 * 150);
+    const FlUneven a = {5, {16 * 100, 16 * 75, 20000}, 1};
+    const FlUneven b = {5, {16 * 137, 16 * 92, 20000}, 1};
+    const FlArea area = {{0, 0, 200, 150}, NULL}, moved = {{37, 17, 200, 150}, NULL};
+    double sum = 0;
+    int least = FL_AMOUNTS, most = 0;
+    for (int i = 0; i < 200 * 150; i++)
+        here[i] = there[i] = 1024;
+    fl_load_unevenly(&a, .3f, &area, here);
+    fl_load_unevenly(&b, .3f, &moved, there);
+    g_assert_cmpmem(here, 200 * 150 * 2, there, 200 * 150 * 2);
+    for (int i = 0; i < 200 * 150; i++)
+        sum += here[i], least = MIN(least, here[i]), most = MAX(most, here[i]);
+    g_assert_cmpint(least, <, 960);
+    g_assert_cmpint(most, >, 1080);
+    g_assert_cmpfloat_with_epsilon(sum / (200 * 150), 1024, 110);
+    const FlUneven dot = {5, {16 * 100, 16 * 75, 390}, 1}; // one touch of the brush
+    int16_t one[1] = {1024};
+    fl_load_unevenly(&dot, 1, &(FlArea){{90, 70, 1, 1}, NULL}, one);
+    g_assert_cmpint(one[0], ==, 1024);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/paper/lightness-deviates-as-in-scans", lightness_deviates_as_in_scans);
+    g_test_add_func("/paper/nothing-repeats", nothing_repeats);
+    g_test_add_func("/paper/most-of-it-is-in-waves-of-4-to-16-px",
+                    most_of_it_is_in_waves_of_4_to_16_px);
+    g_test_add_func("/paper/a-sheet-is-a-function-of-place", a_sheet_is_a_function_of_place);
+    g_test_add_func("/paper/threads-do-not-matter", threads_do_not_matter);
+    g_test_add_func("/paper/a-sheet-is-known", a_sheet_is_known);
+    g_test_add_func("/paper/all-frames-have-the-same-sheet-unless-it-boils",
+                    all_frames_have_the_same_sheet_unless_it_boils);
+    g_test_add_func("/paper/light-leaves-alpha-alone", light_leaves_alpha_alone);
+    g_test_add_func("/paper/papers-are-chosen", papers_are_chosen);
+    g_test_add_func("/paper/a-file-is-laid-side-by-side", a_file_is_laid_side_by_side);
+    g_test_add_func("/paper/granulation-keeps-the-tone", granulation_keeps_the_tone);
+    g_test_add_func("/paper/wet-paint-settles-and-dry-paint-catches",
+                    wet_paint_settles_and_dry_paint_catches);
+    g_test_add_func("/paper/drafts-have-the-same-tooth", drafts_have_the_same_tooth);
+    g_test_add_func("/paper/load-moves-along-with-its-region", load_moves_along_with_its_region);
+    return g_test_run();
+}
