@@ -143,8 +143,8 @@ result $? 'the name of the drawing can stand in that of the output'
 refuses 'a sheet that is no PNG is refused' 2 'styles.jpg: sheets are PNG files; *' --list-styles -o styles.jpg
 refuses 'a sheet that exists stays' 1 'styles.png: already exists*' --list-styles -o styles.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' >out 2>err &&
-    [ "$(ls a | wc -l)" = 6 ] && [ ! -s out ]
-result $? 'frames and layers are painted'
+    [ "$(ls a | wc -l)" = 7 ] && [ -s a/paper_sheet_1.png ] && [ ! -s out ]
+result $? 'frames and layers are painted, and the sheet of paper'
 cp -r a b
 refuses 'a frame that exists is not painted over' 1 'a/w_1.png: already exists; *' whole -s 01 -o 'a/w_%d.png'
 refuses 'a layer that exists is not painted over' 1 'a/*_1.png: already exists; *' \
@@ -266,6 +266,30 @@ of_medium paper 01 && of_medium paper-glaze 01 --medium transparent &&
     cmp -s medium/paper1.png medium/paper-glaze1.png && of_medium dust 04 -b none &&
     of_medium dust-body 04 -b none --medium body && cmp -s medium/dust1.png medium/dust-body1.png
 result $? 'on its paper it is transparent, and charcoal has body as its style says'
+
+# Paper and the unevenness of paint are composing: the paint below them is the same.
+on_paper() { # on_paper NAME ARGUMENT...: a frame, and its paint, in sheet/NAME…
+    "$program" whole --frames 1 -s 01 -W 60 -q -o "sheet/$1%d.png" --paint "sheet/$1-{region}_%d.png" \
+        "${@:2}" >out 2>err
+}
+printf '[project]\npaper = kraft\n' >kraft.conf
+on_paper auto && on_paper cold --paper cold && on_paper bare --paper none --granulation 0 &&
+    on_paper relief --paper-relief 0 && on_paper seed --paper-seed 5 && on_paper kraft -c kraft.conf &&
+    cmp -s sheet/auto1.png sheet/cold1.png && ! cmp -s sheet/auto1.png sheet/bare1.png &&
+    ! cmp -s sheet/auto1.png sheet/seed1.png && ! cmp -s sheet/auto1.png sheet/kraft1.png &&
+    ! cmp -s sheet/bare1.png sheet/relief1.png && for other in cold bare relief seed kraft; do
+    cmp -s sheet/auto-*_1.png sheet/$other-*_1.png || break
+done
+result $? 'paper is cold unless it is said, and changes no paint'
+on_paper white -b '#ffffff' && on_paper white-none -b '#ffffff' --paper none &&
+    on_paper white-cold -b '#ffffff' --paper cold && ! cmp -s sheet/white1.png sheet/white-cold1.png &&
+    ! cmp -s sheet/white1.png sheet/white-none1.png
+result $? 'over a background the sheet has its tooth alone unless it is asked for'
+on_paper preset --preset fluidymation --paper none &&
+    on_paper preset-zero --preset fluidymation --paper none --granulation 0 --load 0 --pigments 0 &&
+    on_paper preset-play --preset fluidymation --paper none --pigments 1 &&
+    cmp -s sheet/preset1.png sheet/preset-zero1.png && ! cmp -s sheet/preset1.png sheet/preset-play1.png
+result $? 'the presets of the papers have even paint'
 
 # Drafts are made at half the size, all regions or none; their files have that of the frames.
 sides() { # of a PNG file

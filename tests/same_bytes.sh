@@ -18,7 +18,7 @@ result $? 'another folder has the same frames'
 
 paint again_whole -f 1-6 --layers "again_whole/$layers" && same again_whole one
 result $? 'a range of all frames is no range'
-for region in $(cd one && ls ./*_0001.png | sed 's/^..//; s/_0001.png//' | grep -vx w); do
+for region in $(cd one && ls ./*_0001.png | sed 's/^..//; s/_0001.png//' | grep -vx -e w -e paper_sheet); do
     paint alone -y --region "$region" --layers "alone/$layers" -b none --paint "paint/$layers" &&
         [ -e "alone/${region}_0006.png" ]
     result $? "region $region can be painted alone"

@@ -119,11 +119,18 @@ typedef struct FlRenderOptions {
         *paint; /**< the same for the paint itself, before colours and stacking; NULL: none */
     bool merge; /**< paint nothing: compose the files of `paint` that other runs have written */
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
-    int width, height;      /**< px; 0: from the other, by the drawing's aspect; both 0: scale */
-    double scale;           /**< px of output per px of the drawing; 0: 1 */
-    double dpi;             /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
-    double gap;             /**< px of paper around a region that hides others, ..32; 0: none */
-    double feather;         /**< px over which paint fades towards such a region, ..32; 0: none */
+    /** "cold", "hot", "rough", "laid", "kraft", a PNG file or "none"; "auto", NULL: cold where
+     * there is no background, else its tooth alone */
+    const char *paper;
+    double paper_scale;  /**< px of output per px of the sheet; 0: by the frame's size */
+    double paper_relief; /**< ..2; 0: 1 */
+    uint64_t paper_seed; /**< 0: 1 */
+    int paper_boil;      /**< frames after which another part of the sheet is taken; 0: never */
+    int width, height;   /**< px; 0: from the other, by the drawing's aspect; both 0: scale */
+    double scale;        /**< px of output per px of the drawing; 0: 1 */
+    double dpi;          /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
+    double gap;          /**< px of paper around a region that hides others, ..32; 0: none */
+    double feather;      /**< px over which paint fades towards such a region, ..32; 0: none */
     FlBlendSpace blend;
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
     FlOverwrite overwrite;

@@ -3,7 +3,9 @@
 #include "base/row_kernels.h"
 #include "compose/colour_law.h"
 #include "compose/layer_blend.h"
+#include "compose/unevenness.h"
 
+#include <math.h>
 #include <string.h>
 
 /*
@@ -43,8 +45,25 @@ typedef struct Fill {
     uint8_t rgb[3];
     bool known; // of an entry in a table of them
     FlColourLaw law;
+    int32_t turn[3]; // density that each channel gains where the second pigment prevails by one
     uint8_t least[FL_AMOUNTS / LEAST_STEP]; // the greatest of the least alphas up to a step
 } Fill;
+
+/* Only the middle channel moves, so that orange goes to yellow and red, sky blue to cyan and
+ * violet: brightness and purity stay. Greys go from warm to cold. */
+static void turns_of(const uint8_t rgb[3], float pigments, int32_t turn[3])
+{
+    static const float of_grey[3] = {-.28f, 0, .34f};
+    const int most = MAX(MAX(rgb[0], rgb[1]), rgb[2]), least = MIN(MIN(rgb[0], rgb[1]), rgb[2]);
+    const float range = (float)(most - least);
+    const float grey = CLAMP(1 - 3 * range / (float)MAX(most, 1), 0, 1);
+    for (int c = 0; c < 3; c++) {
+        const float middle =
+            range > 0 ? 5 * (float)(most - rgb[c]) * (float)(rgb[c] - least) / (range * range) : 0;
+        const float turned = (1 - grey) * middle + grey * of_grey[c];
+        turn[c] = (int32_t)lrintf(pigments * turned * 1.442695f * FL_DENSITY_ONE);
+    }
+}
 
 static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *how, const FlScale *scale,
                       const uint8_t rgb[3])
@@ -53,6 +72,7 @@ static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *how, cons
     memcpy(fill->rgb, rgb, 3);
     fill->known = true;
     fl_colour_law_init(&fill->law, rgb, how->paper, ink->spread);
+    turns_of(rgb, how->pigments, fill->turn);
     for (int i = 0; i < FL_AMOUNTS / LEAST_STEP; i++) {
         uint8_t colour[3];
         fl_colour_law_at(&fill->law, i * LEAST_STEP, colour);
@@ -61,11 +81,26 @@ static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *how, cons
     }
 }
 
+/* Thick paint shows the second pigment more. play: in 1 / FL_PLAY_ONE. */
+static void turn_hue(const Fill *fill, int amount, int play, uint8_t colour[3])
+{
+    const int thick = CLAMP(amount - FL_AMOUNT_ONE, -FL_AMOUNT_ONE, FL_AMOUNT_ONE * 3 / 2);
+    const int n = CLAMP(play + thick * 22 / FL_AMOUNT_ONE, -102, 102); // .35, 1.6 of FL_PLAY_ONE
+    const int64_t share = (int64_t)n * MIN(amount, FL_AMOUNT_ONE * 6 / 5);
+    for (int c = 0; c < 3; c++) {
+        const int64_t density = fill->turn[c] * share / (FL_PLAY_ONE * FL_AMOUNT_ONE);
+        const int factor = fl_density_level((int32_t)(FL_DENSITY_ONE + density)); // 128 * 255: one
+        colour[c] = (uint8_t)MIN((colour[c] * factor + 64 * 255) / (128 * 255), 255);
+    }
+}
+
 static void colour_amount(const Fill *fill, const FlColouring *how, const FlScale *scale,
-                          int amount, uint8_t rgba[4])
+                          int amount, int play, uint8_t rgba[4])
 {
     uint8_t colour[3];
     fl_colour_law_at(&fill->law, amount, colour);
+    if (how->play)
+        turn_hue(fill, amount, play, colour);
     const int opacity = MAX(opacity_of(how->medium, amount), fill->least[amount / LEAST_STEP]);
     fl_lift(scale, colour, how->paper, opacity, rgba);
 }
@@ -90,7 +125,7 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
         uint8_t rgba_of[4];
         if (!used[amount])
             continue;
-        colour_amount(&fill, how, scale, amount, rgba_of);
+        colour_amount(&fill, how, scale, amount, 0, rgba_of);
         memcpy(&look[amount], rgba_of, 4);
     }
     for (int y = 0; y < area->box.height; y++) {
@@ -98,6 +133,35 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
         const size_t first = (size_t)y * width + (size_t)span.first;
         fl_row_kernels()->look_up(amounts + first, look, (uint32_t *)(void *)rgba + first,
                                   span.last - span.first);
+    }
+}
+
+#define PLAYS 64 // as many plays of pigments are told apart: one in four
+
+/** The same where pigments play: each pair of an amount and a play is looked up once it was met. */
+static void colour_flat_play(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+                             const int16_t *amounts, const FlArea *area, uint8_t *rgba)
+{
+    g_autofree uint32_t *look = g_new0(uint32_t, PLAYS * FL_AMOUNTS);
+    g_autofree bool *met = g_new0(bool, PLAYS *FL_AMOUNTS);
+    Fill fill;
+    fill_init(&fill, ink, how, scale, how->fill);
+    for (int y = 0; y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const size_t row = (size_t)y * (size_t)area->box.width;
+        for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++) {
+            if (amounts[i] < 0)
+                continue;
+            const int play = (how->play[i] + 128) * PLAYS / 256;
+            const size_t at = (size_t)play * FL_AMOUNTS + (size_t)amounts[i];
+            if (!met[at]) {
+                uint8_t of[4];
+                colour_amount(&fill, how, scale, amounts[i], play * 256 / PLAYS - 126, of);
+                memcpy(&look[at], of, 4);
+                met[at] = true;
+            }
+            memcpy(rgba + 4 * i, &look[at], 4);
+        }
     }
 }
 
@@ -178,7 +242,7 @@ static void colour_picture(const FlInk *ink, const FlColouring *how, const FlSca
             for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++)
                 if (amounts[i] >= 0)
                     colour_amount(find_fill(fills, ink, how, scale, how->picture + 4 * i), how,
-                                  scale, amounts[i], rgba + 4 * i);
+                                  scale, amounts[i], how->play ? how->play[i] : 0, rgba + 4 * i);
         }
     }
 }
@@ -192,6 +256,8 @@ void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart 
         keep_colours(ink, how, &scale, painted, amounts, area, rgba);
     else if (how->picture)
         colour_picture(ink, how, &scale, amounts, area, rgba);
+    else if (how->play)
+        colour_flat_play(ink, how, &scale, amounts, area, rgba);
     else
         colour_flat(ink, how, &scale, amounts, area, rgba);
 }

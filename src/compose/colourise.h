@@ -18,6 +18,8 @@ typedef struct FlColouring {
     const uint8_t *picture; // of the area's box, RGBA whose alpha is not read; or NULL
     uint8_t paper[3];       // the output's paper
     FlMedium medium;        // how much of what is below the paint hides
+    const int8_t *play;     // of the box: fl_play_of_pigments(); NULL: paint of one pigment
+    float pigments;         // how far they play, 0..1
     bool linear;            // the layers will be blended in linear light
 } FlColouring;
 

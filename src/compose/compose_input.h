@@ -4,6 +4,7 @@
 
 #include "compose/background.h"
 #include "compose/painted_region.h"
+#include "compose/paper_sheet.h"
 #include "drawing/drawing.h"
 
 /** The painted regions of a frame and how they are stacked. Everything is borrowed. */
@@ -13,11 +14,14 @@ typedef struct FlComposeInput {
     int n_painted;
     const FlPaintedRegion *const *painted;
     const FlBackground *background;
-    int width, height; // of the frame, px
-    bool half;         // the drawing has half that size: layers are enlarged
-    bool layers_apart; // layers are stored as well, for whoever puts them on something else
-    bool linear;       // blend in linear light
-    float gap_px;      // as in FlStackParams
+    const FlPaperSheet *sheet; // of paper; NULL: none
+    FlTooth tooth;             // of the frame, in the size of the drawing
+    uint64_t seed;             // of what is uneven
+    int width, height;         // of the frame, px
+    bool half;                 // the drawing has half that size: layers are enlarged
+    bool layers_apart;         // layers are stored as well, for whoever puts them on something else
+    bool linear;               // blend in linear light
+    float gap_px;              // as in FlStackParams
     float feather_px;
 } FlComposeInput;
 

@@ -1,12 +1,16 @@
 #include "compose/composite.h"
 
 #include "base/alloc.h"
+#include "base/rng.h"
 #include "base/schedule.h"
 #include "compose/colourise.h"
 #include "compose/edge_map.h"
 #include "compose/enlarge.h"
 #include "compose/exposure.h"
+#include "compose/granulation.h"
 #include "compose/holes.h"
+#include "compose/unevenness.h"
+#include <math.h>
 #include <string.h>
 
 #define BLEED_PX 8 // how far colours reach into transparency, for whoever scales the frames
@@ -22,6 +26,16 @@ static FlMedium medium_of(const FlComposeInput *input, const FlPaintedRegion *pa
                                                                           : FL_MEDIUM_TRANSPARENT;
 }
 
+/* What the layers of a frame are made from. */
+typedef struct Stack {
+    FlComposite *composite;
+    const FlComposeInput *input;
+    const FlEdgeMap *edges;
+    const int *exposures;
+    const FlAnchor *anchors; // by region
+    int *draw;               // the index in the draw list of each layer
+} Stack;
+
 static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegion *painted,
                                 const FlDraw *draw)
 {
@@ -29,6 +43,7 @@ static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegi
     FlColouring how = {.tint = t->tint,
                        .picture = t->has_colour ? NULL : draw->picture,
                        .medium = medium_of(input, painted),
+                       .pigments = (float)t->pigments,
                        .linear = input->linear};
     memcpy(how.fill, t->has_colour ? t->colour : draw->rgb, 3);
     memcpy(how.paper, input->background->paper, 3);
@@ -59,21 +74,52 @@ static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion 
     return g_steal_pointer(&amounts);
 }
 
-static bool paint_layer(FlLayer *layer, const FlComposeInput *input, const FlEdgeMap *edges, int r,
-                        const FlPaintedRegion *painted, int exposure, GError **error)
+/* What is uneven in a region is its own, whatever else is drawn. */
+static FlUneven uneven_of(const Stack *stack, const FlPaintedRegion *painted)
 {
-    const FlDraw *draw = &edges->draws->draw[r];
-    const FlColouring how = colouring_of(input, painted, draw);
+    const FlComposeInput *input = stack->input;
+    const float longer = (float)MAX(input->width, input->height) / 1280;
+    return (FlUneven){.key = fl_key(input->seed, g_str_hash(painted->name)),
+                      .anchor = stack->anchors[painted->region],
+                      .scale = MAX(longer, 1) * (input->half ? .5f : 1)};
+}
+
+/* The grain of the paper and of the hand; not in paint that keeps the exemplar's own colours. */
+static void roughen(const Stack *stack, const FlPaintedRegion *painted, const FlArea *area,
+                    int16_t *amounts)
+{
+    const FlRegionSettings *t = painted->settings;
+    const FlUneven uneven = uneven_of(stack, painted);
+    if (t->tint == FL_TINT_KEEP)
+        return;
+    fl_load_unevenly(&uneven, (float)t->load, area, amounts);
+    fl_granulate(isnan(t->granulation) ? painted->style->granulation : (float)t->granulation,
+                 stack->input->tooth, area, amounts);
+}
+
+/* Knockout is of the amounts before the paper's grain, which else would punch holes into it. */
+static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaintedRegion *painted,
+                        int exposure, GError **error)
+{
+    const FlDraw *draw = &stack->edges->draws->draw[r];
+    FlColouring how = colouring_of(stack->input, painted, draw);
     const FlPaintedPart part = part_of(painted);
-    g_autofree int16_t *amounts = amounts_of(edges, r, painted, exposure, error);
-    uint8_t *knockout =
-        amounts ? fl_alloc(fl_rect_pixels(layer->area.box), 1, "a layer", error) : NULL;
-    if (!knockout)
-        return false;
+    const FlUneven uneven = uneven_of(stack, painted);
+    const FlRect box = layer->area.box;
+    g_autofree int16_t *amounts = amounts_of(stack->edges, r, painted, exposure, error);
+    g_autofree int8_t *play = NULL;
+    uint8_t *knockout = amounts ? fl_alloc(fl_rect_pixels(box), 1, "a layer", error) : NULL;
     layer->knockout = knockout;
     layer->stacking = painted->settings->stacking;
-    fl_colourise(painted->style->ink, &how, &part, amounts, &layer->area, layer->rgba);
+    if (!knockout ||
+        (how.pigments > 0 && !(play = fl_alloc(fl_rect_pixels(box), 1, "a layer", error))))
+        return false;
+    if (play)
+        fl_play_of_pigments(&uneven, box, play);
+    how.play = play;
     fl_colourise_knockout(amounts, &layer->area, knockout);
+    roughen(stack, painted, &layer->area, amounts);
+    fl_colourise(painted->style->ink, &how, &part, amounts, &layer->area, layer->rgba);
     return fl_holes_close(knockout, draw->coverage, &layer->area, error);
 }
 
@@ -88,11 +134,10 @@ static void clear_layer(FlLayer *layer, bool with_coverage)
 }
 
 /* In the size of the film. */
-static bool fill_film_layer(FlLayer *layer, const FlComposeInput *input, const FlEdgeMap *edges,
-                            int r, const int *exposures, GError **error)
+static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **error)
 {
-    const FlDraw *draw = &edges->draws->draw[r];
-    const int p = input->painted_of[draw->region];
+    const FlDraw *draw = &stack->edges->draws->draw[r];
+    const int p = stack->input->painted_of[draw->region];
     const FlRect box = draw->area.box;
     *layer = (FlLayer){.area = {box, g_memdup2(draw->area.row, box.height * sizeof(FlColumns))},
                        .coverage = draw->coverage,
@@ -102,19 +147,19 @@ static bool fill_film_layer(FlLayer *layer, const FlComposeInput *input, const F
     if (!(layer->rgba = fl_alloc(4 * fl_rect_pixels(box), 1, "a layer", error)))
         return false;
     if (p >= 0)
-        return paint_layer(layer, input, edges, r, input->painted[p], exposures[p], error);
+        return paint_layer(layer, stack, r, stack->input->painted[p], stack->exposures[p], error);
     fl_colourise_plain(draw->picture, draw->rgb, draw->coverage, &layer->area, layer->rgba);
     return true;
 }
 
 /* In the size of the frame. */
-static bool fill_layer(FlLayer *layer, const FlComposeInput *input, const FlEdgeMap *edges, int r,
-                       const int *exposures, GError **error)
+static bool fill_layer(FlLayer *layer, const Stack *stack, int r, GError **error)
 {
+    const FlComposeInput *input = stack->input;
     if (!input->half)
-        return fill_film_layer(layer, input, edges, r, exposures, error);
+        return fill_film_layer(layer, stack, r, error);
     FlLayer half;
-    const bool done = fill_film_layer(&half, input, edges, r, exposures, error) &&
+    const bool done = fill_film_layer(&half, stack, r, error) &&
                       fl_layer_double(&half, input->width, input->height, layer, error);
     clear_layer(&half, false);
     return done;
@@ -130,20 +175,10 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
-/* The layers of a frame in the making. */
-typedef struct Stack {
-    FlComposite *composite;
-    const FlComposeInput *input;
-    const FlEdgeMap *edges;
-    const int *exposures;
-    int *draw; // the index in the draw list of each layer
-} Stack;
-
 static bool fill_one(void *data, int k, int thread, GError **error)
 {
     const Stack *stack = data;
-    return fill_layer(&stack->composite->layers[k], stack->input, stack->edges, stack->draw[k],
-                      stack->exposures, error);
+    return fill_layer(&stack->composite->layers[k], stack, stack->draw[k], error);
 }
 
 /* Small layers side by side, large ones by all threads together. */
@@ -174,7 +209,10 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
             composite->names[composite->n_layers] = layer_name(input, draws, r);
             draw[composite->n_layers++] = r;
         }
-    Stack stack = {composite, input, edges, exposures, draw};
+    const int n_regions = fl_drawing_regions(input->drawing);
+    g_autofree FlAnchor *anchors = g_new(FlAnchor, MAX(n_regions, 1));
+    fl_anchors_find(draws, n_regions, anchors);
+    Stack stack = {composite, input, edges, exposures, anchors, draw};
     return fill_all(&stack, error);
 }
 
@@ -217,6 +255,14 @@ static bool compose(FlComposite *composite, const FlComposeInput *input, int fra
     if (with_16)
         fl_layers_compose16(composite->layers, composite->n_layers, &backdrop, width, height,
                             linear, composite->rgba16);
+    if (input->sheet && input->sheet->lights && input->layers_apart) {
+        if (!(composite->sheet = fl_alloc(values, 1, "a sheet of paper", error)))
+            return false;
+        fl_paper_sheet_picture(input->sheet, frame, width, height, composite->sheet);
+    }
+    if (input->sheet && input->sheet->lights && !background->none)
+        fl_paper_sheet_light(input->sheet, frame, width, height, composite->rgba,
+                             composite->rgba16);
     return background->opaque || fl_layers_bleed(composite->rgba, width, height, BLEED_PX, error);
 }
 
@@ -236,6 +282,7 @@ void fl_composite_clear(FlComposite *composite)
     g_free(composite->layers);
     g_free(composite->names);
     fl_draw_list_free(composite->draws);
+    free(composite->sheet);
     free(composite->rgba);
     free(composite->rgba16);
     *composite = (FlComposite){0};

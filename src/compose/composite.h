@@ -5,13 +5,15 @@
 #include "compose/compose_input.h"
 #include "compose/layers.h"
 
-/** A frame in the making, and what it is made of. */
+/** A frame in the making, and what it is made of. The layers recompose to the frame bit for bit
+ * where no paper has light; else the frame is that times the light of the sheet. */
 typedef struct FlComposite {
     FlDrawList *draws;
     int n_layers;
     FlLayer *layers;  // bottom first; their areas, rgba and body are owned
     bool enlarged;    // coverage is owned as well; else it is the runs'
     char **names;     // of the layers, for files: unique in the frame
+    uint8_t *sheet;   // of paper, fl_paper_sheet_picture(), if layers are stored; else NULL
     uint8_t *rgba;    // width * height * 4 straight sRGBA
     uint16_t *rgba16; // NULL unless asked for
 } FlComposite;

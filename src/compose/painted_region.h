@@ -17,6 +17,7 @@ typedef struct FlStyleInstance {
     FlExemplar *exemplar;
     FlInk *ink;
     FlMedium medium;
+    float granulation; // as of fl_granulate()
     uint8_t paper[3];
 } FlStyleInstance;
 

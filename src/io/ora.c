@@ -90,8 +90,9 @@ static char *stack_xml(const FlSinkParams *params, const FlSinkFrame *frame)
         g_string_append_printf(xml,
                                "  <layer name=\"%s\" src=\"data/layer%03d.png\" x=\"%d\" y=\"%d\" "
                                "opacity=\"1.0\" visibility=\"visible\" "
-                               "composite-op=\"svg:src-over\"/>\n",
-                               name, k, layer->x, layer->y);
+                               "composite-op=\"svg:%s\"/>\n",
+                               name, k, layer->x, layer->y,
+                               layer->multiply ? "multiply" : "src-over");
     }
     g_string_append(xml, " </stack>\n</image>\n");
     return g_string_free(g_steal_pointer(&xml), FALSE);

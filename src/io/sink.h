@@ -12,6 +12,7 @@ typedef struct FlSinkLayer {
     const char *name;
     int x, y, width, height; // its place in the frame
     const uint8_t *rgba;     // width * height * 4
+    bool multiply;           // what is below is multiplied by it
 } FlSinkLayer;
 
 /** A finished frame. Everything is borrowed for the time of the call. */

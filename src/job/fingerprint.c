@@ -229,12 +229,14 @@ static void add_regions(FlFingerprint *print, const FlPlan *plan)
 FlFingerprint *fl_fingerprint_new(const FlPlan *plan, GError **error)
 {
     g_autoptr(FlFingerprint) print = fl_fingerprint_new_empty();
-    const char *background = plan->options.background;
+    const char *background = plan->options.background, *paper = plan->options.paper;
     add_versions(print);
     add_options(print, plan);
     if (!add_drawings(print, plan->drawing, error))
         return NULL;
     add_regions(print, plan); // after what may be the reason
+    if (paper && g_file_test(paper, G_FILE_TEST_IS_REGULAR) && !add_file(print, paper, error))
+        return NULL;
     if (!add_painted(print, plan, error) || (background && g_str_has_suffix(background, "png") &&
                                              !add_pattern(print, plan, background, NULL, error)))
         return NULL;

@@ -58,6 +58,7 @@ static GHashTable *collect_inputs(const FlPlan *plan)
             add_style(inputs, plan->painted[p].style->path);
     add_file(inputs, o->config);
     add_named(inputs, plan, o->background);
+    add_file(inputs, o->paper);
     add_named(inputs, plan, o->flow);
     if (o->merge)
         add_named(inputs, plan, o->paint);

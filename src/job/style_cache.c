@@ -56,7 +56,8 @@ static FlStyleInstance *load(const char *path, const FlRegionSettings *settings,
     *instance = (FlStyleInstance){.path = g_strdup(path),
                                   .params = *params,
                                   .reverse = settings->reverse,
-                                  .medium = style->medium};
+                                  .medium = style->medium,
+                                  .granulation = style->granulation};
     memcpy(instance->paper, style->paper, sizeof instance->paper);
     if (!(instance->ink = fl_ink_of_style(style, error)) ||
         !(instance->exemplar = fl_exemplar_new(style, params, error)))

@@ -146,15 +146,20 @@ char *fl_option_help(const FlOption *option)
 static bool is_number(const FlOption *option)
 {
     return option->type == FL_OPTION_INT || option->type == FL_OPTION_COUNT ||
-           option->type == FL_OPTION_REAL;
+           option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL;
+}
+
+static bool is_real(const FlOption *option)
+{
+    return option->type == FL_OPTION_REAL || option->type == FL_OPTION_DIAL;
 }
 
 bool fl_option_reject(const FlOption *option, const char *value, GError **error)
 {
     if (is_number(option)) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not %s from %.16g to %.16g%s%s",
-                    value, option->type == FL_OPTION_REAL ? "a number" : "an integer", option->min,
-                    option->max, *option->unit ? " " : "", option->unit);
+                    value, is_real(option) ? "a number" : "an integer", option->min, option->max,
+                    *option->unit ? " " : "", option->unit);
         return false;
     }
     g_auto(GStrv) words = g_strsplit(option->value, "|", -1);
@@ -208,12 +213,16 @@ static char *path_from(const char *value, const char *folder)
                                                 : g_build_filename(folder, value, NULL);
 }
 
-static bool set_ground(const char *value, const char *folder, const char **field,
-                       GPtrArray *strings, GError **error)
+static bool set_ground(const FlOption *option, const char *value, const char *folder,
+                       const char **field, GPtrArray *strings, GError **error)
 {
     uint8_t rgb[3];
-    const bool word = fl_text_colour(value, rgb) || strcmp(value, "none") == 0;
-    if (*value == '#' && !word) {
+    g_autofree char *all = fl_option_words(option);
+    g_auto(GStrv) words = g_strsplit(all, " ", -1);
+    const bool colour = *option->value == '#';
+    const bool word = (colour && fl_text_colour(value, rgb)) ||
+                      g_strv_contains((const char *const *)words, value);
+    if (colour && *value == '#' && !word) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "“%s” is not a colour #RRGGBB", value);
         return false;
     }
@@ -246,7 +255,7 @@ bool fl_option_set(const FlOption *option, const char *value, const char *folder
         set_text(field, path_from(value, folder), strings);
         return true;
     case FL_OPTION_GROUND:
-        return set_ground(value, folder, field, strings, error);
+        return set_ground(option, value, folder, field, strings, error);
     default:
         g_assert_not_reached();
     }
@@ -317,6 +326,9 @@ char *fl_option_get(const FlOption *option, const void *object)
         return g_strdup_printf("%" G_GUINT64_FORMAT, *(const uint64_t *)field);
     case FL_OPTION_REAL:
         return number_text(*(const double *)field);
+    case FL_OPTION_DIAL:
+        return isnan(*(const double *)field) ? g_strdup("auto")
+                                             : number_text(*(const double *)field);
     case FL_OPTION_WORD:
     case FL_OPTION_SWITCH:
         return word(option->value, *(const int *)field - 1);

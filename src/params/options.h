@@ -18,6 +18,7 @@ typedef enum FlOptionType {
     FL_OPTION_FLAG,
     FL_OPTION_SWITCH,
     FL_OPTION_INT,
+    FL_OPTION_DIAL,
     FL_OPTION_COUNT,
     FL_OPTION_REAL,
     FL_OPTION_WORD,

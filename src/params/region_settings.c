@@ -4,6 +4,7 @@
 #include "params/options.h"
 #include "params/text.h"
 
+#include <math.h>
 #include <string.h>
 
 /* A key of a region that is no option of its own: style-scale. */
@@ -75,6 +76,17 @@ static bool set_detail(FlRegionSettings *settings, const char *form, const char 
     return true;
 }
 
+static bool set_dial(const FlOption *option, const char *value, double *field)
+{
+    double number = NAN;
+    const bool is_auto = g_str_has_prefix(option->value, "auto|") && strcmp(value, "auto") == 0;
+    if (!is_auto &&
+        (!fl_text_number(value, &number) || number < option->min || number > option->max))
+        return false;
+    *field = number;
+    return true;
+}
+
 static bool store(FlRegionSettings *settings, const FlOption *option, const char *value,
                   const char *folder)
 {
@@ -88,6 +100,8 @@ static bool store(FlRegionSettings *settings, const FlOption *option, const char
         return fl_text_bool(value, field);
     case FL_OPTION_INT:
         return fl_text_integer(value, option->min, option->max, field);
+    case FL_OPTION_DIAL:
+        return set_dial(option, value, field);
     case FL_OPTION_TINT:
         return set_tint(settings, value);
     case FL_OPTION_PASS:
@@ -107,7 +121,13 @@ static bool set_preset(FlRegionSettings *settings, const char *value, GError **e
 {
     if (!fl_params_preset(&settings->params, value, error))
         return false;
-    settings->motion = strcmp(value, "default") == 0 ? FL_MOTION_AUTO : FL_MOTION_MASKS;
+    g_auto(FlRegionSettings) plain;
+    fl_region_settings_init(&plain);
+    const bool ours = strcmp(value, "default") == 0;
+    settings->motion = ours ? FL_MOTION_AUTO : FL_MOTION_MASKS;
+    settings->granulation = ours ? plain.granulation : 0;
+    settings->load = ours ? plain.load : 0;
+    settings->pigments = ours ? plain.pigments : 0;
     return true;
 }
 

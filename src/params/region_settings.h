@@ -46,7 +46,10 @@ typedef struct FlRegionSettings {
     uint8_t colour[3]; // sRGB
     FlDetail detail;
     FlStacking stacking;
-    FlMedium medium; // FL_MEDIUM_AUTO: the style's, or what the output wants
+    FlMedium medium;    // FL_MEDIUM_AUTO: the style's, or what the output wants
+    double granulation; // as of fl_granulate(); NAN: the style's
+    double load;        // unevenness of the amounts, 0..1
+    double pigments;    // play of the hue, 0..1
     FlEdges edges;
     FlMotion motion;
     int hold; // frames, 1..1000
@@ -61,7 +64,8 @@ void fl_region_settings_clear(FlRegionSettings *settings);
 
 /**
  * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale. A preset
- * sets the motion, too: the papers' know none but that of masks.
+ * sets the motion, too: the papers' know none but that of masks, and have paint that is as
+ * the synthesis makes it, without granulation, load and pigments.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.
  * Returns: false with FL_ERROR_USAGE; the treatment is then unchanged.

@@ -6,6 +6,19 @@
 #include "io/png.h"
 #include "job/paint_files.h"
 
+#define SHEET "paper_sheet" // no region's name has such a line in it
+
+static bool write_layer(const FlFrameWriter *writer, const uint8_t *rgba, const char *name,
+                        int frame, GError **error)
+{
+    const FlPlan *plan = writer->plan;
+    const int number = fl_drawing_number(plan->drawing, frame);
+    const FlPng png = {.width = plan->width, .height = plan->height, .rgba = rgba};
+    g_autofree char *path = fl_output_name(plan->options.layers, number, name, error);
+    return path && (fl_resume_keeps(writer->resume, path) ||
+                    fl_png_save(&png, path, fl_resume_replaces(writer->resume, frame), error));
+}
+
 /* Writes layers in the whole frame's size, so that any program can stack them. */
 static bool write_layers(const FlFrameWriter *writer, const FlComposite *composite, int frame,
                          GError **error)
@@ -15,19 +28,14 @@ static bool write_layers(const FlFrameWriter *writer, const FlComposite *composi
     for (int k = 0; k < composite->n_layers; k++) {
         const FlLayer *layer = &composite->layers[k];
         g_autofree uint8_t *rgba = fl_alloc(4 * (size_t)width * height, 1, "a layer", error);
-        g_autofree char *path =
-            rgba ? fl_output_name(plan->options.layers, fl_drawing_number(plan->drawing, frame),
-                                  composite->names[k], error)
-                 : NULL;
-        if (!path)
+        if (!rgba)
             return false;
         fl_rect_copy(layer->rgba, layer->area.box, rgba, (FlRect){0, 0, width, height}, 4);
-        const FlPng png = {.width = width, .height = height, .rgba = rgba};
-        if (!fl_resume_keeps(writer->resume, path) &&
-            !fl_png_save(&png, path, fl_resume_replaces(writer->resume, frame), error))
+        if (!write_layer(writer, rgba, composite->names[k], frame, error))
             return false;
     }
-    return true;
+    return !composite->sheet || fl_paper_sheet_since(writer->paper, frame) != frame ||
+           write_layer(writer, composite->sheet, SHEET, frame, error);
 }
 
 bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *const *painted,
@@ -50,17 +58,21 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
 bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, int frame,
                            GError **error)
 {
-    g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, MAX(composite->n_layers, 1));
+    g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, composite->n_layers + 1);
     for (int k = 0; k < composite->n_layers; k++) {
         const FlLayer *from = &composite->layers[k];
         layers[k] = (FlSinkLayer){composite->names[k],  from->area.box.x,      from->area.box.y,
                                   from->area.box.width, from->area.box.height, from->rgba};
     }
+    const int n_sheets = composite->sheet ? 1 : 0;
+    if (composite->sheet)
+        layers[composite->n_layers] = (FlSinkLayer){
+            SHEET, 0, 0, writer->plan->width, writer->plan->height, composite->sheet, true};
     const FlSinkFrame out = {.number = fl_drawing_number(writer->plan->drawing, frame),
                              .rgba = composite->rgba,
                              .rgba16 = composite->rgba16,
                              .layers = layers,
-                             .n_layers = composite->n_layers};
+                             .n_layers = composite->n_layers + n_sheets};
     if (writer->plan->options.layers && !write_layers(writer, composite, frame, error))
         return false;
     if (writer->sink->format->film)

@@ -7,8 +7,9 @@
 #include "job/resume.h"
 
 typedef struct FlFrameWriter {
-    const FlPlan *plan;     // borrowed
-    const FlResume *resume; // borrowed: which files to keep and which to replace
+    const FlPlan *plan;        // borrowed
+    const FlPaperSheet *paper; // borrowed; NULL: none
+    const FlResume *resume;    // borrowed: which files to keep and which to replace
     FlSink *sink;
     FlSink *movie; // NULL: the frames alone
 } FlFrameWriter;

@@ -10,7 +10,7 @@ static bool check_memory(const FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
     const double pixels = (double)plan->width * plan->height;
-    double bytes = 20e6 + 100 * pixels; // measured: the libraries, scratch, a frame composed
+    double bytes = 20e6 + 125 * pixels; // measured: the libraries, scratch, a frame composed
     for (int p = 0; p < painters->n; p++)
         bytes += fl_painter_bytes(&painters->painter[p]);
     bytes += fl_style_cache_bytes(plan->styles);

@@ -20,6 +20,7 @@
 typedef struct Pipeline {
     FlPlan *plan;
     FlBackground background;
+    FlPaperSheet *sheet; // NULL: none
     FlResume resume;
     FlPainters painters;
     const FlPaintedRegion **painted; // their results
@@ -160,7 +161,7 @@ static bool finish_writing(Pipeline *pipeline, GError **error)
     return done;
 }
 
-static FlComposeInput compose_input(const Pipeline *pipeline)
+static FlComposeInput compose_input(const Pipeline *pipeline, int frame)
 {
     const FlPlan *plan = pipeline->plan;
     return (FlComposeInput){.drawing = plan->drawing,
@@ -168,6 +169,9 @@ static FlComposeInput compose_input(const Pipeline *pipeline)
                             .n_painted = plan->n_painted,
                             .painted = pipeline->painted,
                             .background = &pipeline->background,
+                            .sheet = pipeline->sheet,
+                            .tooth = fl_paper_sheet_tooth(pipeline->sheet, frame, plan->half),
+                            .seed = MAX(plan->options.seed, 1),
                             .width = plan->width,
                             .height = plan->height,
                             .half = plan->half,
@@ -196,7 +200,7 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
     FlDrawList *draws = g_steal_pointer(&pipeline->draws);
     if (next >= 0 && overlaps(pipeline))
         start_drawing(pipeline, next);
-    const FlComposeInput input = compose_input(pipeline);
+    const FlComposeInput input = compose_input(pipeline, frame);
     return fl_composite_init(composite, &input, frame, draws, plan->format->takes_16, error);
 }
 
@@ -276,13 +280,29 @@ static bool open_report(Pipeline *pipeline, GError **error)
     return !folder || pipeline->report;
 }
 
+static bool make_sheet(Pipeline *pipeline, GError **error)
+{
+    const FlPlan *plan = pipeline->plan;
+    const FlRenderOptions *o = &plan->options;
+    const FlPaperChoice choice = {.paper = o->paper,
+                                  .scale = o->paper_scale,
+                                  .relief = o->paper_relief < 0    ? 0
+                                            : o->paper_relief == 0 ? 1
+                                                                   : o->paper_relief,
+                                  .seed = MAX(o->paper_seed, 1),
+                                  .boil = o->paper_boil};
+    return fl_paper_sheet_make(&choice, !o->background, plan->width, plan->height, &pipeline->sheet,
+                               error);
+}
+
 /* Checks what could stop the render, before anything is made. */
 static bool check(Pipeline *pipeline, GError **error)
 {
     const FlPlan *plan = pipeline->plan;
-    return fl_background_init(&pipeline->background, plan->options.background, plan->paper,
-                              plan->drawing, error) &&
-           fl_resume_init(&pipeline->resume, plan, error);
+    const uint8_t *ground = fl_paper_ground(plan->options.paper);
+    return fl_background_init(&pipeline->background, plan->options.background,
+                              ground ? ground : plan->paper, plan->drawing, error) &&
+           make_sheet(pipeline, error) && fl_resume_init(&pipeline->resume, plan, error);
 }
 
 /* Loads the painters' states of an earlier run, or saves those before the first frame. */
@@ -307,6 +327,7 @@ static bool prepare(Pipeline *pipeline, GError **error)
         !open_report(pipeline, error) || !make_painters(pipeline, error) ||
         !lead_in(pipeline, error) || !restore_state(pipeline, error))
         return false;
+    pipeline->writer.paper = pipeline->sheet;
     pipeline->first_frame = g_get_monotonic_time();
     pipeline->stats.read_s = read_s;
     pipeline->stats.guides_s = seconds_since(pipeline->start) - read_s - pipeline->stats.paint_s;
@@ -361,6 +382,7 @@ static void clear(Pipeline *pipeline)
     g_free(pipeline->painted);
     fl_painters_clear(&pipeline->painters);
     fl_resume_clear(&pipeline->resume);
+    fl_paper_sheet_free(pipeline->sheet);
     fl_plan_free(pipeline->plan);
 }
 

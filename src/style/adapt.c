@@ -125,7 +125,8 @@ FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **er
                      .licence = g_strdup(style->licence),
                      .fps = style->fps / (float)use->step,
                      .scale = 1,
-                     .medium = style->medium};
+                     .medium = style->medium,
+                     .granulation = style->granulation};
     memcpy(out->paper, style->paper, sizeof out->paper);
     if (!sizes(style, use, out, error))
         return NULL;

@@ -75,6 +75,7 @@ static void set_facts(Import *import, const FlRecording *source)
     style->fps = rate > 0 ? (float)CLAMP(rate, 0.01, 1000) : 25;
     style->guessed = rate > 0 ? 0 : FL_GUESS_FPS; // all else is known in the end
     style->scale = 1;
+    style->granulation = FL_GRANULATION;
 }
 
 static bool store_frames(FlStyle *style, GPtrArray *pictures, GError **error)

@@ -23,6 +23,7 @@ static const struct Key {
     {"border", NUMBER, offsetof(FlStyle, border_px), 0.5, 1000, FL_GUESS_BORDER},
     {"scale", NUMBER, offsetof(FlStyle, scale), 0.01, 100},
     {"medium", MEDIUM, offsetof(FlStyle, medium)},
+    {"granulation", NUMBER, offsetof(FlStyle, granulation), -1, 1},
     {"made-by", TEXT, offsetof(FlStyle, made_by)},
     {"missing-orientations", TEXT, offsetof(FlStyle, missing_orientations)},
     {"paper", COLOUR, offsetof(FlStyle, paper), 0, 0, FL_GUESS_PAPER},
@@ -148,6 +149,9 @@ char *fl_manifest_text(const FlStyle *style)
                                g_ascii_formatd(number, sizeof number, "%.4g", style->border_px));
     g_string_append_printf(text, "scale = %s\n",
                            g_ascii_formatd(number, sizeof number, "%.4g", style->scale));
+    if (style->granulation != FL_GRANULATION)
+        g_string_append_printf(text, "granulation = %s\n",
+                               g_ascii_formatd(number, sizeof number, "%.4g", style->granulation));
     if (style->medium != FL_MEDIUM_AUTO)
         g_string_append_printf(text, "medium = %s\n", fl_medium_word(style->medium));
     if (!(style->guessed & FL_GUESS_PAPER))

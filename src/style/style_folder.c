@@ -177,6 +177,7 @@ static FlStyle *new_style(const char *folder)
     style->name = g_path_get_basename(absolute);
     style->fps = 25;
     style->scale = 1;
+    style->granulation = FL_GRANULATION;
     style->guessed =
         FL_GUESS_BORDER | FL_GUESS_PAPER | FL_GUESS_MASK | FL_GUESS_FLOW | FL_GUESS_FPS;
     return style;

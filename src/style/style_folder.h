@@ -18,6 +18,7 @@ typedef struct FlStyle {
     float scale;                // suggested px of the target per px of the style, > 0
     uint8_t paper[3];           // sRGB of the bare paper
     FlMedium medium;            // FL_MEDIUM_AUTO: not given
+    float granulation;          // of its paint on paper: see fl_granulate()
     uint8_t *rgb;               // n_frames * height * width * 3, sRGB
     uint8_t *mask;              // n_frames * height * width, coverage 0..255
     float *flow;                // n_frames * height * width * 2, px per frame; NULL: construct it
@@ -25,6 +26,8 @@ typedef struct FlStyle {
     char *missing_orientations; // directions that no outline faces, by style.ini; "none" or NULL
     unsigned guessed;           // FlGuess bits (manifest.h): values that are estimated
 } FlStyle;
+
+#define FL_GRANULATION 0.08f // where none is given: wet, barely visible as such
 
 /**
  * Reads a folder. Estimates what it lacks from its frames: the paper's colour, the masks, the

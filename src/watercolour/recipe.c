@@ -21,6 +21,7 @@ static FlRecipe *defaults(void)
         .fps = 24,
         .border = 15,
         .scale = 1,
+        .granulation = FL_GRANULATION,
         .steps = {60, 60},
         .warm_up = 1,
         .seed = 1,
@@ -109,6 +110,7 @@ static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "fps", 1, 240, &recipe->fps);
     fl_keylines_float(lines, "border", 1, 1000, &recipe->border);
     fl_keylines_float(lines, "scale", 0.01f, 100, &recipe->scale);
+    fl_keylines_float(lines, "granulation", -1, 1, &recipe->granulation);
     fl_keylines_float(lines, "mask-threshold", 1e-4f, 10, &recipe->mask_threshold);
     fl_keylines_float(lines, "mask-blur", 0, 50, &recipe->mask_blur);
     fl_keylines_float(lines, "mask-margin", 0, 50, &recipe->mask_margin);

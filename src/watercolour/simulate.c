@@ -72,6 +72,7 @@ static FlStyle *new_style(const FlRecipe *recipe, const char *recipe_path, GErro
         .fps = recipe->fps,
         .border_px = recipe->border,
         .scale = recipe->scale,
+        .granulation = recipe->granulation,
         .medium = fl_medium_of_word(recipe->medium),
     };
     memcpy(style->paper, recipe->paper.colour, sizeof style->paper);
