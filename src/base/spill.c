@@ -1,5 +1,6 @@
 #include "base/spill.h"
 
+#include "base/alloc.h"
 #include "base/compress.h"
 #include <errno.h>
 #include <fcntl.h>
@@ -119,8 +120,10 @@ bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, 
     g_assert(block < spill->n_blocks);
     const FlSpan part = {(void *)(uintptr_t)data, bytes}; // which is only read
     const size_t room = fl_compress_bound(&part, 1);
-    g_autofree uint8_t *packed = g_try_malloc(room);
-    const size_t packed_bytes = packed ? fl_compress(&part, 1, packed, room) : 0;
+    g_autofree uint8_t *packed = fl_alloc(room, 1, "a temporary block", error);
+    if (!packed)
+        return false;
+    const size_t packed_bytes = fl_compress(&part, 1, packed, room);
     if (packed_bytes == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
         return false;
@@ -140,11 +143,9 @@ bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, 
     g_assert(block < spill->n_blocks && spill->blocks[block].packed_bytes > 0 &&
              spill->blocks[block].bytes == bytes);
     const Block *b = &spill->blocks[block];
-    g_autofree uint8_t *packed = g_try_malloc(b->packed_bytes);
-    if (!packed) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary block");
+    g_autofree uint8_t *packed = fl_alloc(b->packed_bytes, 1, "a temporary block", error);
+    if (!packed)
         return false;
-    }
     if (!read_all(shared.fd, packed, b->packed_bytes, b->offset) ||
         !fl_decompress(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read a temporary file back: %s",

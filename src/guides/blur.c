@@ -1,7 +1,7 @@
 #include "guides/blur.h"
 
+#include "base/alloc.h"
 #include "guides/gauss.h"
-#include <string.h>
 
 /* One line, through a copy with the ends repeated; values are `step` floats apart. */
 static void blur_line(float *line, int n, size_t step, const float *weight, int radius,
@@ -22,12 +22,10 @@ bool fl_blur(float *plane, int width, int height, float sigma_px, GError **error
 {
     const int radius = (int)(3 * sigma_px);
     g_autofree float *weight = g_new(float, radius + 1);
-    g_autofree float *padded = g_try_new(float, MAX(width, height) + 2 * (size_t)radius);
-    if (!padded) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to blur %dx%d pixels",
-                    width, height);
+    g_autofree float *padded =
+        fl_alloc(MAX(width, height) + 2 * (size_t)radius, sizeof *padded, "a blur", error);
+    if (!padded)
         return false;
-    }
     weight[0] = 1;
     fl_gauss_weights(weight, radius, sigma_px);
     float sum = weight[0];

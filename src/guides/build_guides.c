@@ -11,6 +11,7 @@
  * and the end of a yet earlier one are made side by side: none needs what the others make.
  */
 #include "guides/build_guides.h"
+#include "base/alloc.h"
 #include "base/parallel_error.h"
 #include "guides/blur.h"
 #include "guides/direction.h"
@@ -98,11 +99,11 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
         b->outlines[s].frame = b->motions[s].frame = -1;
     for (int s = 0; s < 3; s++)
         b->smoothed[s].frame = -1;
-    b->mask = g_try_malloc(n);
-    const bool is_given = source->flow || source->motion;
-    b->given = is_given ? g_try_new(float, 2 * n) : NULL;
-    if (!b->mask || (is_given && !b->given))
-        return fl_guide_sequence_no_memory(b->sequence, error);
+    if (!(b->mask = fl_alloc(n, 1, "a mask", error)))
+        return false;
+    if ((source->flow || source->motion) &&
+        !(b->given = fl_alloc(2 * n, sizeof *b->given, "a given motion", error)))
+        return false;
     b->extent = fl_extent_new(source->width, source->height, error);
     return b->extent;
 }
@@ -173,8 +174,9 @@ static bool distance_of(Builder *b, int frame, FlFlowFrame *out, GError **error)
     Smoothed *slot = &b->smoothed[frame % 3];
     const size_t n = (size_t)outline->frame_width * outline->frame_height;
     if (slot->frame != frame) {
-        if (!slot->distance && !(slot->distance = g_try_new(float, n)))
-            return fl_guide_sequence_no_memory(b->sequence, error);
+        if (!slot->distance &&
+            !(slot->distance = fl_alloc(n, sizeof(float), "a smoothed distance", error)))
+            return false;
         slot->frame = -1;
         if (!smooth_distance(b, frame, slot->distance, error))
             return false;
@@ -194,11 +196,10 @@ static bool construct_motion(Builder *b, int frame, float **flow, GError **error
         return false;
     if (now.outline->empty || (!b->smooths && now.outline == before.outline))
         return true;
-    g_autofree float *fresh = g_try_new(float, 2 * fl_rect_pixels(now.outline->box));
+    g_autofree float *fresh =
+        fl_alloc(2 * fl_rect_pixels(now.outline->box), sizeof *fresh, "a flow", error);
     bool moves;
-    if (!fresh)
-        return fl_guide_sequence_no_memory(b->sequence, error);
-    if (!fl_flow_construct(&now, &before, &after, limit, fresh, &moves, error))
+    if (!fresh || !fl_flow_construct(&now, &before, &after, limit, fresh, &moves, error))
         return false;
     *flow = moves ? g_steal_pointer(&fresh) : NULL;
     return true;
@@ -255,9 +256,10 @@ static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float
     if (!moves)
         return true;
     const size_t n = fl_rect_pixels(outline->box);
-    g_autofree float *sum = g_try_new0(float, 2 * n), *norm = g_try_new0(float, n);
-    if (!sum || !norm)
-        return fl_guide_sequence_no_memory(b->sequence, error);
+    g_autofree float *sum = fl_alloc(2 * n, sizeof *sum, "a smoothed flow", error);
+    g_autofree float *norm = sum ? fl_alloc(n, sizeof *norm, "a smoothed flow", error) : NULL;
+    if (!norm)
+        return false;
     for (int k = first; k <= last; k++) {
         const FlOutline *from = b->outlines[k % b->n_slots].outline;
         add_motion(outline, from, b->motions[k % b->n_slots].flow, b->flow_weight[ABS(k - frame)],
@@ -278,9 +280,9 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
     const FlRect *box = &outline->box;
     if (!source->flow(source->data, frame, b->given, error))
         return false;
-    float *out = *flow = g_try_new0(float, 2 * fl_rect_pixels(*box));
+    float *out = *flow = fl_alloc(2 * fl_rect_pixels(*box), sizeof *out, "a given flow", error);
     if (!out)
-        return fl_guide_sequence_no_memory(b->sequence, error);
+        return false;
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++, out += 2) {
             const float *in = b->given + 2 * ((box->y + y) * (size_t)source->width + box->x + x);
@@ -300,9 +302,9 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
 static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *flow, GError **error)
 {
     const size_t n = fl_rect_pixels(outline->box);
-    g_autofree uint8_t *shape = g_try_malloc0(2 * n);
+    g_autofree uint8_t *shape = fl_alloc(2 * n, 1, "coverages and angles", error);
     if (!shape)
-        return fl_guide_sequence_no_memory(b->sequence, error);
+        return false;
     memcpy(shape, outline->coverage, n);
     if (!outline->empty) {
         if (!outline->normal && !fl_outline_normals(outline, error))
@@ -321,9 +323,10 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
     const size_t n = fl_rect_pixels(outline->box);
-    g_autofree int32_t *fixed = g_try_new(int32_t, 2 * n), *norm = g_try_new(int32_t, n);
-    if (!fixed || !norm)
-        return fl_guide_sequence_no_memory(b->sequence, error);
+    g_autofree int32_t *fixed = fl_alloc(2 * n, sizeof *fixed, "a flow", error);
+    g_autofree int32_t *norm = fixed ? fl_alloc(n, sizeof *norm, "an extent", error) : NULL;
+    if (!norm)
+        return false;
     for (size_t k = 0; k < 2 * n && flow; k++)
         fixed[k] = fl_flow_to_fixed(flow[k]);
     // the flow of a frame that nothing precedes stands in for one; no motion has happened yet
@@ -349,9 +352,9 @@ static bool put_drawing_motion(Builder *b, int frame, const FlOutline *outline, 
         return true;
     if (!source->motion(source->data, frame, b->given, error))
         return false;
-    g_autofree int32_t *fixed = g_try_new(int32_t, n);
+    g_autofree int32_t *fixed = fl_alloc(n, sizeof *fixed, "a drawing's motion", error);
     if (!fixed)
-        return fl_guide_sequence_no_memory(b->sequence, error);
+        return false;
     fl_motion_to_fixed(b->given, outline, fixed);
     if (fl_is_blank((const uint8_t *)fixed, n * sizeof *fixed))
         return true;
@@ -367,9 +370,9 @@ static bool put_unrounded(Builder *b, int frame, const FlOutline *outline, const
     const size_t n = 2 * fl_rect_pixels(outline->box);
     if (!flow || !b->sequence->source.keeps_flow)
         return true;
-    g_autofree int32_t *bits = g_try_new(int32_t, n);
+    g_autofree int32_t *bits = fl_alloc(n, sizeof *bits, "a flow", error);
     if (!bits)
-        return fl_guide_sequence_no_memory(b->sequence, error);
+        return false;
     memcpy(bits, flow, n * sizeof *bits);
     b->sequence->frames[frame].holder[FL_GUIDE_PLANE_UNROUNDED] = frame;
     return fl_plane_store_put(b->sequence->spill,

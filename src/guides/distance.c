@@ -7,6 +7,7 @@
  */
 #include "guides/distance.h"
 
+#include "base/alloc.h"
 #include "base/row_kernels.h"
 #include "guides/guides.h"
 #include <math.h>
@@ -48,14 +49,10 @@ static bool work_init(Work *work, const uint8_t *mask, int width, int height, GE
     const size_t n = (size_t)width * height;
     *work = (Work){.width = width, .height = height, .mask = mask};
     work->seeds = g_array_new(FALSE, FALSE, sizeof(Seed));
-    work->seed_at = g_try_new(int32_t, n);
-    work->near_y = g_try_new(int16_t, n);
-    work->nearest = g_try_new(int32_t, n);
-    if (work->seed_at && work->near_y && work->nearest)
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory for the distances of %dx%d pixels", width, height);
-    return false;
+    const char *what = "the distances of a mask";
+    return (work->seed_at = fl_alloc(n, sizeof *work->seed_at, what, error)) &&
+           (work->near_y = fl_alloc(n, sizeof *work->near_y, what, error)) &&
+           (work->nearest = fl_alloc(n, sizeof *work->nearest, what, error));
 }
 
 /** Coverage in 0..1 of a pixel, or of the nearest one in the frame. */

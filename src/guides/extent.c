@@ -1,5 +1,6 @@
 #include "guides/extent.h"
 
+#include "base/alloc.h"
 #include "guides/guides.h"
 #include <math.h>
 #include <string.h>
@@ -22,13 +23,9 @@ FlExtent *fl_extent_new(int frame_width, int frame_height, GError **error)
 {
     g_autoptr(FlExtent) extent = g_new(FlExtent, 1);
     *extent = (FlExtent){.width = frame_width};
-    extent->sum = g_try_new0(int32_t, 2 * (size_t)frame_width * frame_height);
-    if (extent->sum)
-        return g_steal_pointer(&extent);
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory for the motion extents of %dx%d pixels", frame_width,
-                frame_height);
-    return NULL;
+    extent->sum = fl_alloc(2 * (size_t)frame_width * frame_height, sizeof *extent->sum,
+                           "the motion extents", error);
+    return extent->sum ? g_steal_pointer(&extent) : NULL;
 }
 
 void fl_extent_free(FlExtent *extent)

@@ -1,5 +1,6 @@
 #include "guides/flow_file.h"
 
+#include "base/alloc.h"
 #include "base/file.h"
 #include "base/rect.h"
 
@@ -117,10 +118,10 @@ bool fl_flow_load(const char *path, int width, int height, float unknown, float 
 bool fl_flow_save(const char *path, int width, int height, const float *flow, GError **error)
 {
     const size_t header = is_flo(path) ? FLO_HEADER_BYTES : 0, n = 2 * (size_t)width * height;
-    g_autofree uint8_t *data = g_try_malloc(header + n * sizeof(float));
+    g_autofree uint8_t *data = fl_alloc(header + n * sizeof(float), 1, "a flow file", error);
     g_autoptr(GError) cause = NULL;
     if (!data) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to write %s", path);
+        g_prefix_error(error, "%s: ", path);
         return false;
     }
     if (header) {

@@ -2,14 +2,6 @@
 
 #include "guides/plane_store.h"
 
-bool fl_guide_sequence_no_memory(const FlGuideSequence *sequence, GError **error)
-{
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory for the guides of %dx%d pixels", sequence->source.width,
-                sequence->source.height);
-    return false;
-}
-
 bool fl_guide_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *coverage_angle,
                              GError **error)
 {

@@ -50,9 +50,6 @@ static inline size_t fl_plane_step(FlGuidePlane plane)
                : 1;
 }
 
-/** Sets FL_ERROR_NO_MEMORY and returns false. */
-bool fl_guide_sequence_no_memory(const FlGuideSequence *sequence, GError **error);
-
 /** Reads a plane of shape or integers back; the plane must not be all 0. */
 bool fl_guide_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *coverage_angle,
                              GError **error);

@@ -1,3 +1,4 @@
+#include "base/alloc.h"
 #include "guides/build_guides.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
@@ -39,10 +40,11 @@ static bool look_back(FlGuideSequence *sequence, GError **error)
     g_autoptr(FlExtent) extent = fl_extent_new(source->width, source->height, error);
     if (!extent)
         return false;
-    g_autofree uint8_t *shape = g_try_malloc(2 * n);
-    g_autofree int32_t *flow = g_try_new(int32_t, 2 * n), *norm = g_try_new(int32_t, n);
-    if (!shape || !flow || !norm)
-        return fl_guide_sequence_no_memory(sequence, error);
+    g_autofree uint8_t *shape = fl_alloc(2 * n, 1, "coverages and angles", error);
+    g_autofree int32_t *flow = shape ? fl_alloc(2 * n, sizeof *flow, "a flow", error) : NULL;
+    g_autofree int32_t *norm = flow ? fl_alloc(n, sizeof *norm, "an extent", error) : NULL;
+    if (!norm)
+        return false;
     for (int frame = source->n_frames - 1; frame >= 0; frame--)
         if (!step_back(sequence, frame, extent, shape, flow, norm, error))
             return false;
@@ -148,7 +150,7 @@ static void keep_distance(FlGuideSequence *sequence, bool again, int32_t holder,
         g_clear_pointer(&sequence->distance, g_free);
     else if (sequence->distance && sequence->holder == holder)
         return;
-    else if (sequence->distance || (sequence->distance = g_try_malloc(bytes)))
+    else if (sequence->distance || (sequence->distance = fl_alloc(bytes, 1, "a distance", NULL)))
         memcpy(sequence->distance, distance, bytes), sequence->holder = holder;
 }
 
@@ -189,11 +191,10 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
     const size_t area = fl_rect_pixels(record->box);
     guides->has_motion = false;
     if (area > 0) {
-        g_autofree uint8_t *shape = g_try_malloc(2 * area);
-        g_autofree int32_t *room = g_try_new(int32_t, 2 * area);
-        if (!shape || !room)
-            return fl_guide_sequence_no_memory(sequence, error);
-        if (!fl_guide_sequence_shape(sequence, frame, shape, error) ||
+        g_autofree uint8_t *shape = fl_alloc(2 * area, 1, "coverages and angles", error);
+        g_autofree int32_t *room =
+            shape ? fl_alloc(2 * area, sizeof *room, "a guide", error) : NULL;
+        if (!room || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
             !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, room, guides->flow, error) ||
             !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, room, guides->ext_plus, error) ||
             !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, room, guides->ext_minus, error))
@@ -216,10 +217,9 @@ bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *f
     memset(flow, 0, 2 * fl_rect_pixels(whole) * sizeof *flow);
     if (record->holder[FL_GUIDE_PLANE_UNROUNDED] < 0)
         return true;
-    g_autofree int32_t *bits = g_try_new(int32_t, 2 * fl_rect_pixels(record->box));
-    if (!bits)
-        return fl_guide_sequence_no_memory(sequence, error);
-    if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_UNROUNDED, bits, error))
+    g_autofree int32_t *bits =
+        fl_alloc(2 * fl_rect_pixels(record->box), sizeof *bits, "a flow", error);
+    if (!bits || !fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_UNROUNDED, bits, error))
         return false;
     fl_rect_copy(bits, record->box, flow, whole, 2 * sizeof *flow);
     return true;
@@ -229,20 +229,17 @@ bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
 {
     const size_t n = (size_t)width * height;
     *guides = (FlGuides){.width = width, .height = height};
-    guides->mask = g_try_malloc0(n);
-    guides->distance = g_try_new0(float, n);
-    guides->flow = g_try_new0(float, 2 * n);
-    guides->angle = g_try_malloc0(n);
-    guides->ext_plus = g_try_new0(float, n);
-    guides->ext_minus = g_try_new0(float, n);
-    guides->motion = g_try_new0(int32_t, 2 * n);
-    guides->turn = g_try_new0(int16_t, n);
-    if (guides->mask && guides->distance && guides->flow && guides->angle && guides->ext_plus &&
-        guides->ext_minus && guides->motion && guides->turn)
+    const char *what = "the guides of a frame";
+    if ((guides->mask = fl_alloc(n, 1, what, error)) &&
+        (guides->distance = fl_alloc(n, sizeof *guides->distance, what, error)) &&
+        (guides->flow = fl_alloc(2 * n, sizeof *guides->flow, what, error)) &&
+        (guides->angle = fl_alloc(n, 1, what, error)) &&
+        (guides->ext_plus = fl_alloc(n, sizeof *guides->ext_plus, what, error)) &&
+        (guides->ext_minus = fl_alloc(n, sizeof *guides->ext_minus, what, error)) &&
+        (guides->motion = fl_alloc(2 * n, sizeof *guides->motion, what, error)) &&
+        (guides->turn = fl_alloc(n, sizeof *guides->turn, what, error)))
         return true;
     fl_guides_clear(guides);
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory for the guides of %dx%d pixels", width, height);
     return false;
 }
 

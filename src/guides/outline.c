@@ -1,5 +1,6 @@
 #include "guides/outline.h"
 
+#include "base/alloc.h"
 #include "guides/distance.h"
 #include "guides/guides.h"
 #include <string.h>
@@ -21,23 +22,19 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
                            .frame_height = frame_height,
                            .box = fl_rect_of(mask, frame_width, frame_height)};
     const FlRect *box = &outline->box;
-    outline->coverage = g_try_malloc(fl_rect_pixels(*box) + 1);
+    outline->coverage = fl_alloc(fl_rect_pixels(*box) + 1, 1, "a mask", error);
     if (!outline->coverage)
-        goto no_memory;
+        return NULL;
     fl_rect_copy(mask, (FlRect){0, 0, frame_width, frame_height}, outline->coverage, *box, 1);
     outline->empty = !any_inside(outline->coverage, fl_rect_pixels(*box));
     if (outline->empty)
         return g_steal_pointer(&outline);
-    outline->distance = g_try_new(float, (size_t)frame_width *frame_height);
-    if (!outline->distance)
-        goto no_memory;
-    if (!fl_distance(mask, frame_width, frame_height, outline->distance, error))
+    outline->distance =
+        fl_alloc((size_t)frame_width * frame_height, sizeof(float), "a distance", error);
+    if (!outline->distance ||
+        !fl_distance(mask, frame_width, frame_height, outline->distance, error))
         return NULL;
     return g_steal_pointer(&outline);
-no_memory:
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a mask of %dx%d pixels",
-                frame_width, frame_height);
-    return NULL;
 }
 
 FlOutline *fl_outline_ref(FlOutline *outline)

@@ -1,10 +1,6 @@
 #include "guides/plane_store.h"
 
-static bool no_memory(GError **error)
-{
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory for a temporary plane");
-    return false;
-}
+#include "base/alloc.h"
 
 /** Difference from the value one step before, folded so that it is small when it is near 0. */
 static uint32_t fold(const int32_t *values, size_t k, size_t step)
@@ -20,9 +16,9 @@ bool fl_plane_store_put(FlSpill *spill, size_t block, const int32_t *values, siz
     for (size_t k = 0; k < n; k++)
         used |= fold(values, k, step);
     const int n_planes = (39 - __builtin_clz(used)) / 8;
-    g_autofree uint8_t *bytes = g_try_malloc(n * n_planes);
+    g_autofree uint8_t *bytes = fl_alloc(n, (size_t)n_planes, "a temporary plane", error);
     if (!bytes)
-        return no_memory(error);
+        return false;
     for (int b = 0; b < n_planes; b++)
         for (size_t k = 0; k < n; k++)
             bytes[b * n + k] = (uint8_t)(fold(values, k, step) >> (8 * b));
@@ -33,10 +29,8 @@ bool fl_plane_store_get(const FlSpill *spill, size_t block, int32_t *values, siz
                         GError **error)
 {
     const int n_planes = (int)(fl_spill_bytes(spill, block) / n);
-    g_autofree uint8_t *bytes = g_try_malloc(n * n_planes);
-    if (!bytes)
-        return no_memory(error);
-    if (!fl_spill_get(spill, block, bytes, n * n_planes, error))
+    g_autofree uint8_t *bytes = fl_alloc(n, (size_t)n_planes, "a temporary plane", error);
+    if (!bytes || !fl_spill_get(spill, block, bytes, n * n_planes, error))
         return false;
     for (size_t k = 0; k < n; k++) {
         uint32_t folded = 0;

@@ -1,3 +1,4 @@
+#include "base/alloc.h"
 #include "base/row_kernels.h"
 #include "guides/gauss.h"
 #include "guides/guides.h"
@@ -37,12 +38,10 @@ bool fl_shape_blur(const uint8_t *mask, int width, int height, float border_px, 
 {
     int radius;
     g_autofree float *weight = make_kernel(border_px, &radius);
-    g_autofree float *rows = g_try_new(float, (size_t)width *height);
-    if (!rows) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                    "not enough memory to blur a mask of %dx%d pixels", width, height);
+    g_autofree float *rows =
+        fl_alloc((size_t)width * height, sizeof *rows, "a blurred mask", error);
+    if (!rows)
         return false;
-    }
 #pragma omp parallel
     {
         g_autofree float *padded = g_new(float, width + 2 * (size_t)radius);

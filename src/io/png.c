@@ -1,4 +1,5 @@
 #include "io/png.h"
+#include "base/alloc.h"
 #include "base/file.h"
 #include "io/atomic_file.h"
 
@@ -114,13 +115,13 @@ static void filter_row(const uint8_t *row, const uint8_t *above, size_t n, size_
         out[i] = (uint8_t)(row[i] - (row[i - pixel] + above[i]) / 2);
 }
 
-/** All rows, each after the byte that tells its filter; NULL if memory is short. */
-static uint8_t *filter_rows(const FlPng *picture)
+/** All rows, each after the byte that tells its filter. */
+static uint8_t *filter_rows(const FlPng *picture, GError **error)
 {
     const size_t pixel = pixel_bytes(picture), n = picture->width * pixel;
-    g_autofree uint8_t *rows = g_try_malloc0(2 * n);
-    uint8_t *out = g_try_malloc((n + 1) * (size_t)picture->height);
-    for (int y = 0; rows && out && y < picture->height; y++) {
+    g_autofree uint8_t *rows = fl_alloc(2, n, "a PNG picture", error);
+    uint8_t *out = rows ? fl_alloc((size_t)picture->height, n + 1, "a PNG picture", error) : NULL;
+    for (int y = 0; out && y < picture->height; y++) {
         uint8_t *row = rows + (y % 2) * n, *to = out + (size_t)y * (n + 1);
         pack_row(picture, y, row);
         to[0] = picture->rgba16 ? PNG_FILTER_VALUE_NONE : PNG_FILTER_VALUE_AVG;
@@ -129,20 +130,19 @@ static uint8_t *filter_rows(const FlPng *picture)
         else
             filter_row(row, rows + (y + 1) % 2 * n, n, pixel, to + 1);
     }
-    if (!rows)
-        g_clear_pointer(&out, g_free);
     return out;
 }
 
-/** The picture's pixels as a zlib stream of *bytes; NULL if memory is short. */
-static uint8_t *compress(const FlPng *picture, size_t *bytes)
+/** The picture's pixels as a zlib stream of *bytes; NULL, maybe with an error, if memory is short.
+ */
+static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
 {
     const size_t n = (picture->width * pixel_bytes(picture) + 1) * (size_t)picture->height;
-    g_autofree uint8_t *rows = filter_rows(picture);
+    g_autofree uint8_t *rows = filter_rows(picture, error);
     struct libdeflate_compressor *compressor =
         libdeflate_alloc_compressor(picture->fast ? LEVEL_FAST : LEVEL_FINAL);
     const size_t room = compressor ? libdeflate_zlib_compress_bound(compressor, n) : 0;
-    uint8_t *stream = rows && compressor ? g_try_malloc(room) : NULL;
+    uint8_t *stream = rows && compressor ? fl_alloc(room, 1, "a PNG picture", error) : NULL;
     *bytes = stream ? libdeflate_zlib_compress(compressor, rows, n, stream, room) : 0;
     if (compressor)
         libdeflate_free_compressor(compressor);
@@ -168,9 +168,11 @@ static bool put_picture(png_structp png, png_infop info, const FlPng *picture,
 static bool encode(const FlPng *picture, Target *target, Trouble *trouble)
 {
     size_t bytes;
-    g_autofree uint8_t *stream = compress(picture, &bytes);
+    g_autoptr(GError) cause = NULL;
+    g_autofree uint8_t *stream = compress(picture, &bytes, &cause);
     if (!stream) {
-        g_strlcpy(trouble->message, "not enough memory", sizeof trouble->message);
+        g_strlcpy(trouble->message, cause ? cause->message : "not enough memory to compress",
+                  sizeof trouble->message);
         return false;
     }
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, trouble, on_error, on_warning);
@@ -257,10 +259,14 @@ bool fl_png_write(const char *path, const uint8_t *data, int width, int height, 
                      .format = formats[channels]};
     // Filters and level as the library's own default: the file is written once and kept.
     png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
-    g_autofree uint8_t *file = g_try_malloc(bytes);
-    if (!file || !png_image_write_to_memory(&png, file, &bytes, 0, data, 0, NULL)) {
+    g_autofree uint8_t *file = fl_alloc(bytes, 1, "a PNG picture", error);
+    if (!file) {
+        g_prefix_error(error, "%s: ", path);
+        return false;
+    }
+    if (!png_image_write_to_memory(&png, file, &bytes, 0, data, 0, NULL)) {
         g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot make the PNG picture: %s", path,
-                    file ? png.message : "not enough memory");
+                    png.message);
         return false;
     }
     g_auto(FlAtomicFile) out = {0};

@@ -33,11 +33,11 @@ static FlMatch plus(FlMatch a, FlMatch b)
                      .theta = (uint8_t)(a.theta + b.theta)};
 }
 
-/* Each match but the first minus the one before; to be freed with g_free(). NULL without memory. */
-static FlMatch *differences(const FlNnf *nnf)
+/* Each match but the first minus the one before; to be freed with free(). */
+static FlMatch *differences(const FlNnf *nnf, GError **error)
 {
     const size_t n = (size_t)nnf->width * (size_t)nnf->height;
-    FlMatch *out = g_try_new(FlMatch, MAX(n, 1));
+    FlMatch *out = fl_alloc(n, sizeof *out, "the state of a region", error);
     for (size_t p = 0; out && p < n; p++)
         out[p] = p > 0 ? minus(nnf->match[p], nnf->match[p - 1]) : nnf->match[p];
     return out;
@@ -65,14 +65,17 @@ GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GE
 {
     const FlRect rect = state->valid ? state->rect : (FlRect){0};
     const Header header = {state->frame, state->valid, rect.x, rect.y, rect.width, rect.height};
-    g_autofree FlMatch *matches = state->valid ? differences(&state->nnf) : NULL;
+    g_autofree FlMatch *matches = state->valid ? differences(&state->nnf, error) : NULL;
+    if (state->valid && !matches)
+        return NULL;
     FlSpan parts[N_PARTS];
     parts_of(state, matches, width, height, parts);
     const size_t room = state->valid ? fl_compress_bound(parts, N_PARTS) : 0;
-    g_autofree uint8_t *bytes = fl_headroom_left() ? g_try_malloc(sizeof header + room) : NULL;
-    const size_t packed =
-        bytes && matches ? fl_compress(parts, N_PARTS, bytes + sizeof header, room) : 0;
-    if (!bytes || (state->valid && packed == 0)) {
+    g_autofree uint8_t *bytes = fl_alloc(sizeof header + room, 1, "the state of a region", error);
+    if (!bytes)
+        return NULL;
+    const size_t packed = matches ? fl_compress(parts, N_PARTS, bytes + sizeof header, room) : 0;
+    if (state->valid && packed == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a state");
         return NULL;
     }
