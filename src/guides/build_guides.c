@@ -1,14 +1,14 @@
 /*
- * The way forward through a sequence. Every stage asks the one before for the frames it needs, in
- * order, and each stage keeps a window of them:
+ * The forward pass through a sequence. Each stage asks the one before for the frames it needs, in
+ * order, and keeps a window of them:
  *
  *   outline_of   mask, box, distance
  *   distance_of  the distance smoothed along time and in space, if asked for [P21 §4.1]
  *   motion_of    the flow of one interval
  *   finish_frame the flow smoothed along time [F21 App. A], direction, extent; into the spill
  *
- * For one region is often most of a film, the outline of one frame, the motion of an earlier one
- * and the end of a yet earlier one are made side by side: none needs what the others make.
+ * The outline of one frame, the motion of an earlier one and the finish of a yet earlier one run in
+ * parallel, for one region is often most of a film; none needs the results of the others.
  */
 #include "guides/build_guides.h"
 #include "base/alloc.h"
@@ -48,8 +48,8 @@ typedef struct Builder {
     OutlineSlot *outlines; // frame f is in slot f % n_slots, as below
     Motion *motions;
     Smoothed smoothed[3];
-    uint8_t *mask; // room for a frame
-    float *given;  // room for the flow or the motion of a frame
+    uint8_t *mask; // scratch: a frame
+    float *given;  // scratch: the flow or the motion of a frame
     FlExtent *extent;
     bool previous_moves; // of the frame that was finished last
 } Builder;
@@ -247,7 +247,7 @@ static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float
     const int first = MAX(frame - b->flow_radius, 0);
     const int last = MIN(frame + b->flow_radius, b->sequence->source.n_frames - 1);
     bool moves = false;
-    for (int k = first; k <= last; k++) { // in order, for the windows go forward only
+    for (int k = first; k <= last; k++) { // in order: windows move forward only
         const Motion *motion;
         if (!motion_of(b, k, &motion, error))
             return false;
@@ -272,7 +272,7 @@ static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float
     return true;
 }
 
-/** The flow that somebody gives, cropped to the shape. */
+/** The flow that the source gives, cropped to the shape. */
 static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **flow,
                        GError **error)
 {
@@ -298,7 +298,7 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
     return true;
 }
 
-/** Stores coverage and direction; the outline's normals are made if they are not yet. */
+/** Stores coverage and direction; computes the outline's normals on demand. */
 static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *flow, GError **error)
 {
     const size_t n = fl_rect_pixels(outline->box);
@@ -329,7 +329,7 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
         return false;
     for (size_t k = 0; k < 2 * n && flow; k++)
         fixed[k] = fl_flow_to_fixed(flow[k]);
-    // the flow of a frame that nothing precedes stands in for one; no motion has happened yet
+    // a frame without predecessor borrows its flow from the next interval: nothing has moved yet
     const bool counts = flow && frame > 0 && !record[-1].empty;
     fl_extent_step(b->extent, &record->box, outline->coverage, &record->box, counts ? fixed : NULL,
                    norm);
@@ -343,7 +343,7 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
                                fixed, 2 * n, 2, error));
 }
 
-/** Stores what the drawing does into this frame, if it does anything. */
+/** Stores the drawing's motion into this frame, if there is any. */
 static bool put_drawing_motion(Builder *b, int frame, const FlOutline *outline, GError **error)
 {
     const FlGuideSource *source = &b->sequence->source;
@@ -363,7 +363,7 @@ static bool put_drawing_motion(Builder *b, int frame, const FlOutline *outline, 
         b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_MOTION), fixed, n, 2, error);
 }
 
-/** Stores the flow as it is, for whoever wants to give it back. */
+/** Stores the flow unrounded, for fl_guide_sequence_flow(). */
 static bool put_unrounded(Builder *b, int frame, const FlOutline *outline, const float *flow,
                           GError **error)
 {
@@ -400,7 +400,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     const OutlineSlot *last = &b->outlines[(frame + b->n_slots - 1) % b->n_slots];
     const bool still = frame > 0 && last->outline == outline && !flow && !b->previous_moves;
     b->previous_moves = flow != NULL;
-    if (still) { // as before in every respect
+    if (still) { // equals the frame before
         memcpy(record->holder, record[-1].holder, sizeof record->holder);
         record->holder[FL_GUIDE_PLANE_MOTION] = -1;
     } else if (!put_shape(b, frame, outline, flow, error) ||
@@ -430,7 +430,7 @@ static bool prepare_motion(Builder *b, int frame, GError **error)
     return source->flow || frame >= source->n_frames || motion_of(b, frame, &motion, error);
 }
 
-/** What the first step finds, in order. */
+/** Prepares the outlines and motions that the first step needs, in order. */
 static bool prepare_first(Builder *b, GError **error)
 {
     for (int frame = 0; frame <= last_outline(b, b->flow_radius); frame++)
@@ -442,8 +442,8 @@ static bool prepare_first(Builder *b, GError **error)
     return true;
 }
 
-/** Finishes a frame, and prepares what the next step finds: the last motion that the next frame
- * needs, and the last outline that the motion after that one needs. */
+/** Finishes a frame, and prepares the last motion that the next frame needs and the last outline
+ * that the motion after that one needs. */
 static bool step(Builder *b, int frame, GError **error)
 {
     const int motion = frame + 1 + b->flow_radius, outline = last_outline(b, motion + 1);

@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include "guides/guides.h"
 
-/** The oldest label that a label stands for; halves the way to it for the next time. */
+/** The root of a label in the union-find forest; halves the path to it. */
 static int32_t root_of(GArray *parents, int32_t label)
 {
     int32_t *parent = (int32_t *)(void *)parents->data;
@@ -19,7 +19,8 @@ static int32_t join(GArray *parents, int32_t a, int32_t b)
     return MIN(a, b);
 }
 
-/** Gives every pixel a preliminary label, from the left or from above, and notes which are one. */
+/** Gives every pixel a preliminary label, from the left or from above, and joins equivalent ones.
+ */
 static void label_pixels(const uint8_t *coverage, int width, int height, int32_t *part,
                          GArray *parents)
 {

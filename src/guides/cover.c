@@ -26,11 +26,11 @@ int fl_cubic_steps(const FlCubic *cubic, const FlAffine *ctm, double step_px)
     return (int)CLAMP(ceil(length / step_px), 1, 400);
 }
 
-/** Calls for the straight pieces of a leaf, in px of rect's own coordinates. */
+/** Called for each straight piece of a leaf, in px of rect's own coordinates. */
 typedef void Piece(void *data, FlPoint a, FlPoint b);
 
-static void walk(const FlOutlines *o, const FlGeometry *g, FlRect rect, double step_px, bool closes,
-                 Piece *piece, void *data)
+static void flatten(const FlOutlines *o, const FlGeometry *g, FlRect rect, double step_px,
+                    bool closes, Piece *piece, void *data)
 {
     for (int k = g->first_subpath; k < g->first_subpath + g->n_subpaths; k++) {
         const FlSubpath *s = &o->subpath[k];
@@ -65,7 +65,7 @@ typedef struct Fill {
     GArray *crossings;
 } Fill;
 
-static void cross(void *data, FlPoint a, FlPoint b)
+static void add_crossings(void *data, FlPoint a, FlPoint b)
 {
     Fill *fill = data;
     const int winding = a.y < b.y ? 1 : -1;
@@ -93,7 +93,7 @@ void fl_cover_fill(const FlOutlines *outlines, const FlGeometry *g, FlRect rect,
 {
     g_autoptr(GArray) crossings = g_array_new(FALSE, FALSE, sizeof(Crossing));
     Fill fill = {rect, crossings};
-    walk(outlines, g, rect, 2, true, cross, &fill);
+    flatten(outlines, g, rect, 2, true, add_crossings, &fill);
     g_array_sort(crossings, compare);
     int winding = 0;
     for (guint i = 0; i + 1 < crossings->len; i++) {
@@ -127,7 +127,7 @@ static double distance2_to(FlPoint p, FlPoint a, FlPoint b)
     return dx * dx + dy * dy;
 }
 
-static void widen(void *data, FlPoint a, FlPoint b)
+static void cover_piece(void *data, FlPoint a, FlPoint b)
 {
     const Line *line = data;
     const double r = line->reach;
@@ -148,5 +148,5 @@ void fl_cover_line(const FlOutlines *outlines, const FlGeometry *g, double reach
                    FlRect rect, FlCoverSpan *span, void *data)
 {
     Line line = {rect, reach_px, span, data};
-    walk(outlines, g, rect, MAX(4, reach_px), closed, widen, &line);
+    flatten(outlines, g, rect, MAX(4, reach_px), closed, cover_piece, &line);
 }

@@ -1,4 +1,4 @@
-/* Pixels that an outline covers, found without a renderer: to tell leaves apart. */
+/* The pixels that an outline covers, without a renderer: to tell leaves apart. */
 #ifndef FLUIDY_GUIDES_COVER_H
 #define FLUIDY_GUIDES_COVER_H
 
@@ -17,10 +17,10 @@ void fl_cover_fill(const FlOutlines *outlines, const FlGeometry *g, FlRect rect,
 void fl_cover_line(const FlOutlines *outlines, const FlGeometry *g, double reach_px, bool closed,
                    FlRect rect, FlCoverSpan *span, void *data);
 
-/** The width of the leaf's stroke in px; 0: none that is known. */
+/** The width of the leaf's stroke in px; 0: none known. */
 double fl_stroke_px(const FlGeometry *g);
 
-/** How many straight steps of about step_px a cubic is walked in, 1 … 400. */
+/** The number of straight pieces of about step_px that a cubic is split into, 1 … 400. */
 int fl_cubic_steps(const FlCubic *cubic, const FlAffine *ctm, double step_px);
 
 #endif

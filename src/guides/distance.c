@@ -165,7 +165,7 @@ static void mark_beside(const uint8_t *row, const uint8_t *other, int w, uint8_t
         mixed[x] |= row[x] ^ other[x + 1];
 }
 
-/** Step 1. Pixels with a neighbour on the other side, diagonals included; mixed: a row of room. */
+/** Step 1. Pixels with a neighbour on the other side, diagonals included; mixed: scratch, a row. */
 static void find_seeds(Work *work, uint8_t *mixed)
 {
     const int w = work->width, h = work->height;
@@ -199,7 +199,7 @@ static void search_columns(Work *work)
     }
 }
 
-/** Step 3 for one row. column, from: width + 1 elements of room. */
+/** Step 3 for one row. column, from: scratch, width + 1. */
 static void search_row(Work *work, int y, int *column, double *from)
 {
     const int w = work->width;

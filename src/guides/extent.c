@@ -41,7 +41,7 @@ static bool box_contains(const FlRect *box, int x, int y)
     return x >= box->x && y >= box->y && x < box->x + box->width && y < box->y + box->height;
 }
 
-/** Empties the sum where the last mask's box is not in the next one's. */
+/** Clears the sum where the last mask's box lies outside the next one's. */
 static void leave_box(FlExtent *extent, const FlRect *next)
 {
     const FlRect *box = &extent->box;

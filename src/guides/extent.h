@@ -4,7 +4,7 @@
 
 #include "guides/outline.h"
 
-/** Flows and sums are in fixed point: exact, so that the order of adding them cannot matter. */
+/** Flows and sums are in fixed point: exact, so that the order of additions does not matter. */
 #define FL_FLOW_ONE 1024  // a flow or a sum of 1 px
 #define FL_EXTENT_ONE 256 // an extent of 1 px
 
@@ -18,7 +18,7 @@ FlExtent *fl_extent_new(int frame_width, int frame_height, GError **error);
 void fl_extent_free(FlExtent *extent); // NULL is fine
 
 /**
- * Takes the sum to the next frame: adds the flow of the interval between them inside the mask,
+ * Advances the sum to the next frame: adds the flow of the interval between them inside the mask,
  * starts again at 0 outside, and writes the norm of the sum for the pixels of mask_box.
  *
  * coverage is of mask_box; flow is interleaved and of flow_box, NULL: none. What lies outside its

@@ -69,13 +69,13 @@ static bool measure(const FlFlowFrame *now, const FlFlowFrame *other, bool other
     return true;
 }
 
-/** Velocity of a pixel, if its part and its place on the contour tell one. */
+/** Velocity of a pixel, if its part jumps or it lies on the contour of one that overlaps. */
 static bool find_velocity(const FlFlowFrame *now, const FlFlowFrame *before,
-                          const FlFlowFrame *after, const FlTrace *past, const FlTrace *future,
+                          const FlFlowFrame *after, const FlTrace *backward, const FlTrace *forward,
                           float limit_px, int x, int y, float velocity[2])
 {
-    const bool later = past->kind == FL_TRACE_LOST;
-    const FlTrace *trace = later ? future : past;
+    const bool later = backward->kind == FL_TRACE_LOST;
+    const FlTrace *trace = later ? forward : backward;
     if (trace->kind == FL_TRACE_JUMPS) {
         velocity[0] = later ? -trace->offset[0] : trace->offset[0];
         velocity[1] = later ? -trace->offset[1] : trace->offset[1];
@@ -85,7 +85,7 @@ static bool find_velocity(const FlFlowFrame *now, const FlFlowFrame *before,
            measure(now, later ? after : before, later, limit_px, x, y, velocity);
 }
 
-/** Fixes the pixels that have a velocity, frees the others of the shape. */
+/** Fixes the pixels that have a velocity; the shape's others are free. */
 static void fix_velocities(const FlFlowFrame *now, const FlFlowFrame *before,
                            const FlFlowFrame *after, float limit_px, Traces *traces, uint8_t *cell,
                            float *flow)
@@ -121,7 +121,7 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
     for (size_t p = 0; p < n; p++) {
         const int part = traces.parts.part[p];
         if (part > 0 && traces.fixed[part] == 0)
-            cell[p] = FL_CELL_FIXED; // a part that nothing is known of stays at rest
+            cell[p] = FL_CELL_FIXED; // a part without any velocity stays at rest
         *moves |= flow[2 * p] != 0.0f || flow[2 * p + 1] != 0.0f;
     }
     return !*moves || fl_laplace_solve(cell, box->width, box->height, 2, flow, error);

@@ -4,7 +4,7 @@
 
 #include "guides/outline.h"
 
-/** One frame with the distance field to take its motion from: its outline's, or a smoothed one. */
+/** One frame with the distance field of its motion: the outline's, or a smoothed one. */
 typedef struct FlFlowFrame {
     const FlOutline *outline; // NULL or empty: nothing is there
     const float *distance;    // of the frame; unused where nothing is there

@@ -1,4 +1,4 @@
-/* Flow fields in files, for whoever has better ones than can be made from masks. */
+/* Flow fields in files, which may be better than those made from masks. */
 #ifndef FLUIDY_GUIDES_FLOW_FILE_H
 #define FLUIDY_GUIDES_FLOW_FILE_H
 
@@ -12,7 +12,7 @@
  * as 32-bit integers, then the pairs; components above 1e9 there mean that it is unknown. Any
  * other name is raw: the pairs alone. All is little-endian, 32-bit floats, row-major.
  *
- * unknown: what both components become where one of them is unknown, such as 0 or NAN.
+ * unknown: the value of both components where one is unknown, such as 0 or NAN.
  * Returns: false with FL_ERROR_INPUT set, if the file is missing, has another size or holds a
  * component that is not a number or beyond 1e5 px; FL_ERROR_NO_MEMORY.
  */
@@ -22,7 +22,7 @@ bool fl_flow_load(const char *path, int width, int height, float unknown, float 
 /** The flow at half the size, as fl_half_side() says; lengths become those of the small frame. */
 void fl_flow_halve(const float *flow, int width, int height, float *half);
 
-/** Writes one, in the format that the name asks for, by way of a temporary file; NAN is unknown,
+/** Writes one atomically, in the format of its name; NAN is unknown,
  * which raw files cannot say. FL_ERROR_OUTPUT. */
 bool fl_flow_save(const char *path, int width, int height, const float *flow, GError **error);
 

@@ -1,5 +1,4 @@
-/* How the guides of a sequence are kept: shared by the stage that makes them and the one that
- * reads. */
+/* The stored planes of a guide sequence, for the code that builds them and the code that reads. */
 #ifndef FLUIDY_GUIDES_GUIDE_PLANES_H
 #define FLUIDY_GUIDES_GUIDE_PLANES_H
 
@@ -50,7 +49,7 @@ static inline size_t fl_plane_step(FlGuidePlane plane)
                : 1;
 }
 
-/** Reads a plane of shape or integers back; the plane must not be all 0. */
+/** Reads a stored plane, of bytes or integers; a holder of -1 is not stored. */
 bool fl_guide_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t *coverage_angle,
                              GError **error);
 bool fl_guide_sequence_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane,

@@ -31,10 +31,10 @@ typedef struct FlGuides {
     uint8_t *angle;   // direction of the flow
     float *ext_plus;  // |sum of the flow since the pixel was last outside the mask|, px
     float *ext_minus; // the same, summed from the end of the sequence
-    // How the drawing moves into the frame, where the source says it:
+    // How the drawing moves into the frame, where the source knows it:
     bool has_motion; // somewhere in the mask; else the two planes mean nothing
     int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height
-    int16_t *turn;   // what the drawing turns by with it, 65536 a turn; 0 where that is unknown
+    int16_t *turn;   // the turn of the drawing, 65536 a turn; 0 where that is unknown
 } FlGuides;
 
 #define FL_MOTION_ONE 16384
@@ -42,7 +42,7 @@ typedef struct FlGuides {
 
 #define FL_INSIDE 128
 
-/** A mask sequence, and its flow and the drawing's motion where somebody gives them. */
+/** A mask sequence, with its flow and the drawing's motion if they are known. */
 typedef struct FlGuideSource {
     int width, height, n_frames;
     /** Writes frame's coverage, width * height bytes. May be called several times for a frame. */
@@ -52,8 +52,8 @@ typedef struct FlGuideSource {
     void *data;
     /**
      * Writes the drawing's true displacement into the frame, 2 * width * height floats,
-     * interleaved: what is at a pixel was so many px before it in the picture painted before; NAN:
-     * unknown. It is taken as it is, neither smoothed nor part of the flow. Frames come in order.
+     * interleaved: the content of a pixel moved by it since the picture painted before; NAN:
+     * unknown. It is used as given, neither smoothed nor part of the flow. Frames come in order.
      * NULL: none is known.
      */
     bool (*motion)(void *data, int frame, float *motion, GError **error);
@@ -94,9 +94,9 @@ bool fl_shape_blur(const uint8_t *mask, int width, int height, float border_px, 
 void fl_shape_ramp(const float *distance, int width, int height, float border_px, float *shape);
 
 /**
- * A shape guide that says near the contour how deep a pixel lies, whatever the contour's curvature:
+ * A shape guide that near the contour depends on the depth alone, not on the contour's curvature:
  * 0.8 of a smoothstep from -edge_px to edge_px and 0.2 of the ramp. The blurred mask is lower in
- * tips and higher in notches, where it mixes up the depths.
+ * tips and higher in notches, so equal depths differ.
  */
 void fl_shape_edge(const float *distance, int width, int height, float border_px, float edge_px,
                    float *shape);

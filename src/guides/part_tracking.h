@@ -1,4 +1,4 @@
-/* Where the parts of a shape are in another frame. */
+/* Tracks the parts of a shape to another frame. */
 #ifndef FLUIDY_GUIDES_PART_TRACKING_H
 #define FLUIDY_GUIDES_PART_TRACKING_H
 
@@ -6,12 +6,12 @@
 #include "guides/outline.h"
 
 typedef enum FlTraceKind {
-    FL_TRACE_LOST,     // the other frame has nothing like it
+    FL_TRACE_LOST,     // no part of the other frame matches
     FL_TRACE_OVERLAPS, // some pixel of it is inside there, too: its contour tells the motion
     FL_TRACE_JUMPS,    // it moved by more than its own size
 } FlTraceKind;
 
-/** One part of a frame's shape, as seen from another frame. */
+/** How one part of a frame's shape relates to another frame. */
 typedef struct FlTrace {
     FlTraceKind kind;
     float offset[2]; // of a jump: from the other frame's part to this one; px

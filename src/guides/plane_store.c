@@ -12,7 +12,7 @@ static uint32_t fold(const int32_t *values, size_t k, size_t step)
 bool fl_plane_store_put(FlSpill *spill, size_t block, const int32_t *values, size_t n, size_t step,
                         GError **error)
 {
-    uint32_t used = 1; // at least one byte of each
+    uint32_t used = 1; // at least one byte each
     for (size_t k = 0; k < n; k++)
         used |= fold(values, k, step);
     const int n_planes = (39 - __builtin_clz(used)) / 8;

@@ -4,7 +4,7 @@
 #include "guides/guides.h"
 #include <math.h>
 
-/** Blurs one row of coverage along x into dst; padded has room for width + 2 * radius. */
+/** Blurs one row of coverage along x into dst; padded: scratch, width + 2 * radius. */
 static void blur_row(const uint8_t *row, int width, const float *weight, int radius, float *padded,
                      float *dst)
 {

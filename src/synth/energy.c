@@ -9,9 +9,9 @@ static FlParams no_weights(const FlParams *params)
     return none;
 }
 
-/* Mean cost of the field under some of the weights; the scale stays that of the search. */
-static double mean_under(const FlSearch *search, FlTargetLevel *target, const FlParams *some,
-                         uint32_t *cost)
+/* Mean cost of the field with only some weights, in the scale of the search. */
+static double mean_cost(const FlSearch *search, FlTargetLevel *target, const FlParams *some,
+                        uint32_t *cost)
 {
     FlSearch part = *search;
     part.params = some;
@@ -38,7 +38,7 @@ static double mean_uniformity(const FlSearch *search)
     return n > 0 ? (double)sum / search->scale->unit / (double)n : 0;
 }
 
-void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *room, FlEnergy *energy)
+void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *costs, FlEnergy *energy)
 {
     const FlParams *all = search->params;
     FlParams texture = no_weights(all), bound = texture, ext = texture, direction = texture,
@@ -48,11 +48,11 @@ void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *room,
     ext.w_ext = all->w_ext;
     direction.rotate = all->rotate; // its cost comes from the scale's table
     temporal.w_temp = all->w_temp;
-    energy->texture = mean_under(search, target, &texture, room);
-    energy->bound = mean_under(search, target, &bound, room);
-    energy->ext = mean_under(search, target, &ext, room);
-    energy->direction = mean_under(search, target, &direction, room);
-    energy->temporal = mean_under(search, target, &temporal, room);
+    energy->texture = mean_cost(search, target, &texture, costs);
+    energy->bound = mean_cost(search, target, &bound, costs);
+    energy->ext = mean_cost(search, target, &ext, costs);
+    energy->direction = mean_cost(search, target, &direction, costs);
+    energy->temporal = mean_cost(search, target, &temporal, costs);
     energy->uniformity = mean_uniformity(search);
     fl_target_blend(target, all, search->scale, all->w_texture);
 }

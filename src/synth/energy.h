@@ -13,9 +13,9 @@ typedef struct FlEnergy {
 /**
  * The energy of search->nnf with the target's colours and T_temp as they are.
  *
- * The colours of `target`, which is search->target, are blended anew for each term and once more at
- * the end. `room` is width * height costs. About as long as a fifth of a sweep.
+ * `target` is search->target; its colours are blended anew for each term and once more at the end.
+ * costs: scratch, width * height. Takes about a fifth of a sweep's time.
  */
-void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *room, FlEnergy *energy);
+void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *costs, FlEnergy *energy);
 
 #endif

@@ -6,7 +6,7 @@
 #include "synth/spline.h"
 #include <string.h>
 
-#define MIN_SEGMENT 25 // pixels; with fewer on a level, segments are not told apart
+#define MIN_SEGMENT 25 // pixels; with fewer on a level, border and interior are one segment
 
 int fl_levels_of(int width, int height)
 {
@@ -62,7 +62,7 @@ static bool fill_frame(FlExemplar *exemplar, const FlExemplarFrames *frames, con
     const FlExemplarLevel *level = &exemplar->level[0];
     const size_t pixels = (size_t)level->width * (size_t)level->height;
     g_auto(FlGuides) guides = {0};
-    float *shape = pyramid->plane[FL_PLANE_R]; // lent until the colours are there
+    float *shape = pyramid->plane[FL_PLANE_R]; // scratch: the colours come later
     if (!fl_guides_init(&guides, level->width, level->height, error) ||
         !fl_guide_sequence_get(frames->sequence, t, &guides, error) ||
         !fl_shape_guide(&guides, &frames->params, exemplar->border_px, shape, error))
@@ -81,7 +81,7 @@ static FlTexel pack(const FlPyramid *pyramid, size_t p, const FlExemplar *exempl
     const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
     for (int c = 0; c < 3; c++)
         out.c[FL_CH_R + c] = fl_texel_channel(pyramid->plane[FL_PLANE_R + c][p]);
-    out.c[FL_CH_SHAPE] = fl_texel_channel(pyramid->plane[FL_GUIDE_PLANE_SHAPE][p]);
+    out.c[FL_CH_SHAPE] = fl_texel_channel(pyramid->plane[FL_PLANE_SHAPE][p]);
     out.c[FL_CH_EXT_PLUS] = fl_texel_channel(pyramid->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
     out.c[FL_CH_EXT_MINUS] = fl_texel_channel(pyramid->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
     out.c[FL_CH_ANGLE] = fl_pyramid_angle(pyramid, p);
@@ -107,11 +107,11 @@ static void pack_frame(FlExemplarLevel *level, const FlPyramid *pyramid, const F
     }
 }
 
-/* The colours' spline coefficients; `room` is for three planes. */
-static void pack_colour(FlExemplarLevel *level, const FlPyramid *pyramid, int t, float *room)
+/* The colours' spline coefficients; planes: scratch for three. */
+static void pack_colour(FlExemplarLevel *level, const FlPyramid *pyramid, int t, float *planes)
 {
     const size_t pixels = (size_t)level->width * level->height;
-    float *const plane[3] = {room, room + pixels, room + 2 * pixels};
+    float *const plane[3] = {planes, planes + pixels, planes + 2 * pixels};
     for (int c = 0; c < 3; c++)
         memcpy(plane[c], pyramid->plane[FL_PLANE_R + c], pixels * sizeof(float));
     fl_spline_prefilter(plane, level->width, level->height,
@@ -132,7 +132,7 @@ static void rotate_offsets(FlExemplarLevel *level)
         }
 }
 
-/* An array of all frames of which only those of the window are touched, if that is shorter. */
+/* An array of all frames; with a shorter window only its frames take memory. */
 static void *alloc_frames(const FlExemplarLevel *level, size_t frame_elements, size_t element_bytes,
                           GError **error)
 {
@@ -206,12 +206,12 @@ static bool list_valid(FlExemplarLevel *level, GError **error)
 /* Builds every level of one frame from its level 0. */
 static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **error)
 {
-    g_autofree float *room =
-        fl_alloc(3 * (size_t)full->width * full->height, sizeof *room, "an exemplar", error);
-    if (!room)
+    g_autofree float *planes =
+        fl_alloc(3 * (size_t)full->width * full->height, sizeof *planes, "an exemplar", error);
+    if (!planes)
         return false;
     pack_frame(&exemplar->level[0], full, exemplar, t);
-    pack_colour(&exemplar->level[0], full, t, room);
+    pack_colour(&exemplar->level[0], full, t, planes);
     g_auto(FlPyramid) fine = {0};
     for (int l = 1; l < exemplar->n_levels; l++) {
         FlExemplarLevel *level = &exemplar->level[l];
@@ -222,13 +222,13 @@ static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **
         fl_pyramid_clear(&fine);
         fine = coarse;
         pack_frame(level, &fine, exemplar, t);
-        pack_colour(level, &fine, t, room);
+        pack_colour(level, &fine, t, planes);
     }
     return true;
 }
 
-/* Lets go of the frames t to end - 1, all at once, for pages go with neither of two neighbours;
- * masks stay. */
+/* Frees the frames t to end - 1, but for their masks; all at once, since a page that two frames
+ * share is freed with both only. */
 static void release_frames(FlExemplar *exemplar, int t, int end)
 {
     const size_t pixels = (size_t)exemplar->level[0].width * (size_t)exemplar->level[0].height;
@@ -245,7 +245,7 @@ static void release_frames(FlExemplar *exemplar, int t, int end)
 }
 
 /* Copies the masks and finds the extents of all frames, which give the scale. */
-static bool measure(FlExemplar *exemplar, FlExemplarFrames *frames, GError **error)
+static bool measure_extents(FlExemplar *exemplar, FlExemplarFrames *frames, GError **error)
 {
     const FlExemplarLevel *level = &exemplar->level[0];
     const size_t pixels = (size_t)level->width * (size_t)level->height;
@@ -264,30 +264,30 @@ static bool measure(FlExemplar *exemplar, FlExemplarFrames *frames, GError **err
     return true;
 }
 
-typedef size_t Census[FL_MAX_LEVELS][FL_SEGMENTS]; // pixels of each level and segment
+typedef size_t SegmentCounts[FL_MAX_LEVELS][FL_SEGMENTS]; // pixels of each level and segment
 
-/* Makes every frame once, to count what is in it, and keeps those of the window. */
-static bool make_frames(FlExemplar *exemplar, const FlStyle *style, FlExemplarFrames *frames,
-                        Census census, GError **error)
+/* Packs every frame once, to count its segments, and keeps those of the window. */
+static bool pack_frames(FlExemplar *exemplar, const FlStyle *style, FlExemplarFrames *frames,
+                        SegmentCounts counts, GError **error)
 {
     const size_t pixels = (size_t)style->width * (size_t)style->height;
     g_auto(FlPyramid) full = {0};
     if (!fl_pyramid_init(&full, style->width, style->height, FL_PLANES, error))
         return false;
-    exemplar->separate = true; // until it is known
+    exemplar->separate = true; // until decide_levels()
     frames->earliest = -1;
     for (int t = 0; t < style->n_frames; t++) {
         const uint8_t *rgb = style->rgb + 3 * pixels * (size_t)t;
-        const size_t before = census[0][FL_SEGMENT_BORDER];
+        const size_t before = counts[0][FL_SEGMENT_BORDER];
         if (!fill_frame(exemplar, frames, rgb, t, &full, error) ||
             !pack_pyramid(exemplar, &full, t, error) ||
             (frames->rgb && !fl_spill_put(frames->rgb, (size_t)t, rgb, 3 * pixels, error)))
             return false;
         for (int l = 0; l < exemplar->n_levels; l++)
-            count_segments(&exemplar->level[l], t, census[l]);
+            count_segments(&exemplar->level[l], t, counts[l]);
         if (t >= exemplar->level[0].window)
             release_frames(exemplar, exemplar->level[0].window, t + 1);
-        if (census[0][FL_SEGMENT_BORDER] == before)
+        if (counts[0][FL_SEGMENT_BORDER] == before)
             continue;
         frames->earliest = frames->earliest < 0 ? t : frames->earliest;
         frames->latest = t;
@@ -295,21 +295,22 @@ static bool make_frames(FlExemplar *exemplar, const FlStyle *style, FlExemplarFr
     return true;
 }
 
-/* Decides what is matched separately and how many levels there are. */
-static bool judge(FlExemplar *exemplar, const FlStyle *style, Census census, GError **error)
+/* Decides whether segments are matched separately, and the number of levels. */
+static bool decide_levels(FlExemplar *exemplar, const FlStyle *style, SegmentCounts counts,
+                          GError **error)
 {
     for (int l = 0; l < exemplar->n_levels; l++)
-        exemplar->separate = exemplar->separate && census[l][FL_SEGMENT_BORDER] >= MIN_SEGMENT &&
-                             census[l][FL_SEGMENT_INTERIOR] >= MIN_SEGMENT;
+        exemplar->separate = exemplar->separate && counts[l][FL_SEGMENT_BORDER] >= MIN_SEGMENT &&
+                             counts[l][FL_SEGMENT_INTERIOR] >= MIN_SEGMENT;
     for (int l = 0; l < exemplar->n_levels && !exemplar->separate; l++) {
-        census[l][FL_SEGMENT_BORDER] += census[l][FL_SEGMENT_INTERIOR];
+        counts[l][FL_SEGMENT_BORDER] += counts[l][FL_SEGMENT_INTERIOR];
         for (int t = 0; t < exemplar->level[l].window; t++)
             merge_segments(&exemplar->level[l], t);
     }
     while (exemplar->n_levels > 1 &&
-           census[exemplar->n_levels - 1][FL_SEGMENT_BORDER] < MIN_SEGMENT)
+           counts[exemplar->n_levels - 1][FL_SEGMENT_BORDER] < MIN_SEGMENT)
         exemplar->n_levels--;
-    if (census[0][FL_SEGMENT_BORDER] == 0) {
+    if (counts[0][FL_SEGMENT_BORDER] == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
                     "%s: no frame has paint in its mask; expected some pixels of it", style->path);
         return false;
@@ -348,13 +349,14 @@ static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, flo
     const bool all = params->style_window == 0 || params->style_window >= style->n_frames;
     g_autoptr(FlExemplar) exemplar = g_new0(FlExemplar, 1);
     g_autoptr(FlExemplarFrames) frames = g_new0(FlExemplarFrames, 1);
-    Census census = {{0}};
+    SegmentCounts counts = {{0}};
     exemplar->border_px = params->border > 0 ? params->border * scale : style->border_px;
     memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
     if (!init_levels(exemplar, style, all ? style->n_frames : params->style_window, error) ||
-        !init_frames(frames, style, params, all, error) || !measure(exemplar, frames, error) ||
-        !make_frames(exemplar, style, frames, census, error) ||
-        !judge(exemplar, style, census, error))
+        !init_frames(frames, style, params, all, error) ||
+        !measure_extents(exemplar, frames, error) ||
+        !pack_frames(exemplar, style, frames, counts, error) ||
+        !decide_levels(exemplar, style, counts, error))
         return NULL;
     if (!all)
         exemplar->frames = g_steal_pointer(&frames);
@@ -364,8 +366,8 @@ static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, flo
     return fl_exemplar_seek(exemplar, 0, error) ? g_steal_pointer(&exemplar) : NULL;
 }
 
-/* Makes a frame that the window has reached. */
-static bool make_frame(FlExemplar *exemplar, int t, GError **error)
+/* Packs a frame that enters the window. */
+static bool pack_entering_frame(FlExemplar *exemplar, int t, GError **error)
 {
     const FlExemplarFrames *frames = exemplar->frames;
     const FlExemplarLevel *level = &exemplar->level[0];
@@ -389,7 +391,7 @@ bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error)
     release_frames(exemplar, 0, first);
     release_frames(exemplar, first + window, exemplar->level[0].n_frames);
     for (int t = first; t < first + window; t++)
-        if ((t < old || t >= old + window) && !make_frame(exemplar, t, error))
+        if ((t < old || t >= old + window) && !pack_entering_frame(exemplar, t, error))
             return false;
     for (int l = 0; l < exemplar->n_levels && first != old; l++) {
         exemplar->level[l].first = first;

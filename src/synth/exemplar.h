@@ -5,7 +5,7 @@
 #include "style/style_guides.h"
 #include "synth/pyramid.h"
 
-/** Parts of a mask whose patches are matched with each other only [F21 §3.1]. */
+/** Parts of a mask; a patch matches patches of its own segment only [F21 §3.1]. */
 typedef enum FlSegment {
     FL_SEGMENT_OUTSIDE,
     FL_SEGMENT_BORDER,   // closer to the contour than the border width b
@@ -20,7 +20,7 @@ typedef enum FlSegment {
 /** One level. A packed frame has rows of `pitch` pixels; fl_exemplar_at() finds a pixel. */
 typedef struct FlExemplarLevel {
     int width, height, n_frames; // without padding
-    int first, window;           // the frames that can be searched; no others are in memory
+    int first, window;           // the frames that can be searched and are in memory
     size_t pitch, frame_pixels;  // padded
     FlTexel *pixels;
     FlSplinePixel *colour; // cubic spline coefficients, laid out like `pixels`
@@ -30,7 +30,7 @@ typedef struct FlExemplarLevel {
     int16_t (*offsets)[32]; // [FL_ANGLES][FL_PATCH_PIXELS of 32]: rotated patches in packed pixels
 } FlExemplarLevel;
 
-/** What a long exemplar's frames are made from as its window moves. */
+/** The source of a long exemplar's frames, as its window moves. */
 typedef struct FlExemplarFrames FlExemplarFrames;
 
 typedef struct FlExemplar {
@@ -43,14 +43,14 @@ typedef struct FlExemplar {
     // Level 0, n_frames * height * width:
     float *distance, *ext_plus, *ext_minus; // px; like the levels, in memory in the window only
     uint8_t *mask;
-    FlExemplarFrames *frames; // what frames are made from; NULL: all of them are in the window
+    FlExemplarFrames *frames; // NULL: all frames are in the window
 } FlExemplar;
 
 /**
  * Packs a style, at half its size where params ask for it. It has as many levels as its size allows
  * [F21 §3.6], fewer where nothing would be left of its mask.
  *
- * Returns: to be freed with fl_exemplar_free(); NULL with FL_ERROR_STYLE (nothing is painted in it)
+ * Returns: to be freed with fl_exemplar_free(); NULL with FL_ERROR_STYLE (it has no paint)
  * or FL_ERROR_NO_MEMORY set.
  */
 FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error);
@@ -59,10 +59,10 @@ void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
 
 /**
  * Moves the window [F21 §5] so that it begins with frame `first`, or as near to it as there are
- * frames with paint in them: the frames that it leaves are let go, those that it reaches are made.
- * Nobody else may use the exemplar meanwhile. The window begins where it would for 0.
+ * frames with paint: frames that leave it are freed, those that enter it are packed. No
+ * other thread may use the exemplar meanwhile. A new exemplar's window begins as for 0.
  *
- * Returns: false with FL_ERROR_INPUT or FL_ERROR_NO_MEMORY set; the exemplar is of no use then.
+ * Returns: false with FL_ERROR_INPUT or FL_ERROR_NO_MEMORY set; the exemplar is then unusable.
  */
 bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error);
 

@@ -27,7 +27,7 @@ enum {
 #define FL_FINE 16                      // steps of the target per step of the exemplar
 #define FL_ONE (FL_TEXEL_ONE * FL_FINE) // 1.0 in the target
 
-/** A pixel of the exemplar: as small as can be, since the search is bound by fetching them. */
+/** A pixel of the exemplar: small, since the search is bound by fetching them. */
 typedef struct FlTexel {
     uint8_t c[FL_CHANNELS];
 } FlTexel;
@@ -82,7 +82,7 @@ typedef struct FlTries {
 typedef void (*FlDrawTries)(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
                             FlTries *tries);
 
-/** What a try must pass before its patch is looked at. */
+/** What a try must pass before its patch is compared. */
 typedef struct FlSieve {
     const FlTexel *first; // the first frame's first pixel
     uint8_t segment;      // a try's centre must be of it
@@ -121,7 +121,7 @@ typedef struct FlVotes {
     _Alignas(64) int16_t frame[32]; // the first FL_PATCH_PIXELS of each count
 } FlVotes;
 
-/** Votes for the same place: the first of them, and the others' differences from it. */
+/** Votes that agree on a place: the first, and the sum of the others' differences from it. */
 typedef struct FlOpinion {
     int x, y, frame;
     int sum_x, sum_y;
@@ -129,8 +129,8 @@ typedef struct FlOpinion {
 } FlOpinion;
 
 /**
- * Sorts votes into opinions: the first vote that is left leads, all that are left in its frame and
- * near it join. opinions has room for FL_PATCH_PIXELS. Returns their number.
+ * Clusters votes into opinions: the first remaining vote leads, all remaining ones in its frame and
+ * near it join. opinions: FL_PATCH_PIXELS. Returns their number.
  */
 typedef int (*FlFindOpinions)(const FlVotes *votes, FlOpinion *opinions);
 

@@ -25,7 +25,7 @@ FlMatch fl_match_random(const FlExemplarLevel *level, FlSegment segment, uint8_t
 {
     const FlSegment s = level->n_valid[segment] > 0 ? segment : FL_SEGMENT_BORDER;
     FlRng rng = {key};
-    if (level->n_valid[s] == 0) // on a coarse level little paint is none
+    if (level->n_valid[s] == 0) // little paint may vanish on a coarse level
         return (FlMatch){.x_16 = (uint16_t)(16 * (level->width / 2)),
                          .y_16 = (uint16_t)(16 * (level->height / 2)),
                          .frame = (int16_t)level->first};
@@ -139,7 +139,7 @@ static uint64_t bin_of(FlMatch m)
            (uint64_t)fl_match_x(m) << 16 | (uint64_t)fl_match_y(m);
 }
 
-#define WINDOW 64 // matches looked at in a window; larger windows are thinned out evenly
+#define WINDOW 64 // matches sampled in a window; larger windows are sampled evenly
 
 /* The most frequent bin's first match, in scan order. */
 static FlMatch mode_of(const FlMatch *matches, int n)
@@ -160,16 +160,16 @@ static FlMatch mode_of(const FlMatch *matches, int n)
 
 static FlMatch window_mode(const FlNnf *full, int qx, int qy, int l, const FlExemplarLevel *level)
 {
-    FlMatch seen[WINDOW];
+    FlMatch sampled[WINDOW];
     int n = 0;
     const int side = 1 << l, step = MAX(1, side / 8);
     for (int y = qy * side + step / 2; y < MIN((qy + 1) * side, full->height); y += step)
         for (int x = qx * side + step / 2; x < MIN((qx + 1) * side, full->width); x += step) {
             const FlMatch m = full->match[(size_t)y * full->width + x];
             if (m.frame != FL_NO_MATCH)
-                seen[n++] = scaled_down(m, x, y, l, level);
+                sampled[n++] = scaled_down(m, x, y, l, level);
         }
-    return n > 0 ? mode_of(seen, n) : (FlMatch){.frame = FL_NO_MATCH};
+    return n > 0 ? mode_of(sampled, n) : (FlMatch){.frame = FL_NO_MATCH};
 }
 
 void fl_nnf_downscale(const FlNnf *full, int l, const FlExemplarLevel *level, FlNnf *coarse)

@@ -9,8 +9,8 @@
  * that cover it, and a patch sums the map over its own n x n pixels: together, matches are counted
  * under a tent about 2n wide and 4r long. We count matches in cells of 3 x 3 pixels and r+1 frames
  * and filter the counts with [1 2 1] along each axis, which is that tent to within a cell. Then a
- * match that changes costs two additions instead of 25 (2r+1), so that the map can be brought up to
- * date sixteen times per sweep: it must be fresh, or whole areas flee the same patch together.
+ * changed match costs two additions instead of 25 (2r+1), so that the map can be refreshed sixteen
+ * times per sweep: with a stale map, whole areas leave the same patch together.
  */
 #define FL_CELL 3
 #define FL_CELL_FACTOR 10923 // pixel p is in cell (2p + 1) * FL_CELL_FACTOR >> 16
@@ -22,7 +22,7 @@ typedef struct FlOccurrence {
     int first;                      // the exemplar's first frame that is searched
     uint16_t slice_factor;          // the t-th from there is in slice (2t + 1) * slice_factor >> 16
     int32_t *count[FL_SEGMENTS];    // matches per cell
-    int32_t *filtered[FL_SEGMENTS]; // the same under the tent, brought up to date by _refresh
+    int32_t *filtered[FL_SEGMENTS]; // the same under the tent, by _refresh
     float price[FL_SEGMENTS];       // cost of one filtered unit
 } FlOccurrence;
 

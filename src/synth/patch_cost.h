@@ -4,7 +4,7 @@
 
 #include "synth/occurrence.h"
 
-/** What a search on one level works with; nothing is owned. */
+/** The input and the field of a search on one level; nothing is owned. */
 typedef struct FlSearch {
     const FlExemplarLevel *level;
     const FlTargetLevel *target;
@@ -19,7 +19,7 @@ typedef struct FlSearch {
 
 /** Counters of a search. */
 typedef struct FlSearchCounts {
-    uint64_t drawn;    // matches that were thought of, most of which are ruled out at once
+    uint64_t drawn;    // matches proposed; most are ruled out at once
     uint64_t tried;    // patch distances started
     uint64_t accepted; // matches that changed
 } FlSearchCounts;

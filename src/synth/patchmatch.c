@@ -5,83 +5,82 @@
 #include "synth/tile_search.h"
 #include <sched.h>
 
-#define FEW_TILES (4 * FL_TILE_CLASSES) // with fewer, threads wait more than they work
-#define PATIENCE 200000                 // looks at the step, 0.1 ms, before others may run
+#define FEW_TILES (4 * FL_TILE_CLASSES) // with fewer, threads mostly wait
+#define PATIENCE 200000                 // spins, 0.1 ms, before a thread yields
 
 /*
- * The steps of a search: the classes of each sweep in turn. Threads take tiles of a step from a
- * counter; whoever finishes a step last refreshes the map and opens the next. All of it happens in
- * one parallel region with a barrier of its own, which gives the processor away after a while:
- * OpenMP's barriers spin, and sixteen of them per sweep cost ten times the search on a machine that
- * has other things to do. Whoever gives it away gets it back milliseconds later, so a tile's time
- * must be waited for.
+ * The steps of a search are the classes of each sweep in turn. Threads take the tiles of a step
+ * from a counter; the last thread to finish a step refreshes the map and opens the next step. One
+ * parallel region does it all, with a barrier of its own that yields the processor after a while:
+ * OpenMP's barriers spin, and sixteen of them per sweep cost ten times the search on a loaded
+ * machine. A thread that yields comes back milliseconds later, so it spins for a tile's time first.
  */
-typedef struct Crew {
-    const FlTileSearch *plan;
+typedef struct Team {
+    const FlTileSearch *tile_search;
     int sweeps, step; // step: sweep * FL_TILE_CLASSES + place in the order of classes
     int next_tile, end_tile;
     int n_threads, n_waiting;
     FlSearchCounts counts;
-} Crew;
+} Team;
 
 static bool is_backwards(int step)
 {
     return step / FL_TILE_CLASSES & 1;
 }
 
-static void open_step(Crew *crew, int step)
+static void open_step(Team *team, int step)
 {
     const int place = step % FL_TILE_CLASSES;
     const int class = is_backwards(step) ? FL_TILE_CLASSES - 1 - place : place;
-    const FlTargetLevel *target = crew->plan->search->target;
-    crew->next_tile = target->n_tiles[class];
-    crew->end_tile = target->n_tiles[class + 1];
-    __atomic_store_n(&crew->step, step, __ATOMIC_RELEASE);
+    const FlTargetLevel *target = team->tile_search->search->target;
+    team->next_tile = target->n_tiles[class];
+    team->end_tile = target->n_tiles[class + 1];
+    __atomic_store_n(&team->step, step, __ATOMIC_RELEASE);
 }
 
-static void finish_step(Crew *crew, int step)
+static void finish_step(Team *team, int step)
 {
-    if (__atomic_add_fetch(&crew->n_waiting, 1, __ATOMIC_ACQ_REL) == crew->n_threads) {
-        crew->n_waiting = 0;
-        fl_occurrence_refresh(crew->plan->search->map);
-        open_step(crew, step + 1);
+    if (__atomic_add_fetch(&team->n_waiting, 1, __ATOMIC_ACQ_REL) == team->n_threads) {
+        team->n_waiting = 0;
+        fl_occurrence_refresh(team->tile_search->search->map);
+        open_step(team, step + 1);
         return;
     }
-    for (int spins = 0; __atomic_load_n(&crew->step, __ATOMIC_ACQUIRE) == step; spins++)
+    for (int spins = 0; __atomic_load_n(&team->step, __ATOMIC_ACQUIRE) == step; spins++)
         if (spins > PATIENCE)
             sched_yield();
 }
 
-static void work(Crew *crew)
+static void work(Team *team)
 {
-    const FlSearch *search = crew->plan->search;
+    const FlSearch *search = team->tile_search->search;
     FlSearchCounts own = {0};
-    for (int step = 0; step < crew->sweeps * FL_TILE_CLASSES; step++) {
+    for (int step = 0; step < team->sweeps * FL_TILE_CLASSES; step++) {
         const uint64_t key = fl_key(search->key, (uint64_t)(step / FL_TILE_CLASSES));
         int k;
-        while ((k = __atomic_fetch_add(&crew->next_tile, FL_TILES_AT_ONCE, __ATOMIC_RELAXED)) <
-               crew->end_tile)
-            fl_tile_search_run(crew->plan, search->target->tiles + k,
-                               MIN(FL_TILES_AT_ONCE, crew->end_tile - k), is_backwards(step), key,
+        while ((k = __atomic_fetch_add(&team->next_tile, FL_TILES_AT_ONCE, __ATOMIC_RELAXED)) <
+               team->end_tile)
+            fl_tile_search_run(team->tile_search, search->target->tiles + k,
+                               MIN(FL_TILES_AT_ONCE, team->end_tile - k), is_backwards(step), key,
                                &own);
-        finish_step(crew, step);
+        finish_step(team, step);
     }
-    __atomic_fetch_add(&crew->counts.drawn, own.drawn, __ATOMIC_RELAXED);
-    __atomic_fetch_add(&crew->counts.tried, own.tried, __ATOMIC_RELAXED);
-    __atomic_fetch_add(&crew->counts.accepted, own.accepted, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&team->counts.drawn, own.drawn, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&team->counts.tried, own.tried, __ATOMIC_RELAXED);
+    __atomic_fetch_add(&team->counts.accepted, own.accepted, __ATOMIC_RELAXED);
 }
 
 FlSearchCounts fl_search_run(FlSearch *search, int sweeps)
 {
-    FlTileSearch plan;
-    fl_tile_search_init(&plan, search);
-    Crew crew = {.plan = &plan, .sweeps = sweeps};
-    open_step(&crew, 0);
+    FlTileSearch tile_search;
+    fl_tile_search_init(&tile_search, search);
+    Team team = {.tile_search = &tile_search, .sweeps = sweeps};
+    open_step(&team, 0);
 #pragma omp parallel if (search->target->n_tiles[FL_TILE_CLASSES] >= FEW_TILES)
     {
 #pragma omp single
-        crew.n_threads = fl_schedule_team_size();
-        work(&crew);
+        team.n_threads = fl_schedule_team_size();
+        work(&team);
     }
-    return crew.counts;
+    return team.counts;
 }

@@ -5,8 +5,8 @@
 #include "synth/patch_cost.h"
 
 /**
- * Sweeps over the field. Tiles of 4x4 pixels in 16 classes are worked on class by class: tiles of
- * a class never touch, inside one the scan is sequential, and the occurrence map is refreshed
+ * Sweeps over the field. Tiles of 4x4 pixels are searched class by class, in 16 classes: tiles of
+ * a class never touch, inside a tile the scan is sequential, and the occurrence map is refreshed
  * between classes. So the result does not depend on the number of threads.
  */
 FlSearchCounts fl_search_run(FlSearch *search, int sweeps);

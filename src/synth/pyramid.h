@@ -6,13 +6,13 @@
 #include "guides/guides.h"
 #include "synth/kernels.h"
 
-/** The planes of a stack. A target has no colours of its own. */
+/** The planes of a pyramid. A target has no colours of its own. */
 typedef enum FlPlane {
-    FL_GUIDE_PLANE_SHAPE, // 0 … 1
-    FL_PLANE_EXT_PLUS,    // level-0 px
-    FL_PLANE_EXT_MINUS,   // level-0 px
-    FL_PLANE_DISTANCE,    // level-0 px, positive inside
-    FL_PLANE_COS,         // direction of the flow
+    FL_PLANE_SHAPE,     // 0 … 1
+    FL_PLANE_EXT_PLUS,  // level-0 px
+    FL_PLANE_EXT_MINUS, // level-0 px
+    FL_PLANE_DISTANCE,  // level-0 px, positive inside
+    FL_PLANE_COS,       // direction of the flow
     FL_PLANE_SIN,
     FL_PLANE_INSIDE, // share of the pixel that lies in the mask, 0 … 1
     FL_PLANE_R,      // 0 … 1

@@ -3,8 +3,8 @@
 #include <glib.h>
 #include <math.h>
 
-/* Far pixels differ most between patches, so a bad candidate is given up early; opposite ones
- * follow each other, so that half a turn exchanges them. */
+/* Far pixels differ most between patches, so the sum of a bad candidate stops early; opposite
+ * pixels are neighbours, so that half a turn swaps them. */
 const int8_t fl_patch_offsets[FL_PATCH_PIXELS][2] = {
     {-2, -2}, {2, 2},  {2, -2}, {-2, 2}, {0, -2}, {0, 2}, {-2, 0},  {2, 0},   {-1, -2},
     {1, 2},   {2, -1}, {-2, 1}, {1, -2}, {-1, 2}, {2, 1}, {-2, -1}, {-1, -1}, {1, 1},

@@ -17,7 +17,7 @@
 /** Cosine and sine in 1/16384, for every angle: [angle][0] is the cosine. */
 extern const int16_t (*fl_turns)[2];
 
-/** Patch offsets in the order in which the distance visits them: outer ring first, in opposite
+/** Patch offsets in the order in which the distance sums them: outer ring first, in opposite
  * pairs, the centre last. */
 extern const int8_t fl_patch_offsets[FL_PATCH_PIXELS][2];
 

@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* Scans from the match's frame in steps of `step` for the motion that is nearest to the wanted one;
- * of equal ones the first, so that paint that rests stays in its frame. */
+ * of equal ones the first, so that still paint stays in its frame. */
 FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion_px, bool opposes)
 {
     const FlExemplarLevel *full = &exemplar->level[0];
@@ -36,8 +36,8 @@ static bool opposes(const FlExemplar *exemplar, FlMatch m, uint8_t target_angle)
     return turn > 64 && turn < 192;
 }
 
-/* One frame on, or back, unless there is no paint at its place. */
-static FlMatch boiled(const FlExemplar *exemplar, FlMatch match, int step)
+/* One frame forwards or backwards, unless there is no paint at its place. */
+static FlMatch boil_step(const FlExemplar *exemplar, FlMatch match, int step)
 {
     const FlExemplarLevel *full = &exemplar->level[0];
     const size_t frame = (size_t)full->width * full->height;
@@ -48,9 +48,9 @@ static FlMatch boiled(const FlExemplar *exemplar, FlMatch match, int step)
     return match;
 }
 
-/* A match that the window has left behind goes to the nearest frame in it; if there is no paint at
- * its place, it is none. */
-static FlMatch reached(const FlExemplar *exemplar, FlMatch match)
+/* Moves a match outside the window to the nearest frame in it; without paint there, the match is
+ * dropped. */
+static FlMatch moved_into_window(const FlExemplar *exemplar, FlMatch match)
 {
     const FlExemplarLevel *full = &exemplar->level[0];
     const int t = CLAMP(match.frame, full->first, full->first + full->window - 1);
@@ -78,11 +78,11 @@ void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *
     for (size_t p = 0; p < pixels; p++) {
         FlMatch *m = &nnf->match[p];
         if (m->frame != FL_NO_MATCH)
-            *m = reached(exemplar, *m);
+            *m = moved_into_window(exemplar, *m);
         if (m->frame == FL_NO_MATCH)
             continue;
         if (motion->boil != 0 && motion->speed[p] <= motion->still)
-            *m = boiled(exemplar, *m, motion->boil);
+            *m = boil_step(exemplar, *m, motion->boil);
         else
             *m = fl_match_shifted(exemplar, *m, motion->speed[p],
                                   opposes(exemplar, *m, motion->angle[p]));

@@ -7,7 +7,7 @@
 /**
  * Moves a match by the number of exemplar frames in which the paint at its place moves as far as
  * `motion_px`: forwards, or backwards where the target moves against the rotated exemplar
- * (`opposes`). Never past a frame in which the place has no paint.
+ * (`opposes`). Never beyond a frame in which the place has no paint.
  */
 FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion_px, bool opposes);
 
@@ -15,17 +15,17 @@ FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion
 typedef struct FlTargetMotion {
     const float *speed;   // px from the field's frame to the next
     const uint8_t *angle; // its direction
-    float still;          // px: what is no faster holds still …
-    int boil;             // … and goes on by so many frames of the exemplar, -1 … 1
+    float still;          // px: no faster counts as still …
+    int boil;             // … and boils: steps so many frames of the exemplar, -1 … 1
 } FlTargetMotion;
 
-/** Shifts a level-0 field, after matches that the exemplar's window has left are moved into it. */
+/** Shifts a level-0 field; matches outside the exemplar's window are first moved into it. */
 void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *motion);
 
 /**
- * Which way paint that holds still goes on before the frame-th painted frame, from 1: `boil` of the
- * frames take a step. The exemplar is walked to and fro, since it ends but a hold may not:
- * FL_BOIL_TURN steps (less if it is shorter) one way, as many back.
+ * The step of still paint before the frame-th painted frame, from 1: a share `boil` of the frames
+ * take one. Steps go back and forth, FL_BOIL_TURN each way (less in a shorter exemplar), since the
+ * exemplar ends but stillness may not.
  */
 int fl_boil_step(float boil, int frame, int n_frames);
 

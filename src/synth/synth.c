@@ -88,7 +88,7 @@ void fl_synth_measure(FlSynth *synth, bool energies)
     synth->wants_energies = energies;
 }
 
-/* The mask's bounding box with room for the coarsest patches, on the coarsest grid. */
+/* The mask's bounding box, enlarged by the coarsest patches, on the coarsest grid. */
 static bool working_rect(const FlSynth *synth, const FlGuides *guides, FlRect *rect)
 {
     int x0 = synth->width, y0 = synth->height, x1 = -1, y1 = -1;

@@ -22,14 +22,14 @@ typedef struct FlFrameStats {
     double seconds_target, seconds_temporal, seconds_search, seconds_vote;
 } FlFrameStats;
 
-/** What a frame was made of, for looking at: valid until the next frame. All level 0, `rect`. */
+/** How a frame was synthesised, for inspection: valid until the next frame. All level 0, `rect`. */
 typedef struct FlSynthView {
     FlRect rect;
     const FlNnf *nnf;
     const float *temporal, *temporal_weight; // T_temp and m; NULL in a first frame, and in drafts
 } FlSynthView;
 
-/** The painter of one region: it remembers the last frame. */
+/** The synthesis of one region: it keeps the state of the last frame. */
 typedef struct FlSynth FlSynth;
 
 /**
@@ -53,23 +53,23 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  * Paints the next frame. rgb: width * height * 3 sRGB, written in the mask and a rim of 2 px, the
  * style's paper elsewhere. An empty mask makes the next frame a first frame again.
  *
- * stats and view may be NULL; without a view nothing of the frame but its field and picture is
- * kept. With params->rest, a region that holds still keeps its last picture until params->boil is
+ * stats and view may be NULL; without a view only the field and the picture of the frame are
+ * kept. With params->rest, a still region keeps its last picture until params->boil is
  * due; stats are then empty.
  */
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
 
 /**
- * What the next frame needs to know of those painted so far: a painter made the same way that has
- * loaded it paints the same next frame.
+ * The state after the frames painted so far: a synthesis made the same way that loads it paints the
+ * same next frame.
  *
  * Returns: to be freed with g_bytes_unref(); NULL with FL_ERROR_NO_MEMORY set.
  */
 GBytes *fl_synth_save(FlSynth *synth, GError **error);
 
-/** Returns: false with FL_ERROR_CHANGED if the state is none or does not fit; the next frame is
- * then a first one. */
+/** Returns: false with FL_ERROR_CHANGED if the state is damaged or does not fit; the next frame
+ * is then a first frame. */
 bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSynth, fl_synth_free)

@@ -6,8 +6,8 @@
 #include <string.h>
 
 /* The bytes start with this; the packed field, mask and picture follow. Each match is stored as
- * its difference from the one before, which in a coherent field is mostly the same: a state is a
- * quarter smaller for it, and made in two thirds of the time. */
+ * its difference from the one before, mostly the same in a coherent field: states are a quarter
+ * smaller and packed in two thirds of the time. */
 typedef struct Header {
     int32_t frame, valid;
     int32_t x, y, width, height;
@@ -70,17 +70,19 @@ GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GE
         return NULL;
     FlSpan parts[N_PARTS];
     parts_of(state, matches, width, height, parts);
-    const size_t room = state->valid ? fl_compress_bound(parts, N_PARTS) : 0;
-    g_autofree uint8_t *bytes = fl_alloc(sizeof header + room, 1, "the state of a region", error);
+    const size_t capacity = state->valid ? fl_compress_bound(parts, N_PARTS) : 0;
+    g_autofree uint8_t *bytes =
+        fl_alloc(sizeof header + capacity, 1, "the state of a region", error);
     if (!bytes)
         return NULL;
-    const size_t packed = matches ? fl_compress(parts, N_PARTS, bytes + sizeof header, room) : 0;
+    const size_t packed =
+        matches ? fl_compress(parts, N_PARTS, bytes + sizeof header, capacity) : 0;
     if (state->valid && packed == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a state");
         return NULL;
     }
     memcpy(bytes, &header, sizeof header);
-    bytes = g_realloc(bytes, sizeof header + packed); // it is kept, the room is not
+    bytes = g_realloc(bytes, sizeof header + packed); // it is kept: no more bytes than needed
     return g_bytes_new_take(g_steal_pointer(&bytes), sizeof header + packed);
 }
 
@@ -121,7 +123,7 @@ static bool matches_fit(const FlNnf *nnf, const FlExemplarLevel *level)
     return true;
 }
 
-/* The field and the pictures of a last frame that had paint. */
+/* The field, mask and picture of the last frame. */
 static bool unpack_frame(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                          int width, int height, GError **error)
 {

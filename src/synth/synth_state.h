@@ -1,5 +1,4 @@
-/* What the synthesis of one frame hands on to the next, as bytes: for a render that goes on later.
- */
+/* The state of a region between two frames, as bytes: a later render resumes from it. */
 #ifndef FLUIDY_SYNTH_SYNTH_STATE_H
 #define FLUIDY_SYNTH_SYNTH_STATE_H
 
@@ -7,10 +6,10 @@
 
 #define FL_SYNTH_STATE_HEADER 24 /**< bytes before those that are packed */
 
-/** All that a region's next frame needs to know of those before it. */
+/** What the next frame of a region needs from those before it. */
 typedef struct FlSynthState {
-    int frame;     // how many have been painted, >= 0
-    bool valid;    // the last of them had paint; else the rest means nothing
+    int frame;     // frames painted so far, >= 0
+    bool valid;    // the last of them had paint; else the rest is undefined
     FlRect rect;   // its part of the frame
     FlNnf nnf;     // its level-0 field, as large as rect
     uint8_t *mask; // of the whole frame, width * height
@@ -21,16 +20,16 @@ typedef struct FlSynthState {
  *  Returns: NULL with FL_ERROR_NO_MEMORY set. */
 GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GError **error);
 
-/** The same bytes for a region that has held still since: `frame` frames have been painted. */
+/** The same bytes for a region that has rested since: `frame` frames have been painted. */
 GBytes *fl_synth_state_later(GBytes *bytes, int frame);
 
 /**
- * The reverse, for an exemplar whose level 0 is `level`. past->mask and past->rgb are the caller's
- * and are filled. The bytes need not be trusted: a field that points outside the exemplar is an
- * error.
+ * The reverse, for an exemplar whose level 0 is `level`. state->mask and state->rgb are the
+ * caller's and are filled. The bytes need not be trusted: a field that points outside the exemplar
+ * is an error.
  *
  * Returns: false with FL_ERROR_CHANGED or FL_ERROR_NO_MEMORY set; the field is then empty, and mask
- * and rgb hold anything. Else past->nnf is to be cleared.
+ * and rgb hold anything. Else state->nnf is to be cleared.
  */
 bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                            int width, int height, GError **error);

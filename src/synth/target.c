@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 
 #define EXT_UNIT_SQUARED (FL_EXT_UNIT * FL_EXT_UNIT)
-#define WEIGHTS_SUM 5   // 25 pixels * 5 * FL_ONE^2 < 2^31: room for the other terms in 32 bits
+#define WEIGHTS_SUM 5   // 25 pixels * 5 * FL_ONE^2 < 2^31: the other terms still fit in 32 bits
 #define TANGENT_CAP 8.0 // |tan| of 83 degrees: steeper is as bad
 
 void fl_cost_scale_init(FlCostScale *scale, const FlParams *params)
@@ -51,7 +51,7 @@ static void fill_pixel(FlTargetLevel *level, const FlPyramid *pyramid, size_t p,
         (uint8_t)fl_segment_of(pyramid->plane[FL_PLANE_INSIDE][p] > 0, level->distance[p],
                                exemplar->border_px, exemplar->separate);
     level->angle[p] = fl_pyramid_angle(pyramid, p);
-    guide->c[FL_CH_SHAPE] = fl_pack_channel(pyramid->plane[FL_GUIDE_PLANE_SHAPE][p]);
+    guide->c[FL_CH_SHAPE] = fl_pack_channel(pyramid->plane[FL_PLANE_SHAPE][p]);
     guide->c[FL_CH_EXT_PLUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
     guide->c[FL_CH_EXT_MINUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
 }

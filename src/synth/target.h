@@ -39,7 +39,7 @@ typedef struct FlCostScale {
 } FlCostScale;
 
 typedef struct FlTarget {
-    FlRect rect; // part of the frame that is worked on; its corner is a multiple of 2^(levels - 1)
+    FlRect rect; // the synthesised part of the frame; its corner: a multiple of 2^(levels - 1)
     int n_levels;
     FlTargetLevel level[FL_MAX_LEVELS];
 } FlTarget;
@@ -67,7 +67,7 @@ typedef struct FlTargetPatch {
     _Alignas(64) FlCompressed guide[FL_PATCH_PIXELS + 3];
 } FlTargetPatch;
 
-/** Pixels beyond the rectangle are as the nearest one in it. */
+/** Pixels beyond the rectangle repeat the nearest one in it. */
 void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *patch);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlTarget, fl_target_clear)

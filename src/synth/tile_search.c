@@ -3,39 +3,38 @@
 #include "base/rng.h"
 
 /*
- * Where the time goes (perf; a snowman of 19 regions, 1000 px wide, AVX-512): two thirds of a whole
- * render into the search, an eighth into votes, the rest into guides, the drawing's shapes,
- * composing and files. Of the search, four tenths go into patch distances, three into what is
- * below, and a twentieth each into gathering the target's patch, the sieve and the neighbours; in a
- * draft, which searches less, search and votes take a fifth of the render each, the distances of
- * the guides an eighth.
+ * Time (perf; a snowman of 19 regions, 1000 px wide, AVX-512): the search takes two thirds of a
+ * whole render, votes an eighth; guides, shapes of the drawing, compositing and files the rest. Of
+ * the search, patch distances take four tenths, this file three, gathering the target's patch, the
+ * sieve and the neighbours a twentieth each. A draft searches less: search and votes take a fifth
+ * of the render each, the distances of the guides an eighth.
  *
- * A random try's texels are a cache miss each. So pixels go through three stages, each pixel a
- * stage behind the next one of its tile:
- *   draw    draws its tries and has their centres fetched,
- *   sift    keeps those that the segment, the occurrence map and the neighbours do not rule out,
- *           a sixth, and has the rest of their texels fetched,
- *   settle  tests the neighbours' matches and what is left of the tries, both rotations at once.
- * No pixel but itself changes a pixel's match, so the tries may be drawn early.
+ * Each texel of a random try is a cache miss. So pixels go through three stages, each a stage ahead
+ * of the next pixel of its tile:
+ *   draw    draws the tries and prefetches their centres,
+ *   sift    keeps the tries that segment, occurrence map and neighbours do not rule out, a sixth,
+ *           and prefetches the rest of their texels,
+ *   settle  tests the neighbours' matches and the remaining tries, both rotations at once.
+ * Only a pixel itself changes its match, so its tries may be drawn early.
  */
 
-/* A random try that has not been ruled out. */
+/* A random try that sift() kept. */
 typedef struct Candidate {
     const FlTexel *centre;
     FlMatch match;
     uint32_t uniformity;
 } Candidate;
 
-/* One pixel being matched. */
-typedef struct Visit {
+/* The search for the match of one pixel. */
+typedef struct PixelSearch {
     FlTries tries;
-    const FlTileSearch *plan;
+    const FlTileSearch *tile_search;
     const FlSearch *search;
     int x, y;
     size_t pixel;
     FlSegment segment;
     uint8_t angle;
-    FlMatch own; // at the start of the visit: what the occurrence map has counted
+    FlMatch own; // at the start: the match that the occurrence map counts
     FlCell own_cell;
     FlMatch best;
     uint32_t data;           // fl_match_cost of best
@@ -45,15 +44,15 @@ typedef struct Visit {
     int n_expected;
     int n_candidates;
     Candidate candidate[FL_MAX_TRIES];
-} Visit;
+} PixelSearch;
 
-void fl_tile_search_init(FlTileSearch *plan, const FlSearch *search)
+void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search)
 {
     const FlExemplarLevel *level = search->level;
     const FlParams *params = search->params;
     const float side = (float)MAX(level->width, level->height);
-    FlWindows *w = &plan->windows;
-    plan->search = search;
+    FlWindows *w = &tile_search->windows;
+    tile_search->search = search;
     *w = (FlWindows){
         .size = {(uint16_t)level->width, (uint16_t)level->height, (uint16_t)level->window},
         .step = {1, (uint32_t)level->pitch, (uint32_t)level->frame_pixels}};
@@ -65,7 +64,7 @@ void fl_tile_search_init(FlTileSearch *plan, const FlSearch *search)
     }
     for (int n = 0; n <= 4; n++)
         for (int apart = 0; apart <= n; apart++)
-            plan->coherence[n][apart] =
+            tile_search->coherence[n][apart] =
                 n == 0 ? 0 : (uint32_t)(params->w_coh * search->scale->unit * apart / n);
 }
 
@@ -76,19 +75,18 @@ static bool continues(FlMatch a, FlMatch b)
            fl_angle_distance((uint8_t)(a.theta - b.theta)) < 8;
 }
 
-static uint32_t coherence_cost(const Visit *visit, FlMatch candidate)
+static uint32_t coherence_cost(const PixelSearch *ps, FlMatch candidate)
 {
     int apart = 0;
-    for (int k = 0; k < visit->n_expected; k++)
-        apart += !continues(candidate, visit->expected[k]);
-    return visit->plan->coherence[visit->n_expected][apart];
+    for (int k = 0; k < ps->n_expected; k++)
+        apart += !continues(candidate, ps->expected[k]);
+    return ps->tile_search->coherence[ps->n_expected][apart];
 }
 
-static uint32_t uniformity_cost(const Visit *visit, FlMatch candidate)
+static uint32_t uniformity_cost(const PixelSearch *ps, FlMatch candidate)
 {
-    const FlOccurrence *map = visit->search->map;
-    return fl_occurrence_cost(map, visit->segment, fl_occurrence_cell(map, candidate),
-                              visit->own_cell);
+    const FlOccurrence *map = ps->search->map;
+    return fl_occurrence_cost(map, ps->segment, fl_occurrence_cell(map, candidate), ps->own_cell);
 }
 
 static bool same_match(FlMatch a, FlMatch b)
@@ -100,178 +98,176 @@ static bool same_match(FlMatch a, FlMatch b)
  * two. */
 static const int8_t neighbours[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
 
-static void find_expected(Visit *visit)
+static void find_expected(PixelSearch *ps)
 {
-    const FlNnf *nnf = visit->search->nnf;
-    visit->n_expected = 0;
+    const FlNnf *nnf = ps->search->nnf;
+    ps->n_expected = 0;
     for (int k = 0; k < 4; k++) {
         const int dx = neighbours[k][0], dy = neighbours[k][1];
-        const int nx = visit->x + dx, ny = visit->y + dy;
+        const int nx = ps->x + dx, ny = ps->y + dy;
         if (nx < 0 || ny < 0 || nx >= nnf->width || ny >= nnf->height)
             continue;
         const FlMatch m = nnf->match[(size_t)ny * nnf->width + nx];
         if (m.frame == FL_NO_MATCH)
             continue;
-        visit->expected[visit->n_expected++] = fl_match_moved(m, -dx, -dy, visit->search->level);
+        ps->expected[ps->n_expected++] = fl_match_moved(m, -dx, -dy, ps->search->level);
     }
 }
 
-static void draw(Visit *visit, const FlTileSearch *plan, size_t pixel, uint64_t key)
+static void draw(PixelSearch *ps, const FlTileSearch *tile_search, size_t pixel, uint64_t key)
 {
-    const FlSearch *search = plan->search;
+    const FlSearch *search = tile_search->search;
     const FlTexel *first = fl_exemplar_at(search->level, 0, 0, search->level->first);
-    visit->plan = plan;
-    visit->search = search;
-    visit->pixel = pixel;
-    visit->x = (int)(pixel % (size_t)search->target->width);
-    visit->y = (int)(pixel / (size_t)search->target->width);
-    visit->own = visit->best = search->nnf->match[pixel];
-    const uint16_t centre[3] = {(uint16_t)fl_match_x(visit->own), (uint16_t)fl_match_y(visit->own),
-                                (uint16_t)(visit->own.frame - search->level->first)};
-    search->kernels->draw_tries(&plan->windows, centre, (uint32_t)fl_key(key, pixel),
-                                &visit->tries);
-    for (int k = 0; k < plan->windows.n; k++)
-        __builtin_prefetch(first + visit->tries.pixel[k]);
+    ps->tile_search = tile_search;
+    ps->search = search;
+    ps->pixel = pixel;
+    ps->x = (int)(pixel % (size_t)search->target->width);
+    ps->y = (int)(pixel / (size_t)search->target->width);
+    ps->own = ps->best = search->nnf->match[pixel];
+    const uint16_t centre[3] = {(uint16_t)fl_match_x(ps->own), (uint16_t)fl_match_y(ps->own),
+                                (uint16_t)(ps->own.frame - search->level->first)};
+    search->kernels->draw_tries(&tile_search->windows, centre, (uint32_t)fl_key(key, pixel),
+                                &ps->tries);
+    for (int k = 0; k < tile_search->windows.n; k++)
+        __builtin_prefetch(first + ps->tries.pixel[k]);
 }
 
-static FlSieve sieve_of(const Visit *visit)
+static FlSieve sieve_of(const PixelSearch *ps)
 {
-    const FlSearch *search = visit->search;
+    const FlSearch *search = ps->search;
     const FlOccurrence *map = search->map;
-    const uint32_t apart = visit->plan->coherence[visit->n_expected][visit->n_expected];
+    const uint32_t apart = ps->tile_search->coherence[ps->n_expected][ps->n_expected];
     FlSieve sieve = {
         .first = fl_exemplar_at(search->level, 0, 0, search->level->first),
-        .segment = (uint8_t)visit->segment,
-        .use = map->filtered[visit->segment],
+        .segment = (uint8_t)ps->segment,
+        .use = map->filtered[ps->segment],
         .step = {1, (uint32_t)map->columns, (uint32_t)map->columns * (uint32_t)map->rows},
         .factor = {FL_CELL_FACTOR, FL_CELL_FACTOR, map->slice_factor},
-        .own = {(uint16_t)visit->own_cell.x, (uint16_t)visit->own_cell.y,
-                (uint16_t)visit->own_cell.t},
-        .price = map->price[visit->segment],
+        .own = {(uint16_t)ps->own_cell.x, (uint16_t)ps->own_cell.y, (uint16_t)ps->own_cell.t},
+        .price = map->price[ps->segment],
         .most = FL_OCCURRENCE_MOST,
-        .limit = visit->total > apart ? visit->total - apart : 0};
+        .limit = ps->total > apart ? ps->total - apart : 0};
     for (int k = 0; k < 4; k++)
-        sieve.frames[k] = k < visit->n_expected
-                              ? (int16_t)(visit->expected[k].frame - search->level->first)
+        sieve.frames[k] = k < ps->n_expected
+                              ? (int16_t)(ps->expected[k].frame - search->level->first)
                               : FL_NO_MATCH;
     return sieve;
 }
 
-static void add_candidate(Visit *visit, int k, uint32_t uniformity)
+static void add_candidate(PixelSearch *ps, int k, uint32_t uniformity)
 {
-    const FlExemplarLevel *level = visit->search->level;
-    const FlTries *tries = &visit->tries;
-    Candidate *c = &visit->candidate[visit->n_candidates++];
+    const FlExemplarLevel *level = ps->search->level;
+    const FlTries *tries = &ps->tries;
+    Candidate *c = &ps->candidate[ps->n_candidates++];
     c->match = (FlMatch){.x_16 = (uint16_t)(16 * tries->at[0][k]),
                          .y_16 = (uint16_t)(16 * tries->at[1][k]),
                          .frame = (int16_t)(level->first + tries->at[2][k])};
     c->uniformity = uniformity;
     c->centre = fl_exemplar_at(level, 0, 0, level->first) + tries->pixel[k];
-    if (visit->search->params->rotate)
-        c->match.theta = (uint8_t)(visit->angle - c->centre->c[FL_CH_ANGLE]);
+    if (ps->search->params->rotate)
+        c->match.theta = (uint8_t)(ps->angle - c->centre->c[FL_CH_ANGLE]);
     const int16_t *offsets = level->offsets[c->match.theta];
     for (int p = 0; p < 8; p++) // the outer ring: the lines between are mostly the same
         __builtin_prefetch(c->centre + offsets[p]);
 }
 
-static void sift(Visit *visit)
+static void sift(PixelSearch *ps)
 {
-    const FlSearch *search = visit->search;
-    visit->angle = search->target->angle[visit->pixel];
-    visit->segment = search->target->segment[visit->pixel];
-    visit->own_cell = fl_occurrence_cell(search->map, visit->own);
-    visit->data = search->cost[visit->pixel];
-    visit->own_uniformity = uniformity_cost(visit, visit->own);
-    find_expected(visit);
-    visit->total = visit->data + visit->own_uniformity + coherence_cost(visit, visit->own);
-    const FlSieve sieve = sieve_of(visit);
+    const FlSearch *search = ps->search;
+    ps->angle = search->target->angle[ps->pixel];
+    ps->segment = search->target->segment[ps->pixel];
+    ps->own_cell = fl_occurrence_cell(search->map, ps->own);
+    ps->data = search->cost[ps->pixel];
+    ps->own_uniformity = uniformity_cost(ps, ps->own);
+    find_expected(ps);
+    ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
+    const FlSieve sieve = sieve_of(ps);
     uint32_t uniformity[FL_MAX_TRIES];
-    visit->n_candidates = 0;
+    ps->n_candidates = 0;
     for (uint64_t left =
-             search->kernels->sift(&visit->tries, visit->plan->windows.n, &sieve, uniformity);
+             search->kernels->sift(&ps->tries, ps->tile_search->windows.n, &sieve, uniformity);
          left; left &= left - 1) {
         const int k = __builtin_ctzll(left);
-        add_candidate(visit, k, uniformity[k]);
+        add_candidate(ps, k, uniformity[k]);
     }
 }
 
-static void take(Visit *visit, FlMatch match, uint32_t prior, uint32_t data)
+static void take(PixelSearch *ps, FlMatch match, uint32_t prior, uint32_t data)
 {
-    if (prior >= visit->total || data >= visit->total - prior)
+    if (prior >= ps->total || data >= ps->total - prior)
         return;
-    visit->best = match;
-    visit->data = data;
-    visit->total = data + prior;
+    ps->best = match;
+    ps->data = data;
+    ps->total = data + prior;
 }
 
-/* Returns: how many distances were started. */
-static int try_match(Visit *visit, const FlTargetPatch *patch, FlMatch match, const FlTexel *centre,
-                     uint32_t uniformity)
+/* Returns: the number of patch distances started. */
+static int try_match(PixelSearch *ps, const FlTargetPatch *patch, FlMatch match,
+                     const FlTexel *centre, uint32_t uniformity)
 {
-    const uint32_t prior = uniformity + coherence_cost(visit, match);
-    if (prior >= visit->total || same_match(match, visit->best))
+    const uint32_t prior = uniformity + coherence_cost(ps, match);
+    if (prior >= ps->total || same_match(match, ps->best))
         return 0;
-    take(visit, match, prior,
-         fl_patch_cost(visit->search, patch, visit->angle, centre, match.theta,
-                       visit->total - prior - 1));
+    take(ps, match, prior,
+         fl_patch_cost(ps->search, patch, ps->angle, centre, match.theta, ps->total - prior - 1));
     return 1;
 }
 
 /* Both rotations of a try [P21 §4.3]; their directions are the target's and cost nothing. */
-static int try_both(Visit *visit, const FlTargetPatch *patch, const Candidate *c)
+static int try_both(PixelSearch *ps, const FlTargetPatch *patch, const Candidate *c)
 {
-    const FlSearch *search = visit->search;
+    const FlSearch *search = ps->search;
     FlMatch turned = c->match;
     turned.theta += 128;
-    const uint32_t prior[2] = {c->uniformity + coherence_cost(visit, c->match),
-                               c->uniformity + coherence_cost(visit, turned)};
-    const uint32_t total = visit->total, lower = MIN(prior[0], prior[1]);
+    const uint32_t prior[2] = {c->uniformity + coherence_cost(ps, c->match),
+                               c->uniformity + coherence_cost(ps, turned)};
+    const uint32_t total = ps->total, lower = MIN(prior[0], prior[1]);
     if (lower >= total)
         return 0;
     uint32_t data[2];
     search->kernels->patch_pair(c->centre, search->level->offsets[c->match.theta], patch->guide,
                                 &search->target->rest, total - lower - 1, data);
-    take(visit, c->match, prior[0], data[0]);
-    take(visit, turned, prior[1], data[1]);
+    take(ps, c->match, prior[0], data[0]);
+    take(ps, turned, prior[1], data[1]);
     return (prior[0] < total) + (prior[1] < total);
 }
 
-static int propagate(Visit *visit, const FlTargetPatch *patch)
+static int propagate(PixelSearch *ps, const FlTargetPatch *patch)
 {
-    const FlExemplarLevel *level = visit->search->level;
+    const FlExemplarLevel *level = ps->search->level;
     int tried = 0;
-    for (int k = 0; k < visit->n_expected; k++) {
-        const FlMatch m = visit->expected[k];
-        if (m.frame == FL_NO_MATCH || same_match(m, visit->own))
+    for (int k = 0; k < ps->n_expected; k++) {
+        const FlMatch m = ps->expected[k];
+        if (m.frame == FL_NO_MATCH || same_match(m, ps->own))
             continue;
         const FlTexel *centre = fl_exemplar_at(level, fl_match_x(m), fl_match_y(m), m.frame);
-        if (centre->c[FL_CH_SEGMENT] == visit->segment)
-            tried += try_match(visit, patch, m, centre, uniformity_cost(visit, m));
+        if (centre->c[FL_CH_SEGMENT] == ps->segment)
+            tried += try_match(ps, patch, m, centre, uniformity_cost(ps, m));
     }
     return tried;
 }
 
-static void settle(Visit *visit, FlSearchCounts *counts)
+static void settle(PixelSearch *ps, FlSearchCounts *counts)
 {
-    const FlSearch *search = visit->search;
+    const FlSearch *search = ps->search;
     FlTargetPatch patch;
-    fl_target_gather(search->target, visit->x, visit->y, &patch);
-    find_expected(visit); // the pixel before may have moved
-    visit->total = visit->data + visit->own_uniformity + coherence_cost(visit, visit->own);
-    counts->drawn += (uint64_t)visit->n_expected;
-    counts->tried += propagate(visit, &patch);
-    for (int k = 0; k < visit->n_candidates; k++) {
-        const Candidate *c = &visit->candidate[k];
+    fl_target_gather(search->target, ps->x, ps->y, &patch);
+    find_expected(ps); // the pixel before may have changed its match
+    ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
+    counts->drawn += (uint64_t)ps->n_expected;
+    counts->tried += propagate(ps, &patch);
+    for (int k = 0; k < ps->n_candidates; k++) {
+        const Candidate *c = &ps->candidate[k];
         counts->tried += search->params->rotate
-                             ? try_both(visit, &patch, c)
-                             : try_match(visit, &patch, c->match, c->centre, c->uniformity);
+                             ? try_both(ps, &patch, c)
+                             : try_match(ps, &patch, c->match, c->centre, c->uniformity);
     }
-    if (same_match(visit->own, visit->best))
+    if (same_match(ps->own, ps->best))
         return;
     counts->accepted++;
-    fl_occurrence_move(search->map, visit->segment, visit->own, visit->best);
-    search->nnf->match[visit->pixel] = visit->best;
-    search->cost[visit->pixel] = visit->data;
+    fl_occurrence_move(search->map, ps->segment, ps->own, ps->best);
+    search->nnf->match[ps->pixel] = ps->best;
+    search->cost[ps->pixel] = ps->data;
 }
 
 /* Lists a tile's pixels in the order of the scan. Returns their number. */
@@ -290,21 +286,22 @@ static int list_pixels(const FlTargetLevel *target, uint32_t tile, bool backward
     return n;
 }
 
-void fl_tile_search_run(const FlTileSearch *plan, const uint32_t *tiles, int n, bool backwards,
-                        uint64_t key, FlSearchCounts *counts)
+void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, int n,
+                        bool backwards, uint64_t key, FlSearchCounts *counts)
 {
     size_t pixels[FL_TILES_AT_ONCE * FL_TILE * FL_TILE];
-    Visit visits[3];
+    PixelSearch pixel[3];
     int end = 0;
     for (int k = 0; k < n; k++)
-        end += list_pixels(plan->search->target, tiles[k], backwards, pixels + end);
-    counts->drawn += (uint64_t)end * plan->windows.n * (plan->search->params->rotate ? 2 : 1);
+        end += list_pixels(tile_search->search->target, tiles[k], backwards, pixels + end);
+    counts->drawn +=
+        (uint64_t)end * tile_search->windows.n * (tile_search->search->params->rotate ? 2 : 1);
     for (int k = 0; k < end + 2; k++) {
         if (k < end)
-            draw(&visits[k % 3], plan, pixels[k], key);
+            draw(&pixel[k % 3], tile_search, pixels[k], key);
         if (k >= 1 && k <= end)
-            sift(&visits[(k - 1) % 3]);
+            sift(&pixel[(k - 1) % 3]);
         if (k >= 2)
-            settle(&visits[(k - 2) % 3], counts);
+            settle(&pixel[(k - 2) % 3], counts);
     }
 }

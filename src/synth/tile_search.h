@@ -4,22 +4,22 @@
 
 #include "synth/patch_cost.h"
 
-/** What all visits of a search have in common. */
+/** What is the same for all pixels of a search. */
 typedef struct FlTileSearch {
     const FlSearch *search;
     FlWindows windows;
     uint32_t coherence[5][5]; // [neighbours][of which continue elsewhere]
 } FlTileSearch;
 
-void fl_tile_search_init(FlTileSearch *plan, const FlSearch *search);
+void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search);
 
 #define FL_TILES_AT_ONCE 4
 
 /**
  * Improves the matches of up to FL_TILES_AT_ONCE tiles, one pixel after the other, forwards or
- * backwards; `key` decides the random tries.
+ * backwards; the random tries depend on `key`.
  */
-void fl_tile_search_run(const FlTileSearch *plan, const uint32_t *tiles, int n, bool backwards,
-                        uint64_t key, FlSearchCounts *counts);
+void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, int n,
+                        bool backwards, uint64_t key, FlSearchCounts *counts);
 
 #endif

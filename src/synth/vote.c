@@ -4,7 +4,7 @@
 
 /* Where the patch with match m, centred at place k of the 5x5 pixels around, takes the middle from.
  */
-static inline void hear(FlMatch m, int k, FlVotes *votes)
+static inline void add_vote(FlMatch m, int k, FlVotes *votes)
 {
     const FlOffset offset = fl_vote_offsets[m.theta][k];
     votes->x[k] = (uint16_t)(m.x_16 + offset.x + FL_VOTE_BIAS);
@@ -12,31 +12,31 @@ static inline void hear(FlMatch m, int k, FlVotes *votes)
     votes->frame[k] = m.frame;
 }
 
-static void hear_at_border(const FlNnf *nnf, int x, int y, FlVotes *votes)
+static void gather_at_border(const FlNnf *nnf, int x, int y, FlVotes *votes)
 {
     for (int k = 0; k < FL_PATCH_PIXELS; k++) {
         const int px = x + k % FL_PATCH - FL_PATCH_RADIUS, py = y + k / FL_PATCH - FL_PATCH_RADIUS;
         const bool in = px >= 0 && py >= 0 && px < nnf->width && py < nnf->height;
-        hear(in ? nnf->match[(size_t)py * nnf->width + px] : (FlMatch){.frame = FL_NO_MATCH}, k,
-             votes);
+        add_vote(in ? nnf->match[(size_t)py * nnf->width + px] : (FlMatch){.frame = FL_NO_MATCH}, k,
+                 votes);
     }
 }
 
-static void hear_all(const FlNnf *nnf, int x, int y, FlVotes *votes)
+static void gather_votes(const FlNnf *nnf, int x, int y, FlVotes *votes)
 {
     const int r = FL_PATCH_RADIUS;
     if (x < r || y < r || x >= nnf->width - r || y >= nnf->height - r) {
-        hear_at_border(nnf, x, y, votes);
+        gather_at_border(nnf, x, y, votes);
         return;
     }
     const FlMatch *row = nnf->match + (size_t)(y - r) * nnf->width + x - r;
     for (int dy = 0; dy < FL_PATCH; dy++, row += nnf->width)
         for (int dx = 0; dx < FL_PATCH; dx++)
-            hear(row[dx], FL_PATCH * dy + dx, votes);
+            add_vote(row[dx], FL_PATCH * dy + dx, votes);
 }
 
 /* n^sharpness for 1 … 25 patches. */
-static void weigh(float sharpness, float weight[FL_PATCH_PIXELS + 1])
+static void opinion_weights(float sharpness, float weight[FL_PATCH_PIXELS + 1])
 {
     for (int n = 0; n <= FL_PATCH_PIXELS; n++) {
         const int whole = (int)sharpness;
@@ -65,8 +65,8 @@ static void sample(const FlExemplarLevel *level, const FlKernels *kernels, const
                            value);
 }
 
-static void mix(const FlOpinion *opinions, int n, const FlExemplarLevel *level,
-                const FlKernels *kernels, const float *weight, float colour[3])
+static void blend_opinions(const FlOpinion *opinions, int n, const FlExemplarLevel *level,
+                           const FlKernels *kernels, const float *weight, float colour[3])
 {
     float sum[3] = {0}, total = 0;
     for (int k = 0; k < n; k++) {
@@ -81,21 +81,21 @@ static void mix(const FlOpinion *opinions, int n, const FlExemplarLevel *level,
         colour[c] = CLAMP(sum[c] / total, 0.0f, 1.0f);
 }
 
-/* near[x] = whether a patch of these rows covers column x of row y; room: as many. */
-static void find_covered(const FlNnf *nnf, int y, uint8_t *room, uint8_t *near)
+/* near[x] = whether a patch of these rows covers column x of row y; matched: scratch. */
+static void find_covered(const FlNnf *nnf, int y, uint8_t *matched, uint8_t *near)
 {
     const int r = FL_PATCH_RADIUS;
     const size_t width = (size_t)MAX(nnf->width, 0);
-    memset(room, 0, width);
+    memset(matched, 0, width);
     for (int v = MAX(y - r, 0); v <= MIN(y + r, nnf->height - 1); v++)
         for (size_t x = 0; x < width; x++)
-            room[x] |= nnf->match[(size_t)v * width + x].frame != FL_NO_MATCH;
-    memcpy(near, room, width);
+            matched[x] |= nnf->match[(size_t)v * width + x].frame != FL_NO_MATCH;
+    memcpy(near, matched, width);
     for (size_t d = 1; d <= (size_t)r; d++) {
         for (size_t x = 0; x + d < width; x++)
-            near[x] |= room[x + d];
+            near[x] |= matched[x + d];
         for (size_t x = d; x < width; x++)
-            near[x] |= room[x - d];
+            near[x] |= matched[x - d];
     }
 }
 
@@ -104,22 +104,22 @@ static void vote_for(const FlNnf *nnf, int x, int y, const FlExemplarLevel *leve
 {
     FlVotes votes;
     FlOpinion opinions[FL_PATCH_PIXELS];
-    hear_all(nnf, x, y, &votes);
-    mix(opinions, kernels->opinions(&votes, opinions), level, kernels, weight, colour);
+    gather_votes(nnf, x, y, &votes);
+    blend_opinions(opinions, kernels->opinions(&votes, opinions), level, kernels, weight, colour);
 }
 
 void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
              float sharpness, float *colour, uint8_t *voted)
 {
     float weight[FL_PATCH_PIXELS + 1];
-    weigh(sharpness, weight);
+    opinion_weights(sharpness, weight);
 #pragma omp parallel
     {
-        g_autofree uint8_t *room = g_malloc(2 * (size_t)nnf->width);
-        uint8_t *covered = room + nnf->width;
+        g_autofree uint8_t *matched = g_malloc(2 * (size_t)nnf->width);
+        uint8_t *covered = matched + nnf->width;
 #pragma omp for schedule(dynamic, 4)
         for (int y = 0; y < nnf->height; y++) {
-            find_covered(nnf, y, room, covered);
+            find_covered(nnf, y, matched, covered);
             for (int x = 0; x < nnf->width; x++) {
                 const size_t p = (size_t)y * nnf->width + x;
                 if (covered[x])

@@ -7,9 +7,9 @@
 /**
  * Votes for every pixel that a patch covers: the mask and a rim of 2 px around it.
  *
- * The patches over a pixel point to places in the exemplar. Those that point to the same place (the
+ * The patches over a pixel point to places in the exemplar. Those that agree on a place (the
  * same frame, within 3/4 px) are one opinion: their places are averaged, not their colours, so
- * a coherent field loses nothing but one interpolation. Opinions are mixed with weights
+ * a coherent field loses only one interpolation. Opinions are blended with weights
  * n^sharpness, n the number of patches behind each; sharpness 1 is the papers' mean.
  *
  * colour: 3 floats per pixel, 0 … 1, untouched where nothing votes; voted: 1 where something did,
