@@ -119,7 +119,7 @@ done
 sleep 0.2
 kill -TERM $job
 wait $job
-[ $? = 75 ] && says 'ffmpeg was at work: interrupted' && [ ! -e hung/film.mov ] && [ ! -e hung/.film.mov.part ]
+[ $? = 75 ] && says 'ffmpeg was interrupted' && [ ! -e hung/film.mov ] && [ ! -e hung/.film.mov.part ]
 result $? 'a signal ends the wait for an ffmpeg that hangs'
 
 # tight KIB: one frame with that much address space is painted, or refused in one line.

@@ -142,7 +142,7 @@ look && [ ! -s err ] && grep -q 44aa99 out
 result $? 'a filter that only blends with the background is a blend mode'
 svg x.svg "<filter id='f'><feOffset in='BackgroundImage' dx='9'/></filter>$shape<circle r='20'
     fill='#4a9' filter='url(#f)'/>"
-look && says 'BackgroundImage is empty: filters do not see what is below'
+look && says 'BackgroundImage is empty: filters cannot read what is below'
 result $? 'to another filter the background is empty, with a warning'
 {
     for i in $(seq 30000); do printf '[region r%d]\nhold = 2\n' "$i"; done

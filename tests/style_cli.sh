@@ -120,7 +120,7 @@ if command -v ffmpeg >/dev/null; then
     grep -q 'only one frame, so the paint will not flow' err
     result $? 'with the warning that it will not flow'
     ffmpeg -v error -f lavfi -i sine=d=0.1 -c:a pcm_s16le sound.wav
-    refuses 'sound is no paint' 1 'sound.wav: has no pictures, only other streams' \
+    refuses 'sound is no paint' 1 'sound.wav: has no video stream' \
         import sound.wav -o sound
     head -c 2000 paint.mkv >cut.mkv
     refuses 'a broken video is named' 1 'cut.mkv: *' import cut.mkv -o broken

@@ -240,7 +240,7 @@ static void blenders_prologue_and_undeclared_prefixes_are_mended(void)
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
     g_autoptr(FlSvg) svg = open_svg(path, warnings);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 1);
-    g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, "before <svg>"));
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, "precedes <svg>"));
     const FlLeaf *leaf = &g_array_index(fl_svg_leaves(svg)->leaf, FlLeaf, 0);
     g_assert_cmpstr(leaf->labels, ==, "x");
 }

@@ -18,7 +18,7 @@ void fl_output_error(GError **error, const char *path, int errno_value)
                 g_strerror(errno_value));
 }
 
-/** Makes the folder and looks whether the name is free. */
+/** Makes the folder and checks that the name is free. */
 static bool prepare(FlAtomicFile *file, const char *path, bool overwrite, GError **error)
 {
     g_autofree char *folder = g_path_get_dirname(path);
@@ -38,7 +38,7 @@ static bool prepare(FlAtomicFile *file, const char *path, bool overwrite, GError
     return true;
 }
 
-/** ".NAME.part" beside the path: the same in each run, so that the next finds what one has left. */
+/** ".NAME.part" beside the path: the same every time, so that the next process finds a leftover. */
 static char *hidden_name(const char *path)
 {
     g_autofree char *folder = g_path_get_dirname(path), *base = g_path_get_basename(path);
@@ -53,7 +53,7 @@ static int open_nameless(const char *path)
     g_autofree char *folder = g_path_get_dirname(path);
     const int fd = open(folder, O_TMPFILE | O_WRONLY | O_CLOEXEC, MODE);
     if (fd >= 0)
-        (void)flock(fd, LOCK_EX | LOCK_NB); // for the time when it has its hidden name
+        (void)flock(fd, LOCK_EX | LOCK_NB); // before it gets its hidden name
     return fd;
 #else
     return -1;
@@ -61,8 +61,8 @@ static int open_nameless(const char *path)
 }
 
 /**
- * A new locked file of the hidden name, or -1; an error is set if another run writes it. What a
- * killed run left goes: a program that it has started may not be done with that.
+ * A new locked file of the hidden name, or -1; an error is set if another process writes it.
+ * Replaces a leftover instead of reusing it: a child of the killed process may still write there.
  */
 static int open_hidden(FlAtomicFile *file, GError **error)
 {
@@ -75,21 +75,21 @@ static int open_hidden(FlAtomicFile *file, GError **error)
     return fl_lock_take(file->temporary, file->path, error);
 }
 
-/** Takes the descriptor; -1: that of a hidden file. */
+/** Adopts the descriptor; -1: opens a hidden file. */
 static bool begin(FlAtomicFile *file, int fd, GError **error)
 {
-    GError *taken = NULL;
+    GError *conflict = NULL;
     if (fd < 0)
-        fd = open_hidden(file, &taken);
+        fd = open_hidden(file, &conflict);
     if (fd >= 0) {
         file->stream = fdopen(fd, "wb");
         return true;
     }
-    if (taken)
-        g_propagate_error(error, taken);
+    if (conflict)
+        g_propagate_error(error, conflict);
     else
         fl_output_error(error, file->path, errno);
-    g_clear_pointer(&file->temporary, g_free); // it is the other's
+    g_clear_pointer(&file->temporary, g_free); // it belongs to the other process
     fl_atomic_clear(file);
     return false;
 }
@@ -126,7 +126,7 @@ static bool name_file(const FlAtomicFile *file, const char *path)
     return linkat(AT_FDCWD, self, AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0;
 }
 
-/** Renames without replacing; file systems that cannot are asked first. */
+/** Renames without replacing; where the file system cannot, checks first. */
 static bool rename_new(const char *from, const char *to)
 {
 #ifdef RENAME_NOREPLACE
@@ -142,7 +142,7 @@ static bool rename_new(const char *from, const char *to)
     return rename(from, to) == 0;
 }
 
-/** Removes a hidden file that nobody writes any more; an error is set if another run does. */
+/** Removes a leftover hidden file; an error is set if another process writes it. */
 static bool remove_left(const char *name, const char *path, GError **error)
 {
     const int fd = fl_lock_take(name, path, error);
@@ -152,7 +152,7 @@ static bool remove_left(const char *name, const char *path, GError **error)
     return removed;
 }
 
-/** Gives a nameless file its hidden name, in the place of what a killed run left there. */
+/** Gives a nameless file its hidden name, replacing a leftover. */
 static bool name_hidden(FlAtomicFile *file, GError **error)
 {
     g_autofree char *name = hidden_name(file->path);
@@ -175,10 +175,10 @@ static bool publish(FlAtomicFile *file, GError **error)
 
 bool fl_atomic_commit(FlAtomicFile *file, GError **error)
 {
-    GError *taken = NULL;
-    if (!sync_file(file) || !publish(file, &taken)) {
-        if (taken)
-            g_propagate_error(error, taken);
+    GError *conflict = NULL;
+    if (!sync_file(file) || !publish(file, &conflict)) {
+        if (conflict)
+            g_propagate_error(error, conflict);
         else if (errno == EEXIST)
             fl_exists_error(error, file->path);
         else
@@ -187,14 +187,14 @@ bool fl_atomic_commit(FlAtomicFile *file, GError **error)
     }
     g_clear_pointer(&file->temporary, g_free);
     g_autofree char *folder = g_path_get_dirname(file->path);
-    sync_path(folder, O_RDONLY | O_DIRECTORY); // the name's own safety; not every system can
+    sync_path(folder, O_RDONLY | O_DIRECTORY); // makes the name durable; not every system can
     return true;
 }
 
 void fl_atomic_clear(FlAtomicFile *file)
 {
     if (file->temporary)
-        g_unlink(file->temporary); // while it is locked: then it may be another run's
+        g_unlink(file->temporary); // while still locked: afterwards it may be another process's
     if (file->stream)
         fclose(file->stream);
     g_free(file->temporary);

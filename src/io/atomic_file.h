@@ -7,16 +7,15 @@
 #include <stdio.h>
 
 /**
- * A file that is being written. Until fl_atomic_commit() nothing is seen under its name.
+ * A file that is being written. Its name appears with fl_atomic_commit() only.
  *
- * It has no name at all where the file system can do that; else, and for the moment in which it
- * replaces another, it is ".NAME.part" beside that, which fl_atomic_clear() removes. The file is
- * locked: what a killed program left under that name goes when NAME is written again, and what
- * another run is writing stays.
+ * It has no name at all where the file system can do that; else, and while it replaces another
+ * file, it is ".NAME.part" beside it, which fl_atomic_clear() removes. The file is locked: the next
+ * writer of NAME removes the leftover of a killed process, but never one that is being written.
  */
 typedef struct FlAtomicFile {
     FILE *stream;    // write here; of a reserved file it only holds the lock
-    char *path;      // the name to be
+    char *path;      // its final name
     char *temporary; // NULL: without a name
     bool overwrite;
 } FlAtomicFile;
@@ -24,8 +23,8 @@ typedef struct FlAtomicFile {
 /**
  * Begins a file, making its folder if need be.
  *
- * Returns: false with FL_ERROR_EXISTS if the file exists and overwrite is false or another run is
- * writing it, or FL_ERROR_OUTPUT; then nothing needs to be cleared.
+ * Returns: false with FL_ERROR_EXISTS if the file exists and overwrite is false or another process
+ * is writing it, or FL_ERROR_OUTPUT; then nothing needs to be cleared.
  */
 bool fl_atomic_open(FlAtomicFile *file, const char *path, bool overwrite, GError **error);
 
@@ -36,11 +35,11 @@ bool fl_atomic_reserve(FlAtomicFile *file, const char *path, bool overwrite, GEr
  * Syncs the file and gives it its name. The file needs clearing in any case.
  *
  * Returns: false with FL_ERROR_OUTPUT (a full disk, for instance), or FL_ERROR_EXISTS if a file of
- * that name has appeared meanwhile or another run is writing it; the name is then as it was.
+ * that name has appeared meanwhile or another process is writing it; that file is then unchanged.
  */
 bool fl_atomic_commit(FlAtomicFile *file, GError **error);
 
-/** Closes and forgets the file; one that was not committed is gone. */
+/** Closes the file; without a commit it is removed. */
 void fl_atomic_clear(FlAtomicFile *file);
 
 /** Sets FL_ERROR_OUTPUT: "path: cannot be written: " and the system's words for errno_value. */

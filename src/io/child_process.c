@@ -15,7 +15,7 @@
 
 #define LIMIT_S 60
 #define LONGEST_PAUSE_MS 100
-#define LEAST_WORK 0.01 // of a processor: what waits for something may wake now and then
+#define LEAST_WORK 0.01 // of a processor; a waiting process may wake now and then
 
 struct FlChild {
     char *program;
@@ -76,7 +76,7 @@ FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int 
     child->patience = patience ? *patience : (FlPatience){0};
     child->errors = nameless_file();
     int ends[2];
-    /* A socket instead of a pipe: writing to one whose reader is gone need not raise SIGPIPE. */
+    /* A socket, not a pipe: writing after the reader has gone need not raise SIGPIPE. */
     if (child->errors < 0 || socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
         g_set_error(error, FL_ERROR, error_code(child), "%s: cannot be started: %s", arguments[0],
                     g_strerror(errno));
@@ -102,7 +102,7 @@ static bool has_ended(FlChild *child)
 {
     const pid_t ended = child->pid ? waitpid(child->pid, &child->status, WNOHANG) : 0;
     if (ended < 0 && errno == ECHILD)
-        child->status = 0; // somebody else has waited for it
+        child->status = 0; // somebody else has reaped it
     if (ended != 0)
         child->pid = 0;
     return child->pid == 0;
@@ -118,7 +118,7 @@ static void kill_child(FlChild *child)
     child->pid = 0;
 }
 
-/* Processor seconds that the child has taken. */
+/* Processor seconds that the child has used. */
 static double worked_s(const FlChild *child)
 {
     clockid_t clock;
@@ -136,7 +136,7 @@ static bool give_up(FlChild *child, int code, const char *why, GError **error)
     return false;
 }
 
-/* Until the stream has one of the events; 0: until the child has ended. */
+/* Waits for one of the events on the stream; 0: for the end of the child. */
 static bool wait_for(FlChild *child, short events, GError **error)
 {
     const FlPatience *patience = &child->patience;
@@ -151,11 +151,11 @@ static bool wait_for(FlChild *child, short events, GError **error)
         if (poll(&stream, events ? 1 : 0, pause_ms) > 0)
             return true;
         if (patience->stopped && patience->stopped(patience->data))
-            return give_up(child, FL_ERROR_INTERRUPTED, "was at work: interrupted", error);
+            return give_up(child, FL_ERROR_INTERRUPTED, "was interrupted", error);
         if ((double)(g_get_monotonic_time() - since) < limit_s * 1e6)
             continue;
         if (worked_s(child) - worked < LEAST_WORK * limit_s)
-            return give_up(child, error_code(child), "does not go on: it was ended", error);
+            return give_up(child, error_code(child), "hangs and was killed", error);
         worked = worked_s(child), since = g_get_monotonic_time();
     }
 }

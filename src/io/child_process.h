@@ -1,4 +1,4 @@
-/* Another program, without a shell, that we feed or read: a child process at the end of a pipe. */
+/* Child processes that we write to or read from, started without a shell. */
 #ifndef FLUIDY_IO_CHILD_PROCESS_H
 #define FLUIDY_IO_CHILD_PROCESS_H
 
@@ -10,13 +10,13 @@ typedef struct FlChild FlChild;
 
 /** Which of its standard streams is ours; the other one is /dev/null. */
 typedef enum FlChildStream {
-    FL_CHILD_INPUT,  // we write; what goes wrong is FL_ERROR_OUTPUT
-    FL_CHILD_OUTPUT, // we read; what goes wrong is FL_ERROR_INPUT
+    FL_CHILD_INPUT,  // we write; failures are FL_ERROR_OUTPUT
+    FL_CHILD_OUTPUT, // we read; failures are FL_ERROR_INPUT
 } FlChildStream;
 
-/** How long a child is waited for. All 0: as long as it works. */
+/** How long to wait for a child. All 0: as long as it works. */
 typedef struct FlPatience {
-    double limit_s;              // for which it may neither take nor give a byte nor compute; 0: 60
+    double limit_s;              // without input, output or computation; 0: 60
     bool (*stopped)(void *data); // asked every tenth of a second, from any thread; or NULL
     void *data;
 } FlPatience;
@@ -34,12 +34,12 @@ FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int 
                         const FlPatience *patience, GError **error);
 
 /*
- * Each of these returns false with FL_ERROR_INTERRUPTED if the patience was told to stop, or the
- * stream's error if the child hangs, which then is killed, or dies: that quotes the last line that
- * it wrote to its standard error.
+ * Each of these returns false with FL_ERROR_INTERRUPTED if patience.stopped() says so, or with the
+ * stream's error if the child dies, or hangs and is killed; the message quotes the last line of its
+ * standard error.
  */
 
-/** Writes all bytes. A dead child is no signal but an error. */
+/** Writes all bytes. A dead child is an error, not a signal. */
 bool fl_child_write(FlChild *child, const void *data, size_t bytes, GError **error);
 
 /** Reads bytes, *got fewer of them at the end of what the child writes, however it ended. */

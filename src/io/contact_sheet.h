@@ -1,11 +1,11 @@
-/* A sheet of pictures in rows and columns, with words beside and above them. */
+/* A sheet of pictures in rows and columns, with captions beside and above them. */
 #ifndef FLUIDY_IO_CONTACT_SHEET_H
 #define FLUIDY_IO_CONTACT_SHEET_H
 
 #include "base/surface.h"
 #include <stdbool.h>
 
-/** A sheet in the making; white where nothing is put. */
+/** A sheet, white where there is no picture. */
 typedef struct FlContactSheet {
     cairo_surface_t *surface;
     int columns, rows;
@@ -18,15 +18,15 @@ bool fl_contact_sheet_init(FlContactSheet *contact, int columns, int rows, int c
                            int cell_height, GError **error);
 void fl_contact_sheet_clear(FlContactSheet *contact);
 
-/** Puts a picture into the middle of a cell, made smaller where it is larger, over white. */
+/** Centres a picture in a cell, over white, scaled down if it is larger. */
 void fl_contact_sheet_put(const FlContactSheet *contact, int column, int row,
                           cairo_surface_t *picture);
 
-/** Words at the left of a row: a line in bold, then lines of small print; text is cut to fit. */
+/** The caption at the left of a row: a bold line, then small print; cut to fit. */
 void fl_contact_sheet_name_row(const FlContactSheet *contact, int row, const char *name,
                                const char *lines);
 
-/** Words above a column. */
+/** The caption above a column. */
 void fl_contact_sheet_name_column(const FlContactSheet *contact, int column, const char *name);
 
 /** Writes the sheet as a PNG file. FL_ERROR_OUTPUT, FL_ERROR_EXISTS, FL_ERROR_NO_MEMORY. */

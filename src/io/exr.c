@@ -13,7 +13,7 @@ typedef FlSinkLayer Layer;
 /** An open file, and the rows that the next chunk is made of. */
 typedef struct Writer {
     exr_context_t context;
-    exr_result_t result; // the first trouble
+    exr_result_t result; // the first failure
     int width, height;
     int chunk_rows;
     const Layer **layer; // of each channel, in the file's order
@@ -42,7 +42,7 @@ static uint16_t half_of(float value)
     return (uint16_t)(base + kept + (rest > half || (rest == half && (kept & 1))));
 }
 
-/** OpenEXR's way: linear light times alpha. */
+/** OpenEXR's convention: linear light times alpha. */
 static uint16_t component_of(const uint8_t *rgba, int component)
 {
     const float alpha = rgba[3] / 255.0f;
@@ -78,7 +78,7 @@ static void be_silent(exr_const_context_t context, exr_result_t code, const char
 {
 }
 
-/** Remembers the first result that is not a success; whether all went well so far. */
+/** Keeps the first failure. Returns: whether there was none so far. */
 static bool went(Writer *writer, exr_result_t result)
 {
     if (writer->result == EXR_ERR_SUCCESS)

@@ -10,7 +10,7 @@ struct FlFfmpeg {
     FlChild *child;
 };
 
-/* A name that cannot be taken for an option or a protocol. */
+/* A name that ffmpeg cannot mistake for an option or a protocol. */
 static char *file_url(const char *path)
 {
     g_autofree char *absolute = g_canonicalize_filename(path, NULL);
@@ -36,7 +36,7 @@ FlFfmpeg *fl_ffmpeg_open(const char *path, int first, int last, int step, GError
     ffmpeg->child = fl_child_start(args, FL_CHILD_OUTPUT, -1, NULL, &below);
     if (!ffmpeg->child) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: the program ffmpeg is needed to read it: %s", path, below->message);
+                    "%s: cannot be read without the ffmpeg program: %s", path, below->message);
         return NULL;
     }
     return g_steal_pointer(&ffmpeg);
@@ -51,7 +51,7 @@ void fl_ffmpeg_close(FlFfmpeg *ffmpeg)
     g_free(ffmpeg);
 }
 
-/* How the child ended, which has nothing more to give; `whole`: where a picture does. */
+/* How the child ended, whose output is over; `whole`: at the end of a picture. */
 static bool end(const FlFfmpeg *ffmpeg, bool whole, GError **error)
 {
     g_autoptr(GError) below = NULL;
@@ -60,11 +60,10 @@ static bool end(const FlFfmpeg *ffmpeg, bool whole, GError **error)
         return true;
     g_autofree char *words = fl_child_words(ffmpeg->child);
     if (strstr(words, "matches no streams"))
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: has no pictures, only other streams",
-                    ffmpeg->path);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: has no video stream", ffmpeg->path);
     else
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be read as pictures: %s",
-                    ffmpeg->path, well ? "the last one is cut short" : below->message);
+                    ffmpeg->path, well ? "the last one is truncated" : below->message);
     return false;
 }
 

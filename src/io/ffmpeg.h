@@ -9,14 +9,14 @@ typedef struct FlFfmpeg FlFfmpeg;
 
 /**
  * Begins to read frames first, first + step ... last of a file's first video, from 1; last 0: to
- * the end. No shell is involved and the file cannot name others. Returns: NULL with FL_ERROR_INPUT
+ * the end. No shell is involved, and the file cannot open others. Returns: NULL with FL_ERROR_INPUT
  * set.
  */
 FlFfmpeg *fl_ffmpeg_open(const char *path, int first, int last, int step, GError **error);
 
 /**
- * The next frame, which the caller frees. NULL without an error is the end; the child's own words
- * are in the message if it failed.
+ * The next frame, which the caller frees. NULL without an error is the end; an error quotes the
+ * child's message.
  */
 FlPicture *fl_ffmpeg_read(FlFfmpeg *ffmpeg, GError **error);
 

@@ -10,7 +10,7 @@ extern const FlSinkFormat fl_sink_exr;   // if HAVE_EXR
 extern const FlSinkFormat fl_sink_ora;   // if HAVE_ORA
 extern const FlSinkFormat fl_sink_mov, fl_sink_webm, fl_sink_mkv, fl_sink_mp4, fl_sink_gif,
     fl_sink_apng;                        // films, through ffmpeg
-extern const FlSinkFormat fl_sink_hash;  // sums of the frames
+extern const FlSinkFormat fl_sink_hash;  // checksums of the frames
 extern const FlSinkFormat fl_sink_null;  // nothing
 extern const FlSinkFormat fl_sink_taken; // frames for params.take; no format that has a name
 

@@ -1,4 +1,4 @@
-/* A list of the frames' SHA-256 sums: the picture without the ways of an encoder. */
+/* A list of the frames' SHA-256 sums: of pixels, so that no encoder matters. */
 #include "io/atomic_file.h"
 #include "io/formats.h"
 

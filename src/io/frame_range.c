@@ -3,7 +3,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define LONGEST 1000000 // frames; beyond this a range is a slip of the keyboard
+#define LONGEST 1000000 // frames; a longer range is a typing mistake
 
 static bool read_number(const char **s, int *value)
 {
@@ -18,7 +18,7 @@ static bool read_number(const char **s, int *value)
     return true;
 }
 
-/** A number and how many lie around it, within what *first and *last come in as. */
+/** "12~1": a number and its neighbours, clamped to *first … *last as passed in. */
 static bool read_around(const char *s, int *first, int *last)
 {
     int middle = *first + (*last - *first) / 2, away = 0;
@@ -32,8 +32,8 @@ static bool read_around(const char *s, int *first, int *last)
     return true;
 }
 
-/** One part between commas; *first and *last come in as the film's. Returns: whether it was
- * understood. */
+/** One item between commas; *first and *last come in as the sequence's. Returns: whether it is
+ * valid. */
 static bool read_part(const char *s, int *first, int *last, int *step)
 {
     const int film_last = *last;

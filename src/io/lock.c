@@ -7,7 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Whoever had the lock before may have removed the name meanwhile. */
+/* The previous owner of the lock may have removed the name meanwhile. */
 static bool still_named(int fd, const char *path)
 {
     struct stat own, named;
@@ -30,11 +30,11 @@ static int take(const char *path, bool folder, const char *what, GError **error)
         const int fd = open_or_make(path, folder);
         if (fd < 0)
             return -1;
-        const bool taken = flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-        if (!taken && still_named(fd, path))
+        const bool locked = flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+        if (!locked && still_named(fd, path))
             return fd;
         close(fd);
-        if (taken) {
+        if (locked) {
             g_set_error(error, FL_ERROR, FL_ERROR_EXISTS, "%s: another run is writing it", what);
             return -1;
         }

@@ -1,11 +1,11 @@
-/* Locks: two runs do not write the same files at the same time. */
+/* Locks, so that two processes never write the same file at the same time. */
 #ifndef FLUIDY_IO_LOCK_H
 #define FLUIDY_IO_LOCK_H
 
 #include <fluidy/error.h>
 
 /**
- * Opens or makes a file, in a folder that is there, and locks it where files can be locked; the
+ * Opens or makes a file in an existing folder and locks it where files can be locked; the
  * lock ends with the descriptor or the process.
  *
  * what names the output in the message: "what: another run is writing it".

@@ -11,7 +11,7 @@ void fl_pattern_clear(FlPattern *pattern)
     g_clear_pointer(&pattern->suffix, g_free);
 }
 
-/** Where the number stands in a name. */
+/** Where the number is in a name. */
 typedef struct Place {
     size_t at, length; // length 0: nowhere
     int width;
@@ -95,7 +95,7 @@ bool fl_pattern_match(const FlPattern *pattern, const char *name, int *number)
         n > (size_t)MAX(MOST_DIGITS, pattern->width))
         return false;
     if (pattern->width > 1 && n > (size_t)pattern->width && digits[0] == '0')
-        return false; // a_00001.svg is not of a_%04d.svg
+        return false; // a_%04d.svg does not match a_00001.svg
     const gint64 value = g_ascii_strtoll(digits, NULL, 10);
     *number = (int)MIN(value, G_MAXINT);
     return value <= G_MAXINT;
@@ -167,7 +167,7 @@ char *fl_output_name(const char *text, int number, const char *region, GError **
         return g_steal_pointer(&name);
     if (!region) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: {region} has no meaning here; it belongs in the name of layers", text);
+                    "%s: {region} is allowed in the names of layers only", text);
         return NULL;
     }
     g_auto(GStrv) parts = g_strsplit(name, "{region}", -1);

@@ -1,10 +1,9 @@
 /*
- * Names with a frame number in them, of files that are read and of files that are written:
- * "walk_0012.svg" is "walk_" + 12 + ".svg".
+ * File names with a frame number, for input and output: "walk_0012.svg" is "walk_" + 12 + ".svg".
  *
  * In a pattern %d, %4d or %04d stands for the number, with at least that many digits and zeros in
- * front; "%%" is a percent sign. Where there is none of these, the last run of '#' stands for a
- * number of as many digits. Everything else is itself. No pattern is ever given to printf.
+ * front; "%%" is a percent sign. Without any of these, the last '####' stands for a number of
+ * as many digits. Everything else is literal. No pattern is ever given to printf.
  */
 #ifndef FLUIDY_IO_PATTERN_H
 #define FLUIDY_IO_PATTERN_H
@@ -12,7 +11,7 @@
 #include <fluidy/error.h>
 #include <stdbool.h>
 
-/** A name taken apart at its frame number. */
+/** A name split at its frame number. */
 typedef struct FlPattern {
     char *prefix, *suffix;
     int width; // digits at least; 1: any number of digits, also with leading zeros; 0: no number,
@@ -26,7 +25,7 @@ bool fl_pattern_parse(const char *text, FlPattern *pattern, GError **error);
 bool fl_pattern_match(const FlPattern *pattern, const char *name, int *number);
 
 /**
- * Takes a file's name apart at the last run of digits before its extension.
+ * Splits a file name at the last number before its extension.
  * Returns: false, with the pattern left empty, if it has none.
  */
 bool fl_pattern_of_name(const char *name, FlPattern *pattern, int *number);
@@ -45,10 +44,10 @@ void fl_pattern_clear(FlPattern *pattern);
  */
 char *fl_output_name(const char *pattern, int number, const char *region, GError **error);
 
-/** The pattern with the film's name in place of {name}; to be freed. */
+/** The pattern with the drawing's name in place of {name}; to be freed. */
 char *fl_output_of_film(const char *pattern, const char *film);
 
-/** Whether the pattern has a place for the frame number, so that frames get files of their own. */
+/** Whether the pattern has a frame number, so that every frame has its own file. */
 bool fl_output_is_pattern(const char *pattern);
 
 /** The same for a name of files to read: a file that has just this name is that file. */

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* A file name taken apart at its last run of digits. */
+/* A file name split at its last number. */
 typedef struct Name {
     char *path, *prefix, *suffix;
     int number, digits;
@@ -26,7 +26,7 @@ static bool is_ending(const char *suffix, const char *const *endings)
     return false;
 }
 
-/* Whether a file's name fits the pattern; NULL: has its number right before one of the endings. */
+/* Whether a file name matches the pattern; NULL: has its number right before one of the endings. */
 static bool split_name(Name *name, const char *folder, const char *file, const FlPattern *wanted,
                        const char *const *endings)
 {
@@ -87,7 +87,7 @@ void fl_series_free(FlSeries *series)
     g_free(series);
 }
 
-/* The names of a folder that are taken, in order. */
+/* The matching names of a folder, in order. */
 static GArray *list_names(const char *folder, const FlPattern *wanted, const char *const *endings,
                           GError **error)
 {
@@ -141,7 +141,7 @@ FlSeries *fl_series_of_pattern(const char *text, GError **error)
     if (names && names->len > 0)
         return make_series((const Name *)names->data, (int)names->len);
     if (names)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no file has a name like this", text);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: matches no file", text);
     return NULL;
 }
 

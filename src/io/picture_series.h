@@ -7,7 +7,7 @@
 
 /** Files of one name that differ in a number, by rising number. */
 typedef struct FlSeries {
-    char *prefix, *suffix; // what stands before the number, with the folder, and after it
+    char *prefix, *suffix; // before the number, with the folder, and after it
     int digits;            // width of the first number, with its leading zeros
     int n;
     int *number; // n of them
@@ -24,12 +24,12 @@ typedef struct FlSeries {
 GPtrArray *fl_series_in_folder(const char *folder, const char *const *endings, GError **error);
 
 /**
- * The series of a pattern such as `a_%04d.png`, see output/pattern.h. Returns: NULL with
- * FL_ERROR_INPUT if no file fits, or FL_ERROR_USAGE.
+ * The series of a pattern such as `a_%04d.png`, see io/pattern.h. Returns: NULL with
+ * FL_ERROR_INPUT if no file matches, or FL_ERROR_USAGE.
  */
 FlSeries *fl_series_of_pattern(const char *pattern, GError **error);
 
-/** False with FL_ERROR_STYLE set if a number is missing or there twice; it names the file. */
+/** False with FL_ERROR_STYLE set if a number is missing or occurs twice; it names the file. */
 bool fl_series_check(const FlSeries *series, GError **error);
 
 /** The path of the file with a number, whether it exists or not. */

@@ -9,14 +9,15 @@
 #include <string.h>
 
 /*
- * libpng makes the file and libdeflate what is in it. A painted frame of 800x800: level 4 13 ms and
- * 391 kB, level 1 9 ms and 401 kB; with libpng's choice of filters and zlib at level 3 it was 29 ms
- * and 419 kB. Most values of 16 bits are a level's byte twice, which the filter would hide.
+ * libpng writes the file, libdeflate compresses the pixels. A painted frame of 800x800: level 4 13
+ * ms and 391 kB, level 1 9 ms and 401 kB; with libpng's choice of filters and zlib at level 3 it
+ * was 29 ms and 419 kB. Most values of 16 bits are a level's byte twice, which the filter would
+ * hide.
  */
 #define LEVEL_FINAL 4
 #define LEVEL_FAST 1
 
-/** Where libpng's own words go before it jumps. */
+/** Receives libpng's message before it jumps. */
 typedef struct Trouble {
     char message[160];
 } Trouble;
@@ -105,7 +106,7 @@ static void pack_row(const FlPng *picture, int y, uint8_t *out)
         pack_row8(picture->rgba + first, picture->width, 4, out);
 }
 
-/** What is left of a row of n bytes without the mean of the pixels to the left and above. */
+/** PNG's filter "average": n bytes of a row minus the mean of the pixels to the left and above. */
 static void filter_row(const uint8_t *row, const uint8_t *above, size_t n, size_t pixel,
                        uint8_t *restrict out)
 {
@@ -115,7 +116,7 @@ static void filter_row(const uint8_t *row, const uint8_t *above, size_t n, size_
         out[i] = (uint8_t)(row[i] - (row[i - pixel] + above[i]) / 2);
 }
 
-/** All rows, each after the byte that tells its filter. */
+/** All rows, each preceded by its filter byte. */
 static uint8_t *filter_rows(const FlPng *picture, GError **error)
 {
     const size_t pixel = pixel_bytes(picture), n = picture->width * pixel;

@@ -22,7 +22,7 @@ typedef struct FlPng {
  */
 bool fl_png_save(const FlPng *png, const char *path, bool overwrite, GError **error);
 
-/** Whether a name ends in .png; else FL_ERROR_USAGE says that `what`, "maps are", PNG files. */
+/** Checks that a name ends in .png; else FL_ERROR_USAGE: `what`, such as "maps are", PNG files. */
 bool fl_png_named(const char *path, const char *what, GError **error);
 
 /** The bytes of the file that fl_png_save() writes; NULL if memory is short. */
@@ -35,12 +35,12 @@ GBytes *fl_png_encode(const FlPng *png);
  */
 FlPicture *fl_picture_read_png(const char *path, GError **error);
 
-/** Whether a PNG file has no pixel that is even partly transparent; true if it cannot be read. */
+/** Whether every pixel of a PNG file is opaque; true if it cannot be read. */
 bool fl_picture_is_opaque(const char *path);
 
 /**
- * Writes `channels` (1 grey, 3 sRGB, 4 sRGBA) interleaved bytes as a PNG file that is kept:
- * with the filters that make it small, in place of one of that name. Returns: false with
+ * Writes `channels` (1 grey, 3 sRGB, 4 sRGBA) interleaved bytes as a small PNG file, choosing
+ * filters by row; replaces a file of that name. Returns: false with
  * FL_ERROR_OUTPUT set, naming the file.
  */
 bool fl_png_write(const char *path, const uint8_t *data, int width, int height, int channels,

@@ -38,7 +38,7 @@ static void no_format(const char *name, const char *path, GError **error)
     const char *dot = name ? NULL : strrchr(path, '.');
     g_autofree char *hint = fl_did_you_mean(name ? name : dot ? dot + 1 : path, words);
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                name ? "%s: an unknown output format; expected one of %s%s"
+                name ? "%s: unknown output format; expected one of %s%s"
                      : "%s: the end of the name means no output format; expected one of %s%s",
                 name ? name : path, list, hint);
 }

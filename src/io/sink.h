@@ -15,21 +15,21 @@ typedef struct FlSinkLayer {
     bool multiply;           // what is below is multiplied by it
 } FlSinkLayer;
 
-/** A finished frame. Everything is borrowed for the time of the call. */
+/** A finished frame, borrowed for the call. */
 typedef struct FlSinkFrame {
     int number;                // for the file's name
     const uint8_t *rgba;       // width * height * 4 straight sRGBA
     const uint16_t *rgba16;    // the same with 16 bits, if the format takes_16; else NULL
     const FlSinkLayer *layers; // bottom first, if the format takes_layers; else NULL
     int n_layers;
-    const char *const *text; // keyword, text, …, NULL: notes for formats that have room; or NULL
+    const char *const *text; // keyword, text, …, NULL: metadata, where the format has it; or NULL
 } FlSinkFrame;
 
 /** Gets a frame of width * height pixels. Returns: false with the error set ends the render. */
 typedef bool (*FlTakeFrame)(void *taker, const FlSinkFrame *frame, int width, int height,
                             GError **error);
 
-/** Who gets frames that stay in memory. */
+/** The callback for frames that stay in memory. */
 typedef struct FlFrameTaker {
     FlTakeFrame take; // NULL: nobody
     void *data;       // is handed to take
@@ -42,8 +42,8 @@ typedef struct FlSinkParams {
     double fps;          // films only, > 0
     bool opaque;         // no frame has alpha below 255
     bool overwrite;      // files of the same name may be replaced
-    bool fast;           // intermediate files: larger and sooner written
-    FlPatience patience; // with a program that writes the film
+    bool fast;           // intermediate files: larger but written faster
+    FlPatience patience; // with ffmpeg
     FlFrameTaker taker;  // of frames that stay in memory
 } FlSinkParams;
 
@@ -55,7 +55,7 @@ typedef struct FlSinkFormat {
     const char *suffix; // the file name's end that means this format, ".png"; or NULL
     const char *help;   // one line
     bool film;          // all frames go into one file
-    bool moving;        // a film to play, beside which its frames are kept unless asked otherwise
+    bool moving;        // a film to play, whose frames are kept beside it by default
     bool takes_16;      // wants rgba16
     bool takes_layers;  // wants layers
     bool (*open)(FlSink *sink, GError **error); // NULL: nothing to do

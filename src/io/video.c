@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/** What ffmpeg is told about a film format. */
+/** ffmpeg's arguments for a film format. */
 typedef struct Codec {
     const FlSinkFormat *format;
     const char *muxer;
@@ -60,7 +60,7 @@ static void add_words(GPtrArray *arguments, const char *words)
             g_ptr_array_add(arguments, g_strdup(*part));
 }
 
-/** -xerror: else ffmpeg ends well although the last of a film did not fit onto the disk. */
+/** -xerror: else ffmpeg reports success although the disk was full at the end. */
 static void add_input(GPtrArray *arguments, const FlSinkParams *params)
 {
     char fps[G_ASCII_DTOSTR_BUF_SIZE];
@@ -92,8 +92,8 @@ static void add_colour(GPtrArray *arguments, const Codec *codec)
 }
 
 /**
- * ffmpeg gets the file itself: one that is slow to start, of a run that was killed, would open by
- * its name what the next run writes. It gets it opened once more, for the lock is ours alone.
+ * ffmpeg gets a descriptor, not a name: a slow ffmpeg of a killed process would open by name what
+ * the next process writes. The descriptor is a new one, since the lock must stay ours alone.
  */
 static FlChild *start_ffmpeg(const FlSink *sink, const FlAtomicFile *file, GError **error)
 {
@@ -126,7 +126,7 @@ static bool video_open(FlSink *sink, GError **error)
     if (!program) {
         g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT,
                     "%s: films are written by the ffmpeg program, which is not installed; install "
-                    "it, or write pictures such as film_%%04d.png",
+                    "it, or write frames such as film_%%04d.png",
                     params->path);
         return false;
     }

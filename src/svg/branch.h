@@ -1,4 +1,4 @@
-/* Long rows of siblings as trees, so that one shape among thousands is found fast. */
+/* Groups with many children become trees, so that one shape among thousands renders fast. */
 #ifndef FLUIDY_SVG_BRANCH_H
 #define FLUIDY_SVG_BRANCH_H
 
@@ -9,8 +9,8 @@
  * librsvg visits all siblings of it and of the groups around it: n shapes in a row took n * n
  * visits, and take n log n in a tree.
  *
- * Nothing looks different. The document stays as it is if its style sheets could tell the groups
- * that are put in: by a selector for <g>, for children or for siblings.
+ * The picture is the same. The document stays unchanged if its style sheets could match the added
+ * groups: by a selector for <g>, for children or for siblings.
  */
 void fl_document_branch(xmlDoc *doc);
 

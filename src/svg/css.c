@@ -35,7 +35,7 @@ static void add(FlCss *css, char *name, unsigned bits)
     g_hash_table_replace(css->bits, name, GUINT_TO_POINTER(bits));
 }
 
-/** Adds what the last part of a selector names: "g .a.b:hover" has ".a" and ".b". */
+/** Adds the simple selectors of the last compound: "g .a.b:hover" has ".a" and ".b". */
 static void add_selector(FlCss *css, const char *selector, unsigned bits)
 {
     const char *last = selector + strlen(selector);

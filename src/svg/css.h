@@ -1,4 +1,4 @@
-/* What style sheets may say about groups; a guess, made good by drawing. */
+/* What style sheets may say about groups: a guess, which drawing then checks. */
 #ifndef FLUIDY_SVG_CSS_H
 #define FLUIDY_SVG_CSS_H
 
@@ -20,7 +20,7 @@ void fl_css_free(FlCss *css); // NULL is fine
 
 /**
  * The properties that rules for one of the node's classes, its id or its name may set. Conditions,
- * order and importance are not looked at: a rule may not hold after all.
+ * order and importance are ignored: a rule may not apply after all.
  */
 unsigned fl_css_look_up(const FlCss *css, const xmlNode *node);
 

@@ -106,7 +106,7 @@ static bool read_bytes(const char *path, char **data, gsize *bytes, GError **err
     return true;
 }
 
-/** libxml2 starts itself with its first parser, which threads must not do at once. */
+/** libxml2 initialises itself with its first parser, which is not thread-safe. */
 static void start_parser(void)
 {
     static gsize started;
@@ -142,7 +142,7 @@ static xmlDoc *parse_leniently(const char *data, gsize bytes, const char *path, 
         doc = parse(root, bytes - (gsize)(root - data), path, NULL);
     if (doc && root)
         fl_warnings_add(warnings, path, number, NULL,
-                        "what stands before <svg> is no XML and is left out (%s)", problem);
+                        "ignored what precedes <svg>, which is no XML (%s)", problem);
     if (!doc)
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: not well-formed: %s", path, problem);
     return doc;
@@ -180,8 +180,7 @@ static void expand_namespaces(xmlDoc *doc, xmlNs *ns)
     }
 }
 
-/** Drawings that a page has in its HTML need no namespace there, and lack it when they are saved.
- */
+/** An <svg> inside HTML needs no namespace, and lacks it when it is saved as a file. */
 static void set_namespace(xmlNode *node, xmlNs *ns)
 {
     for (; node; node = node->next) {
@@ -193,7 +192,7 @@ static void set_namespace(xmlNode *node, xmlNs *ns)
     }
 }
 
-/* A document as it is walked through. */
+/* The state of the walk through a document. */
 typedef struct Visit {
     const char *path;
     xmlNode *root;
@@ -214,8 +213,8 @@ static bool check_length(const Visit *visit, const xmlAttr *a, GError **error)
 }
 
 /**
- * The bytes that an entity stands for, those in it included; `known` remembers them. One that is in
- * itself, which is an error for the parsers, counts for nothing there.
+ * The bytes that an entity expands to, nested entities included; `known` caches them. A recursive
+ * entity, which is an error for the parsers, counts as 0 inside itself.
  */
 static double entity_bytes(const Visit *visit, const xmlChar *name)
 {
@@ -234,7 +233,7 @@ static double entity_bytes(const Visit *visit, const xmlChar *name)
     return *known = bytes;
 }
 
-/** Adds what the references among nodes, of text or of an attribute, stand for. */
+/** Adds the expanded size of entity references among nodes, of text or of an attribute. */
 static bool count_entities(Visit *visit, const xmlNode *node, GError **error)
 {
     for (; node; node = node->next)
@@ -280,7 +279,7 @@ xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GEr
         expand_namespaces(doc, root->nsDef);
     if (root && !root->ns && xmlStrEqual(root->name, (const xmlChar *)"svg")) {
         set_namespace(root, xmlNewNs(root, (const xmlChar *)svg_namespace, NULL));
-        fl_warnings_add(warnings, path, number, NULL, "it has no xmlns and is taken for SVG");
+        fl_warnings_add(warnings, path, number, NULL, "no xmlns on <svg>; read as SVG");
     }
     if (!root || !fl_is(root, "svg")) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,

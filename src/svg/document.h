@@ -1,4 +1,4 @@
-/* An SVG file as a DOM, read with limits: SVG files are not to be trusted. */
+/* An SVG file as a DOM, read with limits: SVG files are untrusted. */
 #ifndef FLUIDY_SVG_DOCUMENT_H
 #define FLUIDY_SVG_DOCUMENT_H
 
@@ -13,15 +13,15 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
 /**
  * Reads a .svg or .svgz file. Nothing is fetched and no entity is replaced.
  *
- * A prologue that is no XML (Blender 4 writes one) is dropped with a warning; namespace prefixes
- * nobody declared are declared. number is the frame's, for the warnings.
+ * A prologue that is no XML (Blender 4 writes one) is dropped with a warning; undeclared namespace
+ * prefixes are declared. number is the frame's, for the warnings.
  *
  * Returns: the document, whose root is an <svg>; NULL with FL_ERROR_INPUT (not readable, no SVG;
  * with the line) or FL_ERROR_LIMIT.
  */
 xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error);
 
-/** Whether a limit was raised beyond what libxml2 and librsvg allow without being told. */
+/** Whether a limit was raised beyond the defaults of libxml2 and librsvg. */
 bool fl_document_is_huge(void);
 
 /** The document as XML; to be freed with g_free(). */
@@ -41,7 +41,7 @@ char *fl_attribute(const xmlNode *node, const char *name);
 
 /**
  * A property from `style=""` or else from the attribute of that name, trimmed; NULL if neither sets
- * it. Style sheets are not looked at. To be freed with g_free().
+ * it. Style sheets are ignored. To be freed with g_free().
  */
 char *fl_property(const xmlNode *node, const char *name);
 

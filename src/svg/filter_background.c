@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#define EMPTY "fl-background" // the result that stands for the background
+#define EMPTY "fl-background" // the result in place of the background
 
 static bool is_background(const char *name)
 {
@@ -65,7 +65,7 @@ static bool empty_background(xmlNode *filter)
     return true;
 }
 
-/** Looks at the filters from node on; `modes` gets "url(#id)" -> mode of those that only blend. */
+/** Visits the filters from node on; `modes` gets "url(#id)" -> mode of those that only blend. */
 static bool change_filters(xmlNode *node, GHashTable *modes)
 {
     bool emptied = false;
@@ -106,7 +106,7 @@ void fl_document_drop_background(xmlDoc *doc, const char *path, int number, FlWa
     g_autoptr(GHashTable) modes = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     if (change_filters(xmlDocGetRootElement(doc), modes))
         fl_warnings_add(warnings, path, number, NULL,
-                        "BackgroundImage is empty: filters do not see what is below");
+                        "BackgroundImage is empty: filters cannot read what is below");
     if (g_hash_table_size(modes) > 0)
         set_modes(xmlDocGetRootElement(doc), modes);
 }

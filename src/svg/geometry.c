@@ -5,13 +5,13 @@
 #include <math.h>
 #include <string.h>
 
-/** What holds for the children of a node. */
+/** What the children of a node inherit. */
 typedef struct Surrounds {
     FlAffine ctm;
     double width, height; // of the viewport, for percentages
     bool clipped, evenodd, filled, stroked;
     double stroke; // width, local units
-    bool broken;   // something was not understood
+    bool broken;   // something could not be parsed
 } Surrounds;
 
 typedef struct Reader {
@@ -21,7 +21,7 @@ typedef struct Reader {
     GArray *subpath, *cubic; // FlSubpath, FlCubic
 } Reader;
 
-/* ---- what is around a leaf ---- */
+/* ---- ancestors of a leaf ---- */
 
 /** A length in px; `whole` is what 100% is. */
 static bool length_of(const Reader *reader, const char *text, double whole, double *px)
@@ -48,7 +48,7 @@ static bool length_of(const Reader *reader, const char *text, double whole, doub
     return true;
 }
 
-/** An attribute's or property's length, or `initial`; *broken if it is not understood. */
+/** An attribute's or property's length, or `initial`; *broken if it cannot be parsed. */
 static double length_in(const Reader *reader, const xmlNode *node, const char *name, double whole,
                         double initial, bool *broken)
 {
@@ -134,7 +134,7 @@ static void enter_viewport(const Reader *reader, const xmlNode *node, Surrounds 
     }
 }
 
-/** The transform, of the property or else of the attribute; what librsvg cannot read is none. */
+/** The transform, of the property or else of the attribute; identity where librsvg rejects it. */
 static FlAffine transform_of(const xmlNode *node)
 {
     FlAffine m = FL_AFFINE_NONE;
@@ -268,7 +268,7 @@ static void name_outline(FlGeometry *g, const FlLeaf *leaf)
 static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *node)
 {
     FlGeometry g;
-    memset(&g, 0, sizeof g); // no byte of it is left to chance: it is kept as bytes
+    memset(&g, 0, sizeof g); // padding too: it is stored as bytes
     FlPen pen = {.subpath = reader->subpath, .cubic = reader->cubic};
     const Surrounds s = surrounds_of(reader, node);
     bool broken = s.broken;

@@ -1,4 +1,4 @@
-/* The outlines of a drawing's leaves, read from its document: what moves is known from them. */
+/* The outlines of a drawing's leaves, read from its document; motion is computed from them. */
 #ifndef FLUIDY_SVG_GEOMETRY_H
 #define FLUIDY_SVG_GEOMETRY_H
 
@@ -6,7 +6,7 @@
 #include "svg/transform.h"
 
 typedef enum FlOutlineKind {
-    FL_OUTLINE_NONE, // text, an image, a group drawn as one: no outline is known
+    FL_OUTLINE_NONE, // text, an image, a group drawn as one: no outline
     FL_OUTLINE_PATH,
     FL_OUTLINE_CIRCLE,
     FL_OUTLINE_ELLIPSE,
@@ -28,21 +28,21 @@ typedef struct FlCubic {
 typedef struct FlGeometry {
     FlAffine ctm; // from local coordinates to px of the picture
     int32_t first_subpath, n_subpaths;
-    uint64_t id;     // that the author gave it
-    uint64_t labels; // of it and the groups around it, without their digits
-    uint64_t tree;   // its place
-    uint64_t group;  // the place of what it is in
-    double stroke;   // width in local units; 0: none that is known
+    uint64_t id;     // as authored
+    uint64_t labels; // of it and its groups, without digits
+    uint64_t tree;   // its position in the tree
+    uint64_t group;  // the position of its parent
+    double stroke;   // width in local units; 0: none or unknown
     uint8_t kind;    // FlOutlineKind
-    uint8_t usable;  // all of it was understood
-    uint8_t clipped; // a clip, mask or filter may change what is seen of it
+    uint8_t usable;  // all of it could be parsed
+    uint8_t clipped; // a clip, mask or filter may hide part of it
     uint8_t evenodd; // the fill rule
     uint8_t filled;
     uint8_t unused[7];
     int32_t unit; // FlLeaf.unit
 } FlGeometry;
 
-/** The outlines of a frame's leaves, by their index. It holds no pointers but the three arrays. */
+/** The outlines of a frame's leaves, by their index. The three arrays are its only pointers. */
 typedef struct FlOutlines {
     int n_leaves, n_subpaths, n_cubics;
     FlGeometry *leaf;
@@ -53,17 +53,17 @@ typedef struct FlOutlines {
 /**
  * Reads the outlines of a drawing whose page is scaled to width x height px.
  *
- * An arc is always four cubics and a rectangle always eight, so that a shape whose numbers change
- * keeps its structure; a line that closes a path with no length is none.
+ * An arc is always four cubics and a rectangle always eight, so that a shape keeps its structure
+ * while its numbers change; a closing line of no length is dropped.
  */
 FlOutlines *fl_outlines_new(const FlSvg *svg, double width, double height);
 
 void fl_outlines_free(FlOutlines *outlines); // NULL is fine
 
-/** As bytes, to be kept elsewhere; to be freed with g_free(). */
+/** Serialises the outlines; to be freed with g_free(). */
 uint8_t *fl_outlines_pack(const FlOutlines *outlines, size_t *bytes);
 
-/** The reverse of such bytes of this program. */
+/** Reads what the same program serialised. */
 FlOutlines *fl_outlines_unpack(const uint8_t *data, size_t bytes);
 
 /** Where a cubic is at t, 0 … 1, in px. */

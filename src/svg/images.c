@@ -6,18 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 4096 // bytes; most images tell their size in the first
+#define BLOCK 4096 // bytes; the first usually has the size
 
-typedef struct Look {
+typedef struct Check {
     const char *path;
     int number;
     FlWarnings *warnings;
-} Look;
+} Check;
 
-static void warn(const Look *look, const xmlNode *node, const char *href, const char *text)
+static void warn(const Check *check, const xmlNode *node, const char *href, const char *text)
 {
     g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
-    fl_warnings_add(look->warnings, look->path, look->number, (const char *)id,
+    fl_warnings_add(check->warnings, check->path, check->number, (const char *)id,
                     "the image \"%.60s\" %s", href, text);
 }
 
@@ -30,18 +30,18 @@ static bool is_inside(const char *drawing, const char *file)
     return folder && strncmp(file, folder, n) == 0 && (file[n] == '/' || folder[n - 1] == '/');
 }
 
-static bool check_pixels(const Look *look, double width, double height, GError **error)
+static bool check_pixels(const Check *check, double width, double height, GError **error)
 {
-    return fl_limit_check(FL_LIMIT_IMAGE, width * height / 1e6, look->path, error);
+    return fl_limit_check(FL_LIMIT_IMAGE, width * height / 1e6, check->path, error);
 }
 
 static void keep_size(GdkPixbufLoader *loader, int width, int height, void *size)
 {
     ((int *)size)[0] = width, ((int *)size)[1] = height;
-    gdk_pixbuf_loader_set_size(loader, 1, 1); // nobody wants the pixels
+    gdk_pixbuf_loader_set_size(loader, 1, 1); // the pixels are not needed
 }
 
-/* The size that the image's first bytes tell; 0 x 0 for what is no image. */
+/* The size in the image's header; 0 x 0 for what is no image. */
 static void size_of_data(const guint8 *data, gsize bytes, int size[2])
 {
     g_autoptr(GdkPixbufLoader) loader = gdk_pixbuf_loader_new();
@@ -52,7 +52,7 @@ static void size_of_data(const guint8 *data, gsize bytes, int size[2])
     gdk_pixbuf_loader_close(loader, NULL);
 }
 
-static bool check_data(const Look *look, const char *href, GError **error)
+static bool check_data(const Check *check, const char *href, GError **error)
 {
     const char *comma = strchr(href, ',');
     int size[2] = {0};
@@ -61,13 +61,13 @@ static bool check_data(const Look *look, const char *href, GError **error)
     gsize bytes = 0;
     g_autofree guint8 *data = g_base64_decode(comma + 1, &bytes);
     size_of_data(data, bytes, size);
-    return check_pixels(look, size[0], size[1], error);
+    return check_pixels(check, size[0], size[1], error);
 }
 
 /* The file that a reference names, links followed: NULL if it is none, or none that exists. */
-static char *file_of(const Look *look, const char *href, bool *is_file)
+static char *file_of(const Check *check, const char *href, bool *is_file)
 {
-    g_autoptr(GFile) drawing = g_file_new_for_path(look->path);
+    g_autoptr(GFile) drawing = g_file_new_for_path(check->path);
     g_autoptr(GFile) folder = g_file_get_parent(drawing);
     g_autofree char *base = folder ? g_file_get_uri(folder) : g_strdup("file:///");
     g_autofree char *slash = g_strconcat(base, "/", NULL);
@@ -78,31 +78,31 @@ static char *file_of(const Look *look, const char *href, bool *is_file)
     return file ? realpath(file, NULL) : NULL;
 }
 
-/* librsvg would wait for what a pipe or a device gives: the reference is taken out. */
-static bool check_reference(const Look *look, xmlNode *node, xmlAttr *a, const char *href,
+/* librsvg would block on a pipe or a device: the reference is removed. */
+static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
                             GError **error)
 {
     static const char *const images[] = {"image", "feImage", NULL};
     bool is_file = false;
-    g_autofree char *real = file_of(look, href, &is_file);
+    g_autofree char *real = file_of(check, href, &is_file);
     int width = 0, height = 0;
     if (real && !fl_file_check(real, FL_ERROR_INPUT, NULL)) {
-        warn(look, node, href, "is a pipe or a device and is left out");
+        warn(check, node, href, "is a pipe or a device and is left out");
         xmlRemoveProp(a);
     } else if (!fl_is_one_of(node, images))
         return true;
     else if (!is_file)
-        warn(look, node, href, "is not in a file and is left out: nothing is fetched");
+        warn(check, node, href, "is not in a file and is left out: nothing is fetched");
     else if (!real)
-        warn(look, node, href, "does not exist and is left out");
-    else if (!is_inside(look->path, real))
-        warn(look, node, href, "is outside the drawing's folder and is left out");
+        warn(check, node, href, "does not exist and is left out");
+    else if (!is_inside(check->path, real))
+        warn(check, node, href, "is outside the drawing's folder and is left out");
     else if (gdk_pixbuf_get_file_info(real, &width, &height))
-        return check_pixels(look, width, height, error);
+        return check_pixels(check, width, height, error);
     return true;
 }
 
-static bool check_node(const Look *look, xmlNode *node, GError **error)
+static bool check_node(const Check *check, xmlNode *node, GError **error)
 {
     for (xmlAttr *a = node->properties, *next; a; a = next) {
         next = a->next;
@@ -113,13 +113,13 @@ static bool check_node(const Look *look, xmlNode *node, GError **error)
         href += strspn(href, " \t\r\n");
         const bool good =
             g_ascii_strncasecmp(href, "data:", 5) == 0
-                ? check_data(look, href, error)
-                : *href == '#' || !*href || check_reference(look, node, a, href, error);
+                ? check_data(check, href, error)
+                : *href == '#' || !*href || check_reference(check, node, a, href, error);
         if (!good)
             return false;
     }
     for (xmlNode *child = node->children; child; child = child->next)
-        if (child->type == XML_ELEMENT_NODE && !check_node(look, child, error))
+        if (child->type == XML_ELEMENT_NODE && !check_node(check, child, error))
             return false;
     return true;
 }
@@ -127,6 +127,6 @@ static bool check_node(const Look *look, xmlNode *node, GError **error)
 bool fl_images_check(xmlDoc *doc, const char *path, int number, FlWarnings *warnings,
                      GError **error)
 {
-    const Look look = {path, number, warnings};
-    return check_node(&look, xmlDocGetRootElement(doc), error);
+    const Check check = {path, number, warnings};
+    return check_node(&check, xmlDocGetRootElement(doc), error);
 }

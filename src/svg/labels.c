@@ -43,8 +43,7 @@ bool fl_label_is_generic(const char *name)
     return g_strv_contains(words, lower);
 }
 
-/** Puts the characters back that ids cannot have: "arm_x20_left", or CorelDRAW's "arm_x0020_left".
- */
+/** Decodes characters that ids cannot have: "arm_x20_left", or CorelDRAW's "arm_x0020_left". */
 static void decode(char *name)
 {
     char *out = name;
@@ -62,7 +61,7 @@ static void decode(char *name)
     *out = '\0';
 }
 
-/** Cuts Illustrator's mark of a repeated name: "tree_3_" is "tree". */
+/** Cuts Illustrator's suffix of a repeated name: "tree_3_" is "tree". */
 static void cut_repeat(char *name)
 {
     size_t n = strlen(name);
@@ -111,7 +110,7 @@ static char *title_of(const xmlNode *node)
     return NULL;
 }
 
-/** The first of the names that programs keep beside ids, which have to be unique; "" if none. */
+/** The first of the names that programs keep beside the unique ids; "" if none. */
 static char *name_of(const xmlNode *node, const char *id)
 {
     static const char *const foreign[] = {"label", "characterName", "layerName", NULL};

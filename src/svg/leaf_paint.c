@@ -190,7 +190,7 @@ static void set_source(Reader *r, const char *line)
     top(r)->source = source_copy(&r->next);
 }
 
-/** A group's surface is drawn: what was drawn on it belongs to the current surface now. */
+/** A group's surface is drawn: its ops now belong to the current surface. */
 static void merge_surface(Reader *r, const char *surface, double alpha, FlBlendMode mix)
 {
     for (guint i = 0; i < r->ops->len; i++) {
@@ -291,7 +291,7 @@ static void read_line(Reader *r, const char *line)
     } else if (strcmp(op, "undef") == 0 && line[0] == '/') {
         char name[16];
         word_from_end(line + 1, 1, name, sizeof name);
-        drop_surface(r, name); // what was not drawn by now is not, such as a group of opacity 0
+        drop_surface(r, name); // never drawn, such as a group of opacity 0
     } else if (strcmp(op, "linear") == 0 || strcmp(op, "radial") == 0) {
         start_gradient(r, op);
     } else if (strcmp(op, "add-color-stop") == 0) {

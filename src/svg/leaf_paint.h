@@ -1,4 +1,4 @@
-/* What a leaf is painted with, read from what librsvg draws: no CSS engine of our own. */
+/* The computed paint of a leaf, read from librsvg's drawing commands: no CSS engine of our own. */
 #ifndef FLUIDY_SVG_LEAF_PAINT_H
 #define FLUIDY_SVG_LEAF_PAINT_H
 
@@ -14,7 +14,7 @@ typedef enum FlPaintKind {
     FL_PAINT_MIXED,    // several of these
 } FlPaintKind;
 
-/** The parts of a leaf that are drawn apart. */
+/** The parts of a leaf that are drawn separately. */
 typedef enum FlPart {
     FL_PART_WHOLE,
     FL_PART_FILL,
@@ -23,12 +23,12 @@ typedef enum FlPart {
 
 /**
  * A computed paint. Two are the same paint if their keys are equal: "#rrggbb" for a flat one,
- * the kind and the stops for a gradient (not its id and not where it lies).
+ * the kind and the stops for a gradient (neither its id nor its position).
  */
 typedef struct FlPaint {
     FlPaintKind kind;
     uint8_t rgb[3]; // the colour; of a gradient the mean over its stops
-    uint8_t alpha;  // opacity, that of the groups around it included; of a gradient the mean
+    uint8_t alpha;  // opacity, its groups included; of a gradient the mean
     uint8_t peak;   // the opacity where it is most opaque: of a gradient its most opaque stop
     char *key;      // owned
 } FlPaint;
@@ -47,8 +47,8 @@ typedef struct FlPainted {
 /**
  * Reads the drawing commands that cairo's script surface wrote for one leaf.
  *
- * whole: fill and stroke are not to be taken apart. A leaf whose fill and stroke have the same
- * opaque paint is one part, and so is one that is mixed with what is below it. Returns: the number
+ * whole: fill and stroke are not separated. A leaf whose fill and stroke have the same opaque paint
+ * is one part, and so is one with a blend mode. Returns: the number
  * of parts, bottom up; 0 if nothing is drawn.
  */
 int fl_paint_read(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]);

@@ -15,10 +15,10 @@ typedef struct Walk {
     const char *const *whole;
     FlLeaves *leaves;
     FlCss *css;
-    GHashTable *taken; // id -> xmlNode, the first of that id
+    GHashTable *by_id; // id -> xmlNode, the first of that id
     int unit;          // outermost unit around, -1: none
     char *masked;      // id of the outermost group around with a mask, NULL: none
-    int turn;          // leaves met in it
+    int turn;          // leaves found in it
     int n_made;        // ids made
     int n_elements;    // of the document
 } Walk;
@@ -72,7 +72,7 @@ static bool is_container(const xmlNode *node)
 static void append_group(Walk *w, const xmlNode *node)
 {
     g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
-    if (id && is_container(node) && g_hash_table_lookup(w->taken, id) == node)
+    if (id && is_container(node) && g_hash_table_lookup(w->by_id, id) == node)
         append(w->groups, (const char *)id);
 }
 
@@ -97,14 +97,14 @@ static void enter(Walk *w, const xmlNode *node, int index)
 static char *give_id(Walk *w, xmlNode *node)
 {
     g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
-    if (id && id[0] && g_hash_table_lookup(w->taken, id) == node)
+    if (id && id[0] && g_hash_table_lookup(w->by_id, id) == node)
         return g_strdup((const char *)id);
     char *made = NULL;
     do {
         g_free(made);
         made = g_strdup_printf("fl-leaf-%d", w->n_made++);
-    } while (g_hash_table_contains(w->taken, made));
-    g_hash_table_insert(w->taken, g_strdup(made), node);
+    } while (g_hash_table_contains(w->by_id, made));
+    g_hash_table_insert(w->by_id, g_strdup(made), node);
     xmlSetProp(node, (const xmlChar *)"id", (const xmlChar *)made);
     return made;
 }
@@ -318,13 +318,13 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
               .leaves = leaves,
               .css = fl_css_new(doc),
               .unit = -1};
-    w.taken = fl_document_ids(doc);
+    w.by_id = fl_document_ids(doc);
     w.n_elements = count_elements(xmlDocGetRootElement(doc));
     if (whole && g_strv_contains(whole, FL_WHOLE_ALL))
         add_all(&w, xmlDocGetRootElement(doc));
     else
         walk(&w, xmlDocGetRootElement(doc));
-    g_hash_table_unref(w.taken);
+    g_hash_table_unref(w.by_id);
     fl_css_free(w.css);
     g_string_free(w.labels, TRUE);
     g_string_free(w.layers, TRUE);

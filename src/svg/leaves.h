@@ -13,17 +13,17 @@ typedef struct FlLeaf {
     char *id;      // in the normalised document, unique
     char *layer;   // id of what is rendered for it: the outermost group around with a mask, else id
     int turn;      // its place among the leaves of such a group; -1: it is alone there
-    char *name;    // the id the author gave it, or ""
-    char *labels;  // what names it and the groups around it: layer labels, telling ids
+    char *name;    // the authored id, or ""
+    char *labels;  // of it and its groups: layer labels, meaningful ids
     char *layers;  // the layers among them; the outermost group if there are none
     char *ids;     // every authored id, its own last
     char *groups;  // ids, in the document, of the groups around it and of itself if it is one
     char *classes; // every class word
     char *tree;    // child indices from the root, "0/3/1"
-    int unit;      // index of the group it may have to be drawn with, -1: none
+    int unit;      // index of the group it may be drawn as one with, -1: none
     bool text;     // has text, whose shape depends on the scale
     bool all;      // the whole document, drawn as it was before it was normalised
-    bool whole;    // has markers, text runs or images: fill and stroke are not taken apart
+    bool whole;    // has markers, text or images: fill and stroke are not separated
 } FlLeaf;
 
 /**
@@ -33,7 +33,7 @@ typedef struct FlLeaf {
 typedef struct FlUnit {
     FlLeaf leaf;
     int first, n;     // its leaves
-    bool inseparable; // a filter or blend mode: also where they do not overlap
+    bool inseparable; // a filter or blend mode: even where they do not overlap
 } FlUnit;
 
 typedef struct FlLeaves {

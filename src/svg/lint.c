@@ -16,7 +16,7 @@ static void warn(const Lint *lint, const xmlNode *node, const char *text)
     fl_warnings_add(lint->warnings, lint->path, lint->number, (const char *)id, "%s", text);
 }
 
-/** Puts what `text` says without page addresses in references into a new string, NULL if none. */
+/** A copy of `text` without page addresses in references, NULL if it has none. */
 static char *mend(const Lint *lint, const char *text)
 {
     GString *out = g_string_new(NULL);

@@ -1,4 +1,4 @@
-/* Looks for what librsvg draws differently from a browser without a word, and says so. */
+/* Warns about what librsvg silently draws differently from a browser. */
 #ifndef FLUIDY_SVG_LINT_H
 #define FLUIDY_SVG_LINT_H
 

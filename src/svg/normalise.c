@@ -3,7 +3,7 @@
 #include "base/limits.h"
 #include <string.h>
 
-/** Shown elements, from the outermost <use> inwards; an element twice is a circle. */
+/** Referenced elements, from the outermost <use> inwards; one that occurs twice is a cycle. */
 typedef struct Chain {
     const struct Chain *outer;
     const xmlNode *shown;
@@ -62,7 +62,7 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole)
     return id && g_strv_contains(whole, (const char *)id);
 }
 
-/** Takes href or xlink:href, whatever the prefix, off node; to be freed with xmlFree(). */
+/** Removes href or xlink:href, whatever the prefix; its value, to be freed with xmlFree(). */
 static xmlChar *take_reference(xmlNode *node)
 {
     xmlAttr *attribute = xmlHasNsProp(node, (const xmlChar *)"href", NULL);
@@ -110,7 +110,7 @@ static bool is_eligible(const xmlNode *node)
     return !extensions && (!languages || speaks((const char *)languages));
 }
 
-/** What is not eligible goes into a <defs>, where references to it still find it. */
+/** Ineligible children go into a <defs>, where references still find them. */
 static void resolve_switch(xmlNode *node)
 {
     bool chosen = false;
@@ -130,7 +130,7 @@ static void resolve_switch(xmlNode *node)
     xmlNodeSetName(node, (const xmlChar *)"g");
 }
 
-/** Ids must stay unique: those of a copy are kept aside as FL_COPIED_ID. Returns: elements. */
+/** Ids must stay unique: a copy has FL_COPIED_ID instead. Returns: the number of elements. */
 static int put_ids_aside(xmlNode *node)
 {
     int n = 1;
@@ -145,7 +145,7 @@ static int put_ids_aside(xmlNode *node)
     return n;
 }
 
-/** Takes an attribute off node. Returns: its value, to be freed with xmlFree(), or NULL. */
+/** Removes an attribute. Returns: its value, to be freed with xmlFree(), or NULL. */
 static xmlChar *take(xmlNode *node, const char *name)
 {
     xmlChar *value = (xmlChar *)fl_attribute(node, name);

@@ -1,28 +1,26 @@
-/* Rewrites a document so that each of its shapes can be rendered alone, and it still looks alike.
- */
+/* Rewrites a document so that each shape can be rendered alone and the picture stays the same. */
 #ifndef FLUIDY_SVG_NORMALISE_H
 #define FLUIDY_SVG_NORMALISE_H
 
 #include "svg/document.h"
 
-/** The attribute that keeps the id of what a <use> copied: the copy itself has none. */
+/** The attribute with the id of what a <use> copied: the copy itself has none. */
 #define FL_COPIED_ID "data-fl-id"
 
-#define FL_WHOLE_ALL "*" // in place of an id: the whole document is to stay in one piece
+#define FL_WHOLE_ALL "*" // in place of an id: the document is one leaf
 
 #define FL_GROUP_ID "fl-group-" // and a number: the ids that groups without one get
 
 /** Gives an id to every drawn <g>, <svg>, <a> and <use> that has none, in document order. */
 int fl_document_name_groups(xmlDoc *doc);
 
-/** Whether node is to stay in one piece: its id is in the NULL-terminated list, which may be NULL.
- */
+/** Whether node is drawn as one leaf: its id is in the NULL-terminated list, which may be NULL. */
 bool fl_is_whole(const xmlNode *node, const char *const *whole);
 
 /**
  * Makes each <switch> a <g> with its first eligible child, and each <use> a <g> with a deep copy of
- * what it shows (a <symbol> becomes a nested <svg>). A circle of <use> draws nothing, with a
- * warning. Elements of `whole`, see fl_is_whole(), stay as they are.
+ * what it shows (a <symbol> becomes a nested <svg>). A cycle of <use> draws nothing, with a
+ * warning. Elements of `whole`, see fl_is_whole(), stay unchanged.
  *
  * Returns: false with FL_ERROR_LIMIT if the copies are too many or too deep.
  */

@@ -7,7 +7,7 @@ static const char *const shapes[] = {"g",      "svg",     "a",    "path",     "r
                                      "circle", "ellipse", "line", "polyline", "polygon",
                                      "text",   "image",   "use",  NULL};
 
-/** Whether librsvg may draw a node, or what it fills, on a surface apart. */
+/** Whether librsvg may draw a node, or its fill, on a separate surface. */
 static bool is_apart(const xmlNode *node)
 {
     static const char *const elements[] = {"image", "pattern", "style", NULL};
@@ -53,7 +53,7 @@ static void shrink_images(xmlNode *node)
     }
 }
 
-/** Turns the children of a node about its middle, if its viewBox tells that. */
+/** Rotates the children of a node about its centre, if its viewBox has one. */
 static void turn_children(xmlNode *node)
 {
     g_autoptr(xmlChar) view = (xmlChar *)fl_attribute(node, "viewBox");

@@ -15,7 +15,7 @@ static const char *skip_comma(const char *s)
     return *s == ',' ? skip_space(s + 1) : s;
 }
 
-/** Past a number; NULL if there is none. Written by hand: strtod would take "inf" and "0x1". */
+/** Skips a number; NULL if there is none. Written by hand: strtod would take "inf" and "0x1". */
 static const char *number(const char *s)
 {
     if (*s == '+' || *s == '-')
@@ -37,7 +37,7 @@ static const char *number(const char *s)
     return s;
 }
 
-/** Past the arguments of one command, whose values go to v; NULL if they are wrong. Flags of arcs
+/** Skips the arguments of one command, reading them into v; NULL if they are wrong. Flags of arcs
  * are single digits. */
 static const char *arguments(const char *s, char command, int count, double *v)
 {
@@ -76,7 +76,7 @@ const char *fl_path_data_walk(const char *d, FlPathStep *step, void *data)
                 return s;
             step(data, command, v);
             if (g_ascii_toupper(command) == 'M')
-                command = (char)(command - 1); // what follows a move without a word are lines
+                command = (char)(command - 1); // further pairs after a move are lines
             s = skip_space(next);
             more = *s && (*s == ',' || !g_ascii_isalpha(*s));
             s = more ? skip_comma(s) : s;

@@ -1,16 +1,16 @@
-/* The grammar of path data: what it says, and where a broken `d` breaks. */
+/* The grammar of path data: its commands, and where a broken `d` breaks. */
 #ifndef FLUIDY_SVG_PATH_DATA_H
 #define FLUIDY_SVG_PATH_DATA_H
 
-/** Takes one step: a command letter, lower case if relative, and its arguments (A: 7, Z: none). */
+/** Receives one step: a command letter, lower case if relative, and its arguments (A: 7, Z: none).
+ */
 typedef void FlPathStep(void *data, char command, const double *v);
 
 /**
- * Calls `step` for every step of d in order. What follows the first pair of M without a letter
- * comes as L.
+ * Calls `step` for every step of d in order. Further pairs after M come as L.
  *
- * Returns: NULL if d is good SVG path data (empty is), else where it goes wrong; what stands before
- * has been told.
+ * Returns: NULL if d is good SVG path data (empty is), else where it goes wrong, after the calls
+ * for the steps before.
  */
 const char *fl_path_data_walk(const char *d, FlPathStep *step, void *data);
 

@@ -1,10 +1,10 @@
-/* Draws outlines as cubics: what a path, a rectangle or a circle says. */
+/* Builds outlines of cubics from paths, rectangles, circles and polygons. */
 #ifndef FLUIDY_SVG_PEN_H
 #define FLUIDY_SVG_PEN_H
 
 #include "svg/geometry.h"
 
-/** A path as its steps come in. */
+/** The state of a path under construction. */
 typedef struct FlPen {
     GArray *subpath, *cubic;
     FlPoint at, start, control; // control: of the last curve, that S and T reflect
@@ -12,18 +12,18 @@ typedef struct FlPen {
     bool open;                  // a subpath is being drawn
 } FlPen;
 
-/** An FlPathStep: takes one step of path data. */
+/** An FlPathStep: adds one step of path data. */
 void fl_pen_step(void *pen, char command, const double *v);
 
 void fl_pen_move(FlPen *pen, FlPoint p);
 void fl_pen_line(FlPen *pen, FlPoint end);
 
-/** Ends a subpath: what closes it with no length is no segment. */
+/** Ends a subpath; a closing line of no length is no segment. */
 void fl_pen_close(FlPen *pen);
 
 void fl_pen_ellipse(FlPen *pen, double cx, double cy, double rx, double ry);
 
-/** Eight segments, sharp corners being of no length. */
+/** Eight segments; those of sharp corners have no length. */
 void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, double rx, double ry);
 
 /** The points attribute of polylines and, closed, of polygons. */

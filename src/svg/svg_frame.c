@@ -11,13 +11,13 @@
 #include <math.h>
 #include <string.h>
 
-// Size of the page on which paints are read: small, for filters and masks are pixels; what is too
-// small to be drawn there is read once more on a large one. Something larger that is not drawn is
-// hidden, by a mask most often, and a mask as large as that page costs more than all the rest.
+// Size of the page on which paints are read: small, because filters and masks cost pixels. A leaf
+// too small to be drawn there is read again on a large page; a larger one that is not drawn is
+// hidden, mostly by a mask, and a mask as large as that page costs more than all the rest.
 #define PROBE_PX 256.0
 #define LARGE_PROBE_PX 4096.0
 #define SMALL_PX 4.0
-#define FAR_PX 9000.0 // cairo's script surface stops the program at boxes much farther off
+#define FAR_PX 9000.0 // cairo's script surface aborts at boxes much farther off
 
 struct FlSvg {
     char *path;
@@ -27,18 +27,17 @@ struct FlSvg {
     size_t original_bytes;
     RsvgHandle *handle;   // of the normalised document
     RsvgHandle *before;   // of the original, made when first needed
-    bool has_probe;       // paints are read from a document apart
+    bool has_probe;       // paints are read from a separate document
     int n_nameless;       // groups without an id
     GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
     FlLeaves *leaves;
 };
 
-/** What librsvg's and cairo's names of errors mean; other messages are sentences already. */
+/** Sentences for librsvg's and cairo's bare error names. */
 static const char *plain_words(const char *message)
 {
     static const char *const words[][2] = {
-        {"NoMemory",
-         "librsvg says that memory is short; it means a filter, or too large a picture"},
+        {"NoMemory", "librsvg reports no memory: a filter failed, or the picture is too large"},
         {"FreetypeError", "a text is too large, or its font is broken"},
         {"InvalidSize", "a picture in it would be too large"},
         {"InvalidMatrix", "a transform in it cannot be inverted"},
@@ -54,8 +53,8 @@ static const char *plain_words(const char *message)
 
 static void set_rsvg_error(const FlSvg *svg, const GError *reason, GError **error)
 {
-    g_autofree char *said = g_strchomp(g_strdup(reason ? reason->message : "unknown error"));
-    const char *message = plain_words(said);
+    g_autofree char *text = g_strchomp(g_strdup(reason ? reason->message : "unknown error"));
+    const char *message = plain_words(text);
     g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot be drawn: %s", svg->path, message);
 }
 
@@ -89,7 +88,7 @@ static int variant_key(FlPart part, int turn, Purpose purpose)
 static void declare(const xmlDoc *doc, const FlLeaves *leaves, FlPart part, int turn)
 {
     static const char *const parts[] = {"", ";stroke:none !important", ";fill:none !important"};
-    // a hidden shape counts for the box of the group, as it must, and takes no surface of its own
+    // a hidden shape still counts for the box of the group, but needs no surface
     static const char *const hide[] = {";visibility:hidden !important", ";opacity:0 !important"};
     g_autoptr(GHashTable) ids = fl_document_ids((xmlDoc *)doc);
     for (guint i = 0; i < leaves->leaf->len; i++) {
@@ -178,7 +177,7 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     if (svg->leaves->n_joined > 0)
         fl_warnings_add(
             warnings, path, number, NULL,
-            "a group with a mask has too many shapes to paint them apart: taken as one");
+            "a group with a mask has too many shapes to paint separately: drawn as one");
     svg->has_probe = fl_paint_probe_is_needed(svg->doc);
     fl_document_branch(svg->doc);
     svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
@@ -221,7 +220,7 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
     g_autofree char *w_said = fl_property(root, "width"), *h_said = fl_property(root, "height");
     const bool negative = (w_said && *w_said == '-') || (h_said && *h_said == '-');
     g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                "%s: %s; use ‘canvas’ to give one, such as 1920x1080, or ‘register’ to find one",
+                "%s: %s; set one with ‘canvas’, such as 1920x1080, or find one with ‘register’",
                 svg->path,
                 negative ? "the size of the drawing is negative"
                 : (has_width && w.length == 0) || (has_height && h.length == 0)
@@ -282,8 +281,7 @@ bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, do
 }
 
 /**
- * Draws everything by way of a picture of its own: filters that look at what is below need one with
- * colours.
+ * Draws everything on a colour surface of its own, which filters that read the backdrop need.
  */
 static bool draw_all(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)
 {

@@ -6,9 +6,9 @@
 #include "svg/leaf_paint.h"
 #include "svg/leaves.h"
 
-/** The page of drawings that do not say their size, in user units. */
+/** The page of drawings without a size, in user units. */
 typedef struct FlCanvas {
-    double x, y, width, height; // width 0: as the file says
+    double x, y, width, height; // width 0: the file's own
 } FlCanvas;
 
 /** Reads "WxH" or "WxH+X+Y" in px. FL_ERROR_USAGE. */
@@ -20,14 +20,14 @@ typedef struct FlSvgOptions {
     const char *const *whole; // ids of groups that are drawn as one leaf; NULL: none
 } FlSvgOptions;
 
-/** A frame. It belongs to one thread at a time; different frames may be in different threads. */
+/** A frame. One thread at a time may use it; different frames may be used in parallel. */
 typedef struct FlSvg FlSvg;
 
 /** Reads, normalises and parses. Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT. */
 FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
                    GError **error);
 
-/** The same without what is needed to paint and draw it: for its leaves and its document. */
+/** The same for its leaves and its document only: it cannot be drawn. */
 FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
                    GError **error);
 
@@ -35,11 +35,11 @@ void fl_svg_free(FlSvg *svg); // NULL is fine
 
 /**
  * The page in px: width and height of the file, else of its viewBox.
- * Returns: false with FL_ERROR_INPUT, which asks for --canvas, if it has neither.
+ * Returns: false with FL_ERROR_INPUT, which suggests ‘canvas’, if it has neither.
  */
 bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error);
 
-/** How many groups have no id; in documents with as many the ones made for them mean the same. */
+/** How many groups have no id; documents with equal numbers have comparable generated ids. */
 int fl_svg_nameless_groups(const FlSvg *svg);
 
 /** The leaves, bottom up; they belong to svg. */
@@ -51,14 +51,14 @@ xmlDoc *fl_svg_document(const FlSvg *svg);
 double fl_svg_dpi(const FlSvg *svg);
 
 /**
- * What a leaf is painted with. FlPainted.width is a share of the page's longer side.
+ * The computed paints of a leaf. FlPainted.width is a share of the page's longer side.
  * Returns: the number of parts, bottom up, 0 if nothing is drawn; -1 with FL_ERROR_INPUT.
  */
 int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error);
 
 /**
- * Draws a part of a leaf where it is in the picture, with all that applies to it (clip, mask,
- * groups). width and height are what the page is scaled to, px.
+ * Draws a part of a leaf at its place in the picture, with its clip, mask and groups. The page is
+ * scaled to width x height px.
  */
 bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
                  double height, GError **error);

@@ -36,7 +36,7 @@ bool fl_affine_invert(const FlAffine *m, FlAffine *inverse)
     return isfinite(inverse->x0) && isfinite(inverse->y0);
 }
 
-/** Taylor's series of the sine (odd) and the cosine, for at most an eighth of a turn. */
+/** The Taylor series of the sine (odd) and the cosine, for at most an eighth of a turn. */
 static double series(double x, bool odd)
 {
     double term = odd ? x : 1, sum = term;
@@ -67,7 +67,7 @@ typedef struct Call {
     int n;
 } Call;
 
-/** What a unit makes of a number; 0 if it is not known. */
+/** The factor of a unit; 0 if it is unknown. */
 static double unit_of(const char *s, size_t n)
 {
     static const struct {
@@ -80,7 +80,7 @@ static double unit_of(const char *s, size_t n)
     return 0;
 }
 
-/** Past one function; NULL if it is none. */
+/** Skips one function; NULL if there is none. */
 static const char *read_call(const char *s, Call *call)
 {
     *call = (Call){.name = s};
@@ -136,7 +136,7 @@ static FlAffine rotation_about(double degrees, double x, double y)
     return fl_affine_after(&on, &back);
 }
 
-/** What a function does; false if it is not known or has too few or too many arguments. */
+/** The matrix of a function; false if it is unknown or has a wrong number of arguments. */
 static bool map_of(const Call *call, FlAffine *m)
 {
     const double *v = call->v;

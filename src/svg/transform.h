@@ -17,10 +17,10 @@ typedef struct FlAffine {
 
 FlPoint fl_affine_apply(const FlAffine *m, FlPoint p);
 
-/** The map that does `inner` first. */
+/** The composition that applies `inner` first. */
 FlAffine fl_affine_after(const FlAffine *outer, const FlAffine *inner);
 
-/** Returns: false if there is none, because m flattens the plane. */
+/** Returns: false if m is singular. */
 bool fl_affine_invert(const FlAffine *m, FlAffine *inverse);
 
 /** Sine and cosine of an angle in degrees, the same on every CPU, to 1e-15. */
@@ -29,7 +29,7 @@ void fl_turn_of_degrees(double degrees, double *sine, double *cosine);
 /**
  * Reads a list of functions, "translate(3 4) rotate(10deg)", of the attribute or of the CSS
  * property, as librsvg does: in the plane, px, round the origin. "none" and "" are the identity.
- * Returns: false if something in it is not understood; *m is the identity then.
+ * Returns: false if it cannot be parsed; *m is the identity then.
  */
 bool fl_affine_parse(const char *text, FlAffine *m);
 
