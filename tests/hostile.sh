@@ -134,7 +134,7 @@ result $? '8000 shapes are read in a few seconds'
 svg x.svg "<mask id='m'><rect width='40' height='30' fill='#fff'/></mask><g mask='url(#m)'>$(
     for i in $(seq 2000); do echo "<circle cx='$((i % 47))' cy='$((i % 43))' r='2' fill='#a31'/>"; done
 )</g>"
-(ulimit -t 30 && look) && says 'a group with a mask has too many shapes to paint them apart'
+(ulimit -t 30 && look) && says 'a group with a mask has too many shapes to paint separately'
 result $? 'and so are 2000 in a group with a mask, as one region, with a warning'
 svg x.svg "<filter id='f' color-interpolation-filters='sRGB'><feBlend mode='multiply'
     in2='BackgroundImage'/></filter>$shape<g filter='url(#f)'><circle r='20' fill='#4a9'/></g>"
@@ -147,7 +147,7 @@ result $? 'to another filter the background is empty, with a warning'
 {
     for i in $(seq 30000); do printf '[region r%d]\nhold = 2\n' "$i"; done
 } >many.conf
-(ulimit -t 60 && look -c many.conf) && grep -q '29980 more sections hold for nothing' err &&
+(ulimit -t 60 && look -c many.conf) && grep -q '29980 more sections match no region' err &&
     [ "$(wc -l <err)" -le 24 ]
 result $? '30000 sections of a config are read fast and told briefly'
 svg x.svg "$(for i in $(seq 400); do

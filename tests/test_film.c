@@ -1,6 +1,6 @@
-#include "flat.h"
 #include "drawing/drawing.h"
 #include "drawing/raster.h"
+#include "flat.h"
 #include "scratch.h"
 #include <math.h>
 #include <string.h>
@@ -8,7 +8,8 @@
 
 #define KEEP FL_STROKES_KEEP
 
-static FlDrawing *open_film(const FlDrawingOptions *options, const char *input, FlWarnings *warnings)
+static FlDrawing *open_film(const FlDrawingOptions *options, const char *input,
+                            FlWarnings *warnings)
 {
     FlDrawingOptions o = *options;
     const char *const inputs[] = {input};
@@ -63,12 +64,13 @@ static void layers_that_come_and_go_keep_their_regions(void)
     g_assert_cmpint(fl_drawing_frames(drawing), ==, 44);
     g_assert_cmpint(fl_drawing_width(drawing), ==, 1024);
     g_assert_cmpstr(fl_drawing_name(drawing), ==, "snowman-wave-layers");
-    assert_table(drawing, "snow-9-95c7f7*44 snow-8-95c7f7*43 snow-7-95c7f7*44 snow-6-95c7f7*43 "
-                       "snow-5-95c7f7*43 arm-right-474d50*44 finger-right-474d50*44 "
-                       "arm-left-474d50*44 finger-left-474d50*44 body-e0e0e0*44 button-303030*44 "
-                       "hat-474d50*44 hat-a42718*44 head-e0e0e0*44 face-303030*44 face-ffa72b*44 "
-                       "snow-1-95c7f7*44 snow-2-95c7f7*21 snow-12-95c7f7*22 snow-11-95c7f7*19 "
-                       "snow-4-95c7f7*14 snow-3-95c7f7*18 snow-10-95c7f7*15 close-eye-303030*4");
+    assert_table(drawing,
+                 "snow-9-95c7f7*44 snow-8-95c7f7*43 snow-7-95c7f7*44 snow-6-95c7f7*43 "
+                 "snow-5-95c7f7*43 arm-right-474d50*44 finger-right-474d50*44 "
+                 "arm-left-474d50*44 finger-left-474d50*44 body-e0e0e0*44 button-303030*44 "
+                 "hat-474d50*44 hat-a42718*44 head-e0e0e0*44 face-303030*44 face-ffa72b*44 "
+                 "snow-1-95c7f7*44 snow-2-95c7f7*21 snow-12-95c7f7*22 snow-11-95c7f7*19 "
+                 "snow-4-95c7f7*14 snow-3-95c7f7*18 snow-10-95c7f7*15 close-eye-303030*4");
     const FlRegion *hat = find(drawing, "hat-a42718");
     g_assert_cmpstr(hat->label, ==, "body/head/hat");
     g_assert_cmpstr(hat->paint, ==, "#a42718");
@@ -80,7 +82,7 @@ static void limbs_that_are_strokes_are_painted(void)
 {
     g_autoptr(FlDrawing) drawing = open_fixture("strutter-zdog", KEEP, NULL);
     assert_table(drawing, "crimson-cc2255*4 yellow-eeaa00*4 purple-663366*4 "
-                       "[purple-663366-line]*4 navy-442244*4 beige-ffeedd*4");
+                          "[purple-663366-line]*4 navy-442244*4 beige-ffeedd*4");
     g_autoptr(FlDrawing) fills = open_fixture("strutter-zdog", FL_STROKES_DROP, NULL);
     g_assert_null(find(fills, "navy-442244"));
 }
@@ -442,10 +444,10 @@ static void the_smallest_group_that_looks_otherwise_is_taken_as_one(void)
     g_autofree char *pair = fl_warning_line(fl_warnings_get(warnings, 1));
     g_assert_true(g_str_has_suffix(
         use, "odd.svg: no. 2 of the groups without an id, drawn shape by "
-             "shape it does not look like the drawing: taken as one, in every frame"));
+             "shape it does not look like the drawing: drawn as one in every frame"));
     g_assert_true(g_str_has_suffix(pair,
                                    "odd.svg: #pair: drawn shape by shape it does not look like "
-                                   "the drawing: taken as one, in every frame"));
+                                   "the drawing: drawn as one in every frame"));
 }
 
 static void regions_merge_through_others_and_not_in_circles(void)

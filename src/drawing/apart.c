@@ -17,7 +17,7 @@
 
 #define TICK_MS 100
 
-/* ---- what the child hands back ------------------------------------------------------------- */
+/* ---- serialising the survey ---------------------------------------------------------------- */
 
 static void put(GByteArray *out, const void *data, size_t bytes)
 {
@@ -43,11 +43,11 @@ static void put_frame(GByteArray *out, const FlSurveyFrame *frame)
     put_int(out, n);
     for (int i = 0; i < n; i++)
         put_text(out, frame->whole[i]);
-    put_int(out, (int)frame->seen->len);
-    put(out, frame->seen->data, frame->seen->len * sizeof(FlSurveyPart));
+    put_int(out, (int)frame->parts->len);
+    put(out, frame->parts->data, frame->parts->len * sizeof(FlSurveyPart));
 }
 
-/** Everything of a scan but what it was made from. */
+/** Everything of a survey but its inputs. */
 static void put_survey(GByteArray *out, const FlSurvey *survey)
 {
     put(out, survey, sizeof *survey);
@@ -70,9 +70,9 @@ static void put_warnings(GByteArray *out, const FlWarnings *warnings)
     }
 }
 
-/* ---- and how it is taken ------------------------------------------------------------------- */
+/* ---- and reading it ------------------------------------------------------------------------ */
 
-/** What is left to be read; the child is not trusted to have written it right. */
+/** The bytes left to read; the child is not trusted. */
 typedef struct Reader {
     const char *at, *end;
     bool good;
@@ -116,12 +116,12 @@ static void take_frame(Reader *r, FlSurveyFrame *frame)
         frame->whole = g_new0(char *, (size_t)n + 1);
     for (int i = 0; i < n; i++)
         frame->whole[i] = g_strdup(take_text(r));
-    const int n_seen = take_count(r);
-    frame->seen = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), (guint)n_seen);
-    for (int i = 0; i < n_seen && r->good; i++) {
-        FlSurveyPart seen;
-        take(r, &seen, sizeof seen);
-        g_array_append_val(frame->seen, seen);
+    const int n_parts = take_count(r);
+    frame->parts = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), (guint)n_parts);
+    for (int i = 0; i < n_parts && r->good; i++) {
+        FlSurveyPart part;
+        take(r, &part, sizeof part);
+        g_array_append_val(frame->parts, part);
     }
 }
 
@@ -155,7 +155,7 @@ static void take_warnings(Reader *r, FlWarnings *warnings)
 
 /* ---- the child ----------------------------------------------------------------------------- */
 
-/** Whether nothing but this thread would be missing in a child. */
+/** Whether the process has this thread only, so that it may fork. */
 static bool is_alone(void)
 {
     g_autoptr(GDir) tasks = g_dir_open("/proc/self/task", 0, NULL);
@@ -177,14 +177,14 @@ static bool write_all(int fd, const GByteArray *data)
     return true;
 }
 
-/** What the parent does with signals and standard error is not the child's business. */
+/** Resets the signals and closes the standard error that the child has from its parent. */
 static void settle(void)
 {
     static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
     for (size_t i = 0; i < G_N_ELEMENTS(signals); i++)
         signal(signals[i], SIG_DFL);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    prctl(PR_SET_DUMPABLE, 0); // a core of it helps nobody
+    prctl(PR_SET_DUMPABLE, 0); // no core dumps
     const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
     if (null >= 0)
         dup2(null, STDERR_FILENO); // the panics of libraries
@@ -224,7 +224,7 @@ static int only_frame(FlWatch *watch)
     return n == 1 ? found : -1;
 }
 
-/** A frame that is being read for too long; -1 if there is none. */
+/** A frame whose reading takes too long; -1 if there is none. */
 static int late_frame(FlWatch *watch)
 {
     const gint64 most_us = fl_limit(FL_LIMIT_SECONDS) * G_USEC_PER_SEC;
@@ -235,7 +235,7 @@ static int late_frame(FlWatch *watch)
     return -1;
 }
 
-/** Waits until the child ends. Returns: its status; *late is the frame it was ended for, or -1. */
+/** Waits for the child. Returns: its status; *late is the frame it was killed for, or -1. */
 static int wait_for(pid_t child, int alive, FlWatch *watch, int *late)
 {
     int status = 0;
@@ -249,7 +249,7 @@ static int wait_for(pid_t child, int alive, FlWatch *watch, int *late)
     return status;
 }
 
-/** Makes the child. Returns: false if there is none; the caller then does its work. */
+/** Forks. Returns: false if that failed; the caller then reads the drawing itself. */
 static bool start(const FlSequence *sequence, const FlDrawingOptions *options, FlWatch *watch,
                   int fd, bool one_thread, pid_t *child, int *alive)
 {
@@ -294,8 +294,8 @@ static bool take_all(int fd, FlSurvey *survey, const FlSequence *sequence, FlWat
     take_warnings(&r, warnings);
     munmap(data, (size_t)bytes);
     if (good && !r.good)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: what was read of it is damaged",
-                    sequence->file[0]);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: the process that read it returned damaged data", sequence->file[0]);
     return good && r.good;
 }
 
@@ -317,7 +317,7 @@ static bool tell_end(const FlSequence *sequence, int frame, int status, bool lat
     return false;
 }
 
-/** One try; *again asks for another with one thread, to know which frame it was. */
+/** One attempt; *again asks for another with one thread, to find the frame that failed. */
 static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDrawingOptions *options,
                       FlWatch *watch, bool *one_thread, bool *again, FlWarnings *warnings, int *bad,
                       GError **error)
@@ -326,7 +326,7 @@ static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDraw
     pid_t child = -1;
     memset(watch, 0, sizeof *watch);
     *again = false;
-    const int fd = memfd_create("fluidy-scan", MFD_CLOEXEC);
+    const int fd = memfd_create("fluidy-survey", MFD_CLOEXEC);
     if (fd < 0 || !start(sequence, options, watch, fd, *one_thread, &child, &alive)) {
         if (fd >= 0)
             close(fd);

@@ -3,12 +3,12 @@
 #include <string.h>
 
 /*
- * Blender writes id="blender_frame_17" in frame 17. A number in a label is taken for the frame's if
+ * Blender writes id="blender_frame_17" in frame 17. A number in a label counts as the frame's if
  * the label occurs in two frames or more, with one number in each and another in every next one.
  * "snow 9" beside "snow 8", and "arm 2" in all frames, keep theirs.
  */
 typedef struct Stem {
-    int frame; // last one it was seen in
+    int frame; // last one it occurs in
     int number;
     int n_frames;
     bool steady; // not a frame number
@@ -67,12 +67,12 @@ static char *clean(GHashTable *stems, const char *labels)
 
 static void note_frame(const FlSurvey *survey, int t, GHashTable *stems)
 {
-    const GArray *seen = survey->frame[t].seen;
+    const GArray *parts = survey->frame[t].parts;
     const bool held =
         t > 0 && strcmp(survey->sequence->file[t], survey->sequence->file[t - 1]) == 0;
-    for (guint i = 0; i < seen->len; i++) {
-        const int labels = g_array_index(seen, FlSurveyPart, i).labels;
-        if (i > 0 && labels == g_array_index(seen, FlSurveyPart, i - 1).labels)
+    for (guint i = 0; i < parts->len; i++) {
+        const int labels = g_array_index(parts, FlSurveyPart, i).labels;
+        if (i > 0 && labels == g_array_index(parts, FlSurveyPart, i - 1).labels)
             continue;
         g_auto(GStrv) items = g_strsplit(fl_strings_get(&survey->strings, labels), "\n", -1);
         for (int k = 0; items[k]; k++)

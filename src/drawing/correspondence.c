@@ -12,8 +12,8 @@
 #define FIT_SHARE 0.02  // and which share of the motion
 #define OTHER_START 4.0 // px², mean energy of a node from which on other starts are tried
 #define BETTER 0.25     // share of the energy that another start must get down to
-#define MOST_NODES 4096 // of a subpath, for trying its starts
-#define SAMPLES 4       // of a cubic, half as many as a line is looked at
+#define MOST_NODES 4096 // of a subpath whose starts are tried
+#define SAMPLES 4       // of a cubic; growing lines have twice as many
 #define LIES_ON_PX 0.15 // a line that has grown lies this near to what it has become
 #define LIES_ON 0.05    // and as near as this share of what it has grown by
 
@@ -294,7 +294,7 @@ static FlMotionKind motion_of_same(const Pair *p, FlAffine *back)
                                                                   : FL_MOTION_SAME;
 }
 
-/** Whether a pair moves too far to be believed. */
+/** Whether a pair moves implausibly far. */
 static bool jumps(const FlTwoFrames *f, const FlLeafMeasure *a, const FlLeafMeasure *b)
 {
     const double dx = (a->x0 + a->x1 - b->x0 - b->x1) / 2, dy = (a->y0 + a->y1 - b->y0 - b->y1) / 2;
@@ -313,9 +313,9 @@ typedef struct Work {
     FlCorrespondence *out;
 } Work;
 
-/** What a region has in each frame; 0 is of what belongs to none. */
+/** A region's leaves in both frames; entry 0: leaves of no region. */
 typedef struct Count {
-    int before, now, lost; // leaves; those that nothing has become of
+    int before, now, lost; // leaves; those without a successor
 } Count;
 
 static void settle(const Work *w, int i, const Count *region)

@@ -5,12 +5,12 @@
 #include "drawing/outlines.h"
 
 typedef enum FlMotionKind {
-    FL_MOTION_NONE,       // nothing is known: not understood, or a jump
-    FL_MOTION_NEW,        // it has entered, or grown: what is there now was there or was not
+    FL_MOTION_NONE,       // unknown: not parsed, or a jump
+    FL_MOTION_NEW,        // it has appeared or grown: what was there before has not moved
     FL_MOTION_STILL,      // its outline is where it was
     FL_MOTION_AFFINE,     // one map took all of it here
     FL_MOTION_SAME,       // segment by segment
-    FL_MOTION_REGISTERED, // there before, in another structure: only masks can tell
+    FL_MOTION_REGISTERED, // there before, in another structure: only masks can show it
 } FlMotionKind;
 
 typedef struct FlLeafMotion {
@@ -30,7 +30,7 @@ typedef struct FlCorrespondence {
     int32_t *shift;
 } FlCorrespondence;
 
-/** What is compared; both frames are of one film, `before` need not be the one before `now`. */
+/** Two frames of a drawing; `before` need not be the previous one. */
 typedef struct FlTwoFrames {
     const FlOutlines *before, *now;
     const FlLeafLook *before_look, *now_look;
@@ -40,9 +40,9 @@ typedef struct FlTwoFrames {
 /**
  * Pairs the leaves within each region, in paint order as far as there is one, by id, labels, paint,
  * structure, place and size, and finds how each moved. A leaf that moves by more than half its size
- * and a twentieth of the frame is only believed if its structure and its name are the same.
+ * and a twentieth of the frame is paired only if its structure and its name are the same.
  *
- * A round leaf shows no turning of its own; if leaves of its group lie inside it, they tell.
+ * The rotation of a round leaf is that of the leaves of its group inside it, if there are any.
  */
 FlCorrespondence *fl_correspond(const FlTwoFrames *frames);
 

@@ -5,19 +5,19 @@
 #include <string.h>
 
 /*
- * Steps of the same region and paint go into one run. A step may also join an earlier run if it
- * meets nothing in between: a board of twenty discs of three colours is a few runs, not sixty.
+ * Steps of the same region and paint go into one draw. A step may also join an earlier draw if it
+ * overlaps nothing in between: twenty discs of three colours are a few draws, not sixty.
  */
-typedef struct Run {
+typedef struct Draw {
     int region;
     bool flat;
     uint8_t rgb[3], alpha, drawn, mix;
     GArray *steps; // indices
-} Run;
+} Draw;
 
-static void run_clear(void *data)
+static void draw_clear(void *data)
 {
-    g_array_unref(((Run *)data)->steps);
+    g_array_unref(((Draw *)data)->steps);
 }
 
 static bool boxes_meet(const float a[4], const float b[4])
@@ -25,7 +25,7 @@ static bool boxes_meet(const float a[4], const float b[4])
     return a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 }
 
-static bool meets(const Run *draw, const FlDrawingFrame *frame, const FlStep *step)
+static bool meets(const Draw *draw, const FlDrawingFrame *frame, const FlStep *step)
 {
     for (guint i = 0; i < draw->steps->len; i++)
         if (boxes_meet(frame->step[g_array_index(draw->steps, int, i)].box, step->box))
@@ -33,9 +33,8 @@ static bool meets(const Run *draw, const FlDrawingFrame *frame, const FlStep *st
     return false;
 }
 
-/** Whether step can be drawn with run: two that show what is below only where they do not overlap.
- */
-static bool fits(const Run *draw, const FlDrawingFrame *frame, const FlStep *step)
+/** Whether step can join draw: translucent or blended ones only where they do not overlap. */
+static bool fits(const Draw *draw, const FlDrawingFrame *frame, const FlStep *step)
 {
     if (draw->region != step->region || draw->flat != step->flat || draw->alpha != step->alpha ||
         draw->drawn != step->drawn || draw->mix != step->mix ||
@@ -44,29 +43,29 @@ static bool fits(const Run *draw, const FlDrawingFrame *frame, const FlStep *ste
     return (step->alpha == 255 && step->mix == FL_BLEND_MODE_OVER) || !meets(draw, frame, step);
 }
 
-/** The runs of a frame; region < 0: all of them. */
+/** The draws of a frame; region < 0: all of them. */
 static GArray *plan(const FlDrawingFrame *frame, int region)
 {
-    GArray *draws = g_array_new(FALSE, FALSE, sizeof(Run));
-    g_array_set_clear_func(draws, run_clear);
+    GArray *draws = g_array_new(FALSE, FALSE, sizeof(Draw));
+    g_array_set_clear_func(draws, draw_clear);
     for (int i = 0; i < frame->n; i++) {
         const FlStep *step = &frame->step[i];
         if (region >= 0 && step->region != region)
             continue;
-        Run *found = NULL;
+        Draw *found = NULL;
         for (guint r = draws->len; r-- > 0 && !found;) {
-            Run *draw = &g_array_index(draws, Run, r);
+            Draw *draw = &g_array_index(draws, Draw, r);
             if (fits(draw, frame, step))
                 found = draw;
             else if (meets(draw, frame, step))
                 break;
         }
         if (!found) {
-            const Run draw = {
+            const Draw draw = {
                 step->region, step->flat, {step->rgb[0], step->rgb[1], step->rgb[2]}, step->alpha,
                 step->drawn,  step->mix,  g_array_new(FALSE, FALSE, sizeof(int))};
             g_array_append_val(draws, draw);
-            found = &g_array_index(draws, Run, draws->len - 1);
+            found = &g_array_index(draws, Draw, draws->len - 1);
         }
         g_array_append_val(found->steps, i);
     }
@@ -78,7 +77,7 @@ typedef struct Stage {
     const FlDrawing *drawing;
     const FlDrawingFrame *frame;
     FlSvg *svg;
-    cairo_surface_t *coverage, *picture; // scratch, blank between runs; picture may be NULL
+    cairo_surface_t *coverage, *picture; // scratch, blank between draws; picture may be NULL
 } Stage;
 
 static void stage_clear(Stage *stage)
@@ -118,8 +117,8 @@ static FlBounds step_box(const Stage *stage, const FlStep *step)
     return fl_bounds_and(page_of(stage->drawing), box);
 }
 
-/** Those that a run's steps can reach, and others between them. */
-static FlBounds run_box(const Stage *stage, const Run *draw)
+/** The box of all steps of a draw. */
+static FlBounds draw_box(const Stage *stage, const Draw *draw)
 {
     FlBounds all = {0};
     for (guint i = 0; i < draw->steps->len; i++)
@@ -152,28 +151,28 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
     return drawn;
 }
 
-/** What a drawn opacity is of a thing that is as opaque as `alpha`. */
+/** A drawn opacity as coverage of something whose opacity is `alpha`. */
 static void fill_solid(uint8_t solid[256], uint8_t alpha)
 {
     for (int v = 0; v < 256; v++)
         solid[v] = (uint8_t)MIN(255, (v * 255 + alpha / 2) / MAX(alpha, 1));
 }
 
-/** What is drawn into: pixels of a box that holds all of it. */
-typedef struct Room {
+/** The pixels of the box that is drawn into. */
+typedef struct Target {
     FlBounds box;
     uint8_t *coverage;
     uint8_t *picture; // may be NULL
-} Room;
+} Target;
 
-static size_t room_pixel(const Room *room, int x, int y)
+static size_t target_pixel(const Target *target, int x, int y)
 {
-    const size_t width = (size_t)(room->box.x1 - room->box.x0);
-    return (size_t)(y - room->box.y0) * width + (size_t)(x - room->box.x0);
+    const size_t width = (size_t)(target->box.x1 - target->box.x0);
+    return (size_t)(y - target->box.y0) * width + (size_t)(x - target->box.x0);
 }
 
-/** Adds one flat step to a coverage, taking its opacity out. */
-static bool add_flat(const Stage *stage, const FlStep *step, const Room *room, GError **error)
+/** Adds one flat step to a coverage, dividing by its opacity. */
+static bool add_flat(const Stage *stage, const FlStep *step, const Target *target, GError **error)
 {
     if (!draw_step(stage, step, stage->coverage, error))
         return false;
@@ -184,7 +183,7 @@ static bool add_flat(const Stage *stage, const FlStep *step, const Room *room, G
     fill_solid(solid, step->drawn);
     for (int y = box.y0; y < box.y1; y++) {
         const unsigned char *in = drawn + (size_t)y * stride + box.x0;
-        uint8_t *out = room->coverage + room_pixel(room, box.x0, y);
+        uint8_t *out = target->coverage + target_pixel(target, box.x0, y);
         for (int x = 0; x < box.x1 - box.x0; x++)
             if (in[x])
                 out[x] = fl_over(solid[in[x]], out[x]);
@@ -193,16 +192,17 @@ static bool add_flat(const Stage *stage, const FlStep *step, const Room *room, G
     return true;
 }
 
-static bool draw_flat(const Stage *stage, const Run *draw, const Room *room, GError **error)
+static bool draw_flat(const Stage *stage, const Draw *draw, const Target *target, GError **error)
 {
     for (guint i = 0; i < draw->steps->len; i++)
-        if (!add_flat(stage, &stage->frame->step[g_array_index(draw->steps, int, i)], room, error))
+        if (!add_flat(stage, &stage->frame->step[g_array_index(draw->steps, int, i)], target,
+                      error))
             return false;
     return true;
 }
 
-/** Draws the steps of a run on a picture of their own. */
-static bool draw_picture(Stage *stage, const Run *draw, const Room *room, GError **error)
+/** Draws the steps of a draw on a picture of their own. */
+static bool draw_picture(Stage *stage, const Draw *draw, const Target *target, GError **error)
 {
     const int width = stage->drawing->width, height = stage->drawing->height;
     if (!stage->picture)
@@ -217,19 +217,19 @@ static bool draw_picture(Stage *stage, const Run *draw, const Room *room, GError
     const unsigned char *drawn = cairo_image_surface_get_data(stage->picture);
     uint8_t solid[256];
     fill_solid(solid, draw->drawn);
-    for (int y = room->box.y0; y < room->box.y1; y++)
-        for (int x = room->box.x0; x < room->box.x1; x++) {
+    for (int y = target->box.y0; y < target->box.y1; y++)
+        for (int x = target->box.x0; x < target->box.x1; x++) {
             const uint32_t pixel = ((const uint32_t *)(drawn + (size_t)y * stride))[x];
-            const size_t p = room_pixel(room, x, y);
+            const size_t p = target_pixel(target, x, y);
             if (!pixel)
                 continue;
             uint8_t mine[4];
             fl_straighten(pixel, solid[pixel >> 24], mine);
-            if (room->picture)
-                memcpy(room->picture + 4 * p, mine, 4);
-            room->coverage[p] = fl_over(mine[3], room->coverage[p]);
+            if (target->picture)
+                memcpy(target->picture + 4 * p, mine, 4);
+            target->coverage[p] = fl_over(mine[3], target->coverage[p]);
         }
-    fl_surface_wipe(stage->picture, room->box);
+    fl_surface_wipe(stage->picture, target->box);
     return true;
 }
 
@@ -246,46 +246,46 @@ static void mean_colour(const uint8_t *picture, size_t n, uint8_t rgb[3])
         rgb[c] = (uint8_t)(weight ? (sum[c] + weight / 2) / weight : 0);
 }
 
-static bool draw_in(Stage *stage, const Run *draw, const Room *room, GError **error)
+static bool draw_in(Stage *stage, const Draw *draw, const Target *target, GError **error)
 {
-    return draw->flat ? draw_flat(stage, draw, room, error)
-                      : draw_picture(stage, draw, room, error);
+    return draw->flat ? draw_flat(stage, draw, target, error)
+                      : draw_picture(stage, draw, target, error);
 }
 
-/** Keeps what has been drawn, and no more room than that takes. */
-static bool keep_drawn(const Room *room, FlDraw *out, GError **error)
+/** Copies the drawn pixels, cropped to their bounding box. */
+static bool keep_drawn(const Target *target, FlDraw *out, GError **error)
 {
-    const FlRect from = {room->box.x0, room->box.y0, room->box.x1 - room->box.x0,
-                         room->box.y1 - room->box.y0};
-    fl_area_init(&out->area, room->coverage, from.width, from.height);
+    const FlRect from = {target->box.x0, target->box.y0, target->box.x1 - target->box.x0,
+                         target->box.y1 - target->box.y0};
+    fl_area_init(&out->area, target->coverage, from.width, from.height);
     FlRect *box = &out->area.box;
     box->x += from.x, box->y += from.y;
     const size_t n = fl_rect_pixels(*box);
     if (!(out->coverage = fl_alloc(n, 1, "the mask of a region", error)))
         return false;
-    fl_rect_copy(room->coverage, from, out->coverage, *box, 1);
-    if (!room->picture)
+    fl_rect_copy(target->coverage, from, out->coverage, *box, 1);
+    if (!target->picture)
         return true;
     if (!(out->picture = fl_alloc(n, 4, "the picture of a region", error)))
         return false;
-    fl_rect_copy(room->picture, from, out->picture, *box, 4);
+    fl_rect_copy(target->picture, from, out->picture, *box, 4);
     mean_colour(out->picture, n, out->rgb);
     return true;
 }
 
-static bool draw_run(Stage *stage, const Run *draw, FlDraw *out, GError **error)
+static bool draw_steps(Stage *stage, const Draw *draw, FlDraw *out, GError **error)
 {
-    const FlBounds box = run_box(stage, draw);
+    const FlBounds box = draw_box(stage, draw);
     const size_t n = (size_t)(box.x1 - box.x0) * (size_t)(box.y1 - box.y0);
     *out = (FlDraw){.region = draw->region, .alpha = draw->alpha, .mix = (FlBlendMode)draw->mix};
     memcpy(out->rgb, draw->rgb, 3);
     g_autofree uint8_t *coverage = fl_alloc(n, 1, "the mask of a region", error);
     g_autofree uint8_t *picture =
         draw->flat || !coverage ? NULL : fl_alloc(n, 4, "the picture of a region", error);
-    const Room room = {box, coverage, picture};
+    const Target target = {box, coverage, picture};
     if (!coverage || (!draw->flat && !picture))
         return false;
-    return draw_in(stage, draw, &room, error) && keep_drawn(&room, out, error);
+    return draw_in(stage, draw, &target, error) && keep_drawn(&target, out, error);
 }
 
 FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error)
@@ -299,7 +299,7 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
     out->draw = g_new0(FlDraw, draws->len + 1);
     for (guint r = 0; r < draws->len; r++) {
         out->n++;
-        if (!draw_run(&stage, &g_array_index(draws, Run, r), &out->draw[r], error))
+        if (!draw_steps(&stage, &g_array_index(draws, Draw, r), &out->draw[r], error))
             return NULL;
     }
     return g_steal_pointer(&out);
@@ -315,9 +315,9 @@ bool fl_drawing_mask(const FlDrawing *drawing, int frame, int region, uint8_t *c
     g_auto(Stage) stage = {0};
     if (!stage_init(&stage, drawing, frame, error))
         return false;
-    const Room room = {page_of(drawing), coverage, NULL};
+    const Target target = {page_of(drawing), coverage, NULL};
     for (guint r = 0; r < draws->len; r++)
-        if (!draw_in(&stage, &g_array_index(draws, Run, r), &room, error))
+        if (!draw_in(&stage, &g_array_index(draws, Draw, r), &target, error))
             return false;
     return true;
 }

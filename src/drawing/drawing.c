@@ -118,8 +118,8 @@ static void measure(FlDrawing *drawing, const FlSurvey *survey)
     g_autofree int *leaves = g_new(int, n + 1);
     for (int t = 0; t < survey->n_frames; t++) {
         memset(leaves, 0, n * sizeof *leaves);
-        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].seen, FlSurveyPart, i);
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
             if (s->region < 0)
                 continue;
             leaves[s->region]++;
@@ -138,7 +138,7 @@ static void measure(FlDrawing *drawing, const FlSurvey *survey)
     }
 }
 
-/** Where a region ends up when those that it joins join others; in a circle nothing joins. */
+/** Follows merges of merges; a region in a cycle of merges stays itself. */
 static int end_of(const int *into, guint n, int region)
 {
     int r = region;
@@ -171,8 +171,8 @@ static void merge_regions(FlSurvey *survey, GArray *groups, const FlRegionRule *
             g_array_index(groups, FlGroup, kept++) = g_array_index(groups, FlGroup, r);
     }
     for (int t = 0; t < survey->n_frames && kept < groups->len; t++)
-        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
-            int *region = &g_array_index(survey->frame[t].seen, FlSurveyPart, i).region;
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            int *region = &g_array_index(survey->frame[t].parts, FlSurveyPart, i).region;
             if (*region >= 0)
                 *region = number[end[*region]];
         }
@@ -183,15 +183,15 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
 {
     drawing->frame = g_new0(FlDrawingFrame, survey->n_frames);
     for (int t = 0; t < survey->n_frames; t++) {
-        const GArray *seen = survey->frame[t].seen;
+        const GArray *parts = survey->frame[t].parts;
         FlDrawingFrame *frame = &drawing->frame[t];
         frame->page_width = survey->frame[t].page_width;
         frame->page_height = survey->frame[t].page_height;
         frame->canvas = survey->frame[t].canvas;
         frame->whole = g_steal_pointer(&survey->frame[t].whole);
-        frame->step = g_new0(FlStep, seen->len + 1);
-        for (guint i = 0; i < seen->len; i++) {
-            const FlSurveyPart *s = &g_array_index(seen, FlSurveyPart, i);
+        frame->step = g_new0(FlStep, parts->len + 1);
+        for (guint i = 0; i < parts->len; i++) {
+            const FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, i);
             if (s->region < 0)
                 continue;
             FlStep *step = &frame->step[frame->n++];
@@ -208,7 +208,7 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
     }
 }
 
-/** Gives regions that no rule made to the rules that are about them by name. */
+/** Applies rules without conditions to the regions of their names. */
 static void apply_names(const FlSurvey *survey, GArray *groups, const FlRegionRule *rules, int n)
 {
     g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
@@ -228,8 +228,8 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     merge_regions(survey, groups, options->rules);
     if (groups->len > INT16_MAX) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
-                    "%s: %u regions, at most %d are handled; use another ‘key’", sequence->file[0],
-                    groups->len, INT16_MAX);
+                    "%s: %u regions, more than the limit of %d; use another ‘key’",
+                    sequence->file[0], groups->len, INT16_MAX);
         return NULL;
     }
     FlDrawing *drawing = g_new0(FlDrawing, 1);
@@ -245,7 +245,7 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     return drawing;
 }
 
-/** Goes on without a frame, as over a gap in the numbers: with the one before it, or none. */
+/** Replaces a bad frame as if its file were missing: by the one before it, or by none. */
 static void leave_out(FlSequence *sequence, int frame, FlMissing missing)
 {
     const int other = frame > 0 ? frame - 1 : 1;
@@ -261,7 +261,7 @@ static void leave_out(FlSequence *sequence, int frame, FlMissing missing)
     sequence->file[--sequence->n] = NULL;
 }
 
-/** Reads all frames; those that crash, hang or ask for too much as `missing` says. */
+/** Reads all frames; `missing` decides about those that crash, hang or exceed a limit. */
 static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingOptions *options,
                         FlWarnings *warnings, GError **error)
 {
@@ -279,7 +279,7 @@ static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingO
             return good;
         }
         fl_warnings_add(warnings, sequence->file[bad], sequence->number[bad], NULL,
-                        "left out, as ‘missing’ says: %s", reason->message);
+                        "left out (‘missing’): %s", reason->message);
         g_error_free(reason);
         leave_out(sequence, bad, options->missing);
         fl_survey_clear(survey);

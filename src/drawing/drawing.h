@@ -1,4 +1,4 @@
-/* An SVG sequence as regions: which parts of the drawing are painted as one, in every frame. */
+/* An SVG sequence as regions: the parts of the drawing that are painted as one, in every frame. */
 #ifndef FLUIDY_DRAWING_DRAWING_H
 #define FLUIDY_DRAWING_DRAWING_H
 
@@ -20,9 +20,9 @@ typedef struct FlDrawingOptions {
     FlMissing missing;
     FlCanvas canvas;   // of drawings without a size
     double dpi;        // 0: 96
-    bool apart;        // read in a process apart, see fl_survey_init_apart()
-    bool registered;   // put frames that were moved to 0,0 where they belong, see fl_register()
-    int width, height; // of the picture, px; 0: as the drawing says; both: what fits in, filled up
+    bool apart;        // read in a child process, see drawing/apart.h
+    bool registered;   // move frames that begin at 0,0 back, see drawing/register_frames.h
+    int width, height; // of the picture, px; 0: the drawing's; both: fitted and padded
     double scale;      // px per px of the drawing; 0: 1; not together with width or height
     FlStrokes strokes;
     FlRegionKey key;
@@ -30,33 +30,33 @@ typedef struct FlDrawingOptions {
     int n_rules;
 } FlDrawingOptions;
 
-/** A region: the leaves that are one area of paint through the whole film. */
+/** A region: the leaves that are one area of paint through the whole drawing. */
 typedef struct FlRegion {
     char *name;      // unique, made of [a-z0-9-], stable for the same input; used in file names
     char *label;     // the layer label path without frame numbers; "" if the drawing has none
-    char *paint;     // "#rrggbb", "gradient", "image": what it is mostly filled with
+    char *paint;     // "#rrggbb", "gradient", "image": of most of its area
     int n_present;   // frames in which it is drawn
     int first_frame; // index of the first of them
     double area_px;  // mean area over those frames
     int n_leaves;    // most leaves it had in a frame
-    bool paintable;  // false: drawn as it is over the paint (strokes, shading overlays)
+    bool paintable;  // false: drawn unpainted over the paint (strokes, shading overlays)
     int rule;        // index of the rule that made it, -1: none
 } FlRegion;
 
 /**
- * One step of a frame's stack, from the bottom up: leaves of one region that can be drawn together.
- * A region that lies both below and above another has several runs in a frame, and so has one whose
- * leaves differ in colour. Drawing a run over what is below it: colour `rgb`, or that of `picture`,
- * with opacity coverage * alpha / 255. Runs of regions that are not paintable are drawn just so.
+ * One entry of a frame's draw list, from the bottom up: leaves of one region that can be drawn
+ * together. A region that lies both below and above another has several draws in a frame, and so
+ * has one whose leaves differ in colour. A draw composites colour `rgb`, or that of `picture`, with
+ * opacity coverage * alpha / 255; regions that are not paintable are drawn just so.
  */
 typedef struct FlDraw {
-    int region;        // index into the film's regions
+    int region;        // index into the drawing's regions
     FlArea area;       // where it is in the frame
     uint8_t *coverage; // of the area's box, 0..255: the whole shape, hidden parts included
     uint8_t *picture;  // of the box, 4 bytes a pixel, straight sRGBA as the SVG draws it; NULL:
                        // flat `rgb`. A is coverage again, colours are defined where A > 0
     uint8_t rgb[3];    // the fill; of a picture its mean
-    uint8_t alpha;     // opacity of the run, 255 opaque; coverage is without it
+    uint8_t alpha;     // opacity of the draw, 255 opaque; not part of coverage
     FlBlendMode mix;   // with what is below it
 } FlDraw;
 
@@ -65,7 +65,7 @@ typedef struct FlDrawList {
     FlDraw *draw;
 } FlDrawList;
 
-/** A sequence and what is known of it. It holds no pictures: each call reads its file again. */
+/** A sequence and its regions. It keeps no pictures: each call reads its file again. */
 typedef struct FlDrawing FlDrawing;
 
 /**
@@ -90,8 +90,8 @@ const char *fl_drawing_file(const FlDrawing *drawing, int frame);
 int fl_drawing_number(const FlDrawing *drawing, int frame);
 
 /**
- * From now on the film's pictures have half the width and height, halves counting as whole pixels;
- * the regions stay as they are. Nobody may be drawing it.
+ * Halves width and height of the pictures from now on, rounding up; the regions stay the same. No
+ * other thread may use the drawing meanwhile.
  */
 void fl_drawing_halve(FlDrawing *drawing);
 
@@ -105,11 +105,11 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
 bool fl_drawing_mask(const FlDrawing *drawing, int frame, int region, uint8_t *coverage,
                      GError **error);
 
-/** The region's whole-shape mask in a frame: the union of its runs' coverage. */
+/** The region's whole-shape mask in a frame: the union of its draws' coverage. */
 void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
                        uint8_t *coverage);
 
-/** The frame without paint: the runs over each other, as width * height * 4 straight sRGBA. */
+/** The frame without paint: all draws composited, as width * height * 4 straight sRGBA. */
 void fl_draw_list_flat(const FlDrawList *draws, int width, int height, uint8_t *rgba);
 
 /**

@@ -1,18 +1,19 @@
-/* What a film remembers; private to regions/. */
+/* The data of an FlDrawing; private to drawing/. */
 #ifndef FLUIDY_DRAWING_DRAWING_DATA_H
 #define FLUIDY_DRAWING_DRAWING_DATA_H
 
 #include "drawing/drawing.h"
 
-/** How one part of a leaf is drawn in one frame. 32 bytes: this is what grows with the film. */
+/** How one part of a leaf is drawn in one frame. 32 bytes: this is what grows with the number of
+ * frames. */
 typedef struct FlStep {
     int32_t leaf;   // index of the leaf; of a unit -1 - its index
-    int16_t region; // index into the film's regions
+    int16_t region; // index into the drawing's regions
     uint8_t part;   // FlPart
     uint8_t flat;   // else drawn as a picture
     uint8_t rgb[3];
-    uint8_t alpha; // of its run
-    uint8_t drawn; // FlPaint.peak: what is drawn where it is covered
+    uint8_t alpha; // of its draw
+    uint8_t drawn; // FlPaint.peak: the opacity drawn at full coverage
     uint8_t mix;   // FlBlendMode
     float box[4];  // x0, y0, x1, y1 that it lies in, px
 } FlStep;

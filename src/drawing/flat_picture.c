@@ -2,7 +2,7 @@
 #include "drawing/raster.h"
 #include <string.h>
 
-/** Lays n pixels of a run, from p on, over straight RGBA. */
+/** Composites n pixels of a draw, from p on, over straight RGBA. */
 static void lay_row(const FlDraw *draw, const uint8_t *rgb, size_t p, int n, uint8_t *rgba)
 {
     for (uint8_t *out = rgba; out < rgba + 4 * (size_t)n; out += 4, p++) {
@@ -21,7 +21,7 @@ static void lay_row(const FlDraw *draw, const uint8_t *rgb, size_t p, int n, uin
     }
 }
 
-/** Lays a run over a frame, `width` wide; with a colour of its own if rgb is given. */
+/** Composites a draw over a frame `width` pixels wide; in the colour rgb unless that is NULL. */
 static void lay(const FlDraw *draw, const uint8_t *rgb, int width, uint8_t *rgba)
 {
     const FlRect box = draw->area.box;

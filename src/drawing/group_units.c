@@ -7,8 +7,8 @@ static GHashTable *single_trees(const FlSurvey *survey)
 {
     GHashTable *trees = g_hash_table_new(g_direct_hash, g_direct_equal);
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].seen, FlSurveyPart, i);
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
             if (s->unit == 0)
                 g_hash_table_add(trees, GINT_TO_POINTER(s->tree));
         }
@@ -29,12 +29,12 @@ static bool fades_only(const FlSurvey *survey, GHashTable *singles, int tree)
 }
 
 /** Keeps one of unit and leaves in a frame. A unit follows its leaves. */
-static void choose(const FlSurvey *survey, GHashTable *singles, GHashTable *known, GArray *seen)
+static void choose(const FlSurvey *survey, GHashTable *singles, GHashTable *known, GArray *parts)
 {
     guint kept = 0;
     bool leaves_stay = false;
-    for (guint i = seen->len; i-- > 0;) { // from the top: the unit first
-        FlSurveyPart *s = &g_array_index(seen, FlSurveyPart, i);
+    for (guint i = parts->len; i-- > 0;) { // from the top: the unit first
+        FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, i);
         if (s->unit > 0 && s->leaf < 0) {
             gpointer fades = NULL, key = GINT_TO_POINTER(s->tree);
             if (!g_hash_table_lookup_extended(known, key, NULL, &fades)) {
@@ -42,13 +42,13 @@ static void choose(const FlSurvey *survey, GHashTable *singles, GHashTable *know
                 g_hash_table_insert(known, key, fades);
             }
             const bool has_leaves =
-                i > 0 && g_array_index(seen, FlSurveyPart, i - 1).unit == s->unit;
+                i > 0 && g_array_index(parts, FlSurveyPart, i - 1).unit == s->unit;
             leaves_stay = fades && has_leaves;
         }
         if (s->unit == 0 || (s->leaf >= 0) == leaves_stay)
-            g_array_index(seen, FlSurveyPart, seen->len - ++kept) = *s;
+            g_array_index(parts, FlSurveyPart, parts->len - ++kept) = *s;
     }
-    g_array_remove_range(seen, 0, seen->len - kept);
+    g_array_remove_range(parts, 0, parts->len - kept);
 }
 
 void fl_survey_choose_units(FlSurvey *survey)
@@ -56,5 +56,5 @@ void fl_survey_choose_units(FlSurvey *survey)
     g_autoptr(GHashTable) singles = single_trees(survey);
     g_autoptr(GHashTable) known = g_hash_table_new(g_direct_hash, g_direct_equal);
     for (int t = 0; t < survey->n_frames; t++)
-        choose(survey, singles, known, survey->frame[t].seen);
+        choose(survey, singles, known, survey->frame[t].parts);
 }

@@ -5,10 +5,10 @@
 static void insert(GArray *draws, int at, FlDraw *draw)
 {
     g_array_insert_val(draws, (guint)at, *draw);
-    *draw = (FlDraw){.region = draw->region}; // its pictures have a new owner
+    *draw = (FlDraw){.region = draw->region}; // its pictures were moved
 }
 
-/** Index of the last run of a region, -1 if it has none. */
+/** Index of the last draw of a region, -1 if it has none. */
 static int last_of(const GArray *draws, int region)
 {
     for (int r = (int)draws->len - 1; r >= 0; r--)
@@ -17,7 +17,7 @@ static int last_of(const GArray *draws, int region)
     return -1;
 }
 
-/** Where run k of an earlier frame goes that has no counterpart. */
+/** Where draw k of an earlier frame goes that has no counterpart. */
 static int place_of(const GArray *draws, const FlDrawList *earlier, int k)
 {
     for (int below = k; below >= 0; below--) {
@@ -28,7 +28,7 @@ static int place_of(const GArray *draws, const FlDrawList *earlier, int k)
     return 0;
 }
 
-/** The lowest run of a region that is not taken yet. */
+/** The lowest draw of a region that has not been moved yet. */
 static FlDraw *first_left(const FlDrawList *draws, int region)
 {
     for (int r = 0; r < draws->n; r++)
@@ -37,14 +37,14 @@ static FlDraw *first_left(const FlDrawList *draws, int region)
     return NULL;
 }
 
-/** Whether a region's runs are taken from frame `from` when frame `now` is shown. */
+/** Whether a region's draws come from frame `from` when frame `now` is shown. */
 static bool is_from(const int *hold_of, int region, int frame, int from, int now)
 {
     const int shown = frame - frame % hold_of[region];
     return shown == from && shown != now;
 }
 
-/** Puts the runs of the regions that show `from` in the place of what they have in runs. */
+/** Replaces the draws of the regions that show `from` by those of that frame. */
 static bool replace(const FlDrawing *drawing, const int *hold_of, GArray *draws, int frame,
                     int from, int now, GError **error)
 {

@@ -7,9 +7,9 @@
 /*
  * Leaves of two frames are paired greedily, the most alike first. Only leaves of the same label and
  * kind are compared; the same paint counts most, then overlap, then the place in the document.
- * Exporters that keep the tree (lottie-web, SMIL) and those that sort by depth (Zdog) both come
- * out: there the place is right and the paint may change, here the paint is right and the place
- * changes.
+ * Exporters that keep the tree (lottie-web, SMIL) and those that sort by depth (Zdog) both
+ * work: the former keep the place while the paint may change, the latter keep the paint while the
+ * place changes.
  */
 #define GRADUAL 30.0f // CIE76 between frames, for a leaf at the same place in the document
 #define SUBTLE 12.0f  // and for one that is only in the same place in the picture
@@ -18,7 +18,7 @@
 
 typedef struct Pair {
     float score;
-    int track, seen;
+    int track, part;
 } Pair;
 
 static float overlap(const float a[4], const float b[4])
@@ -50,7 +50,7 @@ static int compare_pairs(const void *x, const void *y)
     const Pair *a = x, *b = y;
     if (a->score != b->score)
         return a->score > b->score ? -1 : 1;
-    return a->track != b->track ? a->track - b->track : a->seen - b->seen;
+    return a->track != b->track ? a->track - b->track : a->part - b->part;
 }
 
 typedef struct Follow {
@@ -62,12 +62,12 @@ typedef struct Follow {
 static void follow_on(Follow *f, int t, int i, int track, int *row)
 {
     FlTrack *tr = &g_array_index(f->tracks, FlTrack, track);
-    const FlSurveyPart *seen = &g_array_index(f->survey->frame[t].seen, FlSurveyPart, i);
-    const int change[2] = {t, seen->paint};
-    if (tr->paints->len > 0 && tr->last.paint != seen->paint)
+    const FlSurveyPart *part = &g_array_index(f->survey->frame[t].parts, FlSurveyPart, i);
+    const int change[2] = {t, part->paint};
+    if (tr->paints->len > 0 && tr->last.paint != part->paint)
         tr->varies = true;
     g_array_append_vals(tr->paints, change, 2);
-    tr->last = *seen;
+    tr->last = *part;
     tr->last_frame = t;
     row[i] = track;
 }
@@ -105,28 +105,28 @@ static void pair_exactly(Follow *f, int t, int *row)
     for (guint k = 0; k < f->tracks->len; k++)
         g_hash_table_insert(known, &g_array_index(f->tracks, FlTrack, k).last,
                             GINT_TO_POINTER(k + 1));
-    GArray *seen = f->survey->frame[t].seen;
-    g_autofree int *found = g_new0(int, seen->len + 1);
-    for (guint i = 0; i < seen->len; i++)
+    GArray *parts = f->survey->frame[t].parts;
+    g_autofree int *found = g_new0(int, parts->len + 1);
+    for (guint i = 0; i < parts->len; i++)
         found[i] =
-            GPOINTER_TO_INT(g_hash_table_lookup(known, &g_array_index(seen, FlSurveyPart, i)));
-    for (guint i = 0; i < seen->len; i++)
+            GPOINTER_TO_INT(g_hash_table_lookup(known, &g_array_index(parts, FlSurveyPart, i)));
+    for (guint i = 0; i < parts->len; i++)
         if (found[i] && g_array_index(f->tracks, FlTrack, found[i] - 1).last_frame < t)
             follow_on(f, t, (int)i, found[i] - 1, row);
 }
 
-/** Pairs what is left over, the most alike first. */
+/** Pairs the remaining leaves, the most alike first. */
 static void pair_by_likeness(Follow *f, int t, int *row)
 {
-    GArray *seen = f->survey->frame[t].seen;
+    GArray *parts = f->survey->frame[t].parts;
     g_autoptr(GArray) pairs = g_array_new(FALSE, FALSE, sizeof(Pair));
     int left = 0;
-    for (guint i = 0; i < seen->len; i++)
+    for (guint i = 0; i < parts->len; i++)
         left += row[i] < 0;
     for (guint k = 0; k < f->tracks->len && left > 0 && left < TOO_MANY; k++) {
         const FlTrack *track = &g_array_index(f->tracks, FlTrack, k);
-        for (guint i = 0; i < seen->len && track->last_frame < t; i++) {
-            const FlSurveyPart *s = &g_array_index(seen, FlSurveyPart, i);
+        for (guint i = 0; i < parts->len && track->last_frame < t; i++) {
+            const FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, i);
             if (row[i] >= 0 || !comparable(f, &track->last, s))
                 continue;
             const float like = likeness(&track->last, s);
@@ -138,8 +138,8 @@ static void pair_by_likeness(Follow *f, int t, int *row)
     g_array_sort(pairs, compare_pairs);
     for (guint p = 0; p < pairs->len; p++) {
         const Pair *pair = &g_array_index(pairs, Pair, p);
-        if (row[pair->seen] < 0 && g_array_index(f->tracks, FlTrack, pair->track).last_frame < t)
-            follow_on(f, t, pair->seen, pair->track, row);
+        if (row[pair->part] < 0 && g_array_index(f->tracks, FlTrack, pair->track).last_frame < t)
+            follow_on(f, t, pair->part, pair->track, row);
     }
 }
 
@@ -154,7 +154,7 @@ GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***
     g_array_set_clear_func(f.tracks, track_clear);
     *track_of = g_new0(int *, survey->n_frames);
     for (int t = 0; t < survey->n_frames; t++) {
-        const guint n = survey->frame[t].seen->len;
+        const guint n = survey->frame[t].parts->len;
         int *row = (*track_of)[t] = g_new(int, n + 1);
         for (guint i = 0; i < n; i++)
             row[i] = -1;

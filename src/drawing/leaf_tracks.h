@@ -4,9 +4,9 @@
 
 #include "drawing/survey.h"
 
-/** One leaf through the film. */
+/** One leaf through the drawing. */
 typedef struct FlTrack {
-    FlSurveyPart last; // as it was last seen
+    FlSurveyPart last; // in the last frame that has it
     int last_frame;
     bool varies;    // its paint changed
     GArray *paints; // int pairs: frame, paint (a string number); ascending frames

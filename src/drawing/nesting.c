@@ -5,7 +5,7 @@
 #define LARGE 0.004f // share of the page from which on an inner leaf counts; not a glint in an eye
 #define INSIDE 0.95f // share of a leaf's box that lies in the box of the one it is in
 #define ALWAYS 0.9f  // share of its frames in which a track has the same depth
-#define MOSTLY 0.5f  // share of the film's frames a track is in
+#define MOSTLY 0.5f  // share of all frames that a track is in
 
 static float area(const float b[4])
 {
@@ -26,23 +26,23 @@ static bool same_kind(const FlSurveyPart *a, const FlSurveyPart *b, const int *l
 }
 
 /** Whether something of another paint lies between leaves j < i of a frame and under all of i. */
-static bool is_parted(const FlSurveyPart *seen, int j, int i, const int *label_of)
+static bool is_parted(const FlSurveyPart *part, int j, int i, const int *label_of)
 {
     for (int k = j + 1; k < i; k++)
-        if (!same_kind(&seen[k], &seen[i], label_of) && lies_in(&seen[i], &seen[k]))
+        if (!same_kind(&part[k], &part[i], label_of) && lies_in(&part[i], &part[k]))
             return true;
     return false;
 }
 
 static void find_levels(const GArray *frame, const int *label_of, float least, int *level)
 {
-    const FlSurveyPart *seen = (const FlSurveyPart *)frame->data;
+    const FlSurveyPart *part = (const FlSurveyPart *)frame->data;
     for (int i = 0; i < (int)frame->len; i++) {
         level[i] = 0;
-        for (int j = 0; j < i && seen[i].area_px >= least; j++)
+        for (int j = 0; j < i && part[i].area_px >= least; j++)
             if (level[j] >= level[i] && level[j] < DEEPEST &&
-                same_kind(&seen[i], &seen[j], label_of) && lies_in(&seen[i], &seen[j]) &&
-                is_parted(seen, j, i, label_of))
+                same_kind(&part[i], &part[j], label_of) && lies_in(&part[i], &part[j]) &&
+                is_parted(part, j, i, label_of))
                 level[i] = level[j] + 1;
     }
 }
@@ -53,7 +53,7 @@ int *fl_nesting(const FlSurvey *survey, int *const *track_of, const int *label_o
     int(*count)[DEEPEST + 1] = g_malloc0_n((gsize)n_tracks + 1, sizeof *count);
     int *depth = g_new0(int, n_tracks + 1);
     for (int t = 0; t < survey->n_frames; t++) {
-        const GArray *frame = survey->frame[t].seen;
+        const GArray *frame = survey->frame[t].parts;
         g_autofree int *level = g_new0(int, frame->len + 1);
         if (frame->len <= TOO_MANY)
             find_levels(frame, label_of, least, level);

@@ -4,14 +4,14 @@
 #include "base/suggest.h"
 #include <string.h>
 
-/* The rule's wishes that matter to finding regions. The strings stay the config's. */
+/* The rule's overrides that matter to finding regions. The strings stay the config's. */
 static void add_wishes(const FlRule *from, FlRegionRule *rule)
 {
-    g_auto(FlRegionSettings) said = {0};
-    fl_region_settings_init(&said);
-    fl_overrides_apply(&from->overrides, &said);
-    rule->passthrough = said.passthrough;
-    for (int i = 0; said.merge_with && i < from->overrides.n; i++)
+    g_auto(FlRegionSettings) settings = {0};
+    fl_region_settings_init(&settings);
+    fl_overrides_apply(&from->overrides, &settings);
+    rule->passthrough = settings.passthrough;
+    for (int i = 0; settings.merge_with && i < from->overrides.n; i++)
         if (g_str_equal(from->overrides.override[i].key, "merge-with"))
             rule->merge_with = from->overrides.override[i].value;
 }
@@ -37,9 +37,9 @@ static FlRegionRule *rules_of(const FlConfig *config)
     return rules;
 }
 
-#define MOST_TOLD 20 // sections that are told one by one
+#define MOST_LISTED 20 // unmatched sections with a warning each
 
-/* Marks the rules that a region of the film is made by. Returns: how many are not marked. */
+/* Marks the rules that made a region. Returns: how many are not marked. */
 static int mark_used(const FlDrawing *drawing, const FlRegionRule *rules, int n, bool *used)
 {
     int unused = 0;
@@ -53,8 +53,8 @@ static int mark_used(const FlDrawing *drawing, const FlRegionRule *rules, int n,
     return unused;
 }
 
-/* A section may be about something that frames have which were not asked for: looks at all. What
- * cannot be read is told when it is asked for. */
+/* A section may match in frames outside the range: checks all. An unreadable file is an error only
+ * when it is within the range. */
 static int mark_used_elsewhere(const FlDrawingOptions *options, bool *used)
 {
     FlDrawingOptions all = *options;
@@ -63,36 +63,36 @@ static int mark_used_elsewhere(const FlDrawingOptions *options, bool *used)
     return drawing ? mark_used(drawing, options->rules, options->n_rules, used) : 0;
 }
 
-/* A section that holds for nothing is most often a mistyped name or colour. */
+/* A section that matches no region mostly has a mistyped name or colour. */
 static void warn_of_unused(const FlDrawing *drawing, const FlConfig *config,
                            const FlDrawingOptions *options, FlWarnings *warnings)
 {
     g_autofree bool *used = g_new0(bool, MAX(config->n_rules, 1));
-    int unused = mark_used(drawing, options->rules, config->n_rules, used), told = 0;
+    int unused = mark_used(drawing, options->rules, config->n_rules, used), listed = 0;
     if (unused > 0 && options->range)
         unused = mark_used_elsewhere(options, used);
     g_autoptr(GPtrArray) names = g_ptr_array_new();
     for (int r = 0; r < fl_drawing_regions(drawing); r++)
         g_ptr_array_add(names, fl_drawing_region(drawing, r)->name);
     g_ptr_array_add(names, NULL);
-    for (int i = 0; i < config->n_rules && unused > 0 && told < MOST_TOLD; i++) {
+    for (int i = 0; i < config->n_rules && unused > 0 && listed < MOST_LISTED; i++) {
         if (used[i])
             continue;
-        told++;
+        listed++;
         const FlRule *rule = &config->rules[i];
         g_autofree char *hint = rule->by_name
                                     ? fl_did_you_mean(rule->name, (const char *const *)names->pdata)
                                     : g_strdup("");
         g_autofree char *place = g_strdup_printf("%s:%d", config->path, rule->line);
-        fl_warnings_add(warnings, place, -1, NULL, "[region %s] holds for nothing in the drawing%s",
-                        rule->name, hint);
+        fl_warnings_add(warnings, place, -1, NULL, "[region %s] matches no region%s", rule->name,
+                        hint);
     }
-    if (unused > told && told > 0)
-        fl_warnings_add(warnings, config->path, -1, NULL,
-                        "%d more sections hold for nothing in the drawing", unused - told);
+    if (unused > listed && listed > 0)
+        fl_warnings_add(warnings, config->path, -1, NULL, "%d more sections match no region",
+                        unused - listed);
 }
 
-/* A drawing without shapes is most often another than was meant. */
+/* A drawing without shapes is mostly the wrong file. */
 static void warn_of_nothing(const FlDrawing *drawing, FlWarnings *warnings)
 {
     for (int r = 0; r < fl_drawing_regions(drawing); r++)
@@ -103,7 +103,7 @@ static void warn_of_nothing(const FlDrawing *drawing, FlWarnings *warnings)
                     fl_drawing_frames(drawing) > 1 ? ", nor in the other frames" : "");
 }
 
-/* How many warnings have each text: those that say the same of other elements count as one. */
+/* How many warnings have each text, whatever element they are about. */
 static GHashTable *count_texts(const FlWarnings *warnings)
 {
     GHashTable *counts = g_hash_table_new(g_str_hash, g_str_equal);
@@ -140,7 +140,7 @@ static bool report(const FlWarnings *warnings, const FlRenderOptions *options, G
     return true;
 }
 
-/* A config beside the drawing is offered, but what nobody asked for is not done. */
+/* Mentions a config beside the drawing, which is used on request only. */
 static void offer_config(const FlDrawing *drawing, const FlRenderOptions *options)
 {
     g_autofree char *folder = g_path_get_dirname(fl_drawing_file(drawing, 0));

@@ -1,4 +1,4 @@
-/* A film as the options and the config ask for it. */
+/* Opens the drawing with the options and the rules of the config. */
 #ifndef FLUIDY_DRAWING_OPEN_DRAWING_H
 #define FLUIDY_DRAWING_OPEN_DRAWING_H
 
@@ -6,9 +6,9 @@
 #include "params/config.h"
 
 /**
- * Opens the film of options, which fl_config_complete() has completed, with the config's rules.
+ * Opens the drawing of options, which fl_config_complete() has completed, with the config's rules.
  *
- * What is odd, sections that hold for nothing included, goes to options->warning.
+ * Warnings, also of sections that match no region, go to options->warning.
  *
  * Returns: to be freed with fl_drawing_free(); NULL with an error as of fl_drawing_open(), or with
  * FL_ERROR_INPUT if there was a warning and the options are strict.

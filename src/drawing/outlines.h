@@ -1,11 +1,11 @@
-/* The outlines of a film's frames, and which leaves make up a region. */
+/* The outlines of a drawing's frames, and which leaves make up a region. */
 #ifndef FLUIDY_DRAWING_OUTLINES_H
 #define FLUIDY_DRAWING_OUTLINES_H
 
 #include "drawing/drawing.h"
 #include "svg/geometry.h"
 
-/** A leaf of a region, or the part of it that the region has. */
+/** A leaf of a region, or its part in that region. */
 typedef struct FlRegionLeaf {
     int leaf; // index into the frame's outlines
     FlPart part;
@@ -14,7 +14,7 @@ typedef struct FlRegionLeaf {
     bool flat;
 } FlRegionLeaf;
 
-/** Reads a frame's outlines, in px of the film. Any thread. NULL with an error that names it. */
+/** Reads a frame's outlines, in px of the picture. Any thread. NULL with an error that names it. */
 FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **error);
 
 /** The leaves of a region in a frame, bottom up; region < 0: of all. An array of FlRegionLeaf. */

@@ -4,8 +4,8 @@
 #include <string.h>
 
 /*
- * Within a region leaves are aligned in paint order [Needleman and Wunsch], for exporters keep that
- * as a rule; what is left over is paired greedily, for a figure that turns swaps its limbs.
+ * Within a region leaves are aligned in paint order [Needleman and Wunsch], which exporters mostly
+ * keep; the rest is paired greedily, since a figure that turns swaps its limbs.
  */
 #define MANY 2000     // leaves from which on the alignment keeps to a band
 #define MOST 10000    // beyond it none are paired: the table would not fit
@@ -44,10 +44,10 @@ typedef struct Pairing {
     const FlTwoFrames *frames;
     const FlLeafMeasure *before, *now;
     int *partner; // of each leaf now
-    bool *taken;  // of each leaf before
+    bool *paired; // of each leaf before
 } Pairing;
 
-/** About the logarithm of a ratio, 0 … 1.5: what decides must be the same on every machine. */
+/** Roughly the logarithm of a ratio, 0 … 1.5, without libm: the same on every machine. */
 static double log_ratio(double a, double b)
 {
     const double r = MAX(a, b) / MIN(a, b);
@@ -88,7 +88,7 @@ static double score(const Pairing *w, int i, int j)
 static void pair(Pairing *w, int i, int j)
 {
     w->partner[j] = i;
-    w->taken[i] = true;
+    w->paired[i] = true;
 }
 
 /** Aligns two lists of leaves; gaps cost nothing. */
@@ -135,7 +135,7 @@ static int compare_candidates(const void *x, const void *y)
     return a->j != b->j ? a->j - b->j : a->i - b->i;
 }
 
-/** Pairs what is left over, the most alike first. */
+/** Pairs the remaining leaves, the most alike first. */
 static void pair_left_over(Pairing *w, const int *before, int n, const int *now, int m)
 {
     g_autoptr(GArray) list = g_array_new(FALSE, FALSE, sizeof(Candidate));
@@ -143,7 +143,7 @@ static void pair_left_over(Pairing *w, const int *before, int n, const int *now,
         return;
     for (int i = 0; i < n; i++)
         for (int j = 0; j < m; j++) {
-            if (w->taken[before[i]] || w->partner[now[j]] >= 0)
+            if (w->paired[before[i]] || w->partner[now[j]] >= 0)
                 continue;
             const Candidate c = {score(w, before[i], now[j]), before[i], now[j]};
             if (c.score > LEFT_OVER)
@@ -152,7 +152,7 @@ static void pair_left_over(Pairing *w, const int *before, int n, const int *now,
     g_array_sort(list, compare_candidates);
     for (guint k = 0; k < list->len; k++) {
         const Candidate *c = &g_array_index(list, Candidate, k);
-        if (!w->taken[c->i] && w->partner[c->j] < 0)
+        if (!w->paired[c->i] && w->partner[c->j] < 0)
             pair(w, c->i, c->j);
     }
 }
@@ -204,8 +204,8 @@ int *fl_pair_leaves(const FlTwoFrames *frames, const FlLeafMeasure *before,
 {
     const int n = frames->now->n_leaves;
     int *partner = g_new(int, n + 1);
-    g_autofree bool *taken = g_new0(bool, frames->before->n_leaves + 1);
-    Pairing w = {frames, before, now, partner, taken};
+    g_autofree bool *paired = g_new0(bool, frames->before->n_leaves + 1);
+    Pairing w = {frames, before, now, partner, paired};
     const bool one_by_one = agree(&w);
     int regions = 0;
     for (int i = 0; i < n; i++) {

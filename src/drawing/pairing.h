@@ -4,7 +4,7 @@
 
 #include "drawing/correspondence.h"
 
-/** What is compared of a leaf. */
+/** The measures by which leaves are compared. */
 typedef struct FlLeafMeasure {
     double x0, y0, x1, y1; // box of its outline, px; empty: x1 < x0
     uint64_t structure;    // hash of its subpaths' lengths
@@ -17,7 +17,7 @@ double fl_measure_diagonal(const FlLeafMeasure *m);
 
 /**
  * Which leaf before each leaf of now was; -1: none. Where all agree by number, name, place and
- * structure they are taken one by one.
+ * structure they are paired one to one.
  *
  * Returns: by leaf; to be freed with g_free().
  */

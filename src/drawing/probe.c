@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define THICK 0.03f // width of a stroke, share of the page's longer side, that is no line any more
-#define LOOK_PX 256 // longest side of the small pictures on which a frame is looked over
+#define LOOK_PX 256 // longest side of the small pictures on which a frame is probed
 
 static void look_clear(void *data)
 {
@@ -61,8 +61,8 @@ static float sum_of(cairo_surface_t *coverage, FlBounds box)
 }
 
 /**
- * The box of a part whose look on the small picture does not tell: text, which is shaped anew at
- * each scale, and what is too small to be seen there. Drawn in full size; px of the small picture.
+ * The box of a part that the small picture cannot show: text, whose shape depends on the scale, and
+ * tiny parts. Drawn in full size; px of the small picture.
  */
 static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlBounds *box,
                         float *area_px, GError **error)
@@ -103,19 +103,19 @@ static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlBounds *box)
     box->y0 = MIN(box->y0, at.y0), box->y1 = MAX(box->y1, at.y1);
 }
 
-/** Tells the parts of one leaf, from `first` on, of each other; a fill of no area is no part. */
+/** Completes the parts of one leaf, from `first` on, with what they have in common. */
 static void relate_parts(GArray *probes, guint first)
 {
     bool fill = false, stroke = false;
     for (guint i = first; i < probes->len; i++) {
         const FlProbe *probe = &g_array_index(probes, FlProbe, i);
-        *(probe->seen.stroke ? &stroke : &fill) = true;
+        *(probe->found.stroke ? &stroke : &fill) = true;
     }
     for (guint i = first; i < probes->len; i++) {
-        FlSurveyPart *seen = &g_array_index(probes, FlProbe, i).seen;
-        seen->has_fill = fill;
-        seen->has_stroke = stroke;
-        seen->thick = seen->thick && !fill;
+        FlSurveyPart *found = &g_array_index(probes, FlProbe, i).found;
+        found->has_fill = fill;
+        found->has_stroke = stroke;
+        found->thick = found->thick && !fill;
     }
 }
 
@@ -128,25 +128,25 @@ static bool look_at(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **err
     for (int i = 0; i < n; i++) {
         const FlPainted *p = &parts[i];
         FlProbe probe = {.leaf = leaf, .paint = p->paint.key};
-        probe.seen = (FlSurveyPart){.leaf = index,
-                                    .part = p->part,
-                                    .stroke = p->stroke,
-                                    .thick = p->stroke && p->width >= THICK,
-                                    .kind = p->paint.kind,
-                                    .alpha = p->paint.alpha,
-                                    .peak = p->paint.peak,
-                                    .mix = p->mix,
-                                    .unit = index < 0 ? -index : 0,
-                                    .region = -1};
-        memcpy(probe.seen.rgb, p->paint.rgb, 3);
+        probe.found = (FlSurveyPart){.leaf = index,
+                                     .part = p->part,
+                                     .stroke = p->stroke,
+                                     .thick = p->stroke && p->width >= THICK,
+                                     .kind = p->paint.kind,
+                                     .alpha = p->paint.alpha,
+                                     .peak = p->paint.peak,
+                                     .mix = p->mix,
+                                     .unit = index < 0 ? -index : 0,
+                                     .region = -1};
+        memcpy(probe.found.rgb, p->paint.rgb, 3);
         good = good && cover(f, leaf, p->part, &probe.box, error);
         const float opacity = MAX(p->paint.peak, 1) / 255.0f;
-        probe.seen.area_px =
+        probe.found.area_px =
             (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
         fl_surface_wipe(f->coverage, probe.box);
         if (good && (leaf->text || probe.box.x1 == 0)) {
-            good = box_in_full(f, leaf, p->part, &probe.box, &probe.seen.area_px, error);
-            probe.seen.area_px /= opacity;
+            good = box_in_full(f, leaf, p->part, &probe.box, &probe.found.area_px, error);
+            probe.found.area_px /= opacity;
         }
         if (p->width > 0)
             widen(f, leaf, &probe.box);
@@ -181,7 +181,7 @@ static int is_separable(FlFrameProbe *f, const FlUnit *unit, guint first, GError
     g_autofree FlPiece *piece = g_new(FlPiece, n);
     for (guint i = 0; i < n; i++) {
         const FlProbe *probe = &g_array_index(f->probes, FlProbe, first + i);
-        piece[i] = (FlPiece){probe->leaf, probe->seen.part, probe->seen.mix};
+        piece[i] = (FlPiece){probe->leaf, probe->found.part, probe->found.mix};
     }
     return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->width, f->height, error);
 }
@@ -212,7 +212,7 @@ static bool look_at_leaves(FlFrameProbe *f, GError **error)
             if (u->inseparable)
                 g_array_set_size(f->probes, before);
             for (guint k = before; k < f->probes->len; k++)
-                g_array_index(f->probes, FlProbe, k).seen.unit = 1 + (int)unit;
+                g_array_index(f->probes, FlProbe, k).found.unit = 1 + (int)unit;
             if (!look_at(f, &u->leaf, -1 - (int)unit, error))
                 return false;
         }
@@ -234,11 +234,11 @@ static bool stack(FlFrameProbe *f, GError **error)
     for (guint i = 0; i < f->probes->len; i++) {
         FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
         FlBounds box;
-        if (probe->seen.unit > 0 && probe->seen.leaf >= 0)
+        if (probe->found.unit > 0 && probe->found.leaf >= 0)
             continue; // the unit comes after its leaves
-        if (!cover(f, probe->leaf, probe->seen.part, &box, error))
+        if (!cover(f, probe->leaf, probe->found.part, &box, error))
             return false;
-        const bool fills_page = probe->seen.area_px > 0.95f * page;
+        const bool fills_page = probe->found.area_px > 0.95f * page;
         int64_t sum = 0, covered = 0;
         for (int y = box.y0; y < box.y1; y++)
             for (int x = box.x0; x < box.x1; x++) {
@@ -248,8 +248,8 @@ static bool stack(FlFrameProbe *f, GError **error)
                 if (!fills_page)
                     under[p] = fl_over(mine[p], under[p]);
             }
-        probe->seen.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
-        if (!fl_self_check_add(f->check, f->svg, probe->leaf, &probe->seen, f->coverage, box,
+        probe->found.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
+        if (!fl_self_check_add(f->check, f->svg, probe->leaf, &probe->found, f->coverage, box,
                                f->width, f->height, error))
             return false;
         fl_surface_wipe(f->coverage, box);

@@ -1,4 +1,4 @@
-/* A frame looked over on a small picture: its parts, where they are, and what they add up to. */
+/* Probes a frame on a small picture: its parts, their boxes, and the picture they add up to. */
 #ifndef FLUIDY_DRAWING_PROBE_H
 #define FLUIDY_DRAWING_PROBE_H
 
@@ -6,9 +6,9 @@
 #include "drawing/self_check.h"
 #include "drawing/survey.h"
 
-/** A part being looked at: as FlSurveyPart, but its strings still belong to the frame. */
+/** A part under construction: as FlSurveyPart, but its strings still belong to the frame. */
 typedef struct FlProbe {
-    FlSurveyPart seen;
+    FlSurveyPart found;
     const FlLeaf *leaf;
     char *paint;
     FlBounds box; // px of the small picture
@@ -28,7 +28,7 @@ typedef struct FlFrameProbe {
 } FlFrameProbe;
 
 /**
- * Opens what `svg` shows; svg becomes the look's. The page has page_width * page_height px in a
+ * Opens what `svg` shows; the probe owns svg then. The page has page_width * page_height px in a
  * picture of width * height. Clear it with fl_frame_probe_clear(), also after an error.
  */
 bool fl_frame_probe_init(FlFrameProbe *probe, FlSvg *svg, double page_width, double page_height,

@@ -1,4 +1,4 @@
-/* Small work on pictures: what a leaf covers, and drawing over. */
+/* Bounding boxes and compositing of rasters. */
 #ifndef FLUIDY_DRAWING_RASTER_H
 #define FLUIDY_DRAWING_RASTER_H
 

@@ -10,7 +10,7 @@
 #define LINE_ART 0.5     // share of the ink from which on strokes are the drawing
 #define ROUNDING 2       // levels of a channel by which exporters miss a colour from frame to frame
 
-/** What is summed over a region, to say what it is. */
+/** Sums over a region, which decide what it is. */
 typedef struct Sum {
     double area, covered, alpha;
     bool plain;  // not all of it is mixed with what is below it
@@ -35,7 +35,7 @@ static bool is_near(const uint8_t a[3], const uint8_t b[3])
            abs(a[2] - b[2]) <= ROUNDING;
 }
 
-/** The first paint seen that looks the same; a paint that does not is added to firsts. */
+/** The first paint that looks the same; without one, the paint is added to firsts. */
 static int first_like(GArray *firsts, const FlSurveyPart *s)
 {
     for (guint k = 0; k < firsts->len; k++)
@@ -51,8 +51,8 @@ static GHashTable *find_near_paints(const FlSurvey *survey)
     g_autoptr(GArray) firsts = g_array_new(FALSE, FALSE, sizeof(FlSurveyPart));
     GHashTable *joined = g_hash_table_new(NULL, NULL);
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].seen, FlSurveyPart, i);
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
             gpointer key = GINT_TO_POINTER(s->paint);
             if (s->kind == FL_PAINT_FLAT && !g_hash_table_contains(joined, key))
                 g_hash_table_insert(joined, key, GINT_TO_POINTER(first_like(firsts, s)));
@@ -67,13 +67,13 @@ static void join_paint(GHashTable *joined, int *paint)
         *paint = GPOINTER_TO_INT(first);
 }
 
-/** Gives paints that look the same one number. Tracks are followed before, by the exact paints. */
+/** Gives paints that look the same one number. Tracks use the exact paints. */
 static void join_near_paints(Work *w)
 {
     g_autoptr(GHashTable) joined = find_near_paints(w->survey);
     for (int t = 0; t < w->survey->n_frames; t++)
-        for (guint i = 0; i < w->survey->frame[t].seen->len; i++)
-            join_paint(joined, &g_array_index(w->survey->frame[t].seen, FlSurveyPart, i).paint);
+        for (guint i = 0; i < w->survey->frame[t].parts->len; i++)
+            join_paint(joined, &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i).paint);
     for (guint k = 0; k < w->tracks->len; k++) {
         FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
         track->varies = false;
@@ -85,14 +85,14 @@ static void join_near_paints(Work *w)
     }
 }
 
-/** Whether strokes are what the drawing consists of: zdog figures, line drawings. */
+/** Whether the drawing consists of strokes: zdog figures, line drawings. */
 static bool is_line_art(const FlSurvey *survey)
 {
     double strokes = 0, fills = 0;
     const double page = (double)survey->width * survey->height;
     for (int t = 0; t < survey->n_frames; t++)
-        for (guint i = 0; i < survey->frame[t].seen->len; i++) {
-            const FlSurveyPart *s = &g_array_index(survey->frame[t].seen, FlSurveyPart, i);
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
             if (s->area_px < 0.95 * page)
                 *(s->stroke ? &strokes : &fills) += s->area_px;
         }
@@ -118,8 +118,8 @@ static void match_rules(Work *w)
 {
     const FlStrings *strings = &w->survey->strings;
     for (int t = 0; t < w->survey->n_frames && w->options->n_rules > 0; t++)
-        for (guint i = 0; i < w->survey->frame[t].seen->len; i++) {
-            const FlSurveyPart *s = &g_array_index(w->survey->frame[t].seen, FlSurveyPart, i);
+        for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
             const FlRuleSubject subject = {
                 .ids = fl_strings_get(strings, s->ids),
                 .classes = fl_strings_get(strings, s->classes),
@@ -177,7 +177,7 @@ static bool is_apart(const Work *w, const FlSurveyPart *s)
     return s->stroke && !w->paint_strokes && !s->thick;
 }
 
-/** What a part's region is known by; equal texts are one region. */
+/** The key of a part's region; parts of equal keys are one region. */
 static char *key_of(const Work *w, const FlSurveyPart *s, int track)
 {
     const FlTrack *tr = &g_array_index(w->tracks, FlTrack, track);
@@ -239,8 +239,8 @@ static GArray *gather(Work *w)
     g_autoptr(GHashTable) areas =
         g_hash_table_new_full(g_int64_hash, g_int64_equal, g_free, g_free);
     for (int t = 0; t < w->survey->n_frames; t++)
-        for (guint i = 0; i < w->survey->frame[t].seen->len; i++) {
-            FlSurveyPart *s = &g_array_index(w->survey->frame[t].seen, FlSurveyPart, i);
+        for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
+            FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
             const int track = w->track_of[t][i];
             if (s->stroke && w->options->strokes == FL_STROKES_DROP && w->rule_of[track] < 0)
                 continue;

@@ -20,7 +20,8 @@ typedef struct FlGroup {
  */
 GArray *fl_identify(FlSurvey *survey, const FlDrawingOptions *options);
 
-/** For every string that is a list of labels, the same without frame numbers; scan->strings grows.
+/** For every string that is a list of labels, the same without frame numbers; survey->strings
+ * grows.
  */
 int *fl_clean_labels(FlSurvey *survey);
 

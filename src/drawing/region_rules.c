@@ -80,7 +80,7 @@ static bool matches_glob(const char *const *globs, const char *list)
     return false;
 }
 
-/** has: the shape has such a paint; mine: the part looked at is the one painted with it. */
+/** has: the shape has such a paint; mine: the part in question is painted with it. */
 static bool matches_paint(const char *const *list, const FlRegionRule *rule,
                           const FlRuleSubject *subject, bool has, bool mine)
 {

@@ -1,4 +1,4 @@
-/* Rules that put leaves into regions by what they look like and what they are called. */
+/* Rules that assign leaves to regions by paint and name. */
 #ifndef FLUIDY_DRAWING_REGION_RULES_H
 #define FLUIDY_DRAWING_REGION_RULES_H
 
@@ -8,11 +8,11 @@
 #include <stdint.h>
 
 /**
- * A section [region NAME] of a config. A leaf belongs to the first rule all of whose match_* hold;
- * of a list one item has to. NULL is no condition; a rule without conditions matches every leaf.
+ * A section [region NAME] of a config. A leaf belongs to the first rule whose match_* lists each
+ * have an item that matches. NULL is no condition; a rule without conditions matches every leaf.
  * A leaf whose paint changes matches if it does in any frame.
  *
- * Lists are NULL-terminated. Globs know * and ?, and are compared without regard to case.
+ * Lists are NULL-terminated. Globs know * and ?, and ignore case.
  */
 typedef struct FlRegionRule {
     const char *name;              // of the region
@@ -23,12 +23,12 @@ typedef struct FlRegionRule {
     const char *const *match_label;  // globs over labels, likewise
     const char *const *match_layer;  // globs over layers; without layers over the outermost group
     float tolerance;                 // of colours, CIE76; 0: 1
-    const char *merge_with;          // the region of that name is this one too; NULL: none
+    const char *merge_with;          // the region that this one becomes a part of; NULL: none
     FlPassthrough passthrough;
     bool by_name; // matches no leaf, but the region that gets this name without any rule
 } FlRegionRule;
 
-/** What a leaf shows a rule; lists are joined with '\n'. */
+/** What a rule is matched against; lists are joined with '\n'. */
 typedef struct FlRuleSubject {
     const char *ids, *classes, *labels, *layers;
     bool stroke;        // a stroke, else a fill

@@ -129,7 +129,7 @@ static double *places_of(const FlSurvey *survey, FlCanvas *page, FlWarnings *war
         const Vote move = votes ? decide(votes) : (Vote){0};
         if (votes && before->len > 0 && now->len > 0 && move.weight <= 0)
             fl_warnings_add(warnings, file, number, NULL,
-                            "no shape is as in the frame before: not moved by ‘register’");
+                            "no shape in common with the frame before: not moved by ‘register’");
         for (int c = 0; c < 2 && t > 0; c++)
             place[2 * t + c] = place[2 * (t - 1) + c] + (c ? move.y : move.x);
         widen(page, now, place[2 * t], place[2 * t + 1], &any);

@@ -1,4 +1,4 @@
-/* Round shapes that turn: only what lies in them shows it. */
+/* The rotation of round shapes, measured on the leaves inside them. */
 #ifndef FLUIDY_DRAWING_ROUND_HOST_H
 #define FLUIDY_DRAWING_ROUND_HOST_H
 

@@ -1,4 +1,4 @@
-/* Two outlines of one structure, side by side. */
+/* Corresponding points of two outlines of one structure. */
 #ifndef FLUIDY_DRAWING_SAMPLES_H
 #define FLUIDY_DRAWING_SAMPLES_H
 

@@ -3,10 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define VISIBLE 24   // levels; a pixel that differs by more is seen
-#define MOST_SEEN 12 // pixels that may differ so; rounding at thin edges does
-#define GROSS 16     // mean square of the levels that a channel may differ by: 36 dB
-#define EDGE 8       // one in so many pixels of a masked group may differ: those at the mask's edge
+#define VISIBLE 24      // levels; a larger difference is visible
+#define MOST_VISIBLE 12 // pixels that may differ so; rounding at thin edges does
+#define GROSS 16        // mean square of the levels that a channel may differ by: 36 dB
+#define EDGE 8 // one in so many pixels of a masked group may differ: those at the mask's edge
 
 struct FlSelfCheck {
     int width, height;
@@ -43,7 +43,7 @@ void fl_self_check_free(FlSelfCheck *check)
     g_free(check);
 }
 
-/** Lays a premultiplied pixel over another, mixed with it. */
+/** Composites a premultiplied pixel over another with its blend mode. */
 static void mix_pixel(uint32_t *below, uint32_t pixel, FlBlendMode mix)
 {
     uint8_t rgb[4], under[4];
@@ -78,15 +78,15 @@ static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surfac
     return drawn;
 }
 
-bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *seen,
+bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
                        cairo_surface_t *coverage, FlBounds box, double page_width,
                        double page_height, GError **error)
 {
     const unsigned char *mine = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
     uint32_t *sum = (uint32_t *)cairo_image_surface_get_data(check->sum);
-    const bool flat = seen->kind == FL_PAINT_FLAT && seen->mix == FL_BLEND_MODE_OVER;
-    const FlPiece piece = {leaf, seen->part, seen->mix};
+    const bool flat = part->kind == FL_PAINT_FLAT && part->mix == FL_BLEND_MODE_OVER;
+    const FlPiece piece = {leaf, part->part, part->mix};
     g_array_append_val(check->pieces, piece);
     const uint16_t index = (uint16_t)MIN(check->pieces->len, UINT16_MAX);
     for (int y = box.y0; y < box.y1; y++)
@@ -94,7 +94,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
             const size_t p = (size_t)y * check->width + x;
             const uint8_t cover = mine[(size_t)y * stride + x];
             if (cover && flat)
-                sum[p] = fl_blend(sum[p], seen->rgb, cover);
+                sum[p] = fl_blend(sum[p], part->rgb, cover);
             if (cover)
                 check->top[p] = index;
         }
@@ -140,29 +140,29 @@ int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const Fl
         return -1;
     const uint32_t *a = (const uint32_t *)cairo_image_surface_get_data(one);
     const uint32_t *b = (const uint32_t *)cairo_image_surface_get_data(all);
-    int ink = 0, seen = 0;
+    int ink = 0, visible = 0;
     for (size_t p = 0; p < (size_t)width * height; p++) {
         ink += a[p] != 0;
-        seen += difference(a[p], b[p]) > VISIBLE;
+        visible += difference(a[p], b[p]) > VISIBLE;
     }
-    if (seen * EDGE > ink)
+    if (visible * EDGE > ink)
         return 0;
     if (is_masked(piece[0].leaf))
-        check->allowed += seen;
+        check->allowed += visible;
     return 1;
 }
 
 /** How many pixels differ visibly; the worst of them goes to *where. */
 static int compare(const uint32_t *a, const uint32_t *b, size_t n, size_t *where)
 {
-    int seen = 0, most = 0;
+    int visible = 0, most = 0;
     for (size_t p = 0; p < n; p++) {
         const int d = difference(a[p], b[p]);
-        seen += d > VISIBLE;
+        visible += d > VISIBLE;
         *where = d > most ? p : *where;
         most = MAX(most, d);
     }
-    return seen;
+    return visible;
 }
 
 /** A group (NULL: everything) as the file has it; NULL with an error. */
@@ -200,15 +200,15 @@ static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, 
     if (!sum)
         return FL_VERDICT_ERROR;
     size_t where = 0;
-    const int seen = compare((const uint32_t *)cairo_image_surface_get_data(truth),
-                             (const uint32_t *)cairo_image_surface_get_data(sum),
-                             (size_t)check->width * check->height, &where);
-    return seen > MOST_SEEN + check->allowed ? FL_VERDICT_DIFFERS : FL_VERDICT_ALIKE;
+    const int visible = compare((const uint32_t *)cairo_image_surface_get_data(truth),
+                                (const uint32_t *)cairo_image_surface_get_data(sum),
+                                (size_t)check->width * check->height, &where);
+    return visible > MOST_VISIBLE + check->allowed ? FL_VERDICT_DIFFERS : FL_VERDICT_ALIKE;
 }
 
 /**
- * The smallest group around a leaf that does not look as its leaves do: *group, NULL if none. What
- * is inside a group with a mask cannot be looked at by itself: librsvg draws it without the mask.
+ * The smallest group around a leaf that does not look as its leaves do: *group, NULL if none.
+ * Groups inside a group with a mask cannot be checked alone: librsvg draws them without the mask.
  */
 static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, double page_width,
                        double page_height, char **group, GError **error)
@@ -230,7 +230,7 @@ static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf,
     return true;
 }
 
-/** Whether two pictures are less than 36 dB alike. */
+/** Whether two pictures differ by more than 36 dB PSNR. */
 static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n)
 {
     int64_t sum = 0;
@@ -254,12 +254,12 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width
     if (!truth)
         return FL_VERDICT_ERROR;
     size_t where = 0;
-    const int seen = compare((const uint32_t *)cairo_image_surface_get_data(truth),
-                             (const uint32_t *)cairo_image_surface_get_data(check->sum),
-                             (size_t)check->width * check->height, &where);
+    const int visible = compare((const uint32_t *)cairo_image_surface_get_data(truth),
+                                (const uint32_t *)cairo_image_surface_get_data(check->sum),
+                                (size_t)check->width * check->height, &where);
     *group = NULL;
     *leaf = NULL;
-    if (seen <= MOST_SEEN + check->allowed)
+    if (visible <= MOST_VISIBLE + check->allowed)
         return FL_VERDICT_ALIKE;
     check->gross = differ_much((const uint32_t *)cairo_image_surface_get_data(truth),
                                (const uint32_t *)cairo_image_surface_get_data(check->sum),

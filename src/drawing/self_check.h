@@ -5,7 +5,7 @@
 #include "drawing/raster.h"
 #include "drawing/survey.h"
 
-/** The picture that the leaves add up to, of one frame. */
+/** The composite of the leaves of one frame. */
 typedef struct FlSelfCheck FlSelfCheck;
 
 typedef enum FlVerdict {
@@ -18,7 +18,7 @@ FlSelfCheck *fl_self_check_new(int width, int height, GError **error);
 void fl_self_check_free(FlSelfCheck *check); // NULL is fine
 
 /** Draws the next part over; coverage is its A8 rendering, not 0 in `box` only. */
-bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *seen,
+bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
                        cairo_surface_t *coverage, FlBounds box, double page_width,
                        double page_height, GError **error);
 
@@ -32,7 +32,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
 FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
                                double page_height, char **group, const char **leaf, GError **error);
 
-/** Whether they were found to differ so much that the frame cannot be painted like that. */
+/** Whether they differ too much to paint the frame from its leaves. */
 bool fl_self_check_is_gross(const FlSelfCheck *check);
 
 /** A part to be drawn by fl_looks_alike(). */

@@ -125,7 +125,7 @@ static char *suggestion(GPtrArray *names, const char *wanted)
     return g_strdup_printf("; did you mean %s (%d file%s)?", best, best_n, best_n == 1 ? "" : "s");
 }
 
-/** Whether a name fits: to a pattern with a number, or if that is NULL, to wildcards. */
+/** Whether a name matches a pattern with a number, or if that is NULL, a glob. */
 static bool fits(const char *name, const FlPattern *pattern, const char *wildcards, int *number)
 {
     return pattern ? fl_pattern_match(pattern, name, number)
@@ -145,7 +145,7 @@ static bool add_fitting(GArray *found, const char *input, const FlPattern *patte
     }
     if (found->len == 0) {
         g_autofree char *hint = suggestion(names, base);
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no file fits%s", input, hint);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: matches no file%s", input, hint);
     }
     return found->len > 0;
 }
@@ -175,8 +175,9 @@ static bool add_folder(GArray *found, const char *folder, FlWarnings *warnings, 
         n_svg += is_svg(names->pdata[i]);
     if (n_svg == 0 || groups->len > 1) {
         g_autofree char *list = group_list(groups);
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: %s%s", folder,
-                    n_svg ? "several sequences, name one: " : "no .svg files in this folder", list);
+        g_set_error(
+            error, FL_ERROR, FL_ERROR_INPUT, "%s: %s%s", folder,
+            n_svg ? "several sequences; name one of them: " : "no .svg files in this folder", list);
         return false;
     }
     for (guint i = 0; i < names->len; i++) {
@@ -238,7 +239,7 @@ static bool add_input(GArray *found, const char *input, FlWarnings *warnings, GE
 {
     if (g_file_test(input, G_FILE_TEST_IS_DIR))
         return add_folder(found, input, warnings, error);
-    if (g_file_test(input, G_FILE_TEST_EXISTS)) { // also a file whose name has a # or * in it
+    if (g_file_test(input, G_FILE_TEST_EXISTS)) { // also a file with # or * in its name
         add_file(found, input, NULL);
         number_files(found);
         return true;
@@ -351,7 +352,7 @@ static char *pattern_text(const Found *first)
     return strcmp(folder, ".") == 0 ? g_steal_pointer(&text) : g_build_filename(folder, text, NULL);
 }
 
-/** Takes the wanted numbers from what was found. */
+/** Selects the wanted numbers among the found files. */
 static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing missing,
                           FlWarnings *warnings, GError **error)
 {

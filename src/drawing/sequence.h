@@ -1,4 +1,4 @@
-/* Which files are the frames of a film, and in which order. */
+/* Which files are the frames of a drawing, and in which order. */
 #ifndef FLUIDY_DRAWING_SEQUENCE_H
 #define FLUIDY_DRAWING_SEQUENCE_H
 
@@ -7,7 +7,7 @@
 #include <fluidy/render.h>
 #include <stdbool.h>
 
-/** The files of a film, in order. A held frame has the file of another number. */
+/** The files of a drawing, in order. A held frame has the file of another number. */
 typedef struct FlSequence {
     int n;
     char **file;

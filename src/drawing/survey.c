@@ -13,7 +13,7 @@
 #endif
 
 #define MOST_SIDE 32767 // px; cairo's limit
-#define MOST_WHOLE 8    // groups of a frame that are taken as one, each after another look
+#define MOST_WHOLE 8    // groups of a frame that become one leaf, each after another probe
 #define MOST_ROUNDS 3   // in which that spreads to other frames
 
 int fl_strings_add(FlStrings *strings, const char *text)
@@ -41,10 +41,10 @@ const char *fl_strings_get(const FlStrings *strings, int number)
 static void keep(FlSurvey *survey, int t, const FlFrameProbe *f)
 {
     FlStrings *s = &survey->strings;
-    GArray *seen = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), f->probes->len);
+    GArray *parts = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), f->probes->len);
     for (guint i = 0; i < f->probes->len; i++) {
         const FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
-        FlSurveyPart one = probe->seen;
+        FlSurveyPart one = probe->found;
         one.paint = fl_strings_add(s, probe->paint);
         one.name = fl_strings_add(s, probe->leaf->name);
         one.labels = fl_strings_add(s, probe->leaf->labels);
@@ -56,9 +56,9 @@ static void keep(FlSurvey *survey, int t, const FlFrameProbe *f)
                                probe->box.y1 + 1};
         for (int c = 0; c < 4; c++)
             one.box[c] = (float)(corner[c] * f->factor);
-        g_array_append_val(seen, one);
+        g_array_append_val(parts, one);
     }
-    survey->frame[t].seen = seen;
+    survey->frame[t].parts = parts;
 }
 
 /** Opens a frame and sets its page in the picture. */
@@ -81,7 +81,7 @@ static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings 
                                survey->width, survey->height, error);
 }
 
-/** Draws a frame leaf by leaf and looks whether it is the drawing; see fl_self_check_finish(). */
+/** Draws a frame leaf by leaf and compares it with the file; see fl_self_check_finish(). */
 static FlVerdict try_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *warnings,
                            char **group, const char **leaf, GError **error)
 {
@@ -95,7 +95,7 @@ static bool has_group(char **groups, const char *group)
     return groups && g_strv_contains((const char *const *)groups, group);
 }
 
-/** Takes one more group of a frame as one leaf. */
+/** Makes one more group of a frame one leaf. */
 static void keep_whole(FlSurveyFrame *frame, const char *group)
 {
     const guint n = frame->whole ? g_strv_length(frame->whole) : 0;
@@ -112,12 +112,12 @@ static void warn_of_whole(FlWarnings *warnings, const char *file, int number, co
         made ? g_strdup_printf("no. %d of the groups without an id, ", nth) : g_strdup("");
     const bool all = strcmp(group, FL_WHOLE_ALL) == 0;
     fl_warnings_add(warnings, file, number, made || all ? NULL : group,
-                    "%sdrawn shape by shape it does not look like the drawing: taken as one, in "
+                    "%sdrawn shape by shape it does not look like the drawing: drawn as one in "
                     "every frame",
                     which);
 }
 
-/** Looks at a frame, anew for each group that has to stay in one piece. */
+/** Probes a frame, again for each group that becomes one leaf. */
 static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *warnings,
                        GError **error)
 {
@@ -213,7 +213,7 @@ static int thread_number(void)
 #endif
 }
 
-/** Scans the frames that are not scanned yet; false with the error of the first that fails. */
+/** Probes the frames that are left; false with the error of the first that fails. */
 static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
 {
     bool good = true;
@@ -222,7 +222,7 @@ static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
         g_auto(FlFrameProbe) probe = {0};
         g_autoptr(FlWarnings) remarks = fl_warnings_new();
         GError *reason = NULL;
-        const bool known = survey->frame[t].seen != NULL;
+        const bool known = survey->frame[t].parts != NULL;
         const int thread = thread_number();
         fl_watch_tell(survey->watch, thread, t);
         const bool scanned = known || scan_frame(survey, t, &probe, remarks, &reason);
@@ -251,7 +251,7 @@ static bool means_the_same(const FlSurveyFrame *from, const FlSurveyFrame *to, c
     return !g_str_has_prefix(group, FL_GROUP_ID) || from->n_nameless == to->n_nameless;
 }
 
-/** Takes what is one in some frame as one in all. Returns: the frames that are to be scanned anew.
+/** Makes groups that are one leaf in some frame so in all. Returns: how many frames to probe again.
  */
 static int spread_whole(FlSurvey *survey)
 {
@@ -265,8 +265,8 @@ static int spread_whole(FlSurvey *survey)
                     !means_the_same(from, frame, from->whole[i]))
                     continue;
                 keep_whole(frame, from->whole[i]);
-                n += frame->seen != NULL;
-                g_clear_pointer(&frame->seen, g_array_unref);
+                n += frame->parts != NULL;
+                g_clear_pointer(&frame->parts, g_array_unref);
             }
     }
     return n;
@@ -300,8 +300,8 @@ bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawin
 void fl_survey_clear(FlSurvey *survey)
 {
     for (int t = 0; t < survey->n_frames && survey->frame; t++) {
-        if (survey->frame[t].seen)
-            g_array_unref(survey->frame[t].seen);
+        if (survey->frame[t].parts)
+            g_array_unref(survey->frame[t].parts);
         g_strfreev(survey->frame[t].whole);
     }
     g_free(survey->frame);

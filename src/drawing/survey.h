@@ -1,4 +1,4 @@
-/* One pass over the film: what is drawn in every frame, where, and with which paint. */
+/* One pass over the drawing: the parts of every frame, where they are, and with which paint. */
 #ifndef FLUIDY_DRAWING_SURVEY_H
 #define FLUIDY_DRAWING_SURVEY_H
 
@@ -13,7 +13,7 @@ typedef struct FlStrings {
 int fl_strings_add(FlStrings *strings, const char *text);
 const char *fl_strings_get(const FlStrings *strings, int number);
 
-/** A part of a leaf, or a unit, as seen in one frame. Strings are numbers in FlSurvey.strings. */
+/** A part of a leaf, or a unit, in one frame. Strings are numbers in FlSurvey.strings. */
 typedef struct FlSurveyPart {
     int leaf; // index of the leaf; of a unit -1 - its index
     FlPart part;
@@ -33,7 +33,7 @@ typedef struct FlSurveyPart {
 } FlSurveyPart;
 
 typedef struct FlSurveyFrame {
-    GArray *seen;                   // FlSurveyPart, bottom up
+    GArray *parts;                  // FlSurveyPart, bottom up
     double page_width, page_height; // px of the picture
     FlCanvas canvas;                // the frame's page
     char **whole;                   // FlSvgOptions.whole; NULL: none
@@ -49,11 +49,11 @@ typedef struct FlSurvey {
     double scale;                   // px of the picture per px of the drawing
     int n_frames;
     FlSurveyFrame *frame;
-    struct FlWatch *watch; // told what is being read; may be NULL
+    struct FlWatch *watch; // records what is being read; may be NULL
 } FlSurvey;
 
 /**
- * Reads every frame. `watch`, see regions/watch.h, and warnings may be NULL.
+ * Reads every frame. `watch`, see drawing/watch.h, and warnings may be NULL.
  * Returns: false with an error, which names the file.
  */
 bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawingOptions *options,

@@ -1,11 +1,11 @@
-/* Which frames are being read, as another process sees it. */
+/* Which frames are being read, in memory that another process can read. */
 #ifndef FLUIDY_DRAWING_WATCH_H
 #define FLUIDY_DRAWING_WATCH_H
 
 #include <glib.h>
 #include <stdatomic.h>
 
-#define FL_WATCHED 256 // threads that are told apart
+#define FL_WATCHED 256 // threads at most that are told apart
 
 /** Shared memory: for every thread the frame it reads and since when. */
 typedef struct FlWatch {
@@ -14,7 +14,7 @@ typedef struct FlWatch {
     atomic_int failed; // 1 + index of the first frame with an error; 0: none
 } FlWatch;
 
-/** Tells that a thread begins a frame, or with -1 that it has ended one. watch may be NULL. */
+/** Records that a thread begins a frame, or with -1 that it has ended one. watch may be NULL. */
 static inline void fl_watch_tell(FlWatch *watch, int thread, int frame)
 {
     if (!watch)
