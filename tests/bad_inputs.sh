@@ -133,7 +133,7 @@ table() {
 2|x.bmp: *|good -o x.bmp
 2|x_%s.png: “%s.p” is no frame number; expected %d, %04d or ####*|good -o x_%s.png
 2|x_%d_%d.png: *|good -o x_%d_%d.png
-2|x_{region}.png: {region} has no meaning here; *|good -o x_{region}.png
+2|x_{region}.png: {region} is allowed in the names of layers only|good -o x_{region}.png
 2|x_{rgion}.png: “{rgion}” is not understood; expected {region}|good --layers x_{rgion}.png
 2|--paint: one file for all frames; expected a number in the name*|good --paint x_{region}.png
 2|--merge composes what --paint has written; use --paint PATTERN*|good --merge
@@ -157,10 +157,10 @@ table() {
 2|a_%d_%d.svg: “%d.s” is a second frame number; expected one|good/a_%d_%d.svg
 1|good/a_1.svg and good/a_1.svg are both frame 1|good/a_1.svg good/a_1.svg
 1|*no file for frames 2-3; use --missing *|gap
-1|nosize/a_1.svg: *--canvas to give one, such as 1920x1080*|nosize
-1|zero/a_1.svg: *--canvas *|zero
+1|nosize/a_1.svg: *--canvas, such as 1920x1080*|nosize
+1|zero/a_1.svg: *--canvas, *|zero
 1|nan/a_1.svg: *|nan
-1|negative/a_1.svg: the size of the drawing is negative; use --canvas *|negative
+1|negative/a_1.svg: the size of the drawing is negative; set one with --canvas, *|negative
 1|pipe.svg: it is a pipe or a device; expected a file|pipe.svg
 1|/dev/zero: it is a pipe or a device; expected a file|/dev/zero
 1|pipe.png: it is a pipe or a device; expected a file|good -b pipe.png
@@ -169,8 +169,8 @@ table() {
 1|piped/a_1.svg: #i: the image "../piped/p.png" is a pipe or a device *under --strict)|piped --strict
 1|used/a_1.svg: *"p.pipe#a" is a pipe or a device and is left out *under --strict)|used --strict
 1|escape/a_1.svg: #a b: fill refers to "#x y", which is not *under --strict)|escape --strict
-1|unused.conf:1: [region nowhere] holds for nothing *under --strict)|good -c unused.conf -f 1 --strict
-1|unused.conf:1: [region nowhere] holds for nothing *under --strict)|good -c unused.conf --preview 1 --strict
+1|unused.conf:1: [region nowhere] matches no region *under --strict)|good -c unused.conf -f 1 --strict
+1|unused.conf:1: [region nowhere] matches no region *under --strict)|good -c unused.conf --preview 1 --strict
 2|x.mp4: flats are PNG files; expected .png|good --flat -o x.mp4
 1|huge/a_1.svg: a picture of 1000000000 x 9 px; at most 32767 px *|huge
 1|twice/a_1.svg: not well-formed: line 2: Attribute a redefined|twice
@@ -188,7 +188,7 @@ table() {
 1|animated/a_1.svg: #c: the animation in it is not played: *under --strict)|animated --strict
 1|media/a_1.svg: @media rules are left out *under --strict)|media --strict
 1|image/a_1.svg: #i: the image "gone.png" does not exist *under --strict)|image --strict
-1|prologue.svg: what stands before <svg> is no XML *under --strict)|prologue.svg --strict
+1|prologue.svg: ignored what precedes <svg>, which is no XML *under --strict)|prologue.svg --strict
 1|./still: one frame is used: its paint does not flow (a warning under --strict)|good --strict -s ./still
 1|no style “nowhere” in *|good -s nowhere
 1|good/a_1.svg: *expected a style|good -s good/a_1.svg
@@ -212,13 +212,13 @@ table() {
 2|mistyped.conf:2: [region] has no key “match-fil”; did you mean “match-fill”?|good -c mistyped.conf
 2|colour.conf:2: match-fill: “#12345” is not a colour #RRGGBB|good -c colour.conf
 2|open.conf:1: “[defaults” is not a section: “]” must end it|good -c open.conf
-2|first.conf:1: “style” stands above the first section; *|good -c first.conf
-2|regon.conf:1: there is no section [regon a]; sections are *|good -c regon.conf
+2|first.conf:1: “style” is above the first section; *|good -c first.conf
+2|regon.conf:1: unknown section [regon a]; sections are *|good -c regon.conf
 2|range.conf:2: w-temp: “1e9” is not a number from 0 to 1000|good -c range.conf
 2|words.conf:3: “just words” is neither “[section]” nor “key = value”|good -c words.conf
 2|tint.conf:2: tint: “blue-ish” is not fill, keep or #RRGGBB|good -c tint.conf
 2|version.conf:2: version: “2” is not 1, the only version there is|good -c version.conf
-2|double.conf:3: [region a] was there already, in line 1|good -c double.conf
+2|double.conf:3: [region a] occurs twice, first in line 1|good -c double.conf
 2|latin.conf: the file is not UTF-8 text|good -c latin.conf
 1|long.conf: the file is larger than 1 MiB|good -c long.conf
 1|short_1.flo: the flow has 12 bytes, expected 18444 for 48x48 pixels|good --flow short_%d.flo

@@ -35,8 +35,8 @@ echo '<svg xmlns="http://www.w3.org/2000/svg"><path d="M0,0"/></svg>' >nosize/w_
 echo '<svg xmlns="http://www.w3.org/2000/svg" width="0" height="9"></svg>' >zero/w_0001.svg
 
 refuses 'without input it says what it expects' 2 'no input; expected *'
-refuses 'an unknown option gets a suggestion' 2 'there is no option --styel; did you mean --style?' --styel 01 x
-refuses 'an unknown letter is named' 2 'there is no option -z; *' -z x
+refuses 'an unknown option gets a suggestion' 2 'unknown option --styel; did you mean --style?' --styel 01 x
+refuses 'an unknown letter is named' 2 'unknown option -z; *' -z x
 refuses 'an option without its value is named' 2 '*--style' --style
 refuses 'a mistyped parameter gets a suggestion' 2 '*--w-tmep; did you mean --w-temp?' --w-tmep 3 x
 refuses 'a parameter out of range is told the range' 2 'w-temp: *from 0 to 1000' --w-temp 3000 whole
@@ -46,7 +46,7 @@ refuses 'a width with letters is told the range' 2 '--width: “9px” *' --widt
 refuses 'a scale of nan is refused' 2 '--scale: “nan” *' --scale nan whole
 refuses 'a mistyped word gets a suggestion' 2 '--missing: *did you mean “hold”?' --missing hodl whole
 refuses 'a mistyped stacking gets a suggestion' 2 'stacking: *did you mean “glaze”?' --stacking glase whole
-refuses 'an unknown preset lists the presets' 2 'there is no preset “x”; *' --preset x whole
+refuses 'an unknown preset lists the presets' 2 'unknown preset “x”; *' --preset x whole
 refuses 'a tint that is no colour is refused' 2 'tint: “#12” is not fill, keep or #RRGGBB' --tint '#12' whole
 refuses 'a hold of 0 is refused' 2 'hold: “0” is not *' --hold 0 whole
 refuses 'contradicting options are refused' 2 '*contradict each other' -y --no-clobber whole
@@ -79,7 +79,7 @@ if ! touch locked/file 2>/dev/null; then
     refuses 'a folder that cannot be written is named' 1 'locked/*: *' whole -o locked/w_%d.png $look
 fi
 refuses 'an output folder that is a file is named' 1 'out*: *Not a directory' whole -o out/w_%d.png $look
-refuses 'an unknown format gets a suggestion' 2 'exxr: an unknown output format; *did you mean “exr”?' --format exxr -s 01 whole
+refuses 'an unknown format gets a suggestion' 2 'exxr: unknown output format; *did you mean “exr”?' --format exxr -s 01 whole
 touch film.mkv
 refuses 'a film that exists stays' 1 'film.mkv: already exists; use -y to replace it' -o film.mkv --no-clobber -s 01 whole
 
@@ -249,7 +249,7 @@ result $? 'every key of a config is taken'
 sed -n '/^\.Sh EXAMPLES/,/^\.Ed/p' "$fixtures/../man/fluidy-svg.conf.5.in" | grep -v '^\.' >example.conf
 cp plain_1.png paper.png
 "$program" all.d -c example.conf --dry-run >out 2>err &&
-    ! grep 'warning:' err | grep -v 'example.conf:8: \[region hair\] holds for nothing'
+    ! grep 'warning:' err | grep -v 'example.conf:8: \[region hair\] matches no region'
 result $? 'the example of fluidy-svg.conf(5) is read'
 
 # Paint that leaves its paper is opaque unless somebody says otherwise.

@@ -28,10 +28,10 @@ static void a_mistake_is_named_with_file_and_line(void)
     static const struct {
         const char *text, *message; // without the file's name
     } cases[] = {
-        {"x = 1", ":1: “x” stands above the first section; [project], [defaults] or [region NAME] "
-                  "must come first"},
-        {"[projcet]", ":1: there is no section [projcet]; did you mean “project”?"},
-        {"[hair]", ":1: there is no section [hair]; sections are [project], [defaults] and [region "
+        {"x = 1", ":1: “x” is above the first section; put it below [project], [defaults] "
+                  "or [region NAME]"},
+        {"[projcet]", ":1: unknown section [projcet]; did you mean “project”?"},
+        {"[hair]", ":1: unknown section [hair]; sections are [project], [defaults] and [region "
                    "NAME]"},
         {"[region]", ":1: a region section needs a name: [region NAME]"},
         {"[project", ":1: “[project” is not a section: “]” must end it"},
@@ -49,9 +49,9 @@ static void a_mistake_is_named_with_file_and_line(void)
         {"[defaults]\nstyle =", ":2: style: the value is missing"},
         {"[defaults]\nmatch = *", ":2: [defaults] has no key “match”"},
         {"[defaults]\nw-temp = 2000", ":2: w-temp: “2000” is not a number from 0 to 1000"},
-        {"[defaults]\nw-temp = 2\nw-temp = 3", ":3: w-temp was said already in this section"},
-        {"[defaults]\n[defaults]", ":2: [defaults] was there already"},
-        {"[region a]\nmatch = *\n[region b]\n[region a]", ":4: [region a] was there already, in "
+        {"[defaults]\nw-temp = 2\nw-temp = 3", ":3: w-temp is set twice in this section"},
+        {"[defaults]\n[defaults]", ":2: [defaults] occurs twice"},
+        {"[region a]\nmatch = *\n[region b]\n[region a]", ":4: [region a] occurs twice, first in "
                                                           "line 1"},
         {"[region a]\nmatch-fil = #fff", ":2: [region] has no key “match-fil”; did you mean "
                                          "“match-fill”?"},
@@ -60,13 +60,13 @@ static void a_mistake_is_named_with_file_and_line(void)
         {"[region a]\nmatch-tolerance = 256",
          ":2: match-tolerance: “256” is not a number from 0.01 to "
          "100"},
-        {"[region a]\nmatch = hair", ":2: match: “hair” is not *; for less than everything there "
-                                     "are match-fill, match-label and others"},
+        {"[region a]\nmatch = hair", ":2: match: “hair” is not *; to match some of the leaves "
+                                     "use match-fill, match-label and others"},
         {"[region a]\nstacking = glase", ":2: stacking: “glase” is not knockout or glaze; did you "
                                          "mean “glaze”?"},
         {"[region a]\ntint = blue", ":2: tint: “blue” is not fill, keep or #RRGGBB"},
         {"[region a]\nhold = 0", ":2: hold: “0” is not an integer from 1 to 1000"},
-        {"[region a]\npreset = thesi", ":2: there is no preset “thesi”; the presets are default, "
+        {"[region a]\npreset = thesi", ":2: unknown preset “thesi”; the presets are default, "
                                        "fluidymation, thesis; did you mean “thesis”?"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {

@@ -21,15 +21,15 @@ static const FlOption *option_named(const char *typed)
     return option;
 }
 
-/* Of options that share a field, one may be said. */
+/* Options that share a field exclude each other. */
 static bool check_contradiction(const FlArgs *args, const FlOption *option, GError **error)
 {
     for (int i = 0; i < fl_option_count() && fl_option_is_set(option, &args->render); i++) {
         const FlOption *other = fl_option_at(i);
         if (other == option || other->scope != FL_SCOPE_RENDER || other->offset != option->offset)
             continue;
-        g_autofree char *said = fl_option_get(other, &args->render);
-        if (said && g_str_has_suffix(other->value, said)) {
+        g_autofree char *given = fl_option_get(other, &args->render);
+        if (given && g_str_has_suffix(other->value, given)) {
             g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "--%s and --%s contradict each other",
                         other->name, option->name);
             return false;
@@ -38,7 +38,7 @@ static bool check_contradiction(const FlArgs *args, const FlOption *option, GErr
     return true;
 }
 
-/* What FlRenderOptions has a field for. */
+/* Options with a field in FlRenderOptions. */
 static gboolean read_option(const char *name, const char *value, gpointer data, GError **error)
 {
     FlArgs *args = data;
@@ -57,7 +57,7 @@ static gboolean read_option(const char *name, const char *value, gpointer data, 
     return FALSE;
 }
 
-/* What a [region] section could say as well; the library checks it, as it checks the config. */
+/* Options that are also keys of [region] sections; the library checks both. */
 static gboolean read_setting(const char *name, const char *value, gpointer data, GError **error)
 {
     FlArgs *args = data;
@@ -71,15 +71,14 @@ static gboolean read_limit(const char *name, const char *value, gpointer data, G
     return fl_limit_set(value, error);
 }
 
-/* A number of frames around one, drafts of which the next preview may replace. */
+/* --preview N: drafts of a frame and its neighbours, which the next preview may replace. */
 static gboolean read_preview(const char *name, const char *value, gpointer data, GError **error)
 {
     FlArgs *args = data;
     char *end = NULL;
     const gint64 number = g_ascii_strtoll(value, &end, 10);
     if (!g_ascii_isdigit(*value) || *end || number > G_MAXINT / 2) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not the number of a frame", name,
-                    value);
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not a frame number", name, value);
         return FALSE;
     }
     g_autofree char *range = g_strdup_printf("%s~1", value);
@@ -101,7 +100,7 @@ static gboolean read_styles(const char *name, const char *value, gpointer data, 
             value = "";
     if (!*value)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: expected names with commas between, such as 01,03, or all", name);
+                    "%s: expected names separated by commas, such as 01,03, or all", name);
     return *value != '\0';
 }
 
@@ -148,7 +147,7 @@ typedef gboolean (*Reader)(const char *, const char *, gpointer, GError **);
         read_##field, FL_COMMAND_RENDER                                                            \
     }
 
-/* What is done with each line of options.def; the lines of params.def follow, as settings. */
+/* How each line of options.def is read; the lines of params.def follow, as settings. */
 static const struct Action {
     Reader read;
     FlCommand task; // of read_task
@@ -226,7 +225,7 @@ static char **split_values(int argc, char **argv)
     return (char **)g_ptr_array_free(words, FALSE);
 }
 
-/* Two words of --format are of the list of regions; the library knows those of the output. */
+/* Two words of --format belong to --list-regions; the library reads the others. */
 static void take_listing(FlArgs *args)
 {
     if (g_strcmp0(args->render.format, "table") == 0)
@@ -244,7 +243,7 @@ static bool needs_input(FlCommand task)
            task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT || task == FL_COMMAND_COMPARE;
 }
 
-/* What is tried out is painted fast, and replaces what was tried out before. */
+/* Previews and comparisons are drafts, and replace the previous ones. */
 static bool make_preview(FlArgs *args, GError **error)
 {
     const FlSetting draft = {.name = "detail", .value = "draft"};

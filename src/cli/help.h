@@ -1,4 +1,4 @@
-/* What is said about options: the help, and which one was meant. */
+/* The help, suggestions for unknown options, and option names in messages. */
 #ifndef FLUIDY_CLI_HELP_H
 #define FLUIDY_CLI_HELP_H
 

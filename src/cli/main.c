@@ -1,4 +1,4 @@
-/* fluidy-svg: words and exit codes only; the work is in the library. */
+/* fluidy-svg: texts and exit codes only; the work is in the library. */
 #include "args.h"
 #include "help.h"
 #include "progress.h"
@@ -41,7 +41,7 @@ static bool was_stopped(void *data)
     return stop;
 }
 
-/* In the words of the command line. */
+/* Prints a message with options as --name. */
 static void say(Voice *voice, const char *kind, const char *message)
 {
     g_autofree char *line = fl_help_translate(message);
@@ -56,7 +56,7 @@ static void show_warning(const char *message, void *data)
     say(voice, "warning", message);
 }
 
-/* At the end, when they may have gone from the screen. */
+/* Reminds at the end of warnings that may have scrolled away. */
 static void recall_warnings(Voice *voice)
 {
     const int n = voice->n_warnings;
@@ -73,8 +73,8 @@ static void show_note(const char *message, void *data)
 /* One line, whatever the library below wrote. */
 static int fail(const GError *error)
 {
-    g_autofree char *said = fl_help_translate(error->message);
-    g_autofree char *line = fl_one_line(said);
+    g_autofree char *text = fl_help_translate(error->message);
+    g_autofree char *line = fl_one_line(text);
     fprintf(stderr, "fluidy-svg: %s\n", line);
     if (g_error_matches(error, FL_ERROR, FL_ERROR_INTERRUPTED))
         return INTERRUPTED;
@@ -128,7 +128,7 @@ static int list_regions(const FlArgs *args, GError **error)
     return text ? print(text) : FAILURE;
 }
 
-/* What reads the drawing, and may be interrupted. */
+/* The commands that read the drawing, and may be interrupted. */
 static int work(FlArgs *args)
 {
     Voice voice = {.quiet = args->quiet};
@@ -141,7 +141,7 @@ static int work(FlArgs *args)
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);
     if (args->task == FL_COMMAND_RENDER)
-        signal(SIGPIPE, SIG_IGN); // whoever read the progress may leave
+        signal(SIGPIPE, SIG_IGN); // the reader of the progress may exit first
     g_autoptr(GError) error = NULL;
     int status = DONE;
     if (args->task == FL_COMMAND_LIST_REGIONS)

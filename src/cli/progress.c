@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #define BAR_EVERY_S 0.1   // a terminal that is redrawn more often flickers
-#define PLAIN_EVERY_S 10. // a log that says more is read less
+#define PLAIN_EVERY_S 10. // keeps logs short
 #define BAR_COLUMNS 24
 
 void fl_meter_init(FlMeter *meter, FlProgressMode mode, FILE *stream)

@@ -1,4 +1,4 @@
-/* How far the render is, on standard error. */
+/* Progress on standard error. */
 #ifndef FLUIDY_CLI_PROGRESS_H
 #define FLUIDY_CLI_PROGRESS_H
 
@@ -9,7 +9,7 @@ typedef struct FlMeter {
     FILE *stream;
     FlProgressMode mode; // never FL_PROGRESS_AUTO
     bool colour;
-    int bar_columns;   // of the bar that stands on the terminal; 0: none does
+    int bar_columns;   // of the bar on the terminal; 0: none
     double shown_s;    // when the last was shown, seconds since the start
     const char *stage; // of the last shown
     int region_index;
@@ -20,7 +20,7 @@ void fl_meter_init(FlMeter *meter, FlProgressMode mode, FILE *stream);
 
 void fl_meter_show(FlMeter *meter, const FlProgress *progress);
 
-/** Takes the bar away, so that something else can be printed. */
+/** Erases the bar, so that something else can be printed. */
 void fl_meter_hide(FlMeter *meter);
 
 /** Prints a line of words; as an object {"kind":"message"} among the lines of JSON. */

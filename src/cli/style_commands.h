@@ -6,7 +6,7 @@
 
 typedef struct FlStyleCommand {
     const char *name, *arguments, *summary;
-    const char *details;         // printed below the options; may be NULL
+    const char *details;         // printed below the options; or NULL
     const GOptionEntry *entries; // parsed before run is called
     /** words: what is left of the command line, NULL-terminated. False with an error set. */
     bool (*run)(char **words, GError **error);

@@ -1,4 +1,4 @@
-/* fluidy-style: words and exit codes only; the work is in the library. */
+/* fluidy-style: texts and exit codes only; the work is in the library. */
 #include "style_commands.h"
 
 #include "base/suggest.h"
@@ -14,8 +14,8 @@ enum { DONE = 0, FAILURE = 1, USAGE = 2 };
 /* One line, whatever the library below wrote. */
 static int fail(const GOptionEntry *entries, const GError *error)
 {
-    g_autofree char *said = fl_style_command_translate(entries, error->message);
-    g_autofree char *line = fl_one_line(said);
+    g_autofree char *text = fl_style_command_translate(entries, error->message);
+    g_autofree char *line = fl_one_line(text);
     fprintf(stderr, "fluidy-style: %s\n", line);
     const bool usage =
         error->domain == G_OPTION_ERROR || g_error_matches(error, FL_ERROR, FL_ERROR_USAGE);
@@ -28,12 +28,12 @@ static int print_help(void)
            "paint of fluidy-svg.\n\nCommands:\n");
     for (const FlStyleCommand *c = fl_style_commands; c->name; c++)
         printf("  %-9s %-24s %s\n", c->name, c->arguments, c->summary);
-    printf(
-        "\nfluidy-style COMMAND --help tells a command's options; fluidy-style -V the version.\n");
+    printf("\nfluidy-style COMMAND --help prints the options of a command, fluidy-style -V the "
+           "version.\n");
     return fflush(stdout) == 0 ? DONE : FAILURE;
 }
 
-/* Finds the command, or the one that was meant. */
+/* Finds the command; the error suggests a similar one. */
 static const FlStyleCommand *find_command(const char *word, GError **error)
 {
     g_autoptr(GPtrArray) names = g_ptr_array_new();
@@ -44,12 +44,11 @@ static const FlStyleCommand *find_command(const char *word, GError **error)
     }
     g_ptr_array_add(names, NULL);
     g_autofree char *tail = fl_did_you_mean(word, (const char *const *)names->pdata);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no command %s%s (see --help)", word,
-                tail);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown command %s%s (see --help)", word, tail);
     return NULL;
 }
 
-/* Says what an option that the command does not have may have meant. */
+/* Suggests a similar option for one that the command does not have. */
 static void improve_unknown(const FlStyleCommand *command, GError **error)
 {
     g_autoptr(GPtrArray) names = g_ptr_array_new();
@@ -70,7 +69,7 @@ static bool run_command(const FlStyleCommand *command, char **argv, GError **err
     g_autofree char *usage = g_strdup_printf("%s — %s", command->arguments, command->summary);
     g_autoptr(GOptionContext) context = g_option_context_new(usage);
     const GOptionEntry limit[] = {{"limit", 0, 0, G_OPTION_ARG_CALLBACK, (gpointer)read_limit,
-                                   "how much a file may ask for; see TRUST in fluidy-svg(1)",
+                                   "raise or lower a limit on files; see TRUST in fluidy-svg(1)",
                                    "NAME=N"},
                                   {NULL}};
     g_option_context_add_main_entries(context, command->entries, NULL);

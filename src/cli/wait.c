@@ -9,7 +9,7 @@ void fl_wait_asleep(char **argv)
     static const char *const words[] = {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "KMP_BLOCKTIME"};
     for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
         if (g_getenv(words[i]))
-            return; // as the user wants it, or the second start
+            return; // set by the user, or by the first start
     g_autofree char *program = g_file_read_link("/proc/self/exe", NULL);
     if (program && g_setenv("OMP_WAIT_POLICY", "passive", TRUE))
         execv(program, argv);

@@ -4,9 +4,9 @@
 
 /**
  * Has OpenMP's threads sleep while they wait, unless the environment says otherwise: busy waiting
- * takes the processors from other jobs. The library of gcc reads that before main() and has no
- * function for it, so that the program starts itself once more; where it cannot, threads wait as
- * they do. To be called first of all.
+ * takes the processors from other jobs. gcc's libgomp reads the policy before main() and has no
+ * function for it, so the program executes itself again; where that fails, threads wait busily. To
+ * be called first of all.
  */
 void fl_wait_asleep(char **argv);
 

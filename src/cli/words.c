@@ -14,11 +14,10 @@ void fl_words_unknown(const char *const *names, const char *help, GError **error
     const char *near = fl_suggest(unknown + strspn(unknown, "-"), names);
     g_clear_error(error);
     if (near)
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no option %s; did you mean --%s?",
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown option %s; did you mean --%s?",
                     unknown, near);
     else
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no option %s; see %s", unknown,
-                    help);
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown option %s; see %s", unknown, help);
 }
 
 char *fl_words_translate(const char *message, char *(*flag)(const char *name, void *data),

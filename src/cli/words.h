@@ -1,17 +1,17 @@
-/* What both programs do about the words of their command lines beside GOption. */
+/* Command-line helpers of both programs, beside GOption. */
 #ifndef FLUIDY_CLI_WORDS_H
 #define FLUIDY_CLI_WORDS_H
 
 #include <glib.h>
 
 /**
- * Turns GOption's error about an unknown option into one of ours, which says what may have been
- * meant or else where to look: `help`. Other errors stay as they are. names: of all long options.
+ * Turns GOption's error about an unknown option into one of ours, which suggests a similar option
+ * or else `help`. Other errors stay as they are. names: of all long options.
  */
 void fl_words_unknown(const char *const *names, const char *help, GError **error);
 
 /**
- * Puts the words of the command line where a message of the library names an option, ‘name’.
+ * Replaces ‘name’, an option in a message of the library, by its command-line form.
  *
  * flag returns "--name" or NULL, if the program has no such option: the text then stays as it is.
  * Returns: to be freed with g_free().

@@ -7,14 +7,14 @@
 
 #include <string.h>
 
-/* Where the reader is: nothing may stand above the first section. */
+/* The current section; NOWHERE is above the first one, where keys are errors. */
 typedef enum Place { NOWHERE, PROJECT, DEFAULTS, REGION } Place;
 
 typedef struct Reader {
     FlConfig *config;
     char *folder;
     Place place;
-    bool seen[REGION + 1];
+    bool present[REGION + 1];
     GHashTable *keys;     // of this section
     GHashTable *sections; // name of a region -> line of its section
 } Reader;
@@ -66,7 +66,7 @@ static bool start_region(Reader *reader, const char *name, int line, GError **er
         return usage(error, "a region section needs a name: [region NAME]");
     const int before = GPOINTER_TO_INT(g_hash_table_lookup(reader->sections, name));
     if (before)
-        return usage(error, "[region %s] was there already, in line %d", name, before);
+        return usage(error, "[region %s] occurs twice, first in line %d", name, before);
     g_hash_table_insert(reader->sections, g_strdup(name), GINT_TO_POINTER(line));
     config->rules = g_renew(FlRule, config->rules, config->n_rules + 1);
     config->rules[config->n_rules++] = (FlRule){
@@ -87,14 +87,14 @@ static bool read_section(void *data, const char *name, int line, GError **error)
     for (Place place = PROJECT; place <= DEFAULTS; place++) {
         if (strcmp(name, words[place]) != 0)
             continue;
-        if (reader->seen[place])
-            return usage(error, "[%s] was there already", name);
-        reader->seen[place] = true;
+        if (reader->present[place])
+            return usage(error, "[%s] occurs twice", name);
+        reader->present[place] = true;
         reader->place = place;
         return true;
     }
     g_autofree char *hint = fl_did_you_mean(name, words + 1);
-    return usage(error, "there is no section [%s]%s%s", name,
+    return usage(error, "unknown section [%s]%s%s", name,
                  *hint ? "" : "; sections are [project], [defaults] and [region NAME]", hint);
 }
 
@@ -130,7 +130,7 @@ static bool set_project(Reader *reader, const char *key, const char *value, GErr
 
 /* ---- [region NAME] ----------------------------------------------------------------------- */
 
-/* A mistyped colour would never match, and never be missed. */
+/* A mistyped colour would silently match nothing. */
 static bool check_paints(const char *key, char **items, GError **error)
 {
     uint8_t rgb[3];
@@ -194,7 +194,7 @@ static bool set_region(FlRule *rule, const char *key, const char *value, GError 
         rule->match_all = strcmp(value, "*") == 0;
         return rule->match_all ||
                usage(error,
-                     "match: “%s” is not *; for less than everything there are match-fill, "
+                     "match: “%s” is not *; to match some of the leaves use match-fill, "
                      "match-label and others",
                      value);
     }
@@ -216,11 +216,11 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
     FlConfig *config = reader->config;
     if (reader->place == NOWHERE)
         return usage(error,
-                     "“%s” stands above the first section; [project], [defaults] or "
-                     "[region NAME] must come first",
+                     "“%s” is above the first section; put it below [project], [defaults] "
+                     "or [region NAME]",
                      key);
     if (!g_hash_table_add(reader->keys, g_strdup(key)))
-        return usage(error, "%s was said already in this section", key);
+        return usage(error, "%s is set twice in this section", key);
     if (!*value)
         return usage(error, "%s: the value is missing", key);
     if (reader->place == PROJECT)
@@ -232,7 +232,7 @@ static bool read_entry(void *data, const char *key, const char *value, int line,
 
 /* ---- the whole --------------------------------------------------------------------------- */
 
-/* A section without any match key is about the region that has its name by itself. */
+/* A section without any match key is for the region that already has its name. */
 static bool is_by_name(FlRule *rule)
 {
     bool matches = rule->match_all;
@@ -284,7 +284,7 @@ void fl_config_free(FlConfig *config)
     g_free(config);
 }
 
-/* The option, else what [project] says, else the default. */
+/* The option, else the key of [project], else the default. */
 static void complete(const FlConfig *config, const FlOption *option, FlRenderOptions *options)
 {
     if (!fl_option_is_set(option, options))
@@ -304,11 +304,11 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
         complete(config, option, options);
         double *number = (double *)((char *)options + option->offset);
         if (option->type == FL_OPTION_REAL)
-            *number = MAX(*number, 0); // less is a 0 that was said
+            *number = MAX(*number, 0); // -1 is an explicit 0
     }
 }
 
-/* Settings go through wishes, so that a preset among them comes first. */
+/* Settings become overrides, so that a preset among them comes first. */
 static bool apply_settings(const FlRenderOptions *options, const char *region,
                            FlRegionSettings *settings, GError **error)
 {

@@ -1,4 +1,4 @@
-/* The config file of a film, fluidy-svg.conf(5): rules that say which leaves are painted how. */
+/* The config file of a render, fluidy-svg.conf(5): rules that say which leaves are painted how. */
 #ifndef FLUIDY_PARAMS_CONFIG_H
 #define FLUIDY_PARAMS_CONFIG_H
 
@@ -6,11 +6,11 @@
 #include <fluidy/render.h>
 
 /**
- * A [region NAME] section. It holds for a leaf if every list that is not NULL has an item for it;
- * with match = * all of them are NULL. Without a match key it holds for the region that has its
- * name without any rule.
+ * A [region NAME] section. It matches a leaf if every list that is not NULL has an item that does;
+ * with match = * all of them are NULL. Without a match key it is for the region that has its name
+ * without any rule.
  *
- * Lists are NULL-terminated; items are globs of * and ?, compared without case. A fill or stroke is
+ * Lists are NULL-terminated; items are globs of * and ?, ignoring case. A fill or stroke is
  * a CSS colour, "any", "none", "gradient" or "image".
  */
 typedef struct FlRule {
@@ -21,14 +21,14 @@ typedef struct FlRule {
     char **match_fill, **match_stroke;
     char **match_id, **match_class, **match_label;
     char **match_layer;    // any of the names in the leaf's label path
-    float match_tolerance; // of colours, CIE76, 0..100; 0: not said
+    float match_tolerance; // of colours, CIE76, 0..100; 0: not set
     FlOverrides overrides;
 } FlRule;
 
-/** A config in memory. Rules are in the order of the file: the first that holds for a leaf wins. */
+/** A config in memory. Rules are in the order of the file: the first that matches wins. */
 typedef struct FlConfig {
     char *path;              // for messages; NULL: no file
-    FlRenderOptions project; // what [project] says; its strings are in `strings`
+    FlRenderOptions project; // of [project]; its strings are in `strings`
     FlOverrides defaults;    // of [defaults]
     int n_rules;
     FlRule *rules;
@@ -36,18 +36,18 @@ typedef struct FlConfig {
 } FlConfig;
 
 /**
- * Reads a file; path NULL gives a config that says nothing.
+ * Reads a file; path NULL gives an empty config.
  *
  * Returns: to be freed with fl_config_free(); NULL with FL_ERROR_USAGE (or FL_ERROR_INPUT, if the
- * file cannot be read), which names file, line, what was wrong and what was expected.
+ * file cannot be read), which names file, line, the mistake and what was expected.
  */
 FlConfig *fl_config_load(const char *path, GError **error);
 
 void fl_config_free(FlConfig *config); // NULL is fine
 
 /**
- * Fills `options` where it says nothing with what [project] says, else with the default; output
- * stays NULL if neither says one. The strings stay the config's.
+ * Completes unset options from [project], else with the defaults; output stays NULL if it is set
+ * nowhere. The strings stay the config's.
  */
 void fl_config_complete(const FlConfig *config, FlRenderOptions *options);
 
@@ -55,7 +55,7 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options);
  * Decides how a region is painted: defaults, then [defaults], then the rule, then the options'
  * settings for every region, then those for this one.
  *
- * rule is an index into config->rules; -1: none holds. `treatment` is not initialised before.
+ * rule is an index into config->rules; -1: none. `settings` is not initialised before.
  * Returns: false with FL_ERROR_USAGE about an option's setting; nothing is then to be cleared.
  */
 bool fl_config_region_settings(const FlConfig *config, int rule, const char *region,

@@ -9,7 +9,7 @@
 
 static char *load(const char *path, FlError mistake, GError **error)
 {
-    // a config may come from a process of the shell
+    // not a regular file only: the shell's <(…) is a pipe
     if (mistake != FL_ERROR_USAGE && !fl_file_check(path, mistake, error))
         return NULL;
     g_autofree char *text = g_malloc(LARGEST_BYTES + 2);

@@ -12,7 +12,7 @@ typedef struct FlKeyReader {
     /** A "key = value" line below the last section; neither has outer spaces; value may be "". */
     bool (*entry)(void *data, const char *key, const char *value, int line, GError **error);
     void *data;
-    FlError mistake; // the code of a file that is not such a file
+    FlError mistake; // the error code for syntax errors
 } FlKeyReader;
 
 /**
@@ -20,7 +20,7 @@ typedef struct FlKeyReader {
  * value goes to the end of its line. A file of more than 1 MiB is refused.
  *
  * Returns: false with the first error, "FILE:LINE: …" in front; FL_ERROR_INPUT when the file cannot
- * be read, reader->mistake when it is not such a file, or what the reader said.
+ * be read, reader->mistake for syntax errors, or the error of the reader.
  */
 bool fl_key_file_read(const char *path, const FlKeyReader *reader, GError **error);
 

@@ -1,9 +1,9 @@
-/* Media: what paint does over what lies below it. */
+/* Media: how paint composites over what lies below it. */
 #ifndef FLUIDY_PARAMS_MEDIUM_H
 #define FLUIDY_PARAMS_MEDIUM_H
 
 typedef enum FlMedium {
-    FL_MEDIUM_AUTO,        // nobody said: what suits the background
+    FL_MEDIUM_AUTO,        // not set: what suits the background
     FL_MEDIUM_TRANSPARENT, // density over the background, as watercolour
     FL_MEDIUM_OPAQUE,      // hides it the more the thicker it is, as gouache
     FL_MEDIUM_BODY,        // hides it wherever there is paint, as if cut out of its paper

@@ -1,5 +1,5 @@
-/* The table of options, made from options.def and params.def: what an option is called, what it may
- * be, where its value goes and whether it decides the bytes of a render. */
+/* The table of options, made from options.def and params.def: name, values, the field it sets and
+ * whether it decides the bytes of a render. */
 #ifndef FLUIDY_PARAMS_OPTIONS_H
 #define FLUIDY_PARAMS_OPTIONS_H
 
@@ -44,7 +44,7 @@ typedef enum FlOptionSection {
     FL_SECTION_REGION, // and [defaults]
 } FlOptionSection;
 
-/** Whether an option decides the painted bytes, and so which render may go on. */
+/** Whether an option decides the painted bytes, and so whether a render can be resumed. */
 typedef enum FlOptionBytes {
     FL_BYTES_NEVER,
     FL_BYTES_VALUE,  // the fingerprint has its value
@@ -99,7 +99,7 @@ char *fl_option_words(const FlOption *option);
 /** The line of the help, with words and default. To be freed. */
 char *fl_option_help(const FlOption *option);
 
-/** FL_ERROR_USAGE: “value” is not what the option asks for, and what that is. Returns: false. */
+/** Sets FL_ERROR_USAGE: the value and what the option expects. Returns: false. */
 bool fl_option_reject(const FlOption *option, const char *value, GError **error);
 
 /* ---- options of a render --------------------------------------------------------------------- */
@@ -108,7 +108,7 @@ bool fl_option_reject(const FlOption *option, const char *value, GError **error)
  * Reads a value into the field of an option of FL_SCOPE_RENDER.
  *
  * Relative paths start in `folder`; NULL: as they are. Texts are copied, and the copies given to
- * `strings`. Numbers of 0 are kept as -1: they are said, and win over the config.
+ * `strings`. An explicit 0 is kept as -1, so that it overrides the config.
  * Returns: false with FL_ERROR_USAGE without the option's name; the field is then unchanged.
  */
 bool fl_option_set(const FlOption *option, const char *value, const char *folder,

@@ -128,7 +128,7 @@ static bool parse(const FlParamInfo *info, const char *text, Value *value)
 static char *expectation(const FlParamInfo *info)
 {
     static const char *const kinds[] = {"an integer", "a number", "on or off",
-                                        "one to eight integers with commas between, each"};
+                                        "one to eight integers separated by commas, each"};
     if (info->type == FL_PARAM_BOOL)
         return g_strdup(kinds[info->type]);
     return g_strdup_printf("%s from %g to %g%s%s", kinds[info->type], info->min, info->max,
@@ -140,7 +140,7 @@ static bool read_value(const char *name, const char *text, int *index, Value *va
     *index = fl_param_find(name);
     if (*index < 0) {
         g_autofree char *hint = fl_did_you_mean(name, fl_param_names());
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no parameter “%s”%s", name, hint);
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown parameter “%s”%s", name, hint);
         return false;
     }
     const FlParamInfo *info = fl_param_info(*index);
@@ -265,7 +265,7 @@ bool fl_params_preset(FlParams *params, const char *preset, GError **error)
         }
     g_autofree char *hint = fl_did_you_mean(preset, fl_preset_names);
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "there is no preset “%s”; the presets are default, fluidymation, thesis%s", preset,
+                "unknown preset “%s”; the presets are default, fluidymation, thesis%s", preset,
                 hint);
     return false;
 }

@@ -26,11 +26,11 @@ struct FlParams {
 
 void fl_params_defaults(FlParams *params);
 
-/** Quality against time. */
+/** The trade of quality for time. */
 typedef enum FlDetail { FL_DETAIL_DRAFT, FL_DETAIL_NORMAL, FL_DETAIL_FINE } FlDetail;
 
 /**
- * Sets what costs most time: the rounds and sweeps of the search, and for a draft half the size.
+ * Sets the most expensive parameters: rounds and sweeps of the search, and half size for drafts.
  * FL_DETAIL_NORMAL sets their defaults.
  */
 void fl_params_detail(FlParams *params, FlDetail detail);

@@ -148,7 +148,7 @@ bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const c
         return false;
     }
     g_autofree char *hint = fl_did_you_mean(key, fl_region_settings_keys());
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "there is no key “%s”%s", key, hint);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown key “%s”%s", key, hint);
     return false;
 }
 
@@ -192,7 +192,7 @@ void fl_overrides_clear(FlOverrides *overrides)
     *overrides = (FlOverrides){0};
 }
 
-/* What sets several things goes before what sets one of them. */
+/* Keys that set several parameters go first. */
 static int turn_of(const char *key)
 {
     return strcmp(key, "preset") == 0 ? 0 : strcmp(key, "detail") == 0 ? 1 : 2;

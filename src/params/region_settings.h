@@ -1,5 +1,4 @@
-/* How a region is treated: what the config and the command line say of it, and what that comes to.
- */
+/* How a region is painted: its settings, and the overrides of config and command line. */
 #ifndef FLUIDY_PARAMS_REGION_SETTINGS_H
 #define FLUIDY_PARAMS_REGION_SETTINGS_H
 
@@ -9,13 +8,13 @@
 
 /** What a region does to the regions below it. */
 typedef enum FlStacking {
-    FL_STACKING_KNOCKOUT, // they are not there: paper under the paint
+    FL_STACKING_KNOCKOUT, // removed: paper under the paint
     FL_STACKING_GLAZE,    // its density adds to theirs, as a wash over dry paint
 } FlStacking;
 
 /** What paint does at an edge that its shape shares with others. */
 typedef enum FlEdges {
-    FL_EDGES_CLOSED, // it goes on up to the edge: neither a line of paper nor a double rim
+    FL_EDGES_CLOSED, // continues up to the edge: neither a line of paper nor a double rim
     FL_EDGES_SOFT,   // as at any other edge
 } FlEdges;
 
@@ -38,9 +37,9 @@ typedef enum FlPassthrough {
     FL_PASSTHROUGH_YES,  // it is drawn as it is
 } FlPassthrough;
 
-/** How one region is painted, everything decided. */
+/** How one region is painted, completely resolved. */
 typedef struct FlRegionSettings {
-    char *style; // a name or a path; NULL: nobody said
+    char *style; // a name or a path; NULL: not set
     FlTint tint;
     bool has_colour;   // with FL_TINT_FILL: `colour` instead of the drawing's fill
     uint8_t colour[3]; // sRGB
@@ -68,7 +67,7 @@ void fl_region_settings_clear(FlRegionSettings *settings);
  * the synthesis makes it, without granulation, load and pigments.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.
- * Returns: false with FL_ERROR_USAGE; the treatment is then unchanged.
+ * Returns: false with FL_ERROR_USAGE; the settings are then unchanged.
  */
 bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
                             const char *folder, GError **error);
@@ -76,7 +75,7 @@ bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const c
 /** All keys that fl_region_settings_set() knows, NULL-terminated; static storage. */
 const char *const *fl_region_settings_keys(void);
 
-/** What is said of a region: keys and values in the order of the file, known to be right. */
+/** Overrides of a region: keys and values in the order of the file, already checked. */
 typedef struct FlOverride {
     char *key, *value;
 } FlOverride;
@@ -87,12 +86,12 @@ typedef struct FlOverrides {
     char *folder; // relative paths start here; NULL: the working directory
 } FlOverrides;
 
-/** Adds a copy; a key said twice keeps its last value. Errors as fl_region_settings_set(). */
+/** Adds a copy; the last value of a key wins. Errors as fl_region_settings_set(). */
 bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value, GError **error);
 
 void fl_overrides_clear(FlOverrides *overrides);
 
-/** Applies them all, a preset first, then the detail. They were checked when they were added. */
+/** Applies them all, a preset first, then the detail. fl_overrides_add() has checked them. */
 void fl_overrides_apply(const FlOverrides *overrides, FlRegionSettings *settings);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRegionSettings, fl_region_settings_clear)

@@ -1,4 +1,4 @@
-/* Values as people write them, the same on the command line and in key files. */
+/* Parses values, the same on the command line and in key files. */
 #ifndef FLUIDY_PARAMS_TEXT_H
 #define FLUIDY_PARAMS_TEXT_H
 
