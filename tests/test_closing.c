@@ -2,7 +2,6 @@
  */
 #include "base/rng.h"
 #include "compose/closing.h"
-#include "compose/detail.h"
 #include <glib.h>
 #include <math.h>
 #include <string.h>
@@ -131,69 +130,7 @@ static void a_thin_shape_among_others_has_no_dark_core(void)
     }
 }
 
-static void a_line_is_seen_though_it_is_all_rim(void)
-{
-    enum { LINE = 3 };
-    const FlRect line = {40, 0, LINE, HEIGHT};
-    int16_t amounts[LINE * HEIGHT];
-    uint8_t share[LINE * HEIGHT] = {0};
-    for (int i = 0; i < LINE * HEIGHT; i++)
-        amounts[i] = (int16_t)(i % 40);
-    close_box(amounts, share, line, 2 * BORDER);
-    for (int i = 0; i < LINE * HEIGHT; i++)
-        g_assert_cmpint(amounts[i], >, FL_AMOUNT_ONE * 7 / 8);
-}
-
-/** Half-covered pixels on either side of a line; `columns` with them. */
-static int16_t *inside_line(int columns, int rows)
-{
-    const size_t n = (size_t)columns * (size_t)rows;
-    g_autofree uint8_t *coverage = g_malloc0((size_t)(columns + 2) * (size_t)rows);
-    for (int y = 0; y < rows; y++)
-        for (int x = 1; x <= columns; x++)
-            coverage[y * (columns + 2) + x] = x == 1 || x == columns ? 128 : 255;
-    int16_t *inside = g_new(int16_t, n);
-    fl_closing_inside(coverage, columns + 2, rows, (FlRect){1, 0, columns, rows}, inside);
-    return inside;
-}
-
-/** Deviation of the amounts, of the median, along a line whose paint was beads of 0 and 2. */
-static double deviation_along(int columns, int border)
-{
-    enum { ROWS = 80 };
-    const FlRect line = {0, 0, columns, ROWS};
-    const size_t n = fl_rect_pixels(line);
-    g_autofree int16_t *amounts = g_new(int16_t, n), *inside = inside_line(columns, ROWS);
-    g_autofree uint8_t *share = g_malloc0(n);
-    g_autoptr(GError) error = NULL;
-    for (int i = 0; i < (int)n; i++)
-        amounts[i] = i / columns / border % 2 ? 2 * FL_AMOUNT_ONE : 0;
-    fl_closing_apply(amounts, inside, share, line, border, &error);
-    g_assert_no_error(error);
-    double squares = 0;
-    for (int y = 0; y < ROWS; y++) {
-        const double a = amounts[y * columns + columns / 2] / (double)FL_AMOUNT_ONE - 1;
-        squares += a * a / ROWS;
-    }
-    return sqrt(squares);
-}
-
-static void a_line_is_as_even_at_half_the_size(void)
-{
-    const double half = deviation_along(5, 10), full = deviation_along(9, 20); // 4 and 8 px
-    g_test_message("deviation at half the size %.3f, at the whole %.3f", half, full);
-    g_assert_cmpfloat(half, <, 0.1);
-    g_assert_cmpfloat_with_epsilon(half, full, 0.1);
-}
-
-static void a_line_of_half_the_border_has_no_beads(void)
-{
-    g_assert_cmpfloat(deviation_along(9, 16), <, 0.1);
-    g_assert_cmpfloat(deviation_along(5, 8), <, 0.1);
-    g_assert_cmpfloat(deviation_along(21, 20), >, 0.9); // paint with room for its own form
-}
-
-static void what_is_faint_is_not_thin(void)
+static void what_is_faint_is_all_inside(void)
 {
     uint8_t coverage[HEIGHT * HEIGHT];
     int16_t inside[HEIGHT * HEIGHT];
@@ -234,54 +171,6 @@ static void a_part_with_its_reach_closes_as_in_the_whole(void)
     g_assert_false(closes_as_in_the_whole(5, 40, 4)); // the rim's shares are not 0 there
 }
 
-/** What fl_detail_find() says of a disc of a diameter, from which a tail sticks out. */
-static uint8_t detail_of_disc(double diameter, uint8_t *of_tail)
-{
-    uint8_t seen[WIDTH * WIDTH] = {0}, detail[WIDTH * WIDTH];
-    for (int y = 0; y < WIDTH; y++)
-        for (int x = 0; x < WIDTH; x++) {
-            const double dx = x - 30, dy = y - 48;
-            const bool tail = x >= 30 && x < 90 && y >= 47 && y < 50;
-            seen[y * WIDTH + x] = tail || 4 * (dx * dx + dy * dy) < diameter * diameter ? 255 : 0;
-        }
-    g_assert_true(fl_detail_find(seen, WIDTH, WIDTH, BORDER, detail, NULL));
-    *of_tail = detail[48 * WIDTH + 88];
-    g_assert_cmpint(detail[48 * WIDTH + 90], ==, *of_tail); // beside it
-    g_assert_cmpint(detail[48 * WIDTH + 93], ==, 0);
-    return detail[48 * WIDTH + 30];
-}
-
-static void the_narrow_end_of_a_shape_is_no_detail(void)
-{
-    uint8_t tail;
-    g_assert_cmpint(detail_of_disc(9, &tail), ==, 255);
-    g_assert_cmpint(tail, ==, 255);
-    g_assert_cmpint(detail_of_disc(40, &tail), ==, 0);
-    g_assert_cmpint(tail, ==, 0);
-}
-
-/** Detail in the middle of each of three bars, turned by an angle, that lie side by side. */
-static uint8_t detail_of_bars(double bar, double degrees)
-{
-    uint8_t seen[WIDTH * WIDTH], detail[WIDTH * WIDTH];
-    const double c = cos(degrees * G_PI / 180), s = sin(degrees * G_PI / 180);
-    for (int i = 0; i < WIDTH * WIDTH; i++) {
-        const double across = (i % WIDTH - 48) * c + (i / WIDTH - 48) * s, gap = bar + 3;
-        seen[i] =
-            fabs(across - gap * round(across / gap)) < bar / 2 && fabs(across) < 2 * gap ? 255 : 0;
-    }
-    g_assert_true(fl_detail_find(seen, WIDTH, WIDTH, BORDER, detail, NULL));
-    return detail[48 * WIDTH + 48];
-}
-
-static void a_part_is_a_detail_by_its_own_width_at_any_angle(void)
-{
-    for (int degrees = 0; degrees < 90; degrees += 15) {
-        g_assert_cmpint(detail_of_bars(1.15 * BORDER, degrees), ==, 255);
-        g_assert_cmpint(detail_of_bars(1.6 * BORDER, degrees), ==, 0);
-    }
-}
-
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -290,12 +179,7 @@ int main(int argc, char **argv)
     TEST(a_free_edge_stays_as_it_is_painted);
     TEST(a_shape_that_only_comes_near_shares_no_edge);
     TEST(a_thin_shape_among_others_has_no_dark_core);
-    TEST(a_line_is_seen_though_it_is_all_rim);
-    TEST(a_line_is_as_even_at_half_the_size);
-    TEST(a_line_of_half_the_border_has_no_beads);
-    TEST(what_is_faint_is_not_thin);
-    TEST(the_narrow_end_of_a_shape_is_no_detail);
-    TEST(a_part_is_a_detail_by_its_own_width_at_any_angle);
+    TEST(what_is_faint_is_all_inside);
     TEST(a_part_with_its_reach_closes_as_in_the_whole);
     return g_test_run();
 }

@@ -1,9 +1,8 @@
 #include "compose/closing.h"
 
 #include "base/alloc.h"
-#include "compose/windows.h"
+#include "base/windows.h"
 #include <glib.h>
-#include <string.h>
 
 /** Outside the shape in a window: all of it, and the part that others cover. */
 typedef struct Around {
@@ -105,35 +104,15 @@ void fl_closing_inside(const uint8_t *coverage, int width, int height, FlRect bo
 #define LEAST (FL_AMOUNT_ONE * 3 / 4)  // what is bare of paint all the same
 #define MOST (FL_AMOUNT_ONE * 3 / 2)
 
-/** The largest of 2 r + 1 columns. */
-static void spread_columns(const uint8_t *in, uint8_t *out, int n, int r)
+/** The radius of the mean that paint is divided by. */
+static int mean_radius(int radius_px)
 {
-    memcpy(out, in, (size_t)n);
-    for (int d = 1; d <= r; d++) {
-        for (int i = 0; i < n - d; i++)
-            out[i] = MAX(out[i], in[i + d]);
-        for (int i = d; i < n; i++)
-            out[i] = MAX(out[i], in[i - d]);
-    }
-}
-
-/** The largest of 2 r + 1 rows around row y of a box. */
-static void spread_rows(const uint8_t *in, uint8_t *out, FlRect box, int y, int r)
-{
-    memset(out, 0, (size_t)box.width);
-    for (int k = MAX(y - r, 0); k <= MIN(y + r, box.height - 1); k++)
-        for (int x = 0; x < box.width; x++)
-            out[x] = MAX(out[x], in[(size_t)k * (size_t)box.width + (size_t)x]);
-}
-
-static FlWidths thin_widths(int radius_px)
-{
-    return (FlWidths){8 * radius_px, 9 * radius_px};
+    return (9 * radius_px + 16) / 32;
 }
 
 int fl_closing_reach(int radius_px)
 {
-    return MAX(2 * fl_window_radius(thin_widths(radius_px)) + 1, radius_px);
+    return radius_px;
 }
 
 /** Room for what is made of the windows of each pixel. */
@@ -141,7 +120,6 @@ typedef struct Windows {
     uint32_t *rows;                  // scratch
     uint32_t *around, *wide, *paint; // sums: of what is inside the shape, and of its amounts
     int16_t *weighed;                // amounts, of what is inside the shape
-    uint8_t *thin, *part;            // part: how far a pixel is evened, 0..255
 } Windows;
 
 static void windows_clear(Windows *windows)
@@ -151,8 +129,6 @@ static void windows_clear(Windows *windows)
     free(windows->wide);
     free(windows->paint);
     free(windows->weighed);
-    free(windows->thin);
-    free(windows->part);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Windows, windows_clear)
@@ -164,39 +140,15 @@ static bool windows_init(Windows *windows, size_t n, GError **error)
            (windows->around = fl_alloc(n, sizeof *windows->around, "a matte", error)) &&
            (windows->wide = fl_alloc(n, sizeof *windows->wide, "a matte", error)) &&
            (windows->paint = fl_alloc(n, sizeof *windows->paint, "a matte", error)) &&
-           (windows->weighed = fl_alloc(n, sizeof *windows->weighed, "a matte", error)) &&
-           (windows->thin = fl_alloc(n, 1, "a matte", error)) &&
-           (windows->part = fl_alloc(n, 1, "a matte", error));
-}
-
-/**
- * How thin what a plane has is at each pixel, 0..255: 0 where it is wide nearby, as at the edges
- * and corners of what is large. `sums` becomes those over the window. Pixels at the contour are one
- * farther from the middle of the nearest full window than its radius.
- */
-static void find_thin(const int16_t *plane, FlRect box, FlWidths widths, uint32_t *rows,
-                      uint32_t *sums, uint8_t *thin)
-{
-    const size_t n = fl_rect_pixels(box), pitch = (size_t)box.width;
-    const int r = fl_window_radius(widths);
-    uint8_t *spread = (uint8_t *)rows;
-    fl_window_sums(plane, box, r, rows, sums);
-    for (size_t i = 0; i < n; i++)
-        thin[i] = fl_window_width(widths, sums[i]);
-    for (int y = 0; y < box.height; y++)
-        spread_columns(thin + (size_t)y * pitch, spread + (size_t)y * pitch, box.width, r + 1);
-    for (int y = 0; y < box.height; y++)
-        spread_rows(spread, thin + (size_t)y * pitch, box, y, r + 1);
-    for (size_t i = 0; i < n; i++)
-        thin[i] = (uint8_t)(255 - thin[i]);
+           (windows->weighed = fl_alloc(n, sizeof *windows->weighed, "a matte", error));
 }
 
 /** What is left of the contrast, of FL_AMOUNT_ONE: less the less of the window is the shape's. */
-static int contrast_of(uint32_t inside, int radius_px, int thin)
+static int contrast_of(uint32_t inside, int radius_px)
 {
     const int64_t one = FL_AMOUNT_ONE, side = 2 * radius_px + 1;
     const int64_t part = MIN(2 * one * inside / (255 * side * side), one); // one at a straight edge
-    return (int)(part * part / one * (255 - thin) / 255);
+    return (int)(part * part / one);
 }
 
 /** Paint divided by its mean around. In narrow shapes that would be a dark core between pale rims.
@@ -207,16 +159,17 @@ static int evened(int amount, int mean, int contrast)
     return FL_AMOUNT_ONE + (even - FL_AMOUNT_ONE) * contrast / FL_AMOUNT_ONE;
 }
 
-/** Evens the parts of the amounts. */
-static void even_parts(int16_t *amounts, const Windows *windows, size_t n, int radius_px)
+/** Evens the amounts by their shares. */
+static void even_shares(int16_t *amounts, const uint8_t *share, const Windows *windows, size_t n,
+                        int radius_px)
 {
     for (size_t i = 0; i < n; i++) {
-        if (amounts[i] < 0 || windows->part[i] == 0)
+        if (amounts[i] < 0 || share[i] == 0 || windows->around[i] == 0)
             continue;
-        const int contrast = contrast_of(windows->wide[i], radius_px, windows->thin[i]);
+        const int contrast = contrast_of(windows->wide[i], radius_px);
         const int mean = (int)(windows->paint[i] * UINT64_C(255) / windows->around[i]);
         const int even = evened(amounts[i], mean, contrast);
-        amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * windows->part[i] / 255);
+        amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * share[i] / 255);
     }
 }
 
@@ -224,19 +177,17 @@ bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *sh
                       int radius_px, GError **error)
 {
     const size_t n = fl_rect_pixels(box);
-    const FlWidths thin = thin_widths(radius_px);
+    const int radius = mean_radius(radius_px);
     g_auto(Windows) windows = {0};
+    if (fl_is_blank(share, n)) // as in most tiles of most shapes
+        return true;
     if (!windows_init(&windows, n, error))
         return false;
-    find_thin(inside, box, thin, windows.rows, windows.around, windows.thin);
     for (size_t i = 0; i < n; i++)
-        windows.part[i] = MAX(share[i], windows.thin[i]);
-    if (fl_is_blank(windows.part, n)) // as in most tiles of most shapes
-        return true;
-    for (size_t i = 0; i < n; i++)
-        windows.weighed[i] = (int16_t)(amounts[i] * inside[i] / 255);
+        windows.weighed[i] = (int16_t)(MAX(amounts[i], 0) * inside[i] / 255);
     fl_window_sums(inside, box, radius_px, windows.rows, windows.wide);
-    fl_window_sums(windows.weighed, box, fl_window_radius(thin), windows.rows, windows.paint);
-    even_parts(amounts, &windows, n, radius_px);
+    fl_window_sums(inside, box, radius, windows.rows, windows.around);
+    fl_window_sums(windows.weighed, box, radius, windows.rows, windows.paint);
+    even_shares(amounts, share, &windows, n, radius_px);
     return true;
 }

@@ -25,8 +25,7 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
 /**
  * How much of each pixel is inside a shape, 0..255: of those at its contour, next to one without
  * coverage, what they are covered; all of those within, however faint their fill. Summed over a
- * line it is the line's width. Were pixels at the contour counted as whole ones, lines would be
- * wider by one, and at half the size, where that is twice as much, none would be thin.
+ * line it is the line's width.
  *
  * coverage is width * height, inside box.width * box.height; beyond the former it goes on.
  */
@@ -35,11 +34,7 @@ void fl_closing_inside(const uint8_t *coverage, int width, int height, FlRect bo
 /**
  * Closes the paint of a shape at such edges: where share is 255 the amounts of paint are divided by
  * their mean around, so that the paint keeps its grain and loses the fall, or the rise, of its rim.
- * Shapes that are thin, up to 1/2 of the radius wholly and from 9/16 on not at all, are all rim, of
- * which next to nothing would be left, or beads and a dark core; their paint is even, also where
- * their edges are free. Between these two widths the shape is seen as a pale band around that core,
- * so that they are close together. They are fractions of the radius and not whole pixels, so that a
- * drawing of half the size closes as that of the whole.
+ * In narrow shapes it keeps less of its grain.
  *
  * amounts (0 … FL_AMOUNTS - 1, changed in place), inside, of fl_closing_inside(), and share are
  * box.width * box.height; an amount below 0 is outside the shape, and nothing is inside there.

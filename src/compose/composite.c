@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "base/schedule.h"
+#include "compose/beyond.h"
 #include "compose/colourise.h"
 #include "compose/edge_map.h"
 #include "compose/enlarge.h"
@@ -127,7 +128,7 @@ static void clear_layer(FlLayer *layer, bool with_coverage)
 {
     fl_area_clear(&layer->area);
     free(layer->rgba);
-    free((uint8_t *)layer->knockout);
+    free(layer->knockout);
     if (with_coverage)
         free((uint8_t *)layer->coverage);
     *layer = (FlLayer){0};
@@ -222,7 +223,8 @@ static bool make_layers(FlComposite *composite, const FlComposeInput *input, GEr
     g_auto(FlEdgeMap) edges = {0};
     if (!fl_exposures_find(input, composite->draws, exposures, error) ||
         !fl_edges_init(&edges, input, composite->draws, error) ||
-        !fill_layers(composite, input, &edges, exposures, error))
+        !fill_layers(composite, input, &edges, exposures, error) ||
+        !fl_beyond_fade(composite->layers, composite->n_layers, input->width, input->height, error))
         return false;
     FlStackParams params = {
         .linear = input->linear, .gap_px = input->gap_px, .feather_px = input->feather_px};

@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "base/parallel_error.h"
 #include "compose/closing.h"
-#include "compose/detail.h"
 #include "compose/interior.h"
 #include <string.h>
 
@@ -110,8 +109,7 @@ typedef struct Tile {
     FlRect part;                // what is closed, with what may change it
     FlRect around;              // with what the shares are of
     int16_t *amounts, *inside;  // of part
-    uint8_t *detail;            // of part
-    uint8_t *share, *meets;     // of part: of the edges that are closed, and of all
+    uint8_t *share;             // of part: of the edges that are closed
     uint8_t *coverage, *others; // of around
 } Tile;
 
@@ -140,9 +138,7 @@ static void tile_clear(Tile *tile)
 {
     free(tile->amounts);
     free(tile->inside);
-    free(tile->detail);
     free(tile->share);
-    free(tile->meets);
     free(tile->coverage);
     free(tile->others);
 }
@@ -160,9 +156,7 @@ static bool tile_init(Tile *tile, const FlEdgeMap *edges, int draw, FlRect box, 
     const size_t n = fl_rect_pixels(part), around = fl_rect_pixels(tile->around);
     return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
            (tile->inside = fl_alloc(n, sizeof *tile->inside, "a matte", error)) &&
-           (tile->detail = fl_alloc(n, 1, "a matte", error)) &&
            (tile->share = fl_alloc(n, 1, "a matte", error)) &&
-           (tile->meets = fl_alloc(n, 1, "a matte", error)) &&
            (tile->coverage = fl_alloc(around, 1, "a matte", error)) &&
            (tile->others = fl_alloc(around, 1, "a matte", error));
 }
@@ -174,74 +168,40 @@ static FlRect part_of(const Tile *tile)
     return (FlRect){part.x - around.x, part.y - around.y, part.width, part.height};
 }
 
-/** The share of the edges of a run, with all others or with those that it does not overlap. */
-static bool find_share(Tile *tile, const FlEdgeMap *edges, int draw, bool with_all, int radius_px,
-                       uint8_t *share, GError **error)
+/** The share of the edges of a run with those below or above which it does not lie. */
+static bool find_share(Tile *tile, const FlEdgeMap *edges, int draw, int radius_px, GError **error)
 {
     const bool *overlap = edges->overlap + (size_t)(draw + 1) * (size_t)edges->n;
     const FlRect around = tile->around;
     uint8_t *others = tile->others, any = 0;
     for (int y = 0; y < around.height; y++) {
         const uint16_t *row = edges->top + in_frame(edges, around, y);
-        for (int x = 0; x < around.width; x++) {
-            const bool other = row[x] && row[x] != draw + 1 && (with_all || !overlap[row[x]]);
-            any |= *others++ = other ? 255 : 0;
-        }
+        for (int x = 0; x < around.width; x++)
+            any |= *others++ = row[x] && row[x] != draw + 1 && !overlap[row[x]] ? 255 : 0;
     }
-    memset(share, 0, fl_rect_pixels(tile->part));
-    if (!any)
-        return true;
-    return fl_closing_share(tile->coverage, tile->others, around.width, around.height,
-                            part_of(tile), radius_px, share, error);
+    memset(tile->share, 0, fl_rect_pixels(tile->part));
+    return !any || fl_closing_share(tile->coverage, tile->others, around.width, around.height,
+                                    part_of(tile), radius_px, tile->share, error);
 }
 
-/** The share of the edges that are closed: of details all, else those with runs below or above
- * which the run does not lie. */
-static bool find_closed(Tile *tile, const FlEdgeMap *edges, int draw, int radius_px, GError **error)
-{
-    const size_t n = fl_rect_pixels(tile->part);
-    if (!find_share(tile, edges, draw, false, radius_px, tile->share, error))
-        return false;
-    if (fl_is_blank(tile->detail, n))
-        return true;
-    if (!find_share(tile, edges, draw, true, radius_px, tile->meets, error))
-        return false;
-    for (size_t i = 0; i < n; i++)
-        tile->share[i] = (uint8_t)MAX(tile->share[i], tile->meets[i] * tile->detail[i] / 255);
-    return true;
-}
-
-/** Whether a run is seen at a pixel: nothing that hides it lies over it. */
-static bool is_seen(uint8_t coverage, uint16_t top, int draw)
-{
-    return coverage >= SHOWN && top <= draw + 1;
-}
-
-/** What is known of a run, of its box, before it is closed. */
-typedef struct Before {
-    const int16_t *amounts;
-    const uint8_t *detail;
-} Before;
-
-static void fill_tile(Tile *tile, const FlDraw *draw, const Before *before)
+static void fill_tile(Tile *tile, const FlDraw *draw, const int16_t *amounts)
 {
     const FlRect all = draw->area.box, around = tile->around;
-    fl_rect_copy(before->amounts, all, tile->amounts, tile->part, sizeof *tile->amounts);
-    fl_rect_copy(before->detail, all, tile->detail, tile->part, 1);
+    fl_rect_copy(amounts, all, tile->amounts, tile->part, sizeof *tile->amounts);
     fl_rect_copy(draw->coverage, all, tile->coverage, around, 1);
     fl_closing_inside(tile->coverage, around.width, around.height, part_of(tile), tile->inside);
 }
 
 static bool close_tile(const FlEdgeMap *edges, int draw, FlRect box, int radius_px,
-                       const Before *before, int16_t *closed, GError **error)
+                       const int16_t *amounts, int16_t *closed, GError **error)
 {
     g_auto(Tile) tile = {0};
     const FlRect all = edges->draws->draw[draw].area.box;
     if (!tile_init(&tile, edges, draw, box, radius_px, error))
         return false;
-    fill_tile(&tile, &edges->draws->draw[draw], before);
+    fill_tile(&tile, &edges->draws->draw[draw], amounts);
     const FlRect part = tile.part;
-    if (!find_closed(&tile, edges, draw, radius_px, error) ||
+    if (!find_share(&tile, edges, draw, radius_px, error) ||
         !fl_closing_apply(tile.amounts, tile.inside, tile.share, part, radius_px, error))
         return false;
     for (int y = box.y; y < box.y + box.height; y++)
@@ -252,7 +212,7 @@ static bool close_tile(const FlEdgeMap *edges, int draw, FlRect box, int radius_
 }
 
 /** All tiles in which the shape is: many shapes are far smaller than their box. */
-static bool close_tiles(const FlEdgeMap *edges, int draw, int radius_px, const Before *before,
+static bool close_tiles(const FlEdgeMap *edges, int draw, int radius_px, const int16_t *amounts,
                         int16_t *closed, GError **error)
 {
     const FlRect all = edges->draws->draw[draw].area.box;
@@ -266,30 +226,10 @@ static bool close_tiles(const FlEdgeMap *edges, int draw, int radius_px, const B
         const FlRect tile = {corner.x, corner.y, MIN(TILE_PX, all.x + all.width - corner.x),
                              MIN(TILE_PX, all.y + all.height - corner.y)};
         const FlRect box = shape_in(&edges->draws->draw[draw], tile);
-        if (box.width > 0 && !close_tile(edges, draw, box, radius_px, before, closed, &mine))
+        if (box.width > 0 && !close_tile(edges, draw, box, radius_px, amounts, closed, &mine))
             fl_parallel_error_keep(&first, mine);
     }
     return fl_parallel_error_tell(error, first);
-}
-
-/** How far each pixel of a run's box is of a small detail, as of fl_detail_find(). */
-static uint8_t *find_detail(const FlEdgeMap *edges, int draw, int radius_px, GError **error)
-{
-    const FlDraw *r = &edges->draws->draw[draw];
-    const FlRect box = r->area.box;
-    g_autofree uint8_t *seen = fl_alloc(fl_rect_pixels(box), 1, "a matte", error);
-    g_autofree uint8_t *detail = seen ? fl_alloc(fl_rect_pixels(box), 1, "a matte", error) : NULL;
-    for (int y = 0; detail && y < box.height; y++) {
-        const FlColumns span = fl_area_row(&r->area, y);
-        const uint8_t *coverage = coverage_row(r, y);
-        const uint16_t *top = edges->top + in_frame(edges, box, y);
-        uint8_t *row = seen + (size_t)y * (size_t)box.width;
-        for (int x = span.first; x < span.last; x++)
-            row[x] = is_seen(coverage[x], top[x], draw) ? 255 : 0;
-    }
-    return detail && fl_detail_find(seen, box.width, box.height, radius_px, detail, error)
-               ? g_steal_pointer(&detail)
-               : NULL;
 }
 
 bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *painted,
@@ -303,11 +243,10 @@ bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *pai
     const float border = painted->style->exemplar->border_px;
     const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
     g_autofree int16_t *copy = fl_alloc(n, sizeof *copy, "a layer", error);
-    g_autofree uint8_t *detail = copy ? find_detail(edges, draw, radius, error) : NULL;
-    if (!detail)
+    if (!copy)
         return false;
     memcpy(copy, amounts, n * sizeof *copy);
-    return close_tiles(edges, draw, radius, &(Before){copy, detail}, amounts, error);
+    return close_tiles(edges, draw, radius, copy, amounts, error);
 }
 
 /** 255 where a run is all that is seen, else 0; of a box that may be larger than the run's. */

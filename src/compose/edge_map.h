@@ -25,8 +25,7 @@ void fl_edges_clear(FlEdgeMap *edges);
 /**
  * Closes up the amounts of paint of a run where its shape ends at another one, unless its edges are
  * soft. Where the two overlap, paint keeps its rim, as it does at free edges, and what lies below
- * is seen beyond it; but shapes that are hardly more than rim, such as an eye, are closed there,
- * too.
+ * is seen beyond it.
  *
  * amounts: of the run's box, below 0 outside the shape. Several threads may call it at once.
  * Returns: false with FL_ERROR_NO_MEMORY set.

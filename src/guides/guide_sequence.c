@@ -205,8 +205,11 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
             return false;
     }
     // the lock is what is not const about a sequence
-    return get_distance((FlGuideSequence *)(uintptr_t)sequence, frame, guides->mask,
-                        guides->distance, error);
+    if (!get_distance((FlGuideSequence *)(uintptr_t)sequence, frame, guides->mask, guides->distance,
+                      error))
+        return false;
+    memcpy(guides->depth, guides->distance, n * sizeof *guides->depth);
+    return true;
 }
 
 bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *flow, GError **error)
@@ -232,6 +235,7 @@ bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
     const char *what = "the guides of a frame";
     if ((guides->mask = fl_alloc(n, 1, what, error)) &&
         (guides->distance = fl_alloc(n, sizeof *guides->distance, what, error)) &&
+        (guides->depth = fl_alloc(n, sizeof *guides->depth, what, error)) &&
         (guides->flow = fl_alloc(2 * n, sizeof *guides->flow, what, error)) &&
         (guides->angle = fl_alloc(n, 1, what, error)) &&
         (guides->ext_plus = fl_alloc(n, sizeof *guides->ext_plus, what, error)) &&
@@ -247,6 +251,7 @@ void fl_guides_clear(FlGuides *guides)
 {
     g_free(guides->mask);
     g_free(guides->distance);
+    g_free(guides->depth);
     g_free(guides->flow);
     g_free(guides->angle);
     g_free(guides->ext_plus);

@@ -27,6 +27,7 @@ typedef struct FlGuides {
     int width, height;
     uint8_t *mask;    // coverage 0..255; a pixel is inside from FL_INSIDE on
     float *distance;  // signed distance to the contour, px, positive inside, everywhere defined
+    float *depth;     // as the paint takes it, fl_rim_depth(); the distance until that is made
     float *flow;      // interleaved u, v: px per frame, 2 * width * height
     uint8_t *angle;   // direction of the flow
     float *ext_plus;  // |sum of the flow since the pixel was last outside the mask|, px

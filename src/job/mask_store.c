@@ -68,6 +68,11 @@ bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect p
     return true;
 }
 
+bool fl_mask_store_has(const FlMaskStore *masks, int region, int frame)
+{
+    return masks->boxes[(size_t)region * masks->n_frames + frame].width > 0;
+}
+
 FlRect fl_mask_store_extent(const FlMaskStore *masks, int region)
 {
     int x0 = INT32_MAX, y0 = INT32_MAX, x1 = 0, y1 = 0;

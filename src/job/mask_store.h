@@ -21,6 +21,9 @@ bool fl_mask_store_put(FlMaskStore *masks, int region, int frame, const uint8_t 
 bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect part,
                        uint8_t *coverage, GError **error);
 
+/** Whether a mask that is not blank was put. */
+bool fl_mask_store_has(const FlMaskStore *masks, int region, int frame);
+
 /** The rectangle around a region in all frames; {0, 0, 0, 0} if it is never there. */
 FlRect fl_mask_store_extent(const FlMaskStore *masks, int region);
 

@@ -106,6 +106,9 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;
+    plan->joins[region] = !painted                           ? FL_JOIN_UNPAINTED
+                          : settings->edges == FL_EDGES_SOFT ? FL_JOIN_ALONE
+                                                             : FL_JOIN_ALIKE;
     plan->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;
     if (!painted || left_out) {
         fl_region_settings_clear(settings);
@@ -127,6 +130,7 @@ static bool plan_regions(FlPlan *plan, GError **error)
     const int n = fl_drawing_regions(plan->drawing);
     plan->painted = g_new0(FlRegionPlan, MAX(n, 1));
     plan->painted_of = g_new0(int, MAX(n, 1));
+    plan->joins = g_new0(FlJoin, MAX(n, 1));
     plan->half = true;
     for (int r = 0; r < n; r++)
         if (!plan_region(plan, r, error))
@@ -170,13 +174,18 @@ static bool choose_styles(FlPlan *plan, GError **error)
     plan->masks =
         fl_mask_store_new(fl_drawing_regions(plan->drawing), fl_drawing_frames(plan->drawing),
                           fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
-    for (int p = 0; plan->masks && p < plan->n_painted; p++)
+    plan->surround = plan->masks ? fl_surround_new(fl_drawing_regions(plan->drawing),
+                                                   fl_drawing_frames(plan->drawing),
+                                                   fl_drawing_width(plan->drawing),
+                                                   fl_drawing_height(plan->drawing), error)
+                                 : NULL;
+    for (int p = 0; plan->surround && p < plan->n_painted; p++)
         if (!choose_style(plan, &plan->painted[p], error))
             return false;
     memset(plan->paper, 255, sizeof plan->paper);
-    if (plan->n_painted > 0 && plan->masks)
+    if (plan->n_painted > 0 && plan->surround)
         memcpy(plan->paper, plan->painted[0].style->paper, sizeof plan->paper);
-    return plan->masks != NULL;
+    return plan->surround != NULL;
 }
 
 static char *default_output(const FlPlan *plan)
@@ -291,11 +300,13 @@ void fl_plan_free(FlPlan *plan)
         fl_region_settings_clear(&plan->painted[p].settings);
     g_free(plan->painted);
     g_free(plan->painted_of);
+    g_free(plan->joins);
     g_free(plan->hold_of);
     g_free(plan->output);
     g_free(plan->movie);
     fl_style_cache_free(plan->styles);
     fl_mask_store_free(plan->masks);
+    fl_surround_free(plan->surround);
     fl_drawing_free(plan->drawing);
     fl_config_free(plan->config);
     g_free(plan);
@@ -320,7 +331,7 @@ static bool store_masks(FlPlan *plan, int frame, GError **error)
         if (!fl_mask_store_put(plan->masks, region, frame, mask, error))
             return false;
     }
-    return true;
+    return fl_surround_put(plan->surround, frame, draws, plan->joins, error);
 }
 
 bool fl_plan_rasterise(FlPlan *plan, GError **error)

@@ -6,6 +6,7 @@
 #include "io/sink.h"
 #include "job/mask_store.h"
 #include "job/style_cache.h"
+#include "job/surround.h"
 #include "params/config.h"
 
 /** How one region is painted. */
@@ -26,6 +27,8 @@ typedef struct FlPlan {
     FlConfig *config;
     FlDrawing *drawing;
     FlMaskStore *masks;
+    FlSurround *surround;
+    FlJoin *joins; // by region
     FlStyleCache *styles;
     int n_painted;
     FlRegionPlan *painted;

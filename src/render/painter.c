@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "guides/flow_file.h"
+#include "guides/rim.h"
 #include "io/pattern.h"
 #include "job/paint_files.h"
 #include <math.h>
@@ -132,6 +133,7 @@ void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan 
 {
     *painter = (FlPainter){.plan = region,
                            .masks = plan->masks,
+                           .surround = plan->surround,
                            .drawing = plan->drawing,
                            .frame_width = plan->width,
                            .frame_height = plan->height,
@@ -172,12 +174,33 @@ void fl_painter_clear(FlPainter *painter)
     *painter = (FlPainter){0};
 }
 
+/* The depth that the paint takes the region to have, unless a preset's guides know none. */
+static bool make_depth(const FlPainter *painter, FlGuides *guides, GError **error)
+{
+    const FlPaintedRegion *result = &painter->result;
+    const int frame = frame_of(painter, painter->picture);
+    g_auto(FlAround) around = {0};
+    if (!fl_knows_depth(&painter->plan->settings.params))
+        return true;
+    if (!fl_surround_get(painter->surround, result->region, frame, result->rect, &around, error))
+        return false;
+    const FlRimShape shape = {.width = guides->width,
+                              .height = guides->height,
+                              .mask = guides->mask,
+                              .distance = guides->distance,
+                              .together = around.joined ? around.together : NULL,
+                              .seen = around.hidden ? around.seen : NULL,
+                              .shown = around.shown};
+    return fl_rim_depth(&shape, result->style->exemplar->border_px, guides->depth, error);
+}
+
 /* The region's picture `index`, held ones counted once, into painter->result.painted. */
 static bool paint_picture(FlPainter *painter, int index, FlGuides *guides, GError **error)
 {
     guides->width = painter->result.rect.width, guides->height = painter->result.rect.height;
     painter->picture = painter->wrap + index;
     return fl_guide_sequence_get(painter->guides, painter->picture, guides, error) &&
+           make_depth(painter, guides, error) &&
            fl_synth_frame(painter->synth, guides, painter->result.painted, &painter->result.stats,
                           painter->wants_view ? &painter->result.view : NULL, error);
 }

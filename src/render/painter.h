@@ -11,6 +11,7 @@
 typedef struct FlPainter {
     const FlRegionPlan *plan; // borrowed, as masks and drawing are
     const FlMaskStore *masks;
+    const FlSurround *surround;
     const FlDrawing *drawing;
     FlMotionSource *motion;        // borrowed; NULL: nobody asks for the drawing's own motion
     int frame_width, frame_height; // of the output, and of flow files

@@ -4,6 +4,7 @@
 #include "base/spill.h"
 #include "style/adapt.h"
 #include "synth/spline.h"
+#include <math.h>
 #include <string.h>
 
 #define MIN_SEGMENT 25 // pixels; with fewer on a level, border and interior are one segment
@@ -22,7 +23,7 @@ bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border
     if (params->shape_ramp)
         fl_shape_ramp(guides->distance, guides->width, guides->height, border_px, shape);
     else if (params->shape_edge > 0)
-        fl_shape_edge(guides->distance, guides->width, guides->height, border_px,
+        fl_shape_edge(guides->depth, guides->width, guides->height, border_px,
                       params->shape_edge * border_px, shape);
     else
         return fl_shape_blur(guides->mask, guides->width, guides->height, border_px, shape, error);
@@ -50,7 +51,7 @@ static void keep_guides(FlExemplar *exemplar, const FlGuides *guides, int t)
 {
     const size_t pixels = (size_t)guides->width * (size_t)guides->height;
     const size_t at = (size_t)t * pixels;
-    memcpy(exemplar->distance + at, guides->distance, pixels * sizeof(float));
+    memcpy(exemplar->distance + at, guides->depth, pixels * sizeof(float));
     memcpy(exemplar->ext_plus + at, guides->ext_plus, pixels * sizeof(float));
     memcpy(exemplar->ext_minus + at, guides->ext_minus, pixels * sizeof(float));
 }
@@ -75,6 +76,16 @@ static bool fill_frame(FlExemplar *exemplar, const FlExemplarFrames *frames, con
     return true;
 }
 
+/* Whether a pixel of the interior has hardly any paint. Such are the ends of deep dents in a ragged
+ * rim; amid a target's paint they would be holes, which spread where shapes merge. */
+static bool is_bare(const FlPyramid *pyramid, size_t p, const FlExemplar *exemplar)
+{
+    float apart = 0;
+    for (int c = 0; c < 3; c++)
+        apart += fabsf(pyramid->plane[FL_PLANE_R + c][p] - exemplar->paper[c] / 255.0f);
+    return apart < exemplar->bare;
+}
+
 static FlTexel pack(const FlPyramid *pyramid, size_t p, const FlExemplar *exemplar)
 {
     FlTexel out;
@@ -89,6 +100,26 @@ static FlTexel pack(const FlPyramid *pyramid, size_t p, const FlExemplar *exempl
                                                   pyramid->plane[FL_PLANE_DISTANCE][p],
                                                   exemplar->border_px, exemplar->separate);
     return out;
+}
+
+/* Takes patches that have bare pixels out of the interior. */
+static void leave_bare(FlExemplarLevel *level, const FlPyramid *pyramid, const FlExemplar *exemplar,
+                       int t)
+{
+    const int r = FL_PATCH_RADIUS;
+    for (int y = 0; y < level->height && exemplar->bare > 0; y++)
+        for (int x = 0; x < level->width; x++) {
+            const size_t p = (size_t)y * level->width + x;
+            if (pyramid->plane[FL_PLANE_DISTANCE][p] < exemplar->border_px ||
+                !is_bare(pyramid, p, exemplar))
+                continue;
+            for (int ny = MAX(y - r, 0); ny <= MIN(y + r, level->height - 1); ny++)
+                for (int nx = MAX(x - r, 0); nx <= MIN(x + r, level->width - 1); nx++) {
+                    FlTexel *pixel = (FlTexel *)fl_exemplar_at(level, nx, ny, t);
+                    if (pixel->c[FL_CH_SEGMENT] == FL_SEGMENT_INTERIOR)
+                        pixel->c[FL_CH_SEGMENT] = FL_SEGMENT_BORDER;
+                }
+        }
 }
 
 /* Padding repeats the nearest pixel but belongs to no segment. */
@@ -211,6 +242,7 @@ static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **
     if (!planes)
         return false;
     pack_frame(&exemplar->level[0], full, exemplar, t);
+    leave_bare(&exemplar->level[0], full, exemplar, t);
     pack_colour(&exemplar->level[0], full, t, planes);
     g_auto(FlPyramid) fine = {0};
     for (int l = 1; l < exemplar->n_levels; l++) {
@@ -222,6 +254,7 @@ static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **
         fl_pyramid_clear(&fine);
         fine = coarse;
         pack_frame(level, &fine, exemplar, t);
+        leave_bare(level, &fine, exemplar, t);
         pack_colour(level, &fine, t, planes);
     }
     return true;
@@ -244,13 +277,35 @@ static void release_frames(FlExemplar *exemplar, int t, int end)
         fl_release(planes[k] + from * pixels, n * pixels * sizeof(float));
 }
 
-/* Copies the masks and finds the extents of all frames, which give the scale. */
-static bool measure_extents(FlExemplar *exemplar, FlExemplarFrames *frames, GError **error)
+#define BARE 0.3 // of the interior's mean difference from the paper
+
+/* How far the paint below the border is from the paper, all pixels and channels summed. */
+typedef struct Contrast {
+    uint64_t sum, n;
+} Contrast;
+
+static void add_contrast(Contrast *contrast, const FlGuides *guides, const uint8_t *rgb,
+                         const FlExemplar *exemplar)
+{
+    for (size_t p = 0; p < (size_t)guides->width * (size_t)guides->height; p++) {
+        if (guides->mask[p] < FL_INSIDE || guides->distance[p] < exemplar->border_px)
+            continue;
+        for (size_t c = 0; c < 3; c++)
+            contrast->sum += (uint64_t)abs(rgb[3 * p + c] - exemplar->paper[c]);
+        contrast->n++;
+    }
+}
+
+/* Copies the masks and finds the extents of all frames, which give the scale, and what is bare,
+ * but for guides as the papers have them. */
+static bool measure_extents(FlExemplar *exemplar, const FlStyle *style, FlExemplarFrames *frames,
+                            GError **error)
 {
     const FlExemplarLevel *level = &exemplar->level[0];
     const size_t pixels = (size_t)level->width * (size_t)level->height;
     g_auto(FlGuides) guides = {0};
     float most = 0;
+    Contrast contrast = {0};
     if (!fl_guides_init(&guides, level->width, level->height, error))
         return false;
     for (int t = 0; t < level->n_frames; t++) {
@@ -259,8 +314,11 @@ static bool measure_extents(FlExemplar *exemplar, FlExemplarFrames *frames, GErr
         memcpy(exemplar->mask + (size_t)t * pixels, guides.mask, pixels);
         for (size_t p = 0; p < pixels; p++)
             most = MAX(most, MAX(guides.ext_plus[p], guides.ext_minus[p]));
+        add_contrast(&contrast, &guides, style->rgb + 3 * pixels * (size_t)t, exemplar);
     }
     exemplar->ext_scale = most > 0 ? 1 / most : 1;
+    if (fl_knows_depth(&frames->params) && contrast.n > 0)
+        exemplar->bare = (float)(BARE * (double)contrast.sum / (double)contrast.n / 255);
     return true;
 }
 
@@ -354,7 +412,7 @@ static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, flo
     memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
     if (!init_levels(exemplar, style, all ? style->n_frames : params->style_window, error) ||
         !init_frames(frames, style, params, all, error) ||
-        !measure_extents(exemplar, frames, error) ||
+        !measure_extents(exemplar, style, frames, error) ||
         !pack_frames(exemplar, style, frames, counts, error) ||
         !decide_levels(exemplar, style, counts, error))
         return NULL;

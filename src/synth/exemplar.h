@@ -38,6 +38,7 @@ typedef struct FlExemplar {
     FlExemplarLevel level[FL_MAX_LEVELS];
     bool separate; // border and interior are matched separately
     float border_px;
+    float bare;      // sum of channels, 0 … 3: nearer to the paper is no paint of the interior
     float ext_scale; // 1 / the largest extent, 1/px
     uint8_t paper[3];
     // Level 0, n_frames * height * width:
@@ -72,6 +73,12 @@ bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error);
  */
 bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border_px, float *shape,
                     GError **error);
+
+/** Whether that is the depth, as the papers' guides are not. */
+static inline bool fl_knows_depth(const FlParams *params)
+{
+    return !params->shape_ramp && params->shape_edge > 0;
+}
 
 /** floor(log2(smallest side / n)), at least 1. */
 int fl_levels_of(int width, int height);

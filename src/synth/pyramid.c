@@ -33,7 +33,7 @@ void fl_pyramid_fill(FlPyramid *pyramid, const FlGuides *guides, const float *sh
             pyramid->plane[FL_PLANE_SHAPE][to] = shape[from];
             pyramid->plane[FL_PLANE_EXT_PLUS][to] = guides->ext_plus[from];
             pyramid->plane[FL_PLANE_EXT_MINUS][to] = guides->ext_minus[from];
-            pyramid->plane[FL_PLANE_DISTANCE][to] = guides->distance[from];
+            pyramid->plane[FL_PLANE_DISTANCE][to] = guides->depth[from];
             pyramid->plane[FL_PLANE_COS][to] = inside ? (float)turn[0] : 0;
             pyramid->plane[FL_PLANE_SIN][to] = inside ? (float)turn[1] : 0;
             pyramid->plane[FL_PLANE_INSIDE][to] = inside;

@@ -15,7 +15,8 @@ typedef struct Previous {
     bool valid;
     FlRect rect;
     FlNnf nnf;
-    uint8_t *mask, *rgb; // of the whole frame: what a region that holds still is compared with
+    uint8_t *mask, *rgb; // of the whole frame; mask: look_of(), what a region that holds still is
+                         // compared with
 } Previous;
 
 struct FlSynth {
@@ -393,6 +394,23 @@ static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *
     return true;
 }
 
+/* What a region that holds still is known by: its mask, and inside it the depth, which also depends
+ * on what moves beside it. */
+static uint8_t look_of(const FlGuides *guides, size_t p)
+{
+    enum { STEPS = 8 }; // of a px
+    const uint8_t mask = guides->mask[p];
+    return mask < FL_INSIDE ? mask : mask ^ (uint8_t)((int)(guides->depth[p] * STEPS) & 0x7f);
+}
+
+static bool looks_as_before(const FlSynth *synth, const FlGuides *guides)
+{
+    for (size_t p = 0; p < (size_t)synth->width * synth->height; p++)
+        if (synth->previous.mask[p] != look_of(guides, p))
+            return false;
+    return true;
+}
+
 static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb, GError **error)
 {
     const FlNnf *last = &synth->nnf[0];
@@ -400,7 +418,8 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
     fl_nnf_clear(&synth->previous.nnf);
     synth->previous.valid = true;
     synth->previous.rect = synth->target.rect;
-    memcpy(synth->previous.mask, guides->mask, pixels);
+    for (size_t p = 0; p < pixels; p++)
+        synth->previous.mask[p] = look_of(guides, p);
     memcpy(synth->previous.rgb, rgb, 3 * pixels);
     if (!fl_nnf_init(&synth->previous.nnf, last->width, last->height, error))
         return false;
@@ -409,14 +428,14 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
     return true;
 }
 
-/* The same mask as in the last frame, no flow that somebody could see, and no boil due. A motion
+/* The same shape as in the last frame, no flow that somebody could see, and no boil due. A motion
  * that is known is seen after some frames, however slow it is. */
 static bool holds_still(const FlSynth *synth, const FlGuides *guides)
 {
     const size_t pixels = (size_t)synth->width * synth->height;
     const float limit = synth->params->flow_still * synth->params->flow_still;
     if (!synth->params->rest || synth->boil != 0 || !synth->previous.valid ||
-        fl_drawing_moves(guides) || memcmp(guides->mask, synth->previous.mask, pixels) != 0)
+        fl_drawing_moves(guides) || !looks_as_before(synth, guides))
         return false;
     for (size_t p = 0; p < pixels; p++) {
         const float u = guides->flow[2 * p], v = guides->flow[2 * p + 1];

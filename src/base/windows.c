@@ -1,4 +1,4 @@
-#include "compose/windows.h"
+#include "base/windows.h"
 
 #define BAND 128 // columns that are summed side by side, as they lie in memory
 

@@ -1,0 +1,17 @@
+/* What lies below a shape is seen through its soft rim only where it is seen beyond it, too. */
+#ifndef FLUIDY_COMPOSE_BEYOND_H
+#define FLUIDY_COMPOSE_BEYOND_H
+
+#include "compose/layers.h"
+
+/**
+ * Fades each painted layer out where others that knock out lie over it and the nearest way out from
+ * under them does not lead to it: dashes of a lower colour along an outline that both share, and
+ * slivers of a pixel beside what lies above. Elsewhere, rims of what lies above are as they were.
+ *
+ * layers are those that fl_layers_resolve() takes, and come before it; alpha of rgba and knockout
+ * change. Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_beyond_fade(FlLayer *layers, int n, int width, int height, GError **error);
+
+#endif

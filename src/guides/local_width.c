@@ -1,0 +1,346 @@
+#include "guides/local_width.h"
+
+#include "base/alloc.h"
+#include "base/windows.h"
+#include <string.h>
+
+/* A step inwards from a contour at any angle: exact ones would be 16 and 22.6. */
+#define STEP_SIDE 14
+#define STEP_CORNER 20
+
+/* How fast a half width may grow: corners of 90 degrees grow more slowly by themselves. */
+#define SLOPE_SIDE 28
+#define SLOPE_CORNER 40
+
+#define OUTSIDE_PX                                                                                 \
+    12 // patches of pixels inside reach two pixels out, and far more on coarse levels
+
+/* Slopes of the depth along a corner's bisector, sin(angle / 2): of 50 degrees and of 80. */
+#define SLOPE_TAPER 0.42f
+#define SLOPE_BROAD 0.64f
+#define AHEAD_PX 4.0f
+
+/** A disc: its column, and its radius and what it raises pixels to, in sixteenths. */
+typedef struct Disc {
+    int32_t x;
+    uint16_t radius, value;
+} Disc;
+
+/** Where the depth is largest around, and the discs that fit in there. */
+typedef struct Discs {
+    int width, height;
+    uint16_t cap;
+    const float *distance;
+    const uint8_t *seen; // NULL: all of it
+    uint16_t *depth;     // sixteenths, at most cap; 0 outside
+    int reach;           // most rows of a disc above and below its centre
+    uint16_t *half;  // [radius * (reach + 1) + rows from the centre]: half a row's length, px, + 1
+    GArray *centres; // of Disc, row by row
+    int32_t *first;  // height + 1: where a row's centres begin
+} Discs;
+
+static void discs_clear(Discs *discs)
+{
+    free(discs->depth);
+    free(discs->half);
+    free(discs->first);
+    if (discs->centres)
+        g_array_unref(discs->centres);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Discs, discs_clear)
+
+static void read_depths(const float *distance, size_t n, uint16_t cap, uint16_t *depth)
+{
+    for (size_t p = 0; p < n; p++) {
+        const float d = distance[p] * FL_WIDTH_ONE + 0.5f, inside = distance[p] > 0.0f;
+        depth[p] = (uint16_t)(inside * CLAMP(d, 1.0f, (float)cap));
+    }
+}
+
+/** The largest x with x² + row² <= radius², plus one; 0: the disc has no such row. */
+static void fill_rows(Discs *discs, int radii)
+{
+    const int64_t one = FL_WIDTH_ONE * FL_WIDTH_ONE;
+    for (int64_t r = 0; r < radii; r++)
+        for (int64_t row = 0, x = discs->reach; row <= discs->reach; row++) {
+            while (x >= 0 && one * (x * x + row * row) > r * r)
+                x--;
+            discs->half[r * (discs->reach + 1) + row] = (uint16_t)(x + 1);
+        }
+}
+
+static bool discs_init(Discs *discs, const float *distance, const uint8_t *seen, int width,
+                       int height, uint16_t cap, GError **error)
+{
+    const size_t n = (size_t)width * (size_t)height;
+    const int radii = 3 * cap / 2 + FL_WIDTH_ONE + 1, reach = radii / FL_WIDTH_ONE;
+    *discs = (Discs){width, height, cap, .distance = distance, .seen = seen, .reach = reach};
+    discs->centres = g_array_new(FALSE, FALSE, sizeof(Disc));
+    if (!(discs->depth = fl_alloc(n, sizeof *discs->depth, "local widths", error)) ||
+        !(discs->half = fl_alloc((size_t)radii * (size_t)(reach + 1), sizeof *discs->half,
+                                 "local widths", error)) ||
+        !(discs->first = fl_alloc((size_t)height + 1, sizeof *discs->first, "a row", error)))
+        return false;
+    read_depths(distance, n, cap, discs->depth);
+    fill_rows(discs, radii);
+    return true;
+}
+
+static bool is_seen(const Discs *discs, int x, int y)
+{
+    return !discs->seen || discs->seen[(size_t)y * (size_t)discs->width + (size_t)x] >= 128;
+}
+
+/**
+ * Whether a disc around a pixel is not held by that of a neighbour. Of discs as large as any those
+ * count that another kind is next to.
+ */
+static bool is_centre(const Discs *discs, int x, int y)
+{
+    const uint16_t *depth = discs->depth + (size_t)y * (size_t)discs->width + x;
+    if (*depth == 0 || !is_seen(discs, x, y))
+        return false;
+    bool beside_lower = false;
+    for (int dy = y > 0 ? -1 : 0; dy <= (y < discs->height - 1); dy++)
+        for (int dx = x > 0 ? -1 : 0; dx <= (x < discs->width - 1); dx++) {
+            if (!is_seen(discs, x + dx, y + dy)) {
+                beside_lower = true;
+                continue;
+            }
+            const int other = depth[dy * (ptrdiff_t)discs->width + dx];
+            if (other >= *depth + (dx && dy ? STEP_CORNER : STEP_SIDE))
+                return false;
+            beside_lower |= other < discs->cap;
+        }
+    return beside_lower; // as all are below it whose depth is less
+}
+
+/** The distance some way from a pixel in one of 16 directions; far outside beyond the plane. */
+static float distance_along(const Discs *discs, int x, int y, int direction, float px)
+{
+    static const float cosine[] = {1.0f, 0.92388f, 0.70711f, 0.38268f, 0.0f};
+    const int k = direction % 8, m = (direction + 12) % 16 % 8; // sin(a) is cos(a - 90 degrees)
+    const float c = k <= 4 ? cosine[k] : -cosine[8 - k], s = m <= 4 ? cosine[m] : -cosine[8 - m];
+    const float dx = direction < 8 ? c : -c, dy = (direction + 12) % 16 < 8 ? s : -s;
+    const int nx = (int)((float)x + px * dx + 0.5f), ny = (int)((float)y + px * dy + 0.5f);
+    return nx < 0 || ny < 0 || nx >= discs->width || ny >= discs->height
+               ? -px
+               : discs->distance[(size_t)ny * (size_t)discs->width + (size_t)nx];
+}
+
+/**
+ * How much larger a disc is than what fits in, so that it reaches into the corner that it lies in:
+ * discs leave corners of large shapes bare, which would be crisp between soft sides. In a corner
+ * the depth rises evenly from the tip, as it does in tapers, but faster. In the mouth of a limb it
+ * rises as fast, but there is no tip behind.
+ */
+static float corner_growth(const Discs *discs, int x, int y)
+{
+    const float d = discs->distance[(size_t)y * (size_t)discs->width + (size_t)x];
+    float most = 0.0f;
+    int best = 0;
+    for (int k = 0; k < 16; k++) {
+        const float ahead = distance_along(discs, x, y, k, AHEAD_PX);
+        if (ahead > most)
+            most = ahead, best = k;
+    }
+    const float slope = (most - d) / AHEAD_PX;
+    if (slope <= SLOPE_TAPER || slope >= 1.0f)
+        return 1.0f;
+    const float behind = distance_along(discs, x, y, (best + 8) % 16, 0.7f * d / slope);
+    const float tip = CLAMP((0.6f * d - behind) / (0.2f * d), 0.0f, 1.0f);
+    const float broad = MIN((slope - SLOPE_TAPER) / (SLOPE_BROAD - SLOPE_TAPER), 1.0f);
+    return 1.0f + tip * broad * (MIN(1.0f / slope, 1.45f) - 1.0f);
+}
+
+static Disc disc_at(const Discs *discs, int x, int y)
+{
+    const uint16_t d = discs->depth[(size_t)y * (size_t)discs->width + (size_t)x];
+    const float growth = d < discs->cap ? corner_growth(discs, x, y) : 1.0f;
+    return (Disc){x, (uint16_t)(d * growth + FL_WIDTH_ONE), d};
+}
+
+static void find_centres(Discs *discs)
+{
+    for (int32_t y = 0; y < discs->height; y++) {
+        discs->first[y] = (int32_t)discs->centres->len;
+        for (int32_t x = 0; x < discs->width; x++)
+            if (is_centre(discs, x, y)) {
+                const Disc disc = disc_at(discs, x, y);
+                g_array_append_val(discs->centres, disc);
+            }
+    }
+    discs->first[discs->height] = (int32_t)discs->centres->len;
+}
+
+/** Raises a row to the radii of the discs that reach it. A disc is a pixel larger than its depth,
+ * so that it holds pixels at the contour. */
+static void raise_row(const Discs *discs, int y, uint16_t *radius)
+{
+    const Disc *disc = (const Disc *)(void *)discs->centres->data;
+    const size_t columns = (size_t)discs->reach + 1;
+    const int from = MAX(y - discs->reach, 0), to = MIN(y + discs->reach, discs->height - 1);
+    for (int cy = from; cy <= to; cy++)
+        for (int32_t k = discs->first[cy]; k < discs->first[cy + 1]; k++) {
+            const int x = disc[k].x;
+            const uint16_t value = disc[k].value;
+            const int half = discs->half[disc[k].radius * columns + (size_t)ABS(y - cy)];
+            for (int i = MAX(x - half + 1, 0); i < MIN(x + half, discs->width); i++)
+                radius[i] = MAX(radius[i], value);
+        }
+}
+
+/** All rows, where the shape is. */
+static void raise_rows(const Discs *discs, uint16_t *radius)
+{
+    const size_t width = (size_t)discs->width;
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int y = 0; y < discs->height; y++) {
+        const uint16_t *depth = discs->depth + (size_t)y * width;
+        uint16_t *row = radius + (size_t)y * width;
+        memcpy(row, depth, width * sizeof *row);
+        raise_row(discs, y, row);
+        for (size_t x = 0; x < width; x++)
+            row[x] = depth[x] ? row[x] : 0;
+    }
+}
+
+bool fl_largest_discs(const float *distance, const uint8_t *seen, int width, int height,
+                      float cap_px, uint16_t *radius, GError **error)
+{
+    g_auto(Discs) discs = {0};
+    if (!discs_init(&discs, distance, seen, width, height, fl_width_cap(cap_px), error))
+        return false;
+    find_centres(&discs);
+    raise_rows(&discs, radius);
+    return true;
+}
+
+/** Lowers a pixel to what its neighbour, if it is inside, allows. */
+static void limit(uint16_t *value, uint16_t neighbour, int slope)
+{
+    if (neighbour && *value > neighbour + slope)
+        *value = (uint16_t)(neighbour + slope);
+}
+
+/** One pass: from the row before, which is `step` away, and along the row in its direction. */
+static void limit_row(uint16_t *row, const uint16_t *before, int width, int step)
+{
+    const int start = step < 0 ? 0 : width - 1, end = step < 0 ? width : -1, on = step < 0 ? 1 : -1;
+    for (int x = start; x != end; x += on) {
+        if (!row[x])
+            continue;
+        if (before) {
+            limit(&row[x], before[x], SLOPE_SIDE);
+            limit(&row[x], x > 0 ? before[x - 1] : 0, SLOPE_CORNER);
+            limit(&row[x], x < width - 1 ? before[x + 1] : 0, SLOPE_CORNER);
+        }
+        if (x != start)
+            limit(&row[x], row[x - on], SLOPE_SIDE);
+    }
+}
+
+static void limit_slope(uint16_t *plane, int width, int height)
+{
+    for (int y = 0; y < height; y++) {
+        uint16_t *row = plane + (size_t)y * (size_t)width;
+        limit_row(row, y > 0 ? row - width : NULL, width, -1);
+    }
+    for (int y = height - 1; y >= 0; y--) {
+        uint16_t *row = plane + (size_t)y * (size_t)width;
+        limit_row(row, y < height - 1 ? row + width : NULL, width, 1);
+    }
+}
+
+/** Room for means over windows. */
+typedef struct Means {
+    int16_t *plane;
+    uint32_t *rows, *count, *sum;
+} Means;
+
+static void means_clear(Means *means)
+{
+    free(means->plane);
+    free(means->rows);
+    free(means->count);
+    free(means->sum);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Means, means_clear)
+
+static bool means_init(Means *means, size_t n, GError **error)
+{
+    *means = (Means){0};
+    return (means->plane = fl_alloc(n, sizeof *means->plane, "local widths", error)) &&
+           (means->rows = fl_alloc(n, sizeof *means->rows, "local widths", error)) &&
+           (means->count = fl_alloc(n, sizeof *means->count, "local widths", error)) &&
+           (means->sum = fl_alloc(n, sizeof *means->sum, "local widths", error));
+}
+
+/** The mean of what is inside in a square of 2 r + 1 px. */
+static void smooth(uint16_t *plane, int width, int height, int r, Means *room)
+{
+    const FlRect box = {0, 0, width, height};
+    const size_t n = fl_rect_pixels(box);
+    for (size_t p = 0; p < n; p++)
+        room->plane[p] = plane[p] > 0;
+    fl_window_sums(room->plane, box, r, room->rows, room->count);
+    for (size_t p = 0; p < n; p++)
+        room->plane[p] = (int16_t)plane[p];
+    fl_window_sums(room->plane, box, r, room->rows, room->sum);
+    for (size_t p = 0; p < n; p++)
+        if (plane[p])
+            plane[p] = (uint16_t)((room->sum[p] + room->count[p] / 2) / room->count[p]);
+}
+
+/** The larger of each element and its neighbours at a distance of `step`; n of them. */
+static void spread(const uint16_t *restrict from, uint16_t *restrict to, size_t n, size_t step)
+{
+    memcpy(to, from, n * sizeof *to);
+    for (size_t p = step; p < n; p++)
+        to[p] = MAX(to[p], from[p - step]);
+    for (size_t p = 0; p + step < n; p++)
+        to[p] = MAX(to[p], from[p + step]);
+}
+
+/** One round: pixels outside next to what is known get the largest value around. */
+static void extend(uint16_t *plane, int width, int height, uint16_t *rows, uint16_t *around)
+{
+    const size_t n = (size_t)width * (size_t)height;
+    for (int y = 0; y < height; y++)
+        spread(plane + (size_t)y * (size_t)width, rows + (size_t)y * (size_t)width, (size_t)width,
+               1);
+    spread(rows, around, n, (size_t)width);
+    for (size_t p = 0; p < n; p++)
+        plane[p] = plane[p] ? plane[p] : around[p];
+}
+
+static bool any_narrow(const uint16_t *plane, size_t n, uint16_t cap)
+{
+    bool narrow = false;
+    for (size_t p = 0; p < n; p++)
+        narrow |= plane[p] > 0 && plane[p] < cap;
+    return narrow;
+}
+
+bool fl_local_width(const float *distance, const uint8_t *seen, int width, int height, float cap_px,
+                    uint16_t *half_width, bool *narrow, GError **error)
+{
+    const size_t n = (size_t)width * (size_t)height;
+    const uint16_t cap = fl_width_cap(cap_px);
+    g_auto(Means) room = {0};
+    if (!fl_largest_discs(distance, seen, width, height, cap_px, half_width, error))
+        return false;
+    *narrow = any_narrow(half_width, n, cap);
+    if (!*narrow) // as most are: nobody asks for more
+        return true;
+    if (!means_init(&room, n, error))
+        return false;
+    limit_slope(half_width, width, height);
+    smooth(half_width, width, height, MAX(cap / (4 * FL_WIDTH_ONE), 1), &room);
+    smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), &room);
+    for (int round = 0; round < OUTSIDE_PX; round++)
+        extend(half_width, width, height, (uint16_t *)room.plane, (uint16_t *)room.rows);
+    return true;
+}

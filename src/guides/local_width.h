@@ -1,0 +1,40 @@
+/* How wide a shape is at each of its pixels. */
+#ifndef FLUIDY_GUIDES_LOCAL_WIDTH_H
+#define FLUIDY_GUIDES_LOCAL_WIDTH_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#define FL_WIDTH_ONE 16      /**< half widths are in sixteenths of a pixel */
+#define FL_WIDTH_MOST_PX 256 /**< the widest that is told apart */
+
+/** The half width of a shape that is as wide as anybody asks, of cap_px. */
+static inline uint16_t fl_width_cap(float cap_px)
+{
+    const float cap = cap_px * FL_WIDTH_ONE + 0.5f, most = FL_WIDTH_MOST_PX * FL_WIDTH_ONE;
+    return (uint16_t)(cap < 1.0f ? 1.0f : cap > most ? most : cap);
+}
+
+/**
+ * Half the local width: the radius of the largest disc inside the shape that holds the pixel, at
+ * most fl_width_cap(cap_px). It grows by at most 7/4 px a px, so that the mouth of a limb has the
+ * limb's width and not its body's, and is smoothed within the shape. Pixels outside have that of
+ * the shape next to them up to 3 px from it, then 0.
+ *
+ * Only discs count whose centre is seen, 128 … 255 in `seen`: a ring around what lies over the
+ * shape is as narrow as it looks. NULL: all of it is seen.
+ *
+ * distance, seen and half_width are width * height; distance is that of fl_distance(), and positive
+ * inside. *narrow: whether any half width inside is below the cap.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_local_width(const float *distance, const uint8_t *seen, int width, int height, float cap_px,
+                    uint16_t *half_width, bool *narrow, GError **error);
+
+/** The same before it is limited and smoothed; 0 outside. */
+bool fl_largest_discs(const float *distance, const uint8_t *seen, int width, int height,
+                      float cap_px, uint16_t *radius, GError **error);
+
+#endif

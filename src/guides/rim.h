@@ -1,0 +1,34 @@
+/* Depth as the paint takes it: a rim as wide as the shape allows. */
+#ifndef FLUIDY_GUIDES_RIM_H
+#define FLUIDY_GUIDES_RIM_H
+
+#include "base/rect.h"
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** A shape, of one frame of width * height pixels. */
+typedef struct FlRimShape {
+    int width, height;
+    const uint8_t *mask;     // its coverage
+    const float *distance;   // to its contour, fl_distance()
+    const uint8_t *together; // coverage of the mask and all shapes like it, between which there is
+                             // no rim; NULL: there is none like it
+    const uint8_t *seen;     // coverage of what is seen of them; NULL: nothing lies over them
+    const uint8_t *shown;    // coverage of all shapes of the frame; NULL: there are no others
+} FlRimShape;
+
+/**
+ * How deep each pixel of the shape lies for the paint, px, below border_px or as `distance` says.
+ *
+ * Where the shape is at least two borders wide this is the distance to the contour. A narrower part
+ * gets a narrower rim with core paint amid it, and one that is hardly there gets none: it is
+ * treated as cut out of the middle of a larger one. How the rim narrows depends on what is seen
+ * beyond the contour: over other shapes details stay crisp, beside paper tapers thin out evenly.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_rim_depth(const FlRimShape *shape, float border_px, float *depth, GError **error);
+
+#endif

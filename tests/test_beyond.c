@@ -1,0 +1,77 @@
+/* A lower layer below the rim of an upper one: rectangles whose paint is the same everywhere. */
+#include "compose/beyond.h"
+#include <string.h>
+
+enum { W = 60, H = 50, N = W * H };
+
+typedef struct Sheet {
+    uint8_t coverage[N], knockout[N], rgba[4 * N];
+} Sheet;
+
+static FlLayer rectangle(Sheet *sheet, int x, int y, int width, int height)
+{
+    *sheet = (Sheet){0};
+    for (int py = y; py < y + height; py++)
+        for (int px = x; px < x + width; px++) {
+            sheet->coverage[py * W + px] = sheet->knockout[py * W + px] = 255;
+            sheet->rgba[4 * (py * W + px) + 3] = 255;
+        }
+    return (FlLayer){.area.box = {0, 0, W, H},
+                     .coverage = sheet->coverage,
+                     .knockout = sheet->knockout,
+                     .rgba = sheet->rgba,
+                     .alpha = 255,
+                     .stacking = FL_STACKING_KNOCKOUT};
+}
+
+static void fade(FlLayer *layers)
+{
+    g_autoptr(GError) error = NULL;
+    g_assert_true(fl_beyond_fade(layers, 2, W, H, &error));
+    g_assert_no_error(error);
+}
+
+static void a_lower_shape_shows_through_no_rim_where_both_end_on_one_line(void)
+{
+    static Sheet lower, upper;
+    FlLayer layers[2] = {rectangle(&lower, 5, 5, 50, 35), rectangle(&upper, 18, 18, 24, 22)};
+    fade(layers);
+    for (int y = 38; y < 40; y++)
+        for (int x = 28; x < 32; x++) {
+            g_assert_cmpint(lower.rgba[4 * (y * W + x) + 3], <, 40);
+            g_assert_cmpint(lower.knockout[y * W + x], <, 40);
+        }
+}
+
+static void it_shows_where_it_is_seen_beyond(void)
+{
+    static Sheet lower, upper;
+    FlLayer layers[2] = {rectangle(&lower, 5, 5, 50, 35), rectangle(&upper, 18, 18, 24, 22)};
+    fade(layers);
+    for (int y = 5; y < 26; y++)
+        g_assert_cmpint(lower.rgba[4 * (y * W + 30) + 3], ==, 255);
+    g_assert_cmpint(lower.rgba[4 * (39 * W + 10) + 3], ==, 255);
+    for (int p = 0; p < N; p++)
+        g_assert_cmpint(upper.knockout[p], ==, upper.coverage[p]);
+}
+
+static void a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays(void)
+{
+    static Sheet lower, upper;
+    FlLayer sliver[2] = {rectangle(&lower, 10, 10, 30, 31), rectangle(&upper, 5, 5, 50, 35)};
+    fade(sliver);
+    g_assert_cmpint(lower.rgba[4 * (40 * W + 25) + 3], <, 40);
+    FlLayer line[2] = {rectangle(&lower, 5, 45, 50, 1), rectangle(&upper, 5, 5, 50, 35)};
+    fade(line);
+    g_assert_cmpint(lower.rgba[4 * (45 * W + 25) + 3], ==, 255);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name) g_test_add_func("/beyond/" #name, name)
+    TEST(a_lower_shape_shows_through_no_rim_where_both_end_on_one_line);
+    TEST(it_shows_where_it_is_seen_beyond);
+    TEST(a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays);
+    return g_test_run();
+}
