@@ -46,7 +46,7 @@ diff <(options) <(grep '^\.It Fl' "$page" | grep -oE '(Fl|,) -[a-z][a-z-]+' |
     sed -E 's/^(Fl|,) -/--/' | sort -u) >out
 result $? 'fluidy-style(1) has the options of --help'
 
-refuses 'a command that does not exist has a suggestion' 2 '*no command imprt*did you mean*import*' imprt
+refuses 'a command that does not exist has a suggestion' 2 '*unknown command imprt*did you mean*import*' imprt
 refuses 'an option that does not exist has a suggestion' 2 '*--scael; did you mean --scale?*' import --scael 2
 refuses 'import needs a folder' 2 '*import needs -o*' import "$small"
 refuses 'a source that does not exist is named' 1 'nowhere.mp4: no such file*' import nowhere.mp4 -o x

@@ -27,6 +27,21 @@ static inline void *fl_alloc(size_t count, size_t element_bytes, const char *wha
     return NULL;
 }
 
+/**
+ * The same, aligned to 16 bytes, for scratch as large as the largest frame: pages take memory when
+ * they are first written to, and most regions need a part of them.
+ */
+static inline void *fl_alloc_scratch(size_t count, size_t element_bytes, const char *what,
+                                     GError **error)
+{
+    void *memory = fl_headroom_left() ? calloc(MAX(count, 1), element_bytes) : NULL;
+    if (!memory)
+        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                    "not enough memory for %s (%zu elements of %zu bytes)", what, count,
+                    element_bytes);
+    return memory;
+}
+
 #define FL_HUGE_PAGE ((size_t)2 << 20)
 #define FL_PAGE ((size_t)64 << 10) // a multiple of every machine's
 

@@ -233,15 +233,15 @@ bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
     const size_t n = (size_t)width * height;
     *guides = (FlGuides){.width = width, .height = height};
     const char *what = "the guides of a frame";
-    if ((guides->mask = fl_alloc(n, 1, what, error)) &&
-        (guides->distance = fl_alloc(n, sizeof *guides->distance, what, error)) &&
-        (guides->depth = fl_alloc(n, sizeof *guides->depth, what, error)) &&
-        (guides->flow = fl_alloc(2 * n, sizeof *guides->flow, what, error)) &&
-        (guides->angle = fl_alloc(n, 1, what, error)) &&
-        (guides->ext_plus = fl_alloc(n, sizeof *guides->ext_plus, what, error)) &&
-        (guides->ext_minus = fl_alloc(n, sizeof *guides->ext_minus, what, error)) &&
-        (guides->motion = fl_alloc(2 * n, sizeof *guides->motion, what, error)) &&
-        (guides->turn = fl_alloc(n, sizeof *guides->turn, what, error)))
+    if ((guides->mask = fl_alloc_scratch(n, 1, what, error)) &&
+        (guides->distance = fl_alloc_scratch(n, sizeof *guides->distance, what, error)) &&
+        (guides->depth = fl_alloc_scratch(n, sizeof *guides->depth, what, error)) &&
+        (guides->flow = fl_alloc_scratch(2 * n, sizeof *guides->flow, what, error)) &&
+        (guides->angle = fl_alloc_scratch(n, 1, what, error)) &&
+        (guides->ext_plus = fl_alloc_scratch(n, sizeof *guides->ext_plus, what, error)) &&
+        (guides->ext_minus = fl_alloc_scratch(n, sizeof *guides->ext_minus, what, error)) &&
+        (guides->motion = fl_alloc_scratch(2 * n, sizeof *guides->motion, what, error)) &&
+        (guides->turn = fl_alloc_scratch(n, sizeof *guides->turn, what, error)))
         return true;
     fl_guides_clear(guides);
     return false;
