@@ -62,7 +62,7 @@ typedef struct Points {
 static Points make_points(const FlUneven *where, FlRect box, SlowNoise noise)
 {
     Points points = {box.width / STEP + 2, box.height / STEP + 2, NULL};
-    points.value = g_new(int32_t, (size_t)points.width * (size_t)points.height);
+    points.value = g_new0(int32_t, (size_t)points.width * (size_t)points.height);
     const float px = 1 / where->scale;
     for (int j = 0; j < points.height; j++)
         for (int i = 0; i < points.width; i++) {

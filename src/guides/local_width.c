@@ -102,8 +102,9 @@ static bool is_centre(const Discs *discs, int x, int y)
     if (*depth == 0 || !is_seen(discs, x, y))
         return false;
     bool beside_lower = false;
-    for (int dy = y > 0 ? -1 : 0; dy <= (y < discs->height - 1); dy++)
-        for (int dx = x > 0 ? -1 : 0; dx <= (x < discs->width - 1); dx++) {
+    const int down = y < discs->height - 1 ? 1 : 0, right = x < discs->width - 1 ? 1 : 0;
+    for (int dy = y > 0 ? -1 : 0; dy <= down; dy++)
+        for (int dx = x > 0 ? -1 : 0; dx <= right; dx++) {
             if (!is_seen(discs, x + dx, y + dy)) {
                 beside_lower = true;
                 continue;
