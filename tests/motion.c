@@ -35,7 +35,8 @@ static void dump(const Options *o, const char *name, int number, int w, int h, c
     for (size_t k = 0; k < 2 * (size_t)w * h; k++)
         most = MAX(most, fabsf(motion[k]));
     for (size_t p = 0; p < (size_t)w * h; p++)
-        fl_colour_wheel(motion[2 * p], motion[2 * p + 1], most, rgb + 3 * p);
+        fl_colour_wheel(isnan(motion[2 * p]) ? 0 : motion[2 * p],
+                        isnan(motion[2 * p + 1]) ? 0 : motion[2 * p + 1], most, rgb + 3 * p);
     g_assert_true(fl_png_write(png, rgb, w, h, 3, &error));
 }
 
@@ -59,10 +60,11 @@ static void count_origins(const FlMaskStore *masks, int region, int now, FlRect 
     g_assert_true(fl_mask_store_get(masks, region, now - 1, page, a, &error));
     g_assert_true(fl_mask_store_get(masks, region, now, page, b, &error));
     for (size_t p = 0; p < n; p++) {
+        if (b[p] < FL_INSIDE || isnan(motion[2 * p]) ||
+            (motion[2 * p] == 0 && motion[2 * p + 1] == 0))
+            continue;
         const int x = (int)lroundf((float)(p % page.width) - motion[2 * p]);
         const int y = (int)lroundf((float)(p / page.width) - motion[2 * p + 1]);
-        if (b[p] < FL_INSIDE || (motion[2 * p] == 0 && motion[2 * p + 1] == 0))
-            continue;
         *all += 1;
         *lands += x < 0 || y < 0 || x >= page.width || y >= page.height ||
                   a[(size_t)y * page.width + x] > 0; // beyond the frame nobody knows

@@ -339,6 +339,15 @@ static bool is_still(const float *motion)
     return still;
 }
 
+/** Whether nothing is carried: still, or unknown. */
+static bool is_left_alone(const float *motion)
+{
+    bool alone = true;
+    for (int k = 0; k < 2 * SIZE * SIZE && alone; k++)
+        alone = motion[k] == 0 || isnan(motion[k]);
+    return alone;
+}
+
 static void a_disc_that_slides_does_not_turn(void)
 {
     static float motion[2 * SIZE * SIZE];
@@ -454,7 +463,7 @@ static void leaves_are_recognised(void)
     g_assert_cmpfloat(fabsf(motion_at(renamed, 30, 30) - 4), <, 1e-3);
     g_assert_cmpfloat(fabsf(motion_at(renamed, 110, 130) - 4), <, 1e-3);
     g_assert_cmpfloat(fabsf(motion_at(inserted, 30, 70) - 4), <, 1e-3);
-    g_assert_cmpfloat(motion_at(inserted, 110, 20), ==, 0);
+    g_assert_true(isnan(motion_at(inserted, 110, 20)));
     g_assert_cmpfloat(fabsf(motion_at(crossing, 110, 60) - 8), <, 1e-3);
     g_assert_cmpfloat(fabsf(motion_at(crossing, 110, 130) + 8), <, 1e-3);
     g_assert_cmpfloat(fabsf(motion_at(crossing_named, 110, 60) - 40), <, 1e-3);
@@ -530,8 +539,26 @@ static void what_is_laid_stays(void)
         g_auto(Sequence) s = sequence_of(draws[i], 3);
         for (int t = 1; t < 3; t++) {
             get(&s, region_of(&s, RED), t - 1, t, motion, NULL);
-            g_assert_true(is_still(motion));
+            g_assert_true(is_left_alone(motion));
         }
+    }
+}
+
+static void line_beside_what_moves(GString *out, int t)
+{
+    line_that_gets_longer(out, t);
+    square(out, "", 20 + 5 * t, 130, 40);
+}
+
+/** What a line gains is spread, in its own time; the paint beside it is carried. */
+static void what_is_added_is_unknown(void)
+{
+    static float motion[2 * SIZE * SIZE];
+    g_auto(Sequence) s = sequence_of(line_beside_what_moves, 3);
+    for (int t = 1; t < 3; t++) {
+        get(&s, region_of(&s, RED), t - 1, t, motion, NULL);
+        g_assert_true(isnan(motion[2 * (100 * SIZE + 40)]));
+        g_assert_cmpfloat(fabsf(motion[2 * (150 * SIZE + 50)] - 5), <, 0.01);
     }
 }
 
@@ -566,6 +593,7 @@ int main(int argc, char **argv)
     TEST("leaves-are-recognised", leaves_are_recognised);
     TEST("what-is-drawn-elsewhere-is-distrusted", what_is_drawn_elsewhere_is_distrusted);
     TEST("what-is-laid-stays", what_is_laid_stays);
+    TEST("what-is-added-is-unknown", what_is_added_is_unknown);
     TEST("a-stroke-turns-in-all-its-width", a_stroke_turns_in_all_its_width);
     return g_test_run();
 }

@@ -369,17 +369,38 @@ static bool by_masks(const Work *w, int32_t label)
     return label == UNLABELLED || motion_of(w, label - 1)->kind == FL_MOTION_REGISTERED;
 }
 
+/** Whether nobody knows where the leaf's paint was: what is added is spread, not moved. */
+static bool is_unknown(const Work *w, int i)
+{
+    const FlMotionKind kind = motion_of(w, i)->kind;
+    return kind == FL_MOTION_NONE || kind == FL_MOTION_NEW ||
+           (kind == FL_MOTION_STILL && geometry_of(w, i)->clipped); // a clip may open
+}
+
+static void leave_unknown(const Work *w, int32_t label, FlRect box)
+{
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++) {
+            const size_t p = (size_t)y * w->w + x;
+            if (w->label[p] == label)
+                w->motion[2 * p] = w->motion[2 * p + 1] = NAN;
+        }
+}
+
 static bool move_leaf(Work *w, int i, GError **error)
 {
     const FlLeafMotion *m = motion_of(w, i);
-    if (m->kind != FL_MOTION_AFFINE && m->kind != FL_MOTION_SAME)
-        return m->kind != FL_MOTION_REGISTERED || move_by_masks(w, i + 1, error);
+    if (m->kind == FL_MOTION_REGISTERED)
+        return move_by_masks(w, i + 1, error);
     const FlRect box = box_of_label(w, i + 1);
     if (box.width == 0)
         return true;
     if (m->kind == FL_MOTION_SAME)
         return move_with_outline(w, i, box, error);
-    move_affinely(w, i + 1, box, &m->back);
+    if (m->kind == FL_MOTION_AFFINE)
+        move_affinely(w, i + 1, box, &m->back);
+    else if (is_unknown(w, i))
+        leave_unknown(w, i + 1, box);
     return true;
 }
 

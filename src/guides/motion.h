@@ -26,8 +26,8 @@ typedef struct FlMotionShares {
  *
  * A leaf's outline is believed only if the contour of the region lies along it where librsvg draws
  * the leaf, or a clip or mask may have changed it; the others, and those whose structure changes,
- * have the motion of fl_registration(). New leaves and what has grown do not move: what is laid
- * stays. shares may be NULL.
+ * have the motion of fl_registration(). Leaves that are new, grow, have jumped or may lie behind a
+ * clip that opens have NAN: their paint spreads as the masks show. shares may be NULL.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
