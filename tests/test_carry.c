@@ -38,6 +38,11 @@ static void half_spins(double x, double y, double u[2])
         spin(x + 100, y, u); // the seam slips
 }
 
+static void growth(double x, double y, double u[2])
+{
+    u[0] = x / 2, u[1] = 0; // twice as wide as it was
+}
+
 static void unknown(double x, double y, double u[2])
 {
     u[0] = u[1] = NAN;
@@ -164,6 +169,25 @@ static void what_goes_across_is_carried_and_what_goes_along_is_left(void)
         }
 }
 
+/* Of paint that gets twice the room a quarter is carried. */
+static void what_fills_new_room_spreads(void)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlNnf) before = {0}, after = {0};
+    g_autoptr(GError) error = NULL;
+    float speed[SIDE * SIDE];
+    double place[2];
+    moving_guides(growth, 0, &guides);
+    coherent_field(&before);
+    g_assert_true(fl_nnf_init(&after, SIDE, SIDE, &error));
+    const FlCarry how = {&guides, 1, true, 1};
+    fl_nnf_carry(&before, whole, &how, whole, &level, &after, speed);
+    g_assert_cmpint(fl_motion_room(&guides, CENTRE + 10, CENTRE), ==, FL_ROOM_ONE / 2);
+    match_of(&after, 10, 0, place);
+    assert_near(place[0], 10 - 5 * 0.25, 1.0 / 16);
+    assert_near(speed[CENTRE * SIDE + CENTRE + 10], 5 * 0.75, 0.01);
+}
+
 static void what_is_uncovered_has_no_match(void)
 {
     g_auto(FlGuides) guides = {0};
@@ -204,6 +228,7 @@ int main(int argc, char **argv)
     TEST(slow_motion_carries_as_far_in_the_end);
     TEST(a_slow_spin_carries_and_turns_as_far_in_the_end);
     TEST(what_goes_across_is_carried_and_what_goes_along_is_left);
+    TEST(what_fills_new_room_spreads);
     TEST(what_is_uncovered_has_no_match);
     TEST(where_motion_is_unknown_nothing_is_carried);
     TEST(parts_that_move_apart_turn_by_themselves);

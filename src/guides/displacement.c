@@ -46,19 +46,40 @@ static const int32_t *known_at(const FlGuides *guides, int x, int y)
     return u[0] == FL_MOTION_UNKNOWN ? NULL : u;
 }
 
-/** Of the matrix 1 - grad u, which undoes the motion, the nearest rotation; that one undone. */
-static int16_t turn_at(const FlGuides *guides, int x, int y)
+/** The matrix 1 - grad u, which undoes the motion around a pixel, twice FL_MOTION_ONE is 1. */
+typedef struct Undoing {
+    int64_t xx, xy, yx, yy;
+} Undoing;
+
+static bool undoing_at(const FlGuides *guides, int x, int y, Undoing *undoing)
 {
     const int32_t *here = known_at(guides, x, y);
     if (!here)
-        return 0;
+        return false;
     const int32_t *left = known_at(guides, x - 1, y), *right = known_at(guides, x + 1, y);
     const int32_t *above = known_at(guides, x, y - 1), *below = known_at(guides, x, y + 1);
-    const float ux = (float)doubled_slope(left, here, right, 0);
-    const float vx = (float)doubled_slope(left, here, right, 1);
-    const float uy = (float)doubled_slope(above, here, below, 0);
-    const float vy = (float)doubled_slope(above, here, below, 1);
-    return fl_fine_angle(4.0f * FL_MOTION_ONE - ux - vy, vx - uy);
+    *undoing =
+        (Undoing){2 * FL_MOTION_ONE - doubled_slope(left, here, right, 0),
+                  -doubled_slope(above, here, below, 0), -doubled_slope(left, here, right, 1),
+                  2 * FL_MOTION_ONE - doubled_slope(above, here, below, 1)};
+    return true;
+}
+
+/** Of that matrix the nearest rotation, undone. */
+static int16_t turn_at(const FlGuides *guides, int x, int y)
+{
+    Undoing m;
+    return undoing_at(guides, x, y, &m) ? fl_fine_angle((float)(m.xx + m.yy), (float)(m.xy - m.yx))
+                                        : 0;
+}
+
+int fl_motion_room(const FlGuides *guides, int x, int y)
+{
+    Undoing m;
+    if (!undoing_at(guides, x, y, &m))
+        return FL_ROOM_ONE;
+    const int64_t unit = 4 * (int64_t)FL_MOTION_ONE * FL_MOTION_ONE / FL_ROOM_ONE;
+    return (int)CLAMP((m.xx * m.yy - m.xy * m.yx) / unit, 0, FL_ROOM_ONE);
 }
 
 bool fl_motion_confine(FlGuides *guides)

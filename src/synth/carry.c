@@ -1,5 +1,6 @@
 #include "synth/carry.h"
 
+#include "guides/displacement.h"
 #include "synth/rotation.h"
 #include <assert.h>
 #include <math.h>
@@ -14,7 +15,7 @@ typedef struct Vector {
 /* What is the same for all pixels of a frame. */
 typedef struct Plan {
     const FlCarry *how;
-    int left;             // of the motion along the direction, CARRY_ONE is all
+    int carry;            // of the motion along the direction, CARRY_ONE is all
     int32_t x_off, y_off; // 0 … ROUND_ONE: what is added before places are rounded down
     const FlExemplarLevel *level;
 } Plan;
@@ -35,7 +36,7 @@ static int32_t van_der_corput(int n, int base)
 static Plan plan_of(const FlCarry *how, const FlExemplarLevel *level)
 {
     return (Plan){.how = how,
-                  .left = CARRY_ONE - (int)(how->carry * CARRY_ONE + 0.5f),
+                  .carry = (int)(how->carry * CARRY_ONE + 0.5f),
                   .x_off = van_der_corput(how->frame, 2),
                   .y_off = van_der_corput(how->frame, 3),
                   .level = level};
@@ -66,14 +67,22 @@ static FlMatch carried(const Plan *plan, FlMatch m, Vector rest, int16_t turn)
     return m;
 }
 
+/* Paint that has to fill more room than it had spreads, though it should be carried: matches do not
+ * grow with a shape. */
+static int left_of(const Plan *plan, int x, int y)
+{
+    const int room = fl_motion_room(plan->how->guides, x, y);
+    return CARRY_ONE - plan->carry * room / FL_ROOM_ONE * room / FL_ROOM_ONE;
+}
+
 /* Splits the motion of a pixel of the frame: what is carried, and in px what is left. */
-static Vector split(const Plan *plan, size_t pixel, float *left_px)
+static Vector split(const Plan *plan, size_t pixel, int share, float *left_px)
 {
     const FlGuides *guides = plan->how->guides;
     const int32_t *u = guides->motion + 2 * pixel;
     const int16_t *d = fl_turns[guides->angle[pixel]];
     const int64_t along = ((int64_t)u[0] * d[0] + (int64_t)u[1] * d[1]) >> 14;
-    const int64_t left = along * plan->left / CARRY_ONE;
+    const int64_t left = along * share / CARRY_ONE;
     *left_px = fabsf((float)left) / FL_MOTION_ONE;
     return (Vector){(int32_t)(u[0] - ((left * d[0] + (1 << 13)) >> 14)),
                     (int32_t)(u[1] - ((left * d[1] + (1 << 13)) >> 14))};
@@ -105,7 +114,7 @@ static FlMatch arriving(const Plan *plan, const FlNnf *before, int x, int y, int
     if (!inside) // what was left behind must not vote beside what has moved on
         return (FlMatch){.frame = FL_NO_MATCH};
     Vector rest;
-    const Vector k = split(plan, pixel, speed);
+    const Vector k = split(plan, pixel, left_of(plan, x, y), speed);
     const int column = x + dx + nearest(-k.x, &rest.x), row = y + dy + nearest(-k.y, &rest.y);
     const FlMatch m = match_at(before, column, row);
     return m.frame == FL_NO_MATCH ? m : carried(plan, m, rest, guides->turn[pixel]);

@@ -15,8 +15,9 @@ typedef struct FlCarry {
 /**
  * The matches of `before`, which lies at `from` in its frame, for the pixels of rect. The motion
  * falls into two parts: along the direction guide, which the exemplar's own time can show, and
- * across it, which it cannot. The latter is carried whole, the former by the share `carry`; a match
- * moves by what its pixel was off the middle of the one it was taken from, and turns.
+ * across it, which it cannot. The latter is carried whole, the former by the share `carry`, less
+ * where a shape grows, for paint that gets more room must spread; a match moves by what its pixel
+ * was off the middle of the one it was taken from, and turns.
  *
  * speed: px that are left for the exemplar's time to show, one per pixel of rect. Where no motion
  * is known nothing is carried, and the speed is that of the flow. A pixel without a match in the
