@@ -66,4 +66,8 @@ at=jump_dump/red-aa3311/flow
 ! moves ${at}_0002.f32 && moves ${at}_0003.f32 && ! moves ${at}_0004.f32
 result $? 'the flow of a frame is the motion into it'
 
+paint crossed --paint 'crossed_paint/{region}_%04d.png' &&
+    cmp -s crossed_paint/blue-2255aa_000{1,6}.png && ! cmp -s crossed_paint/red-aa3311_000{1,6}.png
+result $? 'a shape at rest keeps its paint while another one crosses it'
+
 echo "1..$n"

@@ -3,13 +3,15 @@
 #include "base/alloc.h"
 #include "base/rect.h"
 #include "base/spill.h"
+#include <libdeflate.h>
 #include <string.h>
 
 struct FlMaskStore {
     int n_frames, width, height;
     FlSpill *spill;
-    FlRect *boxes; // [region * n_frames + frame]
-    GMutex mutex;  // of the spill
+    FlRect *boxes;  // [region * n_frames + frame]
+    uint32_t *sums; // likewise: CRC-32 of what is in the box
+    GMutex mutex;   // of the spill
 };
 
 FlMaskStore *fl_mask_store_new(int n_regions, int n_frames, int width, int height, GError **error)
@@ -19,7 +21,8 @@ FlMaskStore *fl_mask_store_new(int n_regions, int n_frames, int width, int heigh
     if (!spill)
         return NULL;
     FlMaskStore *masks = g_new0(FlMaskStore, 1);
-    *masks = (FlMaskStore){n_frames, width, height, spill, .boxes = g_new0(FlRect, n)};
+    *masks = (FlMaskStore){
+        n_frames, width, height, spill, .boxes = g_new0(FlRect, n), .sums = g_new0(uint32_t, n)};
     g_mutex_init(&masks->mutex);
     return masks;
 }
@@ -31,6 +34,7 @@ void fl_mask_store_free(FlMaskStore *masks)
     fl_spill_free(masks->spill);
     g_mutex_clear(&masks->mutex);
     g_free(masks->boxes);
+    g_free(masks->sums);
     g_free(masks);
 }
 
@@ -47,6 +51,7 @@ bool fl_mask_store_put(FlMaskStore *masks, int region, int frame, const uint8_t 
     if (!cropped)
         return false;
     fl_rect_copy(coverage, (FlRect){0, 0, masks->width, masks->height}, cropped, box, 1);
+    masks->sums[block] = libdeflate_crc32(0, cropped, bytes);
     g_mutex_lock(&masks->mutex);
     const bool stored = fl_spill_put(masks->spill, block, cropped, bytes, error);
     g_mutex_unlock(&masks->mutex);
@@ -71,6 +76,14 @@ bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect p
 bool fl_mask_store_has(const FlMaskStore *masks, int region, int frame)
 {
     return masks->boxes[(size_t)region * masks->n_frames + frame].width > 0;
+}
+
+bool fl_mask_store_same(const FlMaskStore *masks, int region, int a, int b)
+{
+    const size_t first = (size_t)region * masks->n_frames;
+    const FlRect p = masks->boxes[first + a], q = masks->boxes[first + b];
+    return p.x == q.x && p.y == q.y && p.width == q.width && p.height == q.height &&
+           masks->sums[first + a] == masks->sums[first + b];
 }
 
 FlRect fl_mask_store_extent(const FlMaskStore *masks, int region)

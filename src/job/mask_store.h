@@ -24,6 +24,9 @@ bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect p
 /** Whether a mask that is not blank was put. */
 bool fl_mask_store_has(const FlMaskStore *masks, int region, int frame);
 
+/** Whether a region's masks of two frames are alike: of one box and one CRC. */
+bool fl_mask_store_same(const FlMaskStore *masks, int region, int a, int b);
+
 /** The rectangle around a region in all frames; {0, 0, 0, 0} if it is never there. */
 FlRect fl_mask_store_extent(const FlMaskStore *masks, int region);
 

@@ -213,6 +213,11 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
     return true;
 }
 
+bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b)
+{
+    return fl_mask_store_same(surround->together, region, a, b);
+}
+
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,
                      FlAround *around, GError **error)
 {

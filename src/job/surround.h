@@ -32,6 +32,9 @@ typedef struct FlAround {
     uint8_t *shown;    // the coverage of all shapes
 } FlAround;
 
+/** Whether shapes of a region's colour are the same in two frames, whatever else moves there. */
+bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b);
+
 /** Reads a part of a frame. Returns: true with `around` to be cleared. */
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,
                      FlAround *around, GError **error);

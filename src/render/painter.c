@@ -170,18 +170,33 @@ void fl_painter_clear(FlPainter *painter)
     fl_guide_sequence_free(painter->guides);
     fl_synth_free(painter->synth);
     fl_loop_clear(&painter->loop);
+    free(painter->depth);
     free(painter->result.painted);
     *painter = (FlPainter){0};
 }
 
-/* The depth that the paint takes the region to have, unless a preset's guides know none. */
-static bool make_depth(const FlPainter *painter, FlGuides *guides, GError **error)
+/* The picture around which the depth of another one is measured. A shape at rest keeps the depth
+ * with which it came to rest, whatever crosses it, as its paint is kept; only where shapes of its
+ * colour move is it measured anew. */
+static int depth_picture(FlPainter *painter, int picture)
+{
+    const int region = painter->plan->region, asked = picture;
+    for (; picture > 0 && picture != painter->asked; picture--) {
+        const int now = frame_of(painter, picture), before = frame_of(painter, picture - 1);
+        if (!fl_mask_store_same(painter->masks, region, now, before) ||
+            !fl_surround_joins_as_in(painter->surround, region, now, before))
+            break;
+    }
+    if (picture > 0 && picture == painter->asked)
+        picture = painter->answer;
+    painter->asked = asked, painter->answer = picture;
+    return picture;
+}
+
+static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const FlPaintedRegion *result = &painter->result;
-    const int frame = frame_of(painter, painter->picture);
     g_auto(FlAround) around = {0};
-    if (!fl_knows_depth(&painter->plan->settings.params))
-        return true;
     if (!fl_surround_get(painter->surround, result->region, frame, result->rect, &around, error))
         return false;
     const FlRimShape shape = {.width = guides->width,
@@ -192,6 +207,37 @@ static bool make_depth(const FlPainter *painter, FlGuides *guides, GError **erro
                               .seen = around.hidden ? around.seen : NULL,
                               .shown = around.shown};
     return fl_rim_depth(&shape, result->style->exemplar->border_px, guides->depth, error);
+}
+
+/* Keeps the depth if the next picture has the same; where there is no memory, it is measured again.
+ */
+static void keep_depth(FlPainter *painter, int from, const float *depth)
+{
+    const size_t n = fl_rect_pixels(painter->result.rect);
+    const int next = painter->picture + 1;
+    if (next >= painter->n_pictures + 2 * painter->wrap || depth_picture(painter, next) != from) {
+        g_clear_pointer(&painter->depth, free);
+        return;
+    }
+    if (painter->depth && painter->depth_from == from)
+        return;
+    if (painter->depth || (painter->depth = fl_alloc(n, sizeof *painter->depth, "a depth", NULL)))
+        memcpy(painter->depth, depth, n * sizeof *depth), painter->depth_from = from;
+}
+
+/* The depth that the paint takes the region to have, unless a preset's guides know none. */
+static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
+{
+    if (!fl_knows_depth(&painter->plan->settings.params))
+        return true;
+    const int from = depth_picture(painter, painter->picture);
+    if (painter->depth && painter->depth_from == from)
+        memcpy(guides->depth, painter->depth,
+               fl_rect_pixels(painter->result.rect) * sizeof *guides->depth);
+    else if (!measure_depth(painter, frame_of(painter, from), guides, error))
+        return false;
+    keep_depth(painter, from, guides->depth);
+    return true;
 }
 
 /* The region's picture `index`, held ones counted once, into painter->result.painted. */

@@ -17,9 +17,12 @@ typedef struct FlPainter {
     int frame_width, frame_height; // of the output, and of flow files
     FlPaintedRegion result;        // its picture is owned
     FlLoop loop;
-    int n_pictures; // held frames counted once
-    int wrap;       // pictures of a loop's other end that extend its guides, before and after
-    int picture;    // the last one painted
+    int n_pictures;    // held frames counted once
+    int wrap;          // pictures of a loop's other end that extend its guides, before and after
+    int picture;       // the last one painted
+    float *depth;      // of a shape at rest, which the next picture has as well; or NULL
+    int depth_from;    // the picture around which it was measured
+    int asked, answer; // the same of the picture last asked for
     FlGuideSequence *guides;
     FlSynth *synth;
     bool wants_view; // whether to fill result.view, which takes the memory of a frame
