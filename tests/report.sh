@@ -61,6 +61,14 @@ addEventListener("load", () => {
   const slices = () => byId("slice-after").toDataURL(), row = slices();
   change("axis", "y", "input");
   tell("a slice can be a column", slices() !== row);
+  const along = (k) => shown[k].points[0].slice(0, 3).map((v) => v.toFixed(1)).join(" ");
+  tell("a slice goes along with the drawing",
+    along(0) === "19.5 19.5 0.0" && along(2) === "27.5 19.5 0.0" || along(0) + along(2));
+  const still = byId("along-before").toDataURL();
+  change("axis", "x", "input");
+  tell("its line can be a row", byId("along-before").toDataURL() !== still);
+  tell("frames are counted as people do",
+    [1, 2, 3, 4, 11, 12, 22, 103].map(ordinal).join() === "1st,2nd,3rd,4th,11th,12th,22nd,103rd");
   change("behind", "white");
   tell("white can lie behind", byId("stage").style.backgroundColor === "white" &&
     !byId("stage").classList.contains("checker"));

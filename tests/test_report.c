@@ -1,5 +1,6 @@
 /* The page to look at: what is written into it. */
 #include "inspect/flicker.h"
+#include "inspect/followed_point.h"
 #include "inspect/page_script.h"
 #include <math.h>
 #include <string.h>
@@ -94,6 +95,61 @@ static void paint_that_moves_with_its_region_does_not_flicker(void)
     fl_flicker_clear(&flicker);
 }
 
+/* A shape of three columns whose content moved by `step` px into the frame; width 0: none. */
+static void draw_shape(FlGuides *guides, int column, int width, float step)
+{
+    for (int p = 0; p < WIDTH * HEIGHT; p++) {
+        const int x = p % WIDTH - column, y = p / WIDTH;
+        const bool inside = x >= 0 && x < width;
+        guides->mask[p] = inside ? 255 : 0;
+        guides->distance[p] = inside ? (float)(MIN(MIN(x + 1, width - x), MIN(y, 4 - y) + 1)) : -1;
+        guides->flow[2 * p] = 0.25f; // less than half of it, as flow from masks may be
+        guides->motion[2 * p] = inside ? (int32_t)(step * FL_MOTION_ONE) : FL_MOTION_UNKNOWN;
+        guides->motion[2 * p + 1] = inside ? 0 : FL_MOTION_UNKNOWN;
+        guides->turn[p] = inside ? 1024 : 0;
+    }
+    guides->has_motion = step != 0;
+}
+
+static void a_point_goes_and_turns_as_the_drawing_does(void)
+{
+    const FlRect rect = {100, 50, WIDTH, HEIGHT};
+    g_auto(FlGuides) guides = {0};
+    g_assert_true(fl_guides_init(&guides, WIDTH, HEIGHT, NULL));
+    FlFollowedPoint point = {0};
+    draw_shape(&guides, 2, 3, 0);
+    fl_followed_point_move(&point, rect, &guides);
+    g_assert_true(point.here && point.found);
+    g_assert_cmpfloat(point.x, ==, 103); // the middle of the middle column
+    g_assert_cmpfloat(point.y, ==, 51);
+    point.found = false;
+    for (int k = 0; k < 4; k++) {
+        draw_shape(&guides, 3 + k, 3, 1.25f);
+        fl_followed_point_move(&point, rect, &guides);
+    }
+    g_assert_false(point.found);
+    g_assert_cmpfloat(point.x, ==, 108);
+    g_assert_cmpfloat(point.y, ==, 51);
+    g_assert_cmpfloat(point.turn, ==, 4.0f / 64);
+    draw_shape(&guides, 6, 3, 0);
+    fl_followed_point_move(&point, rect, &guides);
+    g_assert_cmpfloat(point.x, ==, 108.25f); // where no motion is known, along the flow
+}
+
+static void a_point_that_is_lost_is_found_anew(void)
+{
+    const FlRect rect = {0, 0, WIDTH, HEIGHT};
+    g_auto(FlGuides) guides = {0};
+    g_assert_true(fl_guides_init(&guides, WIDTH, HEIGHT, NULL));
+    FlFollowedPoint point = {.here = true, .x = 2, .y = 2, .turn = 0.5f};
+    draw_shape(&guides, 6, 5, 0.5f);
+    fl_followed_point_move(&point, rect, &guides);
+    g_assert_true(point.here && point.found && point.x == 8 && point.y == 2 && point.turn == 0);
+    draw_shape(&guides, 0, 0, 0);
+    fl_followed_point_move(&point, rect, &guides);
+    g_assert_false(point.here);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -104,5 +160,9 @@ int main(int argc, char **argv)
     g_test_add_func("/report/a picture is a data URI", a_picture_is_a_data_uri);
     g_test_add_func("/report/paint that moves with its region does not flicker",
                     paint_that_moves_with_its_region_does_not_flicker);
+    g_test_add_func("/report/a point goes and turns as the drawing does",
+                    a_point_goes_and_turns_as_the_drawing_does);
+    g_test_add_func("/report/a point that is lost is found anew",
+                    a_point_that_is_lost_is_found_anew);
     return g_test_run();
 }

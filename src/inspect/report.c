@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "inspect/exemplar_use.h"
 #include "inspect/flicker.h"
+#include "inspect/followed_point.h"
 #include "inspect/guide_pictures.h"
 #include "inspect/page_script.h"
 #include "inspect/stats.h"
@@ -30,6 +31,7 @@ struct FlReport {
     GMutex lock;       // of view and use
     FlGuideView view;
     FlFlicker *flicker;      // by painter
+    FlFollowedPoint *point;  // by painter
     double *painter_seconds; // by painter: sum
     FlExemplarUse *use;      // by recording; those with style NULL are unused
 };
@@ -75,6 +77,7 @@ FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, cons
     report->plan = plan, report->background = background;
     g_mutex_init(&report->lock);
     report->flicker = g_new0(FlFlicker, MAX(plan->n_painted, 1));
+    report->point = g_new0(FlFollowedPoint, MAX(plan->n_painted, 1));
     report->painter_seconds = g_new0(double, MAX(plan->n_painted, 1));
     report->use = g_new0(FlExemplarUse, MAX(plan->n_painted, 1));
     choose_size(report);
@@ -93,6 +96,7 @@ void fl_report_free(FlReport *report)
         fl_exemplar_use_clear(&report->use[p]);
     }
     g_free(report->flicker);
+    g_free(report->point);
     g_free(report->use);
     g_free(report->painter_seconds);
     fl_guide_view_clear(&report->view);
@@ -140,6 +144,7 @@ bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, i
         report->flicker[p].change = 0;
         return true;
     }
+    fl_followed_point_move(&report->point[p], painted->rect, guides);
     bool done = true;
     if (shows_guides(report, frame)) {
         g_mutex_lock(&report->lock);
@@ -200,6 +205,26 @@ static void write_painters(FlReport *report, const FlReportFrame *frame)
     fputc(']', out);
 }
 
+/* [x, y, turn, found] of each painter's point, or null. Those of frames without pictures only move
+ * it: what was found there counts as found in the next picture. */
+static void write_points(FlReport *report, bool pictures)
+{
+    FILE *out = report->file.stream;
+    fputs(",points:[", out);
+    for (int p = 0; p < report->plan->n_painted; p++) {
+        FlFollowedPoint *point = &report->point[p];
+        const float values[] = {point->x, point->y, point->turn, point->found};
+        fputs(p > 0 ? "," : "", out);
+        for (size_t k = 0; k < G_N_ELEMENTS(values) && point->here; k++) {
+            fputc(k > 0 ? ',' : '[', out);
+            fl_script_number(out, (double)values[k]);
+        }
+        fputs(point->here ? "]" : "null", out);
+        point->found &= !pictures;
+    }
+    fputc(']', out);
+}
+
 static void write_seconds(FlReport *report, const FlReportFrame *frame)
 {
     const double seconds[] = {frame->paint_s, frame->compose_s, frame->write_s};
@@ -221,7 +246,9 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
             fl_drawing_number(report->plan->drawing, frame->frame));
     write_seconds(report, frame);
     write_painters(report, frame);
-    if (frame->frame % report->every == 0 && !write_pictures(report, frame->composite, error))
+    const bool pictures = frame->frame % report->every == 0;
+    write_points(report, pictures);
+    if (pictures && !write_pictures(report, frame->composite, error))
         return false;
     if (shows_guides(report, frame->frame)) {
         fputs(",guides:", out);
@@ -296,9 +323,10 @@ static bool write_film(const FlReport *report, GError **error)
     fl_script_string(out, fl_version());
     fputs(",paper:", out);
     fl_script_colour(out, report->background->flat);
-    fprintf(out, ",width:%d,height:%d,shown:[%d,%d],every:%d,transparent:%s,fps:", plan->width,
-            plan->height, report->width, report->height, report->every,
-            report->background->none ? "true" : "false");
+    fprintf(out,
+            ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,transparent:%s,fps:", plan->width,
+            plan->height, fl_drawing_width(plan->drawing), report->width, report->height,
+            report->every, report->background->none ? "true" : "false");
     fl_script_number(out, fps > 0 ? fps : 24);
     fputs(",peak:", out);
     fl_script_number(out, fl_peak_mib());
