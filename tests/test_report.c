@@ -142,6 +142,10 @@ static void a_point_that_is_lost_is_found_anew(void)
     g_auto(FlGuides) guides = {0};
     g_assert_true(fl_guides_init(&guides, WIDTH, HEIGHT, NULL));
     FlFollowedPoint point = {.here = true, .x = 2, .y = 2, .turn = 0.5f};
+    draw_shape(&guides, 6, 5, 5);
+    fl_followed_point_move(&point, rect, &guides);
+    g_assert_true(point.here && !point.found && point.x == 7);
+    point.x = 2;
     draw_shape(&guides, 6, 5, 0.5f);
     fl_followed_point_move(&point, rect, &guides);
     g_assert_true(point.here && point.found && point.x == 8 && point.y == 2 && point.turn == 0);
