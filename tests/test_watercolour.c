@@ -1,6 +1,8 @@
 /* The paint simulation: what each stage conserves, the colours, and recipes. */
+#include "style/adapt.h"
 #include "threads.h"
 #include "watercolour/brush.h"
+#include "watercolour/fine_sheet.h"
 #include "watercolour/kubelka_munk.h"
 #include "watercolour/stages.h"
 
@@ -380,7 +382,7 @@ static void a_missing_recipe_is_named(void)
 {
     g_autoptr(GError) error = NULL;
     g_assert_false(
-        fl_watercolour_simulate("/nowhere/at all.ini", folder, false, NULL, NULL, &error));
+        fl_watercolour_simulate("/nowhere/at all.ini", folder, 1, false, NULL, NULL, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, "/nowhere/at all.ini"));
 }
@@ -402,13 +404,13 @@ static void expect_same_file(const char *a, const char *b, const char *name)
     g_assert_cmpmem(data_a, (int)n_a, data_b, (int)n_b);
 }
 
-static void simulate_small(const char *fixture, const char *output)
+static void simulate_small(const char *fixture, int size, const char *output)
 {
     g_autofree char *recipe =
         g_build_filename(g_getenv("FLUIDY_FIXTURES"), fixture, "recipe.ini", NULL);
     g_autoptr(GError) error = NULL;
     int frames = 0;
-    fl_watercolour_simulate(recipe, output, true, count_frames, &frames, &error);
+    fl_watercolour_simulate(recipe, output, size, true, count_frames, &frames, &error);
     g_assert_no_error(error);
     g_assert_cmpint(frames, ==, 3);
 }
@@ -419,11 +421,84 @@ static void a_small_style_rebuilds_byte_for_byte(void)
     for (size_t i = 0; i < G_N_ELEMENTS(fixtures); i++) {
         g_autofree char *made = g_build_filename(folder, "made", NULL);
         g_autofree char *stored = g_build_filename(g_getenv("FLUIDY_FIXTURES"), fixtures[i], NULL);
-        simulate_small(fixtures[i], made);
+        simulate_small(fixtures[i], 1, made);
         expect_same_file(made, stored, "style.ini");
         expect_same_file(made, stored, "frames/0003.png");
         expect_same_file(made, stored, "masks/0003.png");
     }
+}
+
+static FlStyle *load_style(const char *path)
+{
+    g_autoptr(GError) error = NULL;
+    FlStyle *style = fl_style_load(path, &error);
+    g_assert_no_error(error);
+    return style;
+}
+
+/* The mean of a square of four of the first channel, and the square of its deviation. */
+static double mean_of_four(const FlStyle *style, int x, int y, double *variance)
+{
+    double sum = 0, square = 0;
+    for (int p = 0; p < 16; p++) {
+        const size_t row = (size_t)(4 * y + p / 4) * (size_t)style->width;
+        const double value = style->rgb[3 * (row + (size_t)(4 * x + p % 4))];
+        sum += value / 16, square += value * value / 16;
+    }
+    *variance += square - sum * sum;
+    return sum;
+}
+
+static void paint_of_four_times_the_size_is_the_same_with_finer_grain(void)
+{
+    static const struct {
+        const char *fixture;
+        double apart;
+    } cases[] = {{"watercolour/wet", 3}, {"watercolour/dust", 12}};
+    const FlStyleUse large = {.start = 1, .step = 1, .scale = 4};
+    for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
+        g_autofree char *once =
+            g_build_filename(g_getenv("FLUIDY_FIXTURES"), cases[i].fixture, NULL);
+        g_autofree char *made = g_build_filename(folder, "four", NULL);
+        simulate_small(cases[i].fixture, 4, made);
+        g_autoptr(FlStyle) small = load_style(once), four = load_style(made);
+        g_autoptr(FlStyle) enlarged = fl_style_adapt(small, &large, NULL);
+        g_assert_cmpint(four->width, ==, 4 * small->width);
+        g_assert_cmpfloat(four->border_px, ==, 4 * small->border_px);
+        g_assert_cmpfloat(four->scale, ==, small->scale / 4);
+        double apart = 0, fine[2] = {0};
+        for (int y = 0; y < small->height; y++)
+            for (int x = 0; x < small->width; x++) {
+                const double once_there = small->rgb[3 * (y * small->width + x)];
+                const double there = mean_of_four(four, x, y, &fine[0]);
+                mean_of_four(enlarged, x, y, &fine[1]);
+                apart += (there - once_there) * (there - once_there);
+            }
+        apart = sqrt(apart / (small->width * small->height));
+        g_test_message("%s: %.2f levels apart, grain %.2f times the enlarged", cases[i].fixture,
+                       apart, sqrt(fine[0] / fine[1]));
+        g_assert_cmpfloat(apart, <, cases[i].apart);
+        g_assert_cmpfloat(fine[0], >, 1.5 * fine[1]);
+    }
+}
+
+static void paint_within_the_cells_has_the_same_bytes_on_any_thread_count(void)
+{
+    g_autoptr(FlSheet) sheet = painted_sheet();
+    g_autoptr(FlFineSheet) one = fl_fine_sheet_new(sheet, 4, 3, NULL);
+    fl_fine_sheet_follow(one, sheet);
+    double coarse = 0, fine = 0;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        coarse += (double)(sheet->floating[0][i] + sheet->settled[0][i]);
+    for (int i = 0; i < 16 * SIDE * SIDE; i++)
+        fine += (double)fl_fine_sheet(one)->settled[0][i];
+    g_assert_cmpfloat_with_epsilon(fine / 16, coarse, .02 * coarse);
+    omp_set_num_threads(3);
+    g_autoptr(FlFineSheet) three = fl_fine_sheet_new(sheet, 4, 3, NULL);
+    fl_fine_sheet_follow(three, sheet);
+    omp_set_num_threads(1);
+    g_assert_cmpmem(fl_fine_sheet(one)->settled[0], 16 * SIDE * SIDE * sizeof(float),
+                    fl_fine_sheet(three)->settled[0], 16 * SIDE * SIDE * sizeof(float));
 }
 
 static void remove_tree(const char *path)
@@ -458,6 +533,8 @@ int main(int argc, char **argv)
     TEST(a_recipe_error_names_file_and_line);
     TEST(a_missing_recipe_is_named);
     TEST(a_small_style_rebuilds_byte_for_byte);
+    TEST(paint_of_four_times_the_size_is_the_same_with_finer_grain);
+    TEST(paint_within_the_cells_has_the_same_bytes_on_any_thread_count);
     const int status = g_test_run();
     remove_tree(folder);
     g_free(folder);

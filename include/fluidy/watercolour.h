@@ -15,14 +15,17 @@ typedef void (*FlWatercolourProgress)(int frame, int n_frames, void *data);
  * masks/0001.png ….
  *
  * Makes the folder if it does not exist; other files in it stay. Writes everything after the last
- * frame, or nothing. The same recipe gives the same bytes on any thread count. progress
- * may be NULL.
+ * frame, or nothing. The same recipe and size give the same bytes on any thread count. progress
+ * may be NULL. size is 1, 2 or 4: how often the recipe's width and height; the paint is the same,
+ * its finest grain is finer.
  *
  * Returns: false with FL_ERROR_INPUT (the recipe; its file and line are named), FL_ERROR_EXISTS if
- * there is a style in the folder and `overwrite` is false, FL_ERROR_NO_MEMORY or FL_ERROR_OUTPUT.
+ * there is a style in the folder and `overwrite` is false, FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY or
+ * FL_ERROR_OUTPUT.
  */
-FL_API bool fl_watercolour_simulate(const char *recipe_path, const char *folder, bool overwrite,
-                                    FlWatercolourProgress progress, void *data, GError **error);
+FL_API bool fl_watercolour_simulate(const char *recipe_path, const char *folder, int size,
+                                    bool overwrite, FlWatercolourProgress progress, void *data,
+                                    GError **error);
 
 G_END_DECLS
 

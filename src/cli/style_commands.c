@@ -8,6 +8,7 @@
 static struct Options {
     char *output, *frames, *crop, *masks, *name, *author, *licence, *paper;
     double scale, border, fps;
+    int size;
     gboolean no_flatten, no_stabilise, whole, overwrite, quiet, no_sheet, strict, paths;
 } options;
 
@@ -189,6 +190,8 @@ static void show_progress(int frame, int n_frames, void *data)
 
 static const GOptionEntry simulate_entries[] = {
     {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "The style to make", "DIR"},
+    {"size", 0, 0, G_OPTION_ARG_INT, &options.size,
+     "Frames of 2 or 4 times the recipe's size, finer (1)", "N"},
     {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace a style in DIR", NULL},
     {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "No progress, only errors", NULL},
     {NULL},
@@ -196,12 +199,17 @@ static const GOptionEntry simulate_entries[] = {
 
 static bool run_simulate(char **words, GError **error)
 {
+    const int size = options.size ? options.size : 1;
     if (!words[0] || words[1])
         return usage(error, "simulate takes one %s", "recipe");
     if (!options.output)
         return usage(error, "simulate needs -o %s, the style to make", "DIR");
-    return fl_watercolour_simulate(words[0], options.output, options.overwrite, show_progress, NULL,
-                                   error);
+    if (size != 1 && size != 2 && size != 4) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "--size %d: expected 1, 2 or 4", size);
+        return false;
+    }
+    return fl_watercolour_simulate(words[0], options.output, size, options.overwrite, show_progress,
+                                   NULL, error);
 }
 
 static const GOptionEntry list_entries[] = {

@@ -165,11 +165,11 @@ void fl_dust_drift(FlDustCloud *cloud, const FlSheet *sheet, int frame)
         drift_grain(cloud->recipe, sheet, &cloud->grains[i], i, frame);
 }
 
-/* A grain is as large as a cell and lies across up to four. */
-static void lay_grain(FlSheet *sheet, float *d, const Grain *grain, float weight)
+/* A piece of a grain is as large as a cell and lies across up to four. */
+static void lay_piece(FlSheet *sheet, float *d, float at_x, float at_y, float weight)
 {
-    const float x = fmaxf(0, fminf((float)sheet->width - 1.001f, grain->x - 0.5f));
-    const float y = fmaxf(0, fminf((float)sheet->height - 1.001f, grain->y - 0.5f));
+    const float x = fmaxf(0, fminf((float)sheet->width - 1.001f, at_x - 0.5f));
+    const float y = fmaxf(0, fminf((float)sheet->height - 1.001f, at_y - 0.5f));
     const int i = (int)x, j = (int)y;
     const float fx = x - (float)i, fy = y - (float)j;
     float *cell = &d[(size_t)j * sheet->width + i];
@@ -179,15 +179,31 @@ static void lay_grain(FlSheet *sheet, float *d, const Grain *grain, float weight
     cell[sheet->width + 1] += weight * fx * fy;
 }
 
+/* A grain is as large as a cell of the sheet on which it drifted. On a finer one it is as many
+   pieces as it has cells there, which lie by chance within it, some on others. */
+static void lay_grain(FlSheet *sheet, float *d, const Grain *grain, int ratio, float weight,
+                      FlRng *rng)
+{
+    if (ratio == 1)
+        lay_piece(sheet, d, grain->x, grain->y, weight);
+    for (int piece = 0; ratio > 1 && piece < ratio * ratio; piece++) {
+        const float x = grain->x + fl_rng_float(rng) - 0.5f;
+        const float y = grain->y + fl_rng_float(rng) - 0.5f;
+        lay_piece(sheet, d, x * (float)ratio, y * (float)ratio, weight);
+    }
+}
+
 void fl_dust_lay(const FlDustCloud *cloud, FlSheet *sheet)
 {
+    const int ratio = sheet->width / (cloud->recipe->width * cloud->recipe->oversample);
     const size_t cells = (size_t)sheet->width * sheet->height;
     for (int k = 0; k < sheet->n_pigments; k++)
         for (size_t i = 0; i < cells; i++)
             sheet->settled[k][i] = 0;
     for (int i = 0; i < cloud->n; i++) { // in order, so that the sums are reproducible
         FlRng rng = {fl_key(fl_key(cloud->recipe->seed, KEY_SHAPE), (uint64_t)i)};
-        lay_grain(sheet, sheet->settled[i % sheet->n_pigments], &cloud->grains[i],
-                  cloud->recipe->dust.weight * (0.4f + 1.2f * fl_rng_float(&rng)));
+        const float weight = cloud->recipe->dust.weight * (0.4f + 1.2f * fl_rng_float(&rng));
+        lay_grain(sheet, sheet->settled[i % sheet->n_pigments], &cloud->grains[i], ratio, weight,
+                  &rng);
     }
 }

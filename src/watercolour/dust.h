@@ -20,7 +20,10 @@ void fl_dust_free(FlDustCloud *cloud); // NULL is fine
 /** Lets the grains crumble and drift for one frame; frame counts from 0. */
 void fl_dust_drift(FlDustCloud *cloud, const FlSheet *sheet, int frame);
 
-/** Sets the sheet's `settled` to the thickness of the grains. Conserves pigment. */
+/**
+ * Sets the sheet's `settled` to the thickness of the grains. Conserves pigment. The sheet may be
+ * finer than that on which they drift, by a whole number.
+ */
 void fl_dust_lay(const FlDustCloud *cloud, FlSheet *sheet);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDustCloud, fl_dust_free)

@@ -26,13 +26,26 @@ void fl_scan_free(FlScan *scan)
     g_free(scan);
 }
 
+/* Along a side of a px of the recipe. */
+static int cells_per_px(const FlSheet *sheet, const FlRecipe *recipe)
+{
+    return sheet->width / recipe->width;
+}
+
 /* Light from the upper left: a slope towards it is a little brighter. */
 static double light(const FlSheet *sheet, const FlRecipe *recipe, int i, int j)
 {
     const float *h = &sheet->relief[(size_t)j * sheet->width + i];
     const float along = i < sheet->width - 1 ? h[1] - h[0] : 0;
     const float down = j < sheet->height - 1 ? h[sheet->width] - h[0] : 0;
-    return 1 + recipe->paper.shading * (float)recipe->oversample * (double)(along + down);
+    return 1 + recipe->paper.shading * (float)cells_per_px(sheet, recipe) * (double)(along + down);
+}
+
+/* A fine sheet's pigment is all in `settled`. */
+static double pigment_at(const FlSheet *sheet, int k, size_t at)
+{
+    const double floating = sheet->floating[k] ? (double)sheet->floating[k][at] : 0;
+    return floating + (double)sheet->settled[k][at];
 }
 
 /* All pigments of a cell are one layer; K and S are means weighted by thickness [C97 §5.2]. */
@@ -41,7 +54,7 @@ static void cell_colour(const FlSheet *sheet, const FlRecipe *recipe, int i, int
     const size_t at = (size_t)j * sheet->width + i;
     double thickness = 0, k_sum[3] = {0}, s_sum[3] = {0};
     for (int k = 0; k < sheet->n_pigments; k++) {
-        const double x = (double)sheet->floating[k][at] + (double)sheet->settled[k][at];
+        const double x = pigment_at(sheet, k, at);
         thickness += x;
         for (int c = 0; c < 3; c++) {
             k_sum[c] += x * (double)recipe->pigments[k].absorption[c];
@@ -58,7 +71,7 @@ static void cell_colour(const FlSheet *sheet, const FlRecipe *recipe, int i, int
 
 static void draw_pixel(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe, int x, int y)
 {
-    const int scale = recipe->oversample;
+    const int scale = sheet->width / scan->width;
     double rgb[3] = {0};
     for (int j = 0; j < scale; j++)
         for (int i = 0; i < scale; i++)
@@ -94,13 +107,13 @@ static bool find_mask(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe
         return false;
     for (int k = 0; k < sheet->n_pigments; k++)
         for (size_t i = 0; i < cells; i++)
-            thickness[i] += recipe->flow.thickness * (sheet->floating[k][i] + sheet->settled[k][i]);
-    const int scale = recipe->oversample, area = scale * scale;
+            thickness[i] += recipe->flow.thickness * (float)pigment_at(sheet, k, i);
+    const int scale = cells_per_px(sheet, recipe), area = scale * scale;
     const FlExtract how = {recipe->mask_threshold, (int)(recipe->mask_blur * (float)scale + 0.5f),
                            60 * area, 60 * area, recipe->mask_margin * (float)scale};
     if (!fl_extract_mask(thickness, sheet->width, sheet->height, &how, distance, error))
         return false;
-    draw_mask(scan, distance, scale);
+    draw_mask(scan, distance, sheet->width / scan->width);
     return true;
 }
 

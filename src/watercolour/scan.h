@@ -17,7 +17,8 @@ FlScan *fl_scan_new(int width, int height, GError **error);
 void fl_scan_free(FlScan *scan); // NULL is fine
 
 /**
- * Draws the sheet and extracts its mask, which includes the mask of the last call: it only grows.
+ * Draws the sheet, whose cells are a whole number to the px of the scan and to that of the recipe,
+ * and extracts its mask, which includes the mask of the last call: it only grows.
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_scan_draw(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe, GError **error);

@@ -3,9 +3,11 @@
 
 #include "base/alloc.h"
 #include "base/headroom.h"
+#include "base/limits.h"
 #include "style/write_style.h"
 #include "watercolour/brush.h"
 #include "watercolour/dust.h"
+#include "watercolour/fine_sheet.h"
 #include "watercolour/scan.h"
 #include "watercolour/stages.h"
 
@@ -47,17 +49,11 @@ static void run_to(FlSheet *sheet, const FlBrush *brush, const FlRecipe *recipe,
     }
 }
 
-static void lay_dust(FlSheet *sheet, FlDustCloud *dust, int frame)
-{
-    if (frame > 0)
-        fl_dust_drift(dust, sheet, frame - 1);
-    fl_dust_lay(dust, sheet);
-}
-
 /* The style of a recipe, its frames allocated. */
-static FlStyle *new_style(const FlRecipe *recipe, const char *recipe_path, GError **error)
+static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_path, GError **error)
 {
-    const size_t pixels = (size_t)recipe->width * recipe->height * recipe->frames;
+    const int width = size * recipe->width, height = size * recipe->height;
+    const size_t pixels = (size_t)width * (size_t)height * (size_t)recipe->frames;
     g_autoptr(FlStyle) style = g_new(FlStyle, 1);
     *style = (FlStyle){
         .name = g_strdup(recipe->name),
@@ -66,12 +62,12 @@ static FlStyle *new_style(const FlRecipe *recipe, const char *recipe_path, GErro
         .licence = g_strdup(recipe->licence),
         .made_by = g_path_get_basename(recipe_path),
         .missing_orientations = g_strdup(recipe->missing),
-        .width = recipe->width,
-        .height = recipe->height,
+        .width = width,
+        .height = height,
         .n_frames = recipe->frames,
         .fps = recipe->fps,
-        .border_px = recipe->border,
-        .scale = recipe->scale,
+        .border_px = recipe->border * (float)size,
+        .scale = recipe->scale / (float)size,
         .granulation = recipe->granulation,
         .medium = fl_medium_of_word(recipe->medium),
     };
@@ -89,43 +85,100 @@ static void store_frame(FlStyle *style, int frame, const FlScan *scan)
     memcpy(style->mask + frame * pixels, scan->mask, pixels);
 }
 
-/* Simulates all frames. */
-static bool simulate(FlStyle *style, const FlRecipe *recipe, FlWatercolourProgress progress,
-                     void *data, GError **error)
+/* A recipe at work. */
+typedef struct Studio {
+    const FlRecipe *recipe;
+    FlSheet *sheet;
+    FlBrush *brush;
+    FlDustCloud *dust; // NULL: fluid paint
+    FlFineSheet *fine; // NULL: the sheet itself is scanned
+    FlScan *scan;
+} Studio;
+
+static void studio_clear(Studio *studio)
 {
-    const int scale = recipe->oversample;
-    g_autoptr(FlSheet) sheet =
-        fl_sheet_new(recipe->width * scale, recipe->height * scale, recipe->n_pigments, error);
-    g_autoptr(FlBrush) brush = sheet ? fl_brush_new(recipe, error) : NULL;
-    g_autoptr(FlScan) scan = brush ? fl_scan_new(recipe->width, recipe->height, error) : NULL;
-    if (!scan)
+    fl_scan_free(studio->scan);
+    fl_fine_sheet_free(studio->fine);
+    fl_dust_free(studio->dust);
+    fl_brush_free(studio->brush);
+    fl_sheet_free(studio->sheet);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Studio, studio_clear)
+
+/* Fine cells along a side of a cell: the fewest of which a px of the frames has a whole number. */
+static int fine_ratio(int oversample, int size)
+{
+    int ratio = 1;
+    while (ratio * oversample % size != 0)
+        ratio++;
+    return ratio;
+}
+
+static bool studio_init(Studio *studio, const FlRecipe *recipe, int size, GError **error)
+{
+    const int cells = recipe->oversample;
+    studio->recipe = recipe;
+    if (!(studio->sheet = fl_sheet_new(recipe->width * cells, recipe->height * cells,
+                                       recipe->n_pigments, error)) ||
+        !(studio->brush = fl_brush_new(recipe, error)) ||
+        !(studio->scan = fl_scan_new(recipe->width * size, recipe->height * size, error)))
         return false;
-    fl_sheet_make_paper(sheet, recipe);
-    g_autoptr(FlDustCloud) dust = NULL;
-    if (recipe->dust.grains > 0 && !(dust = fl_dust_new(recipe, sheet, error)))
+    fl_sheet_make_paper(studio->sheet, recipe);
+    if (recipe->dust.grains > 0 && !(studio->dust = fl_dust_new(recipe, studio->sheet, error)))
+        return false;
+    const int ratio = fine_ratio(cells, size);
+    return ratio == 1 ||
+           (studio->fine = fl_fine_sheet_new(studio->sheet, ratio, recipe->seed, error));
+}
+
+/* What is scanned of a frame: frames follow one another. */
+static FlSheet *paint_frame(Studio *studio, int frame)
+{
+    FlSheet *fine = studio->fine ? fl_fine_sheet(studio->fine) : NULL;
+    if (studio->dust) {
+        if (frame > 0)
+            fl_dust_drift(studio->dust, studio->sheet, frame - 1);
+        fl_dust_lay(studio->dust, fine ? fine : studio->sheet);
+    } else {
+        run_to(studio->sheet, studio->brush, studio->recipe, frame);
+        if (fine)
+            fl_fine_sheet_follow(studio->fine, studio->sheet);
+    }
+    return fine ? fine : studio->sheet;
+}
+
+static bool simulate(FlStyle *style, const FlRecipe *recipe, int size,
+                     FlWatercolourProgress progress, void *data, GError **error)
+{
+    g_auto(Studio) studio = {0};
+    if (!studio_init(&studio, recipe, size, error))
         return false;
     for (int frame = 0; frame < recipe->frames; frame++) {
-        if (dust)
-            lay_dust(sheet, dust, frame);
-        else
-            run_to(sheet, brush, recipe, frame);
-        if (!fl_scan_draw(scan, sheet, recipe, error))
+        if (!fl_scan_draw(studio.scan, paint_frame(&studio, frame), recipe, error))
             return false;
-        store_frame(style, frame, scan);
+        store_frame(style, frame, studio.scan);
         if (progress)
             progress(frame + 1, recipe->frames, data);
     }
     return true;
 }
 
-bool fl_watercolour_simulate(const char *recipe_path, const char *folder, bool overwrite,
+static bool within_limit(const FlRecipe *recipe, int size, const char *path, GError **error)
+{
+    const double pixels = (double)recipe->width * recipe->height * recipe->frames;
+    return fl_limit_check(FL_LIMIT_STYLE, pixels * size * size / 1e6, path, error);
+}
+
+bool fl_watercolour_simulate(const char *recipe_path, const char *folder, int size, bool overwrite,
                              FlWatercolourProgress progress, void *data, GError **error)
 {
     g_autoptr(FlRecipe) recipe =
         fl_headroom_check(error) ? fl_recipe_load(recipe_path, error) : NULL;
-    if (!recipe || !fl_style_may_write(folder, overwrite, error))
+    if (!recipe || !within_limit(recipe, size, recipe_path, error) ||
+        !fl_style_may_write(folder, overwrite, error))
         return false;
-    g_autoptr(FlStyle) style = new_style(recipe, recipe_path, error);
-    return style && simulate(style, recipe, progress, data, error) &&
+    g_autoptr(FlStyle) style = new_style(recipe, size, recipe_path, error);
+    return style && simulate(style, recipe, size, progress, data, error) &&
            fl_style_write(style, folder, overwrite, error);
 }

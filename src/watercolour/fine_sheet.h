@@ -1,0 +1,37 @@
+/* The sheet on a finer grid: what lies within its cells. */
+#ifndef FLUIDY_WATERCOLOUR_FINE_SHEET_H
+#define FLUIDY_WATERCOLOUR_FINE_SHEET_H
+
+#include "watercolour/sheet.h"
+
+/**
+ * A style at twice or four times its size is the same paint, scanned more finely. Its water is that
+ * of the recipe's own grid, whatever the size, so that time, diffusion and capillarity are those of
+ * the page and not of the pixels; a simulation on n times finer cells would take n^4 times as long
+ * and, since the numerical diffusion of advection shrinks with the cells, would be another picture.
+ * What happens within a cell is added here, as large-eddy simulations do it.
+ */
+typedef struct FlFineSheet FlFineSheet;
+
+/**
+ * `ratio` fine cells along each side of a cell, >= 1. Makes the fine relief: that of the sheet,
+ * whose bumps go on into the cells. The result depends on sheet, ratio and seed alone.
+ *
+ * Returns: to be freed with fl_fine_sheet_free(); NULL with FL_ERROR_NO_MEMORY set.
+ */
+FlFineSheet *fl_fine_sheet_new(const FlSheet *sheet, int ratio, uint64_t seed, GError **error);
+
+void fl_fine_sheet_free(FlFineSheet *fine); // NULL is fine
+
+/**
+ * Finds the pigment within the cells. Seen from afar, it is that of the sheet; texture that reaches
+ * down to a cell goes on below it, weaker in each octave; smooth paint stays smooth.
+ */
+void fl_fine_sheet_follow(FlFineSheet *fine, const FlSheet *sheet);
+
+/** Borrowed. It has relief and `settled` pigment only. */
+FlSheet *fl_fine_sheet(FlFineSheet *fine);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFineSheet, fl_fine_sheet_free)
+
+#endif
