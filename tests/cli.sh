@@ -68,7 +68,10 @@ refuses 'a drawing of no size is refused' 1 'zero/w_0001.svg: *' zero $look
 refuses 'a canvas without a height is refused' 2 "canvas '5': expected WxH *" whole --canvas 5 $look
 refuses 'an output without a frame number is refused' 2 'one.png: *' whole -o one.png $look
 refuses 'an output of no known kind lists the kinds' 2 'w_%d.bmp: *' whole -o w_%d.bmp $look
-refuses 'an unknown style gets a suggestion' 1 'no style “0l” *did you mean “0?”?' whole -s 0l
+refuses 'an unknown style gets a suggestion' 1 'no style “0l” *did you mean “0?” or “0?” or “0?”?' whole -s 0l
+refuses 'so does one that is called by its name' 1 'no style “blom” *did you mean “Bloom”?' whole -s blom
+"$program" whole -s BLOOM --dry-run $look >out 2>err
+result $? 'a style is found by its name in any case'
 refuses 'no style asks for one' 2 '*--style*' whole
 refuses 'a style that is not there is named' 1 './nowhere: *' whole -s ./nowhere
 refuses 'an unknown region lists the regions' 2 'no region “hare”; the regions are: *' whole --region hare $look
@@ -88,7 +91,7 @@ refuses 'a mistyped folder gets a suggestion' 1 'whle: no such file; did you mea
 refuses 'a preview of no frame is refused' 2 '--preview: “x” is not *' --preview x whole
 refuses 'a preview of a frame that is not there is refused' 1 '*no file for frame 9; *' --preview 9 whole $look
 refuses 'a preview of a range is refused' 2 '--preview and --frames *' --preview 2 -f 1 whole
-refuses 'a mistyped style among several is found out first' 1 '*did you mean “0?”?' --styles 01,0l whole
+refuses 'a mistyped style among several is found out first' 1 '*did you mean “0?” or “0?” or “0?”?' --styles 01,0l whole
 refuses 'no style among several is refused' 2 '--styles: expected names *' --styles 01, whole
 
 "$program" --help >out 2>err && [ ! -s err ] && [ "$(wc -l <out)" -le 24 ] && ! grep -qE '.{81}' out
@@ -136,7 +139,7 @@ result $? '--preview paints a frame and those beside it, again and again'
     "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]
 result $? '--styles is a sheet'
 "$program" --list-styles -o styles.png >out 2>err && [ -s styles.png ] &&
-    grep -qE '^01 +Watercolour into wet paper +/.*/01$' out
+    grep -qE '^01 +Watercolour +soft and wet' out
 result $? '--list-styles is a list and a sheet'
 "$program" whole -s 01 --detail draft -o '{name}/{name}.gif' -q >out 2>err && [ -s w/w.gif ]
 result $? 'the name of the drawing can stand in that of the output'

@@ -70,8 +70,12 @@ cp "$small"/frames/*.png -- '-odd %d'
 does 'a folder may have any name' import -q -o odd -- '-odd %d'
 
 does 'list finds it' list
-grep -q "^ink	$folder/own/ink$" out
-result $? 'by name and folder'
+grep -q "^ink	ink		$folder/own/ink$" out
+result $? 'by number, name, character and folder'
+does 'list draws them' list -o own.png
+[ "$(head -c 4 own.png | tail -c 3)" = PNG ]
+result $? 'on a sheet'
+refuses 'which is not overwritten' 1 'own.png: already exists*' list -o own.png
 
 does 'check reports on it by name' check ink
 { grep -q '^size       64x48, 6 frames' out && grep -q '^sheet      ink-check.png$' out &&

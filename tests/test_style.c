@@ -274,6 +274,32 @@ static void a_style_is_found_by_name_in_fluidy_styles(void)
     remove_folder(folder);
 }
 
+static void a_style_is_found_by_its_title_in_any_case(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *folder = drop_folder();
+    g_autofree char *parent = g_path_get_dirname(folder);
+    g_autofree char *manifest = g_build_filename(folder, "style.ini", NULL);
+    static const char text[] = "[style]\nname = Grey drop\ncharacter = round\n";
+    g_assert_true(g_file_set_contents(manifest, text, -1, NULL));
+    g_setenv("FLUIDY_STYLES", parent, TRUE);
+    static const char *const words[] = {"Grey drop", "grey-drop", "GREY_DROP"};
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++) {
+        g_autofree char *found = fl_style_find(words[i], &error);
+        g_assert_no_error(error);
+        g_assert_cmpstr(found, ==, folder);
+    }
+    static const char *const near[] = {"gray-drop", "drop"};
+    for (size_t i = 0; i < G_N_ELEMENTS(near); i++) {
+        g_assert_null(fl_style_find(near[i], &error));
+        g_assert_nonnull(strstr(error->message, "; did you mean “Grey drop”?"));
+        g_clear_error(&error);
+    }
+    g_assert_null(fl_style_find("aquatint", &error));
+    g_assert_nonnull(strstr(error->message, "; there are Grey drop"));
+    remove_folder(folder);
+}
+
 static void a_picture_shrinks_to_the_means_of_its_areas(void)
 {
     g_autoptr(GError) error = NULL;
@@ -310,6 +336,8 @@ int main(int argc, char **argv)
                     flow_fields_are_read_and_the_last_may_be_missing);
     g_test_add_func("/style/a-clip-over-the-limit-says-how-to-make-it-smaller",
                     a_clip_over_the_limit_says_how_to_make_it_smaller);
+    g_test_add_func("/style/a-style-is-found-by-its-title-in-any-case",
+                    a_style_is_found_by_its_title_in_any_case);
     g_test_add_func("/style/a-style-is-found-by-name-in-fluidy-styles",
                     a_style_is_found_by_name_in_fluidy_styles);
     g_test_add_func("/style/a-picture-shrinks-to-the-means-of-its-areas",

@@ -11,10 +11,11 @@ G_BEGIN_DECLS
 
 /** A style that was found. */
 typedef struct FlStyleEntry {
-    char *name;  /**< the folder's name, which selects it */
-    char *path;  /**< the folder */
-    char *title; /**< what style.ini calls it; NULL: nothing */
-    bool hidden; /**< a style of the same name is found before it */
+    char *name;      /**< the folder's name, which selects it */
+    char *path;      /**< the folder */
+    char *title;     /**< what style.ini calls it, which selects it too; NULL: nothing */
+    bool hidden;     /**< a style of the same name is found before it */
+    char *character; /**< what style.ini says it looks like and is for; NULL: nothing */
 } FlStyleEntry;
 
 /**

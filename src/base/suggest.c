@@ -8,7 +8,7 @@
 
 static char folded(char c)
 {
-    return c == '_' ? '-' : g_ascii_tolower(c);
+    return c == '_' || c == ' ' ? '-' : g_ascii_tolower(c);
 }
 
 /* The optimal string alignment distance: three rows of the usual table suffice. */
@@ -35,13 +35,23 @@ int fl_edit_distance(const char *a, const char *b)
     return above[b_bytes];
 }
 
+static int most_typos(const char *known)
+{
+    return MAX(1, (int)strlen(known) / 3);
+}
+
+bool fl_resembles(const char *word, const char *known)
+{
+    return fl_edit_distance(word, known) <= most_typos(known);
+}
+
 const char *fl_suggest(const char *word, const char *const *words)
 {
     const char *nearest = NULL;
     int least = INT_MAX;
     for (; *words; words++) {
         const int distance = fl_edit_distance(word, *words);
-        if (distance < least && distance <= MAX(1, (int)strlen(*words) / 3))
+        if (distance < least && distance <= most_typos(*words))
             least = distance, nearest = *words;
     }
     return nearest;

@@ -2,18 +2,23 @@
 #ifndef FLUIDY_BASE_SUGGEST_H
 #define FLUIDY_BASE_SUGGEST_H
 
+#include <stdbool.h>
+
 /**
  * Letters to insert, delete, replace or swap with their neighbour to turn `a` into `b`.
  *
- * Case does not count, and '-' equals '_'. Bytes are letters. Each word may have 255 at most; a
- * longer one is far from everything (INT_MAX).
+ * Case does not count, and '-', '_' and ' ' are equal. Bytes are letters. Each word may have 255 at
+ * most; a longer one is far from everything (INT_MAX).
  */
 int fl_edit_distance(const char *a, const char *b);
+
+/** Whether at most a third of the letters of `known`, or one, would have to change. */
+bool fl_resembles(const char *word, const char *known);
 
 /**
  * The word of the NULL-terminated list `words` that is nearest to `word`, the first of equals.
  *
- * Returns: an element of `words`; NULL if every one differs in more than a third of its letters.
+ * Returns: an element of `words`; NULL if it resembles none.
  */
 const char *fl_suggest(const char *word, const char *const *words);
 

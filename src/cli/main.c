@@ -102,8 +102,9 @@ static int list_styles(const FlArgs *args)
     for (guint i = 0; i < styles->len; i++) {
         const FlStyleEntry *style = styles->pdata[i];
         if (!style->hidden)
-            g_string_append_printf(text, "%-12s %-36s %s\n", style->name,
-                                   style->title ? style->title : "", style->path);
+            g_string_append_printf(text, "%-4s %-13s %s\n", style->name,
+                                   style->title ? style->title : "",
+                                   style->character ? style->character : style->path);
     }
     return print(text->str);
 }

@@ -215,6 +215,8 @@ static bool run_simulate(char **words, GError **error)
 static const GOptionEntry list_entries[] = {
     {"paths", 'p', 0, G_OPTION_ARG_NONE, &options.paths, "Also the folders that are searched",
      NULL},
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "Draw the recordings, too", "FILE"},
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace the picture", NULL},
     {NULL},
 };
 
@@ -222,6 +224,8 @@ static bool run_list(char **words, GError **error)
 {
     if (words[0])
         return usage(error, "list takes no arguments, such as %s", words[0]);
+    if (options.output && !fl_style_sheet(options.output, options.overwrite, error))
+        return false;
     g_auto(GStrv) folders = fl_style_folders();
     for (int i = 0; options.paths && folders[i]; i++)
         printf("# %s%s\n", folders[i],
@@ -229,7 +233,8 @@ static bool run_list(char **words, GError **error)
     g_autoptr(GPtrArray) entries = fl_style_list();
     for (guint i = 0; i < entries->len; i++) {
         const FlStyleEntry *entry = g_ptr_array_index(entries, i);
-        printf("%s\t%s%s\n", entry->name, entry->path,
+        printf("%s\t%s\t%s\t%s%s\n", entry->name, entry->title ? entry->title : "",
+               entry->character ? entry->character : "", entry->path,
                entry->hidden ? "\t(hidden by the one above)" : "");
     }
     return written(error);
@@ -245,7 +250,9 @@ const FlStyleCommand fl_style_commands[] = {
      "STYLE is a name that fluidy-style list shows, or a folder.\n", check_entries, run_check},
     {"simulate", "RECIPE -o DIR", "make a style by simulating paint", NULL, simulate_entries,
      run_simulate},
-    {"list", "", "list the styles that are found, and where",
-     "Prints one style a line: name, tab, folder.\n", list_entries, run_list},
+    {"list", "[-o FILE]", "list the styles that are found, and draw them",
+     "Prints one style a line, with tabs between: number or folder's name, name, character, "
+     "folder.\n",
+     list_entries, run_list},
     {NULL},
 };

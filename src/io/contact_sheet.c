@@ -2,6 +2,8 @@
 
 #include "io/png.h"
 
+#include <string.h>
+
 /* All in px. */
 enum { GAP = 8, WORDS_WIDTH = 180, WORDS_HEIGHT = 22, LINE = 15 };
 
@@ -49,14 +51,39 @@ void fl_contact_sheet_put(const FlContactSheet *contact, int column, int row,
     cairo_paint(cr);
 }
 
-static void write_line(cairo_t *cr, double x, double y, bool bold, const char *text)
+static void set_font(cairo_t *cr, bool bold)
 {
     cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                            bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(cr, bold ? 14 : 11);
+}
+
+static void write_line(cairo_t *cr, double x, double y, bool bold, const char *text)
+{
+    set_font(cr, bold);
     cairo_set_source_rgb(cr, 0.15, 0.15, 0.15);
     cairo_move_to(cr, x, y);
     cairo_show_text(cr, text);
+}
+
+/* The words of a line that fit into a caption, at least one; the rest begins at *line. */
+static char *take_words(cairo_t *cr, const char **line)
+{
+    cairo_text_extents_t extents;
+    char *fits = NULL;
+    for (const char *end = *line; *end;) {
+        end += strspn(end, " ");
+        end += strcspn(end, " ");
+        g_autofree char *words = g_strndup(*line, (gsize)(end - *line));
+        cairo_text_extents(cr, words, &extents);
+        if (fits && extents.width > WORDS_WIDTH - GAP)
+            break;
+        g_free(fits);
+        fits = g_steal_pointer(&words);
+    }
+    *line += fits ? strlen(fits) : 0;
+    *line += strspn(*line, " ");
+    return fits ? fits : g_strdup("");
 }
 
 void fl_contact_sheet_name_row(const FlContactSheet *contact, int row, const char *name,
@@ -68,8 +95,14 @@ void fl_contact_sheet_name_row(const FlContactSheet *contact, int row, const cha
     cairo_rectangle(cr, -WORDS_WIDTH, 0, WORDS_WIDTH, contact->cell_height);
     cairo_clip(cr);
     write_line(cr, -WORDS_WIDTH, LINE, true, name);
-    for (int k = 0; line[k]; k++)
-        write_line(cr, -WORDS_WIDTH, (k + 2) * LINE + 3, false, line[k]);
+    set_font(cr, false);
+    for (int k = 0, at = 2; line[k]; k++) {
+        const char *rest = line[k];
+        do {
+            g_autofree char *words = take_words(cr, &rest);
+            write_line(cr, -WORDS_WIDTH, at++ * LINE + 3, false, words);
+        } while (*rest);
+    }
 }
 
 void fl_contact_sheet_name_column(const FlContactSheet *contact, int column, const char *name)

@@ -22,7 +22,8 @@ void fl_contact_sheet_clear(FlContactSheet *contact);
 void fl_contact_sheet_put(const FlContactSheet *contact, int column, int row,
                           cairo_surface_t *picture);
 
-/** The caption at the left of a row: a bold line, then small print; cut to fit. */
+/** The caption at the left of a row: a bold line, then small print whose lines are broken
+ * to fit. */
 void fl_contact_sheet_name_row(const FlContactSheet *contact, int row, const char *name,
                                const char *lines);
 

@@ -132,8 +132,8 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
 /* ---- installed styles ----------------------------------------------------------------------- */
 
 /* STYLE_COLUMNS frames at equal steps, up to the last. */
-static bool show_recording(const FlContactSheet *contact, const char *name, const FlStyle *style,
-                           int row, GError **error)
+static bool show_recording(const FlContactSheet *contact, const FlStyleEntry *entry,
+                           const FlStyle *style, int row, GError **error)
 {
     const size_t pixels = (size_t)style->width * style->height;
     for (int k = 0; k < STYLE_COLUMNS; k++) {
@@ -145,8 +145,11 @@ static bool show_recording(const FlContactSheet *contact, const char *name, cons
             return false;
         fl_contact_sheet_put(contact, k, row, picture);
     }
+    g_autofree char *name =
+        g_strdup_printf("%s  %s", entry->name, entry->title ? entry->title : "");
     g_autofree char *lines = g_strdup_printf(
-        "%s\n%dx%d, %d frames\n%s", style->name, style->width, style->height, style->n_frames,
+        "%s\n%dx%d, %d frames%s%s", style->character ? style->character : "", style->width,
+        style->height, style->n_frames, style->medium == FL_MEDIUM_AUTO ? "" : ", ",
         style->medium == FL_MEDIUM_AUTO ? "" : fl_medium_word(style->medium));
     fl_contact_sheet_name_row(contact, row, name, lines);
     return true;
@@ -167,7 +170,7 @@ bool fl_style_sheet(const char *path, bool overwrite, GError **error)
         const FlStyleEntry *entry = styles->pdata[k];
         g_autoptr(GError) problem = NULL;
         g_autoptr(FlStyle) style = fl_style_load(entry->path, &problem);
-        if (style && !show_recording(&contact, entry->name, style, (int)k, error))
+        if (style && !show_recording(&contact, entry, style, (int)k, error))
             return false;
         if (!style)
             fl_contact_sheet_name_row(&contact, (int)k, entry->name, problem->message);

@@ -44,6 +44,8 @@ static void add_given_facts(Check *check)
     const FlStyle *style = check->style;
     GPtrArray *facts = check->facts;
     add(facts, "name       %s", style->name);
+    if (style->character)
+        add(facts, "character  %s", style->character);
     add(facts, "folder     %s", style->path);
     add(facts, "author     %s", style->author ? style->author : "not given");
     add(facts, "licence    %s", style->licence && style->licence[0] ? style->licence : "not given");

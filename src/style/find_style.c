@@ -61,41 +61,13 @@ static void collect_names(const char *folder, GPtrArray *names)
     }
 }
 
-static void set_not_found(const char *name, char **folders, GError **error)
-{
-    g_autoptr(GPtrArray) names = g_ptr_array_new_with_free_func(g_free);
-    for (int i = 0; folders[i]; i++)
-        collect_names(folders[i], names);
-    g_ptr_array_add(names, NULL);
-    g_autofree char *tail = fl_did_you_mean(name, (const char *const *)names->pdata);
-    g_autofree char *where = g_strjoinv(", ", folders);
-    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "no style “%s” in %s%s", name, where, tail);
-}
-
-char *fl_style_find(const char *name, GError **error)
-{
-    if (strchr(name, G_DIR_SEPARATOR) || fl_is_style(name)) {
-        if (g_file_test(name, G_FILE_TEST_IS_DIR))
-            return g_strdup(name);
-        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: no such folder: expected a style", name);
-        return NULL;
-    }
-    g_auto(GStrv) folders = fl_style_folders();
-    for (int i = 0; folders[i]; i++) {
-        g_autofree char *path = g_build_filename(folders[i], name, NULL);
-        if (name[0] && fl_is_style(path))
-            return g_steal_pointer(&path);
-    }
-    set_not_found(name, folders, error);
-    return NULL;
-}
-
 static void free_entry(void *data)
 {
     FlStyleEntry *entry = data;
     g_free(entry->name);
     g_free(entry->path);
     g_free(entry->title);
+    g_free(entry->character);
     g_free(entry);
 }
 
@@ -104,15 +76,16 @@ static int compare_strings(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-static char *title_of(const char *folder)
+static void read_manifest(FlStyleEntry *entry)
 {
     FlStyle style = {0}; // its strings are freed below
-    g_autofree char *file = g_build_filename(folder, "style.ini", NULL);
-    const bool read = g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(&style, file, NULL);
-    char *title = read ? g_steal_pointer(&style.name) : NULL;
-    g_free(style.name), g_free(style.author), g_free(style.licence);
+    g_autofree char *file = g_build_filename(entry->path, "style.ini", NULL);
+    if (g_file_test(file, G_FILE_TEST_EXISTS) && fl_manifest_read(&style, file, NULL)) {
+        entry->title = g_steal_pointer(&style.name);
+        entry->character = g_steal_pointer(&style.character);
+    }
+    g_free(style.name), g_free(style.character), g_free(style.author), g_free(style.licence);
     g_free(style.made_by), g_free(style.missing_orientations);
-    return title;
 }
 
 GPtrArray *fl_style_list(void)
@@ -132,9 +105,76 @@ GPtrArray *fl_style_list(void)
                 .path = g_build_filename(folders[i], name, NULL),
                 .hidden = !g_hash_table_add(seen, g_strdup(name)),
             };
-            entry->title = title_of(entry->path);
+            read_manifest(entry);
             g_ptr_array_add(entries, entry);
         }
     }
     return entries;
+}
+
+/* Whether a word that was typed means a style: by its title. */
+static bool is_meant(const FlStyleEntry *entry, const char *word)
+{
+    return !entry->hidden && entry->title && fl_edit_distance(word, entry->title) == 0;
+}
+
+static bool contains(const char *name, const char *word)
+{
+    g_autofree char *in = g_ascii_strdown(name, -1), *part = g_ascii_strdown(word, -1);
+    return *part && strstr(in, part);
+}
+
+/* The name by which a style may have been meant; NULL if it is far from both. */
+static const char *near_name(const FlStyleEntry *entry, const char *word)
+{
+    if (entry->title && (fl_resembles(word, entry->title) || contains(entry->title, word)))
+        return entry->title;
+    return fl_resembles(word, entry->name) ? entry->name : NULL;
+}
+
+/* "; did you mean “Dry brush”?", or all there is if nothing is near. */
+static char *other_names(const GPtrArray *entries, const char *word)
+{
+    const int most = 3;
+    g_autoptr(GString) near = g_string_new(NULL), all = g_string_new(NULL);
+    int n = 0;
+    for (guint i = 0; i < entries->len; i++) {
+        const FlStyleEntry *entry = entries->pdata[i];
+        const char *name = entry->hidden ? NULL : near_name(entry, word);
+        if (!entry->hidden)
+            g_string_append_printf(all, "%s%s", all->len ? ", " : "",
+                                   entry->title ? entry->title : entry->name);
+        if (name && n++ < most)
+            g_string_append_printf(near, "%s“%s”", near->len ? " or " : "", name);
+    }
+    return near->len  ? g_strdup_printf("; did you mean %s?", near->str)
+           : all->len ? g_strdup_printf("; there are %s", all->str)
+                      : g_strdup("");
+}
+
+static void set_not_found(const GPtrArray *entries, const char *name, GError **error)
+{
+    g_auto(GStrv) folders = fl_style_folders();
+    g_autofree char *where = g_strjoinv(", ", folders);
+    g_autofree char *others = other_names(entries, name);
+    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "no style “%s” in %s%s", name, where, others);
+}
+
+char *fl_style_find(const char *name, GError **error)
+{
+    if (strchr(name, G_DIR_SEPARATOR) || fl_is_style(name)) {
+        if (g_file_test(name, G_FILE_TEST_IS_DIR))
+            return g_strdup(name);
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s: no such folder: expected a style", name);
+        return NULL;
+    }
+    g_autoptr(GPtrArray) entries = fl_style_list();
+    for (guint i = 0; i < entries->len; i++)
+        if (strcmp(((FlStyleEntry *)entries->pdata[i])->name, name) == 0)
+            return g_strdup(((FlStyleEntry *)entries->pdata[i])->path);
+    for (guint i = 0; i < entries->len; i++)
+        if (is_meant(entries->pdata[i], name))
+            return g_strdup(((FlStyleEntry *)entries->pdata[i])->path);
+    set_not_found(entries, name, error);
+    return NULL;
 }

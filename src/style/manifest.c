@@ -17,6 +17,7 @@ static const struct Key {
     FlGuess replaces;
 } keys[] = {
     {"name", TEXT, offsetof(FlStyle, name)},
+    {"character", TEXT, offsetof(FlStyle, character)},
     {"author", TEXT, offsetof(FlStyle, author)},
     {"licence", TEXT, offsetof(FlStyle, licence)},
     {"fps", NUMBER, offsetof(FlStyle, fps), 0.01, 1000, FL_GUESS_FPS},
@@ -133,6 +134,8 @@ char *fl_manifest_text(const FlStyle *style)
     GString *text = g_string_new("[style]\n");
     char number[G_ASCII_DTOSTR_BUF_SIZE];
     g_string_append_printf(text, "name = %s\n", style->name);
+    if (style->character)
+        g_string_append_printf(text, "character = %s\n", style->character);
     if (style->author)
         g_string_append_printf(text, "author = %s\n", style->author);
     if (style->licence)

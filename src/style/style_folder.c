@@ -20,6 +20,7 @@ void fl_style_free(FlStyle *style)
     g_free(style->path);
     g_free(style->author);
     g_free(style->licence);
+    g_free(style->character);
     g_free(style->made_by);
     g_free(style->missing_orientations);
     free(style->rgb);

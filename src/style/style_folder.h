@@ -9,8 +9,9 @@
 
 /** A style in memory. Frames follow each other without padding, rows from the top. */
 typedef struct FlStyle {
-    char *name; // the folder's name, or style.ini's
-    char *path; // the folder
+    char *name;      // the folder's name, or style.ini's
+    char *path;      // the folder
+    char *character; // what it looks like and is for, a line; may be NULL
     char *author, *licence;
     int width, height, n_frames;
     float fps;                  // frames per second, > 0
@@ -39,8 +40,11 @@ typedef struct FlStyle {
 FlStyle *fl_style_load(const char *folder, GError **error);
 
 /**
- * Finds a style by name or path: a path if it has a slash or is a folder, else in
- * $FLUIDY_STYLES, the user's and the system's data folders, the installed one, the source tree's.
+ * Finds a style by path, if it has a slash or is a folder; else by the name of its folder in
+ * $FLUIDY_STYLES, the user's and the system's data folders, the installed one, the source tree's;
+ * else by the name that its style.ini gives it there, whose case does not count.
+ *
+ * Returns: the folder; NULL with FL_ERROR_STYLE, which lists the names that are near.
  */
 char *fl_style_find(const char *name, GError **error);
 

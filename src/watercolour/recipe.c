@@ -69,6 +69,7 @@ void fl_recipe_free(FlRecipe *recipe)
     if (!recipe)
         return;
     g_free(recipe->name);
+    g_free(recipe->character);
     g_free(recipe->author);
     g_free(recipe->licence);
     g_free(recipe->medium);
@@ -79,6 +80,7 @@ void fl_recipe_free(FlRecipe *recipe)
 static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
 {
     fl_keylines_string(lines, "name", &recipe->name);
+    fl_keylines_string(lines, "character", &recipe->character);
     fl_keylines_string(lines, "author", &recipe->author);
     fl_keylines_string(lines, "licence", &recipe->licence);
     fl_keylines_string(lines, "medium", &recipe->medium);

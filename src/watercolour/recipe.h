@@ -84,6 +84,7 @@ typedef struct FlDust {
 
 typedef struct FlRecipe {
     char *name, *author, *licence, *medium, *missing;
+    char *character;           // NULL: not given
     int width, height, frames; // px
     int oversample;            // cells per px, 1..3
     float fps, border, scale;

@@ -58,6 +58,7 @@ static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_p
     *style = (FlStyle){
         .name = g_strdup(recipe->name),
         .path = g_strdup(recipe_path),
+        .character = g_strdup(recipe->character),
         .author = g_strdup(recipe->author),
         .licence = g_strdup(recipe->licence),
         .made_by = g_path_get_basename(recipe_path),
