@@ -131,6 +131,99 @@ static void relaxing_leaves_little_divergence(void)
         }
 }
 
+/* A sheet over which a stroke of two pigments has gone from left to right. */
+static FlSheet *brushed_sheet(FlEvent stroke, FlRecipe *recipe)
+{
+    *recipe = (FlRecipe){.width = SIDE, .height = SIDE, .oversample = 1, .seed = 3};
+    recipe->paper = (FlPaper){
+        .grain_px = 3, .roughness = .8f, .stretch = 1, .capacity = {.8f, .9f}, .patch_px = 12};
+    stroke.n_points = 2;
+    stroke.points[0][0] = 4, stroke.points[1][0] = SIDE - 4;
+    stroke.points[0][1] = stroke.points[1][1] = SIDE / 2;
+    stroke.radius = 18, stroke.wobble_px = stroke.streak_px = 10;
+    stroke.water = stroke.rate = stroke.load[0] = stroke.load[1] = 1;
+    recipe->events[0] = stroke;
+    recipe->n_events = 1, recipe->n_pigments = 2;
+    FlSheet *sheet = fl_sheet_new(SIDE, SIDE, 2, NULL);
+    g_autoptr(FlBrush) brush = fl_brush_new(recipe, NULL);
+    g_assert_true(sheet && brush);
+    fl_sheet_make_paper(sheet, recipe);
+    fl_brush_apply(brush, sheet, 0, 1);
+    return sheet;
+}
+
+/* The mean height of the paper where the stroke left less (painted: more) than a tenth of a load,
+   and the share of such cells; in the middle of the stroke. */
+static float height_where(const FlSheet *sheet, bool painted, float *share)
+{
+    float height = 0, cells = 0, all = 0;
+    for (int j = SIDE / 2 - 10; j < SIDE / 2 + 10; j++)
+        for (int i = 10; i < SIDE - 10; i++, all++)
+            if ((sheet->floating[0][j * SIDE + i] > .1f) == painted)
+                height += sheet->relief[j * SIDE + i], cells++;
+    *share = cells / all;
+    return cells > 0 ? height / cells : 0;
+}
+
+static void a_dry_brush_skips_the_hollows(void)
+{
+    FlRecipe recipe;
+    float bare, painted;
+    g_autoptr(FlSheet) wet = brushed_sheet((FlEvent){.dry_px = 10}, &recipe);
+    height_where(wet, false, &bare);
+    g_assert_cmpfloat(bare, ==, 0);
+    g_autoptr(FlSheet) dry = brushed_sheet((FlEvent){.dry = {.5f, .5f}, .dry_px = 10}, &recipe);
+    const float hollows = height_where(dry, false, &bare);
+    const float bumps = height_where(dry, true, &painted);
+    g_assert_cmpfloat(bare, >, .2f);
+    g_assert_cmpfloat(painted, >, .2f);
+    g_assert_cmpfloat(bumps, >, hollows + .1f);
+    g_autoptr(FlSheet) twice = brushed_sheet((FlEvent){.dry = {.9f, 0}, .dry_px = 6}, &recipe);
+    height_where(twice, false, &bare); // in the middle the brush has been more than once
+    g_assert_cmpfloat(bare, <, .05f);
+}
+
+/* The mean change of the paint from a cell to the next one, along the stroke and across. */
+static void find_changes(const FlSheet *sheet, float *along, float *across)
+{
+    *along = *across = 0;
+    for (int j = SIDE / 2 - 10; j < SIDE / 2 + 10; j++)
+        for (int i = 10; i < SIDE - 10; i++) {
+            const float *g = &sheet->floating[0][j * SIDE + i], *s = &sheet->s[j * SIDE + i];
+            *along += fabsf(g[1] / s[1] - g[0] / s[0]);
+            *across += fabsf(g[SIDE] / s[SIDE] - g[0] / s[0]);
+        }
+}
+
+static void bristles_draw_lines_along_the_stroke(void)
+{
+    FlRecipe recipe;
+    float along, across;
+    const FlEvent stroke = {.bristles = .5f, .bristle_px = {3, 40}, .dry_px = 1};
+    g_autoptr(FlSheet) sheet = brushed_sheet(stroke, &recipe);
+    find_changes(sheet, &along, &across);
+    g_assert_cmpfloat(across, >, 4 * along);
+}
+
+static void pigments_play_when_asked_to(void)
+{
+    FlRecipe recipe;
+    for (int play = 0; play < 2; play++) {
+        g_autoptr(FlSheet) sheet =
+            brushed_sheet((FlEvent){.play = .5f * (float)play, .dry_px = 1}, &recipe);
+        float least = 1e9f, most = 0;
+        for (int i = 10; i < SIDE - 10; i++) {
+            const int at = SIDE / 2 * SIDE + i;
+            const float ratio = sheet->floating[0][at] / sheet->floating[1][at];
+            least = fminf(least, ratio), most = fmaxf(most, ratio);
+        }
+        if (play)
+            g_assert_cmpfloat(most, >, 1.3f * least);
+        else
+            g_assert_cmpfloat(most, ==, least);
+    }
+}
+
 /* Pigment of the disc within 2 cells of its rim, per cell, as a share of that within 6 of its
    middle. */
 static float rim_over_core(float edge_darkening)
@@ -519,6 +612,9 @@ int main(int argc, char **argv)
     g_assert_nonnull(folder);
 #define TEST(name) g_test_add_func("/watercolour/" #name, name)
     TEST(shallow_water_conserves_pigment_and_keeps_it_in_the_wet_mask);
+    TEST(a_dry_brush_skips_the_hollows);
+    TEST(bristles_draw_lines_along_the_stroke);
+    TEST(pigments_play_when_asked_to);
     TEST(no_velocity_leaks_through_the_wet_mask);
     TEST(relaxing_leaves_little_divergence);
     TEST(pigment_gathers_at_the_rim_of_a_wash);

@@ -7,36 +7,75 @@
 #include <math.h>
 #include <string.h>
 
-enum { KEY_WOBBLE = 201, KEY_STREAKS };
+enum { KEY_WOBBLE = 201, KEY_STREAKS, KEY_BRISTLES, KEY_PLAY }; // KEY_PLAY + pigment
 
 struct FlBrush {
     const FlRecipe *recipe;
     FlTouch *touches[FL_MAX_EVENTS]; // per event, one for each cell
 };
 
-static float squared_distance(const float *a, const float *b, float x, float y)
+/* A place in the coordinates of a stroke. */
+typedef struct Place {
+    float squared;       // distance from the line that the brush follows, px^2
+    float along, across; // its way from the first point, and its distance to the right; px
+} Place;
+
+static Place place_on_segment(const float *a, const float *b, float x, float y)
 {
     const float ex = b[0] - a[0], ey = b[1] - a[1], px = x - a[0], py = y - a[1];
     const float length = ex * ex + ey * ey;
     const float t = length > 0 ? fmaxf(0, fminf(1, (px * ex + py * ey) / length)) : 0;
     const float dx = px - t * ex, dy = py - t * ey;
-    return dx * dx + dy * dy;
+    const float norm = length > 0 ? 1 / sqrtf(length) : 1;
+    const float ax = length > 0 ? ex * norm : 1, ay = length > 0 ? ey * norm : 0;
+    return (Place){dx * dx + dy * dy, px * ax + py * ay, py * ax - px * ay};
+}
+
+static Place place_on_stroke(const FlEvent *event, float x, float y)
+{
+    Place nearest = place_on_segment(event->points[0], event->points[0], x, y);
+    float way = 0;
+    for (int i = 1; i < event->n_points; i++) {
+        const float *a = event->points[i - 1], *b = event->points[i];
+        Place place = place_on_segment(a, b, x, y);
+        place.along += way;
+        if (place.squared <= nearest.squared || i == 1)
+            nearest = place;
+        way += sqrtf((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]));
+    }
+    return nearest;
+}
+
+/* Each pigment is stirred into the brush unevenly. */
+static void find_play(const FlEvent *event, uint64_t key, float x_px, float y_px, FlTouch *touch)
+{
+    for (int k = 0; k < FL_MAX_PIGMENTS; k++)
+        touch->play[k] = 1;
+    for (int k = 0; k < FL_MAX_PIGMENTS && event->play > 0; k++)
+        touch->play[k] = fmaxf(0.02f, 1 + 1.5f * event->play *
+                                              fl_noise_octaves(fl_key(key, KEY_PLAY + (uint64_t)k),
+                                                               x_px / event->streak_px,
+                                                               y_px / event->streak_px, 3, 0.5f));
 }
 
 FlTouch fl_brush_touch(const FlEvent *event, uint64_t key, float x_px, float y_px)
 {
-    float nearest = squared_distance(event->points[0], event->points[0], x_px, y_px);
-    for (int i = 1; i < event->n_points; i++)
-        nearest =
-            fminf(nearest, squared_distance(event->points[i - 1], event->points[i], x_px, y_px));
+    const Place place = place_on_stroke(event, x_px, y_px);
     const float wobble =
         event->wobble * fl_noise_octaves(fl_key(key, KEY_WOBBLE), x_px / event->wobble_px,
                                          y_px / event->wobble_px, 3, 0.5f);
-    const float away = sqrtf(nearest);
+    const float away = sqrtf(place.squared);
     const float streak = fl_noise_octaves(fl_key(key, KEY_STREAKS), x_px / event->streak_px,
                                           y_px / event->streak_px, 4, 0.6f);
-    return (FlTouch){event->radius + wobble - away, away,
-                     fmaxf(0.02f, 1 + 1.5f * event->streaks * streak)};
+    FlTouch touch = {.inside = event->radius + wobble - away, .away = away};
+    if (event->bristles > 0)
+        touch.bristle =
+            event->bristles * fl_noise_octaves(fl_key(key, KEY_BRISTLES),
+                                               place.along / event->bristle_px[1],
+                                               place.across / event->bristle_px[0], 3, 0.7f);
+    touch.load = fmaxf(0.02f, 1 + 1.5f * event->streaks * streak + touch.bristle);
+    find_play(event, key, x_px, y_px, &touch);
+    return touch;
 }
 
 FlBrush *fl_brush_new(const FlRecipe *recipe, GError **error)
@@ -96,17 +135,31 @@ static bool out_of_reach(const FlSheet *sheet, const Moment *now, int i, int j)
            !(j < sheet->height - 1 && wet[sheet->width]);
 }
 
-/* The coverage of every cell by the event, 0..1. */
-static void find_cover(const FlSheet *sheet, const Moment *now, float *cover)
+/* How much of a full load a cell takes from a brush that is nearly dry: bumps take it first, and
+   what lies under the bristles. Behind its rim the brush has been more than once. */
+static float touched(const FlSheet *sheet, const Moment *now, size_t at, float depth_px)
+{
+    const FlEvent *event = now->event;
+    const float soft = 0.12f; // of the relief: between no paint and a full load
+    const float way = fminf(1, fmaxf(0, depth_px / event->dry_px));
+    const float dry = event->dry[0] + (event->dry[1] - event->dry[0]) * way;
+    if (dry <= 0)
+        return 1;
+    const float reach = sheet->relief[at] + 0.5f * now->touches[at].bristle - dry;
+    return fmaxf(0, fminf(1, 0.5f + reach / soft));
+}
+
+/* The coverage of every cell by the event, 0..1, and how far it takes the paint, 0..1. */
+static void find_cover(const FlSheet *sheet, const Moment *now, float *cover, float *taken)
 {
     const int width = sheet->width;
 #pragma omp parallel for schedule(static)
     for (int j = 0; j < sheet->height; j++)
         for (int i = 0; i < width; i++) {
-            const float share = depth(sheet, now, i, j) + 0.5f;
-            cover[(size_t)j * width + i] = share <= 0 || out_of_reach(sheet, now, i, j) ? 0
-                                           : share < 1                                  ? share
-                                                                                        : 1;
+            const size_t at = (size_t)j * width + i;
+            const float depth_px = depth(sheet, now, i, j), share = depth_px + 0.5f;
+            cover[at] = share <= 0 || out_of_reach(sheet, now, i, j) ? 0 : share < 1 ? share : 1;
+            taken[at] = cover[at] > 0 ? touched(sheet, now, at, depth_px) : 0;
         }
 }
 
@@ -115,18 +168,19 @@ static void pour(FlSheet *sheet, const Moment *now)
 {
     const FlEvent *event = now->event;
     const size_t cells = (size_t)sheet->width * sheet->height;
-    float *cover = sheet->spare[0];
-    find_cover(sheet, now, cover);
+    float *cover = sheet->spare[0], *taken = sheet->spare[1];
+    find_cover(sheet, now, cover, taken);
 #pragma omp parallel for schedule(static)
     for (size_t i = 0; i < cells; i++) {
         if (cover[i] <= 0)
             continue;
-        const float missing = event->water * sheet->capacity[i] - sheet->s[i];
+        const FlTouch *touch = &now->touches[i];
+        const float missing = event->water * sheet->capacity[i] * taken[i] - sheet->s[i];
         const float given = fmaxf(0, missing) * event->rate * cover[i];
         sheet->s[i] += given;
         sheet->p[i] += event->pressure * cover[i];
         for (int k = 0; k < sheet->n_pigments; k++)
-            sheet->floating[k][i] += given * now->touches[i].load * event->load[k];
+            sheet->floating[k][i] += given * touch->load * touch->play[k] * event->load[k];
         if (event->water > 0 && cover[i] > 0.5f)
             sheet->wet[i] = 1;
     }
@@ -135,11 +189,12 @@ static void pour(FlSheet *sheet, const Moment *now)
 static void lay_down(FlSheet *sheet, const Moment *now)
 {
     const size_t cells = (size_t)sheet->width * sheet->height;
-    float *cover = sheet->spare[0];
-    find_cover(sheet, now, cover);
+    float *cover = sheet->spare[0], *taken = sheet->spare[1];
+    find_cover(sheet, now, cover, taken);
     for (int k = 0; k < sheet->n_pigments; k++)
         for (size_t i = 0; i < cells; i++)
-            sheet->floating[k][i] += now->event->deposit[k] * cover[i] * now->touches[i].load;
+            sheet->floating[k][i] += now->event->deposit[k] * cover[i] * taken[i] *
+                                     now->touches[i].load * now->touches[i].play[k];
 }
 
 /* Velocity over a face between two cells: down the slope of the stroke's first outline, fastest

@@ -204,7 +204,13 @@ static void read_event(FlKeyLines *lines, FlRecipe *recipe)
         return;
     }
     FlEvent *event = &recipe->events[recipe->n_events++];
-    *event = (FlEvent){.radius = 10, .wobble_px = 20, .rate = 1, .streak_px = 20, .sweep_px = 20};
+    *event = (FlEvent){.radius = 10,
+                       .wobble_px = 20,
+                       .rate = 1,
+                       .streak_px = 20,
+                       .bristle_px = {4, 60},
+                       .dry_px = 10,
+                       .sweep_px = 20};
     float flat[2 * FL_MAX_POINTS];
     const int n = fl_keylines_floats(lines, "points", 2, 2 * FL_MAX_POINTS, -10000, 10000, flat);
     if (n == 0 || n % 2 != 0)
@@ -229,6 +235,11 @@ static void read_event(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_floats(lines, "deposit", 1, FL_MAX_PIGMENTS, 0, 10, event->deposit);
     fl_keylines_float(lines, "streaks", 0, 1, &event->streaks);
     fl_keylines_float(lines, "streak-size", 1, 1000, &event->streak_px);
+    fl_keylines_float(lines, "play", 0, 1, &event->play);
+    fl_keylines_float(lines, "bristles", 0, 1, &event->bristles);
+    fl_keylines_floats(lines, "bristle-size", 2, 2, 0.5f, 1000, event->bristle_px);
+    fl_keylines_floats(lines, "dry", 2, 2, 0, 1, event->dry);
+    fl_keylines_float(lines, "dry-depth", 0.5f, 1000, &event->dry_px);
     fl_keylines_float(lines, "pressure", 0, 10, &event->pressure);
 }
 
