@@ -1,6 +1,6 @@
-#include "svg/geometry.h"
 #include "drawing/raster.h"
 #include "scratch.h"
+#include "svg/geometry.h"
 #include <math.h>
 
 static FlOutlines *outlines_of(const char *content, double width, double height, FlSvg **opened)
@@ -173,12 +173,12 @@ static RsvgRectangle box_of(const FlOutlines *o, int leaf)
 static RsvgRectangle drawn_box(FlSvg *svg, int width, int height)
 {
     const FlLeaf *leaf = &g_array_index(fl_svg_leaves(svg)->leaf, FlLeaf, 0);
-    const FlBounds all = {0, 0, width, height};
+    const FlRect all = {0, 0, width, height};
     g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_A8, width, height, NULL);
     g_autoptr(cairo_t) cr = cairo_create(surface);
     g_assert_true(fl_svg_draw(svg, leaf, FL_PART_WHOLE, cr, width, height, NULL));
-    const FlBounds ink = fl_surface_ink(surface, all);
-    return (RsvgRectangle){ink.x0, ink.y0, ink.x1 - ink.x0, ink.y1 - ink.y0};
+    const FlRect ink = fl_surface_ink(surface, all);
+    return (RsvgRectangle){ink.x, ink.y, ink.width, ink.height};
 }
 
 #define SHAPE "<path d='M5 5L30 8 25 20A9 7 20 0 1 8 18Z'/>"

@@ -41,20 +41,48 @@ FlRect fl_rect_of(const uint8_t *plane, int width, int height)
     return fl_rect_within(plane, width, (FlRect){0, 0, width, height});
 }
 
+FlRect fl_rect_and(FlRect a, FlRect b)
+{
+    return fl_rect_between(MAX(a.x, b.x), MAX(a.y, b.y), MIN(a.x + a.width, b.x + b.width),
+                           MIN(a.y + a.height, b.y + b.height));
+}
+
+FlRect fl_rect_or(FlRect a, FlRect b)
+{
+    if (fl_rect_pixels(a) == 0 || fl_rect_pixels(b) == 0)
+        return fl_rect_pixels(a) == 0 ? b : a;
+    return fl_rect_between(MIN(a.x, b.x), MIN(a.y, b.y), MAX(a.x + a.width, b.x + b.width),
+                           MAX(a.y + a.height, b.y + b.height));
+}
+
+bool fl_rect_meet(FlRect a, FlRect b)
+{
+    return fl_rect_pixels(fl_rect_and(a, b)) > 0;
+}
+
+FlRect fl_rect_grown(FlRect rect, int px, FlRect limit)
+{
+    const FlRect grown = {rect.x - px, rect.y - px, rect.width + 2 * px, rect.height + 2 * px};
+    return fl_rect_and(grown, limit);
+}
+
+FlRect fl_rect_on_grid(FlRect rect, int grid)
+{
+    const int left = rect.x % grid, above = rect.y % grid;
+    return (FlRect){rect.x - left, rect.y - above, rect.width + left, rect.height + above};
+}
+
 void fl_rect_copy(const void *from, FlRect from_rect, void *to, FlRect to_rect, size_t pixel_bytes)
 {
-    const int x0 = MAX(from_rect.x, to_rect.x);
-    const int x1 = MIN(from_rect.x + from_rect.width, to_rect.x + to_rect.width);
-    const int y0 = MAX(from_rect.y, to_rect.y);
-    const int y1 = MIN(from_rect.y + from_rect.height, to_rect.y + to_rect.height);
+    const FlRect both = fl_rect_and(from_rect, to_rect);
     const size_t from_row = pixel_bytes * (size_t)from_rect.width;
     const size_t to_row = pixel_bytes * (size_t)to_rect.width;
-    for (int y = y0; y < y1 && x0 < x1; y++)
+    for (int y = both.y; y < both.y + both.height; y++)
         memcpy((char *)to + (size_t)(y - to_rect.y) * to_row +
-                   pixel_bytes * (size_t)(x0 - to_rect.x),
+                   pixel_bytes * (size_t)(both.x - to_rect.x),
                (const char *)from + (size_t)(y - from_rect.y) * from_row +
-                   pixel_bytes * (size_t)(x0 - from_rect.x),
-               pixel_bytes * (size_t)(x1 - x0));
+                   pixel_bytes * (size_t)(both.x - from_rect.x),
+               pixel_bytes * (size_t)both.width);
 }
 
 void fl_area_init(FlArea *area, const uint8_t *plane, int width, int height)

@@ -15,6 +15,22 @@ typedef struct FlRect {
     int x, y, width, height;
 } FlRect;
 
+/** From column x0 and row y0 to before x1 and y1; {0, 0, 0, 0} if nothing is between them. */
+static inline FlRect fl_rect_between(int x0, int y0, int x1, int y1)
+{
+    return x0 < x1 && y0 < y1 ? (FlRect){x0, y0, x1 - x0, y1 - y0} : (FlRect){0, 0, 0, 0};
+}
+
+FlRect fl_rect_and(FlRect a, FlRect b); // what both have; {0, 0, 0, 0}: nothing
+FlRect fl_rect_or(FlRect a, FlRect b); // the smallest that holds both; empty ones count for nothing
+bool fl_rect_meet(FlRect a, FlRect b); // whether they share a pixel
+
+/** A rectangle with a margin of px on each side, as far as it lies within `limit`. */
+FlRect fl_rect_grown(FlRect rect, int px, FlRect limit);
+
+/** Moves the left and the upper edge outwards to multiples of `grid`; x, y >= 0. */
+FlRect fl_rect_on_grid(FlRect rect, int grid);
+
 /** The smallest rectangle with every nonzero byte of a width * height plane; {0, 0, 0, 0}: none. */
 FlRect fl_rect_of(const uint8_t *plane, int width, int height);
 

@@ -31,11 +31,8 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Part, part_clear)
 
 static bool part_init(Part *part, const FlLayer *layer, int width, int height, GError **error)
 {
-    const FlRect box = layer->area.box;
-    const int x0 = MAX(box.x - MARGIN_PX, 0), y0 = MAX(box.y - MARGIN_PX, 0);
-    const int x1 = MIN(box.x + box.width + MARGIN_PX, width);
-    const int y1 = MIN(box.y + box.height + MARGIN_PX, height);
-    *part = (Part){.box = {x0, y0, x1 - x0, y1 - y0}};
+    const FlRect page = {0, 0, width, height};
+    *part = (Part){.box = fl_rect_grown(layer->area.box, MARGIN_PX, page)};
     const size_t n = fl_rect_pixels(part->box);
     return (part->over = fl_alloc(n, 1, "a matte", error)) &&
            (part->seen = fl_alloc(n, 1, "a matte", error)) &&

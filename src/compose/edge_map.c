@@ -113,21 +113,10 @@ typedef struct Tile {
     uint8_t *coverage, *others; // of around
 } Tile;
 
-static FlRect grown(FlRect box, int px, FlRect limit)
-{
-    const int x0 = MAX(box.x - px, limit.x),
-              x1 = MIN(box.x + box.width + px, limit.x + limit.width);
-    const int y0 = MAX(box.y - px, limit.y);
-    const int y1 = MIN(box.y + box.height + px, limit.y + limit.height);
-    return (FlRect){x0, y0, x1 - x0, y1 - y0};
-}
-
 /** What of a part of the frame a shape takes up; empty: nothing. */
 static FlRect shape_in(const FlDraw *draw, FlRect part)
 {
-    const FlRect all = draw->area.box, both = grown(part, 0, all);
-    if (both.width <= 0 || both.height <= 0)
-        return (FlRect){0};
+    const FlRect all = draw->area.box, both = fl_rect_and(part, all);
     FlRect box = fl_rect_within(draw->coverage, all.width,
                                 (FlRect){both.x - all.x, both.y - all.y, both.width, both.height});
     box.x += all.x, box.y += all.y;
@@ -151,8 +140,8 @@ static bool tile_init(Tile *tile, const FlEdgeMap *edges, int draw, FlRect box, 
     const FlRect frame = {0, 0, fl_drawing_width(edges->input->drawing),
                           fl_drawing_height(edges->input->drawing)};
     const FlRect part =
-        shape_in(&edges->draws->draw[draw], grown(box, fl_closing_reach(radius_px), frame));
-    *tile = (Tile){.part = part, .around = grown(part, radius_px, frame)};
+        shape_in(&edges->draws->draw[draw], fl_rect_grown(box, fl_closing_reach(radius_px), frame));
+    *tile = (Tile){.part = part, .around = fl_rect_grown(part, radius_px, frame)};
     const size_t n = fl_rect_pixels(part), around = fl_rect_pixels(tile->around);
     return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
            (tile->inside = fl_alloc(n, sizeof *tile->inside, "a matte", error)) &&
@@ -274,7 +263,7 @@ static bool count_inner(const FlEdgeMap *edges, int draw, const int16_t *amounts
     const FlArea *area = &edges->draws->draw[draw].area;
     const FlRect frame = {0, 0, fl_drawing_width(edges->input->drawing),
                           fl_drawing_height(edges->input->drawing)};
-    const FlRect box = grown(area->box, MARGIN_PX, frame);
+    const FlRect box = fl_rect_grown(area->box, MARGIN_PX, frame);
     g_autofree uint8_t *inner = g_malloc((size_t)box.width);
     g_autofree uint8_t *own = own_pixels(edges, draw, box, error);
     for (int y = 0; own && y < area->box.height; y++) {

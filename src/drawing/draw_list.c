@@ -104,26 +104,26 @@ static bool stage_init(Stage *stage, const FlDrawing *drawing, int frame, GError
 }
 
 /** The page's pixels. */
-static FlBounds page_of(const FlDrawing *drawing)
+static FlRect page_of(const FlDrawing *drawing)
 {
-    return (FlBounds){0, 0, drawing->width, drawing->height};
+    return (FlRect){0, 0, drawing->width, drawing->height};
 }
 
 /** The pixels a step can reach. */
-static FlBounds step_box(const Stage *stage, const FlStep *step)
+static FlRect step_box(const Stage *stage, const FlStep *step)
 {
-    const FlBounds box = {(int)floorf(step->box[0]), (int)floorf(step->box[1]),
-                          (int)ceilf(step->box[2]), (int)ceilf(step->box[3])};
-    return fl_bounds_and(page_of(stage->drawing), box);
+    return fl_rect_and(page_of(stage->drawing),
+                       fl_rect_between((int)floorf(step->box[0]), (int)floorf(step->box[1]),
+                                       (int)ceilf(step->box[2]), (int)ceilf(step->box[3])));
 }
 
 /** The box of all steps of a draw. */
-static FlBounds draw_box(const Stage *stage, const Draw *draw)
+static FlRect draw_box(const Stage *stage, const Draw *draw)
 {
-    FlBounds all = {0};
+    FlRect all = {0};
     for (guint i = 0; i < draw->steps->len; i++)
-        all = fl_bounds_or(
-            all, step_box(stage, &stage->frame->step[g_array_index(draw->steps, int, i)]));
+        all = fl_rect_or(all,
+                         step_box(stage, &stage->frame->step[g_array_index(draw->steps, int, i)]));
     return all;
 }
 
@@ -140,9 +140,9 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
     }
     const FlLeaf *leaf = step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
                                          : &g_array_index(list, FlUnit, index).leaf;
-    const FlBounds box = step_box(stage, step);
+    const FlRect box = step_box(stage, step);
     cairo_t *cr = cairo_create(surface);
-    cairo_rectangle(cr, box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0);
+    cairo_rectangle(cr, box.x, box.y, box.width, box.height);
     cairo_clip(cr);
     const bool drawn = fl_svg_draw(stage->svg, leaf, (FlPart)step->part, cr,
                                    stage->frame->page_width, stage->frame->page_height, error);
@@ -160,15 +160,15 @@ static void fill_solid(uint8_t solid[256], uint8_t alpha)
 
 /** The pixels of the box that is drawn into. */
 typedef struct Target {
-    FlBounds box;
+    FlRect box;
     uint8_t *coverage;
     uint8_t *picture; // may be NULL
 } Target;
 
 static size_t target_pixel(const Target *target, int x, int y)
 {
-    const size_t width = (size_t)(target->box.x1 - target->box.x0);
-    return (size_t)(y - target->box.y0) * width + (size_t)(x - target->box.x0);
+    const FlRect box = target->box;
+    return (size_t)(y - box.y) * (size_t)box.width + (size_t)(x - box.x);
 }
 
 /** Adds one flat step to a coverage, dividing by its opacity. */
@@ -176,15 +176,15 @@ static bool add_flat(const Stage *stage, const FlStep *step, const Target *targe
 {
     if (!draw_step(stage, step, stage->coverage, error))
         return false;
-    const FlBounds box = step_box(stage, step);
+    const FlRect box = step_box(stage, step);
     const int stride = cairo_image_surface_get_stride(stage->coverage);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
     uint8_t solid[256];
     fill_solid(solid, step->drawn);
-    for (int y = box.y0; y < box.y1; y++) {
-        const unsigned char *in = drawn + (size_t)y * stride + box.x0;
-        uint8_t *out = target->coverage + target_pixel(target, box.x0, y);
-        for (int x = 0; x < box.x1 - box.x0; x++)
+    for (int y = box.y; y < box.y + box.height; y++) {
+        const unsigned char *in = drawn + (size_t)y * stride + box.x;
+        uint8_t *out = target->coverage + target_pixel(target, box.x, y);
+        for (int x = 0; x < box.width; x++)
             if (in[x])
                 out[x] = fl_over(solid[in[x]], out[x]);
     }
@@ -217,8 +217,9 @@ static bool draw_picture(Stage *stage, const Draw *draw, const Target *target, G
     const unsigned char *drawn = cairo_image_surface_get_data(stage->picture);
     uint8_t solid[256];
     fill_solid(solid, draw->drawn);
-    for (int y = target->box.y0; y < target->box.y1; y++)
-        for (int x = target->box.x0; x < target->box.x1; x++) {
+    const FlRect box = target->box;
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++) {
             const uint32_t pixel = ((const uint32_t *)(drawn + (size_t)y * stride))[x];
             const size_t p = target_pixel(target, x, y);
             if (!pixel)
@@ -229,7 +230,7 @@ static bool draw_picture(Stage *stage, const Draw *draw, const Target *target, G
                 memcpy(target->picture + 4 * p, mine, 4);
             target->coverage[p] = fl_over(mine[3], target->coverage[p]);
         }
-    fl_surface_wipe(stage->picture, target->box);
+    fl_surface_wipe(stage->picture, box);
     return true;
 }
 
@@ -255,8 +256,7 @@ static bool draw_in(Stage *stage, const Draw *draw, const Target *target, GError
 /** Copies the drawn pixels, cropped to their bounding box. */
 static bool keep_drawn(const Target *target, FlDraw *out, GError **error)
 {
-    const FlRect from = {target->box.x0, target->box.y0, target->box.x1 - target->box.x0,
-                         target->box.y1 - target->box.y0};
+    const FlRect from = target->box;
     fl_area_init(&out->area, target->coverage, from.width, from.height);
     FlRect *box = &out->area.box;
     box->x += from.x, box->y += from.y;
@@ -275,8 +275,8 @@ static bool keep_drawn(const Target *target, FlDraw *out, GError **error)
 
 static bool draw_steps(Stage *stage, const Draw *draw, FlDraw *out, GError **error)
 {
-    const FlBounds box = draw_box(stage, draw);
-    const size_t n = (size_t)(box.x1 - box.x0) * (size_t)(box.y1 - box.y0);
+    const FlRect box = draw_box(stage, draw);
+    const size_t n = fl_rect_pixels(box);
     *out = (FlDraw){.region = draw->region, .alpha = draw->alpha, .mix = (FlBlendMode)draw->mix};
     memcpy(out->rgb, draw->rgb, 3);
     g_autofree uint8_t *coverage = fl_alloc(n, 1, "the mask of a region", error);

@@ -18,12 +18,12 @@ bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, double page_width, double 
     f->factor = MAX(1, (double)MAX(width, height) / LOOK_PX);
     f->width = page_width / f->factor;
     f->height = page_height / f->factor;
-    f->all = (FlBounds){0, 0, MAX(1, (int)ceil(width / f->factor)),
-                        MAX(1, (int)ceil(height / f->factor))};
+    f->all =
+        (FlRect){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
     f->probes = g_array_new(FALSE, FALSE, sizeof(FlProbe));
     g_array_set_clear_func(f->probes, look_clear);
-    f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.x1, f->all.y1, error);
-    f->check = f->coverage ? fl_self_check_new(f->all.x1, f->all.y1, error) : NULL;
+    f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
+    f->check = f->coverage ? fl_self_check_new(f->all.width, f->all.height, error) : NULL;
     return f->check != NULL;
 }
 
@@ -40,7 +40,7 @@ void fl_frame_probe_clear(FlFrameProbe *f)
 }
 
 /** Draws a part into the frame's coverage. Returns: its box; the caller wipes it. */
-static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlBounds *box, GError **error)
+static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect *box, GError **error)
 {
     cairo_t *cr = cairo_create(f->coverage);
     const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->width, f->height, error);
@@ -49,39 +49,44 @@ static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlBounds *bo
     return drawn;
 }
 
-static float sum_of(cairo_surface_t *coverage, FlBounds box)
+static float sum_of(cairo_surface_t *coverage, FlRect box)
 {
     const unsigned char *data = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
     int64_t sum = 0;
-    for (int y = box.y0; y < box.y1; y++)
-        for (int x = box.x0; x < box.x1; x++)
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++)
             sum += data[(size_t)y * stride + x];
     return (float)sum / 255.0f;
+}
+
+/** The pixels of the small picture that a rectangle of the picture touches. */
+static FlRect small_box(const FlFrameProbe *f, double x0, double y0, double x1, double y1)
+{
+    return fl_rect_between((int)floor(x0 / f->factor), (int)floor(y0 / f->factor),
+                           (int)ceil(x1 / f->factor), (int)ceil(y1 / f->factor));
 }
 
 /**
  * The box of a part that the small picture cannot show: text, whose shape depends on the scale, and
  * tiny parts. Drawn in full size; px of the small picture.
  */
-static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlBounds *box,
+static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect *box,
                         float *area_px, GError **error)
 {
-    const FlBounds all = {0, 0, f->full_width, f->full_height};
+    const FlRect all = {0, 0, f->full_width, f->full_height};
     if (!f->full)
-        f->full = fl_surface_new(CAIRO_FORMAT_A8, all.x1, all.y1, error);
+        f->full = fl_surface_new(CAIRO_FORMAT_A8, all.width, all.height, error);
     if (!f->full)
         return false;
     cairo_t *cr = cairo_create(f->full);
     const bool drawn =
         fl_svg_draw(f->svg, leaf, part, cr, f->width * f->factor, f->height * f->factor, error);
     cairo_destroy(cr);
-    const FlBounds ink = fl_surface_ink(f->full, all);
+    const FlRect ink = fl_surface_ink(f->full, all);
     *area_px = sum_of(f->full, ink);
     fl_surface_wipe(f->full, ink);
-    *box = ink.x1 > 0 ? (FlBounds){(int)floor(ink.x0 / f->factor), (int)floor(ink.y0 / f->factor),
-                                   (int)ceil(ink.x1 / f->factor), (int)ceil(ink.y1 / f->factor)}
-                      : ink;
+    *box = small_box(f, ink.x, ink.y, ink.x + ink.width, ink.y + ink.height);
     return drawn;
 }
 
@@ -89,18 +94,13 @@ static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlBoun
  * Widens the box of a stroke by where it is in full size: the pen that cairo draws thick lines of
  * next to no length with has so few corners on a small picture that their caps are cut off.
  */
-static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlBounds *box)
+static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlRect *box)
 {
     const RsvgRectangle r =
         fl_svg_extents(f->svg, leaf, f->width * f->factor, f->height * f->factor);
-    const FlBounds at =
-        fl_bounds_and(f->all, (FlBounds){(int)floor(r.x / f->factor), (int)floor(r.y / f->factor),
-                                         (int)ceil((r.x + r.width) / f->factor),
-                                         (int)ceil((r.y + r.height) / f->factor)});
-    if (box->x1 == 0 || at.x1 == 0)
-        return;
-    box->x0 = MIN(box->x0, at.x0), box->x1 = MAX(box->x1, at.x1);
-    box->y0 = MIN(box->y0, at.y0), box->y1 = MAX(box->y1, at.y1);
+    const FlRect at = fl_rect_and(f->all, small_box(f, r.x, r.y, r.x + r.width, r.y + r.height));
+    if (box->width > 0)
+        *box = fl_rect_or(*box, at);
 }
 
 /** Completes the parts of one leaf, from `first` on, with what they have in common. */
@@ -144,13 +144,13 @@ static bool look_at(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **err
         probe.found.area_px =
             (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
         fl_surface_wipe(f->coverage, probe.box);
-        if (good && (leaf->text || probe.box.x1 == 0)) {
+        if (good && (leaf->text || probe.box.width == 0)) {
             good = box_in_full(f, leaf, p->part, &probe.box, &probe.found.area_px, error);
             probe.found.area_px /= opacity;
         }
         if (p->width > 0)
             widen(f, leaf, &probe.box);
-        if (good && probe.box.x1 > 0 && p->paint.alpha > 0)
+        if (good && probe.box.width > 0 && p->paint.alpha > 0)
             g_array_append_val(f->probes, probe);
         else
             g_free(probe.paint);
@@ -164,8 +164,8 @@ static bool overlap(const GArray *probes, guint first)
 {
     for (guint i = first; i < probes->len; i++)
         for (guint j = i + 1; j < probes->len; j++)
-            if (fl_bounds_meet(g_array_index(probes, FlProbe, i).box,
-                               g_array_index(probes, FlProbe, j).box))
+            if (fl_rect_meet(g_array_index(probes, FlProbe, i).box,
+                             g_array_index(probes, FlProbe, j).box))
                 return true;
     return false;
 }
@@ -225,7 +225,8 @@ static bool look_at_leaves(FlFrameProbe *f, GError **error)
 static bool stack(FlFrameProbe *f, GError **error)
 {
     const float page = (float)(f->width * f->height * f->factor * f->factor);
-    g_autoptr(cairo_surface_t) below = fl_surface_new(CAIRO_FORMAT_A8, f->all.x1, f->all.y1, error);
+    g_autoptr(cairo_surface_t) below =
+        fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
     if (!below)
         return false;
     unsigned char *under = cairo_image_surface_get_data(below);
@@ -233,15 +234,15 @@ static bool stack(FlFrameProbe *f, GError **error)
     const int stride = cairo_image_surface_get_stride(below);
     for (guint i = 0; i < f->probes->len; i++) {
         FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
-        FlBounds box;
+        FlRect box;
         if (probe->found.unit > 0 && probe->found.leaf >= 0)
             continue; // the unit comes after its leaves
         if (!cover(f, probe->leaf, probe->found.part, &box, error))
             return false;
         const bool fills_page = probe->found.area_px > 0.95f * page;
         int64_t sum = 0, covered = 0;
-        for (int y = box.y0; y < box.y1; y++)
-            for (int x = box.x0; x < box.x1; x++) {
+        for (int y = box.y; y < box.y + box.height; y++)
+            for (int x = box.x; x < box.x + box.width; x++) {
                 const size_t p = (size_t)y * stride + x;
                 sum += mine[p];
                 covered += mine[p] * under[p];

@@ -11,7 +11,7 @@ typedef struct FlProbe {
     FlSurveyPart found;
     const FlLeaf *leaf;
     char *paint;
-    FlBounds box; // px of the small picture
+    FlRect box; // px of the small picture
 } FlProbe;
 
 /** What one thread needs for one frame. */
@@ -22,7 +22,7 @@ typedef struct FlFrameProbe {
     cairo_surface_t *coverage;
     cairo_surface_t *full; // in the picture's own size; made when first needed
     int full_width, full_height;
-    FlBounds all;
+    FlRect all;
     GArray *probes;
     FlSelfCheck *check;
 } FlFrameProbe;

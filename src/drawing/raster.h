@@ -1,24 +1,16 @@
-/* Bounding boxes and compositing of rasters. */
+/* Boxes of a surface, and compositing of pixels. */
 #ifndef FLUIDY_DRAWING_RASTER_H
 #define FLUIDY_DRAWING_RASTER_H
 
+#include "base/rect.h"
 #include "base/surface.h"
 #include <stdbool.h>
 
-/** A rectangle of pixels, x1 and y1 exclusive; empty if x1 <= x0. */
-typedef struct FlBounds {
-    int x0, y0, x1, y1;
-} FlBounds;
-
 /** Clears the pixels of a box. */
-void fl_surface_wipe(cairo_surface_t *surface, FlBounds box);
+void fl_surface_wipe(cairo_surface_t *surface, FlRect box);
 
 /** The smallest box of all pixels that are not 0, within `box`; A8 or ARGB32. */
-FlBounds fl_surface_ink(cairo_surface_t *surface, FlBounds box);
-
-FlBounds fl_bounds_and(FlBounds a, FlBounds b);
-FlBounds fl_bounds_or(FlBounds a, FlBounds b); // the smallest that holds both
-bool fl_bounds_meet(FlBounds a, FlBounds b);
+FlRect fl_surface_ink(cairo_surface_t *surface, FlRect box);
 
 /** a over b for coverages and opacities 0..255. */
 static inline uint8_t fl_over(uint8_t a, uint8_t b)

@@ -79,8 +79,8 @@ static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surfac
 }
 
 bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
-                       cairo_surface_t *coverage, FlBounds box, double page_width,
-                       double page_height, GError **error)
+                       cairo_surface_t *coverage, FlRect box, double page_width, double page_height,
+                       GError **error)
 {
     const unsigned char *mine = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
@@ -89,8 +89,8 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
     const FlPiece piece = {leaf, part->part, part->mix};
     g_array_append_val(check->pieces, piece);
     const uint16_t index = (uint16_t)MIN(check->pieces->len, UINT16_MAX);
-    for (int y = box.y0; y < box.y1; y++)
-        for (int x = box.x0; x < box.x1; x++) {
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++) {
             const size_t p = (size_t)y * check->width + x;
             const uint8_t cover = mine[(size_t)y * stride + x];
             if (cover && flat)

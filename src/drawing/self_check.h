@@ -19,8 +19,8 @@ void fl_self_check_free(FlSelfCheck *check); // NULL is fine
 
 /** Draws the next part over; coverage is its A8 rendering, not 0 in `box` only. */
 bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
-                       cairo_surface_t *coverage, FlBounds box, double page_width,
-                       double page_height, GError **error);
+                       cairo_surface_t *coverage, FlRect box, double page_width, double page_height,
+                       GError **error);
 
 /**
  * Compares with the file as it is, whether they differ visibly.

@@ -52,8 +52,8 @@ static void keep(FlSurvey *survey, int t, const FlFrameProbe *f)
         one.ids = fl_strings_add(s, probe->leaf->ids);
         one.classes = fl_strings_add(s, probe->leaf->classes);
         one.tree = fl_strings_add(s, probe->leaf->tree);
-        const int corner[4] = {probe->box.x0 - 1, probe->box.y0 - 1, probe->box.x1 + 1,
-                               probe->box.y1 + 1};
+        const FlRect box = probe->box;
+        const int corner[4] = {box.x - 1, box.y - 1, box.x + box.width + 1, box.y + box.height + 1};
         for (int c = 0; c < 4; c++)
             one.box[c] = (float)(corner[c] * f->factor);
         g_array_append_val(parts, one);

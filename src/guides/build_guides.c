@@ -222,13 +222,11 @@ static bool motion_of(Builder *b, int frame, const Motion **motion, GError **err
 static void add_motion(const FlOutline *to, const FlOutline *from, const float *motion,
                        float weight, float *flow, float *norm)
 {
-    const FlRect *a = &to->box, *b = &from->box;
-    const int left = MAX(a->x, b->x), right = MIN(a->x + a->width, b->x + b->width);
-    const int top = MAX(a->y, b->y), bottom = MIN(a->y + a->height, b->y + b->height);
-    for (int y = top; y < bottom; y++) {
-        size_t p = (y - a->y) * (size_t)a->width + left - a->x;
-        size_t q = (y - b->y) * (size_t)b->width + left - b->x;
-        for (int x = left; x < right; x++, p++, q++) {
+    const FlRect *a = &to->box, *b = &from->box, both = fl_rect_and(*a, *b);
+    for (int y = both.y; y < both.y + both.height; y++) {
+        size_t p = (y - a->y) * (size_t)a->width + both.x - a->x;
+        size_t q = (y - b->y) * (size_t)b->width + both.x - b->x;
+        for (int x = 0; x < both.width; x++, p++, q++) {
             if (!(to->coverage[p] & from->coverage[q] & FL_INSIDE))
                 continue;
             norm[p] += weight;

@@ -230,7 +230,7 @@ static FlRect box_of_label(const Work *w, int32_t label)
                 x0 = MIN(x0, x), x1 = MAX(x1, x + 1);
                 y0 = MIN(y0, y), y1 = MAX(y1, y + 1);
             }
-    return x1 > x0 ? (FlRect){x0, y0, x1 - x0, y1 - y0} : (FlRect){0};
+    return fl_rect_between(x0, y0, x1, y1);
 }
 
 static void move_affinely(const Work *w, int32_t label, FlRect box, const FlAffine *back)

@@ -91,9 +91,8 @@ static FlRect part_box(const FlRimShape *shape, float border_px)
 {
     const int px = 2 * (int)(DETAIL_WIDE * border_px + 1.0f) + MARGIN_PX;
     const FlRect box = fl_rect_of(shape->mask, shape->width, shape->height);
-    const int x0 = MAX(box.x - px, 0), x1 = MIN(box.x + box.width + px, shape->width);
-    const int y0 = MAX(box.y - px, 0), y1 = MIN(box.y + box.height + px, shape->height);
-    return box.width > 0 ? (FlRect){x0, y0, x1 - x0, y1 - y0} : box;
+    return box.width > 0 ? fl_rect_grown(box, px, (FlRect){0, 0, shape->width, shape->height})
+                         : box;
 }
 
 static bool measure(Part *part, const FlRimShape *shape, float border_px, bool *narrow,

@@ -88,13 +88,8 @@ bool fl_mask_store_same(const FlMaskStore *masks, int region, int a, int b)
 
 FlRect fl_mask_store_extent(const FlMaskStore *masks, int region)
 {
-    int x0 = INT32_MAX, y0 = INT32_MAX, x1 = 0, y1 = 0;
-    for (int f = 0; f < masks->n_frames; f++) {
-        const FlRect box = masks->boxes[(size_t)region * masks->n_frames + f];
-        if (box.width == 0)
-            continue;
-        x0 = MIN(x0, box.x), x1 = MAX(x1, box.x + box.width);
-        y0 = MIN(y0, box.y), y1 = MAX(y1, box.y + box.height);
-    }
-    return x1 > x0 ? (FlRect){x0, y0, x1 - x0, y1 - y0} : (FlRect){0};
+    FlRect extent = {0, 0, 0, 0};
+    for (int f = 0; f < masks->n_frames; f++)
+        extent = fl_rect_or(extent, masks->boxes[(size_t)region * masks->n_frames + f]);
+    return extent;
 }

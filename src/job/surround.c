@@ -55,12 +55,10 @@ static bool add_colour(const FlDraw *draw, int x, int y, uint64_t sum[3])
  */
 static float difference_where_they_meet(const FlDraw *a, const FlDraw *b)
 {
-    const FlRect p = a->area.box, q = b->area.box;
-    const int x0 = MAX(p.x, q.x), x1 = MIN(p.x + p.width, q.x + q.width);
-    const int y0 = MAX(p.y, q.y), y1 = MIN(p.y + p.height, q.y + q.height);
+    const FlRect both = fl_rect_and(a->area.box, b->area.box);
     uint64_t sum[2][3] = {{0}}, n = 0;
-    for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++)
+    for (int y = both.y; y < both.y + both.height; y++)
+        for (int x = both.x; x < both.x + both.width; x++)
             if (coverage_at(a, x, y) && coverage_at(b, x, y))
                 n += add_colour(a, x, y, sum[0]) && add_colour(b, x, y, sum[1]);
     uint8_t mean[2][3];
@@ -128,19 +126,13 @@ static void hide_below(const FlDraw *draw, int width, uint8_t *free_of)
     }
 }
 
-static bool boxes_meet(FlRect a, FlRect b)
-{
-    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height &&
-           b.y < a.y + a.height;
-}
-
 /** Whether a layer of others lies over one of the region. */
 static bool lies_below(const FlDrawList *draws, int region, const bool *like)
 {
     for (int r = 0; r < draws->n; r++)
         for (int k = r + 1; k < draws->n && draws->draw[r].region == region; k++)
             if (draws->draw[k].region != region && !like[k] &&
-                boxes_meet(draws->draw[r].area.box, draws->draw[k].area.box))
+                fl_rect_meet(draws->draw[r].area.box, draws->draw[k].area.box))
                 return true;
     return false;
 }

@@ -109,12 +109,10 @@ static FlRect cropped(const FlPainter *painter)
 {
     const int levels = MIN(painter->plan->style->exemplar->n_levels,
                            fl_levels_of(painter->result.width, painter->result.height));
-    const int grid = 1 << (levels - 1), room = (FL_PATCH_RADIUS + 1) * grid;
-    const FlRect ever = fl_mask_store_extent(painter->masks, painter->plan->region);
-    const int x0 = MAX(ever.x - room, 0) / grid * grid, y0 = MAX(ever.y - room, 0) / grid * grid;
-    const int x1 = MIN(ever.x + ever.width + room, painter->result.width);
-    const int y1 = MIN(ever.y + ever.height + room, painter->result.height);
-    return (FlRect){x0, y0, x1 - x0, y1 - y0};
+    const int grid = 1 << (levels - 1), margin = (FL_PATCH_RADIUS + 1) * grid;
+    const FlRect extent = fl_mask_store_extent(painter->masks, painter->plan->region);
+    const FlRect page = {0, 0, painter->result.width, painter->result.height};
+    return fl_rect_on_grid(fl_rect_grown(extent, margin, page), grid);
 }
 
 double fl_painter_bytes(const FlPainter *painter)

@@ -99,11 +99,11 @@ static bool working_rect(const FlSynth *synth, const FlGuides *guides, FlRect *r
                 x0 = MIN(x0, x), x1 = MAX(x1, x);
                 y0 = MIN(y0, y), y1 = MAX(y1, y);
             }
-    const int grid = 1 << (synth->n_levels - 1), margin = FL_PATCH_RADIUS * grid;
-    x0 = MAX(x0 - margin, 0) / grid * grid, y0 = MAX(y0 - margin, 0) / grid * grid;
-    x1 = MIN(x1 + margin + 1, synth->width), y1 = MIN(y1 + margin + 1, synth->height);
-    *rect = (FlRect){x0, y0, x1 - x0, y1 - y0};
-    return x1 > x0 && y1 > y0 && x1 - x0 <= synth->width;
+    const int grid = 1 << (synth->n_levels - 1);
+    const FlRect page = {0, 0, synth->width, synth->height};
+    const FlRect box = fl_rect_between(x0, y0, x1 + 1, y1 + 1);
+    *rect = fl_rect_on_grid(fl_rect_grown(box, FL_PATCH_RADIUS * grid, page), grid);
+    return box.width > 0;
 }
 
 /* The previous field in the new rectangle, carried along the drawing's motion and shifted in the
