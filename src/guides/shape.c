@@ -1,23 +1,9 @@
-#include "base/alloc.h"
-#include "base/row_kernels.h"
+#include "guides/blur.h"
 #include "guides/gauss.h"
 #include "guides/guides.h"
 #include <math.h>
 
-/** Blurs one row of coverage along x into dst; padded: scratch, width + 2 * radius. */
-static void blur_row(const uint8_t *row, int width, const float *weight, int radius, float *padded,
-                     float *dst)
-{
-    for (int x = -radius; x < width + radius; x++)
-        padded[x + radius] = row[CLAMP(x, 0, width - 1)] * (1.0f / 255.0f);
-    const float *middle = padded + radius;
-    for (int x = 0; x < width; x++)
-        dst[x] = weight[0] * middle[x];
-    for (int k = 1; k <= radius; k++)
-        fl_row_kernels()->add_pair(dst, middle - k, middle + k, weight[k], width);
-}
-
-/** Normalised one-sided kernel: weight[0] + 2 * (weight[1] + …) is 1. */
+/** One side of a Gaussian: weight[0] + 2 * (weight[1] + …) is 1. */
 static float *make_kernel(float border_px, int *radius)
 {
     *radius = border_px > 0.0f ? (int)border_px : 0;
@@ -38,30 +24,9 @@ bool fl_shape_blur(const uint8_t *mask, int width, int height, float border_px, 
 {
     int radius;
     g_autofree float *weight = make_kernel(border_px, &radius);
-    g_autofree float *rows =
-        fl_alloc((size_t)width * height, sizeof *rows, "a blurred mask", error);
-    if (!rows)
-        return false;
-#pragma omp parallel
-    {
-        g_autofree float *padded = g_new(float, width + 2 * (size_t)radius);
-#pragma omp for schedule(static)
-        for (int y = 0; y < height; y++)
-            blur_row(mask + y * (size_t)width, width, weight, radius, padded,
-                     rows + y * (size_t)width);
-#pragma omp for schedule(static)
-        for (int y = 0; y < height; y++) {
-            float *dst = shape + y * (size_t)width;
-            const float *middle = rows + y * (size_t)width;
-            for (int x = 0; x < width; x++)
-                dst[x] = weight[0] * middle[x];
-            for (int k = 1; k <= radius; k++)
-                fl_row_kernels()->add_pair(dst, rows + MAX(y - k, 0) * (size_t)width,
-                                           rows + MIN(y + k, height - 1) * (size_t)width, weight[k],
-                                           width);
-        }
-    }
-    return true;
+    for (size_t p = 0; p < (size_t)width * height; p++)
+        shape[p] = mask[p] * (1.0f / 255.0f);
+    return fl_blur_with(shape, width, height, &(FlBlurKernel){radius, weight, 1}, error);
 }
 
 void fl_shape_ramp(const float *distance, int width, int height, float border_px, float *shape)

@@ -1,6 +1,7 @@
 #include "style/estimate.h"
 
 #include "base/alloc.h"
+#include "guides/blur.h"
 #include "guides/gauss.h"
 #include "style/flat_field.h"
 
@@ -17,34 +18,15 @@ static const float SHARPNESS = 6;       // a strong edge, smoothed, is cut at a 
 static const double KEEP_SHARE = 0.04;  // of the largest part: smaller parts are specks
 static const double HOLE_SHARE = 0.005; // of the largest part: smaller holes are grain
 
-bool fl_blur_plane(float *plane, int width, int height, float sigma, GError **error)
+bool fl_blur_recording(float *plane, int width, int height, float sigma_px, GError **error)
 {
-    const int radius = (int)ceilf(3 * sigma), longest = MAX(width, height);
-    g_autofree float *kernel = fl_alloc(radius + 1, sizeof(float), "a kernel", error);
-    g_autofree float *line = fl_alloc(longest + 2 * radius, sizeof(float), "a line", error);
-    if (!kernel || !line)
-        return false;
+    const int radius = (int)ceilf(3 * sigma_px);
+    g_autofree float *weight = g_new(float, radius + 1);
     float sum = 0;
-    fl_gauss_weights(kernel, radius, sigma);
-    for (int i = radius; i >= 0; i--)
-        sum += (i ? 2 : 1) * kernel[i];
-    for (int pass = 0; pass < 2; pass++) {
-        const int lines = pass ? width : height, length = pass ? height : width;
-        const ptrdiff_t step = pass ? width : 1, next = pass ? 1 : width;
-        for (int l = 0; l < lines; l++) {
-            float *first = plane + l * next;
-            for (int i = -radius; i < length + radius; i++)
-                line[i + radius] = first[CLAMP(i, 0, length - 1) * step];
-            for (int i = 0; i < length; i++) {
-                const float *centre = line + i + radius;
-                float blurred = kernel[0] * centre[0];
-                for (int k = 1; k <= radius; k++)
-                    blurred += kernel[k] * (centre[-k] + centre[k]);
-                first[i * step] = blurred / sum;
-            }
-        }
-    }
-    return true;
+    fl_gauss_weights(weight, radius, sigma_px);
+    for (int k = radius; k >= 0; k--)
+        sum += (k ? 2 : 1) * weight[k];
+    return fl_blur_with(plane, width, height, &(FlBlurKernel){radius, weight, sum}, error);
 }
 
 double fl_mask_share(const uint8_t *mask, int width, int height)
@@ -71,7 +53,7 @@ static bool difference(const FlClip *clip, int frame, const FlFlatField *plate, 
         for (int y = 0; y < height; y++)
             for (int x = 0; x < width; x++, rgb += 3)
                 channel[y * (size_t)width + x] = *rgb - fl_flat_field_at(plate, x, y, c);
-        if (!fl_blur_plane(channel, width, height, SMOOTH_PX, error))
+        if (!fl_blur_recording(channel, width, height, SMOOTH_PX, error))
             return false;
         for (size_t i = 0; i < pixels; i++)
             most[i] = MAX(most[i], fabsf(channel[i]));
@@ -173,7 +155,7 @@ static bool binary_to_coverage(const uint8_t *binary, int width, int height, flo
     const float slope = 0.35f / MARGIN_PX; // of a straight step blurred by MARGIN_PX, at the cut
     for (size_t i = 0; i < pixels; i++)
         plane[i] = binary[i];
-    if (!fl_blur_plane(plane, width, height, MARGIN_PX, error))
+    if (!fl_blur_recording(plane, width, height, MARGIN_PX, error))
         return false;
     for (size_t i = 0; i < pixels; i++)
         mask[i] = (uint8_t)(255 * CLAMP(0.5f + (plane[i] - MARGIN_CUT) / slope, 0, 1) + 0.5f);

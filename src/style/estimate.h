@@ -34,7 +34,10 @@ bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask,
 /** The mean coverage of a mask, 0..1. */
 double fl_mask_share(const uint8_t *mask, int width, int height);
 
-/** Gaussian blur of a plane in place, its rim repeated; sigma in pixels, > 0. */
-bool fl_blur_plane(float *plane, int width, int height, float sigma, GError **error);
+/**
+ * fl_blur() as recordings are imported with it: rounded otherwise, and cut a pixel farther out if
+ * three sigma are no whole number of pixels. sigma_px > 0.
+ */
+bool fl_blur_recording(float *plane, int width, int height, float sigma_px, GError **error);
 
 #endif

@@ -1,6 +1,7 @@
 #include "style/measure.h"
 
 #include "base/alloc.h"
+#include "guides/blur.h"
 #include "style/estimate.h"
 
 #include <math.h>
@@ -200,7 +201,7 @@ static bool measure_texture(Pass *pass, GError **error)
     Power paint = {0}, thin = {0}, paper = {0};
     for (size_t i = 0; blurred && i < pixels; i++)
         blurred[i] = lightness(rgb + 3 * i);
-    if (!blurred || !fl_blur_plane(blurred, style->width, style->height, 2, error))
+    if (!blurred || !fl_blur(blurred, style->width, style->height, 2, error))
         return false;
     for (size_t i = 0; i < pixels; i++) {
         const double detail = lightness(rgb + 3 * i) - blurred[i];

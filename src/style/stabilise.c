@@ -32,7 +32,7 @@ static bool mean_over_paper(const FlClip *clip, float *plane, const uint8_t *pai
 {
     for (size_t i = 0; i < (size_t)clip->width * clip->height; i++)
         plane[i] = painted[i] ? 0 : plane[i];
-    return fl_blur_plane(plane, clip->width, clip->height, LIGHT_PX, error);
+    return fl_blur_recording(plane, clip->width, clip->height, LIGHT_PX, error);
 }
 
 static bool read_detail(const FlClip *clip, int frame, const uint8_t *painted, const Light *light,
@@ -43,7 +43,7 @@ static bool read_detail(const FlClip *clip, int frame, const uint8_t *painted, c
     for (size_t i = 0; i < pixels; i++, rgb += 3)
         detail[i] = 0.25f * rgb[0] + 0.5f * rgb[1] + 0.25f * rgb[2];
     memcpy(light->mean, detail, pixels * sizeof *detail);
-    if (!fl_blur_plane(detail, clip->width, clip->height, 1, error) ||
+    if (!fl_blur_recording(detail, clip->width, clip->height, 1, error) ||
         !mean_over_paper(clip, light->mean, painted, error))
         return false;
     for (size_t i = 0; i < pixels; i++)

@@ -21,7 +21,10 @@ static void blur_line(float *line, int n, ptrdiff_t stride, int radius, float *c
     }
 }
 
-/* Three box blurs are a Gaussian, near enough. */
+/*
+ * Three box blurs are a Gaussian, near enough, and cost the same at every radius. fl_blur() would
+ * round otherwise, and styles must rebuild to the same bytes.
+ */
 static void blur(float *grid, int width, int height, int radius, float *line)
 {
     for (int pass = 0; pass < 3; pass++) {
