@@ -1,7 +1,6 @@
 #include "guides/connected_parts.h"
 
 #include "base/alloc.h"
-#include "guides/guides.h"
 
 /** The root of a label in the union-find forest; halves the path to it. */
 static int32_t root_of(GArray *parents, int32_t label)
@@ -21,12 +20,12 @@ static int32_t join(GArray *parents, int32_t a, int32_t b)
 
 /** Gives every pixel a preliminary label, from the left or from above, and joins equivalent ones.
  */
-static void label_pixels(const uint8_t *coverage, int width, int height, int32_t *part,
-                         GArray *parents)
+static void label_pixels(const uint8_t *plane, int width, int height, uint8_t least, uint8_t most,
+                         int32_t *part, GArray *parents)
 {
     for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++, part++, coverage++) {
-            if (*coverage < FL_INSIDE) {
+        for (int x = 0; x < width; x++, part++, plane++) {
+            if (*plane < least || *plane > most) {
                 *part = 0;
                 continue;
             }
@@ -42,18 +41,17 @@ static void label_pixels(const uint8_t *coverage, int width, int height, int32_t
         }
 }
 
-bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *coverage, int width,
-                             int height, GError **error)
+bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *plane, int width, int height,
+                             uint8_t least, uint8_t most, GError **error)
 {
     const size_t n = (size_t)width * height;
-    *parts =
-        (FlConnectedParts){.part = fl_alloc(n, sizeof *parts->part, "the parts of a mask", error)};
-    if (!parts->part)
+    *parts = (FlConnectedParts){.n_pixels = n};
+    if (!(parts->part = fl_alloc(n, sizeof *parts->part, "the parts of a mask", error)))
         return false;
     const int32_t outside = 0;
     g_autoptr(GArray) parents = g_array_new(FALSE, FALSE, sizeof(int32_t));
     g_array_append_val(parents, outside);
-    label_pixels(coverage, width, height, parts->part, parents);
+    label_pixels(plane, width, height, least, most, parts->part, parents);
     g_autofree int32_t *number =
         fl_alloc(parents->len, sizeof *number, "the parts of a mask", error);
     if (!number)
@@ -62,13 +60,25 @@ bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *coverage, i
         const int32_t root = root_of(parents, (int32_t)label);
         number[label] = root == (int32_t)label ? ++parts->n_parts : number[root];
     }
-    for (size_t p = 0; p < n; p++)
-        parts->part[p] = number[parts->part[p]];
+    parts->size = g_new0(uint32_t, (size_t)parts->n_parts + 1);
+    for (size_t p = 0; p < n; p++) {
+        const int32_t part = parts->part[p] = number[parts->part[p]];
+        parts->size[part] += part > 0;
+    }
     return true;
+}
+
+void fl_connected_parts_drop(const FlConnectedParts *parts, size_t n_pixels, uint8_t value,
+                             uint8_t *plane)
+{
+    for (size_t p = 0; p < parts->n_pixels; p++)
+        if (parts->part[p] && parts->size[parts->part[p]] < n_pixels)
+            plane[p] = value;
 }
 
 void fl_connected_parts_clear(FlConnectedParts *parts)
 {
     g_free(parts->part);
+    g_free(parts->size);
     *parts = (FlConnectedParts){0};
 }

@@ -1,4 +1,4 @@
-/* The connected parts of a mask. */
+/* The connected parts of a plane. */
 #ifndef FLUIDY_GUIDES_CONNECTED_PARTS_H
 #define FLUIDY_GUIDES_CONNECTED_PARTS_H
 
@@ -9,12 +9,18 @@
 /** Which part each pixel belongs to; pixels that share a side belong together. */
 typedef struct FlConnectedParts {
     int n_parts;
-    int32_t *part; // 1 … n_parts in the order of their first pixel, 0 outside; width * height
+    int32_t *part;   // 1 … n_parts in the order of their first pixel, 0 outside; width * height
+    uint32_t *size;  // pixels of each part; [0]: 0
+    size_t n_pixels; // width * height
 } FlConnectedParts;
 
-/** coverage: width * height, inside from FL_INSIDE on. FL_ERROR_NO_MEMORY. */
-bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *coverage, int width,
-                             int height, GError **error);
+/** The parts of the pixels from `least` to `most`; plane: width * height. FL_ERROR_NO_MEMORY. */
+bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *plane, int width, int height,
+                             uint8_t least, uint8_t most, GError **error);
+
+/** Sets the pixels of parts with fewer than n_pixels pixels to `value`. */
+void fl_connected_parts_drop(const FlConnectedParts *parts, size_t n_pixels, uint8_t value,
+                             uint8_t *plane);
 void fl_connected_parts_clear(FlConnectedParts *parts);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlConnectedParts, fl_connected_parts_clear)

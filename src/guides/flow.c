@@ -31,7 +31,8 @@ static bool traces_init(Traces *traces, const FlOutline *now, const FlOutline *b
 {
     *traces = (Traces){0};
     FlConnectedParts *parts = &traces->parts;
-    if (!fl_connected_parts_init(parts, now->coverage, now->box.width, now->box.height, error))
+    if (!fl_connected_parts_init(parts, now->coverage, now->box.width, now->box.height, FL_INSIDE,
+                                 255, error))
         return false;
     const size_t n = (size_t)parts->n_parts + 1;
     if (!(traces->before = fl_alloc(n, sizeof *traces->before, "a flow", error)) ||

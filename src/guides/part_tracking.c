@@ -1,6 +1,7 @@
 #include "guides/part_tracking.h"
 
 #include "base/alloc.h"
+#include "guides/guides.h"
 #include <math.h>
 
 /** One part of a frame's shape. */
@@ -53,7 +54,7 @@ static bool trace_jumps(const FlOutline *now, const FlConnectedParts *parts, con
 {
     g_auto(FlConnectedParts) other_parts = {0};
     if (!fl_connected_parts_init(&other_parts, other->coverage, other->box.width, other->box.height,
-                                 error))
+                                 FL_INSIDE, 255, error))
         return false;
     g_autofree Blob *others = measure_blobs(other, &other_parts, now, error);
     for (int part = 1; others && part <= parts->n_parts; part++) {

@@ -250,7 +250,7 @@ static bool far_start(const Work *w, int part, Map *map, GError **error)
     g_auto(FlConnectedParts) before = {0};
     double a[3], b[3];
     if (!fl_connected_parts_init(&before, w->before->coverage, w->before->box.width,
-                                 w->before->box.height, error))
+                                 w->before->box.height, FL_INSIDE, 255, error))
         return false;
     centre_now(w, part, b);
     if (centre_before(w, &before, part, a) && a[2] < 2 * b[2] && b[2] < 2 * a[2])
@@ -387,7 +387,7 @@ static bool prepare(Work *w, const uint8_t *before, const uint8_t *now, GError *
     const float limit = LIMIT_SHARE * (float)MAX(w->width, w->height);
     if (!fl_blur(w->smooth, w->width, w->height, BLUR_PX, error) ||
         !fl_connected_parts_init(&w->parts, w->now->coverage, w->now->box.width, w->now->box.height,
-                                 error))
+                                 FL_INSIDE, 255, error))
         return false;
     w->trace = g_new0(FlTrace, w->parts.n_parts + 1);
     return fl_part_tracking_find(w->now, &w->parts, w->before, limit, w->trace, error);

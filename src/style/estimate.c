@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "guides/blur.h"
+#include "guides/connected_parts.h"
 #include "guides/gauss.h"
 #include "style/flat_field.h"
 
@@ -105,48 +106,6 @@ static float choose_threshold(const float *most, size_t pixels)
     return MAX(FAINTEST, MAX(noise, (float)between / SHARPNESS));
 }
 
-/* Collects the 4-connected pixels of `value` around `start` into `part` and sets them to 2. */
-static size_t flood(uint8_t *binary, int width, int height, size_t start, uint8_t value,
-                    uint32_t *part)
-{
-    size_t n = 0;
-    part[n++] = (uint32_t)start;
-    binary[start] = 2;
-    for (size_t i = 0; i < n; i++) {
-        const size_t p = part[i], x = p % width;
-        const size_t near[] = {p - 1, p + 1, p - width, p + width};
-        const bool there[] = {x > 0, x + 1 < (size_t)width, p >= (size_t)width,
-                              p + width < (size_t)width * height};
-        for (int k = 0; k < 4; k++)
-            if (there[k] && binary[near[k]] == value) {
-                binary[near[k]] = 2;
-                part[n++] = (uint32_t)near[k];
-            }
-    }
-    return n;
-}
-
-/* Inverts connected parts of `value` with less than `least` pixels. Returns: the largest part. */
-static size_t drop_small_parts(uint8_t *binary, int width, int height, uint8_t value, size_t least,
-                               uint32_t *part)
-{
-    const size_t pixels = (size_t)width * height;
-    size_t largest = 0;
-    for (size_t i = 0; i < pixels; i++) {
-        if (binary[i] != value)
-            continue;
-        const size_t n = flood(binary, width, height, i, value, part);
-        largest = MAX(largest, n);
-        if (n < least)
-            for (size_t k = 0; k < n; k++)
-                binary[part[k]] = !value;
-    }
-    for (size_t i = 0; i < pixels; i++)
-        if (binary[i] == 2)
-            binary[i] = value;
-    return largest;
-}
-
 /* The blurred outline's slope at the cut gives antialiased coverage. */
 static bool binary_to_coverage(const uint8_t *binary, int width, int height, float *plane,
                                uint8_t *mask, GError **error)
@@ -163,35 +122,44 @@ static bool binary_to_coverage(const uint8_t *binary, int width, int height, flo
 }
 
 /* Clears the parts of `binary` that do not touch the next frame's paint: dirt comes and goes. */
-static void drop_strays(uint8_t *binary, const uint8_t *next, int width, int height, uint32_t *part)
+static bool drop_strays(uint8_t *binary, const uint8_t *next, int width, int height, GError **error)
 {
-    const size_t pixels = (size_t)width * height;
-    for (size_t i = 0; i < pixels; i++) {
-        if (binary[i] != 1)
-            continue;
-        const size_t n = flood(binary, width, height, i, 1, part);
-        size_t touching = 0;
-        for (size_t k = 0; k < n; k++)
-            touching += next[part[k]] > 0;
-        for (size_t k = 0; k < n && touching == 0; k++)
-            binary[part[k]] = 0;
-    }
-    for (size_t i = 0; i < pixels; i++)
-        binary[i] = binary[i] > 0;
+    g_auto(FlConnectedParts) parts = {0};
+    if (!fl_connected_parts_init(&parts, binary, width, height, 1, 1, error))
+        return false;
+    g_autofree bool *touches = g_new0(bool, (size_t)parts.n_parts + 1);
+    for (size_t p = 0; p < parts.n_pixels; p++)
+        touches[parts.part[p]] |= next[p] > 0;
+    for (size_t p = 0; p < parts.n_pixels; p++)
+        binary[p] = binary[p] && touches[parts.part[p]];
+    return true;
+}
+
+/* Drops specks, then fills holes, both by their share of the largest part. */
+static bool clean_parts(uint8_t *binary, int width, int height, GError **error)
+{
+    g_auto(FlConnectedParts) paint = {0}, bare = {0};
+    if (!fl_connected_parts_init(&paint, binary, width, height, 1, 1, error))
+        return false;
+    uint32_t largest = 0;
+    for (int part = 1; part <= paint.n_parts; part++)
+        largest = MAX(largest, paint.size[part]);
+    fl_connected_parts_drop(&paint, (size_t)(KEEP_SHARE * largest), 0, binary);
+    if (!fl_connected_parts_init(&bare, binary, width, height, 0, 0, error))
+        return false;
+    fl_connected_parts_drop(&bare, (size_t)(HOLE_SHARE * largest), 1, binary);
+    return true;
 }
 
 /* Binary paint of one frame in its largest parts, without pinholes; next is NULL for the last. */
-static void find_parts(const float *most, float threshold, int width, int height,
-                       const uint8_t *next, uint8_t *binary, uint32_t *part)
+static bool find_parts(const float *most, float threshold, int width, int height,
+                       const uint8_t *next, uint8_t *binary, GError **error)
 {
     const size_t pixels = (size_t)width * height;
     for (size_t i = 0; i < pixels; i++)
         binary[i] = most[i] > threshold;
-    if (next)
-        drop_strays(binary, next, width, height, part);
-    const double largest = (double)drop_small_parts(binary, width, height, 1, 0, part);
-    drop_small_parts(binary, width, height, 1, (size_t)(KEEP_SHARE * largest), part);
-    drop_small_parts(binary, width, height, 0, (size_t)(HOLE_SHARE * largest), part);
+    return (!next || drop_strays(binary, next, width, height, error)) &&
+           clean_parts(binary, width, height, error);
 }
 
 bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask, GError **error)
@@ -201,8 +169,7 @@ bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask,
     g_autofree float *channel = fl_alloc(pixels, sizeof(float), "a mask", error);
     g_autofree float *most = fl_alloc(pixels, sizeof(float), "a mask", error);
     g_autofree uint8_t *binary = fl_alloc(pixels, 1, "a mask", error);
-    g_autofree uint32_t *part = fl_alloc(pixels, sizeof(uint32_t), "a mask", error);
-    if (!channel || !most || !binary || !part)
+    if (!channel || !most || !binary)
         return false;
     FlFlatField plate;
     float threshold = 0;
@@ -213,9 +180,9 @@ bool fl_extract_masks(const FlClip *clip, const uint8_t paper[3], uint8_t *mask,
             return false;
         if (frame == last)
             threshold = choose_threshold(most, pixels);
-        find_parts(most, threshold, width, height, frame == last ? NULL : coverage + pixels, binary,
-                   part);
-        if (!binary_to_coverage(binary, width, height, channel, coverage, error))
+        if (!find_parts(most, threshold, width, height, frame == last ? NULL : coverage + pixels,
+                        binary, error) ||
+            !binary_to_coverage(binary, width, height, channel, coverage, error))
             return false;
     }
     return true;

@@ -1,6 +1,7 @@
 #include "watercolour/pigment_mask.h"
 
 #include "base/alloc.h"
+#include "guides/connected_parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -35,41 +36,17 @@ static void blur(float *grid, int width, int height, int radius, float *line)
     }
 }
 
-/* Collects the connected part of equal cells around `start` into queue, and marks it. */
-static int collect_part(const uint8_t *mask, uint8_t *visited, int width, int height, int start,
-                        int *queue)
+/* Drops specks and fills holes; of holes, the specks within do not count. */
+static bool drop_small_parts(uint8_t *mask, int width, int height, const FlExtract *how,
+                             GError **error)
 {
-    int n = 0;
-    queue[n++] = start;
-    visited[start] = 1;
-    for (int at = 0; at < n; at++) {
-        const int x = queue[at] % width, y = queue[at] / width;
-        const int near[4] = {x > 0 ? queue[at] - 1 : -1, x < width - 1 ? queue[at] + 1 : -1,
-                             y > 0 ? queue[at] - width : -1,
-                             y < height - 1 ? queue[at] + width : -1};
-        for (int k = 0; k < 4; k++)
-            if (near[k] >= 0 && !visited[near[k]] && mask[near[k]] == mask[start]) {
-                visited[near[k]] = 1;
-                queue[n++] = near[k];
-            }
-    }
-    return n;
-}
-
-static void drop_small_parts(uint8_t *mask, uint8_t *visited, int *queue, int width, int height,
-                             const FlExtract *how)
-{
-    memset(visited, 0, (size_t)width * height);
-    for (int i = 0; i < width * height; i++) {
-        if (visited[i])
-            continue;
-        const int n = collect_part(mask, visited, width, height, i, queue);
-        if (n < (mask[i] ? how->speck : how->hole)) {
-            const uint8_t other = !mask[i];
-            for (int k = 0; k < n; k++)
-                mask[queue[k]] = other;
-        }
-    }
+    g_auto(FlConnectedParts) paint = {0}, bare = {0};
+    if (!fl_connected_parts_init(&paint, mask, width, height, 1, 1, error) ||
+        !fl_connected_parts_init(&bare, mask, width, height, 0, 0, error))
+        return false;
+    fl_connected_parts_drop(&paint, (size_t)how->speck, 0, mask);
+    fl_connected_parts_drop(&bare, (size_t)how->hole, 1, mask);
+    return true;
 }
 
 /*
@@ -117,17 +94,17 @@ bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *h
                      GError **error)
 {
     const size_t cells = (size_t)width * height;
-    g_autofree uint8_t *mask = fl_alloc(cells, 2, "a mask", error);
-    g_autofree int *queue = mask ? fl_alloc(cells, sizeof(int), "a mask", error) : NULL;
+    g_autofree uint8_t *mask = fl_alloc(cells, 1, "a mask", error);
     g_autofree float *lines =
-        queue ? fl_alloc((size_t)MAX(width, height) + 2, 3 * sizeof(float), "a mask", error) : NULL;
+        mask ? fl_alloc((size_t)MAX(width, height) + 2, 3 * sizeof(float), "a mask", error) : NULL;
     if (!lines)
         return false;
     if (how->blur > 0)
         blur(thickness, width, height, how->blur, lines);
     for (size_t i = 0; i < cells; i++)
         mask[i] = thickness[i] > how->threshold;
-    drop_small_parts(mask, mask + cells, queue, width, height, how);
+    if (!drop_small_parts(mask, width, height, how, error))
+        return false;
     distance_to(mask, 1, width, height, distance, lines);
     distance_to(mask, 0, width, height, thickness, lines);
     for (size_t i = 0; i < cells; i++)
