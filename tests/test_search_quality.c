@@ -55,7 +55,7 @@ static void set_up(Case *c, bool rotate)
                            .cost = c->cost,
                            .map = &c->map,
                            .key = 5};
-    fl_nnf_randomise(&c->nnf, c->search.level, c->search.target, rotate, 3);
+    fl_nnf_repair(&c->nnf, c->search.level, c->search.target, rotate, 3); // all at random
 }
 
 static void tear_down(Case *c)

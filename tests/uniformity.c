@@ -219,6 +219,13 @@ static bool make_target(FlTarget *target, const FlExemplar *exemplar, const FlPa
            fl_target_init(target, &now, shape, (FlRect){0, 0, SIDE, SIDE}, 1, exemplar, error);
 }
 
+static void randomise(FlNnf *nnf, const FlSearch *search)
+{
+    for (size_t p = 0; p < SIDE * SIDE; p++)
+        nnf->match[p].frame = FL_NO_MATCH;
+    fl_nnf_repair(nnf, search->level, search->target, true, 3);
+}
+
 static bool compare(const FlStyle *style, FlParams *params, GError **error)
 {
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, error);
@@ -244,14 +251,14 @@ static bool compare(const FlStyle *style, FlParams *params, GError **error)
                        .map = &map,
                        .key = 7};
     fl_target_blend(&target.level[0], params, &scale, 0);
-    fl_nnf_randomise(&nnf, search.level, search.target, true, 3);
+    randomise(&nnf, &search);
     report("random", &search);
     Omega omega;
     omega_init(&omega, &search);
     search_in_order(&search, &omega);
     g_free(omega.use);
     report("sequential", &search);
-    fl_nnf_randomise(&nnf, search.level, search.target, true, 3);
+    randomise(&nnf, &search);
     fl_occurrence_count(&map, &nnf, search.target);
     fl_search_costs(&search, &nnf, cost);
     fl_search_run(&search, SWEEPS);
@@ -260,7 +267,7 @@ static bool compare(const FlStyle *style, FlParams *params, GError **error)
     fl_occurrence_clear(&map);
     if (!fl_occurrence_init(&map, search.level, search.target, params, &scale, error))
         return false;
-    fl_nnf_randomise(&nnf, search.level, search.target, true, 3);
+    randomise(&nnf, &search);
     fl_search_costs(&search, &nnf, cost);
     fl_search_run(&search, SWEEPS);
     report("w-uni 0", &search);

@@ -16,9 +16,6 @@ G_BEGIN_DECLS
  */
 FL_API bool fl_limit_set(const char *text, GError **error);
 
-/** "name (default): what is counted", a line per limit; to be freed with g_free(). */
-FL_API char *fl_limit_help(void);
-
 G_END_DECLS
 
 #endif

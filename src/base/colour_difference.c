@@ -14,7 +14,8 @@ static float lab_curve(float t)
     return t > 216.0f / 24389 ? cbrtf(t) : (24389.0f / 27 * t + 16) / 116;
 }
 
-void fl_lab(const uint8_t rgb[3], float lab[3])
+/** CIE 1976 L*a*b* of an sRGB colour, D65. */
+static void to_lab(const uint8_t rgb[3], float lab[3])
 {
     const float r = linear(rgb[0]), g = linear(rgb[1]), b = linear(rgb[2]);
     const float x = lab_curve((0.4124f * r + 0.3576f * g + 0.1805f * b) / 0.9505f);
@@ -28,8 +29,8 @@ void fl_lab(const uint8_t rgb[3], float lab[3])
 float fl_colour_difference(const uint8_t a[3], const uint8_t b[3])
 {
     float x[3], y[3];
-    fl_lab(a, x);
-    fl_lab(b, y);
+    to_lab(a, x);
+    to_lab(b, y);
     const float l = x[0] - y[0], u = x[1] - y[1], v = x[2] - y[2];
     return sqrtf(l * l + u * u + v * v);
 }

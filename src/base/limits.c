@@ -55,15 +55,6 @@ bool fl_limit_set(const char *text, GError **error)
     return true;
 }
 
-char *fl_limit_help(void)
-{
-    g_autoptr(GString) text = g_string_new(NULL);
-    for (int i = 0; i < FL_N_LIMITS; i++)
-        g_string_append_printf(text, "%s (%" G_GINT64_FORMAT "): %s\n", limits[i].name,
-                               fl_limit((FlLimit)i), limits[i].what);
-    return g_string_free(g_steal_pointer(&text), FALSE);
-}
-
 bool fl_limit_check(FlLimit limit, double wanted, const char *where, GError **error)
 {
     if (wanted <= (double)fl_limit(limit))

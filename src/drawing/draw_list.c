@@ -43,15 +43,12 @@ static bool fits(const Draw *draw, const FlDrawingFrame *frame, const FlStep *st
     return (step->alpha == 255 && step->mix == FL_BLEND_MODE_OVER) || !meets(draw, frame, step);
 }
 
-/** The draws of a frame; region < 0: all of them. */
-static GArray *plan(const FlDrawingFrame *frame, int region)
+static GArray *draws_of(const FlDrawingFrame *frame)
 {
     GArray *draws = g_array_new(FALSE, FALSE, sizeof(Draw));
     g_array_set_clear_func(draws, draw_clear);
     for (int i = 0; i < frame->n; i++) {
         const FlStep *step = &frame->step[i];
-        if (region >= 0 && step->region != region)
-            continue;
         Draw *found = NULL;
         for (guint r = draws->len; r-- > 0 && !found;) {
             Draw *draw = &g_array_index(draws, Draw, r);
@@ -294,7 +291,7 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
     g_auto(Stage) stage = {0};
     if (!stage_init(&stage, drawing, frame, error))
         return NULL;
-    g_autoptr(GArray) draws = plan(stage.frame, -1);
+    g_autoptr(GArray) draws = draws_of(stage.frame);
     g_autoptr(FlDrawList) out = g_new0(FlDrawList, 1);
     out->draw = g_new0(FlDraw, draws->len + 1);
     for (guint r = 0; r < draws->len; r++) {
@@ -303,23 +300,6 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
             return NULL;
     }
     return g_steal_pointer(&out);
-}
-
-bool fl_drawing_mask(const FlDrawing *drawing, int frame, int region, uint8_t *coverage,
-                     GError **error)
-{
-    memset(coverage, 0, (size_t)drawing->width * drawing->height);
-    g_autoptr(GArray) draws = plan(&drawing->frame[frame], region);
-    if (draws->len == 0)
-        return true;
-    g_auto(Stage) stage = {0};
-    if (!stage_init(&stage, drawing, frame, error))
-        return false;
-    const Target target = {page_of(drawing), coverage, NULL};
-    for (guint r = 0; r < draws->len; r++)
-        if (!draw_in(&stage, &g_array_index(draws, Draw, r), &target, error))
-            return false;
-    return true;
 }
 
 void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,

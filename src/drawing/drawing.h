@@ -98,13 +98,6 @@ void fl_drawing_halve(FlDrawing *drawing);
 /** Rasterises a frame. Any thread may call it. Returns: to be freed with fl_draw_list_free(). */
 FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error);
 
-/**
- * The whole-shape mask of one region alone: as fl_draw_list_mask() of fl_drawing_draw_list(), but
- * draws only the region's leaves. coverage is width * height bytes. Any thread may call it.
- */
-bool fl_drawing_mask(const FlDrawing *drawing, int frame, int region, uint8_t *coverage,
-                     GError **error);
-
 /** The region's whole-shape mask in a frame: the union of its draws' coverage. */
 void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
                        uint8_t *coverage);

@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-bool fl_css_colour(const char *text, uint8_t rgb[3])
+/** Reads "#rgb", "#rrggbb", "rgb(1, 2, 3)" and CSS' sixteen old names. */
+static bool parse_colour(const char *text, uint8_t rgb[3])
 {
     static const struct {
         const char *name;
@@ -46,7 +47,7 @@ static bool check_colours(const FlRegionRule *rule, const char *key, const char 
 {
     uint8_t rgb[3];
     for (int i = 0; list && list[i]; i++)
-        if (!is_paint_word(list[i]) && !fl_css_colour(list[i], rgb)) {
+        if (!is_paint_word(list[i]) && !parse_colour(list[i], rgb)) {
             g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                         "region %s: %s = %s: expected #rrggbb, a colour's name, any, none, "
                         "gradient or image",
@@ -93,7 +94,7 @@ static bool matches_paint(const char *const *list, const FlRegionRule *rule,
             : strcmp(list[i], "any") == 0 ? has && mine
                                           : mine && strcmp(list[i], subject->paint) == 0)
             return true;
-        if (mine && subject->paint[0] == '#' && fl_css_colour(list[i], rgb) &&
+        if (mine && subject->paint[0] == '#' && parse_colour(list[i], rgb) &&
             fl_colour_difference(rgb, subject->rgb) <= tolerance)
             return true;
     }

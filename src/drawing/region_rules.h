@@ -47,7 +47,4 @@ bool fl_rules_check(const FlRegionRule *rules, int n, GError **error);
 /** Returns: the index of the first rule that matches, -1 if none does. */
 int fl_rules_match(const FlRegionRule *rules, int n, const FlRuleSubject *subject);
 
-/** Reads "#rgb", "#rrggbb", "rgb(1, 2, 3)" and CSS' sixteen old names. */
-bool fl_css_colour(const char *text, uint8_t rgb[3]);
-
 #endif

@@ -139,7 +139,8 @@ char *fl_pattern_text(const FlPattern *pattern)
     return g_string_free(text, FALSE);
 }
 
-char *fl_pattern_name(const FlPattern *pattern, int number)
+/** The name with a number, which may be negative; to be freed. */
+static char *name_of(const FlPattern *pattern, int number)
 {
     if (pattern->width == 0)
         return g_strdup(pattern->prefix);
@@ -162,7 +163,7 @@ char *fl_output_name(const char *text, int number, const char *region, GError **
     g_auto(FlPattern) pattern = {0};
     if (!fl_pattern_parse(text, &pattern, error))
         return NULL;
-    g_autofree char *name = fl_pattern_name(&pattern, number);
+    g_autofree char *name = name_of(&pattern, number);
     if (!strstr(name, "{region}"))
         return g_steal_pointer(&name);
     if (!region) {

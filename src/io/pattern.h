@@ -33,9 +33,6 @@ bool fl_pattern_of_name(const char *name, FlPattern *pattern, int *number);
 /** "walk_%04d.svg": the same text for all spellings of a pattern; to be freed. */
 char *fl_pattern_text(const FlPattern *pattern);
 
-/** The name with a number, which may be negative; to be freed. */
-char *fl_pattern_name(const FlPattern *pattern, int number);
-
 void fl_pattern_clear(FlPattern *pattern);
 
 /**

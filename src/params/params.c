@@ -69,7 +69,8 @@ const FlParamInfo *fl_param_info(int index)
     return &table()[index];
 }
 
-const char *const *fl_param_names(void)
+/** The names of all parameters, NULL-terminated. For suggestions. */
+static const char *const *param_names(void)
 {
     table();
     return names;
@@ -139,7 +140,7 @@ static bool read_value(const char *name, const char *text, int *index, Value *va
 {
     *index = fl_param_find(name);
     if (*index < 0) {
-        g_autofree char *hint = fl_did_you_mean(name, fl_param_names());
+        g_autofree char *hint = fl_did_you_mean(name, param_names());
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown parameter “%s”%s", name, hint);
         return false;
     }
@@ -151,13 +152,6 @@ static bool read_value(const char *name, const char *text, int *index, Value *va
         return false;
     }
     return true;
-}
-
-bool fl_params_check(const char *name, const char *value, GError **error)
-{
-    int index = 0;
-    Value parsed;
-    return read_value(name, value, &index, &parsed, error);
 }
 
 static void store(FlParams *params, int index, const Value *value)

@@ -41,12 +41,6 @@ static inline int fl_list_at(const FlIntList *list, int from_coarsest)
     return list->value[from_coarsest < list->n ? from_coarsest : list->n - 1];
 }
 
-/** Checks a value without keeping it. Errors as fl_params_set(). */
-bool fl_params_check(const char *name, const char *value, GError **error);
-
-/** The names of all parameters, NULL-terminated; static storage. For suggestions. */
-const char *const *fl_param_names(void);
-
 /** The names of the presets, NULL-terminated; static storage. */
 extern const char *const fl_preset_names[];
 

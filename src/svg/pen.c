@@ -49,7 +49,8 @@ static bool is_back(const FlPen *pen)
     return fabs(pen->at.x - pen->start.x) + fabs(pen->at.y - pen->start.y) <= 1e-3 * reach;
 }
 
-void fl_pen_close(FlPen *pen)
+/** Ends a subpath; a closing line of no length is no segment. */
+static void close_subpath(FlPen *pen)
 {
     if (pen->open) {
         if (!is_back(pen))
@@ -184,7 +185,7 @@ void fl_pen_step(void *data, char command, const double *v)
         fl_pen_line(pen, (FlPoint){pen->at.x, o.y + v[0]});
         break;
     case 'Z':
-        fl_pen_close(pen);
+        close_subpath(pen);
         break;
     default:
         curve_step(pen, upper, v, o, a, b);
@@ -201,7 +202,7 @@ void fl_pen_ellipse(FlPen *pen, double cx, double cy, double rx, double ry)
     for (int k = 0; k < 4; k++)
         quarter_to(pen, &m, corner[k], corner[(k + 1) % 4]);
     pen->at = pen->start;
-    fl_pen_close(pen);
+    close_subpath(pen);
 }
 
 void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, double rx, double ry)
@@ -216,7 +217,7 @@ void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, double rx, 
         quarter_to(pen, &m, corner[k], corner[(k + 1) % 4]);
     }
     pen->at = pen->start;
-    fl_pen_close(pen);
+    close_subpath(pen);
 }
 
 void fl_pen_points(FlPen *pen, const char *points, bool closed)
@@ -237,5 +238,5 @@ void fl_pen_points(FlPen *pen, const char *points, bool closed)
             fl_pen_line(pen, (FlPoint){v[0], v[1]});
     }
     if (closed)
-        fl_pen_close(pen);
+        close_subpath(pen);
 }

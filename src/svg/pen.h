@@ -18,9 +18,6 @@ void fl_pen_step(void *pen, char command, const double *v);
 void fl_pen_move(FlPen *pen, FlPoint p);
 void fl_pen_line(FlPen *pen, FlPoint end);
 
-/** Ends a subpath; a closing line of no length is no segment. */
-void fl_pen_close(FlPen *pen);
-
 void fl_pen_ellipse(FlPen *pen, double cx, double cy, double rx, double ry);
 
 /** Eight segments; those of sharp corners have no length. */

@@ -32,8 +32,8 @@ uint32_t fl_patch_distance_c(const FlTexel *centre, const int16_t *offsets, bool
     return sum;
 }
 
-void fl_patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
-                     const FlCompressed *rest, uint32_t limit, uint32_t distance[2])
+static void patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
+                         const FlCompressed *rest, uint32_t limit, uint32_t distance[2])
 {
     distance[0] = fl_patch_distance_c(centre, offsets, false, target, rest, limit);
     distance[1] = 0;
@@ -153,7 +153,7 @@ void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const u
 
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
-    *kernels = (FlKernels){fl_patch_distance_c, fl_patch_pair_c,    fl_draw_tries_c,  fl_sift_c,
+    *kernels = (FlKernels){fl_patch_distance_c, patch_pair_c,       fl_draw_tries_c,  fl_sift_c,
                            fl_spline_sample_c,  fl_find_opinions_c, fl_upscale_row_c, "c"};
 #if HAVE_NEON
     if (flags & FL_CPU_NEON) {

@@ -179,8 +179,6 @@ uint32_t fl_patch_distance_neon(const FlTexel *centre, const int16_t *offsets, b
                                 const FlCompressed *target, const FlCompressed *rest,
                                 uint32_t limit);
 
-void fl_patch_pair_c(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
-                     const FlCompressed *rest, uint32_t limit, uint32_t distance[2]);
 void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
                         const FlCompressed *rest, uint32_t limit, uint32_t distance[2]);
 void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,

@@ -20,8 +20,9 @@ void fl_nnf_clear(FlNnf *nnf)
     *nnf = (FlNnf){0};
 }
 
-FlMatch fl_match_random(const FlExemplarLevel *level, FlSegment segment, uint8_t target_angle,
-                        bool rotate, uint64_t key)
+/** A random patch of the segment, turned into the target's direction; key decides. */
+static FlMatch random_match(const FlExemplarLevel *level, FlSegment segment, uint8_t target_angle,
+                            bool rotate, uint64_t key)
 {
     const FlSegment s = level->n_valid[segment] > 0 ? segment : FL_SEGMENT_BORDER;
     FlRng rng = {key};
@@ -39,17 +40,6 @@ FlMatch fl_match_random(const FlExemplarLevel *level, FlSegment segment, uint8_t
                      .y_16 = (uint16_t)(16 * y),
                      .frame = (int16_t)t,
                      .theta = rotate ? (uint8_t)(target_angle - source_angle + half_turn) : 0};
-}
-
-void fl_nnf_randomise(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel *target,
-                      bool rotate, uint64_t key)
-{
-    const size_t pixels = (size_t)nnf->width * nnf->height;
-#pragma omp parallel for schedule(static)
-    for (size_t p = 0; p < pixels; p++)
-        if (target->segment[p] != FL_SEGMENT_OUTSIDE)
-            nnf->match[p] = fl_match_random(level, target->segment[p], target->angle[p], rotate,
-                                            fl_key(key, p));
 }
 
 static bool is_valid(const FlExemplarLevel *level, int x, int y, int t, FlSegment segment)
@@ -93,7 +83,7 @@ void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel
         else if (m->frame == FL_NO_MATCH ||
                  (!is_valid(level, fl_match_x(*m), fl_match_y(*m), m->frame, segment) &&
                   !nearest_valid(level, m, segment)))
-            *m = fl_match_random(level, segment, target->angle[p], rotate, fl_key(key, p));
+            *m = random_match(level, segment, target->angle[p], rotate, fl_key(key, p));
     }
 }
 

@@ -35,14 +35,6 @@ static inline FlMatch fl_match_moved(FlMatch m, int dx, int dy, const FlExemplar
     return m;
 }
 
-/** A random patch of the segment, turned into the target's direction; key decides. */
-FlMatch fl_match_random(const FlExemplarLevel *level, FlSegment segment, uint8_t target_angle,
-                        bool rotate, uint64_t key);
-
-/** Gives every pixel of the target a random match. */
-void fl_nnf_randomise(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel *target,
-                      bool rotate, uint64_t key);
-
 /**
  * Makes a field valid for a level: each match whose centre is outside its segment goes to the
  * nearest valid pixel of its frame (within 12 px), else, or where there is none, to a random one.

@@ -2,9 +2,14 @@
 
 #include <math.h>
 
-/* Scans from the match's frame in steps of `step` for the motion that is nearest to the wanted one;
- * of equal ones the first, so that still paint stays in its frame. */
-FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion_px, bool opposes)
+/**
+ * Moves a match by the number of exemplar frames in which the paint at its place moves as far as
+ * `motion_px`: forwards, or backwards where the target moves against the rotated exemplar
+ * (`opposes`). Never beyond a frame in which the place has no paint. Of frames whose motion is
+ * equally near, the first in that direction, so that still paint stays in its frame.
+ */
+static FlMatch shifted_match(const FlExemplar *exemplar, FlMatch match, float motion_px,
+                             bool opposes)
 {
     const FlExemplarLevel *full = &exemplar->level[0];
     const size_t frame = (size_t)full->width * full->height;
@@ -84,8 +89,8 @@ void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *
         if (motion->boil != 0 && motion->speed[p] <= motion->still)
             *m = boil_step(exemplar, *m, motion->boil);
         else
-            *m = fl_match_shifted(exemplar, *m, motion->speed[p],
-                                  opposes(exemplar, *m, motion->angle[p]));
+            *m = shifted_match(exemplar, *m, motion->speed[p],
+                               opposes(exemplar, *m, motion->angle[p]));
     }
 }
 

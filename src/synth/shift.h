@@ -4,13 +4,6 @@
 
 #include "synth/nnf.h"
 
-/**
- * Moves a match by the number of exemplar frames in which the paint at its place moves as far as
- * `motion_px`: forwards, or backwards where the target moves against the rotated exemplar
- * (`opposes`). Never beyond a frame in which the place has no paint.
- */
-FlMatch fl_match_shifted(const FlExemplar *exemplar, FlMatch match, float motion_px, bool opposes);
-
 /** What the target does between two frames: arrays of width * height of the field. */
 typedef struct FlTargetMotion {
     const float *speed;   // px from the field's frame to the next

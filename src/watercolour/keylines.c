@@ -147,11 +147,6 @@ bool fl_keylines_end(FlKeyLines *lines, GError **error)
     return false;
 }
 
-bool fl_keylines_has(FlKeyLines *lines, const char *key)
-{
-    return find(lines, key) != NULL;
-}
-
 void fl_keylines_string(FlKeyLines *lines, const char *key, char **value)
 {
     const Entry *entry = find(lines, key);

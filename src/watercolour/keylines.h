@@ -29,7 +29,6 @@ void fl_keylines_begin(FlKeyLines *lines, int group);
  */
 bool fl_keylines_end(FlKeyLines *lines, GError **error);
 
-bool fl_keylines_has(FlKeyLines *lines, const char *key);
 void fl_keylines_string(FlKeyLines *lines, const char *key, char **value); // frees the old one
 void fl_keylines_int(FlKeyLines *lines, const char *key, int min, int max, int *value);
 void fl_keylines_bool(FlKeyLines *lines, const char *key, bool *value);

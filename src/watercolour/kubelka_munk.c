@@ -28,20 +28,3 @@ FlKmLayer fl_km_over(FlKmLayer upper, FlKmLayer lower)
                            upper.transmittance * upper.transmittance * lower.reflectance / between,
                        upper.transmittance * lower.transmittance / between};
 }
-
-static double acoth(double x)
-{
-    return 0.5 * log((x + 1) / (x - 1));
-}
-
-bool fl_km_from_colours(double over_white, double over_black, double *absorption,
-                        double *scattering)
-{
-    if (!(0 < over_black && over_black < over_white && over_white < 1))
-        return false;
-    const double a = (over_white + (over_black - over_white + 1) / over_black) / 2;
-    const double b = sqrt(a * a - 1);
-    *scattering = acoth((b * b - (a - over_white) * (a - 1)) / (b * (1 - over_white))) / b;
-    *absorption = *scattering * (a - 1);
-    return true;
-}

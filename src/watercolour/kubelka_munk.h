@@ -15,18 +15,7 @@ FlKmLayer fl_km_layer(double absorption, double scattering, double thickness);
 /** The upper layer on the lower one. */
 FlKmLayer fl_km_over(FlKmLayer upper, FlKmLayer lower);
 
-/**
- * K and S of a pigment that shows `over_white` and `over_black` at thickness 1.
- *
- * Returns: false unless 0 < over_black < over_white < 1; nothing is then written.
- */
-bool fl_km_from_colours(double over_white, double over_black, double *absorption,
-                        double *scattering);
-
 /** The pigments of [C97 fig. 5] by name. Returns: static storage; NULL if there is none. */
 const FlPigment *fl_pigment_find(const char *name);
-
-/** Their names, NULL-terminated; static storage. */
-const char *const *fl_pigment_names(void);
 
 #endif

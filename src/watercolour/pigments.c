@@ -28,21 +28,3 @@ const FlPigment *fl_pigment_find(const char *name)
             return &pigments[i];
     return NULL;
 }
-
-const char *const *fl_pigment_names(void)
-{
-    static const char *const names[] = {"Quinacridone Rose",
-                                        "Indian Red",
-                                        "Cadmium Yellow",
-                                        "Hooker's Green",
-                                        "Cerulean Blue",
-                                        "Burnt Umber",
-                                        "Cadmium Red",
-                                        "Brilliant Orange",
-                                        "Hansa Yellow",
-                                        "Phthalo Green",
-                                        "French Ultramarine",
-                                        "Interference Lilac",
-                                        NULL};
-    return names;
-}

@@ -50,12 +50,3 @@ void fl_sheet_free(FlSheet *sheet)
     free(sheet->wet);
     g_free(sheet);
 }
-
-double fl_sheet_pigment(const FlSheet *sheet, int pigment)
-{
-    double sum = 0;
-    const size_t cells = (size_t)sheet->width * sheet->height;
-    for (size_t i = 0; i < cells; i++)
-        sum += (double)sheet->floating[pigment][i] + (double)sheet->settled[pigment][i];
-    return sum;
-}

@@ -39,9 +39,6 @@ void fl_sheet_free(FlSheet *sheet); // NULL is fine
 /** Makes the paper: relief, capacity, pinning, permeability. Depends on the recipe alone. */
 void fl_sheet_make_paper(FlSheet *sheet, const FlRecipe *recipe);
 
-/** The pigment on and in the paper, for conservation checks; summed in a fixed order. */
-double fl_sheet_pigment(const FlSheet *sheet, int pigment);
-
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSheet, fl_sheet_free)
 
 #endif
