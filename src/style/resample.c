@@ -16,17 +16,28 @@ FlPicture *fl_picture_crop(const FlPicture *picture, int x, int y, int width, in
     return g_steal_pointer(&part);
 }
 
+/* Catmull and Rom's. Unlike a tent it leaves fine grain nearly as strong as it is, whichever phase
+ * the new samples have, so that paint looks alike at sizes just above and below that of the
+ * recording. */
+static float cubic(float t)
+{
+    t = fabsf(t);
+    if (t < 1)
+        return (1.5f * t - 2.5f) * t * t + 1;
+    return t < 2 ? ((-.5f * t + 2.5f) * t - 4) * t + 2 : 0;
+}
+
 void fl_resample_line(const float *from, int from_n, size_t from_step, float *to, int to_n,
                       size_t to_step)
 {
-    const float ratio = (float)from_n / (float)to_n, radius = ratio > 1 ? ratio : 1;
+    const float ratio = (float)from_n / (float)to_n, wide = ratio > 1 ? ratio : 1;
     for (int i = 0; i < to_n; i++) {
         const float centre = ((float)i + 0.5f) * ratio - 0.5f;
-        const int first = MAX(0, (int)ceilf(centre - radius));
-        const int last = MIN(from_n - 1, (int)floorf(centre + radius));
+        const int first = MAX(0, (int)ceilf(centre - 2 * wide));
+        const int last = MIN(from_n - 1, (int)floorf(centre + 2 * wide));
         float sum = 0, weight = 0;
         for (int k = first; k <= last; k++) {
-            const float w = radius - fabsf((float)k - centre);
+            const float w = cubic(((float)k - centre) / wide);
             sum += w * from[k * from_step];
             weight += w;
         }
@@ -48,8 +59,9 @@ static void unweigh_row(const float *weighted, int width, uint8_t *rgba)
 {
     for (int x = 0; x < width; x++, rgba += 4, weighted += 4) {
         for (int c = 0; c < 3; c++)
-            rgba[c] = weighted[3] > 0 ? (uint8_t)(MIN(weighted[c] / weighted[3], 255) + 0.5f) : 0;
-        rgba[3] = (uint8_t)(weighted[3] + 0.5f);
+            rgba[c] =
+                weighted[3] > 0 ? (uint8_t)(CLAMP(weighted[c] / weighted[3], 0, 255) + 0.5f) : 0;
+        rgba[3] = (uint8_t)(CLAMP(weighted[3], 0, 255) + 0.5f);
     }
 }
 

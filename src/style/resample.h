@@ -9,9 +9,9 @@ FlPicture *fl_picture_crop(const FlPicture *picture, int x, int y, int width, in
                            GError **error);
 
 /**
- * A line of from_n samples in to_n samples; samples lie `step` floats apart. Area means where the
- * line gets shorter, linear interpolation where it gets longer: in both cases a tent as wide as the
- * larger sample, cut off at the ends of the line.
+ * A line of from_n samples in to_n samples; samples lie `step` floats apart. Means where the line
+ * gets shorter, interpolation where it gets longer: in both cases by a cubic as wide as the larger
+ * sample, cut off at the ends of the line. It may overshoot by a tenth of a step.
  */
 void fl_resample_line(const float *from, int from_n, size_t from_step, float *to, int to_n,
                       size_t to_step);
