@@ -146,7 +146,7 @@ else
         tight $kib || break
     done && [ $painted -gt 0 ] && [ $refused -gt 0 ]
     result $? 'memory of any size is enough or is one message'
-    (ulimit -v 1500000 && paint huge -W 30000 -j 1 --limit frame=1000 --limit memory=1000000)
+    (ulimit -v 1500000 && paint huge -W 30000 -j 1 --style-by-page off --limit frame=1000 --limit memory=1000000)
     found=$?
     [ $found = 1 ] && [ "$(wc -l <err)" = 1 ] && grep -qi 'memory' err && [ ! -e huge/w_0001.png ]
     result $? 'memory that cannot be had is one message'

@@ -55,7 +55,7 @@ paint() { # paint ARGUMENT...
 paint --limit style=1 -s 01
 [ $? = 1 ] && says 'million pixels of a style' && says 'use --limit style=N to raise it'
 result $? 'a style that is too large is an error'
-paint -W 2000 --limit memory=100
+paint -W 2000 --limit memory=100 --style-by-page off
 [ $? = 1 ] && says 'MiB of memory for painting' && says '--limit memory=N' && [ ! -e o ]
 result $? 'a render that needs too much memory is refused before it is begun'
 svg x.svg "$shape<circle r='9' fill='#2255aa'/>"

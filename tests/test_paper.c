@@ -195,7 +195,7 @@ static void light_leaves_alpha_alone(void)
 static void papers_are_chosen(void)
 {
     FlPaperSheet *sheet = NULL;
-    FlPaperChoice choice = {.paper = "none", .relief = 1};
+    FlPaperChoice choice = {.paper = "none", .scale = 1, .relief = 1};
     g_assert_true(fl_paper_sheet_make(&choice, true, 20, 20, &sheet, NULL));
     g_assert_null(sheet);
     choice.paper = NULL;

@@ -471,10 +471,11 @@ static void a_missing_recipe_is_named(void)
     g_assert_nonnull(strstr(error->message, "/nowhere/at all.ini"));
 }
 
-static void count_frames(int frame, int n_frames, void *data)
+static bool count_frames(int frame, int n_frames, void *data)
 {
     g_assert_cmpint(++*(int *)data, ==, frame);
     g_assert_cmpint(frame, <=, n_frames);
+    return true;
 }
 
 static void expect_same_file(const char *a, const char *b, const char *name)

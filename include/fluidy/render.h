@@ -122,7 +122,7 @@ typedef struct FlRenderOptions {
     /** "cold", "hot", "rough", "laid", "kraft", a PNG file or "none"; "auto", NULL: cold where
      * there is no background, else its tooth alone */
     const char *paper;
-    double paper_scale;  /**< px of output per px of the sheet; 0: by the frame's size */
+    double paper_scale;  /**< factor on the grain's size, which follows the page's; 0: 1 */
     double paper_relief; /**< ..2; 0: 1 */
     uint64_t paper_seed; /**< 0: 1 */
     int paper_boil;      /**< frames after which another part of the sheet is taken; 0: never */

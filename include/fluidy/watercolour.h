@@ -7,8 +7,9 @@
 
 G_BEGIN_DECLS
 
-/** Called after each frame is painted, from the caller's thread; frame counts from 1. */
-typedef void (*FlWatercolourProgress)(int frame, int n_frames, void *data);
+/** Called after each frame is painted, from the caller's thread; frame counts from 1; false stops.
+ */
+typedef bool (*FlWatercolourProgress)(int frame, int n_frames, void *data);
 
 /**
  * Simulates a recipe and writes the frames as a style: style.ini, frames/0001.png …,
@@ -20,8 +21,8 @@ typedef void (*FlWatercolourProgress)(int frame, int n_frames, void *data);
  * its finest grain is finer.
  *
  * Returns: false with FL_ERROR_INPUT (the recipe; its file and line are named), FL_ERROR_EXISTS if
- * there is a style in the folder and `overwrite` is false, FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY or
- * FL_ERROR_OUTPUT.
+ * there is a style in the folder and `overwrite` is false, FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY,
+ * FL_ERROR_INTERRUPTED or FL_ERROR_OUTPUT.
  */
 FL_API bool fl_watercolour_simulate(const char *recipe_path, const char *folder, int size,
                                     bool overwrite, FlWatercolourProgress progress, void *data,

@@ -182,10 +182,11 @@ static bool run_check(char **words, GError **error)
     return false;
 }
 
-static void show_progress(int frame, int n_frames, void *data)
+static bool show_progress(int frame, int n_frames, void *data)
 {
     if (!options.quiet)
         fprintf(stderr, "fluidy-style: frame %d of %d\n", frame, n_frames);
+    return true;
 }
 
 static const GOptionEntry simulate_entries[] = {

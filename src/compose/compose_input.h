@@ -18,6 +18,7 @@ typedef struct FlComposeInput {
     FlTooth tooth;             // of the frame, in the size of the drawing
     uint64_t seed;             // of what is uneven
     int width, height;         // of the frame, px
+    float paper_px;            // of the frame per px of the sheet of paper
     bool half;                 // the drawing has half that size: layers are enlarged
     bool layers_apart;         // layers are stored as well, for whoever puts them on something else
     bool linear;               // blend in linear light

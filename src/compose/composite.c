@@ -79,10 +79,9 @@ static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion 
 static FlUneven uneven_of(const Stack *stack, const FlPaintedRegion *painted)
 {
     const FlComposeInput *input = stack->input;
-    const float longer = (float)MAX(input->width, input->height) / 1280;
     return (FlUneven){.key = fl_key(input->seed, g_str_hash(painted->name)),
                       .anchor = stack->anchors[painted->region],
-                      .scale = MAX(longer, 1) * (input->half ? .5f : 1)};
+                      .scale = input->paper_px * (input->half ? .5f : 1)};
 }
 
 /* The grain of the paper and of the hand; not in paint that keeps the exemplar's own colours. */

@@ -18,6 +18,7 @@ typedef struct FlStyleInstance {
     FlInk *ink;
     FlMedium medium;
     float granulation; // as of fl_granulate()
+    float enlarged;    // px of the drawing per px of its pictures
     uint8_t paper[3];
 } FlStyleInstance;
 

@@ -209,8 +209,6 @@ bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int
                     paper);
         return false;
     }
-    const float scale =
-        choice->scale > 0 ? (float)choice->scale : fmaxf(1, (float)MAX(width, height) / 1280);
     const int room = choice->boil > 0 ? ROOM_PX : 0;
     g_autoptr(FlPaperSheet) made = g_new0(FlPaperSheet, 1);
     *made = (FlPaperSheet){.width = width + room,
@@ -218,7 +216,7 @@ bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int
                            .boil = choice->boil,
                            .seed = choice->seed,
                            .lights = (!is_auto || plain) && choice->relief > 0};
-    if (!make(made, choice, kind, scale, error))
+    if (!make(made, choice, kind, (float)choice->scale, error))
         return false;
     *sheet = g_steal_pointer(&made);
     return true;

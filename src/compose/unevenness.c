@@ -8,7 +8,7 @@
 
 enum { KEY_LOAD = 301, KEY_WARP_X, KEY_WARP_Y, KEY_PLAY };
 
-#define STEP 8 // px between points at which noise is known
+#define STEP 8 // px of the sheet, and of the frame at most, between points at which noise is known
 
 void fl_anchors_find(const FlDrawList *draws, int n_regions, FlAnchor *anchors)
 {
@@ -53,40 +53,41 @@ static float play_noise(uint64_t key, float x, float y)
     return fl_noise_octaves(fl_key(key, KEY_PLAY), x / 70, y / 55, 3, .6f);
 }
 
-/* Points every STEP px of a box, and one beyond its end: in 1 / 4096. */
+/* Points every so many px of a box, and one beyond its end: in 1 / 4096. */
 typedef struct Points {
-    int width, height;
+    int step, width, height;
     int32_t *value;
 } Points;
 
 static Points make_points(const FlUneven *where, FlRect box, SlowNoise noise)
 {
-    Points points = {box.width / STEP + 2, box.height / STEP + 2, NULL};
+    const int step = CLAMP((int)(STEP * where->scale), 1, STEP);
+    Points points = {step, box.width / step + 2, box.height / step + 2, NULL};
     points.value = g_new0(int32_t, (size_t)points.width * (size_t)points.height);
     const float px = 1 / where->scale;
     for (int j = 0; j < points.height; j++)
         for (int i = 0; i < points.width; i++) {
-            const float x = (float)(16 * (box.x + i * STEP) - where->anchor.x) / 16;
-            const float y = (float)(16 * (box.y + j * STEP) - where->anchor.y) / 16;
+            const float x = (float)(16 * (box.x + i * step) - where->anchor.x) / 16;
+            const float y = (float)(16 * (box.y + j * step) - where->anchor.y) / 16;
             const float n = CLAMP(noise(where->key, x * px, y * px), -1.98f, 1.98f);
             points.value[j * points.width + i] = (int32_t)lrintf(4096 * n);
         }
     return points;
 }
 
-/* A row of a box between the points, in 1 / (64 * STEP * STEP) as a whole: 64 is one. */
+/* A row of a box between the points: FL_PLAY_ONE is one. */
 static void fill_row(const Points *points, int y, int width, int16_t *row)
 {
-    const int32_t *upper = points->value + (y / STEP) * points->width;
+    const int step = points->step, one = 4096 / FL_PLAY_ONE * step * step;
+    const int32_t *upper = points->value + (y / step) * points->width;
     const int32_t *lower = upper + points->width;
-    const int ty = y % STEP;
-    for (int i = 0; i * STEP < width; i++) {
-        const int32_t left = upper[i] * (STEP - ty) + lower[i] * ty;
-        const int32_t right = upper[i + 1] * (STEP - ty) + lower[i + 1] * ty;
-        const int n = MIN(STEP, width - i * STEP);
+    const int ty = y % step;
+    for (int i = 0; i * step < width; i++) {
+        const int32_t left = upper[i] * (step - ty) + lower[i] * ty;
+        const int32_t right = upper[i + 1] * (step - ty) + lower[i + 1] * ty;
+        const int n = MIN(step, width - i * step);
         for (int k = 0; k < n; k++)
-            row[i * STEP + k] =
-                (int16_t)((left * (STEP - k) + right * k) / (4096 / FL_PLAY_ONE * STEP * STEP));
+            row[i * step + k] = (int16_t)((left * (step - k) + right * k) / one);
     }
 }
 

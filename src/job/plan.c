@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/limits.h"
+#include "base/page.h"
 #include "base/parallel_error.h"
 #include "base/suggest.h"
 #include "drawing/open_drawing.h"
@@ -79,13 +80,20 @@ static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
 /* Warnings about a style, once, with the first region that uses it. */
 static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
-    enum { MUCH_BEYOND = 10 }; // percent
+    enum { MUCH_BEYOND = 10 };  // percent
+    const float coarse = 1.25f; // below it nobody sees that pictures are enlarged
     const FlStyleInstance *style = painted->style;
     for (const FlRegionPlan *p = plan->painted; p < painted; p++)
         if (p->style == style)
             return true;
     if (style->exemplar->level[0].n_frames == 1 &&
         !warn(plan, error, "%s: one frame is used: its paint does not flow", style->path))
+        return false;
+    if (style->enlarged > coarse && painted->settings.params.style_by_page &&
+        !warn(plan, error,
+              "%s: its pictures are enlarged %.2g times and look soft; a page as large as this one "
+              "wants a larger recording, with a scale below 1 in its style.ini",
+              style->path, style->enlarged))
         return false;
     return style->ink->beyond < MUCH_BEYOND || painted->settings.tint != FL_TINT_FILL ||
            warn(plan, error,
@@ -141,6 +149,9 @@ static bool plan_regions(FlPlan *plan, GError **error)
                                ? plan->painted[plan->painted_of[r]].settings.hold
                                : plan->hold;
     plan->half &= plan->n_painted > 0;
+    plan->by_page = plan->n_painted == 0;
+    for (int p = 0; p < plan->n_painted; p++)
+        plan->by_page |= plan->painted[p].settings.params.style_by_page;
     for (int p = 0; p < plan->n_painted; p++)
         plan->painted[p].settings.params.half_size = plan->half;
     return fl_limit_check(FL_LIMIT_REGIONS, plan->n_painted, fl_drawing_name(plan->drawing), error);
@@ -149,8 +160,25 @@ static bool plan_regions(FlPlan *plan, GError **error)
 static void choose_size(FlPlan *plan)
 {
     plan->width = fl_drawing_width(plan->drawing), plan->height = fl_drawing_height(plan->drawing);
+    plan->paper_px = plan->by_page ? fl_page_scale(plan->width, plan->height) : 1;
     if (plan->half)
         fl_drawing_halve(plan->drawing);
+}
+
+/* Px of the drawing, as it is drawn, per px in which a region's sizes are given. */
+static float texture_px(const FlPlan *plan, const FlParams *params)
+{
+    if (params->style_by_page)
+        return fl_page_scale(fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing));
+    return plan->half ? .5f : 1;
+}
+
+/* From here on, the lengths in a region's parameters are px of the drawing as it is drawn. */
+static void scale_lengths(FlParams *params, float px)
+{
+    params->border *= px;
+    params->blur_sigma *= px;
+    params->flow_still *= px;
 }
 
 static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
@@ -161,7 +189,9 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->paint_files = plan->options.merge ? plan->options.paint : NULL;
     painted->keeps_flow = plan->options.dump != NULL;
     painted->loops = plan->options.loop && !painted->paint_files;
-    painted->style = fl_style_cache_get(plan->styles, &painted->settings, error);
+    const float px = texture_px(plan, &painted->settings.params);
+    scale_lengths(&painted->settings.params, px);
+    painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
@@ -284,7 +314,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
 {
     g_autoptr(FlPlan) plan = g_new0(FlPlan, 1);
     plan->options = *options;
-    plan->styles = fl_style_cache_new();
+    plan->styles = fl_style_cache_new(&plan->options);
     plan->config = fl_config_load(options->config, error);
     if (!plan->config)
         return NULL;

@@ -36,6 +36,8 @@ typedef struct FlPlan {
     int *hold_of;      // by region: frames; `hold` where it is not painted
     int hold;          // the drawing changes on every hold-th frame
     int width, height; // of the frames
+    bool by_page;      // paint of some region, and so the paper, is as large as the page asks for
+    float paper_px;    // px of the frames per px of the sheet of paper
     bool half;         // drafts: the drawing has half their size, and layers are enlarged
     char *output;      // pattern or file
     const FlSinkFormat *format;

@@ -1,9 +1,15 @@
 #include "job/style_cache.h"
 
+#include "job/style_size.h"
 #include "style/adapt.h"
 #include <string.h>
 
+#define BYTES_OF_WINDOW 50.0            // of a pixel, measured: with rotations
+#define BYTES_OF_REST 9.0               // while it is loaded
+#define WINDOW_BYTES (1024.0 * 1048576) // of one style
+
 struct FlStyleCache {
+    const FlRenderOptions *options;
     GPtrArray *instances; // of FlStyleInstance
 };
 
@@ -16,9 +22,10 @@ static void style_instance_free(FlStyleInstance *instance)
 }
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleInstance, style_instance_free)
 
-FlStyleCache *fl_style_cache_new(void)
+FlStyleCache *fl_style_cache_new(const FlRenderOptions *options)
 {
     FlStyleCache *cache = g_new0(FlStyleCache, 1);
+    cache->options = options;
     cache->instances = g_ptr_array_new_with_free_func((GDestroyNotify)style_instance_free);
     return cache;
 }
@@ -42,12 +49,24 @@ static bool same_params(const FlParams *a, const FlParams *b)
     return true;
 }
 
-static FlStyleInstance *load(const char *path, const FlRegionSettings *settings, GError **error)
+/* Of a large recording fewer frames are in memory than the parameters allow, unless they want all.
+ */
+static int window_of(const FlParams *params, const FlStyle *style)
+{
+    const double frame = (double)style->width * style->height * BYTES_OF_WINDOW;
+    const int most = MAX(1, (int)(WINDOW_BYTES / frame));
+    return params->style_window > 0 ? MIN(params->style_window, most) : 0;
+}
+
+static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
+                             const FlRegionSettings *settings, float texture_px, GError **error)
 {
     const FlParams *params = &settings->params;
-    const FlStyleUse use = {params->style_start, params->style_frames, params->style_step,
-                            params->style_scale, settings->reverse};
-    g_autoptr(FlStyle) whole = fl_style_load(path, error);
+    float factor = 1;
+    g_autoptr(FlStyle) whole =
+        fl_style_load_for(path, params->style_scale, texture_px, cache->options, &factor, error);
+    const FlStyleUse use = {params->style_start, params->style_frames, params->style_step, factor,
+                            settings->reverse};
     g_autoptr(FlStyle) style = whole ? fl_style_adapt(whole, &use, error) : NULL;
     if (!style)
         return NULL;
@@ -56,17 +75,20 @@ static FlStyleInstance *load(const char *path, const FlRegionSettings *settings,
     *instance = (FlStyleInstance){.path = g_strdup(path),
                                   .params = *params,
                                   .reverse = settings->reverse,
+                                  .enlarged = factor,
                                   .medium = style->medium,
                                   .granulation = style->granulation};
     memcpy(instance->paper, style->paper, sizeof instance->paper);
+    FlParams packed = *params;
+    packed.style_window = window_of(params, style);
     if (!(instance->ink = fl_ink_of_style(style, error)) ||
-        !(instance->exemplar = fl_exemplar_new(style, params, error)))
+        !(instance->exemplar = fl_exemplar_new(style, &packed, error)))
         return NULL;
     return g_steal_pointer(&instance);
 }
 
 const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSettings *settings,
-                                          GError **error)
+                                          float texture_px, GError **error)
 {
     g_autofree char *path = fl_style_find(settings->style, error);
     if (!path)
@@ -77,7 +99,7 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
             same_params(&instance->params, &settings->params))
             return instance;
     }
-    FlStyleInstance *instance = load(path, settings, error);
+    FlStyleInstance *instance = load(cache, path, settings, texture_px, error);
     if (instance)
         g_ptr_array_add(cache->instances, instance);
     return instance;
@@ -85,13 +107,12 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
 
 double fl_style_cache_bytes(const FlStyleCache *cache)
 {
-    const double of_window = 50, of_rest = 9; // measured: with rotations; while it is loaded
     double bytes = 0;
     for (guint i = 0; i < cache->instances->len; i++) {
         const FlStyleInstance *instance = cache->instances->pdata[i];
         const FlExemplarLevel *full = &instance->exemplar->level[0];
         bytes += (double)full->width * full->height *
-                 (of_window * full->window + of_rest * (full->n_frames - full->window));
+                 (BYTES_OF_WINDOW * full->window + BYTES_OF_REST * (full->n_frames - full->window));
     }
     return bytes;
 }

@@ -3,20 +3,23 @@
 #define FLUIDY_JOB_STYLE_CACHE_H
 
 #include "compose/painted_region.h"
+#include <fluidy/render.h>
 
 /** Owns its style instances until _free. */
 typedef struct FlStyleCache FlStyleCache;
 
-FlStyleCache *fl_style_cache_new(void);
+/** options: borrowed; who is told of styles that are made, see style_size.h. */
+FlStyleCache *fl_style_cache_new(const FlRenderOptions *options);
 void fl_style_cache_free(FlStyleCache *cache); // NULL is fine
 
 /**
- * The style of a region, whose settings name one.
+ * The style of a region, whose settings name one. texture_px: px of the drawing, as it is drawn,
+ * per px in which the settings give sizes.
  *
  * Returns: borrowed; NULL with FL_ERROR_STYLE, FL_ERROR_USAGE or FL_ERROR_NO_MEMORY set.
  */
 const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSettings *settings,
-                                          GError **error);
+                                          float texture_px, GError **error);
 
 /** An estimate of the bytes of all instances. */
 double fl_style_cache_bytes(const FlStyleCache *cache);

@@ -174,6 +174,7 @@ static FlComposeInput compose_input(const Pipeline *pipeline, int frame)
                             .seed = MAX(plan->options.seed, 1),
                             .width = plan->width,
                             .height = plan->height,
+                            .paper_px = plan->paper_px,
                             .half = plan->half,
                             .layers_apart = plan->options.layers || plan->format->takes_layers,
                             .linear = plan->options.blend == FL_BLEND_LINEAR,
@@ -285,7 +286,8 @@ static bool make_sheet(Pipeline *pipeline, GError **error)
     const FlPlan *plan = pipeline->plan;
     const FlRenderOptions *o = &plan->options;
     const FlPaperChoice choice = {.paper = o->paper,
-                                  .scale = o->paper_scale,
+                                  .scale =
+                                      plan->paper_px * (o->paper_scale > 0 ? o->paper_scale : 1),
                                   .relief = o->paper_relief < 0    ? 0
                                             : o->paper_relief == 0 ? 1
                                                                    : o->paper_relief,

@@ -4,11 +4,10 @@
 
 FlGuideParams fl_guide_params(const FlParams *params)
 {
-    const float part = params->half_size ? 0.5f : 1;
     return (FlGuideParams){.flow_sigma_frames = params->flow_sigma,
                            .dist_sigma_frames = params->time_blur_sigma,
-                           .dist_sigma_px = params->blur_sigma * part,
-                           .still_px = params->flow_still * part,
+                           .dist_sigma_px = params->blur_sigma,
+                           .still_px = params->flow_still,
                            .flow_limit = params->flow_limit};
 }
 

@@ -399,8 +399,7 @@ static bool init_frames(FlExemplarFrames *frames, const FlStyle *style, const Fl
            (all || (frames->rgb = fl_spill_new((size_t)style->n_frames, error)));
 }
 
-static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, float scale,
-                               GError **error)
+FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error)
 {
     fl_rotation_init();
     fl_spline_init();
@@ -408,7 +407,7 @@ static FlExemplar *exemplar_of(const FlStyle *style, const FlParams *params, flo
     g_autoptr(FlExemplar) exemplar = g_new0(FlExemplar, 1);
     g_autoptr(FlExemplarFrames) frames = g_new0(FlExemplarFrames, 1);
     SegmentCounts counts = {{0}};
-    exemplar->border_px = params->border > 0 ? params->border * scale : style->border_px;
+    exemplar->border_px = params->border > 0 ? params->border : style->border_px;
     memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
     if (!init_levels(exemplar, style, all ? style->n_frames : params->style_window, error) ||
         !init_frames(frames, style, params, all, error) ||
@@ -457,15 +456,6 @@ bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error)
             return false;
     }
     return true;
-}
-
-FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error)
-{
-    if (!params->half_size)
-        return exemplar_of(style, params, 1, error);
-    const FlStyleUse half = {.start = 1, .step = 1, .scale = 0.5f};
-    g_autoptr(FlStyle) small = fl_style_adapt(style, &half, error);
-    return small ? exemplar_of(small, params, half.scale, error) : NULL;
 }
 
 void fl_exemplar_free(FlExemplar *exemplar)

@@ -48,7 +48,7 @@ typedef struct FlExemplar {
 } FlExemplar;
 
 /**
- * Packs a style, at half its size where params ask for it. It has as many levels as its size allows
+ * Packs a style. It has as many levels as its size allows
  * [F21 §3.6], fewer where nothing would be left of its mask.
  *
  * Returns: to be freed with fl_exemplar_free(); NULL with FL_ERROR_STYLE (it has no paint)

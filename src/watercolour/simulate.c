@@ -1,5 +1,5 @@
 /* The simulation of a recipe: the stages of a step, the steps of a frame, the frames. */
-#include <fluidy/watercolour.h>
+#include "watercolour/simulate.h"
 
 #include "base/alloc.h"
 #include "base/headroom.h"
@@ -159,8 +159,11 @@ static bool simulate(FlStyle *style, const FlRecipe *recipe, int size,
         if (!fl_scan_draw(studio.scan, paint_frame(&studio, frame), recipe, error))
             return false;
         store_frame(style, frame, studio.scan);
-        if (progress)
-            progress(frame + 1, recipe->frames, data);
+        if (progress && !progress(frame + 1, recipe->frames, data)) {
+            g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED,
+                        "%s: interrupted; run it again to start anew", style->path);
+            return false;
+        }
     }
     return true;
 }
@@ -171,15 +174,35 @@ static bool within_limit(const FlRecipe *recipe, int size, const char *path, GEr
     return fl_limit_check(FL_LIMIT_STYLE, pixels * size * size / 1e6, path, error);
 }
 
+/* By steps of all cells and moves of all grains; measured. */
+double fl_recipe_seconds(const FlRecipe *recipe, int size)
+{
+    const double pixels = (double)recipe->width * recipe->height;
+    double steps = 0, grains = 0;
+    for (int frame = 0; frame < recipe->frames && recipe->dust.grains == 0; frame++)
+        steps += steps_to(recipe, frame);
+    grains = (double)recipe->dust.grains * recipe->frames;
+    return pixels * recipe->oversample * recipe->oversample * steps * 6e-8 + grains * 6e-7 +
+           pixels * size * size * recipe->frames * 6e-7;
+}
+
+FlStyle *fl_recipe_paint(const FlRecipe *recipe, const char *path, int size,
+                         FlWatercolourProgress progress, void *data, GError **error)
+{
+    if (!within_limit(recipe, size, path, error))
+        return NULL;
+    g_autoptr(FlStyle) style = new_style(recipe, size, path, error);
+    return style && simulate(style, recipe, size, progress, data, error) ? g_steal_pointer(&style)
+                                                                         : NULL;
+}
+
 bool fl_watercolour_simulate(const char *recipe_path, const char *folder, int size, bool overwrite,
                              FlWatercolourProgress progress, void *data, GError **error)
 {
     g_autoptr(FlRecipe) recipe =
         fl_headroom_check(error) ? fl_recipe_load(recipe_path, error) : NULL;
-    if (!recipe || !within_limit(recipe, size, recipe_path, error) ||
-        !fl_style_may_write(folder, overwrite, error))
+    if (!recipe || !fl_style_may_write(folder, overwrite, error))
         return false;
-    g_autoptr(FlStyle) style = new_style(recipe, size, recipe_path, error);
-    return style && simulate(style, recipe, size, progress, data, error) &&
-           fl_style_write(style, folder, overwrite, error);
+    g_autoptr(FlStyle) style = fl_recipe_paint(recipe, recipe_path, size, progress, data, error);
+    return style && fl_style_write(style, folder, overwrite, error);
 }
