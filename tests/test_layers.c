@@ -102,23 +102,6 @@ static void a_gap_leaves_paper_around_the_upper_shape(void)
     layers_clear(layers, 2);
 }
 
-static void a_feather_fades_the_lower_paint_smoothly(void)
-{
-    uint8_t all[N], shape[N], out[4 * N];
-    memset(all, 255, N);
-    half_plane(1, 0, 10, shape);
-    FlLayer layers[2] = {flat_layer(all, 0, 0, 0), flat_layer(shape, 0, 0, 0)};
-    FlStackParams params = plain;
-    params.feather_px = 12;
-    resolve(layers, 2, &params);
-    fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, W, H, false, out);
-    for (int x = 11; x < 24; x++)
-        g_assert_cmpint(out[4 * (20 * W + x)], <=, out[4 * (20 * W + x - 1)] + (x == 10 ? 255 : 0));
-    g_assert_cmpint(out[4 * (20 * W + 16)], >, 60);
-    g_assert_cmpint(out[4 * (20 * W + 23)], ==, 0);
-    layers_clear(layers, 2);
-}
-
 static void an_overlay_of_partial_opacity_tints_what_is_below(void)
 {
     uint8_t all[N], out[4 * N];
@@ -354,7 +337,8 @@ static void an_enlarged_layer_keeps_its_paint_up_to_the_edge(void)
 {
     uint8_t shape[12 * 10] = {0}, knockout[12 * 10];
     memset(knockout, 80, sizeof knockout);
-    FlLayer half = {.area.box = {18, 15, 12, 10}, .coverage = shape, .knockout = knockout, .alpha = 200};
+    FlLayer half = {
+        .area.box = {18, 15, 12, 10}, .coverage = shape, .knockout = knockout, .alpha = 200};
     half.rgba = g_malloc0(4 * sizeof knockout);
     for (int y = 1; y < 9; y++) // a pixel of the box is left around
         for (int x = 1; x < 11; x++) {
@@ -405,8 +389,6 @@ int main(int argc, char **argv)
                     a_shape_exactly_covered_leaves_no_fringe);
     g_test_add_func("/layers/a-gap-leaves-paper-around-the-upper-shape",
                     a_gap_leaves_paper_around_the_upper_shape);
-    g_test_add_func("/layers/a-feather-fades-the-lower-paint-smoothly",
-                    a_feather_fades_the_lower_paint_smoothly);
     g_test_add_func("/layers/an-overlay-of-partial-opacity-tints-what-is-below",
                     an_overlay_of_partial_opacity_tints_what_is_below);
     g_test_add_func("/layers/thin-paint-that-knocks-out-shows-paper-and-a-glaze-what-is-below",

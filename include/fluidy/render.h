@@ -82,7 +82,7 @@ typedef struct FlProgress {
 
 /**
  * The options of a render. A zeroed struct means all defaults; inputs are required. The config
- * gives what is not set here; a negative gap or feather means none.
+ * gives what is not set here; a negative gap means none.
  *
  * Strings belong to the caller and must stay until fl_render() returns. Paths and patterns are
  * relative to the working directory. A pattern has one frame number, written %d, %04d or ####.
@@ -130,7 +130,6 @@ typedef struct FlRenderOptions {
     double scale;        /**< px of output per px of the drawing; 0: 1 */
     double dpi;          /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
     double gap;          /**< px of paper around a region that hides others, ..32; 0: none */
-    double feather;      /**< px over which paint fades towards such a region, ..32; 0: none */
     FlBlendSpace blend;
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
     FlOverwrite overwrite;

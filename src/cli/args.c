@@ -225,22 +225,11 @@ static char **split_values(int argc, char **argv)
     return (char **)g_ptr_array_free(words, FALSE);
 }
 
-/* Two words of --format belong to --list-regions; the library reads the others. */
-static void take_listing(FlArgs *args)
-{
-    if (g_strcmp0(args->render.format, "table") == 0)
-        args->listing = FL_LISTING_TABLE;
-    else if (g_strcmp0(args->render.format, "config") == 0)
-        args->listing = FL_LISTING_CONFIG;
-    else
-        return;
-    args->render.format = NULL;
-}
-
 static bool needs_input(FlCommand task)
 {
     return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
-           task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT || task == FL_COMMAND_COMPARE;
+           task == FL_COMMAND_PRINT_CONFIG || task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT ||
+           task == FL_COMMAND_COMPARE;
 }
 
 /* Previews and comparisons are drafts, and replace the previous ones. */
@@ -277,7 +266,6 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
         return false;
     }
     fl_words_drop_separator(args->inputs);
-    take_listing(args);
     args->render.inputs = (const char *const *)args->inputs + 1;
     if ((args->preview || args->task == FL_COMMAND_COMPARE) && !make_preview(args, error))
         return false;

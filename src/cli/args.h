@@ -10,6 +10,7 @@ typedef enum FlCommand {
     FL_COMMAND_HELP_ALL,
     FL_COMMAND_VERSION,
     FL_COMMAND_LIST_REGIONS,
+    FL_COMMAND_PRINT_CONFIG,
     FL_COMMAND_LIST_STYLES,
     FL_COMMAND_CHECK,
     FL_COMMAND_FLAT,
@@ -27,7 +28,6 @@ typedef enum FlProgressMode {
 typedef struct FlArgs {
     FlCommand task;
     FlRenderOptions render; // its strings belong to this struct
-    FlListing listing;      // of FL_COMMAND_LIST_REGIONS
     FlProgressMode progress;
     const char *preview; // a range of frames; NULL: none
     char **styles;       // of FL_COMMAND_COMPARE; NULL: all there are

@@ -123,9 +123,9 @@ static bool compare_styles(const FlArgs *args, GError **error)
     return fl_compare_styles(&args->render, (const char *const *)styles, error);
 }
 
-static int list_regions(const FlArgs *args, GError **error)
+static int list_regions(const FlArgs *args, FlListing listing, GError **error)
 {
-    g_autofree char *text = fl_list_regions(&args->render, args->listing, error);
+    g_autofree char *text = fl_list_regions(&args->render, listing, error);
     return text ? print(text) : FAILURE;
 }
 
@@ -146,7 +146,9 @@ static int work(FlArgs *args)
     g_autoptr(GError) error = NULL;
     int status = DONE;
     if (args->task == FL_COMMAND_LIST_REGIONS)
-        status = list_regions(args, &error);
+        status = list_regions(args, FL_LISTING_TABLE, &error);
+    else if (args->task == FL_COMMAND_PRINT_CONFIG)
+        status = list_regions(args, FL_LISTING_CONFIG, &error);
     else if (args->task == FL_COMMAND_CHECK)
         fl_map_regions(&args->render, &error);
     else if (args->task == FL_COMMAND_FLAT)

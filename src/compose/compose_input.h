@@ -23,7 +23,6 @@ typedef struct FlComposeInput {
     bool layers_apart;         // layers are stored as well, for whoever puts them on something else
     bool linear;               // blend in linear light
     float gap_px;              // as in FlStackParams
-    float feather_px;
 } FlComposeInput;
 
 #endif

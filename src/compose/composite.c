@@ -225,8 +225,7 @@ static bool make_layers(FlComposite *composite, const FlComposeInput *input, GEr
         !fill_layers(composite, input, &edges, exposures, error) ||
         !fl_beyond_fade(composite->layers, composite->n_layers, input->width, input->height, error))
         return false;
-    FlStackParams params = {
-        .linear = input->linear, .gap_px = input->gap_px, .feather_px = input->feather_px};
+    FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
     memcpy(params.paper, input->background->paper, 3);
     return fl_layers_resolve(composite->layers, composite->n_layers, input->width, input->height,
                              &params, error);

@@ -227,7 +227,7 @@ bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *pai
     const FlRegionSettings *t = painted->settings;
     const size_t n = fl_rect_pixels(edges->draws->draw[draw].area.box);
     if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || edges->input->gap_px > 0 ||
-        edges->input->feather_px > 0 || n == 0 || draw >= edges->n - 1)
+        n == 0 || draw >= edges->n - 1)
         return true;
     const float border = painted->style->exemplar->border_px;
     const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);

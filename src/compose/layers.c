@@ -69,8 +69,7 @@ static void grow_area(const FlLayer *layer, const FlStackParams *params, Above *
 {
     const size_t n = (size_t)above->width * above->height;
     const FlVisibleShape shape = {&layer->area, layer->coverage};
-    fl_visibility_spread(&shape, above->width, above->height, params->gap_px, params->feather_px,
-                         above->spread);
+    fl_visibility_spread(&shape, above->width, above->height, params->gap_px, above->spread);
     for (size_t i = 0; i < n; i++)
         above->area[i] = (uint8_t)MAX(above->area[i], scaled(above->spread[i], layer->alpha));
 }
@@ -233,7 +232,7 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
                        GError **error)
 {
     g_auto(Above) above = {0};
-    if (!above_init(&above, width, height, params->gap_px > 0 || params->feather_px > 0, error))
+    if (!above_init(&above, width, height, params->gap_px > 0, error))
         return false;
     g_autofree uint32_t *sums = fl_alloc(4 * (size_t)width, sizeof *sums, "a row", error);
     g_autofree uint8_t *drawn = sums ? fl_alloc((size_t)width, 1, "a row of pixels", error) : NULL;

@@ -27,7 +27,6 @@ typedef struct FlStackParams {
     uint8_t paper[3]; // the output's paper, on which the paint was made
     bool linear;      // blend in linear light instead of sRGB
     float gap_px;     // paper left around an upper shape that knocks out; 0 … 32
-    float feather_px; // over which paint fades towards such a shape, beyond the gap; 0 … 32
 } FlStackParams;
 
 /**

@@ -79,15 +79,14 @@ typedef struct Brush {
     uint8_t factor[(2 * FL_SPREAD_MAX_PX + 3) * (2 * FL_SPREAD_MAX_PX + 3)];
 } Brush;
 
-/** Full up to gap_px, then a half cosine down to 0; without a feather an edge one pixel wide. */
-static void brush_init(Brush *brush, float gap_px, float feather_px)
+/** Full up to gap_px, then an edge one pixel wide. */
+static void brush_init(Brush *brush, float gap_px)
 {
-    const float fade = MAX(feather_px, 1.0f);
-    brush->radius = MIN((int)ceilf(gap_px + fade), FL_SPREAD_MAX_PX + 1);
+    brush->radius = MIN((int)ceilf(gap_px + 1.0f), FL_SPREAD_MAX_PX + 1);
     const int side = 2 * brush->radius + 1;
     for (int i = 0; i < side * side; i++) {
         const float x = (float)(i % side - brush->radius), y = (float)(i / side - brush->radius);
-        const float t = CLAMP((sqrtf(x * x + y * y) - gap_px) / fade, 0.0f, 1.0f);
+        const float t = CLAMP(sqrtf(x * x + y * y) - gap_px, 0.0f, 1.0f);
         brush->factor[i] = (uint8_t)lrintf(255 * (1 - t * t * (3 - 2 * t)));
     }
 }
@@ -112,14 +111,14 @@ static void dab(const Brush *brush, int strength, int x, int y, int width, int h
 }
 
 void fl_visibility_spread(const FlVisibleShape *shape, int width, int height, float gap_px,
-                          float feather_px, uint8_t *matte)
+                          uint8_t *matte)
 {
     Brush brush;
     const FlRect box = shape->area->box;
     const Plane plane = {shape->coverage, box, width, height};
     memset(matte, 0, (size_t)width * height);
     fl_rect_copy(shape->coverage, box, matte, (FlRect){0, 0, width, height}, 1);
-    brush_init(&brush, gap_px, feather_px);
+    brush_init(&brush, gap_px);
     for (int y = box.y; y < box.y + box.height; y++)
         for (int x = box.x; x < box.x + box.width; x++)
             if (is_rim(&plane, x, y))

@@ -29,12 +29,12 @@ void fl_visibility_visible(const FlVisibleShape *shape, const uint8_t *above, in
                            uint8_t *visible);
 
 /**
- * A shape grown by gap_px and then fading out over feather_px, both >= 0 and together at most
- * FL_SPREAD_MAX_PX. matte is width * height and becomes 0..255, never below coverage.
+ * A shape grown by gap_px, 0 … FL_SPREAD_MAX_PX. matte is width * height and becomes 0..255, never
+ * below coverage.
  */
 void fl_visibility_spread(const FlVisibleShape *shape, int width, int height, float gap_px,
-                          float feather_px, uint8_t *matte);
+                          uint8_t *matte);
 
-#define FL_SPREAD_MAX_PX 64
+#define FL_SPREAD_MAX_PX 32
 
 #endif

@@ -178,8 +178,7 @@ static FlComposeInput compose_input(const Pipeline *pipeline, int frame)
                             .half = plan->half,
                             .layers_apart = plan->options.layers || plan->format->takes_layers,
                             .linear = plan->options.blend == FL_BLEND_LINEAR,
-                            .gap_px = (float)MAX(plan->options.gap, 0),
-                            .feather_px = (float)MAX(plan->options.feather, 0)};
+                            .gap_px = (float)MAX(plan->options.gap, 0)};
 }
 
 /* Paints and composes a frame. Its shapes are drawn beside the painting, those of frame `next` (-1:
