@@ -44,7 +44,7 @@ static bool make_guides(FlPainters *painters, GError **error)
 static bool make_scratch(FlPainters *painters, GError **error)
 {
     const FlDrawing *drawing = painters->plan->drawing;
-    painters->n_scratch = CLAMP(fl_schedule_threads(), 1, MAX(painters->n, 1));
+    painters->n_scratch = fl_schedule_threads(); // any of them may take the only item
     painters->scratch = g_new0(FlGuides, painters->n_scratch);
     for (int k = 0; k < painters->n_scratch; k++)
         if (!fl_guides_init(&painters->scratch[k], fl_drawing_width(drawing),
