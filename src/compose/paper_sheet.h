@@ -3,6 +3,7 @@
 #ifndef FLUIDY_COMPOSE_PAPER_SHEET_H
 #define FLUIDY_COMPOSE_PAPER_SHEET_H
 
+#include "base/tooth.h"
 #include "compose/paper_height.h"
 
 /** Which paper. */
@@ -15,7 +16,6 @@ typedef struct FlPaperChoice {
 } FlPaperChoice;
 
 #define FL_PAPER_ONE 32768 // a factor of one
-#define FL_TOOTH_ONE 57    // a height of one standard deviation
 
 /**
  * A sheet of paper, made once for a film. Every frame has the same part of it; with boil, parts
@@ -65,13 +65,7 @@ void fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int h
 void fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
                             uint8_t *rgba);
 
-/** The tooth of a frame, for whoever paints on it; borrowed. */
-typedef struct FlTooth {
-    const int8_t *height; // FL_TOOTH_ONE is a standard deviation; NULL: flat
-    size_t stride;        // of its rows
-} FlTooth;
-
-/** half: of a frame that is painted at half the size. sheet may be NULL. */
+/** The tooth of a frame. half: of one that is painted at half the size. sheet may be NULL. */
 FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame, bool half);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPaperSheet, fl_paper_sheet_free)

@@ -8,24 +8,6 @@ double fl_stroke_px(const FlGeometry *g)
     return g->stroke * sqrt(fabs(g->ctm.xx * g->ctm.yy - g->ctm.xy * g->ctm.yx));
 }
 
-static double distance(FlPoint a, FlPoint b)
-{
-    const double x = a.x - b.x, y = a.y - b.y;
-    return sqrt(x * x + y * y);
-}
-
-int fl_cubic_steps(const FlCubic *cubic, const FlAffine *ctm, double step_px)
-{
-    double length = 0;
-    FlPoint last = fl_affine_apply(ctm, cubic->p[0]);
-    for (int k = 1; k < 4; k++) { // the control polygon is longer than the curve
-        const FlPoint p = fl_affine_apply(ctm, cubic->p[k]);
-        length += distance(last, p);
-        last = p;
-    }
-    return (int)CLAMP(ceil(length / step_px), 1, 400);
-}
-
 /** Called for each straight piece of a leaf, in px of rect's own coordinates. */
 typedef void Piece(void *data, FlPoint a, FlPoint b);
 

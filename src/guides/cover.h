@@ -20,7 +20,4 @@ void fl_cover_line(const FlOutlines *outlines, const FlGeometry *g, double reach
 /** The width of the leaf's stroke in px; 0: none known. */
 double fl_stroke_px(const FlGeometry *g);
 
-/** The number of straight pieces of about step_px that a cubic is split into, 1 … 400. */
-int fl_cubic_steps(const FlCubic *cubic, const FlAffine *ctm, double step_px);
-
 #endif

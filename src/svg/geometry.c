@@ -366,3 +366,21 @@ FlPoint fl_cubic_at(const FlCubic *cubic, const FlAffine *ctm, double t)
     return fl_affine_apply(ctm, (FlPoint){a * p[0].x + b * p[1].x + c * p[2].x + d * p[3].x,
                                           a * p[0].y + b * p[1].y + c * p[2].y + d * p[3].y});
 }
+
+static double distance(FlPoint a, FlPoint b)
+{
+    const double x = a.x - b.x, y = a.y - b.y;
+    return sqrt(x * x + y * y);
+}
+
+int fl_cubic_steps(const FlCubic *cubic, const FlAffine *ctm, double step_px)
+{
+    double length = 0;
+    FlPoint last = fl_affine_apply(ctm, cubic->p[0]);
+    for (int k = 1; k < 4; k++) { // the control polygon is longer than the curve
+        const FlPoint p = fl_affine_apply(ctm, cubic->p[k]);
+        length += distance(last, p);
+        last = p;
+    }
+    return (int)CLAMP(ceil(length / step_px), 1, 400);
+}

@@ -69,6 +69,9 @@ FlOutlines *fl_outlines_unpack(const uint8_t *data, size_t bytes);
 /** Where a cubic is at t, 0 … 1, in px. */
 FlPoint fl_cubic_at(const FlCubic *cubic, const FlAffine *ctm, double t);
 
+/** The number of straight pieces of about step_px that a cubic is split into, 1 … 400. */
+int fl_cubic_steps(const FlCubic *cubic, const FlAffine *ctm, double step_px);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlOutlines, fl_outlines_free)
 
 #endif
