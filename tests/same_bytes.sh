@@ -40,4 +40,31 @@ result $? 'frames that are held are merged alike'
 paint other --seed 2 --layers "other/$layers" && ! same other one
 result $? 'another seed paints something else'
 
+# Lines over the paint, drawn by hand.
+mkdir lined
+for i in 1 2 3 4; do
+    echo "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56'><rect x='4' y='4'" \
+        "width='48' height='48' fill='#2255aa'/><g fill='none' stroke='#221100'>" \
+        "<path d='M$((3 + i)) 9L50 $((20 + 3 * i))L12 44' stroke-width='1.5'/>" \
+        "<path d='M9 50L$((40 + i)) 50' stroke-width='4'/></g></svg>" >lined/w_000$i.svg
+done
+lines() {
+    local to=$1
+    shift
+    timeout 120 "$program" lined -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err
+}
+lines unsaid && lines plain --line plain && same plain unsaid
+result $? 'plain lines are those of who says nothing'
+lines preset --preset fluidymation && lines preset_plain --preset fluidymation --line plain &&
+    same preset preset_plain
+result $? "the papers' presets have plain lines"
+for tool in pen pencil brush; do
+    lines $tool --line $tool -j 1 && lines many_$tool --line $tool -j 5 &&
+        FLUIDY_CPU_MASK=0 lines scalar_$tool --line $tool && same $tool many_$tool &&
+        same $tool scalar_$tool && ! same $tool plain
+    result $? "a $tool draws the same at every thread count and level"
+done
+lines boiling --line pencil --line-boil 2 && ! same boiling pencil
+result $? 'lines boil when asked to'
+
 echo "1..$n"

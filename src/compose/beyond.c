@@ -178,7 +178,7 @@ bool fl_beyond_fade(FlLayer *layers, int n, int width, int height, GError **erro
         if (layer->knockout && knocks && k < n - 1 && fl_rect_pixels(layer->area.box) > 0 &&
             !fade_layer(layer, above, width, height, error))
             return false;
-        if (knocks && layer->alpha >= SHOWN)
+        if (knocks && !layer->sheer && layer->alpha >= SHOWN)
             add_above(layer, width, above);
     }
     return true;

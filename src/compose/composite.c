@@ -140,7 +140,8 @@ static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **
     const int p = stack->input->painted_of[draw->region];
     const FlRect box = draw->area.box;
     *layer = (FlLayer){.area = {box, g_memdup2(draw->area.row, box.height * sizeof(FlColumns))},
-                       .coverage = draw->coverage,
+                       .coverage = p < 0 && draw->by_hand ? draw->by_hand : draw->coverage,
+                       .sheer = p < 0 && draw->by_hand,
                        .alpha = draw->alpha,
                        .stacking = FL_STACKING_KNOCKOUT,
                        .mix = draw->mix};

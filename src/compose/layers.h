@@ -18,6 +18,7 @@ typedef struct FlLayer {
                        // where its paint has body only; NULL: wherever its shape is
     uint8_t *rgba;     // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by
                        // the caller
+    bool sheer;        // drawn by hand: what lies below is seen through its grain
     uint8_t alpha;     // opacity of the layer, 255 opaque
     FlStacking stacking; // a layer that is mixed hides nothing, whatever this says
     FlBlendMode mix;     // with what is below it

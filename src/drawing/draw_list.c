@@ -1,5 +1,7 @@
 #include "base/alloc.h"
+#include "base/rng.h"
 #include "drawing/drawing_data.h"
+#include "drawing/hand_line.h"
 #include "drawing/raster.h"
 #include <math.h>
 #include <string.h>
@@ -75,6 +77,9 @@ typedef struct Stage {
     const FlDrawingFrame *frame;
     FlSvg *svg;
     cairo_surface_t *coverage, *picture; // scratch, blank between draws; picture may be NULL
+    const FlHand *hand;                  // NULL: plain
+    int index;                           // of the frame
+    FlLinePaths **paths;                 // by step, of those that a hand draws; NULL: none
 } Stage;
 
 static void stage_clear(Stage *stage)
@@ -84,12 +89,15 @@ static void stage_clear(Stage *stage)
         cairo_surface_destroy(stage->coverage);
     if (stage->picture)
         cairo_surface_destroy(stage->picture);
+    for (int i = 0; stage->paths && i < stage->frame->n; i++)
+        fl_line_paths_free(stage->paths[i]);
+    g_free(stage->paths);
 }
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Stage, stage_clear)
 
 static bool stage_init(Stage *stage, const FlDrawing *drawing, int frame, GError **error)
 {
-    *stage = (Stage){.drawing = drawing, .frame = &drawing->frame[frame]};
+    *stage = (Stage){.drawing = drawing, .frame = &drawing->frame[frame], .index = frame};
     const FlSvgOptions options = {stage->frame->canvas, drawing->dpi,
                                   (const char *const *)stage->frame->whole};
     stage->svg = fl_svg_open(drawing->sequence->file[frame], drawing->sequence->number[frame],
@@ -148,6 +156,70 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
     return drawn;
 }
 
+/* ---- by hand --------------------------------------------------------------------------------- */
+
+/** Whether a hand draws a step: a line, or a flat opaque shape, which is a detail if it is small.
+ */
+static bool is_by_hand(const Stage *stage, const FlStep *step)
+{
+    const bool line = step->width > 0;
+    const bool shape = step->width == 0 && step->part != FL_PART_STROKE && step->flat &&
+                       step->drawn == 255 && step->mix == FL_BLEND_MODE_OVER;
+    return step->leaf >= 0 && (line || shape) &&
+           fl_line_kind(stage->hand->of_region[step->region].line);
+}
+
+/** Ends that meet are no ends, within a region: programs write one line as several. */
+static void join_ends(const Stage *stage)
+{
+    const int n = stage->frame->n;
+    g_autofree FlLinePaths **alike = g_new(FlLinePaths *, MAX(n, 1));
+    for (int r = 0; r < fl_drawing_regions(stage->drawing); r++) {
+        int found = 0;
+        for (int i = 0; i < n; i++)
+            if (stage->frame->step[i].region == r && stage->paths[i])
+                alike[found++] = stage->paths[i];
+        fl_line_paths_join(alike, found);
+    }
+}
+
+static void find_paths(Stage *stage)
+{
+    g_autoptr(FlOutlines) outlines = NULL;
+    for (int i = 0; i < stage->frame->n; i++) {
+        const FlStep *step = &stage->frame->step[i];
+        if (!is_by_hand(stage, step))
+            continue;
+        if (!outlines) {
+            outlines =
+                fl_outlines_new(stage->svg, stage->frame->page_width, stage->frame->page_height);
+            stage->paths = g_new0(FlLinePaths *, stage->frame->n);
+        }
+        if (step->leaf < outlines->n_leaves)
+            stage->paths[i] =
+                fl_line_paths_new(outlines, step->leaf, (double)step->width, step->width == 0);
+    }
+    if (stage->paths)
+        join_ends(stage);
+}
+
+static FlHandLine hand_of(const Stage *stage, const FlStep *step, const FlLinePaths *paths)
+{
+    const FlHand *hand = stage->hand;
+    const FlRegionHand *own = &hand->of_region[step->region];
+    const char *name = fl_drawing_region(stage->drawing, step->region)->name;
+    const uint64_t leaf = fl_key(fl_key(hand->seed, g_str_hash(name)), step->nth);
+    return (FlHandLine){.kind = fl_line_kind(own->line),
+                        .paths = paths,
+                        .fill = step->width == 0,
+                        .key = own->boil > 0 ? fl_key(leaf, (uint64_t)(stage->index / own->boil))
+                                             : leaf,
+                        .page = hand->page,
+                        .tooth = hand->tooth};
+}
+
+/* ---- steps ----------------------------------------------------------------------------------- */
+
 /** A drawn opacity as coverage of something whose opacity is `alpha`. */
 static void fill_solid(uint8_t solid[256], uint8_t alpha)
 {
@@ -159,6 +231,7 @@ static void fill_solid(uint8_t solid[256], uint8_t alpha)
 typedef struct Target {
     FlRect box;
     uint8_t *coverage;
+    uint8_t *by_hand; // what a hand leaves of the coverage; NULL: no hand draws
     uint8_t *picture; // may be NULL
 } Target;
 
@@ -168,9 +241,38 @@ static size_t target_pixel(const Target *target, int x, int y)
     return (size_t)(y - box.y) * (size_t)box.width + (size_t)(x - box.x);
 }
 
-/** Adds one flat step to a coverage, dividing by its opacity. */
-static bool add_flat(const Stage *stage, const FlStep *step, const Target *target, GError **error)
+/** Adds what a hand leaves of the step on the stage's coverage. */
+static bool add_by_hand(const Stage *stage, int i, const uint8_t solid[256], const Target *target,
+                        GError **error)
 {
+    const FlStep *step = &stage->frame->step[i];
+    const FlRect box = step_box(stage, step);
+    const int stride = cairo_image_surface_get_stride(stage->coverage);
+    const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
+    if (fl_rect_pixels(box) == 0)
+        return true;
+    g_autofree uint8_t *left = fl_alloc(fl_rect_pixels(box), 1, "a line", error);
+    if (!left)
+        return false;
+    for (int y = 0; y < box.height; y++)
+        memcpy(left + (size_t)y * box.width, drawn + (size_t)(box.y + y) * stride + box.x,
+               (size_t)box.width);
+    const FlLinePaths *paths = stage->paths[i];
+    const FlHandLine hand = hand_of(stage, step, paths);
+    if (paths && !fl_hand_line_draw(&hand, box, left, error))
+        return false;
+    for (int y = 0; y < box.height; y++) {
+        uint8_t *out = target->by_hand + target_pixel(target, box.x, box.y + y);
+        for (int x = 0; x < box.width; x++)
+            out[x] = fl_over(solid[left[(size_t)y * box.width + x]], out[x]);
+    }
+    return true;
+}
+
+/** Adds one flat step to a coverage, dividing by its opacity. */
+static bool add_flat(const Stage *stage, int i, const Target *target, GError **error)
+{
+    const FlStep *step = &stage->frame->step[i];
     if (!draw_step(stage, step, stage->coverage, error))
         return false;
     const FlRect box = step_box(stage, step);
@@ -185,16 +287,34 @@ static bool add_flat(const Stage *stage, const FlStep *step, const Target *targe
             if (in[x])
                 out[x] = fl_over(solid[in[x]], out[x]);
     }
+    const bool added = !target->by_hand || add_by_hand(stage, i, solid, target, error);
     fl_surface_wipe(stage->coverage, box);
-    return true;
+    return added;
 }
 
 static bool draw_flat(const Stage *stage, const Draw *draw, const Target *target, GError **error)
 {
     for (guint i = 0; i < draw->steps->len; i++)
-        if (!add_flat(stage, &stage->frame->step[g_array_index(draw->steps, int, i)], target,
-                      error))
+        if (!add_flat(stage, g_array_index(draw->steps, int, i), target, error))
             return false;
+    return true;
+}
+
+/** Adds what a hand leaves of the steps of a picture, each drawn by itself once more. */
+static bool add_picture_by_hand(const Stage *stage, const Draw *draw, const Target *target,
+                                GError **error)
+{
+    uint8_t solid[256];
+    fill_solid(solid, draw->drawn);
+    for (guint k = 0; k < draw->steps->len; k++) {
+        const int i = g_array_index(draw->steps, int, k);
+        const FlStep *step = &stage->frame->step[i];
+        const bool added = draw_step(stage, step, stage->coverage, error) &&
+                           add_by_hand(stage, i, solid, target, error);
+        fl_surface_wipe(stage->coverage, step_box(stage, step));
+        if (!added)
+            return false;
+    }
     return true;
 }
 
@@ -228,7 +348,7 @@ static bool draw_picture(Stage *stage, const Draw *draw, const Target *target, G
             target->coverage[p] = fl_over(mine[3], target->coverage[p]);
         }
     fl_surface_wipe(stage->picture, box);
-    return true;
+    return !target->by_hand || add_picture_by_hand(stage, draw, target, error);
 }
 
 /** The mean colour of a picture, by its coverage. */
@@ -261,6 +381,11 @@ static bool keep_drawn(const Target *target, FlDraw *out, GError **error)
     if (!(out->coverage = fl_alloc(n, 1, "the mask of a region", error)))
         return false;
     fl_rect_copy(target->coverage, from, out->coverage, *box, 1);
+    if (target->by_hand) {
+        if (!(out->by_hand = fl_alloc(n, 1, "a line", error)))
+            return false;
+        fl_rect_copy(target->by_hand, from, out->by_hand, *box, 1);
+    }
     if (!target->picture)
         return true;
     if (!(out->picture = fl_alloc(n, 4, "the picture of a region", error)))
@@ -268,6 +393,14 @@ static bool keep_drawn(const Target *target, FlDraw *out, GError **error)
     fl_rect_copy(target->picture, from, out->picture, *box, 4);
     mean_colour(out->picture, n, out->rgb);
     return true;
+}
+
+static bool has_hand(const Stage *stage, const Draw *draw)
+{
+    for (guint i = 0; stage->paths && i < draw->steps->len; i++)
+        if (stage->paths[g_array_index(draw->steps, int, i)])
+            return true;
+    return false;
 }
 
 static bool draw_steps(Stage *stage, const Draw *draw, FlDraw *out, GError **error)
@@ -279,18 +412,23 @@ static bool draw_steps(Stage *stage, const Draw *draw, FlDraw *out, GError **err
     g_autofree uint8_t *coverage = fl_alloc(n, 1, "the mask of a region", error);
     g_autofree uint8_t *picture =
         draw->flat || !coverage ? NULL : fl_alloc(n, 4, "the picture of a region", error);
-    const Target target = {box, coverage, picture};
-    if (!coverage || (!draw->flat && !picture))
+    const bool by_hand = has_hand(stage, draw);
+    g_autofree uint8_t *left = by_hand ? fl_alloc(n, 1, "a line", error) : NULL;
+    const Target target = {box, coverage, left, picture};
+    if (!coverage || (by_hand && !left) || (!draw->flat && !picture))
         return false;
     return draw_in(stage, draw, &target, error) && keep_drawn(&target, out, error);
 }
 
-FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error)
+FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
+                                    GError **error)
 {
     g_assert(frame >= 0 && frame < drawing->sequence->n);
     g_auto(Stage) stage = {0};
     if (!stage_init(&stage, drawing, frame, error))
         return NULL;
+    if ((stage.hand = hand))
+        find_paths(&stage);
     g_autoptr(GArray) draws = draws_of(stage.frame);
     g_autoptr(FlDrawList) out = g_new0(FlDrawList, 1);
     out->draw = g_new0(FlDraw, draws->len + 1);
@@ -300,6 +438,11 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
             return NULL;
     }
     return g_steal_pointer(&out);
+}
+
+FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error)
+{
+    return fl_drawing_draw_by_hand(drawing, frame, NULL, error);
 }
 
 void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
@@ -323,8 +466,9 @@ void fl_draw_clear(FlDraw *draw)
 {
     fl_area_clear(&draw->area);
     free(draw->coverage);
+    free(draw->by_hand);
     free(draw->picture);
-    draw->coverage = draw->picture = NULL;
+    draw->coverage = draw->by_hand = draw->picture = NULL;
 }
 
 void fl_draw_list_free(FlDrawList *draws)

@@ -27,9 +27,11 @@ void fl_drawing_halve(FlDrawing *drawing)
     for (int f = 0; f < drawing->sequence->n; f++) {
         FlDrawingFrame *frame = &drawing->frame[f];
         frame->page_width /= 2, frame->page_height /= 2;
-        for (int i = 0; i < frame->n; i++)
+        for (int i = 0; i < frame->n; i++) {
+            frame->step[i].width /= 2;
             for (int side = 0; side < 4; side++)
                 frame->step[i].box[side] /= 2;
+        }
     }
 }
 
@@ -202,7 +204,9 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
                              .rgb = {s->rgb[0], s->rgb[1], s->rgb[2]},
                              .alpha = s->peak,
                              .drawn = s->peak,
-                             .mix = (uint8_t)s->mix};
+                             .mix = (uint8_t)s->mix,
+                             .nth = (uint16_t)s->nth,
+                             .width = s->width};
             memcpy(step->box, s->box, sizeof step->box);
         }
     }

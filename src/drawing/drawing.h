@@ -3,9 +3,11 @@
 #define FLUIDY_DRAWING_DRAWING_H
 
 #include "base/rect.h"
+#include "base/tooth.h"
 #include "base/warnings.h"
 #include "drawing/region_rules.h"
 #include "drawing/sequence.h"
+#include "params/region_settings.h"
 #include "svg/svg_frame.h"
 #include <fluidy/error.h>
 #include <fluidy/render.h>
@@ -53,6 +55,7 @@ typedef struct FlDraw {
     int region;        // index into the drawing's regions
     FlArea area;       // where it is in the frame
     uint8_t *coverage; // of the area's box, 0..255: the whole shape, hidden parts included
+    uint8_t *by_hand;  // of the box: what a hand leaves of the coverage; NULL: all of it
     uint8_t *picture;  // of the box, 4 bytes a pixel, straight sRGBA as the SVG draws it; NULL:
                        // flat `rgb`. A is coverage again, colours are defined where A > 0
     uint8_t rgb[3];    // the fill; of a picture its mean
@@ -64,6 +67,20 @@ typedef struct FlDrawList {
     int n;
     FlDraw *draw;
 } FlDrawList;
+
+/** The hand that draws what is not painted of a region. */
+typedef struct FlRegionHand {
+    FlLine line;
+    int boil; // frames until it draws anew; 0: never
+} FlRegionHand;
+
+/** How what is not painted is drawn; see drawing/hand_line.h. */
+typedef struct FlHand {
+    const FlRegionHand *of_region; // of each; borrowed
+    uint64_t seed;
+    float page;    // px of the picture per px of the page, see base/page.h
+    FlTooth tooth; // of the frame's paper
+} FlHand;
 
 /** A sequence and its regions. It keeps no pictures: each call reads its file again. */
 typedef struct FlDrawing FlDrawing;
@@ -97,6 +114,10 @@ void fl_drawing_halve(FlDrawing *drawing);
 
 /** Rasterises a frame. Any thread may call it. Returns: to be freed with fl_draw_list_free(). */
 FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error);
+
+/** The same by a hand; NULL: plain. */
+FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
+                                    GError **error);
 
 /** The region's whole-shape mask in a frame: the union of its draws' coverage. */
 void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,

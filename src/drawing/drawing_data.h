@@ -4,7 +4,7 @@
 
 #include "drawing/drawing.h"
 
-/** How one part of a leaf is drawn in one frame. 32 bytes: this is what grows with the number of
+/** How one part of a leaf is drawn in one frame. 36 bytes: this is what grows with the number of
  * frames. */
 typedef struct FlStep {
     int32_t leaf;   // index of the leaf; of a unit -1 - its index
@@ -15,6 +15,8 @@ typedef struct FlStep {
     uint8_t alpha; // of its draw
     uint8_t drawn; // FlPaint.peak: the opacity drawn at full coverage
     uint8_t mix;   // FlBlendMode
+    uint16_t nth;  // FlSurveyPart.nth
+    float width;   // FlSurveyPart.width
     float box[4];  // x0, y0, x1, y1 that it lies in, px
 } FlStep;
 

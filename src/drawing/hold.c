@@ -45,10 +45,10 @@ static bool is_from(const int *hold_of, int region, int frame, int from, int now
 }
 
 /** Replaces the draws of the regions that show `from` by those of that frame. */
-static bool replace(const FlDrawing *drawing, const int *hold_of, GArray *draws, int frame,
-                    int from, int now, GError **error)
+static bool replace(const FlDrawing *drawing, const FlHand *hand, const int *hold_of, GArray *draws,
+                    int frame, int from, int now, GError **error)
 {
-    g_autoptr(FlDrawList) earlier = fl_drawing_draw_list(drawing, from, error);
+    g_autoptr(FlDrawList) earlier = fl_drawing_draw_by_hand(drawing, from, hand, error);
     if (!earlier)
         return false;
     for (int r = 0; r < (int)draws->len; r++) {
@@ -69,11 +69,11 @@ static bool replace(const FlDrawing *drawing, const int *hold_of, GArray *draws,
     return true;
 }
 
-FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, int hold, const int *hold_of, int frame,
-                              GError **error)
+FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, const FlHand *hand, int hold,
+                              const int *hold_of, int frame, GError **error)
 {
     const int now = frame - frame % hold;
-    g_autoptr(FlDrawList) shown = fl_drawing_draw_list(drawing, now, error);
+    g_autoptr(FlDrawList) shown = fl_drawing_draw_by_hand(drawing, now, hand, error);
     if (!shown)
         return NULL;
     g_autoptr(GHashTable) done = g_hash_table_new(NULL, NULL);
@@ -83,7 +83,7 @@ FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, int hold, const int *hol
     for (int r = 0; r < fl_drawing_regions(drawing) && good; r++) {
         const int from = frame - frame % hold_of[r];
         if (from != now && g_hash_table_add(done, GINT_TO_POINTER(from)))
-            good = replace(drawing, hold_of, draws, frame, from, now, error);
+            good = replace(drawing, hand, hold_of, draws, frame, from, now, error);
     }
     g_free(shown->draw);
     shown->n = (int)draws->len;

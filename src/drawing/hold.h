@@ -9,10 +9,10 @@
  * has the draws of the frame in which it was last painted, at the place in the stack of its present
  * draws, else above the region that it lay on.
  *
- * hold: of the film, frames. hold_of: of each region; the film's where it has none of its own.
- * Returns: to be freed with fl_draw_list_free(); NULL with an error.
+ * hand: NULL: plain. hold: of the film, frames. hold_of: of each region; the film's where it has
+ * none of its own. Returns: to be freed with fl_draw_list_free(); NULL with an error.
  */
-FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, int hold, const int *hold_of, int frame,
-                              GError **error);
+FlDrawList *fl_hold_draw_list(const FlDrawing *drawing, const FlHand *hand, int hold,
+                              const int *hold_of, int frame, GError **error);
 
 #endif

@@ -119,6 +119,14 @@ static void relate_parts(GArray *probes, guint first)
     }
 }
 
+/** See FlSurveyPart.width. The page that a paint was read on fits into a square. */
+static float width_of(const FlFrameProbe *f, const FlLeaf *leaf, const FlPainted *p)
+{
+    if (leaf->whole || leaf->text || (p->width > 0 && !p->stroke))
+        return -1;
+    return p->stroke ? p->width * (float)(MAX(f->width, f->height) * f->factor) : 0;
+}
+
 static bool look_at(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
 {
     const guint first = f->probes->len;
@@ -131,6 +139,7 @@ static bool look_at(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **err
         probe.found = (FlSurveyPart){.leaf = index,
                                      .part = p->part,
                                      .stroke = p->stroke,
+                                     .width = width_of(f, leaf, p),
                                      .thick = p->stroke && p->width >= THICK,
                                      .kind = p->paint.kind,
                                      .alpha = p->paint.alpha,

@@ -231,6 +231,24 @@ static void add_up(const Work *w, const FlSurveyPart *s, FlGroup *group, Sum *su
     group->stroke = group->stroke && is_apart(w, s);
 }
 
+/** Numbers the tracks of each region in the order in which they appear. */
+static void number_tracks(const Work *w, guint n_regions)
+{
+    g_autofree int *count = g_new0(int, n_regions + 1);
+    g_autofree int *nth = g_new(int, w->tracks->len + 1);
+    memset(nth, -1, w->tracks->len * sizeof *nth);
+    for (int t = 0; t < w->survey->n_frames; t++)
+        for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
+            FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
+            int *mine = &nth[w->track_of[t][i]];
+            if (s->region < 0)
+                continue;
+            if (*mine < 0)
+                *mine = count[s->region]++;
+            s->nth = *mine;
+        }
+}
+
 static GArray *gather(Work *w)
 {
     GArray *groups = g_array_new(FALSE, FALSE, sizeof(FlGroup));
@@ -283,6 +301,7 @@ GArray *fl_identify(FlSurvey *survey, const FlDrawingOptions *options)
     match_rules(&w);
     find_twins(&w);
     GArray *groups = gather(&w);
+    number_tracks(&w, groups->len);
     for (int t = 0; t < survey->n_frames; t++)
         g_free(w.track_of[t]);
     g_free(w.track_of);

@@ -19,6 +19,7 @@ typedef struct FlSurveyPart {
     FlPart part;
     bool stroke;
     bool has_fill, has_stroke; // of the leaf it is a part of
+    float width;               // of a stroke, px of the picture; 0: a fill alone; below 0: neither
     bool thick;                // a stroke without a fill that is a limb rather than a line
     FlPaintKind kind;
     uint8_t rgb[3], alpha, peak; // see FlPaint
@@ -30,6 +31,7 @@ typedef struct FlSurveyPart {
     float covers;  // share of it that lies over other paint, page-filling ones not counted
     int unit;      // 1 + index of the unit it is, or is a leaf of, if that is to be drawn as one
     int region;    // set later; -1: not drawn
+    int nth;       // set later: the first, second, … leaf that the region has in the film
 } FlSurveyPart;
 
 typedef struct FlSurveyFrame {

@@ -223,6 +223,11 @@ static void add_regions(FlFingerprint *print, const FlPlan *plan)
                             : plan->painted_of[r] == FL_DRAWN_AS_IT_IS ? "drawn"
                                                                        : "left out");
         fl_fingerprint_add(print, name, value);
+        const FlRegionHand hand = plan->hands[r];
+        g_autofree char *line = g_strdup_printf("line and line-boil of region %s", region->name);
+        g_autofree char *drawn = g_strdup_printf("%d, %d", hand.line, hand.boil);
+        if (hand.line != FL_LINE_PLAIN)
+            fl_fingerprint_add(print, line, drawn);
     }
 }
 

@@ -117,6 +117,8 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
     plan->joins[region] = !painted                           ? FL_JOIN_UNPAINTED
                           : settings->edges == FL_EDGES_SOFT ? FL_JOIN_ALONE
                                                              : FL_JOIN_ALIKE;
+    if (!painted)
+        plan->hands[region] = (FlRegionHand){settings->line, settings->line_boil};
     plan->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;
     if (!painted || left_out) {
         fl_region_settings_clear(settings);
@@ -139,6 +141,7 @@ static bool plan_regions(FlPlan *plan, GError **error)
     plan->painted = g_new0(FlRegionPlan, MAX(n, 1));
     plan->painted_of = g_new0(int, MAX(n, 1));
     plan->joins = g_new0(FlJoin, MAX(n, 1));
+    plan->hands = g_new0(FlRegionHand, MAX(n, 1));
     plan->half = true;
     for (int r = 0; r < n; r++)
         if (!plan_region(plan, r, error))
@@ -332,6 +335,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->painted_of);
     g_free(plan->joins);
     g_free(plan->hold_of);
+    g_free(plan->hands);
     g_free(plan->output);
     g_free(plan->movie);
     fl_style_cache_free(plan->styles);

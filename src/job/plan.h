@@ -32,14 +32,15 @@ typedef struct FlPlan {
     FlStyleCache *styles;
     int n_painted;
     FlRegionPlan *painted;
-    int *painted_of;   // by region: index into painted, FL_DRAWN_AS_IT_IS or FL_LEFT_OUT
-    int *hold_of;      // by region: frames; `hold` where it is not painted
-    int hold;          // the drawing changes on every hold-th frame
-    int width, height; // of the frames
-    bool by_page;      // paint of some region, and so the paper, is as large as the page asks for
-    float paper_px;    // px of the frames per px of the sheet of paper
-    bool half;         // drafts: the drawing has half their size, and layers are enlarged
-    char *output;      // pattern or file
+    int *painted_of;     // by region: index into painted, FL_DRAWN_AS_IT_IS or FL_LEFT_OUT
+    int *hold_of;        // by region: frames; `hold` where it is not painted
+    FlRegionHand *hands; // by region: what draws it where it is not painted
+    int hold;            // the drawing changes on every hold-th frame
+    int width, height;   // of the frames
+    bool by_page;        // paint of some region, and so the paper, is as large as the page asks for
+    float paper_px;      // px of the frames per px of the sheet of paper
+    bool half;           // drafts: the drawing has half their size, and layers are enlarged
+    char *output;        // pattern or file
     const FlSinkFormat *format;
     char *movie; // the film made of the frames; NULL: none
     const FlSinkFormat *movie_format;

@@ -128,6 +128,7 @@ static bool set_preset(FlRegionSettings *settings, const char *value, GError **e
     settings->granulation = ours ? plain.granulation : 0;
     settings->load = ours ? plain.load : 0;
     settings->pigments = ours ? plain.pigments : 0;
+    settings->line = ours ? plain.line : FL_LINE_PLAIN;
     return true;
 }
 

@@ -24,6 +24,14 @@ typedef enum FlMotion {
     FL_MOTION_MASKS, // what outlines show, as in the papers: nothing is carried
 } FlMotion;
 
+/** What kept lines and small shapes beside them are drawn with. */
+typedef enum FlLine {
+    FL_LINE_PLAIN, // as the drawing has them
+    FL_LINE_PEN,
+    FL_LINE_PENCIL,
+    FL_LINE_BRUSH,
+} FlLine;
+
 /** The colour of the paint. */
 typedef enum FlTint {
     FL_TINT_FILL, // the drawing's fill or any other: the picture if there is one, else the flat one
@@ -50,6 +58,8 @@ typedef struct FlRegionSettings {
     double load;        // unevenness of the amounts, 0..1
     double pigments;    // play of the hue, 0..1
     FlEdges edges;
+    FlLine line;   // of a region that is not painted
+    int line_boil; // frames until it is drawn anew; 0: never
     FlMotion motion;
     int hold; // frames, 1..1000
     bool reverse;
@@ -64,7 +74,7 @@ void fl_region_settings_clear(FlRegionSettings *settings);
 /**
  * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale. A preset
  * sets the motion, too: the papers' know none but that of masks, and have paint that is as
- * the synthesis makes it, without granulation, load and pigments.
+ * the synthesis makes it, without granulation, load, pigments and drawn lines.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.
  * Returns: false with FL_ERROR_USAGE; the settings are then unchanged.

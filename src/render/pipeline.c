@@ -1,5 +1,6 @@
 /* The whole render: run() has its stages in order, render_frame() those of a frame. */
 #include "base/alloc.h"
+#include "base/page.h"
 #include "base/schedule.h"
 #include "base/task.h"
 #include "compose/composite.h"
@@ -129,8 +130,14 @@ static bool draw_shapes(void *data, GError **error)
 {
     Pipeline *pipeline = data;
     const FlPlan *plan = pipeline->plan;
+    const float page = fl_page_scale(plan->width, plan->height);
+    const FlHand hand = {.of_region = plan->hands,
+                         .seed = MAX(plan->options.seed, 1),
+                         .page = plan->half ? page / 2 : page,
+                         .tooth =
+                             fl_paper_sheet_tooth(pipeline->sheet, pipeline->drawn, plan->half)};
     pipeline->draws =
-        fl_hold_draw_list(plan->drawing, plan->hold, plan->hold_of, pipeline->drawn, error);
+        fl_hold_draw_list(plan->drawing, &hand, plan->hold, plan->hold_of, pipeline->drawn, error);
     return pipeline->draws != NULL;
 }
 
