@@ -112,6 +112,7 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, float *flow, G
     const Plane planes[] = {
         {"mask", mask, 1, 0, 1},
         {"distance", guides->distance, 1, -b, 2 * b},
+        {"depth", guides->depth, 1, -b, 2 * b},
         {"flow", flow, 2, 0, largest(flow, 2 * pixels)},
         {"ext-plus", guides->ext_plus, 1, 0, largest(guides->ext_plus, pixels)},
         {"ext-minus", guides->ext_minus, 1, 0, largest(guides->ext_minus, pixels)},
@@ -119,7 +120,7 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, float *flow, G
     for (size_t k = 0; k < G_N_ELEMENTS(planes); k++)
         if (!write_plane(dump, &planes[k], error))
             return false;
-    return write_flo(dump, &planes[2], error);
+    return write_flo(dump, &planes[3], error);
 }
 
 /* The motion of the drawing, where it is known. */
