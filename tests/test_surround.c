@@ -15,14 +15,31 @@ static FlDraw columns(int region, int x0, int x1, const uint8_t rgb[3])
 
 static const uint8_t red[3] = {200, 100, 50}, reddish[3] = {202, 101, 52}, blue[3] = {0, 0, 200};
 
-/** What is together with region 0 in column x; -1: nothing is like it. */
-static int together_at(FlDrawList *draws, const FlJoin *joins, int x)
+/** What of the first frame is around region 0, after a film of n frames was noted. */
+static void around_of(const FlDrawList *frames, int n, const FlJoin *joins, FlAround *around)
 {
+    g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(3);
     g_autoptr(FlSurround) surround = fl_surround_new(3, 1, W, H, NULL);
+    for (int f = 0; f < n; f++)
+        fl_shared_edges_note(edges, &frames[f], joins);
+    g_assert_true(fl_surround_put(surround, 0, frames, joins, edges, NULL));
+    g_assert_true(fl_surround_get(surround, 0, 0, (FlRect){0, 0, W, H}, around, NULL));
+}
+
+/** What is together with region 0 in column x; -1: nothing is like it. */
+static int together_at(const FlDrawList *draws, const FlJoin *joins, int x)
+{
     g_auto(FlAround) around = {0};
-    g_assert_true(fl_surround_put(surround, 0, draws, joins, NULL));
-    g_assert_true(fl_surround_get(surround, 0, 0, (FlRect){0, 0, W, H}, &around, NULL));
-    return around.joined ? around.together[x] : -1;
+    around_of(draws, 1, joins, &around);
+    return around.joined ? around.together[5 * W + x] : -1;
+}
+
+/** The same with what borders on it; -1: nothing does. */
+static int closed_at(const FlDrawList *draws, const FlJoin *joins, int x)
+{
+    g_auto(FlAround) around = {0};
+    around_of(draws, 1, joins, &around);
+    return around.bordered ? around.closed[5 * W + x] : -1;
 }
 
 static void clear(FlDraw *draw, int n)
@@ -35,7 +52,7 @@ static void shapes_of_nearly_one_colour_are_together(void)
 {
     const FlJoin joins[3] = {FL_JOIN_ALIKE, FL_JOIN_ALIKE, FL_JOIN_ALIKE};
     FlDraw draw[] = {columns(0, 0, 15, red), columns(1, 15, 30, reddish), columns(2, 30, 40, blue)};
-    FlDrawList draws = {3, draw};
+    const FlDrawList draws = {3, draw};
     g_assert_cmpint(together_at(&draws, joins, 20), ==, 255);
     g_assert_cmpint(together_at(&draws, joins, 35), ==, 0);
     memcpy(draw[1].rgb, blue, 3);
@@ -43,14 +60,50 @@ static void shapes_of_nearly_one_colour_are_together(void)
     clear(draw, 3);
 }
 
-static void what_is_hidden_is_not_together(void)
+static void what_is_hidden_counts_near_to_where_it_is_seen(void)
 {
     const FlJoin joins[3] = {FL_JOIN_ALIKE, FL_JOIN_ALIKE, FL_JOIN_ALIKE};
     FlDraw draw[] = {columns(0, 0, 15, red), columns(1, 10, 30, reddish), columns(2, 18, 30, blue)};
-    FlDrawList draws = {3, draw};
+    const FlDrawList draws = {3, draw};
     g_assert_cmpint(together_at(&draws, joins, 16), ==, 255);
+    g_assert_cmpint(together_at(&draws, joins, 18), ==, 255); // a px from what is seen
     g_assert_cmpint(together_at(&draws, joins, 20), ==, 0);
     clear(draw, 3);
+}
+
+static void shapes_side_by_side_close_up(void)
+{
+    const FlJoin joins[3] = {FL_JOIN_CLOSED, FL_JOIN_CLOSED, FL_JOIN_UNPAINTED};
+    FlDraw draw[] = {columns(0, 5, 15, red), columns(1, 15, 30, blue), columns(2, 0, 5, blue)};
+    const FlDrawList draws = {3, draw};
+    g_assert_cmpint(closed_at(&draws, joins, 20), ==, 255);
+    g_assert_cmpint(closed_at(&draws, joins, 2), ==, 255); // painted or not
+    g_assert_cmpint(together_at(&draws, joins, 20), ==, -1);
+    clear(&draw[1], 1);
+    draw[1] = columns(1, 9, 30, blue);
+    g_assert_cmpint(closed_at(&draws, joins, 20), ==, 0); // it lies over
+    clear(&draw[1], 1);
+    draw[1] = columns(1, 16, 30, blue);
+    g_assert_cmpint(closed_at(&draws, joins, 20), ==, 0); // it is near only
+    clear(draw, 3);
+}
+
+static void edges_are_shared_through_the_film_or_not_at_all(void)
+{
+    const FlJoin joins[3] = {FL_JOIN_ALIKE, FL_JOIN_ALIKE, FL_JOIN_UNPAINTED};
+    FlDraw like[] = {columns(0, 0, 15, red), columns(1, 10, 30, reddish)};
+    FlDraw unlike[] = {columns(0, 0, 15, red), columns(1, 10, 30, blue)};
+    FlDraw away[] = {columns(0, 0, 15, red), columns(1, 20, 30, blue)};
+    const FlDrawList mostly[] = {{2, like}, {2, like}, {2, unlike}, {2, away}, {2, away}};
+    g_auto(FlAround) with = {0}, without = {0};
+    around_of(mostly, 5, joins, &with); // frames in which they do not meet say nothing
+    g_assert_true(with.joined);
+    const FlDrawList seldom[] = {{2, like}, {2, unlike}, {2, unlike}};
+    around_of(seldom, 3, joins, &without);
+    g_assert_false(without.joined);
+    clear(like, 2);
+    clear(unlike, 2);
+    clear(away, 2);
 }
 
 static void soft_edges_and_other_opacity_keep_shapes_apart(void)
@@ -69,7 +122,9 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
 #define TEST(name) g_test_add_func("/surround/" #name, name)
     TEST(shapes_of_nearly_one_colour_are_together);
-    TEST(what_is_hidden_is_not_together);
+    TEST(what_is_hidden_counts_near_to_where_it_is_seen);
+    TEST(shapes_side_by_side_close_up);
+    TEST(edges_are_shared_through_the_film_or_not_at_all);
     TEST(soft_edges_and_other_opacity_keep_shapes_apart);
     return g_test_run();
 }

@@ -102,6 +102,18 @@ static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GErro
                 style->path, style->ink->beyond);
 }
 
+/* Paper that is left around a region would be wider where it has no rim. */
+static FlJoin join_of(const FlRenderOptions *options, const FlRegionSettings *settings,
+                      bool painted)
+{
+    if (!painted)
+        return FL_JOIN_UNPAINTED;
+    if (settings->edges == FL_EDGES_SOFT)
+        return FL_JOIN_ALONE;
+    const bool apart = options->gap > 0 || settings->stacking == FL_STACKING_GLAZE;
+    return apart ? FL_JOIN_ALIKE : FL_JOIN_CLOSED;
+}
+
 /* The settings of a region, and whether it is painted. */
 static bool plan_region(FlPlan *plan, int region, GError **error)
 {
@@ -114,9 +126,7 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;
-    plan->joins[region] = !painted                           ? FL_JOIN_UNPAINTED
-                          : settings->edges == FL_EDGES_SOFT ? FL_JOIN_ALONE
-                                                             : FL_JOIN_ALIKE;
+    plan->joins[region] = join_of(&plan->options, settings, painted);
     if (!painted)
         plan->hands[region] = (FlRegionHand){settings->line, settings->line_boil};
     plan->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;
@@ -346,8 +356,17 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan);
 }
 
+/* How the regions of a frame meet. */
+static bool note_edges(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
+{
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
+    if (draws)
+        fl_shared_edges_note(edges, draws, plan->joins);
+    return draws;
+}
+
 /* Stores the masks of all painted regions in a frame. */
-static bool store_masks(FlPlan *plan, int frame, GError **error)
+static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
 {
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
     const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
@@ -365,10 +384,11 @@ static bool store_masks(FlPlan *plan, int frame, GError **error)
         if (!fl_mask_store_put(plan->masks, region, frame, mask, error))
             return false;
     }
-    return fl_surround_put(plan->surround, frame, draws, plan->joins, error);
+    return fl_surround_put(plan->surround, frame, draws, plan->joins, edges, error);
 }
 
-bool fl_plan_rasterise(FlPlan *plan, GError **error)
+static bool each_frame(FlPlan *plan, FlSharedEdges *edges,
+                       bool (*work)(FlPlan *, FlSharedEdges *, int, GError **), GError **error)
 {
     const int n = fl_drawing_frames(plan->drawing);
     GError *first = NULL;
@@ -376,9 +396,16 @@ bool fl_plan_rasterise(FlPlan *plan, GError **error)
 #pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
     for (int f = 0; f < n; f++) {
         GError *mine = NULL;
-        if (failed == 0 && !store_masks(plan, f, &mine))
+        if (failed == 0 && !work(plan, edges, f, &mine))
             failed++;
         fl_parallel_error_keep(&first, mine);
     }
     return fl_parallel_error_tell(error, first);
+}
+
+bool fl_plan_rasterise(FlPlan *plan, GError **error)
+{
+    g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(fl_drawing_regions(plan->drawing));
+    return (fl_drawing_regions(plan->drawing) < 2 || each_frame(plan, edges, note_edges, error)) &&
+           each_frame(plan, edges, store_masks, error);
 }

@@ -1,15 +1,16 @@
 #include "job/surround.h"
 
 #include "base/alloc.h"
-#include "base/colour_difference.h"
+#include "base/windows.h"
 #include "drawing/raster.h"
 #include <string.h>
 
-#define ALIKE 8.0f // CIE76: hardly another tone
+#define REACH 24 // a shape counts this share of the larger side around what is seen of it
 
 struct FlSurround {
     int n_regions, width, height;
     FlMaskStore *together; // by region; empty: nothing is like it
+    FlMaskStore *closed;   // by region; empty: nothing is beside it
     FlMaskStore *seen;     // by region; empty: nothing lies over it
     FlMaskStore *shown;    // of region 0
 };
@@ -19,6 +20,7 @@ FlSurround *fl_surround_new(int n_regions, int n_frames, int width, int height, 
     g_autoptr(FlSurround) surround = g_new0(FlSurround, 1);
     *surround = (FlSurround){.n_regions = n_regions, .width = width, .height = height};
     if (!(surround->together = fl_mask_store_new(n_regions, n_frames, width, height, error)) ||
+        !(surround->closed = fl_mask_store_new(n_regions, n_frames, width, height, error)) ||
         !(surround->seen = fl_mask_store_new(n_regions, n_frames, width, height, error)) ||
         !(surround->shown = fl_mask_store_new(1, n_frames, width, height, error)))
         return NULL;
@@ -30,64 +32,10 @@ void fl_surround_free(FlSurround *surround)
     if (!surround)
         return;
     fl_mask_store_free(surround->together);
+    fl_mask_store_free(surround->closed);
     fl_mask_store_free(surround->seen);
     fl_mask_store_free(surround->shown);
     g_free(surround);
-}
-
-static uint8_t coverage_at(const FlDraw *draw, int x, int y)
-{
-    const FlRect box = draw->area.box;
-    return draw->coverage[(size_t)(y - box.y) * (size_t)box.width + (size_t)(x - box.x)];
-}
-
-/** Adds a layer's colour at a pixel, if it has some there. */
-static bool add_colour(const FlDraw *draw, int x, int y, uint64_t sum[3])
-{
-    const FlRect box = draw->area.box;
-    const size_t p = (size_t)(y - box.y) * (size_t)box.width + (size_t)(x - box.x);
-    for (int c = 0; c < 3; c++)
-        sum[c] += draw->picture ? draw->picture[4 * p + (size_t)c] : draw->rgb[c];
-    return true;
-}
-
-/** How far apart the mean colours of two draws are where both are: infinitely if they are nowhere.
- */
-static float difference_where_they_meet(const FlDraw *a, const FlDraw *b)
-{
-    const FlRect both = fl_rect_and(a->area.box, b->area.box);
-    uint64_t sum[2][3] = {{0}}, n = 0;
-    for (int y = both.y; y < both.y + both.height; y++)
-        for (int x = both.x; x < both.x + both.width; x++)
-            if (coverage_at(a, x, y) && coverage_at(b, x, y))
-                n += add_colour(a, x, y, sum[0]) && add_colour(b, x, y, sum[1]);
-    uint8_t mean[2][3];
-    for (int k = 0; k < 2 && n; k++)
-        for (int c = 0; c < 3; c++)
-            mean[k][c] = (uint8_t)((sum[k][c] + n / 2) / n);
-    return n ? fl_colour_difference(mean[0], mean[1]) : 2 * ALIKE;
-}
-
-/** Whether no edge is seen between two draws: opaque, and of one colour. */
-static bool alike(const FlDraw *a, const FlDraw *b)
-{
-    if (a->alpha != 255 || b->alpha != 255 || a->mix != FL_BLEND_MODE_OVER ||
-        b->mix != FL_BLEND_MODE_OVER)
-        return false;
-    return a->picture || b->picture ? difference_where_they_meet(a, b) < ALIKE
-                                    : fl_colour_difference(a->rgb, b->rgb) < ALIKE;
-}
-
-/** Whether a layer is not of the region, but like one of its draws. */
-static bool joins_region(const FlDrawList *draws, const FlDraw *draw, int region,
-                         const FlJoin *joins)
-{
-    if (draw->region == region || joins[draw->region] != FL_JOIN_ALIKE)
-        return false;
-    for (int r = 0; r < draws->n; r++)
-        if (draws->draw[r].region == region && alike(&draws->draw[r], draw))
-            return true;
-    return false;
 }
 
 /** What is seen of a layer that others leave `free`, onto the coverage below. */
@@ -127,41 +75,122 @@ static void hide_below(const FlDraw *draw, int width, uint8_t *free_of)
 }
 
 /** Whether a layer of others lies over one of the region. */
-static bool lies_below(const FlDrawList *draws, int region, const bool *like)
+static bool lies_below(const FlDrawList *draws, int region, const FlSharing *sharing)
 {
     for (int r = 0; r < draws->n; r++)
         for (int k = r + 1; k < draws->n && draws->draw[r].region == region; k++)
-            if (draws->draw[k].region != region && !like[k] &&
+            if (draws->draw[k].region != region && sharing[k] != FL_SHARING_ALIKE &&
                 fl_rect_meet(draws->draw[r].area.box, draws->draw[k].area.box))
                 return true;
     return false;
 }
 
-/** Room for planes of a frame. */
-typedef struct Room {
+/** A frame, and room for planes of it. */
+typedef struct Frame {
+    const FlDrawList *draws;
+    uint8_t *const *near_seen; // by draw: its coverage near to where it is seen; NULL: not needed
     uint8_t *free_of, *coverage, *seen;
-} Room;
+} Frame;
 
-/** The region with what is seen of those like it, and what is seen of it all. */
-static bool put_region(FlSurround *surround, int frame, int region, const FlDrawList *draws,
-                       const bool *like, bool any_like, const Room *room, GError **error)
+/** The same of a plane of the draw's box. */
+static void add_coverage(const FlDraw *draw, const uint8_t *plane, int width, uint8_t *coverage)
 {
-    const size_t n = (size_t)surround->width * (size_t)surround->height;
-    memset(room->free_of, 255, n);
-    memset(room->seen, 0, n);
-    fl_draw_list_mask(draws, region, surround->width, surround->height, room->coverage);
+    const FlRect box = draw->area.box;
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(&draw->area, y);
+        const uint8_t *from = plane + (size_t)y * (size_t)box.width;
+        uint8_t *to = coverage + (size_t)(box.y + y) * (size_t)width + box.x;
+        for (int x = span.first; x < span.last; x++)
+            to[x] = (uint8_t)MIN(to[x] + from[x], 255);
+    }
+}
+
+/**
+ * The coverage of a draw as far as it is seen within reach_px: a neck goes on below a collar. The
+ * less of it is seen there the less it counts, so that nothing comes or goes at once.
+ */
+static uint8_t *near_seen(const FlDraw *draw, const uint8_t *free_of, int width, int reach_px,
+                          GError **error)
+{
+    const FlRect box = draw->area.box;
+    const size_t n = fl_rect_pixels(box);
+    g_autofree int16_t *seen = fl_alloc(n, sizeof *seen, "a mask", error);
+    g_autofree uint32_t *rows = seen ? fl_alloc(n, sizeof *rows, "a mask", error) : NULL;
+    g_autofree uint32_t *sums = rows ? fl_alloc(n, sizeof *sums, "a mask", error) : NULL;
+    uint8_t *near = sums ? fl_alloc(n, 1, "a mask", error) : NULL;
+    if (!near)
+        return NULL;
+    for (size_t p = 0; p < n; p++) {
+        const size_t at = (box.y + p / (size_t)box.width) * (size_t)width + box.x;
+        seen[p] = (int16_t)((draw->coverage[p] * free_of[at + p % (size_t)box.width] + 127) / 255);
+    }
+    fl_window_sums(seen, box, reach_px, rows, sums);
+    for (size_t p = 0; p < n; p++) { // a line of pixels that crosses the window is enough
+        const uint32_t share = MIN(sums[p] / (uint32_t)(2 * reach_px + 1), 255);
+        near[p] = (uint8_t)MAX(seen[p], (int)(draw->coverage[p] * share / 255));
+    }
+    return near;
+}
+
+/** near_seen() of all draws that share edges with others. */
+static bool find_near_seen(const FlSurround *surround, const FlDrawList *draws, const bool *shares,
+                           uint8_t *free_of, uint8_t **near, GError **error)
+{
+    const int reach_px = MAX(MAX(surround->width, surround->height) / REACH, 1);
+    memset(free_of, 255, (size_t)surround->width * (size_t)surround->height);
     for (int r = draws->n - 1; r >= 0; r--) {
         const FlDraw *draw = &draws->draw[r];
-        if (like[r])
-            add_seen(draw, room->free_of, surround->width, room->coverage);
-        if (like[r] || draw->region == region)
-            add_seen(draw, room->free_of, surround->width, room->seen);
-        else
-            hide_below(draw, surround->width, room->free_of);
+        if (shares[r] && fl_rect_pixels(draw->area.box) > 0 &&
+            !(near[r] = near_seen(draw, free_of, surround->width, reach_px, error)))
+            return false;
+        hide_below(draw, surround->width, free_of);
     }
-    return (!any_like ||
-            fl_mask_store_put(surround->together, region, frame, room->coverage, error)) &&
-           fl_mask_store_put(surround->seen, region, frame, room->seen, error);
+    return true;
+}
+
+/** Onto the coverage, the draws that share the region's edges in a way. Returns: whether any do. */
+static bool add_sharing(const FlSurround *surround, const Frame *frame, const FlSharing *sharing,
+                        FlSharing way)
+{
+    bool any = false;
+    for (int r = 0; r < frame->draws->n; r++)
+        if (sharing[r] == way && frame->near_seen[r]) {
+            add_coverage(&frame->draws->draw[r], frame->near_seen[r], surround->width,
+                         frame->coverage);
+            any = true;
+        }
+    return any;
+}
+
+/** What is seen of a region and those of its colour. */
+static void find_seen(const FlSurround *surround, int region, const Frame *frame,
+                      const FlSharing *sharing)
+{
+    const size_t n = (size_t)surround->width * (size_t)surround->height;
+    memset(frame->free_of, 255, n);
+    memset(frame->seen, 0, n);
+    for (int r = frame->draws->n - 1; r >= 0; r--) {
+        const FlDraw *draw = &frame->draws->draw[r];
+        if (sharing[r] == FL_SHARING_ALIKE || draw->region == region)
+            add_seen(draw, frame->free_of, surround->width, frame->seen);
+        else
+            hide_below(draw, surround->width, frame->free_of);
+    }
+}
+
+/** The region with those that share its edges, and what is seen of it. */
+static bool put_region(FlSurround *surround, int number, int region, const Frame *frame,
+                       const FlSharing *sharing, GError **error)
+{
+    fl_draw_list_mask(frame->draws, region, surround->width, surround->height, frame->coverage);
+    if (add_sharing(surround, frame, sharing, FL_SHARING_ALIKE) &&
+        !fl_mask_store_put(surround->together, region, number, frame->coverage, error))
+        return false;
+    if (add_sharing(surround, frame, sharing, FL_SHARING_BESIDE) &&
+        !fl_mask_store_put(surround->closed, region, number, frame->coverage, error))
+        return false;
+    find_seen(surround, region, frame, sharing);
+    return fl_mask_store_put(surround->seen, region, number, frame->seen, error);
 }
 
 /** Everything that hides what is below it. */
@@ -184,25 +213,63 @@ static bool put_shown(FlSurround *surround, int frame, const FlDrawList *draws, 
     return fl_mask_store_put(surround->shown, 0, frame, coverage, error);
 }
 
-bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlJoin *joins,
-                     GError **error)
+/** Notes how each draw shares the region's edges. Returns: whether any does. */
+static bool find_sharing(const FlDrawList *draws, int region, const FlJoin *joins,
+                         const FlSharedEdges *edges, FlSharing *sharing)
 {
-    const size_t n = (size_t)surround->width * (size_t)surround->height;
-    g_autofree uint8_t *planes = fl_alloc(3 * n, 1, "masks", error);
-    g_autofree bool *like = g_new0(bool, MAX(draws->n, 1));
-    if (!planes || !put_shown(surround, frame, draws, planes, error))
-        return false;
-    const Room room = {planes, planes + n, planes + 2 * n};
+    bool any = false;
+    for (int r = 0; r < draws->n; r++) {
+        const FlDraw *draw = &draws->draw[r];
+        const bool opaque = draw->alpha == 255 && draw->mix == FL_BLEND_MODE_OVER;
+        sharing[r] =
+            opaque ? fl_shared_edges_get(edges, region, draw->region, joins) : FL_SHARING_NONE;
+        any |= sharing[r] != FL_SHARING_NONE;
+    }
+    return any;
+}
+
+static bool put_regions(FlSurround *surround, int number, const Frame *frame, const FlJoin *joins,
+                        const FlSharedEdges *edges, GError **error)
+{
+    const FlDrawList *draws = frame->draws;
+    g_autofree FlSharing *sharing = g_new0(FlSharing, MAX(draws->n, 1));
     for (int region = 0; region < surround->n_regions; region++) {
-        bool any = false;
-        for (int r = 0; r < draws->n; r++)
-            any |= like[r] = joins[region] == FL_JOIN_ALIKE &&
-                             joins_region(draws, &draws->draw[r], region, joins);
-        if (joins[region] != FL_JOIN_UNPAINTED && (any || lies_below(draws, region, like)) &&
-            !put_region(surround, frame, region, draws, like, any, &room, error))
+        if (joins[region] == FL_JOIN_UNPAINTED)
+            continue;
+        const bool any = find_sharing(draws, region, joins, edges, sharing);
+        if ((any || lies_below(draws, region, sharing)) &&
+            !put_region(surround, number, region, frame, sharing, error))
             return false;
     }
     return true;
+}
+
+/** Marks the draws that share edges with any region. */
+static void find_sharers(const FlSurround *surround, const FlDrawList *draws, const FlJoin *joins,
+                         const FlSharedEdges *edges, bool *shares)
+{
+    g_autofree FlSharing *sharing = g_new0(FlSharing, MAX(draws->n, 1));
+    for (int region = 0; region < surround->n_regions; region++)
+        if (find_sharing(draws, region, joins, edges, sharing))
+            for (int r = 0; r < draws->n; r++)
+                shares[r] |= sharing[r] != FL_SHARING_NONE;
+}
+
+bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlJoin *joins,
+                     const FlSharedEdges *edges, GError **error)
+{
+    const size_t n = (size_t)surround->width * (size_t)surround->height;
+    g_autofree uint8_t *planes = fl_alloc(3 * n, 1, "masks", error);
+    g_autofree bool *shares = g_new0(bool, MAX(draws->n, 1));
+    g_autofree uint8_t **near = g_new0(uint8_t *, MAX(draws->n, 1));
+    find_sharers(surround, draws, joins, edges, shares);
+    const Frame all = {draws, near, planes, planes + n, planes + 2 * n};
+    const bool done = planes && put_shown(surround, frame, draws, planes, error) &&
+                      find_near_seen(surround, draws, shares, planes, near, error) &&
+                      put_regions(surround, frame, &all, joins, edges, error);
+    for (int r = 0; r < draws->n; r++)
+        free(near[r]);
+    return done;
 }
 
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b)
@@ -215,11 +282,14 @@ bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect p
 {
     const size_t n = fl_rect_pixels(part);
     *around = (FlAround){.joined = fl_mask_store_has(surround->together, region, frame),
+                         .bordered = fl_mask_store_has(surround->closed, region, frame),
                          .hidden = fl_mask_store_has(surround->seen, region, frame)};
     return (around->together = fl_alloc(n, 1, "a guide", error)) &&
+           (around->closed = fl_alloc(n, 1, "a guide", error)) &&
            (around->seen = fl_alloc(n, 1, "a guide", error)) &&
            (around->shown = fl_alloc(n, 1, "a guide", error)) &&
            fl_mask_store_get(surround->together, region, frame, part, around->together, error) &&
+           fl_mask_store_get(surround->closed, region, frame, part, around->closed, error) &&
            fl_mask_store_get(surround->seen, region, frame, part, around->seen, error) &&
            fl_mask_store_get(surround->shown, 0, frame, part, around->shown, error);
 }
@@ -227,6 +297,7 @@ bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect p
 void fl_around_clear(FlAround *around)
 {
     free(around->together);
+    free(around->closed);
     free(around->seen);
     free(around->shown);
     *around = (FlAround){0};

@@ -191,6 +191,22 @@ static int depth_picture(FlPainter *painter, int picture)
     return picture;
 }
 
+/* No rim where others border on the shape; but it gets none that it would not have alone, since
+ * what is narrow by itself stays crisp beside whatever it is. */
+static bool close_depth(const FlRimShape *alone, const uint8_t *closed, float border_px,
+                        float *depth, GError **error)
+{
+    const size_t n = (size_t)alone->width * (size_t)alone->height;
+    g_autofree float *with_others = fl_alloc(n, sizeof *with_others, "a guide", error);
+    FlRimShape shape = *alone;
+    shape.together = closed, shape.seen = NULL;
+    if (!with_others || !fl_rim_depth(&shape, border_px, with_others, error))
+        return false;
+    for (size_t p = 0; p < n; p++)
+        depth[p] = MAX(depth[p], with_others[p]);
+    return true;
+}
+
 static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const FlPaintedRegion *result = &painter->result;
@@ -204,7 +220,9 @@ static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides,
                               .together = around.joined ? around.together : NULL,
                               .seen = around.hidden ? around.seen : NULL,
                               .shown = around.shown};
-    return fl_rim_depth(&shape, result->style->exemplar->border_px, guides->depth, error);
+    const float border = result->style->exemplar->border_px;
+    return fl_rim_depth(&shape, border, guides->depth, error) &&
+           (!around.bordered || close_depth(&shape, around.closed, border, guides->depth, error));
 }
 
 /* Keeps the depth if the next picture has the same; where there is no memory, it is measured again.
