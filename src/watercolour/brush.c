@@ -46,16 +46,22 @@ static Place place_on_stroke(const FlEvent *event, float x, float y)
     return nearest;
 }
 
-/* Each pigment is stirred into the brush unevenly. */
+/* The pigments are stirred unevenly: where there is more of one, there is less of the others. */
 static void find_play(const FlEvent *event, uint64_t key, float x_px, float y_px, FlTouch *touch)
 {
+    float sum = 0, n = 0;
+    for (int k = 0; k < FL_MAX_PIGMENTS; k++) {
+        touch->play[k] = 0;
+        if (event->play <= 0 || event->load[k] + event->deposit[k] <= 0)
+            continue;
+        touch->play[k] =
+            fl_noise_octaves(fl_key(key, KEY_PLAY + (uint64_t)k), x_px / event->streak_px,
+                             y_px / event->streak_px, 3, 0.5f);
+        sum += touch->play[k], n++;
+    }
     for (int k = 0; k < FL_MAX_PIGMENTS; k++)
-        touch->play[k] = 1;
-    for (int k = 0; k < FL_MAX_PIGMENTS && event->play > 0; k++)
-        touch->play[k] = fmaxf(0.02f, 1 + 1.5f * event->play *
-                                              fl_noise_octaves(fl_key(key, KEY_PLAY + (uint64_t)k),
-                                                               x_px / event->streak_px,
-                                                               y_px / event->streak_px, 3, 0.5f));
+        touch->play[k] =
+            fmaxf(0.02f, 1 + 1.5f * event->play * (touch->play[k] - sum / fmaxf(1, n)));
 }
 
 FlTouch fl_brush_touch(const FlEvent *event, uint64_t key, float x_px, float y_px)

@@ -52,7 +52,7 @@ typedef struct FlEvent {
     float load[FL_MAX_PIGMENTS];     // pigment per unit of water, >= 0
     float deposit[FL_MAX_PIGMENTS];  // pigment laid down at once, per cell, >= 0
     float streaks, streak_px;        // amplitude of streaks in load and deposit, 0..1; their size
-    float play;                      // the same of each pigment by itself: their mixture varies
+    float play;                      // unevenness of their mixture, 0..1, streak_px in size
     float bristles;       // amplitude of the lines that bristles draw along the stroke, 0..1
     float bristle_px[2];  // width and length of such a line
     float dry[2], dry_px; // height of the tooth below which the brush skips, 0..1: at the rim of
