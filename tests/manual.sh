@@ -36,6 +36,13 @@ described "$build/man/fluidy-style.1" | grep -vxE 'help(-all)?|version' >said
 diff is said >err
 result $? 'fluidy-style(1) describes the options that there are, and no others'
 
+for style in "$fixtures"/styles/*/; do
+    echo "$(basename "$style") , $(sed -n 's/^name = //p' "$style/style.ini")"
+done >is
+sed -n '/^\.Sh BUNDLED/,/^\.Sh FILES/s/^\.It Ic //p' "$build/man/fluidy-style.5" >said
+diff is said >err
+result $? 'fluidy-style(5) lists the bundled styles by their names'
+
 # What the examples are about, as small as they allow.
 mkdir bin walk styles
 for style in 01 02 03 04 05 06; do
