@@ -1,6 +1,7 @@
 #include "base/rng.h"
 #include "compose/enlarge.h"
-#include "compose/holes.h"
+#include "compose/ink.h"
+#include "compose/knockout.h"
 #include "compose/layers.h"
 #include "compose/visibility.h"
 
@@ -175,19 +176,23 @@ static void an_area_is_where_the_shape_is_and_no_more(void)
     }
 }
 
-static void a_hole_in_the_paint_has_body_and_its_rim_has_not(void)
+static void thin_paint_hides_what_is_below_amid_its_shape_not_in_its_rim(void)
 {
-    enum { SIDE = 20 };
-    const FlRect box = {12, 6, SIDE, SIDE};
-    uint8_t coverage[SIDE * SIDE], knockout[SIDE * SIDE];
+    enum { SIDE = 40, FRAME = 100, RADIUS = 16 };
+    const FlRect box = {0, 30, SIDE, SIDE}; // its left side is the frame's
+    static uint8_t coverage[SIDE * SIDE], knockout[SIDE * SIDE];
+    static int16_t amounts[SIDE * SIDE];
     memset(coverage, 255, sizeof coverage);
-    memset(knockout, 255, sizeof knockout);
-    memset(knockout + 10 * SIDE, 40, 7); // from the left side to column 6
-    knockout[10 * SIDE + 12] = knockout[11 * SIDE + 12] = 40;
-    g_assert_true(fl_holes_close(knockout, coverage, &(FlArea){box}, NULL));
-    for (int k = 0; k < SIDE; k++)
-        g_assert_cmpint(knockout[10 * SIDE + k], ==, k <= 6 ? 40 : 255);
-    g_assert_cmpint(knockout[11 * SIDE + 12], ==, 255);
+    for (int p = 0; p < SIDE * SIDE; p++)
+        amounts[p] = p / SIDE == 18 ? FL_AMOUNT_ONE : FL_AMOUNT_ONE / 5;
+    g_assert_true(
+        fl_knockout(amounts, coverage, &(FlArea){box}, FRAME, FRAME, RADIUS, knockout, NULL));
+    const uint8_t *row = knockout + 20 * SIDE;
+    g_assert_cmpint(row[0], ==, 255);
+    g_assert_cmpint(row[SIDE - 1], ==, 84); // a third, rounded down
+    for (int x = 1; x < SIDE; x++)
+        g_assert_true(row[x] <= row[x - 1] && row[x] >= row[x - 1] - 48); // bit by bit
+    g_assert_cmpint(knockout[18 * SIDE + SIDE - 1], ==, 255);             // full paint
 }
 
 /** Stacks of random discs of random paint. */
@@ -397,8 +402,8 @@ int main(int argc, char **argv)
                     paint_below_runs_on_under_a_rim_without_body);
     g_test_add_func("/layers/an-area-is-where-the-shape-is-and-no-more",
                     an_area_is_where_the_shape_is_and_no_more);
-    g_test_add_func("/layers/a-hole-in-the-paint-has-body-and-its-rim-has-not",
-                    a_hole_in_the_paint_has_body_and_its_rim_has_not);
+    g_test_add_func("/layers/thin-paint-hides-what-is-below-amid-its-shape-not-in-its-rim",
+                    thin_paint_hides_what_is_below_amid_its_shape_not_in_its_rim);
     g_test_add_func("/layers/stored-layers-recompose-to-the-frame-bit-for-bit",
                     stored_layers_recompose_to_the_frame_bit_for_bit);
     g_test_add_func("/layers/sixteen-bits-are-the-same-picture", sixteen_bits_are_the_same_picture);

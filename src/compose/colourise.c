@@ -280,16 +280,6 @@ void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *p
     }
 }
 
-void fl_colourise_knockout(const int16_t *amounts, const FlArea *area, uint8_t *knockout)
-{
-    for (int y = 0; y < area->box.height; y++) {
-        const FlColumns span = fl_area_row(area, y);
-        const size_t row = (size_t)y * area->box.width;
-        for (int x = span.first; x < span.last; x++)
-            knockout[row + x] = (uint8_t)body_of(MAX(amounts[row + x], 0));
-    }
-}
-
 void fl_colourise_plain(const uint8_t *picture, const uint8_t flat[3], const uint8_t *coverage,
                         const FlArea *area, uint8_t *rgba)
 {

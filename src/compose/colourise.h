@@ -54,13 +54,6 @@ void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart 
                   const int16_t *amounts, const FlArea *area, uint8_t *rgba);
 
 /**
- * How far the paint has body, 0..255 per pixel of the area: from nothing on bare paper to 255 at
- * a fifth of the median amount. Layers that knock out by it let the paint below run on under their
- * soft rims instead of ending it at their contour, where it leaves a line of paper.
- */
-void fl_colourise_knockout(const int16_t *amounts, const FlArea *area, uint8_t *knockout);
-
-/**
  * What is drawn and not painted, as opaque paint: the picture's colours, or the flat one if NULL.
  * picture and coverage are of the box. Pixels without coverage stay as they are.
  */

@@ -9,7 +9,7 @@
 #include "compose/enlarge.h"
 #include "compose/exposure.h"
 #include "compose/granulation.h"
-#include "compose/holes.h"
+#include "compose/knockout.h"
 #include "compose/unevenness.h"
 #include <math.h>
 #include <string.h>
@@ -117,10 +117,14 @@ static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaint
     if (play)
         fl_play_of_pigments(&uneven, box, play);
     how.play = play;
-    fl_colourise_knockout(amounts, &layer->area, knockout);
+    const FlDrawing *drawing = stack->input->drawing;
+    const int border_px = (int)(painted->style->exemplar->border_px + 0.5f);
+    if (!fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
+                     fl_drawing_height(drawing), MAX(border_px, 1), knockout, error))
+        return false;
     roughen(stack, painted, &layer->area, amounts);
     fl_colourise(painted->style->ink, &how, &part, amounts, &layer->area, layer->rgba);
-    return fl_holes_close(knockout, draw->coverage, &layer->area, error);
+    return true;
 }
 
 static void clear_layer(FlLayer *layer, bool with_coverage)

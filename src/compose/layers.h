@@ -14,12 +14,12 @@ typedef struct FlLayer {
     FlArea area;             // where it may be seen
     const uint8_t *coverage; // of the box, 0..255, borrowed: the whole shape, times the opacity of
                              // its fill where that varies; 0 beyond the area
-    uint8_t *knockout; // box.width * box.height of fl_colourise_knockout(), borrowed: it knocks out
-                       // where its paint has body only; NULL: wherever its shape is
-    uint8_t *rgba;     // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by
-                       // the caller
-    bool sheer;        // drawn by hand: what lies below is seen through its grain
-    uint8_t alpha;     // opacity of the layer, 255 opaque
+    uint8_t *knockout;       // box.width * box.height of fl_knockout(), borrowed: it knocks out
+                             // where its paint has body only; NULL: wherever its shape is
+    uint8_t *rgba;       // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by
+                         // the caller
+    bool sheer;          // drawn by hand: what lies below is seen through its grain
+    uint8_t alpha;       // opacity of the layer, 255 opaque
     FlStacking stacking; // a layer that is mixed hides nothing, whatever this says
     FlBlendMode mix;     // with what is below it
 } FlLayer;

@@ -1,0 +1,24 @@
+/* How far a shape's paint takes the place of what lies below it. */
+#ifndef FLUIDY_COMPOSE_KNOCKOUT_H
+#define FLUIDY_COMPOSE_KNOCKOUT_H
+
+#include "base/rect.h"
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/**
+ * Sets knockout, 0..255 per pixel of the area: at the contour it rises with the amount of paint,
+ * from nothing on bare paper to 255 at three fifths of the median, so that a rim fades into what
+ * lies below; amid the shape it is 255 however thin the paint is, since there paper shows: paint
+ * below went around the shape. One becomes the other within radius_px (>= 1) of the contour, as the
+ * share of the shape in a square around the pixel rises.
+ *
+ * amounts and coverage are of the area's box, in a frame of width * height; sides of the frame are
+ * no contour. Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const FlArea *area, int width,
+                 int height, int radius_px, uint8_t *knockout, GError **error);
+
+#endif
