@@ -84,6 +84,27 @@ static void broken_data_counts_up_to_the_mistake(void)
     g_assert_cmpint(empty->n_cubics, ==, 0);
 }
 
+static void what_is_no_number_is_not_usable(void)
+{
+    static const char *const wild[] = {
+        "<path d='M0 0L1e308 0 1e308 1e308z' transform='scale(100)'/>",
+        "<polygon points='0 0 9 0 inf 9'/>",
+        "<polygon points='0 0 9 0 nan 9'/>",
+        "<path d='M0 0l1e308 0 1e308 0 5 5z'/>",
+        "<svg viewBox='nan 0 9 9'><path d='M0 0L9 0 9 9z'/></svg>",
+    };
+    assert_same("M0 0L3 6L1e400 9", "M0 0L3 6");
+    assert_same("M0 0L3 6A1 1 1e999 0 1 5 5", "M0 0L3 6");
+    for (size_t i = 0; i < G_N_ELEMENTS(wild); i++) {
+        g_autoptr(FlOutlines) o = outlines_of(wild[i], 100, 100, NULL);
+        if (o->n_leaves > 0 && o->leaf[0].usable)
+            g_error("%s is usable", wild[i]);
+    }
+    FlAffine m;
+    g_assert_false(fl_affine_parse("rotate(1e308turn)", &m));
+    g_assert_true(fl_affine_parse("rotate(1e306)", &m));
+}
+
 /** The farthest that a path's points are from a circle of radius r about 0, 0. */
 static double off_circle(const FlOutlines *o, double r)
 {
@@ -247,6 +268,7 @@ int main(int argc, char **argv)
     TEST("curves-are-made-cubic", curves_are_made_cubic);
     TEST("numbers-need-no-separators", numbers_need_no_separators);
     TEST("broken-data-counts-up-to-the-mistake", broken_data_counts_up_to_the_mistake);
+    TEST("what-is-no-number-is-not-usable", what_is_no_number_is_not_usable);
     TEST("arcs-are-four-cubics", arcs_are_four_cubics);
     TEST("a-closing-line-without-length-is-none", a_closing_line_without_length_is_none);
     TEST("shapes-have-one-structure-each", shapes_have_one_structure_each);

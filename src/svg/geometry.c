@@ -265,6 +265,18 @@ static void name_outline(FlGeometry *g, const FlLeaf *leaf)
     g->group = hash_of(leaf->tree, slash ? (size_t)(slash - leaf->tree) : 0, true);
 }
 
+/** Whether all points are numbers, also in px; those of a wild drawing need not be. */
+static bool is_finite(const FlGeometry *g, const GArray *cubic, guint first)
+{
+    bool finite = isfinite(g->stroke);
+    for (guint i = first; i < cubic->len; i++)
+        for (int k = 0; k < 4; k++) {
+            const FlPoint p = fl_affine_apply(&g->ctm, g_array_index(cubic, FlCubic, i).p[k]);
+            finite = finite && isfinite(p.x) && isfinite(p.y);
+        }
+    return finite;
+}
+
 static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *node)
 {
     FlGeometry g;
@@ -272,13 +284,15 @@ static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *n
     FlPen pen = {.subpath = reader->subpath, .cubic = reader->cubic};
     const Surrounds s = surrounds_of(reader, node);
     bool broken = s.broken;
+    const guint first = reader->cubic->len;
     g.first_subpath = (int32_t)reader->subpath->len;
     g.ctm = s.ctm;
     g.kind = (uint8_t)draw_leaf(reader, node, &s, &pen, &broken);
     g.n_subpaths = (int32_t)reader->subpath->len - g.first_subpath;
-    g.usable = !broken && g.kind != FL_OUTLINE_NONE && g.n_subpaths > 0;
     g.clipped = s.clipped, g.evenodd = s.evenodd, g.filled = s.filled;
     g.stroke = s.stroked ? s.stroke : 0;
+    g.usable = !broken && g.kind != FL_OUTLINE_NONE && g.n_subpaths > 0 &&
+               is_finite(&g, reader->cubic, first);
     g.unit = leaf->unit;
     name_outline(&g, leaf);
     return g;

@@ -34,7 +34,7 @@ typedef struct FlGeometry {
     uint64_t group;  // the position of its parent
     double stroke;   // width in local units; 0: none or unknown
     uint8_t kind;    // FlOutlineKind
-    uint8_t usable;  // all of it could be parsed
+    uint8_t usable;  // all of it could be parsed, and its points are finite
     uint8_t clipped; // a clip, mask or filter may hide part of it
     uint8_t evenodd; // the fill rule
     uint8_t filled;

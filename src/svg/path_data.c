@@ -1,6 +1,7 @@
 #include "svg/path_data.h"
 
 #include <glib.h>
+#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -48,6 +49,8 @@ static const char *arguments(const char *s, char command, int count, double *v)
         if (!end)
             return NULL;
         v[i] = flag ? *s - '0' : g_ascii_strtod(s, NULL);
+        if (!isfinite(v[i]))
+            return NULL;
         s = end;
     }
     return s;

@@ -9,8 +9,8 @@ typedef void FlPathStep(void *data, char command, const double *v);
 /**
  * Calls `step` for every step of d in order. Further pairs after M come as L.
  *
- * Returns: NULL if d is good SVG path data (empty is), else where it goes wrong, after the calls
- * for the steps before.
+ * Returns: NULL if d is good SVG path data (empty is) of finite numbers, else where it goes wrong,
+ * after the calls for the steps before.
  */
 const char *fl_path_data_walk(const char *d, FlPathStep *step, void *data);
 

@@ -96,13 +96,13 @@ static const char *read_call(const char *s, Call *call)
         if (call->n == MOST_ARGUMENTS)
             return NULL;
         const double v = g_ascii_strtod(s, &end);
-        if (end == s || !isfinite(v))
+        if (end == s)
             return NULL;
         s = end;
         while (g_ascii_isalpha(*s) || *s == '%')
             s++;
         const double unit = unit_of(end, (size_t)(s - end));
-        if (unit <= 0)
+        if (unit <= 0 || !isfinite(v * unit))
             return NULL;
         call->v[call->n++] = v * unit;
         s += strspn(s, " \t\r\n\f,");
