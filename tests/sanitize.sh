@@ -1,6 +1,6 @@
 #!/bin/bash
 # Runs tests in a build that watches memory, threads or arithmetic, or has the sources analysed.
-# usage: sanitize.sh address|thread|memcheck|analysers|bare BUILD-DIR, in the source folder; each has a
+# usage: sanitize.sh address|thread|fuzz|memcheck|analysers|bare BUILD-DIR, in the source folder; each has a
 # folder of its own, but memcheck and analysers may share the one of an ordinary build.
 #
 # address: the whole suite, AddressSanitizer, LeakSanitizer and UndefinedBehaviorSanitizer.
@@ -8,6 +8,7 @@
 #   tells clang's what OpenMP orders, and tsan_glib.c what GLib does. GLib's own slices, handed from
 #   a thread that has ended to the next, would be taken for shared.
 #   It also fails if clang warns of anything; .ci/run builds with gcc so.
+# fuzz: every target of tests/fuzz for 20 seconds, with clang and both of address.
 # bare: every optional feature off; what is left is built without warnings, and paints.
 # memcheck: a short render in valgrind.
 # analysers: cppcheck and clang-tidy; tests/cppcheck.supp and .clang-tidy say what is left out.
@@ -60,6 +61,12 @@ thread)
     "$build/src/cli/fluidy-svg" -s fixtures/style-small -W 64 -f 1-3 -j 3 --progress none -y \
         -o "$build/render/%d.png" fixtures/animations/snowman-wave-layers
     ;;
+fuzz)
+    export CC=clang
+    make_build -Dfuzz=enabled -Dman=disabled -Db_sanitize=address,undefined -Db_lundef=false
+    ninja -C "$build" fuzzers
+    tests/fuzz.sh "$build" 20
+    ;;
 memcheck)
     make_build
     ninja -C "$build" src/cli/fluidy-svg
@@ -73,7 +80,7 @@ analysers)
     git ls-files 'src/*.c' ':!src/*/arm/*' | xargs -P "$(nproc)" -n 8 clang-tidy -p "$build" --quiet
     ;;
 *)
-    echo "usage: sanitize.sh address|thread|memcheck|analysers BUILD-DIR"
+    echo "usage: sanitize.sh address|thread|fuzz|memcheck|analysers|bare BUILD-DIR"
     exit 2
     ;;
 esac

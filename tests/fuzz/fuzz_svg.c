@@ -1,6 +1,7 @@
 /* A drawing: read, normalised, its leaves found, their paint asked for and one of them drawn. */
-#include "svg/svg_frame.h"
+#include "apart.h"
 #include "fuzz.h"
+#include "svg/svg_frame.h"
 
 #define MOST_LEAVES 8 // to keep an input's time short
 #define SIDE 16
@@ -28,7 +29,7 @@ static void look_at(FlSvg *svg)
     cairo_surface_destroy(surface);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+static void read_drawing(const uint8_t *data, size_t size)
 {
     char path[32];
     const int fd = fuzz_file(data, size, path);
@@ -40,5 +41,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (svg)
         look_at(svg);
     fuzz_file_end(fd);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    fuzz_apart(read_drawing, data, size);
     return 0;
 }
