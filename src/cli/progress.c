@@ -71,9 +71,9 @@ static void show_bar(FlMeter *meter, const FlProgress *p)
     memset(filled, '#', BAR_COLUMNS), memset(empty, '.', BAR_COLUMNS);
     filled[n] = '\0', empty[BAR_COLUMNS - n] = '\0';
     g_autofree char *words = sentence(p);
-    const int room = MAX(terminal_columns(meter->stream) - BAR_COLUMNS - 10, 0);
-    if (g_utf8_strlen(words, -1) > room)
-        *g_utf8_offset_to_pointer(words, room) = '\0';
+    const int columns = MAX(terminal_columns(meter->stream) - BAR_COLUMNS - 10, 0);
+    if (g_utf8_strlen(words, -1) > columns)
+        *g_utf8_offset_to_pointer(words, columns) = '\0';
     fprintf(meter->stream, "\r[%s%s%s%s] %3d %% %s\033[K", meter->colour ? "\033[36m" : "", filled,
             meter->colour ? "\033[0m" : "", empty, (int)(p->share * 100), words);
     meter->bar_columns = 1;

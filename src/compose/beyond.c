@@ -71,7 +71,7 @@ static void measure(uint16_t *plane, int width, int height)
 }
 
 /** Fills over and seen. Returns: whether anything lies over the layer's shape. */
-static bool look(Part *part, const FlLayer *layer, const uint8_t *above, int width)
+static bool mark_pixels(Part *part, const FlLayer *layer, const uint8_t *above, int width)
 {
     const FlRect own = layer->area.box, box = part->box;
     bool any = false;
@@ -147,7 +147,7 @@ static bool fade_layer(FlLayer *layer, const uint8_t *above, int width, int heig
     g_auto(Part) part = {0};
     if (!part_init(&part, layer, width, height, error))
         return false;
-    if (look(&part, layer, above, width)) {
+    if (mark_pixels(&part, layer, above, width)) {
         find_ways(&part);
         fade(&part, layer);
     }

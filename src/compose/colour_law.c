@@ -14,7 +14,7 @@ enum {
     DARKEST_NEGATIVE = 8, // the same in the negative
     THIN = 113835,        // density of 0.30: thinner paint has slope left in every channel
     STRAIGHT = 4096,      // density of 0.957: below it the way is straight, and so well divided
-    ROOM = 2836,          // density of exp(-0.03), by which light greys give way to thin paint
+    HEADROOM = 2836,      // density of exp(-0.03), by which light greys give way to thin paint
     EVEN_SPREAD = 700,    // spread (0.68) from which on saturated fills are shaded less
     LIGHT_AT = 5 * 256,   // L* / 256 above the paper's from where on a fill may be light paint,
     LIGHT_OVER = 13 * 256 // and over which it becomes so altogether
@@ -70,24 +70,24 @@ static int64_t lightness16_of(const uint8_t rgb[3])
 }
 
 /** How light a fill is, and how fast an amount more of its own density darkens it. */
-typedef struct Look {
+typedef struct Lightness {
     int64_t lightness16; // L* + 16
     int64_t slope;       // L* an amount
-} Look;
+} Lightness;
 
 /** L* changes by (L* + 16) / 3 for a relative change of luminance, which is that of light: the
  * power 2.2 of levels. 33312 is 2.2 ln 2 / 3 * 65536. */
 #define L_OF_OCTAVE 33312
 
-static Look look_at(const FlColourCurve *curve)
+static Lightness lightness_of(const FlColourCurve *curve)
 {
     const int64_t luminance = MAX(luminance_of(curve->fill), 1);
     int64_t mean = 0;
     for (int c = 0; c < 3; c++)
         mean += weight[c] * light_of(curve->fill[c]) / luminance * curve->step[c];
-    Look look = {.lightness16 = lightness16(luminance)};
-    look.slope = (look.lightness16 * L_OF_OCTAVE >> 16) * (mean >> 16) >> 16;
-    return look;
+    Lightness light = {.lightness16 = lightness16(luminance)};
+    light.slope = (light.lightness16 * L_OF_OCTAVE >> 16) * (mean >> 16) >> 16;
+    return light;
 }
 
 /** Takes the fill by its density, for a white of density `white`. */
@@ -118,10 +118,11 @@ static int64_t wanted_slope(int64_t lightness16, int64_t saturation, int spread)
 }
 
 /** Gives thick paint the shade that it lacks; a thick yellow goes to ochre instead of olive. */
-static void set_shade(FlColourCurve *curve, const Look *look, int64_t slope, const uint8_t fill[3])
+static void set_shade(FlColourCurve *curve, const Lightness *light, int64_t slope,
+                      const uint8_t fill[3])
 {
-    const int64_t lack = MAX(slope - look->slope, 0);
-    const int64_t shade = (lack << 32) / (look->lightness16 * L_OF_OCTAVE);
+    const int64_t lack = MAX(slope - light->slope, 0);
+    const int64_t shade = (lack << 32) / (light->lightness16 * L_OF_OCTAVE);
     const int yellow = MAX(MIN(fill[0], fill[1]) - fill[2], 0); // of 255
     curve->shade[0] = (int32_t)(shade * (25500 - 45 * yellow) / 25500);
     curve->shade[1] = (int32_t)(shade * (25500 + 16 * yellow) / 25500);
@@ -156,17 +157,17 @@ static void curve_init(FlColourCurve *curve, const uint8_t rgb[3], const uint8_t
     }
     set_fill(curve, white);
     const int64_t saturation = saturation_of(fill);
-    Look look = look_at(curve);
-    const int64_t slope = wanted_slope(look.lightness16, saturation, spread);
-    const int64_t rise = look.lightness16 - lightness16_of(paper);
-    const int64_t room = clamp_share(FRACTION - look.slope * FRACTION / slope) *
-                         clamp_share(FRACTION - 2 * saturation) / FRACTION *
-                         clamp_share(FRACTION - rise / 3);
+    Lightness light = lightness_of(curve);
+    const int64_t slope = wanted_slope(light.lightness16, saturation, spread);
+    const int64_t rise = light.lightness16 - lightness16_of(paper);
+    const int64_t headroom = clamp_share(FRACTION - light.slope * FRACTION / slope) *
+                             clamp_share(FRACTION - 2 * saturation) / FRACTION *
+                             clamp_share(FRACTION - rise / 3);
     for (int c = 0; c < 3; c++)
-        curve->density[c] += (int32_t)(ROOM * room / (FRACTION * FRACTION));
+        curve->density[c] += (int32_t)(HEADROOM * headroom / (FRACTION * FRACTION));
     set_fill(curve, white);
-    look = look_at(curve);
-    set_shade(curve, &look, slope, fill);
+    light = lightness_of(curve);
+    set_shade(curve, &light, slope, fill);
     for (int c = 0; c < 3; c++) {
         const int32_t thin = curve->density[c] - fl_density(MAX(paper[c], 1));
         curve->paper[c] = paper[c] * 256;

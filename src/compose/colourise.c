@@ -110,7 +110,7 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
                         const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
     const size_t width = (size_t)area->box.width;
-    g_autofree uint32_t *look = g_new(uint32_t, FL_AMOUNTS);
+    g_autofree uint32_t *colours = g_new(uint32_t, FL_AMOUNTS);
     g_autofree bool *used = g_new0(bool, FL_AMOUNTS);
     Fill fill;
     for (int y = 0; y < area->box.height; y++) {
@@ -126,12 +126,12 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
         if (!used[amount])
             continue;
         colour_amount(&fill, how, scale, amount, 0, rgba_of);
-        memcpy(&look[amount], rgba_of, 4);
+        memcpy(&colours[amount], rgba_of, 4);
     }
     for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const size_t first = (size_t)y * width + (size_t)span.first;
-        fl_row_kernels()->look_up(amounts + first, look, (uint32_t *)(void *)rgba + first,
+        fl_row_kernels()->look_up(amounts + first, colours, (uint32_t *)(void *)rgba + first,
                                   span.last - span.first);
     }
 }
@@ -142,7 +142,7 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
 static void colour_flat_play(const FlInk *ink, const FlColouring *how, const FlScale *scale,
                              const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
-    g_autofree uint32_t *look = g_new0(uint32_t, PLAYS * FL_AMOUNTS);
+    g_autofree uint32_t *colours = g_new0(uint32_t, PLAYS * FL_AMOUNTS);
     g_autofree bool *met = g_new0(bool, PLAYS *FL_AMOUNTS);
     Fill fill;
     fill_init(&fill, ink, how, scale, how->fill);
@@ -157,10 +157,10 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *how, const FlS
             if (!met[at]) {
                 uint8_t of[4];
                 colour_amount(&fill, how, scale, amounts[i], play * 256 / PLAYS - 126, of);
-                memcpy(&look[at], of, 4);
+                memcpy(&colours[at], of, 4);
                 met[at] = true;
             }
-            memcpy(rgba + 4 * i, &look[at], 4);
+            memcpy(rgba + 4 * i, &colours[at], 4);
         }
     }
 }

@@ -20,7 +20,7 @@ typedef struct HalfRow {
 typedef struct Rows {
     const FlLayer *half;
     int half_width, half_height; // of the frame
-    float *room;
+    float *memory;
     HalfRow read[3];       // the last ones that were read, by y % 3
     float *mixed;          // a plane of two rows in one
     float *wide[N_PLANES]; // a row of the full size, from column 2 * (box.x - 1) on
@@ -35,8 +35,8 @@ static bool rows_init(Rows *rows, const FlLayer *half, int width, int height, GE
 {
     const size_t n = padded(half);
     *rows = (Rows){half, fl_half_side(width), fl_half_side(height)};
-    rows->room = fl_alloc(n * (3 * N_PLANES + 1 + 2 * N_PLANES), sizeof(float), "a layer", error);
-    float *next = rows->room;
+    rows->memory = fl_alloc(n * (3 * N_PLANES + 1 + 2 * N_PLANES), sizeof(float), "a layer", error);
+    float *next = rows->memory;
     for (int r = 0; next && r < 3; r++) {
         rows->read[r].y = -1;
         for (int k = 0; k < N_PLANES; k++, next += n)
@@ -173,7 +173,7 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
             store(&rows, left, span, (uint8_t *)full->coverage + row, full->rgba + 4 * row,
                   full->knockout ? (uint8_t *)full->knockout + row : NULL);
         }
-        free(rows.room);
+        free(rows.memory);
         fl_parallel_error_keep(&first, mine);
     }
     return fl_parallel_error_tell(error, first);

@@ -98,9 +98,10 @@ static uint32_t over(uint32_t sum, uint32_t value, uint32_t alpha)
 }
 
 /** A row of sums in 4 * width values. */
-static FlSums sums_in(uint32_t *room, int width)
+static FlSums sums_in(uint32_t *values, int width)
 {
-    return (FlSums){{room, room + width, room + 2 * (size_t)width}, room + 3 * (size_t)width};
+    return (FlSums){{values, values + width, values + 2 * (size_t)width},
+                    values + 3 * (size_t)width};
 }
 
 /** A row of sums from column `first` on. */
@@ -288,8 +289,8 @@ static void compose(const FlLayer *layers, int n, const FlBackdrop *backdrop, in
     fl_scale_init(&scale, linear);
 #pragma omp parallel
     {
-        g_autofree uint32_t *room = g_new(uint32_t, 4 * (size_t)width);
-        const FlSums sums = sums_in(room, width);
+        g_autofree uint32_t *values = g_new(uint32_t, 4 * (size_t)width);
+        const FlSums sums = sums_in(values, width);
 #pragma omp for schedule(static)
         for (int y = 0; y < height; y++) {
             sum_backdrop(backdrop, &scale, y, width, &sums);

@@ -348,18 +348,18 @@ static Count *count_leaves(const Work *w)
     const FlTwoFrames *f = w->frames;
     int regions = 0;
     for (int i = 0; i < f->before->n_leaves; i++)
-        regions = MAX(regions, f->before_look[i].region + 1);
+        regions = MAX(regions, f->before_fill[i].region + 1);
     for (int i = 0; i < f->now->n_leaves; i++)
-        regions = MAX(regions, f->now_look[i].region + 1);
+        regions = MAX(regions, f->now_fill[i].region + 1);
     Count *count = g_new0(Count, regions + 1);
     g_autofree bool *became = g_new0(bool, f->before->n_leaves + 1);
     for (int i = 0; i < f->now->n_leaves; i++) {
-        count[f->now_look[i].region + 1].now++;
+        count[f->now_fill[i].region + 1].now++;
         if (w->out->leaf[i].before >= 0)
             became[w->out->leaf[i].before] = true;
     }
     for (int i = 0; i < f->before->n_leaves; i++) {
-        Count *c = &count[f->before_look[i].region + 1];
+        Count *c = &count[f->before_fill[i].region + 1];
         c->before++, c->lost += !became[i];
     }
     return count;
@@ -380,7 +380,7 @@ FlCorrespondence *fl_correspond(const FlTwoFrames *frames)
         out->leaf[i].before = partner[i];
     g_autofree Count *count = count_leaves(&w);
     for (int i = 0; i < n; i++)
-        settle(&w, i, &count[frames->now_look[i].region + 1]);
+        settle(&w, i, &count[frames->now_fill[i].region + 1]);
     fl_turn_round_hosts(frames, before, now, out);
     return out;
 }

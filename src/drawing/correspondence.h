@@ -33,7 +33,7 @@ typedef struct FlCorrespondence {
 /** Two frames of a drawing; `before` need not be the previous one. */
 typedef struct FlTwoFrames {
     const FlOutlines *before, *now;
-    const FlLeafLook *before_look, *now_look;
+    const FlLeafFill *before_fill, *now_fill;
     double side; // the frame's larger side, px
 } FlTwoFrames;
 

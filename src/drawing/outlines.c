@@ -37,24 +37,24 @@ GArray *fl_drawing_region_leaves(const FlDrawing *drawing, int frame, int region
     return list;
 }
 
-FlLeafLook *fl_drawing_leaf_looks(const FlDrawing *drawing, int frame, const FlOutlines *outlines)
+FlLeafFill *fl_drawing_leaf_fills(const FlDrawing *drawing, int frame, const FlOutlines *outlines)
 {
     const FlDrawingFrame *f = &drawing->frame[frame];
-    FlLeafLook *probe = g_new0(FlLeafLook, outlines->n_leaves + 1);
+    FlLeafFill *fill = g_new0(FlLeafFill, outlines->n_leaves + 1);
     for (int i = 0; i < outlines->n_leaves; i++)
-        probe[i] = (FlLeafLook){.region = -1};
+        fill[i] = (FlLeafFill){.region = -1};
     g_autoptr(GArray) list = g_array_new(FALSE, FALSE, sizeof(FlRegionLeaf));
     for (int i = 0; i < f->n; i++) {
         g_array_set_size(list, 0);
         add_leaves(&f->step[i], outlines, list);
         for (guint k = 0; k < list->len; k++) {
             const FlRegionLeaf *leaf = &g_array_index(list, FlRegionLeaf, k);
-            if (probe[leaf->leaf].region < 0)
-                probe[leaf->leaf] = (FlLeafLook){
+            if (fill[leaf->leaf].region < 0)
+                fill[leaf->leaf] = (FlLeafFill){
                     f->step[i].region, leaf->flat, {leaf->rgb[0], leaf->rgb[1], leaf->rgb[2]}};
         }
     }
-    return probe;
+    return fill;
 }
 
 bool fl_drawing_same_file(const FlDrawing *drawing, int a, int b)

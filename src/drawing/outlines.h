@@ -22,14 +22,14 @@ GArray *fl_drawing_region_leaves(const FlDrawing *drawing, int frame, int region
                                  const FlOutlines *outlines);
 
 /** What a leaf belongs to and is painted with, by its first part. */
-typedef struct FlLeafLook {
+typedef struct FlLeafFill {
     int region; // -1: it is not drawn
     bool flat;
     uint8_t rgb[3];
-} FlLeafLook;
+} FlLeafFill;
 
-/** The looks of a frame's leaves, by index; to be freed with g_free(). */
-FlLeafLook *fl_drawing_leaf_looks(const FlDrawing *drawing, int frame, const FlOutlines *outlines);
+/** The fills of a frame's leaves, by index; to be freed with g_free(). */
+FlLeafFill *fl_drawing_leaf_fills(const FlDrawing *drawing, int frame, const FlOutlines *outlines);
 
 /** Whether both frames show one file. */
 bool fl_drawing_same_file(const FlDrawing *drawing, int a, int b);

@@ -69,7 +69,7 @@ static double likeness_of_shape(const FlLeafMeasure *a, const FlLeafMeasure *b)
 static double score(const Pairing *w, int i, int j)
 {
     const FlGeometry *a = &w->frames->before->leaf[i], *b = &w->frames->now->leaf[j];
-    const FlLeafLook *p = &w->frames->before_look[i], *q = &w->frames->now_look[j];
+    const FlLeafFill *p = &w->frames->before_fill[i], *q = &w->frames->now_fill[j];
     double sum = -1;
     if (a->id || b->id)
         sum += a->id == b->id ? 2 : -0.5;
@@ -173,18 +173,18 @@ static bool agree(const Pairing *w)
     for (int i = 0; i < b->n_leaves && all; i++)
         all = a->leaf[i].id == b->leaf[i].id && a->leaf[i].tree == b->leaf[i].tree &&
               a->leaf[i].kind == b->leaf[i].kind && w->before[i].structure == w->now[i].structure &&
-              w->frames->before_look[i].region == w->frames->now_look[i].region &&
+              w->frames->before_fill[i].region == w->frames->now_fill[i].region &&
               is_near_or_named(w, i);
     return all;
 }
 
 /** The leaves of a region in order; to be freed. */
-static int *leaves_of(const FlLeafLook *probe, int n, int region, int *found)
+static int *leaves_of(const FlLeafFill *fill, int n, int region, int *found)
 {
     int *list = g_new(int, n + 1);
     *found = 0;
     for (int i = 0; i < n; i++)
-        if (probe[i].region == region)
+        if (fill[i].region == region)
             list[(*found)++] = i;
     return list;
 }
@@ -193,8 +193,8 @@ static void pair_region(Pairing *w, int region)
 {
     int n, m;
     const FlTwoFrames *f = w->frames;
-    g_autofree int *before = leaves_of(f->before_look, f->before->n_leaves, region, &n);
-    g_autofree int *now = leaves_of(f->now_look, f->now->n_leaves, region, &m);
+    g_autofree int *before = leaves_of(f->before_fill, f->before->n_leaves, region, &n);
+    g_autofree int *now = leaves_of(f->now_fill, f->now->n_leaves, region, &m);
     align(w, before, n, now, m);
     pair_left_over(w, before, n, now, m);
 }
@@ -210,7 +210,7 @@ int *fl_pair_leaves(const FlTwoFrames *frames, const FlLeafMeasure *before,
     int regions = 0;
     for (int i = 0; i < n; i++) {
         partner[i] = one_by_one ? i : -1;
-        regions = MAX(regions, frames->now_look[i].region + 1);
+        regions = MAX(regions, frames->now_fill[i].region + 1);
     }
     for (int r = 0; r < regions && !one_by_one; r++)
         pair_region(&w, r);

@@ -3,10 +3,10 @@
 #include <math.h>
 #include <string.h>
 
-#define THICK 0.03f // width of a stroke, share of the page's longer side, that is no line any more
-#define LOOK_PX 256 // longest side of the small pictures on which a frame is probed
+#define THICK 0.03f  // width of a stroke, share of the page's longer side, that is no line any more
+#define PROBE_PX 256 // longest side of the small pictures on which a frame is probed
 
-static void look_clear(void *data)
+static void probe_clear(void *data)
 {
     g_free(((FlProbe *)data)->paint);
 }
@@ -15,13 +15,13 @@ bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, double page_width, double 
                          int width, int height, GError **error)
 {
     *f = (FlFrameProbe){.svg = svg, .full_width = width, .full_height = height};
-    f->factor = MAX(1, (double)MAX(width, height) / LOOK_PX);
+    f->factor = MAX(1, (double)MAX(width, height) / PROBE_PX);
     f->width = page_width / f->factor;
     f->height = page_height / f->factor;
     f->all =
         (FlRect){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
     f->probes = g_array_new(FALSE, FALSE, sizeof(FlProbe));
-    g_array_set_clear_func(f->probes, look_clear);
+    g_array_set_clear_func(f->probes, probe_clear);
     f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
     f->check = f->coverage ? fl_self_check_new(f->all.width, f->all.height, error) : NULL;
     return f->check != NULL;
@@ -127,7 +127,7 @@ static float width_of(const FlFrameProbe *f, const FlLeaf *leaf, const FlPainted
     return p->stroke ? p->width * (float)(MAX(f->width, f->height) * f->factor) : 0;
 }
 
-static bool look_at(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
+static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
 {
     const guint first = f->probes->len;
     FlPainted parts[FL_MOST_PARTS];
@@ -195,7 +195,7 @@ static int is_separable(FlFrameProbe *f, const FlUnit *unit, guint first, GError
     return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->width, f->height, error);
 }
 
-static bool look_at_leaves(FlFrameProbe *f, GError **error)
+static bool probe_leaves(FlFrameProbe *f, GError **error)
 {
     const FlLeaves *leaves = fl_svg_leaves(f->svg);
     guint unit = 0;
@@ -209,7 +209,7 @@ static bool look_at_leaves(FlFrameProbe *f, GError **error)
         else
             u = NULL;
         for (; i < end; i++)
-            if (!look_at(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, error))
+            if (!probe_leaf(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, error))
                 return false;
         i--;
         if (!u)
@@ -222,7 +222,7 @@ static bool look_at_leaves(FlFrameProbe *f, GError **error)
                 g_array_set_size(f->probes, before);
             for (guint k = before; k < f->probes->len; k++)
                 g_array_index(f->probes, FlProbe, k).found.unit = 1 + (int)unit;
-            if (!look_at(f, &u->leaf, -1 - (int)unit, error))
+            if (!probe_leaf(f, &u->leaf, -1 - (int)unit, error))
                 return false;
         }
         unit++;
@@ -269,5 +269,5 @@ static bool stack(FlFrameProbe *f, GError **error)
 
 bool fl_frame_probe_run(FlFrameProbe *f, GError **error)
 {
-    return look_at_leaves(f, error) && stack(f, error);
+    return probe_leaves(f, error) && stack(f, error);
 }

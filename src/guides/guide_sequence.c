@@ -33,7 +33,7 @@ static bool step_back(FlGuideSequence *sequence, int frame, FlExtent *extent, ui
 }
 
 /** The extents to come need the whole future: one pass from the last frame to the first. */
-static bool look_back(FlGuideSequence *sequence, GError **error)
+static bool make_minus_extents(FlGuideSequence *sequence, GError **error)
 {
     const FlGuideSource *source = &sequence->source;
     const size_t n = (size_t)source->width * source->height;
@@ -67,7 +67,7 @@ FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuid
     sequence->frames = g_new0(FlFrameRecord, source->n_frames);
     sequence->spill = fl_spill_new((size_t)source->n_frames * FL_N_GUIDE_PLANES, error);
     if (!sequence->spill || !fl_guide_sequence_build(sequence, error) ||
-        !look_back(sequence, error))
+        !make_minus_extents(sequence, error))
         return NULL;
     return g_steal_pointer(&sequence);
 }
@@ -96,35 +96,35 @@ static void place_fixed(const FlRect *box, const int32_t *crop, int channels, in
     }
 }
 
-static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane, int32_t *room,
-                      float *out, GError **error)
+static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane,
+                      int32_t *scratch, float *out, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
     if (record->holder[plane] < 0)
         return true;
-    if (!fl_guide_sequence_plane(sequence, frame, plane, room, error))
+    if (!fl_guide_sequence_plane(sequence, frame, plane, scratch, error))
         return false;
     const bool flow = plane == FL_GUIDE_PLANE_FLOW;
-    place_fixed(&record->box, room, flow ? 2 : 1, flow ? FL_FLOW_ONE : FL_EXTENT_ONE,
+    place_fixed(&record->box, scratch, flow ? 2 : 1, flow ? FL_FLOW_ONE : FL_EXTENT_ONE,
                 sequence->source.width, out);
     return true;
 }
 
 /** What the drawing does; beside its box nothing is known of it. */
-static bool get_motion(const FlGuideSequence *sequence, int frame, int32_t *room, FlGuides *guides,
-                       GError **error)
+static bool get_motion(const FlGuideSequence *sequence, int frame, int32_t *scratch,
+                       FlGuides *guides, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
     const FlRect whole = {0, 0, guides->width, guides->height};
     if (!sequence->source.motion)
         return true;
     if (record->holder[FL_GUIDE_PLANE_MOTION] < 0)
-        memset(room, 0, 2 * fl_rect_pixels(record->box) * sizeof *room);
-    else if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, room, error))
+        memset(scratch, 0, 2 * fl_rect_pixels(record->box) * sizeof *scratch);
+    else if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, scratch, error))
         return false;
     for (size_t k = 0; k < 2 * fl_rect_pixels(whole); k++)
         guides->motion[k] = FL_MOTION_UNKNOWN;
-    fl_rect_copy(room, record->box, guides->motion, whole, 2 * sizeof *room);
+    fl_rect_copy(scratch, record->box, guides->motion, whole, 2 * sizeof *scratch);
     guides->has_motion = fl_motion_confine(guides);
     if (guides->has_motion)
         fl_motion_turns(guides);
@@ -192,16 +192,16 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
     guides->has_motion = false;
     if (area > 0) {
         g_autofree uint8_t *shape = fl_alloc(2 * area, 1, "coverages and angles", error);
-        g_autofree int32_t *room =
-            shape ? fl_alloc(2 * area, sizeof *room, "a guide", error) : NULL;
-        if (!room || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, room, guides->flow, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, room, guides->ext_plus, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, room, guides->ext_minus, error))
+        g_autofree int32_t *scratch =
+            shape ? fl_alloc(2 * area, sizeof *scratch, "a guide", error) : NULL;
+        if (!scratch || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, scratch, guides->flow, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, scratch, guides->ext_plus, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, scratch, guides->ext_minus, error))
             return false;
         fl_rect_copy(shape, record->box, guides->mask, (FlRect){0, 0, w, h}, 1);
         fl_rect_copy(shape + area, record->box, guides->angle, (FlRect){0, 0, w, h}, 1);
-        if (!get_motion(sequence, frame, room, guides, error))
+        if (!get_motion(sequence, frame, scratch, guides, error))
             return false;
     }
     // the lock is what is not const about a sequence

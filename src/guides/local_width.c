@@ -280,19 +280,19 @@ static bool means_init(Means *means, size_t n, GError **error)
 }
 
 /** The mean of what is inside in a square of 2 r + 1 px. */
-static void smooth(uint16_t *plane, int width, int height, int r, Means *room)
+static void smooth(uint16_t *plane, int width, int height, int r, Means *means)
 {
     const FlRect box = {0, 0, width, height};
     const size_t n = fl_rect_pixels(box);
     for (size_t p = 0; p < n; p++)
-        room->plane[p] = plane[p] > 0;
-    fl_window_sums(room->plane, box, r, room->rows, room->count);
+        means->plane[p] = plane[p] > 0;
+    fl_window_sums(means->plane, box, r, means->rows, means->count);
     for (size_t p = 0; p < n; p++)
-        room->plane[p] = (int16_t)plane[p];
-    fl_window_sums(room->plane, box, r, room->rows, room->sum);
+        means->plane[p] = (int16_t)plane[p];
+    fl_window_sums(means->plane, box, r, means->rows, means->sum);
     for (size_t p = 0; p < n; p++)
         if (plane[p])
-            plane[p] = (uint16_t)((room->sum[p] + room->count[p] / 2) / room->count[p]);
+            plane[p] = (uint16_t)((means->sum[p] + means->count[p] / 2) / means->count[p]);
 }
 
 /** The larger of each element and its neighbours at a distance of `step`; n of them. */
@@ -330,18 +330,18 @@ bool fl_local_width(const float *distance, const uint8_t *seen, int width, int h
 {
     const size_t n = (size_t)width * (size_t)height;
     const uint16_t cap = fl_width_cap(cap_px);
-    g_auto(Means) room = {0};
+    g_auto(Means) means = {0};
     if (!fl_largest_discs(distance, seen, width, height, cap_px, half_width, error))
         return false;
     *narrow = any_narrow(half_width, n, cap);
     if (!*narrow) // as most are: nobody asks for more
         return true;
-    if (!means_init(&room, n, error))
+    if (!means_init(&means, n, error))
         return false;
     limit_slope(half_width, width, height);
-    smooth(half_width, width, height, MAX(cap / (4 * FL_WIDTH_ONE), 1), &room);
-    smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), &room);
+    smooth(half_width, width, height, MAX(cap / (4 * FL_WIDTH_ONE), 1), &means);
+    smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), &means);
     for (int round = 0; round < OUTSIDE_PX; round++)
-        extend(half_width, width, height, (uint16_t *)room.plane, (uint16_t *)room.rows);
+        extend(half_width, width, height, (uint16_t *)means.plane, (uint16_t *)means.rows);
     return true;
 }

@@ -135,8 +135,8 @@ static bool lies_in_box(const Work *w, int i)
             x0 = MIN(x0, q.x), x1 = MAX(x1, q.x), y0 = MIN(y0, q.y), y1 = MAX(y1, q.y);
         }
     }
-    const double room = BOX_PX + BOX_SHARE * w->region->side;
-    return b[0] >= x0 - room && b[1] >= y0 - room && b[2] <= x1 + room && b[3] <= y1 + room;
+    const double margin = BOX_PX + BOX_SHARE * w->region->side;
+    return b[0] >= x0 - margin && b[1] >= y0 - margin && b[2] <= x1 + margin && b[3] <= y1 + margin;
 }
 
 static bool is_explained(const Work *w, int i)
@@ -220,7 +220,7 @@ static bool spread_labels(Work *w, int steps, GError **error)
 
 /* ---- what a pixel's motion is ---- */
 
-/** The pixels of a label, and the room they take. */
+/** The pixels of a label, and their box. */
 static FlRect box_of_label(const Work *w, int32_t label)
 {
     int x0 = w->w, y0 = w->h, x1 = 0, y1 = 0;

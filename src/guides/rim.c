@@ -118,7 +118,7 @@ static bool measure(Part *part, const FlRimShape *shape, float border_px, bool *
 }
 
 /** Sums what is not theirs, and what of it others have, over squares of the border's radius. */
-static bool look_around(Part *part, const FlRimShape *shape, float border_px, GError **error)
+static bool measure_surround(Part *part, const FlRimShape *shape, float border_px, GError **error)
 {
     const size_t n = fl_rect_pixels(part->box);
     const FlRect own = {0, 0, part->box.width, part->box.height};
@@ -169,7 +169,7 @@ bool fl_rim_depth(const FlRimShape *shape, float border_px, float *depth, GError
     if (part.box.width == 0)
         return true;
     if (!measure(&part, shape, border_px, &narrow, error) ||
-        (narrow && shape->shown && !look_around(&part, shape, border_px, error)))
+        (narrow && shape->shown && !measure_surround(&part, shape, border_px, error)))
         return false;
     write_part(&part, shape->width, border_px, narrow, depth);
     return true;

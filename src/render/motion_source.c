@@ -13,7 +13,7 @@ typedef struct Frame {
     int frame; // -1: free
     int64_t used;
     FlOutlines *outlines;
-    FlLeafLook *look;
+    FlLeafFill *fill;
 } Frame;
 
 /** The leaves of two frames, paired. */
@@ -40,7 +40,7 @@ static void frame_unref(Frame *frame)
     if (!frame || --frame->references > 0)
         return;
     fl_outlines_free(frame->outlines);
-    g_free(frame->look);
+    g_free(frame->fill);
     g_free(frame);
 }
 
@@ -122,7 +122,7 @@ static Frame *frame_of(FlMotionSource *source, int frame, GError **error)
         return NULL;
     Frame *f = g_new0(Frame, 1);
     *f = (Frame){2, frame, ++source->clock, outlines,
-                 fl_drawing_leaf_looks(source->drawing, frame, outlines)};
+                 fl_drawing_leaf_fills(source->drawing, frame, outlines)};
     frame_unref(source->frame[oldest]);
     source->frame[oldest] = f;
     return f;
@@ -143,7 +143,7 @@ static Step *step_of(FlMotionSource *source, const Frame *before, const Frame *n
             oldest = k;
     }
     const FlTwoFrames frames = {
-        before->outlines, now->outlines, before->look, now->look,
+        before->outlines, now->outlines, before->fill, now->fill,
         MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing))};
     Step *s = g_new0(Step, 1);
     *s = (Step){2, before->frame, now->frame, ++source->clock, fl_correspond(&frames)};

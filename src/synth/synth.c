@@ -15,7 +15,7 @@ typedef struct Previous {
     bool valid;
     FlRect rect;
     FlNnf nnf;
-    uint8_t *mask, *rgb; // of the whole frame; mask: look_of(), what a region that holds still is
+    uint8_t *mask, *rgb; // of the whole frame; mask: shape_at(), what a region that holds still is
                          // compared with
 } Previous;
 
@@ -396,17 +396,17 @@ static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *
 
 /* What a region that holds still is known by: its mask, and inside it the depth, which also depends
  * on what moves beside it. */
-static uint8_t look_of(const FlGuides *guides, size_t p)
+static uint8_t shape_at(const FlGuides *guides, size_t p)
 {
     enum { STEPS = 8 }; // of a px
     const uint8_t mask = guides->mask[p];
     return mask < FL_INSIDE ? mask : mask ^ (uint8_t)((int)(guides->depth[p] * STEPS) & 0x7f);
 }
 
-static bool looks_as_before(const FlSynth *synth, const FlGuides *guides)
+static bool has_shape_as_before(const FlSynth *synth, const FlGuides *guides)
 {
     for (size_t p = 0; p < (size_t)synth->width * synth->height; p++)
-        if (synth->previous.mask[p] != look_of(guides, p))
+        if (synth->previous.mask[p] != shape_at(guides, p))
             return false;
     return true;
 }
@@ -419,7 +419,7 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
     synth->previous.valid = true;
     synth->previous.rect = synth->target.rect;
     for (size_t p = 0; p < pixels; p++)
-        synth->previous.mask[p] = look_of(guides, p);
+        synth->previous.mask[p] = shape_at(guides, p);
     memcpy(synth->previous.rgb, rgb, 3 * pixels);
     if (!fl_nnf_init(&synth->previous.nnf, last->width, last->height, error))
         return false;
@@ -435,7 +435,7 @@ static bool holds_still(const FlSynth *synth, const FlGuides *guides)
     const size_t pixels = (size_t)synth->width * synth->height;
     const float limit = synth->params->flow_still * synth->params->flow_still;
     if (!synth->params->rest || synth->boil != 0 || !synth->previous.valid ||
-        fl_drawing_moves(guides) || !looks_as_before(synth, guides))
+        fl_drawing_moves(guides) || !has_shape_as_before(synth, guides))
         return false;
     for (size_t p = 0; p < pixels; p++) {
         const float u = guides->flow[2 * p], v = guides->flow[2 * p + 1];
