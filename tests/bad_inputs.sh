@@ -121,13 +121,13 @@ table() {
 2|--output: the value is missing|good --output=
 2|--region: the value is missing|good --region=
 2|no region “red”; the regions are: red-aa3311|good --region red
-2|frames "3-1": expected numbers and ranges *|good -f 3-1
-2|frames "99999999999": expected *|good -f 99999999999
+2|frames “3-1”: expected numbers and ranges *|good -f 3-1
+2|frames “99999999999”: expected *|good -f 99999999999
 1|good/a_1.svg: no file for frame 7; use --missing *|good -f 1,7
-2|canvas '0x0': expected WxH *|good --canvas 0x0
-2|canvas '9x9+1': expected WxH or WxH+X+Y, *|good --canvas 9x9+1
+2|canvas “0x0”: expected WxH *|good --canvas 0x0
+2|canvas “9x9+1”: expected WxH or WxH+X+Y, *|good --canvas 9x9+1
 2|no limit “x”*the limits are: drawing, elements, *|good --limit x=1
-2|background 'blue': expected #rrggbb, none, *|good -b blue
+2|background “blue”: expected #rrggbb, none, *|good -b blue
 2|film.mp4: H.264 has no transparency; *|good -b clear.png -o film.mp4
 2|film.mov: a film cannot be resumed without its frames; *|good --resume --no-frames -o film.mov
 2|x.bmp: *|good -o x.bmp
@@ -166,9 +166,9 @@ table() {
 1|pipe.png: it is a pipe or a device; expected a file|good -b pipe.png
 1|./pipeframe/frames/0002.png: it is a pipe or a device; expected a file|good -s ./pipeframe
 1|./pipeini/style.ini: it is a pipe or a device; expected a file|good -s ./pipeini
-1|piped/a_1.svg: #i: the image "../piped/p.png" is a pipe or a device *under --strict)|piped --strict
-1|used/a_1.svg: *"p.pipe#a" is a pipe or a device and is left out *under --strict)|used --strict
-1|escape/a_1.svg: #a b: fill refers to "#x y", which is not *under --strict)|escape --strict
+1|piped/a_1.svg: #i: the image “../piped/p.png” is a pipe or a device *under --strict)|piped --strict
+1|used/a_1.svg: *“p.pipe#a” is a pipe or a device and is left out *under --strict)|used --strict
+1|escape/a_1.svg: #a b: fill refers to “#x y”, which is not *under --strict)|escape --strict
 1|unused.conf:1: [region nowhere] matches no region *under --strict)|good -c unused.conf -f 1 --strict
 1|unused.conf:1: [region nowhere] matches no region *under --strict)|good -c unused.conf --preview 1 --strict
 2|x.mp4: flats are PNG files; expected .png|good --flat -o x.mp4
@@ -182,13 +182,13 @@ table() {
 1|packed.svg: damaged gzip data|packed.svg
 1|binary.svg: not well-formed: *|binary.svg
 1|nothing/a_1.svg: there is nothing to paint in the drawing (1 warning under --strict)|nothing --strict
-1|broken/a_1.svg: #p: the path is broken at "x v9z" (character 8) *under --strict)|broken --strict
-1|lost/a_1.svg: #r: fill refers to "#g", which is not in the file: *under --strict)|lost --strict
-1|circle/a_1.svg: <use> of "#a" shows itself and is left out *under --strict)|circle --strict
+1|broken/a_1.svg: #p: the path is broken at “x v9z” (character 8) *under --strict)|broken --strict
+1|lost/a_1.svg: #r: fill refers to “#g”, which is not in the file: *under --strict)|lost --strict
+1|circle/a_1.svg: <use> of “#a” shows itself and is left out *under --strict)|circle --strict
 1|animated/a_1.svg: #c: the animation in it is not played: *under --strict)|animated --strict
 1|media/a_1.svg: @media rules are left out *under --strict)|media --strict
-1|image/a_1.svg: #i: the image "gone.png" does not exist *under --strict)|image --strict
-1|prologue.svg: ignored what precedes <svg>, which is no XML *under --strict)|prologue.svg --strict
+1|image/a_1.svg: #i: the image “gone.png” does not exist *under --strict)|image --strict
+1|prologue.svg: ignored the text before <svg>, which is not XML *under --strict)|prologue.svg --strict
 1|./still: one frame is used: its paint does not flow (a warning under --strict)|good --strict -s ./still
 1|no style “nowhere” in *|good -s nowhere
 1|good/a_1.svg: *expected a style|good -s good/a_1.svg

@@ -61,11 +61,11 @@ refuses 'a folder that is not there is named' 1 'nowhere: *' nowhere $look
 refuses 'an empty folder is named' 1 'empty: no .svg files *' empty $look
 refuses 'a gap lists the numbers' 1 '*no file for frame 2; use --missing *' gap $look
 refuses 'frames that do not exist are listed' 1 '*no file for frames 7-9; *' whole -f 7-9 $look
-refuses 'frames that are no numbers are refused' 2 'frames "1-x": expected *' whole -f 1-x $look
+refuses 'frames that are no numbers are refused' 2 'frames “1-x”: expected *' whole -f 1-x $look
 refuses 'a broken file is named with its line' 1 'broken/w_0003.svg: *line *' broken $look
 refuses 'a drawing without a size asks for --canvas' 1 'nosize/w_0001.svg: *--canvas*' nosize $look
 refuses 'a drawing of no size is refused' 1 'zero/w_0001.svg: *' zero $look
-refuses 'a canvas without a height is refused' 2 "canvas '5': expected WxH *" whole --canvas 5 $look
+refuses 'a canvas without a height is refused' 2 "canvas “5”: expected WxH *" whole --canvas 5 $look
 refuses 'an output without a frame number is refused' 2 'one.png: *' whole -o one.png $look
 refuses 'an output of no known kind lists the kinds' 2 'w_%d.bmp: *' whole -o w_%d.bmp $look
 refuses 'an unknown style gets a suggestion' 1 'no style “0l” *did you mean “0?” or “0?” or “0?”?' whole -s 0l

@@ -212,7 +212,7 @@ unseen() {
 }
 sentence='a drawing does not see '
 unseen 'an image outside its folder' "<image href='../outside/secret.png' width='48' height='48'/>" \
-    'the image "../outside/secret.png" is outside the drawing'
+    'the image “../outside/secret.png” is outside the drawing'
 unseen 'an image by its whole path' "<image href='$folder/outside/secret.png' width='48' height='48'/>" \
     'is outside the drawing'
 unseen 'an image by a file address' "<image href='file://$folder/outside/secret.png' width='48' height='48'/>" \
@@ -279,7 +279,7 @@ kill $server 2>/dev/null
 svg x.svg "$shape<image href='big.png' width='48' height='48'/>"
 rm -rf with without
 to=with paint && mv big.png gone.png && to=without paint && ! diff -r with without >/dev/null &&
-    grep -qF 'the image "big.png" does not exist and is left out' err
+    grep -qF 'the image “big.png” does not exist and is left out' err
 result $? 'but it does see one in its folder, and says when it is gone'
 
 echo "1..$n"

@@ -447,12 +447,12 @@ static void the_smallest_group_that_looks_otherwise_is_taken_as_one(void)
     g_assert_cmpint(fl_warnings_count(warnings), ==, 2);
     g_autofree char *use = fl_warning_line(fl_warnings_get(warnings, 0));
     g_autofree char *pair = fl_warning_line(fl_warnings_get(warnings, 1));
-    g_assert_true(g_str_has_suffix(
-        use, "odd.svg: no. 2 of the groups without an id, drawn shape by "
-             "shape it does not look like the drawing: drawn as one in every frame"));
+    g_assert_true(
+        g_str_has_suffix(use, "odd.svg: no. 2 of the groups without an id looks different when it "
+                              "is drawn shape by shape: drawn as one in every frame"));
     g_assert_true(g_str_has_suffix(pair,
-                                   "odd.svg: #pair: drawn shape by shape it does not look like "
-                                   "the drawing: drawn as one in every frame"));
+                                   "odd.svg: #pair: looks different when it is drawn shape by "
+                                   "shape: drawn as one in every frame"));
 }
 
 static void regions_merge_through_others_and_not_in_circles(void)

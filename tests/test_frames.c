@@ -1,6 +1,6 @@
+#include "scratch.h"
 #include "svg/path_data.h"
 #include "svg/svg_frame.h"
-#include "scratch.h"
 #include <string.h>
 
 static FlSvg *open_svg(const char *path, FlWarnings *warnings)
@@ -240,7 +240,7 @@ static void blenders_prologue_and_undeclared_prefixes_are_mended(void)
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
     g_autoptr(FlSvg) svg = open_svg(path, warnings);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 1);
-    g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, "precedes <svg>"));
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, "before <svg>"));
     const FlLeaf *leaf = &g_array_index(fl_svg_leaves(svg)->leaf, FlLeaf, 0);
     g_assert_cmpstr(leaf->labels, ==, "x");
 }
@@ -311,7 +311,7 @@ static void silent_traps_give_warnings(void)
     } traps[] = {
         {"<rect id=\"r\" " BOX " mask=\"url(#gone)\"/>", "drawn without it"},
         {"<rect id=\"r\" " BOX " fill=\"url(#gone)\"/>", "nothing is drawn"},
-        {"<path id=\"r\" d=\"M0 0L10 10 Lx 5\"/>", "is broken at \"x 5\" (character 13)"},
+        {"<path id=\"r\" d=\"M0 0L10 10 Lx 5\"/>", "is broken at “x 5” (character 13)"},
         {"<style id=\"r\">path{fill:var(--c)}</style>", "var()"},
         {"<rect id=\"r\" " BOX "><animate attributeName=\"x\"/></rect>", "is not played"},
         {"<style id=\"r\">@keyframes a{}</style>", "CSS animation"},

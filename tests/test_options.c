@@ -73,7 +73,6 @@ static void every_default_is_a_value(void)
         if (o->scope != FL_SCOPE_RENDER || !*o->preset)
             continue;
         set(o, o->preset, &options);
-        options.gap = MAX(options.gap, 0);
         g_autofree char *text = fl_option_get(o, &options);
         g_assert_cmpstr(text, ==, o->preset);
     }

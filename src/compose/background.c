@@ -45,7 +45,7 @@ bool fl_background_init(FlBackground *background, const char *text, const uint8_
         background->opaque = pictures_are_opaque(background, drawing);
     } else {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "background '%s': expected #rrggbb, none, a PNG file or a pattern of them",
+                    "background “%s”: expected #rrggbb, none, a PNG file or a pattern of them",
                     text);
         return false;
     }

@@ -205,7 +205,7 @@ bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int
         kind = FL_PAPER_COLD;
     else if (!fl_text_choice(paper, FL_PAPER_WORDS, &kind) && !is_file(paper)) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "paper '%s': expected none, cold, hot, rough, laid, kraft or a PNG file",
+                    "paper “%s”: expected none, cold, hot, rough, laid, kraft or a PNG file",
                     paper);
         return false;
     }

@@ -109,10 +109,10 @@ static void warn_of_whole(FlWarnings *warnings, const char *file, int number, co
     const bool made = g_str_has_prefix(group, FL_GROUP_ID);
     const int nth = made ? atoi(group + strlen(FL_GROUP_ID)) + 1 : 0;
     g_autofree char *which =
-        made ? g_strdup_printf("no. %d of the groups without an id, ", nth) : g_strdup("");
+        made ? g_strdup_printf("no. %d of the groups without an id ", nth) : g_strdup("");
     const bool all = strcmp(group, FL_WHOLE_ALL) == 0;
     fl_warnings_add(warnings, file, number, made || all ? NULL : group,
-                    "%sdrawn shape by shape it does not look like the drawing: drawn as one in "
+                    "%slooks different when it is drawn shape by shape: drawn as one in "
                     "every frame",
                     which);
 }
@@ -145,7 +145,7 @@ static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *war
         }
         if (verdict == FL_VERDICT_DIFFERS)
             fl_warnings_add(warnings, file, number, leaf,
-                            "drawn leaf by leaf the frame does not look quite like the drawing");
+                            "the frame looks slightly different when it is drawn shape by shape");
         break;
     }
     if (fabs(frame->page_width - survey->page_width) > 0.5 ||

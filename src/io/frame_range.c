@@ -76,7 +76,7 @@ GArray *fl_range_parse(const char *range, int film_first, int film_last, GError 
     if (!good) {
         g_set_error(
             error, FL_ERROR, FL_ERROR_USAGE,
-            "frames \"%s\": expected numbers and ranges such as 1001-1096, 1-96x2, 1,5,9 or 12~1",
+            "frames “%s”: expected numbers and ranges such as 1001-1096, 1-96x2, 1,5,9 or 12~1",
             range);
         g_array_unref(numbers);
         return NULL;

@@ -324,8 +324,8 @@ char *fl_option_get(const FlOption *option, const void *object)
         return g_strdup_printf("%d", *(const int *)field);
     case FL_OPTION_COUNT:
         return g_strdup_printf("%" G_GUINT64_FORMAT, *(const uint64_t *)field);
-    case FL_OPTION_REAL:
-        return number_text(*(const double *)field);
+    case FL_OPTION_REAL: // 0 that was set is -1
+        return number_text(MAX(*(const double *)field, 0));
     case FL_OPTION_DIAL:
         return isnan(*(const double *)field) ? g_strdup("auto")
                                              : number_text(*(const double *)field);

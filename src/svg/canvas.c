@@ -23,7 +23,7 @@ bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error)
         size && (*at == '\0' || (part(&at, '+', &canvas->x) && part(&at, '+', &canvas->y)));
     if (corner && *at == '\0')
         return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "canvas '%s': expected WxH or WxH+X+Y, such as %s",
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "canvas “%s”: expected WxH or WxH+X+Y, such as %s",
                 text, "1000x800");
     return false;
 }

@@ -142,7 +142,7 @@ static xmlDoc *parse_leniently(const char *data, gsize bytes, const char *path, 
         doc = parse(root, bytes - (gsize)(root - data), path, NULL);
     if (doc && root)
         fl_warnings_add(warnings, path, number, NULL,
-                        "ignored what precedes <svg>, which is no XML (%s)", problem);
+                        "ignored the text before <svg>, which is not XML (%s)", problem);
     if (!doc)
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: not well-formed: %s", path, problem);
     return doc;

@@ -18,7 +18,7 @@ static void warn(const Check *check, const xmlNode *node, const char *href, cons
 {
     g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
     fl_warnings_add(check->warnings, check->path, check->number, (const char *)id,
-                    "the image \"%.60s\" %s", href, text);
+                    "the image “%.60s” %s", href, text);
 }
 
 /* Whether `file` is in the folder of the drawing or below it, links followed. */

@@ -55,7 +55,7 @@ static void check_target(const Lint *lint, const xmlNode *node, const char *name
         return;
     const bool paint = strcmp(name, "fill") == 0 || strcmp(name, "stroke") == 0;
     const bool fallback = paint && strchr(hash, ')') && strchr(hash, ')')[1];
-    g_autofree char *text = g_strdup_printf("%s refers to \"%.*s\", which is not in the file: %s",
+    g_autofree char *text = g_strdup_printf("%s refers to “%.*s”, which is not in the file: %s",
                                             name, (int)strcspn(hash, ")"), hash,
                                             fallback ? "the colour after it is drawn"
                                             : paint  ? "nothing is drawn"
@@ -101,7 +101,7 @@ static void check_path(const Lint *lint, const xmlNode *node)
     const char *rest = d ? fl_path_data_error((const char *)d) : NULL;
     if (!rest)
         return;
-    g_autofree char *text = g_strdup_printf("the path is broken at \"%.12s\" (character %d) and is "
+    g_autofree char *text = g_strdup_printf("the path is broken at “%.12s” (character %d) and is "
                                             "drawn up to there",
                                             rest, (int)(rest - (const char *)d) + 1);
     warn(lint, node, text);

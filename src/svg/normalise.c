@@ -213,7 +213,7 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
     if (target && is_circle(use, target, chain)) {
         const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);
         fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : (const char *)id,
-                        "<use> of \"%s\" shows itself and is left out", href);
+                        "<use> of “%s” shows itself and is left out", href);
         return true;
     }
     if (!target || is_zero(width) || is_zero(height))
