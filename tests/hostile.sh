@@ -165,7 +165,7 @@ if [ $status = 0 ]; then
     skip 'a drawing that crashes librsvg is an error' 'this librsvg does not'
     skip 'and a film goes on without it' 'this librsvg does not'
 else
-    [ $status = 1 ] && says 'x.svg: frame 1: the SVG library crashed while it was read (Aborted)'
+    [ $status = 1 ] && says 'x.svg: frame 1: the SVG library crashed while reading it (Aborted)'
     result $? 'a drawing that crashes librsvg is an error'
     mkdir mixed && cp x.svg mixed/m_2.svg && svg mixed/m_1.svg "$shape" && cp mixed/m_1.svg mixed/m_3.svg
     "$program" --list-regions mixed --missing hold >out 2>err && says 'mixed/m_2.svg: left out' &&
@@ -181,7 +181,7 @@ for i in 1 2 3 4 5 6 7 8 9; do
 done
 svg x.svg "$body<rect width='48' height='48' fill='url(#p9)'/>"
 look --limit seconds=1
-[ $? = 1 ] && says 'x.svg: frame 1: it took longer than 1 s to read; use --limit seconds=N to allow more'
+[ $? = 1 ] && says 'x.svg: frame 1: reading it took longer than 1 s; use --limit seconds=N to allow more'
 result $? 'a drawing that takes too long is an error'
 
 # What a drawing must not see: the same bytes as if it were not there.

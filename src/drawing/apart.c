@@ -1,14 +1,13 @@
 #include "drawing/apart.h"
 
 #include "base/limits.h"
+#include "drawing/confined.h"
 #include "drawing/watch.h"
 #include <errno.h>
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #ifdef _OPENMP
@@ -155,16 +154,6 @@ static void take_warnings(Reader *r, FlWarnings *warnings)
 
 /* ---- the child ----------------------------------------------------------------------------- */
 
-/** Whether the process has this thread only, so that it may fork. */
-static bool is_alone(void)
-{
-    g_autoptr(GDir) tasks = g_dir_open("/proc/self/task", 0, NULL);
-    int n = 0;
-    while (tasks && g_dir_read_name(tasks))
-        n++;
-    return n == 1;
-}
-
 static bool write_all(int fd, const GByteArray *data)
 {
     size_t done = 0;
@@ -177,23 +166,10 @@ static bool write_all(int fd, const GByteArray *data)
     return true;
 }
 
-/** Resets the signals and closes the standard error that the child has from its parent. */
-static void settle(void)
-{
-    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
-    for (size_t i = 0; i < G_N_ELEMENTS(signals); i++)
-        signal(signals[i], SIG_DFL);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    prctl(PR_SET_DUMPABLE, 0); // no core dumps
-    const int null = open("/dev/null", O_WRONLY | O_CLOEXEC);
-    if (null >= 0)
-        dup2(null, STDERR_FILENO); // the panics of libraries
-}
-
 G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawingOptions *options,
-                                     FlWatch *watch, int fd)
+                                     FlWatch *watch, int fd, int words)
 {
-    settle();
+    fl_confined_enter(sequence, words);
     GError *problem = NULL;
     FlSurvey survey = {0};
     FlWarnings *warnings = fl_warnings_new();
@@ -251,19 +227,21 @@ static int wait_for(pid_t child, int alive, FlWatch *watch, int *late)
 
 /** Forks. Returns: false if that failed; the caller then reads the drawing itself. */
 static bool start(const FlSequence *sequence, const FlDrawingOptions *options, FlWatch *watch,
-                  int fd, bool one_thread, pid_t *child, int *alive)
+                  int fd, int words, bool one_thread, pid_t *child, int *alive)
 {
     int ends[2];
     if (pipe(ends) != 0)
         return false;
+    const pid_t self = getpid();
     *child = fork();
     if (*child == 0) {
+        fl_confined_ends_with(self);
         close(ends[0]);
 #ifdef _OPENMP
         if (one_thread)
             omp_set_num_threads(1);
 #endif
-        be_child(sequence, options, watch, fd);
+        be_child(sequence, options, watch, fd, words);
     }
     close(ends[1]);
     *alive = ends[0];
@@ -289,7 +267,9 @@ static bool take_all(int fd, FlSurvey *survey, const FlSequence *sequence, FlWat
     } else {
         take(&r, &code, sizeof code);
         g_set_error(error, FL_ERROR, code, "%s", take_text(&r));
-        *bad = code == FL_ERROR_LIMIT ? atomic_load(&watch->failed) - 1 : -1;
+        *bad = code == FL_ERROR_LIMIT || code == FL_ERROR_NO_MEMORY
+                   ? atomic_load(&watch->failed) - 1
+                   : -1;
     }
     take_warnings(&r, warnings);
     munmap(data, (size_t)bytes);
@@ -299,21 +279,12 @@ static bool take_all(int fd, FlSurvey *survey, const FlSequence *sequence, FlWat
     return good && r.good;
 }
 
-static bool tell_end(const FlSequence *sequence, int frame, int status, bool late, GError **error)
+static bool tell_end(const FlSequence *sequence, int frame, FlConfinedEnd end, GError **error)
 {
-    const int number = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if (number == SIGINT || number == SIGTERM || number == SIGHUP) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted");
-        return false;
-    }
-    g_autofree char *why =
-        late ? g_strdup_printf(
-                   "it took longer than %d s to read; use ‘limit’ seconds=N to allow more",
-                   (int)fl_limit(FL_LIMIT_SECONDS))
-             : g_strdup_printf("the SVG library crashed while it was read (%s)",
-                               number ? g_strsignal(number) : "it ended");
-    g_set_error(error, FL_ERROR, late ? FL_ERROR_LIMIT : FL_ERROR_INPUT, "%s: frame %d: %s",
-                sequence->file[MAX(frame, 0)], sequence->number[MAX(frame, 0)], why);
+    const int number = WIFSIGNALED(end.status) ? WTERMSIG(end.status) : 0;
+    if (number != SIGINT && number != SIGTERM && number != SIGHUP)
+        return fl_confined_tell(sequence, frame, end, "reading", error);
+    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted");
     return false;
 }
 
@@ -326,25 +297,28 @@ static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDraw
     pid_t child = -1;
     memset(watch, 0, sizeof *watch);
     *again = false;
-    const int fd = memfd_create("fluidy-survey", MFD_CLOEXEC);
-    if (fd < 0 || !start(sequence, options, watch, fd, *one_thread, &child, &alive)) {
-        if (fd >= 0)
-            close(fd);
-        return fl_survey_init(survey, sequence, options, NULL, warnings, error);
-    }
-    const int status = wait_for(child, alive, watch, &late);
-    close(alive);
+    const int fd = memfd_create("fluidy-survey", MFD_CLOEXEC), words = fl_confined_words();
     bool good = false;
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
-        good = take_all(fd, survey, sequence, watch, warnings, bad, error);
+    if (fd < 0 || !start(sequence, options, watch, fd, words, *one_thread, &child, &alive)) {
+        good = fl_survey_init(survey, sequence, options, NULL, warnings, error);
     } else {
-        *bad = late >= 0 ? late : only_frame(watch);
-        *again = *bad < 0 && !*one_thread;
-        *one_thread = true;
-        if (!*again)
-            tell_end(sequence, *bad, status, late >= 0, error);
+        const int status = wait_for(child, alive, watch, &late);
+        close(alive);
+        if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+            good = take_all(fd, survey, sequence, watch, warnings, bad, error);
+        } else {
+            const FlConfinedEnd end = {status, late >= 0, fl_confined_asked_too_much(words)};
+            *bad = late >= 0 ? late : only_frame(watch);
+            *again = *bad < 0 && !*one_thread;
+            *one_thread = true;
+            if (!*again)
+                tell_end(sequence, *bad, end, error);
+        }
     }
-    close(fd);
+    if (fd >= 0)
+        close(fd);
+    if (words >= 0)
+        close(words);
     return good;
 }
 
@@ -354,9 +328,9 @@ bool fl_survey_init_apart(FlSurvey *survey, const FlSequence *sequence,
 {
     *bad = -1;
     *survey = (FlSurvey){0};
-    FlWatch *watch = is_alone() ? mmap(NULL, sizeof *watch, PROT_READ | PROT_WRITE,
-                                       MAP_SHARED | MAP_ANONYMOUS, -1, 0)
-                                : MAP_FAILED;
+    FlWatch *watch = fl_confined_may_fork() ? mmap(NULL, sizeof *watch, PROT_READ | PROT_WRITE,
+                                                   MAP_SHARED | MAP_ANONYMOUS, -1, 0)
+                                            : MAP_FAILED;
     if (watch == MAP_FAILED)
         return fl_survey_init(survey, sequence, options, NULL, warnings, error);
     bool again = true, one_thread = false, good = false;

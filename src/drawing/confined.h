@@ -1,0 +1,40 @@
+/* Child processes that read or draw the files of a sequence: their means, and their ends. */
+#ifndef FLUIDY_DRAWING_CONFINED_H
+#define FLUIDY_DRAWING_CONFINED_H
+
+#include "drawing/sequence.h"
+#include <sys/types.h>
+
+/** Whether the process has one thread only, so that it may fork. */
+bool fl_confined_may_fork(void);
+
+/** A file in memory for what libraries say on standard error when they die; -1 on failure. */
+int fl_confined_words(void);
+
+/** For a new child: it ends when its parent, which had this number, does. */
+void fl_confined_ends_with(pid_t parent);
+
+/**
+ * For a new child: it leaves no core, has no standard streams but `words` as its errors, and may
+ * read the sequence's folders and no other files; see fl_sandbox_enter().
+ */
+void fl_confined_enter(const FlSequence *sequence, int words);
+
+/** How a child ended. */
+typedef struct FlConfinedEnd {
+    int status;    // as of waitpid()
+    bool late;     // it was killed since it took too long
+    bool too_much; // it asked for more memory than it may have
+} FlConfinedEnd;
+
+/** Whether `words` tell of memory that was refused. */
+bool fl_confined_asked_too_much(int words);
+
+/**
+ * Sets the error that names file and frame of what ended the child. `work` is "reading" or
+ * "drawing". Returns: false.
+ */
+bool fl_confined_tell(const FlSequence *sequence, int frame, FlConfinedEnd end, const char *work,
+                      GError **error);
+
+#endif
