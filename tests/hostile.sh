@@ -184,6 +184,50 @@ look --limit seconds=1
 [ $? = 1 ] && says 'x.svg: frame 1: reading it took longer than 1 s; use --limit seconds=N to allow more'
 result $? 'a drawing that takes too long is an error'
 
+# What is read on a small page, and is too much only when it is drawn.
+svg x.svg "<filter id='f' x='0' y='0' width='1' height='1'>$(
+    printf "<feTurbulence baseFrequency='.0%d' numOctaves='9'/>" 1 2
+)</filter><rect width='48' height='48' filter='url(#f)'/>"
+large=(--flat -j 1 -W 3000 -o 'o/%d.png' -y --progress none)
+flat() { # flat ARGUMENT...: a large picture of x.svg, or of the film mixed/
+    timeout 120 "$program" "${large[@]}" "$@" >out 2>err
+}
+children() { # children PID...: of these processes
+    awk -v parents=" $* " 'index(parents, " " $4 " ") { print $1 }' /proc/[0-9]*/stat 2>/dev/null | xargs
+}
+crash_one() { # crash_one ARGUMENT...: flat, and the processes that draw get a signal
+    local painter drawing=''
+    "$program" "${large[@]}" "$@" >out 2>err &
+    painter=$!
+    for _ in $(seq 300); do
+        # shellcheck disable=SC2046,SC2086 # lists; processes that read have no children
+        drawing=$(children $(children $painter)) && [ -n "$drawing" ] && break
+        sleep 0.1
+    done
+    sleep 0.3
+    # shellcheck disable=SC2086
+    [ -n "$drawing" ] && kill -SEGV $drawing
+    wait $painter
+}
+flat --limit seconds=3 x.svg
+[ $? = 1 ] && says 'x.svg: frame 1: drawing it took longer than 3 s; use --limit seconds=N to allow more'
+result $? 'so is one that takes too long when it is drawn'
+crash_one x.svg
+[ $? = 1 ] && says 'x.svg: frame 1: the SVG library crashed while drawing it (Segmentation fault)'
+result $? 'one that crashes when it is drawn'
+flat --limit memory=60 x.svg
+[ $? = 1 ] && says 'x.svg: frame 1: drawing it takes more than 60 MiB of memory; use --limit memory=N to allow more'
+result $? 'and one that takes too much memory when it is drawn'
+rm -rf mixed && mkdir mixed && cp x.svg mixed/m_1.svg && svg mixed/m_2.svg "$shape" && cp mixed/m_2.svg mixed/m_4.svg
+cp x.svg mixed/m_3.svg && rm -rf o
+flat --limit seconds=3 --missing hold mixed && [ "$(ls o | wc -l)" = 4 ] && cmp -s o/1.png o/4.png &&
+    cmp -s o/3.png o/4.png && grep -q '2 frames could not be read or drawn and were replaced' err
+result $? 'a film holds the frame before those that cannot be drawn, and counts them'
+rm -rf o mixed/m_3.svg && crash_one --missing skip mixed && [ ! -e o/1.png ] && [ -e o/2.png ] && [ -e o/4.png ] &&
+    grep -q 'crashed while drawing it' err &&
+    grep -q '1 frame could not be read or drawn and was skipped' err
+result $? 'or skips them'
+
 # What a drawing must not see: the same bytes as if it were not there.
 cd ..
 mkdir outside

@@ -5,7 +5,7 @@
 set -u
 folder=$(realpath "$1")
 program=$(realpath "${2:-${0%/*}/../build/src/cli/fluidy-svg}")
-list=${3:-/dev/null}
+list=$(realpath -m "${3:-/dev/null}")
 psnr=$(dirname "$program")/../../tests/psnr
 export program psnr folder LIMIT=${LIMIT:-10} LC_ALL=C.UTF-8 OMP_NUM_THREADS=1
 temporary=$(mktemp -d)

@@ -1,5 +1,6 @@
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "drawing/draw_pool.h"
 #include "drawing/drawing_data.h"
 #include "drawing/hand_line.h"
 #include "drawing/raster.h"
@@ -420,10 +421,9 @@ static bool draw_steps(Stage *stage, const Draw *draw, FlDraw *out, GError **err
     return draw_in(stage, draw, &target, error) && keep_drawn(&target, out, error);
 }
 
-FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
-                                    GError **error)
+FlDrawList *fl_draw_list_make(const FlDrawing *drawing, int frame, const FlHand *hand,
+                              GError **error)
 {
-    g_assert(frame >= 0 && frame < drawing->sequence->n);
     g_auto(Stage) stage = {0};
     if (!stage_init(&stage, drawing, frame, error))
         return NULL;
@@ -438,6 +438,14 @@ FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const F
             return NULL;
     }
     return g_steal_pointer(&out);
+}
+
+FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
+                                    GError **error)
+{
+    g_assert(frame >= 0 && frame < drawing->sequence->n);
+    return drawing->pool ? fl_draw_pool_draw(drawing->pool, frame, hand, error)
+                         : fl_draw_list_make(drawing, frame, hand, error);
 }
 
 FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error)

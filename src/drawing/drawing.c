@@ -1,6 +1,8 @@
 #include "base/rect.h"
 #include "drawing/apart.h"
+#include "drawing/draw_pool.h"
 #include "drawing/drawing_data.h"
+#include "drawing/leave_out.h"
 #include "drawing/region_identity.h"
 #include "drawing/region_names.h"
 #include <string.h>
@@ -23,6 +25,7 @@ int fl_drawing_height(const FlDrawing *drawing)
 /* The files are drawn to the page's size, and steps within their boxes. */
 void fl_drawing_halve(FlDrawing *drawing)
 {
+    drawing->n_halved++;
     drawing->width = fl_half_side(drawing->width), drawing->height = fl_half_side(drawing->height);
     for (int f = 0; f < drawing->sequence->n; f++) {
         FlDrawingFrame *frame = &drawing->frame[f];
@@ -43,6 +46,15 @@ int fl_drawing_regions(const FlDrawing *drawing)
 const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region)
 {
     return &g_array_index(drawing->regions, FlRegion, region);
+}
+
+char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing)
+{
+    const int n = drawing->sequence->n_left_out;
+    const char *fate = missing == FL_MISSING_HOLD ? "replaced by the one before" : "skipped";
+    return n == 0 ? NULL
+                  : g_strdup_printf("%d frame%s could not be read or drawn and %s %s", n,
+                                    n == 1 ? "" : "s", n == 1 ? "was" : "were", fate);
 }
 
 const char *fl_drawing_name(const FlDrawing *drawing)
@@ -190,6 +202,7 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
         frame->page_width = survey->frame[t].page_width;
         frame->page_height = survey->frame[t].page_height;
         frame->canvas = survey->frame[t].canvas;
+        frame->origin = t;
         frame->whole = g_steal_pointer(&survey->frame[t].whole);
         frame->step = g_new0(FlStep, parts->len + 1);
         for (guint i = 0; i < parts->len; i++) {
@@ -249,22 +262,6 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     return drawing;
 }
 
-/** Replaces a bad frame as if its file were missing: by the one before it, or by none. */
-static void leave_out(FlSequence *sequence, int frame, FlMissing missing)
-{
-    const int other = frame > 0 ? frame - 1 : 1;
-    g_free(sequence->file[frame]);
-    if (missing == FL_MISSING_HOLD) {
-        sequence->file[frame] = g_strdup(sequence->file[other]);
-        return;
-    }
-    for (int t = frame; t + 1 < sequence->n; t++) {
-        sequence->file[t] = sequence->file[t + 1];
-        sequence->number[t] = sequence->number[t + 1];
-    }
-    sequence->file[--sequence->n] = NULL;
-}
-
 /** Reads all frames; `missing` decides about those that crash, hang or exceed a limit. */
 static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingOptions *options,
                         FlWarnings *warnings, GError **error)
@@ -276,7 +273,7 @@ static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingO
         GError *reason = NULL;
         g_autoptr(FlWarnings) remarks = fl_warnings_new();
         const bool good = fl_survey_init_apart(survey, sequence, options, remarks, &bad, &reason);
-        if (good || bad < 0 || options->missing == FL_MISSING_ERROR || sequence->n < 2) {
+        if (good || bad < 0 || options->missing <= FL_MISSING_ERROR || sequence->n < 2) {
             fl_warnings_append(warnings, remarks);
             if (reason)
                 g_propagate_error(error, reason);
@@ -285,7 +282,8 @@ static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingO
         fl_warnings_add(warnings, sequence->file[bad], sequence->number[bad], NULL,
                         "left out (‘missing’): %s", reason->message);
         g_error_free(reason);
-        leave_out(sequence, bad, options->missing);
+        fl_sequence_leave_out(
+            sequence, bad, options->missing == FL_MISSING_HOLD ? MAX(bad - 1, 0) + (bad == 0) : -1);
         fl_survey_clear(survey);
     }
 }
@@ -308,18 +306,20 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
     return drawing;
 }
 
-static void free_frame(FlDrawingFrame *frame)
+void fl_drawing_frame_clear(FlDrawingFrame *frame)
 {
     g_free(frame->step);
     g_strfreev(frame->whole);
+    *frame = (FlDrawingFrame){0};
 }
 
 void fl_drawing_free(FlDrawing *drawing)
 {
     if (!drawing)
         return;
+    fl_draw_pool_free(drawing->pool);
     for (int t = 0; t < drawing->sequence->n; t++)
-        free_frame(&drawing->frame[t]);
+        fl_drawing_frame_clear(&drawing->frame[t]);
     g_free(drawing->frame);
     fl_sequence_free(drawing->sequence);
     g_array_unref(drawing->regions);

@@ -99,6 +99,12 @@ int fl_drawing_height(const FlDrawing *drawing);
 int fl_drawing_regions(const FlDrawing *drawing);
 const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region);
 
+/**
+ * How many frames are held or skipped since their files cannot be read or drawn, as a sentence; to
+ * be freed. NULL: none.
+ */
+char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing);
+
 /** What the files' names share, such as "walk"; for naming the output. */
 const char *fl_drawing_name(const FlDrawing *drawing);
 
@@ -111,6 +117,16 @@ int fl_drawing_number(const FlDrawing *drawing, int frame);
  * other thread may use the drawing meanwhile.
  */
 void fl_drawing_halve(FlDrawing *drawing);
+
+/**
+ * From now on frames are drawn in child processes, as many as there are threads; see
+ * drawing/draw_pool.h. Unless `missing` is an error, every frame is drawn once to find those that
+ * crash, hang or ask for too much; they are left out, each with a warning.
+ *
+ * Returns: false if no frame can be drawn, with the error of the first.
+ */
+bool fl_drawing_draw_apart(FlDrawing *drawing, FlMissing missing, FlWarnings *warnings,
+                           GError **error);
 
 /** Rasterises a frame. Any thread may call it. Returns: to be freed with fl_draw_list_free(). */
 FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error);

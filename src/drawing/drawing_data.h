@@ -26,12 +26,21 @@ typedef struct FlDrawingFrame {
     double page_width, page_height; // px of the picture
     FlCanvas canvas;                // as in FlSvgOptions
     char **whole;                   // likewise
+    int origin;                     // its index when the drawing was opened
 } FlDrawingFrame;
+
+void fl_drawing_frame_clear(FlDrawingFrame *frame);
+
+/** fl_drawing_draw_by_hand() in this process. */
+FlDrawList *fl_draw_list_make(const FlDrawing *drawing, int frame, const FlHand *hand,
+                              GError **error);
 
 struct FlDrawing {
     FlSequence *sequence;
     double dpi;
     int width, height;
+    int n_halved;            // how often fl_drawing_halve() was called
+    struct FlDrawPool *pool; // draws the frames; NULL: this process does
     FlDrawingFrame *frame;
     GArray *regions; // FlRegion
 };

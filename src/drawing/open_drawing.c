@@ -182,5 +182,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
     offer_config(drawing, options);
     warn_of_nothing(drawing, warnings);
     warn_of_unused(drawing, config, &wanted, warnings);
+    if (!fl_drawing_draw_apart(drawing, options->missing, warnings, error))
+        return NULL;
     return report(warnings, options, error) ? g_steal_pointer(&drawing) : NULL;
 }

@@ -11,8 +11,9 @@
 typedef struct FlSequence {
     int n;
     char **file;
-    int *number; // as in the file's name; 1 … n where the names have no number
-    char *name;  // what the names share, such as "walk" of walk_0001.svg; never empty
+    int *number;    // as in the file's name; 1 … n where the names have no number
+    char *name;     // what the names share, such as "walk" of walk_0001.svg; never empty
+    int n_left_out; // frames whose files were found, but are held or skipped
 } FlSequence;
 
 /**

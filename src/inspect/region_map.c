@@ -250,8 +250,11 @@ static bool write_frames(const FlRenderOptions *options, const char *what, Write
         if (!write(&subject, f, pattern, error))
             return false;
     g_autofree char *line = g_strdup_printf("%d %s%s: %s", n, what, n == 1 ? "" : "s", pattern);
+    g_autofree char *gaps = fl_drawing_left_out(subject.drawing, subject.options.missing);
     if (options->note)
         options->note(line, options->data);
+    if (options->note && gaps)
+        options->note(gaps, options->data);
     return true;
 }
 

@@ -21,7 +21,10 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
     g_autofree char *done =
         g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie, and, plan->output);
     g_autofree char *seconds = fl_stats_summary(stats, n);
+    g_autofree char *gaps = fl_drawing_left_out(plan->drawing, plan->options.missing);
     send_note(plan, done);
+    if (gaps)
+        send_note(plan, gaps);
     send_note(plan, seconds);
     if (!plan->options.report)
         return;
@@ -47,6 +50,9 @@ void fl_summary_of_dry_run(const FlPlan *plan, double frame_s)
         "would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n, plural(n), plan->width,
         plan->height, plan->n_painted, plural(plan->n_painted), movie, and, plan->output);
     g_autofree char *time = forecast(plan, frame_s);
+    g_autofree char *gaps = fl_drawing_left_out(plan->drawing, plan->options.missing);
     send_note(plan, work);
+    if (gaps)
+        send_note(plan, gaps);
     send_note(plan, time);
 }

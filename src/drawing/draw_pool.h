@@ -1,0 +1,29 @@
+/* Draws frames in child processes, which may crash, hang or run out of memory without ending the
+ * render. */
+#ifndef FLUIDY_DRAWING_DRAW_POOL_H
+#define FLUIDY_DRAWING_DRAW_POOL_H
+
+#include "drawing/drawing.h"
+
+/**
+ * n child processes, each confined to the drawing's folders, the limit of memory and that of
+ * seconds a frame. One that dies is replaced.
+ *
+ * They start as copies of this process, drawing included; what changes later, they are told.
+ * drawing must outlive the pool. Returns: NULL if the process has other threads already and must
+ * not fork, or if it cannot.
+ */
+typedef struct FlDrawPool FlDrawPool;
+FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n);
+
+/**
+ * fl_drawing_draw_by_hand() in whichever process is free next. Any thread. A frame that crashes,
+ * hangs or asks for too much is an error with its file and number.
+ */
+FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error);
+
+void fl_draw_pool_free(FlDrawPool *pool); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDrawPool, fl_draw_pool_free)
+
+#endif
