@@ -60,7 +60,7 @@ refuses 'a pattern that fits nothing suggests one' 1 '*did you mean w_%04d.svg*'
 refuses 'a folder that is not there is named' 1 'nowhere: *' nowhere $look
 refuses 'an empty folder is named' 1 'empty: no .svg files *' empty $look
 refuses 'a gap lists the numbers' 1 '*no file for frame 2; use --missing *' gap $look
-refuses 'frames that do not exist are listed' 1 '*no file for frames 7-9; *' whole -f 7-9 $look
+refuses 'frames that do not exist are listed' 1 '*no file for frames 7-9; expected some of 1-*' whole -f 7-9 $look
 refuses 'frames that are no numbers are refused' 2 'frames “1-x”: expected *' whole -f 1-x $look
 refuses 'a broken file is named with its line' 1 'broken/w_0003.svg: *line *' broken $look
 refuses 'a drawing without a size asks for --canvas' 1 'nosize/w_0001.svg: *--canvas*' nosize $look

@@ -352,6 +352,14 @@ static char *pattern_text(const Found *first)
     return strcmp(folder, ".") == 0 ? g_steal_pointer(&text) : g_build_filename(folder, text, NULL);
 }
 
+static GArray *numbers_of(const GArray *found)
+{
+    GArray *numbers = g_array_new(FALSE, FALSE, sizeof(int));
+    for (guint i = 0; i < found->len; i++)
+        g_array_append_val(numbers, g_array_index(found, Found, i).number);
+    return numbers;
+}
+
 /** Selects the wanted numbers among the found files. */
 static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing missing,
                           FlWarnings *warnings, GError **error)
@@ -374,7 +382,15 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
         }
     }
     g_autofree char *list = list_numbers(gaps);
-    if ((gaps->len > 0 && missing <= FL_MISSING_ERROR) || s->n == 0) {
+    if (s->n == 0) {
+        g_autoptr(GArray) numbers = numbers_of(found);
+        g_autofree char *there = list_numbers(numbers);
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: no file for frame%s %s; expected some of %s", pattern,
+                    gaps->len > 1 ? "s" : "", list, there);
+        return NULL;
+    }
+    if (gaps->len > 0 && missing <= FL_MISSING_ERROR) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: no file for frame%s %s; use ‘missing’ hold or skip to go on without",
                     first->path, gaps->len > 1 ? "s" : "", list);
