@@ -192,6 +192,22 @@ static void light_leaves_alpha_alone(void)
     g_assert_cmpint(changed, >, 64 * 64);
 }
 
+static void a_page_of_half_the_size_shows_the_same_sheet(void)
+{
+    FlPaperSheet *half = NULL;
+    const FlPaperChoice choice = {.paper = "laid", .scale = .5, .relief = 1, .seed = 3};
+    g_autoptr(FlPaperSheet) once = sheet_of("laid", 3, 2 * 60, 2 * 40, 0);
+    g_assert_true(fl_paper_sheet_make(&choice, true, 60, 40, &half, NULL));
+    for (int y = 0; y < 40; y++)
+        for (int x = 0; x < 60; x++) {
+            int sum = 0;
+            for (int p = 0; p < 4; p++)
+                sum += once->factor[4 * ((2 * y + p / 2) * 120 + 2 * x + p % 2)];
+            g_assert_cmpint(abs(4 * half->factor[4 * (y * 60 + x)] - sum), <=, 2);
+        }
+    fl_paper_sheet_free(half);
+}
+
 static void papers_are_chosen(void)
 {
     FlPaperSheet *sheet = NULL;
@@ -339,6 +355,8 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/all-frames-have-the-same-sheet-unless-it-boils",
                     all_frames_have_the_same_sheet_unless_it_boils);
     g_test_add_func("/paper/light-leaves-alpha-alone", light_leaves_alpha_alone);
+    g_test_add_func("/paper/a-page-of-half-the-size-shows-the-same-sheet",
+                    a_page_of_half_the_size_shows_the_same_sheet);
     g_test_add_func("/paper/papers-are-chosen", papers_are_chosen);
     g_test_add_func("/paper/a-file-is-laid-side-by-side", a_file_is_laid_side_by_side);
     g_test_add_func("/paper/granulation-keeps-the-tone", granulation_keeps_the_tone);

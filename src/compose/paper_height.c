@@ -65,14 +65,6 @@ static float clamp(float x, float low, float high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* How much is left of a component whose bumps are so wide, px of the sheet, when a px of the output
- * is more than one of the sheet and shows their mean; by measured means of noise. */
-static float seen(const FlPaperPlace *place, float bump_px)
-{
-    const float px = 1 / place->scale;
-    return px <= 1 ? 1 : 1 / (1 + .4f * (px * px - 1) / (bump_px * bump_px));
-}
-
 /* ---- laid lines ------------------------------------------------------------------------------ */
 
 #define CHAIN_PX 104 // between the wires across the lines
@@ -123,13 +115,10 @@ static void draw_cells(const FlPaperPlace *place, FlRect part, float *grid)
         }
 }
 
-/* Fibres are never drawn finer than a px; on small sheets they are fainter instead. */
-static void centre_fibres(const FlPaperPlace *place, float *fibres, size_t n)
+static void centre_fibres(const FlPaperGrain *grain, float *fibres, size_t n)
 {
-    const FlPaperGrain *grain = place->grain;
-    const float strength = fminf(1, 1.1f * place->scale);
     for (size_t i = 0; i < n; i++)
-        fibres[i] = (strength * fibres[i] - grain->fibre_mean) / grain->fibre_dev;
+        fibres[i] = (fibres[i] - grain->fibre_mean) / grain->fibre_dev;
 }
 
 void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres)
@@ -147,7 +136,7 @@ void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres)
             continue;
         float *grid = fibres + (size_t)(y0 - box.y) * (size_t)box.width;
         draw_cells(place, (FlRect){box.x, y0, box.width, y1 - y0}, grid);
-        centre_fibres(place, grid, (size_t)(y1 - y0) * (size_t)box.width);
+        centre_fibres(place->grain, grid, (size_t)(y1 - y0) * (size_t)box.width);
     }
 }
 
@@ -169,10 +158,11 @@ static float surface_at(const FlPaperPlace *place, float x, float y, float fibre
         1 - 2.5f * fabsf(fl_noise(fl_key(seed, KEY_CREASES), 1.7f * gx, 1.7f * gy));
     const float tooth =
         fl_noise_octaves(fl_key(seed, KEY_TOOTH), x / (2.2f * p->tooth_stretch), y / 2.2f, 2, .8f);
-    const float h = 1.6f * seen(place, 5) * bump + 1.6f * p->crease * seen(place, 3) * crease +
-                    1.3f * p->tooth * seen(place, 1.6f) * tooth + .5f * p->fibre * fibre;
-    const float lines = p->laid > 0 ? line_at(place, x, y) + chain_at(place, x, y) : 0;
-    return p->laid > 0 ? .75f * h + .9f * p->laid * seen(place, 5) * lines : h;
+    const float h =
+        1.6f * bump + 1.6f * p->crease * crease + 1.3f * p->tooth * tooth + .5f * p->fibre * fibre;
+    return p->laid > 0
+               ? .75f * h + p->laid * (.9f * line_at(place, x, y) + .9f * chain_at(place, x, y))
+               : h;
 }
 
 void fl_paper_height(const FlPaperPlace *place, FlRect box, const float *fibres, float *height)

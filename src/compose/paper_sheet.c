@@ -170,14 +170,59 @@ static bool is_file(const char *paper)
     return g_str_has_suffix(paper, ".png") || g_str_has_suffix(paper, ".PNG");
 }
 
-static bool make(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
-                 GError **error)
+static bool fill_sheet(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
+                       GError **error)
 {
     const FlPaperPlace place = {fl_paper_grain((FlPaperKind)MAX(kind, 0)), choice->seed, scale};
-    if (!sheet_alloc(sheet, error) ||
-        !(kind >= 0
-              ? make_kind(sheet, &place, (float)choice->relief, error)
-              : fl_paper_file_fill(sheet, choice->paper, scale, (float)choice->relief, error)))
+    return sheet_alloc(sheet, error) &&
+           (kind >= 0
+                ? make_kind(sheet, &place, (float)choice->relief, error)
+                : fl_paper_file_fill(sheet, choice->paper, scale, (float)choice->relief, error));
+}
+
+/* The means over squares of n px of a sheet that is n times as large. */
+static void fill_by_means(FlPaperSheet *sheet, const FlPaperSheet *large, int n)
+{
+#pragma omp parallel for schedule(static)
+    for (int y = 0; y < sheet->height; y++)
+        for (int x = 0; x < sheet->width; x++) {
+            uint32_t factor[4] = {0};
+            int32_t tooth = 0;
+            for (int p = 0; p < n * n; p++) {
+                const size_t from =
+                    (size_t)(n * y + p / n) * (size_t)large->width + (size_t)(n * x + p % n);
+                tooth += large->tooth[0][from];
+                for (int c = 0; c < 4; c++)
+                    factor[c] += large->factor[4 * from + (size_t)c];
+            }
+            const size_t at = (size_t)y * (size_t)sheet->width + (size_t)x;
+            sheet->tooth[0][at] = (int8_t)(tooth / (n * n));
+            for (int c = 0; c < 4; c++)
+                sheet->factor[4 * at + (size_t)c] =
+                    (uint16_t)((factor[c] + (uint32_t)(n * n) / 2) / (uint32_t)(n * n));
+        }
+}
+
+/* A sheet whose grain is finer than its px would be another one, of noise: it is made larger, and
+ * its px are means of that. */
+static bool fill_reduced(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
+                         GError **error)
+{
+    int n = 2;
+    while ((float)n * scale < 1)
+        n *= 2;
+    g_autoptr(FlPaperSheet) large = g_new0(FlPaperSheet, 1);
+    large->width = n * sheet->width, large->height = n * sheet->height;
+    if (!sheet_alloc(sheet, error) || !fill_sheet(large, choice, kind, (float)n * scale, error))
+        return false;
+    fill_by_means(sheet, large, n);
+    return true;
+}
+
+static bool make(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, GError **error)
+{
+    const float scale = (float)choice->scale;
+    if (!(scale < 1 ? fill_reduced : fill_sheet)(sheet, choice, kind, scale, error))
         return false;
     halve_tooth(sheet);
     return true;
@@ -216,7 +261,7 @@ bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int
                            .boil = choice->boil,
                            .seed = choice->seed,
                            .lights = (!is_auto || plain) && choice->relief > 0};
-    if (!make(made, choice, kind, (float)choice->scale, error))
+    if (!make(made, choice, kind, error))
         return false;
     *sheet = g_steal_pointer(&made);
     return true;
