@@ -8,7 +8,7 @@
 #include <fluidy/error.h>
 #include <stdbool.h>
 
-#define FL_CLOSING_MAX_PX 64
+#define FL_CLOSING_MAX_PX 128
 
 /**
  * How far the pixels of a shape are at an edge that it shares with others, 0..255: the share of
