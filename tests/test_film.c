@@ -238,6 +238,27 @@ static void rings_of_two_colours_are_regions_of_their_own(void)
     assert_table(drawing, "red-ff0000*1 white-ffffff*1 red-ff0000-2*1");
 }
 
+/* No pixel is a hairline's own, so paint would leave nothing of it. */
+static void hairlines_are_drawn_even_where_strokes_are_painted(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int k = 1; k <= 2; k++) { // one swells beyond it, and is paint throughout
+        g_autofree char *name = g_strdup_printf("%d.svg", k);
+        g_autofree char *content =
+            g_strdup_printf("<g fill='none' stroke-width='.1'><path d='M9 20H90' stroke='red'/>"
+                            "<path d='M9 40H90' stroke='blue' stroke-width='%s'/>"
+                            "<path d='M9 60H90' stroke='lime' stroke-width='2'/></g>",
+                            k == 1 ? ".15" : "1");
+        g_free(scratch_svg(folder, name, content));
+    }
+    const FlDrawingOptions options = {.width = 400, .strokes = FL_STROKES_PAINT};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_assert_cmpint(fl_drawing_regions(drawing), ==, 3);
+    g_assert_false(fl_drawing_region(drawing, 0)->paintable);
+    g_assert_true(fl_drawing_region(drawing, 1)->paintable);
+    g_assert_true(fl_drawing_region(drawing, 2)->paintable);
+}
+
 static void a_mask_is_the_whole_shape(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -599,6 +620,8 @@ int main(int argc, char **argv)
     TEST("rings-of-two-colours-are-regions-of-their-own",
          rings_of_two_colours_are_regions_of_their_own);
     TEST("a-mask-is-the-whole-shape", a_mask_is_the_whole_shape);
+    TEST("hairlines-are-drawn-even-where-strokes-are-painted",
+         hairlines_are_drawn_even_where_strokes_are_painted);
     TEST("a-film-of-half-the-size-has-the-same-shapes",
          a_film_of_half_the_size_has_the_same_shapes);
     TEST("a-fading-gradient-keeps-its-mask", a_fading_gradient_keeps_its_mask);

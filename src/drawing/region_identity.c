@@ -7,6 +7,7 @@
 
 #define SHADE_ALPHA 192  // a fill this opaque or more is no overlay
 #define SHADE_COVERS 0.8 // share of an overlay that lies over other fills
+#define HAIRLINE 0.002   // width of a stroke, share of the page's longer side, that no paint fills
 #define LINE_ART 0.5     // share of the ink from which on strokes are the drawing
 #define ROUNDING 2       // levels of a channel by which exporters miss a colour from frame to frame
 
@@ -25,6 +26,7 @@ typedef struct Work {
     GArray *tracks;
     int **track_of;
     int *rule_of;  // per track
+    bool *is_hair; // per track: a stroke that is a hairline in all frames
     int *depth_of; // per track: see fl_nesting()
     int *twin_of;  // per track: the first track whose paints change as its own do
 } Work;
@@ -171,10 +173,27 @@ static void find_twins(Work *w)
     }
 }
 
-/** Whether a part is a line that is drawn over the paint; thick strokes are limbs, and painted. */
-static bool is_apart(const Work *w, const FlSurveyPart *s)
+static void find_hairlines(Work *w)
 {
-    return s->stroke && !w->paint_strokes && !s->thick;
+    const FlSurvey *survey = w->survey;
+    const double hair = HAIRLINE * MAX(survey->page_width, survey->page_height);
+    for (guint k = 0; k < w->tracks->len; k++)
+        w->is_hair[k] = true;
+    for (int t = 0; t < survey->n_frames; t++)
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+            if (!(s->width > 0 && (double)s->width < hair))
+                w->is_hair[w->track_of[t][i]] = false;
+        }
+}
+
+/**
+ * Whether a part is a line that is drawn over the paint. Thick strokes are limbs, and painted;
+ * hairlines never, as no pixel is theirs for paint to be in.
+ */
+static bool is_apart(const Work *w, const FlSurveyPart *s, int track)
+{
+    return s->stroke && ((!w->paint_strokes && !s->thick) || w->is_hair[track]);
 }
 
 /** The key of a part's region; parts of equal keys are one region. */
@@ -182,7 +201,7 @@ static char *key_of(const Work *w, const FlSurveyPart *s, int track)
 {
     const FlTrack *tr = &g_array_index(w->tracks, FlTrack, track);
     const int label = w->label_of[s->labels];
-    const char *apart = is_apart(w, s) ? "s" : s->mix != FL_BLEND_MODE_OVER ? "m" : "";
+    const char *apart = is_apart(w, s, track) ? "s" : s->mix != FL_BLEND_MODE_OVER ? "m" : "";
     if (w->rule_of[track] >= 0) // a rule's name makes the region; other rules of that name join
         return g_strdup_printf("rule %s", w->options->rules[w->rule_of[track]].name);
     switch (w->options->key) {
@@ -206,7 +225,7 @@ static char *key_of(const Work *w, const FlSurveyPart *s, int track)
 }
 
 /** Adds a part to its group. */
-static void add_up(const Work *w, const FlSurveyPart *s, FlGroup *group, Sum *sum,
+static void add_up(const Work *w, const FlSurveyPart *s, int track, FlGroup *group, Sum *sum,
                    GHashTable *areas)
 {
     const int64_t key = (int64_t)s->region << 32 | s->paint;
@@ -228,7 +247,7 @@ static void add_up(const Work *w, const FlSurveyPart *s, FlGroup *group, Sum *su
     sum->covered += s->covers * s->area_px;
     sum->alpha = MAX(sum->alpha, s->alpha);
     sum->plain |= s->mix == FL_BLEND_MODE_OVER;
-    group->stroke = group->stroke && is_apart(w, s);
+    group->stroke = group->stroke && is_apart(w, s, track);
 }
 
 /** Numbers the tracks of each region in the order in which they appear. */
@@ -273,7 +292,7 @@ static GArray *gather(Work *w)
                 g_array_append_val(sums, sum);
             }
             s->region = GPOINTER_TO_INT(number);
-            add_up(w, s, &g_array_index(groups, FlGroup, s->region),
+            add_up(w, s, track, &g_array_index(groups, FlGroup, s->region),
                    &g_array_index(sums, Sum, s->region), areas);
         }
     for (guint r = 0; r < groups->len; r++) {
@@ -296,6 +315,8 @@ GArray *fl_identify(FlSurvey *survey, const FlDrawingOptions *options)
     w.depth_of = fl_nesting(survey, w.track_of, w.label_of, (int)w.tracks->len);
     w.rule_of = g_new(int, w.tracks->len + 1);
     w.twin_of = g_new(int, w.tracks->len + 1);
+    w.is_hair = g_new(bool, w.tracks->len + 1);
+    find_hairlines(&w);
     for (guint k = 0; k < w.tracks->len; k++)
         w.rule_of[k] = -1;
     match_rules(&w);
@@ -307,6 +328,7 @@ GArray *fl_identify(FlSurvey *survey, const FlDrawingOptions *options)
     g_free(w.track_of);
     g_free(w.depth_of);
     g_free(w.rule_of);
+    g_free(w.is_hair);
     g_free(w.twin_of);
     g_array_unref(w.tracks);
     g_free(w.label_of);
