@@ -53,8 +53,9 @@ lines() {
     shift
     timeout 120 "$program" lined -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err
 }
-lines unsaid && lines plain --line plain && same plain unsaid
-result $? 'plain lines are those of who says nothing'
+lines unsaid && lines pen_said --line pen && lines plain --line plain && same pen_said unsaid &&
+    ! same plain unsaid
+result $? 'who says nothing gets a pen'
 lines preset --preset fluidymation && lines preset_plain --preset fluidymation --line plain &&
     same preset preset_plain
 result $? "the papers' presets have plain lines"
