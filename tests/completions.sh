@@ -30,6 +30,13 @@ result $? 'bash completes a command of fluidy-style'
 [ "$(completed _fluidy_style fluidy-style import --no-f)" = --no-flatten ]
 result $? 'bash completes an option of a command'
 
+mkdir -p "$folder/styles/own/frames"
+printf '[style]
+name = Lamp black
+' >"$folder/styles/own/style.ini"
+[ "$(PATH=$completions/..:$PATH FLUIDY_STYLES=$folder/styles completed _fluidy_svg fluidy-svg -s la)" = lamp-black ]
+result $? 'bash completes a style by its name'
+
 for shell in zsh fish; do
     for program in fluidy-svg fluidy-style; do
         if command -v "$shell" >/dev/null; then

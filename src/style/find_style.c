@@ -112,10 +112,11 @@ GPtrArray *fl_style_list(void)
     return entries;
 }
 
-/* Whether a word that was typed means a style: by its title. */
+/* Whether a word that was typed means a style: by its title or its folder's name, in any case. */
 static bool is_meant(const FlStyleEntry *entry, const char *word)
 {
-    return !entry->hidden && entry->title && fl_edit_distance(word, entry->title) == 0;
+    return !entry->hidden && ((entry->title && fl_edit_distance(word, entry->title) == 0) ||
+                              fl_edit_distance(word, entry->name) == 0);
 }
 
 static bool contains(const char *name, const char *word)

@@ -42,7 +42,7 @@ FlStyle *fl_style_load(const char *folder, GError **error);
 /**
  * Finds a style by path, if it has a slash or is a folder; else by the name of its folder in
  * $FLUIDY_STYLES, the user's and the system's data folders, the installed one, the source tree's;
- * else by the name that its style.ini gives it there, whose case does not count.
+ * else there by its folder's name or the one in its style.ini, whatever the case.
  *
  * Returns: the folder; NULL with FL_ERROR_STYLE, which lists the names that are near.
  */

@@ -18,8 +18,8 @@ typedef struct Option {
     char *words; // "draft normal fine", if kind is WORDS
 } Option;
 
-/* Style names are looked for when they are asked for. */
-#define LIST_STYLES "fluidy-svg --list-styles 2>/dev/null"
+/* Styles are looked for when they are asked for: by number and by name, as it is typed. */
+#define LIST_STYLES "fluidy-style list 2>/dev/null | cut -f 1,2 | tr \"A-Z\\t \" \"a-z\\n-\""
 
 static bool is_path(const char *value)
 {
@@ -96,7 +96,7 @@ static void bash_values(const GOptionEntry *entries, const char *indent)
         if (o.kind == WORDS)
             printf(") COMPREPLY=($(compgen -W '%s' -- \"$cur\")); return ;;\n", o.words);
         else if (o.kind == STYLES)
-            printf(") COMPREPLY=($(compgen -W \"$(%s | cut -d ' ' -f 1)\" -- \"$cur\") "
+            printf(") COMPREPLY=($(compgen -W \"$(%s)\" -- \"$cur\") "
                    "$(compgen -d -- \"$cur\")); return ;;\n",
                    LIST_STYLES);
         else
@@ -185,7 +185,7 @@ static void zsh_options(const GOptionEntry *entries, const char *indent)
 static void zsh_styles(void)
 {
     printf("_fluidy_styles() {\n    local -a names\n"
-           "    names=(${${(f)\"$(%s)\"}%%%% *})\n"
+           "    names=(${(f)\"$(%s)\"})\n"
            "    compadd -a names\n    _files -/\n}\n\n",
            LIST_STYLES);
 }
@@ -231,7 +231,7 @@ static void fish_options(const char *program, const char *condition, const GOpti
         if (o.kind == WORDS)
             printf(" -x -a '%s'", o.words);
         else if (o.kind == STYLES)
-            printf(" -r -a '(%s | string replace -r \" .*\" \"\")'", LIST_STYLES);
+            printf(" -r -a '(%s)'", LIST_STYLES);
         else if (o.kind != NOTHING)
             printf(o.kind == FILES ? " -r -F" : " -x");
         printf(" -d '%s'\n", help);
