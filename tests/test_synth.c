@@ -86,6 +86,30 @@ static void upscaling_keeps_a_rotated_field_coherent(void)
     }
 }
 
+static void a_region_at_rest_has_a_view_though_its_picture_had_none(void)
+{
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = small_style();
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, NULL);
+    g_autoptr(FlSynth) synth =
+        fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7, NULL);
+    const FlGuideParams how = fl_guide_params(params);
+    const FlGuideSource source = {48, 48, 3, small_moving_disc, NULL, NULL};
+    g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, NULL);
+    g_auto(FlGuides) now = {0};
+    g_autofree uint8_t *rgb = g_malloc0(3 * 48 * 48);
+    FlSynthView view = {0};
+    g_assert_true(fl_guides_init(&now, 48, 48, NULL) &&
+                  fl_guide_sequence_get(guides, 0, &now, NULL));
+    memset(now.flow, 0, 2 * sizeof(float) * 48 * 48);
+    now.has_motion = false;
+    g_assert_true(fl_synth_frame(synth, &now, rgb, NULL, NULL, NULL));
+    g_assert_true(fl_synth_frame(synth, &now, rgb, NULL, &view, NULL));
+    g_assert_nonnull(view.nnf);
+    g_assert_nonnull(view.nnf->match);
+    g_assert_cmpint(view.rect.width, ==, view.nnf->width);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -96,5 +120,7 @@ int main(int argc, char **argv)
                     a_coherent_field_votes_back_the_exemplar);
     g_test_add_func("/synth/upscaling-keeps-a-rotated-field-coherent",
                     upscaling_keeps_a_rotated_field_coherent);
+    g_test_add_func("/synth/a-region-at-rest-has-a-view-though-its-picture-had-none",
+                    a_region_at_rest_has_a_view_though_its_picture_had_none);
     return g_test_run();
 }

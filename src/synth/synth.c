@@ -70,6 +70,7 @@ static void clear_frame(FlSynth *synth)
     for (int l = 0; l < synth->n_levels; l++)
         fl_nnf_clear(&synth->nnf[l]);
     fl_target_clear(&synth->target);
+    synth->view = (FlSynthView){0};
 }
 
 void fl_synth_free(FlSynth *synth)
@@ -459,6 +460,13 @@ static bool run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats
     return true;
 }
 
+/* That of the picture which is kept; only its field is, if nobody wanted a view of it. */
+static FlSynthView view_at_rest(const FlSynth *synth)
+{
+    const Previous *p = &synth->previous;
+    return synth->view.nnf ? synth->view : (FlSynthView){p->rect, &p->nnf, NULL, NULL};
+}
+
 static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                   FlSynthView *view, GError **error)
 {
@@ -468,7 +476,7 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
     synth->boil = fl_boil_step(synth->params->boil, synth->frame, synth->exemplar->level[0].window);
     if (holds_still(synth, guides)) {
         memcpy(rgb, synth->previous.rgb, 3 * (size_t)synth->width * synth->height);
-        *view = synth->view;
+        *view = view_at_rest(synth);
         return true;
     }
     clear_frame(synth);
