@@ -6,7 +6,6 @@ texture=$(realpath "$3")
 recipe=$(realpath "$2")/watercolour/wet
 bundled=$(realpath "$2")/styles
 . "${0%/*}/film.sh"
-export XDG_CACHE_HOME=$folder/cache
 umask 022
 
 mkdir wash page
@@ -59,6 +58,9 @@ cp -r "$recipe" changed && sed -i 's/^seed = .*//; s/^steps = 12 16/steps = 12 1
 timeout 120 "$program" page -s ./changed -W 1250 -q -o 'changed/w_%d.png' >out 2>err &&
     [ "$(kept | wc -l)" = 2 ] && ! cmp -s first/w_1.png changed/w_1.png
 result $? 'another recipe is another style'
+cp -r "$recipe" slow && sed -i 's/^frames = .*/frames = 10000/; s/^steps = .*/steps = 100000/' slow/recipe.ini
+timeout 60 "$program" page -s ./slow -W 1250 -o 'slow/w_%d.png' >out 2>err && ! grep -q 'simulating' err
+result $? 'one that would take hours is not simulated'
 timeout 120 "$program" page -s "$style" -W 1500 -o 'own/w_%d.png' >out 2>err &&
     grep -q 'its pictures are enlarged 1.5 times' err
 result $? 'a recording without a recipe is enlarged with a warning'

@@ -68,7 +68,7 @@ typedef struct FlSetting {
 
 /** The progress of a render. */
 typedef struct FlProgress {
-    const char *stage;  /**< "read", "guides", "paint", "compose"; static */
+    const char *stage;  /**< "style" (one is made larger), "lead-in" of a loop, "paint"; static */
     const char *region; /**< the region's name; NULL: all of them */
     int region_index;   /**< from 0; -1: all of them */
     int n_regions;      /**< painted regions; 0: not known yet */
