@@ -1,6 +1,7 @@
 #include "compose/paper_sheet.h"
 
 #include "base/alloc.h"
+#include "base/page.h"
 #include "base/picture.h"
 #include "base/rng.h"
 #include "base/row_kernels.h"
@@ -15,6 +16,8 @@
 #define SLOW_PX 8      // clouds and warmth are known every so many px
 #define ROOM_PX 256    // that the sheet is larger than a frame if other parts of it are wanted
 #define PICTURE_ONE 240
+#define MOST_FINER 4    // times: as far as small pages are made larger, and
+#define MOST_PIXELS 2e7 // as large as that may be
 
 static float clamp(float x, float low, float high)
 {
@@ -203,14 +206,20 @@ static void fill_by_means(FlPaperSheet *sheet, const FlPaperSheet *large, int n)
         }
 }
 
-/* A sheet whose grain is finer than its px would be another one, of noise: it is made larger, and
- * its px are means of that. */
-static bool fill_reduced(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
-                         GError **error)
+/* A sheet whose grain is finer than its px would be another one, of noise: it is made n times as
+ * large, and its px are means of that. */
+static int finer(const FlPaperSheet *sheet, float scale)
 {
-    int n = 2;
-    while ((float)n * scale < 1)
+    const double pixels = (double)sheet->width * sheet->height;
+    int n = 1;
+    while ((float)n * scale < 1 && n < MOST_FINER && 4 * n * n * pixels <= MOST_PIXELS)
         n *= 2;
+    return n;
+}
+
+static bool fill_reduced(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
+                         int n, GError **error)
+{
     g_autoptr(FlPaperSheet) large = g_new0(FlPaperSheet, 1);
     large->width = n * sheet->width, large->height = n * sheet->height;
     if (!sheet_alloc(sheet, error) || !fill_sheet(large, choice, kind, (float)n * scale, error))
@@ -219,10 +228,12 @@ static bool fill_reduced(FlPaperSheet *sheet, const FlPaperChoice *choice, int k
     return true;
 }
 
-static bool make(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, GError **error)
+static bool make(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
+                 GError **error)
 {
-    const float scale = (float)choice->scale;
-    if (!(scale < 1 ? fill_reduced : fill_sheet)(sheet, choice, kind, scale, error))
+    const int n = finer(sheet, scale);
+    if (!(n > 1 ? fill_reduced(sheet, choice, kind, scale, n, error)
+                : fill_sheet(sheet, choice, kind, scale, error)))
         return false;
     halve_tooth(sheet);
     return true;
@@ -254,6 +265,7 @@ bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int
                     paper);
         return false;
     }
+    const float scale = choice->scale > 0 ? (float)choice->scale : fl_page_scale(width, height);
     const int room = choice->boil > 0 ? ROOM_PX : 0;
     g_autoptr(FlPaperSheet) made = g_new0(FlPaperSheet, 1);
     *made = (FlPaperSheet){.width = width + room,
@@ -261,7 +273,7 @@ bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int
                            .boil = choice->boil,
                            .seed = choice->seed,
                            .lights = (!is_auto || plain) && choice->relief > 0};
-    if (!make(made, choice, kind, error))
+    if (!make(made, choice, kind, scale, error))
         return false;
     *sheet = g_steal_pointer(&made);
     return true;

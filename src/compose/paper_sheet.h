@@ -9,7 +9,7 @@
 /** Which paper. */
 typedef struct FlPaperChoice {
     const char *paper; // a word of FL_PAPER_WORDS, a PNG file, "none" or "auto"; NULL: "auto"
-    double scale;      // output px per px of the sheet, > 0
+    double scale;      // output px per px of the sheet; 0: as the page asks for
     double relief;     // strength of its light, 0..2
     uint64_t seed;
     int boil; // frames after which another sheet is taken; 0: never
