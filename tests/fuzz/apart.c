@@ -183,57 +183,60 @@ static Child start(void (*run)(const uint8_t *data, size_t size))
 }
 
 /** Lets it end. Returns: how it did. */
-static int finish(Child *child)
+static int finish(Child *one)
 {
     int status = 0;
-    close(child->to);
-    close(child->from);
-    while (waitpid(child->id, &status, 0) < 0 && errno == EINTR)
+    close(one->to);
+    close(one->from);
+    while (waitpid(one->id, &status, 0) < 0 && errno == EINTR)
         ;
-    child->id = 0;
+    one->id = 0;
     return status;
 }
 
-static double seconds_of(pid_t child)
+static double seconds_of(pid_t process)
 {
     clockid_t clock;
     struct timespec time = {0};
-    if (clock_getcpuclockid(child, &clock) == 0)
+    if (clock_getcpuclockid(process, &clock) == 0)
         clock_gettime(clock, &time);
     return (double)time.tv_sec + (double)time.tv_nsec * 1e-9;
 }
 
-static double mebibytes_of(pid_t child)
+static double mebibytes_of(pid_t process)
 {
     char path[40];
     g_autofree char *text = NULL;
     double pages = 0;
-    g_snprintf(path, sizeof path, "/proc/%d/statm", (int)child);
+    g_snprintf(path, sizeof path, "/proc/%d/statm", (int)process);
     if (g_file_get_contents(path, &text, NULL, NULL))
         sscanf(text, "%*f %lf", &pages);
     return pages * (double)sysconf(_SC_PAGESIZE) / (1 << 20);
 }
 
 /** Has the child run the input. Returns: whether it ended well. */
-static bool run_one(const Child *child)
+static bool run_one(const Child *one)
 {
     char sign = '.';
     bool told = false;
-    const double begin = seconds_of(child->id);
-    struct pollfd answer = {.fd = child->from, .events = POLLIN};
-    if (write(child->to, &sign, 1) != 1)
+    const double begin = seconds_of(one->id);
+    struct pollfd answer = {.fd = one->from, .events = POLLIN};
+    if (write(one->to, &sign, 1) != 1)
         return false;
     while (poll(&answer, 1, LOOK_MS) <= 0) // also when libFuzzer's clock ticks
-        if (!told && (seconds_of(child->id) - begin > MOST_SECONDS ||
-                      mebibytes_of(child->id) > MOST_MIB))
-            told = kill(child->id, ALARM) == 0;
-    return read(child->from, &sign, 1) == 1;
+        if (!told && (seconds_of(one->id) - begin > MOST_SECONDS ||
+                      mebibytes_of(one->id) > MOST_MIB))
+            told = kill(one->id, ALARM) == 0;
+    return read(one->from, &sign, 1) == 1;
 }
 
+static Child child;
 static int n_runs, n_below;
 
-static void tell_below(void)
+static void end(void)
 {
+    if (child.id)
+        finish(&child);
     fprintf(stderr, "%d of %d inputs ended a library below us\n", n_below, n_runs);
 }
 
@@ -243,12 +246,11 @@ static void init(void)
                   MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     g_assert_true(shared != MAP_FAILED);
     signal(SIGPIPE, SIG_IGN);
-    atexit(tell_below);
+    atexit(end);
 }
 
 void fuzz_apart(void (*run)(const uint8_t *data, size_t size), const uint8_t *data, size_t size)
 {
-    static Child child;
     if (!shared)
         init();
     if (!child.id)
