@@ -59,7 +59,7 @@ one() {
     case $target in
     svg | film | geometry | path) options+=(-dict=tests/fuzz/svg.dict) ;;
     esac
-    case $target in svg | film) options+=(-detect_leaks=0) ;; esac # they look themselves
+    case $target in svg | film) options+=(-detect_leaks=0) ;; esac # a replay looks for them
     mkdir -p "$CORPUS/$target"
     if "$build/tests/fuzz/fuzz_$target" "${options[@]}" "$CORPUS/$target" "${seeds[@]}" \
         >"$work/$target.log" 2>&1; then

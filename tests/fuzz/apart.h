@@ -13,7 +13,7 @@
  * cairo asserts or libxml2 recurses is one line for its user: such an input is passed over here.
  * So is one whose time or memory a library takes. Whose fault an end is, the innermost function says
  * that is neither the C library's, GLib's nor a sanitizer's. Where that is ours, where a sanitizer
- * or our own assertion has spoken, or where memory leaks, this process ends with SIGABRT.
+ * or our own assertion has spoken, or where memory leaks in a replay, this process ends with SIGABRT.
  */
 void fuzz_apart(void (*run)(const uint8_t *data, size_t size), const uint8_t *data, size_t size);
 
