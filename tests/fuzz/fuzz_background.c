@@ -90,6 +90,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (!outside)
         check_background(file ? path : line);
     g_autofree char *first = g_strdup_printf("%s/1.png", fuzz_folder());
-    check_paper(n > 0 ? first : line, MAX(g_ascii_digit_value(line[0]), 0) / 2.0);
+    check_paper(n > 0 ? first : line, MAX(g_ascii_digit_value(line[0]), 1) / 2.0);
     return 0;
 }
