@@ -4,10 +4,7 @@
 
 bool fl_is_blank(const uint8_t *bytes, size_t n)
 {
-    uint8_t any = 0;
-    for (size_t i = 0; i < n; i++)
-        any |= bytes[i];
-    return any == 0;
+    return n == 0 || (bytes[0] == 0 && memcmp(bytes, bytes + 1, n - 1) == 0);
 }
 
 /* From the first nonzero byte of a row to the last; the row is not blank. */

@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** Whether n bytes are 0. Reads all of them, which vectorises. */
+/** Whether n bytes are 0; as fast as the C library compares. */
 bool fl_is_blank(const uint8_t *bytes, size_t n);
 
 /** Columns x … x + width - 1, rows y … y + height - 1; empty if a size is 0. */

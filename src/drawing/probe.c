@@ -39,13 +39,15 @@ void fl_frame_probe_clear(FlFrameProbe *f)
     fl_self_check_free(f->check);
 }
 
-/** Draws a part into the frame's coverage. Returns: its box; the caller wipes it. */
-static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect *box, GError **error)
+/** Draws a part, which lies within `where`, into the frame's coverage; *box gets its box, which the
+ * caller wipes. */
+static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect where, FlRect *box,
+                  GError **error)
 {
     cairo_t *cr = cairo_create(f->coverage);
     const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->width, f->height, error);
     cairo_destroy(cr);
-    *box = fl_surface_ink(f->coverage, f->all);
+    *box = fl_surface_ink(f->coverage, where);
     return drawn;
 }
 
@@ -148,7 +150,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
                                      .unit = index < 0 ? -index : 0,
                                      .region = -1};
         memcpy(probe.found.rgb, p->paint.rgb, 3);
-        good = good && cover(f, leaf, p->part, &probe.box, error);
+        good = good && cover(f, leaf, p->part, f->all, &probe.box, error);
         const float opacity = MAX(p->paint.peak, 1) / 255.0f;
         probe.found.area_px =
             (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
@@ -246,7 +248,8 @@ static bool stack(FlFrameProbe *f, GError **error)
         FlRect box;
         if (probe->found.unit > 0 && probe->found.leaf >= 0)
             continue; // the unit comes after its leaves
-        if (!cover(f, probe->leaf, probe->found.part, &box, error))
+        const FlRect where = probe->leaf->text ? f->all : probe->box; // see box_in_full()
+        if (!cover(f, probe->leaf, probe->found.part, where, &box, error))
             return false;
         const bool fills_page = probe->found.area_px > 0.95f * page;
         int64_t sum = 0, covered = 0;
