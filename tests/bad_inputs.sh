@@ -36,6 +36,7 @@ svg huge "$shape" "width='1e9' height='9'"
 svg twice "<g>
 <g a='1' a='2'/></g>"
 svg other "$shape" && echo '<svg xmlns="urn:other"/>' >other/a_2.svg
+svg shows "$shape<image href='sub/p_1.png' width='9' height='9'/>" && mkdir shows/sub
 svg gap "$shape" && cp gap/a_1.svg gap/a_4.svg
 mkdir none text html cut
 echo 'not a drawing' >text/a_1.svg
@@ -100,6 +101,7 @@ head -c 1100000 /dev/zero | tr '\0' '#' >long.conf
 { printf PIEH && le 48 48 && for _ in $(seq 4608); do printf '\0\0\300\177'; done; } >nan_1.flo
 echo hello >text_1.flo
 png clear.png 48x48 red@0
+mkdir -p dumped/red-aa3311 page && cp clear.png dumped/red-aa3311/ && cp clear.png shows/sub/p_1.png && touch page/index.html
 ln -s good/a_1.svg link.svg
 touch taken
 
@@ -146,6 +148,9 @@ table() {
 2|good/a_1.svg: is read by this render; *|good -y --stats good/a_1.svg -o y_%d.png
 2|good/a_1.svg: is read by this render; *|good -y --layers good/a_%d.svg -o y_%d.png -f 1
 2|link.svg: is read by this render; *|link.svg -y --format png -o link.svg
+2|shows/sub/p_1.png: is read by this render; *|shows -y -o shows/sub/p_%d.png
+2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --dump dumped -o y_%d.png
+2|page/index.html: is read by this render; *|good -y -c page/index.html --report page -o y_%d.png
 2|x.mp4: maps are PNG files; expected .png|good --check -o x.mp4
 1|taken: cannot be written: Not a directory|good -o taken/x_%d.png
 1|taken: *|good --report taken -o x_%d.png

@@ -119,7 +119,7 @@ result $? 'and the paint that is kept is complete'
 
 # as another run has it
 mkdir both
-exec 9>both/.w_%04d.png.lock
+exec 9>both/.w_%d.png.lock
 flock 9
 paint both -y
 [ $? = 1 ] && says 'both/w_%04d.png: another run is writing it' && [ ! -e both/w_0001.png ]
@@ -127,6 +127,9 @@ result $? 'of two runs that would write the same frames the second is told'
 "$program" film -s "$style" -o both/w_####.png -y --progress none >out 2>err
 [ $? = 1 ] && says 'both/w_####.png: another run is writing it' && [ ! -e both/w_0001.png ]
 result $? 'also if it spells their names otherwise'
+"$program" film -s "$style" -o both/w_%03d.png -y --progress none >out 2>err
+[ $? = 1 ] && says 'both/w_%03d.png: another run is writing it' && [ ! -e both/w_001.png ]
+result $? 'or would meet it in frame 1000 only'
 exec 9>&-
 paint both && same both whole
 result $? 'and a lock that a killed run left does no harm'

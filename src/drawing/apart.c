@@ -33,15 +33,21 @@ static void put_text(GByteArray *out, const char *text)
     put(out, text, strlen(text) + 1);
 }
 
-static void put_frame(GByteArray *out, const FlSurveyFrame *frame)
+static void put_texts(GByteArray *out, char **texts)
 {
-    const FlSurveyFrame plain = {NULL, frame->page_width, frame->page_height, frame->canvas,
-                                 NULL, frame->n_nameless};
-    put(out, &plain, sizeof plain);
-    const int n = frame->whole ? (int)g_strv_length(frame->whole) : 0;
+    const int n = texts ? (int)g_strv_length(texts) : 0;
     put_int(out, n);
     for (int i = 0; i < n; i++)
-        put_text(out, frame->whole[i]);
+        put_text(out, texts[i]);
+}
+
+static void put_frame(GByteArray *out, const FlSurveyFrame *frame)
+{
+    FlSurveyFrame plain = *frame;
+    plain.parts = NULL, plain.whole = plain.files = NULL;
+    put(out, &plain, sizeof plain);
+    put_texts(out, frame->whole);
+    put_texts(out, frame->files);
     put_int(out, (int)frame->parts->len);
     put(out, frame->parts->data, frame->parts->len * sizeof(FlSurveyPart));
 }
@@ -106,15 +112,21 @@ static const char *take_text(Reader *r)
     return text;
 }
 
+/** NULL if there are none. */
+static char **take_texts(Reader *r)
+{
+    const int n = take_count(r);
+    char **texts = n > 0 ? g_new0(char *, (size_t)n + 1) : NULL;
+    for (int i = 0; i < n; i++)
+        texts[i] = g_strdup(take_text(r));
+    return texts;
+}
+
 static void take_frame(Reader *r, FlSurveyFrame *frame)
 {
     take(r, frame, sizeof *frame);
-    frame->whole = NULL;
-    const int n = take_count(r);
-    if (n > 0)
-        frame->whole = g_new0(char *, (size_t)n + 1);
-    for (int i = 0; i < n; i++)
-        frame->whole[i] = g_strdup(take_text(r));
+    frame->whole = take_texts(r);
+    frame->files = take_texts(r);
     const int n_parts = take_count(r);
     frame->parts = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), (guint)n_parts);
     for (int i = 0; i < n_parts && r->good; i++) {

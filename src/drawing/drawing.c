@@ -48,6 +48,11 @@ const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region)
     return &g_array_index(drawing->regions, FlRegion, region);
 }
 
+GHashTable *fl_drawing_linked_files(const FlDrawing *drawing)
+{
+    return drawing->files;
+}
+
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing)
 {
     const int n = drawing->sequence->n_left_out;
@@ -203,6 +208,8 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
         frame->page_height = survey->frame[t].page_height;
         frame->canvas = survey->frame[t].canvas;
         frame->origin = t;
+        for (int i = 0; survey->frame[t].files && survey->frame[t].files[i]; i++)
+            g_hash_table_add(drawing->files, g_strdup(survey->frame[t].files[i]));
         frame->whole = g_steal_pointer(&survey->frame[t].whole);
         frame->step = g_new0(FlStep, parts->len + 1);
         for (guint i = 0; i < parts->len; i++) {
@@ -254,7 +261,8 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
                            .dpi = survey->svg.dpi,
                            .width = survey->width,
                            .height = survey->height,
-                           .regions = g_array_new(FALSE, TRUE, sizeof(FlRegion))};
+                           .regions = g_array_new(FALSE, TRUE, sizeof(FlRegion)),
+                           .files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL)};
     g_array_set_clear_func(drawing->regions, region_clear);
     describe(drawing, survey, groups, options->rules);
     measure(drawing, survey);
@@ -323,5 +331,6 @@ void fl_drawing_free(FlDrawing *drawing)
     g_free(drawing->frame);
     fl_sequence_free(drawing->sequence);
     g_array_unref(drawing->regions);
+    g_hash_table_unref(drawing->files);
     g_free(drawing);
 }

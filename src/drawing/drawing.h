@@ -99,6 +99,9 @@ int fl_drawing_height(const FlDrawing *drawing);
 int fl_drawing_regions(const FlDrawing *drawing);
 const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region);
 
+/** The real paths, as keys, of pictures and drawings that the files refer to. */
+GHashTable *fl_drawing_linked_files(const FlDrawing *drawing);
+
 /**
  * How many frames are held or skipped since their files cannot be read or drawn, as a sentence; to
  * be freed. NULL: none.

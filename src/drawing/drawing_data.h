@@ -42,7 +42,8 @@ struct FlDrawing {
     int n_halved;            // how often fl_drawing_halve() was called
     struct FlDrawPool *pool; // draws the frames; NULL: this process does
     FlDrawingFrame *frame;
-    GArray *regions; // FlRegion
+    GArray *regions;   // FlRegion
+    GHashTable *files; // real paths of what the drawings refer to
 };
 
 #endif

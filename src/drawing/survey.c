@@ -61,6 +61,14 @@ static void keep(FlSurvey *survey, int t, const FlFrameProbe *f)
     survey->frame[t].parts = parts;
 }
 
+static char **copy_of(const GPtrArray *texts)
+{
+    char **copy = g_new0(char *, texts->len + 1);
+    for (guint i = 0; i < texts->len; i++)
+        copy[i] = g_strdup(g_ptr_array_index(texts, i));
+    return copy;
+}
+
 /** Opens a frame and sets its page in the picture. */
 static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings *warnings,
                        GError **error)
@@ -77,6 +85,8 @@ static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings 
     frame->page_width = width * survey->scale;
     frame->page_height = height * survey->scale;
     frame->n_nameless = fl_svg_nameless_groups(svg);
+    g_strfreev(frame->files);
+    frame->files = copy_of(fl_svg_files(svg));
     return fl_frame_probe_init(probe, g_steal_pointer(&svg), frame->page_width, frame->page_height,
                                survey->width, survey->height, error);
 }
@@ -303,6 +313,7 @@ void fl_survey_clear(FlSurvey *survey)
         if (survey->frame[t].parts)
             g_array_unref(survey->frame[t].parts);
         g_strfreev(survey->frame[t].whole);
+        g_strfreev(survey->frame[t].files);
     }
     g_free(survey->frame);
     if (survey->strings.text) {

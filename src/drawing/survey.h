@@ -40,6 +40,7 @@ typedef struct FlSurveyFrame {
     FlCanvas canvas;                // the frame's page
     char **whole;                   // FlSvgOptions.whole; NULL: none
     int n_nameless;                 // groups without an id
+    char **files;                   // that it refers to; NULL: none
 } FlSurveyFrame;
 
 typedef struct FlSurvey {

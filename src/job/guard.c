@@ -47,12 +47,22 @@ static void add_named(GHashTable *inputs, const FlPlan *plan, const char *patter
         }
 }
 
+static void add_linked(GHashTable *inputs, const FlPlan *plan)
+{
+    GHashTableIter at;
+    gpointer path;
+    g_hash_table_iter_init(&at, fl_drawing_linked_files(plan->drawing));
+    while (g_hash_table_iter_next(&at, &path, NULL))
+        add_file(inputs, path);
+}
+
 static GHashTable *collect_inputs(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     GHashTable *inputs = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
         add_file(inputs, fl_drawing_file(plan->drawing, f));
+    add_linked(inputs, plan);
     for (int p = 0; p < plan->n_painted; p++)
         if (p == 0 || plan->painted[p].style != plan->painted[p - 1].style)
             add_style(inputs, plan->painted[p].style->path);
@@ -80,6 +90,31 @@ static bool may_write(GHashTable *inputs, char *name, GError **error)
     return false;
 }
 
+/* Whether no file of a folder that is written to is read. */
+static bool may_fill(GHashTable *inputs, const char *folder, GError **error)
+{
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
+    const char *name;
+    while (dir && (name = g_dir_read_name(dir)))
+        if (!may_write(inputs, g_build_filename(folder, name, NULL), error))
+            return false;
+    return true;
+}
+
+/* The page of a report and the folders of a dump. */
+static bool check_folders(const FlPlan *plan, GHashTable *inputs, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    if (o->report && !may_write(inputs, g_build_filename(o->report, "index.html", NULL), error))
+        return false;
+    for (int p = 0; o->dump && p < plan->n_painted; p++) {
+        g_autofree char *folder = g_build_filename(o->dump, plan->painted[p].name, NULL);
+        if (!may_fill(inputs, folder, error))
+            return false;
+    }
+    return true;
+}
+
 static bool check_frame(const FlPlan *plan, GHashTable *inputs, int frame, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
@@ -104,7 +139,8 @@ bool fl_guard_inputs(const FlPlan *plan, GError **error)
     g_autoptr(GHashTable) inputs = collect_inputs(plan);
     if ((plan->format->film && !may_write(inputs, g_strdup(plan->output), error)) ||
         !may_write(inputs, g_strdup(plan->movie), error) ||
-        !may_write(inputs, g_strdup(plan->options.stats), error))
+        !may_write(inputs, g_strdup(plan->options.stats), error) ||
+        !check_folders(plan, inputs, error))
         return false;
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
         if (!check_frame(plan, inputs, f, error))

@@ -14,14 +14,16 @@ static char *frame_file(const FlPlan *plan, int frame, GError **error)
     return fl_sink_file(&params, fl_drawing_number(plan->drawing, frame), error);
 }
 
-/* A hidden file beside the frames, one for each pattern, however it is spelt. */
-static char *hidden_file(const FlPlan *plan, const char *suffix)
+/* A hidden file beside the frames, one for each pattern, however it is spelt; with any_digits one
+ * for all patterns that name the same files sooner or later, as %03d and %04d do from 1000 on. */
+static char *hidden_file(const FlPlan *plan, bool any_digits, const char *suffix)
 {
     g_autofree char *folder = g_path_get_dirname(plan->output);
     g_auto(FlPattern) pattern = {0};
-    g_autofree char *text = fl_pattern_parse(plan->output, &pattern, NULL)
-                                ? fl_pattern_text(&pattern)
-                                : g_strdup(plan->output);
+    const bool parsed = fl_pattern_parse(plan->output, &pattern, NULL);
+    if (any_digits && pattern.width > 1)
+        pattern.width = 1;
+    g_autofree char *text = parsed ? fl_pattern_text(&pattern) : g_strdup(plan->output);
     g_autofree char *base = g_path_get_basename(text);
     g_autofree char *name = g_strdup_printf(".%s.%s", base, suffix);
     return g_build_filename(folder, name, NULL);
@@ -141,7 +143,7 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
     if (one_file && !check_film(plan, error))
         return false;
     g_autoptr(FlFingerprint) print = fl_fingerprint_new(plan, error);
-    resume->path = one_file ? NULL : hidden_file(plan, "state");
+    resume->path = one_file ? NULL : hidden_file(plan, false, "state");
     if (!print || (resume->path && !find_state(resume, plan, print, error)))
         return false;
     resume->found = resume->written = resume->state != NULL;
@@ -163,7 +165,7 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
 static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
 {
     g_autofree char *folder = g_path_get_dirname(plan->output);
-    g_autofree char *path = hidden_file(plan, "lock");
+    g_autofree char *path = hidden_file(plan, true, "lock");
     GError *lock_error = NULL;
     (void)g_mkdir_with_parents(folder, 0777); // saving the state reports an error
     resume->lock = fl_lock_take(path, plan->output, &lock_error);

@@ -11,6 +11,7 @@
 typedef struct Check {
     const char *path;
     int number;
+    GPtrArray *files; // that it refers to
     FlWarnings *warnings;
 } Check;
 
@@ -86,6 +87,8 @@ static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const
     bool is_file = false;
     g_autofree char *real = file_of(check, href, &is_file);
     int width = 0, height = 0;
+    if (real)
+        g_ptr_array_add(check->files, g_strdup(real));
     if (real && !fl_file_check(real, FL_ERROR_INPUT, NULL)) {
         warn(check, node, href, "is a pipe or a device and is left out");
         xmlRemoveProp(a);
@@ -124,9 +127,9 @@ static bool check_node(const Check *check, xmlNode *node, GError **error)
     return true;
 }
 
-bool fl_images_check(xmlDoc *doc, const char *path, int number, FlWarnings *warnings,
-                     GError **error)
+bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
+                     FlWarnings *warnings, GError **error)
 {
-    const Check check = {path, number, warnings};
+    const Check check = {path, number, files, warnings};
     return check_node(&check, xmlDocGetRootElement(doc), error);
 }

@@ -8,11 +8,11 @@
  * Checks every <image> and <feImage> of a document without decoding its pixels. Warns about those
  * that librsvg will not show: files that are missing or outside the drawing's folder, by whatever
  * path or symbolic link, and network addresses. References of any element to pipes and devices are
- * removed.
+ * removed. The real paths of files that exist are added to `files`, see g_ptr_array_new().
  *
  * Returns: false with FL_ERROR_LIMIT set if an image has too many pixels.
  */
-bool fl_images_check(xmlDoc *doc, const char *path, int number, FlWarnings *warnings,
-                     GError **error);
+bool fl_images_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
+                     FlWarnings *warnings, GError **error);
 
 #endif

@@ -31,6 +31,7 @@ struct FlSvg {
     int n_nameless;       // groups without an id
     GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
     FlLeaves *leaves;
+    GPtrArray *files; // that it refers to
 };
 
 /** Sentences for librsvg's and cairo's bare error names. */
@@ -157,7 +158,8 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     if (options->canvas.width > 0)
         set_canvas(xmlDocGetRootElement(svg->doc), &options->canvas);
     fl_lint(svg->doc, path, number, warnings);
-    if (!fl_images_check(svg->doc, path, number, warnings, error))
+    svg->files = g_ptr_array_new_with_free_func(g_free);
+    if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
     svg->n_nameless = fl_document_name_groups(svg->doc);
     svg->original = fl_document_text(svg->doc, &svg->original_bytes);
@@ -195,6 +197,7 @@ void fl_svg_free(FlSvg *svg)
     g_clear_object(&svg->before);
     g_clear_pointer(&svg->variants, g_hash_table_unref);
     fl_leaves_free(svg->leaves);
+    g_clear_pointer(&svg->files, g_ptr_array_unref);
     if (svg->doc)
         xmlFreeDoc(svg->doc);
     g_free(svg->original);
@@ -232,6 +235,11 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
 int fl_svg_nameless_groups(const FlSvg *svg)
 {
     return svg->n_nameless;
+}
+
+const GPtrArray *fl_svg_files(const FlSvg *svg)
+{
+    return svg->files;
 }
 
 const FlLeaves *fl_svg_leaves(const FlSvg *svg)

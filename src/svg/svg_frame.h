@@ -42,6 +42,9 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
 /** How many groups have no id; documents with equal numbers have comparable generated ids. */
 int fl_svg_nameless_groups(const FlSvg *svg);
 
+/** The real paths, char *, of the files that it refers to and that exist. */
+const GPtrArray *fl_svg_files(const FlSvg *svg);
+
 /** The leaves, bottom up; they belong to svg. */
 const FlLeaves *fl_svg_leaves(const FlSvg *svg);
 
