@@ -1,6 +1,7 @@
 /* The last field travels with the drawing: where to, how exactly, and what of it. */
 #include "guides/displacement.h"
 #include "synth/carry.h"
+#include "synth/patch_cost.h"
 #include "synth/rotation.h"
 #include <math.h>
 #include <string.h>
@@ -220,6 +221,27 @@ static void parts_that_move_apart_turn_by_themselves(void)
         g_assert_cmpint(ABS(guides.turn[p] - (p % SIDE < CENTRE ? 0 : 55)), <=, 30);
 }
 
+/* As far as the last frame is trusted at all, and nowhere where nothing was carried to. */
+static void paint_that_was_carried_is_left_at_a_price(void)
+{
+    g_autoptr(FlParams) params = fl_params_new();
+    float trust[2] = {1, 0.5f};
+    FlMatch match[2] = {{.frame = 0}, {.frame = 0}};
+    const FlNnf carried = {2, 1, match};
+    const FlTargetLevel target = {.width = 2, .height = 1, .temporal_weight = trust};
+    FlCostScale scale;
+    fl_cost_scale_init(&scale, params);
+    FlSearch search = {.target = &target, .params = params, .scale = &scale, .carried = &carried};
+    const uint32_t price = fl_leaving_cost(&search, 0);
+    g_assert_cmpuint(price, >,
+                     (uint32_t)(params->w_coh * scale.unit)); // more than a place in space
+    g_assert_cmpuint(ABS((int)price / 2 - (int)fl_leaving_cost(&search, 1)), <=, 1);
+    match[0].frame = FL_NO_MATCH;
+    g_assert_cmpuint(fl_leaving_cost(&search, 0), ==, 0);
+    search.carried = NULL;
+    g_assert_cmpuint(fl_leaving_cost(&search, 1), ==, 0);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -232,6 +254,7 @@ int main(int argc, char **argv)
     TEST(what_is_uncovered_has_no_match);
     TEST(where_motion_is_unknown_nothing_is_carried);
     TEST(parts_that_move_apart_turn_by_themselves);
+    TEST(paint_that_was_carried_is_left_at_a_price);
 #undef TEST
     return g_test_run();
 }

@@ -11,8 +11,9 @@ typedef struct FlSearch {
     const FlParams *params;
     const FlCostScale *scale;
     const FlKernels *kernels;
-    FlNnf *nnf;     // in and out; every pixel of the target has a valid match
-    uint32_t *cost; // width * height: cost of the match without uniformity and coherence
+    FlNnf *nnf;           // in and out; every pixel of the target has a valid match
+    uint32_t *cost;       // width * height: cost of the match without uniformity and coherence
+    const FlNnf *carried; // the last field as the drawing has carried it here; NULL: it does not
     FlOccurrence *map;
     uint64_t key; // of the random search
 } FlSearch;
@@ -33,6 +34,14 @@ uint32_t fl_patch_cost(const FlSearch *search, const FlTargetPatch *patch, uint8
 
 /** Texture, guides and direction of a match: all but uniformity and coherence. */
 uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
+
+/**
+ * What a match costs more that does not continue the one carried to its pixel; 0 where none was.
+ *
+ * Smooth patches fit anything a little, fine ones only their own like. Carried paint keeps its
+ * frame of the exemplar, so what a search loses to smooth patches would not come back.
+ */
+uint32_t fl_leaving_cost(const FlSearch *search, size_t pixel);
 
 /** Fills search->cost for a field; pixels outside get UINT32_MAX. */
 void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost);

@@ -31,6 +31,7 @@ struct FlSynth {
     int boil;  // fl_boil_step() before it
     Previous previous;
     GBytes *packed; // `previous` and all as it was saved; NULL since it has changed
+    bool moves;     // the drawing's motion is known in the frame in hand
     bool wants_energies;
     double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
@@ -135,6 +136,22 @@ static int finest_searched(const FlSynth *synth)
     return synth->params->finest_rounds == 0 && synth->n_levels > 1 ? 1 : 0;
 }
 
+/* The previous field in a level's size: `shifted`, or `down`, which is made. *previous stays NULL
+ * where there is none. */
+static bool previous_of_level(const FlSynth *synth, const FlNnf *shifted, int l, FlNnf *down,
+                              const FlNnf **previous, GError **error)
+{
+    const FlTargetLevel *target = &synth->target.level[l];
+    *previous = shifted;
+    if (!shifted || l == 0)
+        return true;
+    if (!fl_nnf_init(down, target->width, target->height, error))
+        return false;
+    fl_nnf_downscale(shifted, l, &synth->exemplar->level[l], down);
+    *previous = down;
+    return true;
+}
+
 /* T_temp and m(q) of a level from the last field in that level's size. */
 static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GError **error)
 {
@@ -163,45 +180,32 @@ static bool make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error)
 {
     const int l = finest_searched(synth);
     g_auto(FlNnf) down = {0};
-    if (l > 0) {
-        const FlTargetLevel *target = &synth->target.level[l];
-        if (!fl_nnf_init(&down, target->width, target->height, error))
-            return false;
-        fl_nnf_downscale(shifted, l, &synth->exemplar->level[l], &down);
-    }
-    if (!make_temporal_level(synth, l > 0 ? &down : shifted, l, error))
+    const FlNnf *previous;
+    if (!previous_of_level(synth, shifted, l, &down, &previous, error) ||
+        !make_temporal_level(synth, previous, l, error))
         return false;
     fl_target_temporal_pyramid(&synth->target, l);
     return true;
 }
 
-/* Where the mode of the previous field costs less than the upscaled match, it takes its place. */
-static bool merge_previous(FlSearch *search, const FlNnf *shifted, int l, GError **error)
+/* Where the previous field costs less than the upscaled match, it takes its place. */
+static void merge_previous(FlSearch *search, const FlNnf *previous)
 {
-    g_auto(FlNnf) down = {0};
-    const FlNnf *other = shifted;
-    if (l > 0) {
-        if (!fl_nnf_init(&down, search->nnf->width, search->nnf->height, error))
-            return false;
-        fl_nnf_downscale(shifted, l, search->level, &down);
-        other = &down;
-    }
-    const size_t pixels = (size_t)other->width * other->height;
+    const size_t pixels = (size_t)previous->width * previous->height;
 #pragma omp parallel for schedule(dynamic, 1024)
     for (size_t p = 0; p < pixels; p++) {
-        const FlMatch m = other->match[p];
+        const FlMatch m = previous->match[p];
         if (m.frame == FL_NO_MATCH || search->target->segment[p] == FL_SEGMENT_OUTSIDE)
             continue;
         const FlTexel *centre =
             fl_exemplar_at(search->level, fl_match_x(m), fl_match_y(m), m.frame);
         if (centre->c[FL_CH_SEGMENT] != search->target->segment[p])
             continue;
-        const int x = (int)(p % (size_t)other->width), y = (int)(p / (size_t)other->width);
+        const int x = (int)(p % (size_t)previous->width), y = (int)(p / (size_t)previous->width);
         const uint32_t cost = fl_match_cost(search, x, y, m);
-        if (cost < search->cost[p])
+        if (cost < search->cost[p] + fl_leaving_cost(search, p))
             search->nnf->match[p] = m, search->cost[p] = cost;
     }
-    return true;
 }
 
 static double mean_energy(const FlSearch *search)
@@ -249,26 +253,28 @@ static FlSearchCounts timed_search(FlSynth *synth, FlSearch *search, int sweeps,
 }
 
 /* The field to start a level with: from the coarser level, from the previous frame, or random. */
-static bool initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l,
-                       const FlNnf *shifted, GError **error)
+static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l,
+                       const FlNnf *previous)
 {
     const FlParams *params = synth->params;
     const bool coarsest = l == synth->n_levels - 1;
     const uint64_t key = fl_key(search->key, 1);
     if (!coarsest)
         fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->kernels, search->nnf);
-    else if (shifted)
-        fl_nnf_downscale(shifted, l, search->level, search->nnf);
+    else if (previous)
+        memcpy(search->nnf->match, previous->match,
+               (size_t)previous->width * previous->height * sizeof *previous->match);
     fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);
-    if (coarsest && !shifted) { // guides alone decide the first guess [P21 §4.2]
+    if (coarsest && !previous) { // guides alone decide the first guess [P21 §4.2]
         fl_target_blend(target, params, &synth->scale, 0);
         timed_search(synth, search, fl_list_at(&params->patchmatch_iterations, 0), true);
     }
     if (l < finest_searched(synth))
-        return true;
+        return;
     vote_and_blend(synth, search, target);
     fl_search_costs(search, search->nnf, search->cost);
-    return coarsest || !shifted || merge_previous(search, shifted, l, error);
+    if (!coarsest && previous)
+        merge_previous(search, previous);
 }
 
 /* Search and vote in turn [F21 alg. 2]; the field comes with its costs. The next level votes anew,
@@ -312,7 +318,10 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     const size_t pixels = (size_t)target->width * target->height;
     g_autofree uint32_t *cost = fl_alloc(pixels, sizeof *cost, "a field", error);
     g_auto(FlOccurrence) map = {0};
-    if (!cost || !fl_nnf_init(&synth->nnf[l], target->width, target->height, error) ||
+    g_auto(FlNnf) down = {0};
+    const FlNnf *previous;
+    if (!cost || !previous_of_level(synth, shifted, l, &down, &previous, error) ||
+        !fl_nnf_init(&synth->nnf[l], target->width, target->height, error) ||
         !fl_occurrence_init(&map, &synth->exemplar->level[l], target, params, &synth->scale, error))
         return false;
     FlSearch search = {.level = &synth->exemplar->level[l],
@@ -322,10 +331,10 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .kernels = &synth->kernels,
                        .nnf = &synth->nnf[l],
                        .cost = cost,
+                       .carried = synth->moves ? previous : NULL,
                        .map = &map,
                        .key = fl_key(fl_key(synth->key, (uint64_t)synth->frame), (uint64_t)l)};
-    if (!initialise(synth, &search, target, l, shifted, error))
-        return false;
+    initialise(synth, &search, target, l, previous);
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
@@ -481,6 +490,7 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
     }
     clear_frame(synth);
     forget_packed(synth);
+    synth->moves = guides->has_motion;
     fill_paper(synth, rgb);
     if (!working_rect(synth, guides, &rect)) {
         synth->previous.valid = false;

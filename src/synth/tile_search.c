@@ -42,6 +42,8 @@ typedef struct PixelSearch {
     uint32_t total;          // data with uniformity and coherence
     FlMatch expected[4];     // where the neighbours' matches continue
     int n_expected;
+    FlMatch carried;  // what the drawing has taken to the pixel
+    uint32_t leaving; // what a match costs that does not continue it
     int n_candidates;
     Candidate candidate[FL_MAX_TRIES];
 } PixelSearch;
@@ -75,12 +77,22 @@ static bool continues(FlMatch a, FlMatch b)
            fl_angle_distance((uint8_t)(a.theta - b.theta)) < 8;
 }
 
+/* Coherence in space, and in time where the drawing carries the paint. */
 static uint32_t coherence_cost(const PixelSearch *ps, FlMatch candidate)
 {
     int apart = 0;
     for (int k = 0; k < ps->n_expected; k++)
         apart += !continues(candidate, ps->expected[k]);
-    return ps->tile_search->coherence[ps->n_expected][apart];
+    const bool leaves = ps->leaving > 0 && !continues(candidate, ps->carried);
+    return ps->tile_search->coherence[ps->n_expected][apart] + (leaves ? ps->leaving : 0);
+}
+
+static void find_carried(PixelSearch *ps)
+{
+    const FlSearch *search = ps->search;
+    ps->leaving = fl_leaving_cost(search, ps->pixel);
+    if (ps->leaving > 0)
+        ps->carried = search->carried->match[ps->pixel];
 }
 
 static uint32_t uniformity_cost(const PixelSearch *ps, FlMatch candidate)
@@ -136,7 +148,7 @@ static FlSieve sieve_of(const PixelSearch *ps)
 {
     const FlSearch *search = ps->search;
     const FlOccurrence *map = search->map;
-    const uint32_t apart = ps->tile_search->coherence[ps->n_expected][ps->n_expected];
+    const uint32_t apart = ps->tile_search->coherence[ps->n_expected][ps->n_expected] + ps->leaving;
     FlSieve sieve = {
         .first = fl_exemplar_at(search->level, 0, 0, search->level->first),
         .segment = (uint8_t)ps->segment,
@@ -180,6 +192,7 @@ static void sift(PixelSearch *ps)
     ps->data = search->cost[ps->pixel];
     ps->own_uniformity = uniformity_cost(ps, ps->own);
     find_expected(ps);
+    find_carried(ps);
     ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
     const FlSieve sieve = sieve_of(ps);
     uint32_t uniformity[FL_MAX_TRIES];
