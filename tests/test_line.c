@@ -220,8 +220,8 @@ static void what_is_no_line_is_plain(void)
 {
     const char *const content[] = {
         "<text x='20' y='100' stroke='#222' fill='none'>abc</text>",
-        "<marker id='m'><path d='M0 0L3 3'/></marker><path d='M20 60H90' stroke='#222' "
-        "stroke-width='4' marker-end='url(#m)'/>",
+        ("<marker id='m'><path d='M0 0L3 3'/></marker><path d='M20 60H90' stroke='#222' "
+         "stroke-width='4' marker-end='url(#m)'/>"),
         "<path d='M20 60H1e30L20 90' fill='none' stroke='#222' stroke-width='4'/>",
     };
     for (size_t k = 0; k < G_N_ELEMENTS(content); k++) {

@@ -40,8 +40,10 @@ static GPtrArray *paths_of(const FlSequence *sequence)
     for (int t = 0; t < sequence->n; t++) {
         const char *file = sequence->file[t];
         g_autofree char *folder = g_path_get_dirname(file);
-        if (g_hash_table_add(known, folder))
+        if (!g_hash_table_contains(known, folder)) { // adding it again would replace the key
+            g_hash_table_add(known, folder);
             g_ptr_array_add(paths, g_steal_pointer(&folder));
+        }
         if (g_file_test(file, G_FILE_TEST_IS_SYMLINK))
             g_ptr_array_add(paths, g_strdup(file));
     }
