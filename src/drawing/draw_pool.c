@@ -161,6 +161,7 @@ G_GNUC_NORETURN static void attend(FlDrawing *drawing, const Worker *worker)
     fl_confined_enter(drawing->sequence, worker->words);
     signal(SIGINT, SIG_IGN), signal(SIGTERM, SIG_IGN), signal(SIGHUP, SIG_IGN);
     char next;
+    int untaken = 0; // children in a row that ended before they took the request
     while (recv(worker->line, &next, 1, MSG_PEEK) == 1) {
         (void)!ftruncate(worker->words, 0);
         const pid_t self = getpid(), child = fork();
@@ -174,8 +175,15 @@ G_GNUC_NORETURN static void attend(FlDrawing *drawing, const Worker *worker)
         const Reply reply = {.end = {.status = status,
                                      .late = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM,
                                      .too_much = fl_confined_asked_too_much(worker->words)}};
-        if (atomic_exchange(worker->draws, 0))
-            (void)!send(worker->line, &reply, sizeof reply, MSG_NOSIGNAL);
+        Request request;
+        untaken = atomic_exchange(worker->draws, 0) ? 0 : untaken + 1;
+        if (untaken == 1)
+            continue; // it was killed while it waited: another one may live
+        if (untaken > 1 &&
+            recv(worker->line, &request, sizeof request, MSG_WAITALL) != sizeof request)
+            break;
+        untaken = 0;
+        (void)!send(worker->line, &reply, sizeof reply, MSG_NOSIGNAL);
     }
     _exit(0);
 }
