@@ -232,9 +232,17 @@ static bool start_worker(FlDrawPool *pool, FlDrawing *drawing, Worker *worker)
     return worker->pid > 0;
 }
 
+/* LLVM's OpenMP begins anew in a process that was forked, with a file in shared memory, which the
+ * sandbox refuses: what clang compiles draws in the process that paints. */
+#if defined __clang__ && defined _OPENMP
+#define MAY_DRAW_APART false
+#else
+#define MAY_DRAW_APART fl_confined_may_fork()
+#endif
+
 FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n)
 {
-    if (!fl_confined_may_fork())
+    if (!MAY_DRAW_APART)
         return NULL;
     FlDrawPool *pool = g_new0(FlDrawPool, 1);
     *pool = (FlDrawPool){.drawing = drawing, .worker = g_new0(Worker, n)};
