@@ -141,7 +141,7 @@ void fl_play_of_pigments(const FlUneven *where, FlRect box, int8_t *play)
     const Points points = make_points(where, box, play_noise);
 #pragma omp parallel
     {
-        g_autofree int16_t *row = g_new(int16_t, box.width);
+        g_autofree int16_t *row = g_new0(int16_t, box.width);
 #pragma omp for schedule(static)
         for (int y = 0; y < box.height; y++) {
             fill_row(&points, y, box.width, row);

@@ -105,9 +105,9 @@ static bool put_result(const Worker *worker, const FlDrawList *draws, const GErr
     const int code = problem && problem->domain == FL_ERROR ? problem->code : FL_ERROR_INPUT;
     const int n = draws ? draws->n : -1 - code;
     fwrite(&n, sizeof n, 1, out);
-    for (int i = 0; i < n; i++)
+    for (int i = 0; draws && i < n; i++)
         put_draw(out, &draws->draw[i]);
-    if (n < 0)
+    if (problem && !draws)
         fputs(problem->message, out);
     const bool good = !ferror(out);
     return fclose(out) == 0 && good;

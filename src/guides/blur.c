@@ -60,7 +60,7 @@ bool fl_blur_with(float *plane, int width, int height, const FlBlurKernel *kerne
 bool fl_blur(float *plane, int width, int height, float sigma_px, GError **error)
 {
     const int radius = (int)(3 * sigma_px);
-    g_autofree float *weight = g_new(float, radius + 1);
+    g_autofree float *weight = g_new0(float, radius + 1);
     fl_gauss_weights(weight, radius, sigma_px);
     float sum = weight[0];
     for (int k = 1; k <= radius; k++)

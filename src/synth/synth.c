@@ -261,7 +261,7 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     const uint64_t key = fl_key(search->key, 1);
     if (!coarsest)
         fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->kernels, search->nnf);
-    else if (previous)
+    else if (previous && previous->match)
         memcpy(search->nnf->match, previous->match,
                (size_t)previous->width * previous->height * sizeof *previous->match);
     fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);
