@@ -52,7 +52,7 @@ thread)
     [ -f "$archer" ] || { echo 'no libarcher.so: it is in libomp-dev'; exit 1; }
     export OMP_TOOL_LIBRARIES=$archer OMP_NUM_THREADS=3 LD_PRELOAD=$build/tsan_glib.so
     export G_SLICE=always-malloc
-    export TSAN_OPTIONS='ignore_noninstrumented_modules=1 exitcode=66 halt_on_error=1 die_after_fork=0'
+    export TSAN_OPTIONS='ignore_noninstrumented_modules=1 exitcode=66 halt_on_error=1'
     for program in "${programs[@]}"; do
         "$build/tests/test_$program"
     done

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/limits.h"
+#include "base/schedule.h"
 #include "drawing/confined.h"
 #include "drawing/drawing_data.h"
 #include "drawing/line_kind.h"
@@ -134,10 +135,28 @@ static bool draw(const FlDrawing *drawing, const Worker *worker, const Request *
     return put_result(worker, draws, problem);
 }
 
+/** The terminal's signals are for the parent, which ends the pool. */
+static void ignore_terminal(void)
+{
+    signal(SIGINT, SIG_IGN), signal(SIGTERM, SIG_IGN), signal(SIGHUP, SIG_IGN);
+}
+
+/**
+ * Gives up what drawing does not need. LLVM's OpenMP begins anew in a process that was forked, with
+ * a file in shared memory, which the sandbox refuses: so it is asked for something before.
+ */
+static void confine(const FlDrawing *drawing, const Worker *worker)
+{
+    (void)fl_schedule_threads();
+    fl_confined_enter(drawing->sequence, worker->words);
+    ignore_terminal();
+}
+
 /** The process that draws, until it dies or the pool ends. */
 G_GNUC_NORETURN static void serve(FlDrawing *drawing, const Worker *worker)
 {
     Request request;
+    confine(drawing, worker);
     while (recv(worker->line, &request, sizeof request, MSG_WAITALL) == sizeof request) {
         atomic_store(worker->draws, 1);
         while (drawing->n_halved < request.n_halved)
@@ -157,9 +176,7 @@ G_GNUC_NORETURN static void serve(FlDrawing *drawing, const Worker *worker)
 /** The process that waits: replies for the one that draws if that dies, and starts another. */
 G_GNUC_NORETURN static void attend(FlDrawing *drawing, const Worker *worker)
 {
-    // the terminal's signals are for the parent, which ends the pool
-    fl_confined_enter(drawing->sequence, worker->words);
-    signal(SIGINT, SIG_IGN), signal(SIGTERM, SIG_IGN), signal(SIGHUP, SIG_IGN);
+    ignore_terminal();
     char next;
     int untaken = 0; // children in a row that ended before they took the request
     while (recv(worker->line, &next, 1, MSG_PEEK) == 1) {
@@ -232,17 +249,9 @@ static bool start_worker(FlDrawPool *pool, FlDrawing *drawing, Worker *worker)
     return worker->pid > 0;
 }
 
-/* LLVM's OpenMP begins anew in a process that was forked, with a file in shared memory, which the
- * sandbox refuses: what clang compiles draws in the process that paints. */
-#if defined __clang__ && defined _OPENMP
-#define MAY_DRAW_APART false
-#else
-#define MAY_DRAW_APART fl_confined_may_fork()
-#endif
-
 FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n)
 {
-    if (!MAY_DRAW_APART)
+    if (!fl_confined_may_fork())
         return NULL;
     FlDrawPool *pool = g_new0(FlDrawPool, 1);
     *pool = (FlDrawPool){.drawing = drawing, .worker = g_new0(Worker, n)};
