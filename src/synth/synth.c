@@ -4,20 +4,12 @@
 #include "base/rng.h"
 #include "synth/carry.h"
 #include "synth/energy.h"
+#include "synth/rest.h"
 #include "synth/shift.h"
 #include "synth/synth_state.h"
 #include "synth/vote.h"
 #include <math.h>
 #include <string.h>
-
-/* What the next frame needs to know of this one; level 0, in `rect`. */
-typedef struct Previous {
-    bool valid;
-    FlRect rect;
-    FlNnf nnf;
-    uint8_t *mask, *rgb; // of the whole frame; mask: shape_at(), what a region that holds still is
-                         // compared with
-} Previous;
 
 struct FlSynth {
     const FlExemplar *exemplar;
@@ -27,11 +19,10 @@ struct FlSynth {
     int width, height, n_levels;
     float side; // the larger one of the whole frames, px
     uint64_t key;
-    int frame; // from 1
-    int boil;  // fl_boil_step() before it
-    Previous previous;
-    GBytes *packed; // `previous` and all as it was saved; NULL since it has changed
-    bool moves;     // the drawing's motion is known in the frame in hand
+    FlSynthState last; // after the last frame
+    GBytes *packed;    // it, as it was saved; NULL since it has changed
+    int boil;          // fl_boil_step() before the frame in hand
+    bool moves;        // the drawing's motion is known in the frame in hand
     bool wants_energies;
     double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
@@ -42,8 +33,8 @@ struct FlSynth {
 static bool make_buffers(FlSynth *synth, GError **error)
 {
     const size_t pixels = (size_t)synth->width * synth->height;
-    return (synth->previous.mask = fl_alloc(pixels, 1, "a mask", error)) &&
-           (synth->previous.rgb = fl_alloc(3 * pixels, 1, "a picture", error));
+    return (synth->last.mask = fl_alloc(pixels, 1, "a mask", error)) &&
+           (synth->last.rgb = fl_alloc(3 * pixels, 1, "a picture", error));
 }
 
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
@@ -80,9 +71,9 @@ void fl_synth_free(FlSynth *synth)
         return;
     clear_frame(synth);
     forget_packed(synth);
-    fl_nnf_clear(&synth->previous.nnf);
-    free(synth->previous.mask);
-    free(synth->previous.rgb);
+    fl_nnf_clear(&synth->last.nnf);
+    free(synth->last.mask);
+    free(synth->last.rgb);
     g_free(synth);
 }
 
@@ -118,9 +109,9 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
     g_autofree uint8_t *angle = fl_alloc(pixels, 1, "a field", error);
     if (!speed || !angle || !fl_nnf_init(out, rect.width, rect.height, error))
         return false;
-    const FlCarry how = {guides, synth->params->carry, synth->params->rotate, synth->frame};
-    fl_nnf_carry(&synth->previous.nnf, synth->previous.rect, &how, rect, &synth->exemplar->level[0],
-                 out, speed);
+    const FlCarry carry = {guides, synth->params->carry, synth->params->rotate, synth->last.frame};
+    fl_nnf_carry(&synth->last.nnf, synth->last.rect, &carry, rect, &synth->exemplar->level[0], out,
+                 speed);
     for (int y = 0; y < rect.height; y++)
         memcpy(angle + (size_t)y * rect.width,
                guides->angle + (size_t)(rect.y + y) * synth->width + rect.x, (size_t)rect.width);
@@ -333,7 +324,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .cost = cost,
                        .carried = synth->moves ? previous : NULL,
                        .map = &map,
-                       .key = fl_key(fl_key(synth->key, (uint64_t)synth->frame), (uint64_t)l)};
+                       .key = fl_key(fl_key(synth->key, (uint64_t)synth->last.frame), (uint64_t)l)};
     initialise(synth, &search, target, l, previous);
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
@@ -397,27 +388,10 @@ static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *
         return false;
     clear_colours(synth);
     stats->seconds_target = lap(&time);
-    if (synth->previous.valid && (!shifted_previous(synth, guides, rect, shifted, error) ||
-                                  !make_temporal(synth, shifted, error)))
+    if (synth->last.valid && (!shifted_previous(synth, guides, rect, shifted, error) ||
+                              !make_temporal(synth, shifted, error)))
         return false;
     stats->seconds_temporal = lap(&time);
-    return true;
-}
-
-/* What a region that holds still is known by: its mask, and inside it the depth, which also depends
- * on what moves beside it. */
-static uint8_t shape_at(const FlGuides *guides, size_t p)
-{
-    enum { STEPS = 8 }; // of a px
-    const uint8_t mask = guides->mask[p];
-    return mask < FL_INSIDE ? mask : mask ^ (uint8_t)((int)(guides->depth[p] * STEPS) & 0x7f);
-}
-
-static bool has_shape_as_before(const FlSynth *synth, const FlGuides *guides)
-{
-    for (size_t p = 0; p < (size_t)synth->width * synth->height; p++)
-        if (synth->previous.mask[p] != shape_at(guides, p))
-            return false;
     return true;
 }
 
@@ -425,34 +399,23 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
 {
     const FlNnf *last = &synth->nnf[0];
     const size_t pixels = (size_t)synth->width * synth->height;
-    fl_nnf_clear(&synth->previous.nnf);
-    synth->previous.valid = true;
-    synth->previous.rect = synth->target.rect;
-    for (size_t p = 0; p < pixels; p++)
-        synth->previous.mask[p] = shape_at(guides, p);
-    memcpy(synth->previous.rgb, rgb, 3 * pixels);
-    if (!fl_nnf_init(&synth->previous.nnf, last->width, last->height, error))
+    fl_nnf_clear(&synth->last.nnf);
+    synth->last.valid = true;
+    synth->last.rect = synth->target.rect;
+    fl_rest_shape(guides, synth->last.mask);
+    memcpy(synth->last.rgb, rgb, 3 * pixels);
+    if (!fl_nnf_init(&synth->last.nnf, last->width, last->height, error))
         return false;
-    memcpy(synth->previous.nnf.match, last->match,
+    memcpy(synth->last.nnf.match, last->match,
            (size_t)last->width * last->height * sizeof *last->match);
     return true;
 }
 
-/* The same shape as in the last frame, no flow that somebody could see, and no boil due. A motion
- * that is known is seen after some frames, however slow it is. */
 static bool holds_still(const FlSynth *synth, const FlGuides *guides)
 {
-    const size_t pixels = (size_t)synth->width * synth->height;
-    const float limit = synth->params->flow_still * synth->params->flow_still;
-    if (!synth->params->rest || synth->boil != 0 || !synth->previous.valid ||
-        fl_drawing_moves(guides) || !has_shape_as_before(synth, guides))
-        return false;
-    for (size_t p = 0; p < pixels; p++) {
-        const float u = guides->flow[2 * p], v = guides->flow[2 * p + 1];
-        if (guides->mask[p] >= FL_INSIDE && u * u + v * v > limit)
-            return false;
-    }
-    return true;
+    const FlParams *params = synth->params;
+    return params->rest && synth->boil == 0 && synth->last.valid &&
+           fl_rests(guides, synth->last.mask, params->flow_still);
 }
 
 static bool run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats, GError **error)
@@ -461,7 +424,7 @@ static bool run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats
     stats->n_levels = synth->n_levels;
     for (int l = synth->n_levels - 1; l >= 0; l--) {
         gint64 time = g_get_monotonic_time();
-        if (!run_level(synth, l, synth->previous.valid ? shifted : NULL, &stats->level[l], error))
+        if (!run_level(synth, l, synth->last.valid ? shifted : NULL, &stats->level[l], error))
             return false;
         stats->level[l].seconds = lap(&time);
     }
@@ -472,8 +435,8 @@ static bool run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats
 /* That of the picture which is kept; only its field is, if nobody wanted a view of it. */
 static FlSynthView view_at_rest(const FlSynth *synth)
 {
-    const Previous *p = &synth->previous;
-    return synth->view.nnf ? synth->view : (FlSynthView){p->rect, &p->nnf, NULL, NULL};
+    const FlSynthState *last = &synth->last;
+    return synth->view.nnf ? synth->view : (FlSynthView){last->rect, &last->nnf, NULL, NULL};
 }
 
 static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
@@ -481,10 +444,11 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
 {
     FlRect rect;
     g_auto(FlNnf) shifted = {0};
-    synth->frame++;
-    synth->boil = fl_boil_step(synth->params->boil, synth->frame, synth->exemplar->level[0].window);
+    synth->last.frame++;
+    synth->boil =
+        fl_boil_step(synth->params->boil, synth->last.frame, synth->exemplar->level[0].window);
     if (holds_still(synth, guides)) {
-        memcpy(rgb, synth->previous.rgb, 3 * (size_t)synth->width * synth->height);
+        memcpy(rgb, synth->last.rgb, 3 * (size_t)synth->width * synth->height);
         *view = view_at_rest(synth);
         return true;
     }
@@ -493,7 +457,7 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
     synth->moves = guides->has_motion;
     fill_paper(synth, rgb);
     if (!working_rect(synth, guides, &rect)) {
-        synth->previous.valid = false;
+        synth->last.valid = false;
         return true;
     }
     if (!prepare(synth, guides, rect, &shifted, stats, error) ||
@@ -501,7 +465,7 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
         return false;
     write_rgb(synth, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
-    const bool has_temporal = synth->previous.valid && finest_searched(synth) == 0;
+    const bool has_temporal = synth->last.valid && finest_searched(synth) == 0;
     *view = synth->view = (FlSynthView){rect, &synth->nnf[0], has_temporal ? full->temporal : NULL,
                                         has_temporal ? full->temporal_weight : NULL};
     return remember(synth, guides, rgb, error);
@@ -524,25 +488,19 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
 
 GBytes *fl_synth_save(FlSynth *synth, GError **error)
 {
-    const Previous *p = &synth->previous;
-    const FlSynthState saved = {synth->frame, p->valid, p->rect, p->nnf, p->mask, p->rgb};
     if (synth->packed)
-        return fl_synth_state_later(synth->packed, synth->frame);
-    synth->packed = fl_synth_state_pack(&saved, synth->width, synth->height, error);
+        return fl_synth_state_later(synth->packed, synth->last.frame);
+    synth->packed = fl_synth_state_pack(&synth->last, synth->width, synth->height, error);
     return synth->packed ? g_bytes_ref(synth->packed) : NULL;
 }
 
 bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
 {
-    Previous *p = &synth->previous;
-    FlSynthState saved = {.mask = p->mask, .rgb = p->rgb};
-    fl_nnf_clear(&p->nnf);
+    fl_nnf_clear(&synth->last.nnf);
     forget_packed(synth);
-    p->valid = false;
-    if (!fl_synth_state_unpack(&saved, state, &synth->exemplar->level[0], synth->width,
-                               synth->height, error))
-        return false;
-    synth->frame = saved.frame;
-    p->valid = saved.valid, p->rect = saved.rect, p->nnf = saved.nnf;
-    return true;
+    if (fl_synth_state_unpack(&synth->last, state, &synth->exemplar->level[0], synth->width,
+                              synth->height, error))
+        return true;
+    synth->last.valid = false;
+    return false;
 }

@@ -12,7 +12,7 @@ typedef struct FlSynthState {
     bool valid;    // the last of them had paint; else the rest is undefined
     FlRect rect;   // its part of the frame
     FlNnf nnf;     // its level-0 field, as large as rect
-    uint8_t *mask; // of the whole frame, width * height
+    uint8_t *mask; // fl_rest_shape() of the whole frame, width * height
     uint8_t *rgb;  // the picture of the whole frame, width * height * 3
 } FlSynthState;
 
