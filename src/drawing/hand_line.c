@@ -224,6 +224,23 @@ static float line_pixel(const FlHandLine *hand, const FlLinePath *path, const Ne
            deposit(hand, load, grain_at(hand, path, far, across, kind->streak), x, y);
 }
 
+/**
+ * Notes what lies within `reach` of the hand's k-th path. own: the hand, with a key for this path;
+ * part: the pixels that may be noted.
+ */
+static const FlLinePath *approach(const FlHandLine *hand, guint k, float reach,
+                                  const uint8_t *coverage, Nearest *nearest, FlHandLine *own,
+                                  FlRect *part)
+{
+    const FlLinePath *path = &g_array_index(hand->paths->path, FlLinePath, k);
+    const FlLinePoint *point = &g_array_index(hand->paths->point, FlLinePoint, path->first);
+    *own = *hand;
+    own->key = fl_key(hand->key, k);
+    *part = reached(nearest->box, point, path->n, reach);
+    note_path(nearest, point, path->n, reach, coverage);
+    return path;
+}
+
 /* ---- lines ----------------------------------------------------------------------------------- */
 
 /** Of several subpaths the one counts that leaves most. Takes the places back for the next. */
@@ -251,12 +268,10 @@ static bool draw_lines(const FlHandLine *hand, FlRect box, uint8_t *coverage, GE
         return false;
     memset(share, -1, n * sizeof *share); // -1: no path is near, and it stays as it was drawn
     for (guint k = 0; k < hand->paths->path->len; k++) {
-        const FlLinePath *path = &g_array_index(hand->paths->path, FlLinePath, k);
-        const FlLinePoint *point = &g_array_index(hand->paths->point, FlLinePoint, path->first);
-        FlHandLine own = *hand;
-        own.key = fl_key(hand->key, k);
-        note_path(&nearest, point, path->n, reach, coverage);
-        draw_path(&own, path, reached(box, point, path->n, reach), &nearest, share);
+        FlHandLine own;
+        FlRect part;
+        const FlLinePath *path = approach(hand, k, reach, coverage, &nearest, &own, &part);
+        draw_path(&own, path, part, &nearest, share);
     }
     for (size_t i = 0; i < n; i++)
         if (share[i] >= 0)
@@ -366,12 +381,10 @@ static bool draw_shape(const FlHandLine *hand, FlRect box, uint8_t *coverage, GE
     for (size_t i = 0; i < n; i++)
         share[i] = 1;
     for (guint k = 0; k < hand->paths->path->len; k++) {
-        const FlLinePath *path = &g_array_index(hand->paths->path, FlLinePath, k);
-        const FlLinePoint *point = &g_array_index(hand->paths->point, FlLinePoint, path->first);
-        FlHandLine own = *hand;
-        own.key = fl_key(hand->key, k);
-        note_path(&nearest, point, path->n, reach, coverage);
-        draw_edge(&own, path, reached(box, point, path->n, reach), &nearest, coverage, share);
+        FlHandLine own;
+        FlRect part;
+        const FlLinePath *path = approach(hand, k, reach, coverage, &nearest, &own, &part);
+        draw_edge(&own, path, part, &nearest, coverage, share);
     }
     for (int y = box.y; y < box.y + box.height; y++)
         for (int x = box.x; x < box.x + box.width; x++) {
