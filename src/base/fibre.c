@@ -10,12 +10,12 @@ static float clamp(float x, float low, float high)
 
 /* One fibre: a line that turns a little all the way, as wide as a px. Turned without sin and cos,
    whose last bit differs between C libraries. */
-void fl_fibre_draw(float *grid, int width, int height, float x, float y, const FlFibre *how,
+void fl_fibre_draw(float *grid, int width, int height, float x, float y, const FlFibre *fibre,
                    FlRng *rng)
 {
-    const float scale = how->scale;
+    const float scale = fibre->scale;
     float dx = fl_rng_float(rng) - 0.5f, dy = fl_rng_float(rng) - 0.5f;
-    const float length = how->length_px * scale, curl = how->curl;
+    const float length = fibre->length_px * scale, curl = fibre->curl;
     float turn = (fl_rng_float(rng) - 0.5f) * 0.05f * curl;
     const float strength = 0.4f + 0.6f * fl_rng_float(rng);
     const int steps = (int)(length * (0.4f + 1.2f * fl_rng_float(rng)));

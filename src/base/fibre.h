@@ -15,7 +15,7 @@ typedef struct FlFibre {
  * Draws a fibre from a place on: each pixel of the width * height grid gets 0..1 by how near the
  * middle of the fibre it is, where that is more than it has. The place may be beyond the grid.
  */
-void fl_fibre_draw(float *grid, int width, int height, float x, float y, const FlFibre *how,
+void fl_fibre_draw(float *grid, int width, int height, float x, float y, const FlFibre *fibre,
                    FlRng *rng);
 
 #endif

@@ -1,13 +1,13 @@
 #include "base/parallel_error.h"
 
-void fl_parallel_error_keep(GError **first, GError *mine)
+void fl_parallel_error_keep(GError **first, GError *failure)
 {
     static GMutex mutex;
     g_mutex_lock(&mutex);
     if (!*first)
-        *first = g_steal_pointer(&mine);
+        *first = g_steal_pointer(&failure);
     g_mutex_unlock(&mutex);
-    g_clear_error(&mine);
+    g_clear_error(&failure);
 }
 
 bool fl_parallel_error_tell(GError **error, GError *first)

@@ -5,9 +5,9 @@
 #include <glib.h>
 #include <stdbool.h>
 
-/** Moves `mine` (may be NULL) into *first, or frees it if there is one already. Any thread.
+/** Moves `failure` (may be NULL) into *first, or frees it if there is one already. Any thread.
  */
-void fl_parallel_error_keep(GError **first, GError *mine);
+void fl_parallel_error_keep(GError **first, GError *failure);
 
 /** After the parallel part: moves `first` to `error`. Returns: true if there was none. */
 bool fl_parallel_error_tell(GError **error, GError *first);

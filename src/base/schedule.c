@@ -75,9 +75,9 @@ bool fl_schedule_run(FlWorkItem *items, int n, FlItemWork work, void *data, GErr
     GError *first = NULL;
 #pragma omp parallel for schedule(dynamic, 1)
     for (int k = first_small; k < n; k++) {
-        GError *mine = NULL;
-        if (!work(data, items[k].index, team_member(), &mine))
-            fl_parallel_error_keep(&first, mine);
+        GError *failure = NULL;
+        if (!work(data, items[k].index, team_member(), &failure))
+            fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_tell(error, first);
 }

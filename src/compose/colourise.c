@@ -65,18 +65,18 @@ static void turns_of(const uint8_t rgb[3], float pigments, int32_t turn[3])
     }
 }
 
-static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *how, const FlScale *scale,
-                      const uint8_t rgb[3])
+static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *colouring,
+                      const FlScale *scale, const uint8_t rgb[3])
 {
     int least = 0;
     memcpy(fill->rgb, rgb, 3);
     fill->known = true;
-    fl_colour_law_init(&fill->law, rgb, how->paper, ink->spread);
-    turns_of(rgb, how->pigments, fill->turn);
+    fl_colour_law_init(&fill->law, rgb, colouring->paper, ink->spread);
+    turns_of(rgb, colouring->pigments, fill->turn);
     for (int i = 0; i < FL_AMOUNTS / LEAST_STEP; i++) {
         uint8_t colour[3];
         fl_colour_law_at(&fill->law, i * LEAST_STEP, colour);
-        least = MAX(least, fl_least_alpha(scale, colour, how->paper));
+        least = MAX(least, fl_least_alpha(scale, colour, colouring->paper));
         fill->least[i] = (uint8_t)least;
     }
 }
@@ -94,19 +94,20 @@ static void turn_hue(const Fill *fill, int amount, int play, uint8_t colour[3])
     }
 }
 
-static void colour_amount(const Fill *fill, const FlColouring *how, const FlScale *scale,
+static void colour_amount(const Fill *fill, const FlColouring *colouring, const FlScale *scale,
                           int amount, int play, uint8_t rgba[4])
 {
     uint8_t colour[3];
     fl_colour_law_at(&fill->law, amount, colour);
-    if (how->play)
+    if (colouring->play)
         turn_hue(fill, amount, play, colour);
-    const int opacity = MAX(opacity_of(how->medium, amount), fill->least[amount / LEAST_STEP]);
-    fl_lift(scale, colour, how->paper, opacity, rgba);
+    const int opacity =
+        MAX(opacity_of(colouring->medium, amount), fill->least[amount / LEAST_STEP]);
+    fl_lift(scale, colour, colouring->paper, opacity, rgba);
 }
 
 /** One fill for the whole region: each amount that it has is looked up. */
-static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+static void colour_flat(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
                         const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
     const size_t width = (size_t)area->box.width;
@@ -120,12 +121,12 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
             if (row[x] >= 0)
                 used[row[x]] = true;
     }
-    fill_init(&fill, ink, how, scale, how->fill);
+    fill_init(&fill, ink, colouring, scale, colouring->fill);
     for (int amount = 0; amount < FL_AMOUNTS; amount++) {
         uint8_t rgba_of[4];
         if (!used[amount])
             continue;
-        colour_amount(&fill, how, scale, amount, 0, rgba_of);
+        colour_amount(&fill, colouring, scale, amount, 0, rgba_of);
         memcpy(&colours[amount], rgba_of, 4);
     }
     for (int y = 0; y < area->box.height; y++) {
@@ -139,24 +140,24 @@ static void colour_flat(const FlInk *ink, const FlColouring *how, const FlScale 
 #define PLAYS 64 // as many plays of pigments are told apart: one in four
 
 /** The same where pigments play: each pair of an amount and a play is looked up once it was met. */
-static void colour_flat_play(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+static void colour_flat_play(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
                              const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
     g_autofree uint32_t *colours = g_new0(uint32_t, PLAYS * FL_AMOUNTS);
     g_autofree bool *met = g_new0(bool, PLAYS *FL_AMOUNTS);
     Fill fill;
-    fill_init(&fill, ink, how, scale, how->fill);
+    fill_init(&fill, ink, colouring, scale, colouring->fill);
     for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const size_t row = (size_t)y * (size_t)area->box.width;
         for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++) {
             if (amounts[i] < 0)
                 continue;
-            const int play = (how->play[i] + 128) * PLAYS / 256;
+            const int play = (colouring->play[i] + 128) * PLAYS / 256;
             const size_t at = (size_t)play * FL_AMOUNTS + (size_t)amounts[i];
             if (!met[at]) {
                 uint8_t of[4];
-                colour_amount(&fill, how, scale, amounts[i], play * 256 / PLAYS - 126, of);
+                colour_amount(&fill, colouring, scale, amounts[i], play * 256 / PLAYS - 126, of);
                 memcpy(&colours[at], of, 4);
                 met[at] = true;
             }
@@ -188,12 +189,12 @@ static void kept_init(Kept *kept, const FlInk *ink, const uint8_t paper[3])
     }
 }
 
-static void keep_colours(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+static void keep_colours(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
                          const FlPaintedPart *painted, const int16_t *amounts, const FlArea *area,
                          uint8_t *rgba)
 {
     Kept kept;
-    kept_init(&kept, ink, how->paper);
+    kept_init(&kept, ink, colouring->paper);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < area->box.height; y++) {
         const size_t row = (size_t)y * area->box.width;
@@ -209,7 +210,7 @@ static void keep_colours(const FlInk *ink, const FlColouring *how, const FlScale
                     (uint8_t)((fl_density_level(kept.paper[c] + kept.step[c][source[3 * x + c]]) +
                                128) >>
                               8);
-            fl_lift(scale, colour, how->paper, opacity_of(how->medium, amount),
+            fl_lift(scale, colour, colouring->paper, opacity_of(colouring->medium, amount),
                     rgba + 4 * (row + x));
         }
     }
@@ -218,18 +219,18 @@ static void keep_colours(const FlInk *ink, const FlColouring *how, const FlScale
 /** Fills that have been met, each at the place of its colour: a later one takes it. */
 #define FILLS 1024
 
-static const Fill *find_fill(Fill *fills, const FlInk *ink, const FlColouring *how,
+static const Fill *find_fill(Fill *fills, const FlInk *ink, const FlColouring *colouring,
                              const FlScale *scale, const uint8_t *rgb)
 {
     const uint32_t colour = (uint32_t)(rgb[0] << 16 | rgb[1] << 8 | rgb[2]);
     Fill *fill = &fills[(colour * 2654435761u >> 16) % FILLS];
     if (!fill->known || memcmp(fill->rgb, rgb, 3) != 0)
-        fill_init(fill, ink, how, scale, rgb);
+        fill_init(fill, ink, colouring, scale, rgb);
     return fill;
 }
 
 /** Each pixel has a fill of its own. */
-static void colour_picture(const FlInk *ink, const FlColouring *how, const FlScale *scale,
+static void colour_picture(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
                            const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
 #pragma omp parallel
@@ -241,25 +242,27 @@ static void colour_picture(const FlInk *ink, const FlColouring *how, const FlSca
             const size_t row = (size_t)y * area->box.width;
             for (size_t i = row + (size_t)span.first; i < row + (size_t)span.last; i++)
                 if (amounts[i] >= 0)
-                    colour_amount(find_fill(fills, ink, how, scale, how->picture + 4 * i), how,
-                                  scale, amounts[i], how->play ? how->play[i] : 0, rgba + 4 * i);
+                    colour_amount(
+                        find_fill(fills, ink, colouring, scale, colouring->picture + 4 * i),
+                        colouring, scale, amounts[i], colouring->play ? colouring->play[i] : 0,
+                        rgba + 4 * i);
         }
     }
 }
 
-void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart *painted,
+void fl_colourise(const FlInk *ink, const FlColouring *colouring, const FlPaintedPart *painted,
                   const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
     FlScale scale;
-    fl_scale_init(&scale, how->linear);
-    if (how->tint == FL_TINT_KEEP)
-        keep_colours(ink, how, &scale, painted, amounts, area, rgba);
-    else if (how->picture)
-        colour_picture(ink, how, &scale, amounts, area, rgba);
-    else if (how->play)
-        colour_flat_play(ink, how, &scale, amounts, area, rgba);
+    fl_scale_init(&scale, colouring->linear);
+    if (colouring->tint == FL_TINT_KEEP)
+        keep_colours(ink, colouring, &scale, painted, amounts, area, rgba);
+    else if (colouring->picture)
+        colour_picture(ink, colouring, &scale, amounts, area, rgba);
+    else if (colouring->play)
+        colour_flat_play(ink, colouring, &scale, amounts, area, rgba);
     else
-        colour_flat(ink, how, &scale, amounts, area, rgba);
+        colour_flat(ink, colouring, &scale, amounts, area, rgba);
 }
 
 void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *painted,

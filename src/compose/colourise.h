@@ -50,7 +50,7 @@ void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *p
  *
  * The other pixels, which were 0, are 0.
  */
-void fl_colourise(const FlInk *ink, const FlColouring *how, const FlPaintedPart *painted,
+void fl_colourise(const FlInk *ink, const FlColouring *colouring, const FlPaintedPart *painted,
                   const int16_t *amounts, const FlArea *area, uint8_t *rgba);
 
 /**

@@ -41,14 +41,14 @@ static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegi
                                 const FlDraw *draw)
 {
     const FlRegionSettings *t = painted->settings;
-    FlColouring how = {.tint = t->tint,
-                       .picture = t->has_colour ? NULL : draw->picture,
-                       .medium = medium_of(input, painted),
-                       .pigments = (float)t->pigments,
-                       .linear = input->linear};
-    memcpy(how.fill, t->has_colour ? t->colour : draw->rgb, 3);
-    memcpy(how.paper, input->background->paper, 3);
-    return how;
+    FlColouring colouring = {.tint = t->tint,
+                             .picture = t->has_colour ? NULL : draw->picture,
+                             .medium = medium_of(input, painted),
+                             .pigments = (float)t->pigments,
+                             .linear = input->linear};
+    memcpy(colouring.fill, t->has_colour ? t->colour : draw->rgb, 3);
+    memcpy(colouring.paper, input->background->paper, 3);
+    return colouring;
 }
 
 static FlPaintedPart part_of(const FlPaintedRegion *painted)
@@ -102,7 +102,7 @@ static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaint
                         int exposure, GError **error)
 {
     const FlDraw *draw = &stack->edges->draws->draw[r];
-    FlColouring how = colouring_of(stack->input, painted, draw);
+    FlColouring colouring = colouring_of(stack->input, painted, draw);
     const FlPaintedPart part = part_of(painted);
     const FlUneven uneven = uneven_of(stack, painted);
     const FlRect box = layer->area.box;
@@ -112,18 +112,18 @@ static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaint
     layer->knockout = knockout;
     layer->stacking = painted->settings->stacking;
     if (!knockout ||
-        (how.pigments > 0 && !(play = fl_alloc(fl_rect_pixels(box), 1, "a layer", error))))
+        (colouring.pigments > 0 && !(play = fl_alloc(fl_rect_pixels(box), 1, "a layer", error))))
         return false;
     if (play)
         fl_play_of_pigments(&uneven, box, play);
-    how.play = play;
+    colouring.play = play;
     const FlDrawing *drawing = stack->input->drawing;
     const int border_px = (int)(painted->style->exemplar->border_px + 0.5f);
     if (!fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
                      fl_drawing_height(drawing), MAX(border_px, 1), knockout, error))
         return false;
     roughen(stack, painted, &layer->area, amounts);
-    fl_colourise(painted->style->ink, &how, &part, amounts, &layer->area, layer->rgba);
+    fl_colourise(painted->style->ink, &colouring, &part, amounts, &layer->area, layer->rgba);
     return true;
 }
 

@@ -210,13 +210,13 @@ static bool close_tiles(const FlEdgeMap *edges, int draw, int radius_px, const i
     GError *first = NULL;
 #pragma omp parallel for schedule(dynamic, 1)
     for (int t = 0; t < columns * rows; t++) {
-        GError *mine = NULL;
+        GError *failure = NULL;
         const FlRect corner = {all.x + t % columns * TILE_PX, all.y + t / columns * TILE_PX, 0, 0};
         const FlRect tile = {corner.x, corner.y, MIN(TILE_PX, all.x + all.width - corner.x),
                              MIN(TILE_PX, all.y + all.height - corner.y)};
         const FlRect box = shape_in(&edges->draws->draw[draw], tile);
-        if (box.width > 0 && !close_tile(edges, draw, box, radius_px, amounts, closed, &mine))
-            fl_parallel_error_keep(&first, mine);
+        if (box.width > 0 && !close_tile(edges, draw, box, radius_px, amounts, closed, &failure))
+            fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_tell(error, first);
 }

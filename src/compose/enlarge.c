@@ -158,8 +158,8 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
 #pragma omp parallel
     {
         Rows rows;
-        GError *mine = NULL;
-        const bool ready = rows_init(&rows, half, width, height, &mine);
+        GError *failure = NULL;
+        const bool ready = rows_init(&rows, half, width, height, &failure);
 #pragma omp for schedule(static)
         for (int y = 0; y < box.height; y++) {
             const size_t row = (size_t)y * box.width;
@@ -174,7 +174,7 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
                   full->knockout ? (uint8_t *)full->knockout + row : NULL);
         }
         free(rows.memory);
-        fl_parallel_error_keep(&first, mine);
+        fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_tell(error, first);
 }

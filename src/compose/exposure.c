@@ -82,9 +82,9 @@ bool fl_exposures_find(const FlComposeInput *input, const FlDrawList *draws, int
     GError *first = NULL;
 #pragma omp parallel for schedule(dynamic, 1)
     for (int p = 0; p < input->n_painted; p++) {
-        GError *mine = NULL;
-        if (!find_exposure(input, draws, p, owner, &exposures[p], &mine))
-            fl_parallel_error_keep(&first, mine);
+        GError *failure = NULL;
+        if (!find_exposure(input, draws, p, owner, &exposures[p], &failure))
+            fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_tell(error, first);
 }

@@ -96,7 +96,7 @@ static float chain_at(const FlPaperPlace *place, float x, float y)
 static void draw_cells(const FlPaperPlace *place, FlRect part, float *grid)
 {
     const FlPaperGrain *grain = place->grain;
-    const FlFibre how = {grain->fibre_px, 1, place->scale};
+    const FlFibre fibre = {grain->fibre_px, 1, place->scale};
     const float cell = CELL_PX * place->scale;
     const int n = (int)(grain->fibres * CELL_PX * CELL_PX / 1000);
     const int first_row = (int)floorf((float)part.y / cell) - 1;
@@ -110,7 +110,7 @@ static void draw_cells(const FlPaperPlace *place, FlRect part, float *grid)
             for (int k = 0; k < n; k++) {
                 const float x = ((float)i + fl_rng_float(&rng)) * cell - (float)part.x;
                 const float y = ((float)j + fl_rng_float(&rng)) * cell - (float)part.y;
-                fl_fibre_draw(grid, part.width, part.height, x, y, &how, &rng);
+                fl_fibre_draw(grid, part.width, part.height, x, y, &fibre, &rng);
             }
         }
 }

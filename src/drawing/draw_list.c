@@ -342,11 +342,11 @@ static bool draw_picture(Stage *stage, const Draw *draw, const Target *target, G
             const size_t p = target_pixel(target, x, y);
             if (!pixel)
                 continue;
-            uint8_t mine[4];
-            fl_straighten(pixel, solid[pixel >> 24], mine);
+            uint8_t own[4];
+            fl_straighten(pixel, solid[pixel >> 24], own);
             if (target->picture)
-                memcpy(target->picture + 4 * p, mine, 4);
-            target->coverage[p] = fl_over(mine[3], target->coverage[p]);
+                memcpy(target->picture + 4 * p, own, 4);
+            target->coverage[p] = fl_over(own[3], target->coverage[p]);
         }
     fl_surface_wipe(stage->picture, box);
     return !target->by_hand || add_picture_by_hand(stage, draw, target, error);

@@ -241,7 +241,7 @@ static bool stack(FlFrameProbe *f, GError **error)
     if (!below)
         return false;
     unsigned char *under = cairo_image_surface_get_data(below);
-    const unsigned char *mine = cairo_image_surface_get_data(f->coverage);
+    const unsigned char *own = cairo_image_surface_get_data(f->coverage);
     const int stride = cairo_image_surface_get_stride(below);
     for (guint i = 0; i < f->probes->len; i++) {
         FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
@@ -256,10 +256,10 @@ static bool stack(FlFrameProbe *f, GError **error)
         for (int y = box.y; y < box.y + box.height; y++)
             for (int x = box.x; x < box.x + box.width; x++) {
                 const size_t p = (size_t)y * stride + x;
-                sum += mine[p];
-                covered += mine[p] * under[p];
+                sum += own[p];
+                covered += own[p] * under[p];
                 if (!fills_page)
-                    under[p] = fl_over(mine[p], under[p]);
+                    under[p] = fl_over(own[p], under[p]);
             }
         probe->found.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
         if (!fl_self_check_add(f->check, f->svg, probe->leaf, &probe->found, f->coverage, box,

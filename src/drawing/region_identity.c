@@ -259,12 +259,12 @@ static void number_tracks(const Work *w, guint n_regions)
     for (int t = 0; t < w->survey->n_frames; t++)
         for (guint i = 0; i < w->survey->frame[t].parts->len; i++) {
             FlSurveyPart *s = &g_array_index(w->survey->frame[t].parts, FlSurveyPart, i);
-            int *mine = &nth[w->track_of[t][i]];
+            int *number = &nth[w->track_of[t][i]];
             if (s->region < 0)
                 continue;
-            if (*mine < 0)
-                *mine = count[s->region]++;
-            s->nth = *mine;
+            if (*number < 0)
+                *number = count[s->region]++;
+            s->nth = *number;
         }
 }
 

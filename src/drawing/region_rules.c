@@ -81,9 +81,9 @@ static bool matches_glob(const char *const *globs, const char *list)
     return false;
 }
 
-/** has: the shape has such a paint; mine: the part in question is painted with it. */
+/** has: the shape has such a paint; this_part: the part in question is painted with it. */
 static bool matches_paint(const char *const *list, const FlRegionRule *rule,
-                          const FlRuleSubject *subject, bool has, bool mine)
+                          const FlRuleSubject *subject, bool has, bool this_part)
 {
     if (!list)
         return true;
@@ -91,10 +91,10 @@ static bool matches_paint(const char *const *list, const FlRegionRule *rule,
     for (int i = 0; list[i]; i++) {
         uint8_t rgb[3];
         if (strcmp(list[i], "none") == 0  ? !has
-            : strcmp(list[i], "any") == 0 ? has && mine
-                                          : mine && strcmp(list[i], subject->paint) == 0)
+            : strcmp(list[i], "any") == 0 ? has && this_part
+                                          : this_part && strcmp(list[i], subject->paint) == 0)
             return true;
-        if (mine && subject->paint[0] == '#' && parse_colour(list[i], rgb) &&
+        if (this_part && subject->paint[0] == '#' && parse_colour(list[i], rgb) &&
             fl_colour_difference(rgb, subject->rgb) <= tolerance)
             return true;
     }

@@ -82,7 +82,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
                        cairo_surface_t *coverage, FlRect box, double page_width, double page_height,
                        GError **error)
 {
-    const unsigned char *mine = cairo_image_surface_get_data(coverage);
+    const unsigned char *own = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
     uint32_t *sum = (uint32_t *)cairo_image_surface_get_data(check->sum);
     const bool flat = part->kind == FL_PAINT_FLAT && part->mix == FL_BLEND_MODE_OVER;
@@ -92,7 +92,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
     for (int y = box.y; y < box.y + box.height; y++)
         for (int x = box.x; x < box.x + box.width; x++) {
             const size_t p = (size_t)y * check->width + x;
-            const uint8_t cover = mine[(size_t)y * stride + x];
+            const uint8_t cover = own[(size_t)y * stride + x];
             if (cover && flat)
                 sum[p] = fl_blend(sum[p], part->rgb, cover);
             if (cover)

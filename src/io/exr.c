@@ -177,11 +177,12 @@ static bool put_chunks(Writer *writer, const Layer *whole, const FlSinkFrame *fr
 static bool put_file(Writer *writer, FlAtomicFile *file, const Layer *whole,
                      const FlSinkFrame *frame)
 {
-    exr_context_initializer_t how = EXR_DEFAULT_CONTEXT_INITIALIZER;
-    how.user_data = file;
-    how.write_fn = write_bytes;
-    how.error_handler_fn = be_silent;
-    if (!went(writer, exr_start_write(&writer->context, file->path, EXR_WRITE_FILE_DIRECTLY, &how)))
+    exr_context_initializer_t context = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    context.user_data = file;
+    context.write_fn = write_bytes;
+    context.error_handler_fn = be_silent;
+    if (!went(writer,
+              exr_start_write(&writer->context, file->path, EXR_WRITE_FILE_DIRECTLY, &context)))
         return false;
     if (put_header(writer, whole, frame))
         put_chunks(writer, whole, frame);

@@ -395,10 +395,10 @@ static bool each_frame(FlPlan *plan, FlSharedEdges *edges,
     int failed = 0;
 #pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
     for (int f = 0; f < n; f++) {
-        GError *mine = NULL;
-        if (failed == 0 && !work(plan, edges, f, &mine))
+        GError *failure = NULL;
+        if (failed == 0 && !work(plan, edges, f, &failure))
             failed++;
-        fl_parallel_error_keep(&first, mine);
+        fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_tell(error, first);
 }

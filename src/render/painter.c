@@ -153,10 +153,10 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
         return make_picture(painter, error);
     const FlRect rect = painter->result.rect;
     const FlGuideSource source = source_of(painter);
-    const FlGuideParams how = fl_guide_params(&plan->settings.params);
+    const FlGuideParams params = fl_guide_params(&plan->settings.params);
     const FlSynthSize size = {rect.width, rect.height, painter->result.width,
                               painter->result.height};
-    return (painter->guides = fl_guide_sequence_new(&source, &how, error)) &&
+    return (painter->guides = fl_guide_sequence_new(&source, &params, error)) &&
            (painter->synth = fl_synth_new(plan->style->exemplar, &plan->settings.params, size,
                                           fl_key(seed, g_str_hash(plan->name)), error)) &&
            make_picture(painter, error) &&

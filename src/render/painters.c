@@ -140,10 +140,10 @@ bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **er
     g_ptr_array_set_size(states, FL_PAINTER_PARTS * painters->n);
 #pragma omp parallel for schedule(dynamic, 1)
     for (int p = 0; p < painters->n; p++) {
-        GError *mine = NULL;
+        GError *failure = NULL;
         GBytes **parts = (GBytes **)states->pdata + FL_PAINTER_PARTS * p;
-        if (!fl_painter_save(&painters->painter[p], parts, &mine))
-            fl_parallel_error_keep(&first, mine);
+        if (!fl_painter_save(&painters->painter[p], parts, &failure))
+            fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_tell(error, first);
 }

@@ -59,9 +59,9 @@ static bool report_progress(const Pipeline *pipeline, const char *stage, int don
                            .elapsed_s = seconds_since(pipeline->start),
                            .frame_s = frame_s,
                            .remaining_s = -1};
-    const int mine = done - pipeline->resume.first;
-    if (mine > 0)
-        progress.remaining_s = seconds_since(pipeline->first_frame) / mine * (total - done);
+    const int painted = done - pipeline->resume.first;
+    if (painted > 0)
+        progress.remaining_s = seconds_since(pipeline->first_frame) / painted * (total - done);
     if (!o->progress || o->progress(&progress, o->data))
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames; %s",

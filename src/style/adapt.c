@@ -82,13 +82,13 @@ static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *o
     GError *first = NULL;
 #pragma omp parallel
     {
-        GError *mine = NULL;
-        g_autofree float *all = fl_alloc(3 * third, sizeof(float), "an exemplar", &mine);
+        GError *failure = NULL;
+        g_autofree float *all = fl_alloc(3 * third, sizeof(float), "an exemplar", &failure);
 #pragma omp for schedule(dynamic, 1)
         for (int t = 0; t < out->n_frames; t++)
             if (all)
                 adapt_frame(style, use, out, t, all, third);
-        fl_parallel_error_keep(&first, mine);
+        fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_tell(error, first);
 }

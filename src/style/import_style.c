@@ -19,7 +19,7 @@ static const float SHAKY_PX = 0.3f;   // a camera that moves less is left alone
 
 /* An import in progress. */
 typedef struct Import {
-    const FlStyleImport *how;
+    const FlStyleImport *options;
     FlStyle *style;
     bool masks_given; // by a mask sequence or an alpha channel
     GPtrArray *notes; // or NULL
@@ -39,21 +39,21 @@ static FlClip clip_of(const FlStyle *style)
     return (FlClip){style->width, style->height, style->n_frames, style->rgb};
 }
 
-static bool check_options(const FlStyleImport *how, uint8_t paper[3], GError **error)
+static bool check_options(const FlStyleImport *options, uint8_t paper[3], GError **error)
 {
     const char *wrong = NULL;
-    if (!how->source || !how->folder)
+    if (!options->source || !options->folder)
         wrong = "a source and a folder are needed";
-    else if (how->step < 1 || how->first < 0 || how->last < 0 ||
-             (how->last && how->last < how->first))
+    else if (options->step < 1 || options->first < 0 || options->last < 0 ||
+             (options->last && options->last < options->first))
         wrong = "the range of frames is empty: expected FIRST-LAST, or FIRST-LASTxSTEP";
-    else if (how->scale != 0 && !(how->scale >= 0.01 && how->scale <= 4))
+    else if (options->scale != 0 && !(options->scale >= 0.01 && options->scale <= 4))
         wrong = "the scale must be from 0.01 to 4";
-    else if (how->border_px != 0 && !(how->border_px >= 0.5 && how->border_px <= 1000))
+    else if (options->border_px != 0 && !(options->border_px >= 0.5 && options->border_px <= 1000))
         wrong = "the border must be from 0.5 to 1000 px";
-    else if (how->fps != 0 && !(how->fps >= 0.01 && how->fps <= 1000))
+    else if (options->fps != 0 && !(options->fps >= 0.01 && options->fps <= 1000))
         wrong = "the frames per second must be from 0.01 to 1000";
-    else if (how->paper && !fl_text_colour(how->paper, paper))
+    else if (options->paper && !fl_text_colour(options->paper, paper))
         wrong = "the paper must be a colour such as #f4efe6";
     if (wrong)
         g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);
@@ -62,16 +62,16 @@ static bool check_options(const FlStyleImport *how, uint8_t paper[3], GError **e
 
 static void set_facts(Import *import, const FlRecording *source)
 {
-    const FlStyleImport *how = import->how;
+    const FlStyleImport *options = import->options;
     FlStyle *style = import->style;
-    g_autofree char *absolute = g_canonicalize_filename(how->folder, NULL);
-    const double rate = how->fps > 0     ? how->fps
+    g_autofree char *absolute = g_canonicalize_filename(options->folder, NULL);
+    const double rate = options->fps > 0 ? options->fps
                         : source->series ? 0
-                                         : fl_ffmpeg_rate(source->path) / how->step;
-    style->path = g_strdup(how->source); // errors name it
-    style->name = how->name ? g_strdup(how->name) : g_path_get_basename(absolute);
-    style->author = g_strdup(how->author);
-    style->licence = g_strdup(how->licence);
+                                         : fl_ffmpeg_rate(source->path) / options->step;
+    style->path = g_strdup(options->source); // errors name it
+    style->name = options->name ? g_strdup(options->name) : g_path_get_basename(absolute);
+    style->author = g_strdup(options->author);
+    style->licence = g_strdup(options->licence);
     style->fps = rate > 0 ? (float)CLAMP(rate, 0.01, 1000) : 25;
     style->guessed = rate > 0 ? 0 : FL_GUESS_FPS; // all else is known in the end
     style->scale = 1;
@@ -91,7 +91,7 @@ static bool store_masks(Import *import, FlRecording *masks, const FlRecording *s
                         GError **error)
 {
     FlStyle *style = import->style;
-    g_autoptr(GPtrArray) pictures = fl_recording_read(masks, import->how, error);
+    g_autoptr(GPtrArray) pictures = fl_recording_read(masks, import->options, error);
     if (!pictures)
         return false;
     const FlPicture *picture = g_ptr_array_index(pictures, 0);
@@ -112,31 +112,32 @@ static bool store_masks(Import *import, FlRecording *masks, const FlRecording *s
 
 static void note_source(const Import *import, const FlRecording *source, const char *masks)
 {
-    const FlStyleImport *how = import->how;
+    const FlStyleImport *options = import->options;
     const FlStyle *style = import->style;
     note(import, "%d frame%s of %dx%d read from %s%s", style->n_frames,
-         style->n_frames == 1 ? "" : "s", style->width, style->height, how->source, masks);
-    if (how->scale == 0 && MAX(source->width, source->height) > MAX(style->width, style->height) &&
-        !how->crop[2])
+         style->n_frames == 1 ? "" : "s", style->width, style->height, options->source, masks);
+    if (options->scale == 0 &&
+        MAX(source->width, source->height) > MAX(style->width, style->height) && !options->crop[2])
         note(import, "made smaller: the recording is %dx%d; use ‘scale’ for another size",
              source->width, source->height);
 }
 
 static bool read_all(Import *import, GError **error)
 {
-    const FlStyleImport *how = import->how;
+    const FlStyleImport *options = import->options;
     g_autoptr(FlRecording) found = NULL;
-    g_autoptr(FlRecording) source = fl_recording_open(how->source, &found, error);
-    g_autoptr(FlRecording) masks =
-        source && how->masks ? fl_recording_open(how->masks, NULL, error) : g_steal_pointer(&found);
-    if (!source || (how->masks && !masks))
+    g_autoptr(FlRecording) source = fl_recording_open(options->source, &found, error);
+    g_autoptr(FlRecording) masks = source && options->masks
+                                       ? fl_recording_open(options->masks, NULL, error)
+                                       : g_steal_pointer(&found);
+    if (!source || (options->masks && !masks))
         return false;
     set_facts(import, source);
-    g_autoptr(GPtrArray) pictures = fl_recording_read(source, how, error);
+    g_autoptr(GPtrArray) pictures = fl_recording_read(source, options, error);
     if (!pictures || !store_frames(import->style, pictures, error))
         return false;
     const bool alpha = fl_style_has_alpha(import->style);
-    if (alpha && !how->paper)
+    if (alpha && !options->paper)
         memset(import->style->paper, 255, 3);
     if (alpha)
         fl_style_composite(import->style);
@@ -154,19 +155,19 @@ static bool find_paint(Import *import, GError **error)
     FlStyle *style = import->style;
     const FlClip clip = clip_of(style);
     const size_t pixels = (size_t)style->width * style->height * style->n_frames;
-    if (import->how->whole) {
+    if (import->options->whole) {
         memset(style->mask, 255, pixels);
-        if (!import->how->paper)
+        if (!import->options->paper)
             memset(style->paper, 255, 3);
         return true;
     }
-    if (!import->how->paper && !import->masks_given)
+    if (!import->options->paper && !import->masks_given)
         fl_paper_estimate(&clip, NULL, style->paper);
     if (!import->masks_given)
         style->guessed |= FL_GUESS_MASK;
     if (!import->masks_given && !fl_extract_masks(&clip, style->paper, style->mask, error))
         return false;
-    if (!import->how->paper)
+    if (!import->options->paper)
         fl_paper_estimate(&clip, style->mask, style->paper);
     return true;
 }
@@ -237,17 +238,17 @@ static bool is_like_paper(const uint8_t paper[3])
 /* The masks follow from the paper and the paper from the masks, so each step finds both again. */
 static bool correct_frames(Import *import, GError **error)
 {
-    const FlStyleImport *how = import->how;
+    const FlStyleImport *options = import->options;
     if (!find_paint(import, error))
         return false;
     if (import->masks_given && !fl_style_check_paint(import->style, error))
         return false; // before it takes bare paper under the masks for paint in a shadow
-    if (how->whole || (!how->paper && !is_like_paper(import->style->paper)))
+    if (options->whole || (!options->paper && !is_like_paper(import->style->paper)))
         return true; // nothing to go by
-    if (how->stabilise && import->style->n_frames > 1 &&
+    if (options->stabilise && import->style->n_frames > 1 &&
         (!stabilise_frames(import, error) || !find_paint(import, error)))
         return false;
-    if (how->flatten) {
+    if (options->flatten) {
         flatten_frames(import);
         return find_paint(import, error);
     }
@@ -257,8 +258,8 @@ static bool correct_frames(Import *import, GError **error)
 static bool find_border(Import *import, GError **error)
 {
     FlStyle *style = import->style;
-    if (import->how->border_px > 0) {
-        style->border_px = (float)import->how->border_px;
+    if (import->options->border_px > 0) {
+        style->border_px = (float)import->options->border_px;
         return true;
     }
     const FlClip clip = clip_of(style);
@@ -271,7 +272,7 @@ static bool find_border(Import *import, GError **error)
 
 static void add_warnings(const Import *import)
 {
-    const FlStyleImport *how = import->how;
+    const FlStyleImport *options = import->options;
     const FlStyle *style = import->style;
     const size_t pixels = (size_t)style->width * style->height;
     const uint8_t *masks = style->mask, *last_mask = masks + (style->n_frames - 1) * pixels;
@@ -283,28 +284,28 @@ static void add_warnings(const Import *import)
         note(import, "warning: there is only one frame, so the paint will not flow");
     else if (fabs(last - first) < 0.01)
         note(import, "warning: the paint hardly grows, so it will not flow");
-    if (how->whole && !how->paper)
+    if (options->whole && !options->paper)
         note(import,
              "warning: the colour of the paper is not known and taken as white; use ‘paper’ "
              "to give it");
-    if (!how->whole && !how->paper && !is_like_paper(style->paper))
+    if (!options->whole && !options->paper && !is_like_paper(style->paper))
         note(import,
              "warning: #%02x%02x%02x is not like paper; use ‘paper’ for the right colour, or "
              "‘whole’ if paint fills the whole frame",
              style->paper[0], style->paper[1], style->paper[2]);
-    if (!how->licence)
+    if (!options->licence)
         note(import, "warning: no licence is given; use ‘licence’ to keep it with the style");
 }
 
-bool fl_style_import(const FlStyleImport *how, GPtrArray *notes, GError **error)
+bool fl_style_import(const FlStyleImport *options, GPtrArray *notes, GError **error)
 {
     g_autoptr(FlStyle) style = g_new0(FlStyle, 1);
-    Import import = {.how = how, .style = style, .notes = notes};
-    if (!fl_headroom_check(error) || !check_options(how, style->paper, error) ||
-        !fl_style_may_write(how->folder, how->overwrite, error) || !read_all(&import, error) ||
-        !correct_frames(&import, error) || !fl_style_check_paint(style, error) ||
-        !find_border(&import, error))
+    Import import = {.options = options, .style = style, .notes = notes};
+    if (!fl_headroom_check(error) || !check_options(options, style->paper, error) ||
+        !fl_style_may_write(options->folder, options->overwrite, error) ||
+        !read_all(&import, error) || !correct_frames(&import, error) ||
+        !fl_style_check_paint(style, error) || !find_border(&import, error))
         return false;
     add_warnings(&import);
-    return fl_style_write(style, how->folder, how->overwrite, error);
+    return fl_style_write(style, options->folder, options->overwrite, error);
 }

@@ -144,14 +144,14 @@ FlRecording *fl_recording_open(const char *path, FlRecording **masks, GError **e
 /* The frames read so far, and the size that all must have. */
 typedef struct Reader {
     FlRecording *source;
-    const FlStyleImport *how;
+    const FlStyleImport *import;
     int width, height; // after crop and scale
     GPtrArray *pictures;
 } Reader;
 
 static bool choose_size(Reader *reader, const FlPicture *first, const char *path, GError **error)
 {
-    const int *crop = reader->how->crop;
+    const int *crop = reader->import->crop;
     reader->source->width = first->width;
     reader->source->height = first->height;
     const int width = crop[2] ? crop[2] : first->width;
@@ -164,7 +164,7 @@ static bool choose_size(Reader *reader, const FlPicture *first, const char *path
         return false;
     }
     const double fit = MIN(1, (double)LARGEST_SIDE / MAX(width, height));
-    const double scale = reader->how->scale > 0 ? reader->how->scale : fit;
+    const double scale = reader->import->scale > 0 ? reader->import->scale : fit;
     reader->width = MAX(1, (int)round(width * scale));
     reader->height = MAX(1, (int)round(height * scale));
     return true;
@@ -182,7 +182,7 @@ static bool within_limit(const Reader *reader, int n_frames, GError **error)
 /* Crops and scales one frame and keeps it; `whole` is left to the caller. */
 static bool add_picture(Reader *reader, const FlPicture *whole, const char *path, GError **error)
 {
-    const int *crop = reader->how->crop;
+    const int *crop = reader->import->crop;
     if (reader->pictures->len == 0 && !choose_size(reader, whole, path, error))
         return false;
     if (whole->width != reader->source->width || whole->height != reader->source->height) {
@@ -224,22 +224,22 @@ static FlPicture *read_still(const char *path, GError **error)
 static bool read_series(Reader *reader, GError **error)
 {
     const FlSeries *series = reader->source->series;
-    const FlStyleImport *how = reader->how;
+    const FlStyleImport *import = reader->import;
     const bool still = !series->prefix;
-    const int first = how->first && !still ? how->first : series->number[0];
-    const int last = how->last && !still ? how->last : series->number[series->n - 1];
+    const int first = import->first && !still ? import->first : series->number[0];
+    const int last = import->last && !still ? import->last : series->number[series->n - 1];
     int expected = first;
     reader->source->number = first;
     for (int i = 0; i < series->n; i++) {
         if (series->number[i] < first || series->number[i] > last ||
-            (series->number[i] - first) % how->step != 0)
+            (series->number[i] - first) % import->step != 0)
             continue;
         if (series->number[i] != expected)
             break;
         g_autoptr(FlPicture) picture = read_still(series->path[i], error);
         if (!picture || !add_picture(reader, picture, series->path[i], error))
             return false;
-        expected += how->step;
+        expected += import->step;
     }
     if (expected <= last) {
         g_autofree char *missing = fl_series_path(series, expected);
@@ -253,11 +253,11 @@ static bool read_series(Reader *reader, GError **error)
 
 static bool read_video(Reader *reader, GError **error)
 {
-    const FlStyleImport *how = reader->how;
-    const int first = MAX(1, how->first);
+    const FlStyleImport *import = reader->import;
+    const int first = MAX(1, import->first);
     reader->source->number = first;
     g_autoptr(FlFfmpeg) ffmpeg =
-        fl_ffmpeg_open(reader->source->path, first, how->last, how->step, error);
+        fl_ffmpeg_open(reader->source->path, first, import->last, import->step, error);
     if (!ffmpeg)
         return false;
     g_autoptr(GError) below = NULL;
@@ -273,17 +273,17 @@ static bool read_video(Reader *reader, GError **error)
             return false;
     }
     const int n = (int)reader->pictures->len;
-    if (!how->last || n == (how->last - first) / how->step + 1)
+    if (!import->last || n == (import->last - first) / import->step + 1)
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: ends before frame %d, after %d frames",
-                reader->source->path, how->last, n);
+                reader->source->path, import->last, n);
     return false;
 }
 
-GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *how, GError **error)
+GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *import, GError **error)
 {
     g_autoptr(GPtrArray) pictures = g_ptr_array_new_with_free_func((GDestroyNotify)fl_picture_free);
-    Reader reader = {.source = source, .how = how, .pictures = pictures};
+    Reader reader = {.source = source, .import = import, .pictures = pictures};
     if (!(source->series ? read_series : read_video)(&reader, error))
         return NULL;
     if (pictures->len == 0) {

@@ -30,7 +30,7 @@ void fl_recording_free(FlRecording *source); // NULL is fine
  *
  * Returns: (element-type FlPicture); NULL with FL_ERROR_INPUT, _USAGE or _LIMIT set.
  */
-GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *how, GError **error);
+GPtrArray *fl_recording_read(FlRecording *source, const FlStyleImport *import, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlRecording, fl_recording_free)
 

@@ -29,12 +29,12 @@ static bool style_flow(void *data, int frame, float *flow, GError **error)
 
 FlGuideSequence *fl_style_guides(const FlStyle *style, const FlParams *params, GError **error)
 {
-    const FlGuideParams how = fl_guide_params(params);
+    const FlGuideParams guide_params = fl_guide_params(params);
     const FlGuideSource source = {.width = style->width,
                                   .height = style->height,
                                   .n_frames = style->n_frames,
                                   .mask = style_mask,
                                   .flow = style->flow ? style_flow : NULL,
                                   .data = (void *)style};
-    return fl_guide_sequence_new(&source, &how, error);
+    return fl_guide_sequence_new(&source, &guide_params, error);
 }

@@ -14,7 +14,7 @@ typedef struct Vector {
 
 /* What is the same for all pixels of a frame. */
 typedef struct Plan {
-    const FlCarry *how;
+    const FlCarry *input;
     int carry;            // of the motion along the direction, CARRY_ONE is all
     int32_t x_off, y_off; // 0 … ROUND_ONE: what is added before places are rounded down
     const FlExemplarLevel *level;
@@ -33,12 +33,12 @@ static int32_t van_der_corput(int n, int base)
     return (int32_t)(value * ROUND_ONE);
 }
 
-static Plan plan_of(const FlCarry *how, const FlExemplarLevel *level)
+static Plan plan_of(const FlCarry *input, const FlExemplarLevel *level)
 {
-    return (Plan){.how = how,
-                  .carry = (int)(how->carry * CARRY_ONE + 0.5f),
-                  .x_off = van_der_corput(how->frame, 2),
-                  .y_off = van_der_corput(how->frame, 3),
+    return (Plan){.input = input,
+                  .carry = (int)(input->carry * CARRY_ONE + 0.5f),
+                  .x_off = van_der_corput(input->frame, 2),
+                  .y_off = van_der_corput(input->frame, 3),
                   .level = level};
 }
 
@@ -62,7 +62,7 @@ static FlMatch carried(const Plan *plan, FlMatch m, Vector rest, int16_t turn)
     if (x < 0 || y < 0 || x > 16 * (plan->level->width - 1) || y > 16 * (plan->level->height - 1))
         return none;
     m.x_16 = (uint16_t)x, m.y_16 = (uint16_t)y;
-    if (plan->how->rotate)
+    if (plan->input->rotate)
         m.theta = (uint8_t)(m.theta + ((turn + (plan->x_off >> (ROUND_BITS - 8))) >> 8));
     return m;
 }
@@ -71,14 +71,14 @@ static FlMatch carried(const Plan *plan, FlMatch m, Vector rest, int16_t turn)
  * grow with a shape. */
 static int left_of(const Plan *plan, int x, int y)
 {
-    const int room = fl_motion_room(plan->how->guides, x, y);
+    const int room = fl_motion_room(plan->input->guides, x, y);
     return CARRY_ONE - plan->carry * room / FL_ROOM_ONE * room / FL_ROOM_ONE;
 }
 
 /* Splits the motion of a pixel of the frame: what is carried, and in px what is left. */
 static Vector split(const Plan *plan, size_t pixel, int share, float *left_px)
 {
-    const FlGuides *guides = plan->how->guides;
+    const FlGuides *guides = plan->input->guides;
     const int32_t *u = guides->motion + 2 * pixel;
     const int16_t *d = fl_turns[guides->angle[pixel]];
     const int64_t along = ((int64_t)u[0] * d[0] + (int64_t)u[1] * d[1]) >> 14;
@@ -105,7 +105,7 @@ static float length_of_flow(const FlGuides *guides, size_t pixel)
 static FlMatch arriving(const Plan *plan, const FlNnf *before, int x, int y, int dx, int dy,
                         float *speed)
 {
-    const FlGuides *guides = plan->how->guides;
+    const FlGuides *guides = plan->input->guides;
     const size_t pixel = (size_t)y * guides->width + x;
     const bool inside = guides->mask[pixel] >= FL_INSIDE;
     *speed = inside ? length_of_flow(guides, pixel) : 0;
@@ -120,10 +120,10 @@ static FlMatch arriving(const Plan *plan, const FlNnf *before, int x, int y, int
     return m.frame == FL_NO_MATCH ? m : carried(plan, m, rest, guides->turn[pixel]);
 }
 
-void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *how, FlRect rect,
+void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *input, FlRect rect,
                   const FlExemplarLevel *level, FlNnf *out, float *speed)
 {
-    const Plan plan = plan_of(how, level);
+    const Plan plan = plan_of(input, level);
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {

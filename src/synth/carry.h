@@ -23,7 +23,7 @@ typedef struct FlCarry {
  * is known nothing is carried, and the speed is that of the flow. A pixel without a match in the
  * frame before, or outside the mask, may have none and has no speed. `out` is as large as rect.
  */
-void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *how, FlRect rect,
+void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *input, FlRect rect,
                   const FlExemplarLevel *level, FlNnf *out, float *speed);
 
 /** Whether the drawing is known to move anywhere in its mask, be it ever so little. */

@@ -26,13 +26,13 @@ static float bump(uint64_t seed, const FlPaper *paper, float x, float y)
 static void draw_fibres(FlSheet *sheet, const FlRecipe *recipe, float *grid)
 {
     const float scale = (float)recipe->oversample;
-    const FlFibre how = {recipe->paper.fibre_px, recipe->paper.fibre_curl, scale};
+    const FlFibre fibre = {recipe->paper.fibre_px, recipe->paper.fibre_curl, scale};
     const int n = (int)(recipe->paper.fibres * (float)recipe->width * (float)recipe->height / 100);
     for (int i = 0; i < n; i++) {
         FlRng rng = {fl_key(fl_key(recipe->seed, KEY_FIBRES), (uint64_t)i)};
         const float x = fl_rng_float(&rng) * (float)sheet->width;
         const float y = fl_rng_float(&rng) * (float)sheet->height;
-        fl_fibre_draw(grid, sheet->width, sheet->height, x, y, &how, &rng);
+        fl_fibre_draw(grid, sheet->width, sheet->height, x, y, &fibre, &rng);
     }
 }
 

@@ -37,15 +37,15 @@ static void blur(float *grid, int width, int height, int radius, float *line)
 }
 
 /* Drops specks and fills holes; of holes, the specks within do not count. */
-static bool drop_small_parts(uint8_t *mask, int width, int height, const FlExtract *how,
+static bool drop_small_parts(uint8_t *mask, int width, int height, const FlExtract *extract,
                              GError **error)
 {
     g_auto(FlConnectedParts) paint = {0}, bare = {0};
     if (!fl_connected_parts_init(&paint, mask, width, height, 1, 1, error) ||
         !fl_connected_parts_init(&bare, mask, width, height, 0, 0, error))
         return false;
-    fl_connected_parts_drop(&paint, (size_t)how->speck, 0, mask);
-    fl_connected_parts_drop(&bare, (size_t)how->hole, 1, mask);
+    fl_connected_parts_drop(&paint, (size_t)extract->speck, 0, mask);
+    fl_connected_parts_drop(&bare, (size_t)extract->hole, 1, mask);
     return true;
 }
 
@@ -90,8 +90,8 @@ static void distance_to(const uint8_t *mask, uint8_t value, int width, int heigh
         distance_line(squared + (size_t)j * width, width, 1, lines, at, lines + longest);
 }
 
-bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *how, float *distance,
-                     GError **error)
+bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *extract,
+                     float *distance, GError **error)
 {
     const size_t cells = (size_t)width * height;
     g_autofree uint8_t *mask = fl_alloc(cells, 1, "a mask", error);
@@ -99,16 +99,16 @@ bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *h
         mask ? fl_alloc((size_t)MAX(width, height) + 2, 3 * sizeof(float), "a mask", error) : NULL;
     if (!lines)
         return false;
-    if (how->blur > 0)
-        blur(thickness, width, height, how->blur, lines);
+    if (extract->blur > 0)
+        blur(thickness, width, height, extract->blur, lines);
     for (size_t i = 0; i < cells; i++)
-        mask[i] = thickness[i] > how->threshold;
-    if (!drop_small_parts(mask, width, height, how, error))
+        mask[i] = thickness[i] > extract->threshold;
+    if (!drop_small_parts(mask, width, height, extract, error))
         return false;
     distance_to(mask, 1, width, height, distance, lines);
     distance_to(mask, 0, width, height, thickness, lines);
     for (size_t i = 0; i < cells; i++)
         distance[i] =
-            (mask[i] ? sqrtf(thickness[i]) - 0.5f : 0.5f - sqrtf(distance[i])) + how->margin;
+            (mask[i] ? sqrtf(thickness[i]) - 0.5f : 0.5f - sqrtf(distance[i])) + extract->margin;
     return true;
 }

@@ -20,7 +20,7 @@ typedef struct FlExtract {
  * thickness has width * height values, >= 0, and is blurred in place; distance receives as many.
  * Without paint, all distances are about minus the size of the picture. FL_ERROR_NO_MEMORY.
  */
-bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *how, float *distance,
-                     GError **error);
+bool fl_extract_mask(float *thickness, int width, int height, const FlExtract *extract,
+                     float *distance, GError **error);
 
 #endif

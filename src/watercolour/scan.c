@@ -109,9 +109,10 @@ static bool find_mask(FlScan *scan, const FlSheet *sheet, const FlRecipe *recipe
         for (size_t i = 0; i < cells; i++)
             thickness[i] += recipe->flow.thickness * (float)pigment_at(sheet, k, i);
     const int scale = cells_per_px(sheet, recipe), area = scale * scale;
-    const FlExtract how = {recipe->mask_threshold, (int)(recipe->mask_blur * (float)scale + 0.5f),
-                           60 * area, 60 * area, recipe->mask_margin * (float)scale};
-    if (!fl_extract_mask(thickness, sheet->width, sheet->height, &how, distance, error))
+    const FlExtract extract = {recipe->mask_threshold,
+                               (int)(recipe->mask_blur * (float)scale + 0.5f), 60 * area, 60 * area,
+                               recipe->mask_margin * (float)scale};
+    if (!fl_extract_mask(thickness, sheet->width, sheet->height, &extract, distance, error))
         return false;
     draw_mask(scan, distance, sheet->width / scan->width);
     return true;
