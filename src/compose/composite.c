@@ -3,13 +3,13 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "base/schedule.h"
-#include "compose/beyond.h"
 #include "compose/colourise.h"
 #include "compose/edge_map.h"
 #include "compose/enlarge.h"
 #include "compose/exposure.h"
 #include "compose/granulation.h"
 #include "compose/knockout.h"
+#include "compose/underlay.h"
 #include "compose/unevenness.h"
 #include <math.h>
 #include <string.h>
@@ -228,7 +228,8 @@ static bool make_layers(FlComposite *composite, const FlComposeInput *input, GEr
     if (!fl_exposures_find(input, composite->draws, exposures, error) ||
         !fl_edges_init(&edges, input, composite->draws, error) ||
         !fill_layers(composite, input, &edges, exposures, error) ||
-        !fl_beyond_fade(composite->layers, composite->n_layers, input->width, input->height, error))
+        !fl_underlay_fade(composite->layers, composite->n_layers, input->width, input->height,
+                          error))
         return false;
     FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
     memcpy(params.paper, input->background->paper, 3);

@@ -1,5 +1,5 @@
 /* A lower layer below the rim of an upper one: rectangles whose paint is the same everywhere. */
-#include "compose/beyond.h"
+#include "compose/underlay.h"
 #include <string.h>
 
 enum { W = 60, H = 50, N = W * H };
@@ -27,7 +27,7 @@ static FlLayer rectangle(Sheet *sheet, int x, int y, int width, int height)
 static void fade(FlLayer *layers)
 {
     g_autoptr(GError) error = NULL;
-    g_assert_true(fl_beyond_fade(layers, 2, W, H, &error));
+    g_assert_true(fl_underlay_fade(layers, 2, W, H, &error));
     g_assert_no_error(error);
 }
 
@@ -69,7 +69,7 @@ static void a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays(void
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
-#define TEST(name) g_test_add_func("/beyond/" #name, name)
+#define TEST(name) g_test_add_func("/underlay/" #name, name)
     TEST(a_lower_shape_shows_through_no_rim_where_both_end_on_one_line);
     TEST(it_shows_where_it_is_seen_beyond);
     TEST(a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays);

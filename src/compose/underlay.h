@@ -1,6 +1,6 @@
 /* What lies below a shape is seen through its soft rim only where it is seen beyond it, too. */
-#ifndef FLUIDY_COMPOSE_BEYOND_H
-#define FLUIDY_COMPOSE_BEYOND_H
+#ifndef FLUIDY_COMPOSE_UNDERLAY_H
+#define FLUIDY_COMPOSE_UNDERLAY_H
 
 #include "compose/layers.h"
 
@@ -12,6 +12,6 @@
  * layers are those that fl_layers_resolve() takes, and come before it; alpha of rgba and knockout
  * change. Returns: false with FL_ERROR_NO_MEMORY set.
  */
-bool fl_beyond_fade(FlLayer *layers, int n, int width, int height, GError **error);
+bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error);
 
 #endif

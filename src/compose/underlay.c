@@ -1,4 +1,4 @@
-#include "compose/beyond.h"
+#include "compose/underlay.h"
 
 #include "base/alloc.h"
 #include <string.h>
@@ -13,18 +13,18 @@
 /** A layer's box with some room, and what is known of it. */
 typedef struct Part {
     FlRect box;
-    uint8_t *over; // 1: something above covers the pixel
-    uint8_t *seen; // 1: the layer is seen
-    uint16_t *out; // distances, fifths of a px: to what nothing above covers
-    uint16_t *to;  // to where the layer is seen
+    uint8_t *over;     // 1: something above covers the pixel
+    uint8_t *seen;     // 1: the layer is seen
+    uint16_t *to_open; // distances, fifths of a px: to what nothing above covers
+    uint16_t *to_seen; // to where the layer is seen
 } Part;
 
 static void part_clear(Part *part)
 {
     free(part->over);
     free(part->seen);
-    free(part->out);
-    free(part->to);
+    free(part->to_open);
+    free(part->to_seen);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Part, part_clear)
@@ -36,8 +36,8 @@ static bool part_init(Part *part, const FlLayer *layer, int width, int height, G
     const size_t n = fl_rect_pixels(part->box);
     return (part->over = fl_alloc(n, 1, "a matte", error)) &&
            (part->seen = fl_alloc(n, 1, "a matte", error)) &&
-           (part->out = fl_alloc(n, sizeof *part->out, "a matte", error)) &&
-           (part->to = fl_alloc(n, sizeof *part->to, "a matte", error));
+           (part->to_open = fl_alloc(n, sizeof *part->to_open, "a matte", error)) &&
+           (part->to_seen = fl_alloc(n, sizeof *part->to_seen, "a matte", error));
 }
 
 /** One row of a distance transform: from the row before, and along itself. */
@@ -96,15 +96,16 @@ static void find_ways(Part *part)
     const int w = part->box.width, h = part->box.height;
     const uint8_t *seen = part->seen;
     for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
-        part->out[p] = part->over[p] ? FAR : 0, part->to[p] = FAR;
+        part->to_open[p] = part->over[p] ? FAR : 0, part->to_seen[p] = FAR;
     for (int y = 0; y + 1 < h; y++)
         for (int x = 0; x + 1 < w; x++) {
             const size_t p = (size_t)y * (size_t)w + (size_t)x, q = p + (size_t)w;
             if (seen[p] & seen[p + 1] & seen[q] & seen[q + 1])
-                part->to[p] = part->to[p + 1] = part->to[q] = part->to[q + 1] = 0;
+                part->to_seen[p] = part->to_seen[p + 1] = part->to_seen[q] = part->to_seen[q + 1] =
+                    0;
         }
-    measure(part->out, w, h);
-    measure(part->to, w, h);
+    measure(part->to_open, w, h);
+    measure(part->to_seen, w, h);
 }
 
 static bool near_above(const Part *part, int x, int y)
@@ -121,7 +122,7 @@ static bool near_above(const Part *part, int x, int y)
 static int kept_at(const Part *part, int x, int y)
 {
     const size_t p = (size_t)y * (size_t)part->box.width + (size_t)x;
-    const int out = part->out[p], to = part->to[p];
+    const int out = part->to_open[p], to = part->to_seen[p];
     const int keep = 255 * (5 * out + 12 * SIDE - 2 * to) / (2 * (out + 4 * SIDE));
     return keep < 255 && out == 0 && !near_above(part, x, y) ? 255 : CLAMP(keep, 0, 255);
 }
@@ -166,7 +167,7 @@ static void add_above(const FlLayer *layer, int width, uint8_t *above)
     }
 }
 
-bool fl_beyond_fade(FlLayer *layers, int n, int width, int height, GError **error)
+bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error)
 {
     g_autofree uint8_t *above = fl_alloc((size_t)width * (size_t)height, 1, "a matte", error);
     if (!above)
