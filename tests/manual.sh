@@ -61,6 +61,16 @@ bash -e run >err 2>&1 && [ -s walk.mov ] && [ -s cycle.gif ] && [ -s ink/index.h
     [ -s styles.png ] && [ -s fluidy/walk_styles.png ]
 result $? 'the examples of fluidy-svg(1) work'
 
+# Small drafts of the frames that come with the repository.
+mkdir readme && cp -r "$fixtures/animations/snowman-wave-layers" readme
+printf '#!/bin/sh\nexec "%s" -W 64 --detail draft "$@"\n' "$build/src/cli/fluidy-svg" >readme/fluidy-svg
+chmod +x readme/fluidy-svg
+sed -nE 's/^ {4,}(fluidy-svg|xdg-open) /\1 /p' "$fixtures/../README.md" |
+    sed 's|fixtures/animations/||' >readme/run
+(cd readme && PATH=$PWD:$PATH && unset FLUIDY_STYLES && bash -e run) >err 2>&1 &&
+    [ "$(wc -l <readme/run)" = 8 ] && [ -s readme/snowman/0044.png ]
+result $? 'the examples of the README work on frames that are in the repository'
+
 sed -n '/^\.Sh EXAMPLES/,/^\.Sh DIAG/p' "$build/man/fluidy-svg.conf.5" |
     sed -n '/^\.Bd/,/^\.Ed/{/^\.[BE]d/!p}' >example.conf
 cp "$fixtures/compose/drop-13-rgb.png" paper.png

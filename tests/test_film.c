@@ -6,7 +6,7 @@
 #include <string.h>
 #include <zlib.h>
 
-#define KEEP FL_STROKES_KEEP
+#define AUTO FL_STROKES_AUTO
 
 static FlDrawing *open_film(const FlDrawingOptions *options, const char *input,
                             FlWarnings *warnings)
@@ -66,7 +66,7 @@ static const FlRegion *find(const FlDrawing *drawing, const char *name)
 static void layers_that_come_and_go_keep_their_regions(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
-    g_autoptr(FlDrawing) drawing = open_fixture("snowman-wave-layers", KEEP, warnings);
+    g_autoptr(FlDrawing) drawing = open_fixture("snowman-wave-layers", AUTO, warnings);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
     g_assert_cmpint(fl_drawing_frames(drawing), ==, 44);
     g_assert_cmpint(fl_drawing_width(drawing), ==, 1024);
@@ -87,16 +87,18 @@ static void layers_that_come_and_go_keep_their_regions(void)
 
 static void limbs_that_are_strokes_are_painted(void)
 {
-    g_autoptr(FlDrawing) drawing = open_fixture("strutter-zdog", KEEP, NULL);
+    g_autoptr(FlDrawing) drawing = open_fixture("strutter-zdog", AUTO, NULL);
     assert_table(drawing, "crimson-cc2255*4 yellow-eeaa00*4 purple-663366*4 "
                           "[purple-663366-line]*4 navy-442244*4 beige-ffeedd*4");
     g_autoptr(FlDrawing) fills = open_fixture("strutter-zdog", FL_STROKES_DROP, NULL);
     g_assert_null(find(fills, "navy-442244"));
+    g_autoptr(FlDrawing) kept = open_fixture("strutter-zdog", FL_STROKES_KEEP, NULL);
+    g_assert_false(find(kept, "navy-442244-line")->paintable);
 }
 
 static void strokes_over_fills_are_drawn_as_they_are(void)
 {
-    g_autoptr(FlDrawing) drawing = open_fixture("windsock-smil", KEEP, NULL);
+    g_autoptr(FlDrawing) drawing = open_fixture("windsock-smil", AUTO, NULL);
     assert_table(drawing, "gradient-ced1d7*3 gradient-f05c5c*3 [red-ef4444-line]*3");
 }
 
@@ -117,7 +119,7 @@ static void thick_strokes_are_limbs_and_thin_ones_lines(void)
 static void masked_parts_are_regions_and_faint_ones_over_others_shading(void)
 {
     g_autoptr(FlWarnings) warnings = fl_warnings_new();
-    g_autoptr(FlDrawing) drawing = open_fixture("ghost-morph", KEEP, warnings);
+    g_autoptr(FlDrawing) drawing = open_fixture("ghost-morph", AUTO, warnings);
     g_assert_cmpint(fl_warnings_count(warnings), ==, 0);
     g_assert_true(find(drawing, "white-ffffff") && find(drawing, "dark-brown-422b0d"));
     g_assert_false(find(drawing, "dark-red-ab3e2d-shade")->paintable);

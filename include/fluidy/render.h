@@ -30,9 +30,10 @@ typedef enum FlRegionKey {
 
 /** How the strokes of the drawing are rendered. */
 typedef enum FlStrokes {
-    FL_STROKES_UNSET, /**< the config's, else FL_STROKES_KEEP */
-    FL_STROKES_KEEP,  /**< drawn over the paint; but painted where the drawing is mostly strokes,
+    FL_STROKES_UNSET, /**< the config's, else FL_STROKES_AUTO */
+    FL_STROKES_AUTO,  /**< drawn over the paint; but painted where the drawing is mostly strokes,
                            and those without a fill that are 3 % of the page's side or wider */
+    FL_STROKES_KEEP,  /**< drawn over the paint */
     FL_STROKES_PAINT, /**< painted as regions */
     FL_STROKES_DROP,  /**< left out */
 } FlStrokes;

@@ -53,7 +53,10 @@ char *fl_help_text(bool all)
 {
     GString *text =
         g_string_new("fluidy-svg [OPTION…] INPUT… paints SVG frames with moving paint. INPUT is\n"
-                     "walk_%04d.svg, walk_####.svg, a quoted glob, a folder or files.\n");
+                     "walk_%04d.svg, walk_####.svg, a quoted glob, a folder or files.\n"
+                     "  fluidy-svg --styles all walk/          your drawing in every style\n"
+                     "  fluidy-svg -s gouache walk/            painted frames, in fluidy/\n"
+                     "  fluidy-svg -s ink -o walk.mov walk/    a film, and its frames beside it\n");
     for (int group = 0; group < (all ? (int)G_N_ELEMENTS(titles) : 1); group++) {
         if (group != FL_GROUP_COMMON)
             g_string_append_printf(text, "\n%s:\n", titles[group]);

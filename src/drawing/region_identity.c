@@ -193,7 +193,8 @@ static void find_hairlines(Work *w)
  */
 static bool is_apart(const Work *w, const FlSurveyPart *s, int track)
 {
-    return s->stroke && ((!w->paint_strokes && !s->thick) || w->is_hair[track]);
+    const bool thick = s->thick && w->options->strokes != FL_STROKES_KEEP;
+    return s->stroke && ((!w->paint_strokes && !thick) || w->is_hair[track]);
 }
 
 /** The key of a part's region; parts of equal keys are one region. */
@@ -308,7 +309,7 @@ GArray *fl_identify(FlSurvey *survey, const FlDrawingOptions *options)
     Work w = {.survey = survey, .options = options};
     fl_survey_choose_units(survey);
     w.paint_strokes = options->strokes == FL_STROKES_PAINT ||
-                      (options->strokes <= FL_STROKES_KEEP && is_line_art(survey));
+                      (options->strokes <= FL_STROKES_AUTO && is_line_art(survey));
     w.label_of = fl_clean_labels(survey);
     w.tracks = fl_leaf_tracks_find(survey, w.label_of, &w.track_of);
     join_near_paints(&w);
