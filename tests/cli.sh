@@ -98,6 +98,8 @@ refuses 'no style among several is refused' 2 '--styles: expected names *' --sty
 result $? '--help fits into a small terminal'
 "$program" --help >out 2>err && [ ! -s err ] && grep -q -- '--style' out
 result $? '--help goes to standard output'
+[ "$(grep -c '^  fluidy-svg ' out)" = 3 ]
+result $? '--help has three examples'
 "$program" --help-all >out 2>err && [ ! -s err ] && grep -q -- '--w-temp' out
 result $? '--help-all has the parameters of the synthesis'
 "$program" -V >out 2>err && grep -qE '^fluidy-svg [0-9]+\.[0-9]+' out
@@ -150,12 +152,34 @@ refuses 'a sheet that exists stays' 1 'styles.png: already exists*' --list-style
 result $? 'frames and layers are painted, and the sheet of paper'
 cp -r a b
 refuses 'a frame that exists is not painted over' 1 'a/w_1.png: already exists; *' whole -s 01 -o 'a/w_%d.png'
+refuses 'what exists is found before anything is read' 1 'a/w_1.png: already exists; *' broken -s 01 -o 'a/w_%d.png'
+refuses 'before a map is drawn, too' 1 'a/w_1.png: already exists; *' broken --check -o 'a/w_%d.png'
+refuses 'and before a sheet of styles' 1 'a/w_1.png: already exists; *' broken --styles 01 -o a/w_1.png
+"$program" whole -s 01 --dry-run -o 'a/w_%d.png' >out 2>err && grep -q 'would paint 3 frames' err &&
+    grep -q 'a/w_1.png: already exists; use -y' err
+result $? 'a dry run only notes it'
+touch old_0002.png
+refuses 'a film beside older frames says what to do' 1 \
+    'old_0002.png: *earlier film; use -y to replace its frames, --no-frames to write none, *' whole -s 01 -o old.mkv
 refuses 'a layer that exists is not painted over' 1 'a/*_1.png: already exists; *' \
     whole -s 01 -o 'c/w_%d.png' --layers 'a/{region}_%d.png'
 rm a/w_2.png && touch -d @0 a/w_1.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' --no-clobber -j1 \
     >out 2>err && [ "$(stat -c %Y a/w_1.png)" = 0 ] && diff -r a b >out
 result $? '--no-clobber paints what is missing, and gives the same bytes'
+
+# Held frames: one that is not there and one beyond a limit, before everything that changes.
+for i in 1 2 5; do
+    echo "$drawing<circle cx='$((20 + 4 * i))' cy='24' r='12' fill='#aa3311'/>
+<path d='M$((4 + i)) 5L50 44' stroke='#000' stroke-width='1'/></svg>" >gap/w_000$i.svg
+done
+echo "$drawing$(printf '<circle r="9" fill="#ff0000"/>%.0s' {1..60})</svg>" >gap/w_0004.svg
+rm gap/w_0003.svg
+"$program" gap -s 01 --missing hold --limit elements=50 --boil 1 --line-boil 1 --paper-boil 1 -o 'held/w_%d.png' \
+    --layers 'held/{region}_%d.png' >out 2>err && cmp held/w_2.png held/w_3.png >>err &&
+    cmp held/w_2.png held/w_4.png >>err && cmp held/red-aa3311_2.png held/red-aa3311_4.png >>err &&
+    ! cmp -s held/w_4.png held/w_5.png && ! cmp -s held/w_1.png held/w_2.png
+result $? 'a frame that is held is the one before, to the bit'
 
 # on_a_terminal COMMAND: what it prints there, control characters spelt out
 on_a_terminal() {

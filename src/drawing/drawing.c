@@ -77,6 +77,24 @@ int fl_drawing_number(const FlDrawing *drawing, int frame)
     return drawing->sequence->number[frame];
 }
 
+/* Frames that are held before the first one that is there stand for it, and it is like them. */
+int fl_drawing_shown(const FlDrawing *drawing, int frame)
+{
+    const FlSequence *s = drawing->sequence;
+    while (frame > 0 && (s->stand_in[frame] || s->stand_in[frame - 1]) &&
+           g_str_equal(s->file[frame], s->file[frame - 1]))
+        frame--;
+    return frame;
+}
+
+bool fl_drawing_stands_still(const FlDrawing *drawing)
+{
+    for (int t = 1; t < drawing->sequence->n; t++)
+        if (fl_drawing_shown(drawing, t) != t)
+            return true;
+    return false;
+}
+
 static void region_clear(void *data)
 {
     FlRegion *region = data;

@@ -116,6 +116,15 @@ const char *fl_drawing_file(const FlDrawing *drawing, int frame);
 int fl_drawing_number(const FlDrawing *drawing, int frame);
 
 /**
+ * The frame whose picture is shown: `frame` itself, unless a missing frame is held there; then the
+ * first of those that show the same.
+ */
+int fl_drawing_shown(const FlDrawing *drawing, int frame);
+
+/** Whether any frame shows the picture of another one. */
+bool fl_drawing_stands_still(const FlDrawing *drawing);
+
+/**
  * Halves width and height of the pictures from now on, rounding up; the regions stay the same. No
  * other thread may use the drawing meanwhile.
  */

@@ -11,11 +11,13 @@ void fl_sequence_leave_out(FlSequence *sequence, int frame, int instead)
     g_free(sequence->file[frame]);
     if (instead >= 0) {
         sequence->file[frame] = g_strdup(sequence->file[instead]);
+        sequence->stand_in[frame] = true;
         return;
     }
     for (int t = frame; t + 1 < sequence->n; t++) {
         sequence->file[t] = sequence->file[t + 1];
         sequence->number[t] = sequence->number[t + 1];
+        sequence->stand_in[t] = sequence->stand_in[t + 1];
     }
     sequence->file[--sequence->n] = NULL;
 }

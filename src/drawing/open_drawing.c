@@ -186,3 +186,9 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
         return NULL;
     return report(warnings, options, error) ? g_steal_pointer(&drawing) : NULL;
 }
+
+FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error)
+{
+    return fl_sequence_open(options->inputs, (int)g_strv_length((char **)options->inputs),
+                            options->frames, options->missing, NULL, error);
+}

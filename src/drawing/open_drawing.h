@@ -16,4 +16,11 @@
 FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
                                    GError **error);
 
+/**
+ * The frames that the options name, found by their files' names; none is read.
+ *
+ * Returns: to be freed with fl_sequence_free(); NULL with FL_ERROR_USAGE or FL_ERROR_INPUT.
+ */
+FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error);
+
 #endif

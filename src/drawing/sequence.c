@@ -370,6 +370,7 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
     g_autoptr(FlSequence) s = g_new0(FlSequence, 1);
     s->file = g_new0(char *, wanted->len + 1);
     s->number = g_new0(int, wanted->len + 1);
+    s->stand_in = g_new0(bool, wanted->len + 1);
     s->name = shared_name(first);
     for (guint i = 0; i < wanted->len; i++) {
         const int number = g_array_index(wanted, int, i);
@@ -378,6 +379,7 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
             g_array_append_val(gaps, number);
         if (f) {
             s->file[s->n] = g_strdup(f->path);
+            s->stand_in[s->n] = f->number != number;
             s->number[s->n++] = number;
         }
     }
@@ -435,6 +437,7 @@ void fl_sequence_free(FlSequence *sequence)
         g_free(sequence->file[i]);
     g_free(sequence->file);
     g_free(sequence->number);
+    g_free(sequence->stand_in);
     g_free(sequence->name);
     g_free(sequence);
 }

@@ -12,6 +12,7 @@ typedef struct FlSequence {
     int n;
     char **file;
     int *number;    // as in the file's name; 1 … n where the names have no number
+    bool *stand_in; // whether the file is that of another number, which is held
     char *name;     // what the names share, such as "walk" of walk_0001.svg; never empty
     int n_left_out; // frames whose files were found, but are held or skipped
 } FlSequence;

@@ -2,6 +2,7 @@
 #include <fluidy/inspect.h>
 
 #include "base/alloc.h"
+#include "base/exists.h"
 #include "base/surface.h"
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
@@ -26,13 +27,18 @@ static void subject_clear(Subject *subject)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Subject, subject_clear)
 
-static bool subject_init(Subject *subject, const FlRenderOptions *options, GError **error)
+static bool subject_configure(Subject *subject, const FlRenderOptions *options, GError **error)
 {
     *subject = (Subject){.options = *options};
     subject->config = fl_config_load(options->config, error);
     if (!subject->config)
         return false;
     fl_config_complete(subject->config, &subject->options);
+    return true;
+}
+
+static bool subject_read(Subject *subject, GError **error)
+{
     subject->drawing = fl_drawing_from_options(&subject->options, subject->config, error);
     return subject->drawing != NULL;
 }
@@ -161,7 +167,7 @@ static char *config_text(const Subject *subject)
 char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError **error)
 {
     g_auto(Subject) subject = {0};
-    if (!subject_init(&subject, options, error))
+    if (!subject_configure(&subject, options, error) || !subject_read(&subject, error))
         return NULL;
     return listing == FL_LISTING_CONFIG ? config_text(&subject) : table(&subject);
 }
@@ -232,18 +238,35 @@ static bool write_map(const Subject *subject, int frame, const char *pattern, GE
 /* Saves the picture of a frame; false with an error. */
 typedef bool WriteFrame(const Subject *subject, int frame, const char *pattern, GError **error);
 
+/* The names of the pictures, free if they must be: known before the drawing is read. */
+static char *pattern_of(const Subject *subject, const char *what, GError **error)
+{
+    const char *wanted = subject->options.output;
+    g_autoptr(FlSequence) sequence = fl_sequence_from_options(&subject->options, error);
+    if (!sequence)
+        return NULL;
+    g_autofree char *usual = g_strdup_printf("fluidy/{name}_%s_%%04d.png", what);
+    g_autofree char *are = g_strdup_printf("%ss are", what);
+    g_autofree char *pattern = fl_output_of_film(wanted ? wanted : usual, sequence->name);
+    if (!fl_png_named(pattern, are, error))
+        return NULL;
+    for (int f = 0; subject->options.overwrite != FL_OVERWRITE_YES && f < sequence->n; f++) {
+        g_autofree char *file = fl_output_name(pattern, sequence->number[f], NULL, error);
+        if (!file || !fl_exists_not(file, error))
+            return NULL;
+    }
+    return g_steal_pointer(&pattern);
+}
+
 /* Saves a picture of every frame; `what`, "map", names one. */
 static bool write_frames(const FlRenderOptions *options, const char *what, WriteFrame *write,
                          GError **error)
 {
     g_auto(Subject) subject = {0};
-    if (!subject_init(&subject, options, error))
+    if (!subject_configure(&subject, options, error))
         return false;
-    g_autofree char *usual = g_strdup_printf("fluidy/{name}_%s_%%04d.png", what);
-    g_autofree char *pattern = fl_output_of_film(options->output ? options->output : usual,
-                                                 fl_drawing_name(subject.drawing));
-    g_autofree char *are = g_strdup_printf("%ss are", what);
-    if (!fl_png_named(pattern, are, error))
+    g_autofree char *pattern = pattern_of(&subject, what, error);
+    if (!pattern || !subject_read(&subject, error))
         return false;
     const int n = fl_drawing_frames(subject.drawing);
     for (int f = 0; f < n; f++)

@@ -112,7 +112,7 @@ static bool shows_guides(const FlReport *report, int frame)
     const int n = fl_drawing_frames(report->plan->drawing);
     for (int k = 0; k < GUIDE_FRAMES; k++) {
         const int middle = (2 * k + 1) * n / (2 * GUIDE_FRAMES);
-        if (frame == middle - middle % report->plan->hold)
+        if (frame == fl_drawing_shown(report->plan->drawing, middle - middle % report->plan->hold))
             return true;
     }
     return false;
@@ -195,9 +195,10 @@ static void write_painters(FlReport *report, const FlReportFrame *frame)
         fputs(p > 0 ? ",[" : "[", out);
         fl_script_number(out, searched ? painted->stats.level[0].energy : NAN);
         fputc(',', out);
-        fl_script_number(out, report->flicker[p].change);
+        const bool held = frame->frame % painted->settings->hold != 0 ||
+                          fl_drawing_shown(report->plan->drawing, frame->frame) != frame->frame;
+        fl_script_number(out, held ? 0 : report->flicker[p].change);
         fputc(',', out);
-        const bool held = frame->frame % painted->settings->hold != 0;
         fl_script_number(out, held ? 0 : painted->seconds);
         report->painter_seconds[p] += held ? 0 : painted->seconds;
         fputc(']', out);

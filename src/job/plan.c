@@ -7,6 +7,7 @@
 #include "base/suggest.h"
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
+#include "job/resume.h"
 #include <string.h>
 
 static bool open_drawing(FlPlan *plan, GError **error)
@@ -258,22 +259,29 @@ static bool choose_frames(FlPlan *plan, GError **error)
     return plan->format != NULL;
 }
 
-static bool name_output(FlPlan *plan, GError **error)
+static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error)
 {
     const char *format = plan->options.format, *requested = plan->options.output;
     plan->format = fl_sink_format(format || requested ? format : "png", requested, error);
     if (!plan->format)
         return false;
     g_autofree char *pattern = requested ? g_strdup(requested) : default_output(plan);
-    plan->output = fl_output_of_film(pattern, fl_drawing_name(plan->drawing));
-    if (!plan->format->film && !fl_output_is_pattern(plan->output) &&
-        fl_drawing_frames(plan->drawing) > 1) {
+    plan->output = fl_output_of_film(pattern, sequence->name);
+    if (!plan->format->film && !fl_output_is_pattern(plan->output) && sequence->n > 1) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "%s: one file for %d frames; expected a number in the name, such as %%04d",
-                    plan->output, fl_drawing_frames(plan->drawing));
+                    plan->output, sequence->n);
         return false;
     }
     return choose_frames(plan, error);
+}
+
+/* Names the output and looks whether it is free, before the drawing is read. */
+static bool find_output(FlPlan *plan, GError **error)
+{
+    g_autoptr(FlSequence) sequence = fl_sequence_from_options(&plan->options, error);
+    return sequence && name_output(plan, sequence, error) &&
+           (plan->options.dry_run || fl_resume_expect_free(plan, sequence, error));
 }
 
 /* With one name for all regions, each layer would replace the last. */
@@ -315,8 +323,9 @@ static bool make_plan(FlPlan *plan, GError **error)
                     "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
         return false;
     }
-    if (!check_merge(&plan->options, error) || !open_drawing(plan, error) ||
-        !check_region_names(plan, error) || !name_output(plan, error) || !plan_regions(plan, error))
+    if (!check_merge(&plan->options, error) || !find_output(plan, error) ||
+        !open_drawing(plan, error) || !check_region_names(plan, error) ||
+        !plan_regions(plan, error))
         return false;
     choose_size(plan);
     return choose_styles(plan, error) && check_regions_file(plan, plan->options.layers, error) &&

@@ -59,6 +59,19 @@ static bool find_state(FlResume *resume, const FlPlan *plan, FlFingerprint *prin
     return false;
 }
 
+/* Frames that are there keep a film from being made, where nobody may have thought of them. */
+static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
+{
+    if (fl_exists_not(file, plan->movie ? NULL : error))
+        return true;
+    if (plan->movie)
+        g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
+                    "%s: already exists, a frame of an earlier film; use ‘overwrite’ to replace "
+                    "its frames, ‘no-frames’ to write none, or another name",
+                    file);
+    return false;
+}
+
 static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
 {
     const int number = fl_drawing_number(plan->drawing, frame);
@@ -98,7 +111,7 @@ static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, G
         return false;
     }
     return resume->keep_files || fl_resume_replaces(resume, frame) ||
-           ((!file || fl_exists_not(file, error)) && layers_are_free(plan, frame, error) &&
+           ((!file || frame_is_free(plan, file, error)) && layers_are_free(plan, frame, error) &&
             paints_are_free(plan, frame, error));
 }
 
@@ -122,6 +135,26 @@ static void note_resume(const FlResume *resume, const FlPlan *plan)
         g_strdup_printf("resuming an earlier run, which painted %d of %d frames", resume->first,
                         fl_drawing_frames(plan->drawing));
     o->note(line, o->data);
+}
+
+bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error)
+{
+    const bool one_file = plan->format->film;
+    const char *movie = one_file ? plan->output : plan->movie;
+    if (may_overwrite(plan))
+        return true;
+    if (movie && !fl_exists_not(movie, error))
+        return false;
+    g_autofree char *state = hidden_file(plan, false, "state");
+    if (one_file || plan->options.overwrite == FL_OVERWRITE_KEEP ||
+        g_file_test(state, G_FILE_TEST_EXISTS))
+        return true;
+    for (int f = 0; f < sequence->n; f++) {
+        g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, error);
+        if (!file || !frame_is_free(plan, file, error))
+            return false;
+    }
+    return true;
 }
 
 /* A film without its frames is one file, which cannot be continued. */

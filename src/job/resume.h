@@ -24,6 +24,14 @@ typedef struct FlResume {
  */
 bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error);
 
+/**
+ * Looks by names alone, before anything is read, whether the frames and the film exist that a run
+ * may not replace. Where an interrupted run has left its state, fl_resume_init() decides.
+ *
+ * Returns: false with FL_ERROR_EXISTS or FL_ERROR_USAGE.
+ */
+bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error);
+
 /** Locks the files of the run that is resumed, if any. FL_ERROR_EXISTS as below. */
 bool fl_resume_start(FlResume *resume, const FlPlan *plan, GError **error);
 

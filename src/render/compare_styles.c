@@ -3,6 +3,7 @@
 #include <fluidy/style.h>
 
 #include "base/alloc.h"
+#include "base/exists.h"
 #include "drawing/open_drawing.h"
 #include "io/contact_sheet.h"
 #include "io/pattern.h"
@@ -20,6 +21,7 @@ typedef struct Comparison {
     FlConfig *config;
     FlDrawing *drawing;
     FlContactSheet contact;
+    char *path;      // of the sheet
     int row, column; // where the next painted frame goes
 } Comparison;
 
@@ -28,9 +30,22 @@ static void comparison_clear(Comparison *c)
     fl_drawing_free(c->drawing);
     fl_config_free(c->config);
     fl_contact_sheet_clear(&c->contact);
+    g_free(c->path);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Comparison, comparison_clear)
+
+/* The sheet's file, free if it must be, before the drawing is read. */
+static bool name_sheet(Comparison *c, const FlRenderOptions *complete, GError **error)
+{
+    const char *wanted = c->options.output;
+    g_autoptr(FlSequence) sequence = fl_sequence_from_options(complete, error);
+    if (!sequence)
+        return false;
+    c->path = fl_output_of_film(wanted ? wanted : "fluidy/{name}_styles.png", sequence->name);
+    return fl_png_named(c->path, "sheets are", error) &&
+           (c->options.overwrite == FL_OVERWRITE_YES || fl_exists_not(c->path, error));
+}
 
 static bool comparison_init(Comparison *c, const FlRenderOptions *options, int n_styles,
                             GError **error)
@@ -43,7 +58,8 @@ static bool comparison_init(Comparison *c, const FlRenderOptions *options, int n
     FlRenderOptions complete = c->options;
     fl_config_complete(c->config, &complete);
     complete.warning = NULL, complete.note = NULL; // the renders repeat them
-    if (!(c->drawing = fl_drawing_from_options(&complete, c->config, error)))
+    if (!name_sheet(c, &complete, error) ||
+        !(c->drawing = fl_drawing_from_options(&complete, c->config, error)))
         return false;
     const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
     const double scale = MIN(1, (double)SHOWN_PX / MAX(width, height));
@@ -113,17 +129,14 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
         if (!path)
             return false;
     }
-    if ((options->output && !fl_png_named(options->output, "sheets are", error)) ||
-        !comparison_init(&c, options, n, error) || !show_drawing(&c, error))
+    if (!comparison_init(&c, options, n, error) || !show_drawing(&c, error))
         return false;
     for (int k = 0; k < n; k++)
         if (!paint(&c, styles[k], k + 1, error))
             return false;
-    g_autofree char *path = fl_output_of_film(
-        options->output ? options->output : "fluidy/{name}_styles.png", fl_drawing_name(c.drawing));
-    if (!fl_contact_sheet_save(&c.contact, path, options->overwrite == FL_OVERWRITE_YES, error))
+    if (!fl_contact_sheet_save(&c.contact, c.path, options->overwrite == FL_OVERWRITE_YES, error))
         return false;
-    g_autofree char *line = g_strdup_printf("%d styles: %s", n, path);
+    g_autofree char *line = g_strdup_printf("%d styles: %s", n, c.path);
     if (options->note)
         options->note(line, options->data);
     return true;
@@ -158,7 +171,7 @@ static bool show_recording(const FlContactSheet *contact, const FlStyleEntry *en
 bool fl_style_sheet(const char *path, bool overwrite, GError **error)
 {
     g_autoptr(GPtrArray) styles = fl_style_list();
-    if (!fl_png_named(path, "sheets are", error))
+    if (!fl_png_named(path, "sheets are", error) || (!overwrite && !fl_exists_not(path, error)))
         return false;
     for (guint k = styles->len; k > 0; k--)
         if (((FlStyleEntry *)styles->pdata[k - 1])->hidden)

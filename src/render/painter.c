@@ -303,9 +303,15 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     return true;
 }
 
+/* Whether a frame may show the picture of one before it, so that a resumed render needs it. */
+static bool keeps_picture(const FlPainter *painter)
+{
+    return painter->plan->settings.hold > 1 || fl_drawing_stands_still(painter->drawing);
+}
+
 bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error)
 {
-    const bool holds = painter->plan->settings.hold > 1 && !painter->plan->paint_files;
+    const bool holds = keeps_picture(painter) && !painter->plan->paint_files;
     if (painter->plan->paint_files)
         parts[0] = g_bytes_new(NULL, 0);
     else if (!(parts[0] = fl_synth_save(painter->synth, error)))
@@ -319,8 +325,7 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
 {
     if (painter->plan->paint_files)
         return true;
-    const size_t bytes =
-        painter->plan->settings.hold > 1 ? 3 * fl_rect_pixels(painter->result.rect) : 0;
+    const size_t bytes = keeps_picture(painter) ? 3 * fl_rect_pixels(painter->result.rect) : 0;
     if (g_bytes_get_size(parts[1]) != bytes) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "region %s: the picture of an earlier render has another size",

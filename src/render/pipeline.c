@@ -188,8 +188,8 @@ static FlComposeInput compose_input(const Pipeline *pipeline, int frame)
                             .gap_px = (float)MAX(plan->options.gap, 0)};
 }
 
-/* Paints and composes a frame. Its shapes are drawn beside the painting, those of frame `next` (-1:
- * none) beside the composing. */
+/* Paints and composes a frame, or where a missing one is held, the frame before again. Its shapes
+ * are drawn beside the painting, those of frame `next` (-1: none) beside the composing. */
 static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *composite,
                         double *paint_s, GError **error)
 {
@@ -198,17 +198,20 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
     if (!fl_style_cache_seek(plan->styles, frame, fl_drawing_frames(plan->drawing),
                              plan->options.loop, error))
         return false;
-    if (pipeline->drawn != frame)
-        start_drawing(pipeline, frame);
-    const bool painted = fl_painters_each(&pipeline->painters, frame, paint_one, pipeline, error);
+    const int shown = fl_drawing_shown(plan->drawing, frame);
+    if (pipeline->drawn != shown)
+        start_drawing(pipeline, shown);
+    const bool painted =
+        shown != frame || fl_painters_each(&pipeline->painters, frame, paint_one, pipeline, error);
     *paint_s = seconds_since(start);
     if (!fl_task_wait(&pipeline->drawing, painted ? error : NULL) || !painted)
         return false;
     FlDrawList *draws = g_steal_pointer(&pipeline->draws);
+    pipeline->drawn = -1;
     if (next >= 0 && overlaps(pipeline))
-        start_drawing(pipeline, next);
-    const FlComposeInput input = compose_input(pipeline, frame);
-    return fl_composite_init(composite, &input, frame, draws, plan->format->takes_16, error);
+        start_drawing(pipeline, fl_drawing_shown(plan->drawing, next));
+    const FlComposeInput input = compose_input(pipeline, shown);
+    return fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error);
 }
 
 /* Adds a frame to statistics and report, once its files are written. */
@@ -310,7 +313,24 @@ static bool check(Pipeline *pipeline, GError **error)
     const uint8_t *ground = fl_paper_ground(plan->options.paper);
     return fl_background_init(&pipeline->background, plan->options.background,
                               ground ? ground : plan->paper, plan->drawing, error) &&
-           make_sheet(pipeline, error) && fl_resume_init(&pipeline->resume, plan, error);
+           make_sheet(pipeline, error);
+}
+
+/* A dry run writes nothing, so that what is in the way of the real one is a note. */
+static bool note_obstacles(Pipeline *pipeline, GError **error)
+{
+    g_autoptr(GError) obstacle = NULL;
+    const FlRenderOptions *o = &pipeline->plan->options;
+    if (fl_resume_init(&pipeline->resume, pipeline->plan, &obstacle))
+        return true;
+    if (!g_error_matches(obstacle, FL_ERROR, FL_ERROR_EXISTS) &&
+        !g_error_matches(obstacle, FL_ERROR, FL_ERROR_CHANGED)) {
+        g_propagate_error(error, g_steal_pointer(&obstacle));
+        return false;
+    }
+    if (o->note)
+        o->note(obstacle->message, o->data);
+    return true;
 }
 
 /* Loads the painters' states of an earlier run, or saves those before the first frame. */
@@ -328,7 +348,7 @@ static bool restore_state(Pipeline *pipeline, GError **error)
 static bool prepare(Pipeline *pipeline, GError **error)
 {
     const double read_s = seconds_since(pipeline->start);
-    if (!check(pipeline, error) ||
+    if (!check(pipeline, error) || !fl_resume_init(&pipeline->resume, pipeline->plan, error) ||
         !fl_frame_writer_init(&pipeline->writer, pipeline->plan, &pipeline->resume,
                               pipeline->background.opaque, pipeline->taker, error) ||
         !fl_stats_init(&pipeline->stats, &pipeline->plan->options, error) ||
@@ -364,7 +384,8 @@ static bool dry_run(Pipeline *pipeline, GError **error)
     FlPlan *plan = pipeline->plan;
     double frame_s = 0;
     plan->options.dump = NULL; // it would write files
-    if (!check(pipeline, error) || !make_painters(pipeline, error))
+    if (!check(pipeline, error) || !note_obstacles(pipeline, error) ||
+        !make_painters(pipeline, error))
         return false;
     for (int k = 0; k < 2 && k * plan->hold < fl_drawing_frames(plan->drawing); k++) {
         const gint64 start = g_get_monotonic_time();
