@@ -13,25 +13,25 @@ static struct Options {
 } options;
 
 static const GOptionEntry import_entries[] = {
-    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "The style to make", "DIR"},
-    {"frames", 'f', 0, G_OPTION_ARG_STRING, &options.frames, "Take these (all)", "A-B[xSTEP]"},
-    {"crop", 'c', 0, G_OPTION_ARG_STRING, &options.crop, "Take this part of the picture",
-     "WxH[+X+Y]"},
-    {"scale", 's', 0, G_OPTION_ARG_DOUBLE, &options.scale,
-     "Make it smaller or larger (1; at most 640 px)", "FACTOR"},
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "style to make", "DIR"},
+    {"frames", 'f', 0, G_OPTION_ARG_STRING, &options.frames, "frames of the source to use (all)",
+     "A-B[xSTEP]"},
+    {"crop", 'c', 0, G_OPTION_ARG_STRING, &options.crop, "part of the picture to use", "WxH[+X+Y]"},
+    {"scale", 's', 0, G_OPTION_ARG_DOUBLE, &options.scale, "size of the frames (1; at most 640 px)",
+     "FACTOR"},
     {"masks", 'm', 0, G_OPTION_ARG_FILENAME, &options.masks,
-     "Masks, white where the paint is (found)", "SOURCE"},
-    {"paper", 0, 0, G_OPTION_ARG_STRING, &options.paper, "Colour of the paper (found)", "#RRGGBB"},
-    {"border", 0, 0, G_OPTION_ARG_DOUBLE, &options.border, "Width of the border (found)", "PX"},
-    {"fps", 0, 0, G_OPTION_ARG_DOUBLE, &options.fps, "Frames per second (the video's, or 25)", "N"},
-    {"whole", 0, 0, G_OPTION_ARG_NONE, &options.whole, "The paint fills the whole frame", NULL},
-    {"no-flatten", 0, 0, G_OPTION_ARG_NONE, &options.no_flatten, "Leave uneven light", NULL},
-    {"no-stabilise", 0, 0, G_OPTION_ARG_NONE, &options.no_stabilise, "Leave camera shake", NULL},
-    {"name", 0, 0, G_OPTION_ARG_STRING, &options.name, "Name of the style (the folder's)", "TEXT"},
-    {"author", 0, 0, G_OPTION_ARG_STRING, &options.author, "Who made the recording", "TEXT"},
-    {"licence", 0, 0, G_OPTION_ARG_STRING, &options.licence, "Licence of the recording", "TEXT"},
-    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace a style in DIR", NULL},
-    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "No notes, only errors", NULL},
+     "masks, white where the paint is (found)", "SOURCE"},
+    {"paper", 0, 0, G_OPTION_ARG_STRING, &options.paper, "colour of the paper (found)", "#RRGGBB"},
+    {"border", 0, 0, G_OPTION_ARG_DOUBLE, &options.border, "width of the border (found)", "PX"},
+    {"fps", 0, 0, G_OPTION_ARG_DOUBLE, &options.fps, "frames per second (the video's, or 25)", "N"},
+    {"whole", 0, 0, G_OPTION_ARG_NONE, &options.whole, "paint fills the whole frame", NULL},
+    {"no-flatten", 0, 0, G_OPTION_ARG_NONE, &options.no_flatten, "keep uneven light", NULL},
+    {"no-stabilise", 0, 0, G_OPTION_ARG_NONE, &options.no_stabilise, "keep camera shake", NULL},
+    {"name", 0, 0, G_OPTION_ARG_STRING, &options.name, "name of the style (the folder's)", "TEXT"},
+    {"author", 0, 0, G_OPTION_ARG_STRING, &options.author, "who made the recording", "TEXT"},
+    {"licence", 0, 0, G_OPTION_ARG_STRING, &options.licence, "licence of the recording", "TEXT"},
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "replace a style in DIR", NULL},
+    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "print errors only", NULL},
     {NULL},
 };
 
@@ -130,11 +130,12 @@ static bool written(GError **error)
 }
 
 static const GOptionEntry check_entries[] = {
-    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "The picture sheet (NAME-check.png)",
-     "FILE"},
-    {"no-sheet", 0, 0, G_OPTION_ARG_NONE, &options.no_sheet, "Print the report only", NULL},
-    {"strict", 0, 0, G_OPTION_ARG_NONE, &options.strict, "Exit with 1 if there are problems", NULL},
-    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace the sheet", NULL},
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output,
+     "picture sheet to write (NAME-check.png)", "FILE"},
+    {"no-sheet", 0, 0, G_OPTION_ARG_NONE, &options.no_sheet, "print the report, write no sheet",
+     NULL},
+    {"strict", 0, 0, G_OPTION_ARG_NONE, &options.strict, "exit with 1 if there are problems", NULL},
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "overwrite the sheet", NULL},
     {NULL},
 };
 
@@ -190,11 +191,10 @@ static bool show_progress(int frame, int n_frames, void *data)
 }
 
 static const GOptionEntry simulate_entries[] = {
-    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "The style to make", "DIR"},
-    {"size", 0, 0, G_OPTION_ARG_INT, &options.size,
-     "Frames of 2 or 4 times the recipe's size, finer (1)", "N"},
-    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace a style in DIR", NULL},
-    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "No progress, only errors", NULL},
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "style to make", "DIR"},
+    {"size", 0, 0, G_OPTION_ARG_INT, &options.size, "1, 2 or 4 times the recipe's size (1)", "N"},
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "replace a style in DIR", NULL},
+    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "print errors only", NULL},
     {NULL},
 };
 
@@ -214,10 +214,11 @@ static bool run_simulate(char **words, GError **error)
 }
 
 static const GOptionEntry list_entries[] = {
-    {"paths", 'p', 0, G_OPTION_ARG_NONE, &options.paths, "Also the folders that are searched",
+    {"paths", 'p', 0, G_OPTION_ARG_NONE, &options.paths, "print the folders searched as well",
      NULL},
-    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "Draw the recordings, too", "FILE"},
-    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "Replace the picture", NULL},
+    {"output", 'o', 0, G_OPTION_ARG_FILENAME, &options.output, "draw every style on a sheet",
+     "FILE"},
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "overwrite the sheet", NULL},
     {NULL},
 };
 
@@ -242,7 +243,7 @@ static bool run_list(char **words, GError **error)
 }
 
 const FlStyleCommand fl_style_commands[] = {
-    {"import", "SOURCE -o DIR", "make a style of a recording",
+    {"import", "SOURCE -o DIR", "make a style from a recording",
      "SOURCE is a video, a still picture, a pattern such as paint_%04d.png, or a folder of "
      "numbered\npictures. Masks beside the pictures (mask_0001.png …) and alpha channels are "
      "kept.\n",
@@ -251,7 +252,7 @@ const FlStyleCommand fl_style_commands[] = {
      "STYLE is a name that fluidy-style list shows, or a folder.\n", check_entries, run_check},
     {"simulate", "RECIPE -o DIR", "make a style by simulating paint", NULL, simulate_entries,
      run_simulate},
-    {"list", "[-o FILE]", "list the styles that are found, and draw them",
+    {"list", "[-o FILE]", "list styles, and draw them on a sheet",
      "Prints one style a line, with tabs between: number or folder's name, name, character, "
      "folder.\n",
      list_entries, run_list},
