@@ -168,6 +168,49 @@ rm a/w_2.png && touch -d @0 a/w_1.png
     >out 2>err && [ "$(stat -c %Y a/w_1.png)" = 0 ] && diff -r a b >out
 result $? '--no-clobber paints what is missing, and gives the same bytes'
 
+# For programs.
+film=$fixtures/animations/snowman-wave-layers
+json() { # json FILE EXPRESSION: whether it is true of the list of a file's lines, or its one object
+    python3 -c 'import json, sys
+text = open(sys.argv[1]).read()
+try: data = json.loads(text)
+except ValueError: data = [json.loads(line) for line in text.splitlines()]
+sys.exit(not eval(f"({sys.argv[2]})"))' "$1" "$2" 2>>err
+}
+"$program" "$film" --list-regions --format json >out 2>err && json out 'data["width"] == 1024 and
+    data["frames"] == list(range(1, 45)) and {"region": "hat-a42718", "painted": True}.items() <=
+    next(r for r in data["regions"] if r["layer"] == "body/head/hat" and "a4" in r["region"]).items()'
+result $? '--list-regions --format json is JSON'
+"$program" --list-styles --format json >out 2>err && json out 'data[1]["name"] == "Ink" and len(data) >= 10'
+result $? 'so is --list-styles --format json'
+refuses 'a list in a format of pictures is refused' 2 '--format png: lists are written *' whole --list-regions --format png
+"$program" nowhere -s 01 --progress json >out 2>err
+[ $? = 1 ] && json err '"nowhere: no such" in data["error"]'
+result $? 'an error is a JSON object with --progress json'
+"$program" "$film" -s 01 -W 96 --detail draft --missing hold --no-frames --paint 'apart/d/{region}_%d.png' -j1 \
+    -f 1-6 --progress json >out 2>err && json err '[d["done"] for d in data if d.get("stage") == "masks"][-1] == 6 and
+    any(d.get("stage") == "read" and d["total"] == 6 for d in data) and
+    any("apart/d/{region}" in d.get("note", "") for d in data)'
+result $? 'progress is told while frames are read and masks are drawn'
+[ -z "$(ls apart/d | grep -v -- '-[0-9a-f]*_[0-9]*.png')" ] && [ -s apart/d/hat-a42718_6.png ] &&
+    [ "$(find apart -name '.*')" = '' ] && [ ! -e fluidy ]
+result $? '--paint with --no-frames writes the paint alone'
+"$program" "$film" -s 01 -W 96 --detail draft -j1 --merge --paint 'apart/d/{region}_%d.png' -o 'apart/m%d.png' -f 6 >out 2>err &&
+    "$program" "$film" -s 01 -W 96 --detail draft -j1 -o 'apart/w%d.png' -f 1-6 >out 2>err && cmp apart/m6.png apart/w6.png
+result $? 'and it is the paint of the film'
+ls whole/*1.svg whole/*2.svg | "$program" - -s 01 --detail draft -o 'listed/%d.png' >out 2>err &&
+    [ "$(ls listed | xargs)" = '1.png 2.png' ]
+result $? '- is the files that standard input lists'
+"$program" whole -s 01 --detail draft -q -o 'new/a/b/%d.png' --stats new/s/t/x.json --report new/r/q --dump new/d/e \
+    --layers 'new/l/m/{region}%d.png' --paint 'new/p/q/{region}%d.png' >out 2>err &&
+    "$program" whole --check -q -o 'new/c/c/%d.png' >out 2>err &&
+    "$program" whole --flat -q -o 'new/f/f/%d.png' >out 2>err &&
+    "$program" whole --styles 01 -q -o new/i/i/s.png >out 2>err &&
+    "$program" --list-styles -o new/j/j/s.png >out 2>err && [ "$(ls new | xargs)" = 'a c d f i j l p r s' ]
+result $? 'a folder that is not there is made for whatever is written'
+touch stats.json
+refuses 'statistics that exist are found before anything is read' 1 'stats.json: already exists; *' broken $look --stats stats.json
+
 # Held frames: one that is not there and one beyond a limit, before everything that changes.
 for i in 1 2 5; do
     echo "$drawing<circle cx='$((20 + 4 * i))' cy='24' r='12' fill='#aa3311'/>
@@ -196,7 +239,6 @@ fi
 bash -c "$paint" 2>err >out && ! grep -q '\[' err && grep -qE '^100 % paint, frame 3 \(3/3\)' err
 result $? 'elsewhere there are plain lines'
 
-film=$fixtures/animations/snowman-wave-layers
 "$program" --list-regions "$film" >out 2>err && [ ! -s err ] &&
     grep -qE '^hat-a42718 +#a42718 +44/44 .* body/head/hat$' out
 result $? '--list-regions prints a line per region'

@@ -9,6 +9,7 @@ G_BEGIN_DECLS
 typedef enum FlListing {
     FL_LISTING_TABLE,  /**< a line per region, the columns padded with spaces */
     FL_LISTING_CONFIG, /**< a config file with a section per region, to start from */
+    FL_LISTING_JSON,   /**< an object with the drawing's size and frames, and a list of regions */
 } FlListing;
 
 /**

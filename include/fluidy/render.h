@@ -69,7 +69,8 @@ typedef struct FlSetting {
 
 /** The progress of a render. */
 typedef struct FlProgress {
-    const char *stage;  /**< "style" (one is made larger), "lead-in" of a loop, "paint"; static */
+    const char *stage;  /**< "read", "masks", "style" (one is made larger), "guides", "lead-in" of a
+                             loop, "paint"; static */
     const char *region; /**< the region's name; NULL: all of them */
     int region_index;   /**< from 0; -1: all of them */
     int n_regions;      /**< painted regions; 0: not known yet */
@@ -145,8 +146,8 @@ typedef struct FlRenderOptions {
     /* How it runs. */
     bool dry_run; /**< check everything, estimate the time, write nothing */
     int threads;  /**< 0: one per processor. The bytes do not depend on it */
-    /** Called after every frame of a stage, from the calling thread; false stops the render with
-     *  FL_ERROR_INTERRUPTED. NULL: nothing is called. */
+    /** Called after every frame of a stage, now and then while frames are read, from the calling
+     * thread; false stops the render with FL_ERROR_INTERRUPTED. NULL: nothing is called. */
     bool (*progress)(const FlProgress *progress, void *data);
     /** Called now and then, from any thread, while another program is waited for; true stops the
      *  render with FL_ERROR_INTERRUPTED. NULL: nothing is called. */

@@ -4,6 +4,7 @@
 #include "params/text.h"
 #include "words.h"
 
+#include <stdio.h>
 #include <string.h>
 
 static const char *keep(FlArgs *args, const char *text)
@@ -225,6 +226,34 @@ static char **split_values(int argc, char **argv)
     return (char **)g_ptr_array_free(words, FALSE);
 }
 
+/* Files that standard input lists, one a line, in the place of "-". */
+static bool list_input(FlArgs *args, GError **error)
+{
+    g_autoptr(GPtrArray) inputs = g_ptr_array_new();
+    bool listed = true;
+    for (char **word = args->inputs; *word; word++) {
+        g_autofree char *line = NULL;
+        size_t room = 0;
+        ssize_t length;
+        if (word == args->inputs || strcmp(*word, "-") != 0) {
+            g_ptr_array_add(inputs, g_strdup(*word));
+            continue;
+        }
+        const guint before = inputs->len;
+        while ((length = getline(&line, &room, stdin)) >= 0)
+            if (line[strcspn(line, "\n")] = '\0', *line)
+                g_ptr_array_add(inputs, g_strdup(line));
+        listed = listed && inputs->len > before;
+    }
+    g_ptr_array_add(inputs, NULL);
+    g_strfreev(args->inputs);
+    args->inputs = (char **)g_ptr_array_steal(inputs, NULL);
+    if (!listed)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "-: standard input lists no files; expected one a line");
+    return listed;
+}
+
 static bool needs_input(FlCommand task)
 {
     return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
@@ -266,6 +295,8 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
         return false;
     }
     fl_words_drop_separator(args->inputs);
+    if (needs_input(args->task) && !list_input(args, error))
+        return false;
     args->render.inputs = (const char *const *)args->inputs + 1;
     if ((args->preview || args->task == FL_COMMAND_COMPARE) && !make_preview(args, error))
         return false;

@@ -4,11 +4,14 @@
 #include "progress.h"
 #include "wait.h"
 
+#include "base/json.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <locale.h>
 #include <signal.h>
 #include <stdio.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { DONE = 0, FAILURE = 1, USAGE = 2, INTERRUPTED = 75 };
@@ -70,17 +73,24 @@ static void show_note(const char *message, void *data)
     say(data, "note", message);
 }
 
-/* One line, whatever the library below wrote. */
-static int fail(const GError *error)
+static int status_of(const GError *error)
 {
-    g_autofree char *text = fl_help_translate(error->message);
-    g_autofree char *line = fl_one_line(text);
-    fprintf(stderr, "fluidy-svg: %s\n", line);
     if (g_error_matches(error, FL_ERROR, FL_ERROR_INTERRUPTED))
         return INTERRUPTED;
     const bool usage =
         error->domain == G_OPTION_ERROR || g_error_matches(error, FL_ERROR, FL_ERROR_USAGE);
     return usage ? USAGE : FAILURE;
+}
+
+/* One line, whatever the library below wrote. */
+static int fail(const FlArgs *args, const GError *error)
+{
+    FlMeter meter;
+    fl_meter_init(&meter, args->progress, stderr);
+    g_autofree char *text = fl_help_translate(error->message);
+    fl_meter_say(&meter, "error", text);
+    fflush(stderr);
+    return status_of(error);
 }
 
 static int print(const char *text)
@@ -91,21 +101,50 @@ static int print(const char *text)
     return written ? DONE : FAILURE;
 }
 
+/* Lists are tables, or JSON; other formats are those of frames. */
+static bool wants_json(const FlArgs *args, bool *json, GError **error)
+{
+    const char *format = args->render.format;
+    *json = format && strcmp(format, "json") == 0;
+    if (!format || *json)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "--format %s: lists are written as tables or as json", format);
+    return false;
+}
+
+static void append_line(GString *text, const FlStyleEntry *style)
+{
+    g_string_append_printf(text, "%-4s %-13s %s\n", style->name, style->title ? style->title : "",
+                           style->character ? style->character : style->path);
+}
+
+static void append_object(GString *text, const FlStyleEntry *style)
+{
+    g_string_append(text, g_str_has_suffix(text->str, "}") ? ",\n {" : "\n {");
+    fl_json_text(text, "style", style->name);
+    fl_json_text(text, "name", style->title);
+    fl_json_text(text, "character", style->character);
+    fl_json_text(text, "folder", style->path);
+    g_string_append_c(text, '}');
+}
+
 static int list_styles(const FlArgs *args)
 {
     g_autoptr(GError) error = NULL;
     const bool overwrite = args->render.overwrite == FL_OVERWRITE_YES;
-    if (args->render.output && !fl_style_sheet(args->render.output, overwrite, &error))
-        return fail(error);
+    bool json;
+    if ((args->render.output && !fl_style_sheet(args->render.output, overwrite, &error)) ||
+        !wants_json(args, &json, &error))
+        return fail(args, error);
     g_autoptr(GPtrArray) styles = fl_style_list();
-    g_autoptr(GString) text = g_string_new(NULL);
+    g_autoptr(GString) text = g_string_new(json ? "[" : NULL);
     for (guint i = 0; i < styles->len; i++) {
         const FlStyleEntry *style = styles->pdata[i];
         if (!style->hidden)
-            g_string_append_printf(text, "%-4s %-13s %s\n", style->name,
-                                   style->title ? style->title : "",
-                                   style->character ? style->character : style->path);
+            (json ? append_object : append_line)(text, style);
     }
+    g_string_append(text, json ? "\n]\n" : "");
     return print(text->str);
 }
 
@@ -125,6 +164,11 @@ static bool compare_styles(const FlArgs *args, GError **error)
 
 static int list_regions(const FlArgs *args, FlListing listing, GError **error)
 {
+    bool json;
+    if (!wants_json(args, &json, error))
+        return FAILURE;
+    if (json && listing == FL_LISTING_TABLE)
+        listing = FL_LISTING_JSON;
     g_autofree char *text = fl_list_regions(&args->render, listing, error);
     return text ? print(text) : FAILURE;
 }
@@ -161,7 +205,7 @@ static int work(FlArgs *args)
     if (!error && args->task == FL_COMMAND_RENDER)
         recall_warnings(&voice);
     // NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): args are only cleared after this
-    return error ? fail(error) : status;
+    return error ? fail(args, error) : status;
 }
 
 static int run(FlArgs *args)
@@ -201,7 +245,7 @@ int main(int argc, char **argv)
     setlocale(LC_CTYPE, "");
     FlArgs args;
     g_autoptr(GError) error = NULL;
-    const int status = fl_args_parse(&args, argc, argv, &error) ? run(&args) : fail(error);
+    const int status = fl_args_parse(&args, argc, argv, &error) ? run(&args) : fail(&args, error);
     fl_args_clear(&args);
     return status;
 }

@@ -1,5 +1,6 @@
 #include "progress.h"
 
+#include "base/json.h"
 #include <glib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -85,64 +86,39 @@ static void show_plain(FlMeter *meter, const FlProgress *p)
     fprintf(meter->stream, "%3d %% %s\n", (int)(p->share * 100), words);
 }
 
-static void append_string(GString *json, const char *name, const char *value)
-{
-    g_string_append_printf(json, ",\"%s\":", name);
-    if (!value) {
-        g_string_append(json, "null");
-        return;
-    }
-    g_string_append_c(json, '"');
-    for (; *value; value++)
-        if (*value == '"' || *value == '\\')
-            g_string_append_printf(json, "\\%c", *value);
-        else if ((unsigned char)*value < 0x20)
-            g_string_append_printf(json, "\\u%04x", *value);
-        else
-            g_string_append_c(json, *value);
-    g_string_append_c(json, '"');
-}
-
-static void append_number(GString *json, const char *name, double value, bool known)
-{
-    char text[G_ASCII_DTOSTR_BUF_SIZE];
-    g_ascii_formatd(text, sizeof text, "%.6g", value);
-    g_string_append_printf(json, ",\"%s\":%s", name, known ? text : "null");
-}
-
 static void show_json(FlMeter *meter, const FlProgress *p)
 {
-    g_autoptr(GString) json = g_string_new(NULL);
-    append_string(json, "stage", p->stage);
-    append_string(json, "region", p->region);
-    append_number(json, "region_index", p->region_index, p->region_index >= 0);
-    append_number(json, "regions", p->n_regions, p->n_regions > 0);
-    append_number(json, "frame", p->frame, true);
-    append_number(json, "done", p->done, true);
-    append_number(json, "total", p->total, p->total > 0);
-    append_number(json, "share", p->share, true);
-    append_number(json, "elapsed_s", p->elapsed_s, true);
-    append_number(json, "frame_s", p->frame_s, p->frame_s > 0);
-    append_number(json, "remaining_s", p->remaining_s, p->remaining_s >= 0);
-    fprintf(meter->stream, "{%s}\n", json->str + 1);
+    g_autoptr(GString) json = g_string_new("{");
+    fl_json_text(json, "stage", p->stage);
+    fl_json_text(json, "region", p->region);
+    fl_json_number(json, "region_index", p->region_index, p->region_index >= 0);
+    fl_json_number(json, "regions", p->n_regions, p->n_regions > 0);
+    fl_json_number(json, "frame", p->frame, true);
+    fl_json_number(json, "done", p->done, true);
+    fl_json_number(json, "total", p->total, p->total > 0);
+    fl_json_number(json, "share", p->share, true);
+    fl_json_number(json, "elapsed_s", p->elapsed_s, true);
+    fl_json_number(json, "frame_s", p->frame_s, p->frame_s > 0);
+    fl_json_number(json, "remaining_s", p->remaining_s, p->remaining_s >= 0);
+    fprintf(meter->stream, "%s}\n", json->str);
 }
 
 void fl_meter_say(FlMeter *meter, const char *kind, const char *message)
 {
     fl_meter_hide(meter);
-    if (meter->mode != FL_PROGRESS_JSON) {
+    g_autofree char *line = fl_one_line(message);
+    if (meter->mode == FL_PROGRESS_JSON) {
+        g_autoptr(GString) json = g_string_new("{");
+        fl_json_text(json, kind, line);
+        fprintf(meter->stream, "%s}\n", json->str);
+    } else {
         const bool warning = strcmp(kind, "warning") == 0;
-        g_autofree char *line = fl_one_line(message);
         fprintf(meter->stream, "fluidy-svg: %s%s\n", warning ? "warning: " : "", line);
-        return;
     }
-    g_autoptr(GString) json = g_string_new(NULL);
-    append_string(json, kind, message);
-    fprintf(meter->stream, "{%s}\n", json->str + 1);
 }
 
 /* The last frame of a stage is always due, and so is the first of the next; but a log does not
- * announce what has not begun, for it may be over at once. */
+ * announce what has not begun, for it may be over at once, nor what mostly takes no time. */
 static bool is_due(const FlMeter *meter, const FlProgress *p)
 {
     if (meter->mode == FL_PROGRESS_PLAIN && p->done == 0)
@@ -150,6 +126,8 @@ static bool is_due(const FlMeter *meter, const FlProgress *p)
     const double every = meter->mode == FL_PROGRESS_BAR     ? BAR_EVERY_S
                          : meter->mode == FL_PROGRESS_PLAIN ? PLAIN_EVERY_S
                                                             : 0;
+    if (meter->mode == FL_PROGRESS_PLAIN && p->share <= 0)
+        return p->elapsed_s - meter->shown_s >= every;
     return g_strcmp0(p->stage, meter->stage) != 0 || p->region_index != meter->region_index ||
            (p->done > 0 && p->done == p->total) || p->elapsed_s - meter->shown_s >= every;
 }

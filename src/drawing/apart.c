@@ -223,15 +223,29 @@ static int late_frame(FlWatch *watch)
     return -1;
 }
 
-/** Waits for the child. Returns: its status; *late is the frame it was killed for, or -1. */
-static int wait_for(pid_t child, int alive, FlWatch *watch, int *late)
+/** Tells how far the child is. Returns: whether it may go on. */
+static bool tell_reading(const FlSequence *sequence, const FlDrawingOptions *options,
+                         FlWatch *watch, int *told)
 {
-    int status = 0;
+    const int done = MIN(atomic_load(&watch->done), sequence->n);
+    if (!options->reading || done <= 0 || done == *told)
+        return true;
+    *told = done;
+    return options->reading(options->data, sequence, done);
+}
+
+/** Waits for the child. Returns: its status; *late is the frame it was killed for, or -1. */
+static int wait_for(pid_t child, int alive, const FlSequence *sequence,
+                    const FlDrawingOptions *options, FlWatch *watch, int *late)
+{
+    int status = 0, told = 0;
     struct pollfd end = {.fd = alive, .events = POLLIN};
     *late = -1;
     while (poll(&end, 1, TICK_MS) <= 0)
         if (*late < 0 && (*late = late_frame(watch)) >= 0)
             kill(child, SIGKILL);
+        else if (!tell_reading(sequence, options, watch, &told))
+            kill(child, SIGTERM);
     while (waitpid(child, &status, 0) < 0 && errno == EINTR)
         ;
     return status;
@@ -314,10 +328,12 @@ static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDraw
     if (fd < 0 || !start(sequence, options, watch, fd, words, *one_thread, &child, &alive)) {
         good = fl_survey_init(survey, sequence, options, NULL, warnings, error);
     } else {
-        const int status = wait_for(child, alive, watch, &late);
+        const int status = wait_for(child, alive, sequence, options, watch, &late);
         close(alive);
         if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
             good = take_all(fd, survey, sequence, watch, warnings, bad, error);
+            if (good && options->reading)
+                (void)options->reading(options->data, sequence, sequence->n);
         } else {
             const FlConfinedEnd end = {status, late >= 0, fl_confined_asked_too_much(words)};
             *bad = late >= 0 ? late : only_frame(watch);

@@ -28,6 +28,10 @@ typedef struct FlDrawingOptions {
     double scale;      // px per px of the drawing; 0: 1; not together with width or height
     FlStrokes strokes;
     FlRegionKey key;
+    /** Tells now and then, from the calling thread, how many frames were read; false interrupts.
+     *  Only where they are read apart; NULL: nobody is told. */
+    bool (*reading)(void *data, const FlSequence *sequence, int done);
+    void *data;                // for reading
     const FlRegionRule *rules; // the first that matches wins; used during fl_drawing_open() only
     int n_rules;
 } FlDrawingOptions;

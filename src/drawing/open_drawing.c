@@ -58,7 +58,7 @@ static int mark_used(const FlDrawing *drawing, const FlRegionRule *rules, int n,
 static int mark_used_elsewhere(const FlDrawingOptions *options, bool *used)
 {
     FlDrawingOptions all = *options;
-    all.range = NULL;
+    all.range = NULL, all.reading = NULL;
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&all, NULL, NULL);
     return drawing ? mark_used(drawing, options->rules, options->n_rules, used) : 0;
 }
@@ -153,12 +153,34 @@ static void offer_config(const FlDrawing *drawing, const FlRenderOptions *option
     options->note(line, options->data);
 }
 
+/* What tell_reading() knows. */
+typedef struct Telling {
+    const FlRenderOptions *options;
+    gint64 start; // microseconds
+} Telling;
+
+static bool tell_reading(void *data, const FlSequence *sequence, int done)
+{
+    const Telling *telling = data;
+    const FlRenderOptions *o = telling->options;
+    const FlProgress progress = {.stage = "read",
+                                 .region_index = -1,
+                                 .frame = sequence->number[done - 1],
+                                 .done = done,
+                                 .total = sequence->n,
+                                 .elapsed_s =
+                                     (double)(g_get_monotonic_time() - telling->start) * 1e-6,
+                                 .remaining_s = -1};
+    return o->progress(&progress, o->data);
+}
+
 FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
                                    GError **error)
 {
     if (!fl_headroom_check(error))
         return NULL;
     g_autofree FlRegionRule *rules = rules_of(config);
+    Telling telling = {options, g_get_monotonic_time()};
     FlDrawingOptions wanted = {.inputs = options->inputs,
                                .n_inputs = (int)g_strv_length((char **)options->inputs),
                                .range = options->frames,
@@ -171,6 +193,8 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                .scale = options->scale,
                                .strokes = options->stroke,
                                .key = options->key,
+                               .reading = options->progress ? tell_reading : NULL,
+                               .data = &telling,
                                .rules = rules,
                                .n_rules = config->n_rules};
     if (options->canvas && !fl_canvas_parse(options->canvas, &wanted.canvas, error))

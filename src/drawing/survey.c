@@ -237,6 +237,8 @@ static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
         fl_watch_tell(survey->watch, thread, t);
         const bool scanned = known || scan_frame(survey, t, &probe, remarks, &reason);
         fl_watch_tell(survey->watch, thread, -1);
+        if (survey->watch && scanned && !known)
+            atomic_fetch_add(&survey->watch->done, 1);
 #pragma omp ordered
         {
             if (scanned && !known)

@@ -11,6 +11,7 @@
 typedef struct FlWatch {
     atomic_int frame[FL_WATCHED]; // 1 + index; 0: none
     atomic_llong since_us[FL_WATCHED];
+    atomic_int done;   // frames that were read
     atomic_int failed; // 1 + index of the first frame with an error; 0: none
 } FlWatch;
 

@@ -3,6 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/exists.h"
+#include "base/json.h"
 #include "base/surface.h"
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
@@ -164,12 +165,52 @@ static char *config_text(const Subject *subject)
     return g_string_free(text, FALSE);
 }
 
+/* ---- JSON --------------------------------------------------------------------------------- */
+
+static void append_region(GString *json, const Subject *subject, const FlRegion *r)
+{
+    const int first = fl_drawing_number(subject->drawing, r->first_frame);
+    g_string_append(json, "\n  {");
+    fl_json_text(json, "region", r->name);
+    fl_json_text(json, "paint", r->paint);
+    fl_json_number(json, "frames", r->n_present, true);
+    fl_json_number(json, "first_frame", first, r->n_present > 0);
+    fl_json_number(json, "area_px", r->area_px, true);
+    fl_json_number(json, "shapes", r->n_leaves, true);
+    g_string_append_printf(json, ",\"painted\":%s", r->paintable ? "true" : "false");
+    fl_json_text(json, "section", r->rule >= 0 ? subject->config->rules[r->rule].name : NULL);
+    fl_json_text(json, "layer", *r->label ? r->label : NULL);
+    g_string_append_c(json, '}');
+}
+
+static char *json_text(const Subject *subject)
+{
+    const FlDrawing *drawing = subject->drawing;
+    const int n = fl_drawing_regions(drawing), frames = fl_drawing_frames(drawing);
+    GString *json = g_string_new("{");
+    fl_json_text(json, "drawing", fl_drawing_name(drawing));
+    fl_json_number(json, "width", fl_drawing_width(drawing), true);
+    fl_json_number(json, "height", fl_drawing_height(drawing), true);
+    g_string_append(json, ",\n \"frames\":[");
+    for (int f = 0; f < frames; f++)
+        g_string_append_printf(json, "%s%d", f ? "," : "", fl_drawing_number(drawing, f));
+    g_string_append(json, "],\n \"regions\":[");
+    for (int r = 0; r < n; r++) {
+        g_string_append(json, r ? "," : "");
+        append_region(json, subject, fl_drawing_region(drawing, r));
+    }
+    g_string_append(json, "\n ]}\n");
+    return g_string_free(json, FALSE);
+}
+
 char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError **error)
 {
     g_auto(Subject) subject = {0};
     if (!subject_configure(&subject, options, error) || !subject_read(&subject, error))
         return NULL;
-    return listing == FL_LISTING_CONFIG ? config_text(&subject) : table(&subject);
+    return listing == FL_LISTING_CONFIG ? config_text(&subject)
+           : listing == FL_LISTING_JSON ? json_text(&subject)
+                                        : table(&subject);
 }
 
 /* ---- maps --------------------------------------------------------------------------------- */

@@ -8,6 +8,7 @@
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
 #include "job/resume.h"
+#include <stdatomic.h>
 #include <string.h>
 
 static bool open_drawing(FlPlan *plan, GError **error)
@@ -276,11 +277,26 @@ static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error
     return choose_frames(plan, error);
 }
 
+/* Layers and paint without frames: what an interrupted run leaves is named after one of them. */
+static bool name_parts(FlPlan *plan, const FlSequence *sequence, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    const char *whose = o->only_region ? o->only_region : "regions";
+    g_autoptr(GString) pattern = g_string_new(o->paint ? o->paint : o->layers);
+    g_string_replace(pattern, "{region}", whose, 0);
+    plan->parts_only = true;
+    plan->output = fl_output_of_film(pattern->str, sequence->name);
+    plan->format = fl_sink_format("null", NULL, error);
+    return plan->format != NULL;
+}
+
 /* Names the output and looks whether it is free, before the drawing is read. */
 static bool find_output(FlPlan *plan, GError **error)
 {
-    g_autoptr(FlSequence) sequence = fl_sequence_from_options(&plan->options, error);
-    return sequence && name_output(plan, sequence, error) &&
+    const FlRenderOptions *o = &plan->options;
+    const bool parts_only = o->no_frames && (o->paint || o->layers) && !o->output && !o->merge;
+    g_autoptr(FlSequence) sequence = fl_sequence_from_options(o, error);
+    return sequence && (parts_only ? name_parts : name_output)(plan, sequence, error) &&
            (plan->options.dry_run || fl_resume_expect_free(plan, sequence, error));
 }
 
@@ -336,6 +352,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
 {
     g_autoptr(FlPlan) plan = g_new0(FlPlan, 1);
     plan->options = *options;
+    plan->start = g_get_monotonic_time();
     plan->styles = fl_style_cache_new(&plan->options);
     plan->config = fl_config_load(options->config, error);
     if (!plan->config)
@@ -396,16 +413,48 @@ static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **
     return fl_surround_put(plan->surround, frame, draws, plan->joins, edges, error);
 }
 
-static bool each_frame(FlPlan *plan, FlSharedEdges *edges,
-                       bool (*work)(FlPlan *, FlSharedEdges *, int, GError **), GError **error)
+/* A pass over all frames. */
+typedef struct Pass {
+    FlPlan *plan;
+    FlSharedEdges *edges;
+    bool (*work)(FlPlan *, FlSharedEdges *, int, GError **);
+    double before, share; // of this stage: done in earlier passes, and this one's
+    atomic_int done;      // frames
+    GThread *caller;      // who tells the progress
+} Pass;
+
+static bool tell_masks(Pass *pass, int frame, GError **error)
 {
-    const int n = fl_drawing_frames(plan->drawing);
+    const FlPlan *plan = pass->plan;
+    const FlRenderOptions *o = &plan->options;
+    const int frames = fl_drawing_frames(plan->drawing);
+    const int done = atomic_fetch_add(&pass->done, 1) + 1;
+    if (!o->progress || g_thread_self() != pass->caller)
+        return true;
+    const FlProgress progress = {.stage = "masks",
+                                 .region_index = -1,
+                                 .n_regions = plan->n_painted,
+                                 .frame = fl_drawing_number(plan->drawing, frame),
+                                 .done = (int)(pass->before * frames + pass->share * done),
+                                 .total = frames,
+                                 .elapsed_s = (double)(g_get_monotonic_time() - plan->start) * 1e-6,
+                                 .remaining_s = -1};
+    if (o->progress(&progress, o->data))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted before the first frame");
+    return false;
+}
+
+static bool each_frame(Pass *pass, GError **error)
+{
+    const int n = fl_drawing_frames(pass->plan->drawing);
     GError *first = NULL;
     int failed = 0;
 #pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
     for (int f = 0; f < n; f++) {
         GError *failure = NULL;
-        if (failed == 0 && !work(plan, edges, f, &failure))
+        if (failed == 0 &&
+            !(pass->work(pass->plan, pass->edges, f, &failure) && tell_masks(pass, f, &failure)))
             failed++;
         fl_parallel_error_keep(&first, failure);
     }
@@ -415,6 +464,9 @@ static bool each_frame(FlPlan *plan, FlSharedEdges *edges,
 bool fl_plan_rasterise(FlPlan *plan, GError **error)
 {
     g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(fl_drawing_regions(plan->drawing));
-    return (fl_drawing_regions(plan->drawing) < 2 || each_frame(plan, edges, note_edges, error)) &&
-           each_frame(plan, edges, store_masks, error);
+    const bool alone = fl_drawing_regions(plan->drawing) < 2;
+    const double share = alone ? 1 : .5;
+    Pass note = {plan, edges, note_edges, 0, share, 0, g_thread_self()};
+    Pass store = {plan, edges, store_masks, 1 - share, share, 0, g_thread_self()};
+    return (alone || each_frame(&note, error)) && each_frame(&store, error);
 }

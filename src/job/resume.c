@@ -99,8 +99,9 @@ static bool paints_are_free(const FlPlan *plan, int frame, GError **error)
 /* The file of a finished frame must exist, that of another must not, unless it is ours. */
 static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, GError **error)
 {
-    g_autofree char *file = resume->path ? frame_file(plan, frame, error) : NULL;
-    if (resume->path && !file)
+    const bool has_file = resume->path && !plan->parts_only;
+    g_autofree char *file = has_file ? frame_file(plan, frame, error) : NULL;
+    if (has_file && !file)
         return false;
     if (frame < resume->first) {
         if (!file || g_file_test(file, G_FILE_TEST_EXISTS))
@@ -139,14 +140,16 @@ static void note_resume(const FlResume *resume, const FlPlan *plan)
 
 bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GError **error)
 {
-    const bool one_file = plan->format->film;
-    const char *movie = one_file ? plan->output : plan->movie;
+    const bool one_file = plan->format->film && !plan->parts_only;
+    const char *movie = one_file ? plan->output : plan->movie, *stats = plan->options.stats;
     if (may_overwrite(plan))
         return true;
+    if (stats && plan->options.overwrite == FL_OVERWRITE_REFUSE && !fl_exists_not(stats, error))
+        return false;
     if (movie && !fl_exists_not(movie, error))
         return false;
     g_autofree char *state = hidden_file(plan, false, "state");
-    if (one_file || plan->options.overwrite == FL_OVERWRITE_KEEP ||
+    if (plan->format->film || plan->options.overwrite == FL_OVERWRITE_KEEP ||
         g_file_test(state, G_FILE_TEST_EXISTS))
         return true;
     for (int f = 0; f < sequence->n; f++) {
@@ -171,7 +174,7 @@ static bool check_film(const FlPlan *plan, GError **error)
 
 bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
 {
-    const bool one_file = plan->format->film;
+    const bool one_file = plan->format->film && !plan->parts_only;
     *resume = (FlResume){.keep_files = plan->options.overwrite == FL_OVERWRITE_KEEP};
     if (one_file && !check_film(plan, error))
         return false;

@@ -272,8 +272,8 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
 static bool make_painters(Pipeline *pipeline, GError **error)
 {
     const FlPlan *plan = pipeline->plan;
-    if (!report_progress(pipeline, "guides", 0, 0, error) ||
-        !fl_plan_rasterise(pipeline->plan, error) ||
+    if (!fl_plan_rasterise(pipeline->plan, error) ||
+        !report_progress(pipeline, "guides", 0, 0, error) ||
         !fl_painters_init(&pipeline->painters, plan, error))
         return false;
     pipeline->painted = g_new0(const FlPaintedRegion *, MAX(plan->n_painted, 1));

@@ -9,6 +9,12 @@ static void send_note(const FlPlan *plan, const char *line)
         o->note(line, o->data);
 }
 
+static const char *written(const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    return !plan->parts_only ? plan->output : o->paint ? o->paint : o->layers;
+}
+
 static const char *plural(int n)
 {
     return n == 1 ? "" : "s";
@@ -19,7 +25,7 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
     const int n = fl_drawing_frames(plan->drawing);
     const char *movie = plan->movie ? plan->movie : "", *and = plan->movie ? " and " : "";
     g_autofree char *done =
-        g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie, and, plan->output);
+        g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie, and, written(plan));
     g_autofree char *seconds = fl_stats_summary(stats, n);
     g_autofree char *gaps = fl_drawing_left_out(plan->drawing, plan->options.missing);
     send_note(plan, done);
@@ -48,7 +54,7 @@ void fl_summary_of_dry_run(const FlPlan *plan, double frame_s)
     const char *movie = plan->movie ? plan->movie : "", *and = plan->movie ? " and " : "";
     g_autofree char *work = g_strdup_printf(
         "would paint %d frame%s of %dx%d pixels, %d region%s: %s%s%s", n, plural(n), plan->width,
-        plan->height, plan->n_painted, plural(plan->n_painted), movie, and, plan->output);
+        plan->height, plan->n_painted, plural(plan->n_painted), movie, and, written(plan));
     g_autofree char *time = forecast(plan, frame_s);
     g_autofree char *gaps = fl_drawing_left_out(plan->drawing, plan->options.missing);
     send_note(plan, work);
