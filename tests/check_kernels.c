@@ -293,6 +293,44 @@ static void splines_are_sampled_as_in_c(const void *version)
 enum { ROW = 200, LOOKS = 50 }; // the longest row
 
 /* Matches of any angle and frame, in an exemplar of any size. */
+/* A patch of each, and what is around the target's; the weights of edge and past at their most. */
+static void make_fluids(FlFluidTexel *source, FlFluidTexel *target, int n_target, FlRng *rng,
+                        bool extreme)
+{
+    static const int most[] = {2040, 2040, 2040, 3533, 12069};
+    for (int k = 0; k < FL_PATCH_PIXELS + n_target; k++) {
+        FlFluidTexel *pixel = k < FL_PATCH_PIXELS ? &source[k] : &target[k - FL_PATCH_PIXELS];
+        for (int c = 0; c <= FL_FLUID_PAST_A; c++) {
+            const int limit = c < 5                 ? most[c]
+                              : c < FL_FLUID_PAST   ? 0
+                              : c < FL_FLUID_PAST_A ? 4927
+                                                    : 8533;
+            pixel->c[c] = (int16_t)(extreme ? (k < FL_PATCH_PIXELS ? limit : 0)
+                                            : (int)fl_rng_below(rng, (uint32_t)limit + 1));
+        }
+        if (k >= FL_PATCH_PIXELS)
+            pixel->c[FL_FLUID_WEIGHT] =
+                (int16_t)(extreme ? INT16_MAX : (int)fl_rng_below(rng, 32768));
+    }
+    for (int k = 0; extreme && k < FL_PATCH_PIXELS; k++) // eta 35 alone, or the past's share of it
+        for (int c = FL_FLUID_PAST; c <= FL_FLUID_PAST_A; c++)
+            source[k].c[c] = 0;
+}
+
+static void fluids_are_compared_as_in_c(const void *version)
+{
+    const FlKernels *kernels = version;
+    for (uint64_t seed = 0; seed < 500; seed++) {
+        FlRng rng = {seed};
+        FlFluidTexel source[FL_PATCH_PIXELS], target[8 * FL_PATCH];
+        make_fluids(source, target, 8 * FL_PATCH, &rng, seed == 0);
+        const uint32_t want = fl_fluid_distance_c(source, target, 8, UINT32_MAX);
+        g_assert_cmpuint(kernels->fluid_distance(source, target, 8, UINT32_MAX), ==, want);
+        g_assert_cmpuint(kernels->fluid_distance(source, target, 8, want), ==, want);
+        g_assert_cmpuint(kernels->fluid_distance(source, target, 8, want / 2), >, want / 2);
+    }
+}
+
 static void make_matches(FlMatch *coarse, uint16_t most[2], FlRng *rng)
 {
     for (int axis = 0; axis < 2; axis++)
@@ -563,6 +601,7 @@ static const Check checks[] = {
     {"votes-are-sorted-as-in-c", votes_are_sorted_as_in_c},
     {"matches-are-upscaled-as-in-c", matches_are_upscaled_as_in_c},
     {"splines-are-sampled-as-in-c", splines_are_sampled_as_in_c},
+    {"fluids-are-compared-as-in-c", fluids_are_compared_as_in_c},
 };
 
 static void add_checks(const FlKernels *version)
@@ -599,7 +638,8 @@ int main(int argc, char **argv)
         if (time)
             time_version(&versions[v]), time_rows(fl_row_kernels_for(levels[v]));
         else
-            add_checks(&versions[v]), add_row_checks(fl_row_kernels_for(levels[v]), versions[v].name);
+            add_checks(&versions[v]),
+                add_row_checks(fl_row_kernels_for(levels[v]), versions[v].name);
     }
     return time ? 0 : g_test_run();
 }

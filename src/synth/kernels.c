@@ -153,8 +153,9 @@ void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const u
 
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
-    *kernels = (FlKernels){fl_patch_distance_c, patch_pair_c,       fl_draw_tries_c,  fl_sift_c,
-                           fl_spline_sample_c,  fl_find_opinions_c, fl_upscale_row_c, "c"};
+    *kernels = (FlKernels){fl_patch_distance_c, patch_pair_c,        fl_draw_tries_c,
+                           fl_sift_c,           fl_spline_sample_c,  fl_find_opinions_c,
+                           fl_upscale_row_c,    fl_fluid_distance_c, "c"};
 #if HAVE_NEON
     if (flags & FL_CPU_NEON) {
         kernels->patch_distance = fl_patch_distance_neon;
@@ -163,9 +164,10 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
 #endif
 #if HAVE_AVX2
     if (flags & FL_CPU_AVX2)
-        *kernels = (FlKernels){
-            fl_patch_distance_avx2, fl_patch_pair_avx2,    fl_draw_tries_avx2,  fl_sift_avx2,
-            fl_spline_sample_avx2,  fl_find_opinions_avx2, fl_upscale_row_avx2, "avx2"};
+        *kernels =
+            (FlKernels){fl_patch_distance_avx2, fl_patch_pair_avx2,     fl_draw_tries_avx2,
+                        fl_sift_avx2,           fl_spline_sample_avx2,  fl_find_opinions_avx2,
+                        fl_upscale_row_avx2,    fl_fluid_distance_avx2, "avx2"};
 #endif
 #if HAVE_AVX512
     if (flags & FL_CPU_AVX512) {

@@ -3,6 +3,7 @@
 #define FLUIDY_SYNTH_KERNELS_H
 
 #include "base/row_kernels.h"
+#include "synth/fluid_texel.h"
 #include "synth/rotation.h"
 #include "synth/spline.h"
 #include <stdbool.h>
@@ -161,6 +162,7 @@ typedef struct FlKernels {
     FlSplineSample spline_sample;
     FlFindOpinions opinions;
     FlUpscaleRow upscale_row;
+    FlFluidDistance fluid_distance;
     const char *name; // "c", "avx2", …
 } FlKernels;
 

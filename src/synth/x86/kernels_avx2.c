@@ -346,3 +346,30 @@ void fl_upscale_row_avx2(const FlMatch *coarse, const FlOffset (*moves)[2], cons
     }
     fl_upscale_row_c(coarse + i / 2, moves, most, fine + i, n - i);
 }
+
+/* The squared differences of a pixel; the past's are weighted first, the others by 32767, which
+ * changes nothing. */
+static inline __m256i fluid_terms(const FlFluidTexel *source, const FlFluidTexel *target)
+{
+    const __m256i past = _mm256_setr_epi16(0, 0, 0, 0, 0, 0, 0, 0, -1, -1, -1, -1, 0, 0, 0, 0);
+    const __m256i rest = _mm256_setr_epi16(INT16_MAX, INT16_MAX, INT16_MAX, INT16_MAX, INT16_MAX, 0,
+                                           0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
+    const __m256i weight = _mm256_and_si256(_mm256_set1_epi16(target->c[FL_FLUID_WEIGHT]), past);
+    const __m256i s = _mm256_load_si256((const __m256i *)source);
+    const __m256i t = _mm256_load_si256((const __m256i *)target);
+    const __m256i d = _mm256_mulhrs_epi16(_mm256_sub_epi16(s, t), _mm256_or_si256(weight, rest));
+    return _mm256_madd_epi16(d, d);
+}
+
+uint32_t fl_fluid_distance_avx2(const FlFluidTexel source[FL_PATCH_PIXELS],
+                                const FlFluidTexel *target, ptrdiff_t pitch, uint32_t limit)
+{
+    __m256i sum = _mm256_setzero_si256();
+    for (int y = 0; y < FL_PATCH; y++, target += pitch, source += FL_PATCH) {
+        for (int x = 0; x < FL_PATCH; x++)
+            sum = _mm256_add_epi32(sum, fluid_terms(source + x, target + x));
+        if ((y == 1 || y == 3) && sum_of(sum) > limit)
+            return sum_of(sum);
+    }
+    return sum_of(sum);
+}

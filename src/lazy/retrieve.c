@@ -1,0 +1,577 @@
+#include "lazy/retrieve.h"
+
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "base/schedule.h"
+#include "lazy/nearest.h"
+#include <string.h>
+
+#define TURNS 4
+#define TILE 16          // side of a tile of source pixels; they are searched as a chequerboard
+#define TABLE (1u << 20) // with as many pairs at most, all distances are known
+#define FEW_TARGETS 32   // free ones: each source looks at all of them,
+#define FEW_SHARE 100    // as where they are a share of all
+#define WARM 3           // free targets of the warm start that are compared
+#define CONTINUED 6      // won targets of a neighbour that are continued
+#define NONE (-1)
+#define NO_OFFER UINT64_MAX
+
+/* Offsets in the order of a patch's rows, and steps to the four neighbours, in a turned source. */
+typedef struct Turn {
+    int32_t offset[FL_PATCH_PIXELS]; // in pixels of the source picture
+    int8_t step[4][2];               // in source pixels; of the target it is steps[]
+} Turn;
+
+static const int8_t steps[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
+
+/* Source patch s is place s / n_turns, turned by s % n_turns quarters. Targets are numbered as
+ * in->targets has them. */
+typedef struct Run {
+    const FlRetrieval *in;
+    uint32_t n_turns, n_sources, n_targets;
+    Turn turn[TURNS];
+    int32_t *place_at, *target_at; // numbers by pixel; NONE
+    int32_t *target;               // [n_sources]: what it proposes to
+    uint32_t *cost;                // of that
+    int32_t *won, *won_next;       // lists of targets: by source, by target
+    int32_t *warm, *warm_next;     // the same of the warm start
+    uint8_t *is_free;              // by target
+    uint32_t *open;                // free targets in scan order, and a few that are no longer
+    uint32_t n_open, n_free, n_eligible;
+    uint64_t *offer;                // by target: the least cost << 32 | a hash of the source
+    uint32_t *cell;                 // by source: what it counts for
+    uint32_t *use;                  // by cell
+    uint32_t n_cells, quota, extra; // K, and the cells that may still be used K + 1 times
+    uint32_t *tile_places, *tile_first;
+    int tile_columns, n_tiles;
+    uint32_t *table; // [n_sources][n_targets] costs; or NULL
+    uint64_t pass_key;
+    bool scans, backwards; // of the pass: all free targets are compared; the order
+    FlRetrieved *done;
+} Run;
+
+static void run_clear(Run *run)
+{
+    void *const arrays[] = {run->place_at,    run->target_at,  run->target, run->cost,
+                            run->won,         run->won_next,   run->warm,   run->warm_next,
+                            run->is_free,     run->open,       run->offer,  run->cell,
+                            run->tile_places, run->tile_first, run->table,  run->use};
+    for (size_t k = 0; k < G_N_ELEMENTS(arrays); k++)
+        free(arrays[k]);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Run, run_clear)
+
+/* ---- preparation ----------------------------------------------------------------------------- */
+
+static void turn_init(Turn *turn, int quarters, ptrdiff_t pitch)
+{
+    const uint8_t theta = (uint8_t)(quarters * FL_ANGLES / TURNS);
+    int x, y;
+    for (int k = 0; k < FL_PATCH_PIXELS; k++) {
+        fl_unrotate(theta, k % FL_PATCH - FL_PATCH_RADIUS, k / FL_PATCH - FL_PATCH_RADIUS, &x, &y);
+        turn->offset[k] = (int32_t)(y / 16 * pitch + x / 16);
+    }
+    for (int k = 0; k < 4; k++) {
+        fl_unrotate(theta, steps[k][0], steps[k][1], &x, &y);
+        turn->step[k][0] = (int8_t)(x / 16), turn->step[k][1] = (int8_t)(y / 16);
+    }
+}
+
+static int32_t *numbers(const FlFluidPicture *picture, const uint32_t *places, size_t n,
+                        GError **error)
+{
+    const size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    int32_t *at = fl_alloc(pixels, sizeof *at, "a retrieval", error);
+    if (!at)
+        return NULL;
+    memset(at, 0xff, pixels * sizeof *at);
+    for (size_t k = 0; k < n; k++)
+        at[places[k]] = (int32_t)k;
+    return at;
+}
+
+static bool alloc_run(Run *run, GError **error)
+{
+    const FlRetrieval *in = run->in;
+    const size_t s = run->n_sources, t = run->n_targets;
+    const char *what = "a retrieval";
+    return (run->place_at = numbers(&in->source, in->sources, in->n_sources, error)) &&
+           (run->target_at = numbers(&in->target, in->targets, t, error)) &&
+           (run->target = fl_alloc(s, sizeof(int32_t), what, error)) &&
+           (run->cost = fl_alloc(s, sizeof(uint32_t), what, error)) &&
+           (run->won = fl_alloc(s, sizeof(int32_t), what, error)) &&
+           (run->warm = fl_alloc(s, sizeof(int32_t), what, error)) &&
+           (run->cell = fl_alloc(s, sizeof(uint32_t), what, error)) &&
+           (run->use = fl_alloc(s, sizeof(uint32_t), what, error)) &&
+           (run->won_next = fl_alloc(t, sizeof(int32_t), what, error)) &&
+           (run->warm_next = fl_alloc(t, sizeof(int32_t), what, error)) &&
+           (run->is_free = fl_alloc(t, 1, what, error)) &&
+           (run->open = fl_alloc(t, sizeof(uint32_t), what, error)) &&
+           (run->offer = fl_alloc(t, sizeof(uint64_t), what, error)) &&
+           (run->tile_places = fl_alloc(in->n_sources, sizeof(uint32_t), what, error)) &&
+           (run->tile_first = fl_alloc((size_t)run->n_tiles + 2, sizeof(uint32_t), what, error));
+}
+
+static uint32_t pixel_of(const Run *run, uint32_t source)
+{
+    return run->in->sources[source / run->n_turns];
+}
+
+/* Sorts the places into tiles; in a tile they keep their order. */
+static void fill_tiles(Run *run)
+{
+    const uint32_t width = (uint32_t)run->in->source.width;
+    uint32_t *first = run->tile_first + 1; // of the next tile, while they are filled
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t k = 0; k < run->in->n_sources; k++) {
+            const uint32_t p = run->in->sources[k];
+            const uint32_t tile = p / width / TILE * (uint32_t)run->tile_columns + p % width / TILE;
+            if (pass == 0)
+                first[tile + 1]++;
+            else
+                run->tile_places[first[tile]++] = k;
+        }
+        for (int t = 0; t < run->n_tiles && pass == 0; t++)
+            first[t + 1] += first[t];
+    }
+}
+
+/* Blocks of as many places a side that there are as many blocks as targets at most; 1: patches. */
+static uint32_t block_side(const Run *run)
+{
+    uint32_t side = 1;
+    const bool blocks = run->in->uniform == FL_UNIFORM_BLOCK ||
+                        (run->in->uniform == FL_UNIFORM_AUTO && run->n_sources > run->n_targets);
+    while (blocks && run->n_sources / (side * side) > run->n_targets)
+        side++;
+    return side;
+}
+
+/* What the sources count for, and how often that may be used. */
+static bool fill_cells(Run *run, GError **error)
+{
+    const uint32_t side = block_side(run), width = (uint32_t)run->in->source.width;
+    const uint32_t columns = width / side + 1;
+    const size_t n = (size_t)columns * ((uint32_t)run->in->source.height / side + 1) * run->n_turns;
+    g_autofree uint32_t *number = fl_alloc(side > 1 ? n : 1, sizeof *number, "a retrieval", error);
+    if (!number)
+        return false;
+    for (uint32_t s = 0; s < run->n_sources; s++) {
+        const uint32_t p = pixel_of(run, s), row = p / width / side, column = p % width / side;
+        const size_t block = ((size_t)row * columns + column) * run->n_turns + s % run->n_turns;
+        if (side > 1 && number[block] == 0)
+            number[block] = ++run->n_cells;
+        run->cell[s] = side > 1 ? number[block] - 1 : s;
+    }
+    if (side == 1)
+        run->n_cells = run->n_sources;
+    run->quota = run->n_targets / run->n_cells, run->extra = run->n_targets % run->n_cells;
+    return true;
+}
+
+/* The source of a match, as a number; NONE. */
+static int32_t source_of(const Run *run, FlMatch m)
+{
+    const int x = fl_match_x(m), y = fl_match_y(m), quarter = FL_ANGLES / TURNS;
+    if (m.frame == FL_NO_MATCH || x >= run->in->source.width || y >= run->in->source.height)
+        return NONE;
+    const int32_t place = run->place_at[(size_t)y * (size_t)run->in->source.width + (size_t)x];
+    const uint32_t turn = (uint32_t)(m.theta + quarter / 2) / (uint32_t)quarter % run->n_turns;
+    return place < 0 ? NONE : (int32_t)((uint32_t)place * run->n_turns + turn);
+}
+
+static void start_warm(Run *run, const FlNnf *nnf)
+{
+    for (int32_t j = (int32_t)run->n_targets - 1; j >= 0; j--) { // lists run upwards
+        const int32_t s = source_of(run, nnf->match[run->in->targets[j]]);
+        if (s == NONE)
+            continue;
+        run->warm_next[j] = run->warm[s];
+        run->warm[s] = j;
+    }
+}
+
+/* ---- the nearest free target ----------------------------------------------------------------- */
+
+/* A source patch on its way to a target. */
+typedef struct Proposal {
+    _Alignas(32) FlFluidTexel patch[FL_PATCH_PIXELS];
+    uint32_t source;
+    int32_t target;
+    uint32_t cost;
+    uint64_t evaluations;
+} Proposal;
+
+static uint32_t tie_of(const Run *run, uint32_t source, uint32_t target)
+{
+    return fl_hash32(source ^ fl_hash32(target ^ (uint32_t)run->pass_key));
+}
+
+static const FlFluidTexel *patch_at(const FlFluidPicture *picture, uint32_t pixel)
+{
+    const uint32_t width = (uint32_t)picture->width;
+    const ptrdiff_t x = pixel % width, y = pixel / width;
+    return picture->pixel + (y - FL_PATCH_RADIUS) * picture->pitch + x - FL_PATCH_RADIUS;
+}
+
+static void gather_source(const Run *run, uint32_t source, FlFluidTexel *patch)
+{
+    const FlFluidPicture *picture = &run->in->source;
+    const uint32_t pixel = pixel_of(run, source), width = (uint32_t)picture->width;
+    const FlFluidTexel *middle =
+        picture->pixel + (ptrdiff_t)(pixel / width) * picture->pitch + pixel % width;
+    const Turn *turn = &run->turn[source % run->n_turns];
+    for (int k = 0; k < FL_PATCH_PIXELS; k++)
+        patch[k] = middle[turn->offset[k]];
+}
+
+/* Takes a free target if it is nearer than the one in hand, or by hash where it is as near. */
+static void try_target(const Run *run, Proposal *p, int32_t target)
+{
+    if (target == p->target)
+        return;
+    const uint32_t limit = p->target == NONE ? UINT32_MAX - 1 : p->cost;
+    const uint32_t cost =
+        run->table
+            ? run->table[(size_t)p->source * run->n_targets + (size_t)target]
+            : run->in->distance(p->patch, patch_at(&run->in->target, run->in->targets[target]),
+                                run->in->target.pitch, limit);
+    p->evaluations += !run->table;
+    if (cost > limit ||
+        (p->target != NONE && cost == p->cost &&
+         tie_of(run, p->source, (uint32_t)target) >= tie_of(run, p->source, (uint32_t)p->target)))
+        return;
+    p->target = target, p->cost = cost;
+}
+
+/* The target at a place, if it is one of the segment and free; NONE. */
+static int32_t free_at(const Run *run, int x, int y)
+{
+    const FlFluidPicture *picture = &run->in->target;
+    if (x < 0 || y < 0 || x >= picture->width || y >= picture->height)
+        return NONE;
+    const int32_t target = run->target_at[(size_t)y * (size_t)picture->width + (size_t)x];
+    return target >= 0 && run->is_free[target] ? target : NONE;
+}
+
+static void try_at(const Run *run, Proposal *p, int x, int y)
+{
+    const int32_t target = free_at(run, x, y);
+    if (target != NONE)
+        try_target(run, p, target);
+}
+
+/* The pixel beside a target to which its match continues. */
+static void try_beside(const Run *run, Proposal *p, int32_t target, int step)
+{
+    const uint32_t width = (uint32_t)run->in->target.width, pixel = run->in->targets[target];
+    try_at(run, p, (int)(pixel % width) - steps[step][0], (int)(pixel / width) - steps[step][1]);
+}
+
+/* What the neighbours of a source propose to and have won, continued. */
+static void try_neighbours(const Run *run, Proposal *p)
+{
+    const int width = run->in->source.width, height = run->in->source.height;
+    const int pixel = (int)pixel_of(run, p->source);
+    const uint32_t quarters = p->source % run->n_turns;
+    for (int k = 0; k < 4; k++) {
+        const int8_t *step = run->turn[quarters].step[k];
+        const int x = pixel % width + step[0], y = pixel / width + step[1];
+        if (x < 0 || y < 0 || x >= width || y >= height)
+            continue;
+        const int32_t place = run->place_at[(size_t)y * (size_t)width + (size_t)x];
+        if (place < 0)
+            continue;
+        const size_t s = (size_t)place * run->n_turns + quarters;
+        if (run->target[s] != NONE)
+            try_beside(run, p, run->target[s], k);
+        int32_t won = run->won[s];
+        for (int n = 0; n < CONTINUED && won != NONE; n++, won = run->won_next[won])
+            try_beside(run, p, won, k);
+    }
+}
+
+/* Windows around the target in hand, each half as large as the one before. */
+static void try_windows(const Run *run, Proposal *p, FlRng *rng)
+{
+    const int width = run->in->target.width, height = run->in->target.height;
+    for (int reach = MAX(width, height) / 2; reach >= 1; reach /= 2) {
+        const int pixel = (int)run->in->targets[p->target];
+        const uint32_t side = 2 * (uint32_t)reach + 1;
+        const int x = pixel % width - reach + (int)fl_rng_below(rng, side);
+        const int y = pixel / width - reach + (int)fl_rng_below(rng, side);
+        try_at(run, p, x, y);
+    }
+}
+
+/* A free target by hash: the list has few that are not. */
+static int32_t any_free(const Run *run, FlRng *rng)
+{
+    uint32_t k = fl_rng_below(rng, run->n_open);
+    while (!run->is_free[run->open[k]])
+        k = (k + 1) % run->n_open;
+    return (int32_t)run->open[k];
+}
+
+static void try_all(const Run *run, Proposal *p)
+{
+    for (uint32_t k = 0; k < run->n_open; k++)
+        if (run->is_free[run->open[k]])
+            try_target(run, p, (int32_t)run->open[k]);
+}
+
+static void try_warm(const Run *run, Proposal *p)
+{
+    int n = 0;
+    for (int32_t j = run->warm[p->source]; j != NONE && n < WARM; j = run->warm_next[j])
+        if (run->is_free[j])
+            try_target(run, p, j), n++;
+}
+
+static void search(const Run *run, Proposal *p, FlRng *rng)
+{
+    const int32_t last = run->target[p->source];
+    if (last != NONE && run->is_free[last])
+        p->target = last, p->cost = run->cost[p->source];
+    else
+        try_warm(run, p);
+    if (p->target == NONE)
+        try_target(run, p, any_free(run, rng));
+    try_neighbours(run, p);
+    try_windows(run, p, rng);
+}
+
+static bool is_eligible(const Run *run, uint32_t source)
+{
+    const uint32_t use = run->use[run->cell[source]];
+    return use < run->quota || (use == run->quota && run->extra > 0);
+}
+
+static void propose(Run *run, uint32_t source, uint64_t *evaluations)
+{
+    if (!is_eligible(run, source)) {
+        run->target[source] = NONE;
+        return;
+    }
+    Proposal p = {.source = source, .target = NONE};
+    FlRng rng = {fl_key(run->pass_key, source)};
+    if (!run->table)
+        gather_source(run, source, p.patch);
+    if (run->scans)
+        try_all(run, &p);
+    else
+        search(run, &p, &rng);
+    run->target[source] = p.target, run->cost[source] = p.cost;
+    *evaluations += p.evaluations;
+}
+
+static uint64_t propose_in_tile(Run *run, int tile)
+{
+    const uint32_t first = run->tile_first[tile], end = run->tile_first[tile + 1];
+    uint64_t evaluations = 0;
+    for (uint32_t k = first; k < end; k++) {
+        const uint32_t place = run->tile_places[run->backwards ? end - 1 - (k - first) : k];
+        for (uint32_t turn = 0; turn < run->n_turns; turn++)
+            propose(run, place * run->n_turns + turn, &evaluations);
+    }
+    return evaluations;
+}
+
+/* Tiles of one colour of the chequerboard read those of the other only, and these rest. */
+static void propose_all(Run *run)
+{
+    uint64_t evaluations = 0;
+    for (int colour = 0; colour < 2; colour++) {
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : evaluations) if (run->n_sources > 4096)
+        for (int tile = 0; tile < run->n_tiles; tile++)
+            if (((tile % run->tile_columns + tile / run->tile_columns) & 1) == colour)
+                evaluations += propose_in_tile(run, tile);
+    }
+    run->done->evaluations += evaluations;
+}
+
+/* ---- targets choose -------------------------------------------------------------------------- */
+
+/* A source that has won its target; the key is the cost and a hash that settles ties. */
+typedef struct Winner {
+    uint64_t key;
+    uint32_t source, cell;
+} Winner;
+
+static uint64_t offer_key(const Run *run, uint32_t source)
+{
+    const uint32_t target = (uint32_t)run->target[source];
+    return (uint64_t)run->cost[source] << 32 |
+           (source ^ fl_hash32(target ^ (uint32_t)(run->pass_key >> 32)));
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+    const Winner *v = a, *w = b;
+    return v->key < w->key ? -1 : v->key > w->key;
+}
+
+static int compare_cells(const void *a, const void *b)
+{
+    const Winner *v = a, *w = b;
+    return v->cell != w->cell ? (v->cell < w->cell ? -1 : 1) : compare_keys(a, b);
+}
+
+static void assign(Run *run, const Winner *winner, FlNnf *nnf)
+{
+    const uint32_t s = winner->source, pixel = pixel_of(run, s);
+    const int32_t target = run->target[s];
+    const uint32_t width = (uint32_t)run->in->source.width;
+    nnf->match[run->in->targets[target]] =
+        (FlMatch){.x_16 = (uint16_t)(16 * (pixel % width)),
+                  .y_16 = (uint16_t)(16 * (pixel / width)),
+                  .theta = (uint8_t)(s % run->n_turns * (FL_ANGLES / TURNS))};
+    run->is_free[target] = 0;
+    run->n_free--;
+    run->use[winner->cell]++;
+    run->won_next[target] = run->won[s];
+    run->won[s] = target;
+    run->done->energy += (double)(winner->key >> 32) / ((double)FL_FLUID_ONE * FL_FLUID_ONE);
+}
+
+/* Every target's best offer; then the sources whose offer it is. */
+static uint32_t find_winners(Run *run, Winner *winners)
+{
+    uint32_t n = 0;
+    for (uint32_t s = 0; s < run->n_sources; s++)
+        if (run->target[s] != NONE)
+            run->offer[run->target[s]] = MIN(run->offer[run->target[s]], offer_key(run, s));
+    for (uint32_t s = 0; s < run->n_sources; s++)
+        if (run->target[s] != NONE && run->offer[run->target[s]] == offer_key(run, s))
+            winners[n++] = (Winner){offer_key(run, s), s, run->cell[s]};
+    for (uint32_t k = 0; k < n; k++)
+        run->offer[run->target[winners[k].source]] = NO_OFFER;
+    return n;
+}
+
+/* Assigns those whose cells have room up to K, then the nearest of those that may go beyond. */
+static void settle(Run *run, Winner *winners, uint32_t n, FlNnf *nnf)
+{
+    uint32_t n_beyond = 0, last_beyond = UINT32_MAX;
+    if (run->n_cells < run->n_sources)
+        qsort(winners, n, sizeof *winners, compare_cells);
+    for (uint32_t k = 0; k < n; k++) {
+        const Winner w = winners[k];
+        if (run->use[w.cell] < run->quota)
+            assign(run, &w, nnf);
+        else if (w.cell != last_beyond)
+            winners[n_beyond++] = w, last_beyond = w.cell;
+    }
+    if (n_beyond > run->extra)
+        qsort(winners, n_beyond, sizeof *winners, compare_keys);
+    n_beyond = MIN(n_beyond, run->extra);
+    for (uint32_t k = 0; k < n_beyond; k++)
+        assign(run, &winners[k], nnf);
+    run->extra -= n_beyond;
+}
+
+/* ---- passes ---------------------------------------------------------------------------------- */
+
+static void compact_open(Run *run, bool exact)
+{
+    uint32_t n = 0;
+    if (!exact && run->n_free > run->n_open - run->n_open / 8)
+        return;
+    for (uint32_t k = 0; k < run->n_open; k++)
+        if (run->is_free[run->open[k]])
+            run->open[n++] = run->open[k];
+    run->n_open = n;
+}
+
+static void open_pass(Run *run)
+{
+    run->n_eligible = 0;
+    for (uint32_t s = 0; s < run->n_sources; s++)
+        run->n_eligible += is_eligible(run, s);
+    const bool few = run->n_free < MAX(FEW_TARGETS, run->n_targets / FEW_SHARE);
+    const uint64_t pairs = (uint64_t)run->n_eligible * run->n_free;
+    run->scans = run->table || (few && pairs <= 8 * (uint64_t)run->n_targets);
+    run->backwards = run->done->passes & 1;
+    compact_open(run, run->scans);
+}
+
+static void pass(Run *run, Winner *winners, FlNnf *nnf)
+{
+    open_pass(run);
+    for (int sweep = 0; sweep < (run->scans ? 1 : run->in->sweeps); sweep++) {
+        run->pass_key = fl_key(fl_key(run->in->key, (uint64_t)run->done->passes), (uint64_t)sweep);
+        propose_all(run);
+    }
+    settle(run, winners, find_winners(run, winners), nnf);
+    run->done->passes++;
+}
+
+static void fill_table(Run *run)
+{
+#pragma omp parallel for schedule(dynamic, 16) if (run->n_sources > 64)
+    for (uint32_t s = 0; s < run->n_sources; s++) {
+        _Alignas(32) FlFluidTexel patch[FL_PATCH_PIXELS];
+        gather_source(run, s, patch);
+        for (uint32_t j = 0; j < run->n_targets; j++)
+            run->table[(size_t)s * run->n_targets + j] =
+                run->in->distance(patch, patch_at(&run->in->target, run->in->targets[j]),
+                                  run->in->target.pitch, UINT32_MAX);
+    }
+    run->done->evaluations += (uint64_t)run->n_sources * run->n_targets;
+}
+
+static void start(Run *run, const FlNnf *nnf)
+{
+    memset(run->target, 0xff, run->n_sources * sizeof *run->target);
+    memset(run->won, 0xff, run->n_sources * sizeof *run->won);
+    memset(run->warm, 0xff, run->n_sources * sizeof *run->warm);
+    for (uint32_t j = 0; j < run->n_targets; j++)
+        run->is_free[j] = 1, run->open[j] = j, run->offer[j] = NO_OFFER;
+    run->n_open = run->n_free = run->n_targets;
+    start_warm(run, nnf);
+}
+
+static void count_use(const Run *run)
+{
+    FlRetrieved *done = run->done;
+    done->least = INT32_MAX;
+    for (uint32_t c = 0; c < run->n_cells; c++) {
+        done->least = MIN(done->least, (int)run->use[c]);
+        done->most = MAX(done->most, (int)run->use[c]);
+    }
+    for (uint32_t c = 0; c < run->n_cells; c++)
+        done->n_most += (int)run->use[c] > done->least;
+}
+
+bool fl_retrieve(const FlRetrieval *retrieval, FlNnf *nnf, FlRetrieved *done, GError **error)
+{
+    *done = (FlRetrieved){0};
+    if (retrieval->n_targets == 0 || retrieval->n_sources == 0)
+        return true;
+    if (retrieval->uniform == FL_UNIFORM_OFF)
+        return fl_nearest(retrieval, nnf, done, error);
+    g_auto(Run) run = {.in = retrieval,
+                       .n_turns = retrieval->turns ? TURNS : 1,
+                       .n_targets = (uint32_t)retrieval->n_targets,
+                       .tile_columns = (retrieval->source.width - 1) / TILE + 1,
+                       .done = done};
+    run.n_sources = (uint32_t)retrieval->n_sources * run.n_turns;
+    run.n_tiles = run.tile_columns * ((retrieval->source.height - 1) / TILE + 1);
+    for (int k = 0; k < TURNS; k++)
+        turn_init(&run.turn[k], k, retrieval->source.pitch);
+    g_autofree Winner *winners = fl_alloc(run.n_sources, sizeof *winners, "a retrieval", error);
+    if (!winners || !alloc_run(&run, error) || !fill_cells(&run, error))
+        return false;
+    fill_tiles(&run);
+    start(&run, nnf);
+    if ((uint64_t)run.n_sources * run.n_targets <= TABLE) {
+        if (!(run.table = fl_alloc((size_t)run.n_sources * run.n_targets, 4, "distances", error)))
+            return false;
+        fill_table(&run);
+    }
+    while (run.n_free > 0)
+        pass(&run, winners, nnf);
+    count_use(&run);
+    return true;
+}
