@@ -5,6 +5,7 @@
 unset NO_COLOR # as some have it in CI
 program=$(realpath "$1")
 fixtures=$(realpath "$2")
+tests=$(realpath "${0%/*}")
 cd "$folder" || exit 1
 
 # refuses SENTENCE STATUS MESSAGE ARGUMENT...: one line on stderr that matches the glob MESSAGE,
@@ -358,6 +359,32 @@ on_paper preset --preset fluidymation --paper none &&
     on_paper preset-play --preset fluidymation --paper none --pigments 1 &&
     cmp -s sheet/preset1.png sheet/preset-zero1.png && ! cmp -s sheet/preset1.png sheet/preset-play1.png
 result $? 'the presets of the papers have even paint'
+
+# What is written opens as it looks.
+if "$program" whole -s 01 -q -f 1 -o 'open/w%d.ora' >out 2>err; then
+    "$program" whole -s 01 -q -f 1 -b '#336699' --paper rough -o 'open/b%d.ora' >out 2>err &&
+        "$program" whole -s 01 -q -f 1 -b none --paper cold -o 'open/n%d.ora' >out 2>err &&
+        off=$(python3 "$tests/ora.py" open/w1.ora open/b1.ora open/n1.ora 2>err) && echo "$off" >>err &&
+        [ "${off%.*}" -le 1 ]
+    result $? 'the layers of an OpenRaster file, paper and ground among them, make its picture'
+fi
+"$program" whole -s 01 -q -f 1 -b none -o 'open/n%d.png' --layers 'open/{region}%d.png' >out 2>err &&
+    python3 "$tests/ora.py" open/n1.png 2>err && python3 "$tests/ora.py" open/red-aa33111.png 2>err
+result $? 'the alpha of PNG files is straight'
+"$program" whole -s 01 -q -f 1 --format png16 -o 'open/deep%d.png' >out 2>err &&
+    on_paper deep --paper open/deep1.png && on_paper ground -b open/deep1.png &&
+    ! cmp -s sheet/deep1.png sheet/auto1.png && ! cmp -s sheet/ground1.png sheet/auto1.png
+result $? 'paper and background may have 16 bits'
+if ! command -v ffmpeg >/dev/null; then
+    skip 'they may be JPEG pictures' 'no ffmpeg'
+else
+    ffmpeg -v error -y -i open/deep1.png open/Deep.JPG && on_paper jpeg --paper open/Deep.JPG &&
+        on_paper jpeg-ground -b open/Deep.JPG && ! cmp -s sheet/jpeg1.png sheet/auto1.png &&
+        ! cmp -s sheet/jpeg-ground1.png sheet/auto1.png &&
+        head -c 100 open/Deep.JPG >open/cut.jpg && ! on_paper cut --paper open/cut.jpg &&
+        grep -q 'open/cut.jpg: a damaged JPEG picture' err
+    result $? 'they may be JPEG pictures'
+fi
 
 # Drafts are made at half the size, all regions or none; their files have that of the frames.
 sides() { # of a PNG file

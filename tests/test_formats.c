@@ -391,6 +391,10 @@ static void an_exr_holds_linear_premultiplied_layers(void)
     g_assert_cmpint(exr_read_scanline_chunk_info(context, 0, 16, &info), ==, EXR_ERR_SUCCESS);
     g_assert_cmpint(exr_decoding_initialize(context, 0, &info, &pipe), ==, EXR_ERR_SUCCESS);
     g_assert_cmpint(pipe.channel_count, ==, 12);
+    exr_attr_chromaticities_t primaries = {0};
+    exr_attr_get_chromaticities(context, 0, "chromaticities", &primaries);
+    g_assert_cmpfloat_with_epsilon(primaries.red_x, .64f, 1e-6);
+    g_assert_cmpfloat_with_epsilon(primaries.white_y, .329f, 1e-6);
     static uint16_t rows[12][16][W];
     int green = -1, alpha = -1;
     for (int c = 0; c < 12; c++) {

@@ -121,8 +121,8 @@ typedef struct FlRenderOptions {
         *paint; /**< the same for the paint itself, before colours and stacking; NULL: none */
     bool merge; /**< paint nothing: compose the files of `paint` that other runs have written */
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
-    /** "cold", "hot", "rough", "laid", "kraft", a PNG file or "none"; "auto", NULL: cold where
-     * there is no background, else its tooth alone */
+    /** "cold", "hot", "rough", "laid", "kraft", a PNG or JPEG file or "none"; "auto", NULL: cold
+     * where there is no background, else its tooth alone */
     const char *paper;
     double paper_scale;  /**< factor on the grain's size, which follows the page's; 0: 1 */
     double paper_relief; /**< ..2; 0: 1 */

@@ -1,6 +1,7 @@
 #include "compose/background.h"
 
 #include "io/pattern.h"
+#include "io/picture_file.h"
 #include "io/png.h"
 #include "params/text.h"
 #include "style/resample.h"
@@ -40,12 +41,13 @@ bool fl_background_init(FlBackground *background, const char *text, const uint8_
         background->none = true, background->opaque = false;
     } else if (fl_text_colour(text, background->flat)) {
         memcpy(background->paper, background->flat, 3);
-    } else if (g_str_has_suffix(text, ".png") || g_str_has_suffix(text, ".PNG")) {
+    } else if (fl_picture_named(text)) {
         background->pattern = text;
         background->opaque = pictures_are_opaque(background, drawing);
     } else {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "background “%s”: expected #rrggbb, none, a PNG file or a pattern of them",
+                    "background “%s”: expected #rrggbb, none, a " FL_PICTURE_FILES
+                    " file or a pattern of them",
                     text);
         return false;
     }
@@ -56,7 +58,7 @@ FlPicture *fl_background_picture(const FlBackground *background, const FlDrawing
                                  int frame, int width, int height, GError **error)
 {
     g_autofree char *file = backdrop_file(background, drawing, frame, error);
-    g_autoptr(FlPicture) picture = file ? fl_picture_read_png(file, error) : NULL;
+    g_autoptr(FlPicture) picture = file ? fl_picture_read(file, error) : NULL;
     if (picture && (picture->width != width || picture->height != height))
         return fl_picture_resize(picture, width, height, error);
     return g_steal_pointer(&picture);

@@ -261,6 +261,11 @@ static bool compose(FlComposite *composite, const FlComposeInput *input, int fra
     if (with_16)
         fl_layers_compose16(composite->layers, composite->n_layers, &backdrop, width, height,
                             linear, composite->rgba16);
+    if (input->layers_apart && !background->none) {
+        if (!(composite->ground = fl_alloc(values, 1, "a background", error)))
+            return false;
+        fl_layers_compose(NULL, 0, &backdrop, width, height, linear, composite->ground);
+    }
     if (input->sheet && input->sheet->lights && input->layers_apart) {
         if (!(composite->sheet = fl_alloc(values, 1, "a sheet of paper", error)))
             return false;
@@ -288,6 +293,7 @@ void fl_composite_clear(FlComposite *composite)
     g_free(composite->layers);
     g_free(composite->names);
     fl_draw_list_free(composite->draws);
+    free(composite->ground);
     free(composite->sheet);
     free(composite->rgba);
     free(composite->rgba16);

@@ -13,6 +13,8 @@ typedef struct FlComposite {
     FlLayer *layers;  // bottom first; their areas, rgba and body are owned
     bool enlarged;    // coverage is owned as well; else it is the runs'
     char **names;     // of the layers, for files: unique in the frame
+    uint8_t *ground;  // what lies below the layers, opaque or a picture, if they are stored and
+                      // there is something; else NULL
     uint8_t *sheet;   // of paper, fl_paper_sheet_picture(), if layers are stored; else NULL
     uint8_t *rgba;    // width * height * 4 straight sRGBA
     uint16_t *rgba16; // NULL unless asked for

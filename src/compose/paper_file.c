@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "guides/blur.h"
-#include "io/png.h"
+#include "io/picture_file.h"
 #include "style/resample.h"
 #include <math.h>
 #include <string.h>
@@ -82,7 +82,7 @@ static void fill(FlPaperSheet *sheet, const FlPicture *tile, const float *fine, 
 bool fl_paper_file_fill(FlPaperSheet *sheet, const char *path, float scale, float relief,
                         GError **error)
 {
-    g_autoptr(FlPicture) tile = fl_picture_read_png(path, error);
+    g_autoptr(FlPicture) tile = fl_picture_read(path, error);
     float deviation = 0;
     if (!tile)
         return false;

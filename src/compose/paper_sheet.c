@@ -7,15 +7,16 @@
 #include "base/row_kernels.h"
 #include "compose/paper_file.h"
 #include "guides/blur.h"
+#include "io/picture_file.h"
+#include "io/sink.h"
 #include "params/text.h"
 #include <math.h>
 #include <string.h>
 
-#define FINE_PX 4      // what is wider belongs to no tooth
-#define TOOTH_END 2.2f // standard deviations
-#define SLOW_PX 8      // clouds and warmth are known every so many px
-#define ROOM_PX 256    // that the sheet is larger than a frame if other parts of it are wanted
-#define PICTURE_ONE 240
+#define FINE_PX 4       // what is wider belongs to no tooth
+#define TOOTH_END 2.2f  // standard deviations
+#define SLOW_PX 8       // clouds and warmth are known every so many px
+#define ROOM_PX 256     // that the sheet is larger than a frame if other parts of it are wanted
 #define MOST_FINER 4    // times: as far as small pages are made larger, and
 #define MOST_PIXELS 2e7 // as large as that may be
 
@@ -168,11 +169,6 @@ static bool sheet_alloc(FlPaperSheet *sheet, GError **error)
            (sheet->tooth[1] = fl_alloc(half, 1, "a sheet of paper", error));
 }
 
-static bool is_file(const char *paper)
-{
-    return g_str_has_suffix(paper, ".png") || g_str_has_suffix(paper, ".PNG");
-}
-
 static bool fill_sheet(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
                        GError **error)
 {
@@ -259,10 +255,12 @@ bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int
         return true;
     if (is_auto)
         kind = FL_PAPER_COLD;
-    else if (!fl_text_choice(paper, FL_PAPER_WORDS, &kind) && !is_file(paper)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "paper “%s”: expected none, cold, hot, rough, laid, kraft or a PNG file",
-                    paper);
+    else if (!fl_text_choice(paper, FL_PAPER_WORDS, &kind) && !fl_picture_named(paper)) {
+        g_set_error(
+            error, FL_ERROR, FL_ERROR_USAGE,
+            "paper “%s”: expected none, cold, hot, rough, laid, kraft or a " FL_PICTURE_FILES
+            " file",
+            paper);
         return false;
     }
     const float scale = choice->scale > 0 ? (float)choice->scale : fl_page_scale(width, height);
@@ -331,7 +329,7 @@ void fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int h
 void fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
                             uint8_t *rgba)
 {
-    memset(rgba, PICTURE_ONE, 4 * (size_t)width * (size_t)height);
+    memset(rgba, FL_SINK_ONE, 4 * (size_t)width * (size_t)height);
     fl_paper_sheet_light(sheet, frame, width, height, rgba, NULL);
     for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
         rgba[4 * i + 3] = 255;

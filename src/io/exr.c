@@ -98,12 +98,18 @@ static bool add_layer_channels(Writer *writer, const Layer *layer)
     return true;
 }
 
+/** Rec. 709, whose primaries and white are sRGB's. */
+static const exr_attr_chromaticities_t rec_709 = {.64f, .33f, .30f,   .60f,
+                                                  .15f, .06f, .3127f, .3290f};
+
 static bool put_header(Writer *writer, const Layer *whole, const FlSinkFrame *frame)
 {
     if (!went(writer, exr_set_longname_support(writer->context, 1)) ||
         !went(writer, exr_add_part(writer->context, "frame", EXR_STORAGE_SCANLINE, NULL)) ||
         !went(writer, exr_initialize_required_attr_simple(writer->context, 0, writer->width,
                                                           writer->height, EXR_COMPRESSION_ZIP)) ||
+        !went(writer,
+              exr_attr_set_chromaticities(writer->context, 0, "chromaticities", &rec_709)) ||
         !add_layer_channels(writer, whole))
         return false;
     for (int k = 0; k < frame->n_layers; k++)

@@ -78,39 +78,88 @@ static bool add_thumbnail(Archive *archive, const FlSinkParams *params, const ui
     return add_picture(archive, "Thumbnails/thumbnail.png", small, width, height, true);
 }
 
+/**
+ * A layer of the file. What multiplies and has levels above one becomes two: one that multiplies,
+ * and over it one that dodges, as no mode of OpenRaster does both.
+ */
+typedef struct Part {
+    const FlSinkLayer *layer;
+    const char *suffix; // of its name
+    const char *mode;   // composite-op
+    uint8_t level[256]; // of the file for each of the layer's
+} Part;
+
+static void fill_levels(Part *part, bool lightens)
+{
+    for (int v = 0; v < 256; v++) {
+        const int darker = MIN((255 * v + FL_SINK_ONE / 2) / FL_SINK_ONE, 255);
+        const int lighter = v > FL_SINK_ONE ? (255 * (v - FL_SINK_ONE) + v / 2) / v : 0;
+        part->level[v] = (uint8_t)(!part->layer->multiply ? v : lightens ? lighter : darker);
+    }
+}
+
+/** The parts from the bottom up. */
+static GArray *parts_of(const FlSinkFrame *frame)
+{
+    GArray *parts = g_array_new(FALSE, FALSE, sizeof(Part));
+    for (int k = 0; k < frame->n_layers; k++) {
+        const FlSinkLayer *layer = &frame->layers[k];
+        Part part = {layer, "", layer->multiply ? "multiply" : "src-over", {0}};
+        fill_levels(&part, false);
+        g_array_append_val(parts, part);
+        if (!layer->multiply)
+            continue;
+        part.suffix = "_light", part.mode = "color-dodge";
+        fill_levels(&part, true);
+        g_array_append_val(parts, part);
+    }
+    return parts;
+}
+
 /** stack.xml lists the top layer first. */
-static char *stack_xml(const FlSinkParams *params, const FlSinkFrame *frame)
+static char *stack_xml(const FlSinkParams *params, const GArray *parts)
 {
     g_autoptr(GString) xml = g_string_new("<?xml version='1.0' encoding='UTF-8'?>\n");
     g_string_append_printf(xml, "<image version=\"0.0.5\" w=\"%d\" h=\"%d\">\n <stack>\n",
                            params->width, params->height);
-    for (int k = frame->n_layers - 1; k >= 0; k--) {
-        const FlSinkLayer *layer = &frame->layers[k];
-        g_autofree char *name = g_markup_escape_text(layer->name, -1);
+    for (int k = (int)parts->len - 1; k >= 0; k--) {
+        const Part *part = &g_array_index(parts, Part, k);
+        g_autofree char *name = g_markup_escape_text(part->layer->name, -1);
         g_string_append_printf(xml,
-                               "  <layer name=\"%s\" src=\"data/layer%03d.png\" x=\"%d\" y=\"%d\" "
-                               "opacity=\"1.0\" visibility=\"visible\" "
+                               "  <layer name=\"%s%s\" src=\"data/layer%03d.png\" x=\"%d\" "
+                               "y=\"%d\" opacity=\"1.0\" visibility=\"visible\" "
                                "composite-op=\"svg:%s\"/>\n",
-                               name, k, layer->x, layer->y,
-                               layer->multiply ? "multiply" : "src-over");
+                               name, part->suffix, k, part->layer->x, part->layer->y, part->mode);
     }
     g_string_append(xml, " </stack>\n</image>\n");
     return g_string_free(g_steal_pointer(&xml), FALSE);
 }
 
+static bool add_part(Archive *archive, const char *name, const Part *part, bool fast)
+{
+    static const uint8_t clear[4] = {0};
+    const FlSinkLayer *layer = part->layer;
+    if (layer->width == 0 || layer->height == 0)
+        return add_picture(archive, name, clear, 1, 1, fast);
+    if (!layer->multiply)
+        return add_picture(archive, name, layer->rgba, layer->width, layer->height, fast);
+    const size_t values = 4 * (size_t)layer->width * (size_t)layer->height;
+    g_autofree uint8_t *rgba = g_malloc(values);
+    for (size_t i = 0; i < values; i++)
+        rgba[i] = i % 4 == 3 ? 255 : part->level[layer->rgba[i]];
+    return add_picture(archive, name, rgba, layer->width, layer->height, fast);
+}
+
 /** mimetype must be the first part, and stored. Layers without pixels hold one clear pixel. */
 static bool add_parts(Archive *archive, const FlSinkParams *params, const FlSinkFrame *frame)
 {
-    static const uint8_t clear[4] = {0};
-    g_autofree char *xml = stack_xml(params, frame);
+    g_autoptr(GArray) parts = parts_of(frame);
+    g_autofree char *xml = stack_xml(params, parts);
     bool ok =
         add_text(archive, "mimetype", "image/openraster") && add_text(archive, "stack.xml", xml);
-    for (int k = 0; ok && k < frame->n_layers; k++) {
-        const FlSinkLayer *layer = &frame->layers[k];
-        const bool empty = layer->width == 0 || layer->height == 0;
-        g_autofree char *name = g_strdup_printf("data/layer%03d.png", k);
-        ok = add_picture(archive, name, empty ? clear : layer->rgba, empty ? 1 : layer->width,
-                         empty ? 1 : layer->height, params->fast);
+    for (guint k = 0; ok && k < parts->len; k++) {
+        g_autofree char *name = g_strdup_printf("data/layer%03u.png", k);
+        ok = add_part(archive, name, &g_array_index(parts, Part, k), params->fast);
     }
     return ok && add_thumbnail(archive, params, frame->rgba) &&
            add_picture(archive, "mergedimage.png", frame->rgba, params->width, params->height,

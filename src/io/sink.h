@@ -7,12 +7,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#define FL_SINK_ONE 240
+
 /** One layer of a frame, straight sRGBA; see compose/layers.h for how layers recompose. */
 typedef struct FlSinkLayer {
     const char *name;
     int x, y, width, height; // its place in the frame
     const uint8_t *rgba;     // width * height * 4
-    bool multiply;           // what is below is multiplied by it
+    bool multiply;           // what is below is multiplied by it, where FL_SINK_ONE stands for one
 } FlSinkLayer;
 
 /** A finished frame, borrowed for the call. */

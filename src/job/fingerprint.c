@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "config.h"
 #include "io/pattern.h"
+#include "io/picture_file.h"
 #include <cairo.h>
 #include <librsvg/rsvg.h>
 #include <string.h>
@@ -242,7 +243,7 @@ FlFingerprint *fl_fingerprint_new(const FlPlan *plan, GError **error)
     add_regions(print, plan); // after what may be the reason
     if (paper && g_file_test(paper, G_FILE_TEST_IS_REGULAR) && !add_file(print, paper, error))
         return NULL;
-    if (!add_painted(print, plan, error) || (background && g_str_has_suffix(background, "png") &&
+    if (!add_painted(print, plan, error) || (background && fl_picture_named(background) &&
                                              !add_pattern(print, plan, background, NULL, error)))
         return NULL;
     return g_steal_pointer(&print);

@@ -7,6 +7,7 @@
 #include "job/paint_files.h"
 
 #define SHEET "paper_sheet" // no region's name has such a line in it
+#define GROUND "paper_ground"
 
 static bool write_layer(const FlFrameWriter *writer, const uint8_t *rgba, const char *name,
                         int frame, GError **error)
@@ -55,24 +56,35 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
     return true;
 }
 
+/* Background, layers and paper, bottom first. Returns: how many. */
+static int stack_layers(const FlFrameWriter *writer, const FlComposite *composite,
+                        FlSinkLayer *layers)
+{
+    const int width = writer->plan->width, height = writer->plan->height;
+    int n = 0;
+    if (composite->ground)
+        layers[n++] = (FlSinkLayer){GROUND, 0, 0, width, height, composite->ground};
+    for (int k = 0; k < composite->n_layers; k++) {
+        const FlLayer *from = &composite->layers[k];
+        const FlRect box = from->area.box;
+        layers[n++] =
+            (FlSinkLayer){composite->names[k], box.x, box.y, box.width, box.height, from->rgba};
+    }
+    if (composite->sheet && composite->ground) // frames over nothing are not multiplied
+        layers[n++] = (FlSinkLayer){SHEET, 0, 0, width, height, composite->sheet, true};
+    return n;
+}
+
 bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, int frame,
                            GError **error)
 {
-    g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, composite->n_layers + 1);
-    for (int k = 0; k < composite->n_layers; k++) {
-        const FlLayer *from = &composite->layers[k];
-        layers[k] = (FlSinkLayer){composite->names[k],  from->area.box.x,      from->area.box.y,
-                                  from->area.box.width, from->area.box.height, from->rgba};
-    }
-    const int n_sheets = composite->sheet ? 1 : 0;
-    if (composite->sheet)
-        layers[composite->n_layers] = (FlSinkLayer){
-            SHEET, 0, 0, writer->plan->width, writer->plan->height, composite->sheet, true};
+    g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, composite->n_layers + 2);
+    const int n_layers = stack_layers(writer, composite, layers);
     const FlSinkFrame out = {.number = fl_drawing_number(writer->plan->drawing, frame),
                              .rgba = composite->rgba,
                              .rgba16 = composite->rgba16,
                              .layers = layers,
-                             .n_layers = composite->n_layers + n_sheets};
+                             .n_layers = n_layers};
     if (writer->plan->options.layers && !write_layers(writer, composite, frame, error))
         return false;
     if (writer->sink->format->film)

@@ -1,0 +1,19 @@
+/* Pictures that somebody names as paper or background: PNG or JPEG files. */
+#ifndef FLUIDY_IO_PICTURE_FILE_H
+#define FLUIDY_IO_PICTURE_FILE_H
+
+#include "base/picture.h"
+
+#define FL_PICTURE_FILES "PNG or JPEG" // for messages
+
+/** Whether the name ends as that of a picture that can be read, in any case. */
+bool fl_picture_named(const char *path);
+
+/**
+ * Reads a PNG file, or a JPEG file, turned upright as its camera says; by content, not by name.
+ *
+ * Colours count as sRGB. Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT set, naming the file.
+ */
+FlPicture *fl_picture_read(const char *path, GError **error);
+
+#endif
