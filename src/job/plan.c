@@ -209,8 +209,10 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style || !warn_of_style(plan, painted, error))
         return false;
+    painted->engine = fl_engine_choose(painted->settings.engine, painted->style->path);
     if (plan->options.verbose)
-        send_line(plan, plan->options.note, "region %s: style %s", r->name, painted->style->path);
+        send_line(plan, plan->options.note, "region %s: style %s, engine %s", r->name,
+                  painted->style->path, painted->engine->name);
     return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include "drawing/drawing.h"
 #include "io/sink.h"
+#include "job/engine.h"
 #include "job/mask_store.h"
 #include "job/style_cache.h"
 #include "job/surround.h"
@@ -16,10 +17,11 @@ typedef struct FlRegionPlan {
     double area_px;   // mean, to balance the work
     FlRegionSettings settings;
     const FlStyleInstance *style; // borrowed
-    const char *paint_files;      // borrowed: pattern of files of its paint; NULL: it is painted
-    const char *flow_files;       // borrowed: pattern of flow files; NULL: flow from the masks
-    bool keeps_flow;              // for a dump
-    bool loops;                   // the film's end leads into its beginning
+    const FlEngine *engine;
+    const char *paint_files; // borrowed: pattern of files of its paint; NULL: it is painted
+    const char *flow_files;  // borrowed: pattern of flow files; NULL: flow from the masks
+    bool keeps_flow;         // for a dump
+    bool loops;              // the film's end leads into its beginning
 } FlRegionPlan;
 
 typedef struct FlPlan {

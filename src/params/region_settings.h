@@ -24,6 +24,12 @@ typedef enum FlMotion {
     FL_MOTION_MASKS, // what outlines show, as in the papers: nothing is carried
 } FlMotion;
 
+/** What makes a region's paint: job/engine.h has the table. */
+typedef enum FlEngineChoice {
+    FL_ENGINE_AUTO, // the style's
+    FL_ENGINE_PATCH,
+} FlEngineChoice;
+
 /** What kept lines and small shapes beside them are drawn with. */
 typedef enum FlLine {
     FL_LINE_PLAIN, // as the drawing has them
@@ -48,6 +54,7 @@ typedef enum FlPassthrough {
 /** How one region is painted, completely resolved. */
 typedef struct FlRegionSettings {
     char *style; // a name or a path; NULL: not set
+    FlEngineChoice engine;
     FlTint tint;
     bool has_colour;   // with FL_TINT_FILL: `colour` instead of the drawing's fill
     uint8_t colour[3]; // sRGB

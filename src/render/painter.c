@@ -154,19 +154,21 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
     const FlRect rect = painter->result.rect;
     const FlGuideSource source = source_of(painter);
     const FlGuideParams params = fl_guide_params(&plan->settings.params);
-    const FlSynthSize size = {rect.width, rect.height, painter->result.width,
-                              painter->result.height};
+    const FlEngineInput input = {
+        plan->style,
+        &plan->settings,
+        {rect.width, rect.height, painter->result.width, painter->result.height},
+        fl_key(seed, g_str_hash(plan->name))};
     return (painter->guides = fl_guide_sequence_new(&source, &params, error)) &&
-           (painter->synth = fl_synth_new(plan->style->exemplar, &plan->settings.params, size,
-                                          fl_key(seed, g_str_hash(plan->name)), error)) &&
-           make_picture(painter, error) &&
+           (painter->paint = plan->engine->open(&input, error)) && make_picture(painter, error) &&
            (!plan->loops || fl_loop_init(&painter->loop, painter->n_pictures, error));
 }
 
 void fl_painter_clear(FlPainter *painter)
 {
     fl_guide_sequence_free(painter->guides);
-    fl_synth_free(painter->synth);
+    if (painter->paint)
+        painter->plan->engine->close(painter->paint);
     fl_loop_clear(&painter->loop);
     free(painter->depth);
     free(painter->result.painted);
@@ -261,10 +263,13 @@ static bool paint_picture(FlPainter *painter, int index, FlGuides *guides, GErro
 {
     guides->width = painter->result.rect.width, guides->height = painter->result.rect.height;
     painter->picture = painter->wrap + index;
+    painter->result.stats = (FlFrameStats){0};
+    painter->result.view = (FlSynthView){0};
+    const FlEnginePaint paint = {painter->result.painted, &painter->result.stats,
+                                 painter->wants_view ? &painter->result.view : NULL};
     return fl_guide_sequence_get(painter->guides, painter->picture, guides, error) &&
            make_depth(painter, guides, error) &&
-           fl_synth_frame(painter->synth, guides, painter->result.painted, &painter->result.stats,
-                          painter->wants_view ? &painter->result.view : NULL, error);
+           painter->plan->engine->frame(painter->paint, guides, &paint, error);
 }
 
 bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
@@ -314,7 +319,7 @@ bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], 
     const bool holds = keeps_picture(painter) && !painter->plan->paint_files;
     if (painter->plan->paint_files)
         parts[0] = g_bytes_new(NULL, 0);
-    else if (!(parts[0] = fl_synth_save(painter->synth, error)))
+    else if (!(parts[0] = painter->plan->engine->save(painter->paint, error)))
         return false;
     parts[1] =
         g_bytes_new(painter->result.painted, holds ? 3 * fl_rect_pixels(painter->result.rect) : 0);
@@ -332,7 +337,7 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
                     painter->plan->name);
         return false;
     }
-    if (!fl_synth_load(painter->synth, parts[0], error)) {
+    if (!painter->plan->engine->load(painter->paint, parts[0], error)) {
         g_prefix_error(error, "region %s: ", painter->plan->name);
         return false;
     }

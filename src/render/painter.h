@@ -1,4 +1,4 @@
-/* The painter of one region: its guides, its synthesis, and its last picture. */
+/* The painter of one region: its guides, its engine, and its last picture. */
 #ifndef FLUIDY_RENDER_PAINTER_H
 #define FLUIDY_RENDER_PAINTER_H
 
@@ -24,7 +24,7 @@ typedef struct FlPainter {
     int depth_from;    // the picture around which it was measured
     int asked, answer; // the same of the picture last asked for
     FlGuideSequence *guides;
-    FlSynth *synth;
+    void *paint;     // the state of plan->engine
     bool wants_view; // whether to fill result.view, which takes the memory of a frame
 } FlPainter;
 
@@ -57,7 +57,7 @@ bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error);
 #define FL_PAINTER_PARTS 2
 
 /**
- * The state after the last painted frame: that of the synthesis and, if frames are held, the
+ * The state after the last painted frame: that of the engine and, if frames are held, the
  * picture.
  *
  * parts: to be freed with g_bytes_unref(). Returns: false with FL_ERROR_NO_MEMORY set.

@@ -82,7 +82,8 @@ bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error)
         !make_guides(painters, error))
         return false;
     for (int p = 0; p < painters->n && !plan->options.merge; p++)
-        fl_synth_measure(painters->painter[p].synth, plan->options.stats || plan->options.report);
+        plan->painted[p].engine->measure(painters->painter[p].paint,
+                                         plan->options.stats || plan->options.report);
     return make_scratch(painters, error);
 }
 

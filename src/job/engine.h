@@ -1,0 +1,45 @@
+/* The engines: how a region's paint is made. Named variants with one interface. */
+#ifndef FLUIDY_JOB_ENGINE_H
+#define FLUIDY_JOB_ENGINE_H
+
+#include "compose/painted_region.h"
+
+/** What a region is painted with; all of it outlives the region's state. */
+typedef struct FlEngineInput {
+    const FlStyleInstance *style;
+    const FlRegionSettings *settings;
+    FlSynthSize size; // of what is painted, and of the frames
+    uint64_t seed;    // of the render and the region
+} FlEngineInput;
+
+/** What an engine gives back for a frame. */
+typedef struct FlEnginePaint {
+    uint8_t *rgb;        // width * height * 3 sRGB in the style's colours, its paper without paint
+    FlFrameStats *stats; // zeroed; an engine may leave it
+    FlSynthView *view;   // zeroed; NULL: nobody wants it. An engine without a field leaves it
+} FlEnginePaint;
+
+/**
+ * One engine. The state that it keeps between the frames of a region is its own; different regions
+ * are painted by different threads. The same input and frames give the same bytes on any number of
+ * threads and every processor. Engines and their order are those of FlEngineChoice.
+ */
+typedef struct FlEngine {
+    const char *name;
+    bool (*claims)(const char *style_folder); // whether it is the engine of a style; NULL: of none
+    /** Returns: the state before the first frame; NULL with an error set. */
+    void *(*open)(const FlEngineInput *input, GError **error);
+    void (*close)(void *state);                  // NULL is fine
+    void (*measure)(void *state, bool energies); // whether statistics hold energies
+    /** The next frame, in order. An empty mask makes the next one a first frame again. */
+    bool (*frame)(void *state, const FlGuides *guides, const FlEnginePaint *paint, GError **error);
+    /** What the next frame depends on, to be freed with g_bytes_unref(); NULL with an error set. */
+    GBytes *(*save)(void *state, GError **error);
+    /** FL_ERROR_CHANGED if the bytes are damaged or do not fit; they need not be trusted. */
+    bool (*load)(void *state, GBytes *bytes, GError **error);
+} FlEngine;
+
+/** The engine of a region: the one that was chosen, or the first that claims the style's folder. */
+const FlEngine *fl_engine_choose(FlEngineChoice choice, const char *style_folder);
+
+#endif
