@@ -190,7 +190,7 @@ table() {
 1|broken/a_1.svg: #p: the path is broken at “x v9z” (character 8) *under --strict)|broken --strict
 1|lost/a_1.svg: #r: fill refers to “#g”, which is not in the file: *under --strict)|lost --strict
 1|circle/a_1.svg: <use> of “#a” shows itself and is left out *under --strict)|circle --strict
-1|animated/a_1.svg: #c: the animation in it is not played: *under --strict)|animated --strict
+1|animated/a_1.svg: #c: the animation in it is not played: *under --strict)|animated --strict --frames-from files
 1|media/a_1.svg: @media rules are left out *under --strict)|media --strict
 1|image/a_1.svg: #i: the image “gone.png” does not exist *under --strict)|image --strict
 1|prologue.svg: ignored the text before <svg>, which is not XML *under --strict)|prologue.svg --strict

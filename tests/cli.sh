@@ -169,6 +169,33 @@ rm a/w_2.png && touch -d @0 a/w_1.png
     >out 2>err && [ "$(stat -c %Y a/w_1.png)" = 0 ] && diff -r a b >out
 result $? '--no-clobber paints what is missing, and gives the same bytes'
 
+# Layers as frames: one file, as Inkscape keeps it, and the same frames as files.
+mkdir layered
+group='<g inkscape:groupmode="layer" inkscape:label'
+ground="$group='land (static)'><path fill='#88aacc' d='M0 30h64v18H0z'/></g>"
+echo "$drawing$ground" >film.svg
+for i in 1 2 3; do
+    shapes="<g inkscape:label='hat'><circle id='c$i' cx='$((20 + 4 * i))' cy='24' r='12' fill='#aa3311'/></g>
+<path d='M5 5L50 4$i' stroke='#000' fill='none'/>"
+    echo "$group='Frame $i (200)' style='display:none' id='layer$i'>$shapes</g>" >>film.svg
+    echo "$drawing$ground<g>$shapes</g></svg>" >layered/film_$i.svg
+done
+echo '</svg>' >>film.svg
+"$program" film.svg --frames-from layers -s 01 -q -o 'one/w%d.png' >out 2>err &&
+    "$program" layered -s 01 -q -o 'many/w%d.png' >out 2>err && diff -r one many >out && [ -s one/w3.png ]
+result $? 'frames that are layers of one file are painted as if each had a file'
+sed 's|</svg>|<g><use href="#c2"/></g></svg>|; s|groupmode|mode|' film.svg >clones.svg
+"$program" clones.svg --frames-from layers -f 4 --list-regions >out 2>err && grep -q 'hat-aa3311\|red-aa3311 .* 1/1' out
+result $? 'clones of what is in another layer are drawn'
+refuses 'layers of several files are refused' 2 '--frames-from layers: 3 files; expected one, *' layered --frames-from layers $look
+refuses 'a file without layers is named' 1 'whole/w_0001.svg: no layers *' whole/w_0001.svg --frames-from layers $look
+echo "$drawing<circle r='9' fill='#f00'>
+<animate attributeName='cx' values='0;9' dur='1s'/></circle></svg>" >moves.svg
+refuses 'a file that moves by itself is refused with a way out' 1 \
+    'moves.svg: line 2: it moves by itself *export a file for each frame, or use --frames-from files *' moves.svg $look
+"$program" moves.svg -s 01 --frames-from files --dry-run >out 2>err && grep -q 'would paint 1 frame' err
+result $? 'its first moment is painted on request'
+
 # For programs.
 film=$fixtures/animations/snowman-wave-layers
 json() { # json FILE EXPRESSION: whether it is true of the list of a file's lines, or its one object

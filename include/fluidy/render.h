@@ -17,6 +17,15 @@ typedef enum FlMissing {
     FL_MISSING_SKIP,  /**< no output for them */
 } FlMissing;
 
+/** What the frames are in the files. */
+typedef enum FlFramesFrom {
+    FL_FRAMES_UNSET,  /**< the config's, else FL_FRAMES_AUTO */
+    FL_FRAMES_AUTO,   /**< each file is one; a lone file that moves by itself, by SMIL or CSS, is
+                           FL_ERROR_INPUT */
+    FL_FRAMES_FILES,  /**< each file is one, also a lone one that moves: its first moment */
+    FL_FRAMES_LAYERS, /**< the layers of one file are, the lowest first */
+} FlFramesFrom;
+
 /** What makes leaves of different frames one region. */
 typedef enum FlRegionKey {
     FL_KEY_UNSET, /**< the config's, else FL_KEY_AUTO */
@@ -95,6 +104,7 @@ typedef struct FlRenderOptions {
         *inputs;        /**< NULL-terminated list of patterns, globs, SVG files or one folder */
     const char *frames; /**< "1001-1096", "1-96x2", "1,5,9"; NULL: all that are found */
     FlMissing missing;
+    FlFramesFrom frames_from;
     const char *canvas; /**< "WxH" or "WxH+X+Y" in px, for SVGs without a size; NULL: theirs */
     FlRegistration registration;
     const char *flow; /**< pattern of files, one per frame, may hold {region}: the motion into it

@@ -68,8 +68,7 @@ static char *clean(GHashTable *stems, const char *labels)
 static void note_frame(const FlSurvey *survey, int t, GHashTable *stems)
 {
     const GArray *parts = survey->frame[t].parts;
-    const bool held =
-        t > 0 && strcmp(survey->sequence->file[t], survey->sequence->file[t - 1]) == 0;
+    const bool held = t > 0 && fl_sequence_same(survey->sequence, t, t - 1);
     for (guint i = 0; i < parts->len; i++) {
         const int labels = g_array_index(parts, FlSurveyPart, i).labels;
         if (i > 0 && labels == g_array_index(parts, FlSurveyPart, i - 1).labels)

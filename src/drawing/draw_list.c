@@ -99,8 +99,10 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Stage, stage_clear)
 static bool stage_init(Stage *stage, const FlDrawing *drawing, int frame, GError **error)
 {
     *stage = (Stage){.drawing = drawing, .frame = &drawing->frame[frame], .index = frame};
-    const FlSvgOptions options = {stage->frame->canvas, drawing->dpi,
-                                  (const char *const *)stage->frame->whole};
+    const FlSvgOptions options = {.canvas = stage->frame->canvas,
+                                  .dpi = drawing->dpi,
+                                  .whole = (const char *const *)stage->frame->whole,
+                                  .layer = drawing->sequence->layer[frame]};
     stage->svg = fl_svg_open(drawing->sequence->file[frame], drawing->sequence->number[frame],
                              &options, NULL, error);
     if (!stage->svg)

@@ -82,7 +82,7 @@ int fl_drawing_shown(const FlDrawing *drawing, int frame)
 {
     const FlSequence *s = drawing->sequence;
     while (frame > 0 && (s->stand_in[frame] || s->stand_in[frame - 1]) &&
-           g_str_equal(s->file[frame], s->file[frame - 1]))
+           fl_sequence_same(s, frame, frame - 1))
         frame--;
     return frame;
 }
@@ -318,8 +318,9 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
 {
     if (!fl_rules_check(options->rules, options->n_rules, error))
         return NULL;
-    g_autoptr(FlSequence) sequence = fl_sequence_open(
-        options->inputs, options->n_inputs, options->range, options->missing, warnings, error);
+    g_autoptr(FlSequence) sequence =
+        fl_sequence_open(options->inputs, options->n_inputs, options->range, options->missing,
+                         options->frames_from, warnings, error);
     if (!sequence)
         return NULL;
     FlSurvey survey;

@@ -20,6 +20,7 @@ typedef struct FlDrawingOptions {
     int n_inputs;
     const char *range; // NULL: all frames
     FlMissing missing;
+    FlFramesFrom frames_from;
     FlCanvas canvas;   // of drawings without a size
     double dpi;        // 0: 96
     bool apart;        // read in a child process, see drawing/apart.h

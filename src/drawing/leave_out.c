@@ -12,12 +12,14 @@ void fl_sequence_leave_out(FlSequence *sequence, int frame, int instead)
     if (instead >= 0) {
         sequence->file[frame] = g_strdup(sequence->file[instead]);
         sequence->stand_in[frame] = true;
+        sequence->layer[frame] = sequence->layer[instead];
         return;
     }
     for (int t = frame; t + 1 < sequence->n; t++) {
         sequence->file[t] = sequence->file[t + 1];
         sequence->number[t] = sequence->number[t + 1];
         sequence->stand_in[t] = sequence->stand_in[t + 1];
+        sequence->layer[t] = sequence->layer[t + 1];
     }
     sequence->file[--sequence->n] = NULL;
 }

@@ -185,6 +185,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                .n_inputs = (int)g_strv_length((char **)options->inputs),
                                .range = options->frames,
                                .missing = options->missing,
+                               .frames_from = options->frames_from,
                                .dpi = options->dpi,
                                .apart = true,
                                .registered = options->registration == FL_REGISTRATION_ON,
@@ -214,5 +215,5 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
 FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error)
 {
     return fl_sequence_open(options->inputs, (int)g_strv_length((char **)options->inputs),
-                            options->frames, options->missing, NULL, error);
+                            options->frames, options->missing, options->frames_from, NULL, error);
 }

@@ -6,7 +6,10 @@
 FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **error)
 {
     const FlDrawingFrame *f = &drawing->frame[frame];
-    const FlSvgOptions options = {f->canvas, drawing->dpi, (const char *const *)f->whole};
+    const FlSvgOptions options = {.canvas = f->canvas,
+                                  .dpi = drawing->dpi,
+                                  .whole = (const char *const *)f->whole,
+                                  .layer = drawing->sequence->layer[frame]};
     g_autoptr(FlSvg) svg = fl_svg_read(drawing->sequence->file[frame],
                                        drawing->sequence->number[frame], &options, NULL, error);
     return svg ? fl_outlines_new(svg, f->page_width, f->page_height) : NULL;
@@ -59,5 +62,5 @@ FlLeafFill *fl_drawing_leaf_fills(const FlDrawing *drawing, int frame, const FlO
 
 bool fl_drawing_same_file(const FlDrawing *drawing, int a, int b)
 {
-    return a == b || strcmp(drawing->sequence->file[a], drawing->sequence->file[b]) == 0;
+    return a == b || fl_sequence_same(drawing->sequence, a, b);
 }

@@ -18,10 +18,12 @@ typedef struct Vote {
     double x, y, weight;
 } Vote;
 
-static GArray *measure(const char *path, int number, double dpi, GError **error)
+static GArray *measure(const FlSequence *sequence, int t, double dpi, GError **error)
 {
-    const FlSvgOptions options = {.canvas = {0, 0, PAGE_PX, PAGE_PX}, .dpi = dpi};
-    g_autoptr(FlSvg) svg = fl_svg_open(path, number, &options, NULL, error);
+    const FlSvgOptions options = {
+        .canvas = {0, 0, PAGE_PX, PAGE_PX}, .dpi = dpi, .layer = sequence->layer[t]};
+    g_autoptr(FlSvg) svg =
+        fl_svg_open(sequence->file[t], sequence->number[t], &options, NULL, error);
     if (!svg)
         return NULL;
     g_autoptr(GArray) shapes = g_array_new(FALSE, FALSE, sizeof(Shape));
@@ -122,7 +124,7 @@ static double *places_of(const FlSurvey *survey, FlCanvas *page, FlWarnings *war
     for (int t = 0; t < survey->n_frames; t++) {
         const char *file = survey->sequence->file[t];
         const int number = survey->sequence->number[t];
-        g_autoptr(GArray) now = measure(file, number, survey->svg.dpi, error);
+        g_autoptr(GArray) now = measure(survey->sequence, t, survey->svg.dpi, error);
         if (!now)
             return NULL;
         g_autoptr(GArray) votes = before ? votes_of(before, now) : NULL;

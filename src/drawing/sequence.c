@@ -1,6 +1,7 @@
 #include "drawing/sequence.h"
 
 #include "base/suggest.h"
+#include "drawing/count_layers.h"
 #include "io/frame_range.h"
 #include "io/pattern.h"
 #include <fnmatch.h>
@@ -9,6 +10,7 @@
 typedef struct Found {
     int number;
     char *path;
+    int layer; // as in FlSequence
 } Found;
 
 static void found_clear(void *data)
@@ -26,7 +28,7 @@ static GArray *found_new(void)
 static void found_add(GArray *found, int number, const char *folder, const char *name)
 {
     const bool here = strcmp(folder, ".") == 0;
-    const Found f = {number, here ? g_strdup(name) : g_build_filename(folder, name, NULL)};
+    const Found f = {number, here ? g_strdup(name) : g_build_filename(folder, name, NULL), 0};
     g_array_append_val(found, f);
 }
 
@@ -230,7 +232,7 @@ static bool add_file(GArray *found, const char *input, GError **error)
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no such file%s", input, hint);
         return false;
     }
-    const Found f = {0, g_strdup(input)};
+    const Found f = {0, g_strdup(input), 0};
     g_array_append_val(found, f);
     return true;
 }
@@ -256,6 +258,25 @@ static bool add_input(GArray *found, const char *input, FlWarnings *warnings, GE
         return false;
     number_files(found);
     return true;
+}
+
+/** The layers of the only file, in its place. */
+static bool split_layers(GArray *found, GError **error)
+{
+    if (found->len != 1) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "‘frames-from’ layers: %u files; expected one, whose layers are the frames",
+                    found->len);
+        return false;
+    }
+    g_autofree char *path = g_strdup(g_array_index(found, Found, 0).path);
+    const int n = fl_count_layers(path, error);
+    g_array_set_size(found, 0);
+    for (int layer = 1; layer <= n; layer++) {
+        const Found f = {layer, g_strdup(path), layer};
+        g_array_append_val(found, f);
+    }
+    return n > 0;
 }
 
 static int compare_found(const void *a, const void *b)
@@ -371,6 +392,7 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
     s->file = g_new0(char *, wanted->len + 1);
     s->number = g_new0(int, wanted->len + 1);
     s->stand_in = g_new0(bool, wanted->len + 1);
+    s->layer = g_new0(int, wanted->len + 1);
     s->name = shared_name(first);
     for (guint i = 0; i < wanted->len; i++) {
         const int number = g_array_index(wanted, int, i);
@@ -380,6 +402,7 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
         if (f) {
             s->file[s->n] = g_strdup(f->path);
             s->stand_in[s->n] = f->number != number;
+            s->layer[s->n] = f->layer;
             s->number[s->n++] = number;
         }
     }
@@ -406,7 +429,8 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
 }
 
 FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char *range,
-                             FlMissing missing, FlWarnings *warnings, GError **error)
+                             FlMissing missing, FlFramesFrom from, FlWarnings *warnings,
+                             GError **error)
 {
     g_assert(n_inputs >= 1);
     g_autoptr(GArray) found = found_new();
@@ -419,6 +443,8 @@ FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char
                 return NULL;
         number_files(found);
     }
+    if (from == FL_FRAMES_LAYERS && !split_layers(found, error))
+        return NULL;
     g_array_sort(found, compare_found);
     if (!no_number_twice(found, error))
         return NULL;
@@ -426,7 +452,16 @@ FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char
     const int last = g_array_index(found, Found, found->len - 1).number;
     g_autofree char *all = g_strdup_printf("%d-%d", first, last);
     g_autoptr(GArray) wanted = fl_range_parse(range ? range : all, first, last, error);
-    return wanted ? choose(found, wanted, missing, warnings, error) : NULL;
+    FlSequence *sequence = wanted ? choose(found, wanted, missing, warnings, error) : NULL;
+    if (sequence)
+        sequence->alone = found->len == 1 && from <= FL_FRAMES_AUTO;
+    return sequence;
+}
+
+bool fl_sequence_same(const FlSequence *sequence, int a, int b)
+{
+    return sequence->layer[a] == sequence->layer[b] &&
+           strcmp(sequence->file[a], sequence->file[b]) == 0;
 }
 
 void fl_sequence_free(FlSequence *sequence)
@@ -438,6 +473,7 @@ void fl_sequence_free(FlSequence *sequence)
     g_free(sequence->file);
     g_free(sequence->number);
     g_free(sequence->stand_in);
+    g_free(sequence->layer);
     g_free(sequence->name);
     g_free(sequence);
 }

@@ -14,6 +14,8 @@ typedef struct FlSequence {
     int *number;    // as in the file's name; 1 … n where the names have no number
     bool *stand_in; // whether the file is that of another number, which is held
     char *name;     // what the names share, such as "walk" of walk_0001.svg; never empty
+    int *layer;     // the frame among the layers of its file, from 1; 0: the file is the frame
+    bool alone;     // there is one file, and nobody said whether it is one frame
     int n_left_out; // frames whose files were found, but are held or skipped
 } FlSequence;
 
@@ -27,10 +29,16 @@ typedef struct FlSequence {
  *
  * range: "1001-1096", "1-96x2", "10-", "1,5,9" and lists of these; NULL: all.
  *
+ * from: FL_FRAMES_LAYERS takes the layers of one file as frames 1 … n, the lowest first.
+ *
  * Returns: NULL with FL_ERROR_USAGE (bad range or pattern) or FL_ERROR_INPUT (nothing found, gaps).
  */
 FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char *range,
-                             FlMissing missing, FlWarnings *warnings, GError **error);
+                             FlMissing missing, FlFramesFrom from, FlWarnings *warnings,
+                             GError **error);
+
+/** Whether two frames, by index, are the same file, or the same layer of one. */
+bool fl_sequence_same(const FlSequence *sequence, int a, int b);
 
 void fl_sequence_free(FlSequence *sequence); // NULL is fine
 

@@ -77,8 +77,11 @@ static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings 
     const int number = survey->sequence->number[t];
     double width, height;
     FlSurveyFrame *frame = &survey->frame[t];
-    const FlSvgOptions options = {frame->canvas, survey->svg.dpi,
-                                  (const char *const *)frame->whole};
+    const FlSvgOptions options = {.canvas = frame->canvas,
+                                  .dpi = survey->svg.dpi,
+                                  .whole = (const char *const *)frame->whole,
+                                  .layer = survey->sequence->layer[t],
+                                  .alone = survey->sequence->alone};
     g_autoptr(FlSvg) svg = fl_svg_open(file, number, &options, warnings, error);
     if (!svg || !fl_svg_size(svg, &width, &height, error))
         return false;
@@ -181,7 +184,9 @@ static double cover_scale(double scale, double width, double height, double w, d
 static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error)
 {
     double width, height;
-    const FlSvgOptions options = {survey->frame[0].canvas, survey->svg.dpi, NULL};
+    const FlSvgOptions options = {.canvas = survey->frame[0].canvas,
+                                  .dpi = survey->svg.dpi,
+                                  .layer = survey->sequence->layer[0]};
     g_autoptr(FlSvg) svg =
         fl_svg_open(survey->sequence->file[0], survey->sequence->number[0], &options, NULL, error);
     if (!svg || !fl_svg_size(svg, &width, &height, error))
@@ -288,7 +293,7 @@ bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawin
                     FlWatch *watch, FlWarnings *warnings, GError **error)
 {
     *survey = (FlSurvey){.sequence = sequence,
-                         .svg = {options->canvas, options->dpi},
+                         .svg = {.canvas = options->canvas, .dpi = options->dpi},
                          .n_frames = sequence->n,
                          .frame = g_new0(FlSurveyFrame, sequence->n),
                          .watch = watch};

@@ -4,6 +4,7 @@
 #include "svg/branch.h"
 #include "svg/filter_background.h"
 #include "svg/images.h"
+#include "svg/layer_frames.h"
 #include "svg/lint.h"
 #include "svg/normalise.h"
 #include "svg/paint_probe.h"
@@ -146,6 +147,18 @@ static void set_canvas(xmlNode *root, const FlCanvas *canvas)
     set_number(root, "height", canvas->height);
 }
 
+/** The only frame must not be one that is meant to move. */
+static bool check_still(const FlSvg *svg, GError **error)
+{
+    const int line = fl_document_moves(svg->doc);
+    if (line > 0)
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: line %d: it moves by itself (SMIL or CSS), which is not played: export a "
+                    "file for each frame, or use ‘frames-from’ files to paint its first moment",
+                    svg->path, line);
+    return line == 0;
+}
+
 FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
                    GError **error)
 {
@@ -154,6 +167,9 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     svg->dpi = options->dpi > 0 ? options->dpi : 96;
     svg->doc = fl_document_read(path, number, warnings, error);
     if (!svg->doc)
+        return NULL;
+    if ((options->alone && !check_still(svg, error)) ||
+        (options->layer > 0 && !fl_layer_frames_select(svg->doc, options->layer, path, error)))
         return NULL;
     if (options->canvas.width > 0)
         set_canvas(xmlDocGetRootElement(svg->doc), &options->canvas);

@@ -18,6 +18,8 @@ typedef struct FlSvgOptions {
     FlCanvas canvas;
     double dpi;               // of mm, cm, in, pt; 0: 96
     const char *const *whole; // ids of groups that are drawn as one leaf; NULL: none
+    int layer;                // the frame among the file's layers, from 1; 0: the file is one
+    bool alone;               // no other frames: a file that moves by itself is an error
 } FlSvgOptions;
 
 /** A frame. One thread at a time may use it; different frames may be used in parallel. */
