@@ -1,0 +1,63 @@
+#!/bin/bash
+# The extensions of drawing programs, run as those run them. usage: plugins.sh PROGRAM FIXTURES; speaks TAP.
+# shellcheck source-path=SCRIPTDIR source=tap.sh
+. "${0%/*}/tap.sh"
+program=$(realpath "$1")
+fixtures=$(realpath "$2")
+plugins=$(realpath "${0%/*}/../src/plugins")
+cd "$folder" || exit 1
+mkdir bin && ln -s "$program" bin/fluidy-svg
+export PATH="$folder/bin:$PATH" HOME=$folder
+export FLUIDY_STYLES=$fixtures/styles PYTHONDONTWRITEBYTECODE=1
+
+# Two frames as layers of a file, as Inkscape saves it.
+layer='<g inkscape:groupmode="layer" inkscape:label'
+cat >film.svg <<END
+<svg xmlns="http://www.w3.org/2000/svg" width="64mm" height="48mm" viewBox="0 0 64 48"
+    xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"><!-- kept -->
+$layer="1"><circle cx="24" cy="24" r="12" fill="#aa3311"/></g>
+$layer="2" style="display:none"><circle cx="30" cy="24" r="12" fill="#aa3311"/></g></svg>
+END
+
+paint=$plugins/inkscape/fluidy_paint.py
+extension() { # extension ARGUMENT...: as Inkscape calls it
+    python3 "$paint" --tab=paint --detail=draft "$@" >out 2>err
+}
+images() { # images FILE: how many pictures a document has
+    grep -o '<image' "$1" | wc -l
+}
+python3 - "$plugins/inkscape/fluidy_paint.inx" "$paint" >out 2>err <<'END'
+import sys
+import xml.etree.ElementTree as xml
+space = '{http://www.inkscape.org/namespace/inkscape/extension}'
+script = open(sys.argv[2]).read()
+for param in xml.parse(sys.argv[1]).iter(space + 'param'):
+    assert f"'--{param.get('name')}'" in script, param.get('name')
+END
+result $? 'the script takes what the dialog of Inkscape asks for'
+extension --style=ink --frames=drawing film.svg && cp out once.svg && [ "$(images once.svg)" = 1 ] &&
+    grep -q '<!-- kept -->' once.svg && grep -q '<image x="0" y="0" width="64" height="48"' once.svg &&
+    extension --style=gouache --frames=drawing once.svg && [ "$(images out)" = 1 ] && grep -q 'painted: gouache' out
+result $? 'a drawing gets its painting as a layer, which the next one replaces'
+extension --style=ink --frames=layers film.svg && [ "$(images out)" = 2 ]
+result $? 'layers that are frames are painted one by one'
+extension --style=ink --frames=layers --result=folder --folder="$folder/my frames" film.svg && [ "$(images out)" = 0 ] &&
+    [ "$(ls 'my frames' | xargs)" = 'painted_0001.png painted_0002.png' ]
+result $? 'or go into a folder'
+extension --style=other --other_style=none film.svg
+[ $? = 1 ] && [ ! -s out ] && grep -q 'no style “none” in' err
+result $? 'what is wrong is shown, and the document stays'
+extension --style=ink --program=no-such-program film.svg
+[ $? = 1 ] && grep -q 'no-such-program: No such file.* Install fluidy-svg' err
+result $? 'a program that is not there is told where to come from'
+if ! command -v inkscape >/dev/null || ! command -v xvfb-run >/dev/null; then
+    skip 'Inkscape itself paints with it' 'no Inkscape, or no xvfb-run'
+else
+    mkdir -p profile/extensions && cp "$plugins"/inkscape/* profile/extensions
+    INKSCAPE_PROFILE_DIR=$folder/profile timeout 100 xvfb-run -a inkscape --with-gui --batch-process \
+        --actions="org.fluidy.paint.noprefs;export-filename:$folder/painted.svg;export-do" film.svg >out 2>err
+    [ "$(images painted.svg)" = 1 ] && grep -q 'painted: watercolour' painted.svg
+    result $? 'Inkscape itself paints with it'
+fi
+
+echo "1..$n"
