@@ -124,7 +124,7 @@ static void compare_after_rounds(Case *c, double *found, double *best)
 {
     searched(c, 0, 6);
     for (int round = 0; round < 3; round++) {
-        fl_vote(&c->nnf, c->search.level, c->search.kernels, c->params->vote_sharpness,
+        fl_vote(&c->nnf, c->search.level, c->search.kernels, c->params->vote_sharpness, 3,
                 c->target.level[0].colour, NULL);
         searched(c, 1, 6);
     }
@@ -160,7 +160,7 @@ static void the_terms_add_up_to_the_energy(void)
     Case c;
     set_up(&c, true);
     const double energy = searched(&c, 0, 2);
-    fl_vote(&c.nnf, c.search.level, c.search.kernels, 1, c.target.level[0].colour, NULL);
+    fl_vote(&c.nnf, c.search.level, c.search.kernels, 1, 3, c.target.level[0].colour, NULL);
     const double all = searched(&c, 1, 0);
     g_autofree uint32_t *room = g_new(uint32_t, TARGET_SIDE * TARGET_SIDE);
     FlEnergy terms;

@@ -57,7 +57,7 @@ static void a_coherent_field_votes_back_the_exemplar(void)
     float colour[300];
     FlKernels kernels;
     fl_kernels_init(&kernels, fl_cpu_flags());
-    fl_vote(&nnf, &exemplar->level[0], &kernels, 1, colour, NULL);
+    fl_vote(&nnf, &exemplar->level[0], &kernels, 1, 3, colour, NULL);
     for (int p = 0; p < 100; p++) {
         const uint8_t want =
             style->rgb[3 * ((size_t)(3 * STYLE_H + 19 + p / 10) * STYLE_W + 27 + p % 10)];

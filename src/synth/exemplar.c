@@ -145,7 +145,7 @@ static void pack_colour(FlExemplarLevel *level, const FlPyramid *pyramid, int t,
     float *const plane[3] = {planes, planes + pixels, planes + 2 * pixels};
     for (int c = 0; c < 3; c++)
         memcpy(plane[c], pyramid->plane[FL_PLANE_R + c], pixels * sizeof(float));
-    fl_spline_prefilter(plane, level->width, level->height,
+    fl_spline_prefilter(plane, 3, level->width, level->height,
                         level->colour + t * level->frame_pixels + FL_PAD * level->pitch + FL_PAD,
                         (int)level->pitch);
 }

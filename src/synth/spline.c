@@ -68,26 +68,27 @@ static int mirror(int i, int n)
     return CLAMP(m, 0, n - 1);
 }
 
-static void pack(float *const plane[3], int width, int height, FlSplinePixel *out, int pitch)
+static void pack(float *const *plane, int n, int width, int height, FlSplinePixel *out, int pitch)
 {
     for (int y = -FL_SPLINE_PAD; y < height + FL_SPLINE_PAD; y++)
         for (int x = -FL_SPLINE_PAD; x < width + FL_SPLINE_PAD; x++) {
             FlSplinePixel *to = out + y * (ptrdiff_t)pitch + x;
             const size_t from = (size_t)mirror(y, height) * width + mirror(x, width);
-            for (int c = 0; c < 3; c++)
-                to->c[c] = (int16_t)CLAMP(lrintf(plane[c][from] * FL_SPLINE_ONE), -32767, 32767);
-            to->c[3] = 0;
+            for (int c = 0; c < 4; c++)
+                to->c[c] =
+                    c < n ? (int16_t)CLAMP(lrintf(plane[c][from] * FL_SPLINE_ONE), -32767, 32767)
+                          : 0;
         }
 }
 
-void fl_spline_prefilter(float *const plane[3], int width, int height, FlSplinePixel *coefficients,
-                         int pitch)
+void fl_spline_prefilter(float *const *plane, int n, int width, int height,
+                         FlSplinePixel *coefficients, int pitch)
 {
     g_autofree float *sum = g_new(float, width);
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < n; c++) {
         for (int y = 0; y < height; y++)
             filter(plane[c] + (size_t)y * width, width, 1, sum);
         filter(plane[c], height, width, sum);
     }
-    pack(plane, width, height, coefficients, pitch);
+    pack(plane, n, width, height, coefficients, pitch);
 }

@@ -7,7 +7,7 @@
 #define FL_SPLINE_ONE 4096 // 1.0 in a coefficient; they reach 5.0 where pixels alternate
 #define FL_SPLINE_PAD 4    // pixels around a picture of coefficients, at least 2
 
-/** Coefficients of a pixel: red, green, blue and a zero. */
+/** Coefficients of a pixel: red, green, blue and alpha or a zero. */
 typedef struct FlSplinePixel {
     int16_t c[4];
 } FlSplinePixel;
@@ -23,11 +23,11 @@ extern const FlSplinePhase *fl_spline_phases;
 void fl_spline_init(void);
 
 /**
- * Spline coefficients of three planes of width * height values 0 … 1, which are overwritten. The
+ * Spline coefficients of n <= 4 planes of width * height values 0 … 1, which are overwritten. The
  * picture is mirrored at its borders. coefficients points at pixel (0, 0) of a picture with rows of
  * `pitch` pixels and FL_SPLINE_PAD pixels on every side, which are filled as well.
  */
-void fl_spline_prefilter(float *const plane[3], int width, int height, FlSplinePixel *coefficients,
-                         int pitch);
+void fl_spline_prefilter(float *const *plane, int n, int width, int height,
+                         FlSplinePixel *coefficients, int pitch);
 
 #endif

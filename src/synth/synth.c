@@ -151,7 +151,7 @@ static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GEr
     g_autofree uint8_t *voted = fl_alloc(pixels, 1, "a temporal guide", error);
     if (!voted)
         return false;
-    fl_vote(shifted, &synth->exemplar->level[l], &synth->kernels, synth->params->vote_sharpness,
+    fl_vote(shifted, &synth->exemplar->level[l], &synth->kernels, synth->params->vote_sharpness, 3,
             target->temporal, voted);
     const float side = synth->side;
     const float lower = synth->params->temp_lower * side;
@@ -220,7 +220,7 @@ static double lap(gint64 *since)
 static void vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
 {
     gint64 time = g_get_monotonic_time();
-    fl_vote(search->nnf, search->level, search->kernels, search->params->vote_sharpness,
+    fl_vote(search->nnf, search->level, search->kernels, search->params->vote_sharpness, 3,
             target->colour, NULL);
     synth->seconds_vote += lap(&time);
 }

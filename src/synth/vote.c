@@ -66,18 +66,19 @@ static void sample(const FlExemplarLevel *level, const FlKernels *kernels, const
 }
 
 static void blend_opinions(const FlOpinion *opinions, int n, const FlExemplarLevel *level,
-                           const FlKernels *kernels, const float *weight, float colour[3])
+                           const FlKernels *kernels, const float *weight, int channels,
+                           float *colour)
 {
-    float sum[3] = {0}, total = 0;
+    float sum[4] = {0}, total = 0;
     for (int k = 0; k < n; k++) {
         float value[4];
         sample(level, kernels, &opinions[k], value);
         const float w = weight[opinions[k].n];
-        for (int c = 0; c < 3; c++)
+        for (int c = 0; c < channels; c++)
             sum[c] += w * value[c];
         total += w;
     }
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < channels; c++)
         colour[c] = CLAMP(sum[c] / total, 0.0f, 1.0f);
 }
 
@@ -100,16 +101,17 @@ static void find_covered(const FlNnf *nnf, int y, uint8_t *matched, uint8_t *nea
 }
 
 static void vote_for(const FlNnf *nnf, int x, int y, const FlExemplarLevel *level,
-                     const FlKernels *kernels, const float *weight, float colour[3])
+                     const FlKernels *kernels, const float *weight, int channels, float *colour)
 {
     FlVotes votes;
     FlOpinion opinions[FL_PATCH_PIXELS];
     gather_votes(nnf, x, y, &votes);
-    blend_opinions(opinions, kernels->opinions(&votes, opinions), level, kernels, weight, colour);
+    blend_opinions(opinions, kernels->opinions(&votes, opinions), level, kernels, weight, channels,
+                   colour);
 }
 
 void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
-             float sharpness, float *colour, uint8_t *voted)
+             float sharpness, int channels, float *colour, uint8_t *voted)
 {
     float weight[FL_PATCH_PIXELS + 1];
     opinion_weights(sharpness, weight);
@@ -123,7 +125,8 @@ void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *ke
             for (int x = 0; x < nnf->width; x++) {
                 const size_t p = (size_t)y * nnf->width + x;
                 if (covered[x])
-                    vote_for(nnf, x, y, level, kernels, weight, colour + 3 * p);
+                    vote_for(nnf, x, y, level, kernels, weight, channels,
+                             colour + (size_t)channels * p);
                 if (voted)
                     voted[p] = covered[x];
             }

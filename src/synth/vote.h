@@ -12,10 +12,10 @@
  * a coherent field loses only one interpolation. Opinions are blended with weights
  * n^sharpness, n the number of patches behind each; sharpness 1 is the papers' mean.
  *
- * colour: 3 floats per pixel, 0 … 1, untouched where nothing votes; voted: 1 where something did,
- * else 0; may be NULL.
+ * colour: `channels` floats per pixel, 3 or with alpha 4, 0 … 1, untouched where nothing votes;
+ * voted: 1 where something did, else 0; may be NULL.
  */
 void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
-             float sharpness, float *colour, uint8_t *voted);
+             float sharpness, int channels, float *colour, uint8_t *voted);
 
 #endif
