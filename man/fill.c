@@ -40,7 +40,7 @@ static void print_line(const char *text)
 #define ARGUMENT_LIST "number,..."
 
 static void print_parameter(const char *field, const char *argument, bool has_range, double min,
-                            double max, const char *unit, const char *values[3], const char *help)
+                            double max, const char *unit, const char *values[5], const char *help)
 {
     fputs(".It Fl -", stdout);
     print_name(field);
@@ -51,15 +51,19 @@ static void print_parameter(const char *field, const char *argument, bool has_ra
     printf("default %s", values[0]);
     if (strcmp(values[0], values[1]) != 0 || strcmp(values[0], values[2]) != 0)
         printf(", fluidymation %s, thesis %s", values[1], values[2]);
+    if (strcmp(values[0], values[3]) != 0 || strcmp(values[0], values[4]) != 0)
+        printf(", lazyfluids %s, fluid %s", values[3], values[4]);
     puts(".");
 }
 
 static void print_parameters(void)
 {
-#define FL_PARAM(type, field, unit, min, max, preset_default, fluidymation, thesis, help)          \
+#define FL_PARAM(type, field, unit, min, max, usual, fluidymation, thesis, lazyfluids, fluid,      \
+                 help)                                                                             \
     print_parameter(#field, ARGUMENT_##type, strcmp(#type, "BOOL") != 0, min, max, unit,           \
-                    (const char *[3]){TEXT_##type(preset_default), TEXT_##type(fluidymation),      \
-                                      TEXT_##type(thesis)},                                        \
+                    (const char *[5]){TEXT_##type(usual), TEXT_##type(fluidymation),               \
+                                      TEXT_##type(thesis), TEXT_##type(lazyfluids),                \
+                                      TEXT_##type(fluid)},                                         \
                     help);
 #include "params/params.def"
 #undef FL_PARAM

@@ -146,7 +146,7 @@ changed_defaults_are_explained() {
     local name
     for name in $(awk '/^\.It Fl -/ { name = $3 }
                        /^default .*, fluidymation / {
-                           split($0, part, /default |, fluidymation |, thesis /)
+                           split($0, part, /default |, fluidymation |, thesis |, lazyfluids /)
                            if (part[2] != part[3]) print name }' "$build/man/fluidy-svg.1"); do
         sed -n '/^\.Sh DEPARTURES/,/^\.Sh ENV/p' man/fluidy-svg.1.in | grep -qE "^\.It Fl.* $name( |\$)" ||
             echo "-$name differs from the article; DEPARTURES FROM THE PAPERS does not say why"

@@ -213,7 +213,7 @@ static double literal(const Case *c)
 
 static void the_energy_is_near_that_of_the_literal_loop(void)
 {
-    static const Case cases[] = {{20, 20, 50, 50, NULL, false, FL_UNIFORM_PATCH},
+    static const Case cases[] = {{12, 12, 40, 40, NULL, false, FL_UNIFORM_PATCH},
                                  {32, 32, 50, 50, NULL, false, FL_UNIFORM_PATCH},
                                  {48, 48, 80, 80, in_disc, false, FL_UNIFORM_PATCH}};
     for (size_t k = 0; k < G_N_ELEMENTS(cases); k++) {
@@ -229,7 +229,7 @@ static void the_energy_is_near_that_of_the_literal_loop(void)
 
 static void with_a_table_it_is_the_literal_loop(void)
 {
-    static const Case c = {20, 20, 50, 50, NULL, false, FL_UNIFORM_PATCH};
+    static const Case c = {12, 12, 40, 40, NULL, false, FL_UNIFORM_PATCH};
     g_auto(FlNnf) nnf = {0};
     g_assert_cmpfloat(fabs(retrieve(&c, &nnf, NULL).energy / literal(&c) - 1), <, 0.02);
 }

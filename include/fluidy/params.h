@@ -14,16 +14,24 @@ typedef enum FlParamType {
     FL_PARAM_LIST, /**< one to eight integers with commas between, such as "6,4" */
 } FlParamType;
 
+/** The presets, by their names. */
+typedef enum FlPreset {
+    FL_PRESET_DEFAULT,
+    FL_PRESET_FLUIDYMATION, /**< "fluidymation": its table 1, 2021 */
+    FL_PRESET_THESIS,       /**< "thesis": the thesis behind it, 2021, section 4.5 */
+    FL_PRESET_LAZYFLUIDS,   /**< "lazyfluids": LazyFluids, 2015, section 5 */
+    FL_PRESET_FLUID,        /**< "fluid": the same method with what pictures are better for */
+    FL_PRESETS
+} FlPreset;
+
 /** What is known of a parameter; all strings are static. */
 typedef struct FlParamInfo {
     const char *name; /**< with dashes, as on the command line and in config files: "w-temp" */
     FlParamType type;
-    const char *unit;                /**< "px", "frames", …; "" for a plain number */
-    double min, max;                 /**< inclusive; of each item for a list; 0 and 1 for a bool */
-    const char *preset_default;      /**< the default, as fl_params_set() reads it */
-    const char *preset_fluidymation; /**< as published by Fluidymation, 2021, table 1 */
-    const char *preset_thesis;       /**< as published by the thesis behind it, 2021, section 4.5 */
-    const char *help;                /**< one line, no full stop */
+    const char *unit;               /**< "px", "frames", …; "" for a plain number */
+    double min, max;                /**< inclusive; of each item for a list; 0 and 1 for a bool */
+    const char *preset[FL_PRESETS]; /**< its value in each of them, as fl_params_set() reads it */
+    const char *help;               /**< one line, no full stop */
 } FlParamInfo;
 
 FL_API int fl_param_count(void);
@@ -44,7 +52,7 @@ FL_API FlParams *fl_params_copy(const FlParams *params);
 
 FL_API void fl_params_free(FlParams *params); // NULL is fine
 
-/** Sets all parameters to a preset: "default", "fluidymation" or "thesis". FL_ERROR_USAGE. */
+/** Sets all parameters to a preset by its name. FL_ERROR_USAGE. */
 FL_API bool fl_params_preset(FlParams *params, const char *preset, GError **error);
 
 /**

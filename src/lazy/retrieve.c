@@ -8,7 +8,7 @@
 
 #define TURNS 4
 #define TILE 16          // side of a tile of source pixels; they are searched as a chequerboard
-#define TABLE (1u << 20) // with as many pairs at most, all distances are known
+#define TABLE (1u << 18) // with as many pairs at most, all distances are known
 #define FEW_TARGETS 32   // free ones: each source looks at all of them,
 #define FEW_SHARE 100    // as where they are a share of all
 #define WARM 3           // free targets of the warm start that are compared

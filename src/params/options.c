@@ -49,7 +49,7 @@ static FlOption of_parameter(const FlParamInfo *info)
                       .unit = info->unit,
                       .min = info->min,
                       .max = info->max,
-                      .preset = info->preset_default,
+                      .preset = info->preset[FL_PRESET_DEFAULT],
                       .section = FL_SECTION_REGION,
                       .bytes = FL_BYTES_VALUE,
                       .group = FL_GROUP_PARAMETERS,

@@ -26,15 +26,15 @@ static const size_t offsets[N_PARAMS] = {
 #define TEXT_LIST(value) value
 
 static FlParamInfo infos[N_PARAMS] = {
-#define FL_PARAM(type, field, unit, min, max, preset_default, fluidymation, thesis, help)          \
+#define FL_PARAM(type, field, unit, min, max, usual, fluidymation, thesis, lazyfluids, fluid,      \
+                 help)                                                                             \
     {#field,                                                                                       \
      FL_PARAM_##type,                                                                              \
      unit,                                                                                         \
      min,                                                                                          \
      max,                                                                                          \
-     TEXT_##type(preset_default),                                                                  \
-     TEXT_##type(fluidymation),                                                                    \
-     TEXT_##type(thesis),                                                                          \
+     {TEXT_##type(usual), TEXT_##type(fluidymation), TEXT_##type(thesis), TEXT_##type(lazyfluids), \
+      TEXT_##type(fluid)},                                                                         \
      help},
 #include "params/params.def"
 #undef FL_PARAM
@@ -42,7 +42,8 @@ static FlParamInfo infos[N_PARAMS] = {
 
 static const char *names[N_PARAMS + 1];
 
-const char *const fl_preset_names[] = {"default", "fluidymation", "thesis", NULL};
+const char *const fl_preset_names[] = {"default",    "fluidymation", "thesis",
+                                       "lazyfluids", "fluid",        NULL};
 
 /* The preprocessor knows fields only; the options have dashes. */
 static const FlParamInfo *table(void)
@@ -211,19 +212,12 @@ char *fl_params_get(const FlParams *params, const char *name)
     g_assert_not_reached();
 }
 
-static const char *preset_text(const FlParamInfo *info, int preset)
-{
-    const char *const texts[] = {info->preset_default, info->preset_fluidymation,
-                                 info->preset_thesis};
-    return texts[preset];
-}
-
 static void set_preset(FlParams *params, int preset)
 {
     for (int i = 0; i < N_PARAMS; i++) {
         Value value;
         const FlParamInfo *info = fl_param_info(i);
-        if (!parse(info, preset_text(info, preset), &value))
+        if (!parse(info, info->preset[preset], &value))
             g_error("params.def: %s: the %s value is out of range", info->name,
                     fl_preset_names[preset]);
         store(params, i, &value);
@@ -244,7 +238,7 @@ void fl_params_detail(FlParams *params, FlDetail detail)
         [FL_DETAIL_FINE] = {"off", "6,3,2", "6,4", "2", "4"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
-        const char *normal = fl_param_info(fl_param_find(keys[i]))->preset_default;
+        const char *normal = fl_param_info(fl_param_find(keys[i]))->preset[FL_PRESET_DEFAULT];
         fl_params_set(params, keys[i], detail == FL_DETAIL_NORMAL ? normal : values[detail][i],
                       NULL);
     }
@@ -258,9 +252,9 @@ bool fl_params_preset(FlParams *params, const char *preset, GError **error)
             return true;
         }
     g_autofree char *hint = fl_did_you_mean(preset, fl_preset_names);
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "unknown preset “%s”; the presets are default, fluidymation, thesis%s", preset,
-                hint);
+    g_autofree char *presets = g_strjoinv(", ", (char **)fl_preset_names);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "unknown preset “%s”; the presets are %s%s",
+                preset, presets, hint);
     return false;
 }
 

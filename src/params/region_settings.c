@@ -123,7 +123,11 @@ static bool set_preset(FlRegionSettings *settings, const char *value, GError **e
         return false;
     g_auto(FlRegionSettings) plain;
     fl_region_settings_init(&plain);
-    const bool ours = strcmp(value, "default") == 0;
+    const bool ours = strcmp(value, "default") == 0 || strcmp(value, "fluid") == 0;
+    const bool lazy = strcmp(value, "lazyfluids") == 0 || strcmp(value, "fluid") == 0;
+    settings->engine = lazy                                       ? FL_ENGINE_LAZYFLUIDS
+                       : settings->engine == FL_ENGINE_LAZYFLUIDS ? FL_ENGINE_AUTO
+                                                                  : settings->engine;
     settings->motion = ours ? FL_MOTION_AUTO : FL_MOTION_MASKS;
     settings->granulation = ours ? plain.granulation : 0;
     settings->load = ours ? plain.load : 0;

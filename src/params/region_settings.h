@@ -28,6 +28,7 @@ typedef enum FlMotion {
 typedef enum FlEngineChoice {
     FL_ENGINE_AUTO, // the style's
     FL_ENGINE_PATCH,
+    FL_ENGINE_LAZYFLUIDS,
 } FlEngineChoice;
 
 /** What kept lines and small shapes beside them are drawn with. */

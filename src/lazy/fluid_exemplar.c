@@ -1,0 +1,107 @@
+#include "lazy/fluid_exemplar.h"
+
+#include "base/alloc.h"
+#include <string.h>
+
+bool fl_fluid_splines_init(FlExemplarLevel *level, float *const plane[4], int width, int height,
+                           GError **error)
+{
+    *level = (FlExemplarLevel){.width = width, .height = height, .n_frames = 1, .window = 1};
+    level->pitch = (size_t)width + 2 * FL_PAD;
+    level->frame_pixels = level->pitch * ((size_t)height + 2 * FL_PAD);
+    if (!(level->colour =
+              fl_alloc(level->frame_pixels, sizeof *level->colour, "an exemplar", error)))
+        return false;
+    fl_spline_prefilter(plane, 4, width, height, level->colour + FL_PAD * level->pitch + FL_PAD,
+                        (int)level->pitch);
+    return true;
+}
+
+static void level_clear(FlFluidLevel *level)
+{
+    fl_fluid_picture_clear(&level->picture);
+    fl_fluid_segments_clear(&level->segments);
+    free(level->voted.colour);
+    *level = (FlFluidLevel){0};
+}
+
+void fl_fluid_exemplar_clear(FlFluidExemplar *fluid)
+{
+    for (int l = 0; l < FL_MAX_LEVELS; l++)
+        level_clear(&fluid->level[l]);
+    *fluid = (FlFluidExemplar){0};
+}
+
+/* Colour and alpha of a frame into four planes. */
+static void fill_colour(const FlExemplar *exemplar, int t, float *const plane[4])
+{
+    const FlExemplarLevel *full = &exemplar->level[0];
+    const size_t pixels = (size_t)full->width * (size_t)full->height;
+    for (int y = 0; y < full->height; y++)
+        for (int x = 0; x < full->width; x++) {
+            const size_t p = (size_t)y * (size_t)full->width + (size_t)x;
+            const FlTexel *from = fl_exemplar_at(full, x, y, t);
+            for (int c = 0; c < 3; c++)
+                plane[c][p] = (float)from->c[FL_CH_R + c] / FL_TEXEL_ONE;
+            plane[3][p] = (float)exemplar->mask[(size_t)t * pixels + p] / 255;
+        }
+}
+
+/* The planes of level 0. */
+static bool fill_planes(FlFluidPlanes *planes, const FlExemplar *exemplar, int frame, int before,
+                        float sigma_px, GError **error)
+{
+    const size_t bytes = (size_t)planes->width * (size_t)planes->height * sizeof(float);
+    fill_colour(exemplar, frame, planes->plane + FL_FLUID_PLANE_COLOUR);
+    fill_colour(exemplar, before, planes->plane + FL_FLUID_PLANE_PAST);
+    memcpy(planes->plane[FL_FLUID_PLANE_EDGE], planes->plane[3], bytes);
+    return fl_fluid_planes_blur(planes, sigma_px, error);
+}
+
+#define MIN_SEGMENT 25 // pixels: a patch of them, else segments are not separate
+
+/* Segments are separate on a level where both have enough pixels. */
+static bool pack_segments(FlFluidLevel *level, const FlFluidPlanes *planes, GError **error)
+{
+    return fl_fluid_segments_init(&level->segments, planes, error) &&
+           ((level->segments.n[0] >= MIN_SEGMENT && level->segments.n[1] >= MIN_SEGMENT) ||
+            fl_fluid_segments_merge(&level->segments, error));
+}
+
+static bool pack_level(FlFluidLevel *level, FlFluidPlanes *planes, const FlFluidWeights *weights,
+                       GError **error)
+{
+    if (!fl_fluid_picture_init(&level->picture, planes->width, planes->height, error) ||
+        !pack_segments(level, planes, error))
+        return false;
+    fl_fluid_picture_pack(planes, weights, false, &level->picture);
+    return true;
+}
+
+bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, int frame,
+                            int before, int n_levels, float sigma_px, const FlFluidWeights *weights,
+                            GError **error)
+{
+    if (fluid->n_levels > 0 && fluid->frame == frame && fluid->before == before)
+        return true;
+    fl_fluid_exemplar_clear(fluid);
+    g_auto(FlFluidPlanes) fine = {0};
+    if (!fl_fluid_planes_init(&fine, exemplar->level[0].width, exemplar->level[0].height, error) ||
+        !fill_planes(&fine, exemplar, frame, before, sigma_px, error))
+        return false;
+    for (int l = 0; l < n_levels; l++) {
+        FlFluidPlanes coarse = {0};
+        if (!pack_level(&fluid->level[l], &fine, weights, error) ||
+            !fl_fluid_planes_init(&coarse, (fine.width + 1) / 2, (fine.height + 1) / 2, error))
+            return false;
+        fl_fluid_planes_halve(&fine, &coarse);
+        const bool done = fl_fluid_splines_init(&fluid->level[l].voted, fine.plane, fine.width,
+                                                fine.height, error); // overwrites the colours
+        fl_fluid_planes_clear(&fine);
+        fine = coarse;
+        if (!done)
+            return false;
+    }
+    fluid->n_levels = n_levels, fluid->frame = frame, fluid->before = before;
+    return true;
+}

@@ -1,0 +1,34 @@
+/* The exemplar as LazyFluids reads it: one frame and the one before, on every level. */
+#ifndef FLUIDY_LAZY_FLUID_EXEMPLAR_H
+#define FLUIDY_LAZY_FLUID_EXEMPLAR_H
+
+#include "lazy/fluid_planes.h"
+#include "synth/exemplar.h"
+
+typedef struct FlFluidLevel {
+    FlFluidPicture picture;
+    FlFluidSegments segments;
+    FlExemplarLevel voted; // what fl_vote() reads of one frame, RGBA; the rest is empty
+} FlFluidLevel;
+
+/** Zeroed: nothing. */
+typedef struct FlFluidExemplar {
+    int n_levels, frame, before; // before: the frame of the past
+    FlFluidLevel level[FL_MAX_LEVELS];
+} FlFluidExemplar;
+
+/**
+ * Packs two frames of a style, colours as they are on its paper and alpha from the masks; nothing
+ * is done where they are packed already. Both must be in the exemplar's window. sigma_px: of the
+ * blur of alpha; weights and n_levels must not change.
+ */
+bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, int frame,
+                            int before, int n_levels, float sigma_px, const FlFluidWeights *weights,
+                            GError **error);
+void fl_fluid_exemplar_clear(FlFluidExemplar *fluid);
+
+/** Straightens four planes, which are overwritten, into a picture for fl_vote(). */
+bool fl_fluid_splines_init(FlExemplarLevel *level, float *const plane[4], int width, int height,
+                           GError **error);
+
+#endif

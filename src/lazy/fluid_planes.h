@@ -1,0 +1,65 @@
+/* The channels of LazyFluids as float planes, their pyramid, and what is packed of them. */
+#ifndef FLUIDY_LAZY_FLUID_PLANES_H
+#define FLUIDY_LAZY_FLUID_PLANES_H
+
+#include "synth/fluid_texel.h"
+#include <fluidy/error.h>
+#include <stdbool.h>
+
+/** Planes of 0 … 1, in the order of an exemplar's pixel. */
+typedef enum FlFluidPlane {
+    FL_FLUID_PLANE_COLOUR, // red, green, blue and alpha
+    FL_FLUID_PLANE_EDGE = 4,
+    FL_FLUID_PLANE_PAST, // the four of the frame before
+    FL_FLUID_PLANE_WEIGHT = 9,
+    FL_FLUID_PLANES
+} FlFluidPlane;
+
+/** One level; planes are row-major, width * height, in one piece of memory. */
+typedef struct FlFluidPlanes {
+    int width, height;
+    float *plane[FL_FLUID_PLANES];
+} FlFluidPlanes;
+
+bool fl_fluid_planes_init(FlFluidPlanes *planes, int width, int height, GError **error);
+void fl_fluid_planes_clear(FlFluidPlanes *planes);
+
+/** Averages 2x2 pixels; `coarse` has been made in half the size, rounded up. */
+void fl_fluid_planes_halve(const FlFluidPlanes *fine, FlFluidPlanes *coarse);
+
+/** Blurs plane FL_FLUID_PLANE_EDGE, in which the mask stands [L15 §4.2]. */
+bool fl_fluid_planes_blur(FlFluidPlanes *planes, float sigma_px, GError **error);
+
+/** The terms' weights in (9): eta and lambda; colour has 1, alpha 3 of that. */
+typedef struct FlFluidWeights {
+    float edge, past;
+} FlFluidWeights;
+
+bool fl_fluid_picture_init(FlFluidPicture *picture, int width, int height, GError **error);
+void fl_fluid_picture_clear(FlFluidPicture *picture);
+
+/** Packs all planes of an exemplar, or of a target, which has a weight of the past as well. */
+void fl_fluid_picture_pack(const FlFluidPlanes *planes, const FlFluidWeights *weights,
+                           bool is_target, FlFluidPicture *picture);
+
+/** Parts of the fluid, matched for themselves [L15 §4.2]. */
+typedef struct FlFluidSegments {
+    uint32_t *place[2]; // border, interior: row * width + column, ascending
+    size_t n[2];
+} FlFluidSegments;
+
+/**
+ * The pixels whose blurred alpha is above .1, and from .9 on those of the interior. Returns: false
+ * with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *planes, GError **error);
+void fl_fluid_segments_clear(FlFluidSegments *segments);
+
+/** Makes one segment of both, the first. */
+bool fl_fluid_segments_merge(FlFluidSegments *segments, GError **error);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFluidPlanes, fl_fluid_planes_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFluidPicture, fl_fluid_picture_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFluidSegments, fl_fluid_segments_clear)
+
+#endif

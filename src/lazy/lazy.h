@@ -1,0 +1,36 @@
+/* LazyFluids: one region, frame by frame, by an exemplar that rides on the motion [L15]. */
+#ifndef FLUIDY_LAZY_LAZY_H
+#define FLUIDY_LAZY_LAZY_H
+
+#include "synth/synth.h"
+
+/**
+ * The synthesis of one region: it keeps the output of the last frame.
+ *
+ * Of params it reads: w_bound (eta) and w_temp (lambda), w_uni (0: nearest neighbours, else
+ * strict), uniform_blocks, border (the band of blurred alpha), rotate (four quarter turns), the
+ * rounds, finest_sweeps, vote_sharpness, rest and motion_blur.
+ */
+typedef struct FlLazy FlLazy;
+
+/** The exemplar and params must outlive it. */
+FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
+                    uint64_t seed, GError **error);
+void fl_lazy_free(FlLazy *lazy); // NULL is fine
+
+/**
+ * Paints the next frame with the exemplar's frame in step, which begins again after its last. rgb:
+ * width * height * 3 sRGB as over the style's paper; alpha: width * height, synthesised as the
+ * colours are; or NULL. An empty mask makes the next frame a first frame. stats and view may be
+ * NULL.
+ */
+bool fl_lazy_frame(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
+                   FlFrameStats *stats, FlSynthView *view, GError **error);
+
+/** As fl_synth_save() and fl_synth_load(). */
+GBytes *fl_lazy_save(FlLazy *lazy, GError **error);
+bool fl_lazy_load(FlLazy *lazy, GBytes *state, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlLazy, fl_lazy_free)
+
+#endif

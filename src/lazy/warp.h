@@ -1,0 +1,36 @@
+/* The last output carried along the motion: X^ and lambda_q [L15 §3.1, §4.3]. */
+#ifndef FLUIDY_LAZY_WARP_H
+#define FLUIDY_LAZY_WARP_H
+
+#include "guides/guides.h"
+#include "lazy/fluid_planes.h"
+#include "synth/nnf.h"
+
+#define FL_FLUID_DEPTH 65535 // 1.0 of a stored output
+
+/** The output that the next frame is warped from, straight RGBA; with its mask and field. */
+typedef struct FlFluidPast {
+    uint16_t *rgba; // 0 … FL_FLUID_DEPTH
+    uint8_t *mask;  // coverage
+    FlNnf nnf;
+} FlFluidPast;
+
+/**
+ * The motion into the frame, px, interleaved: the drawing's own where it is known, else the flow
+ * of the masks. It is continued for `reach` px beyond the mask; NAN where nothing is known, which
+ * is where new fluid comes from.
+ */
+bool fl_fluid_motion(const FlGuides *guides, int reach, float *motion, GError **error);
+
+/**
+ * Fills the planes of the past, and the weight of the past: 1, but 0 where the mask has fluid and
+ * the warped mask has none (6), per pixel. Sampled by cubic splines at 1/16 px; `frame` decides
+ * which way places are rounded, so that slow motions add up.
+ */
+bool fl_fluid_warp(const FlFluidPast *past, const FlGuides *guides, const float *motion, int frame,
+                   const FlKernels *kernels, FlFluidPlanes *planes, GError **error);
+
+/** The field carried along, to the nearest pixel; no match where nothing is known. Frames are 0. */
+void fl_fluid_carry(const FlNnf *past, const float *motion, FlNnf *now);
+
+#endif

@@ -1,0 +1,249 @@
+#include "lazy/lazy.h"
+#include "lazy/motion_blur.h"
+#include "lazy/warp.h"
+#include "small_style.h"
+#include "threads.h"
+
+#define SIDE 72
+#define PIXELS (SIDE * SIDE)
+#define STILL 24 // side of a still exemplar, px
+
+/* What is painted: an exemplar full of blotches, or a disc of them, on a disc whose paint turns. */
+typedef struct Film {
+    FlStyle *style;
+    FlParams *params;
+    FlExemplar *exemplar;
+    FlLazy *lazy;
+    FlGuides guides;
+    uint8_t rgb[3 * PIXELS], alpha[PIXELS];
+} Film;
+
+/* A still that is blotches all over, without a rim. */
+static FlStyle *still_of_blotches(void)
+{
+    FlStyle *style = small_style();
+    style->width = STILL, style->height = STILL, style->n_frames = 1;
+    memset(style->mask, 255, STILL * STILL);
+    for (int p = 0; p < STILL * STILL; p++)
+        for (int c = 0; c < 3; c++)
+            style->rgb[3 * p + c] =
+                (uint8_t)(60 + 40 * c + 100 * small_blotches(p % STILL / 2.0, p / STILL / 2.0));
+    return style;
+}
+
+static void film_init(Film *film, FlStyle *style, const char *preset, const char *uniform)
+{
+    g_autoptr(GError) error = NULL;
+    *film = (Film){.style = style, .params = fl_params_new()};
+    g_assert_true(fl_params_preset(film->params, preset, &error));
+    g_assert_true(fl_params_set(film->params, "rotate", "off", &error));
+    g_assert_true(fl_params_set(film->params, "w-uni", uniform, &error));
+    g_assert_true(fl_params_set(film->params, "rest", "off", &error));
+    film->exemplar = fl_exemplar_new(film->style, film->params, &error);
+    g_assert_no_error(error);
+    const FlSynthSize size = {SIDE, SIDE, SIDE, SIDE};
+    film->lazy = fl_lazy_new(film->exemplar, film->params, size, 3, &error);
+    g_assert_true(fl_guides_init(&film->guides, SIDE, SIDE, &error));
+    for (int p = 0; p < PIXELS; p++) {
+        const double x = p % SIDE - 35.5, y = p / SIDE - 35.5, inside = 30 - hypot(x, y);
+        film->guides.mask[p] = (uint8_t)(CLAMP(inside + .5, 0, 1) * 255);
+        film->guides.distance[p] = film->guides.depth[p] = (float)inside;
+    }
+}
+
+static void film_clear(Film *film)
+{
+    fl_lazy_free(film->lazy);
+    fl_exemplar_free(film->exemplar);
+    fl_params_free(film->params);
+    fl_style_free(film->style);
+    fl_guides_clear(&film->guides);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Film, film_clear)
+
+/* The disc's paint turns by `turn` a frame, in the drawing's own motion. */
+static void turn_by(Film *film, double turn)
+{
+    film->guides.has_motion = true;
+    for (int p = 0; p < PIXELS; p++) {
+        const double x = p % SIDE - 35.5, y = p / SIDE - 35.5;
+        const double u = x - (x * cos(turn) + y * sin(turn)),
+                     v = y - (y * cos(turn) - x * sin(turn));
+        const bool in = film->guides.mask[p] >= FL_INSIDE;
+        film->guides.motion[2 * p] = in ? (int32_t)lrint(u * FL_MOTION_ONE) : FL_MOTION_UNKNOWN;
+        film->guides.motion[2 * p + 1] = in ? (int32_t)lrint(v * FL_MOTION_ONE) : FL_MOTION_UNKNOWN;
+    }
+}
+
+static void paint(Film *film, int frames)
+{
+    g_autoptr(GError) error = NULL;
+    for (int f = 0; f < frames; f++)
+        g_assert_true(
+            fl_lazy_frame(film->lazy, &film->guides, film->rgb, film->alpha, NULL, NULL, &error));
+}
+
+/* The standard deviation of green, inside. */
+static double spread_of(const uint8_t *rgb, const uint8_t *mask, int pixels)
+{
+    double sum = 0, squares = 0, n = 0;
+    for (int p = 0; p < pixels; p++)
+        if (mask[p] == 255)
+            sum += rgb[3 * p + 1], squares += rgb[3 * p + 1] * rgb[3 * p + 1], n++;
+    return sqrt(squares / n - sum * sum / n / n);
+}
+
+static double spread_after(const char *uniform, int frames)
+{
+    g_auto(Film) film;
+    film_init(&film, still_of_blotches(), "lazyfluids", uniform);
+    turn_by(&film, .05);
+    paint(&film, frames);
+    return spread_of(film.rgb, film.guides.mask, PIXELS) /
+           spread_of(film.style->rgb, film.style->mask, STILL * STILL);
+}
+
+static void contrast_stays_where_use_is_equal_and_goes_where_it_is_not(void)
+{
+    const double strict = spread_after("1", 20), off = spread_after("0", 20);
+    g_test_message("contrast against the exemplar: strict %.2f, nearest %.2f", strict, off);
+    g_assert_cmpfloat(strict, >, .8);
+    g_assert_cmpfloat(off, <, .7 * strict);
+}
+
+/* The mean difference of two pictures, inside; the second is turned back by `turn`. */
+static double difference(const uint8_t *now, const uint8_t *before, double turn)
+{
+    double sum = 0, n = 0;
+    for (int p = 0; p < PIXELS; p++) {
+        const double x = p % SIDE - 35.5, y = p / SIDE - 35.5;
+        const int u = (int)lrint(x * cos(turn) + y * sin(turn) + 35.5);
+        const int v = (int)lrint(y * cos(turn) - x * sin(turn) + 35.5);
+        if (hypot(x, y) < 24)
+            sum += abs(now[3 * p] - before[3 * (v * SIDE + u)]), n++;
+    }
+    return sum / n;
+}
+
+static void paint_turns_with_the_drawing(void)
+{
+    g_auto(Film) film;
+    film_init(&film, still_of_blotches(), "fluid", "1");
+    turn_by(&film, .08);
+    paint(&film, 12);
+    g_autofree uint8_t *before = g_memdup2(film.rgb, sizeof film.rgb);
+    paint(&film, 3);
+    const double with = difference(film.rgb, before, .24),
+                 without = difference(film.rgb, before, 0);
+    const double against = difference(film.rgb, before, -.24);
+    g_test_message("change: along the motion %.1f, none %.1f, against it %.1f", with, without,
+                   against);
+    g_assert_cmpfloat(with, <, .8 * without);
+    g_assert_cmpfloat(with, <, .8 * against);
+}
+
+static void same_picture_on_any_thread_count(void)
+{
+    g_autofree uint8_t *one = NULL;
+    for (int threads = 1; threads <= 5; threads += 2) {
+        g_auto(Film) film;
+        omp_set_num_threads(threads);
+        film_init(&film, small_style(), "fluid", "1");
+        turn_by(&film, .05);
+        paint(&film, 3);
+        if (one)
+            g_assert_cmpmem(film.rgb, sizeof film.rgb, one, sizeof film.rgb);
+        else
+            one = g_memdup2(film.rgb, sizeof film.rgb);
+    }
+}
+
+static void a_state_that_was_saved_goes_on_as_it_would_have(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Film) whole, later;
+    film_init(&whole, small_style(), "lazyfluids", "1");
+    film_init(&later, small_style(), "lazyfluids", "1");
+    turn_by(&whole, .05);
+    turn_by(&later, .05);
+    paint(&whole, 2);
+    g_autoptr(GBytes) state = fl_lazy_save(whole.lazy, &error);
+    g_assert_true(fl_lazy_load(later.lazy, state, &error));
+    paint(&whole, 2);
+    paint(&later, 2);
+    g_assert_cmpmem(whole.rgb, sizeof whole.rgb, later.rgb, sizeof later.rgb);
+    g_assert_cmpmem(whole.alpha, sizeof whole.alpha, later.alpha, sizeof later.alpha);
+    g_autoptr(GBytes) cut = g_bytes_new_from_bytes(state, 0, g_bytes_get_size(state) / 2);
+    g_assert_false(fl_lazy_load(later.lazy, cut, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_CHANGED);
+}
+
+static void an_empty_mask_begins_anew(void)
+{
+    g_auto(Film) film;
+    film_init(&film, small_style(), "lazyfluids", "1");
+    g_autofree uint8_t *mask = g_memdup2(film.guides.mask, PIXELS);
+    memset(film.guides.mask, 0, PIXELS);
+    paint(&film, 1);
+    g_assert_cmpint(film.rgb[3 * (36 * SIDE + 36)], ==, 250);
+    memcpy(film.guides.mask, mask, PIXELS);
+    paint(&film, 2);
+    g_assert_cmpint(film.rgb[3 * (36 * SIDE + 36)], <, 220);
+    g_assert_cmpint(film.alpha[36 * SIDE + 36], >, 200);
+    g_assert_cmpint(film.alpha[0], ==, 0);
+}
+
+/* Fluid that stands where there was none has no past (6). */
+static void new_fluid_has_no_past(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_auto(Film) film;
+    film_init(&film, small_style(), "lazyfluids", "1");
+    paint(&film, 1);
+    g_autofree uint16_t *rgba = g_new0(uint16_t, 4 * PIXELS);
+    g_autofree uint8_t *mask = g_memdup2(film.guides.mask, PIXELS);
+    g_autofree float *motion = g_new0(float, 2 * PIXELS);
+    for (int p = 0; p < PIXELS; p++)
+        mask[p] = p % SIDE < 36 ? mask[p] : 0;
+    FlKernels kernels;
+    fl_kernels_init(&kernels, fl_cpu_flags());
+    const FlFluidPast past = {.rgba = rgba, .mask = mask};
+    g_auto(FlFluidPlanes) planes = {0};
+    g_assert_true(fl_fluid_planes_init(&planes, SIDE, SIDE, &error) &&
+                  fl_fluid_warp(&past, &film.guides, motion, 1, &kernels, &planes, &error));
+    g_assert_cmpfloat(planes.plane[FL_FLUID_PLANE_WEIGHT][36 * SIDE + 20], ==, 1);
+    g_assert_cmpfloat(planes.plane[FL_FLUID_PLANE_WEIGHT][36 * SIDE + 50], ==, 0);
+}
+
+static void motion_blur_keeps_what_rests_and_what_is_flat(void)
+{
+    g_autoptr(GError) error = NULL;
+    uint16_t rgba[4 * 16 * 16];
+    float motion[2 * 16 * 16] = {0};
+    for (int k = 0; k < 4 * 16 * 16; k++)
+        rgba[k] = (uint16_t)(k * 12345);
+    g_autofree uint16_t *still = fl_motion_blur(rgba, motion, 16, 16, 1, &error);
+    g_assert_cmpmem(still, sizeof rgba, rgba, sizeof rgba);
+    for (int p = 0; p < 16 * 16; p++)
+        motion[2 * p] = 7, memcpy(rgba + 4 * p, (uint16_t[]){900, 20000, 65535, 65535}, 8);
+    g_autofree uint16_t *flat = fl_motion_blur(rgba, motion, 16, 16, 1, &error);
+    for (int k = 0; k < 4 * 16 * 16; k++)
+        g_assert_cmpint(abs(flat[k] - rgba[k]), <=, 1); // the kernel sums to 1
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/lazy/contrast-stays-where-use-is-equal-and-goes-where-it-is-not",
+                    contrast_stays_where_use_is_equal_and_goes_where_it_is_not);
+    g_test_add_func("/lazy/paint-turns-with-the-drawing", paint_turns_with_the_drawing);
+    g_test_add_func("/lazy/same-picture-on-any-thread-count", same_picture_on_any_thread_count);
+    g_test_add_func("/lazy/a-state-that-was-saved-goes-on-as-it-would-have",
+                    a_state_that_was_saved_goes_on_as_it_would_have);
+    g_test_add_func("/lazy/an-empty-mask-begins-anew", an_empty_mask_begins_anew);
+    g_test_add_func("/lazy/new-fluid-has-no-past", new_fluid_has_no_past);
+    g_test_add_func("/lazy/motion-blur-keeps-what-rests-and-what-is-flat",
+                    motion_blur_keeps_what_rests_and_what_is_flat);
+    return g_test_run();
+}
