@@ -14,6 +14,9 @@
  * per second of processor time, and `scaling`, how much longer all threads worked than the busiest
  * one, is what threads gain where they are not kept waiting: these hold on a machine that has other
  * things to do. OMP_WAIT_POLICY=passive is set, so that waiting is not working.
+ *
+ * The energy is that of the data; the total one has uniformity and coherence with it, which a
+ * search that breaks up the field pays for. Each of N rounds has a seed of its own.
  */
 #include "base/rect.h"
 #include "config.h"
@@ -54,8 +57,9 @@ static Case half_of(const Case *c)
     F(target_s)                                                                                    \
     F(temporal_s)                                                                                  \
     F(search_s)                                                                                    \
-    F(vote_s) F(core_s_per_mpx) F(s_per_mpx) F(scaling) F(evaluations_per_px)                      \
-        F(evaluations_per_s_core) F(tries_per_s_core) F(energy) F(painted_px) F(peak_mib)
+    F(vote_s)                                                                                      \
+    F(core_s_per_mpx) F(s_per_mpx) F(scaling) F(evaluations_per_px) F(evaluations_per_s_core)      \
+        F(tries_per_s_core) F(energy) F(total_energy) F(painted_px) F(peak_mib)
 
 typedef struct Figures {
 #define FIELD(name) double name;
@@ -63,7 +67,7 @@ typedef struct Figures {
 #undef FIELD
 } Figures;
 
-static int frames = 12, threads = 2, rounds = 1;
+static int frames = 12, threads = 2, rounds = 1, seed = 1;
 static char *detail = NULL, *only = NULL, *json = NULL, *other = NULL, *run = NULL;
 
 static const GOptionEntry options[] = {
@@ -74,6 +78,7 @@ static const GOptionEntry options[] = {
     {"json", 0, 0, G_OPTION_ARG_FILENAME, &json, "write the figures", "FILE"},
     {"rounds", 0, 0, G_OPTION_ARG_INT, &rounds, "medians of N runs", "N"},
     {"compare", 0, 0, G_OPTION_ARG_FILENAME, &other, "another build's bench", "PROGRAM"},
+    {"seed", 0, G_OPTION_FLAG_HIDDEN, G_OPTION_ARG_INT, &seed, NULL, NULL},
     {"run", 0, G_OPTION_FLAG_HIDDEN, G_OPTION_ARG_STRING, &run, NULL, NULL},
     {0}};
 
@@ -164,7 +169,10 @@ static bool measured_frames(Bench *b, Figures *f, GError **error)
             drawn += (double)s.level[l].counts.drawn / FRAMES_MEASURED;
             tried += (double)s.level[l].counts.tried / FRAMES_MEASURED;
         }
-        f->energy += s.level[0].energy / FRAMES_MEASURED;
+        const FlLevelStats *finest = &s.level[0];
+        f->energy += finest->energy / FRAMES_MEASURED;
+        f->total_energy +=
+            (finest->energy + finest->uniformity + finest->coherence) / FRAMES_MEASURED;
         f->target_s += s.seconds_target / FRAMES_MEASURED;
         f->temporal_s += s.seconds_temporal / FRAMES_MEASURED;
         f->search_s += s.seconds_search / FRAMES_MEASURED;
@@ -205,7 +213,7 @@ static bool run_case(const Case *c, Figures *f, GError **error)
     const double start = seconds(CLOCK_MONOTONIC);
     b.sequence = fl_guide_sequence_new(&source, &how, error);
     f->guides_s = (seconds(CLOCK_MONOTONIC) - start) / source.n_frames;
-    b.synth = b.sequence ? fl_synth_new(exemplar, params, size, 1, error) : NULL;
+    b.synth = b.sequence ? fl_synth_new(exemplar, params, size, (uint64_t)seed, error) : NULL;
     b.rgb = g_malloc(3 * (size_t)c->width * c->height);
     const bool ok = b.synth && fl_guides_init(&b.guides, source.width, source.height, error) &&
                     timed_frames(&b, f, error) && measured_frames(&b, f, error);
@@ -238,14 +246,15 @@ static double figure_in(const char *text, const char *name)
 }
 
 /* Runs a case in a process of its own. */
-static bool spawn(const char *program, const char *name, Figures *f, GError **error)
+static bool spawn(const char *program, const char *name, int round, Figures *f, GError **error)
 {
-    g_autofree char *n = g_strdup_printf("%d", frames), *t = g_strdup_printf("%d", threads);
+    g_autofree char *n = g_strdup_printf("%d", frames), *t = g_strdup_printf("%d", threads),
+                    *s = g_strdup_printf("%d", round + 1);
     g_autofree char *text = NULL;
     g_setenv("OMP_WAIT_POLICY", "passive", TRUE);
-    const char *argv[] = {program, "--run",     name, "--frames",
-                          n,       "--threads", t,    detail ? "--detail" : NULL,
-                          detail,  NULL};
+    const char *argv[] = {program,     "--run", name,     "--frames", n,
+                          "--threads", t,       "--seed", s,          detail ? "--detail" : NULL,
+                          detail,      NULL};
     int status;
     if (!g_spawn_sync(NULL, (char **)argv, NULL, 0, NULL, NULL, &text, NULL, &status, error) ||
         !g_spawn_check_wait_status(status, error))
@@ -278,12 +287,13 @@ static Figures medians(const Figures *runs, int n)
 
 static void print_row(const char *name, const Figures *f)
 {
-    printf(
-        "%-10s %7.0f %8.3f %8.3f %7.3f %7.3f %7.3f %7.3f %7.3f %8.2f %7.2f %7.1f %7.1f %7.1f %7.3f "
-        "%6.0f\n",
-        name, f->painted_px, f->frame_s, f->first_frame_s, f->guides_s, f->target_s, f->temporal_s,
-        f->search_s, f->vote_s, f->core_s_per_mpx, f->scaling, f->evaluations_per_px,
-        f->evaluations_per_s_core * 1e-6, f->tries_per_s_core * 1e-6, f->energy, f->peak_mib);
+    printf("%-10s %7.0f %8.3f %8.3f %7.3f %7.3f %7.3f %7.3f %7.3f %8.2f %7.2f %7.1f %7.1f %7.1f "
+           "%7.3f %7.3f "
+           "%6.0f\n",
+           name, f->painted_px, f->frame_s, f->first_frame_s, f->guides_s, f->target_s,
+           f->temporal_s, f->search_s, f->vote_s, f->core_s_per_mpx, f->scaling,
+           f->evaluations_per_px, f->evaluations_per_s_core * 1e-6, f->tries_per_s_core * 1e-6,
+           f->energy, f->total_energy, f->peak_mib);
 }
 
 /* One case, in this program and the other in turn. */
@@ -291,8 +301,8 @@ static bool compare_case(const char *self, const Case *c, GString *out, GError *
 {
     g_autofree Figures *own = g_new0(Figures, rounds), *others = g_new0(Figures, rounds);
     for (int k = 0; k < rounds; k++)
-        if (!spawn(self, c->name, &own[k], error) ||
-            (other && !spawn(other, c->name, &others[k], error)))
+        if (!spawn(self, c->name, k, &own[k], error) ||
+            (other && !spawn(other, c->name, k, &others[k], error)))
             return false;
     const Figures f = medians(own, rounds);
     print_row(c->name, &f);
@@ -302,10 +312,11 @@ static bool compare_case(const char *self, const Case *c, GString *out, GError *
         return true;
     const Figures o = medians(others, rounds);
     print_row("  other", &o);
-    printf("  ratio    frame %.2f, core-s/Mpx %.2f, evaluations/s %.2f, energy %.3f, memory %.2f\n",
+    printf("  ratio    frame %.2f, core-s/Mpx %.2f, evaluations/s %.2f, energy %.3f, total %.3f, "
+           "memory %.2f\n",
            f.frame_s / o.frame_s, f.core_s_per_mpx / o.core_s_per_mpx,
            f.evaluations_per_s_core / o.evaluations_per_s_core, f.energy / o.energy,
-           f.peak_mib / o.peak_mib);
+           f.total_energy / o.total_energy, f.peak_mib / o.peak_mib);
     return true;
 }
 
@@ -331,7 +342,7 @@ static bool run_all(const char *self, GError **error)
     g_autoptr(GString) out = g_string_new("{");
     printf("%d frames, %d threads, medians of %d; seconds per frame\n", frames, threads, rounds);
     puts("case       painted    frame    first  guides  target    temp  search    vote core/Mpx"
-         " scaling eval/px Meval/s Mtry/s  energy    MiB");
+         " scaling eval/px Meval/s Mtry/s  energy   total    MiB");
     for (size_t k = 0; k < G_N_ELEMENTS(cases); k++)
         if ((!only || g_str_equal(cases[k].name, only)) &&
             !compare_case(self, &cases[k], out, error))

@@ -39,6 +39,7 @@ static void level_line(FILE *out, const FlPaintedRegion *painted, int frame_numb
     pair(out, "direction", s->direction);
     pair(out, "temporal", s->temporal);
     pair(out, "uniformity", s->uniformity);
+    pair(out, "coherence", s->coherence);
     pair(out, "tried_per_pixel", s->pixels ? (double)s->counts.tried / s->pixels : 0);
     pair(out, "accepted_per_pixel", s->pixels ? (double)s->counts.accepted / s->pixels : 0);
     pair(out, "seconds", s->seconds);

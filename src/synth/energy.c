@@ -38,6 +38,25 @@ static double mean_uniformity(const FlSearch *search)
     return n > 0 ? (double)sum / search->scale->unit / (double)n : 0;
 }
 
+static double mean_coherence(const FlSearch *search)
+{
+    const FlTargetLevel *target = search->target;
+    double sum = 0, n = 0;
+    for (size_t p = 0; p < (size_t)target->width * target->height; p++) {
+        const FlMatch m = search->nnf->match[p];
+        if (m.frame == FL_NO_MATCH)
+            continue;
+        FlMatch expected[FL_NEIGHBOURS];
+        const int beside = fl_matches_beside(search, (int)(p % (size_t)target->width),
+                                             (int)(p / (size_t)target->width), expected);
+        int apart = 0;
+        for (int k = 0; k < beside; k++)
+            apart += !fl_match_continues(m, expected[k]);
+        sum += beside > 0 ? (double)apart / beside : 0, n++;
+    }
+    return n > 0 ? search->params->w_coh * sum / n : 0;
+}
+
 void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *costs, FlEnergy *energy)
 {
     const FlParams *all = search->params;
@@ -54,5 +73,6 @@ void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *costs
     energy->direction = mean_cost(search, target, &direction, costs);
     energy->temporal = mean_cost(search, target, &temporal, costs);
     energy->uniformity = mean_uniformity(search);
+    energy->coherence = mean_coherence(search);
     fl_target_blend(target, all, search->scale, all->w_texture);
 }

@@ -7,7 +7,7 @@
 /** Means per pixel in the paper's units: each term with its weight [F21 eq. 1]. */
 typedef struct FlEnergy {
     double texture, bound, ext, direction, temporal; // the data terms
-    double uniformity;
+    double uniformity, coherence;
 } FlEnergy;
 
 /**

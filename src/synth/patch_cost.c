@@ -42,6 +42,23 @@ uint32_t fl_leaving_cost(const FlSearch *search, size_t pixel)
     return (uint32_t)MIN(cost, 1 << 29);
 }
 
+int fl_matches_beside(const FlSearch *search, int x, int y, FlMatch expected[FL_NEIGHBOURS])
+{
+    // the scan has just improved the first two or, on odd sweeps, the last two
+    static const int8_t steps[FL_NEIGHBOURS][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
+    const FlNnf *nnf = search->nnf;
+    int n = 0;
+    for (int k = 0; k < FL_NEIGHBOURS; k++) {
+        const int dx = steps[k][0], dy = steps[k][1], nx = x + dx, ny = y + dy;
+        if (nx < 0 || ny < 0 || nx >= nnf->width || ny >= nnf->height)
+            continue;
+        const FlMatch m = nnf->match[(size_t)ny * nnf->width + nx];
+        if (m.frame != FL_NO_MATCH)
+            expected[n++] = fl_match_moved(m, -dx, -dy, search->level);
+    }
+    return n;
+}
+
 void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost)
 {
 #pragma omp parallel for schedule(dynamic, 8)

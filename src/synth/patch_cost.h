@@ -43,6 +43,20 @@ uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
  */
 uint32_t fl_leaving_cost(const FlSearch *search, size_t pixel);
 
+/** Whether two matches show the same piece of the exemplar: same frame and rotation, within 3/4 px.
+ */
+static inline bool fl_match_continues(FlMatch a, FlMatch b)
+{
+    return a.frame == b.frame && abs(a.x_16 - b.x_16) < FL_SAME_PLACE &&
+           abs(a.y_16 - b.y_16) < FL_SAME_PLACE &&
+           fl_angle_distance((uint8_t)(a.theta - b.theta)) < 8;
+}
+
+#define FL_NEIGHBOURS 4
+
+/** Where the matches left, above, right and below continue at a pixel. Returns their number. */
+int fl_matches_beside(const FlSearch *search, int x, int y, FlMatch expected[FL_NEIGHBOURS]);
+
 /** Fills search->cost for a field; pixels outside get UINT32_MAX. */
 void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost);
 

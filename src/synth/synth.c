@@ -298,7 +298,7 @@ static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats
     stats->energy = mean_energy(search);
     stats->texture = energy.texture, stats->temporal = energy.temporal;
     stats->bound = energy.bound, stats->ext = energy.ext, stats->direction = energy.direction;
-    stats->uniformity = energy.uniformity;
+    stats->uniformity = energy.uniformity, stats->coherence = energy.coherence;
 }
 
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,

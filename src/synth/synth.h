@@ -11,7 +11,7 @@ typedef struct FlLevelStats {
     double energy_start, energy; // data terms of the field at the start and at the end
     // The terms at the end. Together, the data terms exceed the energy by what the two colours that
     // the search blends, the last vote and T_temp, differ by.
-    double texture, bound, ext, direction, temporal, uniformity;
+    double texture, bound, ext, direction, temporal, uniformity, coherence;
     FlSearchCounts counts;
     double seconds;
 } FlLevelStats;

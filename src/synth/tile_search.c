@@ -37,10 +37,10 @@ typedef struct PixelSearch {
     FlMatch own; // at the start: the match that the occurrence map counts
     FlCell own_cell;
     FlMatch best;
-    uint32_t data;           // fl_match_cost of best
-    uint32_t own_uniformity; // the term of `own`
-    uint32_t total;          // data with uniformity and coherence
-    FlMatch expected[4];     // where the neighbours' matches continue
+    uint32_t data;                   // fl_match_cost of best
+    uint32_t own_uniformity;         // the term of `own`
+    uint32_t total;                  // data with uniformity and coherence
+    FlMatch expected[FL_NEIGHBOURS]; // where the neighbours' matches continue
     int n_expected;
     FlMatch carried;  // what the drawing has taken to the pixel
     uint32_t leaving; // what a match costs that does not continue it
@@ -70,20 +70,13 @@ void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search)
                 n == 0 ? 0 : (uint32_t)(params->w_coh * search->scale->unit * apart / n);
 }
 
-/* Two matches show the same piece of the exemplar: same frame and rotation, within 3/4 px. */
-static bool continues(FlMatch a, FlMatch b)
-{
-    return a.frame == b.frame && abs(a.x_16 - b.x_16) < 12 && abs(a.y_16 - b.y_16) < 12 &&
-           fl_angle_distance((uint8_t)(a.theta - b.theta)) < 8;
-}
-
 /* Coherence in space, and in time where the drawing carries the paint. */
 static uint32_t coherence_cost(const PixelSearch *ps, FlMatch candidate)
 {
     int apart = 0;
     for (int k = 0; k < ps->n_expected; k++)
-        apart += !continues(candidate, ps->expected[k]);
-    const bool leaves = ps->leaving > 0 && !continues(candidate, ps->carried);
+        apart += !fl_match_continues(candidate, ps->expected[k]);
+    const bool leaves = ps->leaving > 0 && !fl_match_continues(candidate, ps->carried);
     return ps->tile_search->coherence[ps->n_expected][apart] + (leaves ? ps->leaving : 0);
 }
 
@@ -106,24 +99,9 @@ static bool same_match(FlMatch a, FlMatch b)
     return a.x_16 == b.x_16 && a.y_16 == b.y_16 && a.frame == b.frame && a.theta == b.theta;
 }
 
-/* Left, above, right, below: the scan has just improved the first two or, on odd sweeps, the last
- * two. */
-static const int8_t neighbours[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
-
 static void find_expected(PixelSearch *ps)
 {
-    const FlNnf *nnf = ps->search->nnf;
-    ps->n_expected = 0;
-    for (int k = 0; k < 4; k++) {
-        const int dx = neighbours[k][0], dy = neighbours[k][1];
-        const int nx = ps->x + dx, ny = ps->y + dy;
-        if (nx < 0 || ny < 0 || nx >= nnf->width || ny >= nnf->height)
-            continue;
-        const FlMatch m = nnf->match[(size_t)ny * nnf->width + nx];
-        if (m.frame == FL_NO_MATCH)
-            continue;
-        ps->expected[ps->n_expected++] = fl_match_moved(m, -dx, -dy, ps->search->level);
-    }
+    ps->n_expected = fl_matches_beside(ps->search, ps->x, ps->y, ps->expected);
 }
 
 static void draw(PixelSearch *ps, const FlTileSearch *tile_search, size_t pixel, uint64_t key)
