@@ -43,13 +43,17 @@ uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
  */
 uint32_t fl_leaving_cost(const FlSearch *search, size_t pixel);
 
-/** Whether two matches show the same piece of the exemplar: same frame and rotation, within 3/4 px.
- */
-static inline bool fl_match_continues(FlMatch a, FlMatch b)
+/** Whether two matches are in the same frame of the exemplar, within 3/4 px. */
+static inline bool fl_match_same_place(FlMatch a, FlMatch b)
 {
     return a.frame == b.frame && abs(a.x_16 - b.x_16) < FL_SAME_PLACE &&
-           abs(a.y_16 - b.y_16) < FL_SAME_PLACE &&
-           fl_angle_distance((uint8_t)(a.theta - b.theta)) < 8;
+           abs(a.y_16 - b.y_16) < FL_SAME_PLACE;
+}
+
+/** Whether two matches show the same piece of the exemplar: same place, same rotation. */
+static inline bool fl_match_continues(FlMatch a, FlMatch b)
+{
+    return fl_match_same_place(a, b) && fl_angle_distance((uint8_t)(a.theta - b.theta)) < 8;
 }
 
 #define FL_NEIGHBOURS 4

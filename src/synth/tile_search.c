@@ -80,6 +80,12 @@ static uint32_t coherence_cost(const PixelSearch *ps, FlMatch candidate)
     return ps->tile_search->coherence[ps->n_expected][apart] + (leaves ? ps->leaving : 0);
 }
 
+/* That of a match which continues nothing. */
+static uint32_t coherence_apart(const PixelSearch *ps)
+{
+    return ps->tile_search->coherence[ps->n_expected][ps->n_expected] + ps->leaving;
+}
+
 static void find_carried(PixelSearch *ps)
 {
     const FlSearch *search = ps->search;
@@ -126,7 +132,7 @@ static FlSieve sieve_of(const PixelSearch *ps)
 {
     const FlSearch *search = ps->search;
     const FlOccurrence *map = search->map;
-    const uint32_t apart = ps->tile_search->coherence[ps->n_expected][ps->n_expected] + ps->leaving;
+    const uint32_t apart = coherence_apart(ps);
     FlSieve sieve = {
         .first = fl_exemplar_at(search->level, 0, 0, search->level->first),
         .segment = (uint8_t)ps->segment,
@@ -204,14 +210,26 @@ static int try_match(PixelSearch *ps, const FlTargetPatch *patch, FlMatch match,
     return 1;
 }
 
+/* Whether neither rotation of a match at this place can continue a neighbour's or the carried one.
+ */
+static bool stands_apart(const PixelSearch *ps, FlMatch candidate)
+{
+    for (int k = 0; k < ps->n_expected; k++)
+        if (fl_match_same_place(candidate, ps->expected[k]))
+            return false;
+    return ps->leaving == 0 || !fl_match_same_place(candidate, ps->carried);
+}
+
 /* Both rotations of a try [P21 §4.3]; their directions are the target's and cost nothing. */
 static int try_both(PixelSearch *ps, const FlTargetPatch *patch, const Candidate *c)
 {
     const FlSearch *search = ps->search;
     FlMatch turned = c->match;
     turned.theta += 128;
-    const uint32_t prior[2] = {c->uniformity + coherence_cost(ps, c->match),
-                               c->uniformity + coherence_cost(ps, turned)};
+    const bool apart = stands_apart(ps, c->match);
+    const uint32_t alone = coherence_apart(ps);
+    const uint32_t prior[2] = {c->uniformity + (apart ? alone : coherence_cost(ps, c->match)),
+                               c->uniformity + (apart ? alone : coherence_cost(ps, turned))};
     const uint32_t total = ps->total, lower = MIN(prior[0], prior[1]);
     if (lower >= total)
         return 0;
@@ -238,13 +256,17 @@ static int propagate(PixelSearch *ps, const FlTargetPatch *patch)
     return tried;
 }
 
-static void settle(PixelSearch *ps, FlSearchCounts *counts)
+/* `stale`: a neighbour has changed its match since sift(). Returns: whether the pixel changes its.
+ */
+static bool settle(PixelSearch *ps, bool stale, FlSearchCounts *counts)
 {
     const FlSearch *search = ps->search;
     FlTargetPatch patch;
     fl_target_gather(search->target, ps->x, ps->y, &patch);
-    find_expected(ps); // the pixel before may have changed its match
-    ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
+    if (stale) {
+        find_expected(ps);
+        ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
+    }
     counts->drawn += (uint64_t)ps->n_expected;
     counts->tried += propagate(ps, &patch);
     for (int k = 0; k < ps->n_candidates; k++) {
@@ -254,11 +276,12 @@ static void settle(PixelSearch *ps, FlSearchCounts *counts)
                              : try_match(ps, &patch, c->match, c->centre, c->uniformity);
     }
     if (same_match(ps->own, ps->best))
-        return;
+        return false;
     counts->accepted++;
     fl_occurrence_move(search->map, ps->segment, ps->own, ps->best);
     search->nnf->match[ps->pixel] = ps->best;
     search->cost[ps->pixel] = ps->data;
+    return true;
 }
 
 /* Lists a tile's pixels in the order of the scan. Returns their number. */
@@ -283,6 +306,7 @@ void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, 
     size_t pixels[FL_TILES_AT_ONCE * FL_TILE * FL_TILE];
     PixelSearch pixel[3];
     int end = 0;
+    bool changed = false; // only the pixel before can, between the stages of one
     for (int k = 0; k < n; k++)
         end += list_pixels(tile_search->search->target, tiles[k], backwards, pixels + end);
     counts->drawn +=
@@ -293,6 +317,6 @@ void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, 
         if (k >= 1 && k <= end)
             sift(&pixel[(k - 1) % 3]);
         if (k >= 2)
-            settle(&pixel[(k - 2) % 3], counts);
+            changed = settle(&pixel[(k - 2) % 3], changed, counts);
     }
 }
