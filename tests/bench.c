@@ -2,7 +2,7 @@
  * How fast is the synthesis: the animations of [F21 table 2] by size, style and painted pixels.
  *
  * usage: bench [--frames N] [--threads N] [--detail WORD] [--case NAME] [--json FILE] [--rounds N]
- *              [--compare OTHER_BENCH]
+ *              [--compare OTHER_BENCH] [--set NAME=VALUE]…
  *
  * Each case runs in a process of its own, so that its peak memory is its own. Of N frames the first
  * starts from nothing and is left out of the means; a few more, not timed, tell the shares of the
@@ -58,8 +58,10 @@ static Case half_of(const Case *c)
     F(temporal_s)                                                                                  \
     F(search_s)                                                                                    \
     F(vote_s)                                                                                      \
-    F(core_s_per_mpx) F(s_per_mpx) F(scaling) F(evaluations_per_px) F(evaluations_per_s_core)      \
-        F(tries_per_s_core) F(energy) F(total_energy) F(painted_px) F(peak_mib)
+    F(core_s_per_mpx)                                                                              \
+    F(s_per_mpx)                                                                                   \
+    F(scaling) F(evaluations_per_px) F(evaluations_per_s_core) F(tries_per_s_core) F(energy)       \
+        F(total_energy) F(painted_px) F(peak_mib)
 
 typedef struct Figures {
 #define FIELD(name) double name;
@@ -69,6 +71,7 @@ typedef struct Figures {
 
 static int frames = 12, threads = 2, rounds = 1, seed = 1;
 static char *detail = NULL, *only = NULL, *json = NULL, *other = NULL, *run = NULL;
+static char **settings = NULL; // NAME=VALUE
 
 static const GOptionEntry options[] = {
     {"frames", 0, 0, G_OPTION_ARG_INT, &frames, "timed frames of each case", "N"},
@@ -79,6 +82,8 @@ static const GOptionEntry options[] = {
     {"rounds", 0, 0, G_OPTION_ARG_INT, &rounds, "medians of N runs", "N"},
     {"compare", 0, 0, G_OPTION_ARG_FILENAME, &other, "another build's bench", "PROGRAM"},
     {"seed", 0, G_OPTION_FLAG_HIDDEN, G_OPTION_ARG_INT, &seed, NULL, NULL},
+    {"set", 0, 0, G_OPTION_ARG_STRING_ARRAY, &settings,
+     "a parameter of the synthesis; not for the other build", "NAME=VALUE"},
     {"run", 0, G_OPTION_FLAG_HIDDEN, G_OPTION_ARG_STRING, &run, NULL, NULL},
     {0}};
 
@@ -196,11 +201,23 @@ static FlDetail detail_of_word(void)
     return detail && g_str_equal(detail, "fine") ? FL_DETAIL_FINE : FL_DETAIL_NORMAL;
 }
 
+static bool set_params(FlParams *params, GError **error)
+{
+    fl_params_detail(params, detail_of_word());
+    for (int k = 0; settings && settings[k]; k++) {
+        g_auto(GStrv) parts = g_strsplit(settings[k], "=", 2);
+        if (!fl_params_set(params, parts[0], parts[1] ? parts[1] : "", error))
+            return false;
+    }
+    return true;
+}
+
 static bool run_case(const Case *c, Figures *f, GError **error)
 {
     g_autofree char *folder = g_build_filename(STYLES, c->style, NULL);
     g_autoptr(FlParams) params = fl_params_new();
-    fl_params_detail(params, detail_of_word());
+    if (!set_params(params, error))
+        return false;
     g_autoptr(FlStyle) style = fl_style_load(folder, error);
     g_autoptr(FlExemplar) exemplar = style ? fl_exemplar_new(style, params, error) : NULL;
     if (!exemplar)
@@ -252,11 +269,19 @@ static bool spawn(const char *program, const char *name, int round, Figures *f, 
                     *s = g_strdup_printf("%d", round + 1);
     g_autofree char *text = NULL;
     g_setenv("OMP_WAIT_POLICY", "passive", TRUE);
-    const char *argv[] = {program,     "--run", name,     "--frames", n,
-                          "--threads", t,       "--seed", s,          detail ? "--detail" : NULL,
-                          detail,      NULL};
+    g_autoptr(GPtrArray) argv = g_ptr_array_new();
+    const char *const words[] = {program,     "--run", name,     "--frames", n,
+                                 "--threads", t,       "--seed", s};
+    for (size_t k = 0; k < G_N_ELEMENTS(words); k++)
+        g_ptr_array_add(argv, (char *)words[k]);
+    if (detail)
+        g_ptr_array_add(argv, (char *)"--detail"), g_ptr_array_add(argv, detail);
+    for (int k = 0; settings && program != other && settings[k]; k++)
+        g_ptr_array_add(argv, (char *)"--set"), g_ptr_array_add(argv, settings[k]);
+    g_ptr_array_add(argv, NULL);
     int status;
-    if (!g_spawn_sync(NULL, (char **)argv, NULL, 0, NULL, NULL, &text, NULL, &status, error) ||
+    if (!g_spawn_sync(NULL, (char **)argv->pdata, NULL, 0, NULL, NULL, &text, NULL, &status,
+                      error) ||
         !g_spawn_check_wait_status(status, error))
         return false;
 #define READ(name) f->name = figure_in(text, #name);
