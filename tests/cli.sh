@@ -93,6 +93,7 @@ refuses 'a preview of no frame is refused' 2 '--preview: “x” is not *' --pre
 refuses 'a preview of a frame that is not there is refused' 1 '*no file for frame 9; *' --preview 9 whole $look
 refuses 'a preview of a range is refused' 2 '--preview and --frames *' --preview 2 -f 1 whole
 refuses 'a mistyped style among several is found out first' 1 '*did you mean “0?” or “0?” or “0?”?' --styles 01,0l whole
+refuses 'a mistyped method is found out first' 2 '*did you mean “lazyfluids”?' --methods default,lazyfluid whole
 refuses 'no style among several is refused' 2 '--styles: expected names *' --styles 01, whole
 
 "$program" --help >out 2>err && [ ! -s err ] && [ "$(wc -l <out)" -le 24 ] && ! grep -qE '.{81}' out
@@ -141,6 +142,10 @@ result $? '--preview paints a frame and those beside it, again and again'
 "$program" whole --styles 01,03 >out 2>err && [ "$(ls fluidy)" = w_styles.png ] && rm -r fluidy &&
     "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]
 result $? '--styles is a sheet'
+"$program" whole -s 01 --methods fluidymation,lazyfluids -W 64 >out 2>err &&
+    [ "$(ls fluidy)" = "$(printf 'w_methods.%s\n' html png)" ] &&
+    grep -q '<dt><b>lazyfluids</b></dt><dd>.*begins again' fluidy/w_methods.html && rm -r fluidy
+result $? '--methods is a sheet and a page'
 "$program" --list-styles -o styles.png >out 2>err && [ -s styles.png ] &&
     grep -qE '^01 +Watercolour +soft and wet' out
 result $? '--list-styles is a list and a sheet'

@@ -87,22 +87,36 @@ static gboolean read_preview(const char *name, const char *value, gpointer data,
     return TRUE;
 }
 
-static gboolean read_styles(const char *name, const char *value, gpointer data, GError **error)
+/* Names separated by commas into args->variants. */
+static gboolean read_names(const char *name, const char *value, FlArgs *args, const char *such_as,
+                           GError **error)
 {
-    FlArgs *args = data;
-    g_strfreev(args->styles);
-    args->styles = NULL;
-    args->task = FL_COMMAND_COMPARE;
-    if (strcmp(value, "all") == 0)
-        return TRUE;
-    args->styles = g_strsplit(value, ",", -1);
-    for (int i = 0; args->styles[i] && *value; i++)
-        if (!*args->styles[i])
+    g_strfreev(args->variants);
+    args->variants = g_strsplit(value, ",", -1);
+    for (int i = 0; args->variants[i] && *value; i++)
+        if (!*args->variants[i])
             value = "";
     if (!*value)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: expected names separated by commas, such as 01,03, or all", name);
+                    "%s: expected names separated by commas, such as %s", name, such_as);
     return *value != '\0';
+}
+
+static gboolean read_styles(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    args->task = FL_COMMAND_COMPARE;
+    if (strcmp(value, "all") != 0)
+        return read_names(name, value, args, "01,03, or all", error);
+    g_clear_pointer(&args->variants, g_strfreev);
+    return TRUE;
+}
+
+static gboolean read_methods(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    args->task = FL_COMMAND_METHODS;
+    return read_names(name, value, args, "fluidymation,lazyfluids,default", error);
 }
 
 static gboolean read_progress(const char *name, const char *value, gpointer data, GError **error)
@@ -258,7 +272,7 @@ static bool needs_input(FlCommand task)
 {
     return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
            task == FL_COMMAND_PRINT_CONFIG || task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT ||
-           task == FL_COMMAND_COMPARE;
+           task == FL_COMMAND_COMPARE || task == FL_COMMAND_METHODS;
 }
 
 /* Previews and comparisons are drafts, and replace the previous ones. */
@@ -313,7 +327,7 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
 void fl_args_clear(FlArgs *args)
 {
     g_strfreev(args->inputs);
-    g_strfreev(args->styles);
+    g_strfreev(args->variants);
     g_array_unref(args->settings);
     g_ptr_array_unref(args->strings);
 }

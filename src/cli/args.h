@@ -15,6 +15,7 @@ typedef enum FlCommand {
     FL_COMMAND_CHECK,
     FL_COMMAND_FLAT,
     FL_COMMAND_COMPARE,
+    FL_COMMAND_METHODS,
 } FlCommand;
 
 typedef enum FlProgressMode {
@@ -30,7 +31,7 @@ typedef struct FlArgs {
     FlRenderOptions render; // its strings belong to this struct
     FlProgressMode progress;
     const char *preview; // a range of frames; NULL: none
-    char **styles;       // of FL_COMMAND_COMPARE; NULL: all there are
+    char **variants;     // of FL_COMMAND_COMPARE, styles; NULL: all there are; or _METHODS
     bool quiet;          // no warnings, notes or progress
     char **inputs;
     GArray *settings;   // FlSetting

@@ -158,7 +158,7 @@ static bool compare_styles(const FlArgs *args, GError **error)
             g_ptr_array_add(names, style->name);
     }
     g_ptr_array_add(names, NULL);
-    char **styles = args->styles ? args->styles : (char **)names->pdata;
+    char **styles = args->variants ? args->variants : (char **)names->pdata;
     return fl_compare_styles(&args->render, (const char *const *)styles, error);
 }
 
@@ -199,6 +199,8 @@ static int work(FlArgs *args)
         fl_flatten(&args->render, &error);
     else if (args->task == FL_COMMAND_COMPARE)
         compare_styles(args, &error);
+    else if (args->task == FL_COMMAND_METHODS)
+        fl_compare_methods(&args->render, (const char *const *)args->variants, &error);
     else
         fl_render(&args->render, &error);
     fl_meter_hide(&voice.meter);
