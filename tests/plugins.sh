@@ -5,6 +5,7 @@
 program=$(realpath "$1")
 fixtures=$(realpath "$2")
 plugins=$(realpath "${0%/*}/../src/plugins")
+tests=$(realpath "${0%/*}")
 cd "$folder" || exit 1
 mkdir bin && ln -s "$program" bin/fluidy-svg
 export PATH="$folder/bin:$PATH" HOME=$folder
@@ -58,6 +59,13 @@ else
         --actions="org.fluidy.paint.noprefs;export-filename:$folder/painted.svg;export-do" film.svg >out 2>err
     [ "$(images painted.svg)" = 1 ] && grep -q 'painted: watercolour' painted.svg
     result $? 'Inkscape itself paints with it'
+fi
+if ! command -v blender >/dev/null; then
+    skip 'Blender paints with its add-on' 'no Blender'
+else
+    timeout 250 blender -b --factory-startup --python-exit-code 1 --python "$tests/blender.py" -- \
+        "$plugins/blender/fluidy_svg.py" "$folder/blender" >out 2>err && grep -q 'the add-on works' out
+    result $? 'Blender paints with its add-on, on one page'
 fi
 
 echo "1..$n"
