@@ -20,6 +20,7 @@
 #define BLUR_PX 0.7f      // of the distances before they are matched
 #define LEAST_POINTS 12   // of a contour
 #define LIMIT_SHARE 0.25f // of the larger side that a part may move
+#define ALIKE 0.1         // of its size that the contour of a part that jumped may be off on average
 
 /** A point of the contour, px between pixel centres, with its pixel and its inward normal. */
 typedef struct Point {
@@ -294,14 +295,14 @@ static bool fill_part(const Work *w, int part, const Map *map, const GArray *poi
     return true;
 }
 
-/** Gives a part one motion. */
-static void fill_even(const Work *w, int part, float u, float v)
+/** Leaves it open how a part moved: its paint spreads as the masks show. */
+static void leave_unknown(const Work *w, int part)
 {
     const FlRect box = w->now->box;
     for (size_t p = 0; p < fl_rect_pixels(box); p++)
         if (w->parts.part[p] == part) {
             const size_t at = (box.y + p / box.width) * (size_t)w->width + box.x + p % box.width;
-            w->motion[2 * at] = u, w->motion[2 * at + 1] = v;
+            w->motion[2 * at] = w->motion[2 * at + 1] = NAN;
         }
 }
 
@@ -326,11 +327,24 @@ static bool fill_flow(Work *w, int part, GError **error)
     return true;
 }
 
+/** A part that is nowhere over its past: it has come from there only if it looks the same. A speck
+ * looks like any other, so that nothing is known of its motion. */
+static bool register_jump(const Work *w, int part, GArray *points, GError **error)
+{
+    Map map = map_of(points);
+    map.p[0] = w->trace[part].offset[0], map.p[1] = w->trace[part].offset[1];
+    if (points->len >= LEAST_POINTS && search(w, &map, points) <= ALIKE * map.size)
+        return fill_part(w, part, &map, points, error);
+    leave_unknown(w, part);
+    return true;
+}
+
 static bool register_part(Work *w, int part, GArray *points, GError **error)
 {
-    const FlTrace *trace = &w->trace[part];
-    if (trace->kind != FL_TRACE_OVERLAPS) {
-        fill_even(w, part, trace->offset[0], trace->offset[1]); // of a lost one 0
+    if (w->trace[part].kind == FL_TRACE_JUMPS)
+        return register_jump(w, part, points, error);
+    if (w->trace[part].kind == FL_TRACE_LOST) {
+        leave_unknown(w, part);
         return true;
     }
     if (points->len < LEAST_POINTS)

@@ -12,9 +12,10 @@
  * Each connected part that overlaps its past is moved as a whole (translation, rotation and, held
  * back, scale and shears) so that its contour lies where the distance to the contour before is
  * least; what is left of the normal motion is diffused inward. Motion that an outline does not
- * show, such as the turning of a disc, stays 0. Parts that moved by more than their size have the
- * motion of their centre; new ones none. A part for which that finds nothing has the flow of
- * fl_flow_construct().
+ * show, such as the turning of a disc, stays 0. A part for which that finds nothing has the flow of
+ * fl_flow_construct(). One that overlaps nothing is laid over the part that it may have jumped from
+ * (part_tracking.h); if their contours differ, or it is too small to tell, or there is none, its
+ * motion is unknown: NAN.
  *
  * Masks are width * height coverages. Returns: false with FL_ERROR_NO_MEMORY set.
  */
