@@ -230,10 +230,12 @@ static bool grows(const Pair *p, bool same)
         return false;
     const GArray *small = a < b ? before : now, *large = a < b ? now : before;
     const double tolerance = MIN(LIES_ON_PX, LIES_ON * fabs(a - b)); // limbs also turn aside
-    guint on = 0, n = 0;
-    for (guint i = 0; i < small->len; i += MAX(3, small->len / LOOKED_AT), n++)
-        on += lies_on(g_array_index(small, FlPoint, i), large, tolerance);
-    return on >= (guint)ceil((open ? 0.95 : 0.7) * n); // of a closed outline the tip moves on
+    const guint step = MAX(3, small->len / LOOKED_AT), n = (small->len + step - 1) / step;
+    guint may_be_off = n - (guint)ceil((open ? 0.95 : 0.7) * n); // of a closed one the tip moves on
+    for (guint i = 0; i < small->len; i += step)
+        if (!lies_on(g_array_index(small, FlPoint, i), large, tolerance) && may_be_off-- == 0)
+            return false;
+    return true;
 }
 
 /* ---- one pair ---- */

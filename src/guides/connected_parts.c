@@ -82,3 +82,21 @@ void fl_connected_parts_clear(FlConnectedParts *parts)
     g_free(parts->size);
     *parts = (FlConnectedParts){0};
 }
+
+void fl_boxes_of_labels(const int32_t *label, FlRect plane, int most, FlRect *box)
+{
+    typedef struct Edges {
+        int left, top, right, bottom;
+    } Edges;
+    g_autofree Edges *edges = g_new(Edges, most + 1);
+    for (int l = 0; l <= most; l++)
+        edges[l] = (Edges){plane.x + plane.width, plane.y + plane.height, plane.x, plane.y};
+    for (int y = plane.y; y < plane.y + plane.height; y++)
+        for (int x = plane.x; x < plane.x + plane.width; x++) {
+            Edges *e = &edges[*label++];
+            e->left = MIN(e->left, x), e->right = MAX(e->right, x + 1);
+            e->top = MIN(e->top, y), e->bottom = y + 1;
+        }
+    for (int l = 0; l <= most; l++)
+        box[l] = fl_rect_between(edges[l].left, edges[l].top, edges[l].right, edges[l].bottom);
+}

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_GUIDES_CONNECTED_PARTS_H
 #define FLUIDY_GUIDES_CONNECTED_PARTS_H
 
+#include "base/rect.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -22,6 +23,12 @@ bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *plane, int 
 void fl_connected_parts_drop(const FlConnectedParts *parts, size_t n_pixels, uint8_t value,
                              uint8_t *plane);
 void fl_connected_parts_clear(FlConnectedParts *parts);
+
+/**
+ * The boxes of the pixels of each label from 0 to most, in the coordinates of `plane`, which is the
+ * rectangle that the labels are of; empty where a label has none. box: most + 1.
+ */
+void fl_boxes_of_labels(const int32_t *label, FlRect plane, int most, FlRect *box);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlConnectedParts, fl_connected_parts_clear)
 

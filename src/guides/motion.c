@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "drawing/samples.h"
+#include "guides/connected_parts.h"
 #include "guides/cover.h"
 #include "guides/guides.h"
 #include "guides/laplace.h"
@@ -220,19 +221,6 @@ static bool spread_labels(Work *w, int steps, GError **error)
 
 /* ---- what a pixel's motion is ---- */
 
-/** The pixels of a label, and their box. */
-static FlRect box_of_label(const Work *w, int32_t label)
-{
-    int x0 = w->w, y0 = w->h, x1 = 0, y1 = 0;
-    for (int y = 0; y < w->h; y++)
-        for (int x = 0; x < w->w; x++)
-            if (w->label[(size_t)y * w->w + x] == label) {
-                x0 = MIN(x0, x), x1 = MAX(x1, x + 1);
-                y0 = MIN(y0, y), y1 = MAX(y1, y + 1);
-            }
-    return fl_rect_between(x0, y0, x1, y1);
-}
-
 static void move_affinely(const Work *w, int32_t label, FlRect box, const FlAffine *back)
 {
     for (int y = box.y; y < box.y + box.height; y++)
@@ -339,7 +327,7 @@ static bool move_with_outline(const Work *w, int i, FlRect box, GError **error)
     }
     Stamps s = {w, i + 1, stroke_of(w, i) > 0, box, cell, value, nearest};
     stamp_leaf(&s, i);
-    if (!fl_laplace_solve(cell, box.width, box.height, 3, value, error))
+    if (!fl_laplace_solve(cell, box.width, box.height, 2, value, error))
         return false;
     for (size_t k = 0; k < n; k++)
         if (cell[k] != FL_CELL_OUTSIDE)
@@ -387,12 +375,11 @@ static void leave_unknown(const Work *w, int32_t label, FlRect box)
         }
 }
 
-static bool move_leaf(Work *w, int i, GError **error)
+static bool move_leaf(Work *w, int i, FlRect box, GError **error)
 {
     const FlLeafMotion *m = motion_of(w, i);
     if (m->kind == FL_MOTION_REGISTERED)
         return move_by_masks(w, i + 1, error);
-    const FlRect box = box_of_label(w, i + 1);
     if (box.width == 0)
         return true;
     if (m->kind == FL_MOTION_SAME)
@@ -450,8 +437,10 @@ bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionSh
             label_leaf(&w, (int)i);
     if (!spread_labels(&w, all ? w.w + w.h : STRAY_PX, error))
         return false;
+    g_autofree FlRect *box = g_new(FlRect, region->leaves->len + 1);
+    fl_boxes_of_labels(w.label, (FlRect){0, 0, w.w, w.h}, (int)region->leaves->len, box);
     for (guint i = 0; i < region->leaves->len; i++)
-        if (w.trusted[i] && !move_leaf(&w, (int)i, error))
+        if (w.trusted[i] && !move_leaf(&w, (int)i, box[i + 1], error))
             return false;
     return finish(&w, shares, error);
 }

@@ -20,7 +20,7 @@
 #define BLUR_PX 0.7f      // of the distances before they are matched
 #define LEAST_POINTS 12   // of a contour
 #define LIMIT_SHARE 0.25f // of the larger side that a part may move
-#define ALIKE 0.1         // of its size that the contour of a part that jumped may be off on average
+#define ALIKE 0.1 // of its size that the contour of a part that jumped may be off on average
 
 /** A point of the contour, px between pixel centres, with its pixel and its inward normal. */
 typedef struct Point {
@@ -32,7 +32,8 @@ typedef struct Point {
 typedef struct Work {
     int width, height;
     FlOutline *before, *now;
-    FlConnectedParts parts;
+    FlConnectedParts parts, parts_before; // the latter made when first needed
+    FlRect *part_box;                     // in the frame, by part
     FlTrace *trace;
     float *smooth; // the blurred distance before
     float *flow;   // of the masks, made when first needed
@@ -44,11 +45,20 @@ static void work_clear(Work *w)
     fl_outline_unref(w->before);
     fl_outline_unref(w->now);
     fl_connected_parts_clear(&w->parts);
+    fl_connected_parts_clear(&w->parts_before);
+    g_free(w->part_box);
     g_free(w->trace);
     g_free(w->smooth);
     g_free(w->flow);
 }
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Work, work_clear)
+
+/** The part that a pixel of the frame belongs to. */
+static int part_at(const Work *w, int x, int y)
+{
+    const FlRect box = w->now->box;
+    return w->parts.part[(size_t)(y - box.y) * box.width + (x - box.x)];
+}
 
 /** Bilinear distance before at a place, and its gradient. */
 static double sample(const Work *w, double x, double y, double g[2])
@@ -212,17 +222,15 @@ static double search(const Work *w, Map *map, GArray *points)
 }
 
 /** Centre and area of what a part has below it in the frame before, all of it. */
-static bool centre_before(const Work *w, const FlConnectedParts *before, int part, double c[3])
+static bool centre_before(const Work *w, int part, double c[3])
 {
-    const FlRect box = w->now->box, other = w->before->box;
+    const FlConnectedParts *before = &w->parts_before;
+    const FlRect other = w->before->box, both = fl_rect_and(w->part_box[part], other);
     g_autofree bool *below = g_new0(bool, before->n_parts + 1);
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
-            const int bx = box.x + x - other.x, by = box.y + y - other.y;
-            if (w->parts.part[(size_t)y * box.width + x] == part && bx >= 0 && by >= 0 &&
-                bx < other.width && by < other.height)
-                below[before->part[(size_t)by * other.width + bx]] = true;
-        }
+    for (int y = both.y; y < both.y + both.height; y++)
+        for (int x = both.x; x < both.x + both.width; x++)
+            if (part_at(w, x, y) == part)
+                below[before->part[(size_t)(y - other.y) * other.width + (x - other.x)]] = true;
     c[0] = c[1] = c[2] = 0;
     for (int y = 0; y < other.height; y++)
         for (int x = 0; x < other.width; x++) {
@@ -236,25 +244,26 @@ static bool centre_before(const Work *w, const FlConnectedParts *before, int par
 
 static void centre_now(const Work *w, int part, double c[3])
 {
-    const FlRect box = w->now->box;
+    const FlRect box = w->part_box[part];
     c[0] = c[1] = c[2] = 0;
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++)
-            if (w->parts.part[(size_t)y * box.width + x] == part)
-                c[0] += box.x + x, c[1] += box.y + y, c[2] += 1;
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++)
+            if (part_at(w, x, y) == part)
+                c[0] += x, c[1] += y, c[2] += 1;
     c[0] /= MAX(c[2], 1), c[1] /= MAX(c[2], 1);
 }
 
 /** A start for parts that moved far: the difference of the centres. */
-static bool far_start(const Work *w, int part, Map *map, GError **error)
+static bool far_start(Work *w, int part, Map *map, GError **error)
 {
-    g_auto(FlConnectedParts) before = {0};
+    const FlRect box = w->before->box;
     double a[3], b[3];
-    if (!fl_connected_parts_init(&before, w->before->coverage, w->before->box.width,
-                                 w->before->box.height, FL_INSIDE, 255, error))
+    if (!w->parts_before.part &&
+        !fl_connected_parts_init(&w->parts_before, w->before->coverage, box.width, box.height,
+                                 FL_INSIDE, 255, error))
         return false;
     centre_now(w, part, b);
-    if (centre_before(w, &before, part, a) && a[2] < 2 * b[2] && b[2] < 2 * a[2])
+    if (centre_before(w, part, a) && a[2] < 2 * b[2] && b[2] < 2 * a[2])
         map->p[0] = b[0] - a[0], map->p[1] = b[1] - a[1];
     return true;
 }
@@ -262,14 +271,16 @@ static bool far_start(const Work *w, int part, Map *map, GError **error)
 /** Fixes what is left of the normal motion on the contour, and diffuses it over the part. */
 static bool fill_part(const Work *w, int part, const Map *map, const GArray *points, GError **error)
 {
-    const FlRect box = w->now->box;
+    const FlRect box = w->part_box[part];
     const size_t n = fl_rect_pixels(box);
     g_autofree uint8_t *cell = fl_alloc(n, 1, "a motion", error);
     g_autofree float *rest = cell ? fl_alloc(2 * n, sizeof(float), "a motion", error) : NULL;
     if (!rest)
         return false;
-    for (size_t p = 0; p < n; p++)
-        cell[p] = w->parts.part[p] == part ? FL_CELL_FREE : FL_CELL_OUTSIDE;
+    for (size_t p = 0; p < n; p++) {
+        const int x = box.x + (int)(p % box.width), y = box.y + (int)(p / box.width);
+        cell[p] = part_at(w, x, y) == part ? FL_CELL_FREE : FL_CELL_OUTSIDE;
+    }
     for (guint i = 0; i < points->len; i++) {
         const Point *q = &g_array_index(points, Point, i);
         double u[2], mode[FL_MODES][2], g[2];
@@ -284,9 +295,9 @@ static bool fill_part(const Work *w, int part, const Map *map, const GArray *poi
     if (!fl_laplace_solve(cell, box.width, box.height, 2, rest, error))
         return false;
     for (size_t p = 0; p < n; p++) {
-        if (w->parts.part[p] != part)
-            continue;
         const int x = box.x + (int)(p % box.width), y = box.y + (int)(p / box.width);
+        if (part_at(w, x, y) != part)
+            continue;
         double u[2], mode[FL_MODES][2];
         move(map, x, y, u, mode);
         float *out = w->motion + 2 * ((size_t)y * w->width + x);
@@ -298,12 +309,13 @@ static bool fill_part(const Work *w, int part, const Map *map, const GArray *poi
 /** Leaves it open how a part moved: its paint spreads as the masks show. */
 static void leave_unknown(const Work *w, int part)
 {
-    const FlRect box = w->now->box;
-    for (size_t p = 0; p < fl_rect_pixels(box); p++)
-        if (w->parts.part[p] == part) {
-            const size_t at = (box.y + p / box.width) * (size_t)w->width + box.x + p % box.width;
-            w->motion[2 * at] = w->motion[2 * at + 1] = NAN;
-        }
+    const FlRect box = w->part_box[part];
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++)
+            if (part_at(w, x, y) == part) {
+                float *out = w->motion + 2 * ((size_t)y * w->width + x);
+                out[0] = out[1] = NAN;
+            }
 }
 
 /** Gives a part the flow of the masks. */
@@ -319,11 +331,13 @@ static bool fill_flow(Work *w, int part, GError **error)
         if (!w->flow || !fl_flow_construct(&now, &before, &none, limit, w->flow, &moves, error))
             return false;
     }
-    for (size_t p = 0; p < fl_rect_pixels(box); p++)
-        if (w->parts.part[p] == part)
-            memcpy(w->motion +
-                       2 * ((box.y + p / box.width) * (size_t)w->width + box.x + p % box.width),
-                   w->flow + 2 * p, 2 * sizeof(float));
+    const FlRect of_part = w->part_box[part];
+    for (int y = of_part.y; y < of_part.y + of_part.height; y++)
+        for (int x = of_part.x; x < of_part.x + of_part.width; x++)
+            if (part_at(w, x, y) == part)
+                memcpy(w->motion + 2 * ((size_t)y * w->width + x),
+                       w->flow + 2 * ((size_t)(y - box.y) * box.width + (x - box.x)),
+                       2 * sizeof(float));
     return true;
 }
 
@@ -403,6 +417,8 @@ static bool prepare(Work *w, const uint8_t *before, const uint8_t *now, GError *
         !fl_connected_parts_init(&w->parts, w->now->coverage, w->now->box.width, w->now->box.height,
                                  FL_INSIDE, 255, error))
         return false;
+    w->part_box = g_new(FlRect, w->parts.n_parts + 1);
+    fl_boxes_of_labels(w->parts.part, w->now->box, w->parts.n_parts, w->part_box);
     w->trace = g_new0(FlTrace, w->parts.n_parts + 1);
     return fl_part_tracking_find(w->now, &w->parts, w->before, limit, w->trace, error);
 }
