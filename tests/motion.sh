@@ -41,7 +41,8 @@ paint_disc held --hold 2 --style-by-page off --flow 'twice_%d.flo' &&
     paint_disc every_second -f 1-6x2 --style-by-page off --flow 'twice_%d.flo' &&
     cmp -s held/w_0003.png every_second/w_0003.png && cmp -s held/w_0005.png every_second/w_0005.png
 result $? 'held frames are carried as in a film without those between'
-paint_disc loop --loop --flow $slide
+paint_disc loop --loop --flow $slide && paint_disc loop_none --loop --flow $slide --carry 0 &&
+    ! cmp -s loop/w_0001.png loop_none/w_0001.png
 result $? 'a loop is carried over its seam'
 paint_disc draft --detail draft --flow $slide && paint_disc draft_masks --detail draft --motion masks &&
     ! same draft draft_masks
@@ -54,6 +55,44 @@ paint_disc carried_dump --flow $slide --dump carried_motion && same carried_dump
     paint_disc carried_again --flow 'carried_motion/{region}/motion_%04d.flo' &&
     same carried_again carried
 result $? 'so does its motion'
+
+# motion_of FILE: what is in the middle of the disc of frame 1, tenths of px to the right.
+motion_of() {
+    local middle=$((12 + 8 * (28 * 56 + 24)))
+    od -An -tf4 -j $middle -N 4 "$1" | awk '{ printf "%.0f", 10 * $1 }'
+}
+paint_disc seam --loop --dump seam_dump && paint_disc open --dump open_dump &&
+    [ "$(motion_of seam_dump/red-aa3311/motion_0001.flo)" = -175 ] &&
+    [ "$(motion_of open_dump/red-aa3311/motion_0002.flo)" = 35 ] &&
+    ! cmp -s seam/w_0001.png open/w_0001.png
+result $? 'the motion over the seam is from the last frame to the first'
+paint_disc skipped -f 1,2,4-6 --dump gap_dump &&
+    [ "$(motion_of gap_dump/red-aa3311/motion_0004.flo)" = 70 ]
+result $? 'the motion over frames that are not painted is between those that are'
+mkdir saved
+mv film/w_0003.svg saved
+paint_disc gap --missing skip && same gap skipped
+result $? 'so it is where files are missing'
+paint_disc held_gap --missing hold && cmp -s held_gap/w_0002.png held_gap/w_0003.png &&
+    paint_disc held_masks --missing hold --motion masks &&
+    ! cmp -s held_gap/w_0004.png held_masks/w_0004.png
+result $? 'or held'
+mv saved/w_0003.svg film
+
+for i in 3 4; do
+    mv film/w_000$i.svg saved
+    sed 's/<circle[^>]*>//' saved/w_000$i.svg >film/w_000$i.svg
+done
+paint_disc back && paint_disc back_carried --carry 1 && paint_disc back_masks --motion masks &&
+    ! cmp -s back/w_0002.png back_masks/w_0002.png &&
+    ! cmp -s back/w_0006.png back_carried/w_0006.png
+result $? 'a shape that leaves and returns is carried before and after'
+cmp -s back/w_0005.png back_masks/w_0005.png && cmp -s back/w_0005.png back_carried/w_0005.png
+result $? 'what returns is painted afresh'
+paint_disc back_loop --loop --carry 1 && paint_disc back_threads --loop --carry 1 -j 3 &&
+    same back_loop back_threads
+result $? 'also in a loop, with any number of threads'
+mv saved/w_000[34].svg film
 
 # moves FILE: a plane is not 0 throughout.
 moves() {
