@@ -9,6 +9,9 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <locale.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -240,9 +243,20 @@ static void fill_standard_streams(void)
         close(fd);
 }
 
+/* glibc gives every thread a heap of its own, and planes that one of them has freed are of no use
+ * to the others: memory grew with the film. We allocate seldom and much, so that nobody waits. */
+static void share_one_heap(void)
+{
+#ifdef __GLIBC__
+    if (!g_getenv("MALLOC_ARENA_MAX"))
+        mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 int main(int argc, char **argv)
 {
     fl_wait_asleep(argv);
+    share_one_heap();
     fill_standard_streams();
     setlocale(LC_CTYPE, "");
     FlArgs args;
