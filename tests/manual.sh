@@ -61,6 +61,17 @@ bash -e run >err 2>&1 && [ -s walk.mov ] && [ -s cycle.gif ] && [ -s ink/index.h
     [ -s styles.png ] && [ -s fluidy/walk_styles.png ]
 result $? 'the examples of fluidy-svg(1) work'
 
+# The tutorial, with the styles that are installed and no folder but an empty one.
+mkdir tutorial
+sed -n '/^\.Bd/,/^\.Ed/{/^\.[BE]d/!p}' "$build/man/fluidy-tutorial.7" | sed 's/\\e/\\/g' >tutorial.run
+if ! command -v ffmpeg >/dev/null; then
+    skip 'every command of the tutorial works' 'no ffmpeg'
+else
+    (cd tutorial && unset FLUIDY_STYLES && bash -e ../tutorial.run) >err 2>&1 && [ -s tutorial/hills.mov ] &&
+        [ "$(find tutorial/layers -name '*.png' | wc -l)" = 49 ] && [ -s tutorial/mine/style.ini ]
+    result $? 'every command of the tutorial works'
+fi
+
 # Small drafts of the frames that come with the repository.
 mkdir readme && cp -r "$fixtures/animations/snowman-wave-layers" readme
 printf '#!/bin/sh\nexec "%s" -W 64 --detail draft "$@"\n' "$build/src/cli/fluidy-svg" >readme/fluidy-svg
