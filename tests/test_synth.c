@@ -110,6 +110,32 @@ static void a_region_at_rest_has_a_view_though_its_picture_had_none(void)
     g_assert_cmpint(view.rect.width, ==, view.nnf->width);
 }
 
+/* The margin of an exemplar whose masks reach bare_px beyond its paint. */
+static float margin_with(double bare_px, const char *preset)
+{
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = small_style();
+    g_assert_true(fl_params_preset(params, preset, NULL));
+    for (int p = 0; p < STYLE_W * STYLE_H * STYLE_FRAMES; p++) {
+        const int t = p / (STYLE_W * STYLE_H), y = p / STYLE_W % STYLE_H, x = p % STYLE_W;
+        if (12 + t - hypot(x - STYLE_W / 2, y - STYLE_H / 2) < bare_px)
+            memset(style->rgb + 3 * (size_t)p, 250, 3);
+    }
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, NULL);
+    g_assert_nonnull(exemplar);
+    return exemplar->margin_px;
+}
+
+static void depth_counts_from_where_paint_begins(void)
+{
+    g_assert_cmpfloat(margin_with(0, "default"), ==, 0);
+    for (int px = 2; px <= 4; px++) { // pixels differ in depth by up to one along a contour
+        g_assert_cmpfloat(margin_with(px, "default"), >, px - 1);
+        g_assert_cmpfloat(margin_with(px, "default"), <=, px);
+    }
+    g_assert_cmpfloat(margin_with(3, "fluidymation"), ==, 0);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -122,5 +148,7 @@ int main(int argc, char **argv)
                     upscaling_keeps_a_rotated_field_coherent);
     g_test_add_func("/synth/a-region-at-rest-has-a-view-though-its-picture-had-none",
                     a_region_at_rest_has_a_view_though_its_picture_had_none);
+    g_test_add_func("/synth/depth-counts-from-where-paint-begins",
+                    depth_counts_from_where_paint_begins);
     return g_test_run();
 }

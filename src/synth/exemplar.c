@@ -65,8 +65,11 @@ static bool fill_frame(FlExemplar *exemplar, const FlExemplarFrames *frames, con
     g_auto(FlGuides) guides = {0};
     float *shape = pyramid->plane[FL_PLANE_R]; // scratch: the colours come later
     if (!fl_guides_init(&guides, level->width, level->height, error) ||
-        !fl_guide_sequence_get(frames->sequence, t, &guides, error) ||
-        !fl_shape_guide(&guides, &frames->params, exemplar->border_px, shape, error))
+        !fl_guide_sequence_get(frames->sequence, t, &guides, error))
+        return false;
+    for (size_t p = 0; p < pixels; p++)
+        guides.depth[p] -= exemplar->margin_px;
+    if (!fl_shape_guide(&guides, &frames->params, exemplar->border_px, shape, error))
         return false;
     keep_guides(exemplar, &guides, t);
     fl_pyramid_fill(pyramid, &guides, shape, (FlRect){0, 0, level->width, level->height});
@@ -277,23 +280,46 @@ static void release_frames(FlExemplar *exemplar, int t, int end)
         fl_release(planes[k] + from * pixels, n * pixels * sizeof(float));
 }
 
-#define BARE 0.3 // of the interior's mean difference from the paper
+#define BARE 0.3              // of the interior's mean difference from the paper
+#define MARGIN 0.0625         // likewise: less is no paint yet
+enum { DEEPEST_MARGIN = 64 }; // px
 
-/* How far the paint below the border is from the paper, all pixels and channels summed. */
+/* How far paint is from the paper, channels summed, by its depth in whole px and below the border.
+ */
 typedef struct Contrast {
     uint64_t sum, n;
+    uint64_t sum_at[DEEPEST_MARGIN], n_at[DEEPEST_MARGIN];
 } Contrast;
 
 static void add_contrast(Contrast *contrast, const FlGuides *guides, const uint8_t *rgb,
                          const FlExemplar *exemplar)
 {
     for (size_t p = 0; p < (size_t)guides->width * (size_t)guides->height; p++) {
-        if (guides->mask[p] < FL_INSIDE || guides->distance[p] < exemplar->border_px)
+        const float depth = guides->distance[p];
+        uint64_t apart = 0;
+        if (guides->mask[p] < FL_INSIDE || depth < 0)
             continue;
         for (size_t c = 0; c < 3; c++)
-            contrast->sum += (uint64_t)abs(rgb[3 * p + c] - exemplar->paper[c]);
-        contrast->n++;
+            apart += (uint64_t)abs(rgb[3 * p + c] - exemplar->paper[c]);
+        if (depth >= exemplar->border_px)
+            contrast->sum += apart, contrast->n++;
+        if (depth < DEEPEST_MARGIN)
+            contrast->sum_at[(int)depth] += apart, contrast->n_at[(int)depth]++;
     }
+}
+
+/* The depth, of a border at most, at which there is paint at all. */
+static float margin_of(const Contrast *contrast, float border_px)
+{
+    const double least = MARGIN * (double)contrast->sum / (double)contrast->n;
+    double before = 0;
+    for (int d = 0; d < DEEPEST_MARGIN && (float)d < border_px && contrast->n_at[d] > 0; d++) {
+        const double mean = (double)contrast->sum_at[d] / (double)contrast->n_at[d];
+        if (mean >= least) // means are those of the middle of a pixel
+            return d == 0 ? 0.0f : (float)(d - 0.5 + (least - before) / (mean - before));
+        before = mean;
+    }
+    return 0.0f;
 }
 
 /* Copies the masks and finds the extents of all frames, which give the scale, and what is bare,
@@ -317,8 +343,10 @@ static bool measure_extents(FlExemplar *exemplar, const FlStyle *style, FlExempl
         add_contrast(&contrast, &guides, style->rgb + 3 * pixels * (size_t)t, exemplar);
     }
     exemplar->ext_scale = most > 0 ? 1 / most : 1;
-    if (fl_knows_depth(&frames->params) && contrast.n > 0)
+    if (fl_knows_depth(&frames->params) && contrast.n > 0) {
         exemplar->bare = (float)(BARE * (double)contrast.sum / (double)contrast.n / 255);
+        exemplar->margin_px = margin_of(&contrast, exemplar->border_px);
+    }
     return true;
 }
 
