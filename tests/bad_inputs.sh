@@ -47,7 +47,7 @@ printf '\x1f\x8b\x08garbage' >packed.svg
 printf '\xff\xfe\x00<' >binary.svg
 svg nothing ''
 svg negative "$shape" "width='-4' height='9'"
-mkfifo pipe.svg pipe.png
+mkfifo pipe.svg pipe.png pipe.conf
 own pipeframe && rm pipeframe/frames/0002.png && mkfifo pipeframe/frames/0002.png
 own pipeini && rm -f pipeini/style.ini && mkfifo pipeini/style.ini
 svg broken "<path id='p' d='M1 1h9 x v9z' fill='#aa3311'/>"
@@ -172,6 +172,7 @@ table() {
 1|./pipeframe/frames/0002.png: it is a pipe or a device; expected a file|good -s ./pipeframe
 1|./pipeini/style.ini: it is a pipe or a device; expected a file|good -s ./pipeini
 1|piped/a_1.svg: #i: the image “../piped/p.png” is a pipe or a device *under --strict)|piped --strict
+1|pipe.conf: nothing was written to it for 1 s; use --limit seconds=N *|good -c pipe.conf --limit seconds=1
 1|used/a_1.svg: *“p.pipe#a” is a pipe or a device and is left out *under --strict)|used --strict
 1|escape/a_1.svg: #a b: fill refers to “#x y”, which is not *under --strict)|escape --strict
 1|unused.conf:1: [region nowhere] matches no region *under --strict)|good -c unused.conf -f 1 --strict

@@ -17,7 +17,7 @@ static FlConfig *load(const char *text)
 {
     g_autofree char *path = write_config(text);
     g_autoptr(GError) error = NULL;
-    FlConfig *config = fl_config_load(path, &error);
+    FlConfig *config = fl_config_load(path, NULL, &error);
     g_assert_no_error(error);
     return config;
 }
@@ -73,7 +73,7 @@ static void a_mistake_is_named_with_file_and_line(void)
         g_autofree char *path = write_config(cases[i].text);
         g_autofree char *expected = g_strconcat(path, cases[i].message, NULL);
         g_autoptr(GError) error = NULL;
-        g_assert_null(fl_config_load(path, &error));
+        g_assert_null(fl_config_load(path, NULL, &error));
         g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
         g_assert_cmpstr(error->message, ==, expected);
     }
@@ -82,11 +82,11 @@ static void a_mistake_is_named_with_file_and_line(void)
 static void a_file_that_cannot_be_read_is_named(void)
 {
     g_autoptr(GError) error = NULL;
-    g_assert_null(fl_config_load("/nowhere/shot.conf", &error));
-    g_assert_true(g_str_has_prefix(error->message, "/nowhere/shot.conf: cannot read the file: "));
+    g_assert_null(fl_config_load("/nowhere/shot.conf", NULL, &error));
+    g_assert_true(g_str_has_prefix(error->message, "/nowhere/shot.conf: cannot be read: "));
     g_clear_error(&error);
     g_autofree char *path = write_config("[project]\nbackground = \xff\xfe");
-    g_assert_null(fl_config_load(path, &error));
+    g_assert_null(fl_config_load(path, NULL, &error));
     g_assert_true(g_str_has_suffix(error->message, ": the file is not UTF-8 text"));
 }
 

@@ -104,7 +104,7 @@ static void a_key_of_a_project_is_what_the_option_is(void)
         g_autofree char *value = another(o);
         g_autofree char *text = g_strdup_printf("[project]\n%s = %s\n", o->name, value);
         g_autofree char *path = scratch_write(folder, "shot.conf", text);
-        g_autoptr(FlConfig) config = fl_config_load(path, NULL);
+        g_autoptr(FlConfig) config = fl_config_load(path, NULL, NULL);
         g_assert_nonnull(config);
         FlRenderOptions options = {0}, said = {0};
         fl_config_complete(config, &options);
@@ -117,7 +117,7 @@ static void a_key_of_a_project_is_what_the_option_is(void)
 /* Else a render would go on with pictures of another one. */
 static void the_fingerprint_has_every_option_that_decides_bytes(void)
 {
-    g_autoptr(FlConfig) config = fl_config_load(NULL, NULL);
+    g_autoptr(FlConfig) config = fl_config_load(NULL, NULL, NULL);
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *o = fl_option_at(i);
         if (o->bytes != FL_BYTES_VALUE)

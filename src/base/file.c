@@ -1,11 +1,14 @@
 #include "base/file.h"
 
+#include "base/limits.h"
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #define BLOCK_BYTES 65536
+#define TICK_MS 100
 
 static bool cannot_read(const char *path, GError **error)
 {
@@ -27,23 +30,58 @@ bool fl_file_check(const char *path, FlError code, GError **error)
     return stat(path, &info) != 0 || is_regular(&info, path, code, error);
 }
 
-bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GError **error)
+/** Whether there is something to read, or the end of it; false with an error. */
+static bool wait_for(int fd, const char *path, const FlFileWait *wait, GError **error)
+{
+    const gint64 end = g_get_monotonic_time() + fl_limit(FL_LIMIT_SECONDS) * G_USEC_PER_SEC;
+    struct pollfd ready = {.fd = fd, .events = POLLIN};
+    while (poll(&ready, 1, TICK_MS) <= 0) {
+        if (wait->stopped && wait->stopped(wait->data)) {
+            g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "%s: interrupted", path);
+            return false;
+        }
+        if (g_get_monotonic_time() > end) {
+            g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
+                        "%s: nothing was written to it for %d s; use ‘limit’ seconds=N to wait "
+                        "longer",
+                        path, (int)fl_limit(FL_LIMIT_SECONDS));
+            return false;
+        }
+    }
+    return true;
+}
+
+/** Reads to the end or one byte more than `most`; without `wait` only what never makes it wait. */
+static bool read_all(int fd, const char *path, size_t most, const FlFileWait *wait, GByteArray *all,
+                     GError **error)
+{
+    guint8 block[BLOCK_BYTES];
+    while (all->len <= most) {
+        if (wait && !wait_for(fd, path, wait, error))
+            return false;
+        const ssize_t n = read(fd, block, MIN(sizeof block, most + 1 - all->len));
+        if (n < 0 && (errno == EAGAIN || errno == EINTR))
+            continue;
+        if (n < 0)
+            return cannot_read(path, error);
+        if (n == 0)
+            return true;
+        g_byte_array_append(all, block, (guint)n);
+    }
+    return true;
+}
+
+bool fl_file_read_pipe(const char *path, size_t most, const FlFileWait *wait, char **data,
+                       size_t *bytes, GError **error)
 {
     struct stat info;
     const int fd = open(path, O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (fd < 0)
         return cannot_read(path, error);
     g_autoptr(GByteArray) all = g_byte_array_new();
-    bool good = fstat(fd, &info) == 0 && is_regular(&info, path, FL_ERROR_INPUT, error);
-    guint8 block[BLOCK_BYTES];
-    ssize_t n = good ? 1 : 0;
-    while (n > 0 && all->len <= most) {
-        n = read(fd, block, MIN(sizeof block, most + 1 - all->len));
-        if (n < 0)
-            good = cannot_read(path, error);
-        else
-            g_byte_array_append(all, block, (guint)n);
-    }
+    const bool good =
+        (wait || (fstat(fd, &info) == 0 && is_regular(&info, path, FL_ERROR_INPUT, error))) &&
+        read_all(fd, path, most, wait, all, error);
     close(fd);
     if (!good)
         return false;
@@ -51,4 +89,9 @@ bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GEr
     g_byte_array_append(all, (const guint8 *)"", 1);
     *data = (char *)g_byte_array_free(g_steal_pointer(&all), FALSE);
     return true;
+}
+
+bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GError **error)
+{
+    return fl_file_read_pipe(path, most, NULL, data, bytes, error);
 }

@@ -5,6 +5,7 @@
 
 #include <fluidy/error.h>
 #include <stdbool.h>
+#include <stddef.h>
 
 /**
  * Whether what stands at `path` can be read to its end: neither a pipe, whose writer may never
@@ -21,5 +22,21 @@ bool fl_file_check(const char *path, FlError code, GError **error);
  * with g_free(). Returns: false with FL_ERROR_INPUT.
  */
 bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GError **error);
+
+/** Who waits for what a pipe's writer has to say; `stopped` may be NULL. */
+typedef struct FlFileWait {
+    bool (*stopped)(void *data); // asked every tenth of a second
+    void *data;
+} FlFileWait;
+
+/**
+ * As fl_file_read(), but a pipe or a device will do, such as the shell's <(…): waits for its end.
+ *
+ * A `wait` of NULL makes it fl_file_read(). Returns: false with FL_ERROR_INPUT,
+ * FL_ERROR_INTERRUPTED if wait->stopped() says so, FL_ERROR_LIMIT if nothing comes for as many
+ * seconds as a drawing may take.
+ */
+bool fl_file_read_pipe(const char *path, size_t most, const FlFileWait *wait, char **data,
+                       size_t *bytes, GError **error);
 
 #endif

@@ -31,7 +31,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Subject, subject_clear)
 static bool subject_configure(Subject *subject, const FlRenderOptions *options, GError **error)
 {
     *subject = (Subject){.options = *options};
-    subject->config = fl_config_load(options->config, error);
+    subject->config = fl_config_load(options->config, options, error);
     if (!subject->config)
         return false;
     fl_config_complete(subject->config, &subject->options);

@@ -356,7 +356,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
     plan->options = *options;
     plan->start = g_get_monotonic_time();
     plan->styles = fl_style_cache_new(&plan->options);
-    plan->config = fl_config_load(options->config, error);
+    plan->config = fl_config_load(options->config, options, error);
     if (!plan->config)
         return NULL;
     fl_config_complete(plan->config, &plan->options);

@@ -241,7 +241,7 @@ static bool is_by_name(FlRule *rule)
     return !matches;
 }
 
-FlConfig *fl_config_load(const char *path, GError **error)
+FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError **error)
 {
     g_autoptr(FlConfig) config = g_new0(FlConfig, 1);
     config->strings = g_ptr_array_new_with_free_func(g_free);
@@ -255,7 +255,8 @@ FlConfig *fl_config_load(const char *path, GError **error)
     };
     config->path = g_strdup(path);
     config->defaults.folder = g_strdup(reader.folder);
-    const FlKeyReader calls = {read_section, read_entry, &reader, FL_ERROR_USAGE};
+    const FlFileWait wait = {caller ? caller->stopped : NULL, caller ? caller->data : NULL};
+    const FlKeyReader calls = {read_section, read_entry, &reader, FL_ERROR_USAGE, &wait};
     if (!fl_key_file_read(path, &calls, error))
         return NULL;
     for (int i = 0; i < config->n_rules; i++)

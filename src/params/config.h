@@ -36,12 +36,13 @@ typedef struct FlConfig {
 } FlConfig;
 
 /**
- * Reads a file; path NULL gives an empty config.
+ * Reads a file or a pipe, such as the shell's <(…); path NULL gives an empty config. `caller`, who
+ * may be NULL, can stop the wait for a pipe.
  *
- * Returns: to be freed with fl_config_free(); NULL with FL_ERROR_USAGE (or FL_ERROR_INPUT, if the
- * file cannot be read), which names file, line, the mistake and what was expected.
+ * Returns: to be freed with fl_config_free(); NULL with FL_ERROR_USAGE (or an error of
+ * fl_file_read_pipe()), which names file, line, the mistake and what was expected.
  */
-FlConfig *fl_config_load(const char *path, GError **error);
+FlConfig *fl_config_load(const char *path, const FlRenderOptions *caller, GError **error);
 
 void fl_config_free(FlConfig *config); // NULL is fine
 

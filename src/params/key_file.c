@@ -1,35 +1,22 @@
 #include "params/key_file.h"
 
 #include "base/file.h"
-#include <errno.h>
-#include <stdio.h>
 #include <string.h>
 
 #define LARGEST_BYTES (1 << 20)
 
-static char *load(const char *path, FlError mistake, GError **error)
+static char *load(const char *path, const FlKeyReader *reader, GError **error)
 {
-    // not a regular file only: the shell's <(…) is a pipe
-    if (mistake != FL_ERROR_USAGE && !fl_file_check(path, mistake, error))
+    g_autofree char *text = NULL;
+    size_t bytes = 0;
+    if (!fl_file_read_pipe(path, LARGEST_BYTES, reader->wait, &text, &bytes, error))
         return NULL;
-    g_autofree char *text = g_malloc(LARGEST_BYTES + 2);
-    FILE *file = fopen(path, "rbe");
-    const size_t bytes = file ? fread(text, 1, LARGEST_BYTES + 1, file) : 0;
-    const int problem = !file || ferror(file) ? errno : 0;
-    if (file)
-        fclose(file);
-    if (problem) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read the file: %s", path,
-                    g_strerror(problem));
-        return NULL;
-    }
     if (bytes > LARGEST_BYTES) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT, "%s: the file is larger than 1 MiB", path);
         return NULL;
     }
-    text[bytes] = '\0';
     if (!g_utf8_validate(text, (gssize)bytes, NULL)) {
-        g_set_error(error, FL_ERROR, (int)mistake, "%s: the file is not UTF-8 text", path);
+        g_set_error(error, FL_ERROR, (int)reader->mistake, "%s: the file is not UTF-8 text", path);
         return NULL;
     }
     return g_steal_pointer(&text);
@@ -61,7 +48,7 @@ static bool read_entry(const FlKeyReader *reader, char *text, int line, GError *
 
 bool fl_key_file_read(const char *path, const FlKeyReader *reader, GError **error)
 {
-    g_autofree char *text = load(path, reader->mistake, error);
+    g_autofree char *text = load(path, reader, error);
     if (!text)
         return false;
     char *const start = g_str_has_prefix(text, "\xef\xbb\xbf") ? text + 3 : text; // Windows' mark

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_PARAMS_KEY_FILE_H
 #define FLUIDY_PARAMS_KEY_FILE_H
 
+#include "base/file.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 
@@ -12,7 +13,8 @@ typedef struct FlKeyReader {
     /** A "key = value" line below the last section; neither has outer spaces; value may be "". */
     bool (*entry)(void *data, const char *key, const char *value, int line, GError **error);
     void *data;
-    FlError mistake; // the error code for syntax errors
+    FlError mistake;        // the error code for syntax errors
+    const FlFileWait *wait; // for a pipe; NULL: only a regular file will do
 } FlKeyReader;
 
 /**

@@ -94,7 +94,7 @@ static bool comparison_init(Comparison *c, const Kind *kind, const FlRenderOptio
     *c = (Comparison){.kind = kind, .options = *options};
     if (!c->options.frames && !kind->has_page)
         c->options.frames = "~1";
-    if (!(c->config = fl_config_load(options->config, error)))
+    if (!(c->config = fl_config_load(options->config, options, error)))
         return false;
     FlRenderOptions complete = c->options;
     fl_config_complete(c->config, &complete);

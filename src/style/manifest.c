@@ -125,7 +125,7 @@ static bool read_key(void *data, const char *name, const char *value, int line, 
 bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
 {
     Reader reader = {.style = style};
-    const FlKeyReader calls = {read_section, read_key, &reader, FL_ERROR_STYLE};
+    const FlKeyReader calls = {read_section, read_key, &reader, FL_ERROR_STYLE, NULL};
     return fl_key_file_read(path, &calls, error);
 }
 

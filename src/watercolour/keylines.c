@@ -68,7 +68,7 @@ FlKeyLines *fl_keylines_load(const char *path, GError **error)
     g_array_set_clear_func(lines->entries, clear_entry);
     lines->groups = g_array_new(FALSE, FALSE, sizeof(unsigned));
     lines->asked = g_ptr_array_new();
-    const FlKeyReader reader = {add_group, add_key, lines, FL_ERROR_INPUT};
+    const FlKeyReader reader = {add_group, add_key, lines, FL_ERROR_INPUT, NULL};
     return fl_key_file_read(path, &reader, error) ? g_steal_pointer(&lines) : NULL;
 }
 

@@ -7,7 +7,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char path[32];
     const int fd = fuzz_file(data, size, path);
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlConfig) config = fl_config_load(path, &error);
+    g_autoptr(FlConfig) config = fl_config_load(path, NULL, &error);
     g_assert_true((config == NULL) == (error != NULL));
     FlRenderOptions options = {0};
     for (int r = -1; config && r < config->n_rules; r++) {
