@@ -34,6 +34,8 @@ struct FlDrawPool {
     GCond freed;
     int n;
     Worker *worker;
+    bool insists;       // see fl_draw_pool_insist()
+    atomic_int n_plain; // frames drawn without hands since they failed with them
 };
 
 /** The regions' hands and the tooth follow in `pictures`, if there are any. */
@@ -435,7 +437,17 @@ static bool ask(const Worker *worker, const FlDrawing *drawing, int frame, const
     return got == (ssize_t)sizeof *reply;
 }
 
-FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error)
+void fl_draw_pool_insist(FlDrawPool *pool)
+{
+    pool->insists = true;
+}
+
+int fl_draw_pool_plain(const FlDrawPool *pool)
+{
+    return pool ? atomic_load(&pool->n_plain) : 0;
+}
+
+static FlDrawList *draw_once(FlDrawPool *pool, int frame, const FlHand *hand, GError **error)
 {
     Worker *worker = engage(pool);
     const FlDrawing *drawing = pool->drawing;
@@ -451,5 +463,24 @@ FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, G
         fl_confined_tell(drawing->sequence, frame, reply.end, "drawing", error);
     if (worker)
         release(pool, worker, !answered);
+    return draws;
+}
+
+FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error)
+{
+    const FlHand *const attempts[] = {hand, hand, NULL};
+    const bool by_hand = has_hands(pool->drawing, hand);
+    const size_t n = !pool->insists ? 1 : by_hand ? 3 : 2;
+    GError *problem = NULL;
+    FlDrawList *draws = NULL;
+    for (size_t i = 0; i < n && !draws; i++) {
+        draws = draw_once(pool, frame, attempts[i], &problem);
+        if (draws || i + 1 < n)
+            g_clear_error(&problem);
+        if (draws && by_hand && !attempts[i])
+            atomic_fetch_add(&pool->n_plain, 1);
+    }
+    if (problem)
+        g_propagate_error(error, problem);
     return draws;
 }

@@ -22,6 +22,15 @@ FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n);
  */
 FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error);
 
+/**
+ * Every frame was drawn once, so a failure from now on is the machine's (another process takes the
+ * memory or the time) or the hand's: a frame is drawn a second time, then with plain lines.
+ */
+void fl_draw_pool_insist(FlDrawPool *pool);
+
+/** How many draw lists have plain lines since they failed with hands; NULL is fine. */
+int fl_draw_pool_plain(const FlDrawPool *pool);
+
 void fl_draw_pool_free(FlDrawPool *pool); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDrawPool, fl_draw_pool_free)

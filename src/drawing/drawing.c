@@ -55,11 +55,16 @@ GHashTable *fl_drawing_linked_files(const FlDrawing *drawing)
 
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing)
 {
-    const int n = drawing->sequence->n_left_out;
+    const int n = drawing->sequence->n_left_out, plain = fl_draw_pool_plain(drawing->pool);
     const char *fate = missing == FL_MISSING_HOLD ? "replaced by the one before" : "skipped";
-    return n == 0 ? NULL
-                  : g_strdup_printf("%d frame%s could not be read or drawn and %s %s", n,
-                                    n == 1 ? "" : "s", n == 1 ? "was" : "were", fate);
+    GString *text = g_string_new(NULL);
+    if (n > 0)
+        g_string_printf(text, "%d frame%s could not be read or drawn and %s %s", n,
+                        n == 1 ? "" : "s", n == 1 ? "was" : "were", fate);
+    if (plain > 0)
+        g_string_append_printf(text, "%slines of %d drawn frame%s could not be drawn by hand",
+                               n > 0 ? "; " : "", plain, plain == 1 ? "" : "s");
+    return g_string_free(text, n == 0 && plain == 0);
 }
 
 const char *fl_drawing_name(const FlDrawing *drawing)
