@@ -56,6 +56,8 @@ svg circle "<g id='a'><use href='#a'/>$shape</g>"
 svg animated "<circle id='c' r='16' fill='#aa3311'><animate attributeName='r' to='9'/></circle>"
 svg media "<style>@media print { circle { fill: red } }</style>$shape"
 svg piped "$shape<image id='i' href='../piped/p.png' width='9' height='9'/>" && mkfifo piped/p.png
+svg sheet "<style>@import url('s.pipe');</style>$shape" && mkfifo sheet/s.pipe
+svg styled "<style>@import 'a.txt';</style>$shape" && echo '@import "b.txt";' >styled/a.txt && touch styled/b.txt
 svg used "$shape<use href='p.pipe#a'/>" && mkfifo used/p.pipe
 svg escape "$shape<rect id='a&#10;b' width='9' height='9' fill='url(#x&#9;y)'/>"
 svg image "$shape<image id='i' href='gone.png' width='9' height='9'/>"
@@ -149,6 +151,8 @@ table() {
 2|good/a_1.svg: is read by this render; *|good -y --layers good/a_%d.svg -o y_%d.png -f 1
 2|link.svg: is read by this render; *|link.svg -y --format png -o link.svg
 2|shows/sub/p_1.png: is read by this render; *|shows -y -o shows/sub/p_%d.png
+2|styled/a.txt: is read by this render; *|styled -y --stats styled/a.txt -o y_%d.png
+2|styled/b.txt: is read by this render; *|styled -y --stats styled/b.txt -o y_%d.png
 2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --dump dumped -o y_%d.png
 2|page/index.html: is read by this render; *|good -y -c page/index.html --report page -o y_%d.png
 2|x.mp4: maps are PNG files; expected .png|good --check -o x.mp4
@@ -172,6 +176,7 @@ table() {
 1|./pipeframe/frames/0002.png: it is a pipe or a device; expected a file|good -s ./pipeframe
 1|./pipeini/style.ini: it is a pipe or a device; expected a file|good -s ./pipeini
 1|piped/a_1.svg: #i: the image “../piped/p.png” is a pipe or a device *under --strict)|piped --strict
+1|sheet/a_1.svg: the style sheet “s.pipe” is a pipe or a device *under --strict)|sheet --strict
 1|pipe.conf: nothing was written to it for 1 s; use --limit seconds=N *|good -c pipe.conf --limit seconds=1
 1|used/a_1.svg: *“p.pipe#a” is a pipe or a device and is left out *under --strict)|used --strict
 1|escape/a_1.svg: #a b: fill refers to “#x y”, which is not *under --strict)|escape --strict

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/limits.h"
+#include "svg/reference.h"
 #include <gdk-pixbuf/gdk-pixbuf.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,27 +66,13 @@ static bool check_data(const Check *check, const char *href, GError **error)
     return check_pixels(check, size[0], size[1], error);
 }
 
-/* The file that a reference names, links followed: NULL if it is none, or none that exists. */
-static char *file_of(const Check *check, const char *href, bool *is_file)
-{
-    g_autoptr(GFile) drawing = g_file_new_for_path(check->path);
-    g_autoptr(GFile) folder = g_file_get_parent(drawing);
-    g_autofree char *base = folder ? g_file_get_uri(folder) : g_strdup("file:///");
-    g_autofree char *slash = g_strconcat(base, "/", NULL);
-    g_autofree char *bare = g_strndup(href, strcspn(href, "#"));
-    g_autofree char *uri = g_uri_resolve_relative(slash, bare, G_URI_FLAGS_PARSE_RELAXED, NULL);
-    g_autofree char *file = uri ? g_filename_from_uri(uri, NULL, NULL) : NULL;
-    *is_file = file != NULL;
-    return file ? realpath(file, NULL) : NULL;
-}
-
 /* librsvg would block on a pipe or a device: the reference is removed. */
 static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
                             GError **error)
 {
     static const char *const images[] = {"image", "feImage", NULL};
     bool is_file = false;
-    g_autofree char *real = file_of(check, href, &is_file);
+    g_autofree char *real = fl_reference_file(check->path, href, &is_file);
     int width = 0, height = 0;
     if (real)
         g_ptr_array_add(check->files, g_strdup(real));

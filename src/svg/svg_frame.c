@@ -8,6 +8,7 @@
 #include "svg/lint.h"
 #include "svg/normalise.h"
 #include "svg/paint_probe.h"
+#include "svg/style_sheets.h"
 #include <cairo-script.h>
 #include <math.h>
 #include <string.h>
@@ -177,6 +178,7 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     svg->files = g_ptr_array_new_with_free_func(g_free);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
+    fl_style_sheets_check(svg->doc, path, number, svg->files, warnings);
     svg->n_nameless = fl_document_name_groups(svg->doc);
     svg->original = fl_document_text(svg->doc, &svg->original_bytes);
     fl_document_drop_background(svg->doc, path, number, warnings);
