@@ -6,6 +6,7 @@
 #define VISIBLE 24      // levels; a larger difference is visible
 #define MOST_VISIBLE 12 // pixels that may differ so; rounding at thin edges does
 #define GROSS 16        // mean square of the levels that a channel may differ by: 36 dB
+#define MOST_JUDGED 100 // leaves of a frame that are compared with their parts
 #define EDGE 8 // one in so many pixels of a masked group may differ: those at the mask's edge
 
 struct FlSelfCheck {
@@ -242,6 +243,61 @@ static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n)
     return sum > (int64_t)n * 4 * GROSS;
 }
 
+/** Whether a leaf looks as its n parts, drawn one by one: 1 or 0; -1 with an error. */
+static int judge_leaf(const FlSelfCheck *check, FlSvg *svg, const FlPiece *piece, int n,
+                      double page_width, double page_height, GError **error)
+{
+    const FlPiece whole = {piece->leaf, FL_PART_WHOLE, FL_BLEND_MODE_OVER};
+    g_autoptr(cairo_surface_t) one =
+        draw_pieces(svg, &whole, 1, check->width, check->height, page_width, page_height, error);
+    g_autoptr(cairo_surface_t) all = one ? draw_pieces(svg, piece, n, check->width, check->height,
+                                                       page_width, page_height, error)
+                                         : NULL;
+    size_t where = 0;
+    return !all ? -1
+                : compare((const uint32_t *)cairo_image_surface_get_data(one),
+                          (const uint32_t *)cairo_image_surface_get_data(all),
+                          (size_t)check->width * check->height, &where) <= MOST_VISIBLE;
+}
+
+/** How many pieces from i on are of one leaf. */
+static int parts_from(const FlSelfCheck *check, guint i)
+{
+    const FlPiece *piece = (const FlPiece *)check->pieces->data;
+    guint n = 1;
+    while (i + n < check->pieces->len && piece[i + n].leaf == piece[i].leaf)
+        n++;
+    return (int)n;
+}
+
+/**
+ * If a leaf does not look as its parts do, such as a stroke over a fill below one opacity: it and
+ * others like it, by fl_leaf_key(), one a line in *keys.
+ */
+static bool find_leaves(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, double page_width,
+                        double page_height, char **keys, GError **error)
+{
+    g_autoptr(GString) list = g_string_new(NULL);
+    bool found = false;
+    int judged = 0, n;
+    for (guint i = 0; i < check->pieces->len && judged < MOST_JUDGED; i += (guint)n) {
+        const FlPiece *piece = &g_array_index(check->pieces, FlPiece, i);
+        n = parts_from(check, i);
+        if (n < 2)
+            continue;
+        judged++;
+        const int alike = judge_leaf(check, svg, piece, n, page_width, page_height, error);
+        if (alike < 0)
+            return false;
+        g_autofree char *key = fl_leaf_key(piece->leaf);
+        if (!alike)
+            g_string_append_printf(list, "%s%s", list->len ? "\n" : "", key);
+        found = found || (!alike && piece->leaf == leaf);
+    }
+    *keys = found ? g_string_free(g_steal_pointer(&list), FALSE) : NULL;
+    return true;
+}
+
 bool fl_self_check_is_gross(const FlSelfCheck *check)
 {
     return check->gross;
@@ -268,6 +324,8 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width
         return FL_VERDICT_DIFFERS;
     const FlLeaf *top = g_array_index(check->pieces, FlPiece, check->top[where] - 1).leaf;
     *leaf = top->id;
-    return find_group(check, svg, top, page_width, page_height, group, error) ? FL_VERDICT_DIFFERS
-                                                                              : FL_VERDICT_ERROR;
+    const bool judged =
+        find_leaves(check, svg, top, page_width, page_height, group, error) &&
+        (*group || find_group(check, svg, top, page_width, page_height, group, error));
+    return judged ? FL_VERDICT_DIFFERS : FL_VERDICT_ERROR;
 }

@@ -108,7 +108,7 @@ static bool has_group(char **groups, const char *group)
     return groups && g_strv_contains((const char *const *)groups, group);
 }
 
-/** Makes one more group of a frame one leaf. */
+/** Makes one more group or shape of a frame one leaf. */
 static void keep_whole(FlSurveyFrame *frame, const char *group)
 {
     const guint n = frame->whole ? g_strv_length(frame->whole) : 0;
@@ -120,11 +120,12 @@ static void keep_whole(FlSurveyFrame *frame, const char *group)
 static void warn_of_whole(FlWarnings *warnings, const char *file, int number, const char *group)
 {
     const bool made = g_str_has_prefix(group, FL_GROUP_ID);
+    const bool shape = g_str_has_prefix(group, FL_SHAPE_AT);
     const int nth = made ? atoi(group + strlen(FL_GROUP_ID)) + 1 : 0;
-    g_autofree char *which =
-        made ? g_strdup_printf("no. %d of the groups without an id ", nth) : g_strdup("");
+    g_autofree char *which = made ? g_strdup_printf("no. %d of the groups without an id ", nth)
+                                  : g_strdup(shape ? "a shape without an id " : "");
     const bool all = strcmp(group, FL_WHOLE_ALL) == 0;
-    fl_warnings_add(warnings, file, number, made || all ? NULL : group,
+    fl_warnings_add(warnings, file, number, made || all || shape ? NULL : group,
                     "%slooks different when it is drawn shape by shape: drawn as one in "
                     "every frame",
                     which);
@@ -150,8 +151,11 @@ static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *war
             tries = 0;
         }
         if (verdict == FL_VERDICT_DIFFERS && group && tries < MOST_WHOLE) {
-            warn_of_whole(warnings, file, number, group);
-            keep_whole(frame, group);
+            g_auto(GStrv) groups = g_strsplit(group, "\n", -1);
+            for (int i = 0; groups[i]; i++) {
+                warn_of_whole(warnings, file, number, groups[i]);
+                keep_whole(frame, groups[i]);
+            }
             fl_frame_probe_clear(f);
             *f = (FlFrameProbe){0};
             continue;
@@ -262,10 +266,11 @@ static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
     return good;
 }
 
-/** Whether a group of one frame is the one of that id in another: ids made here are numbers. */
+/** Whether a group or shape of one frame is the one of that id in another: ids made here count. */
 static bool means_the_same(const FlSurveyFrame *from, const FlSurveyFrame *to, const char *group)
 {
-    return !g_str_has_prefix(group, FL_GROUP_ID) || from->n_nameless == to->n_nameless;
+    const bool made = g_str_has_prefix(group, FL_GROUP_ID) || g_str_has_prefix(group, FL_SHAPE_AT);
+    return !made || from->n_nameless == to->n_nameless;
 }
 
 /** Makes groups that are one leaf in some frame so in all. Returns: how many frames to probe again.

@@ -117,6 +117,18 @@ static bool has_text(const xmlNode *node)
     return found;
 }
 
+static bool is_listed(const Walk *w, const char *key)
+{
+    return w->whole && g_strv_contains(w->whole, key);
+}
+
+char *fl_leaf_key(const FlLeaf *leaf)
+{
+    return leaf->name[0] && strcmp(leaf->id, leaf->name) == 0
+               ? g_strdup(leaf->id)
+               : g_strconcat(FL_SHAPE_AT, leaf->tree, NULL);
+}
+
 static FlLeaf make_leaf(Walk *w, xmlNode *node)
 {
     g_autoptr(xmlChar) name = (xmlChar *)authored_id(node);
@@ -129,7 +141,7 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         whole = marker && strcmp(marker, "none") != 0;
     }
     char *id = give_id(w, node);
-    return (FlLeaf){
+    FlLeaf leaf = {
         .id = id,
         .layer = g_strdup(w->masked ? w->masked : id),
         .turn = w->masked ? w->turn++ : -1,
@@ -142,8 +154,10 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         .tree = g_strdup(w->tree->str),
         .unit = w->unit,
         .text = has_text(node),
-        .whole = whole,
     };
+    g_autofree char *key = fl_leaf_key(&leaf);
+    leaf.whole = whole || is_listed(w, key);
+    return leaf;
 }
 
 static bool is_set(const xmlNode *node, const char *name)
@@ -184,11 +198,28 @@ static bool is_inseparable(const Walk *w, const xmlNode *node)
            fl_css_look_up(w->css, node) & (FL_CSS_FILTER | FL_CSS_BLEND);
 }
 
+static bool is_isolated(const xmlNode *node)
+{
+    g_autofree char *isolation = fl_property(node, "isolation");
+    return isolation && strcmp(isolation, "isolate") == 0;
+}
+
 /** Whether a group may have to be drawn as one. */
 static bool is_unit(const Walk *w, const xmlNode *node)
 {
     return is_inseparable(w, node) || has_mask(w, node) || is_translucent(node) ||
-           fl_css_look_up(w->css, node) & FL_CSS_OPACITY;
+           is_isolated(node) || fl_css_look_up(w->css, node) & FL_CSS_OPACITY;
+}
+
+/** Whether something in a node blends with what is below it. */
+static bool has_blend(const Walk *w, const xmlNode *node)
+{
+    bool found = false;
+    for (const xmlNode *child = node->children; child && !found; child = child->next)
+        found = child->type == XML_ELEMENT_NODE &&
+                (is_set(child, "mix-blend-mode") || fl_css_look_up(w->css, child) & FL_CSS_BLEND ||
+                 has_blend(w, child));
+    return found;
 }
 
 static void walk(Walk *w, xmlNode *node);
@@ -224,7 +255,10 @@ static void walk_group(Walk *w, xmlNode *node)
         walk(w, node);
 }
 
-/** Walks a group that may have to be drawn as one; it is a unit if it has two leaves or more. */
+/**
+ * Walks a group that may have to be drawn as one; it is a unit if it has two leaves or more, or one
+ * that would blend with what is below the group.
+ */
 static void walk_unit(Walk *w, xmlNode *node)
 {
     FlLeaves *leaves = w->leaves;
@@ -233,12 +267,13 @@ static void walk_unit(Walk *w, xmlNode *node)
     walk_group(w, node);
     w->unit = -1;
     const int n = (int)leaves->leaf->len - first;
-    if (n < 2) {
+    const bool blends = n > 0 && has_blend(w, node);
+    if (n < 2 && !blends) {
         for (int i = 0; i < n; i++)
             g_array_index(leaves->leaf, FlLeaf, first + i).unit = -1;
         return;
     }
-    const FlUnit unit = {make_leaf(w, node), first, n, is_inseparable(w, node)};
+    const FlUnit unit = {make_leaf(w, node), first, n, blends || is_inseparable(w, node)};
     g_array_append_val(leaves->unit, unit);
 }
 

@@ -23,17 +23,17 @@ typedef struct FlLeaf {
     int unit;      // index of the group it may be drawn as one with, -1: none
     bool text;     // has text, whose shape depends on the scale
     bool all;      // the whole document, drawn as it was before it was normalised
-    bool whole;    // has markers, text or images: fill and stroke are not separated
+    bool whole; // has markers, text or images, or is in `whole`: fill and stroke are not separated
 } FlLeaf;
 
 /**
- * A group with opacity, a mask, a filter or a blend mode: more than one shape in it cannot be drawn
- * one by one where they overlap.
+ * A group with opacity, a mask, a filter, a blend mode or isolation: more than one shape in it
+ * cannot be drawn one by one where they overlap.
  */
 typedef struct FlUnit {
     FlLeaf leaf;
     int first, n;     // its leaves
-    bool inseparable; // a filter or blend mode: even where they do not overlap
+    bool inseparable; // a filter or blend mode, also of what is in it: even without overlap
 } FlUnit;
 
 typedef struct FlLeaves {
@@ -42,9 +42,12 @@ typedef struct FlLeaves {
     int n_joined; // groups with a mask that are one leaf because they have too many shapes
 } FlLeaves;
 
+/** The name of a leaf in a list of what is drawn as one, see fl_leaves_new(); to be freed. */
+char *fl_leaf_key(const FlLeaf *leaf);
+
 /**
  * Lists the leaves and gives ids to those without. Content with display: none is left out. Elements
- * of `whole`, see fl_is_whole(), are leaves.
+ * of `whole`, see fl_is_whole(), are leaves; shapes in it, by fl_leaf_key(), have one part.
  */
 FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole);
 

@@ -107,7 +107,8 @@ static bool is_eligible(const xmlNode *node)
         return false;
     g_autoptr(xmlChar) extensions = (xmlChar *)fl_attribute(node, "requiredExtensions");
     g_autoptr(xmlChar) languages = (xmlChar *)fl_attribute(node, "systemLanguage");
-    return !extensions && (!languages || speaks((const char *)languages));
+    return (!extensions || !*g_strstrip((char *)extensions)) &&
+           (!languages || speaks((const char *)languages));
 }
 
 /** Ineligible children go into a <defs>, where references still find them. */

@@ -11,6 +11,8 @@
 
 #define FL_GROUP_ID "fl-group-" // and a number: the ids that groups without one get
 
+#define FL_SHAPE_AT "fl-shape-at-" // and FlLeaf.tree: in place of the id of a shape without one
+
 /** Gives an id to every drawn <g>, <svg>, <a> and <use> that has none, in document order. */
 int fl_document_name_groups(xmlDoc *doc);
 
