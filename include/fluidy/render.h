@@ -85,7 +85,7 @@ typedef struct FlProgress {
     int n_regions;      /**< painted regions; 0: not known yet */
     int frame;          /**< the frame's number, as in its file name */
     int done, total;    /**< frames of this stage and region; total 0: not known yet */
-    double share;       /**< of the whole render, 0..1 */
+    double share;       /**< of the whole render, 0..1; of the style in the stage “style” */
     double elapsed_s;   /**< seconds since the start */
     double frame_s;     /**< seconds that the last frame of this stage took; 0: none yet */
     double remaining_s; /**< estimate for the rest; negative: not known yet */

@@ -82,6 +82,7 @@ static bool tell(int frame, int n_frames, void *data)
                                  .frame = frame,
                                  .done = frame,
                                  .total = n_frames,
+                                 .share = n_frames ? (double)frame / n_frames : 0,
                                  .elapsed_s = elapsed_s,
                                  .frame_s = frame ? elapsed_s / frame : 0,
                                  .remaining_s = -1};
