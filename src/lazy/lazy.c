@@ -177,7 +177,7 @@ static FlMatch random_match(const FlFluidLevel *source, int segment, uint64_t ke
     return (FlMatch){.x_16 = (uint16_t)(16 * (p % width)), .y_16 = (uint16_t)(16 * (p / width))};
 }
 
-/* A match for every pixel of the segments and none elsewhere: as it is, else the carried one, else
+/* A match for every pixel of the segments and none elsewhere: the carried one, else as it is, else
  * a random one. */
 static void complete(const FlLazy *lazy, int l, uint64_t key)
 {
@@ -191,7 +191,7 @@ static void complete(const FlLazy *lazy, int l, uint64_t key)
         for (size_t k = 0; k < level->segments.n[s]; k++) {
             const uint32_t p = level->segments.place[s][k];
             FlMatch *m = &level->nnf.match[p];
-            if (m->frame == FL_NO_MATCH && level->warm.match)
+            if (level->warm.match && level->warm.match[p].frame != FL_NO_MATCH)
                 *m = level->warm.match[p];
             if (m->frame == FL_NO_MATCH)
                 *m = random_match(&lazy->source.level[l], s, fl_key(key, p));
@@ -212,7 +212,12 @@ static void vote(const FlLazy *lazy, int l)
             4, level->rgba, NULL);
 }
 
-/* On the coarsest level X is X^ where there was fluid. */
+/*
+ * Every level begins with X^ where there was fluid; the coarser level counts for what is new. From
+ * the coarser field alone, fine texture stood still: a motion of 2 px is less than a pixel of a
+ * coarse level, whose patches stay, and X counts more than X^ by 1 / lambda. Measured: the texture
+ * of a translation moved by 0 of 2 px with lambda .5 and four levels.
+ */
 static void start_from_past(const Level *level)
 {
     const size_t pixels = (size_t)level->nnf.width * (size_t)level->nnf.height;
@@ -279,7 +284,7 @@ static bool run_level(FlLazy *lazy, int l, FlLevelStats *stats, GError **error)
                        &level->nnf);
     complete(lazy, l, fl_key(key, 1));
     vote(lazy, l);
-    if (from_coarsest == 0 && lazy->last.valid)
+    if (lazy->last.valid)
         start_from_past(level);
     for (int round = 0; round < stats->rounds; round++) {
         pack_target(lazy, level);
