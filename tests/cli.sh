@@ -94,6 +94,7 @@ refuses 'a preview of a frame that is not there is refused' 1 '*no file for fram
 refuses 'a preview of a range is refused' 2 '--preview and --frames *' --preview 2 -f 1 whole
 refuses 'a mistyped style among several is found out first' 1 '*did you mean “0?” or “0?” or “0?”?' --styles 01,0l whole
 refuses 'a mistyped method is found out first' 2 '*did you mean “lazyfluids”?' --methods default,lazyfluid whole
+refuses 'a method is changed by settings' 2 '*KEY=VALUE*' --methods default:w-uni whole
 refuses 'no style among several is refused' 2 '--styles: expected names *' --styles 01, whole
 
 "$program" --help >out 2>err && [ ! -s err ] && [ "$(wc -l <out)" -le 24 ] && ! grep -qE '.{81}' out
@@ -142,7 +143,7 @@ result $? '--preview paints a frame and those beside it, again and again'
 "$program" whole --styles 01,03 >out 2>err && [ "$(ls fluidy)" = w_styles.png ] && rm -r fluidy &&
     "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]
 result $? '--styles is a sheet'
-"$program" whole -s 01 --methods fluidymation,lazyfluids -W 64 >out 2>err &&
+"$program" whole -s 01 --methods fluidymation,lazyfluids,lazyfluids:w-uni=0 -W 64 >out 2>err &&
     [ "$(ls fluidy)" = "$(printf 'w_methods.%s\n' html png)" ] &&
     grep -q '<dt><b>lazyfluids</b></dt><dd>.*begins again' fluidy/w_methods.html && rm -r fluidy
 result $? '--methods is a sheet and a page'

@@ -18,11 +18,14 @@
 #define STYLE_COLUMNS 4
 #define FRAMES_MOST 4 // of more frames, the sheet has three and a slice
 
-/* What a row is painted with: a setting that comes after the caller's and so overrides them. */
+#define SETTINGS_MOST 8 // of a row
+
+/* What a row is painted with: settings that come after the caller's and so override them. */
 typedef struct Variant {
     const char *name; // of the row
-    const char *key, *value;
     const char *says; // what the page says of it, in HTML; "" where there is no page
+    int n;
+    FlSetting setting[SETTINGS_MOST];
 } Variant;
 
 /* A kind of comparison. */
@@ -31,8 +34,8 @@ typedef struct Kind {
     bool has_page;             // beside the sheet
 } Kind;
 
-static const Kind styles_kind = {"styles", "fluidy/{name}_styles.png", false};
-static const Kind methods_kind = {"methods", "fluidy/{name}_methods.png", true};
+static const Kind styles_kind = {"style", "fluidy/{name}_styles.png", false};
+static const Kind methods_kind = {"method", "fluidy/{name}_methods.png", true};
 
 /* A comparison: the drawing and the sheet. */
 typedef struct Comparison {
@@ -185,15 +188,16 @@ static bool show_frame(void *taker, const FlSinkFrame *frame, int width, int hei
 /* Paints all frames of a row. */
 static bool paint(Comparison *c, const Variant *variant, int row, GError **error)
 {
-    g_autofree char *line = g_strdup_printf("%s %s", variant->key, variant->value);
+    g_autofree char *line = g_strdup_printf("%s %s", c->kind->noun, variant->name);
     if (c->options.note)
         c->options.note(line, c->options.data);
     const size_t n = c->options.n_settings;
-    g_autofree FlSetting *settings = g_new0(FlSetting, n + 1);
+    const size_t own = (size_t)variant->n;
+    g_autofree FlSetting *settings = g_new0(FlSetting, n + own);
     memcpy(settings, c->options.settings, n * sizeof *settings);
-    settings[n] = (FlSetting){.name = variant->key, .value = variant->value};
+    memcpy(settings + n, variant->setting, own * sizeof *settings);
     FlRenderOptions options = c->options;
-    options.settings = settings, options.n_settings = n + 1;
+    options.settings = settings, options.n_settings = n + own;
     options.note = NULL;
     if (row > 1)
         options.warning = NULL; // the drawing's, reported once
@@ -253,7 +257,7 @@ static bool compare(const Kind *kind, const FlRenderOptions *options, const Vari
     if (!fl_contact_sheet_save(&c.contact, c.path, options->overwrite == FL_OVERWRITE_YES, error) ||
         (kind->has_page && !write_page(&c, variants, n, error)))
         return false;
-    g_autofree char *line = g_strdup_printf("%d %s: %s", n, kind->noun, c.path);
+    g_autofree char *line = g_strdup_printf("%d %ss: %s", n, kind->noun, c.path);
     if (options->note)
         options->note(line, options->data);
     return true;
@@ -271,31 +275,45 @@ bool fl_compare_styles(const FlRenderOptions *options, const char *const *styles
         if (!path)
             return false;
         g_ptr_array_add(names, g_path_get_basename(styles[k]));
-        variants[k] = (Variant){names->pdata[k], "style", styles[k], ""};
+        variants[k] = (Variant){names->pdata[k], "", 1, {{.name = "style", .value = styles[k]}}};
     }
     return compare(&styles_kind, options, variants, n, error);
 }
 
 /* ---- methods --------------------------------------------------------------------------------- */
 
+#define PRESET(word)                                                                               \
+    1,                                                                                             \
+    {                                                                                              \
+        {                                                                                          \
+            .name = "preset", .value = word                                                        \
+        }                                                                                          \
+    }
+
 static const Variant methods[] = {
-    {"default", "preset", "default",
-     "Patches of the recording, which follow its time, and half of the drawing's own motion."},
-    {"fluidymation", "preset", "fluidymation",
+    {"default",
+     "Patches of the recording, which follow its time, and half of the drawing's own motion.",
+     PRESET("default")},
+    {"fluidymation",
      "Fluidymation, 2021, table 1: motion from the masks; the recording's frames are chosen by how "
-     "far contours move."},
-    {"thesis", "preset", "thesis",
-     "The thesis behind it, section 4.5: the same from the first 50 frames of the recording."},
-    {"lazyfluids", "preset", "lazyfluids",
+     "far contours move.",
+     PRESET("fluidymation")},
+    {"thesis",
+     "The thesis behind it, section 4.5: the same from the first 50 frames of the recording.",
+     PRESET("thesis")},
+    {"lazyfluids",
      "LazyFluids, 2015, section 5: motion from the masks carries the last picture; every patch is "
-     "used equally often; the recording goes in step with the film and begins again after its "
-     "end."},
-    {"fluid", "preset", "fluid",
+     "used equally often; the recording goes in step with the film and begins again after its end.",
+     PRESET("lazyfluids")},
+    {"fluid",
      "The same with the drawing's own motion, a firmer hold on the last picture and a sharper "
-     "vote."},
-    {"transport", "engine", "transport",
+     "vote.",
+     PRESET("fluid")},
+    {"transport",
      "Transport: each region moves its own ink until it looks like the style, and keeps its "
-     "amount."},
+     "amount.",
+     1,
+     {{.name = "engine", .value = "transport"}}},
 };
 
 static const Variant *find_method(const char *name, GError **error)
@@ -313,17 +331,52 @@ static const Variant *find_method(const char *name, GError **error)
     return NULL;
 }
 
+/* NAME, or NAME:KEY=VALUE… for a method with something changed; `parts` keeps the strings. */
+static bool read_method(const char *text, char **parts, Variant *variant, GError **error)
+{
+    const Variant *method = find_method(parts[0], error);
+    if (!method)
+        return false;
+    *variant = *method;
+    variant->name = text;
+    for (int k = 1; parts[k]; k++) {
+        char *value = strchr(parts[k], '=');
+        if (!value || variant->n == SETTINGS_MOST) {
+            g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                        "%s: expected at most %d of KEY=VALUE after the method, such as "
+                        "lazyfluids:w-uni=0",
+                        text, SETTINGS_MOST - 1);
+            return false;
+        }
+        *value++ = '\0';
+        variant->setting[variant->n++] = (FlSetting){.name = parts[k], .value = value};
+    }
+    return true;
+}
+
+/* A mistyped setting is found before anything is painted. */
+static bool check_settings(const Variant *variant, GError **error)
+{
+    g_auto(FlRegionSettings) scratch;
+    fl_region_settings_init(&scratch);
+    for (int k = 0; k < variant->n; k++)
+        if (!fl_region_settings_set(&scratch, variant->setting[k].name, variant->setting[k].value,
+                                    NULL, error))
+            return false;
+    return true;
+}
+
 bool fl_compare_methods(const FlRenderOptions *options, const char *const *names, GError **error)
 {
     const int n = (int)g_strv_length((char **)names);
     g_autofree Variant *variants = g_new0(Variant, n + 1);
-    g_auto(FlRegionSettings) scratch;
-    fl_region_settings_init(&scratch);
+    g_autoptr(GPtrArray) texts = g_ptr_array_new_with_free_func((GDestroyNotify)g_strfreev);
     for (int k = 0; k < n; k++) {
-        const Variant *method = find_method(names[k], error);
-        if (!method || !fl_region_settings_set(&scratch, method->key, method->value, NULL, error))
+        char **parts = g_strsplit(names[k], ":", -1);
+        g_ptr_array_add(texts, parts);
+        if (!read_method(names[k], parts, &variants[k], error) ||
+            !check_settings(&variants[k], error))
             return false;
-        variants[k] = *method;
     }
     return compare(&methods_kind, options, variants, n, error);
 }
