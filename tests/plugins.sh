@@ -43,7 +43,7 @@ result $? 'a drawing gets its painting as a layer, which the next one replaces'
 extension --style=ink --frames=layers film.svg && [ "$(images out)" = 2 ]
 result $? 'layers that are frames are painted one by one'
 extension --style=ink --frames=layers --result=folder --folder="$folder/my frames" film.svg && [ "$(images out)" = 0 ] &&
-    [ "$(ls 'my frames' | xargs)" = 'painted_0001.png painted_0002.png' ]
+    [ "$(cd 'my frames' && echo *)" = 'painted_0001.png painted_0002.png' ]
 result $? 'or go into a folder'
 extension --style=other --other_style=none film.svg
 [ $? = 1 ] && [ ! -s out ] && grep -q 'no style “none” in' err
