@@ -1,0 +1,65 @@
+#!/bin/sh
+# Figures of the papers, redrawn with what is in the repository: a page that says what each shows.
+# Usage: figures.sh PROGRAM STILLS-PROGRAM SOURCE-DIR OUTPUT-DIR
+set -eu
+program=$1 stills=$2 source=$3 out=$4
+FLUIDY_STYLES=$source/fixtures/styles
+export FLUIDY_STYLES
+mkdir -p "$out/turning"
+"$stills" "$out/styles"
+
+# A blob with five lobes that turns by three degrees a frame.
+for f in $(seq 1 24); do
+    printf '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 200 200"><g transform="rotate(%d 100 100)"><path id="blob" fill="#d06030" d="M100 15C125 15 120 45 145 50C185 55 195 85 170 105C150 120 175 150 150 170C130 185 115 160 95 170C60 185 35 165 45 135C50 115 15 105 20 80C28 50 55 65 65 45C72 28 80 15 100 15Z"/></g></svg>\n' \
+        $((3 * f)) >"$out/turning/$(printf %04d.svg "$f")"
+done
+
+page=$out/index.html
+cat >"$page" <<END
+<!doctype html>
+<meta charset="utf-8">
+<title>Figures of the papers, redrawn</title>
+<style>body { max-width: 70em; margin: 2em auto; font-family: sans-serif } img { max-width: 100% }</style>
+<h1>Figures of the papers, redrawn</h1>
+<p>By <code>meson test --benchmark figures</code>, from drawings and styles of the repository. Each
+sheet has three frames and the middle line of all frames, time downwards.</p>
+END
+
+width=200
+# figure NAME TITLE WORDS METHODS ARGUMENTS…
+figure() {
+    name=$1 title=$2 words=$3 methods=$4
+    shift 4
+    "$program" "$@" --methods "$methods" --width "$width" --paper none --overwrite -q -o "$out/$name.png"
+    printf '<h2>%s</h2>\n<p>%s <a href="%s.html">What each row is.</a></p>\n<img src="%s.png" alt="">\n' \
+        "$title" "$words" "$name" "$name" >>"$page"
+}
+
+still="--tint keep --style-by-page off --style-scale 1 --motion auto"
+# shellcheck disable=SC2086 # options
+{
+    figure uniformity 'LazyFluids, figures 2 and 13: uniformity' \
+        'Nearest neighbours (w-uni 0) choose few patches, the smooth ones, and the picture washes out; with every patch used equally often the contrast stays, first frame to last.' \
+        lazyfluids,lazyfluids:w-uni=0,fluid "$out/turning" -s "$out/styles/fire" $still
+    figure water 'LazyFluids, figure 10: another still' \
+        'The same drawing with water: the net turns with the blob, as slanted lines in the slice show.' \
+        lazyfluids,fluid "$out/turning" -s "$out/styles/water" $still
+    figure coherence 'LazyFluids, section 4.4: the temporal term' \
+        'Every level begins with the carried picture, so that even without the term (w-temp 0, unlike in the paper) texture follows the drawing, and changes faster on its way; more of it holds the texture more firmly: fewer breaks in the slice.' \
+        fluid:w-temp=0,fluid:w-temp=0.2,fluid:w-temp=1 "$out/turning" -s "$out/styles/fire" $still
+    figure turns 'LazyFluids, figure 8: quarter turns' \
+        'With one orientation only (rotate off) a rim is right where the exemplar has one that faces the same way. This exemplar is a disc, which has them all: little changes, and what does is the direction of the net.' \
+        fluid,fluid:rotate=off "$out/turning" -s "$out/styles/water" $still -f 1-6
+    figure blur 'LazyFluids, figure 9: motion blur' \
+        'The output is blurred along its motion while the shutter is open, none at the middle and most at the rim; the next frame comes from the sharp one.' \
+        fluid,fluid:motion-blur=1,fluid:motion-blur=2 "$out/turning" -s "$out/styles/fire" $still -f 1-6
+    width=360 # the presets of the papers count in pixels
+    figure fluidymation 'Fluidymation, section 4: comparison with LazyFluids' \
+        'Both see masks only, and the recording as it is, which LazyFluids plays in step with the film and from its beginning again. The recording begins with a drop: where its frame has little paint, LazyFluids must show all of it equally often, and small parts break up into spots; Fluidymation chooses frames with enough. What rests, rests in Fluidymation.' \
+        fluidymation,lazyfluids "$source/fixtures/animations/snowman-wave-layers" -s 02 -f 1-12 --motion masks
+    figure ablation 'Fluidymation, terms of the energy' \
+        'Without the temporal term paint flickers, without uniformity it repeats, without the boundary rims are lost.' \
+        fluidymation,fluidymation:w-temp=0,fluidymation:w-uni=0,fluidymation:w-bound=0 \
+        "$source/fixtures/animations/snowman-wave-layers" -s 02 -f 1-8
+}
+echo "figures: $page"
