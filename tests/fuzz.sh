@@ -14,7 +14,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export source build seconds work CORPUS=${CORPUS:-$work/new} SEED=${SEED:-1} RUNS=${RUNS:-1000000}
 export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_leaks=1:allocator_may_return_null=1:handle_abort=1}
-export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 OMP_NUM_THREADS=1
+export UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 OMP_NUM_THREADS=1 FLUIDY_CACHE=off
 export LSAN_OPTIONS=suppressions=$source/tests/lsan.supp:print_suppressions=0
 
 # plain FILE: a drawing, unpacked if it is packed

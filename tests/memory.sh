@@ -9,7 +9,7 @@ program=$1
 shift
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-export OMP_WAIT_POLICY=passive LC_ALL=C
+export OMP_WAIT_POLICY=passive LC_ALL=C FLUIDY_CACHE=off
 
 # A blob of three lobes that turns, breathes and drifts.
 awk -v folder="$folder" 'BEGIN {

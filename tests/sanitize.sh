@@ -16,7 +16,7 @@ set -eu
 what=$1
 build=$2
 source=$PWD
-export OMP_WAIT_POLICY=passive FLUIDY_FIXTURES=$source/fixtures
+export OMP_WAIT_POLICY=passive FLUIDY_CACHE=off FLUIDY_FIXTURES=$source/fixtures
 
 make_build() {
     [ -f "$build/build.ninja" ] || meson setup "$build" -Dbuildtype=debugoptimized "$@"

@@ -120,7 +120,7 @@ static void the_fingerprint_has_every_option_that_decides_bytes(void)
     g_autoptr(FlConfig) config = fl_config_load(NULL, NULL, NULL);
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *o = fl_option_at(i);
-        if (o->bytes != FL_BYTES_VALUE)
+        if (o->bytes != FL_BYTES_VALUE && o->bytes != FL_BYTES_FRAME)
             continue;
         g_autofree char *value = another(o), *difference = NULL;
         FlRenderOptions options = {0};

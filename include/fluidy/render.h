@@ -148,6 +148,10 @@ typedef struct FlRenderOptions {
     /** Resume an interrupted render even with FL_OVERWRITE_YES, which otherwise starts anew. The
      *  others always resume. */
     bool resume;
+    /** A folder in which paint is kept and from which it is taken while all that decides it is the
+     *  same; "auto": paint below the user's cache folder; NULL, "off": none. */
+    const char *cache;
+    int cache_size;     /**< MiB, beyond which the cache drops what was used least; 0: 8192 */
     const char *stats;  /**< JSON lines about every frame, region and level; NULL: none */
     const char *report; /**< a folder for the HTML report, index.html; NULL: none */
     const char

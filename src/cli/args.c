@@ -316,6 +316,8 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
         return false;
     args->render.settings = (const FlSetting *)(const void *)args->settings->data;
     args->render.n_settings = args->settings->len;
+    if (!args->render.cache)
+        args->render.cache = g_getenv("FLUIDY_CACHE") ? g_getenv("FLUIDY_CACHE") : "auto";
     if (needs_input(args->task) && !args->render.inputs[0]) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "no input; expected SVG frames such as walk_%%04d.svg (see --help)");

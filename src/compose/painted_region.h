@@ -34,6 +34,7 @@ typedef struct FlPaintedRegion {
     FlFrameStats stats;               // of the last frame that was painted, as is what follows
     FlSynthView view;                 // nnf NULL: nobody wanted it
     double seconds;
+    bool taken; // from the cache: nothing was painted, stats and view are empty
 } FlPaintedRegion;
 
 #endif

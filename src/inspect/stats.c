@@ -60,9 +60,13 @@ void fl_stats_frame(FlStats *stats, const FlPaintedRegion *const *painted, int n
     if (!stats->open)
         return;
     FILE *out = stats->file.stream;
-    for (int p = 0; p < n; p++)
+    for (int p = 0; p < n; p++) {
+        if (painted[p]->taken)
+            fprintf(out, "{\"frame\": %d, \"region\": \"%s\", \"taken\": true}\n", frame_number,
+                    painted[p]->name);
         for (int l = painted[p]->stats.n_levels - 1; l >= 0; l--)
             level_line(out, painted[p], frame_number, l);
+    }
     fprintf(out, "{\"frame\": %d", frame_number);
     pair(out, "paint_seconds", paint_s);
     pair(out, "compose_seconds", compose_s);

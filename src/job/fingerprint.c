@@ -1,5 +1,6 @@
 #include "job/fingerprint.h"
 
+#include "base/build_id.h"
 #include "base/file.h"
 #include "config.h"
 #include "io/pattern.h"
@@ -8,6 +9,7 @@
 #include <librsvg/rsvg.h>
 #include <string.h>
 
+#define FACTS G_VARIANT_TYPE("a(ss)")
 #define SUM "sha256 " // a value that starts so is no use to a reader
 
 static void clear_fact(FlFact *fact)
@@ -131,6 +133,23 @@ static void add_versions(FlFingerprint *print)
     add_number(print, "the byte order", G_BYTE_ORDER);
 }
 
+/* Pictures and drawings that the frames refer to. */
+static bool add_linked(FlFingerprint *print, const FlDrawing *drawing, GError **error)
+{
+    g_autoptr(GPtrArray) paths = g_ptr_array_new();
+    GHashTableIter at;
+    gpointer path;
+    g_hash_table_iter_init(&at, fl_drawing_linked_files(drawing));
+    while (g_hash_table_iter_next(&at, &path, NULL))
+        g_ptr_array_add(paths, path);
+    g_ptr_array_sort(paths, by_name);
+    for (guint k = 0; k < paths->len; k++)
+        if (g_file_test(paths->pdata[k], G_FILE_TEST_IS_REGULAR) &&
+            !add_file(print, paths->pdata[k], error))
+            return false;
+    return true;
+}
+
 static bool add_drawings(FlFingerprint *print, const FlDrawing *drawing, GError **error)
 {
     add_number(print, "the number of frames", fl_drawing_frames(drawing));
@@ -138,15 +157,20 @@ static bool add_drawings(FlFingerprint *print, const FlDrawing *drawing, GError 
     for (int f = 0; f < fl_drawing_frames(drawing); f++)
         if (!add_file(print, fl_drawing_file(drawing, f), error))
             return false;
+    if (!add_linked(print, drawing, error))
+        return false;
+    print->n_linked = print->facts->len - print->first_drawing - (guint)fl_drawing_frames(drawing);
     return true;
 }
 
-void fl_fingerprint_add_options(FlFingerprint *print, FlOptionScope scope, const void *object,
-                                const char *region)
+/* Those that decide frames, or those that decide paint. */
+static void add_values(FlFingerprint *print, FlOptionScope scope, const void *object,
+                       const char *region, bool of_frames)
 {
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
-        if (option->scope != scope || option->bytes != FL_BYTES_VALUE)
+        if (option->scope != scope ||
+            (option->bytes != FL_BYTES_VALUE && !(of_frames && option->bytes == FL_BYTES_FRAME)))
             continue;
         g_autofree char *value = fl_option_get(option, object);
         // the folder of a style may move; its contents may not change
@@ -156,6 +180,12 @@ void fl_fingerprint_add_options(FlFingerprint *print, FlOptionScope scope, const
             region ? g_strdup_printf("%s of region %s", option->name, region) : NULL;
         fl_fingerprint_add(print, name ? name : option->name, base ? base : value);
     }
+}
+
+void fl_fingerprint_add_options(FlFingerprint *print, FlOptionScope scope, const void *object,
+                                const char *region)
+{
+    add_values(print, scope, object, region, true);
 }
 
 /* What an option's value leads to, and then the values. */
@@ -210,20 +240,27 @@ static bool add_painted(FlFingerprint *print, const FlPlan *plan, GError **error
 }
 
 /* Which leaves a region is made of shows in its figures. */
+static void add_leaves(FlFingerprint *print, const FlRegion *region)
+{
+    char area[G_ASCII_DTOSTR_BUF_SIZE];
+    g_autofree char *name = g_strdup_printf("what region %s is made of", region->name);
+    g_autofree char *value =
+        g_strdup_printf("%s, %s, %d leaves in %d frames from %d on, %s px", region->label,
+                        region->paint, region->n_leaves, region->n_present, region->first_frame,
+                        g_ascii_dtostr(area, sizeof area, region->area_px));
+    fl_fingerprint_add(print, name, value);
+}
+
 static void add_regions(FlFingerprint *print, const FlPlan *plan)
 {
     for (int r = 0; r < fl_drawing_regions(plan->drawing); r++) {
         const FlRegion *region = fl_drawing_region(plan->drawing, r);
-        char area[G_ASCII_DTOSTR_BUF_SIZE];
-        g_autofree char *name = g_strdup_printf("what region %s is made of", region->name);
-        g_autofree char *value =
-            g_strdup_printf("%s, %s, %d leaves in %d frames from %d on, %s px, %s", region->label,
-                            region->paint, region->n_leaves, region->n_present, region->first_frame,
-                            g_ascii_dtostr(area, sizeof area, region->area_px),
-                            plan->painted_of[r] >= 0                   ? "painted"
-                            : plan->painted_of[r] == FL_DRAWN_AS_IT_IS ? "drawn"
-                                                                       : "left out");
-        fl_fingerprint_add(print, name, value);
+        g_autofree char *name = g_strdup_printf("what becomes of region %s", region->name);
+        add_leaves(print, region);
+        fl_fingerprint_add(print, name,
+                           plan->painted_of[r] >= 0                   ? "painted"
+                           : plan->painted_of[r] == FL_DRAWN_AS_IT_IS ? "drawn"
+                                                                      : "left out");
         const FlRegionHand hand = plan->hands[r];
         g_autofree char *line = g_strdup_printf("line and line-boil of region %s", region->name);
         g_autofree char *drawn = g_strdup_printf("%d, %d", hand.line, hand.boil);
@@ -247,6 +284,161 @@ FlFingerprint *fl_fingerprint_new(const FlPlan *plan, GError **error)
                                              !add_pattern(print, plan, background, NULL, error)))
         return NULL;
     return g_steal_pointer(&print);
+}
+
+/* ---- the paint of one region ------------------------------------------------------------------
+ */
+
+/* The build stands for the method and for all that it is made from. */
+static void add_method(FlFingerprint *print, const FlPlan *plan, const FlRegionPlan *painted)
+{
+    fl_fingerprint_add(print, "the build of fluidy-svg", fl_build_id());
+    add_versions(print);
+    fl_fingerprint_add(print, "the engine", painted->engine->name);
+    add_number(print, "the seed", (double)plan->options.seed);
+    fl_fingerprint_add(print, "the region's name", painted->name);
+    add_number(print, "the number of frames", fl_drawing_frames(plan->drawing));
+    add_number(print, "the width of the paint", fl_drawing_width(plan->drawing));
+    add_number(print, "the height of the paint", fl_drawing_height(plan->drawing));
+    add_number(print, "whether it is a loop", painted->loops);
+}
+
+/* A style's sum is made once for all regions that have it. */
+static bool add_style_once(FlFingerprint *print, const char *path, GHashTable *sums, GError **error)
+{
+    FlFingerprint *sum = g_hash_table_lookup(sums, path);
+    if (!sum) {
+        sum = fl_fingerprint_new_empty();
+        g_hash_table_insert(sums, g_strdup(path), sum);
+        if (!add_style(sum, path, error))
+            return false;
+    }
+    for (guint k = 0; k < sum->facts->len; k++) {
+        const FlFact *fact = &g_array_index(sum->facts, FlFact, k);
+        fl_fingerprint_add(print, fact->name, fact->value);
+    }
+    return true;
+}
+
+/* Where its paint goes on into other shapes, all of which a guide of its depth may know. */
+static void add_joins(FlFingerprint *print, const FlPlan *plan)
+{
+    g_autoptr(GString) joins = g_string_new(NULL);
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
+        g_string_append_c(joins, (char)('0' + plan->joins[r]));
+    fl_fingerprint_add(print, "which edges are shared", joins->str);
+}
+
+GHashTable *fl_style_sums_new(void)
+{
+    return g_hash_table_new_full(g_str_hash, g_str_equal, g_free,
+                                 (GDestroyNotify)fl_fingerprint_free);
+}
+
+FlFingerprint *fl_fingerprint_of_method(const FlPlan *plan, int p, GHashTable *styles,
+                                        GError **error)
+{
+    const FlRegionPlan *painted = &plan->painted[p];
+    g_autoptr(FlFingerprint) print = fl_fingerprint_new_empty();
+    add_method(print, plan, painted);
+    add_values(print, FL_SCOPE_REGION, &painted->settings, NULL, false);
+    return add_style_once(print, painted->style->path, styles, error) ? g_steal_pointer(&print)
+                                                                      : NULL;
+}
+
+bool fl_fingerprint_add_film(FlFingerprint *print, const FlPlan *plan, int p,
+                             const FlFingerprint *whole, GError **error)
+{
+    const FlRegionPlan *painted = &plan->painted[p];
+    const guint n = (guint)fl_drawing_frames(plan->drawing) + whole->n_linked;
+    for (guint k = whole->first_drawing; k < whole->first_drawing + n; k++) {
+        const FlFact *fact = &g_array_index(whole->facts, FlFact, k);
+        fl_fingerprint_add(print, fact->name, fact->value);
+    }
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) // layers of one file differ in it
+        add_number(print, "the number of a frame", fl_drawing_number(plan->drawing, f));
+    add_values(print, FL_SCOPE_RENDER, &plan->options, NULL, false);
+    add_number(print, "the hold", plan->hold);
+    add_joins(print, plan);
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
+        add_leaves(print, fl_drawing_region(plan->drawing, r));
+    return !painted->flow_files ||
+           add_pattern(print, plan, painted->flow_files, painted->name, error);
+}
+
+GBytes *fl_fingerprint_pack(const FlFingerprint *print)
+{
+    GVariantBuilder facts;
+    g_variant_builder_init(&facts, FACTS);
+    for (guint i = 0; i < print->facts->len; i++) {
+        const FlFact *fact = &g_array_index(print->facts, FlFact, i);
+        g_variant_builder_add(&facts, "(ss)", fact->name, fact->value);
+    }
+    g_autoptr(GVariant) variant = g_variant_ref_sink(g_variant_builder_end(&facts));
+    return g_variant_get_data_as_bytes(variant);
+}
+
+FlFingerprint *fl_fingerprint_unpack(GBytes *bytes)
+{
+    g_autoptr(GVariant) variant = g_variant_ref_sink(g_variant_new_from_bytes(FACTS, bytes, FALSE));
+    if (!g_variant_is_normal_form(variant))
+        return NULL;
+    FlFingerprint *print = fl_fingerprint_new_empty();
+    const char *name, *value;
+    GVariantIter at;
+    g_variant_iter_init(&at, variant);
+    while (g_variant_iter_next(&at, "(&s&s)", &name, &value))
+        fl_fingerprint_add(print, name, value);
+    return print;
+}
+
+FlDigest fl_fingerprint_digest(const FlFingerprint *print)
+{
+    FlDigest digest = {0};
+    for (guint k = 0; k < print->facts->len; k++) {
+        const FlFact *fact = &g_array_index(print->facts, FlFact, k);
+        fl_digest_add_text(&digest, fact->name);
+        fl_digest_add_text(&digest, fact->value);
+    }
+    return digest;
+}
+
+/* ---- what was asked for -----------------------------------------------------------------------
+ */
+
+/* Those that decide bytes in whatever way; not how frames become a film. */
+static void add_requested(FlFingerprint *print, const FlRenderOptions *options)
+{
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->scope != FL_SCOPE_RENDER || option->bytes == FL_BYTES_NEVER ||
+            g_str_equal(option->name, "format") || g_str_equal(option->name, "fps"))
+            continue;
+        g_autofree char *value = fl_option_get(option, options);
+        fl_fingerprint_add(print, option->name, value);
+    }
+    for (size_t i = 0; i < options->n_settings; i++) {
+        const FlSetting *setting = &options->settings[i];
+        fl_fingerprint_add(print, "region", setting->region);
+        fl_fingerprint_add(print, setting->name, setting->value);
+    }
+}
+
+FlDigest fl_fingerprint_of_request(const FlPlan *plan, const FlSequence *sequence)
+{
+    g_autoptr(FlFingerprint) print = fl_fingerprint_new_empty();
+    g_autofree char *folder = g_get_current_dir(); // where relative names begin
+    fl_fingerprint_add(print, "the build of fluidy-svg", fl_build_id());
+    add_versions(print);
+    fl_fingerprint_add(print, "the working directory", folder);
+    fl_fingerprint_add(print, "the format", plan->format->name);
+    add_requested(print, &plan->options);
+    for (int f = 0; f < sequence->n; f++) {
+        add_number(print, sequence->file[f], sequence->number[f]);
+        add_number(print, "whether it stands in", sequence->stand_in[f]);
+        add_number(print, "the layer", sequence->layer[f]);
+    }
+    return fl_fingerprint_digest(print);
 }
 
 /* ---- comparing ------------------------------------------------------------------------------ */

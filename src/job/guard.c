@@ -10,68 +10,77 @@ static char *key_of(const struct stat *status)
     return g_strdup_printf("%ju:%ju", (uintmax_t)status->st_dev, (uintmax_t)status->st_ino);
 }
 
-/* A link and what it leads to are both read; what is not there is told by whoever reads it. */
-static void add_file(GHashTable *inputs, const char *path)
-{
-    struct stat status;
-    if (path && lstat(path, &status) == 0)
-        g_hash_table_add(inputs, key_of(&status));
-    if (path && stat(path, &status) == 0)
-        g_hash_table_add(inputs, key_of(&status));
-}
-
-static void add_style(GHashTable *inputs, const char *folder)
+static void add_style(GPtrArray *inputs, const char *folder)
 {
     static const char *const parts[] = {"", "frames", "masks", "flow"};
     for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
-        g_autofree char *part = g_build_filename(folder, parts[k], NULL);
+        char *part = g_build_filename(folder, parts[k], NULL);
+        g_ptr_array_add(inputs, part);
         g_autoptr(GDir) dir = g_dir_open(part, 0, NULL);
         const char *name;
-        while (dir && (name = g_dir_read_name(dir))) {
-            g_autofree char *path = g_build_filename(part, name, NULL);
-            add_file(inputs, path);
-        }
+        while (dir && (name = g_dir_read_name(dir)))
+            g_ptr_array_add(inputs, g_build_filename(part, name, NULL));
     }
 }
 
 /* The files of an option that may name one per frame and region. */
-static void add_named(GHashTable *inputs, const FlPlan *plan, const char *pattern)
+static void add_named(GPtrArray *inputs, const FlPlan *plan, const char *pattern)
 {
-    add_file(inputs, pattern);
+    if (pattern)
+        g_ptr_array_add(inputs, g_strdup(pattern));
     for (int f = 0; pattern && f < fl_drawing_frames(plan->drawing); f++)
         for (int p = 0; p < MAX(plan->n_painted, 1); p++) {
             const char *region = p < plan->n_painted ? plan->painted[p].name : NULL;
             const int number = fl_drawing_number(plan->drawing, f);
-            g_autofree char *path = fl_output_name(pattern, number, region, NULL);
-            add_file(inputs, path);
+            char *path = fl_output_name(pattern, number, region, NULL);
+            if (path)
+                g_ptr_array_add(inputs, path);
         }
 }
 
-static void add_linked(GHashTable *inputs, const FlPlan *plan)
+static void add_linked(GPtrArray *inputs, const FlPlan *plan)
 {
     GHashTableIter at;
     gpointer path;
     g_hash_table_iter_init(&at, fl_drawing_linked_files(plan->drawing));
     while (g_hash_table_iter_next(&at, &path, NULL))
-        add_file(inputs, path);
+        g_ptr_array_add(inputs, g_strdup(path));
 }
 
-static GHashTable *collect_inputs(const FlPlan *plan)
+GPtrArray *fl_guard_list_inputs(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
-    GHashTable *inputs = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    GPtrArray *inputs = g_ptr_array_new_with_free_func(g_free);
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
-        add_file(inputs, fl_drawing_file(plan->drawing, f));
+        g_ptr_array_add(inputs, g_strdup(fl_drawing_file(plan->drawing, f)));
     add_linked(inputs, plan);
     for (int p = 0; p < plan->n_painted; p++)
         if (p == 0 || plan->painted[p].style != plan->painted[p - 1].style)
             add_style(inputs, plan->painted[p].style->path);
-    add_file(inputs, o->config);
+    if (o->config)
+        g_ptr_array_add(inputs, g_strdup(o->config));
     add_named(inputs, plan, o->background);
-    add_file(inputs, o->paper);
+    if (o->paper)
+        g_ptr_array_add(inputs, g_strdup(o->paper));
     add_named(inputs, plan, o->flow);
     if (o->merge)
         add_named(inputs, plan, o->paint);
+    return inputs;
+}
+
+/* A link and what it leads to are both read; what is not there is told by whoever reads it. A
+ * style's folder is written to by nobody. */
+static GHashTable *collect_inputs(const FlPlan *plan)
+{
+    GHashTable *inputs = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    g_autoptr(GPtrArray) paths = fl_guard_list_inputs(plan);
+    for (guint k = 0; k < paths->len; k++) {
+        struct stat status;
+        if (lstat(paths->pdata[k], &status) == 0)
+            g_hash_table_add(inputs, key_of(&status));
+        if (stat(paths->pdata[k], &status) == 0)
+            g_hash_table_add(inputs, key_of(&status));
+    }
     return inputs;
 }
 

@@ -5,6 +5,14 @@
 #include "job/plan.h"
 
 /**
+ * The paths of everything that a render may read: drawings and what they refer to, the config,
+ * backgrounds, flow, paint to be merged, styles with their folders. Not all of them need exist.
+ *
+ * Returns: strings in a fixed order, to be freed with g_ptr_array_unref().
+ */
+GPtrArray *fl_guard_list_inputs(const FlPlan *plan);
+
+/**
  * Checks that no output file is an input: a drawing or what it refers to, the config, a background,
  * a flow, paint to be merged, or a file of a style; under any name, and even if files may be
  * overwritten.

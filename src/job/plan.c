@@ -7,6 +7,8 @@
 #include "base/suggest.h"
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
+#include "job/fingerprint.h"
+#include "job/finished.h"
 #include "job/resume.h"
 #include <stdatomic.h>
 #include <string.h>
@@ -298,7 +300,12 @@ static bool find_output(FlPlan *plan, GError **error)
     const FlRenderOptions *o = &plan->options;
     const bool parts_only = o->no_frames && (o->paint || o->layers) && !o->output && !o->merge;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(o, error);
-    return sequence && (parts_only ? name_parts : name_output)(plan, sequence, error) &&
+    if (!sequence || !(parts_only ? name_parts : name_output)(plan, sequence, error))
+        return false;
+    plan->request = fl_fingerprint_of_request(plan, sequence);
+    plan->finished = fl_finished_look(plan, sequence);
+    plan->n_finished = plan->finished != FL_FINISHED_NOTHING ? sequence->n : 0;
+    return plan->finished == FL_FINISHED_ALL ||
            (plan->options.dry_run || fl_resume_expect_free(plan, sequence, error));
 }
 
@@ -341,8 +348,11 @@ static bool make_plan(FlPlan *plan, GError **error)
                     "no input: expected SVG files, a folder, or a pattern such as input_%%04d.svg");
         return false;
     }
-    if (!check_merge(&plan->options, error) || !find_output(plan, error) ||
-        !open_drawing(plan, error) || !check_region_names(plan, error) ||
+    if (!check_merge(&plan->options, error) || !find_output(plan, error))
+        return false;
+    if (plan->finished == FL_FINISHED_ALL)
+        return true;
+    if (!open_drawing(plan, error) || !check_region_names(plan, error) ||
         !plan_regions(plan, error))
         return false;
     choose_size(plan);
@@ -356,6 +366,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
     plan->options = *options;
     plan->start = g_get_monotonic_time();
     plan->styles = fl_style_cache_new(&plan->options);
+    plan->cache = options->dry_run || options->merge ? NULL : fl_paint_cache_open(&plan->options);
     plan->config = fl_config_load(options->config, options, error);
     if (!plan->config)
         return NULL;
@@ -376,6 +387,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->hands);
     g_free(plan->output);
     g_free(plan->movie);
+    fl_paint_cache_close(plan->cache);
     fl_style_cache_free(plan->styles);
     fl_mask_store_free(plan->masks);
     fl_surround_free(plan->surround);

@@ -6,9 +6,17 @@
 #include "io/sink.h"
 #include "job/engine.h"
 #include "job/mask_store.h"
+#include "job/paint_cache.h"
 #include "job/style_cache.h"
 #include "job/surround.h"
 #include "params/config.h"
+
+/** How much of a render an earlier one has finished. */
+typedef enum FlFinished {
+    FL_FINISHED_NOTHING,
+    FL_FINISHED_FRAMES, // the film is missing
+    FL_FINISHED_ALL,
+} FlFinished;
 
 /** How one region is painted. */
 typedef struct FlRegionPlan {
@@ -44,6 +52,10 @@ typedef struct FlPlan {
     bool half;           // drafts: the drawing has half their size, and layers are enlarged
     char *output;        // pattern or file; of what an interrupted run leaves if parts_only
     bool parts_only;     // layers or paint are written, but no frames
+    FlPaintCache *cache; // NULL: no paint is kept
+    FlDigest request;    // of what was asked for, before anything of it is read
+    FlFinished finished; // ALL: the rest of the plan is not made
+    int n_finished;      // frames of what is finished
     gint64 start;        // microseconds, as g_get_monotonic_time()
     const FlSinkFormat *format;
     char *movie; // the film made of the frames; NULL: none
@@ -53,6 +65,7 @@ typedef struct FlPlan {
 
 /**
  * Reads config and drawing and settles how every region is painted. Paints nothing, writes nothing.
+ * Where all is finished, see plan->finished, it reads no drawing.
  *
  * Returns: to be freed with fl_plan_free(); NULL with an error of FL_ERROR.
  */

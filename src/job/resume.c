@@ -149,8 +149,8 @@ bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GErro
     if (movie && !fl_exists_not(movie, error))
         return false;
     g_autofree char *state = hidden_file(plan, false, "state");
-    if (plan->format->film || plan->options.overwrite == FL_OVERWRITE_KEEP ||
-        g_file_test(state, G_FILE_TEST_EXISTS))
+    if (plan->format->film || plan->finished == FL_FINISHED_FRAMES ||
+        plan->options.overwrite == FL_OVERWRITE_KEEP || g_file_test(state, G_FILE_TEST_EXISTS))
         return true;
     for (int f = 0; f < sequence->n; f++) {
         g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, error);
@@ -189,7 +189,8 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
     }
     fl_fingerprint_free(resume->state->print); // equal to print
     resume->state->print = g_steal_pointer(&print);
-    resume->first = resume->state->done;
+    resume->first = plan->finished == FL_FINISHED_FRAMES ? fl_drawing_frames(plan->drawing)
+                                                         : resume->state->done;
     if (!check_files(resume, plan, error))
         return false;
     if (resume->found)

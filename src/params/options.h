@@ -48,6 +48,7 @@ typedef enum FlOptionSection {
 typedef enum FlOptionBytes {
     FL_BYTES_NEVER,
     FL_BYTES_VALUE,  // the fingerprint has its value
+    FL_BYTES_FRAME,  // likewise, but paint does not depend on it
     FL_BYTES_RESULT, // the fingerprint has what follows from it
 } FlOptionBytes;
 

@@ -117,7 +117,8 @@ static FlRect cropped(const FlPainter *painter)
 
 double fl_painter_bytes(const FlPainter *painter)
 {
-    return 45 * (double)fl_rect_pixels(cropped(painter)); // measured: fields, guides and the state
+    return 45 *
+           (double)fl_rect_pixels(painter->result.rect); // measured: fields, guides and the state
 }
 
 static bool make_picture(FlPainter *painter, GError **error)
@@ -127,7 +128,13 @@ static bool make_picture(FlPainter *painter, GError **error)
     return painter->result.painted != NULL;
 }
 
-void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region)
+static bool is_known(const FlPainter *painter)
+{
+    return painter->reuse && painter->reuse->known;
+}
+
+void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region,
+                     FlReuse *reuse)
 {
     *painter = (FlPainter){.plan = region,
                            .masks = plan->masks,
@@ -143,14 +150,19 @@ void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan 
                                       .height = fl_drawing_height(plan->drawing)}};
     painter->n_pictures = (fl_drawing_frames(plan->drawing) - 1) / region->settings.hold + 1;
     painter->wrap = region->loops ? MIN(painter->n_pictures, WRAP) : 0;
-    painter->result.rect = cropped(painter);
+    painter->reuse = reuse;
+    painter->result.rect = is_known(painter) ? reuse->rect : cropped(painter);
 }
 
 bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
 {
     const FlRegionPlan *plan = painter->plan;
-    if (plan->paint_files)
+    if (plan->loops && !fl_loop_init(&painter->loop, painter->n_pictures, error))
+        return false;
+    if (plan->paint_files || is_known(painter))
         return make_picture(painter, error);
+    if (painter->reuse && painter->reuse->cache)
+        fl_reuse_begin(painter->reuse, painter->result.rect);
     const FlRect rect = painter->result.rect;
     const FlGuideSource source = source_of(painter);
     const FlGuideParams params = fl_guide_params(&plan->settings.params);
@@ -160,8 +172,7 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
         {rect.width, rect.height, painter->result.width, painter->result.height},
         fl_key(seed, g_str_hash(plan->name))};
     return (painter->guides = fl_guide_sequence_new(&source, &params, error)) &&
-           (painter->paint = plan->engine->open(&input, error)) && make_picture(painter, error) &&
-           (!plan->loops || fl_loop_init(&painter->loop, painter->n_pictures, error));
+           (painter->paint = plan->engine->open(&input, error)) && make_picture(painter, error);
 }
 
 void fl_painter_clear(FlPainter *painter)
@@ -258,18 +269,69 @@ static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
     return true;
 }
 
-/* The region's picture `index`, held ones counted once, into painter->result.painted. */
-static bool paint_picture(FlPainter *painter, int index, FlGuides *guides, GError **error)
+/* The guides of the painter's picture, from which the engine paints it. */
+static bool make_guides(FlPainter *painter, FlGuides *guides, GError **error)
 {
     guides->width = painter->result.rect.width, guides->height = painter->result.rect.height;
+    return fl_guide_sequence_get(painter->guides, painter->picture, guides, error) &&
+           make_depth(painter, guides, error);
+}
+
+/* Where the picture before was taken, the engine still is at an older one. */
+static bool catch_up(FlPainter *painter, GError **error)
+{
+    FlReuse *reuse = painter->reuse;
+    if (!reuse || !reuse->state)
+        return true;
+    g_autoptr(GBytes) state = g_steal_pointer(&reuse->state);
+    return painter->plan->engine->load(painter->paint, state, error);
+}
+
+static bool keep_picture(FlPainter *painter, GError **error)
+{
+    FlReuse *reuse = painter->reuse;
+    if (!reuse)
+        return true;
+    reuse->n_painted++;
+    if (!reuse->cache)
+        return true;
+    g_autoptr(GBytes) state = painter->plan->engine->save(painter->paint, error);
+    if (!state)
+        return false;
+    fl_reuse_keep(reuse, painter->result.painted, 3 * fl_rect_pixels(painter->result.rect), state);
+    return true;
+}
+
+static bool run_engine(FlPainter *painter, const FlGuides *guides, GError **error)
+{
+    const FlEnginePaint paint = {painter->result.painted, &painter->result.stats,
+                                 painter->wants_view ? &painter->result.view : NULL};
+    return catch_up(painter, error) &&
+           painter->plan->engine->frame(painter->paint, guides, &paint, error) &&
+           keep_picture(painter, error);
+}
+
+/* The region's picture `index`, held ones counted once, into painter->result.painted; k: how many
+ * were painted before it. */
+static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides, GError **error)
+{
+    FlReuse *reuse = painter->reuse;
     painter->picture = painter->wrap + index;
     painter->result.stats = (FlFrameStats){0};
     painter->result.view = (FlSynthView){0};
-    const FlEnginePaint paint = {painter->result.painted, &painter->result.stats,
-                                 painter->wants_view ? &painter->result.view : NULL};
-    return fl_guide_sequence_get(painter->guides, painter->picture, guides, error) &&
-           make_depth(painter, guides, error) &&
-           painter->plan->engine->frame(painter->paint, guides, &paint, error);
+    if (!is_known(painter) && !make_guides(painter, guides, error))
+        return false;
+    if (reuse)
+        fl_reuse_next(reuse, k, guides, painter->plan->style->exemplar->level[0].first);
+    painter->result.taken = reuse && fl_reuse_take(reuse, painter->result.painted,
+                                                   3 * fl_rect_pixels(painter->result.rect));
+    if (painter->result.taken)
+        return true;
+    if (!is_known(painter))
+        return run_engine(painter, guides, error);
+    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "region %s: its paint is gone from the cache",
+                painter->plan->name);
+    return false;
 }
 
 bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
@@ -281,7 +343,7 @@ bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **er
 {
     const FlLoop *loop = &painter->loop;
     return k >= loop->n ||
-           (paint_picture(painter, loop->first + k, guides, error) &&
+           (paint_picture(painter, k, loop->first + k, guides, error) &&
             fl_loop_keep(&painter->loop, k, painter->result.painted, painter->result.rect, error));
 }
 
@@ -301,7 +363,7 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     const int index = frame / painter->plan->settings.hold;
     if (frame % painter->plan->settings.hold != 0)
         return true;
-    if (!paint_picture(painter, index, guides, error) ||
+    if (!paint_picture(painter, painter->loop.n + index, index, guides, error) ||
         !fl_loop_blend(&painter->loop, index, painter->result.painted, painter->result.rect, error))
         return false;
     painter->result.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
@@ -317,13 +379,32 @@ static bool keeps_picture(const FlPainter *painter)
 bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error)
 {
     const bool holds = keeps_picture(painter) && !painter->plan->paint_files;
-    if (painter->plan->paint_files)
+    parts[2] = painter->reuse ? fl_reuse_save(painter->reuse) : g_bytes_new(NULL, 0);
+    if (painter->plan->paint_files || is_known(painter))
         parts[0] = g_bytes_new(NULL, 0);
+    else if (painter->reuse && painter->reuse->state)
+        parts[0] = g_bytes_ref(painter->reuse->state);
     else if (!(parts[0] = painter->plan->engine->save(painter->paint, error)))
         return false;
     parts[1] =
         g_bytes_new(painter->result.painted, holds ? 3 * fl_rect_pixels(painter->result.rect) : 0);
     return true;
+}
+
+/* The state of the engine, or what the cache has in its place. */
+static bool load_state(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
+{
+    FlReuse none = {0}, *reuse = painter->reuse ? painter->reuse : &none;
+    if (!fl_reuse_load(reuse, parts[2], parts[0])) {
+        g_set_error(
+            error, FL_ERROR, FL_ERROR_CHANGED,
+            "its paint was taken from the cache, and is gone; use ‘overwrite’ to start anew");
+        return false;
+    }
+    if (is_known(painter))
+        return true;
+    g_autoptr(GBytes) state = g_steal_pointer(&reuse->state);
+    return painter->plan->engine->load(painter->paint, state, error);
 }
 
 bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
@@ -337,7 +418,7 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
                     painter->plan->name);
         return false;
     }
-    if (!painter->plan->engine->load(painter->paint, parts[0], error)) {
+    if (!load_state(painter, parts, error)) {
         g_prefix_error(error, "region %s: ", painter->plan->name);
         return false;
     }

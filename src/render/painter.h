@@ -6,6 +6,7 @@
 #include "job/plan.h"
 #include "render/loop.h"
 #include "render/motion_source.h"
+#include "render/reuse.h"
 
 /** Paints one region, frame by frame. */
 typedef struct FlPainter {
@@ -24,12 +25,14 @@ typedef struct FlPainter {
     int depth_from;    // the picture around which it was measured
     int asked, answer; // the same of the picture last asked for
     FlGuideSequence *guides;
-    void *paint;     // the state of plan->engine
+    void *paint;     // the state of plan->engine; NULL: all pictures are known
+    FlReuse *reuse;  // borrowed; NULL: nothing is taken or kept
     bool wants_view; // whether to fill result.view, which takes the memory of a frame
 } FlPainter;
 
-/** Sets sizes only; needs plan->masks. */
-void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region);
+/** Sets sizes only; needs plan->masks, unless the pictures are known. reuse may be NULL. */
+void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region,
+                     FlReuse *reuse);
 void fl_painter_clear(FlPainter *painter);
 
 /** An estimate of the bytes that the painter will use. */
@@ -54,11 +57,11 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
 bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error);
 
 /** The number of parts of a painter's state: see fl_painter_save(). */
-#define FL_PAINTER_PARTS 2
+#define FL_PAINTER_PARTS 3
 
 /**
- * The state after the last painted frame: that of the engine and, if frames are held, the
- * picture.
+ * The state after the last painted frame: that of the engine (empty: it is in the cache), if frames
+ * are held the picture, and the digests of the pictures so far, fl_reuse_save().
  *
  * parts: to be freed with g_bytes_unref(). Returns: false with FL_ERROR_NO_MEMORY set.
  */

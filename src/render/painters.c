@@ -34,8 +34,7 @@ static bool make_guides(FlPainters *painters, GError **error)
     const size_t frame = (size_t)plan->width * (size_t)plan->height;
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
     for (int p = 0; p < painters->n; p++) {
-        const FlRect extent = fl_mask_store_extent(plan->masks, plan->painted[p].region);
-        const size_t pixels = fl_rect_pixels(extent);
+        const size_t pixels = fl_rect_pixels(painters->painter[p].result.rect);
         items[p] = (FlWorkItem){p, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
     }
     return fl_schedule_run(items, painters->n, make_guides_of, painters, error);
@@ -64,7 +63,8 @@ static bool open_motion(FlPainters *painters, GError **error)
     const FlPlan *plan = painters->plan;
     bool wanted = false;
     for (int p = 0; p < plan->n_painted; p++)
-        wanted = wanted || wants_motion(&plan->painted[p]);
+        wanted = wanted || (wants_motion(&plan->painted[p]) &&
+                            !(painters->reuse && painters->reuse[p].known));
     if (wanted && !(painters->motion = fl_motion_source_new(plan->drawing, plan->masks, error)))
         return false;
     for (int p = 0; p < painters->n; p++)
@@ -72,30 +72,69 @@ static bool open_motion(FlPainters *painters, GError **error)
     return true;
 }
 
+bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, FlPaintCache *cache,
+                        const FlFingerprint *whole, GError **error)
+{
+    g_autoptr(GHashTable) styles = fl_style_sums_new();
+    painters->n = plan->n_painted;
+    painters->reuse = g_new0(FlReuse, MAX(plan->n_painted, 1));
+    for (int p = 0; p < plan->n_painted; p++)
+        if (!fl_reuse_init(&painters->reuse[p], cache, plan, p, styles, whole, error))
+            return false;
+    return true;
+}
+
+bool fl_painters_need_masks(const FlPainters *painters, const FlPlan *plan)
+{
+    bool needed = !painters->reuse;
+    for (int p = 0; p < plan->n_painted && !needed; p++)
+        needed = !painters->reuse[p].known;
+    return needed;
+}
+
+bool fl_painters_stale(const FlPainters *painters)
+{
+    bool stale = false;
+    for (int p = 0; painters->reuse && p < painters->n; p++)
+        stale = stale || painters->reuse[p].stale;
+    return stale;
+}
+
+void fl_painters_finish(FlPainters *painters)
+{
+    for (int p = 0; painters->reuse && p < painters->n; p++)
+        fl_reuse_finish(&painters->reuse[p]);
+}
+
 bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error)
 {
-    *painters = (FlPainters){.plan = plan, .n = plan->n_painted};
+    painters->plan = plan, painters->n = plan->n_painted;
     painters->painter = g_new0(FlPainter, MAX(painters->n, 1));
     for (int p = 0; p < painters->n; p++)
-        fl_painter_init(&painters->painter[p], plan, &plan->painted[p]);
+        fl_painter_init(&painters->painter[p], plan, &plan->painted[p],
+                        painters->reuse ? &painters->reuse[p] : NULL);
     if (!check_memory(painters, error) || !open_motion(painters, error) ||
         !make_guides(painters, error))
         return false;
-    for (int p = 0; p < painters->n && !plan->options.merge; p++)
-        plan->painted[p].engine->measure(painters->painter[p].paint,
-                                         plan->options.stats || plan->options.report);
+    for (int p = 0; p < painters->n; p++)
+        if (painters->painter[p].paint)
+            plan->painted[p].engine->measure(painters->painter[p].paint,
+                                             plan->options.stats || plan->options.report);
     return make_scratch(painters, error);
 }
 
 void fl_painters_clear(FlPainters *painters)
 {
-    for (int p = 0; p < painters->n; p++)
+    for (int p = 0; painters->painter && p < painters->n; p++)
         fl_painter_clear(&painters->painter[p]);
+    for (int p = 0; painters->reuse && p < painters->n; p++)
+        fl_reuse_clear(&painters->reuse[p]);
     for (int k = 0; k < painters->n_scratch; k++)
         fl_guides_clear(&painters->scratch[k]);
     fl_motion_source_free(painters->motion);
     g_free(painters->painter);
     g_free(painters->scratch);
+    g_free(painters->reuse);
     *painters = (FlPainters){0};
 }
 

@@ -11,14 +11,31 @@ typedef struct FlPainters {
     FlMotionSource *motion; // NULL: nobody asks for it
     FlGuides *scratch;      // one for each thread
     int n_scratch;
+    FlReuse *reuse; // one for each painter; NULL: nothing is taken or kept
 } FlPainters;
 
 /** Work for painter p; step is a frame, or a picture of the lead-in. guides is scratch. */
 typedef bool (*FlPainterWork)(void *data, int p, int step, FlGuides *guides, GError **error);
 
 /**
- * Checks the memory limit, then makes the guides of every painted region; the plan's masks are
- * rasterised. FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY, or an error about a file.
+ * Looks which pictures of the plan's regions are known; call it first, if paint is kept at all.
+ * whole: fl_fingerprint_new() of the plan. Returns: false with an error about a style's file.
+ */
+bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, FlPaintCache *cache,
+                        const FlFingerprint *whole, GError **error);
+
+/** Whether any region's masks are needed for its guides. */
+bool fl_painters_need_masks(const FlPainters *painters, const FlPlan *plan);
+
+/** Whether a picture that was known could not be taken: another try would paint it. */
+bool fl_painters_stale(const FlPainters *painters);
+
+/** Keeps what the next render of the film needs to know all pictures. */
+void fl_painters_finish(FlPainters *painters);
+
+/**
+ * Checks the memory limit, then makes the guides of every region that is painted; the plan's masks
+ * are rasterised, if they are needed. FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY, or an error about a file.
  */
 bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error);
 void fl_painters_clear(FlPainters *painters);

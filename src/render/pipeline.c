@@ -8,6 +8,7 @@
 #include "inspect/dump.h"
 #include "inspect/report.h"
 #include "inspect/stats.h"
+#include "job/finished.h"
 #include "job/guard.h"
 #include "job/plan.h"
 #include "job/resume.h"
@@ -264,6 +265,7 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
         pipeline->stats.paint_s += paint_s, pipeline->stats.compose_s += compose_s;
     else if (!inspect_frame(pipeline, paint_s, compose_s, error))
         return false;
+    fl_paint_cache_tell(pipeline->plan->cache);
     return report_progress(pipeline, "paint", frame + 1, seconds_since(start), error);
 }
 
@@ -272,7 +274,11 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
 static bool make_painters(Pipeline *pipeline, GError **error)
 {
     const FlPlan *plan = pipeline->plan;
-    if (!fl_plan_rasterise(pipeline->plan, error) ||
+    if (plan->cache && !fl_painters_recall(&pipeline->painters, plan, plan->cache,
+                                           pipeline->resume.state->print, error))
+        return false;
+    if ((fl_painters_need_masks(&pipeline->painters, plan) &&
+         !fl_plan_rasterise(pipeline->plan, error)) ||
         !report_progress(pipeline, "guides", 0, 0, error) ||
         !fl_painters_init(&pipeline->painters, plan, error))
         return false;
@@ -352,8 +358,12 @@ static bool prepare(Pipeline *pipeline, GError **error)
         !fl_frame_writer_init(&pipeline->writer, pipeline->plan, &pipeline->resume,
                               pipeline->background.opaque, pipeline->taker, error) ||
         !fl_stats_init(&pipeline->stats, &pipeline->plan->options, error) ||
-        !open_report(pipeline, error) || !make_painters(pipeline, error) ||
-        !lead_in(pipeline, error) || !restore_state(pipeline, error))
+        !open_report(pipeline, error))
+        return false;
+    const bool painted = pipeline->resume.first == fl_drawing_frames(pipeline->plan->drawing);
+    if (painted ? !fl_resume_start(&pipeline->resume, pipeline->plan, error)
+                : !make_painters(pipeline, error) || !lead_in(pipeline, error) ||
+                      !restore_state(pipeline, error))
         return false;
     pipeline->writer.paper = pipeline->sheet;
     pipeline->first_frame = g_get_monotonic_time();
@@ -364,6 +374,10 @@ static bool prepare(Pipeline *pipeline, GError **error)
 
 static bool run(Pipeline *pipeline, GError **error)
 {
+    if (pipeline->plan->finished == FL_FINISHED_ALL) {
+        fl_summary_of_nothing(pipeline->plan);
+        return true;
+    }
     if (!prepare(pipeline, error))
         return false;
     for (int f = pipeline->resume.first; f < fl_drawing_frames(pipeline->plan->drawing); f++)
@@ -374,6 +388,9 @@ static bool run(Pipeline *pipeline, GError **error)
         return false;
     fl_resume_finish(&pipeline->resume);
     fl_summary_of_render(pipeline->plan, &pipeline->stats);
+    fl_summary_of_reuse(pipeline->plan, pipeline->painters.reuse);
+    fl_painters_finish(&pipeline->painters);
+    fl_finished_note(pipeline->plan);
     return true;
 }
 
@@ -415,16 +432,33 @@ static void clear(Pipeline *pipeline)
     fl_plan_free(pipeline->plan);
 }
 
-static bool render(const FlRenderOptions *options, FlFrameTaker taker, GError **error)
+/* *stale: it failed since paint that was known is gone, and goes on when it is tried again. */
+static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool *stale,
+                       GError **error)
 {
     Pipeline pipeline = {.taker = taker, .drawn = -1, .start = g_get_monotonic_time()};
+    pipeline.plan = fl_plan_new(options, error);
+    const bool whole = pipeline.plan && pipeline.plan->finished != FL_FINISHED_ALL;
+    const bool done = pipeline.plan && (!whole || fl_guard_inputs(pipeline.plan, error)) &&
+                      (options->dry_run ? dry_run(&pipeline, error) : run(&pipeline, error));
+    *stale = !done && fl_painters_stale(&pipeline.painters);
+    clear(&pipeline);
+    return done;
+}
+
+static bool render(const FlRenderOptions *options, FlFrameTaker taker, GError **error)
+{
     const int threads = fl_schedule_threads();
+    FlRenderOptions again = *options;
+    bool stale = false;
     if (options->threads > 0)
         (void)fl_schedule_set_threads(options->threads);
-    pipeline.plan = fl_plan_new(options, error);
-    const bool done = pipeline.plan && fl_guard_inputs(pipeline.plan, error) &&
-                      (options->dry_run ? dry_run(&pipeline, error) : run(&pipeline, error));
-    clear(&pipeline);
+    bool done = try_render(options, taker, &stale, error);
+    again.resume = !options->no_frames; // of what was painted before the gap
+    while (!done && stale) {
+        g_clear_error(error);
+        done = try_render(&again, taker, &stale, error);
+    }
     (void)fl_schedule_set_threads(threads);
     return done;
 }
@@ -439,6 +473,7 @@ bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *ta
     FlRenderOptions without_files = *options;
     without_files.output = NULL, without_files.format = "null";
     without_files.overwrite = FL_OVERWRITE_YES, without_files.resume = false;
+    without_files.cache = NULL; // frames are given once, so nothing can be tried again
     without_files.layers = without_files.report = without_files.stats = without_files.dump = NULL;
     if (!options->merge)
         without_files.paint = NULL;

@@ -24,8 +24,11 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
 {
     const int n = fl_drawing_frames(plan->drawing);
     const char *movie = plan->movie ? plan->movie : "", *and = plan->movie ? " and " : "";
-    g_autofree char *done =
-        g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie, and, written(plan));
+    g_autofree char *done = plan->finished == FL_FINISHED_FRAMES
+                                ? g_strdup_printf("made of %d frame%s that %s painted before: %s",
+                                                  n, plural(n), n == 1 ? "was" : "were", movie)
+                                : g_strdup_printf("painted %d frame%s: %s%s%s", n, plural(n), movie,
+                                                  and, written(plan));
     g_autofree char *seconds = fl_stats_summary(stats, n);
     g_autofree char *gaps = fl_drawing_left_out(plan->drawing, plan->options.missing);
     send_note(plan, done);
@@ -36,6 +39,45 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
         return;
     g_autofree char *page = g_strdup_printf("report: %s/index.html", plan->options.report);
     send_note(plan, page);
+}
+
+void fl_summary_of_nothing(const FlPlan *plan)
+{
+    const int n = plan->n_finished;
+    g_autofree char *line =
+        plan->options.overwrite == FL_OVERWRITE_KEEP
+            ? g_strdup_printf("nothing to do: %d frame%s exist%s and %s kept: %s", n, plural(n),
+                              n == 1 ? "s" : "", n == 1 ? "is" : "are", plan->output)
+            : g_strdup_printf("nothing to do: %d frame%s and all that they are made from have not "
+                              "changed: %s",
+                              n, plural(n), plan->movie ? plan->movie : plan->output);
+    send_note(plan, line);
+}
+
+/* Of one region, if some of it was painted although the cache is not new. */
+static void tell_reason(const FlPlan *plan, int p, const FlReuse *reuse)
+{
+    g_autofree char *reason = reuse->n_painted > 0 ? fl_reuse_reason(reuse) : NULL;
+    if (!reason)
+        return;
+    g_autofree char *line =
+        g_strdup_printf("region %s: painted %d of %d pictures, since %s", plan->painted[p].name,
+                        reuse->n_painted, reuse->n_painted + reuse->n_taken, reason);
+    send_note(plan, line);
+}
+
+void fl_summary_of_reuse(const FlPlan *plan, const FlReuse *reuse)
+{
+    int taken = 0, painted = 0;
+    for (int p = 0; reuse && p < plan->n_painted; p++)
+        taken += reuse[p].n_taken, painted += reuse[p].n_painted;
+    for (int p = 0; reuse && p < plan->n_painted; p++)
+        tell_reason(plan, p, &reuse[p]);
+    if (taken == 0)
+        return;
+    g_autofree char *line =
+        g_strdup_printf("paint of regions: %d pictures from the cache, %d painted", taken, painted);
+    send_note(plan, line);
 }
 
 /* An estimate of the time; held frames take none. */

@@ -1,0 +1,20 @@
+/* Digests of data in memory: names of what is kept for later, made faster than it is packed. */
+#ifndef FLUIDY_BASE_DIGEST_H
+#define FLUIDY_BASE_DIGEST_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/** 128 bits; zero is that of nothing. Two different inputs meet by chance alone, but whoever wants
+ * them to can make them meet: it is no seal. In this machine's byte order. */
+typedef struct FlDigest {
+    uint64_t a, b;
+} FlDigest;
+
+/** Adds a piece; where it begins and ends counts, as does the order of pieces. */
+void fl_digest_add(FlDigest *digest, const void *data, size_t bytes);
+
+/** The same with a text; NULL is a piece of its own. */
+void fl_digest_add_text(FlDigest *digest, const char *text);
+
+#endif

@@ -1,0 +1,68 @@
+/* What of a region's paint earlier renders have left in the cache, and what this one leaves. */
+#ifndef FLUIDY_RENDER_REUSE_H
+#define FLUIDY_RENDER_REUSE_H
+
+#include "guides/guides.h"
+#include "job/fingerprint.h"
+#include "job/paint_cache.h"
+
+/**
+ * The pictures of a region form a chain: the digest of each is made from that of the one before and
+ * from its own guides, which are all that an engine knows of the film. So what an edited frame
+ * changes is found where guides begin to differ, wherever that is, and the first picture that is
+ * not in the cache is painted from the state that was kept with the one before.
+ *
+ * Where nothing that the guides are made from has changed in the whole film, the digests are known
+ * from last time, and neither masks nor guides are made.
+ */
+typedef struct FlReuse {
+    FlPaintCache *cache;  // borrowed; NULL: nothing is taken or kept
+    bool takes;           // else everything is painted, since somebody looks at how it is done
+    FlFingerprint *facts; // of method and film
+    FlDigest film, slot;  // of all facts; of where those of the last render are kept
+    FlDigest last;        // of the picture painted or taken last
+    GArray *made;         // of FlDigest: the pictures so far, where they follow from the guides
+    GArray *known;        // of FlDigest: all pictures of the film; NULL: not known
+    guint n_done;         // pictures painted or taken, in earlier runs too
+    FlRect rect;          // where known: the painter's
+    bool stale;           // a known picture is gone, so that this render cannot go on
+    GBytes *state;        // after the last picture, which was taken; NULL: the engine has its own
+    int n_taken, n_painted;
+} FlReuse;
+
+/** Looks what the cache has of plan->painted[p]. whole: fl_fingerprint_new() of the plan. */
+bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlPlan *plan, int p,
+                   GHashTable *styles, const FlFingerprint *whole, GError **error);
+void fl_reuse_clear(FlReuse *reuse);
+
+/** Begins the chain of a region whose pictures are not known and have this place in the frame. */
+void fl_reuse_begin(FlReuse *reuse, FlRect rect);
+
+/** Advances to picture k, counted as they are painted, from 0: the next one. It is known, or that
+ * of guides and of a style whose window is there. */
+void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window);
+
+/** Takes the picture, 3 bytes a pixel, and the state after it. Returns: whether it was there. */
+bool fl_reuse_take(FlReuse *reuse, uint8_t *rgb, size_t bytes);
+
+/** Keeps the picture that was painted in its place, and the state after it. */
+void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *state);
+
+/** The digests so far as bytes, for a render that is resumed; to be freed. */
+GBytes *fl_reuse_save(const FlReuse *reuse);
+
+/**
+ * The reverse, with the state of an engine or, where that is empty, the one in the cache.
+ *
+ * Returns: whether there is a state, in reuse->state unless the pictures are known.
+ */
+bool fl_reuse_load(FlReuse *reuse, GBytes *digests, GBytes *state);
+
+/** Keeps the digests of the whole film, and what decided it. */
+void fl_reuse_finish(FlReuse *reuse);
+
+/** Why the region is painted anew, such as "w-temp was 5 and is 8"; NULL: not known. To be freed.
+ */
+char *fl_reuse_reason(const FlReuse *reuse);
+
+#endif

@@ -1,0 +1,220 @@
+#!/bin/bash
+# Paint that is kept: only what changed is painted, and the frames are those of a render from nothing.
+# usage: cache.sh PROGRAM FIXTURES; speaks TAP.
+# shellcheck source-path=SCRIPTDIR source=film.sh
+. "${0%/*}/film.sh"
+red=red-aa3311 blue=blue-2255aa
+
+# kept FOLDER ARGUMENT...: paints with the cache into an empty folder.
+kept() {
+    rm -rf "$1"
+    paint "$@" --cache kept
+}
+
+# anew FOLDER ARGUMENT...: the same without.
+anew() {
+    paint "$@" -y --cache off
+}
+
+# took TAKEN PAINTED: the summary says so.
+took() {
+    grep -q "$1 pictures from the cache, $2 painted" err
+}
+
+# like_anew ARGUMENT...: the frames in `now` are those of a render from nothing.
+like_anew() {
+    cp err told
+    anew nothing "$@"
+    cp told err
+    same now nothing
+}
+
+regions=$("$program" film -s "$style" --list-regions | awk 'NR > 1 && $6 == "yes" {print $1}')
+read -r blue red <<<"$(tr '\n' ' ' <<<"$regions")"
+anew whole
+kept first
+! grep -q 'from the cache' err && same first whole
+result $? 'the first render takes nothing and paints what a render without a cache does'
+kept again && took 12 0 && same again whole
+result $? 'the second one paints nothing, and its frames are the same'
+
+for option in '--tint #336699' '--background #ffeeaa' '--medium opaque' '--paper rough' '--blend linear'; do
+    # shellcheck disable=SC2086 # two words
+    kept now $option && took 12 0 && like_anew $option
+    result $? "${option%% *} paints nothing"
+done
+"$program" film -s "$style" --cache kept -o now.exr/w_%04d.exr >out 2>err && took 12 0
+result $? 'nor does another format'
+kept now --region "$red" && took 6 0 && like_anew --region "$red"
+result $? 'nor does a region alone'
+
+printf '[region %s]\nw-temp = 9\n' "$blue" >one.conf
+kept now -c one.conf && took 6 6 && like_anew -c one.conf &&
+    grep -q "region $blue: painted 6 of 6 pictures, since w-temp was 5 and is 9" err
+result $? 'a setting of one region paints that region, and the summary says why'
+kept now -c one.conf --stats now.json && [ "$(grep -c '"taken": true' now.json)" = 12 ] && rm now.json
+result $? '--stats has a line for each picture that was taken'
+for option in '--seed 3' '--boil 0.5' '--carry 1' '--detail draft' '--width 60'; do
+    # shellcheck disable=SC2086
+    kept now $option && ! grep -q 'from the cache' err && like_anew $option
+    result $? "${option%% *} paints everything"
+done
+for option in '--hold 2' '--loop' '--edges soft'; do
+    # shellcheck disable=SC2086
+    kept now $option && kept now $option && grep -q ' 0 painted' err && like_anew $option
+    result $? "$option is taken the second time, and is the same"
+done
+
+cp -r film before
+drawing film/w_0005.svg 56 4
+kept now && like_anew
+found=$?
+painted=$(sed -n 's/.*cache, \([0-9]*\) painted/\1/p' err)
+[ $found = 0 ] && [ "$painted" -ge 2 ] && [ "$painted" -lt 12 ]
+result $? "an edited frame paints what its guides change ($painted of 12) and no more"
+# Guides look ahead until the shape has left a place: a disc that crosses the page swiftly does so soon.
+swift() { # swift FRAME X
+    printf "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56' viewBox='0 0 48 48'>%s</svg>" \
+        "<circle cx='$2' cy='24' r='7' fill='#aa3311'/>" >"film/w_$(printf %04d "$1").svg"
+}
+rm film/*
+places=(8 16 24 32 40 32 24 16 8 16 24 32 40 32)
+for i in "${!places[@]}"; do
+    swift $((i + 1)) "${places[i]}"
+done
+kept early
+swift 13 42
+kept now && like_anew
+found=$?
+painted=$(sed -n 's/.*cache, \([0-9]*\) painted/\1/p' err)
+[ $found = 0 ] && [ "$painted" -ge 2 ] && [ "$painted" -le 9 ]
+result $? "of a shape that moves on, no more than the last frames ($painted of 14)"
+same_until() { # same_until FRAME: the frames before it have the same bytes
+    local i
+    for ((i = 1; i < $1; i++)); do
+        cmp -s "now/w_$(printf %04d "$i").png" "early/w_$(printf %04d "$i").png" || return 1
+    done
+}
+same_until $((15 - painted))
+result $? 'and the frames before them are as they were'
+rm -rf film && cp -r before film
+kept now && took 12 0 && same now whole
+result $? 'the edit undone paints nothing'
+
+damage() { # damage SUFFIX NUMBER: of the cache's files
+    local file
+    file=$(find kept -name "*.$1" -size +64c | sort | sed -n "$2p")
+    printf 'x' | dd of="$file" bs=1 seek=40 conv=notrunc status=none
+}
+rm -rf kept && kept now
+damage picture 7
+kept now && [ "$(grep -c 'warning\|damaged' err)" -ge 1 ] && same now whole
+result $? 'a damaged picture is a warning, and it is painted again'
+kept now && took 12 0 && same now whole
+result $? 'once'
+find kept -name '*.picture' | sort | sed -n '4p;9p' | xargs truncate -s 11
+find kept -name '*.film' -exec truncate -s 20 {} +
+kept now && same now whole
+result $? 'files that were cut short are painted again as well'
+find kept -name '*.picture' | sort | sed -n '3p;5p' | xargs rm
+kept now && same now whole && ! grep -q damaged err
+result $? 'files that are gone are missed by nobody'
+
+again() { # again ARGUMENT...: the same command, where its frames are
+    paint now "$@" --cache kept
+}
+
+kept now && again && grep -q 'nothing to do: 6 frames' err && ! grep -q painted err && same now whole
+result $? 'a repeated command has nothing to do, and says so'
+again -y && grep -q 'nothing to do' err && same now whole
+result $? 'also with -y'
+paint now -y --cache off && grep -q 'painted 6 frames' err && same now whole
+result $? 'but paints all without a cache'
+kept now
+touch now/w_0003.png
+again
+[ $? = 1 ] && grep -q 'already exists' err && again -y && took 12 0 && same now whole
+result $? 'a frame that was touched is made again'
+drawing film/w_0005.svg 56 4
+again -y && grep -q 'painted 6 frames' err && ! same now whole
+result $? 'so is one whose drawing has changed'
+rm -rf film && cp -r before film
+kept now
+again -y --tint '#336699' && grep -q 'painted 6 frames' err && ! same now whole
+result $? 'and another command is not the same'
+kept now -c one.conf
+sed -i 's/9/8/' one.conf
+again -y -c one.conf && grep -q 'painted 6 frames' err
+result $? 'nor is a config that was edited'
+kept now -c one.conf
+again -y -c <(cat one.conf) && again -y -c <(sed 's/8/7/' one.conf) && grep -q 'painted 6 frames' err
+result $? 'nor one that comes through a pipe'
+cp -r "$style" own
+kept now -s "$PWD/own" && again -s "$PWD/own" && grep -q 'nothing to do' err
+sed -i 's/^title.*/&s/' own/style.ini && echo >>own/style.ini
+again -y -s "$PWD/own" && grep -q 'painted 6 frames' err && same now whole
+result $? 'nor a style whose files were edited'
+kept now
+rm now/w_0002.png
+again --no-clobber && grep -q 'painted 6 frames' err && same now whole &&
+    again --no-clobber && grep -q 'nothing to do: 6 frames exist and are kept' err
+result $? 'frames that are to be kept and are all there are left alone'
+rm -rf now
+if command -v ffmpeg >/dev/null; then
+    film() { # film ARGUMENT...: the frames and their film
+        "$program" film -s "$style" -o now/w.mkv --progress none --cache kept "$@" >out 2>err
+    }
+    film && mv now/w.mkv whole.mkv && film && grep -q 'made of 6 frames' err &&
+        ! grep -q 'painted 6' err && cmp -s now/w.mkv whole.mkv && film && grep -q 'nothing to do' err
+    result $? 'a film whose frames are all there is only encoded, and has the same bytes'
+    film -y --fps 12 && grep -q 'made of 6 frames' err && ! cmp -s now/w.mkv whole.mkv
+    result $? 'so is one at another speed'
+    rm -r now
+else
+    skip 'a film whose frames are all there is only encoded' 'no ffmpeg'
+fi
+
+echo >file
+rm -rf now
+paint now -y --cache file && [ "$(grep -c 'cannot be written' err)" = 1 ] && same now whole
+result $? 'where a cache cannot be written there is one warning, and the frames'
+env FLUIDY_CACHE="$folder/mine" "$program" film -s "$style" -o mine_%04d.png -q && [ -d mine ] &&
+    rm mine_*
+result $? 'FLUIDY_CACHE says where'
+
+mkdir -p big/film
+for i in 1 2 3 4 5 6; do
+    drawing big/film/w_000$i.svg 400 $i
+done
+(cd big && "$program" film -s "$style" -o w_%04d.png --cache ../large --cache-size 1 -q --detail draft)
+[ "$(du -sk large | cut -f1)" -le 1024 ] && [ -n "$(find large -name '*.picture')" ]
+result $? 'a cache stays below its limit'
+
+rm -rf kept
+for i in 1 2 3; do
+    "$program" film -s "$style" -o "at$i/w_%04d.png" --cache kept -q &
+done
+wait
+same at1 whole && same at2 whole && same at3 whole && [ -z "$(find kept -name 'new-*')" ]
+result $? 'three processes share a cache'
+
+for k in 1 2 3; do
+    rm -rf kept now
+    [ $k = 1 ] || kept now --frames 1-4
+    rm -rf now
+    "$program" film -s "$style" -o 'now/w_%04d.png' --progress none --cache kept >out 2>err &
+    job=$!
+    while [ ! -e now/w_000$k.png ] && kill -0 $job 2>/dev/null; do
+        sleep 0.002
+    done
+    kill -KILL $job 2>/dev/null
+    wait $job 2>/dev/null
+    [ $k = 3 ] && rm -rf kept
+    [ ! -e now/.w_%04d.png.state ] || paint now --cache kept
+    [ $? = 0 ] && same now whole
+    result $? "a render that was killed at frame $k goes on with its cache, or without it"
+done
+kept now && same now whole
+result $? 'and leaves one that serves the next'
+
+echo "1..$n"
