@@ -37,6 +37,23 @@ FL_API bool fl_map_regions(const FlRenderOptions *options, GError **error);
  */
 FL_API bool fl_flatten(const FlRenderOptions *options, GError **error);
 
+/** Which scheduler a plan is printed for. */
+typedef enum FlFarm {
+    FL_FARM_SLURM,  /**< a script for bash that calls sbatch */
+    FL_FARM_OPENJD, /**< an Open Job Description template, 2023-09 */
+    FL_FARM_JSON,   /**< commands as lists of words, for everything else */
+} FlFarm;
+
+/**
+ * A render as tasks for several machines: each paints some regions into files of paint, the largest
+ * first, and a merge composes them. Reads the drawing and checks the options; writes nothing.
+ *
+ * command: the words of the command line of the whole render, NULL-terminated.
+ * Returns: to be freed with g_free(); NULL with an error of FL_ERROR.
+ */
+FL_API char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *const *command,
+                          GError **error);
+
 G_END_DECLS
 
 #endif

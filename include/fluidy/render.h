@@ -117,7 +117,8 @@ typedef struct FlRenderOptions {
     const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: none */
     const FlSetting *settings; /**< override the config's; of several, the last wins */
     size_t n_settings;
-    const char *only_region; /**< paint this one alone, over nothing; NULL: all */
+    const char *only_region; /**< paint this one alone, or several with commas between, over
+                                nothing; NULL: all */
     bool loop;               /**< the end leads into the beginning, for films that are repeated */
     uint64_t seed; /**< same input, options and seed: same bytes; 0: the config's, else 1 */
 

@@ -119,6 +119,21 @@ static gboolean read_methods(const char *name, const char *value, gpointer data,
     return read_names(name, value, args, "fluidymation,lazyfluids,default", error);
 }
 
+static gboolean read_plan(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    const FlOption *option = option_named(name);
+    int farm = FL_FARM_JSON;
+    if (!fl_text_choice(value, option->value, &farm)) {
+        fl_option_reject(option, value, error);
+        g_prefix_error(error, "%s: ", name);
+        return FALSE;
+    }
+    args->farm = farm;
+    args->task = FL_COMMAND_PLAN;
+    return TRUE;
+}
+
 static gboolean read_progress(const char *name, const char *value, gpointer data, GError **error)
 {
     const FlOption *option = option_named(name);
@@ -240,6 +255,22 @@ static char **split_values(int argc, char **argv)
     return (char **)g_ptr_array_free(words, FALSE);
 }
 
+/* The command that is planned: all words but --plan and its value. To be freed with g_strfreev().
+ */
+static char **command_of(char **words)
+{
+    GPtrArray *command = g_ptr_array_new();
+    for (bool options = true; *words; words++) {
+        options = options && strcmp(*words, "--") != 0;
+        if (options && strcmp(*words, "--plan") == 0 && words[1])
+            words++;
+        else if (!options || !g_str_has_prefix(*words, "--plan="))
+            g_ptr_array_add(command, g_strdup(*words));
+    }
+    g_ptr_array_add(command, NULL);
+    return (char **)g_ptr_array_free(command, FALSE);
+}
+
 /* Files that standard input lists, one a line, in the place of "-". */
 static bool list_input(FlArgs *args, GError **error)
 {
@@ -272,7 +303,7 @@ static bool needs_input(FlCommand task)
 {
     return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
            task == FL_COMMAND_PRINT_CONFIG || task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT ||
-           task == FL_COMMAND_COMPARE || task == FL_COMMAND_METHODS;
+           task == FL_COMMAND_COMPARE || task == FL_COMMAND_METHODS || task == FL_COMMAND_PLAN;
 }
 
 /* Previews and comparisons are drafts, and replace the previous ones. */
@@ -301,6 +332,7 @@ bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
                      .strings = g_ptr_array_new_with_free_func(g_free)};
     g_autoptr(GOptionContext) context = new_context(args);
     args->inputs = split_values(argc, argv); // GOption takes out what it knows
+    args->command = command_of(args->inputs);
     GError *problem = NULL;
     if (!g_option_context_parse_strv(context, &args->inputs, &problem)) {
         if (g_error_matches(problem, G_OPTION_ERROR, G_OPTION_ERROR_UNKNOWN_OPTION))
@@ -330,6 +362,7 @@ void fl_args_clear(FlArgs *args)
 {
     g_strfreev(args->inputs);
     g_strfreev(args->variants);
+    g_strfreev(args->command);
     g_array_unref(args->settings);
     g_ptr_array_unref(args->strings);
 }

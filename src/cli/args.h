@@ -15,6 +15,7 @@ typedef enum FlCommand {
     FL_COMMAND_CHECK,
     FL_COMMAND_FLAT,
     FL_COMMAND_COMPARE,
+    FL_COMMAND_PLAN,
     FL_COMMAND_METHODS,
 } FlCommand;
 
@@ -32,6 +33,8 @@ typedef struct FlArgs {
     FlProgressMode progress;
     const char *preview; // a range of frames; NULL: none
     char **variants;     // of FL_COMMAND_COMPARE, styles; NULL: all there are; or _METHODS
+    FlFarm farm;         // of FL_COMMAND_PLAN
+    char **command;      // likewise: the words without --plan
     bool quiet;          // no warnings, notes or progress
     char **inputs;
     GArray *settings;   // FlSetting

@@ -176,6 +176,13 @@ static int list_regions(const FlArgs *args, FlListing listing, GError **error)
     return text ? print(text) : FAILURE;
 }
 
+static int plan_farm(const FlArgs *args, GError **error)
+{
+    g_autofree char *text =
+        fl_farm_plan(&args->render, args->farm, (const char *const *)args->command, error);
+    return text ? print(text) : FAILURE;
+}
+
 /* The commands that read the drawing, and may be interrupted. */
 static int work(FlArgs *args)
 {
@@ -196,6 +203,8 @@ static int work(FlArgs *args)
         status = list_regions(args, FL_LISTING_TABLE, &error);
     else if (args->task == FL_COMMAND_PRINT_CONFIG)
         status = list_regions(args, FL_LISTING_CONFIG, &error);
+    else if (args->task == FL_COMMAND_PLAN)
+        status = plan_farm(args, &error);
     else if (args->task == FL_COMMAND_CHECK)
         fl_map_regions(&args->render, &error);
     else if (args->task == FL_COMMAND_FLAT)

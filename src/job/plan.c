@@ -55,8 +55,10 @@ static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
 static bool check_region_names(const FlPlan *plan, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
-    for (size_t i = 0; i <= o->n_settings; i++) {
-        const char *name = i < o->n_settings ? o->settings[i].region : o->only_region;
+    g_auto(GStrv) only = g_strsplit(o->only_region ? o->only_region : "", ",", -1);
+    const size_t n = o->n_settings + g_strv_length(only);
+    for (size_t i = 0; i < n; i++) {
+        const char *name = i < o->n_settings ? o->settings[i].region : only[i - o->n_settings];
         bool found = name == NULL;
         for (int r = 0; !found && r < fl_drawing_regions(plan->drawing); r++)
             found = g_str_equal(fl_drawing_region(plan->drawing, r)->name, name);
@@ -118,14 +120,21 @@ static FlJoin join_of(const FlRenderOptions *options, const FlRegionSettings *se
     return apart ? FL_JOIN_ALIKE : FL_JOIN_CLOSED;
 }
 
+/* Whether `region` does not name a region. */
+static bool is_left_out(const FlPlan *plan, const char *name)
+{
+    const char *only = plan->options.only_region;
+    g_auto(GStrv) names = only ? g_strsplit(only, ",", -1) : NULL;
+    return only && !g_strv_contains((const char *const *)names, name);
+}
+
 /* The settings of a region, and whether it is painted. */
 static bool plan_region(FlPlan *plan, int region, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, region);
-    const char *only = plan->options.only_region;
     FlRegionPlan *chosen = &plan->painted[plan->n_painted];
     FlRegionSettings *settings = &chosen->settings;
-    const bool left_out = only && !g_str_equal(only, r->name);
+    const bool left_out = is_left_out(plan, r->name);
     if (!fl_config_region_settings(plan->config, r->rule, r->name, &plan->options, settings, error))
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
@@ -288,7 +297,6 @@ static bool name_parts(FlPlan *plan, const FlSequence *sequence, GError **error)
     const char *whose = o->only_region ? o->only_region : "regions";
     g_autoptr(GString) pattern = g_string_new(o->paint ? o->paint : o->layers);
     g_string_replace(pattern, "{region}", whose, 0);
-    plan->parts_only = true;
     plan->output = fl_output_of_film(pattern->str, sequence->name);
     plan->format = fl_sink_format("null", NULL, error);
     return plan->format != NULL;
@@ -298,9 +306,8 @@ static bool name_parts(FlPlan *plan, const FlSequence *sequence, GError **error)
 static bool find_output(FlPlan *plan, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
-    const bool parts_only = o->no_frames && (o->paint || o->layers) && !o->output && !o->merge;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(o, error);
-    if (!sequence || !(parts_only ? name_parts : name_output)(plan, sequence, error))
+    if (!sequence || !(plan->parts_only ? name_parts : name_output)(plan, sequence, error))
         return false;
     plan->request = fl_fingerprint_of_request(plan, sequence);
     plan->finished = fl_finished_look(plan, sequence);
@@ -371,6 +378,11 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
     if (!plan->config)
         return NULL;
     fl_config_complete(plan->config, &plan->options);
+    const FlRenderOptions *o = &plan->options;
+    // paint of some regions is no frame, even if the config says where frames are
+    const bool paint_alone = options->paint && options->only_region && !options->output;
+    plan->parts_only =
+        o->no_frames && (o->paint || o->layers) && !o->merge && (!o->output || paint_alone);
     return make_plan(plan, error) ? g_steal_pointer(&plan) : NULL;
 }
 
