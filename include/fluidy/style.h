@@ -83,6 +83,18 @@ FL_API void fl_style_report_free(FlStyleReport *report); /**< NULL is fine */
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleReport, fl_style_report_free)
 
+/** Called after each iteration; false ends the work with FL_ERROR_INTERRUPTED. */
+typedef bool (*FlTransportProgress)(void *data, int done, int total, float loss);
+
+/**
+ * Solves a style's tile for the engine `transport` from its first frame, as the section [transport]
+ * of its style.ini says, and writes transport.png into its folder. progress may be NULL.
+ *
+ * Returns: false with FL_ERROR_STYLE, _EXISTS, _NO_MEMORY, _INTERRUPTED or _OUTPUT set.
+ */
+FL_API bool fl_style_transport(const char *style, bool overwrite, FlTransportProgress progress,
+                               void *data, GError **error);
+
 G_END_DECLS
 
 #endif

@@ -213,6 +213,26 @@ static bool run_simulate(char **words, GError **error)
                                    NULL, error);
 }
 
+static const GOptionEntry transport_entries[] = {
+    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "replace its transport.png", NULL},
+    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "print errors only", NULL},
+    {NULL},
+};
+
+static bool show_loss(void *data, int done, int total, float loss)
+{
+    if (!options.quiet && (done % 20 == 0 || done == total))
+        fprintf(stderr, "fluidy-style: iteration %d of %d, loss %.4f\n", done, total, loss);
+    return true;
+}
+
+static bool run_transport(char **words, GError **error)
+{
+    if (!words[0] || words[1])
+        return usage(error, "transport takes one %s, by name or folder", "style");
+    return fl_style_transport(words[0], options.overwrite, show_loss, NULL, error);
+}
+
 static const GOptionEntry list_entries[] = {
     {"paths", 'p', 0, G_OPTION_ARG_NONE, &options.paths, "print the folders searched as well",
      NULL},
@@ -252,6 +272,10 @@ const FlStyleCommand fl_style_commands[] = {
      "STYLE is a name that fluidy-style list shows, or a folder.\n", check_entries, run_check},
     {"simulate", "RECIPE -o DIR", "make a style by simulating paint", NULL, simulate_entries,
      run_simulate},
+    {"transport", "STYLE", "solve the tile by which a style moves ink",
+     "STYLE is a name that fluidy-style list shows, or a folder; its first frame is what ink shall "
+     "look\nlike, the section [transport] of its style.ini says how it may move.\n",
+     transport_entries, run_transport},
     {"list", "[-o FILE]", "list styles, and draw them on a sheet",
      "Prints one style a line, with tabs between: number or folder's name, name, character, "
      "folder.\n",

@@ -1,0 +1,341 @@
+#include "transport/carried_ink.h"
+
+#include "base/alloc.h"
+#include "base/density.h"
+#include "base/rng.h"
+#include "base/schedule.h"
+#include "transport/material.h"
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+#define STRAINED 0.4f     // from here on the pattern is laid anew
+#define FADE 12           // frames in which it is
+#define FARTHEST 14.0f    // px that ink moves at most: what the squarings are good for
+#define AMOUNT_STEPS 1024 // in the table of colours, of an amount of 1
+#define MOST_AMOUNT 8
+
+struct FlCarriedInk {
+    FlCarriedInkInput input;
+    float origin[2]; // of the region on the tile, px of the drawing
+    FlMaterial material;
+    FlMaterial fresh;     // that takes its place, in a fade
+    int fade;             // frames of it that are done; 0: there is none
+    uint8_t (*colour)[3]; // by amount
+};
+
+FlCarriedInk *fl_carried_ink_new(const FlCarriedInkInput *input, GError **error)
+{
+    FlCarriedInk *ink = g_new0(FlCarriedInk, 1);
+    const int n = AMOUNT_STEPS * MOST_AMOUNT;
+    ink->input = *input;
+    FlRng rng = {fl_hash64(input->seed)};
+    for (int c = 0; c < 2; c++)
+        ink->origin[c] = fl_rng_float(&rng) * (float)input->tile->style.size * input->scale;
+    if (!(ink->colour = fl_alloc((size_t)n, sizeof *ink->colour, "colours", error))) {
+        fl_carried_ink_free(ink);
+        return NULL;
+    }
+    for (int a = 0; a < n; a++)
+        for (int c = 0; c < 3; c++) {
+            const int64_t more = (int64_t)input->colour.density[c] * a / AMOUNT_STEPS;
+            const int64_t density = fl_density(input->colour.paper[c]) + more;
+            ink->colour[a][c] =
+                (uint8_t)((fl_density_level((int32_t)CLAMP(density, 0, FL_DENSITY_MAX)) + 128) /
+                          256);
+        }
+    return ink;
+}
+
+void fl_carried_ink_free(FlCarriedInk *ink)
+{
+    if (!ink)
+        return;
+    fl_material_clear(&ink->material);
+    fl_material_clear(&ink->fresh);
+    free(ink->colour);
+    g_free(ink);
+}
+
+/* ---- the material ------------------------------------------------------------------------------
+ */
+
+/* The rectangle of the mask; empty: there is none. */
+static FlRect mask_rect(const FlGuides *guides)
+{
+    int x0 = guides->width, y0 = guides->height, x1 = 0, y1 = 0;
+    for (int y = 0; y < guides->height; y++)
+        for (int x = 0; x < guides->width; x++)
+            if (guides->mask[(size_t)y * (size_t)guides->width + (size_t)x]) {
+                x0 = MIN(x0, x), x1 = MAX(x1, x + 1);
+                y0 = MIN(y0, y), y1 = MAX(y1, y + 1);
+            }
+    const FlRect page = {0, 0, guides->width, guides->height};
+    return x1 > x0 ? fl_rect_grown((FlRect){x0, y0, x1 - x0, y1 - y0}, 2, page) : (FlRect){0};
+}
+
+static bool advance(FlMaterial *material, const FlGuides *guides, FlRect rect, GError **error)
+{
+    FlMaterial now;
+    if (!fl_material_advance(material, guides, rect, &now, error))
+        return false;
+    fl_material_clear(material);
+    *material = now;
+    return true;
+}
+
+/* Carries the material on; where it is strained, a relaxed one takes its place. */
+static bool advance_all(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GError **error)
+{
+    if (!advance(&ink->material, guides, rect, error) ||
+        (ink->fade > 0 && !advance(&ink->fresh, guides, rect, error)))
+        return false;
+    if (ink->fade > 0 && ++ink->fade > FADE) {
+        fl_material_clear(&ink->material);
+        ink->material = ink->fresh;
+        ink->fresh = (FlMaterial){0}, ink->fade = 0;
+    }
+    if (ink->fade > 0 || fl_material_strain(&ink->material, guides) < STRAINED)
+        return true;
+    ink->fade = 1;
+    return fl_material_relaxed(&ink->material, guides, &ink->fresh, error);
+}
+
+/* ---- the velocity ------------------------------------------------------------------------------
+ */
+
+/* How the material is turned and enlarged at a pixel: a displacement of the material is one of the
+ * frame times this. Two limbs that meet are torn apart there; it then stays the same. */
+static void similarity(const FlMaterial *material, int x, int y, float turn[2])
+{
+    float f[2][2];
+    fl_material_gradient(material, x, y, f);
+    const float a = 0.5f * (f[0][0] + f[1][1]), b = 0.5f * (f[1][0] - f[0][1]);
+    const float square = a * a + b * b;
+    const float held = fminf(fmaxf(square, 0.25f), 4); // a factor of 2 either way
+    turn[0] = square > 1e-6f ? a / sqrtf(square * held) : 1;
+    turn[1] = square > 1e-6f ? -b / sqrtf(square * held) : 0;
+}
+
+/* Adds `share` of what the tile does at a pixel: px. */
+static void add_velocity(const FlCarriedInk *ink, const FlMaterial *material, int x, int y,
+                         float share, float velocity[2])
+{
+    const float scale = ink->input.scale;
+    const size_t p = (size_t)y * (size_t)material->rect.width + (size_t)x;
+    const FlRect rect = material->rect;
+    float turn[2], g[2];
+    fl_tile_gradient(
+        ink->input.tile, ((float)(x + rect.x) + material->shift[2 * p] + ink->origin[0]) / scale,
+        ((float)(y + rect.y) + material->shift[2 * p + 1] + ink->origin[1]) / scale, g);
+    similarity(material, x, y, turn);
+    const bool stir = ink->input.tile->style.mode == FL_TRANSPORT_STIR;
+    const float along = stir ? g[1] : g[0], down = stir ? -g[0] : g[1];
+    velocity[0] += share * scale * (turn[0] * along - turn[1] * down);
+    velocity[1] += share * scale * (turn[1] * along + turn[0] * down);
+}
+
+/* Two patterns add up to one of the same contrast. */
+static void shares_of(int fade, float *old, float *fresh)
+{
+    const float t = (float)fade / FADE, s = t * t * (3 - 2 * t);
+    const float length = sqrtf(s * s + (1 - s) * (1 - s));
+    *old = (1 - s) / length, *fresh = s / length;
+}
+
+/* Ink stays in the region: the nearer to the contour, the less it moves. */
+static float taper_at(const FlCarriedInk *ink, const FlGuides *guides, size_t p)
+{
+    const float depth = guides->distance[p] / (ink->input.tile->style.taper_px * ink->input.scale);
+    const float t = fminf(fmaxf(depth, 0), 1);
+    return guides->mask[p] ? t * t * (3 - 2 * t) : 0;
+}
+
+static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, float *velocity)
+{
+    const FlRect rect = ink->material.rect;
+    float old, fresh;
+    shares_of(ink->fade, &old, &fresh);
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(rect)))
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const float taper =
+                ink->input.strength *
+                taper_at(ink, guides,
+                         (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x));
+            float *v = velocity + 2 * ((size_t)y * (size_t)rect.width + (size_t)x);
+            v[0] = v[1] = 0;
+            if (taper == 0)
+                continue;
+            add_velocity(ink, &ink->material, x, y, taper * old, v);
+            if (ink->fade > 0)
+                add_velocity(ink, &ink->fresh, x, y, taper * fresh, v);
+            const float speed = sqrtf(v[0] * v[0] + v[1] * v[1]);
+            const float held = speed > FARTHEST ? FARTHEST / speed : 1;
+            v[0] *= held, v[1] *= held;
+        }
+}
+
+/* ---- the ink -----------------------------------------------------------------------------------
+ */
+
+/* Rings along the contour; its taper keeps them off it. */
+static float *rings(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GError **error)
+{
+    float *density = fl_alloc(fl_rect_pixels(rect), sizeof *density, "a density", error);
+    const float period = ink->input.tile->style.ring_px * ink->input.scale;
+    for (int y = 0; density && y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const float depth =
+                guides
+                    ->distance[(size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x)];
+            density[(size_t)y * (size_t)rect.width + (size_t)x] =
+                depth > 0 ? fl_ring_density(depth / period + 0.25f, period) : 1;
+        }
+    return density;
+}
+
+/* What the amounts of the mask are to be multiplied by so that their mean is 1. Rows are summed
+ * in order. */
+static float to_mean_one(const FlGuides *guides, FlRect rect, const float *carried)
+{
+    double mask = 0, sum = 0;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const uint8_t c =
+                guides->mask[(size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x)];
+            const float d = carried[(size_t)y * (size_t)rect.width + (size_t)x];
+            mask += c, sum += (double)c * (double)fmaxf(d, 0);
+        }
+    return sum > 0 ? (float)(mask / sum) : 1;
+}
+
+static bool move_ink(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, float *amount,
+                     GError **error)
+{
+    const size_t n = fl_rect_pixels(rect);
+    g_auto(FlFlowMap) map = {0};
+    g_autofree float *velocity = fl_alloc(2 * n, sizeof *velocity, "a velocity", error);
+    g_autofree float *carried = fl_alloc(n, sizeof *carried, "a density", error);
+    g_autofree float *density = NULL;
+    const bool ringed = ink->input.tile->style.density == FL_DENSITY_RINGS;
+    if (!velocity || !carried || !fl_flow_map_init(&map, rect.width, rect.height, false, error) ||
+        (ringed && !(density = rings(ink, guides, rect, error))))
+        return false;
+    find_velocity(ink, guides, velocity);
+    fl_flow_map_run(&map, velocity);
+    fl_flow_map_carry(&map, density, carried);
+    const float factor = to_mean_one(guides, rect, carried);
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++)
+            amount[(size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x)] =
+                factor * fmaxf(carried[(size_t)y * (size_t)rect.width + (size_t)x], 0);
+    return true;
+}
+
+static void forget(FlCarriedInk *ink)
+{
+    fl_material_clear(&ink->material);
+    fl_material_clear(&ink->fresh);
+    ink->fade = 0;
+}
+
+bool fl_carried_ink_amounts(FlCarriedInk *ink, const FlGuides *guides, float *amount,
+                            GError **error)
+{
+    const FlRect rect = mask_rect(guides);
+    memset(amount, 0, (size_t)guides->width * (size_t)guides->height * sizeof *amount);
+    if (rect.width > 0)
+        return advance_all(ink, guides, rect, error) && move_ink(ink, guides, rect, amount, error);
+    forget(ink);
+    return true;
+}
+
+bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rgb, GError **error)
+{
+    const size_t n = (size_t)guides->width * (size_t)guides->height;
+    g_autofree float *amount = fl_alloc(n, sizeof *amount, "an amount of ink", error);
+    if (!amount || !fl_carried_ink_amounts(ink, guides, amount, error))
+        return false;
+    for (size_t p = 0; p < n; p++) {
+        const int step = (int)(amount[p] * AMOUNT_STEPS + 0.5f);
+        memcpy(rgb + 3 * p, ink->colour[MIN(step, AMOUNT_STEPS * MOST_AMOUNT - 1)], 3);
+    }
+    return true;
+}
+
+/* ---- the state ---------------------------------------------------------------------------------
+ */
+
+/* The bytes start with this; the shifts of the material and, in a fade, of the fresh one follow. */
+typedef struct Header {
+    int32_t fade, x, y, width, height;
+} Header;
+
+static_assert(sizeof(Header) == 20, "the header has no padding");
+
+GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
+{
+    const FlRect r = ink->material.rect;
+    const size_t plane = 2 * fl_rect_pixels(r) * sizeof(float);
+    const Header header = {ink->fade, r.x, r.y, r.width, r.height};
+    const size_t size = sizeof header + (ink->fade > 0 ? 2 : 1) * plane;
+    uint8_t *bytes = fl_alloc(size, 1, "the state of a region", error);
+    if (!bytes)
+        return NULL;
+    memcpy(bytes, &header, sizeof header);
+    if (plane > 0)
+        memcpy(bytes + sizeof header, ink->material.shift, plane);
+    if (ink->fade > 0)
+        memcpy(bytes + sizeof header + plane, ink->fresh.shift, plane);
+    return g_bytes_new_with_free_func(bytes, size, free, bytes);
+}
+
+static bool damaged(GError **error, const char *what)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "a region's state is damaged: %s", what);
+    return false;
+}
+
+/* Shifts are used as indices, so each must be a number that is not far off. */
+static bool load_shifts(FlMaterial *material, FlRect rect, const uint8_t *bytes, GError **error)
+{
+    const size_t n = 2 * fl_rect_pixels(rect);
+    if (!(material->shift = fl_alloc(n, sizeof(float), "a material", error)))
+        return false;
+    memcpy(material->shift, bytes, n * sizeof(float));
+    material->rect = rect;
+    for (size_t i = 0; i < n; i++)
+        if (!(fabsf(material->shift[i]) < 1e7f))
+            return damaged(error, "its material lies nowhere");
+    return true;
+}
+
+bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
+{
+    size_t size;
+    const uint8_t *bytes = g_bytes_get_data(state, &size);
+    Header h;
+    forget(ink);
+    if (size < sizeof h)
+        return damaged(error, "it is cut short");
+    memcpy(&h, bytes, sizeof h);
+    const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
+                      h.width <= ink->input.width && h.height <= ink->input.height &&
+                      h.x <= ink->input.width - h.width && h.y <= ink->input.height - h.height;
+    if (!fits || h.fade < 0 || h.fade > FADE)
+        return damaged(error, "its material lies outside the frame");
+    const FlRect rect = {h.x, h.y, h.width, h.height};
+    const size_t plane = 2 * fl_rect_pixels(rect) * sizeof(float);
+    if (size != sizeof h + (h.fade > 0 ? 2 : 1) * plane)
+        return damaged(error, "it has another size");
+    if (plane == 0)
+        return true;
+    if (load_shifts(&ink->material, rect, bytes + sizeof h, error) &&
+        (h.fade == 0 || load_shifts(&ink->fresh, rect, bytes + sizeof h + plane, error))) {
+        ink->fade = h.fade;
+        return true;
+    }
+    forget(ink);
+    return false;
+}

@@ -1,0 +1,57 @@
+/* Conservative transport: ink is carried along a velocity and piles up or thins out with it. */
+#ifndef FLUIDY_TRANSPORT_FLOW_MAP_H
+#define FLUIDY_TRANSPORT_FLOW_MAP_H
+
+#include <fluidy/error.h>
+#include <stdbool.h>
+
+#define FL_SQUARINGS 3 // of the velocity's flow; enough for 16 px
+
+/** How a potential moves ink. */
+typedef enum FlTransportMode {
+    FL_TRANSPORT_GATHER, // along its gradient: ink pools
+    FL_TRANSPORT_STIR,   // along its contours: ink keeps its density, rings are stirred
+} FlTransportMode;
+
+/**
+ * A velocity's flow, run backwards for unit time by scaling and squaring, on a torus of width *
+ * height px, or in a rectangle whose rim is repeated beyond it.
+ */
+typedef struct FlFlowMap {
+    int width, height;
+    bool periodic;
+    float *u[FL_SQUARINGS + 1]; // displacements, interleaved x, y; the last one is the map
+    float *jacobian;            // determinant of the map: what ink has become of a density of 1
+} FlFlowMap;
+
+bool fl_flow_map_init(FlFlowMap *map, int width, int height, bool periodic, GError **error);
+void fl_flow_map_clear(FlFlowMap *map);
+
+/**
+ * The velocity of a potential, px: width * height * 2. taper: its share by pixel, which keeps ink
+ * in the region; NULL: 1.
+ */
+void fl_velocity(const FlFlowMap *map, const float *potential, const float *taper,
+                 FlTransportMode mode, float *velocity);
+
+/** The adjoint: writes the derivative by the potential. */
+void fl_velocity_adjoint(const FlFlowMap *map, const float *by_velocity, const float *taper,
+                         FlTransportMode mode, float *by_potential);
+
+/** Fills u and jacobian. */
+void fl_flow_map_run(FlFlowMap *map, const float *velocity);
+
+/**
+ * density carried by the map: sampled where it came from, times the determinant. density NULL: 1
+ * everywhere.
+ */
+void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carried);
+
+/** The derivative by the velocity from those by the carried density and, besides, by the
+ * determinant (NULL: none). FL_ERROR_NO_MEMORY. */
+bool fl_flow_map_adjoint(const FlFlowMap *map, const float *density, const float *by_carried,
+                         const float *by_jacobian, float *by_velocity, GError **error);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFlowMap, fl_flow_map_clear)
+
+#endif

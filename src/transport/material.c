@@ -1,0 +1,240 @@
+#include "transport/material.h"
+
+#include "base/alloc.h"
+#include <math.h>
+#include <string.h>
+
+#define LEAST_SIDE 2 // px; the coarsest level of what is continued
+
+void fl_material_clear(FlMaterial *material)
+{
+    free(material->shift);
+    *material = (FlMaterial){0};
+}
+
+static bool material_init(FlMaterial *material, FlRect rect, GError **error)
+{
+    *material = (FlMaterial){.rect = rect};
+    return (material->shift =
+                fl_alloc(2 * fl_rect_pixels(rect), sizeof(float), "a material", error));
+}
+
+/* ---- carrying ----------------------------------------------------------------------------------
+ */
+
+/* The shift at a place of the frame, which may lie outside. */
+static void shift_at(const FlMaterial *material, float x, float y, float shift[2])
+{
+    const FlRect r = material->rect;
+    x = fminf(fmaxf(x - (float)r.x, 0), (float)(r.width - 1));
+    y = fminf(fmaxf(y - (float)r.y, 0), (float)(r.height - 1));
+    const int x0 = MIN((int)x, MAX(r.width - 2, 0)), y0 = MIN((int)y, MAX(r.height - 2, 0));
+    const int x1 = MIN(x0 + 1, r.width - 1), y1 = MIN(y0 + 1, r.height - 1);
+    const float fx = x - (float)x0, fy = y - (float)y0;
+    const float *above = material->shift + 2 * (size_t)y0 * (size_t)r.width;
+    const float *below = material->shift + 2 * (size_t)y1 * (size_t)r.width;
+    for (int c = 0; c < 2; c++)
+        shift[c] = (above[2 * x0 + c] * (1 - fx) + above[2 * x1 + c] * fx) * (1 - fy) +
+                   (below[2 * x0 + c] * (1 - fx) + below[2 * x1 + c] * fx) * fy;
+}
+
+/* How the content of a pixel got there; false: that is not known. */
+static bool motion_at(const FlGuides *guides, size_t p, float motion[2])
+{
+    if (guides->mask[p] == 0)
+        return false;
+    if (!guides->has_motion) {
+        motion[0] = guides->flow[2 * p], motion[1] = guides->flow[2 * p + 1];
+        return guides->mask[p] >= FL_INSIDE;
+    }
+    if (guides->motion[2 * p] == FL_MOTION_UNKNOWN)
+        return false;
+    motion[0] = (float)guides->motion[2 * p] / FL_MOTION_ONE;
+    motion[1] = (float)guides->motion[2 * p + 1] / FL_MOTION_ONE;
+    return true;
+}
+
+/* A level of what is continued: the sum of the shifts that are known, and of their weights. */
+typedef struct Level {
+    int width, height;
+    float *sum, *weight;
+} Level;
+
+#define MOST_LEVELS 16
+
+static void levels_clear(Level *level)
+{
+    for (int l = 0; l < MOST_LEVELS; l++)
+        free(level[l].sum), free(level[l].weight);
+}
+
+static bool level_init(Level *level, int width, int height, GError **error)
+{
+    const size_t n = (size_t)width * (size_t)height;
+    *level = (Level){.width = width, .height = height};
+    return (level->sum = fl_alloc(2 * n, sizeof(float), "a material", error)) &&
+           (level->weight = fl_alloc(n, sizeof(float), "a material", error));
+}
+
+/* Means over 2 x 2 pixels of those that are known. */
+static void pull(const Level *fine, Level *coarse)
+{
+    for (int y = 0; y < fine->height; y++)
+        for (int x = 0; x < fine->width; x++) {
+            const size_t p = (size_t)y * (size_t)fine->width + (size_t)x;
+            const size_t q = (size_t)(y / 2) * (size_t)coarse->width + (size_t)(x / 2);
+            const float w = fine->weight[p];
+            coarse->weight[q] += w;
+            coarse->sum[2 * q] += w * fine->sum[2 * p];
+            coarse->sum[2 * q + 1] += w * fine->sum[2 * p + 1];
+        }
+    const size_t n = (size_t)coarse->width * (size_t)coarse->height;
+    for (size_t q = 0; q < n; q++)
+        if (coarse->weight[q] > 0) {
+            coarse->sum[2 * q] /= coarse->weight[q], coarse->sum[2 * q + 1] /= coarse->weight[q];
+            coarse->weight[q] = 1;
+        }
+}
+
+/* Fills what is not known from the coarser level, by bilinear interpolation. */
+static void push(const Level *coarse, Level *fine)
+{
+    const FlMaterial from = {{0, 0, coarse->width, coarse->height}, coarse->sum};
+    for (int y = 0; y < fine->height; y++)
+        for (int x = 0; x < fine->width; x++) {
+            const size_t p = (size_t)y * (size_t)fine->width + (size_t)x;
+            if (fine->weight[p] <= 0)
+                shift_at(&from, (float)x * 0.5f - 0.25f, (float)y * 0.5f - 0.25f,
+                         fine->sum + 2 * p);
+        }
+}
+
+/* Continues the shifts from where they are known (weight 1) to everywhere. */
+static bool continue_shifts(Level *level, GError **error)
+{
+    int n = 1;
+    for (; n < MOST_LEVELS && MAX(level[n - 1].width, level[n - 1].height) > LEAST_SIDE; n++) {
+        if (!level_init(&level[n], (level[n - 1].width + 1) / 2, (level[n - 1].height + 1) / 2,
+                        error))
+            return false;
+        pull(&level[n - 1], &level[n]);
+    }
+    for (int l = n - 2; l >= 0; l--)
+        push(&level[l + 1], &level[l]);
+    return true;
+}
+
+bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRect rect,
+                         FlMaterial *now, GError **error)
+{
+    Level level[MOST_LEVELS] = {{0}};
+    *now = (FlMaterial){0};
+    if (!before->shift)
+        return material_init(now, rect, error);
+    bool good = level_init(&level[0], rect.width, rect.height, error);
+    for (int y = 0; good && y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t q = (size_t)y * (size_t)rect.width + (size_t)x;
+            float motion[2], *shift = level[0].sum + 2 * q;
+            if (!motion_at(guides,
+                           (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x),
+                           motion))
+                continue;
+            shift_at(before, (float)(x + rect.x) - motion[0], (float)(y + rect.y) - motion[1],
+                     shift);
+            shift[0] -= motion[0], shift[1] -= motion[1];
+            level[0].weight[q] = 1;
+        }
+    if ((good = good && continue_shifts(level, error))) {
+        now->rect = rect;
+        now->shift = g_steal_pointer(&level[0].sum);
+    }
+    levels_clear(level);
+    return good;
+}
+
+/* ---- measuring ---------------------------------------------------------------------------------
+ */
+
+void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2])
+{
+    const int width = material->rect.width, height = material->rect.height;
+    const int left = MAX(x - 1, 0), right = MIN(x + 1, width - 1);
+    const int up = MAX(y - 1, 0), down = MIN(y + 1, height - 1);
+    const float across = (float)MAX(right - left, 1), along = (float)MAX(down - up, 1);
+    for (int c = 0; c < 2; c++) {
+        const float *s = material->shift + c;
+        f[c][0] = (s[2 * (y * width + right)] - s[2 * (y * width + left)]) / across + (c == 0);
+        f[c][1] = (s[2 * (down * width + x)] - s[2 * (up * width + x)]) / along + (c == 1);
+    }
+}
+
+static bool is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y)
+{
+    const FlRect r = material->rect;
+    return guides->mask[(size_t)(y + r.y) * (size_t)guides->width + (size_t)(x + r.x)] >= FL_INSIDE;
+}
+
+/* Of one pixel: how far the area is from its own, and how far a circle is from one. At most 2,
+ * so that a tear between two limbs counts as little as it is wide. */
+static float strain_of(float f[2][2])
+{
+    const float det = f[0][0] * f[1][1] - f[0][1] * f[1][0];
+    const float square =
+        f[0][0] * f[0][0] + f[0][1] * f[0][1] + f[1][0] * f[1][0] + f[1][1] * f[1][1];
+    if (det < 0.1f)
+        return 2;
+    const float size = sqrtf(det), area = fmaxf(size, 1 / size) - 1;
+    return fminf(area + sqrtf(fmaxf(0.5f * square / det - 1, 0)), 2);
+}
+
+float fl_material_strain(const FlMaterial *material, const FlGuides *guides)
+{
+    double sum = 0, n = 0;
+    for (int y = 0; y < material->rect.height; y++)
+        for (int x = 0; x < material->rect.width; x++)
+            if (is_inside(material, guides, x, y)) {
+                float f[2][2];
+                fl_material_gradient(material, x, y, f);
+                sum += strain_of(f), n++;
+            }
+    return n > 0 ? (float)(sum / n) : 0;
+}
+
+/* Sums over a region's pixels (x, y) and their material (u, v). */
+typedef struct Fit {
+    double n, x, y, u, v, dot, cross;
+} Fit;
+
+static Fit sums_of(const FlMaterial *material, const FlGuides *guides)
+{
+    Fit s = {0};
+    for (int y = 0; y < material->rect.height; y++)
+        for (int x = 0; x < material->rect.width; x++)
+            if (is_inside(material, guides, x, y)) {
+                const float *shift = material->shift + 2 * (y * material->rect.width + x);
+                const double u = x + (double)shift[0], v = y + (double)shift[1];
+                s.n++, s.x += x, s.y += y, s.u += u, s.v += v;
+                s.dot += x * u + y * v, s.cross += x * v - y * u;
+            }
+    return s;
+}
+
+bool fl_material_relaxed(const FlMaterial *material, const FlGuides *guides, FlMaterial *relaxed,
+                         GError **error)
+{
+    const Fit s = sums_of(material, guides);
+    if (!material_init(relaxed, material->rect, error))
+        return false;
+    const double n = MAX(s.n, 1), x = s.x / n, y = s.y / n, u = s.u / n, v = s.v / n;
+    const double dot = s.dot - n * (x * u + y * v), cross = s.cross - n * (x * v - y * u);
+    const double length = sqrt(dot * dot + cross * cross);
+    const double cosine = length > 0 ? dot / length : 1, sine = length > 0 ? cross / length : 0;
+    for (int j = 0; j < material->rect.height; j++)
+        for (int i = 0; i < material->rect.width; i++) {
+            float *shift = relaxed->shift + 2 * (j * material->rect.width + i);
+            shift[0] = (float)(u + cosine * (i - x) - sine * (j - y) - i);
+            shift[1] = (float)(v + sine * (i - x) + cosine * (j - y) - j);
+        }
+    return true;
+}

@@ -1,0 +1,258 @@
+#include "transport/solve.h"
+
+#include "base/alloc.h"
+#include "base/rng.h"
+#include <math.h>
+#include <string.h>
+
+#define SAMPLES 1024
+#define DIRECTIONS 24
+
+// Weights of what is held small beside the loss: how the velocity changes, its size, folds.
+#define W_CHANGE_GATHER 2e-3f
+#define W_CHANGE_STIR 4e-2f
+#define W_SIZE 2e-5f
+#define W_FOLD 1.0f
+#define FOLD_FROM 0.05f // determinants below this
+
+/* Part of a solution: which levels count, which grids move. Bit l of `grids` is grid l. */
+typedef struct Stage {
+    int iterations;
+    unsigned levels, grids;
+    float step;   // of a node, px² per px of its grid
+    bool settles; // the step falls to a seventh
+} Stage;
+
+#define LEVELS(a, b) ((2u << (b)) - (1u << (a)))
+
+static const Stage gather_stages[] = {
+    {40, LEVELS(2, 4), LEVELS(2, 3), 0.12f, false},
+    {60, LEVELS(1, 3), LEVELS(1, 3), 0.12f, false},
+    {130, LEVELS(0, 3), LEVELS(0, 3), 0.12f, true},
+    {0},
+};
+
+/* On the way to a picture, pixel by pixel, no levels count. */
+static const Stage picture_stages[] = {
+    {60, 0, LEVELS(2, 3), 0.25f, false},
+    {60, 0, LEVELS(1, 3), 0.15f, false},
+    {140, 0, LEVELS(0, 3), 0.10f, true},
+    {0},
+};
+
+static const Stage stir_stages[] = {
+    {30, LEVELS(2, 4), LEVELS(3, 3), 0.25f, false},
+    {40, LEVELS(2, 3), LEVELS(3, 3), 0.25f, false},
+    {60, LEVELS(1, 3), LEVELS(2, 3), 0.25f, true},
+    {0},
+};
+
+/* Adam's moments of one grid [Kingma, Ba 2015]. */
+typedef struct Moments {
+    float *first, *second;
+} Moments;
+
+typedef struct Solver {
+    const FlTransportProblem *problem;
+    FlPotential *potential, by_node;
+    FlFlowMap map;
+    float *sum, *velocity, *carried;               // the state
+    float *by_carried, *by_jacobian, *by_velocity; // derivatives
+    Moments moments[FL_POTENTIAL_GRIDS];
+    float decay[2]; // powers of Adam's constants
+} Solver;
+
+static void clear_moments(Solver *solver)
+{
+    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++) {
+        free(solver->moments[l].first);
+        free(solver->moments[l].second);
+        solver->moments[l] = (Moments){0};
+    }
+}
+
+static void solver_clear(Solver *solver)
+{
+    clear_moments(solver);
+    fl_potential_clear(&solver->by_node);
+    fl_flow_map_clear(&solver->map);
+    float *const buffers[] = {solver->sum,        solver->velocity,    solver->carried,
+                              solver->by_carried, solver->by_jacobian, solver->by_velocity};
+    for (size_t k = 0; k < G_N_ELEMENTS(buffers); k++)
+        free(buffers[k]);
+}
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Solver, solver_clear)
+
+static bool solver_init(Solver *solver, const FlTransportProblem *problem, FlPotential *potential,
+                        GError **error)
+{
+    const size_t n = (size_t)problem->width * problem->height;
+    *solver = (Solver){.problem = problem, .potential = potential};
+    return fl_potential_init(&solver->by_node, problem->width, problem->height, error) &&
+           fl_flow_map_init(&solver->map, problem->width, problem->height, true, error) &&
+           (solver->sum = fl_alloc(n, sizeof(float), "a potential", error)) &&
+           (solver->carried = fl_alloc(n, sizeof(float), "a density", error)) &&
+           (solver->by_carried = fl_alloc(n, sizeof(float), "a derivative", error)) &&
+           (solver->by_jacobian = fl_alloc(n, sizeof(float), "a derivative", error)) &&
+           (solver->velocity = fl_alloc(2 * n, sizeof(float), "a velocity", error)) &&
+           (solver->by_velocity = fl_alloc(2 * n, sizeof(float), "a derivative", error));
+}
+
+static bool fresh_moments(Solver *solver, GError **error)
+{
+    clear_moments(solver);
+    solver->decay[0] = solver->decay[1] = 1;
+    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++) {
+        const size_t n = fl_potential_nodes(solver->potential, l);
+        if (!(solver->moments[l].first = fl_alloc(n, sizeof(float), "moments", error)) ||
+            !(solver->moments[l].second = fl_alloc(n, sizeof(float), "moments", error)))
+            return false;
+    }
+    return true;
+}
+
+/* A stage's small random start, so that a flat region has something to break its symmetry. */
+static void add_noise(FlPotential *potential, uint64_t key)
+{
+    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++)
+        for (size_t i = 0; i < fl_potential_nodes(potential, l); i++) {
+            FlRng rng = {fl_key(fl_key(key, (uint64_t)l), i)};
+            float sum = -2;
+            for (int k = 0; k < 4; k++)
+                sum += fl_rng_float(&rng);
+            potential->grid[l][i] += 0.035f * sum;
+        }
+}
+
+/* Adds what the velocity's size and change cost to the derivative. */
+static void add_smoothness(Solver *solver)
+{
+    const int w = solver->problem->width, h = solver->problem->height;
+    const bool stir = solver->problem->mode == FL_TRANSPORT_STIR;
+    const float size = 2 * W_SIZE / (float)(w * h);
+    const float change = 2 * (stir ? W_CHANGE_STIR : W_CHANGE_GATHER) / (float)(w * h);
+    const float *v = solver->velocity;
+    float *by = solver->by_velocity;
+    for (int y = 0; y < h; y++)
+        for (int x = 0; x < w; x++) {
+            const size_t p = (size_t)y * w + x;
+            const size_t q[2] = {(size_t)y * w + (size_t)((x + 1) % w),
+                                 (size_t)((y + 1) % h) * w + x};
+            for (size_t c = 0; c < 2; c++) {
+                by[2 * p + c] += size * v[2 * p + c];
+                for (int k = 0; k < 2; k++) {
+                    const float step = change * (v[2 * q[k] + c] - v[2 * p + c]);
+                    by[2 * q[k] + c] += step;
+                    by[2 * p + c] -= step;
+                }
+            }
+        }
+}
+
+static void fold_derivative(Solver *solver)
+{
+    const size_t n = (size_t)solver->problem->width * solver->problem->height;
+    for (size_t p = 0; p < n; p++) {
+        const float below = FOLD_FROM - solver->map.jacobian[p];
+        solver->by_jacobian[p] = below > 0 ? -2 * W_FOLD * below / (float)n : 0;
+    }
+}
+
+/* The mean squared difference from the picture. */
+static float picture_loss(Solver *solver)
+{
+    const FlTransportProblem *problem = solver->problem;
+    const size_t n = (size_t)problem->width * (size_t)problem->height;
+    double loss = 0;
+    for (size_t i = 0; i < n; i++) {
+        const float more = solver->carried[i] - problem->picture[i];
+        loss += (double)more * (double)more;
+        solver->by_carried[i] = 2 * more / (float)n;
+    }
+    return (float)(loss / (double)n);
+}
+
+static float patches_loss(Solver *solver, unsigned levels, uint64_t key, GError **error)
+{
+    const FlTransportProblem *problem = solver->problem;
+    const FlSlicedTarget target = {problem->width, problem->height, solver->carried,
+                                   problem->coverage};
+    return fl_sliced_loss(problem->style, &target, levels, SAMPLES, DIRECTIONS, key,
+                          solver->by_carried, NULL, error);
+}
+
+/* The loss of the potential as it is; its derivative by node into by_node. */
+static float derive(Solver *solver, unsigned levels, uint64_t key, GError **error)
+{
+    const FlTransportProblem *problem = solver->problem;
+    fl_potential_sum(solver->potential, solver->sum);
+    fl_velocity(&solver->map, solver->sum, problem->taper, problem->mode, solver->velocity);
+    fl_flow_map_run(&solver->map, solver->velocity);
+    fl_flow_map_carry(&solver->map, problem->density, solver->carried);
+    const float loss =
+        problem->picture ? picture_loss(solver) : patches_loss(solver, levels, key, error);
+    fold_derivative(solver);
+    if (loss < 0 || !fl_flow_map_adjoint(&solver->map, problem->density, solver->by_carried,
+                                         solver->by_jacobian, solver->by_velocity, error))
+        return -1;
+    add_smoothness(solver);
+    fl_velocity_adjoint(&solver->map, solver->by_velocity, problem->taper, problem->mode,
+                        solver->sum);
+    fl_potential_adjoint(solver->sum, &solver->by_node);
+    return loss;
+}
+
+static void step(Solver *solver, unsigned grids, float length)
+{
+    const float b1 = 0.9f, b2 = 0.95f;
+    solver->decay[0] *= b1, solver->decay[1] *= b2;
+    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++) {
+        const float far = length * (float)(2 << l);
+        const Moments *m = &solver->moments[l];
+        for (size_t i = 0; grids >> l & 1 && i < fl_potential_nodes(solver->potential, l); i++) {
+            const float g = solver->by_node.grid[l][i];
+            m->first[i] = b1 * m->first[i] + (1 - b1) * g;
+            m->second[i] = b2 * m->second[i] + (1 - b2) * g * g;
+            solver->potential->grid[l][i] -=
+                far * (m->first[i] / (1 - solver->decay[0])) /
+                (sqrtf(m->second[i] / (1 - solver->decay[1])) + 1e-12f);
+        }
+    }
+}
+
+static bool interrupted(GError **error)
+{
+    g_set_error_literal(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted");
+    return false;
+}
+
+bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPotential *potential,
+                        FlTransportProgress progress, void *data, GError **error)
+{
+    g_auto(Solver) solver = {0};
+    if (!solver_init(&solver, problem, potential, error))
+        return false;
+    add_noise(potential, problem->key);
+    const Stage *stages = problem->picture                     ? picture_stages
+                          : problem->mode == FL_TRANSPORT_STIR ? stir_stages
+                                                               : gather_stages;
+    int done = 0, total = 0;
+    for (const Stage *s = stages; s->iterations; s++)
+        total += (int)((float)s->iterations * effort);
+    for (const Stage *s = stages; s->iterations; s++) {
+        const int n = (int)((float)s->iterations * effort);
+        if (!fresh_moments(&solver, error))
+            return false;
+        for (int k = 0; k < n; k++) {
+            const float t = (float)k / (float)n, fall = t * t * (3 - 2 * t);
+            const float loss =
+                derive(&solver, s->levels, fl_key(problem->key, (uint64_t)++done), error);
+            if (loss < 0)
+                return false;
+            step(&solver, s->grids, problem->pace * s->step * (s->settles ? 1 - 0.85f * fall : 1));
+            if (progress && !progress(data, done, total, loss))
+                return interrupted(error);
+        }
+    }
+    return true;
+}

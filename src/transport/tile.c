@@ -1,0 +1,259 @@
+#include "transport/tile.h"
+
+#include "base/alloc.h"
+#include "base/suggest.h"
+#include "io/png.h"
+#include "params/key_file.h"
+#include "params/text.h"
+#include <math.h>
+#include <string.h>
+
+/*
+ * transport.png holds numbers, not colours: 256 * red + green - 32768 is the potential in UNIT px².
+ * What rounding adds to the density is below half a percent.
+ */
+#define UNIT 0.015625f
+#define ZERO 32768
+#define BLUR_PX 0.45f // standard deviation in px of the drawing
+#define MOST_SMOOTHINGS 50
+#define CORRECTIONS 12 // of the prefilter; what is left of a wave of 6 px is below 1e-3
+
+static char *tile_path(const char *folder)
+{
+    return g_build_filename(folder, "transport.png", NULL);
+}
+
+bool fl_tile_exists(const char *folder)
+{
+    g_autofree char *path = tile_path(folder);
+    return g_file_test(path, G_FILE_TEST_IS_REGULAR);
+}
+
+/* ---- the section of style.ini ------------------------------------------------------------------
+ */
+
+typedef enum KeyType { WORD, COUNT, NUMBER } KeyType;
+
+static const struct Key {
+    const char *name;
+    KeyType type;
+    size_t offset;
+    const char *words; // of a WORD
+    double min, max;
+} keys[] = {
+    {"motion", WORD, offsetof(FlTransportStyle, mode), "gather|stir", 0, 0},
+    {"density", WORD, offsetof(FlTransportStyle, density), "flat|rings", 0, 0},
+    {"size", COUNT, offsetof(FlTransportStyle, size), NULL, 64, 1024},
+    {"match", WORD, offsetof(FlTransportStyle, match), "patches|picture", 0, 0},
+    {"ring", NUMBER, offsetof(FlTransportStyle, ring_px), NULL, 2, 1000},
+    {"taper", NUMBER, offsetof(FlTransportStyle, taper_px), NULL, 1, 1000},
+    {"pace", NUMBER, offsetof(FlTransportStyle, pace), NULL, 0.1, 10},
+    {"effort", NUMBER, offsetof(FlTransportStyle, effort), NULL, 0.1, 100},
+};
+
+typedef struct Reader {
+    FlTransportStyle *style;
+    bool ours; // in the section
+} Reader;
+
+static bool read_section(void *data, const char *name, int line, GError **error)
+{
+    Reader *reader = data;
+    reader->ours = strcmp(name, "transport") == 0;
+    return true;
+}
+
+static bool read_value(void *field, const struct Key *key, const char *value)
+{
+    double number = 0;
+    if (key->type == WORD)
+        return fl_text_choice(value, key->words, field);
+    if (!fl_text_number(value, &number) || number < key->min || number > key->max)
+        return false;
+    if (key->type == NUMBER)
+        *(float *)field = (float)number;
+    else
+        *(int *)field = (int)number;
+    return true;
+}
+
+static bool reject(const struct Key *key, const char *value, GError **error)
+{
+    g_autofree char *range = key->words
+                                 ? g_strdup(key->words)
+                                 : g_strdup_printf("a number from %g to %g", key->min, key->max);
+    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s = %s: expected %s", key->name, value, range);
+    return false;
+}
+
+static bool read_key(void *data, const char *name, const char *value, int line, GError **error)
+{
+    Reader *reader = data;
+    const char *names[G_N_ELEMENTS(keys) + 1] = {NULL};
+    for (size_t i = 0; i < G_N_ELEMENTS(keys) && reader->ours; i++) {
+        names[i] = keys[i].name;
+        if (strcmp(name, keys[i].name) == 0)
+            return read_value((char *)reader->style + keys[i].offset, &keys[i], value) ||
+                   reject(&keys[i], value, error);
+    }
+    if (!reader->ours)
+        return true;
+    g_autofree char *all = g_strjoinv(", ", (char **)names);
+    g_autofree char *tail = fl_did_you_mean(name, names);
+    g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "unknown key “%s”: expected one of %s%s", name,
+                all, tail);
+    return false;
+}
+
+bool fl_transport_style_read(FlTransportStyle *style, const char *folder, GError **error)
+{
+    g_autofree char *path = g_build_filename(folder, "style.ini", NULL);
+    *style = (FlTransportStyle){.size = 256, .ring_px = 16, .taper_px = 6, .pace = 1, .effort = 1};
+    Reader reader = {style, false};
+    const FlKeyReader calls = {read_section, read_key, &reader, FL_ERROR_STYLE};
+    if (g_file_test(path, G_FILE_TEST_EXISTS) && !fl_key_file_read(path, &calls, error))
+        return false;
+    style->size -= style->size % FL_POTENTIAL_COARSEST;
+    return true;
+}
+
+float fl_ring_density(float periods, float period_px)
+{
+    const float edge = fminf(1.2f / period_px, 0.25f);               // of a period
+    const float t = fabsf(periods - floorf(periods) - 0.5f) - 0.25f; // below 0: between rings
+    const float u = fminf(fmaxf(t / edge, -1), 1);
+    return 1 + u * (1.5f - 0.5f * u * u) * 0.95f;
+}
+
+/* ---- the tile ----------------------------------------------------------------------------------
+ */
+
+/* What cubic B-splines make of coefficients, minus those: one smoothing, the sides meet. */
+static void smooth(const float *in, int n, float *half, float *out)
+{
+    for (int y = 0; y < n; y++)
+        for (int x = 0; x < n; x++)
+            half[y * n + x] =
+                (in[y * n + (x + n - 1) % n] + 4 * in[y * n + x] + in[y * n + (x + 1) % n]) / 6;
+    for (int y = 0; y < n; y++)
+        for (int x = 0; x < n; x++)
+            out[y * n + x] =
+                (half[(y + n - 1) % n * n + x] + 4 * half[y * n + x] + half[(y + 1) % n * n + x]) /
+                6;
+}
+
+/* Coefficients whose spline goes through the values, by iteration; with smoothings, each of which
+ * has a variance of a third of a square px, through values that are smoothed so often. */
+static bool prefilter(const float *value, int n, int smoothings, float *spline, GError **error)
+{
+    const size_t pixels = (size_t)n * (size_t)n;
+    g_autofree float *scratch = fl_alloc(2 * pixels, sizeof(float), "a tile", error);
+    if (!scratch)
+        return false;
+    float *half = scratch, *smoothed = scratch + pixels;
+    memcpy(spline, value, pixels * sizeof *spline);
+    for (int k = 1; k < smoothings; k++) { // the spline itself is the last one
+        smooth(spline, n, half, smoothed);
+        memcpy(spline, smoothed, pixels * sizeof *spline);
+    }
+    for (int k = 0; k < CORRECTIONS && smoothings == 0; k++) {
+        smooth(spline, n, half, smoothed);
+        for (size_t i = 0; i < pixels; i++)
+            spline[i] += value[i] - smoothed[i];
+    }
+    return true;
+}
+
+static bool fill(FlTile *tile, const FlPicture *picture, float scale, GError **error)
+{
+    const size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    g_autofree float *value = fl_alloc(pixels, sizeof(float), "a tile", error);
+    if (!value || !(tile->spline = fl_alloc(pixels, sizeof(float), "a tile", error)))
+        return false;
+    for (size_t i = 0; i < pixels; i++)
+        value[i] = UNIT * (float)(256 * picture->rgba[4 * i] + picture->rgba[4 * i + 1] - ZERO);
+    // What is finer than the pixels of the drawing would be a weave of the grids' nodes there.
+    const float blur = BLUR_PX / scale;
+    const int smoothings = (int)(fminf(3 * blur * blur, MOST_SMOOTHINGS) + 0.5f);
+    return prefilter(value, picture->width, smoothings, tile->spline, error);
+}
+
+FlTile *fl_tile_load(const char *folder, float scale, GError **error)
+{
+    g_autofree char *path = tile_path(folder);
+    if (!fl_tile_exists(folder)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
+                    "%s: no such file; expected a style that fluidy-style transport has solved",
+                    path);
+        return NULL;
+    }
+    g_autoptr(FlTile) tile = g_new0(FlTile, 1);
+    g_autoptr(FlPicture) picture = NULL;
+    if (!fl_transport_style_read(&tile->style, folder, error))
+        return NULL;
+    if (!(picture = fl_picture_read_png(path, error))) {
+        if (error && (*error)->code == FL_ERROR_INPUT)
+            (*error)->code = FL_ERROR_STYLE;
+        return NULL;
+    }
+    const int width = tile->style.size, height = width;
+    if (picture->width != width || picture->height != height) {
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE,
+                    "%s: %dx%d pixels: expected %dx%d by the size in style.ini", path,
+                    picture->width, picture->height, width, height);
+        return NULL;
+    }
+    return fill(tile, picture, scale, error) ? g_steal_pointer(&tile) : NULL;
+}
+
+bool fl_tile_save(const float *potential, int size, const char *folder, GError **error)
+{
+    const size_t pixels = (size_t)size * (size_t)size;
+    g_autofree char *path = tile_path(folder);
+    g_autofree uint8_t *rgb = fl_alloc(3 * pixels, 1, "a tile", error);
+    if (!rgb)
+        return false;
+    for (size_t i = 0; i < pixels; i++) {
+        const float units = floorf(potential[i] / UNIT + 0.5f) + ZERO;
+        const int value = (int)fminf(fmaxf(units, 0), 65535);
+        rgb[3 * i] = (uint8_t)(value >> 8), rgb[3 * i + 1] = (uint8_t)(value & 255);
+    }
+    return fl_png_write(path, rgb, size, size, 3, error);
+}
+
+void fl_tile_free(FlTile *tile)
+{
+    if (!tile)
+        return;
+    free(tile->spline);
+    g_free(tile);
+}
+
+/* Weights of the four coefficients around a place, and their derivatives. */
+static void weights(float f, float w[4], float d[4])
+{
+    const float g = 1 - f;
+    w[0] = g * g * g / 6, w[3] = f * f * f / 6;
+    w[1] = (4 - 6 * f * f + 3 * f * f * f) / 6, w[2] = (4 - 6 * g * g + 3 * g * g * g) / 6;
+    d[0] = -g * g / 2, d[3] = f * f / 2;
+    d[1] = (3 * f * f - 4 * f) / 2, d[2] = -(3 * g * g - 4 * g) / 2;
+}
+
+void fl_tile_gradient(const FlTile *tile, float x, float y, float gradient[2])
+{
+    const int n = tile->style.size;
+    const float x0 = floorf(x), y0 = floorf(y);
+    float wx[4], wy[4], dx[4], dy[4];
+    int column[4];
+    weights(x - x0, wx, dx), weights(y - y0, wy, dy);
+    for (int k = 0; k < 4; k++)
+        column[k] = (((int)x0 + k - 1) % n + n) % n;
+    gradient[0] = gradient[1] = 0;
+    for (int j = 0; j < 4; j++) {
+        const float *row = tile->spline + (size_t)((((int)y0 + j - 1) % n + n) % n) * (size_t)n;
+        float value = 0, slope = 0;
+        for (int k = 0; k < 4; k++)
+            value += wx[k] * row[column[k]], slope += dx[k] * row[column[k]];
+        gradient[0] += wy[j] * slope, gradient[1] += dy[j] * value;
+    }
+}

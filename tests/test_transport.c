@@ -1,0 +1,510 @@
+/* Moving ink: adjoints, mass, and the region's ink from frame to frame. */
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "transport/carried_ink.h"
+#include "transport/material.h"
+
+#include <glib/gstdio.h>
+#include <math.h>
+#include <string.h>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#define N 48 // px, the sides of a torus
+#define SIDE 120
+#define PIXELS ((size_t)SIDE * SIDE)
+
+static float noise(uint64_t key, size_t i)
+{
+    FlRng rng = {fl_key(key, i)};
+    return 2 * fl_rng_float(&rng) - 1;
+}
+
+/* ---- adjoints ----------------------------------------------------------------------------------
+ */
+
+/* What is derived: the mean of by[i] * ink after a potential, and a little of the determinants. */
+typedef struct Problem {
+    FlPotential potential;
+    float density[N * N], taper[N * N], by[N * N], by_jacobian[N * N];
+    FlTransportMode mode;
+    bool periodic;
+} Problem;
+
+static Problem *problem_new(FlTransportMode mode, bool periodic)
+{
+    Problem *p = g_new0(Problem, 1);
+    p->mode = mode, p->periodic = periodic;
+    g_assert_true(fl_potential_init(&p->potential, N, N, NULL));
+    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++)
+        for (size_t i = 0; i < fl_potential_nodes(&p->potential, l); i++)
+            p->potential.grid[l][i] = noise((uint64_t)l, i) * (float)(1 << l);
+    for (size_t i = 0; i < (size_t)N * N; i++) {
+        p->density[i] = 1 + 0.4f * sinf((float)(i % N) * 0.26f) * cosf((float)(i / N) * 0.26f);
+        p->taper[i] = 0.6f + 0.4f * cosf((float)(i % N) * 0.13f);
+        p->by[i] = noise(10, i);
+        p->by_jacobian[i] = noise(11, i);
+    }
+    return p;
+}
+
+static void problem_free(Problem *p)
+{
+    fl_potential_clear(&p->potential);
+    g_free(p);
+}
+
+static double value_of(const Problem *p)
+{
+    g_auto(FlFlowMap) map = {0};
+    g_autofree float *sum = g_new(float, N *N), *velocity = g_new(float, 2 * N * N);
+    g_autofree float *carried = g_new(float, N *N);
+    g_assert_true(fl_flow_map_init(&map, N, N, p->periodic, NULL));
+    fl_potential_sum(&p->potential, sum);
+    fl_velocity(&map, sum, p->taper, p->mode, velocity);
+    fl_flow_map_run(&map, velocity);
+    fl_flow_map_carry(&map, p->density, carried);
+    double value = 0;
+    for (size_t i = 0; i < (size_t)N * N; i++)
+        value += (double)p->by[i] * carried[i] + (double)p->by_jacobian[i] * map.jacobian[i];
+    return value;
+}
+
+static void derivative_of(const Problem *p, FlPotential *by_node)
+{
+    g_auto(FlFlowMap) map = {0};
+    g_autofree float *sum = g_new(float, N *N), *velocity = g_new(float, 2 * N * N);
+    g_assert_true(fl_flow_map_init(&map, N, N, p->periodic, NULL));
+    fl_potential_sum(&p->potential, sum);
+    fl_velocity(&map, sum, p->taper, p->mode, velocity);
+    fl_flow_map_run(&map, velocity);
+    g_assert_true(fl_flow_map_adjoint(&map, p->density, p->by, p->by_jacobian, velocity, NULL));
+    fl_velocity_adjoint(&map, velocity, p->taper, p->mode, sum);
+    g_assert_true(fl_potential_init(by_node, N, N, NULL));
+    fl_potential_adjoint(sum, by_node);
+}
+
+/* The derivative along a direction of all nodes against central differences. Bilinear samples have
+ * kinks, which a small step along many nodes averages. */
+static void compare_derivatives(FlTransportMode mode, bool periodic)
+{
+    const float step = 0.1f; // length in all nodes
+    Problem *p = problem_new(mode, periodic);
+    g_auto(FlPotential) by = {0};
+    derivative_of(p, &by);
+    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++) {
+        double expected = 0, length = 0;
+        const size_t n = fl_potential_nodes(&by, l);
+        g_autofree float *kept = g_memdup2(p->potential.grid[l], n * sizeof(float));
+        for (size_t i = 0; i < n; i++) // along the derivative itself, where it is largest
+            length += (double)by.grid[l][i] * by.grid[l][i];
+        length = sqrt(length);
+        double value[2];
+        for (int side = 0; side < 2; side++) {
+            for (size_t i = 0; i < n; i++)
+                p->potential.grid[l][i] =
+                    kept[i] + (side ? step : -step) * (float)(by.grid[l][i] / length);
+            value[side] = value_of(p);
+        }
+        memcpy(p->potential.grid[l], kept, n * sizeof(float));
+        expected = (value[1] - value[0]) / (2 * (double)step);
+        g_test_message("grid %d: adjoint %.5f, differences %.5f", l, length, expected);
+        g_assert_cmpfloat(fabs(length - expected), <, 0.01 * fabs(expected) + 0.004);
+    }
+    problem_free(p);
+}
+
+static void adjoints_agree_with_differences(void)
+{
+    for (int periodic = 0; periodic < 2; periodic++) {
+        compare_derivatives(FL_TRANSPORT_GATHER, periodic);
+        compare_derivatives(FL_TRANSPORT_STIR, periodic);
+    }
+}
+
+/* A picture of stripes 12 px apart, mean 1. */
+static float *striped(int n)
+{
+    float *picture = g_new(float, n *n);
+    for (int i = 0; i < n * n; i++)
+        picture[i] = 1 + 0.8f * sinf((float)(i / n + i % n / 3) * 0.5236f);
+    return picture;
+}
+
+static void the_loss_has_the_derivative_it_says(void)
+{
+    enum { n = 64 };
+    g_autofree float *picture = striped(n), *density = g_new(float, n *n);
+    g_autofree float *by = g_new(float, n *n), *moved = g_new(float, n *n);
+    g_autoptr(FlSliced) sliced = fl_sliced_new(picture, n, n, NULL);
+    for (size_t i = 0; i < (size_t)n * n; i++)
+        density[i] = 1 + 0.5f * noise(3, i);
+    FlSlicedTarget target = {n, n, density, NULL};
+    fl_sliced_loss(sliced, &target, 7, 512, 96, 1, by, NULL, NULL);
+    double length = 0, loss[2];
+    for (int i = 0; i < n * n; i++)
+        length += (double)by[i] * by[i];
+    length = sqrt(length);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < n * n; i++)
+            moved[i] = density[i] + (side ? 0.02f : -0.02f) * (float)(by[i] / length);
+        target.density = moved;
+        loss[side] = fl_sliced_loss(sliced, &target, 7, 512, 96, 1, NULL, NULL, NULL);
+    }
+    const double expected = (loss[1] - loss[0]) / 0.04;
+    g_test_message("adjoint %.5f, differences %.5f", length, expected);
+    g_assert_cmpfloat(fabs(length - expected), <, 0.02 * expected);
+}
+
+static void a_solution_looks_like_its_picture(void)
+{
+    enum { n = 64 };
+    g_autofree float *picture = striped(n), *flat = g_new(float, n *n), *sum = g_new(float, n *n);
+    g_autofree float *velocity = g_new(float, 2 * n * n), *carried = g_new(float, n *n);
+    g_autoptr(FlSliced) sliced = fl_sliced_new(picture, n, n, NULL);
+    g_auto(FlPotential) potential = {0};
+    g_auto(FlFlowMap) map = {0};
+    g_assert_true(fl_potential_init(&potential, n, n, NULL) &&
+                  fl_flow_map_init(&map, n, n, true, NULL));
+    const FlTransportProblem problem = {
+        .width = n, .height = n, .style = sliced, .pace = 1, .key = 1};
+    g_assert_true(fl_transport_solve(&problem, 1, &potential, NULL, NULL, NULL));
+    fl_potential_sum(&potential, sum);
+    fl_velocity(&map, sum, NULL, FL_TRANSPORT_GATHER, velocity);
+    fl_flow_map_run(&map, velocity);
+    fl_flow_map_carry(&map, NULL, carried);
+    for (int i = 0; i < n * n; i++)
+        flat[i] = 1;
+    FlSlicedTarget target = {n, n, flat, NULL};
+    const float before = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL, NULL);
+    target.density = carried;
+    const float after = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL, NULL);
+    g_test_message("loss %.4f of the flat ink, %.4f of the solution", before, after);
+    g_assert_cmpfloat(after, <, 0.05 * before);
+}
+
+/* ---- a region ----------------------------------------------------------------------------------
+ */
+
+/* A tile of waves 24 px long that move ink by up to 4 px. */
+static FlTile *waves(void)
+{
+    FlTile *tile = g_new0(FlTile, 1);
+    tile->style =
+        (FlTransportStyle){.size = 96, .ring_px = 12, .taper_px = 5, .pace = 1, .effort = 1};
+    tile->spline = g_new(float, 96 * 96);
+    for (int i = 0; i < 96 * 96; i++)
+        tile->spline[i] = 15 * sinf((float)(i % 96) * 0.2618f) * cosf((float)(i / 96) * 0.1309f);
+    return tile;
+}
+
+/* A disk of radius 40 at (x, 60), which has moved by `motion` px to the right. */
+static void draw_disk(FlGuides *guides, float x0, float motion)
+{
+    guides->has_motion = true;
+    for (size_t p = 0; p < PIXELS; p++) {
+        const float x = (float)(p % SIDE), y = (float)(p / SIDE);
+        guides->distance[p] = 40 - hypotf(x - x0, y - 60);
+        guides->mask[p] = (uint8_t)(255 * fminf(fmaxf(guides->distance[p] + 0.5f, 0), 1) + 0.5f);
+        guides->motion[2 * p] =
+            guides->mask[p] ? (int32_t)(motion * FL_MOTION_ONE) : FL_MOTION_UNKNOWN;
+        guides->motion[2 * p + 1] = guides->mask[p] ? 0 : FL_MOTION_UNKNOWN;
+    }
+}
+
+static FlCarriedInk *ink_of(const FlTile *tile, float strength)
+{
+    const FlCarriedInkInput input = {.tile = tile,
+                                     .width = SIDE,
+                                     .height = SIDE,
+                                     .scale = 1,
+                                     .strength = strength,
+                                     .seed = 3,
+                                     .colour = {{250, 240, 230}, {60000, 50000, 40000}}};
+    return fl_carried_ink_new(&input, NULL);
+}
+
+typedef struct Disk {
+    FlTile *tile;
+    FlCarriedInk *ink;
+    FlGuides guides;
+    float amount[PIXELS];
+    uint8_t rgb[3 * PIXELS];
+} Disk;
+
+static Disk *disk_new(float strength)
+{
+    Disk *disk = g_new0(Disk, 1);
+    disk->tile = waves();
+    disk->ink = ink_of(disk->tile, strength);
+    g_assert_true(fl_guides_init(&disk->guides, SIDE, SIDE, NULL));
+    return disk;
+}
+
+static void disk_free(Disk *disk)
+{
+    fl_carried_ink_free(disk->ink);
+    fl_tile_free(disk->tile);
+    fl_guides_clear(&disk->guides);
+    g_free(disk);
+}
+
+static void disk_frame(Disk *disk, float x, float motion)
+{
+    draw_disk(&disk->guides, x, motion);
+    g_assert_true(fl_carried_ink_amounts(disk->ink, &disk->guides, disk->amount, NULL));
+}
+
+static double mean_of(const Disk *disk, double *deviation)
+{
+    double n = 0, sum = 0, squares = 0;
+    for (size_t p = 0; p < PIXELS; p++) {
+        const double c = disk->guides.mask[p], d = disk->amount[p];
+        n += c, sum += c * d, squares += c * d * d;
+    }
+    *deviation = sqrt(squares / n - sum / n * sum / n);
+    return sum / n;
+}
+
+static void ink_is_neither_made_nor_lost(void)
+{
+    Disk *disk = disk_new(1);
+    double deviation;
+    for (int frame = 0; frame < 4; frame++) {
+        disk_frame(disk, 50 + 3 * (float)frame, 3);
+        g_assert_cmpfloat(fabs(mean_of(disk, &deviation) - 1), <, 1e-5);
+        g_assert_cmpfloat(deviation, >, 0.3); // and it has moved
+    }
+    disk_free(disk);
+}
+
+/* The same before the scalar that makes it exact: the map itself keeps the area of the shape. */
+static void the_map_itself_keeps_the_ink(void)
+{
+    g_auto(FlFlowMap) map = {0};
+    g_autofree float *velocity = g_new(float, 2 * PIXELS), *carried = g_new(float, PIXELS);
+    double mask = 0, sum = 0;
+    g_assert_true(fl_flow_map_init(&map, SIDE, SIDE, false, NULL));
+    for (size_t p = 0; p < PIXELS; p++) {
+        const float depth = 40 - hypotf((float)(p % SIDE) - 60, (float)(p / SIDE) - 60);
+        const float t = fminf(fmaxf(depth / 6, 0), 1), taper = t * t * (3 - 2 * t);
+        velocity[2 * p] = 5 * taper * cosf((float)(p % SIDE) * 0.26f);
+        velocity[2 * p + 1] = 5 * taper * sinf((float)(p / SIDE) * 0.26f);
+    }
+    fl_flow_map_run(&map, velocity);
+    fl_flow_map_carry(&map, NULL, carried);
+    for (size_t p = 0; p < PIXELS; p++)
+        if (hypotf((float)(p % SIDE) - 60, (float)(p / SIDE) - 60) < 40)
+            mask++, sum += carried[p];
+    g_test_message("%.4f of the ink", sum / mask);
+    g_assert_cmpfloat(fabs(sum / mask - 1), <, 0.02);
+}
+
+static void no_strength_is_a_flat_fill(void)
+{
+    Disk *disk = disk_new(0);
+    draw_disk(&disk->guides, 60, 0);
+    g_assert_true(fl_carried_ink_frame(disk->ink, &disk->guides, disk->rgb, NULL));
+    const uint8_t *middle = disk->rgb + 3 * (60 * SIDE + 60);
+    for (size_t p = 0; p < PIXELS; p++)
+        if (disk->guides.mask[p])
+            g_assert_cmpmem(disk->rgb + 3 * p, 3, middle, 3);
+    disk_free(disk);
+}
+
+static void the_pattern_rides_on_the_drawing(void)
+{
+    Disk *disk = disk_new(1);
+    disk_frame(disk, 50, 0);
+    g_autofree float *first = g_memdup2(disk->amount, sizeof disk->amount);
+    for (int frame = 1; frame <= 8; frame++)
+        disk_frame(disk, 50 + 2.5f * (float)frame, 2.5f); // 20 px in all
+    double difference = 0, n = 0, deviation;
+    mean_of(disk, &deviation);
+    for (size_t p = 0; p + 20 < PIXELS; p++)
+        if (p % SIDE + 20 < SIDE && disk->guides.distance[p + 20] > 3)
+            difference += fabs((double)disk->amount[p + 20] - first[p]), n++;
+    g_test_message("difference %.4f, deviation %.4f", difference / n, deviation);
+    g_assert_cmpfloat(difference / n, <, 0.02 * deviation);
+    disk_free(disk);
+}
+
+static void a_region_at_rest_has_the_same_bytes(void)
+{
+    Disk *disk = disk_new(1);
+    disk_frame(disk, 55.3f, 0);
+    g_autofree float *first = g_memdup2(disk->amount, sizeof disk->amount);
+    disk_frame(disk, 55.3f, 0);
+    g_assert_cmpmem(disk->amount, sizeof disk->amount, first, sizeof disk->amount);
+    disk_free(disk);
+}
+
+static void the_same_bytes_on_any_thread_count(void)
+{
+#ifdef _OPENMP
+    g_autofree float *one = NULL;
+    const int most = omp_get_max_threads();
+    for (int threads = 1; threads <= 5; threads += 2) {
+        omp_set_num_threads(threads);
+        Disk *disk = disk_new(1);
+        disk_frame(disk, 50, 0);
+        disk_frame(disk, 52.3f, 2.3f);
+        if (one)
+            g_assert_cmpmem(disk->amount, sizeof disk->amount, one, sizeof disk->amount);
+        else
+            one = g_memdup2(disk->amount, sizeof disk->amount);
+        disk_free(disk);
+    }
+    omp_set_num_threads(most);
+#else
+    g_test_skip("built without OpenMP");
+#endif
+}
+
+static void a_state_continues_as_if_nothing_had_been(void)
+{
+    Disk *disk = disk_new(1), *other = disk_new(1);
+    disk_frame(disk, 50, 0), disk_frame(disk, 52.6f, 2.6f);
+    g_autoptr(GBytes) state = fl_carried_ink_save(disk->ink, NULL);
+    g_assert_true(fl_carried_ink_load(other->ink, state, NULL));
+    disk_frame(disk, 55, 2.4f), disk_frame(other, 55, 2.4f);
+    g_assert_cmpmem(disk->amount, sizeof disk->amount, other->amount, sizeof disk->amount);
+    disk_free(disk);
+    disk_free(other);
+}
+
+static void a_damaged_state_is_refused(void)
+{
+    Disk *disk = disk_new(1);
+    disk_frame(disk, 50, 0);
+    g_autoptr(GBytes) state = fl_carried_ink_save(disk->ink, NULL);
+    gsize size;
+    g_autofree uint8_t *bytes = g_memdup2(g_bytes_get_data(state, NULL), g_bytes_get_size(state));
+    size = g_bytes_get_size(state);
+    const gsize cuts[] = {0, 7, 20, size - 1};
+    for (gsize k = 0; k < G_N_ELEMENTS(cuts); k++) {
+        g_autoptr(GBytes) cut = g_bytes_new(bytes, cuts[k]);
+        g_autoptr(GError) error = NULL;
+        g_assert_false(fl_carried_ink_load(disk->ink, cut, &error));
+        g_assert_error(error, FL_ERROR, FL_ERROR_CHANGED);
+    }
+    memset(bytes + 40, 0xff, 8); // not a number
+    g_autoptr(GBytes) wild = g_bytes_new(bytes, size);
+    g_autoptr(GError) error = NULL;
+    g_assert_false(fl_carried_ink_load(disk->ink, wild, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_CHANGED);
+    disk_free(disk);
+}
+
+/* A shape that doubles its size within 40 frames gets a pattern of its own size again; nothing
+ * jumps meanwhile. */
+static void what_is_stretched_is_laid_anew_by_and_by(void)
+{
+    Disk *disk = disk_new(1);
+    FlMaterial material = {0};
+    float strain = 0, most = 0;
+    draw_disk(&disk->guides, 60, 0);
+    g_autofree float *before = NULL;
+    for (int frame = 0; frame < 40; frame++) {
+        for (size_t p = 0; p < PIXELS; p++) { // 2 % a frame, about the middle
+            disk->guides.motion[2 * p] =
+                (int32_t)(((float)(p % SIDE) - 60) * 0.02f * FL_MOTION_ONE);
+            disk->guides.motion[2 * p + 1] =
+                (int32_t)(((float)(p / SIDE) - 60) * 0.02f * FL_MOTION_ONE);
+        }
+        g_assert_true(fl_carried_ink_amounts(disk->ink, &disk->guides, disk->amount, NULL));
+        FlMaterial now;
+        g_assert_true(
+            fl_material_advance(&material, &disk->guides, (FlRect){0, 0, SIDE, SIDE}, &now, NULL));
+        fl_material_clear(&material);
+        material = now, strain = fl_material_strain(&material, &disk->guides);
+        double change = 0, n = 0;
+        for (size_t p = 0; before && p < PIXELS; p++)
+            if (disk->guides.mask[p])
+                change += fabsf(disk->amount[p] - before[p]), n++;
+        if (before)
+            most = fmaxf(most, (float)(change / n));
+        g_free(before);
+        before = g_memdup2(disk->amount, sizeof disk->amount);
+    }
+    g_test_message("strain %.2f, largest change %.3f", (double)strain, (double)most);
+    g_assert_cmpfloat(strain, >, 0.8); // without a relaxed material
+    g_assert_cmpfloat(most, <, 0.25);
+    fl_material_clear(&material);
+    disk_free(disk);
+}
+
+/* ---- style folders -----------------------------------------------------------------------------
+ */
+
+static void expect_refusal(const char *folder, const char *ini, const char *says)
+{
+    g_autofree char *path = g_build_filename(folder, "style.ini", NULL);
+    g_autoptr(GError) error = NULL;
+    g_assert_true(g_file_set_contents(path, ini, -1, NULL));
+    g_autoptr(FlTile) tile = fl_tile_load(folder, 1, &error);
+    g_assert_null(tile);
+    g_assert_error(error, FL_ERROR, FL_ERROR_STYLE);
+    g_test_message("%s", error->message);
+    g_assert_nonnull(strstr(error->message, says));
+}
+
+static void bad_style_folders_are_named(void)
+{
+    g_autofree char *folder = g_dir_make_tmp("transport-XXXXXX", NULL);
+    g_autofree char *png = g_build_filename(folder, "transport.png", NULL);
+    g_autofree char *ini = g_build_filename(folder, "style.ini", NULL);
+    g_autofree float *potential = g_new0(float, 64 * 64);
+    expect_refusal(folder, "[transport]\n", "no such file");
+    g_assert_true(fl_tile_save(potential, 64, folder, NULL));
+    expect_refusal(folder, "[transport]\nsize = 128\n", "64x64 pixels: expected 128x128");
+    expect_refusal(folder, "[transport]\nmotion = swirl\n",
+                   "style.ini:2: motion = swirl: expected");
+    expect_refusal(folder, "[transport]\ntapir = 3\n", "style.ini:2: unknown key");
+    g_assert_true(g_file_set_contents(png, "no picture", -1, NULL));
+    expect_refusal(folder, "[transport]\nsize = 64\n", "transport.png");
+    g_unlink(png), g_unlink(ini), g_rmdir(folder);
+}
+
+static void a_tile_is_read_as_it_was_written(void)
+{
+    g_autofree char *folder = g_dir_make_tmp("transport-XXXXXX", NULL);
+    g_autofree char *png = g_build_filename(folder, "transport.png", NULL);
+    g_autofree char *ini = g_build_filename(folder, "style.ini", NULL);
+    g_autofree float *potential = g_new(float, 64 * 64);
+    for (int i = 0; i < 64 * 64; i++)
+        potential[i] = 20 * sinf((float)(i % 64) * 0.3927f) * cosf((float)(i / 64) * 0.3927f);
+    g_assert_true(g_file_set_contents(ini, "[transport]\nsize = 64\n", -1, NULL));
+    g_assert_true(fl_tile_save(potential, 64, folder, NULL));
+    g_autoptr(FlTile) tile = fl_tile_load(folder, 2, NULL);
+    for (int i = 0; i < 64 * 64; i++) {
+        float g[2];
+        const float x = (float)(i % 64), y = (float)(i / 64);
+        fl_tile_gradient(tile, x - 64, y + 128, g); // it repeats
+        g_assert_cmpfloat(fabsf(g[0] - 7.854f * cosf(x * 0.3927f) * cosf(y * 0.3927f)), <, 0.05);
+        g_assert_cmpfloat(fabsf(g[1] + 7.854f * sinf(x * 0.3927f) * sinf(y * 0.3927f)), <, 0.05);
+    }
+    g_unlink(png), g_unlink(ini), g_rmdir(folder);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name) g_test_add_func("/transport/" #name, name)
+    TEST(adjoints_agree_with_differences);
+    TEST(the_loss_has_the_derivative_it_says);
+    TEST(a_solution_looks_like_its_picture);
+    TEST(ink_is_neither_made_nor_lost);
+    TEST(the_map_itself_keeps_the_ink);
+    TEST(no_strength_is_a_flat_fill);
+    TEST(the_pattern_rides_on_the_drawing);
+    TEST(a_region_at_rest_has_the_same_bytes);
+    TEST(the_same_bytes_on_any_thread_count);
+    TEST(a_state_continues_as_if_nothing_had_been);
+    TEST(a_damaged_state_is_refused);
+    TEST(what_is_stretched_is_laid_anew_by_and_by);
+    TEST(bad_style_folders_are_named);
+    TEST(a_tile_is_read_as_it_was_written);
+    return g_test_run();
+}
