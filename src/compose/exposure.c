@@ -54,6 +54,8 @@ static bool find_exposure(const FlComposeInput *input, const FlDrawList *draws, 
 {
     const FlPaintedRegion *painted = input->painted[p];
     const FlRect rect = painted->rect;
+    if ((*exposure = painted->exposure) > 0)
+        return true;
     g_autofree uint8_t *mask = fl_alloc(fl_rect_pixels(rect), 1, "a mask", error);
     if (!mask)
         return false;

@@ -71,6 +71,14 @@ static void count_amounts(const FlInk *ink, const uint8_t *rgb, const uint8_t *m
             h->count[fl_ink_amount(ink, rgb + 3 * i)]++, h->total++;
 }
 
+static int mean_amount(const FlAmountCounts *h)
+{
+    uint64_t sum = 0;
+    for (uint64_t a = 0; a < FL_AMOUNTS; a++)
+        sum += a * h->count[a];
+    return h->total ? (int)(sum / h->total) : 0;
+}
+
 /** Percent of the pixels whose amount would be below minus a tenth of the median. */
 static int percent_beyond(const FlInk *ink, const uint8_t *rgb, const uint8_t *mask, size_t n)
 {
@@ -123,6 +131,8 @@ FlInk *fl_ink_new(const uint8_t paper[3], const uint8_t *rgb, const uint8_t *mas
     const int one = FL_AMOUNT_ONE * FL_AMOUNT_ONE / percentile(h, 50);
     set_parts(ink, median, CLAMP(one, FL_AMOUNT_ONE / 4, FL_AMOUNT_ONE * 4) * 256);
     count_amounts(ink, rgb, mask, n_pixels, h);
+    memcpy(ink->density, median, sizeof ink->density);
+    ink->mean = mean_amount(h);
     ink->beyond = percent_beyond(ink, rgb, mask, n_pixels);
     ink->spread = (percentile(h, 84) - percentile(h, 16)) / 2;
     ink->shoulder = shoulder_for(percentile(h, PEAK_PERCENT));

@@ -39,6 +39,8 @@ typedef struct FlInk {
     int32_t toe_end;      // 0 … toe
     int32_t toe_share;    // of the bend that is taken, 0 … FL_AMOUNT_ONE
     int32_t shoulder;     // amounts above one end at one plus this; 0: no end
+    int32_t density[3];   // of the median colour over the paper, by channel: FL_DENSITY_ONE
+    int32_t mean;         // amount of the exemplar's interior; the median is FL_AMOUNT_ONE
     int32_t spread;       // half of what lies between the 16th and the 84th percentile
     int beyond;           // percent of the pixels on the paper's other side, which count as bare:
                           // lighter than the paper where the median is darker, or darker

@@ -29,6 +29,7 @@ typedef struct FlPaintedRegion {
     const FlRegionSettings *settings; // how it is painted
     const FlStyleInstance *style;     // with what
     int width, height;                // of the drawing as it is painted, px
+    int exposure;                     // of its amounts; 0: as the paint itself asks for
     FlRect rect;                      // the part of it in which the region ever is, with some room
     uint8_t *painted;                 // of rect: 3 bytes of sRGB a pixel, the exemplar's colours
     FlFrameStats stats;               // of the last frame that was painted, as is what follows

@@ -1,6 +1,8 @@
 #include "job/engine.h"
 
 #include "lazy/lazy.h"
+#include "transport/carried_ink.h"
+#include <string.h>
 
 /* ---- patch: a field of matches into the recording, then the vote [F21] ------------------------
  */
@@ -77,14 +79,99 @@ static bool lazy_load(void *state, GBytes *bytes, GError **error)
     return fl_lazy_load(state, bytes, error);
 }
 
+/* ---- transport: the region's own ink, moved by the style's tile [KAGS19] ------------------------
+ */
+
+typedef struct Transport {
+    FlTile *tile;
+    FlCarriedInk *ink;
+} Transport;
+
+/* Amounts of transport are relative to the mean, those of an ink to its median. */
+static int transport_exposure(const FlStyleInstance *style)
+{
+    return FL_EXPOSURE_ONE * FL_AMOUNT_ONE / MAX(style->ink->mean, 1);
+}
+
+static void transport_close(void *state)
+{
+    Transport *transport = state;
+    fl_carried_ink_free(transport->ink);
+    fl_tile_free(transport->tile);
+    g_free(transport);
+}
+
+static void *transport_open(const FlEngineInput *input, GError **error)
+{
+    Transport *transport = g_new0(Transport, 1);
+    const FlInk *ink = input->style->ink;
+    FlCarriedInkInput carried = {.width = input->size.width,
+                                 .height = input->size.height,
+                                 .scale = input->style->enlarged,
+                                 .strength = (float)input->settings->strength,
+                                 .seed = input->seed};
+    memcpy(carried.colour.paper, ink->paper, sizeof carried.colour.paper);
+    for (int c = 0; c < 3; c++)
+        carried.colour.density[c] = (int32_t)((int64_t)ink->density[c] * ink->mean / FL_AMOUNT_ONE);
+    carried.tile = transport->tile =
+        fl_tile_load(input->style->path, input->style->enlarged, error);
+    if (transport->tile && (transport->ink = fl_carried_ink_new(&carried, error)))
+        return transport;
+    transport_close(transport);
+    return NULL;
+}
+
+static void transport_measure(void *state, bool energies)
+{
+    (void)state, (void)energies; // there are none
+}
+
+static bool transport_frame(void *state, const FlGuides *guides, const FlEnginePaint *paint,
+                            GError **error)
+{
+    return fl_carried_ink_frame(((Transport *)state)->ink, guides, paint->rgb, error);
+}
+
+static GBytes *transport_save(void *state, GError **error)
+{
+    return fl_carried_ink_save(((Transport *)state)->ink, error);
+}
+
+static bool transport_load(void *state, GBytes *bytes, GError **error)
+{
+    return fl_carried_ink_load(((Transport *)state)->ink, bytes, error);
+}
+
 /* ---- the table --------------------------------------------------------------------------------
  */
 
 static const FlEngine engines[] = {
-    [FL_ENGINE_PATCH] = {"patch", claims_all, patch_open, patch_close, patch_measure, patch_frame,
-                         patch_save, patch_load},
-    [FL_ENGINE_LAZYFLUIDS] = {"lazyfluids", NULL, lazy_open, lazy_close, lazy_measure, lazy_frame,
-                              lazy_save, lazy_load},
+    [FL_ENGINE_PATCH] = {.name = "patch",
+                         .claims = claims_all,
+                         .plays = true,
+                         .open = patch_open,
+                         .close = patch_close,
+                         .measure = patch_measure,
+                         .frame = patch_frame,
+                         .save = patch_save,
+                         .load = patch_load},
+    [FL_ENGINE_LAZYFLUIDS] = {.name = "lazyfluids",
+                              .plays = true,
+                              .open = lazy_open,
+                              .close = lazy_close,
+                              .measure = lazy_measure,
+                              .frame = lazy_frame,
+                              .save = lazy_save,
+                              .load = lazy_load},
+    [FL_ENGINE_TRANSPORT] = {.name = "transport",
+                             .claims = fl_tile_exists,
+                             .exposure = transport_exposure,
+                             .open = transport_open,
+                             .close = transport_close,
+                             .measure = transport_measure,
+                             .frame = transport_frame,
+                             .save = transport_save,
+                             .load = transport_load},
 };
 
 const FlEngine *fl_engine_choose(FlEngineChoice choice, const char *style_folder)

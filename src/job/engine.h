@@ -27,6 +27,10 @@ typedef struct FlEnginePaint {
 typedef struct FlEngine {
     const char *name;
     bool (*claims)(const char *style_folder); // whether it is the engine of a style; NULL: of none
+    /** The exposure of a style's paint whose amounts are meant as they are; NULL: it is measured.
+     */
+    int (*exposure)(const FlStyleInstance *style);
+    bool plays; // shows the recording: whether it flows and is large enough matters
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);
     void (*close)(void *state);                  // NULL is fine

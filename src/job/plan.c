@@ -92,10 +92,11 @@ static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GErro
     for (const FlRegionPlan *p = plan->painted; p < painted; p++)
         if (p->style == style)
             return true;
-    if (style->exemplar->level[0].n_frames == 1 &&
+    if (painted->engine->plays && style->exemplar->level[0].n_frames == 1 &&
         !warn(plan, error, "%s: one frame is used: its paint does not flow", style->path))
         return false;
-    if (style->enlarged > coarse && painted->settings.params.style_by_page &&
+    if (painted->engine->plays && style->enlarged > coarse &&
+        painted->settings.params.style_by_page &&
         !warn(plan, error,
               "%s: its pictures are enlarged %.2g times and look soft; a page as large as this one "
               "wants a larger recording, with a scale below 1 in its style.ini",
@@ -218,9 +219,11 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     const float px = texture_px(plan, &painted->settings.params);
     scale_lengths(&painted->settings.params, px);
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
-    if (!painted->style || !warn_of_style(plan, painted, error))
+    if (!painted->style)
         return false;
     painted->engine = fl_engine_choose(painted->settings.engine, painted->style->path);
+    if (!warn_of_style(plan, painted, error))
+        return false;
     if (plan->options.verbose)
         send_line(plan, plan->options.note, "region %s: style %s, engine %s", r->name,
                   painted->style->path, painted->engine->name);

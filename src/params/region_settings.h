@@ -29,6 +29,7 @@ typedef enum FlEngineChoice {
     FL_ENGINE_AUTO, // the style's
     FL_ENGINE_PATCH,
     FL_ENGINE_LAZYFLUIDS,
+    FL_ENGINE_TRANSPORT,
 } FlEngineChoice;
 
 /** What kept lines and small shapes beside them are drawn with. */
@@ -56,6 +57,7 @@ typedef enum FlPassthrough {
 typedef struct FlRegionSettings {
     char *style; // a name or a path; NULL: not set
     FlEngineChoice engine;
+    double strength; // of transport: factor on the way of the ink
     FlTint tint;
     bool has_colour;   // with FL_TINT_FILL: `colour` instead of the drawing's fill
     uint8_t colour[3]; // sRGB

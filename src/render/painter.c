@@ -148,6 +148,8 @@ void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan 
                                       .style = region->style,
                                       .width = fl_drawing_width(plan->drawing),
                                       .height = fl_drawing_height(plan->drawing)}};
+    if (region->engine->exposure)
+        painter->result.exposure = region->engine->exposure(region->style);
     painter->n_pictures = (fl_drawing_frames(plan->drawing) - 1) / region->settings.hold + 1;
     painter->wrap = region->loops ? MIN(painter->n_pictures, WRAP) : 0;
     painter->reuse = reuse;
