@@ -1,5 +1,5 @@
 #!/bin/bash
-# The bundled styles from their recipes, byte for byte. usage: rebuild.sh PROGRAM STYLES; speaks TAP.
+# The bundled styles from their recipes and pictures, byte for byte. usage: rebuild.sh PROGRAM STYLES; speaks TAP.
 # A minute or two of simulation, so it is a benchmark: it also tells the cost of a frame.
 set -u
 export LC_ALL=C
@@ -11,7 +11,12 @@ for style in "$2"/*/; do
     name=$(basename "$style")
     n=$((n + 1))
     start=$(date +%s%N)
-    "$program" simulate -q "$style/recipe.ini" -o "$folder/$name" 2>"$folder/err"
+    if [ -e "$style/recipe.ini" ]; then
+        "$program" simulate -q "$style/recipe.ini" -o "$folder/$name" 2>"$folder/err"
+    else # its picture is not made by the program, but what moves ink is
+        cp -r "$style" "$folder/$name" && rm "$folder/$name/transport.png" &&
+            "$program" transport -q "$folder/$name" 2>"$folder/err"
+    fi
     took=$(($(date +%s%N) - start))
     if found=$(diff -rq --exclude=recipe.ini "$style" "$folder/$name"); then
         frames=$(find "$folder/$name/frames" -name '*.png' | wc -l)

@@ -60,6 +60,12 @@ paint carried "${moved[@]}" && grep -q 'resuming an earlier run' err &&
     same carried carried_whole
 result $? 'paint that is carried goes on as it would have'
 
+ink=(--engine transport --style "$(dirname "$style")/styles/12")
+paint ink_whole "${ink[@]}"
+stop ink INT 3 "${ink[@]}"
+paint ink "${ink[@]}" && grep -q 'resuming an earlier run' err && same ink ink_whole
+result $? 'ink that is moved goes on as it would have'
+
 stop twice 'INT TERM' 1
 found=$?
 [ $found = 143 ] || [ $found = 75 ] # the second came too late for a render that had ended

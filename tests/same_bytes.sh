@@ -40,6 +40,14 @@ result $? 'frames that are held are merged alike'
 paint other --seed 2 --layers "other/$layers" && ! same other one
 result $? 'another seed paints something else'
 
+# The transport of ink.
+ink=(--style "$(dirname "$style")/styles/13")
+paint ink -j 1 "${ink[@]}" && paint ink_many -j 4 "${ink[@]}" && same ink_many ink &&
+    FLUIDY_CPU_MASK=0 paint ink_plain "${ink[@]}" && same ink_plain ink && ! same ink one
+result $? 'ink is moved alike by four threads and without the larger instruction sets'
+paint flat "${ink[@]}" --strength 0 && ! same flat ink
+result $? 'without strength it stays where it is'
+
 # Lines over the paint, drawn by hand.
 mkdir lined
 for i in 1 2 3 4; do
