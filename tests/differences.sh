@@ -8,8 +8,8 @@ cd "$folder" || exit 1
 # What cannot be taken apart at all is one region.
 table() {
     cat <<'EOF'
-blend-alone-in-an-isolated-group 2
-blend-in-a-masked-group 2
+blend-alone-in-an-isolated-group 1
+blend-in-a-masked-group 1
 blend-in-an-isolated-group 2
 blend-of-a-group 2
 clip-by-a-hidden-box 1

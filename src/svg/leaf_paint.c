@@ -198,7 +198,7 @@ static void merge_surface(Reader *r, const char *surface, double alpha, FlBlendM
         if (strcmp(op->surface, surface) != 0)
             continue;
         op->alpha *= alpha;
-        op->mix = mix; // what it blended with is on that surface
+        op->mix = mix == FL_BLEND_MODE_OVER ? op->mix : mix;
         g_strlcpy(op->surface, top(r)->surface, sizeof op->surface);
     }
 }
