@@ -310,10 +310,10 @@ static const Variant methods[] = {
      "vote.",
      PRESET("fluid")},
     {"transport",
-     "Transport: each region moves its own ink until it looks like the style, and keeps its "
-     "amount.",
-     1,
-     {{.name = "engine", .value = "transport"}}},
+     "Transport: each region moves its own ink until it looks like the style, Pools unless another "
+     "one is given, and keeps its amount.",
+     2,
+     {{.name = "engine", .value = "transport"}, {.name = "style", .value = "pools"}}},
 };
 
 static const Variant *find_method(const char *name, GError **error)
