@@ -143,7 +143,7 @@ result $? '--preview paints a frame and those beside it, again and again'
 "$program" whole --styles 01,03 >out 2>err && [ "$(ls fluidy)" = w_styles.png ] && rm -r fluidy &&
     "$program" whole --styles 01,03 -o sheet.png -f 2 -q >out 2>err && [ -s sheet.png ] && [ ! -s err ]
 result $? '--styles is a sheet'
-"$program" whole -s 01 --methods fluidymation,lazyfluids,lazyfluids:w-uni=0 -W 64 >out 2>err &&
+"$program" whole -s 01 --methods fluidymation,lazyfluids,lazyfluids:w-uni=0,transport -W 64 >out 2>err &&
     [ "$(ls fluidy)" = "$(printf 'w_methods.%s\n' html png)" ] &&
     grep -q '<dt><b>lazyfluids</b></dt><dd>.*begins again' fluidy/w_methods.html && rm -r fluidy
 result $? '--methods is a sheet and a page'
