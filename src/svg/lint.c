@@ -50,8 +50,9 @@ static void check_target(const Lint *lint, const xmlNode *node, const char *name
     if (!hash)
         return;
     hash += 4 + strspn(hash + 4, " \"'");
-    g_autofree char *id = g_strndup(hash + 1, strcspn(hash + 1, ")\"' "));
-    if (hash[0] == '#' && g_hash_table_contains(lint->ids, id))
+    const size_t n = strcspn(hash, ")\"' ");
+    g_autofree char *id = n > 0 ? g_strndup(hash + 1, n - 1) : NULL;
+    if (id && hash[0] == '#' && g_hash_table_contains(lint->ids, id))
         return;
     const bool paint = strcmp(name, "fill") == 0 || strcmp(name, "stroke") == 0;
     const bool fallback = paint && strchr(hash, ')') && strchr(hash, ')')[1];
