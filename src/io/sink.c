@@ -47,7 +47,7 @@ const FlSinkFormat *fl_sink_format(const char *name, const char *path, GError **
 {
     for (int i = 0; formats[i]; i++)
         if (name ? strcmp(name, formats[i]->name) == 0
-                 : formats[i]->suffix && has_suffix(path, formats[i]->suffix))
+                 : path && formats[i]->suffix && has_suffix(path, formats[i]->suffix))
             return formats[i];
     no_format(name, path, error);
     return NULL;

@@ -405,7 +405,7 @@ static bool paint(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *a
 bool fl_lazy_frame(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
                    FlFrameStats *stats, FlSynthView *view, GError **error)
 {
-    FlFrameStats no_stats;
+    FlFrameStats no_stats = {0};
     FlFrameStats *const s = stats ? stats : &no_stats;
     *s = (FlFrameStats){0};
     const bool done = paint(lazy, guides, rgb, alpha, s, error);

@@ -73,8 +73,7 @@ static inline void scatter_gradient(const FlFlowMap *map, float *f, int channels
 void fl_velocity(const FlFlowMap *map, const float *potential, const float *taper,
                  FlTransportMode mode, float *velocity)
 {
-    const size_t n = (size_t)map->width * map->height;
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(n))
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(at(map, 0, map->height)))
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
@@ -164,8 +163,7 @@ static inline Cell cell_of(const FlFlowMap *map, const float *u, int x, int y)
 
 static void square(const FlFlowMap *map, const float *u, float *twice)
 {
-    const size_t n = (size_t)map->width * map->height;
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(n))
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(at(map, 0, map->height)))
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
@@ -197,8 +195,7 @@ void fl_flow_map_run(FlFlowMap *map, const float *velocity)
 void fl_flow_map_carry(const FlFlowMap *map, const float *density, float *carried)
 {
     const float *u = map->u[FL_SQUARINGS];
-    const size_t n = (size_t)map->width * map->height;
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(n))
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(at(map, 0, map->height)))
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
