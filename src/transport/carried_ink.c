@@ -4,13 +4,13 @@
 #include "base/density.h"
 #include "base/rng.h"
 #include "base/schedule.h"
-#include "transport/material.h"
+#include "transport/material_layers.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
-#define STRAINED 0.4f     // from here on the pattern is laid anew
-#define FADE 12           // frames in which it is
+#define REACH 8           // px of the tile over which strain is judged
+#define LEAST_REACH 5     // px of the drawing
 #define FARTHEST 14.0f    // px that ink moves at most: what the squarings are good for
 #define AMOUNT_STEPS 1024 // in the table of colours, of an amount of 1
 #define MOST_AMOUNT 8
@@ -18,9 +18,7 @@
 struct FlCarriedInk {
     FlCarriedInkInput input;
     float origin[2]; // of the region on the tile, px of the drawing
-    FlMaterial material;
-    FlMaterial fresh;     // that takes its place, in a fade
-    int fade;             // frames of it that are done; 0: there is none
+    FlMaterialLayers layers;
     uint8_t (*colour)[3]; // by amount
 };
 
@@ -51,8 +49,7 @@ void fl_carried_ink_free(FlCarriedInk *ink)
 {
     if (!ink)
         return;
-    fl_material_clear(&ink->material);
-    fl_material_clear(&ink->fresh);
+    fl_material_layers_clear(&ink->layers);
     free(ink->colour);
     g_free(ink);
 }
@@ -72,33 +69,6 @@ static FlRect mask_rect(const FlGuides *guides)
             }
     const FlRect page = {0, 0, guides->width, guides->height};
     return x1 > x0 ? fl_rect_grown((FlRect){x0, y0, x1 - x0, y1 - y0}, 2, page) : (FlRect){0};
-}
-
-static bool advance(FlMaterial *material, const FlGuides *guides, FlRect rect, GError **error)
-{
-    FlMaterial now;
-    if (!fl_material_advance(material, guides, rect, &now, error))
-        return false;
-    fl_material_clear(material);
-    *material = now;
-    return true;
-}
-
-/* Carries the material on; where it is strained, a relaxed one takes its place. */
-static bool advance_all(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GError **error)
-{
-    if (!advance(&ink->material, guides, rect, error) ||
-        (ink->fade > 0 && !advance(&ink->fresh, guides, rect, error)))
-        return false;
-    if (ink->fade > 0 && ++ink->fade > FADE) {
-        fl_material_clear(&ink->material);
-        ink->material = ink->fresh;
-        ink->fresh = (FlMaterial){0}, ink->fade = 0;
-    }
-    if (ink->fade > 0 || fl_material_strain(&ink->material, guides) < STRAINED)
-        return true;
-    ink->fade = 1;
-    return fl_material_relaxed(&ink->material, guides, &ink->fresh, error);
 }
 
 /* ---- the velocity ------------------------------------------------------------------------------
@@ -135,14 +105,6 @@ static void add_velocity(const FlCarriedInk *ink, const FlMaterial *material, in
     velocity[1] += share * scale * (turn[1] * along + turn[0] * down);
 }
 
-/* Two patterns add up to one of the same contrast. */
-static void shares_of(int fade, float *old, float *fresh)
-{
-    const float t = (float)fade / FADE, s = t * t * (3 - 2 * t);
-    const float length = sqrtf(s * s + (1 - s) * (1 - s));
-    *old = (1 - s) / length, *fresh = s / length;
-}
-
 /* Ink stays in the region: the nearer to the contour, the less it moves. */
 static float taper_at(const FlCarriedInk *ink, const FlGuides *guides, size_t p)
 {
@@ -153,9 +115,7 @@ static float taper_at(const FlCarriedInk *ink, const FlGuides *guides, size_t p)
 
 static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, float *velocity)
 {
-    const FlRect rect = ink->material.rect;
-    float old, fresh;
-    shares_of(ink->fade, &old, &fresh);
+    const FlRect rect = ink->layers.old.rect;
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(rect)))
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
@@ -163,13 +123,16 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, float
                 ink->input.strength *
                 taper_at(ink, guides,
                          (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x));
-            float *v = velocity + 2 * ((size_t)y * (size_t)rect.width + (size_t)x);
+            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
+            float *v = velocity + 2 * p, old, fresh;
             v[0] = v[1] = 0;
             if (taper == 0)
                 continue;
-            add_velocity(ink, &ink->material, x, y, taper * old, v);
-            if (ink->fade > 0)
-                add_velocity(ink, &ink->fresh, x, y, taper * fresh, v);
+            fl_material_layers_weights(&ink->layers, p, &old, &fresh);
+            if (old > 0)
+                add_velocity(ink, &ink->layers.old, x, y, taper * old, v);
+            if (fresh > 0)
+                add_velocity(ink, &ink->layers.fresh, x, y, taper * fresh, v);
             const float speed = sqrtf(v[0] * v[0] + v[1] * v[1]);
             const float held = speed > FARTHEST ? FARTHEST / speed : 1;
             v[0] *= held, v[1] *= held;
@@ -233,21 +196,16 @@ static bool move_ink(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, flo
     return true;
 }
 
-static void forget(FlCarriedInk *ink)
-{
-    fl_material_clear(&ink->material);
-    fl_material_clear(&ink->fresh);
-    ink->fade = 0;
-}
-
 bool fl_carried_ink_amounts(FlCarriedInk *ink, const FlGuides *guides, float *amount,
                             GError **error)
 {
     const FlRect rect = mask_rect(guides);
     memset(amount, 0, (size_t)guides->width * (size_t)guides->height * sizeof *amount);
+    const int reach = MAX((int)(REACH * ink->input.scale + 0.5f), LEAST_REACH);
     if (rect.width > 0)
-        return advance_all(ink, guides, rect, error) && move_ink(ink, guides, rect, amount, error);
-    forget(ink);
+        return fl_material_layers_advance(&ink->layers, guides, rect, reach, error) &&
+               move_ink(ink, guides, rect, amount, error);
+    fl_material_layers_clear(&ink->layers);
     return true;
 }
 
@@ -267,27 +225,31 @@ bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rg
 /* ---- the state ---------------------------------------------------------------------------------
  */
 
-/* The bytes start with this; the shifts of the material and, in a fade, of the fresh one follow. */
+/* The bytes start with this; the shifts of the old layer follow and, if there are two, those of the
+ * fresh one and the shares. */
 typedef struct Header {
-    int32_t fade, x, y, width, height;
+    int32_t planes, x, y, width, height;
 } Header;
 
 static_assert(sizeof(Header) == 20, "the header has no padding");
 
+#define MOST_PLANES 3
+
 GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
 {
-    const FlRect r = ink->material.rect;
+    const FlMaterialLayers *layers = &ink->layers;
+    const FlRect r = layers->old.rect;
     const size_t plane = 2 * fl_rect_pixels(r) * sizeof(float);
-    const Header header = {ink->fade, r.x, r.y, r.width, r.height};
-    const size_t size = sizeof header + (ink->fade > 0 ? 2 : 1) * plane;
+    const float *planes[MOST_PLANES] = {layers->old.shift, layers->fresh.shift,
+                                        layers->share.shift};
+    const Header header = {layers->share.shift ? MOST_PLANES : 1, r.x, r.y, r.width, r.height};
+    const size_t size = sizeof header + (size_t)header.planes * plane;
     uint8_t *bytes = fl_alloc(size, 1, "the state of a region", error);
     if (!bytes)
         return NULL;
     memcpy(bytes, &header, sizeof header);
-    if (plane > 0)
-        memcpy(bytes + sizeof header, ink->material.shift, plane);
-    if (ink->fade > 0)
-        memcpy(bytes + sizeof header + plane, ink->fresh.shift, plane);
+    for (int k = 0; k < header.planes && plane > 0; k++)
+        memcpy(bytes + sizeof header + (size_t)k * plane, planes[k], plane);
     return g_bytes_new_with_free_func(bytes, size, free, bytes);
 }
 
@@ -298,7 +260,8 @@ static bool damaged(GError **error, const char *what)
 }
 
 /* Shifts are used as indices, so each must be a number that is not far off. */
-static bool load_shifts(FlMaterial *material, FlRect rect, const uint8_t *bytes, GError **error)
+static bool load_plane(FlMaterial *material, FlRect rect, const uint8_t *bytes, float most,
+                       GError **error)
 {
     const size_t n = 2 * fl_rect_pixels(rect);
     if (!(material->shift = fl_alloc(n, sizeof(float), "a material", error)))
@@ -306,8 +269,21 @@ static bool load_shifts(FlMaterial *material, FlRect rect, const uint8_t *bytes,
     memcpy(material->shift, bytes, n * sizeof(float));
     material->rect = rect;
     for (size_t i = 0; i < n; i++)
-        if (!(fabsf(material->shift[i]) < 1e7f))
+        if (!(fabsf(material->shift[i]) <= most))
             return damaged(error, "its material lies nowhere");
+    return true;
+}
+
+static bool load_planes(FlMaterialLayers *layers, const Header *h, const uint8_t *bytes,
+                        GError **error)
+{
+    const FlRect rect = {h->x, h->y, h->width, h->height};
+    const size_t plane = 2 * fl_rect_pixels(rect) * sizeof(float);
+    FlMaterial *material[MOST_PLANES] = {&layers->old, &layers->fresh, &layers->share};
+    const float most[MOST_PLANES] = {1e7f, 1e7f, 1};
+    for (int k = 0; k < h->planes; k++)
+        if (!load_plane(material[k], rect, bytes + (size_t)k * plane, most[k], error))
+            return false;
     return true;
 }
 
@@ -316,26 +292,20 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
     size_t size;
     const uint8_t *bytes = g_bytes_get_data(state, &size);
     Header h;
-    forget(ink);
+    fl_material_layers_clear(&ink->layers);
     if (size < sizeof h)
         return damaged(error, "it is cut short");
     memcpy(&h, bytes, sizeof h);
     const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
                       h.width <= ink->input.width && h.height <= ink->input.height &&
                       h.x <= ink->input.width - h.width && h.y <= ink->input.height - h.height;
-    if (!fits || h.fade < 0 || h.fade > FADE)
+    if (!fits || (h.planes != 1 && h.planes != MOST_PLANES))
         return damaged(error, "its material lies outside the frame");
-    const FlRect rect = {h.x, h.y, h.width, h.height};
-    const size_t plane = 2 * fl_rect_pixels(rect) * sizeof(float);
-    if (size != sizeof h + (h.fade > 0 ? 2 : 1) * plane)
+    const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
+    if (size != sizeof h + (size_t)h.planes * plane)
         return damaged(error, "it has another size");
-    if (plane == 0)
+    if (plane == 0 || load_planes(&ink->layers, &h, bytes + sizeof h, error))
         return true;
-    if (load_shifts(&ink->material, rect, bytes + sizeof h, error) &&
-        (h.fade == 0 || load_shifts(&ink->fresh, rect, bytes + sizeof h + plane, error))) {
-        ink->fade = h.fade;
-        return true;
-    }
-    forget(ink);
+    fl_material_layers_clear(&ink->layers);
     return false;
 }

@@ -4,7 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-#define LEAST_SIDE 2 // px; the coarsest level of what is continued
+#define LEAST_SIDE 2     // px; the coarsest level of what is continued
+#define UNSTRAINED 1.35f // factors by which a pattern may be stretched or squeezed
+#define STRAINED 1.9f
 
 void fl_material_clear(FlMaterial *material)
 {
@@ -124,8 +126,9 @@ static bool continue_shifts(Level *level, GError **error)
     return true;
 }
 
-bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRect rect,
-                         FlMaterial *now, GError **error)
+/* `less` of the motion is subtracted from what is carried. */
+static bool carry(const FlMaterial *before, const FlGuides *guides, FlRect rect, float less,
+                  FlMaterial *now, GError **error)
 {
     Level level[MOST_LEVELS] = {{0}};
     *now = (FlMaterial){0};
@@ -142,7 +145,7 @@ bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRec
                 continue;
             shift_at(before, (float)(x + rect.x) - motion[0], (float)(y + rect.y) - motion[1],
                      shift);
-            shift[0] -= motion[0], shift[1] -= motion[1];
+            shift[0] -= less * motion[0], shift[1] -= less * motion[1];
             level[0].weight[q] = 1;
         }
     if ((good = good && continue_shifts(level, error))) {
@@ -151,6 +154,18 @@ bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRec
     }
     levels_clear(level);
     return good;
+}
+
+bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRect rect,
+                         FlMaterial *now, GError **error)
+{
+    return carry(before, guides, rect, 1, now, error);
+}
+
+bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, FlRect rect,
+                       FlMaterial *now, GError **error)
+{
+    return carry(before, guides, rect, 0, now, error);
 }
 
 /* ---- measuring ---------------------------------------------------------------------------------
@@ -169,36 +184,69 @@ void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2
     }
 }
 
-static bool is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y)
+bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y)
 {
     const FlRect r = material->rect;
     return guides->mask[(size_t)(y + r.y) * (size_t)guides->width + (size_t)(x + r.x)] >= FL_INSIDE;
 }
 
-/* Of one pixel: how far the area is from its own, and how far a circle is from one. At most 2,
- * so that a tear between two limbs counts as little as it is wide. */
+/* Of one pixel, from the larger of the factors by which its pattern is stretched and squeezed. */
 static float strain_of(float f[2][2])
 {
     const float det = f[0][0] * f[1][1] - f[0][1] * f[1][0];
     const float square =
         f[0][0] * f[0][0] + f[0][1] * f[0][1] + f[1][0] * f[1][0] + f[1][1] * f[1][1];
-    if (det < 0.1f)
-        return 2;
-    const float size = sqrtf(det), area = fmaxf(size, 1 / size) - 1;
-    return fminf(area + sqrtf(fmaxf(0.5f * square / det - 1, 0)), 2);
+    const float sum = sqrtf(square + 2 * det), difference = sqrtf(fmaxf(square - 2 * det, 0));
+    const float most = 0.5f * (sum + difference), least = 0.5f * (sum - difference);
+    if (det <= 0 || least <= 1 / STRAINED)
+        return 1;
+    const float factor = fmaxf(most, 1 / least);
+    const float t = fminf(fmaxf((factor - UNSTRAINED) / (STRAINED - UNSTRAINED), 0), 1);
+    return t * t * (3 - 2 * t);
 }
 
-float fl_material_strain(const FlMaterial *material, const FlGuides *guides)
+/* Sums over `reach` before and after each of n values that are `step` apart. */
+static void sum_line(const float *in, int n, int step, int reach, double *before, float *out)
 {
-    double sum = 0, n = 0;
-    for (int y = 0; y < material->rect.height; y++)
-        for (int x = 0; x < material->rect.width; x++)
-            if (is_inside(material, guides, x, y)) {
-                float f[2][2];
-                fl_material_gradient(material, x, y, f);
-                sum += strain_of(f), n++;
-            }
-    return n > 0 ? (float)(sum / n) : 0;
+    before[0] = 0;
+    for (int i = 0; i < n; i++)
+        before[i + 1] = before[i] + (double)in[i * step];
+    for (int i = 0; i < n; i++)
+        out[i * step] = (float)(before[MIN(i + reach + 1, n)] - before[MAX(i - reach, 0)]);
+}
+
+static void sum_around(float *value, FlRect rect, int reach, double *before)
+{
+    for (int y = 0; y < rect.height; y++)
+        sum_line(value + (size_t)y * (size_t)rect.width, rect.width, 1, reach, before,
+                 value + (size_t)y * (size_t)rect.width);
+    for (int x = 0; x < rect.width; x++)
+        sum_line(value + x, rect.height, rect.width, reach, before, value + x);
+}
+
+bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int reach_px,
+                        float *strain, GError **error)
+{
+    const FlRect rect = material->rect;
+    const size_t n = fl_rect_pixels(rect);
+    g_autofree float *inside = fl_alloc(n, sizeof(float), "a strain", error);
+    g_autofree double *before =
+        fl_alloc((size_t)MAX(rect.width, rect.height) + 1, sizeof(double), "a strain", error);
+    if (!inside || !before)
+        return false;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
+            float f[2][2];
+            fl_material_gradient(material, x, y, f);
+            inside[p] = fl_material_is_inside(material, guides, x, y);
+            strain[p] = inside[p] > 0 ? strain_of(f) : 0;
+        }
+    sum_around(inside, rect, reach_px, before);
+    sum_around(strain, rect, reach_px, before);
+    for (size_t p = 0; p < n; p++)
+        strain[p] /= fmaxf(inside[p], 1);
+    return true;
 }
 
 /* Sums over a region's pixels (x, y) and their material (u, v). */
@@ -211,7 +259,7 @@ static Fit sums_of(const FlMaterial *material, const FlGuides *guides)
     Fit s = {0};
     for (int y = 0; y < material->rect.height; y++)
         for (int x = 0; x < material->rect.width; x++)
-            if (is_inside(material, guides, x, y)) {
+            if (fl_material_is_inside(material, guides, x, y)) {
                 const float *shift = material->shift + 2 * (y * material->rect.width + x);
                 const double u = x + (double)shift[0], v = y + (double)shift[1];
                 s.n++, s.x += x, s.y += y, s.u += u, s.v += v;

@@ -22,15 +22,26 @@ typedef struct FlMaterial {
 bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRect rect,
                          FlMaterial *now, GError **error);
 
+/** The same of pairs of numbers in place of shifts, which stay as they are. */
+bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, FlRect rect,
+                       FlMaterial *now, GError **error);
+
 /**
  * How the material lies at a pixel of the rectangle: the columns of d(material) / d(pixel), by
  * central differences.
  */
 void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2]);
 
-/** How far the region's material is from its own size and shape, on average: 0 as it was, 1 when
- * twice as large or long. */
-float fl_material_strain(const FlMaterial *material, const FlGuides *guides);
+/** Whether a pixel of the rectangle is in the region. */
+bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y);
+
+/**
+ * How strained the material is around each pixel of its rectangle: the share, 0..1, of the region
+ * within `reach_px` whose pattern is stretched or squeezed too far; by smooth steps, 0 up to a
+ * factor of 1.35 and 1 from 1.9. FL_ERROR_NO_MEMORY.
+ */
+bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int reach_px,
+                        float *strain, GError **error);
 
 /** The material as it would lie had it only been turned and moved: the best fit in the region. */
 bool fl_material_relaxed(const FlMaterial *material, const FlGuides *guides, FlMaterial *relaxed,
