@@ -279,13 +279,12 @@ static bool list_input(FlArgs *args, GError **error)
     for (char **word = args->inputs; *word; word++) {
         g_autofree char *line = NULL;
         size_t room = 0;
-        ssize_t length;
         if (word == args->inputs || strcmp(*word, "-") != 0) {
             g_ptr_array_add(inputs, g_strdup(*word));
             continue;
         }
         const guint before = inputs->len;
-        while ((length = getline(&line, &room, stdin)) >= 0)
+        while (getline(&line, &room, stdin) >= 0)
             if (line[strcspn(line, "\n")] = '\0', *line)
                 g_ptr_array_add(inputs, g_strdup(line));
         listed = listed && inputs->len > before;

@@ -88,7 +88,7 @@ void fl_boxes_of_labels(const int32_t *label, FlRect plane, int most, FlRect *bo
     typedef struct Edges {
         int left, top, right, bottom;
     } Edges;
-    g_autofree Edges *edges = g_new(Edges, most + 1);
+    g_autofree Edges *edges = g_new0(Edges, most + 1);
     for (int l = 0; l <= most; l++)
         edges[l] = (Edges){plane.x + plane.width, plane.y + plane.height, plane.x, plane.y};
     for (int y = plane.y; y < plane.y + plane.height; y++)

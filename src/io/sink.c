@@ -45,6 +45,7 @@ static void no_format(const char *name, const char *path, GError **error)
 
 const FlSinkFormat *fl_sink_format(const char *name, const char *path, GError **error)
 {
+    g_assert(name || path);
     for (int i = 0; formats[i]; i++)
         if (name ? strcmp(name, formats[i]->name) == 0
                  : path && formats[i]->suffix && has_suffix(path, formats[i]->suffix))

@@ -166,7 +166,8 @@ static bool fill_cells(Run *run, GError **error)
     }
     if (side == 1)
         run->n_cells = run->n_sources;
-    run->quota = run->n_targets / run->n_cells, run->extra = run->n_targets % run->n_cells;
+    const uint32_t cells = MAX(run->n_cells, 1);
+    run->quota = run->n_targets / cells, run->extra = run->n_targets % cells;
     return true;
 }
 
