@@ -11,9 +11,10 @@
 #include <string.h>
 
 /* The limits for a good style; more in find_frame_problems(). */
-static const float LEAST_PAINT = 0.4f; // of the last frame
-static const float LEAST_TEXTURE = 2;  // levels; twelve scanned washes have 2.8 to 6.4
-static const float LEAST_GRAIN = 1;    // levels, of paper under thin paint
+static const float LEAST_PAINT = 0.4f;   // of the last frame
+static const float LEAST_FILLED = 0.95f; // of the frame that a tile looks like
+static const float LEAST_TEXTURE = 2;    // levels; twelve scanned washes have 2.8 to 6.4
+static const float LEAST_GRAIN = 1;      // levels, of paper under thin paint
 static const float LEAST_DIFFERENCE =
     1.5f; // levels; the most similar blocks of those washes: 2.7 to 6.4
 static const float LEAST_OCTANT = 0.02f; // of the outline
@@ -247,13 +248,29 @@ static void find_texture_problems(Check *check)
         add(check->problems, "the light changes by %.0f levels between frames", high - low);
 }
 
+/* A style with a tile gives its look only, neither edges nor motion nor paint to copy: all it needs
+ * is a frame full of ink. */
+static bool moves_ink(const FlStyle *style)
+{
+    g_autofree char *tile = g_build_filename(style->path, FL_STYLE_TILE, NULL);
+    return g_file_test(tile, G_FILE_TEST_IS_REGULAR);
+}
+
 static void check_all(Check *check)
 {
+    const bool recorded = !moves_ink(check->style);
     add_given_facts(check);
+    if (!recorded)
+        add(check->facts,
+            "tile       transport.png: ink is moved, the frame is what it looks like");
     add_measured_facts(check);
-    find_mask_problems(check);
-    find_motion_problems(check);
-    find_texture_problems(check);
+    if (recorded) {
+        find_mask_problems(check);
+        find_motion_problems(check);
+        find_texture_problems(check);
+    } else if (check->measures->frame[0].paint < LEAST_FILLED)
+        add(check->problems, "paint fills %.0f %% of the frame: expected 95 %% or more",
+            100 * check->measures->frame[0].paint);
     if (!check->style->licence || !check->style->licence[0])
         add(check->problems, "no licence is given in style.ini");
 }

@@ -20,7 +20,7 @@
 
 static char *tile_path(const char *folder)
 {
-    return g_build_filename(folder, "transport.png", NULL);
+    return g_build_filename(folder, FL_STYLE_TILE, NULL);
 }
 
 bool fl_tile_exists(const char *folder)
