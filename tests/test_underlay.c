@@ -66,6 +66,25 @@ static void a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays(void
     g_assert_cmpint(lower.rgba[4 * (45 * W + 25) + 3], ==, 255);
 }
 
+/* Something black fades to what is the same below it: the picture stays black at every opacity. */
+static void a_shape_that_fades_over_its_like_never_pales(void)
+{
+    static Sheet lower, upper;
+    int before = 255;
+    for (int alpha = 0; alpha <= 255; alpha++) {
+        FlLayer layers[2] = {rectangle(&lower, 18, 18, 24, 22), rectangle(&upper, 18, 18, 24, 22)};
+        layers[1].alpha = (uint8_t)alpha;
+        fade(layers);
+        const int below = lower.rgba[4 * (30 * W + 30) + 3];
+        g_assert_cmpint(lower.knockout[30 * W + 30], ==, below);
+        g_assert_cmpint(alpha + below * (255 - alpha) / 255, >=, 255 - 255 / 32 - 1);
+        g_assert_cmpint(below, <=, before);
+        g_assert_cmpint(below, >=, before - 8); // no step at any opacity
+        before = below;
+    }
+    g_assert_cmpint(before, ==, 0);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -73,5 +92,6 @@ int main(int argc, char **argv)
     TEST(a_lower_shape_shows_through_no_rim_where_both_end_on_one_line);
     TEST(it_shows_where_it_is_seen_beyond);
     TEST(a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays);
+    TEST(a_shape_that_fades_over_its_like_never_pales);
     return g_test_run();
 }

@@ -13,7 +13,7 @@
 /** A layer's box with some room, and what is known of it. */
 typedef struct Part {
     FlRect box;
-    uint8_t *over;     // 1: something above covers the pixel
+    uint8_t *over;     // how far what covers the pixel from above hides, 0..255; 0: nothing does
     uint8_t *seen;     // 1: the layer is seen
     uint16_t *to_open; // distances, fifths of a px: to what nothing above covers
     uint16_t *to_seen; // to where the layer is seen
@@ -70,8 +70,14 @@ static void measure(uint16_t *plane, int width, int height)
     }
 }
 
+/** The shapes above the layer at hand. */
+typedef struct Above {
+    uint8_t *coverage; // of the frame, the greatest
+    uint8_t *hides;    // 0..255, the greatest of those that are there
+} Above;
+
 /** Fills over and seen. Returns: whether anything lies over the layer's shape. */
-static bool mark_pixels(Part *part, const FlLayer *layer, const uint8_t *above, int width)
+static bool mark_pixels(Part *part, const FlLayer *layer, const Above *above, int width)
 {
     const FlRect own = layer->area.box, box = part->box;
     bool any = false;
@@ -82,8 +88,9 @@ static bool mark_pixels(Part *part, const FlLayer *layer, const uint8_t *above, 
             const uint8_t coverage =
                 within ? layer->coverage[(size_t)ly * (size_t)own.width + (size_t)lx] : 0;
             const size_t p = (size_t)y * (size_t)box.width + (size_t)x;
-            const uint8_t over = above[(size_t)(box.y + y) * (size_t)width + (size_t)(box.x + x)];
-            part->over[p] = over >= SHOWN;
+            const size_t i = (size_t)(box.y + y) * (size_t)width + (size_t)(box.x + x);
+            const uint8_t over = above->coverage[i];
+            part->over[p] = over >= SHOWN ? above->hides[i] : 0;
             part->seen[p] = coverage >= SHOWN && !part->over[p];
             any |= coverage && over;
         }
@@ -108,23 +115,28 @@ static void find_ways(Part *part)
     measure(part->to_seen, w, h);
 }
 
-static bool near_above(const Part *part, int x, int y)
+/** How far what is above hides, at most, within BESIDE_PX. */
+static int hidden_beside(const Part *part, int x, int y)
 {
     const FlRect box = part->box;
+    int most = 0;
     for (int ny = MAX(y - BESIDE_PX, 0); ny <= MIN(y + BESIDE_PX, box.height - 1); ny++)
         for (int nx = MAX(x - BESIDE_PX, 0); nx <= MIN(x + BESIDE_PX, box.width - 1); nx++)
-            if (part->over[(size_t)ny * (size_t)box.width + (size_t)nx])
-                return true;
-    return false;
+            most = MAX(most, part->over[(size_t)ny * (size_t)box.width + (size_t)nx]);
+    return most;
 }
 
-/** How much of the layer stays, 0..255: (2.5 out + 6 - to) / (out + 4), in pixels. */
+/** How much of the layer stays, 0..255: (2.5 out + 6 - to) / (out + 4), in pixels, where what is
+ * above hides all. */
 static int kept_at(const Part *part, int x, int y)
 {
     const size_t p = (size_t)y * (size_t)part->box.width + (size_t)x;
     const int out = part->to_open[p], to = part->to_seen[p];
     const int keep = 255 * (5 * out + 12 * SIDE - 2 * to) / (2 * (out + 4 * SIDE));
-    return keep < 255 && out == 0 && !near_above(part, x, y) ? 255 : CLAMP(keep, 0, 255);
+    if (keep >= 255)
+        return 255;
+    const int hides = part->over[p] ? part->over[p] : hidden_beside(part, x, y);
+    return 255 - ((255 - MAX(keep, 0)) * hides + 127) / 255;
 }
 
 static void fade(const Part *part, FlLayer *layer)
@@ -143,7 +155,7 @@ static void fade(const Part *part, FlLayer *layer)
     }
 }
 
-static bool fade_layer(FlLayer *layer, const uint8_t *above, int width, int height, GError **error)
+static bool fade_layer(FlLayer *layer, const Above *above, int width, int height, GError **error)
 {
     g_auto(Part) part = {0};
     if (!part_init(&part, layer, width, height, error))
@@ -155,32 +167,48 @@ static bool fade_layer(FlLayer *layer, const uint8_t *above, int width, int heig
     return true;
 }
 
-static void add_above(const FlLayer *layer, int width, uint8_t *above)
+/*
+ * What is translucent shows what lies below it, which must not fade then; what nearly hides it may
+ * take a little. From seven eighths of opacity on, so that at most 1/32 of a pixel's colour goes.
+ */
+static int hiding(int alpha)
+{
+    return MAX(8 * alpha - 7 * 255, 0);
+}
+
+static void add_above(const FlLayer *layer, int width, const Above *above)
 {
     const FlRect box = layer->area.box;
-    for (int y = 0; y < box.height; y++) {
+    const int hides = hiding(layer->alpha);
+    for (int y = 0; y < box.height && hides > 0; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)box.width;
-        uint8_t *row = above + (size_t)(box.y + y) * (size_t)width + box.x;
-        for (int x = span.first; x < span.last; x++)
-            row[x] = MAX(row[x], coverage[x]);
+        const size_t i = (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
+        for (int x = span.first; x < span.last; x++) {
+            above->coverage[i + (size_t)x] = MAX(above->coverage[i + (size_t)x], coverage[x]);
+            if (coverage[x] >= SHOWN)
+                above->hides[i + (size_t)x] = (uint8_t)MAX(above->hides[i + (size_t)x], hides);
+        }
     }
 }
 
 bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error)
 {
-    g_autofree uint8_t *above = fl_alloc((size_t)width * (size_t)height, 1, "a matte", error);
-    if (!above)
+    const size_t pixels = (size_t)width * (size_t)height;
+    g_autofree uint8_t *coverage = fl_alloc(pixels, 1, "a matte", error);
+    g_autofree uint8_t *hides = coverage ? fl_alloc(pixels, 1, "a matte", error) : NULL;
+    if (!hides)
         return false;
+    const Above above = {coverage, hides};
     for (int k = n - 1; k >= 0; k--) {
         FlLayer *layer = &layers[k];
         const bool knocks =
             layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
         if (layer->knockout && knocks && k < n - 1 && fl_rect_pixels(layer->area.box) > 0 &&
-            !fade_layer(layer, above, width, height, error))
+            !fade_layer(layer, &above, width, height, error))
             return false;
-        if (knocks && !layer->sheer && layer->alpha >= SHOWN)
-            add_above(layer, width, above);
+        if (knocks && !layer->sheer)
+            add_above(layer, width, &above);
     }
     return true;
 }
