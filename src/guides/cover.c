@@ -85,8 +85,8 @@ void fl_cover_fill(const FlOutlines *outlines, const FlGeometry *g, FlRect rect,
         winding += g->evenodd ? 1 : c->winding;
         if (next->y != c->y || (g->evenodd ? winding % 2 == 0 : winding == 0))
             continue;
-        const int first = (int)ceilf(MAX(c->x - 0.5f, 0));
-        const int last = (int)ceilf(MIN(next->x - 0.5f, (float)rect.width));
+        const int first = (int)ceilf(CLAMP(c->x - 0.5f, 0, (float)rect.width));
+        const int last = (int)ceilf(CLAMP(next->x - 0.5f, 0, (float)rect.width));
         if (last > first)
             span(data, c->y, first, last);
     }
@@ -113,9 +113,10 @@ static void cover_piece(void *data, FlPoint a, FlPoint b)
 {
     const Line *line = data;
     const double r = line->reach;
-    const double left = MAX(MIN(a.x, b.x) - r, 0), top = MAX(MIN(a.y, b.y) - r, 0);
-    const double right = MIN(MAX(a.x, b.x) + r, line->rect.width);
-    const double bottom = MIN(MAX(a.y, b.y) + r, line->rect.height);
+    const double width = line->rect.width, height = line->rect.height;
+    const double left = CLAMP(MIN(a.x, b.x) - r, 0, width), right = MIN(MAX(a.x, b.x) + r, width);
+    const double top = CLAMP(MIN(a.y, b.y) - r, 0, height);
+    const double bottom = MIN(MAX(a.y, b.y) + r, height);
     for (int y = (int)top; y < bottom; y++) {
         int first = line->rect.width, last = 0;
         for (int x = (int)left; x < right; x++)
