@@ -20,6 +20,18 @@ void fl_nnf_clear(FlNnf *nnf)
     *nnf = (FlNnf){0};
 }
 
+bool fl_nnf_fits(const FlNnf *nnf, const FlExemplarLevel *level)
+{
+    for (size_t p = 0; p < (size_t)nnf->width * (size_t)nnf->height; p++) {
+        const FlMatch m = nnf->match[p];
+        if (m.frame != FL_NO_MATCH &&
+            (m.frame < 0 || m.frame >= level->n_frames || m.x_16 > 16 * (level->width - 1) ||
+             m.y_16 > 16 * (level->height - 1)))
+            return false;
+    }
+    return true;
+}
+
 /** A random patch of the segment, turned into the target's direction; key decides. */
 static FlMatch random_match(const FlExemplarLevel *level, FlSegment segment, uint8_t target_angle,
                             bool rotate, uint64_t key)

@@ -23,6 +23,9 @@ static inline int fl_match_y(FlMatch m)
     return (m.y_16 + 8) >> 4;
 }
 
+/** Whether all matches lie in a level; those of bytes that need not be trusted may not. */
+bool fl_nnf_fits(const FlNnf *nnf, const FlExemplarLevel *level);
+
 /** A match moved by a target offset, as if both pixels had the same transformation; may be none. */
 static inline FlMatch fl_match_moved(FlMatch m, int dx, int dy, const FlExemplarLevel *level)
 {

@@ -1,7 +1,7 @@
 #include "synth/synth_state.h"
 
 #include "base/alloc.h"
-#include "base/compress.h"
+#include "base/state_bytes.h"
 #include <assert.h>
 #include <string.h>
 
@@ -70,20 +70,7 @@ GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GE
         return NULL;
     FlSpan parts[N_PARTS];
     parts_of(state, matches, width, height, parts);
-    const size_t capacity = state->valid ? fl_compress_bound(parts, N_PARTS) : 0;
-    g_autofree uint8_t *bytes =
-        fl_alloc(sizeof header + capacity, 1, "the state of a region", error);
-    if (!bytes)
-        return NULL;
-    const size_t packed =
-        matches ? fl_compress(parts, N_PARTS, bytes + sizeof header, capacity) : 0;
-    if (state->valid && packed == 0) {
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a state");
-        return NULL;
-    }
-    memcpy(bytes, &header, sizeof header);
-    bytes = g_realloc(bytes, sizeof header + packed); // it is kept: no more bytes than needed
-    return g_bytes_new_take(g_steal_pointer(&bytes), sizeof header + packed);
+    return fl_state_bytes_pack(&header, sizeof header, parts, state->valid ? N_PARTS : 0, error);
 }
 
 GBytes *fl_synth_state_later(GBytes *bytes, int frame)
@@ -98,12 +85,6 @@ GBytes *fl_synth_state_later(GBytes *bytes, int frame)
     return g_bytes_new_take(copy, size);
 }
 
-static bool damaged(GError **error, const char *what)
-{
-    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "a region's state is damaged: %s", what);
-    return false;
-}
-
 /* Whether a rectangle has pixels, and all of them in the frame. */
 static bool fits(const Header *h, int width, int height)
 {
@@ -111,51 +92,36 @@ static bool fits(const Header *h, int width, int height)
            h->height <= height && h->x <= width - h->width && h->y <= height - h->height;
 }
 
-static bool matches_fit(const FlNnf *nnf, const FlExemplarLevel *level)
-{
-    for (size_t p = 0; p < (size_t)nnf->width * nnf->height; p++) {
-        const FlMatch m = nnf->match[p];
-        if (m.frame != FL_NO_MATCH &&
-            (m.frame < 0 || m.frame >= level->n_frames || m.x_16 > 16 * (level->width - 1) ||
-             m.y_16 > 16 * (level->height - 1)))
-            return false;
-    }
-    return true;
-}
-
 /* The field, mask and picture of the last frame. */
 static bool unpack_frame(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                          int width, int height, GError **error)
 {
-    size_t size;
-    const uint8_t *data = g_bytes_get_data(bytes, &size);
     if (!fl_nnf_init(&state->nnf, state->rect.width, state->rect.height, error))
         return false;
     FlSpan parts[N_PARTS];
     parts_of(state, state->nnf.match, width, height, parts);
-    const bool whole = fl_decompress(data + sizeof(Header), size - sizeof(Header), parts, N_PARTS);
-    add_up(&state->nnf);
-    if (whole && matches_fit(&state->nnf, level))
-        return true;
-    fl_nnf_clear(&state->nnf);
-    return damaged(error,
-                   whole ? "its field points outside the style" : "its pictures cannot be read");
+    bool whole = fl_state_bytes_parts(bytes, sizeof(Header), parts, N_PARTS, error);
+    if (whole) {
+        add_up(&state->nnf);
+        whole = fl_nnf_fits(&state->nnf, level) ||
+                fl_state_bytes_damaged("its field points outside the style", error);
+    }
+    if (!whole)
+        fl_nnf_clear(&state->nnf);
+    return whole;
 }
 
 bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                            int width, int height, GError **error)
 {
-    size_t size;
-    const uint8_t *data = g_bytes_get_data(bytes, &size);
     Header h;
     state->nnf = (FlNnf){0};
-    if (size < sizeof h)
-        return damaged(error, "it is cut short");
-    memcpy(&h, data, sizeof h);
+    if (!fl_state_bytes_header(bytes, &h, sizeof h, error))
+        return false;
     if (h.frame < 0 || (h.valid != 0 && h.valid != 1))
-        return damaged(error, "it does not start as a state does");
+        return fl_state_bytes_damaged("it does not start as a state does", error);
     if (h.valid && !fits(&h, width, height))
-        return damaged(error, "its field lies outside the frame");
+        return fl_state_bytes_damaged("its field lies outside the frame", error);
     state->frame = h.frame;
     state->valid = h.valid;
     state->rect = (FlRect){h.x, h.y, h.width, h.height};

@@ -4,6 +4,7 @@
 #include "base/density.h"
 #include "base/rng.h"
 #include "base/schedule.h"
+#include "base/state_bytes.h"
 #include "transport/material_layers.h"
 #include <assert.h>
 #include <math.h>
@@ -253,12 +254,6 @@ GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
     return g_bytes_new_with_free_func(bytes, size, free, bytes);
 }
 
-static bool damaged(GError **error, const char *what)
-{
-    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "a region's state is damaged: %s", what);
-    return false;
-}
-
 /* Shifts are used as indices, so each must be a number that is not far off. */
 static bool load_plane(FlMaterial *material, FlRect rect, const uint8_t *bytes, float most,
                        GError **error)
@@ -270,7 +265,7 @@ static bool load_plane(FlMaterial *material, FlRect rect, const uint8_t *bytes, 
     material->rect = rect;
     for (size_t i = 0; i < n; i++)
         if (!(fabsf(material->shift[i]) <= most))
-            return damaged(error, "its material lies nowhere");
+            return fl_state_bytes_damaged("its material lies nowhere", error);
     return true;
 }
 
@@ -293,17 +288,16 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
     const uint8_t *bytes = g_bytes_get_data(state, &size);
     Header h;
     fl_material_layers_clear(&ink->layers);
-    if (size < sizeof h)
-        return damaged(error, "it is cut short");
-    memcpy(&h, bytes, sizeof h);
+    if (!fl_state_bytes_header(state, &h, sizeof h, error))
+        return false;
     const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
                       h.width <= ink->input.width && h.height <= ink->input.height &&
                       h.x <= ink->input.width - h.width && h.y <= ink->input.height - h.height;
     if (!fits || (h.planes != 1 && h.planes != MOST_PLANES))
-        return damaged(error, "its material lies outside the frame");
+        return fl_state_bytes_damaged("its material lies outside the frame", error);
     const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
     if (size != sizeof h + (size_t)h.planes * plane)
-        return damaged(error, "it has another size");
+        return fl_state_bytes_damaged("it has another size", error);
     if (plane == 0 || load_planes(&ink->layers, &h, bytes + sizeof h, error))
         return true;
     fl_material_layers_clear(&ink->layers);
