@@ -7,11 +7,6 @@
 /* ---- patch: a field of matches into the recording, then the vote [F21] ------------------------
  */
 
-static bool claims_all(const char *style_folder)
-{
-    return true;
-}
-
 static void *patch_open(const FlEngineInput *input, GError **error)
 {
     return fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed,
@@ -56,11 +51,6 @@ static void *lazy_open(const FlEngineInput *input, GError **error)
 static void lazy_close(void *state)
 {
     fl_lazy_free(state);
-}
-
-static void lazy_measure(void *state, bool energies)
-{
-    (void)state, (void)energies; // they cost nothing
 }
 
 static bool lazy_frame(void *state, const FlGuides *guides, const FlEnginePaint *paint,
@@ -121,11 +111,6 @@ static void *transport_open(const FlEngineInput *input, GError **error)
     return NULL;
 }
 
-static void transport_measure(void *state, bool energies)
-{
-    (void)state, (void)energies; // there are none
-}
-
 static bool transport_frame(void *state, const FlGuides *guides, const FlEnginePaint *paint,
                             GError **error)
 {
@@ -147,7 +132,6 @@ static bool transport_load(void *state, GBytes *bytes, GError **error)
 
 static const FlEngine engines[] = {
     [FL_ENGINE_PATCH] = {.name = "patch",
-                         .claims = claims_all,
                          .plays = true,
                          .open = patch_open,
                          .close = patch_close,
@@ -159,7 +143,6 @@ static const FlEngine engines[] = {
                               .plays = true,
                               .open = lazy_open,
                               .close = lazy_close,
-                              .measure = lazy_measure,
                               .frame = lazy_frame,
                               .save = lazy_save,
                               .load = lazy_load},
@@ -168,7 +151,6 @@ static const FlEngine engines[] = {
                              .exposure = transport_exposure,
                              .open = transport_open,
                              .close = transport_close,
-                             .measure = transport_measure,
                              .frame = transport_frame,
                              .save = transport_save,
                              .load = transport_load},

@@ -33,8 +33,9 @@ typedef struct FlEngine {
     bool plays; // shows the recording: whether it flows and is large enough matters
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);
-    void (*close)(void *state);                  // NULL is fine
-    void (*measure)(void *state, bool energies); // whether statistics hold energies
+    void (*close)(void *state); // NULL is fine
+    /** Whether statistics hold energies; NULL: it costs nothing, or there are none. */
+    void (*measure)(void *state, bool energies);
     /** The next frame, in order. An empty mask makes the next one a first frame again. */
     bool (*frame)(void *state, const FlGuides *guides, const FlEnginePaint *paint, GError **error);
     /** What the next frame depends on, to be freed with g_bytes_unref(); NULL with an error set. */

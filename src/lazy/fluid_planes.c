@@ -5,8 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#define LOWER 0.1f // l and u [L15 §5]
-#define UPPER 0.9f
+#define UPPER 0.9f // u [L15 §5]
 
 bool fl_fluid_planes_init(FlFluidPlanes *planes, int width, int height, GError **error)
 {
@@ -109,7 +108,7 @@ bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *plan
     const float *edge = planes->plane[FL_FLUID_PLANE_EDGE];
     *segments = (FlFluidSegments){0};
     for (uint32_t p = 0; p < pixels; p++)
-        if (edge[p] > LOWER)
+        if (edge[p] > FL_FLUID_LOWER)
             segments->n[edge[p] >= UPPER]++;
     for (int s = 0; s < 2; s++)
         if (!(segments->place[s] =
@@ -117,7 +116,7 @@ bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *plan
             return false;
     size_t n[2] = {0};
     for (uint32_t p = 0; p < pixels; p++)
-        if (edge[p] > LOWER) {
+        if (edge[p] > FL_FLUID_LOWER) {
             const int s = edge[p] >= UPPER;
             segments->place[s][n[s]++] = p;
         }

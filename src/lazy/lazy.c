@@ -185,7 +185,7 @@ static void complete(const FlLazy *lazy, int l, uint64_t key)
     const size_t pixels = (size_t)level->nnf.width * (size_t)level->nnf.height;
     const float *edge = level->planes.plane[FL_FLUID_PLANE_EDGE];
     for (size_t p = 0; p < pixels; p++)
-        if (!(edge[p] > .1f))
+        if (!(edge[p] > FL_FLUID_LOWER))
             level->nnf.match[p].frame = FL_NO_MATCH;
     for (int s = 0; s < 2; s++)
         for (size_t k = 0; k < level->segments.n[s]; k++) {
@@ -239,9 +239,9 @@ static void pack_target(const FlLazy *lazy, Level *level)
 }
 
 /* Border, then interior; on a level without separate ones the first is all. */
-static bool retrieve(const FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GError **error)
+static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GError **error)
 {
-    const Level *level = &lazy->level[l];
+    Level *level = &lazy->level[l];
     const FlFluidLevel *source = &lazy->source.level[l];
     const FlParams *params = lazy->params;
     stats->energy = 0;
@@ -260,7 +260,7 @@ static bool retrieve(const FlLazy *lazy, int l, uint64_t key, FlLevelStats *stat
                                 .key = fl_key(key, (uint64_t)s),
                                 .distance = lazy->kernels.fluid_distance};
         FlRetrieved done;
-        if (!fl_retrieve(&in, (FlNnf *)&level->nnf, &done, error))
+        if (!fl_retrieve(&in, &level->nnf, &done, error))
             return false;
         stats->counts.tried += done.evaluations;
         stats->energy += done.energy;

@@ -117,7 +117,7 @@ bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error)
         !make_guides(painters, error))
         return false;
     for (int p = 0; p < painters->n; p++)
-        if (painters->painter[p].paint)
+        if (painters->painter[p].paint && plan->painted[p].engine->measure)
             plan->painted[p].engine->measure(painters->painter[p].paint,
                                              plan->options.stats || plan->options.report);
     return make_scratch(painters, error);
