@@ -95,3 +95,16 @@ bool fl_file_read(const char *path, size_t most, char **data, size_t *bytes, GEr
 {
     return fl_file_read_pipe(path, most, NULL, data, bytes, error);
 }
+
+bool fl_write_all(int fd, const void *data, size_t bytes)
+{
+    for (const uint8_t *at = data; bytes > 0;) {
+        const ssize_t n = write(fd, at, bytes);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        at += n, bytes -= (size_t)n;
+    }
+    return true;
+}

@@ -1,5 +1,5 @@
-/* Files that others name: read without waiting for what never comes, or for more than there is
- * room. */
+/* Files that others name, read without waiting for what never comes or for more than there is room;
+ * and writing to descriptors. */
 #ifndef FLUIDY_BASE_FILE_H
 #define FLUIDY_BASE_FILE_H
 
@@ -38,5 +38,8 @@ typedef struct FlFileWait {
  */
 bool fl_file_read_pipe(const char *path, size_t most, const FlFileWait *wait, char **data,
                        size_t *bytes, GError **error);
+
+/** Writes all of the bytes; a signal that comes in does not stop it. Returns: false with errno. */
+bool fl_write_all(int fd, const void *data, size_t bytes);
 
 #endif

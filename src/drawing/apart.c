@@ -1,5 +1,6 @@
 #include "drawing/apart.h"
 
+#include "base/file.h"
 #include "base/limits.h"
 #include "drawing/confined.h"
 #include "drawing/watch.h"
@@ -166,18 +167,6 @@ static void take_warnings(Reader *r, FlWarnings *warnings)
 
 /* ---- the child ----------------------------------------------------------------------------- */
 
-static bool write_all(int fd, const GByteArray *data)
-{
-    size_t done = 0;
-    while (done < data->len) {
-        const ssize_t n = write(fd, data->data + done, data->len - done);
-        if (n <= 0)
-            return false;
-        done += (size_t)n;
-    }
-    return true;
-}
-
 G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawingOptions *options,
                                      FlWatch *watch, int fd, int words)
 {
@@ -195,7 +184,7 @@ G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawing
         put_text(out, problem->message);
     }
     put_warnings(out, warnings);
-    _exit(write_all(fd, out) ? 0 : 1);
+    _exit(fl_write_all(fd, out->data, out->len) ? 0 : 1);
 }
 
 /* ---- the parent ---------------------------------------------------------------------------- */

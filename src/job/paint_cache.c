@@ -1,5 +1,6 @@
 #include "job/paint_cache.h"
 
+#include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <glib/gstdio.h>
@@ -120,19 +121,6 @@ void fl_paint_cache_drop(FlPaintCache *cache, FlCacheKind kind, FlDigest name)
     g_unlink(path);
 }
 
-static bool write_all(int fd, const void *data, size_t bytes)
-{
-    for (const uint8_t *at = data; bytes > 0;) {
-        const ssize_t n = write(fd, at, bytes);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return false;
-        at += n, bytes -= (size_t)n;
-    }
-    return true;
-}
-
 /* Not synced, unlike frames: what a crash of the machine damages is seen and painted again. */
 static bool write_file(const char *path, const FlSpan *parts, int n)
 {
@@ -146,9 +134,9 @@ static bool write_file(const char *path, const FlSpan *parts, int n)
     const int fd = g_mkstemp_full(temporary, O_WRONLY | O_CLOEXEC, 0666);
     if (fd < 0)
         return false;
-    bool written = write_all(fd, &header, sizeof header);
+    bool written = fl_write_all(fd, &header, sizeof header);
     for (int k = 0; k < n && written; k++)
-        written = write_all(fd, parts[k].data, parts[k].bytes);
+        written = fl_write_all(fd, parts[k].data, parts[k].bytes);
     if (close(fd) == 0 && written && g_rename(temporary, path) == 0)
         return true;
     const int problem = errno;
