@@ -157,6 +157,8 @@ typedef struct FlRenderOptions {
     const char *report; /**< a folder for the HTML report, index.html; NULL: none */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: none */
+    const char *ebsynth; /**< a folder for pairs of guides and ebsynth's command lines; with `merge`
+                            and no `paint`, the folder that it has painted in; NULL: none */
 
     /* How it runs. */
     bool dry_run; /**< check everything, estimate the time, write nothing */

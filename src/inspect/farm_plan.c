@@ -251,10 +251,11 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
     FlRenderOptions whole = *options;
     whole.dry_run = true; // nothing is written
     whole.cache = NULL;
-    if (options->only_region || options->merge || options->report || options->dump) {
+    if (options->only_region || options->merge || options->report || options->dump ||
+        options->ebsynth) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "a plan is of all regions and their merge; leave out ‘region’, ‘merge’, "
-                    "‘report’ and ‘dump’");
+                    "‘report’, ‘dump’ and ‘ebsynth’");
         return NULL;
     }
     g_autoptr(FlPlan) plan = fl_plan_new(&whole, error);

@@ -29,6 +29,11 @@ static bool patch_frame(void *state, const FlGuides *guides, const FlEnginePaint
     return fl_synth_frame(state, guides, paint->rgb, paint->stats, paint->view, error);
 }
 
+static bool patch_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
+{
+    return fl_synth_guide_pairs(state, pairs, error);
+}
+
 static GBytes *patch_save(void *state, GError **error)
 {
     return fl_synth_save(state, error);
@@ -57,6 +62,11 @@ static bool lazy_frame(void *state, const FlGuides *guides, const FlEnginePaint 
                        GError **error)
 {
     return fl_lazy_frame(state, guides, paint->rgb, NULL, paint->stats, paint->view, error);
+}
+
+static bool lazy_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
+{
+    return fl_lazy_guide_pairs(state, pairs, error);
 }
 
 static GBytes *lazy_save(void *state, GError **error)
@@ -137,6 +147,7 @@ static const FlEngine engines[] = {
                          .close = patch_close,
                          .measure = patch_measure,
                          .frame = patch_frame,
+                         .guide_pairs = patch_guide_pairs,
                          .save = patch_save,
                          .load = patch_load},
     [FL_ENGINE_LAZYFLUIDS] = {.name = "lazyfluids",
@@ -144,6 +155,7 @@ static const FlEngine engines[] = {
                               .open = lazy_open,
                               .close = lazy_close,
                               .frame = lazy_frame,
+                              .guide_pairs = lazy_guide_pairs,
                               .save = lazy_save,
                               .load = lazy_load},
     [FL_ENGINE_TRANSPORT] = {.name = "transport",

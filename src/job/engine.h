@@ -38,6 +38,9 @@ typedef struct FlEngine {
     void (*measure)(void *state, bool energies);
     /** The next frame, in order. An empty mask makes the next one a first frame again. */
     bool (*frame)(void *state, const FlGuides *guides, const FlEnginePaint *paint, GError **error);
+    /** The guides of the frame just painted, if that had a view and levels in its statistics; NULL:
+     * it has none. FL_ERROR_NO_MEMORY. */
+    bool (*guide_pairs)(const void *state, FlGuidePairs *pairs, GError **error);
     /** What the next frame depends on, to be freed with g_bytes_unref(); NULL with an error set. */
     GBytes *(*save)(void *state, GError **error);
     /** FL_ERROR_CHANGED if the bytes are damaged or do not fit; they need not be trusted. */

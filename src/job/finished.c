@@ -13,7 +13,8 @@
 static FlPaintCache *cache_for(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
-    const bool more = o->layers || o->paint || o->stats || o->report || o->dump || o->dry_run;
+    const bool more =
+        o->layers || o->paint || o->stats || o->report || o->dump || o->ebsynth || o->dry_run;
     const bool piped = o->config && !g_file_test(o->config, G_FILE_TEST_IS_REGULAR);
     return more || piped ? NULL : plan->cache; // what came through a pipe cannot be read again
 }
@@ -147,7 +148,7 @@ static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
 {
     const FlRenderOptions *o = &plan->options;
     if (o->overwrite != FL_OVERWRITE_KEEP || film_of(plan) || plan->parts_only || o->layers ||
-        o->paint || o->stats || o->report || o->dump)
+        o->paint || o->stats || o->report || o->dump || o->ebsynth)
         return false;
     for (int f = 0; f < sequence->n; f++) {
         g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, NULL);

@@ -110,18 +110,26 @@ static bool may_fill(GHashTable *inputs, const char *folder, GError **error)
     return true;
 }
 
-/* The page of a report and the folders of a dump. */
+/* The folders of the regions in one; NULL: none. */
+static bool check_regions_folders(const FlPlan *plan, const char *in, GHashTable *inputs,
+                                  GError **error)
+{
+    for (int p = 0; in && p < plan->n_painted; p++) {
+        g_autofree char *folder = g_build_filename(in, plan->painted[p].name, NULL);
+        if (!may_fill(inputs, folder, error))
+            return false;
+    }
+    return true;
+}
+
+/* The page of a report and the folders of a dump and of guides. */
 static bool check_folders(const FlPlan *plan, GHashTable *inputs, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
     if (o->report && !may_write(inputs, g_build_filename(o->report, "index.html", NULL), error))
         return false;
-    for (int p = 0; o->dump && p < plan->n_painted; p++) {
-        g_autofree char *folder = g_build_filename(o->dump, plan->painted[p].name, NULL);
-        if (!may_fill(inputs, folder, error))
-            return false;
-    }
-    return true;
+    return check_regions_folders(plan, o->dump, inputs, error) &&
+           check_regions_folders(plan, o->merge ? NULL : o->ebsynth, inputs, error);
 }
 
 static bool check_frame(const FlPlan *plan, GHashTable *inputs, int frame, GError **error)

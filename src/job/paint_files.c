@@ -42,16 +42,19 @@ bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)
     g_autoptr(FlPicture) picture = fl_picture_read_png(path, error);
     if (!picture)
         return false;
-    if (picture->width != painted->width || picture->height != painted->height) {
+    const FlRect rect = painted->rect;
+    const bool whole = picture->width == painted->width && picture->height == painted->height;
+    if (!whole && (picture->width != rect.width || picture->height != rect.height)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: %dx%d pixels: expected %dx%d as the frames have", path, picture->width,
-                    picture->height, painted->width, painted->height);
+                    "%s: %dx%d pixels: expected %dx%d as the frames have, or %dx%d of the region",
+                    path, picture->width, picture->height, painted->width, painted->height,
+                    rect.width, rect.height);
         return false;
     }
-    const FlRect rect = painted->rect;
+    const int left = whole ? rect.x : 0, top = whole ? rect.y : 0;
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
-            const size_t from = (size_t)(rect.y + y) * (size_t)painted->width + rect.x + x;
+            const size_t from = (size_t)(top + y) * (size_t)picture->width + (size_t)(left + x);
             memcpy(painted->painted + 3 * ((size_t)y * rect.width + x), picture->rgba + 4 * from,
                    3);
         }

@@ -4,6 +4,9 @@
 
 #include "job/plan.h"
 
+/** Where ebsynth writes a region's paint, below the folder of --ebsynth. */
+#define FL_EBSYNTH_OUTPUT "{region}/out_%04d.png"
+
 /**
  * The file of a region's paint in a frame; held frames share the file of the first.
  *
@@ -16,7 +19,7 @@ char *fl_paint_file(const char *pattern, const FlDrawing *drawing, const FlRegio
 bool fl_paint_save(const FlPaintedRegion *painted, const char *path, bool overwrite,
                    GError **error);
 
-/** Reads the part painted->rect of such a file. FL_ERROR_INPUT. */
+/** Reads the part painted->rect of such a file, or one that has that part alone. FL_ERROR_INPUT. */
 bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error);
 
 #endif

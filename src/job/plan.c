@@ -9,6 +9,7 @@
 #include "io/pattern.h"
 #include "job/fingerprint.h"
 #include "job/finished.h"
+#include "job/paint_files.h"
 #include "job/resume.h"
 #include <stdatomic.h>
 #include <string.h>
@@ -208,6 +209,18 @@ static void scale_lengths(FlParams *params, float px)
     params->flow_still *= px;
 }
 
+/* What goes to ebsynth are pairs of guides. */
+static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
+{
+    if (!plan->options.ebsynth || plan->options.merge || painted->engine->guide_pairs)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "region %s: the engine %s has no guides for ‘ebsynth’; use another, or ‘region’ to "
+                "leave it out",
+                painted->name, painted->engine->name);
+    return false;
+}
+
 static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, painted->region);
@@ -222,7 +235,7 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     if (!painted->style)
         return false;
     painted->engine = fl_engine_choose(painted->settings.engine, painted->style->path);
-    if (!warn_of_style(plan, painted, error))
+    if (!check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)
         send_line(plan, plan->options.note, "region %s: style %s, engine %s", r->name,
@@ -341,7 +354,8 @@ static bool check_merge(const FlRenderOptions *options, GError **error)
 {
     const char *wrong = NULL;
     if (options->merge && !options->paint)
-        wrong = "‘merge’ composes what ‘paint’ has written; use ‘paint’ PATTERN too";
+        wrong = "‘merge’ composes what ‘paint’ has written, or what ebsynth has painted in the "
+                "folder of ‘ebsynth’; use one of them too";
     else if (options->merge && (options->report || options->dump))
         wrong = "‘merge’ paints nothing that ‘report’ or ‘dump’ could show; use it alone";
     else if (options->paint && !fl_output_is_pattern(options->paint))
@@ -370,6 +384,14 @@ static bool make_plan(FlPlan *plan, GError **error)
            check_regions_file(plan, plan->options.paint, error);
 }
 
+/* To be freed with g_free(). */
+static char *pattern_below(const char *folder)
+{
+    g_autoptr(GString) name = g_string_new(folder);
+    g_string_replace(name, "%", "%%", 0);
+    return g_build_filename(name->str, FL_EBSYNTH_OUTPUT, NULL);
+}
+
 FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
 {
     g_autoptr(FlPlan) plan = g_new0(FlPlan, 1);
@@ -382,6 +404,8 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
         return NULL;
     fl_config_complete(plan->config, &plan->options);
     const FlRenderOptions *o = &plan->options;
+    if (o->merge && o->ebsynth && !o->paint)
+        plan->options.paint = plan->painted_by_ebsynth = pattern_below(o->ebsynth);
     // paint of some regions is no frame, even if the config says where frames are
     const bool paint_alone = options->paint && options->only_region && !options->output;
     plan->parts_only =
@@ -400,6 +424,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->joins);
     g_free(plan->hold_of);
     g_free(plan->hands);
+    g_free(plan->painted_by_ebsynth);
     g_free(plan->output);
     g_free(plan->movie);
     fl_paint_cache_close(plan->cache);

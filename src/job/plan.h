@@ -50,13 +50,14 @@ typedef struct FlPlan {
     bool by_page;        // paint of some region, and so the paper, is as large as the page asks for
     float paper_px;      // px of the frames per px of the sheet of paper
     bool half;           // drafts: the drawing has half their size, and layers are enlarged
-    char *output;        // pattern or file; of what an interrupted run leaves if parts_only
-    bool parts_only;     // layers or paint are written, but no frames
-    FlPaintCache *cache; // NULL: no paint is kept
-    FlDigest request;    // of what was asked for, before anything of it is read
-    FlFinished finished; // ALL: the rest of the plan is not made
-    int n_finished;      // frames of what is finished
-    gint64 start;        // microseconds, as g_get_monotonic_time()
+    char *painted_by_ebsynth; // pattern: options.paint where that is what is merged; or NULL
+    char *output;             // pattern or file; of what an interrupted run leaves if parts_only
+    bool parts_only;          // layers or paint are written, but no frames
+    FlPaintCache *cache;      // NULL: no paint is kept
+    FlDigest request;         // of what was asked for, before anything of it is read
+    FlFinished finished;      // ALL: the rest of the plan is not made
+    int n_finished;           // frames of what is finished
+    gint64 start;             // microseconds, as g_get_monotonic_time()
     const FlSinkFormat *format;
     char *movie; // the film made of the frames; NULL: none
     const FlSinkFormat *movie_format;

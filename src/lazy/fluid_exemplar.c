@@ -47,11 +47,13 @@ static void fill_colour(const FlExemplar *exemplar, int t, float *const plane[4]
         }
 }
 
-/* The planes of level 0. */
-static bool fill_planes(FlFluidPlanes *planes, const FlExemplar *exemplar, int frame, int before,
-                        float sigma_px, GError **error)
+bool fl_fluid_exemplar_planes(const FlExemplar *exemplar, int frame, int before, float sigma_px,
+                              FlFluidPlanes *planes, GError **error)
 {
-    const size_t bytes = (size_t)planes->width * (size_t)planes->height * sizeof(float);
+    const int width = exemplar->level[0].width, height = exemplar->level[0].height;
+    const size_t bytes = (size_t)width * (size_t)height * sizeof(float);
+    if (!fl_fluid_planes_init(planes, width, height, error))
+        return false;
     fill_colour(exemplar, frame, planes->plane + FL_FLUID_PLANE_COLOUR);
     fill_colour(exemplar, before, planes->plane + FL_FLUID_PLANE_PAST);
     memcpy(planes->plane[FL_FLUID_PLANE_EDGE], planes->plane[3], bytes);
@@ -86,8 +88,7 @@ bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, 
         return true;
     fl_fluid_exemplar_clear(fluid);
     g_auto(FlFluidPlanes) fine = {0};
-    if (!fl_fluid_planes_init(&fine, exemplar->level[0].width, exemplar->level[0].height, error) ||
-        !fill_planes(&fine, exemplar, frame, before, sigma_px, error))
+    if (!fl_fluid_exemplar_planes(exemplar, frame, before, sigma_px, &fine, error))
         return false;
     for (int l = 0; l < n_levels; l++) {
         FlFluidPlanes coarse = {0};

@@ -27,6 +27,13 @@ bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, 
                             GError **error);
 void fl_fluid_exemplar_clear(FlFluidExemplar *fluid);
 
+/**
+ * The planes that are packed, on level 0; they are made by it. Returns: false with
+ * FL_ERROR_NO_MEMORY set; planes need clearing in any case.
+ */
+bool fl_fluid_exemplar_planes(const FlExemplar *exemplar, int frame, int before, float sigma_px,
+                              FlFluidPlanes *planes, GError **error);
+
 /** Straightens four planes, which are overwritten, into a picture for fl_vote(). */
 bool fl_fluid_splines_init(FlExemplarLevel *level, float *const plane[4], int width, int height,
                            GError **error);

@@ -5,8 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#define UPPER 0.9f // u [L15 §5]
-
 bool fl_fluid_planes_init(FlFluidPlanes *planes, int width, int height, GError **error)
 {
     const size_t pixels = (size_t)width * (size_t)height;
@@ -109,7 +107,7 @@ bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *plan
     *segments = (FlFluidSegments){0};
     for (uint32_t p = 0; p < pixels; p++)
         if (edge[p] > FL_FLUID_LOWER)
-            segments->n[edge[p] >= UPPER]++;
+            segments->n[edge[p] >= FL_FLUID_UPPER]++;
     for (int s = 0; s < 2; s++)
         if (!(segments->place[s] =
                   fl_alloc(segments->n[s], sizeof(uint32_t), "a region's segments", error)))
@@ -117,7 +115,7 @@ bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *plan
     size_t n[2] = {0};
     for (uint32_t p = 0; p < pixels; p++)
         if (edge[p] > FL_FLUID_LOWER) {
-            const int s = edge[p] >= UPPER;
+            const int s = edge[p] >= FL_FLUID_UPPER;
             segments->place[s][n[s]++] = p;
         }
     return true;

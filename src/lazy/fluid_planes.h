@@ -43,6 +43,7 @@ void fl_fluid_picture_pack(const FlFluidPlanes *planes, const FlFluidWeights *we
                            bool is_target, FlFluidPicture *picture);
 
 #define FL_FLUID_LOWER 0.1f // l: blurred alpha from which on there is fluid [L15 §5]
+#define FL_FLUID_UPPER 0.9f // u: from which on it is interior
 
 /** Parts of the fluid, matched for themselves [L15 §4.2]. */
 typedef struct FlFluidSegments {
@@ -51,8 +52,8 @@ typedef struct FlFluidSegments {
 } FlFluidSegments;
 
 /**
- * The pixels whose blurred alpha is above FL_FLUID_LOWER, and from .9 on those of the interior.
- * Returns: false with FL_ERROR_NO_MEMORY set.
+ * The pixels whose blurred alpha is above FL_FLUID_LOWER, and from FL_FLUID_UPPER on those of the
+ * interior. Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *planes, GError **error);
 void fl_fluid_segments_clear(FlFluidSegments *segments);

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "lazy/fluid_exemplar.h"
+#include "lazy/lazy_pairs.h"
 #include "lazy/lazy_state.h"
 #include "lazy/motion_blur.h"
 #include "lazy/retrieve.h"
@@ -414,8 +415,19 @@ bool fl_lazy_frame(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *
                               done && lazy->last.valid ? &lazy->last.past.nnf : NULL,
                               NULL,
                               NULL};
-    clear_levels(lazy);
+    else
+        clear_levels(lazy);
     return done;
+}
+
+bool fl_lazy_guide_pairs(const FlLazy *lazy, FlGuidePairs *pairs, GError **error)
+{
+    const FlFluidExemplar *source = &lazy->source;
+    g_auto(FlFluidPlanes) planes = {0};
+    return fl_fluid_exemplar_planes(lazy->exemplar, source->frame, source->before, lazy->sigma_px,
+                                    &planes, error) &&
+           fl_lazy_pairs(&planes, &lazy->level[0].planes, &lazy->weights, lazy->exemplar->paper,
+                         pairs, error);
 }
 
 GBytes *fl_lazy_save(FlLazy *lazy, GError **error)

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_LAZY_LAZY_H
 #define FLUIDY_LAZY_LAZY_H
 
+#include "synth/guide_pairs.h"
 #include "synth/synth.h"
 
 /**
@@ -26,6 +27,9 @@ void fl_lazy_free(FlLazy *lazy); // NULL is fine
  */
 bool fl_lazy_frame(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
                    FlFrameStats *stats, FlSynthView *view, GError **error);
+
+/** As fl_synth_guide_pairs(). */
+bool fl_lazy_guide_pairs(const FlLazy *lazy, FlGuidePairs *pairs, GError **error);
 
 /** As fl_synth_save() and fl_synth_load(). */
 GBytes *fl_lazy_save(FlLazy *lazy, GError **error);

@@ -6,6 +6,7 @@
 #include "compose/composite.h"
 #include "drawing/hold.h"
 #include "inspect/dump.h"
+#include "inspect/ebsynth.h"
 #include "inspect/report.h"
 #include "inspect/stats.h"
 #include "job/finished.h"
@@ -86,17 +87,44 @@ static bool dump_frame(const FlPlan *plan, const FlPainter *painter, int frame,
                          fl_drawing_number(plan->drawing, frame), error);
 }
 
+static bool is_empty(const FlGuides *guides)
+{
+    for (size_t p = 0; p < (size_t)guides->width * (size_t)guides->height; p++)
+        if (guides->mask[p] >= FL_INSIDE)
+            return false;
+    return true;
+}
+
+/* The pairs of guides of a painter's picture, if it was synthesised. */
+static bool export_frame(const FlPlan *plan, const FlPainter *painter, int frame,
+                         const FlGuides *guides, GError **error)
+{
+    const int hold = painter->plan->settings.hold;
+    const bool rests = frame > 0 && painter->result.stats.n_levels == 0 && !is_empty(guides);
+    const FlEngine *engine = painter->plan->engine;
+    g_auto(FlGuidePairs) pairs = {0};
+    if (frame % hold != 0)
+        return true;
+    if (painter->result.stats.n_levels > 0 && !engine->guide_pairs(painter->paint, &pairs, error))
+        return false;
+    return fl_ebsynth_frame(plan->options.ebsynth, &painter->result, pairs.style ? &pairs : NULL,
+                            fl_drawing_number(plan->drawing, frame),
+                            rests ? fl_drawing_number(plan->drawing, frame - hold) : -1, error);
+}
+
 static bool paint_one(void *data, int p, int frame, FlGuides *guides, GError **error)
 {
     Pipeline *pipeline = data;
     const FlPlan *plan = pipeline->plan;
     FlPainter *painter = &pipeline->painters.painter[p];
     const char *dump = plan->options.dump;
-    painter->wants_view = dump || fl_report_wants_view(pipeline->report, frame);
+    const bool exports = plan->options.ebsynth && !plan->options.merge;
+    painter->wants_view = dump || exports || fl_report_wants_view(pipeline->report, frame);
     if (!fl_painter_frame(painter, frame, guides, error) ||
         !fl_report_guides(pipeline->report, p, &painter->result, frame, guides, error))
         return false;
-    return !dump || dump_frame(plan, painter, frame, guides, error);
+    return (!dump || dump_frame(plan, painter, frame, guides, error)) &&
+           (!exports || export_frame(plan, painter, frame, guides, error));
 }
 
 static bool lead_in_one(void *data, int p, int k, FlGuides *guides, GError **error)
@@ -296,6 +324,12 @@ static bool open_report(Pipeline *pipeline, GError **error)
     return !folder || pipeline->report;
 }
 
+static bool begin_export(const Pipeline *pipeline, GError **error)
+{
+    const FlRenderOptions *o = &pipeline->plan->options;
+    return !o->ebsynth || o->merge || fl_ebsynth_begin(o->ebsynth, error);
+}
+
 static bool make_sheet(Pipeline *pipeline, GError **error)
 {
     const FlPlan *plan = pipeline->plan;
@@ -358,7 +392,7 @@ static bool prepare(Pipeline *pipeline, GError **error)
         !fl_frame_writer_init(&pipeline->writer, pipeline->plan, &pipeline->resume,
                               pipeline->background.opaque, pipeline->taker, error) ||
         !fl_stats_init(&pipeline->stats, &pipeline->plan->options, error) ||
-        !open_report(pipeline, error))
+        !open_report(pipeline, error) || !begin_export(pipeline, error))
         return false;
     const bool painted = pipeline->resume.first == fl_drawing_frames(pipeline->plan->drawing);
     if (painted ? !fl_resume_start(&pipeline->resume, pipeline->plan, error)
@@ -400,7 +434,7 @@ static bool dry_run(Pipeline *pipeline, GError **error)
 {
     FlPlan *plan = pipeline->plan;
     double frame_s = 0;
-    plan->options.dump = NULL; // it would write files
+    plan->options.dump = plan->options.ebsynth = NULL; // they would write files
     if (!check(pipeline, error) || !note_obstacles(pipeline, error) ||
         !make_painters(pipeline, error))
         return false;
@@ -476,6 +510,6 @@ bool fl_render_frames(const FlRenderOptions *options, FlTakeFrame take, void *ta
     without_files.cache = NULL; // frames are given once, so nothing can be tried again
     without_files.layers = without_files.report = without_files.stats = without_files.dump = NULL;
     if (!options->merge)
-        without_files.paint = NULL;
+        without_files.paint = without_files.ebsynth = NULL;
     return render(&without_files, (FlFrameTaker){take, taker}, error);
 }

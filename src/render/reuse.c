@@ -40,7 +40,7 @@ bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlPlan *plan, int 
                    GHashTable *styles, const FlFingerprint *whole, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
-    *reuse = (FlReuse){.cache = cache, .takes = !o->report && !o->dump};
+    *reuse = (FlReuse){.cache = cache, .takes = !o->report && !o->dump && !o->ebsynth};
     reuse->made = g_array_new(FALSE, FALSE, sizeof(FlDigest));
     if (!cache)
         return true;

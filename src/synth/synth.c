@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "synth/carry.h"
 #include "synth/energy.h"
+#include "synth/patch_pairs.h"
 #include "synth/rest.h"
 #include "synth/shift.h"
 #include "synth/synth_state.h"
@@ -485,6 +486,12 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
     if (!view)
         clear_frame(synth);
     return done;
+}
+
+bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **error)
+{
+    return fl_patch_pairs(synth->exemplar, synth->params, &synth->target, &synth->nnf[0],
+                          synth->width, synth->height, pairs, error);
 }
 
 GBytes *fl_synth_save(FlSynth *synth, GError **error)

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SYNTH_SYNTH_H
 #define FLUIDY_SYNTH_SYNTH_H
 
+#include "synth/guide_pairs.h"
 #include "synth/patchmatch.h"
 
 /** What happened on one level; energies are means per pixel in the paper's units. */
@@ -59,6 +60,12 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  */
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
+
+/**
+ * The guides of the frame just painted, which must have had a view and levels in its statistics.
+ * Returns: false with FL_ERROR_NO_MEMORY set; pairs need clearing in any case.
+ */
+bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **error);
 
 /**
  * The state after the frames painted so far: a synthesis made the same way that loads it paints the
