@@ -306,13 +306,22 @@ bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, do
     return false;
 }
 
+/** How many pixels of a page's side there can be on a target of that many. */
+static int side_on(double page_px, int most)
+{
+    return (int)CLAMP(ceil(page_px), 1, MAX(most, 1));
+}
+
 /**
- * Draws everything on a colour surface of its own, which filters that read the backdrop need.
+ * Draws everything on a colour surface of its own, which filters that read the backdrop need; cr is
+ * of an image.
  */
 static bool draw_all(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)
 {
-    g_autoptr(cairo_surface_t) picture = fl_surface_new(
-        CAIRO_FORMAT_ARGB32, MAX(1, (int)ceil(width)), MAX(1, (int)ceil(height)), error);
+    cairo_surface_t *target = cairo_get_target(cr);
+    g_autoptr(cairo_surface_t) picture =
+        fl_surface_new(CAIRO_FORMAT_ARGB32, side_on(width, cairo_image_surface_get_width(target)),
+                       side_on(height, cairo_image_surface_get_height(target)), error);
     if (!picture)
         return false;
     cairo_t *inner = cairo_create(picture);
