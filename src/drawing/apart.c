@@ -142,7 +142,7 @@ static void take_survey(Reader *r, FlSurvey *survey, const FlSequence *sequence)
     take(r, survey, sizeof *survey);
     survey->sequence = sequence;
     survey->strings = (FlStrings){0};
-    survey->watch = NULL;
+    survey->first = NULL, survey->watch = NULL;
     survey->n_frames = sequence->n;
     survey->frame = g_new0(FlSurveyFrame, sequence->n);
     const int n = take_count(r);

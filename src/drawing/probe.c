@@ -5,10 +5,13 @@
 
 #define THICK 0.03f  // width of a stroke, share of the page's longer side, that is no line any more
 #define PROBE_PX 256 // longest side of the small pictures on which a frame is probed
+#define MOST_KEPT (16 << 20) // bytes of coverage that a frame's probes keep
 
 static void probe_clear(void *data)
 {
-    g_free(((FlProbe *)data)->paint);
+    FlProbe *probe = data;
+    g_free(probe->paint);
+    g_free(probe->kept);
 }
 
 bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, double page_width, double page_height,
@@ -49,6 +52,46 @@ static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect where
     cairo_destroy(cr);
     *box = fl_surface_ink(f->coverage, where);
     return drawn;
+}
+
+/** Copies rows between the frame's coverage and what a probe keeps of it. */
+static void copy_kept(const FlFrameProbe *f, const FlProbe *probe, bool back)
+{
+    const FlRect box = probe->kept_box;
+    const size_t stride = (size_t)cairo_image_surface_get_stride(f->coverage);
+    unsigned char *data = cairo_image_surface_get_data(f->coverage);
+    for (int y = 0; y < box.height; y++) {
+        unsigned char *drawn = data + (size_t)(box.y + y) * stride + box.x;
+        uint8_t *kept = probe->kept + (size_t)y * (size_t)box.width;
+        memcpy(back ? drawn : kept, back ? kept : drawn, (size_t)box.width);
+    }
+}
+
+/** Keeps what a part covers, if there is room: it is needed again in stack(). */
+static void keep_cover(FlFrameProbe *f, FlProbe *probe)
+{
+    const size_t bytes = fl_rect_pixels(probe->box);
+    probe->is_kept = f->kept_bytes + bytes <= MOST_KEPT;
+    if (!probe->is_kept)
+        return;
+    f->kept_bytes += bytes;
+    probe->kept_box = probe->box;
+    probe->kept = g_malloc(bytes);
+    copy_kept(f, probe, false);
+}
+
+/** As cover(), of a part that was covered before. */
+static bool cover_again(FlFrameProbe *f, const FlProbe *probe, FlRect *box, GError **error)
+{
+    // text and tiny parts have a box_in_full(), but are drawn in the small picture
+    const FlRect where = probe->leaf->text ? f->all : probe->box;
+    if (!probe->is_kept)
+        return cover(f, probe->leaf, probe->found.part, where, box, error);
+    cairo_surface_flush(f->coverage);
+    copy_kept(f, probe, true);
+    cairo_surface_mark_dirty(f->coverage);
+    *box = probe->kept_box;
+    return true;
 }
 
 static float sum_of(cairo_surface_t *coverage, FlRect box)
@@ -154,6 +197,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
         const float opacity = MAX(p->paint.peak, 1) / 255.0f;
         probe.found.area_px =
             (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
+        keep_cover(f, &probe);
         fl_surface_wipe(f->coverage, probe.box);
         if (good && (leaf->text || probe.box.width == 0)) {
             good = box_in_full(f, leaf, p->part, &probe.box, &probe.found.area_px, error);
@@ -164,7 +208,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
         if (good && probe.box.width > 0 && p->paint.alpha > 0)
             g_array_append_val(f->probes, probe);
         else
-            g_free(probe.paint);
+            probe_clear(&probe);
     }
     relate_parts(f->probes, first);
     return good;
@@ -248,8 +292,7 @@ static bool stack(FlFrameProbe *f, GError **error)
         FlRect box;
         if (probe->found.unit > 0 && probe->found.leaf >= 0)
             continue; // the unit comes after its leaves
-        const FlRect where = probe->leaf->text ? f->all : probe->box; // see box_in_full()
-        if (!cover(f, probe->leaf, probe->found.part, where, &box, error))
+        if (!cover_again(f, probe, &box, error))
             return false;
         const bool fills_page = probe->found.area_px > 0.95f * page;
         int64_t sum = 0, covered = 0;

@@ -11,7 +11,10 @@ typedef struct FlProbe {
     FlSurveyPart found;
     const FlLeaf *leaf;
     char *paint;
-    FlRect box; // px of the small picture
+    FlRect box;      // px of the small picture
+    bool is_kept;    // what was drawn is known, and not drawn again
+    FlRect kept_box; // of it; may be empty
+    uint8_t *kept;   // its coverage, of kept_box
 } FlProbe;
 
 /** What one thread needs for one frame. */
@@ -24,6 +27,7 @@ typedef struct FlFrameProbe {
     int full_width, full_height;
     FlRect all;
     GArray *probes;
+    size_t kept_bytes; // of the probes
     FlSelfCheck *check;
 } FlFrameProbe;
 

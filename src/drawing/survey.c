@@ -69,20 +69,25 @@ static char **copy_of(const GPtrArray *texts)
     return copy;
 }
 
+static FlSvg *open_svg(const FlSurvey *survey, int t, FlWarnings *warnings, GError **error)
+{
+    const FlSequence *sequence = survey->sequence;
+    const FlSvgOptions options = {.canvas = survey->frame[t].canvas,
+                                  .dpi = survey->svg.dpi,
+                                  .whole = (const char *const *)survey->frame[t].whole,
+                                  .layer = sequence->layer[t],
+                                  .alone = sequence->alone};
+    return fl_svg_open(sequence->file[t], sequence->number[t], &options, warnings, error);
+}
+
 /** Opens a frame and sets its page in the picture. */
 static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings *warnings,
                        GError **error)
 {
-    const char *file = survey->sequence->file[t];
-    const int number = survey->sequence->number[t];
     double width, height;
     FlSurveyFrame *frame = &survey->frame[t];
-    const FlSvgOptions options = {.canvas = frame->canvas,
-                                  .dpi = survey->svg.dpi,
-                                  .whole = (const char *const *)frame->whole,
-                                  .layer = survey->sequence->layer[t],
-                                  .alone = survey->sequence->alone};
-    g_autoptr(FlSvg) svg = fl_svg_open(file, number, &options, warnings, error);
+    g_autoptr(FlSvg) svg = t == 0 && survey->first ? g_steal_pointer(&survey->first)
+                                                   : open_svg(survey, t, warnings, error);
     if (!svg || !fl_svg_size(svg, &width, &height, error))
         return false;
     frame->page_width = width * survey->scale;
@@ -184,16 +189,13 @@ static double cover_scale(double scale, double width, double height, double w, d
                : MAX(w / width, h / height);
 }
 
-/** Decides the size of the picture from the first frame. */
-static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error)
+/** Decides the size of the picture from the first frame, which stays open. */
+static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, FlWarnings *warnings,
+                     GError **error)
 {
     double width, height;
-    const FlSvgOptions options = {.canvas = survey->frame[0].canvas,
-                                  .dpi = survey->svg.dpi,
-                                  .layer = survey->sequence->layer[0]};
-    g_autoptr(FlSvg) svg =
-        fl_svg_open(survey->sequence->file[0], survey->sequence->number[0], &options, NULL, error);
-    if (!svg || !fl_svg_size(svg, &width, &height, error))
+    survey->first = open_svg(survey, 0, warnings, error);
+    if (!survey->first || !fl_svg_size(survey->first, &width, &height, error))
         return false;
     if (o->scale < 0 || o->width < 0 || o->height < 0 ||
         (o->scale > 0 && (o->width > 0 || o->height > 0))) {
@@ -307,7 +309,7 @@ bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawin
     for (int t = 0; t < survey->n_frames; t++)
         survey->frame[t].canvas = options->canvas;
     if ((options->registered && !fl_register(survey, warnings, error)) ||
-        !set_size(survey, options, error))
+        !set_size(survey, options, warnings, error))
         return false;
     // a region that is one shape in one frame and several in the next would change its paint
     for (int round = 0; round < MOST_ROUNDS; round++) {
@@ -321,6 +323,7 @@ bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawin
 
 void fl_survey_clear(FlSurvey *survey)
 {
+    fl_svg_free(survey->first);
     for (int t = 0; t < survey->n_frames && survey->frame; t++) {
         if (survey->frame[t].parts)
             g_array_unref(survey->frame[t].parts);

@@ -21,15 +21,23 @@
 #define SMALL_PX 4.0
 #define FAR_PX 9000.0 // cairo's script surface aborts at boxes much farther off
 
+/** Whether any leaf is_far(). */
+typedef enum Far {
+    FAR_UNKNOWN,
+    FAR_NONE,
+    FAR_SOME,
+} Far;
+
 struct FlSvg {
     char *path;
     double dpi;
     xmlDoc *doc;
     char *original; // the text before it was normalised
     size_t original_bytes;
-    RsvgHandle *handle;   // of the normalised document
-    RsvgHandle *before;   // of the original, made when first needed
-    bool has_probe;       // paints are read from a separate document
+    RsvgHandle *handle; // of the normalised document
+    RsvgHandle *before; // of the original, made when first needed
+    bool has_probe;     // paints are read from a separate document
+    Far far;
     int n_nameless;       // groups without an id
     GHashTable *variants; // of variant_key(): handles with some leaves or parts transparent
     FlLeaves *leaves;
@@ -388,6 +396,34 @@ static bool is_far(RsvgRectangle box)
     return box.x + box.width < -FAR_PX || box.y + box.height < -FAR_PX;
 }
 
+/** Whether librsvg gave up at its limit of <use> and the like, which takes it many seconds. */
+static bool is_endless(const GError *reason)
+{
+    return reason && strstr(reason->message, "referenced elements");
+}
+
+/**
+ * Finds whether a leaf may be far on the small page: only then each is measured, which takes as
+ * long as drawing it. Boxes of all lie in that of the document. Returns: false with an error if the
+ * document is_endless().
+ */
+static bool find_far(FlSvg *svg, GError **error)
+{
+    const RsvgRectangle page = {0, 0, PROBE_PX, PROBE_PX};
+    RsvgRectangle box = {0};
+    g_autoptr(GError) reason = NULL;
+    if (svg->far != FAR_UNKNOWN)
+        return true;
+    const bool measured =
+        rsvg_handle_get_geometry_for_layer(svg->handle, NULL, &page, &box, NULL, &reason);
+    if (is_endless(reason)) {
+        set_rsvg_error(svg, reason, error);
+        return false;
+    }
+    svg->far = measured && box.x > -FAR_PX && box.y > -FAR_PX ? FAR_NONE : FAR_SOME;
+    return true;
+}
+
 int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error)
 {
     if (leaf->all) {
@@ -395,9 +431,11 @@ int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
                                .paint = {FL_PAINT_MIXED, {0}, 255, 255, g_strdup("mixed")}};
         return 1;
     }
+    if (!find_far(svg, error))
+        return -1;
     for (double size = PROBE_PX; size <= LARGE_PROBE_PX; size *= LARGE_PROBE_PX / PROBE_PX) {
-        const RsvgRectangle box = fl_svg_extents(svg, leaf, size, size);
-        if (is_far(box))
+        if ((size > PROBE_PX || svg->far == FAR_SOME) &&
+            is_far(fl_svg_extents(svg, leaf, size, size)))
             return 0;
         g_autofree char *script = script_of(svg, leaf, FL_PART_WHOLE, size, NULL);
         // It also fails for some fills without an area; such a leaf is its stroke.
@@ -406,7 +444,7 @@ int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
         const int n = script ? fl_paint_read(script, leaf->whole, parts) : -1;
         for (int i = 0; i < n; i++)
             parts[i].width /= (float)size;
-        if (n != 0 || !is_small(box))
+        if (n != 0 || !is_small(fl_svg_extents(svg, leaf, size, size)))
             return n;
     }
     return 0;
