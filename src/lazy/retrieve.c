@@ -9,8 +9,9 @@
 #define TURNS 4
 #define TILE 16          // side of a tile of source pixels; they are searched as a chequerboard
 #define TABLE (1u << 18) // with as many pairs at most, all distances are known
-#define FEW_TARGETS 32   // free ones: each source looks at all of them,
-#define FEW_SHARE 100    // as where they are a share of all
+#define FEW_TARGETS 32   // free ones: all distances to them are known,
+#define FEW_SHARE 100    // as where they are a share of all,
+#define FEW_PAIRS 8      // unless there are more pairs than so many a target
 #define WARM 3           // free targets of the warm start that are compared
 #define CONTINUED 6      // won targets of a neighbour that are continued
 #define NONE (-1)
@@ -23,6 +24,11 @@ typedef struct Turn {
 } Turn;
 
 static const int8_t steps[4][2] = {{-1, 0}, {0, -1}, {1, 0}, {0, 1}};
+
+/* A source that may still be used, and its row in the table. */
+typedef struct Left {
+    uint32_t source, row;
+} Left;
 
 /* Source patch s is place s / n_turns, turned by s % n_turns quarters. Targets are numbered as
  * in->targets has them. */
@@ -37,25 +43,28 @@ typedef struct Run {
     int32_t *warm, *warm_next;     // the same of the warm start
     uint8_t *is_free;              // by target
     uint32_t *open;                // free targets in scan order, and a few that are no longer
-    uint32_t n_open, n_free, n_eligible;
+    uint32_t n_open, n_free;
     uint64_t *offer;                // by target: the least cost << 32 | a hash of the source
     uint32_t *cell;                 // by source: what it counts for
     uint32_t *use;                  // by cell
     uint32_t n_cells, quota, extra; // K, and the cells that may still be used K + 1 times
     uint32_t *tile_places, *tile_first;
     int tile_columns, n_tiles;
-    uint32_t *table; // [n_sources][n_targets] costs; or NULL
+    // Of the end of a retrieval, when few pairs are left: who with whom, and all costs.
+    Left *left;                             // in the order of the sources
+    uint32_t n_left, n_columns, *column_of; // of a target in the table
+    uint32_t *table;                        // [rows][n_columns]; NULL until then
     uint64_t pass_key;
-    bool scans, backwards; // of the pass: all free targets are compared; the order
+    bool backwards; // the order of the pass
     FlRetrieved *done;
 } Run;
 
 static void run_clear(Run *run)
 {
-    void *const arrays[] = {run->place_at,    run->target_at,  run->target, run->cost,
-                            run->won,         run->won_next,   run->warm,   run->warm_next,
-                            run->is_free,     run->open,       run->offer,  run->cell,
-                            run->tile_places, run->tile_first, run->table,  run->use};
+    void *const arrays[] = {
+        run->place_at,    run->target_at,  run->target,  run->cost, run->won,   run->won_next,
+        run->warm,        run->warm_next,  run->is_free, run->open, run->offer, run->cell,
+        run->tile_places, run->tile_first, run->table,   run->use,  run->left,  run->column_of};
     for (size_t k = 0; k < G_N_ELEMENTS(arrays); k++)
         free(arrays[k]);
 }
@@ -228,22 +237,23 @@ static void gather_source(const Run *run, uint32_t source, FlFluidTexel *patch)
 }
 
 /* Takes a free target if it is nearer than the one in hand, or by hash where it is as near. */
+static void consider(const Run *run, Proposal *p, int32_t target, uint32_t cost)
+{
+    if (p->target != NONE &&
+        (cost > p->cost || (cost == p->cost && tie_of(run, p->source, (uint32_t)target) >=
+                                                   tie_of(run, p->source, (uint32_t)p->target))))
+        return;
+    p->target = target, p->cost = cost;
+}
+
 static void try_target(const Run *run, Proposal *p, int32_t target)
 {
     if (target == p->target)
         return;
+    const FlFluidTexel *patch = patch_at(&run->in->target, run->in->targets[target]);
     const uint32_t limit = p->target == NONE ? UINT32_MAX - 1 : p->cost;
-    const uint32_t cost =
-        run->table
-            ? run->table[(size_t)p->source * run->n_targets + (size_t)target]
-            : run->in->distance(p->patch, patch_at(&run->in->target, run->in->targets[target]),
-                                run->in->target.pitch, limit);
-    p->evaluations += !run->table;
-    if (cost > limit ||
-        (p->target != NONE && cost == p->cost &&
-         tie_of(run, p->source, (uint32_t)target) >= tie_of(run, p->source, (uint32_t)p->target)))
-        return;
-    p->target = target, p->cost = cost;
+    p->evaluations++;
+    consider(run, p, target, run->in->distance(p->patch, patch, run->in->target.pitch, limit));
 }
 
 /* The target at a place, if it is one of the segment and free; NONE. */
@@ -315,13 +325,6 @@ static int32_t any_free(const Run *run, FlRng *rng)
     return (int32_t)run->open[k];
 }
 
-static void try_all(const Run *run, Proposal *p)
-{
-    for (uint32_t k = 0; k < run->n_open; k++)
-        if (run->is_free[run->open[k]])
-            try_target(run, p, (int32_t)run->open[k]);
-}
-
 static void try_warm(const Run *run, Proposal *p)
 {
     int n = 0;
@@ -357,12 +360,8 @@ static void propose(Run *run, uint32_t source, uint64_t *evaluations)
     }
     Proposal p = {.source = source, .target = NONE};
     FlRng rng = {fl_key(run->pass_key, source)};
-    if (!run->table)
-        gather_source(run, source, p.patch);
-    if (run->scans)
-        try_all(run, &p);
-    else
-        search(run, &p, &rng);
+    gather_source(run, source, p.patch);
+    search(run, &p, &rng);
     run->target[source] = p.target, run->cost[source] = p.cost;
     *evaluations += p.evaluations;
 }
@@ -439,13 +438,18 @@ static void assign(Run *run, const Winner *winner, FlNnf *nnf)
 /* Every target's best offer; then the sources whose offer it is. */
 static uint32_t find_winners(Run *run, Winner *winners)
 {
+    const uint32_t sources = run->table ? run->n_left : run->n_sources;
     uint32_t n = 0;
-    for (uint32_t s = 0; s < run->n_sources; s++)
+    for (uint32_t k = 0; k < sources; k++) {
+        const uint32_t s = run->table ? run->left[k].source : k;
         if (run->target[s] != NONE)
             run->offer[run->target[s]] = MIN(run->offer[run->target[s]], offer_key(run, s));
-    for (uint32_t s = 0; s < run->n_sources; s++)
+    }
+    for (uint32_t k = 0; k < sources; k++) {
+        const uint32_t s = run->table ? run->left[k].source : k;
         if (run->target[s] != NONE && run->offer[run->target[s]] == offer_key(run, s))
             winners[n++] = (Winner){offer_key(run, s), s, run->cell[s]};
+    }
     for (uint32_t k = 0; k < n; k++)
         run->offer[run->target[winners[k].source]] = NO_OFFER;
     return n;
@@ -485,41 +489,99 @@ static void compact_open(Run *run, bool exact)
     run->n_open = n;
 }
 
-static void open_pass(Run *run)
+static void fill_row(Run *run, uint32_t row)
 {
-    run->n_eligible = 0;
-    for (uint32_t s = 0; s < run->n_sources; s++)
-        run->n_eligible += is_eligible(run, s);
-    const bool few = run->n_free < MAX(FEW_TARGETS, run->n_targets / FEW_SHARE);
-    const uint64_t pairs = (uint64_t)run->n_eligible * run->n_free;
-    run->scans = run->table || (few && pairs <= 8 * (uint64_t)run->n_targets);
-    run->backwards = run->done->passes & 1;
-    compact_open(run, run->scans);
+    _Alignas(32) FlFluidTexel patch[FL_PATCH_PIXELS];
+    gather_source(run, run->left[row].source, patch);
+    for (uint32_t j = 0; j < run->n_columns; j++)
+        run->table[(size_t)row * run->n_columns + j] =
+            run->in->distance(patch, patch_at(&run->in->target, run->in->targets[run->open[j]]),
+                              run->in->target.pitch, UINT32_MAX);
 }
 
-static void pass(Run *run, Winner *winners, FlNnf *nnf)
+/* All distances between the sources and the targets that are left. */
+static bool make_table(Run *run, uint32_t n_eligible, GError **error)
 {
-    open_pass(run);
-    for (int sweep = 0; sweep < (run->scans ? 1 : run->in->sweeps); sweep++) {
+    compact_open(run, true);
+    run->n_columns = run->n_open;
+    if (!(run->left = fl_alloc(n_eligible, sizeof *run->left, "distances", error)) ||
+        !(run->column_of = fl_alloc(run->n_targets, sizeof(uint32_t), "distances", error)) ||
+        !(run->table = fl_alloc((size_t)n_eligible * run->n_columns, 4, "distances", error)))
+        return false;
+    for (uint32_t s = 0; s < run->n_sources; s++)
+        if (is_eligible(run, s)) {
+            run->left[run->n_left] = (Left){s, run->n_left};
+            run->n_left++;
+        }
+    for (uint32_t j = 0; j < run->n_columns; j++)
+        run->column_of[run->open[j]] = j;
+#pragma omp parallel for schedule(dynamic, 16) if (run->n_left > 64)
+    for (uint32_t row = 0; row < run->n_left; row++)
+        fill_row(run, row);
+    run->done->evaluations += (uint64_t)run->n_left * run->n_columns;
+    return true;
+}
+
+/* Whether few enough pairs are left for a table. */
+static bool are_few(const Run *run, uint32_t n_eligible)
+{
+    const uint64_t pairs = (uint64_t)n_eligible * run->n_free;
+    const bool few = run->n_free < MAX(FEW_TARGETS, run->n_targets / FEW_SHARE);
+    return (uint64_t)run->n_sources * run->n_targets <= TABLE ||
+           (few && pairs <= FEW_PAIRS * (uint64_t)run->n_targets);
+}
+
+static bool open_pass(Run *run, GError **error)
+{
+    uint32_t n = 0;
+    run->backwards = run->done->passes & 1;
+    if (!run->table) {
+        for (uint32_t s = 0; s < run->n_sources; s++)
+            n += is_eligible(run, s);
+        if (are_few(run, n))
+            return make_table(run, n, error);
+        compact_open(run, false);
+        return true;
+    }
+    for (uint32_t k = 0; k < run->n_left; k++)
+        if (is_eligible(run, run->left[k].source))
+            run->left[n++] = run->left[k];
+    run->n_left = n;
+    compact_open(run, true);
+    return true;
+}
+
+/* The nearest of all free targets. */
+static void propose_by_row(Run *run, uint32_t source, const uint32_t *row)
+{
+    Proposal p = {.source = source, .target = NONE};
+    for (uint32_t k = 0; k < run->n_open; k++)
+        consider(run, &p, (int32_t)run->open[k], row[run->column_of[run->open[k]]]);
+    run->target[source] = p.target, run->cost[source] = p.cost;
+}
+
+static void propose_by_table(Run *run)
+{
+#pragma omp parallel for schedule(dynamic, 64) if (run->n_left > 256)
+    for (uint32_t k = 0; k < run->n_left; k++)
+        propose_by_row(run, run->left[k].source,
+                       run->table + (size_t)run->left[k].row * run->n_columns);
+}
+
+static bool pass(Run *run, Winner *winners, FlNnf *nnf, GError **error)
+{
+    if (!open_pass(run, error))
+        return false;
+    for (int sweep = 0; sweep < (run->table ? 1 : run->in->sweeps); sweep++) {
         run->pass_key = fl_key(fl_key(run->in->key, (uint64_t)run->done->passes), (uint64_t)sweep);
-        propose_all(run);
+        if (run->table)
+            propose_by_table(run);
+        else
+            propose_all(run);
     }
     settle(run, winners, find_winners(run, winners), nnf);
     run->done->passes++;
-}
-
-static void fill_table(Run *run)
-{
-#pragma omp parallel for schedule(dynamic, 16) if (run->n_sources > 64)
-    for (uint32_t s = 0; s < run->n_sources; s++) {
-        _Alignas(32) FlFluidTexel patch[FL_PATCH_PIXELS];
-        gather_source(run, s, patch);
-        for (uint32_t j = 0; j < run->n_targets; j++)
-            run->table[(size_t)s * run->n_targets + j] =
-                run->in->distance(patch, patch_at(&run->in->target, run->in->targets[j]),
-                                  run->in->target.pitch, UINT32_MAX);
-    }
-    run->done->evaluations += (uint64_t)run->n_sources * run->n_targets;
+    return true;
 }
 
 static void start(Run *run, const FlNnf *nnf)
@@ -566,13 +628,9 @@ bool fl_retrieve(const FlRetrieval *retrieval, FlNnf *nnf, FlRetrieved *done, GE
         return false;
     fill_tiles(&run);
     start(&run, nnf);
-    if ((uint64_t)run.n_sources * run.n_targets <= TABLE) {
-        if (!(run.table = fl_alloc((size_t)run.n_sources * run.n_targets, 4, "distances", error)))
-            return false;
-        fill_table(&run);
-    }
     while (run.n_free > 0)
-        pass(&run, winners, nnf);
+        if (!pass(&run, winners, nnf, error))
+            return false;
     count_use(&run);
     return true;
 }
