@@ -161,6 +161,8 @@ typedef struct FlRenderOptions {
                             and no `paint`, the folder that it has painted in; NULL: none */
 
     /* How it runs. */
+    bool watch;   /**< it is rendered again and again: an interrupted render leaves no state, since
+                       its paint is in the cache. The program's loop is not part of fl_render() */
     bool dry_run; /**< check everything, estimate the time, write nothing */
     int threads;  /**< 0: one per processor. The bytes do not depend on it */
     /** Called after every frame of a stage, now and then while frames are read, from the calling

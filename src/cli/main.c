@@ -1,5 +1,6 @@
 /* fluidy-svg: texts and exit codes only; the work is in the library. */
 #include "args.h"
+#include "file_watch.h"
 #include "help.h"
 #include "progress.h"
 #include "wait.h"
@@ -33,18 +34,20 @@ typedef struct Voice {
     FlMeter meter;
     bool quiet;
     int n_warnings;
+    FlFileWatch *files; // a change stops the render; NULL: none are watched
 } Voice;
 
 static bool show_progress(const FlProgress *progress, void *data)
 {
     Voice *voice = data;
     fl_meter_show(&voice->meter, progress);
-    return !stop;
+    return !stop && !(voice->files && fl_file_watch_changed(voice->files));
 }
 
 static bool was_stopped(void *data)
 {
-    return stop;
+    const Voice *voice = data;
+    return stop || (voice->files && fl_file_watch_has_changed(voice->files));
 }
 
 /* Prints a message with options as --name. */
@@ -183,6 +186,88 @@ static int plan_farm(const FlArgs *args, GError **error)
     return text ? print(text) : FAILURE;
 }
 
+/* ---- watching ---------------------------------------------------------------------------- */
+
+/* A draft of all regions first, and then as asked for, unless that is a draft as well. What is odd
+ * about the input is said once. */
+static bool paint_twice(const FlArgs *args, GError **error)
+{
+    FlRenderOptions full = args->render, draft = full;
+    const FlSetting quick = {.name = "detail", .value = "draft"};
+    bool drafts = full.dry_run;
+    for (size_t k = 0; k < full.n_settings; k++)
+        if (strcmp(full.settings[k].name, quick.name) == 0)
+            drafts = strcmp(full.settings[k].value, quick.value) == 0;
+    if (drafts)
+        return fl_render(&full, error);
+    g_autoptr(GArray) settings = g_array_new(FALSE, FALSE, sizeof quick);
+    g_array_append_vals(settings, full.settings, (guint)full.n_settings);
+    g_array_append_val(settings, quick);
+    draft.settings = (const FlSetting *)(const void *)settings->data;
+    draft.n_settings = settings->len;
+    full.overwrite = FL_OVERWRITE_YES;
+    full.warning = NULL;
+    return fl_render(&draft, error) && fl_render(&full, error);
+}
+
+/* Whether no change of a file would help. */
+static bool is_final(const FlArgs *args, const GError *error)
+{
+    return g_error_matches(error, FL_ERROR, FL_ERROR_EXISTS) ||
+           (status_of(error) == USAGE && !args->render.config);
+}
+
+static void note_change(Voice *voice)
+{
+    g_autofree char *line = g_strdup_printf("%s has changed", fl_file_watch_last(voice->files));
+    say(voice, "note", line);
+}
+
+/* Paints; where that fails since a file is changing, the next round comes soon.
+ * Returns: the status to end with; -1: go on. */
+static int watch_round(FlArgs *args, Voice *voice)
+{
+    g_autoptr(GError) error = NULL;
+    voice->n_warnings = 0;
+    const bool painted = paint_twice(args, &error);
+    fl_meter_hide(&voice->meter);
+    if (painted)
+        recall_warnings(voice);
+    else if (stop || !fl_file_watch_changed(voice->files)) {
+        const int status = fail(args, error);
+        if (stop || is_final(args, error))
+            return status;
+    }
+    args->render.overwrite = FL_OVERWRITE_YES; // from now on the frames are ours
+    return -1;
+}
+
+static int watch(FlArgs *args, Voice *voice)
+{
+    const char *config = args->render.config;
+    if (config && g_file_test(config, G_FILE_TEST_EXISTS) &&
+        !g_file_test(config, G_FILE_TEST_IS_REGULAR)) {
+        g_autoptr(GError) error =
+            g_error_new(FL_ERROR, FL_ERROR_USAGE,
+                        "--watch: %s: expected a file, which can be read again", config);
+        return fail(args, error);
+    }
+    int status = -1;
+    while (status < 0) {
+        g_autoptr(FlFileWatch) files = fl_file_watch_new(&args->render);
+        voice->files = files;
+        status = watch_round(args, voice);
+        if (status < 0 && !fl_file_watch_changed(files))
+            say(voice, "note", "waiting for a change of drawings, config or styles");
+        if (status < 0 && !fl_file_watch_wait(files, &stop))
+            status = DONE;
+        else if (status < 0)
+            note_change(voice);
+        voice->files = NULL;
+    }
+    return status;
+}
+
 /* The commands that read the drawing, and may be interrupted. */
 static int work(FlArgs *args)
 {
@@ -213,10 +298,12 @@ static int work(FlArgs *args)
         compare_styles(args, &error);
     else if (args->task == FL_COMMAND_METHODS)
         fl_compare_methods(&args->render, (const char *const *)args->variants, &error);
+    else if (args->render.watch)
+        status = watch(args, &voice);
     else
         fl_render(&args->render, &error);
     fl_meter_hide(&voice.meter);
-    if (!error && args->task == FL_COMMAND_RENDER)
+    if (!error && args->task == FL_COMMAND_RENDER && !args->render.watch)
         recall_warnings(&voice);
     // NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): args are only cleared after this
     return error ? fail(args, error) : status;

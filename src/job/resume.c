@@ -175,7 +175,8 @@ static bool check_film(const FlPlan *plan, GError **error)
 bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
 {
     const bool one_file = plan->format->film && !plan->parts_only;
-    *resume = (FlResume){.keep_files = plan->options.overwrite == FL_OVERWRITE_KEEP};
+    *resume = (FlResume){.keep_files = plan->options.overwrite == FL_OVERWRITE_KEEP,
+                         .forgets = plan->options.watch};
     if (one_file && !check_film(plan, error))
         return false;
     g_autoptr(FlFingerprint) print = fl_fingerprint_new(plan, error);
@@ -262,6 +263,8 @@ bool fl_resume_keeps(const FlResume *resume, const char *file)
 
 const char *fl_resume_advice(const FlResume *resume)
 {
+    if (resume->forgets)
+        return "run again, with its paint from the cache";
     return resume->path ? "run again to resume" : "a film without its frames starts anew";
 }
 
@@ -274,6 +277,8 @@ void fl_resume_finish(FlResume *resume)
 
 void fl_resume_clear(FlResume *resume)
 {
+    if (resume->forgets && resume->lock_path)
+        fl_resume_finish(resume); // the lock says that the state is ours
     release_lock(resume);
     g_free(resume->path);
     fl_checkpoint_free(resume->state);

@@ -10,6 +10,7 @@ typedef struct FlResume {
     FlCheckpoint *state; // the latest
     bool written;        // the file has a state
     bool found;          // an earlier run wrote it
+    bool forgets;        // an interrupted run leaves no state
     int first;           // the frame to start with
     bool keep_files;     // existing files stay
     char *lock_path;     // beside the state; NULL: not locked

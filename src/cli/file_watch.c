@@ -1,0 +1,211 @@
+#include "file_watch.h"
+
+#include <gio/gio.h>
+#include <stdatomic.h>
+#include <string.h>
+
+enum { TICK_MS = 50, SETTLE_MS = 200, ABANDONED_MS = 3000 };
+
+struct FlFileWatch {
+    GPtrArray *folders; // Folder
+    GHashTable *open;   // path of a file that is being written -> gint64 *: the last event
+    gint64 last_us;     // of the last event; 0: none
+    char *last;         // the name of its file
+    atomic_bool changed;
+};
+
+typedef struct Folder {
+    FlFileWatch *watch;
+    GFileMonitor *monitor;
+    GPatternSpec *names; // of files that are read
+} Folder;
+
+static void folder_free(void *data)
+{
+    Folder *folder = data;
+    g_file_monitor_cancel(folder->monitor);
+    g_object_unref(folder->monitor);
+    g_pattern_spec_free(folder->names);
+    g_free(folder);
+}
+
+static gint64 *new_time(void)
+{
+    gint64 *time = g_new(gint64, 1);
+    *time = g_get_monotonic_time();
+    return time;
+}
+
+/* A file is open from its first change until it is closed, moved or gone. */
+static void take_event(const Folder *folder, GFile *file, bool opens)
+{
+    g_autofree char *name = file ? g_file_get_basename(file) : NULL;
+    if (!name || !g_pattern_spec_match_string(folder->names, name))
+        return;
+    FlFileWatch *watch = folder->watch;
+    char *path = g_file_get_path(file);
+    if (opens)
+        g_hash_table_insert(watch->open, path, new_time());
+    else {
+        g_hash_table_remove(watch->open, path);
+        g_free(path);
+    }
+    g_free(watch->last);
+    watch->last = g_steal_pointer(&name);
+    watch->last_us = g_get_monotonic_time();
+    atomic_store(&watch->changed, true);
+}
+
+static void on_event(GFileMonitor *monitor, GFile *file, GFile *other, GFileMonitorEvent event,
+                     void *data)
+{
+    if (event == G_FILE_MONITOR_EVENT_ATTRIBUTE_CHANGED)
+        return; // touched or read
+    take_event(data, file,
+               event == G_FILE_MONITOR_EVENT_CREATED || event == G_FILE_MONITOR_EVENT_CHANGED);
+    if (event ==
+        G_FILE_MONITOR_EVENT_RENAMED) // what is moved in or out has its other name elsewhere
+        take_event(data, other, false);
+}
+
+/* A folder that is not there is left out; the render says if it is missing. */
+static void add_folder(FlFileWatch *watch, const char *path, const char *names)
+{
+    g_autoptr(GFile) file = g_file_new_for_path(path);
+    GFileMonitor *monitor =
+        g_file_test(path, G_FILE_TEST_IS_DIR)
+            ? g_file_monitor_directory(file, G_FILE_MONITOR_WATCH_MOVES, NULL, NULL)
+            : NULL;
+    if (!monitor)
+        return;
+    Folder *folder = g_new(Folder, 1);
+    *folder = (Folder){watch, monitor, g_pattern_spec_new(names)};
+    g_file_monitor_set_rate_limit(monitor, TICK_MS);
+    g_signal_connect(monitor, "changed", G_CALLBACK(on_event), folder);
+    g_ptr_array_add(watch->folders, folder);
+}
+
+/* A file, or all that a pattern of a frame's number and {region} may name; NULL: none. */
+static void add_files(FlFileWatch *watch, const char *pattern)
+{
+    if (!pattern)
+        return;
+    g_autofree char *folder = g_path_get_dirname(pattern);
+    g_autofree char *name = g_path_get_basename(pattern);
+    g_autoptr(GRegex) parts = g_regex_new("%[0-9]*d|#+|\\{region\\}", 0, 0, NULL);
+    g_autofree char *names = g_regex_replace_literal(parts, name, -1, 0, "*", 0, NULL);
+    add_folder(watch, folder, names ? names : "*");
+}
+
+/* Drawings and style sheets beside them; new frames appear in the same folder. */
+static void add_input(FlFileWatch *watch, const char *input)
+{
+    static const char *const drawings[] = {"*.svg", "*.svgz", "*.css"};
+    g_autofree char *folder =
+        g_file_test(input, G_FILE_TEST_IS_DIR) ? g_strdup(input) : g_path_get_dirname(input);
+    for (size_t k = 0; k < G_N_ELEMENTS(drawings); k++)
+        add_folder(watch, folder, drawings[k]);
+}
+
+static void add_style(FlFileWatch *watch, const char *path)
+{
+    static const char *const parts[] = {"", "frames", "masks", "flow"};
+    for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
+        g_autofree char *part = g_build_filename(path, parts[k], NULL);
+        add_folder(watch, part, "*");
+    }
+}
+
+/* Styles that the config names by their folders, which are relative to its own. */
+static void add_config_styles(FlFileWatch *watch, const char *config)
+{
+    g_autoptr(GKeyFile) file = g_key_file_new();
+    if (!config || !g_key_file_load_from_file(file, config, G_KEY_FILE_NONE, NULL))
+        return;
+    g_autofree char *folder = g_path_get_dirname(config);
+    g_autofree char *base = g_canonicalize_filename(folder, NULL);
+    g_auto(GStrv) sections = g_key_file_get_groups(file, NULL);
+    for (char **section = sections; *section; section++) {
+        g_autofree char *style = g_key_file_get_string(file, *section, "style", NULL);
+        g_autofree char *path = style ? g_canonicalize_filename(style, base) : NULL;
+        if (path)
+            add_style(watch, path);
+    }
+}
+
+FlFileWatch *fl_file_watch_new(const FlRenderOptions *options)
+{
+    FlFileWatch *watch = g_new0(FlFileWatch, 1);
+    watch->folders = g_ptr_array_new_with_free_func(folder_free);
+    watch->open = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    watch->last = g_strdup("");
+    for (const char *const *input = options->inputs; *input; input++)
+        add_input(watch, *input);
+    add_files(watch, options->config);
+    add_files(watch, options->background);
+    add_files(watch, options->paper);
+    add_files(watch, options->flow);
+    add_files(watch, options->merge ? options->paint : NULL);
+    add_config_styles(watch, options->config);
+    for (size_t k = 0; k < options->n_settings; k++)
+        if (strcmp(options->settings[k].name, "style") == 0)
+            add_style(watch, options->settings[k].value);
+    g_autoptr(GPtrArray) styles = fl_style_list();
+    for (guint k = 0; k < styles->len; k++)
+        add_style(watch, ((const FlStyleEntry *)styles->pdata[k])->path);
+    return watch;
+}
+
+bool fl_file_watch_changed(FlFileWatch *watch)
+{
+    while (g_main_context_iteration(NULL, FALSE))
+        continue;
+    return fl_file_watch_has_changed(watch);
+}
+
+bool fl_file_watch_has_changed(const FlFileWatch *watch)
+{
+    return atomic_load(&watch->changed);
+}
+
+static gboolean on_tick(void *data)
+{
+    return G_SOURCE_CONTINUE; // the loop looks
+}
+
+/* Whoever opened the file does no longer write to it, or was killed. */
+static gboolean is_abandoned(void *path, void *time, void *data)
+{
+    return g_get_monotonic_time() - *(gint64 *)time > (gint64)ABANDONED_MS * 1000;
+}
+
+static bool has_settled(FlFileWatch *watch)
+{
+    g_hash_table_foreach_remove(watch->open, is_abandoned, NULL);
+    return watch->last_us && g_hash_table_size(watch->open) == 0 &&
+           g_get_monotonic_time() - watch->last_us > (gint64)SETTLE_MS * 1000;
+}
+
+bool fl_file_watch_wait(FlFileWatch *watch, const volatile sig_atomic_t *stop)
+{
+    const guint tick = g_timeout_add(TICK_MS, on_tick, NULL);
+    while (!*stop && !has_settled(watch))
+        g_main_context_iteration(NULL, TRUE);
+    g_source_remove(tick);
+    return !*stop;
+}
+
+const char *fl_file_watch_last(const FlFileWatch *watch)
+{
+    return watch->last;
+}
+
+void fl_file_watch_free(FlFileWatch *watch)
+{
+    if (!watch)
+        return;
+    g_ptr_array_unref(watch->folders);
+    g_hash_table_unref(watch->open);
+    g_free(watch->last);
+    g_free(watch);
+}

@@ -1,0 +1,40 @@
+/* Which files a render reads, and whether they have changed. */
+#ifndef FLUIDY_CLI_FILE_WATCH_H
+#define FLUIDY_CLI_FILE_WATCH_H
+
+#include <fluidy/fluidy.h>
+#include <signal.h>
+
+typedef struct FlFileWatch FlFileWatch;
+
+/**
+ * Watches drawings, config, flow, background, paper and styles from now on. Of folders only those
+ * that exist; what a drawing links to is not watched. To be used by the thread that makes it, which
+ * must own GLib's default main context.
+ *
+ * Returns: to be freed with fl_file_watch_free().
+ */
+FlFileWatch *fl_file_watch_new(const FlRenderOptions *options);
+
+/** Whether anything has changed since fl_file_watch_new(). Does not wait. */
+bool fl_file_watch_changed(FlFileWatch *watch);
+
+/** The answer of the last fl_file_watch_changed(); any thread may ask. */
+bool fl_file_watch_has_changed(const FlFileWatch *watch);
+
+/**
+ * Waits until something has changed, every file that was written is closed, and nothing has
+ * happened for a moment: so no file is read that is half written.
+ *
+ * Returns: false as soon as *stop is set.
+ */
+bool fl_file_watch_wait(FlFileWatch *watch, const volatile sig_atomic_t *stop);
+
+/** The name of the file that changed last, without its folder; "" before any has. Borrowed. */
+const char *fl_file_watch_last(const FlFileWatch *watch);
+
+void fl_file_watch_free(FlFileWatch *watch); // NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFileWatch, fl_file_watch_free)
+
+#endif

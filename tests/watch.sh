@@ -1,0 +1,128 @@
+#!/bin/bash
+# --watch: frames follow the files that they are painted from. Waits for states, never for a time.
+# usage: watch.sh PROGRAM FIXTURES; speaks TAP.
+# shellcheck source-path=SCRIPTDIR source=film.sh
+. "${0%/*}/film.sh"
+trap 'kill -KILL $job 2>/dev/null; rm -rf "$folder"' EXIT
+
+# until_so COMMAND...: it succeeds within 60 s, while the watch goes on.
+until_so() {
+    local end=$((SECONDS + 60))
+    until "$@"; do
+        [ $SECONDS -lt $end ] && kill -0 $job 2>/dev/null || return 1
+        sleep 0.05
+    done
+}
+
+# watch ARGUMENT...: in the background, as process $job.
+watch() {
+    "$program" film -s "$style" -o 'now/w_%04d.png' --progress none --cache kept --watch "$@" \
+        >said 2>told &
+    job=$!
+}
+
+# waits: everything is painted or told, and nothing is on its way.
+waits() {
+    tail -n 1 told | grep -q "waiting for a change"
+}
+
+# follows: the frames become those of a render from nothing, with nothing beside them.
+follows() {
+    rm -rf nothing
+    paint nothing -c one.conf --cache off && until_so same now nothing && until_so waits
+}
+
+errors() {
+    [ "$(grep -c 'w_000[0-9].svg: \|w-tmp' told)" = "$1" ]
+}
+
+# ends SIGNAL STATUS: the watch does, and leaves nothing but frames.
+ends() {
+    kill -"$1" $job 2>/dev/null
+    wait $job
+    [ $? = "$2" ] && [ -z "$(find now -name '.*' -type f)" ]
+}
+
+echo >one.conf
+watch -c one.conf
+paint draft -c one.conf --cache off --detail draft
+follows
+result $? 'the film is painted, and the watch goes on'
+[ "$(grep -c 'painted 6 frames' told)" = 2 ] && ! same draft nothing
+result $? 'after drafts, in full'
+cp -r now before
+drawing film/w_0004.svg 56 1
+follows && ! same now before && grep -q 'w_0004.svg has changed' told && grep -q 'from the cache' told
+result $? 'an edited frame is painted again, with paint from the cache'
+drawing film/w_0007.svg 56 7
+follows && [ -e now/w_0007.png ]
+result $? 'so is a frame that was added'
+printf '[defaults]\nw-temp = 9\n' >one.conf
+rm -rf before && cp -r now before
+follows && ! same now before
+result $? 'and a film whose config was edited'
+
+# Half of a frame stays for longer than it takes to see it, while its writer has it open.
+{
+    printf "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56' viewBox='0 0 48 48'>"
+    sleep 0.7
+    printf "<circle cx='30' cy='24' r='11' fill='#aa3311'/></svg>"
+} >film/w_0003.svg
+follows && errors 0
+result $? 'a frame is not read while it is being written'
+
+printf '<svg' >film/w_0002.svg
+until_so errors 1 && until_so waits
+result $? 'a broken drawing is one line, and the watch goes on'
+drawing film/w_0002.svg 56 6
+follows && errors 1
+result $? 'until it is mended'
+printf '[defaults]\nw-tmp = 9\n' >one.conf
+until_so errors 2 && until_so waits
+result $? 'so is a broken config'
+printf '[defaults]\nw-temp = 7\n' >one.conf
+follows && errors 2
+result $? 'until it is mended, too'
+ends INT 0
+result $? 'SIGINT ends it with status 0, and leaves nothing'
+
+cp -r "$style" own
+watch -c one.conf -s "$PWD/own"
+wait $job
+[ $? = 1 ] && grep -q 'already exists' told
+result $? 'frames that exist end it before anything is painted'
+watch -c one.conf -s "$PWD/own" -y
+follows
+grep -v '^title' own/style.ini >edited && mv edited own/style.ini
+until_so grep -q 'style.ini has changed' told && until_so waits && kill -0 $job && ends TERM 0
+result $? 'a style that was replaced is read again, and SIGTERM ends it as well'
+watch -c <(cat one.conf)
+wait $job
+[ $? = 2 ] && grep -q 'expected a file' told
+result $? 'a config from a pipe is refused'
+
+# Large frames take long enough to be stopped while they are painted, or changed.
+for i in 1 2 3 4 5 6 7; do
+    drawing film/w_000$i.svg 400 $i
+done
+# painting: some of the frames in full are written, and not the last.
+painting() {
+    [ -e now/w_0001.png ] && [ -e now/.w_%04d.png.state ]
+}
+for signal in INT TERM; do
+    rm -rf now kept
+    watch -c one.conf
+    until_so painting && ends $signal 75 && grep -q 'run again' told
+    result $? "SIG$signal while it paints gives status 75, and leaves no state"
+done
+rm -rf now kept
+watch -c one.conf
+until_so painting
+for i in 1 2 3 4 5 6 7; do
+    drawing film/w_000$i.svg 56 $i
+done
+follows && errors 0
+result $? 'a change while it paints starts again'
+ends TERM 0
+
+echo "1..$n"
