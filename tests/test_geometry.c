@@ -246,6 +246,25 @@ static void packed_outlines_are_the_same(void)
     g_assert_cmpmem(data, (int)bytes, second, (int)again);
 }
 
+static void damaged_outlines_are_none(void)
+{
+    g_autoptr(FlOutlines) o = outlines_of("<g id='a'>" SHAPE SHAPE "</g>", 100, 100, NULL);
+    size_t bytes = 0;
+    g_autofree uint8_t *data = fl_outlines_pack(o, &bytes);
+    for (size_t n = 0; n < bytes; n++)
+        g_assert_null(fl_outlines_unpack(data, n));
+    int n_bad = 0;
+    for (size_t i = 0; i < bytes; i++) { // each byte, from the counts to the last coordinate
+        g_autofree uint8_t *wild = g_memdup2(data, bytes);
+        wild[i] ^= 0xff;
+        g_autoptr(FlOutlines) read = fl_outlines_unpack(wild, bytes);
+        n_bad += !read;
+        for (int leaf = 0; read && leaf < read->n_leaves; leaf++)
+            box_of(read, leaf); // stays within the arrays
+    }
+    g_assert_cmpint(n_bad, >, 40);
+}
+
 static void turns_are_right(void)
 {
     for (int d = -1000; d <= 1000; d += 7) {
@@ -274,6 +293,7 @@ int main(int argc, char **argv)
     TEST("shapes-have-one-structure-each", shapes_have_one_structure_each);
     TEST("outlines-lie-where-librsvg-draws-them", outlines_lie_where_librsvg_draws_them);
     TEST("packed-outlines-are-the-same", packed_outlines_are_the_same);
+    TEST("damaged-outlines-are-none", damaged_outlines_are_none);
     TEST("turns-are-right", turns_are_right);
     return g_test_run();
 }

@@ -1,215 +1,29 @@
 #include "drawing/draw_pool.h"
 
 #include "base/alloc.h"
-#include "base/limits.h"
-#include "base/schedule.h"
-#include "drawing/confined.h"
+#include "drawing/draw_worker.h"
 #include "drawing/drawing_data.h"
 #include "drawing/line_kind.h"
 #include <errno.h>
-#include <signal.h>
-#include <stdatomic.h>
-#include <stdio.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-/*
- * A process of the pool only waits: for a request, on which it forks the one that draws, and for
- * the end of that. Once the render has threads it must not fork; these processes have none.
- */
-typedef struct Worker {
-    pid_t pid;
-    int line;            // requests and replies
-    int pictures, words; // memory files: what a request or a reply holds; what libraries said
-    atomic_int *draws;   // shared: whether a request was taken and has no reply yet
-    bool busy, gone;
-} Worker;
 
 struct FlDrawPool {
     const FlDrawing *drawing;
     GMutex mutex; // of `busy` and `gone`
     GCond freed;
     int n;
-    Worker *worker;
+    FlDrawWorker *worker;
     bool insists;       // see fl_draw_pool_insist()
     atomic_int n_plain; // frames drawn without hands since they failed with them
+    atomic_bool *lost;  // by frame: drawn as the one before
 };
-
-/** The regions' hands and the tooth follow in `pictures`, if there are any. */
-typedef struct Request {
-    int frame, n_halved;
-    bool has_hands, has_tooth;
-    uint64_t seed;
-    float page;
-} Request;
-
-typedef struct Reply {
-    bool drawn;
-    FlConfinedEnd end; // of the process that drew, unless drawn
-} Reply;
-
-/** A draw without what its pointers point to, which follows: rows, coverage, by_hand, picture. */
-typedef struct Header {
-    FlDraw draw;
-    bool has_rows, is_by_hand, has_picture;
-} Header;
-
-/** What is left to read of a file in memory; the one who wrote it is not trusted. */
-typedef struct Result {
-    int file;
-    off_t at;
-} Result;
-
-static bool take(Result *result, void *data, size_t bytes)
-{
-    for (size_t done = 0; done < bytes;) {
-        const ssize_t n = pread(result->file, (char *)data + done, bytes - done, result->at);
-        if (n <= 0)
-            return false;
-        done += (size_t)n, result->at += n;
-    }
-    return true;
-}
-
-/** Opens a file in memory to write it anew. Returns: NULL on failure. */
-static FILE *rewrite(int file)
-{
-    const int copy = ftruncate(file, 0) == 0 && lseek(file, 0, SEEK_SET) == 0 ? dup(file) : -1;
-    return copy >= 0 ? fdopen(copy, "w") : NULL;
-}
-
-/* ---- the children ---------------------------------------------------------------------------- */
-
-static void put_draw(FILE *out, const FlDraw *draw)
-{
-    Header header = {*draw, draw->area.row != NULL, draw->by_hand != NULL, draw->picture != NULL};
-    const size_t n = fl_rect_pixels(draw->area.box);
-    header.draw.area.row = NULL;
-    header.draw.coverage = header.draw.by_hand = header.draw.picture = NULL;
-    fwrite(&header, sizeof header, 1, out);
-    if (header.has_rows)
-        fwrite(draw->area.row, sizeof *draw->area.row, (size_t)draw->area.box.height, out);
-    fwrite(draw->coverage, 1, n, out);
-    if (header.is_by_hand)
-        fwrite(draw->by_hand, 1, n, out);
-    if (header.has_picture)
-        fwrite(draw->picture, 4, n, out);
-}
-
-/** Writes a draw list, or -1 - the code of the error and its text. */
-static bool put_result(const Worker *worker, const FlDrawList *draws, const GError *problem)
-{
-    FILE *out = rewrite(worker->pictures);
-    if (!out)
-        return false;
-    const int code = problem && problem->domain == FL_ERROR ? problem->code : FL_ERROR_INPUT;
-    const int n = draws ? draws->n : -1 - code;
-    fwrite(&n, sizeof n, 1, out);
-    for (int i = 0; draws && i < n; i++)
-        put_draw(out, &draws->draw[i]);
-    if (problem && !draws)
-        fputs(problem->message, out);
-    const bool good = !ferror(out);
-    return fclose(out) == 0 && good;
-}
-
-/** Draws what is asked for and writes it. Returns: false if it cannot be written. */
-static bool draw(const FlDrawing *drawing, const Worker *worker, const Request *request)
-{
-    const int n = (int)drawing->regions->len;
-    const size_t pixels = (size_t)drawing->width * (size_t)drawing->height;
-    g_autofree FlRegionHand *hands = g_new(FlRegionHand, n + 1);
-    g_autofree int8_t *tooth = g_malloc(request->has_tooth ? pixels : 1);
-    const FlHand hand = {hands,
-                         request->seed,
-                         request->page,
-                         {request->has_tooth ? tooth : NULL, (size_t)drawing->width}};
-    Result given = {worker->pictures, 0};
-    if ((request->has_hands && !take(&given, hands, (size_t)n * sizeof *hands)) ||
-        (request->has_tooth && !take(&given, tooth, pixels)))
-        return false;
-    g_autoptr(GError) problem = NULL;
-    g_autoptr(FlDrawList) draws =
-        fl_draw_list_make(drawing, request->frame, request->has_hands ? &hand : NULL, &problem);
-    return put_result(worker, draws, problem);
-}
-
-/** The terminal's signals are for the parent, which ends the pool. */
-static void ignore_terminal(void)
-{
-    signal(SIGINT, SIG_IGN), signal(SIGTERM, SIG_IGN), signal(SIGHUP, SIG_IGN);
-}
-
-/**
- * Gives up what drawing does not need. LLVM's OpenMP begins anew in a process that was forked, with
- * a file in shared memory, which the sandbox refuses: so it is asked for something before.
- */
-static void confine(const FlDrawing *drawing, const Worker *worker)
-{
-    (void)fl_schedule_threads();
-    fl_confined_enter(drawing->sequence, worker->words);
-    ignore_terminal();
-}
-
-/** The process that draws, until it dies or the pool ends. */
-G_GNUC_NORETURN static void serve(FlDrawing *drawing, const Worker *worker)
-{
-    Request request;
-    confine(drawing, worker);
-    while (recv(worker->line, &request, sizeof request, MSG_WAITALL) == sizeof request) {
-        atomic_store(worker->draws, 1);
-        while (drawing->n_halved < request.n_halved)
-            fl_drawing_halve(drawing);
-        alarm((unsigned)fl_limit(FL_LIMIT_SECONDS));
-        const Reply reply = {.drawn = draw(drawing, worker, &request)};
-        alarm(0);
-        if (!reply.drawn)
-            _exit(1);
-        atomic_store(worker->draws, 0);
-        if (send(worker->line, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply)
-            break;
-    }
-    _exit(0);
-}
-
-/** The process that waits: replies for the one that draws if that dies, and starts another. */
-G_GNUC_NORETURN static void attend(FlDrawing *drawing, const Worker *worker)
-{
-    ignore_terminal();
-    char next;
-    int untaken = 0; // children in a row that ended before they took the request
-    while (recv(worker->line, &next, 1, MSG_PEEK) == 1) {
-        (void)!ftruncate(worker->words, 0);
-        const pid_t self = getpid(), child = fork();
-        if (child == 0) {
-            fl_confined_ends_with(self);
-            serve(drawing, worker);
-        }
-        int status = 0;
-        if (child < 0 || waitpid(child, &status, 0) != child || status == 0)
-            break;
-        const Reply reply = {.end = {.status = status,
-                                     .late = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM,
-                                     .too_much = fl_confined_asked_too_much(worker->words)}};
-        Request request;
-        untaken = atomic_exchange(worker->draws, 0) ? 0 : untaken + 1;
-        if (untaken == 1)
-            continue; // it was killed while it waited: another one may live
-        if (untaken > 1 &&
-            recv(worker->line, &request, sizeof request, MSG_WAITALL) != sizeof request)
-            break;
-        untaken = 0;
-        (void)!send(worker->line, &reply, sizeof reply, MSG_NOSIGNAL);
-    }
-    _exit(0);
-}
 
 /* ---- starting and ending them ---------------------------------------------------------------- */
 
-static void close_worker(Worker *worker)
+static void close_worker(FlDrawWorker *worker)
 {
     if (worker->pid > 0) {
         shutdown(worker->line, SHUT_RDWR);
@@ -222,15 +36,15 @@ static void close_worker(Worker *worker)
             close(files[i]);
     if (worker->draws)
         munmap(worker->draws, sizeof *worker->draws);
-    *worker = (Worker){.line = -1, .pictures = -1, .words = -1};
+    *worker = (FlDrawWorker){.line = -1, .pictures = -1, .words = -1};
 }
 
-static bool start_worker(FlDrawPool *pool, FlDrawing *drawing, Worker *worker)
+static bool start_worker(FlDrawPool *pool, FlDrawing *drawing, FlDrawWorker *worker)
 {
     int ends[2];
-    *worker = (Worker){.line = -1,
-                       .pictures = memfd_create("fluidy-pictures", MFD_CLOEXEC),
-                       .words = fl_confined_words()};
+    *worker = (FlDrawWorker){.line = -1,
+                             .pictures = memfd_create("fluidy-pictures", MFD_CLOEXEC),
+                             .words = fl_confined_words()};
     void *shared = mmap(NULL, sizeof *worker->draws, PROT_READ | PROT_WRITE,
                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     worker->draws = shared == MAP_FAILED ? NULL : shared;
@@ -242,10 +56,10 @@ static bool start_worker(FlDrawPool *pool, FlDrawing *drawing, Worker *worker)
     worker->pid = fork();
     if (worker->pid == 0) {
         fl_confined_ends_with(self);
-        for (Worker *other = pool->worker; other <= worker; other++)
+        for (FlDrawWorker *other = pool->worker; other <= worker; other++)
             close(other->line);
         worker->line = ends[1];
-        attend(drawing, worker);
+        fl_draw_worker_attend(drawing, worker);
     }
     close(ends[1]);
     return worker->pid > 0;
@@ -256,7 +70,9 @@ FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n)
     if (!fl_confined_may_fork())
         return NULL;
     FlDrawPool *pool = g_new0(FlDrawPool, 1);
-    *pool = (FlDrawPool){.drawing = drawing, .worker = g_new0(Worker, n)};
+    *pool = (FlDrawPool){.drawing = drawing,
+                         .worker = g_new0(FlDrawWorker, n),
+                         .lost = g_new0(atomic_bool, drawing->sequence->n)};
     g_mutex_init(&pool->mutex);
     g_cond_init(&pool->freed);
     while (pool->n < n && start_worker(pool, drawing, &pool->worker[pool->n]))
@@ -277,6 +93,7 @@ void fl_draw_pool_free(FlDrawPool *pool)
     g_mutex_clear(&pool->mutex);
     g_cond_clear(&pool->freed);
     g_free(pool->worker);
+    g_free(pool->lost);
     g_free(pool);
 }
 
@@ -288,10 +105,10 @@ static bool is_within(FlRect box, const FlDrawing *drawing)
            box.width <= drawing->width - box.x && box.height <= drawing->height - box.y;
 }
 
-static bool take_rows(Result *result, FlArea *area)
+static bool take_rows(FlDrawResult *result, FlArea *area)
 {
     area->row = g_new(FlColumns, area->box.height);
-    if (!take(result, area->row, (size_t)area->box.height * sizeof *area->row))
+    if (!fl_draw_result_take(result, area->row, (size_t)area->box.height * sizeof *area->row))
         return false;
     for (int y = 0; y < area->box.height; y++)
         if (area->row[y].first < 0 || area->row[y].last > area->box.width)
@@ -300,12 +117,12 @@ static bool take_rows(Result *result, FlArea *area)
 }
 
 /** *draw owns what it got even on failure, which has an error if memory was the reason. */
-static bool take_draw(Result *result, const FlDrawing *drawing, FlDraw *draw, GError **error)
+static bool take_draw(FlDrawResult *result, const FlDrawing *drawing, FlDraw *draw, GError **error)
 {
-    Header header;
-    if (!take(result, &header, sizeof header) || !is_within(header.draw.area.box, drawing) ||
-        header.draw.region < 0 || header.draw.region >= (int)drawing->regions->len ||
-        (unsigned)header.draw.mix >= FL_N_MIXES)
+    FlDrawHeader header;
+    if (!fl_draw_result_take(result, &header, sizeof header) ||
+        !is_within(header.draw.area.box, drawing) || header.draw.region < 0 ||
+        header.draw.region >= (int)drawing->regions->len || (unsigned)header.draw.mix >= FL_N_MIXES)
         return false;
     *draw = header.draw;
     draw->area.row = NULL;
@@ -313,17 +130,25 @@ static bool take_draw(Result *result, const FlDrawing *drawing, FlDraw *draw, GE
     const size_t n = fl_rect_pixels(draw->area.box);
     if ((header.has_rows && !take_rows(result, &draw->area)) ||
         !(draw->coverage = fl_alloc(n, 1, "the mask of a region", error)) ||
-        !take(result, draw->coverage, n))
+        !fl_draw_result_take(result, draw->coverage, n))
         return false;
-    if (header.is_by_hand &&
-        (!(draw->by_hand = fl_alloc(n, 1, "a line", error)) || !take(result, draw->by_hand, n)))
+    if (header.is_by_hand && (!(draw->by_hand = fl_alloc(n, 1, "a line", error)) ||
+                              !fl_draw_result_take(result, draw->by_hand, n)))
         return false;
     return !header.has_picture ||
            ((draw->picture = fl_alloc(n, 4, "the picture of a region", error)) &&
-            take(result, draw->picture, 4 * n));
+            fl_draw_result_take(result, draw->picture, 4 * n));
 }
 
-static void take_error(const FlDrawPool *pool, Result *result, int frame, int code, GError **error)
+static void set_damaged(const FlDrawPool *pool, int frame, GError **error)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                "%s: the process that drew it returned damaged data",
+                pool->drawing->sequence->file[frame]);
+}
+
+static void take_error(const FlDrawPool *pool, FlDrawResult *result, int frame, int code,
+                       GError **error)
 {
     if (code == FL_ERROR_NO_MEMORY) {
         const FlConfinedEnd end = {.too_much = true};
@@ -336,34 +161,64 @@ static void take_error(const FlDrawPool *pool, Result *result, int frame, int co
     g_set_error(error, FL_ERROR, code, "%s", text);
 }
 
-static FlDrawList *take_result(const FlDrawPool *pool, Worker *worker, int frame, GError **error)
+/** Takes how many of something follow, at most `most`. Returns: false with an error. */
+static bool take_count(const FlDrawPool *pool, FlDrawResult *result, int frame, int most, int *n,
+                       GError **error)
+{
+    if (!fl_draw_result_take(result, n, sizeof *n) || *n > most)
+        set_damaged(pool, frame, error);
+    else if (*n < 0)
+        take_error(pool, result, frame, -1 - *n, error);
+    else
+        return true;
+    return false;
+}
+
+/** What a worker answered: a draw list or outlines. */
+typedef void *(*TakeAnswer)(const FlDrawPool *pool, const FlDrawWorker *worker, int frame,
+                            GError **error);
+
+static void *take_outlines(const FlDrawPool *pool, const FlDrawWorker *worker, int frame,
+                           GError **error)
+{
+    FlDrawResult result = {worker->pictures, 0};
+    int n = 0;
+    if (!take_count(pool, &result, frame, INT_MAX, &n, error))
+        return NULL;
+    g_autofree uint8_t *data = fl_alloc((size_t)n, 1, "the outlines of a frame", error);
+    if (!data)
+        return NULL;
+    FlOutlines *outlines =
+        fl_draw_result_take(&result, data, (size_t)n) ? fl_outlines_unpack(data, (size_t)n) : NULL;
+    if (!outlines)
+        set_damaged(pool, frame, error);
+    return outlines;
+}
+
+static void *take_draws(const FlDrawPool *pool, const FlDrawWorker *worker, int frame,
+                        GError **error)
 {
     g_autoptr(FlDrawList) draws = g_new0(FlDrawList, 1);
     GError *problem = NULL;
-    Result result = {worker->pictures, 0};
+    FlDrawResult result = {worker->pictures, 0};
     int n = 0;
-    bool good = take(&result, &n, sizeof n);
-    if (good && n < 0) {
-        take_error(pool, &result, frame, -1 - n, error);
+    if (!take_count(pool, &result, frame, pool->drawing->frame[frame].n, &n, error))
         return NULL;
-    }
-    good = good && n <= pool->drawing->frame[frame].n;
-    draws->draw = g_new0(FlDraw, good ? n + 1 : 1);
+    bool good = true;
+    draws->draw = g_new0(FlDraw, n + 1);
     for (int i = 0; i < n && good; i++)
         good = take_draw(&result, pool->drawing, &draws->draw[draws->n++], &problem);
     if (!good && !problem)
-        g_set_error(&problem, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: the process that drew it returned damaged data",
-                    pool->drawing->sequence->file[frame]);
+        set_damaged(pool, frame, &problem);
     if (problem)
         g_propagate_error(error, problem);
     return good ? g_steal_pointer(&draws) : NULL;
 }
 
-static Worker *first_free(FlDrawPool *pool, bool *none)
+static FlDrawWorker *first_free(FlDrawPool *pool, bool *none)
 {
     *none = true;
-    for (Worker *w = pool->worker; w < pool->worker + pool->n; w++) {
+    for (FlDrawWorker *w = pool->worker; w < pool->worker + pool->n; w++) {
         *none &= w->gone;
         if (!w->busy && !w->gone)
             return w;
@@ -372,11 +227,11 @@ static Worker *first_free(FlDrawPool *pool, bool *none)
 }
 
 /** Waits for a free worker. Returns: NULL if all are gone. */
-static Worker *engage(FlDrawPool *pool)
+static FlDrawWorker *engage(FlDrawPool *pool)
 {
     bool none = false;
     g_mutex_lock(&pool->mutex);
-    Worker *worker = first_free(pool, &none);
+    FlDrawWorker *worker = first_free(pool, &none);
     while (!worker && !none) {
         g_cond_wait(&pool->freed, &pool->mutex);
         worker = first_free(pool, &none);
@@ -387,7 +242,7 @@ static Worker *engage(FlDrawPool *pool)
     return worker;
 }
 
-static void release(FlDrawPool *pool, Worker *worker, bool gone)
+static void release(FlDrawPool *pool, FlDrawWorker *worker, bool gone)
 {
     (void)!ftruncate(worker->pictures, 0); // its memory
     g_mutex_lock(&pool->mutex);
@@ -405,9 +260,9 @@ static bool has_hands(const FlDrawing *drawing, const FlHand *hand)
     return false;
 }
 
-static bool put_hand(const FlDrawing *drawing, const FlHand *hand, const Worker *worker)
+static bool put_hand(const FlDrawing *drawing, const FlHand *hand, const FlDrawWorker *worker)
 {
-    FILE *out = rewrite(worker->pictures);
+    FILE *out = fl_draw_rewrite(worker->pictures);
     if (!out)
         return false;
     fwrite(hand->of_region, sizeof *hand->of_region, drawing->regions->len, out);
@@ -417,11 +272,22 @@ static bool put_hand(const FlDrawing *drawing, const FlHand *hand, const Worker 
     return fclose(out) == 0 && good;
 }
 
+/** What is asked of a worker, and how its answer is taken. */
+typedef struct Task {
+    int frame;
+    const FlHand *hand; // NULL: plain
+    bool outlines;
+    TakeAnswer take;
+} Task;
+
 /** Sends a request and waits for the reply. */
-static bool ask(const Worker *worker, const FlDrawing *drawing, int frame, const FlHand *hand,
-                Reply *reply)
+static bool ask(const FlDrawWorker *worker, const FlDrawing *drawing, const Task *task,
+                FlDrawReply *reply)
 {
-    Request request = {.frame = drawing->frame[frame].origin, .n_halved = drawing->n_halved};
+    const FlHand *hand = task->hand;
+    FlDrawRequest request = {.frame = drawing->frame[task->frame].origin,
+                             .n_halved = drawing->n_halved,
+                             .outlines = task->outlines};
     if (has_hands(drawing, hand)) {
         request.has_hands = true, request.has_tooth = hand->tooth.height != NULL;
         request.seed = hand->seed, request.page = hand->page;
@@ -447,40 +313,74 @@ int fl_draw_pool_plain(const FlDrawPool *pool)
     return pool ? atomic_load(&pool->n_plain) : 0;
 }
 
-static FlDrawList *draw_once(FlDrawPool *pool, int frame, const FlHand *hand, GError **error)
+int fl_draw_pool_lost(const FlDrawPool *pool)
 {
-    Worker *worker = engage(pool);
-    const FlDrawing *drawing = pool->drawing;
-    Reply reply = {0};
-    FlDrawList *draws = NULL;
-    const bool answered = worker && ask(worker, drawing, frame, hand, &reply);
+    int n = 0;
+    for (int t = 0; pool && t < pool->drawing->sequence->n; t++)
+        n += atomic_load(&pool->lost[t]);
+    return n;
+}
+
+/** Has whichever worker is free next do a task. Returns: NULL with an error. */
+static void *try_once(FlDrawPool *pool, const Task *task, GError **error)
+{
+    FlDrawWorker *worker = engage(pool);
+    const FlSequence *sequence = pool->drawing->sequence;
+    FlDrawReply reply = {0};
+    void *answer = NULL;
+    const bool answered = worker && ask(worker, pool->drawing, task, &reply);
     if (!answered)
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: the process that draws was killed",
-                    drawing->sequence->file[frame]);
+                    sequence->file[task->frame]);
     else if (reply.drawn)
-        draws = take_result(pool, worker, frame, error);
+        answer = task->take(pool, worker, task->frame, error);
     else
-        fl_confined_tell(drawing->sequence, frame, reply.end, "drawing", error);
+        fl_confined_tell(sequence, task->frame, reply.end, task->outlines ? "reading" : "drawing",
+                         error);
     if (worker)
         release(pool, worker, !answered);
-    return draws;
+    return answer;
+}
+
+/**
+ * Has a task done; if that fails and the pool insists, a second time, then with plain lines, and at
+ * last for the frame before, which stands for a lost one.
+ */
+static void *try_hard(FlDrawPool *pool, const Task *task, GError **error)
+{
+    const int n_frames = pool->drawing->sequence->n;
+    const bool by_hand = has_hands(pool->drawing, task->hand);
+    Task plain = *task, before = *task;
+    plain.hand = before.hand = NULL;
+    before.frame = task->frame > 0 ? task->frame - 1 : MIN(1, n_frames - 1);
+    const struct {
+        const Task *task;
+        bool is_due;
+    } attempts[] = {{task, true},
+                    {task, pool->insists},
+                    {&plain, pool->insists && by_hand},
+                    {&before, pool->insists && n_frames > 1}};
+    g_autoptr(GError) first = NULL;
+    for (size_t i = 0; i < G_N_ELEMENTS(attempts); i++) {
+        void *answer =
+            attempts[i].is_due ? try_once(pool, attempts[i].task, first ? NULL : &first) : NULL;
+        if (answer && attempts[i].task == &plain)
+            atomic_fetch_add(&pool->n_plain, 1);
+        if (answer && attempts[i].task == &before)
+            atomic_store(&pool->lost[task->frame], true);
+        if (answer)
+            return answer;
+    }
+    g_propagate_error(error, g_steal_pointer(&first));
+    return NULL;
 }
 
 FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error)
 {
-    const FlHand *const attempts[] = {hand, hand, NULL};
-    const bool by_hand = has_hands(pool->drawing, hand);
-    const size_t n = !pool->insists ? 1 : by_hand ? 3 : 2;
-    GError *problem = NULL;
-    FlDrawList *draws = NULL;
-    for (size_t i = 0; i < n && !draws; i++) {
-        draws = draw_once(pool, frame, attempts[i], &problem);
-        if (draws || i + 1 < n)
-            g_clear_error(&problem);
-        if (draws && by_hand && !attempts[i])
-            atomic_fetch_add(&pool->n_plain, 1);
-    }
-    if (problem)
-        g_propagate_error(error, problem);
-    return draws;
+    return try_hard(pool, &(Task){frame, hand, false, take_draws}, error);
+}
+
+FlOutlines *fl_draw_pool_outlines(FlDrawPool *pool, int frame, GError **error)
+{
+    return try_hard(pool, &(Task){frame, NULL, true, take_outlines}, error);
 }

@@ -4,6 +4,7 @@
 #define FLUIDY_DRAWING_DRAW_POOL_H
 
 #include "drawing/drawing.h"
+#include "svg/geometry.h"
 
 /**
  * n child processes, each confined to the drawing's folders, the limit of memory and that of
@@ -22,14 +23,21 @@ FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n);
  */
 FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error);
 
+/** fl_drawing_outlines() in whichever process is free next, likewise. */
+FlOutlines *fl_draw_pool_outlines(FlDrawPool *pool, int frame, GError **error);
+
 /**
  * Every frame was drawn once, so a failure from now on is the machine's (another process takes the
- * memory or the time) or the hand's: a frame is drawn a second time, then with plain lines.
+ * memory or the time), the hand's or that of a file that has changed: a frame is drawn a second
+ * time, then with plain lines, and then as the frame before it.
  */
 void fl_draw_pool_insist(FlDrawPool *pool);
 
 /** How many draw lists have plain lines since they failed with hands; NULL is fine. */
 int fl_draw_pool_plain(const FlDrawPool *pool);
+
+/** How many frames were drawn, or their outlines read, as the one before; NULL is fine. */
+int fl_draw_pool_lost(const FlDrawPool *pool);
 
 void fl_draw_pool_free(FlDrawPool *pool); // NULL is fine
 

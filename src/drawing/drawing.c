@@ -53,18 +53,29 @@ GHashTable *fl_drawing_linked_files(const FlDrawing *drawing)
     return drawing->files;
 }
 
+/** Adds a part of a sentence. */
+static void add_part(GString *text, const char *format, int n)
+{
+    g_string_append(text, text->len > 0 ? "; " : "");
+    g_string_append_printf(text, format, n, n == 1 ? "" : "s", n == 1 ? "was" : "were");
+}
+
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing)
 {
     const int n = drawing->sequence->n_left_out, plain = fl_draw_pool_plain(drawing->pool);
-    const char *fate = missing == FL_MISSING_HOLD ? "replaced by the one before" : "skipped";
+    const int lost = fl_draw_pool_lost(drawing->pool);
     GString *text = g_string_new(NULL);
     if (n > 0)
-        g_string_printf(text, "%d frame%s could not be read or drawn and %s %s", n,
-                        n == 1 ? "" : "s", n == 1 ? "was" : "were", fate);
+        add_part(text,
+                 missing == FL_MISSING_HOLD
+                     ? "%d frame%s could not be read or drawn and %s replaced by the one before"
+                     : "%d frame%s could not be read or drawn and %s skipped",
+                 n);
     if (plain > 0)
-        g_string_append_printf(text, "%slines of %d drawn frame%s could not be drawn by hand",
-                               n > 0 ? "; " : "", plain, plain == 1 ? "" : "s");
-    return g_string_free(text, n == 0 && plain == 0);
+        add_part(text, "lines of %d drawn frame%s could not be drawn by hand", plain);
+    if (lost > 0)
+        add_part(text, "%d frame%s that came to fail %s replaced by the one before", lost);
+    return g_string_free(text, text->len == 0);
 }
 
 const char *fl_drawing_name(const FlDrawing *drawing)

@@ -108,8 +108,9 @@ const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region);
 GHashTable *fl_drawing_linked_files(const FlDrawing *drawing);
 
 /**
- * How many frames are held or skipped since their files cannot be read or drawn, and how many have
- * plain lines since a hand's failed, as a sentence; to be freed. NULL: none.
+ * How many frames are held or skipped since their files cannot be read or drawn, how many have
+ * plain lines since a hand's failed, and how many failed later, as a sentence; to be freed. NULL:
+ * none.
  */
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing);
 

@@ -3,6 +3,7 @@
 #define FLUIDY_DRAWING_DRAWING_DATA_H
 
 #include "drawing/drawing.h"
+#include "svg/geometry.h"
 
 /** How one part of a leaf is drawn in one frame. 36 bytes: this is what grows with the number of
  * frames. */
@@ -34,6 +35,9 @@ void fl_drawing_frame_clear(FlDrawingFrame *frame);
 /** fl_drawing_draw_by_hand() in this process. */
 FlDrawList *fl_draw_list_make(const FlDrawing *drawing, int frame, const FlHand *hand,
                               GError **error);
+
+/** fl_drawing_outlines() in this process. */
+FlOutlines *fl_outlines_make(const FlDrawing *drawing, int frame, GError **error);
 
 struct FlDrawing {
     FlSequence *sequence;

@@ -1,9 +1,10 @@
 #include "drawing/outlines.h"
 
+#include "drawing/draw_pool.h"
 #include "drawing/drawing_data.h"
 #include <string.h>
 
-FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **error)
+FlOutlines *fl_outlines_make(const FlDrawing *drawing, int frame, GError **error)
 {
     const FlDrawingFrame *f = &drawing->frame[frame];
     const FlSvgOptions options = {.canvas = f->canvas,
@@ -13,6 +14,12 @@ FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **er
     g_autoptr(FlSvg) svg = fl_svg_read(drawing->sequence->file[frame],
                                        drawing->sequence->number[frame], &options, NULL, error);
     return svg ? fl_outlines_new(svg, f->page_width, f->page_height) : NULL;
+}
+
+FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **error)
+{
+    return drawing->pool ? fl_draw_pool_outlines(drawing->pool, frame, error)
+                         : fl_outlines_make(drawing, frame, error);
 }
 
 /** Calls for the leaf of a step, or for all that are drawn as one with it. */

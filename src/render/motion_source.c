@@ -86,7 +86,9 @@ static FlOutlines *outlines_from_spill(const FlMotionSource *source, int frame, 
     g_autofree uint8_t *data = fl_alloc(bytes, 1, "the outlines of a frame", error);
     if (!data || !fl_spill_get(source->spill, (size_t)frame, data, bytes, error))
         return NULL;
-    return fl_outlines_unpack(data, bytes);
+    FlOutlines *outlines = fl_outlines_unpack(data, bytes);
+    g_assert(outlines);
+    return outlines;
 }
 
 static FlOutlines *outlines_from_file(FlMotionSource *source, int frame, GError **error)

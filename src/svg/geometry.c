@@ -266,12 +266,12 @@ static void name_outline(FlGeometry *g, const FlLeaf *leaf)
 }
 
 /** Whether all points are numbers, also in px; those of a wild drawing need not be. */
-static bool is_finite(const FlGeometry *g, const GArray *cubic, guint first)
+static bool is_finite(const FlGeometry *g, const FlCubic *cubic, size_t n)
 {
     bool finite = isfinite(g->stroke);
-    for (guint i = first; i < cubic->len; i++)
+    for (size_t i = 0; i < n; i++)
         for (int k = 0; k < 4; k++) {
-            const FlPoint p = fl_affine_apply(&g->ctm, g_array_index(cubic, FlCubic, i).p[k]);
+            const FlPoint p = fl_affine_apply(&g->ctm, cubic[i].p[k]);
             finite = finite && isfinite(p.x) && isfinite(p.y);
         }
     return finite;
@@ -291,8 +291,9 @@ static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *n
     g.n_subpaths = (int32_t)reader->subpath->len - g.first_subpath;
     g.clipped = s.clipped, g.evenodd = s.evenodd, g.filled = s.filled;
     g.stroke = s.stroked ? s.stroke : 0;
-    g.usable = !broken && g.kind != FL_OUTLINE_NONE && g.n_subpaths > 0 &&
-               is_finite(&g, reader->cubic, first);
+    g.usable =
+        !broken && g.kind != FL_OUTLINE_NONE && g.n_subpaths > 0 &&
+        is_finite(&g, &g_array_index(reader->cubic, FlCubic, first), reader->cubic->len - first);
     g.unit = leaf->unit;
     name_outline(&g, leaf);
     return g;
@@ -358,19 +359,46 @@ uint8_t *fl_outlines_pack(const FlOutlines *o, size_t *bytes)
     return data;
 }
 
+/** Whether n things from the first on are among `all`. */
+static bool is_range(int32_t first, int32_t n, int32_t all)
+{
+    return first >= 0 && n >= 0 && first <= all && n <= all - first;
+}
+
+/** Whether a leaf is what read_leaf() gives. */
+static bool is_sound(const FlOutlines *o, const FlGeometry *g)
+{
+    bool sound = is_range(g->first_subpath, g->n_subpaths, o->n_subpaths) &&
+                 g->kind <= FL_OUTLINE_POLY && g->usable <= 1;
+    for (int i = 0; i < g->n_subpaths && sound; i++) {
+        const FlSubpath *sub = &o->subpath[g->first_subpath + i];
+        sound = sub->n > 0 && is_range(sub->first, sub->n, o->n_cubics) &&
+                (!g->usable || is_finite(g, &o->cubic[sub->first], (size_t)sub->n));
+    }
+    return sound;
+}
+
 FlOutlines *fl_outlines_unpack(const uint8_t *data, size_t bytes)
 {
     int32_t n[4];
-    g_assert(bytes >= sizeof n);
+    if (bytes < sizeof n)
+        return NULL;
     memcpy(n, data, sizeof n);
-    FlOutlines *o = outlines_of(n[0], n[1], n[2]);
-    const size_t leaves = n[0] * sizeof *o->leaf, subpaths = n[1] * sizeof *o->subpath;
-    const size_t cubics = n[2] * sizeof *o->cubic;
-    g_assert(bytes == sizeof n + leaves + subpaths + cubics);
+    if (n[0] < 0 || n[1] < 0 || n[2] < 0)
+        return NULL;
+    const size_t leaves = (size_t)n[0] * sizeof(FlGeometry);
+    const size_t subpaths = (size_t)n[1] * sizeof(FlSubpath);
+    const size_t cubics = (size_t)n[2] * sizeof(FlCubic);
+    if (bytes != sizeof n + leaves + subpaths + cubics)
+        return NULL;
+    g_autoptr(FlOutlines) o = outlines_of(n[0], n[1], n[2]);
     memcpy(o->leaf, data += sizeof n, leaves);
     memcpy(o->subpath, data += leaves, subpaths);
     memcpy(o->cubic, data + subpaths, cubics);
-    return o;
+    for (int i = 0; i < o->n_leaves; i++)
+        if (!is_sound(o, &o->leaf[i]))
+            return NULL;
+    return g_steal_pointer(&o);
 }
 
 FlPoint fl_cubic_at(const FlCubic *cubic, const FlAffine *ctm, double t)

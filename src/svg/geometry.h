@@ -63,7 +63,7 @@ void fl_outlines_free(FlOutlines *outlines); // NULL is fine
 /** Serialises the outlines; to be freed with g_free(). */
 uint8_t *fl_outlines_pack(const FlOutlines *outlines, size_t *bytes);
 
-/** Reads what the same program serialised. */
+/** Reads what the same program serialised. Returns: NULL if it is damaged. */
 FlOutlines *fl_outlines_unpack(const uint8_t *data, size_t bytes);
 
 /** Where a cubic is at t, 0 … 1, in px. */

@@ -1,0 +1,203 @@
+/* Processes that draw: the same pictures as here, and what becomes of those that fail. */
+#include "drawing/draw_pool.h"
+
+#include "drawing/confined.h"
+#include "drawing/drawing_data.h"
+#include "scratch.h"
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+#define SVG(shapes)                                                                                \
+    "<svg xmlns='http://www.w3.org/2000/svg' width='40' height='30'>" shapes "</svg>"
+#define SHAPES                                                                                     \
+    "<path id='a' d='M2 2C9 2 9 9 30 20z' fill='#247'/>"                                           \
+    "<path id='b' d='M5 25L35 5' fill='none' stroke='#a31' stroke-width='2'/>"
+#define CRASHES SVG("<style>:lang(x-cn) { }</style><g xml:lang='en'/>" SHAPES)
+
+enum { WORKERS = 2 };
+
+/** A film of two frames with a pool. */
+typedef struct Film {
+    Scratch *folder;
+    FlDrawing *drawing;
+    FlDrawPool *pool; // NULL where no process may fork
+} Film;
+
+static void film_clear(Film *film)
+{
+    fl_draw_pool_free(film->pool);
+    fl_drawing_free(film->drawing);
+    scratch_remove(film->folder);
+}
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Film, film_clear)
+
+static Film open_film(void)
+{
+    g_autoptr(GError) error = NULL;
+    Film film = {.folder = scratch_make()};
+    g_free(scratch_write(film.folder, "f1.svg", SVG(SHAPES)));
+    g_free(
+        scratch_write(film.folder, "f2.svg", SVG("<g transform='translate(3 1)'>" SHAPES "</g>")));
+    const char *const inputs[] = {film.folder};
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1, .apart = true};
+    film.drawing = fl_drawing_open(&options, NULL, &error);
+    g_assert_no_error(error);
+    film.pool = fl_draw_pool_new(film.drawing, WORKERS);
+    if (!film.pool)
+        g_test_skip("this process has threads already");
+    return film;
+}
+
+static void assert_same(const FlDrawList *a, const FlDrawList *b)
+{
+    g_assert_nonnull(a);
+    g_assert_nonnull(b);
+    g_assert_cmpint(a->n, ==, b->n);
+    for (int i = 0; i < a->n; i++) {
+        const int n = (int)fl_rect_pixels(a->draw[i].area.box);
+        g_assert_cmpint(a->draw[i].region, ==, b->draw[i].region);
+        g_assert_cmpmem(a->draw[i].coverage, n, b->draw[i].coverage,
+                        (int)fl_rect_pixels(b->draw[i].area.box));
+    }
+}
+
+static void frames_and_outlines_are_those_of_one_process(void)
+{
+    g_auto(Film) film = open_film();
+    for (int frame = 0; film.pool && frame < 2; frame++) {
+        size_t n = 0, n_here = 0;
+        g_autoptr(FlDrawList) apart = fl_draw_pool_draw(film.pool, frame, NULL, NULL);
+        g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, frame, NULL, NULL);
+        g_autoptr(FlOutlines) read = fl_draw_pool_outlines(film.pool, frame, NULL);
+        g_autoptr(FlOutlines) read_here = fl_outlines_make(film.drawing, frame, NULL);
+        assert_same(apart, here);
+        g_assert_nonnull(read);
+        g_autofree uint8_t *bytes = fl_outlines_pack(read, &n);
+        g_autofree uint8_t *bytes_here = fl_outlines_pack(read_here, &n_here);
+        g_assert_cmpmem(bytes, (int)n, bytes_here, (int)n_here);
+    }
+}
+
+/** The processes whose parent is `parent`. Returns: how many, at most `most`. */
+static int children_of(pid_t parent, pid_t *child, int most)
+{
+    int n = 0;
+    g_autoptr(GDir) dir = g_dir_open("/proc", 0, NULL);
+    for (const char *name; dir && (name = g_dir_read_name(dir)) && n < most;) {
+        g_autofree char *path = g_build_filename("/proc", name, "stat", NULL), *text = NULL;
+        const char *after =
+            g_file_get_contents(path, &text, NULL, NULL) ? strrchr(text, ')') : NULL;
+        int state = 0, of = 0;
+        if (after && sscanf(after, ") %c %d", (char *)&state, &of) == 2 && of == parent &&
+            state != 'Z')
+            child[n++] = (pid_t)atoi(name);
+    }
+    return n;
+}
+
+static void a_drawing_whose_process_was_killed_is_drawn_by_another(void)
+{
+    g_auto(Film) film = open_film();
+    if (!film.pool)
+        return;
+    pid_t waiting[WORKERS];
+    g_assert_cmpint(children_of(getpid(), waiting, WORKERS), ==, WORKERS);
+    g_autoptr(GError) error = NULL;
+    kill(MIN(waiting[0], waiting[1]), SIGKILL); // the first, which is asked first
+    g_assert_null(fl_draw_pool_draw(film.pool, 0, NULL, &error));
+    g_assert_nonnull(strstr(error->message, "was killed"));
+    g_autoptr(FlDrawList) again = fl_draw_pool_draw(film.pool, 0, NULL, NULL);
+    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 0, NULL, NULL);
+    assert_same(again, here);
+}
+
+static void once_all_were_drawn_that_is_no_error(void)
+{
+    g_auto(Film) film = open_film();
+    if (!film.pool)
+        return;
+    pid_t waiting[WORKERS];
+    g_assert_cmpint(children_of(getpid(), waiting, WORKERS), ==, WORKERS);
+    fl_draw_pool_insist(film.pool);
+    kill(MIN(waiting[0], waiting[1]), SIGKILL);
+    g_autoptr(FlOutlines) read = fl_draw_pool_outlines(film.pool, 0, NULL);
+    g_autoptr(FlDrawList) again = fl_draw_pool_draw(film.pool, 0, NULL, NULL);
+    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 0, NULL, NULL);
+    g_assert_nonnull(read);
+    assert_same(again, here);
+    g_assert_cmpint(fl_draw_pool_plain(film.pool), ==, 0);
+}
+
+/** A hand whose second region has a line that no table has: to draw it crashes. */
+static FlHand broken_hand(FlRegionHand of_region[2])
+{
+    of_region[0] = (FlRegionHand){.line = FL_LINE_PENCIL};
+    of_region[1] = (FlRegionHand){.line = (FlLine)(1 << 28)};
+    return (FlHand){.of_region = of_region, .seed = 1, .page = 1};
+}
+
+static void lines_that_no_hand_can_draw_are_plain_and_counted(void)
+{
+    g_auto(Film) film = open_film();
+    if (!film.pool)
+        return;
+    FlRegionHand of_region[2];
+    g_autoptr(GError) error = NULL;
+    const FlHand hand = broken_hand(of_region);
+    g_assert_cmpint(fl_drawing_regions(film.drawing), ==, 2);
+    g_assert_null(fl_draw_pool_draw(film.pool, 1, &hand, &error));
+    g_assert_nonnull(strstr(error->message, "f2.svg"));
+    g_assert_cmpint(fl_draw_pool_plain(film.pool), ==, 0);
+    fl_draw_pool_insist(film.pool);
+    g_autoptr(FlDrawList) plain = fl_draw_pool_draw(film.pool, 1, &hand, NULL);
+    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 1, NULL, NULL);
+    assert_same(plain, here);
+    g_assert_cmpint(fl_draw_pool_plain(film.pool), ==, 1);
+}
+
+static void a_frame_that_comes_to_crash_is_an_error_at_first(void)
+{
+    g_auto(Film) film = open_film();
+    if (!film.pool)
+        return;
+    g_autoptr(GError) error = NULL;
+    g_free(scratch_write(film.folder, "f2.svg", CRASHES));
+    g_assert_null(fl_draw_pool_draw(film.pool, 1, NULL, &error));
+    g_assert_nonnull(strstr(error->message, "f2.svg: frame 2: the SVG library crashed while "));
+    g_autoptr(FlDrawList) other = fl_draw_pool_draw(film.pool, 0, NULL, NULL);
+    g_assert_nonnull(other);
+}
+
+static void and_later_the_frame_before_and_counted_once(void)
+{
+    g_auto(Film) film = open_film();
+    if (!film.pool)
+        return;
+    fl_draw_pool_insist(film.pool);
+    g_free(scratch_write(film.folder, "f2.svg", CRASHES));
+    for (int pass = 0; pass < 2; pass++) {
+        g_autoptr(FlDrawList) instead = fl_draw_pool_draw(film.pool, 1, NULL, NULL);
+        g_autoptr(FlDrawList) before = fl_draw_list_make(film.drawing, 0, NULL, NULL);
+        assert_same(instead, before);
+    }
+    g_assert_cmpint(fl_draw_pool_lost(film.pool), ==, 1);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name, function) g_test_add_func("/draw-pool/" name, function)
+    TEST("frames-and-outlines-are-those-of-one-process",
+         frames_and_outlines_are_those_of_one_process);
+    TEST("a-drawing-whose-process-was-killed-is-drawn-by-another",
+         a_drawing_whose_process_was_killed_is_drawn_by_another);
+    TEST("once-all-were-drawn-that-is-no-error", once_all_were_drawn_that_is_no_error);
+    TEST("lines-that-no-hand-can-draw-are-plain-and-counted",
+         lines_that_no_hand_can_draw_are_plain_and_counted);
+    TEST("a-frame-that-comes-to-crash-is-an-error-at-first",
+         a_frame_that_comes_to_crash_is_an_error_at_first);
+    TEST("and-later-the-frame-before-and-counted-once",
+         and_later_the_frame_before_and_counted_once);
+    return g_test_run();
+}
