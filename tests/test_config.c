@@ -66,8 +66,9 @@ static void a_mistake_is_named_with_file_and_line(void)
                                          "mean “glaze”?"},
         {"[region a]\ntint = blue", ":2: tint: “blue” is not fill, keep or #RRGGBB"},
         {"[region a]\nhold = 0", ":2: hold: “0” is not an integer from 1 to 1000"},
-        {"[region a]\npreset = thesi", ":2: unknown preset “thesi”; the presets are default, "
-                                       "fluidymation, thesis, lazyfluids, fluid; did you mean “thesis”?"},
+        {"[region a]\npreset = thesi",
+         ":2: unknown preset “thesi”; the presets are default, "
+         "fluidymation, thesis, lazyfluids, fluid; did you mean “thesis”?"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(cases); i++) {
         g_autofree char *path = write_config(cases[i].text);
@@ -158,6 +159,23 @@ static void detail_is_between_preset_and_parameters(void)
     g_assert_cmpmem(&c.params, sizeof c.params, &preset.params, sizeof preset.params);
 }
 
+static void an_engine_brings_weights_of_its_own(void)
+{
+    g_autoptr(FlConfig) config = load("[defaults]\nw-temp = 7\n"
+                                      "[region a]\nw-bound = 4\nengine = lazyfluids\n"
+                                      "[region b]\nengine = lazyfluids\npreset = lazyfluids\n"
+                                      "[region c]\nengine = transport\n");
+    const FlRenderOptions options = {0};
+    g_auto(FlRegionSettings) a = {0}, b = {0}, c = {0};
+    g_assert_true(fl_config_region_settings(config, 0, "a", &options, &a, NULL));
+    g_assert_true(fl_config_region_settings(config, 1, "b", &options, &b, NULL));
+    g_assert_true(fl_config_region_settings(config, 2, "c", &options, &c, NULL));
+    g_assert_cmpfloat(a.params.w_temp, ==, 0.5f);
+    g_assert_cmpfloat(a.params.w_bound, ==, 4);
+    g_assert_cmpfloat(b.params.w_temp, ==, 0.2f);
+    g_assert_cmpfloat(c.params.w_temp, ==, 7);
+}
+
 static void the_options_win_over_the_project(void)
 {
     g_autoptr(FlConfig) config = load("[project]\nfps = 12\nseed = 5\nloop = on\ngap = 3\nstroke = "
@@ -187,6 +205,7 @@ int main(int argc, char **argv)
     CASE(the_example_of_the_manual_is_read);
     CASE(later_words_win_and_a_preset_goes_first);
     CASE(detail_is_between_preset_and_parameters);
+    CASE(an_engine_brings_weights_of_its_own);
     CASE(the_options_win_over_the_project);
     const int status = g_test_run();
     g_autofree char *path = g_build_filename(folder, "shot.conf", NULL);

@@ -136,6 +136,20 @@ static bool set_preset(FlRegionSettings *settings, const char *value, GError **e
     return true;
 }
 
+/* LazyFluids has weights of its own: those of its preset in use, else of ours. */
+static bool set_engine(FlRegionSettings *settings, const FlOption *option, const char *value)
+{
+    const FlEngineChoice before = settings->engine;
+    if (!store(settings, option, value, NULL))
+        return false;
+    if (settings->engine != before && settings->engine == FL_ENGINE_LAZYFLUIDS) {
+        fl_params_preset(&settings->params, "fluid", NULL);
+        if (settings->detail != FL_DETAIL_NORMAL)
+            fl_params_detail(&settings->params, settings->detail);
+    }
+    return true;
+}
+
 bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const char *value,
                             const char *folder, GError **error)
 {
@@ -146,7 +160,8 @@ bool fl_region_settings_set(FlRegionSettings *settings, const char *key, const c
     if (option && option->type == FL_OPTION_PRESET)
         return set_preset(settings, value, error);
     if (option) {
-        if (store(settings, option, value, folder))
+        const bool engine = option->offset == offsetof(FlRegionSettings, engine);
+        if (engine ? set_engine(settings, option, value) : store(settings, option, value, folder))
             return true;
         fl_option_reject(option, value, error);
         g_prefix_error(error, "%s: ", key);
@@ -197,15 +212,21 @@ void fl_overrides_clear(FlOverrides *overrides)
     *overrides = (FlOverrides){0};
 }
 
+#define N_TURNS 4
+
 /* Keys that set several parameters go first. */
 static int turn_of(const char *key)
 {
-    return strcmp(key, "preset") == 0 ? 0 : strcmp(key, "detail") == 0 ? 1 : 2;
+    static const char *const first[] = {"preset", "engine", "detail"};
+    int turn = 0;
+    while (turn < N_TURNS - 1 && strcmp(key, first[turn]) != 0)
+        turn++;
+    return turn;
 }
 
 void fl_overrides_apply(const FlOverrides *overrides, FlRegionSettings *settings)
 {
-    for (int turn = 0; turn < 3; turn++)
+    for (int turn = 0; turn < N_TURNS; turn++)
         for (int i = 0; i < overrides->n; i++)
             if (turn_of(overrides->override[i].key) == turn)
                 fl_region_settings_set(settings, overrides->override[i].key,

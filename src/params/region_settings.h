@@ -84,7 +84,8 @@ void fl_region_settings_clear(FlRegionSettings *settings);
 /**
  * Sets one thing from text: an option of FL_SCOPE_REGION; "scale" is read as style-scale. A preset
  * sets the motion, too: the papers' know none but that of masks, and have paint that is as
- * the synthesis makes it, without granulation, load, pigments and drawn lines.
+ * the synthesis makes it, without granulation, load, pigments and drawn lines. The engine
+ * LazyFluids brings the parameters of the preset fluid, where it was not a preset that chose it.
  *
  * A relative path of a style is taken from `folder`; NULL: the working directory.
  * Returns: false with FL_ERROR_USAGE; the settings are then unchanged.
@@ -111,7 +112,8 @@ bool fl_overrides_add(FlOverrides *overrides, const char *key, const char *value
 
 void fl_overrides_clear(FlOverrides *overrides);
 
-/** Applies them all, a preset first, then the detail. fl_overrides_add() has checked them. */
+/** Applies them all, a preset first, then the engine and the detail. fl_overrides_add() has checked
+ * them. */
 void fl_overrides_apply(const FlOverrides *overrides, FlRegionSettings *settings);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRegionSettings, fl_region_settings_clear)
