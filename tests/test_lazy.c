@@ -232,6 +232,33 @@ static void motion_blur_keeps_what_rests_and_what_is_flat(void)
         g_assert_cmpint(abs(flat[k] - rgba[k]), <=, 1); // the kernel sums to 1
 }
 
+/* A disc whose mask has a margin of 3 px in which the paper is bare. */
+static FlStyle *with_margin(void)
+{
+    FlStyle *style = small_style();
+    const int frame = STYLE_W * STYLE_H;
+    for (int p = 0; p < STYLE_FRAMES * frame; p++) {
+        const double r = hypot(p % STYLE_W - STYLE_W / 2, p / STYLE_W % STYLE_H - STYLE_H / 2);
+        if (12 + p / frame - r < 3)
+            memset(style->rgb + 3 * p, 250, 3);
+    }
+    return style;
+}
+
+static void the_bare_margin_of_masks_is_no_fluid(void)
+{
+    g_auto(Film) film;
+    film_init(&film, with_margin(), "lazyfluids", "1");
+    int bare = 0, n = 0;
+    for (int frame = 0; frame < 3; frame++)
+        g_assert_true(
+            fl_lazy_frame(film.lazy, &film.guides, film.rgb, film.alpha, NULL, NULL, NULL));
+    for (int p = 0; p < PIXELS; p++)
+        if (film.guides.distance[p] > 1)
+            n++, bare += film.rgb[3 * p + 2] > 220;
+    g_assert_cmpint(bare, <=, n / 50);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -245,5 +272,7 @@ int main(int argc, char **argv)
     g_test_add_func("/lazy/new-fluid-has-no-past", new_fluid_has_no_past);
     g_test_add_func("/lazy/motion-blur-keeps-what-rests-and-what-is-flat",
                     motion_blur_keeps_what_rests_and_what_is_flat);
+    g_test_add_func("/lazy/the-bare-margin-of-masks-is-no-fluid",
+                    the_bare_margin_of_masks_is_no_fluid);
     return g_test_run();
 }

@@ -32,6 +32,14 @@ void fl_fluid_exemplar_clear(FlFluidExemplar *fluid)
     *fluid = (FlFluidExemplar){0};
 }
 
+/* The mask without the margin in which the paper is bare: fluid would be as bare there. */
+static float alpha_of(const FlExemplar *exemplar, size_t p)
+{
+    const float inside = CLAMP(exemplar->distance[p] + 0.5f, 0, 1);
+    const float covered = (float)exemplar->mask[p] / 255;
+    return exemplar->margin_px > 0 ? MIN(covered, inside) : covered;
+}
+
 /* Colour and alpha of a frame into four planes. */
 static void fill_colour(const FlExemplar *exemplar, int t, float *const plane[4])
 {
@@ -43,7 +51,7 @@ static void fill_colour(const FlExemplar *exemplar, int t, float *const plane[4]
             const FlTexel *from = fl_exemplar_at(full, x, y, t);
             for (int c = 0; c < 3; c++)
                 plane[c][p] = (float)from->c[FL_CH_R + c] / FL_TEXEL_ONE;
-            plane[3][p] = (float)exemplar->mask[(size_t)t * pixels + p] / 255;
+            plane[3][p] = alpha_of(exemplar, (size_t)t * pixels + p);
         }
 }
 
