@@ -6,6 +6,7 @@
 #include <fluidy/error.h>
 #include <fluidy/inspect.h>
 #include <fluidy/limits.h>
+#include <fluidy/paint.h>
 #include <fluidy/params.h>
 #include <fluidy/render.h>
 #include <fluidy/style.h>

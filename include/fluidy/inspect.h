@@ -20,6 +20,38 @@ typedef enum FlListing {
  */
 FL_API char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError **error);
 
+/** A region of a drawing. Strings are its own. */
+typedef struct FlRegionInfo {
+    char *name;      /**< unique, of [a-z0-9-]; what settings and file names call it */
+    char *paint;     /**< "#rrggbb", "gradient" or "image": of most of its area */
+    char *layer;     /**< the layers that it is in, with / between; "": none */
+    char *section;   /**< of the config, which made it; NULL: none */
+    int n_frames;    /**< in which it is drawn */
+    int first_frame; /**< the number of the first of them; 0 if there is none */
+    int n_shapes;    /**< most that it had in a frame */
+    double area_px;  /**< mean over those frames, px */
+    bool painted;    /**< false: it is drawn over the paint as it is */
+} FlRegionInfo;
+
+/** A drawing and its regions, from the bottom up. Later versions may add fields at the end. */
+typedef struct FlRegionList {
+    int width, height; /**< px */
+    int n_frames;
+    int n_regions;
+    FlRegionInfo *const *region; /**< of n_regions */
+} FlRegionList;
+
+/**
+ * The regions of a drawing as data; uses the same options as fl_list_regions().
+ *
+ * Returns: to be freed with fl_region_list_free(); NULL with an error of FL_ERROR.
+ */
+FL_API FlRegionList *fl_region_list_new(const FlRenderOptions *options, GError **error);
+
+FL_API void fl_region_list_free(FlRegionList *list); /**< NULL is fine */
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlRegionList, fl_region_list_free)
+
 /**
  * Writes a map of every frame to options->output (NULL: "fluidy/NAME_map_%04d.png"): each painted
  * region in a colour of its own, the others grey, with a legend at the right.

@@ -1,8 +1,11 @@
 #include "base/task.h"
 
+#include "base/schedule.h"
+
 static void *run(void *data)
 {
     FlTask *task = data;
+    (void)fl_schedule_set_threads(task->threads); // a new thread would take all processors
     task->failed = !task->work(task->data, &task->error);
     return NULL;
 }
@@ -10,7 +13,7 @@ static void *run(void *data)
 void fl_task_start(FlTask *task, FlWork work, void *data, bool beside)
 {
     g_assert(!task->thread && !task->failed);
-    *task = (FlTask){.work = work, .data = data};
+    *task = (FlTask){.work = work, .data = data, .threads = fl_schedule_threads()};
     task->thread = beside ? g_thread_try_new("beside", run, task, NULL) : NULL;
     if (!task->thread)
         run(task);

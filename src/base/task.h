@@ -13,6 +13,7 @@ typedef struct FlTask {
     void *data;
     GThread *thread;
     bool failed;
+    int threads;   // of its team: as many as whoever started it has
     GError *error; // of work that failed, until fl_task_wait()
 } FlTask;
 

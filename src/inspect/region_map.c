@@ -213,6 +213,56 @@ char *fl_list_regions(const FlRenderOptions *options, FlListing listing, GError 
                                         : table(&subject);
 }
 
+/* ---- data ---------------------------------------------------------------------------------- */
+
+static FlRegionInfo *region_info(const Subject *subject, const FlRegion *r)
+{
+    FlRegionInfo *info = g_new(FlRegionInfo, 1);
+    const char *section = r->rule >= 0 ? subject->config->rules[r->rule].name : NULL;
+    const int first = r->n_present > 0 ? fl_drawing_number(subject->drawing, r->first_frame) : 0;
+    *info = (FlRegionInfo){.name = g_strdup(r->name),
+                           .paint = g_strdup(r->paint),
+                           .layer = g_strdup(r->label),
+                           .section = g_strdup(section),
+                           .n_frames = r->n_present,
+                           .first_frame = first,
+                           .n_shapes = r->n_leaves,
+                           .area_px = r->area_px,
+                           .painted = r->paintable};
+    return info;
+}
+
+FlRegionList *fl_region_list_new(const FlRenderOptions *options, GError **error)
+{
+    g_auto(Subject) subject = {0};
+    if (!subject_configure(&subject, options, error) || !subject_read(&subject, error))
+        return NULL;
+    const FlDrawing *drawing = subject.drawing;
+    const int n = fl_drawing_regions(drawing);
+    FlRegionInfo **region = g_new0(FlRegionInfo *, MAX(n, 1));
+    for (int r = 0; r < n; r++)
+        region[r] = region_info(&subject, fl_drawing_region(drawing, r));
+    FlRegionList *list = g_new(FlRegionList, 1);
+    *list = (FlRegionList){fl_drawing_width(drawing), fl_drawing_height(drawing),
+                           fl_drawing_frames(drawing), n, region};
+    return list;
+}
+
+void fl_region_list_free(FlRegionList *list)
+{
+    for (int r = 0; list && r < list->n_regions; r++) {
+        FlRegionInfo *info = list->region[r];
+        g_free(info->name);
+        g_free(info->paint);
+        g_free(info->layer);
+        g_free(info->section);
+        g_free(info);
+    }
+    if (list)
+        g_free((void *)list->region);
+    g_free(list);
+}
+
 /* ---- maps --------------------------------------------------------------------------------- */
 
 #define LINE_PX 20

@@ -201,8 +201,7 @@ static float texture_px(const FlPlan *plan, const FlParams *params)
     return plan->half ? .5f : 1;
 }
 
-/* From here on, the lengths in a region's parameters are px of the drawing as it is drawn. */
-static void scale_lengths(FlParams *params, float px)
+void fl_scale_lengths(FlParams *params, float px)
 {
     params->border *= px;
     params->blur_sigma *= px;
@@ -230,7 +229,7 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->keeps_flow = plan->options.dump != NULL;
     painted->loops = plan->options.loop && !painted->paint_files;
     const float px = texture_px(plan, &painted->settings.params);
-    scale_lengths(&painted->settings.params, px);
+    fl_scale_lengths(&painted->settings.params, px);
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style)
         return false;

@@ -77,6 +77,10 @@ void fl_plan_free(FlPlan *plan); // NULL is fine
 /** Rasterises the masks of the painted regions in every frame into plan->masks. */
 bool fl_plan_rasterise(FlPlan *plan, GError **error);
 
+/** Makes the lengths in a region's parameters px of what is painted, of which px are one of theirs.
+ */
+void fl_scale_lengths(FlParams *params, float px);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
 
 #endif

@@ -103,16 +103,18 @@ static FlGuideSource source_of(FlPainter *painter)
                            .keeps_flow = painter->plan->keeps_flow};
 }
 
-/* The rectangle of the region in all frames with a margin of the coarsest patches, on the grid of
- * the coarsest level, so that the cropped frame has the same pyramid as the whole one. */
+FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style)
+{
+    const int levels = MIN(style->exemplar->n_levels, fl_levels_of(page.width, page.height));
+    const int grid = 1 << (levels - 1), margin = (FL_PATCH_RADIUS + 1) * grid;
+    return fl_rect_on_grid(fl_rect_grown(extent, margin, page), grid);
+}
+
 static FlRect cropped(const FlPainter *painter)
 {
-    const int levels = MIN(painter->plan->style->exemplar->n_levels,
-                           fl_levels_of(painter->result.width, painter->result.height));
-    const int grid = 1 << (levels - 1), margin = (FL_PATCH_RADIUS + 1) * grid;
     const FlRect extent = fl_mask_store_extent(painter->masks, painter->plan->region);
     const FlRect page = {0, 0, painter->result.width, painter->result.height};
-    return fl_rect_on_grid(fl_rect_grown(extent, margin, page), grid);
+    return fl_painter_crop(extent, page, painter->plan->style);
 }
 
 double fl_painter_bytes(const FlPainter *painter)

@@ -35,6 +35,10 @@ void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan 
                      FlReuse *reuse);
 void fl_painter_clear(FlPainter *painter);
 
+/** The part of the page that is painted of a region with this extent in all frames: with a margin
+ * of the coarsest patches, on the grid of the coarsest level, so that it has the page's pyramid. */
+FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style);
+
 /** An estimate of the bytes that the painter will use. */
 double fl_painter_bytes(const FlPainter *painter);
 

@@ -1,0 +1,68 @@
+/* Pixels in, pixels out: paints one region from masks in memory, frame by frame. The only files are
+ * the style's, and a temporary one without a name for what guides keep of a film. */
+#ifndef FLUIDY_PAINT_H
+#define FLUIDY_PAINT_H
+
+#include <fluidy/render.h>
+
+G_BEGIN_DECLS
+
+/** A painted frame. The arrays are row-major without padding and belong to the library; they are
+ *  overwritten after the call. Later versions may add fields at the end. */
+typedef struct FlPaintedFrame {
+    int frame;            /**< from 0 */
+    int width, height;    /**< of the masks */
+    const uint8_t *paint; /**< width * height * 3 sRGB: the paint in the recording's own colours,
+                             its paper where none is; what ‘paint’ writes */
+    const uint8_t *layer; /**< width * height * 4 straight sRGBA: the paint cut out with the mask,
+                             in the colour of the setting "tint" */
+} FlPaintedFrame;
+
+/**
+ * A region through time, and how it is painted. Zero the struct and set `size`, so that a program
+ * and a library of different versions understand each other; what is 0 is the default.
+ *
+ * All calls come from the thread that called fl_paint_region(). Returning false stops it.
+ */
+typedef struct FlRegionPaint {
+    size_t size;       /**< sizeof(FlRegionPaint); required */
+    int width, height; /**< px of every frame, 1..32767 and within the limit ‘frame’; required */
+    int n_frames;      /**< 1 or more; required */
+    /**
+     * Fills width * height bytes with the coverage of the region in a frame: 0 outside, 255 inside.
+     * Frames are asked for several times, all of them before the first one is painted, since paint
+     * depends on where the region will be; the same frame must get the same bytes. Required.
+     */
+    bool (*mask)(void *data, int frame, uint8_t *coverage);
+    /**
+     * Fills 2 * width * height floats, x and y in turn, with how what is at each pixel has moved
+     * since the frame before: px, y downwards, up to 100,000; NAN where it is not known. Asked for
+     * every frame, of which the first has none before it. The paint is carried along; under the
+     * setting motion = masks it only says which way the contours move. NULL: from the masks.
+     */
+    bool (*flow)(void *data, int frame, float *flow);
+    bool (*take)(void *data, const FlPaintedFrame *painted); /**< every frame in order; required */
+    void *data;                                              /**< handed to mask, flow and take */
+
+    const char *name;          /**< decides the random numbers with the seed; NULL: "region" */
+    const FlSetting *settings; /**< "style" is required; "tint" is "keep" unless a "#rrggbb"; keys
+                                  as in fluidy-svg.conf(5), of which those about other regions,
+                                  lines or the paper do nothing, and hold must be 1 */
+    size_t n_settings;
+    uint64_t seed; /**< same input, settings and seed: same bytes; 0: 1 */
+    int threads;   /**< of this call alone; 0: as many as the calling thread has. The bytes do not
+                        depend on it */
+} FlRegionPaint;
+
+/**
+ * Paints all frames of a region. The paint is that of fl_render() for a drawing with this region
+ * alone. Several threads may paint, each its own region, each with its own number of threads.
+ *
+ * Returns: false with FL_ERROR_USAGE, FL_ERROR_STYLE, FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY,
+ * FL_ERROR_INPUT for a flow that is no number, or FL_ERROR_INTERRUPTED where a call returned false.
+ */
+FL_API bool fl_paint_region(const FlRegionPaint *region, GError **error);
+
+G_END_DECLS
+
+#endif
