@@ -140,7 +140,7 @@ static void a_slow_spin_carries_and_turns_as_far_in_the_end(void)
         for (int x = -15; x <= 15; x += 6) {
             double place[2]; // a quarter turn clockwise on the screen: (x, y) was at (y, -x)
             const FlMatch m = match_of(&nnf, x, y, place);
-            g_assert_cmpint(ABS(m.theta - 64), <=, 2);
+            g_assert_cmpint(ABS(m.theta - 64), <=, 1); // 1.4 degrees
             assert_near(place[0], y, 1);
             assert_near(place[1], -x, 1);
         }
