@@ -450,6 +450,20 @@ static void held_frames_move_by_what_is_between_them(void)
     g_assert_cmpfloat(fabsf(motion[2 * (90 * SIZE + 60)] - (-75)), <, 1e-3);
 }
 
+static void regions_that_ask_later_get_the_same(void)
+{
+    static float motion[2 * SIZE * SIZE], again[2 * SIZE * SIZE];
+    Draw *const draws[] = {star_with_other_starts, turning_face};
+    for (size_t k = 0; k < G_N_ELEMENTS(draws); k++) {
+        g_auto(Sequence) s = sequence_of(draws[k], 12);
+        get(&s, 0, 1, 2, motion, NULL);
+        for (int t = 3; t < 12; t++)
+            get(&s, 0, t - 1, t, again, NULL);
+        get(&s, 0, 1, 2, again, NULL);
+        g_assert_cmpmem(motion, sizeof motion, again, sizeof again);
+    }
+}
+
 /* ---- which leaf was which ---- */
 
 /** Two squares: where each was is told by its motion. */
@@ -643,6 +657,7 @@ int main(int argc, char **argv)
     TEST("a-part-leaps-only-if-it-looks-the-same", a_part_leaps_only_if_it_looks_the_same);
     TEST("motion-is-into-the-frame", motion_is_into_the_frame);
     TEST("held-frames-move-by-what-is-between-them", held_frames_move_by_what_is_between_them);
+    TEST("regions-that-ask-later-get-the-same", regions_that_ask_later_get_the_same);
     TEST("leaves-are-recognised", leaves_are_recognised);
     TEST("what-is-drawn-elsewhere-is-distrusted", what_is_drawn_elsewhere_is_distrusted);
     TEST("what-is-laid-stays", what_is_laid_stays);

@@ -5,7 +5,7 @@
 #include "guides/guides.h"
 #include <string.h>
 
-#define KEPT 6 // frames in memory; regions that are worked on side by side are near each other
+#define KEPT 6 // in memory; regions that are worked on side by side are near each other
 
 /** A frame's outlines with their looks; counted by whoever uses it. */
 typedef struct Frame {
@@ -27,9 +27,10 @@ typedef struct Step {
 struct FlMotionSource {
     const FlDrawing *drawing;
     const FlMaskStore *masks;
-    GMutex lock; // of what follows
-    FlSpill *spill;
-    bool *spilled; // by frame
+    GMutex lock;     // of what follows
+    FlSpill *spill;  // outlines by frame, then the steps into each frame
+    bool *spilled;   // by frame
+    int *spilled_to; // by frame: where the step into it comes from; -1: none yet
     int64_t clock;
     Frame *frame[KEPT];
     Step *step[KEPT];
@@ -56,12 +57,15 @@ FlMotionSource *fl_motion_source_new(const FlDrawing *drawing, const FlMaskStore
                                      GError **error)
 {
     const size_t n = (size_t)fl_drawing_frames(drawing);
-    FlSpill *spill = fl_spill_new(n, error);
+    FlSpill *spill = fl_spill_new(2 * n, error);
     if (!spill)
         return NULL;
     FlMotionSource *source = g_new0(FlMotionSource, 1);
     source->drawing = drawing, source->masks = masks, source->spill = spill;
     source->spilled = g_new0(bool, n + 1);
+    source->spilled_to = g_new(int, n + 1);
+    for (size_t f = 0; f < n; f++)
+        source->spilled_to[f] = -1;
     g_mutex_init(&source->lock);
     return source;
 }
@@ -76,18 +80,26 @@ void fl_motion_source_free(FlMotionSource *source)
     }
     fl_spill_free(source->spill);
     g_free(source->spilled);
+    g_free(source->spilled_to);
     g_mutex_clear(&source->lock);
     g_free(source);
 }
 
+static uint8_t *read_block(const FlMotionSource *source, size_t block, size_t *bytes,
+                           GError **error)
+{
+    *bytes = fl_spill_bytes(source->spill, block);
+    g_autofree uint8_t *data = fl_alloc(*bytes, 1, "the outlines of a frame", error);
+    return data && fl_spill_get(source->spill, block, data, *bytes, error) ? g_steal_pointer(&data)
+                                                                           : NULL;
+}
+
 static FlOutlines *outlines_from_spill(const FlMotionSource *source, int frame, GError **error)
 {
-    const size_t bytes = fl_spill_bytes(source->spill, (size_t)frame);
-    g_autofree uint8_t *data = fl_alloc(bytes, 1, "the outlines of a frame", error);
-    if (!data || !fl_spill_get(source->spill, (size_t)frame, data, bytes, error))
-        return NULL;
-    FlOutlines *outlines = fl_outlines_unpack(data, bytes);
-    g_assert(outlines);
+    size_t bytes;
+    g_autofree uint8_t *data = read_block(source, (size_t)frame, &bytes, error);
+    FlOutlines *outlines = data ? fl_outlines_unpack(data, bytes) : NULL;
+    g_assert(!data || outlines);
     return outlines;
 }
 
@@ -130,8 +142,29 @@ static Frame *frame_of(FlMotionSource *source, int frame, GError **error)
     return f;
 }
 
+/** Pairs the leaves of two frames, and keeps that for the other regions, which come one by one. */
+static FlCorrespondence *correspond(FlMotionSource *source, const Frame *before, const Frame *now,
+                                    GError **error)
+{
+    const size_t block = (size_t)(fl_drawing_frames(source->drawing) + now->frame);
+    size_t bytes;
+    if (source->spilled_to[now->frame] == before->frame) {
+        g_autofree uint8_t *kept = read_block(source, block, &bytes, error);
+        return kept ? fl_correspondence_unpack(kept, bytes) : NULL;
+    }
+    const FlTwoFrames frames = {
+        before->outlines, now->outlines, before->fill, now->fill,
+        MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing))};
+    g_autoptr(FlCorrespondence) motions = fl_correspond(&frames);
+    g_autofree uint8_t *data = fl_correspondence_pack(motions, &bytes);
+    if (!fl_spill_put(source->spill, block, data, bytes, error))
+        return NULL;
+    source->spilled_to[now->frame] = before->frame;
+    return g_steal_pointer(&motions);
+}
+
 /** How the leaves got from one frame to another, to be unref'd; under the lock. */
-static Step *step_of(FlMotionSource *source, const Frame *before, const Frame *now)
+static Step *step_of(FlMotionSource *source, const Frame *before, const Frame *now, GError **error)
 {
     int oldest = 0;
     for (int k = 0; k < KEPT; k++) {
@@ -144,11 +177,11 @@ static Step *step_of(FlMotionSource *source, const Frame *before, const Frame *n
         if (!s || (source->step[oldest] && s->used < source->step[oldest]->used))
             oldest = k;
     }
-    const FlTwoFrames frames = {
-        before->outlines, now->outlines, before->fill, now->fill,
-        MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing))};
+    FlCorrespondence *motions = correspond(source, before, now, error);
+    if (!motions)
+        return NULL;
     Step *s = g_new0(Step, 1);
-    *s = (Step){2, before->frame, now->frame, ++source->clock, fl_correspond(&frames)};
+    *s = (Step){2, before->frame, now->frame, ++source->clock, motions};
     step_unref(source->step[oldest]);
     source->step[oldest] = s;
     return s;
@@ -174,7 +207,7 @@ static bool acquire(FlMotionSource *source, int before, int now, Use *use, GErro
     g_mutex_lock(&source->lock);
     use->before = frame_of(source, before, error);
     use->now = use->before ? frame_of(source, now, error) : NULL;
-    use->step = use->now ? step_of(source, use->before, use->now) : NULL;
+    use->step = use->now ? step_of(source, use->before, use->now, error) : NULL;
     g_mutex_unlock(&source->lock);
     return use->step != NULL;
 }
