@@ -190,7 +190,7 @@ static void run(const FlStyle *style, int row, cairo_surface_t *sheet)
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     if (!exemplar)
         g_error("%s", error->message);
-    Film *model = film_of_style(style, &how), *drawing = film_new(&source, &how);
+    Film *model = film_of_style(style, &how, exemplar->margin_px), *drawing = film_new(&source, &how);
     FieldScore field = {.columns = style->width / CELL + 1, .rows = style->height / CELL + 1};
     field.n_cells = field.columns * field.rows * (style->n_frames / CELL + 1);
     field.cells = g_new0(int, field.n_cells);

@@ -24,11 +24,27 @@ typedef struct Score {
     double rim;             // luminance 2 to 8 px inside edges that advance, minus that of the others
 } Score;
 
+/** A sum with its count. */
+typedef struct Mean {
+    double sum;
+    int n;
+} Mean;
+
+/** What a score is made of; several films, such as the regions of one, are counted together. */
+typedef struct ScoreSums {
+    Mean gradient, tone, square, depth[DEPTHS], change, rest, leading, others;
+} ScoreSums;
+
 /** An empty film with the guides of a sequence. Exits on errors, which only memory can cause. */
 Film *film_new(const FlGuideSource *source, const FlGuideParams *how);
-Film *film_of_style(const FlStyle *style, const FlGuideParams *how);
+/** Depths count from below its margin of bare paper, FlExemplar's margin_px. */
+Film *film_of_style(const FlStyle *style, const FlGuideParams *how, float margin_px);
 void film_free(Film *drawing);
 Score film_score(const Film *drawing);
+
+/** Counts a film; sums start zeroed. */
+void film_count(const Film *drawing, ScoreSums *sums);
+Score score_of(const ScoreSums *sums);
 
 /** Root mean square difference of the profiles. */
 double profile_error(const Score *a, const Score *b);
