@@ -1,5 +1,6 @@
 /* Moving ink: adjoints, mass, and the region's ink from frame to frame. */
 #include "base/alloc.h"
+#include "base/density.h"
 #include "base/rng.h"
 #include "transport/carried_ink.h"
 
@@ -312,6 +313,123 @@ static void no_strength_is_a_flat_fill(void)
     disk_free(disk);
 }
 
+/* ---- a reference: the same in doubles, as its formulas are written ------------------------------
+ */
+
+typedef double Plane[SIDE * SIDE];
+
+static double between(const double *plane, double x, double y)
+{
+    x = CLAMP(x, 0, SIDE - 1), y = CLAMP(y, 0, SIDE - 1);
+    const int x0 = (int)fmin(x, SIDE - 2), y0 = (int)fmin(y, SIDE - 2);
+    const double *p = plane + (ptrdiff_t)y0 * SIDE + x0, fx = x - x0, fy = y - y0;
+    return (1 - fy) * ((1 - fx) * p[0] + fx * p[1]) + fy * ((1 - fx) * p[SIDE] + fx * p[SIDE + 1]);
+}
+
+/* u(x) becomes u(x) + u(x + u(x)). */
+static void square_map(Plane u[2])
+{
+    static Plane next[2];
+    for (int p = 0; p < SIDE * SIDE; p++)
+        for (int c = 0; c < 2; c++)
+            next[c][p] = u[c][p] + between(u[c], p % SIDE + u[0][p], p / SIDE + u[1][p]);
+    memcpy(u, next, sizeof next);
+}
+
+static double slope_of(const double *plane, int p, bool down)
+{
+    const int step = down ? SIDE : 1, at = down ? p / SIDE : p % SIDE;
+    const int before = at > 0 ? p - step : p, after = at < SIDE - 1 ? p + step : p;
+    return (plane[after] - plane[before]) / 2;
+}
+
+/* The map of a first frame, backwards. */
+static void reference_map(const Disk *disk, Plane u[2])
+{
+    FlRng rng = {fl_hash64(3)};
+    const float left = 96 * fl_rng_float(&rng), top = 96 * fl_rng_float(&rng);
+    for (int p = 0; p < SIDE * SIDE; p++) {
+        const double t = CLAMP((double)disk->guides.distance[p] / 5, 0, 1);
+        float g[2];
+        fl_tile_gradient(disk->tile, (float)(p % SIDE) + left, (float)(p / SIDE) + top, g);
+        for (int c = 0; c < 2; c++)
+            u[c][p] = disk->guides.mask[p] ? -t * t * (3 - 2 * t) * (double)g[c] / 8 : 0;
+    }
+    for (int k = 0; k < 3; k++)
+        square_map(u);
+}
+
+static void a_frame_is_what_the_formulas_say(void)
+{
+    static Plane u[2], amount;
+    Disk *disk = disk_new(1);
+    disk_frame(disk, 60, 0);
+    reference_map(disk, u);
+    double mask = 0, sum = 0, most = 0;
+    for (int p = 0; p < SIDE * SIDE; p++) {
+        amount[p] = (1 + slope_of(u[0], p, false)) * (1 + slope_of(u[1], p, true)) -
+                    slope_of(u[0], p, true) * slope_of(u[1], p, false);
+        amount[p] = fmax(amount[p], 0);
+        mask += disk->guides.mask[p], sum += disk->guides.mask[p] * amount[p];
+    }
+    for (int p = 0; p < SIDE * SIDE; p++)
+        if (disk->guides.mask[p])
+            most = fmax(most, fabs(amount[p] * mask / sum - (double)disk->amount[p]));
+    g_test_message("largest difference %.6f of an amount of 1", most);
+    g_assert_cmpfloat(most, <, 1e-4);
+    disk_free(disk);
+}
+
+/* ---- painted ink ------------------------------------------------------------------------------
+ */
+
+static const uint8_t blotched[3] = {60, 100, 170}, bare[3] = {250, 240, 230};
+
+/* Paint in blotches on the test's paper, inside the mask. */
+static void paint_blotches(Disk *disk)
+{
+    for (size_t p = 0; p < PIXELS; p++)
+        for (size_t c = 0; c < 3; c++) {
+            const float paint = blotched[c] + 30 * noise(5, p / 7) - bare[c];
+            disk->rgb[3 * p + c] =
+                (uint8_t)((float)bare[c] + paint * (float)disk->guides.mask[p] / 255);
+        }
+}
+
+static double density_of(const Disk *disk, size_t channel)
+{
+    double sum = 0;
+    for (size_t p = 0; p < PIXELS; p++)
+        sum += (double)disk->guides.mask[p] *
+               (double)(fl_density(disk->rgb[3 * p + channel]) - fl_density(bare[channel]));
+    return sum;
+}
+
+static void painted_ink_is_moved_and_stays_as_much(void)
+{
+    Disk *disk = disk_new(1), *still = disk_new(0);
+    draw_disk(&disk->guides, 60, 0);
+    draw_disk(&still->guides, 60, 0);
+    paint_blotches(disk);
+    paint_blotches(still);
+    g_autofree uint8_t *before = g_memdup2(still->rgb, sizeof still->rgb);
+    g_assert_true(fl_carried_ink_move(disk->ink, &disk->guides, disk->rgb, NULL));
+    g_assert_true(fl_carried_ink_move(still->ink, &still->guides, still->rgb, NULL));
+    g_assert_cmpmem(still->rgb, sizeof still->rgb, before, sizeof still->rgb); // no strength
+    for (size_t c = 0; c < 3; c++)
+        g_assert_cmpfloat(fabs(density_of(disk, c) / density_of(still, c) - 1), <, 0.01);
+    double moved = 0, n = 0;
+    for (size_t p = 0; p < PIXELS; p++) {
+        if (!disk->guides.mask[p])
+            g_assert_cmpmem(disk->rgb + 3 * p, 3, before + 3 * p, 3);
+        if (disk->guides.distance[p] > 8)
+            moved += abs(disk->rgb[3 * p] - before[3 * p]), n++;
+    }
+    g_assert_cmpfloat(moved / n, >, 10);
+    disk_free(disk);
+    disk_free(still);
+}
+
 static void the_pattern_rides_on_the_drawing(void)
 {
     Disk *disk = disk_new(1);
@@ -543,6 +661,8 @@ int main(int argc, char **argv)
     TEST(ink_is_neither_made_nor_lost);
     TEST(the_map_itself_keeps_the_ink);
     TEST(no_strength_is_a_flat_fill);
+    TEST(a_frame_is_what_the_formulas_say);
+    TEST(painted_ink_is_moved_and_stays_as_much);
     TEST(the_pattern_rides_on_the_drawing);
     TEST(a_region_at_rest_has_the_same_bytes);
     TEST(the_same_bytes_on_any_thread_count);

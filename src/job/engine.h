@@ -7,6 +7,7 @@
 /** What a region is painted with; all of it outlives the region's state. */
 typedef struct FlEngineInput {
     const FlStyleInstance *style;
+    const FlStyleInstance *tile; // whose tile moves the paint; NULL: none does
     const FlRegionSettings *settings;
     FlSynthSize size; // of what is painted, and of the frames
     uint64_t seed;    // of the render and the region

@@ -235,6 +235,8 @@ static bool add_painted(FlFingerprint *print, const FlPlan *plan, GError **error
             known = known || g_str_equal(plan->painted[q].style->path, painted->style->path);
         if (!known && !add_style(print, painted->style->path, error))
             return false;
+        if (painted->tile && !add_style(print, painted->tile->path, error))
+            return false;
     }
     return true;
 }
@@ -342,8 +344,10 @@ FlFingerprint *fl_fingerprint_of_method(const FlPlan *plan, int p, GHashTable *s
     g_autoptr(FlFingerprint) print = fl_fingerprint_new_empty();
     add_method(print, plan, painted);
     add_values(print, FL_SCOPE_REGION, &painted->settings, NULL, false);
-    return add_style_once(print, painted->style->path, styles, error) ? g_steal_pointer(&print)
-                                                                      : NULL;
+    if (!add_style_once(print, painted->style->path, styles, error) ||
+        (painted->tile && !add_style_once(print, painted->tile->path, styles, error)))
+        return NULL;
+    return g_steal_pointer(&print);
 }
 
 bool fl_fingerprint_add_film(FlFingerprint *print, const FlPlan *plan, int p,

@@ -54,9 +54,12 @@ GPtrArray *fl_guard_list_inputs(const FlPlan *plan)
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
         g_ptr_array_add(inputs, g_strdup(fl_drawing_file(plan->drawing, f)));
     add_linked(inputs, plan);
-    for (int p = 0; p < plan->n_painted; p++)
+    for (int p = 0; p < plan->n_painted; p++) {
         if (p == 0 || plan->painted[p].style != plan->painted[p - 1].style)
             add_style(inputs, plan->painted[p].style->path);
+        if (plan->painted[p].tile && (p == 0 || plan->painted[p].tile != plan->painted[p - 1].tile))
+            add_style(inputs, plan->painted[p].tile->path);
+    }
     if (o->config)
         g_ptr_array_add(inputs, g_strdup(o->config));
     add_named(inputs, plan, o->background);

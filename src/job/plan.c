@@ -9,6 +9,7 @@
 #include "io/pattern.h"
 #include "job/fingerprint.h"
 #include "job/finished.h"
+#include "job/moved_paint.h"
 #include "job/paint_files.h"
 #include "job/resume.h"
 #include <stdatomic.h>
@@ -233,7 +234,12 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style)
         return false;
-    painted->engine = fl_engine_choose(painted->settings.engine, painted->style->path);
+    painted->engine = fl_engine_of_region(plan->styles, painted->style, &painted->settings, px,
+                                          &painted->tile, error);
+    if (!painted->engine) {
+        g_prefix_error(error, "region %s: ", r->name);
+        return false;
+    }
     if (!check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
         return false;
     if (plan->options.verbose)

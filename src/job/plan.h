@@ -25,6 +25,7 @@ typedef struct FlRegionPlan {
     double area_px;   // mean, to balance the work
     FlRegionSettings settings;
     const FlStyleInstance *style; // borrowed
+    const FlStyleInstance *tile;  // borrowed: whose tile moves its paint; NULL: none does
     const FlEngine *engine;
     const char *paint_files; // borrowed: pattern of files of its paint; NULL: it is painted
     const char *flow_files;  // borrowed: pattern of flow files; NULL: flow from the masks

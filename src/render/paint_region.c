@@ -8,6 +8,7 @@
 #include "base/schedule.h"
 #include "compose/colourise.h"
 #include "guides/rim.h"
+#include "job/moved_paint.h"
 #include "job/plan.h"
 #include "render/painter.h"
 #include "style/style_guides.h"
@@ -22,6 +23,7 @@ typedef struct MaskPainter {
     bool configured; // the settings are to be cleared
     FlStyleCache *styles;
     const FlStyleInstance *style; // borrowed
+    const FlStyleInstance *tile;  // likewise; NULL: none moves the paint
     const FlEngine *engine;
     FlRect page, rect; // the frame, and where in it the region ever is, with some room
     FlGuideSequence *sequence;
@@ -144,8 +146,9 @@ static bool choose_style(MaskPainter *painter, GError **error)
     painter->style = fl_style_cache_get(painter->styles, settings, px, error);
     if (!painter->style)
         return false;
-    painter->engine = fl_engine_choose(settings->engine, painter->style->path);
-    return true;
+    painter->engine =
+        fl_engine_of_region(painter->styles, painter->style, settings, px, &painter->tile, error);
+    return painter->engine != NULL;
 }
 
 static bool make_planes(MaskPainter *painter, GError **error)
@@ -187,6 +190,7 @@ static bool open_engine(MaskPainter *painter, GError **error)
                                   .data = painter};
     const FlGuideParams params = fl_guide_params(&settings->params);
     const FlEngineInput input = {painter->style,
+                                 painter->tile,
                                  settings,
                                  {rect.width, rect.height, region->width, region->height},
                                  fl_key(MAX(region->seed, 1), g_str_hash(name_of(region)))};

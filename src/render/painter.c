@@ -172,6 +172,7 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
     const FlGuideParams params = fl_guide_params(&plan->settings.params);
     const FlEngineInput input = {
         plan->style,
+        plan->tile,
         &plan->settings,
         {rect.width, rect.height, painter->result.width, painter->result.height},
         fl_key(seed, g_str_hash(plan->name))};
