@@ -3,6 +3,7 @@
 # shellcheck source-path=SCRIPTDIR source=tap.sh
 . "${0%/*}/tap.sh"
 program=$(realpath "$1")
+visit=$(realpath "${0%/*}")/visit_report.py
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
 cd "$folder" || exit 1
 
@@ -35,7 +36,8 @@ const drag = (share) => {
   const stage = byId("stage"), box = byId("view").getBoundingClientRect();
   stage.setPointerCapture = () => {};
   const where = { clientX: box.left + share * box.width, clientY: box.top + 5, buttons: 1 };
-  stage.dispatchEvent(new PointerEvent("pointerdown", where));
+  stage.dispatchEvent(new PointerEvent("pointerdown", { ...where, clientX: where.clientX - 9 }));
+  stage.dispatchEvent(new PointerEvent("pointermove", where));
 };
 const differs = (sentence, act, undo) => {
   const before = seen();
@@ -102,5 +104,16 @@ else
         n=$((n + 1))
         echo "$line" | sed "s/ - / $n - /"
     done < <(sed '$a\' told | grep ok)
+    if command -v python3 >/dev/null; then
+        timeout 60 python3 "$visit" "$browser" page/index.html "$folder/profile" >told
+        [ "$(wc -l <told)" = 8 ]
+        result $? 'a mouse goes through the page'
+        while read -r line; do
+            n=$((n + 1))
+            echo "$line" | sed "s/ - / $n - /"
+        done < <(grep ok told)
+    else
+        skip 'a mouse goes through the page' 'no python3'
+    fi
 fi
 echo "1..$n"

@@ -15,8 +15,10 @@
 #include <string.h>
 
 #define MAX_SIDE 480               // px of a picture in the page
-#define MIN_SIDE 240               // below it, leave out frames instead
+#define GOOD_SIDE 240              // below it, let the page grow instead
+#define MIN_SIDE 120               // below it, leave out frames instead
 #define PAGE_PIXELS (6e6)          // of all painted pictures together: a page of about 12 MB
+#define MOST_PIXELS (24e6)         // the same of long films: decoded, 300 MB in a browser
 #define GUIDE_FRAMES 3             // frames whose guides are shown
 #define MARK "<!-- the frames -->" // in page.html
 
@@ -36,17 +38,18 @@ struct FlReport {
     FlExemplarUse *use;      // by recording; those with style NULL are unused
 };
 
-/* Chooses the size of the pictures, and how many frames have them, within PAGE_PIXELS. */
+/* Chooses the size of the pictures, and how many frames have them, within MOST_PIXELS. */
 static void choose_size(FlReport *report)
 {
     const int width = report->plan->width, height = report->plan->height;
     const int n = fl_drawing_frames(report->plan->drawing), larger = MAX(width, height);
     const double smaller = (double)MIN(width, height) / larger;
-    const double side = sqrt(PAGE_PIXELS / (n * smaller));
-    const double shown = MIN(CLAMP(side, MIN_SIDE, MAX_SIDE), larger);
+    const double side = MAX(sqrt(PAGE_PIXELS / (n * smaller)), GOOD_SIDE);
+    const double most_side = MIN(sqrt(MOST_PIXELS / (n * smaller)), MAX_SIDE);
+    const double shown = MIN(MAX(MIN(side, most_side), MIN_SIDE), larger);
     report->width = MAX((int)(width * shown / larger + 0.5), 1);
     report->height = MAX((int)(height * shown / larger + 0.5), 1);
-    const double most = PAGE_PIXELS / ((double)report->width * report->height);
+    const double most = MOST_PIXELS / ((double)report->width * report->height);
     report->every = MAX((int)ceil(n / most), 1);
 }
 
