@@ -478,6 +478,28 @@ static void the_smallest_group_that_looks_otherwise_is_taken_as_one(void)
                                    "shape: drawn as one in every frame"));
 }
 
+/* A mask is each shape's own: at its soft pixels two shapes cover more than their group would. */
+static void a_mask_over_shapes_that_overlap_is_told(void)
+{
+    static const char *const lower[] = {"width='48'", "width='100'"}; // beside the other, below it
+    for (int overlaps = 0; overlaps < 2; overlaps++) {
+        g_autoptr(Scratch) folder = scratch_make();
+        g_autofree char *shapes = g_strdup_printf(
+            "<mask id='m'><circle cx='50' cy='50' r='40' fill='#fff'/></mask><g mask='url(#m)'>"
+            "<rect %s height='100' fill='#224477'/>"
+            "<rect x='52' width='48' height='100' fill='#ee4488'/></g>",
+            lower[overlaps]);
+        g_autofree char *path = scratch_svg(folder, "masked.svg", shapes);
+        g_autoptr(FlWarnings) warnings = fl_warnings_new();
+        const FlDrawingOptions options = {0};
+        g_autoptr(FlDrawing) drawing = open_film(&options, path, warnings);
+        g_assert_cmpint(fl_drawing_regions(drawing), ==, 2);
+        g_assert_cmpint(fl_warnings_count(warnings), ==, overlaps);
+        if (overlaps)
+            g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, "slightly harder edge"));
+    }
+}
+
 static void regions_merge_through_others_and_not_in_circles(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -603,6 +625,7 @@ int main(int argc, char **argv)
     TEST("merges", regions_merge_through_others_and_not_in_circles);
     TEST("returning", a_region_that_vanishes_and_returns_is_the_same);
     TEST("fall-back", the_smallest_group_that_looks_otherwise_is_taken_as_one);
+    TEST("mask-over-overlap", a_mask_over_shapes_that_overlap_is_told);
     TEST("fall-back-in-a-frame", a_group_that_is_taken_as_one_in_a_frame_is_so_in_all);
     TEST("registered", frames_that_begin_at_nought_are_put_back);
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);

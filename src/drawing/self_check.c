@@ -6,12 +6,13 @@
 #define VISIBLE 24      // levels; a larger difference is visible
 #define MOST_VISIBLE 12 // pixels that may differ so; rounding at thin edges does
 #define GROSS 16        // mean square of the levels that a channel may differ by: 36 dB
+#define HARD 1          // likewise where masks have a harder edge: 48 dB
 #define MOST_JUDGED 100 // leaves of a frame that are compared with their parts
 #define EDGE 8 // one in so many pixels of a masked group may differ: those at the mask's edge
 
 struct FlSelfCheck {
     int width, height;
-    bool gross;
+    bool gross, hard;
     int allowed; // pixels that differ at the edges of masks, where parts overlap
     cairo_surface_t *sum;
     GArray *pieces; // FlPiece: the parts, bottom up
@@ -24,13 +25,9 @@ FlSelfCheck *fl_self_check_new(int width, int height, GError **error)
     if (!sum)
         return NULL;
     FlSelfCheck *check = g_new0(FlSelfCheck, 1);
-    *check = (FlSelfCheck){width,
-                           height,
-                           false,
-                           0,
-                           sum,
-                           g_array_new(FALSE, FALSE, sizeof(FlPiece)),
-                           g_new0(uint16_t, (size_t)width * height)};
+    *check = (FlSelfCheck){width, height, .sum = sum,
+                           .pieces = g_array_new(FALSE, FALSE, sizeof(FlPiece)),
+                           .top = g_new0(uint16_t, (size_t)width * height)};
     return check;
 }
 
@@ -232,7 +229,7 @@ static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf,
 }
 
 /** Whether two pictures differ by more than 36 dB PSNR. */
-static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n)
+static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n, int most)
 {
     int64_t sum = 0;
     for (size_t p = 0; p < n; p++)
@@ -240,7 +237,7 @@ static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n)
             const int d = (int)((a[p] >> c) & 255) - (int)((b[p] >> c) & 255);
             sum += d * d;
         }
-    return sum > (int64_t)n * 4 * GROSS;
+    return sum > (int64_t)n * 4 * most;
 }
 
 /** Whether a leaf looks as its n parts, drawn one by one: 1 or 0; -1 with an error. */
@@ -298,6 +295,11 @@ static bool find_leaves(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf
     return true;
 }
 
+bool fl_self_check_has_hard_masks(const FlSelfCheck *check)
+{
+    return check->hard;
+}
+
 bool fl_self_check_is_gross(const FlSelfCheck *check)
 {
     return check->gross;
@@ -310,16 +312,16 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width
     if (!truth)
         return FL_VERDICT_ERROR;
     size_t where = 0;
-    const int visible = compare((const uint32_t *)cairo_image_surface_get_data(truth),
-                                (const uint32_t *)cairo_image_surface_get_data(check->sum),
-                                (size_t)check->width * check->height, &where);
+    const uint32_t *is = (const uint32_t *)cairo_image_surface_get_data(truth);
+    const uint32_t *sum = (const uint32_t *)cairo_image_surface_get_data(check->sum);
+    const size_t n = (size_t)check->width * (size_t)check->height;
+    const int visible = compare(is, sum, n, &where);
     *group = NULL;
     *leaf = NULL;
+    check->hard = check->allowed > 0 && differ_much(is, sum, n, HARD);
     if (visible <= MOST_VISIBLE + check->allowed)
         return FL_VERDICT_ALIKE;
-    check->gross = differ_much((const uint32_t *)cairo_image_surface_get_data(truth),
-                               (const uint32_t *)cairo_image_surface_get_data(check->sum),
-                               (size_t)check->width * check->height);
+    check->gross = differ_much(is, sum, n, GROSS);
     if (check->top[where] == 0)
         return FL_VERDICT_DIFFERS;
     const FlLeaf *top = g_array_index(check->pieces, FlPiece, check->top[where] - 1).leaf;

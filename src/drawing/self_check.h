@@ -34,6 +34,12 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
 FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
                                double page_height, char **group, const char **leaf, GError **error);
 
+/**
+ * Whether edges of masks are visibly harder than in the file: each shape has the mask by itself,
+ * and where two of them overlap, what is half there is there twice.
+ */
+bool fl_self_check_has_hard_masks(const FlSelfCheck *check);
+
 /** Whether they differ too much to paint the frame from its leaves. */
 bool fl_self_check_is_gross(const FlSelfCheck *check);
 
