@@ -43,6 +43,7 @@ echo 'not a drawing' >text/a_1.svg
 echo '<html><body/></html>' >html/a_1.svg
 head -c 90 good/a_1.svg >cut/a_1.svg
 touch void.svg
+printf "<svg xmlns='http://www.w3.org/2000/svg'>%s" "$(printf '<g>%.0s' {1..300})" >deep.svg
 printf '\x1f\x8b\x08garbage' >packed.svg
 printf '\xff\xfe\x00<' >binary.svg
 svg nothing ''
@@ -195,6 +196,7 @@ table() {
 1|html/a_1.svg: the root is <html>, expected <svg *|html
 1|cut/a_1.svg: not well-formed: line 1: *|cut
 1|void.svg: not well-formed: line 1: Document is empty|void.svg
+1|deep.svg: not well-formed: line 1: elements are nested deeper than 256 levels; use --limit depth=N to allow more|deep.svg
 1|packed.svg: damaged gzip data|packed.svg
 1|binary.svg: not well-formed: *|binary.svg
 1|nothing/a_1.svg: there is nothing to paint in the drawing (1 warning under --strict)|nothing --strict

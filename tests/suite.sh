@@ -18,11 +18,11 @@ one() { # one FILE: its verdict, dB, name and the program's last words
     ulimit -v 4194304
     timeout "$LIMIT" rsvg-convert --unlimited "$file" -o "$made/truth.png" 2>/dev/null || rm -f "$made/truth.png"
     size=()
-    timeout -k 1 "$LIMIT" "$program" --flat -y -o "$made/flat_%d.png" "$file" >/dev/null 2>"$made/err"
+    timeout -k 1 "$LIMIT" "$program" --flat --frames-from files -y -o "$made/flat_%d.png" "$file" >/dev/null 2>"$made/err"
     status=$?
     if grep -q 'no size and no viewBox' "$made/err" && [ -s "$made/truth.png" ]; then
         size=(--canvas "$("$psnr" "$made/truth.png")")
-        timeout -k 1 "$LIMIT" "$program" --flat -y "${size[@]}" -o "$made/flat_%d.png" "$file" \
+        timeout -k 1 "$LIMIT" "$program" --flat --frames-from files -y "${size[@]}" -o "$made/flat_%d.png" "$file" \
             >/dev/null 2>"$made/err"
         status=$?
     fi
@@ -53,7 +53,7 @@ one() { # one FILE: its verdict, dB, name and the program's last words
 # Small drawings whose size is no whole number of pixels are scaled a little, and their edges move.
 once_larger() { # of $file and $made: dB where the page has 640 px
     timeout "$LIMIT" rsvg-convert --unlimited -w 640 "$file" -o "$made/large.png" 2>/dev/null
-    timeout -k 1 "$LIMIT" "$program" --flat -y -W 640 "${size[@]}" -o "$made/large_%d.png" "$file" \
+    timeout -k 1 "$LIMIT" "$program" --flat --frames-from files -y -W 640 "${size[@]}" -o "$made/large_%d.png" "$file" \
         >/dev/null 2>"$made/more"
     "$psnr" "$made/large.png" "$made"/large_*.png || echo "$db"
 }

@@ -116,6 +116,20 @@ static void start_parser(void)
     }
 }
 
+/** Sentences for messages of libxml2 that only its own users understand. */
+static const char *plain_xml_words(const char *message)
+{
+    static const char *const words[][2] = {
+        {"Excessive depth",
+         "elements are nested deeper than 256 levels; use ‘limit’ depth=N to allow more"},
+        {"Start tag expected", "expected an SVG drawing, which begins with “<”"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+        if (g_str_has_prefix(message, words[i][0]))
+            return words[i][1];
+    return message;
+}
+
 /** Parses; problem gets libxml2's message with its line if the text is no XML. */
 static xmlDoc *parse(const char *data, gsize bytes, const char *path, char **problem)
 {
@@ -126,7 +140,8 @@ static xmlDoc *parse(const char *data, gsize bytes, const char *path, char **pro
     xmlDoc *doc = xmlCtxtReadMemory(context, data, (int)bytes, path, NULL, options);
     const xmlError *e = xmlCtxtGetLastError(context);
     if (!doc && problem)
-        *problem = e && e->message ? g_strdup_printf("line %d: %s", e->line, g_strchomp(e->message))
+        *problem = e && e->message ? g_strdup_printf("line %d: %s", e->line,
+                                                     plain_xml_words(g_strchomp(e->message)))
                                    : g_strdup("no XML");
     xmlFreeParserCtxt(context);
     return doc;
