@@ -55,8 +55,8 @@ still="--tint keep --style-by-page off --style-scale 1 --motion auto"
         fluid,fluid:motion-blur=1,fluid:motion-blur=2 "$out/turning" -s "$out/styles/fire" $still -f 1-6
     width=360 # the presets of the papers count in pixels
     figure fluidymation 'Fluidymation, section 4: comparison with LazyFluids' \
-        'Both see masks only, and the recording as it is, which LazyFluids plays in step with the film and from its beginning again. The recording begins with a drop: where its frame has little paint, LazyFluids must show all of it equally often, and small parts break up into spots; Fluidymation chooses frames with enough. What rests, rests in Fluidymation.' \
-        fluidymation,lazyfluids "$source/fixtures/animations/snowman-wave-layers" -s 02 -f 1-12 --motion masks
+        'Both see masks only, and the recording as it is, which LazyFluids plays in step with the film and from its beginning again. The recording begins with a drop: where its frame has little paint, LazyFluids must show all of it equally often, and small parts break up into spots; Fluidymation chooses frames with enough. What rests, rests in Fluidymation. The third row has the shutter open for a whole frame, as films of fluids do.' \
+        fluidymation,lazyfluids,lazyfluids:motion-blur=1 "$source/fixtures/animations/snowman-wave-layers" -s 02 -f 1-12 --motion masks
     figure ablation 'Fluidymation, terms of the energy' \
         'Without the temporal term paint flickers, without uniformity it repeats, without the boundary rims are lost.' \
         fluidymation,fluidymation:w-temp=0,fluidymation:w-uni=0,fluidymation:w-bound=0 \
