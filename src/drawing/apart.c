@@ -282,9 +282,7 @@ static bool take_all(int fd, FlSurvey *survey, const FlSequence *sequence, FlWat
     } else {
         take(&r, &code, sizeof code);
         g_set_error(error, FL_ERROR, code, "%s", take_text(&r));
-        *bad = code == FL_ERROR_LIMIT || code == FL_ERROR_NO_MEMORY
-                   ? atomic_load(&watch->failed) - 1
-                   : -1;
+        *bad = atomic_load(&watch->failed) - 1;
     }
     take_warnings(&r, warnings);
     munmap(data, (size_t)bytes);

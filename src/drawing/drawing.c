@@ -310,12 +310,13 @@ static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingO
 {
     if (!options->apart)
         return fl_survey_init(survey, sequence, options, NULL, warnings, error);
-    for (;;) {
+    const int n = sequence->n;
+    for (int n_bad = 1;; n_bad++) { // one of them has to be good
         int bad = -1;
         GError *reason = NULL;
         g_autoptr(FlWarnings) remarks = fl_warnings_new();
         const bool good = fl_survey_init_apart(survey, sequence, options, remarks, &bad, &reason);
-        if (good || bad < 0 || options->missing <= FL_MISSING_ERROR || sequence->n < 2) {
+        if (good || bad < 0 || options->missing <= FL_MISSING_ERROR || n_bad == n) {
             fl_warnings_append(warnings, remarks);
             if (reason)
                 g_propagate_error(error, reason);
