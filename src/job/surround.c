@@ -10,7 +10,7 @@
 struct FlSurround {
     int n_regions, width, height;
     FlMaskStore *together; // by region; empty: nothing is like it
-    FlMaskStore *closed;   // by region; empty: nothing is beside it
+    FlMaskStore *closed;   // by region, near to it; empty: nothing is beside it
     FlMaskStore *seen;     // by region; empty: nothing lies over it
     FlMaskStore *shown;    // of region 0
 };
@@ -132,33 +132,69 @@ static uint8_t *near_seen(const FlDraw *draw, const uint8_t *free_of, int width,
     return near;
 }
 
-/** near_seen() of all draws that share edges with others. */
+static int reach_of(const FlSurround *surround)
+{
+    return MAX(MAX(surround->width, surround->height) / REACH, 1);
+}
+
+/** near_seen() of all draws that are of one colour with others. */
 static bool find_near_seen(const FlSurround *surround, const FlDrawList *draws, const bool *shares,
                            uint8_t *free_of, uint8_t **near, GError **error)
 {
-    const int reach_px = MAX(MAX(surround->width, surround->height) / REACH, 1);
     memset(free_of, 255, (size_t)surround->width * (size_t)surround->height);
     for (int r = draws->n - 1; r >= 0; r--) {
         const FlDraw *draw = &draws->draw[r];
         if (shares[r] && fl_rect_pixels(draw->area.box) > 0 &&
-            !(near[r] = near_seen(draw, free_of, surround->width, reach_px, error)))
+            !(near[r] = near_seen(draw, free_of, surround->width, reach_of(surround), error)))
             return false;
         hide_below(draw, surround->width, free_of);
     }
     return true;
 }
 
-/** Onto the coverage, the draws that share the region's edges in a way. Returns: whether any do. */
-static bool add_sharing(const FlSurround *surround, const Frame *frame, const FlSharing *sharing,
-                        FlSharing way)
+/** Onto the coverage, the draws of the region's colour. Returns: whether there are any. */
+static bool add_alike(const FlSurround *surround, const Frame *frame, const FlSharing *sharing)
 {
     bool any = false;
     for (int r = 0; r < frame->draws->n; r++)
-        if (sharing[r] == way && frame->near_seen[r]) {
+        if (sharing[r] == FL_SHARING_ALIKE && frame->near_seen[r]) {
             add_coverage(&frame->draws->draw[r], frame->near_seen[r], surround->width,
                          frame->coverage);
             any = true;
         }
+    return any;
+}
+
+/** What of a frame the rim of the region may depend on: more than three borders around it. */
+static FlRect near_region(const FlSurround *surround, const Frame *frame)
+{
+    const FlRect page = {0, 0, surround->width, surround->height};
+    const FlRect box = fl_rect_of(frame->coverage, page.width, page.height);
+    return box.width > 0 ? fl_rect_grown(box, 4 * reach_of(surround), page) : box;
+}
+
+/**
+ * Onto the coverage, what borders on the region, near to it. Hidden or not: what crosses a
+ * neighbour gives a shape at rest no other rim, and none is missed when it has passed. Returns:
+ * whether anything does.
+ */
+static bool add_bordering(const FlSurround *surround, const Frame *frame, const FlSharing *sharing,
+                          FlRect near)
+{
+    bool any = false;
+    for (int r = 0; r < frame->draws->n; r++) {
+        const FlDraw *draw = &frame->draws->draw[r];
+        const FlRect box = draw->area.box, part = fl_rect_and(box, near);
+        if (sharing[r] != FL_SHARING_BESIDE)
+            continue;
+        for (int y = part.y; y < part.y + part.height; y++) {
+            const uint8_t *from = draw->coverage + (size_t)(y - box.y) * (size_t)box.width;
+            uint8_t *to = frame->coverage + (size_t)y * (size_t)surround->width;
+            for (int x = part.x; x < part.x + part.width; x++)
+                to[x] = (uint8_t)MIN(to[x] + from[x - box.x], 255);
+        }
+        any |= part.width > 0;
+    }
     return any;
 }
 
@@ -183,10 +219,11 @@ static bool put_region(FlSurround *surround, int number, int region, const Frame
                        const FlSharing *sharing, GError **error)
 {
     fl_draw_list_mask(frame->draws, region, surround->width, surround->height, frame->coverage);
-    if (add_sharing(surround, frame, sharing, FL_SHARING_ALIKE) &&
+    const FlRect near = near_region(surround, frame);
+    if (add_alike(surround, frame, sharing) &&
         !fl_mask_store_put(surround->together, region, number, frame->coverage, error))
         return false;
-    if (add_sharing(surround, frame, sharing, FL_SHARING_BESIDE) &&
+    if (add_bordering(surround, frame, sharing, near) &&
         !fl_mask_store_put(surround->closed, region, number, frame->coverage, error))
         return false;
     find_seen(surround, region, frame, sharing);
@@ -244,7 +281,7 @@ static bool put_regions(FlSurround *surround, int number, const Frame *frame, co
     return true;
 }
 
-/** Marks the draws that share edges with any region. */
+/** Marks the draws of the colour of any other region. */
 static void find_sharers(const FlSurround *surround, const FlDrawList *draws, const FlJoin *joins,
                          const FlSharedEdges *edges, bool *shares)
 {
@@ -252,7 +289,7 @@ static void find_sharers(const FlSurround *surround, const FlDrawList *draws, co
     for (int region = 0; region < surround->n_regions; region++)
         if (find_sharing(draws, region, joins, edges, sharing))
             for (int r = 0; r < draws->n; r++)
-                shares[r] |= sharing[r] != FL_SHARING_NONE;
+                shares[r] |= sharing[r] == FL_SHARING_ALIKE;
 }
 
 bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlJoin *joins,
@@ -274,7 +311,8 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
 
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b)
 {
-    return fl_mask_store_same(surround->together, region, a, b);
+    return fl_mask_store_same(surround->together, region, a, b) &&
+           fl_mask_store_same(surround->closed, region, a, b);
 }
 
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,

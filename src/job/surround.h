@@ -25,13 +25,13 @@ typedef struct FlAround {
     bool bordered;     // whether there are shapes beside it
     bool hidden;       // whether anything lies over it and those of its colour
     uint8_t *together; // the region and those of its colour, near to where they are seen
-    uint8_t *closed;   // these and the ones beside it; if there are any
+    uint8_t *closed;   // these and the ones beside it, hidden or not; if there are any
     uint8_t *seen;     // what is seen of those together; if anything lies over them
     uint8_t *shown;    // the coverage of all shapes
 } FlAround;
 
-/** Whether shapes of a region's colour are the same in two frames, whatever else moves
- * there. */
+/** Whether the shapes with which a region shares edges are the same in two frames, near to it,
+ * whatever else moves there. */
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b);
 
 /** Reads a part of a frame. Returns: true with `around` to be cleared. */

@@ -192,8 +192,8 @@ void fl_painter_clear(FlPainter *painter)
 }
 
 /* The picture around which the depth of another one is measured. A shape at rest keeps the depth
- * with which it came to rest, whatever crosses it, as its paint is kept; only where shapes of its
- * colour move is it measured anew. */
+ * with which it came to rest, whatever crosses it, as its paint is kept; only where those that it
+ * shares edges with move, come or go is it measured anew. */
 static int depth_picture(FlPainter *painter, int picture)
 {
     const int region = painter->plan->region, asked = picture;
