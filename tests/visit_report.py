@@ -3,7 +3,7 @@
 
 usage: visit_report.py BROWSER PAGE PROFILE
 The page shows a disc, painted, that is the first region of its list; beside it there is nothing."""
-import json, os, pathlib, subprocess, sys
+import json, os, pathlib, subprocess, sys, time
 
 class Browser:
     """Chromium's DevTools protocol over a pair of pipes: messages end with a zero byte."""
@@ -44,7 +44,9 @@ class Browser:
         target = self.call("Target.createTarget", url=address)["targetId"]
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         self.call("Runtime.enable")
-        self.ask('new Promise((done) => document.readyState === "complete" ? done() : addEventListener("load", done))')
+        # until the address is there, the tab shows an empty page, which is complete as well
+        while not self.ask('location.protocol === "file:" && document.readyState === "complete"'):
+            time.sleep(0.05)
 
     def ask(self, script):
         answer = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
