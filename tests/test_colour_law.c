@@ -73,7 +73,7 @@ static void curve_of(Curve *curve, const uint8_t *fill, const uint8_t *paper, do
     steps(curve);
     const double yellow = unit((fmin(curve->fill[0], curve->fill[1]) - curve->fill[2]) / 255);
     const double sat = 1 - least / most, lightness = lightness_of(curve->fill);
-    double wanted = 29 * (1 - 0.38 * unit((lightness - 78) / 14) * unit(1 - 2.5 * sat));
+    double wanted = 30 * (1 - 0.38 * unit((lightness - 84) / 10) * unit(1 - 2.5 * sat));
     wanted *= 1 - sat * (1 - fmin(1, 700 / 1024.0 / spread));
     const double room = unit(1 - slope_of(curve) / wanted) * unit(1 - 2 * sat) *
                         unit(1 - (lightness_of(curve->fill) - lightness_of(curve->paper)) / 3);
@@ -171,9 +171,9 @@ static void the_levels_are_the_same_everywhere(void)
           {254, 94, 252},
           {255, 48, 255},
           {255, 14, 255},
-          {210, 3, 210},
-          {185, 1, 185},
-          {142, 1, 142}}},
+          {209, 3, 209},
+          {182, 1, 182},
+          {139, 1, 139}}},
         {cream,
          {224, 224, 224},
          {{245, 240, 230},
@@ -181,9 +181,9 @@ static void the_levels_are_the_same_everywhere(void)
           {232, 229, 224},
           {225, 224, 222},
           {219, 219, 219},
-          {195, 195, 195},
-          {178, 178, 178},
-          {135, 135, 135}}},
+          {191, 191, 191},
+          {172, 172, 172},
+          {126, 126, 126}}},
         {cream,
          {79, 157, 63},
          {{245, 240, 230},
@@ -191,9 +191,9 @@ static void the_levels_are_the_same_everywhere(void)
           {139, 194, 122},
           {105, 175, 88},
           {79, 157, 63},
-          {44, 124, 32},
-          {25, 99, 16},
-          {3, 41, 1}}},
+          {44, 123, 31},
+          {25, 98, 16},
+          {3, 40, 1}}},
         {cream,
          {255, 255, 0},
          {{245, 240, 230},
@@ -201,9 +201,9 @@ static void the_levels_are_the_same_everywhere(void)
           {254, 253, 90},
           {255, 255, 47},
           {255, 255, 14},
-          {235, 217, 3},
-          {223, 195, 1},
-          {201, 158, 1}}},
+          {235, 216, 3},
+          {222, 193, 1},
+          {199, 155, 1}}},
         {dark,
          {240, 192, 32},
          {{50, 50, 50},
@@ -211,9 +211,9 @@ static void the_levels_are_the_same_everywhere(void)
           {173, 141, 34},
           {211, 170, 32},
           {240, 192, 32},
-          {251, 224, 54},
-          {254, 239, 68},
-          {255, 254, 93}}},
+          {251, 224, 56},
+          {254, 239, 71},
+          {255, 254, 98}}},
     };
     for (size_t k = 0; k < G_N_ELEMENTS(cases); k++) {
         FlColourLaw law;

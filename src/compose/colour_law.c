@@ -107,12 +107,12 @@ static int64_t saturation_of(const uint8_t fill[3])
     return most > 0 ? FRACTION * (most - least) / most : 0;
 }
 
-/** The slope in L* that the fill should have: 29, for near white 18. */
+/** The slope in L* that the fill should have: 30, for near white 19. */
 static int64_t wanted_slope(int64_t lightness16, int64_t saturation, int spread)
 {
-    const int64_t whiteness = clamp_share((lightness16 - 94 * FRACTION) / 14) *
+    const int64_t whiteness = clamp_share((lightness16 - 100 * FRACTION) / 10) *
                               clamp_share(FRACTION - saturation * 5 / 2) / FRACTION;
-    const int64_t slope = 29 * (FRACTION - whiteness * 38 / 100);
+    const int64_t slope = 30 * (FRACTION - whiteness * 38 / 100);
     const int64_t uneven = spread > EVEN_SPREAD ? FRACTION - FRACTION * EVEN_SPREAD / spread : 0;
     return slope - slope * saturation * uneven / (FRACTION * FRACTION);
 }
