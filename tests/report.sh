@@ -23,6 +23,19 @@ result $? 'the page has energies and the use of the recording'
 [ $? = 1 ] && grep -q 'page/index.html: already exists; use -y' err && [ ! -e new_1.png ]
 result $? 'a page that exists stays, and nothing is painted'
 
+streams() { # streams PAGE: it is written to standard output, with paint from the cache if there is any
+    "$program" w_%04d.svg -s 01 --cache kept --format null --report - >"$1" 2>err &&
+        [ "$(grep -c '^<script>frames.push' "$1")" = 3 ] && grep -q '</html>' "$1"
+}
+streams first.html && ! grep -q 'report:' err
+result $? 'a page can go to standard output'
+streams again.html && grep -q 'from the cache' err &&
+    cmp -s <(grep -o 'after:"[^"]*"' first.html) <(grep -o 'after:"[^"]*"' again.html)
+result $? 'with paint from the cache, to the bit'
+"$program" w_%04d.svg -s 01 -q --format null --report - >/dev/full 2>err
+[ $? = 1 ] && grep -q 'standard output: the page cannot be written' err
+result $? 'a page that nobody can take is an error'
+
 # What a visitor does, run by the page itself; the last line of the page tells how it went.
 cat >visitor.js <<'EOF'
 const said = [];
@@ -105,7 +118,7 @@ else
         echo "$line" | sed "s/ - / $n - /"
     done < <(sed '$a\' told | grep ok)
     if command -v python3 >/dev/null; then
-        timeout 60 python3 "$visit" "$browser" page/index.html "$folder/profile" >told
+        timeout 60 python3 -B "$visit" "$browser" page/index.html "$folder/profile" >told
         [ "$(wc -l <told)" = 8 ]
         result $? 'a mouse goes through the page'
         while read -r line; do

@@ -154,7 +154,8 @@ typedef struct FlRenderOptions {
     const char *cache;
     int cache_size;     /**< MiB, beyond which the cache drops what was used least; 0: 8192 */
     const char *stats;  /**< JSON lines about every frame, region and level; NULL: none */
-    const char *report; /**< a folder for the HTML report, index.html; NULL: none */
+    const char *report; /**< a folder for the HTML report, index.html; "-": standard output gets
+                           its frames as they are painted, without figures; NULL: none */
     const char
         *dump; /**< a folder for guides, fields and T_temp as pictures and data; NULL: none */
     const char *ebsynth; /**< a folder for pairs of guides and ebsynth's command lines; with `merge`

@@ -1,9 +1,22 @@
 #include "inspect/page_script.h"
 
 #include "io/png.h"
-#include <glib.h>
+#include <gio/gio.h>
 #include <math.h>
 #include <string.h>
+
+#define MARK "<!-- the frames -->" // in page.html
+
+GBytes *fl_page_part(FlPagePart part)
+{
+    g_autoptr(GBytes) page = g_resources_lookup_data("/fluidy/report/page.html", 0, NULL);
+    gsize n = 0;
+    const char *text = g_bytes_get_data(page, &n);
+    const char *mark = g_strstr_len(text, (gssize)n, MARK);
+    const gsize head = (gsize)(mark - text), rest = head + strlen(MARK);
+    return part == FL_PAGE_HEAD ? g_bytes_new_from_bytes(page, 0, head)
+                                : g_bytes_new_from_bytes(page, rest, n - rest);
+}
 
 void fl_script_string(FILE *out, const char *text)
 {

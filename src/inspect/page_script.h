@@ -3,7 +3,14 @@
 #define FLUIDY_INSPECT_PAGE_SCRIPT_H
 
 #include "base/picture.h"
+#include <glib.h>
 #include <stdio.h>
+
+/** The report's page before its frames, and what comes after them. */
+typedef enum FlPagePart { FL_PAGE_HEAD, FL_PAGE_REST } FlPagePart;
+
+/** Returns: to be freed with g_bytes_unref(). */
+GBytes *fl_page_part(FlPagePart part);
 
 /** A quoted string; NULL: null. Whatever it contains, it ends neither itself nor the script. */
 void fl_script_string(FILE *out, const char *text);

@@ -9,24 +9,24 @@
 #include "inspect/stats.h"
 #include "io/atomic_file.h"
 #include "style/resample.h"
+#include <errno.h>
 #include <fluidy/fluidy.h>
-#include <gio/gio.h>
 #include <math.h>
 #include <string.h>
 
-#define MAX_SIDE 480               // px of a picture in the page
-#define GOOD_SIDE 240              // below it, let the page grow instead
-#define MIN_SIDE 120               // below it, leave out frames instead
-#define PAGE_PIXELS (6e6)          // of all painted pictures together: a page of about 12 MB
-#define MOST_PIXELS (24e6)         // the same of long films: decoded, 300 MB in a browser
-#define GUIDE_FRAMES 3             // frames whose guides are shown
-#define MARK "<!-- the frames -->" // in page.html
+#define MAX_SIDE 480       // px of a picture in the page
+#define GOOD_SIDE 240      // below it, let the page grow instead
+#define MIN_SIDE 120       // below it, leave out frames instead
+#define PAGE_PIXELS (6e6)  // of all painted pictures together: a page of about 12 MB
+#define MOST_PIXELS (24e6) // the same of long films: decoded, 300 MB in a browser
+#define GUIDE_FRAMES 3     // frames whose guides are shown
 
 struct FlReport {
     const FlPlan *plan;
     const FlBackground *background;
-    FlAtomicFile file;
-    GBytes *page;
+    FlAtomicFile file; // unused if the page goes to standard output
+    FILE *out;         // its stream, or standard output
+    bool measures;     // figures and guides, for which everything must be painted
     int width, height; // of the pictures, px
     int every;         // every n-th frame has pictures
     double seconds[3]; // paint, compose, write: sums
@@ -53,23 +53,39 @@ static void choose_size(FlReport *report)
     report->every = MAX((int)ceil(n / most), 1);
 }
 
-/* The place of the frames in page.html. */
-static const char *page_mark(const FlReport *report)
+static void write_film(const FlReport *report);
+
+bool fl_report_streams(const FlRenderOptions *options)
 {
+    return options->report && strcmp(options->report, "-") == 0;
+}
+
+bool fl_report_measures(const FlRenderOptions *options)
+{
+    return options->report && !fl_report_streams(options);
+}
+
+static void write_part(FILE *out, FlPagePart part)
+{
+    g_autoptr(GBytes) text = fl_page_part(part);
     gsize n = 0;
-    const char *text = g_bytes_get_data(report->page, &n);
-    return g_strstr_len(text, (gssize)n, MARK);
+    const char *data = g_bytes_get_data(text, &n);
+    fwrite(data, 1, n, out);
 }
 
 static bool begin(FlReport *report, const char *folder, GError **error)
 {
     g_autofree char *path = g_build_filename(folder, "index.html", NULL);
-    const bool overwrite = report->plan->options.overwrite != FL_OVERWRITE_REFUSE;
-    report->page = g_resources_lookup_data("/fluidy/report/page.html", 0, NULL);
-    if (!fl_atomic_open(&report->file, path, overwrite, error))
+    const FlRenderOptions *o = &report->plan->options;
+    report->measures = fl_report_measures(o);
+    report->out = stdout;
+    if (report->measures &&
+        !fl_atomic_open(&report->file, path, o->overwrite != FL_OVERWRITE_REFUSE, error))
         return false;
-    const char *text = g_bytes_get_data(report->page, NULL);
-    fwrite(text, 1, (size_t)(page_mark(report) - text), report->file.stream);
+    if (report->measures)
+        report->out = report->file.stream;
+    write_part(report->out, FL_PAGE_HEAD);
+    write_film(report);
     return true;
 }
 
@@ -104,7 +120,6 @@ void fl_report_free(FlReport *report)
     g_free(report->painter_seconds);
     fl_guide_view_clear(&report->view);
     fl_atomic_clear(&report->file);
-    g_clear_pointer(&report->page, g_bytes_unref);
     g_mutex_clear(&report->lock);
     g_free(report);
 }
@@ -123,7 +138,7 @@ static bool shows_guides(const FlReport *report, int frame)
 
 bool fl_report_wants_view(const FlReport *report, int frame)
 {
-    return report && shows_guides(report, frame);
+    return report && report->measures && shows_guides(report, frame);
 }
 
 /* Counts the matches of a region in its recording. */
@@ -141,7 +156,7 @@ static bool add_use(FlReport *report, const FlPaintedRegion *painted, GError **e
 bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, int frame,
                       const FlGuides *guides, GError **error)
 {
-    if (!report)
+    if (!report || !report->measures)
         return true;
     if (frame % painted->settings->hold != 0) { // the picture is the last one
         report->flicker[p].change = 0;
@@ -163,12 +178,12 @@ bool fl_report_guides(FlReport *report, int p, const FlPaintedRegion *painted, i
 static bool write_scaled(FlReport *report, const FlPicture *whole, bool opaque, GError **error)
 {
     g_autoptr(FlPicture) small = fl_picture_resize(whole, report->width, report->height, error);
-    return small && fl_script_picture(report->file.stream, small, opaque, error);
+    return small && fl_script_picture(report->out, small, opaque, error);
 }
 
 static bool write_pictures(FlReport *report, const FlComposite *composite, GError **error)
 {
-    FILE *out = report->file.stream;
+    FILE *out = report->out;
     const FlPlan *plan = report->plan;
     const FlPicture after = {plan->width, plan->height, composite->rgba};
     g_autoptr(FlPicture) drawn =
@@ -190,7 +205,7 @@ static bool write_pictures(FlReport *report, const FlComposite *composite, GErro
 /* [energy, change, seconds] of each painter. */
 static void write_painters(FlReport *report, const FlReportFrame *frame)
 {
-    FILE *out = report->file.stream;
+    FILE *out = report->out;
     fputs(",painters:[", out);
     for (int p = 0; p < report->plan->n_painted; p++) {
         const FlPaintedRegion *painted = frame->painted[p];
@@ -213,7 +228,7 @@ static void write_painters(FlReport *report, const FlReportFrame *frame)
  * it: what was found there counts as found in the next picture. */
 static void write_points(FlReport *report, bool pictures)
 {
-    FILE *out = report->file.stream;
+    FILE *out = report->out;
     fputs(",points:[", out);
     for (int p = 0; p < report->plan->n_painted; p++) {
         FlFollowedPoint *point = &report->point[p];
@@ -232,20 +247,30 @@ static void write_points(FlReport *report, bool pictures)
 static void write_seconds(FlReport *report, const FlReportFrame *frame)
 {
     const double seconds[] = {frame->paint_s, frame->compose_s, frame->write_s};
-    fputs(",seconds:[", report->file.stream);
+    fputs(",seconds:[", report->out);
     for (size_t k = 0; k < G_N_ELEMENTS(seconds); k++) {
         report->seconds[k] += seconds[k];
-        fputs(k > 0 ? "," : "", report->file.stream);
-        fl_script_number(report->file.stream, seconds[k]);
+        fputs(k > 0 ? "," : "", report->out);
+        fl_script_number(report->out, seconds[k]);
     }
-    fputc(']', report->file.stream);
+    fputc(']', report->out);
+}
+
+/* Whoever reads standard output sees every frame once it is painted. */
+static bool send_page(const FlReport *report, GError **error)
+{
+    if (fflush(report->out) == 0 && !ferror(report->out))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "standard output: the page cannot be written: %s",
+                g_strerror(errno));
+    return false;
 }
 
 bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **error)
 {
     if (!report)
         return true;
-    FILE *out = report->file.stream;
+    FILE *out = report->out;
     fprintf(out, "<script>frames.push({number:%d",
             fl_drawing_number(report->plan->drawing, frame->frame));
     write_seconds(report, frame);
@@ -254,21 +279,21 @@ bool fl_report_frame(FlReport *report, const FlReportFrame *frame, GError **erro
     write_points(report, pictures);
     if (pictures && !write_pictures(report, frame->composite, error))
         return false;
-    if (shows_guides(report, frame->frame)) {
+    if (fl_report_wants_view(report, frame->frame)) {
         fputs(",guides:", out);
         if (!fl_guide_view_write(&report->view, out, error))
             return false;
         fl_guide_view_reset(&report->view);
     }
     fputs("});</script>\n", out);
-    return true;
+    return report->measures || send_page(report, error);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-static void write_region(const FlReport *report, int r)
+static void write_region(const FlReport *report, int r, bool finished)
 {
-    FILE *out = report->file.stream;
+    FILE *out = report->out;
     const FlPlan *plan = report->plan;
     const FlRegion *region = fl_drawing_region(plan->drawing, r);
     const int p = plan->painted_of[r];
@@ -289,17 +314,29 @@ static void write_region(const FlReport *report, int r)
         g_autofree char *style = g_path_get_basename(plan->painted[p].style->path);
         fputs(",style:", out);
         fl_script_string(out, style);
+        const bool measured = finished && report->measures;
         fputs(",change:", out);
-        fl_script_number(out, fl_flicker_of_exemplar(plan->painted[p].style->exemplar));
+        fl_script_number(out,
+                         measured ? fl_flicker_of_exemplar(plan->painted[p].style->exemplar) : NAN);
         fputs(",seconds:", out);
-        fl_script_number(out, report->painter_seconds[p]);
+        fl_script_number(out, finished ? report->painter_seconds[p] : NAN);
     }
     fputs("}", out);
 }
 
+static void write_regions(const FlReport *report, bool finished)
+{
+    fputs("regions:[", report->out);
+    for (int r = 0; r < fl_drawing_regions(report->plan->drawing); r++) {
+        fputs(r > 0 ? "," : "", report->out);
+        write_region(report, r, finished);
+    }
+    fputs("]", report->out);
+}
+
 static bool write_uses(const FlReport *report, GError **error)
 {
-    FILE *out = report->file.stream;
+    FILE *out = report->out;
     const char *comma = "";
     fputs(",uses:[", out);
     for (int k = 0; k < report->plan->n_painted; k++) {
@@ -314,9 +351,10 @@ static bool write_uses(const FlReport *report, GError **error)
     return true;
 }
 
-static bool write_film(const FlReport *report, GError **error)
+/* What is known before the first frame. */
+static void write_film(const FlReport *report)
 {
-    FILE *out = report->file.stream;
+    FILE *out = report->out;
     const FlPlan *plan = report->plan;
     const double fps = plan->options.fps;
     fputs("<script>film={name:", out);
@@ -328,20 +366,25 @@ static bool write_film(const FlReport *report, GError **error)
     fputs(",paper:", out);
     fl_script_colour(out, report->background->flat);
     fprintf(out,
-            ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,transparent:%s,fps:", plan->width,
-            plan->height, fl_drawing_width(plan->drawing), report->width, report->height,
-            report->every, report->background->none ? "true" : "false");
+            ",width:%d,height:%d,drawn:%d,shown:[%d,%d],every:%d,total:%d,measured:%s,"
+            "transparent:%s,fps:",
+            plan->width, plan->height, fl_drawing_width(plan->drawing), report->width,
+            report->height, report->every, fl_drawing_frames(plan->drawing),
+            report->measures ? "true" : "false", report->background->none ? "true" : "false");
     fl_script_number(out, fps > 0 ? fps : 24);
-    fputs(",peak:", out);
-    fl_script_number(out, fl_peak_mib());
-    fputs(",regions:[", out);
-    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++) {
-        fputs(r > 0 ? "," : "", out);
-        write_region(report, r);
-    }
-    fputs("]", out);
-    const bool done = write_uses(report, error);
+    fputs(",peak:null,uses:[],", out);
+    write_regions(report, false);
     fputs("};</script>\n", out);
+}
+
+static bool write_results(const FlReport *report, GError **error)
+{
+    fputs("<script>Object.assign(film,{peak:", report->out);
+    fl_script_number(report->out, fl_peak_mib());
+    fputs(",", report->out);
+    write_regions(report, true);
+    const bool done = write_uses(report, error);
+    fputs("});</script>\n", report->out);
     return done;
 }
 
@@ -349,11 +392,8 @@ bool fl_report_finish(FlReport *report, GError **error)
 {
     if (!report)
         return true;
-    gsize n = 0;
-    const char *text = g_bytes_get_data(report->page, &n);
-    const char *rest = page_mark(report) + strlen(MARK);
-    if (!write_film(report, error))
+    if (!write_results(report, error))
         return false;
-    fwrite(rest, 1, n - (size_t)(rest - text), report->file.stream);
-    return fl_atomic_commit(&report->file, error);
+    write_part(report->out, FL_PAGE_REST);
+    return report->measures ? fl_atomic_commit(&report->file, error) : send_page(report, error);
 }

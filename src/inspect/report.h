@@ -5,6 +5,12 @@
 #include "compose/composite.h"
 #include "job/plan.h"
 
+/** Whether the report goes to standard output. */
+bool fl_report_streams(const FlRenderOptions *options);
+
+/** Whether there is a report with figures and guides, for which everything is painted. */
+bool fl_report_measures(const FlRenderOptions *options);
+
 /** A report being written. Its memory does not grow with the number of frames. */
 typedef struct FlReport FlReport;
 
@@ -18,8 +24,11 @@ typedef struct FlReportFrame {
 
 /**
  * Opens folder/index.html; plan and background must outlive the report. The file appears with
- * fl_report_finish(). Returns: to be freed with
- * fl_report_free(); NULL with FL_ERROR_EXISTS, FL_ERROR_OUTPUT or FL_ERROR_NO_MEMORY.
+ * fl_report_finish(). The folder "-" is standard output, where each frame appears once it is
+ * painted; figures and guides are left out there, since paint may come from the cache.
+ *
+ * Returns: to be freed with fl_report_free(); NULL with FL_ERROR_EXISTS, FL_ERROR_OUTPUT or
+ * FL_ERROR_NO_MEMORY.
  */
 FlReport *fl_report_new(const FlPlan *plan, const FlBackground *background, const char *folder,
                         GError **error);

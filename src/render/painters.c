@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "base/parallel_error.h"
 #include "base/schedule.h"
+#include "inspect/report.h"
 #include <math.h>
 
 /* The memory of a render follows from the sizes, so a shortage is known before anything is made. */
@@ -119,7 +120,8 @@ bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error)
     for (int p = 0; p < painters->n; p++)
         if (painters->painter[p].paint && plan->painted[p].engine->measure)
             plan->painted[p].engine->measure(painters->painter[p].paint,
-                                             plan->options.stats || plan->options.report);
+                                             plan->options.stats ||
+                                                 fl_report_measures(&plan->options));
     return make_scratch(painters, error);
 }
 

@@ -1,6 +1,7 @@
 #include "render/reuse.h"
 
 #include "base/alloc.h"
+#include "inspect/report.h"
 #include <string.h>
 
 /* The start of a kept film; the digests follow. */
@@ -40,7 +41,7 @@ bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlPlan *plan, int 
                    GHashTable *styles, const FlFingerprint *whole, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
-    *reuse = (FlReuse){.cache = cache, .takes = !o->report && !o->dump && !o->ebsynth};
+    *reuse = (FlReuse){.cache = cache, .takes = !fl_report_measures(o) && !o->dump && !o->ebsynth};
     reuse->made = g_array_new(FALSE, FALSE, sizeof(FlDigest));
     if (!cache)
         return true;

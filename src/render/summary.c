@@ -1,5 +1,6 @@
 #include "render/summary.h"
 
+#include "inspect/report.h"
 #include "render/loop.h"
 
 static void send_note(const FlPlan *plan, const char *line)
@@ -35,7 +36,7 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
     if (gaps)
         send_note(plan, gaps);
     send_note(plan, seconds);
-    if (!plan->options.report)
+    if (!fl_report_measures(&plan->options))
         return;
     g_autofree char *page = g_strdup_printf("report: %s/index.html", plan->options.report);
     send_note(plan, page);
