@@ -86,6 +86,14 @@ typedef enum FlFarm {
 FL_API char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *const *command,
                           GError **error);
 
+/**
+ * The page of a report that is live, HTML: a list of regions, controls, and the film. It asks
+ * `state`, `options` and `choice` beside its own address; see inspect/live.html.
+ *
+ * Returns: to be freed with g_bytes_unref().
+ */
+FL_API GBytes *fl_live_page(void);
+
 G_END_DECLS
 
 #endif

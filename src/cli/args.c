@@ -69,6 +69,8 @@ static gboolean read_setting(const char *name, const char *value, gpointer data,
 
 static gboolean read_limit(const char *name, const char *value, gpointer data, GError **error)
 {
+    FlArgs *args = data;
+    g_ptr_array_add(args->limits, (gpointer)keep(args, value));
     return fl_limit_set(value, error);
 }
 
@@ -131,6 +133,23 @@ static gboolean read_plan(const char *name, const char *value, gpointer data, GE
     }
     args->farm = farm;
     args->task = FL_COMMAND_PLAN;
+    return TRUE;
+}
+
+static gboolean read_serve(const char *name, const char *value, gpointer data, GError **error)
+{
+    FlArgs *args = data;
+    const FlOption *option = option_named(name);
+    char *end = NULL;
+    const gint64 port = g_ascii_strtoll(value, &end, 10);
+    if (!g_ascii_isdigit(*value) || *end || port < (gint64)option->min ||
+        port > (gint64)option->max) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%s” is not a port from %g to %g", name,
+                    value, option->min, option->max);
+        return FALSE;
+    }
+    args->port = (int)port;
+    args->task = FL_COMMAND_SERVE;
     return TRUE;
 }
 
@@ -238,6 +257,13 @@ static bool is_joined(const char *word)
     return option && fl_option_takes_value(option);
 }
 
+/* --serve without a port means any; GOption would take the next word for it. */
+static bool lacks_port(const char *word, const char *next)
+{
+    return strcmp(word, "--serve") == 0 &&
+           (!next || !*next || next[strspn(next, "0123456789")] != '\0');
+}
+
 /* Returns: to be freed with g_strfreev(). */
 static char **split_values(int argc, char **argv)
 {
@@ -249,7 +275,8 @@ static char **split_values(int argc, char **argv)
         const bool joined = options && i > 0 && is_joined(word);
         if (joined)
             g_ptr_array_add(words, g_strndup(word, 2));
-        g_ptr_array_add(words, g_strdup(joined ? word + 2 : word));
+        const bool bare = options && i > 0 && lacks_port(word, i + 1 < argc ? argv[i + 1] : NULL);
+        g_ptr_array_add(words, g_strdup(joined ? word + 2 : bare ? "--serve=0" : word));
     }
     g_ptr_array_add(words, NULL);
     return (char **)g_ptr_array_free(words, FALSE);
@@ -302,7 +329,8 @@ static bool needs_input(FlCommand task)
 {
     return task == FL_COMMAND_RENDER || task == FL_COMMAND_LIST_REGIONS ||
            task == FL_COMMAND_PRINT_CONFIG || task == FL_COMMAND_CHECK || task == FL_COMMAND_FLAT ||
-           task == FL_COMMAND_COMPARE || task == FL_COMMAND_METHODS || task == FL_COMMAND_PLAN;
+           task == FL_COMMAND_COMPARE || task == FL_COMMAND_METHODS || task == FL_COMMAND_PLAN ||
+           task == FL_COMMAND_SERVE;
 }
 
 /* Previews and comparisons are drafts, and replace the previous ones. */
@@ -328,6 +356,7 @@ static bool make_preview(FlArgs *args, GError **error)
 bool fl_args_parse(FlArgs *args, int argc, char **argv, GError **error)
 {
     *args = (FlArgs){.settings = g_array_new(FALSE, TRUE, sizeof(FlSetting)),
+                     .limits = g_ptr_array_new(),
                      .strings = g_ptr_array_new_with_free_func(g_free)};
     g_autoptr(GOptionContext) context = new_context(args);
     args->inputs = split_values(argc, argv); // GOption takes out what it knows
@@ -363,5 +392,6 @@ void fl_args_clear(FlArgs *args)
     g_strfreev(args->variants);
     g_strfreev(args->command);
     g_array_unref(args->settings);
+    g_ptr_array_unref(args->limits);
     g_ptr_array_unref(args->strings);
 }

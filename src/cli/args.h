@@ -17,6 +17,7 @@ typedef enum FlCommand {
     FL_COMMAND_COMPARE,
     FL_COMMAND_PLAN,
     FL_COMMAND_METHODS,
+    FL_COMMAND_SERVE,
 } FlCommand;
 
 typedef enum FlProgressMode {
@@ -35,6 +36,8 @@ typedef struct FlArgs {
     char **variants;     // of FL_COMMAND_COMPARE, styles; NULL: all there are; or _METHODS
     FlFarm farm;         // of FL_COMMAND_PLAN
     char **command;      // likewise: the words without --plan
+    GPtrArray *limits;   // char *: NAME=N, as they were given
+    int port;            // of FL_COMMAND_SERVE; 0: any that is free
     bool quiet;          // no warnings, notes or progress
     char **inputs;
     GArray *settings;   // FlSetting

@@ -179,7 +179,7 @@ static gboolean is_abandoned(void *path, void *time, void *data)
     return g_get_monotonic_time() - *(gint64 *)time > (gint64)ABANDONED_MS * 1000;
 }
 
-static bool has_settled(FlFileWatch *watch)
+bool fl_file_watch_has_settled(FlFileWatch *watch)
 {
     g_hash_table_foreach_remove(watch->open, is_abandoned, NULL);
     return watch->last_us && g_hash_table_size(watch->open) == 0 &&
@@ -189,7 +189,7 @@ static bool has_settled(FlFileWatch *watch)
 bool fl_file_watch_wait(FlFileWatch *watch, const volatile sig_atomic_t *stop)
 {
     const guint tick = g_timeout_add(TICK_MS, on_tick, NULL);
-    while (!*stop && !has_settled(watch))
+    while (!*stop && !fl_file_watch_has_settled(watch))
         g_main_context_iteration(NULL, TRUE);
     g_source_remove(tick);
     return !*stop;

@@ -30,6 +30,9 @@ bool fl_file_watch_has_changed(const FlFileWatch *watch);
  */
 bool fl_file_watch_wait(FlFileWatch *watch, const volatile sig_atomic_t *stop);
 
+/** Whether something has changed, and that wait would be over. Does not wait. */
+bool fl_file_watch_has_settled(FlFileWatch *watch);
+
 /** The name of the file that changed last, without its folder; "" before any has. Borrowed. */
 const char *fl_file_watch_last(const FlFileWatch *watch);
 

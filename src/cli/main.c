@@ -3,9 +3,11 @@
 #include "file_watch.h"
 #include "help.h"
 #include "progress.h"
+#include "serve.h"
 #include "wait.h"
 
 #include "base/json.h"
+#include "config.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -268,6 +270,17 @@ static int watch(FlArgs *args, Voice *voice)
     return status;
 }
 
+static int serve(FlArgs *args, GError **error)
+{
+#if HAVE_SOUP
+    return fl_serve(args, &stop, error) ? DONE : FAILURE;
+#else
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "--serve: this build has no live page; it needs libsoup 3");
+    return FAILURE;
+#endif
+}
+
 /* The commands that read the drawing, and may be interrupted. */
 static int work(FlArgs *args)
 {
@@ -298,6 +311,8 @@ static int work(FlArgs *args)
         compare_styles(args, &error);
     else if (args->task == FL_COMMAND_METHODS)
         fl_compare_methods(&args->render, (const char *const *)args->variants, &error);
+    else if (args->task == FL_COMMAND_SERVE)
+        status = serve(args, &error);
     else if (args->render.watch)
         status = watch(args, &voice);
     else

@@ -1,0 +1,25 @@
+/* Changes the text of a config file, fluidy-svg.conf(5), and leaves the rest of it as it was
+ * written. */
+#ifndef FLUIDY_CLI_CONFIG_EDIT_H
+#define FLUIDY_CLI_CONFIG_EDIT_H
+
+#include <glib.h>
+
+/** A key of a section, "project", "defaults" or "region NAME". Returns: its new value, to be freed;
+ * NULL: the line is dropped. */
+typedef char *(*FlConfigValue)(const char *section, const char *key, const char *value, void *data);
+
+/** The text with every value replaced by what `map` makes of it. Returns: to be freed. */
+char *fl_config_edit_map(const char *text, FlConfigValue map, void *data);
+
+/**
+ * The text with a key set; "" removes it. A section that is missing is added at the end.
+ *
+ * No argument has a line feed, and the section no bracket. Returns: to be freed.
+ */
+char *fl_config_edit_set(const char *text, const char *section, const char *key, const char *value);
+
+/** Returns: the value, to be freed; NULL: it is not set. */
+char *fl_config_edit_get(const char *text, const char *section, const char *key);
+
+#endif

@@ -1,0 +1,320 @@
+#include "live_config.h"
+
+#include "base/json.h"
+#include "config_edit.h"
+#include "params/options.h"
+
+#include <string.h>
+
+enum { LONGEST_VALUE = 1000 };
+
+typedef struct Choice {
+    char *section, *key, *value;
+} Choice;
+
+struct FlLiveConfig {
+    const FlArgs *args;
+    char *base;         // the file, with what the command line says
+    GPtrArray *choices; // Choice
+    char *text;         // both
+};
+
+static void choice_free(void *data)
+{
+    Choice *choice = data;
+    g_free(choice->section);
+    g_free(choice->key);
+    g_free(choice->value);
+    g_free(choice);
+}
+
+static void set(char **text, const char *section, const char *key, const char *value)
+{
+    char *now = fl_config_edit_set(*text, section, key, value);
+    g_free(*text);
+    *text = now;
+}
+
+/* ---- paths ---------------------------------------------------------------------------------- */
+
+/* Whether the value of an option of a background or paper is neither a colour nor a word. */
+static bool names_file(const FlOption *option, const char *value)
+{
+    g_autofree char *all = fl_option_words(option);
+    g_auto(GStrv) words = g_strsplit(all ? all : "", " ", -1);
+    return *value != '#' && !g_strv_contains((const char *const *)words, value);
+}
+
+/* The value as it reads in any folder; paths start in `folder`. */
+static char *absolute(const FlOption *option, const char *value, const char *folder)
+{
+    g_autofree char *path = g_canonicalize_filename(value, folder);
+    const bool is_path = (option->type == FL_OPTION_GROUND && names_file(option, value)) ||
+                         (option->type == FL_OPTION_STYLE &&
+                          (strchr(value, '/') || g_file_test(path, G_FILE_TEST_IS_DIR)));
+    return is_path ? g_steal_pointer(&path) : g_strdup(value);
+}
+
+static const FlOption *option_of(const char *section, const char *key)
+{
+    const bool project = strcmp(section, "project") == 0;
+    const FlOption *option = fl_option_find(project ? FL_SCOPE_RENDER : FL_SCOPE_REGION, key);
+    const FlOptionSection wanted = project ? FL_SECTION_PROJECT : FL_SECTION_REGION;
+    return option && option->section == wanted ? option : NULL;
+}
+
+/* Paths of [project] are those of outputs. */
+static bool is_output(const FlOption *option)
+{
+    return option->scope == FL_SCOPE_RENDER && option->type == FL_OPTION_PATH;
+}
+
+static char *make_portable(const char *section, const char *key, const char *value, void *folder)
+{
+    const FlOption *option = option_of(section, key);
+    return !option ? g_strdup(value) : is_output(option) ? NULL : absolute(option, value, folder);
+}
+
+char *fl_live_config_portable(const FlLiveConfig *config)
+{
+    const char *path = config->args->render.config;
+    g_autofree char *relative = path ? g_path_get_dirname(path) : g_strdup(".");
+    g_autofree char *folder = g_canonicalize_filename(relative, NULL);
+    return fl_config_edit_map(config->text, make_portable, folder);
+}
+
+/* ---- the file and the command line ---------------------------------------------------------- */
+
+/* The style of a film without any: 01, else the first one found. */
+static char *first_style(void)
+{
+    g_autoptr(GPtrArray) styles = fl_style_list();
+    const char *name = NULL;
+    for (guint k = 0; k < styles->len; k++) {
+        const FlStyleEntry *style = styles->pdata[k];
+        if (!name || strcmp(style->name, "01") == 0)
+            name = style->name;
+    }
+    return g_strdup(name);
+}
+
+/* Options override the config, so a choice in the page could not override them. */
+static void add_command_line(char **text, const FlArgs *args)
+{
+    for (size_t k = 0; k < args->render.n_settings; k++) {
+        const FlSetting *setting = &args->render.settings[k];
+        const FlOption *option = option_of("defaults", setting->name);
+        g_autofree char *value = option ? absolute(option, setting->value, NULL) : NULL;
+        set(text, "defaults", setting->name, value ? value : setting->value);
+    }
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->scope != FL_SCOPE_RENDER || option->section != FL_SECTION_PROJECT ||
+            is_output(option) || !fl_option_is_set(option, &args->render))
+            continue;
+        g_autofree char *given = fl_option_get(option, &args->render);
+        g_autofree char *value = absolute(option, given, NULL);
+        set(text, "project", option->name, value);
+    }
+}
+
+static bool wants_style(const FlArgs *args)
+{
+    bool named = args->render.config != NULL;
+    for (size_t k = 0; k < args->render.n_settings; k++)
+        named = named || strcmp(args->render.settings[k].name, "style") == 0;
+    return !named;
+}
+
+static bool read_base(FlLiveConfig *config, GError **error)
+{
+    const char *path = config->args->render.config;
+    g_autofree char *text = NULL;
+    if (path && !g_file_get_contents(path, &text, NULL, error))
+        return false;
+    if (!path)
+        text = g_strdup("# How the regions are painted; see fluidy-svg.conf(5).\n\n[project]\n"
+                        "version = 1\n");
+    g_autofree char *style = wants_style(config->args) ? first_style() : NULL;
+    if (style)
+        set(&text, "defaults", "style", style);
+    add_command_line(&text, config->args);
+    g_free(config->base);
+    config->base = g_steal_pointer(&text);
+    return true;
+}
+
+static void apply_choices(FlLiveConfig *config)
+{
+    g_free(config->text);
+    config->text = g_strdup(config->base);
+    for (guint k = 0; k < config->choices->len; k++) {
+        const Choice *choice = config->choices->pdata[k];
+        set(&config->text, choice->section, choice->key, choice->value);
+    }
+}
+
+FlLiveConfig *fl_live_config_new(const FlArgs *args, GError **error)
+{
+    g_autoptr(FlLiveConfig) config = g_new0(FlLiveConfig, 1);
+    config->args = args;
+    config->choices = g_ptr_array_new_with_free_func(choice_free);
+    return fl_live_config_reload(config, error) ? g_steal_pointer(&config) : NULL;
+}
+
+bool fl_live_config_reload(FlLiveConfig *config, GError **error)
+{
+    if (!read_base(config, error))
+        return false;
+    apply_choices(config);
+    return true;
+}
+
+const char *fl_live_config_text(const FlLiveConfig *config)
+{
+    return config->text;
+}
+
+void fl_live_config_free(FlLiveConfig *config)
+{
+    if (!config)
+        return;
+    g_ptr_array_unref(config->choices);
+    g_free(config->base);
+    g_free(config->text);
+    g_free(config);
+}
+
+/* ---- choices -------------------------------------------------------------------------------- */
+
+static bool is_plain(const char *text)
+{
+    for (; *text; text++)
+        if (g_ascii_iscntrl(*text))
+            return false;
+    return true;
+}
+
+static bool is_section(const char *section)
+{
+    const bool region = g_str_has_prefix(section, "region ") && section[7] && section[7] != ' ';
+    return (region && is_plain(section) && !strpbrk(section, "[]")) ||
+           strcmp(section, "project") == 0 || strcmp(section, "defaults") == 0;
+}
+
+bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char *key,
+                           const char *value, GError **error)
+{
+    const FlOption *option = is_section(section) ? option_of(section, key) : NULL;
+    if (!option || is_output(option) || !is_plain(value) || strlen(value) > LONGEST_VALUE ||
+        !g_utf8_validate(value, -1, NULL)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "nothing of the kind can be chosen");
+        return false;
+    }
+    for (guint k = config->choices->len; k > 0; k--) {
+        const Choice *choice = config->choices->pdata[k - 1];
+        if (strcmp(choice->section, section) == 0 && strcmp(choice->key, key) == 0)
+            g_ptr_array_remove_index(config->choices, k - 1);
+    }
+    Choice *choice = g_new(Choice, 1);
+    *choice = (Choice){g_strdup(section), g_strdup(key), g_strdup(value)};
+    g_ptr_array_add(config->choices, choice);
+    apply_choices(config);
+    return true;
+}
+
+/* ---- for the page --------------------------------------------------------------------------- */
+
+typedef struct Listing {
+    GString *json;
+    char *section; // of the last entry
+} Listing;
+
+static char *list_entry(const char *section, const char *key, const char *value, void *data)
+{
+    Listing *listing = data;
+    if (g_strcmp0(section, listing->section) != 0) {
+        g_string_append(listing->json, listing->section ? "}," : "");
+        fl_json_string(listing->json, section);
+        g_string_append(listing->json, ":{");
+        g_free(listing->section);
+        listing->section = g_strdup(section);
+    }
+    fl_json_text(listing->json, key, value);
+    return g_strdup(value);
+}
+
+void fl_live_config_json(const FlLiveConfig *config, GString *json)
+{
+    Listing listing = {json, NULL};
+    g_string_append_c(json, '{');
+    g_free(fl_config_edit_map(config->text, list_entry, &listing));
+    g_string_append(json, listing.section ? "}}" : "}");
+    g_free(listing.section);
+}
+
+/* What a value looks like, for the page's controls: words come from the value's own description. */
+static const char *kind_of(const FlOption *option)
+{
+    switch (option->type) {
+    case FL_OPTION_INT:
+    case FL_OPTION_COUNT:
+        return "integer";
+    case FL_OPTION_REAL:
+    case FL_OPTION_DIAL:
+        return "number";
+    case FL_OPTION_STYLE:
+        return "style";
+    case FL_OPTION_PARAM:
+        return strcmp(option->value, "N") == 0   ? "integer"
+               : strcmp(option->value, "X") == 0 ? "number"
+                                                 : "text";
+    case FL_OPTION_FLAG:
+    case FL_OPTION_SWITCH:
+        return "switch";
+    default:
+        return "text";
+    }
+}
+
+static void append_option(GString *json, const FlOption *option)
+{
+    g_autofree char *help = fl_option_help(option);
+    g_string_append(json, g_str_has_suffix(json->str, "[") ? "\n{" : ",\n{");
+    fl_json_text(json, "name", option->name);
+    fl_json_text(json, "section", option->section == FL_SECTION_PROJECT ? "project" : "defaults");
+    fl_json_text(json, "kind", kind_of(option));
+    fl_json_text(json, "value", option->value);
+    fl_json_text(json, "unit", option->unit);
+    fl_json_number(json, "min", option->min, option->max > option->min);
+    fl_json_number(json, "max", option->max, option->max > option->min);
+    fl_json_text(json, "preset", option->preset);
+    fl_json_text(json, "help", help);
+    g_string_append_c(json, '}');
+}
+
+static void append_style(GString *json, const FlStyleEntry *style)
+{
+    g_string_append(json, g_str_has_suffix(json->str, "[") ? "\n{" : ",\n{");
+    fl_json_text(json, "name", style->name);
+    fl_json_text(json, "title", style->title);
+    fl_json_text(json, "character", style->character);
+    g_string_append_c(json, '}');
+}
+
+char *fl_live_config_options(void)
+{
+    g_autoptr(GPtrArray) styles = fl_style_list();
+    GString *json = g_string_new("{\"options\":[");
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->section != FL_SECTION_NONE && !is_output(option))
+            append_option(json, option);
+    }
+    g_string_append(json, "],\"styles\":[");
+    for (guint k = 0; k < styles->len; k++)
+        if (!((const FlStyleEntry *)styles->pdata[k])->hidden)
+            append_style(json, styles->pdata[k]);
+    g_string_append(json, "]}\n");
+    return g_string_free(json, FALSE);
+}

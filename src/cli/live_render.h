@@ -1,0 +1,53 @@
+/* Renders of a film that is being tried out: a draft of what is looked at, a draft of the film, and
+ * the film, each by a process of its own that is ended when the next choice arrives. */
+#ifndef FLUIDY_CLI_LIVE_RENDER_H
+#define FLUIDY_CLI_LIVE_RENDER_H
+
+#include "args.h"
+
+typedef enum FlLiveStep {
+    FL_LIVE_PREVIEW, // a draft of the frame that is looked at, and its neighbours
+    FL_LIVE_DRAFT,
+    FL_LIVE_FULL,
+    FL_LIVE_DONE,
+    FL_LIVE_FAILED, // what is wrong is among the messages
+} FlLiveStep;
+
+/** What is known of the render; borrowed until the main loop goes on. */
+typedef struct FlLiveState {
+    FlLiveStep step;
+    int pass;             // the process that paints, from 1; a new one has new lines
+    GPtrArray *lines;     // char *: the pass's film and frames, lines of the report's page
+    GPtrArray *messages;  // char *: its warnings and errors, JSON objects
+    const char *progress; // a JSON object; NULL: nothing yet
+    GString *page;        // all of the report's page so far
+} FlLiveState;
+
+typedef struct FlLiveRender FlLiveRender;
+
+/**
+ * args must outlive it; larger is the longer side of the frames, px, and width their width.
+ *
+ * Returns: to be freed with fl_live_render_free(); NULL if no temporary folder can be made.
+ */
+FlLiveRender *fl_live_render_new(const FlArgs *args, int width, int larger, GError **error);
+
+/**
+ * Ends what is being painted and begins anew.
+ *
+ * config: text that can be read anywhere. preview: a range of frames to show first; NULL: none.
+ * drafts_only: the film is wanted no better.
+ */
+void fl_live_render_start(FlLiveRender *render, const char *config, const char *preview,
+                          bool drafts_only);
+
+FlLiveState fl_live_render_state(const FlLiveRender *render);
+
+/** The words of the command line that paint the film, without config and inputs. Appends copies. */
+void fl_live_render_options(const FlArgs *args, GPtrArray *words);
+
+void fl_live_render_free(FlLiveRender *render); // ends what is being painted; NULL is fine
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlLiveRender, fl_live_render_free)
+
+#endif

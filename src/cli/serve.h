@@ -1,0 +1,17 @@
+/* --serve: a page for a browser on this machine in which a film is tried out. */
+#ifndef FLUIDY_CLI_SERVE_H
+#define FLUIDY_CLI_SERVE_H
+
+#include "args.h"
+#include <signal.h>
+
+/**
+ * Serves the page at 127.0.0.1 and paints what is chosen in it, until *stop is set. Prints the
+ * page's address. Writes no files but temporary ones and the cache of paint.
+ *
+ * Returns: false with an error before anything is served: FL_ERROR_USAGE about the command line,
+ * errors of reading the drawing, FL_ERROR_OUTPUT if the port is in use.
+ */
+bool fl_serve(const FlArgs *args, const volatile sig_atomic_t *stop, GError **error);
+
+#endif

@@ -1,0 +1,97 @@
+#!/bin/bash
+# --serve: the live page in a real browser, and who may speak to it. Waits for states, never for a time.
+# usage: serve.sh PROGRAM FIXTURES; speaks TAP.
+# shellcheck source-path=SCRIPTDIR source=film.sh
+fixtures=$(realpath "$2")
+tests=$(realpath "${0%/*}")
+. "${0%/*}/film.sh"
+trap 'kill -KILL $job 2>/dev/null; rm -rf "$folder"' EXIT
+browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
+export FLUIDY_STYLES=$fixtures/styles TMPDIR=$folder/tmp
+mkdir tmp
+job=
+
+if "$program" --serve no-such-folder 2>err; grep -q 'this build has no live page' err; then
+    result 0 'a build without libsoup says so'
+    echo "1..$n"
+    exit
+fi
+
+# serves ARGUMENT...: in the background, as process $job; $address is that of its page.
+serves() {
+    rm -f said
+    "$program" film --cache kept "$@" >said 2>told &
+    job=$!
+    until [ -s said ]; do
+        kill -0 $job 2>/dev/null || return 1
+        sleep 0.05
+    done
+    address=$(cat said)
+}
+
+# ends SIGNAL: the server does with status 0, and so does all that it has made.
+ends() {
+    kill -"$1" $job
+    wait $job && [ -z "$(ls -A tmp)" ] && ! pgrep -P $job >/dev/null
+}
+
+"$program" --serve no-such-folder >out 2>err
+[ $? = 1 ] && says 'no-such-folder' && [ ! -s out ]
+result $? 'input that is not there is one line'
+"$program" film --serve -o 'out_%d.png' 2>err
+[ $? = 2 ] && says '--serve and --output contradict each other'
+result $? 'an output is refused, since the page writes none'
+"$program" film --serve=70000 2>err
+[ $? = 2 ] && says '“70000” is not a port from 0 to 65535'
+result $? 'so is what is no port'
+
+if ! command -v python3 >/dev/null; then
+    skip 'the page is served' 'no python3'
+    echo "1..$n"
+    exit
+fi
+
+printf '# mine\n[project]\nlayers = layers/{region}_%%d.png\n\n[defaults]\nstyle = ./ink\n# below\n' >one.conf
+cp -r "$style" ink
+serves -c one.conf --serve
+result $? 'the page has an address'
+port=${address#http://127.0.0.1:}
+port=${port%%/*}
+"$program" film --serve "$port" >out 2>err
+[ $? = 1 ] && says "port $port of 127.0.0.1" && [ ! -s out ]
+result $? 'a port in use is one line'
+
+# visit SCRIPT ARGUMENT...: takes its lines "ok - " and "not ok - ".
+visit() {
+    timeout 120 python3 -B "$tests/$1" "${@:2}" >lines 2>err
+    result $? "$1 runs to its end"
+    while read -r line; do
+        n=$((n + 1))
+        echo "$line" | sed "s/ - / $n - /"
+    done < <(grep ok lines)
+}
+
+visit ask_live.py "$address"
+if [ -z "$browser" ]; then
+    skip 'a mouse goes through the page' 'no chromium'
+else
+    visit visit_live.py "$browser" "$address" "$folder/profile" film
+    grep -v '^layers' kept.conf >plain.conf # with layers, paint hides what is below
+    "$program" film --cache off -q -c plain.conf --report page -o 'full/%d.png' 2>err
+    result $? 'the config that it gives paints'
+    for page in kept.html page/index.html; do
+        grep -oE 'number:[0-9]+|after:"[^"]*"' $page >"$(basename "$page").frames"
+    done
+    [ -s kept.html.frames ] && cmp -s kept.html.frames index.html.frames
+    result $? 'what the page shows, to the bit'
+    grep -q '^# mine' kept.conf && grep -q '^# below' kept.conf && grep -q '^layers = ' kept.conf
+    result $? 'and is her own, with what she wrote in it'
+fi
+[ ! -e layers ] && [ ! -e fluidy ] && cmp -s one.conf <(printf '# mine\n[project]\nlayers = layers/{region}_%%d.png\n\n[defaults]\nstyle = ./ink\n# below\n')
+result $? 'the server writes no outputs, and leaves the config alone'
+ends INT
+result $? 'SIGINT ends it with status 0, and leaves nothing'
+serves -s "$style" --serve
+ends TERM
+result $? 'so does SIGTERM while it paints'
+echo "1..$n"
