@@ -1,5 +1,6 @@
 /* Paper: a sheet looks like the scans it was matched with, is the same everywhere, and paint lies
  * on it. */
+#include "base/noise.h"
 #include "compose/granulation.h"
 #include "compose/ink.h"
 #include "compose/unevenness.h"
@@ -342,6 +343,40 @@ static void load_moves_along_with_its_region(void)
     g_assert_cmpint(one[0], ==, 1024);
 }
 
+/** Cells that are remembered between calls, and points that are left out, change nothing. */
+static void noise_is_a_function_of_place_alone(void)
+{
+    for (int k = 0; k < 1000; k++) {
+        const float x = (float)(k * 37 % 91) / 8, y = (float)(k * 53 % 67) / 8;
+        const float here = fl_noise(7, x, y);
+        const float other = fl_noise(7 + 64, x, y); // has the same place among what is remembered
+        const float beside = fl_noise(7, x + 1, y);
+        g_assert_cmpfloat(fl_noise(7 + 64, x, y), ==, other);
+        (void)fl_noise(7, x, y + 1);
+        g_assert_cmpfloat(fl_noise(7, x, y), ==, here);
+        g_assert_cmpfloat(fl_noise(7, x + 1, y), ==, beside);
+    }
+    g_assert_cmpfloat(fl_noise(0, .5f, .5f), !=, 0);
+}
+
+static void load_is_the_same_in_a_part_of_the_area(void)
+{
+    enum { PART_PX = 90 };
+    const FlUneven where = {.key = 3, .anchor = {0, 0, 1e4}, .scale = 1};
+    FlColumns row[PART_PX];
+    int16_t whole[PART_PX * PART_PX], part[PART_PX * PART_PX];
+    const FlRect box = {40, 30, PART_PX, PART_PX};
+    for (int y = 0; y < PART_PX; y++)
+        row[y] = y % 29 < 5 ? (FlColumns){y / 2, y / 2 + y % 29 * 7} : (FlColumns){0, 0};
+    for (int p = 0; p < PART_PX * PART_PX; p++)
+        whole[p] = part[p] = FL_AMOUNT_ONE;
+    fl_load_unevenly(&where, 1, &(FlArea){box, NULL}, whole);
+    fl_load_unevenly(&where, 1, &(FlArea){box, row}, part);
+    for (int y = 0; y < PART_PX; y++)
+        for (int x = row[y].first; x < row[y].last; x++)
+            g_assert_cmpint(part[y * PART_PX + x], ==, whole[y * PART_PX + x]);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -364,5 +399,9 @@ int main(int argc, char **argv)
                     wet_paint_settles_and_dry_paint_catches);
     g_test_add_func("/paper/drafts-have-the-same-tooth", drafts_have_the_same_tooth);
     g_test_add_func("/paper/load-moves-along-with-its-region", load_moves_along_with_its_region);
+    g_test_add_func("/paper/load-is-the-same-in-a-part-of-the-area",
+                    load_is_the_same_in_a_part_of_the_area);
+    g_test_add_func("/paper/noise-is-a-function-of-place-alone",
+                    noise_is_a_function_of_place_alone);
     return g_test_run();
 }

@@ -115,7 +115,7 @@ static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaint
         (colouring.pigments > 0 && !(play = fl_alloc(fl_rect_pixels(box), 1, "a layer", error))))
         return false;
     if (play)
-        fl_play_of_pigments(&uneven, box, play);
+        fl_play_of_pigments(&uneven, &layer->area, play);
     colouring.play = play;
     const FlDrawing *drawing = stack->input->drawing;
     const int border_px = (int)(painted->style->exemplar->border_px + 0.5f);

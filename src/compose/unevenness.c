@@ -53,25 +53,42 @@ static float play_noise(uint64_t key, float x, float y)
     return fl_noise_octaves(fl_key(key, KEY_PLAY), x / 70, y / 55, 3, .6f);
 }
 
-/* Points every so many px of a box, and one beyond its end: in 1 / 4096. */
+/* Points every so many px of a box, and one beyond its end: in 1 / 4096; 0 where no pixel of the
+ * area is near. */
 typedef struct Points {
     int step, width, height;
     int32_t *value;
 } Points;
 
-static Points make_points(const FlUneven *where, FlRect box, SlowNoise noise)
+/* The points of row j between which pixels of an area lie. */
+static FlColumns points_of(const FlArea *area, int step, int j)
 {
+    FlColumns span = {area->box.width, 0};
+    for (int y = MAX((j - 1) * step, 0); y < MIN((j + 1) * step, area->box.height); y++) {
+        const FlColumns row = fl_area_row(area, y);
+        if (row.first < row.last)
+            span = (FlColumns){MIN(span.first, row.first), MAX(span.last, row.last)};
+    }
+    return span.first < span.last ? (FlColumns){span.first / step, (span.last - 1) / step + 2}
+                                  : (FlColumns){0, 0};
+}
+
+static Points make_points(const FlUneven *where, const FlArea *area, SlowNoise noise)
+{
+    const FlRect box = area->box;
     const int step = CLAMP((int)(STEP * where->scale), 1, STEP);
     Points points = {step, box.width / step + 2, box.height / step + 2, NULL};
     points.value = g_new0(int32_t, (size_t)points.width * (size_t)points.height);
     const float px = 1 / where->scale;
-    for (int j = 0; j < points.height; j++)
-        for (int i = 0; i < points.width; i++) {
+    for (int j = 0; j < points.height; j++) {
+        const FlColumns span = points_of(area, step, j);
+        for (int i = span.first; i < span.last; i++) {
             const float x = (float)(16 * (box.x + i * step) - where->anchor.x) / 16;
             const float y = (float)(16 * (box.y + j * step) - where->anchor.y) / 16;
             const float n = CLAMP(noise(where->key, x * px, y * px), -1.98f, 1.98f);
             points.value[j * points.width + i] = (int32_t)lrintf(4096 * n);
         }
+    }
     return points;
 }
 
@@ -116,7 +133,7 @@ void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int
     const float strength = load * share_of_size(where) * 1.442695f;
     if (strength <= 0)
         return;
-    const Points points = make_points(where, area->box, load_noise);
+    const Points points = make_points(where, area, load_noise);
     uint16_t factor[4 * FL_PLAY_ONE]; // of a noise of -2 to below 2; 64 * 255 is one
     for (int i = 0; i < 4 * FL_PLAY_ONE; i++) {
         const float noise = (float)(i - 2 * FL_PLAY_ONE) / FL_PLAY_ONE;
@@ -136,9 +153,10 @@ void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int
     g_free(points.value);
 }
 
-void fl_play_of_pigments(const FlUneven *where, FlRect box, int8_t *play)
+void fl_play_of_pigments(const FlUneven *where, const FlArea *area, int8_t *play)
 {
-    const Points points = make_points(where, box, play_noise);
+    const FlRect box = area->box;
+    const Points points = make_points(where, area, play_noise);
 #pragma omp parallel
     {
         g_autofree int16_t *row = g_new0(int16_t, box.width);

@@ -29,7 +29,8 @@ void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int
 
 #define FL_PLAY_ONE 64 // twice the standard deviation of the play of two pigments
 
-/** Which of two pigments prevails in each pixel of a box: -2 to below 2, in 1 / FL_PLAY_ONE. */
-void fl_play_of_pigments(const FlUneven *where, FlRect box, int8_t *play);
+/** Which of two pigments prevails in each pixel of an area: -2 to below 2, in 1 / FL_PLAY_ONE. play
+ * is of the box; beyond the area it means nothing. */
+void fl_play_of_pigments(const FlUneven *where, const FlArea *area, int8_t *play);
 
 #endif
