@@ -6,17 +6,19 @@
 #include "compose/interior.h"
 #include <string.h>
 
-#define SHOWN 128      // coverage from which on a shape is uppermost
+#define SHOWN 128      // coverage from which on a shape can be uppermost
 #define TRAP_PX 4      // neighbours overlap by so much at most where a program traps them
 #define MOST_RUNS 4095 // whose overlaps are known
 #define TILE_PX 128    // a tile and what is around it fit into a processor's own cache
 
-/** Whether a run hides what it lies over. Shading does not: the edges below it are seen. */
-static bool hides(const FlComposeInput *input, const FlDraw *draw)
+/** How much a run hides of what it lies over, 0 … 255. Shading does not: the edges below it are
+ * seen. What fades must not let go of its neighbours in one frame. */
+static int hiding(const FlComposeInput *input, const FlDraw *draw)
 {
+    if (draw->mix != FL_BLEND_MODE_OVER)
+        return 0;
     const bool painted = input->painted_of[draw->region] >= 0;
-    return draw->mix == FL_BLEND_MODE_OVER && draw->alpha >= SHOWN &&
-           (painted || draw->alpha == 255);
+    return painted ? draw->alpha : MAX((int)draw->alpha * 4 - 3 * 255, 0);
 }
 
 /** Where pixel 0 of row y of a box is in the frame. */
@@ -65,16 +67,24 @@ static void note_overlaps(FlEdgeMap *edges, int draw)
     }
 }
 
+/** Where more of a run is seen than of what was uppermost, it is that now. */
 static void put_on_top(FlEdgeMap *edges, int draw)
 {
     const FlDraw *r = &edges->draws->draw[draw];
-    for (int y = 0; y < r->area.box.height; y++) {
+    const int opacity = hiding(edges->input, r);
+    for (int y = 0; opacity > 0 && y < r->area.box.height; y++) {
         const uint8_t *coverage = coverage_row(r, y);
-        uint16_t *top = edges->top + in_frame(edges, r->area.box, y);
+        const size_t row = in_frame(edges, r->area.box, y);
+        uint16_t *top = edges->top + row;
+        uint8_t *hidden = edges->hidden + row;
         const FlColumns span = fl_area_row(&r->area, y);
-        for (int x = span.first; x < span.last; x++)
-            if (coverage[x] >= SHOWN)
-                top[x] = (uint16_t)(draw + 1);
+        for (int x = span.first; x < span.last; x++) {
+            if (coverage[x] < SHOWN)
+                continue;
+            const int below = hidden[x] * (255 - opacity) / 255;
+            top[x] = opacity > below ? (uint16_t)(draw + 1) : top[x];
+            hidden[x] = (uint8_t)MAX(opacity, below);
+        }
     }
 }
 
@@ -87,12 +97,12 @@ bool fl_edges_init(FlEdgeMap *edges, const FlComposeInput *input, const FlDrawLi
     edges->n = MIN(draws->n, MOST_RUNS) + 1;
     const size_t pairs = (size_t)edges->n * (size_t)edges->n;
     if (!(edges->top = fl_alloc(pixels, sizeof *edges->top, "a matte", error)) ||
+        !(edges->hidden = fl_alloc(pixels, 1, "a matte", error)) ||
         !(edges->overlap = fl_alloc(pairs, sizeof *edges->overlap, "a matte", error)))
         return false;
     for (int r = 0; r < edges->n - 1; r++) {
         note_overlaps(edges, r);
-        if (hides(input, &draws->draw[r]))
-            put_on_top(edges, r);
+        put_on_top(edges, r);
     }
     return true;
 }
@@ -100,6 +110,7 @@ bool fl_edges_init(FlEdgeMap *edges, const FlComposeInput *input, const FlDrawLi
 void fl_edges_clear(FlEdgeMap *edges)
 {
     free(edges->top);
+    free(edges->hidden);
     free(edges->overlap);
     *edges = (FlEdgeMap){0};
 }
@@ -157,16 +168,24 @@ static FlRect part_of(const Tile *tile)
     return (FlRect){part.x - around.x, part.y - around.y, part.width, part.height};
 }
 
-/** The share of the edges of a run with those below or above which it does not lie. */
+/**
+ * The share of the edges of a run with those below or above which it does not lie. Others count by
+ * how much they hide for one as opaque as the run: a group that fades keeps its seams closed.
+ */
 static bool find_share(Tile *tile, const FlEdgeMap *edges, int draw, int radius_px, GError **error)
 {
     const bool *overlap = edges->overlap + (size_t)(draw + 1) * (size_t)edges->n;
     const FlRect around = tile->around;
+    const int alpha = MAX(edges->draws->draw[draw].alpha, 1);
     uint8_t *others = tile->others, any = 0;
     for (int y = 0; y < around.height; y++) {
-        const uint16_t *row = edges->top + in_frame(edges, around, y);
-        for (int x = 0; x < around.width; x++)
-            any |= *others++ = row[x] && row[x] != draw + 1 && !overlap[row[x]] ? 255 : 0;
+        const size_t first = in_frame(edges, around, y);
+        const uint16_t *row = edges->top + first;
+        const uint8_t *hidden = edges->hidden + first;
+        for (int x = 0; x < around.width; x++) {
+            const bool other = row[x] && row[x] != draw + 1 && !overlap[row[x]];
+            any |= *others++ = other ? (uint8_t)MIN(hidden[x] * 255 / alpha, 255) : 0;
+        }
     }
     memset(tile->share, 0, fl_rect_pixels(tile->part));
     return !any || fl_closing_share(tile->coverage, tile->others, around.width, around.height,

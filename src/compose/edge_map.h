@@ -12,9 +12,10 @@
 typedef struct FlEdgeMap {
     const FlComposeInput *input;
     const FlDrawList *draws;
-    uint16_t *top; // a whole frame: 1 + the uppermost run, 0: none
-    int n;         // runs that count, and one: the lowest few thousand
-    bool *overlap; // n * n: whether two runs, 1 + their numbers, lie over each other
+    uint16_t *top;   // a whole frame: 1 + the run that hides most of what is below it, 0: none
+    uint8_t *hidden; // how much it hides, 0 … 255
+    int n;           // runs that count, and one: the lowest few thousand
+    bool *overlap;   // n * n: whether two runs, 1 + their numbers, lie over each other
 } FlEdgeMap;
 
 /** Everything is borrowed. FL_ERROR_NO_MEMORY. */
