@@ -9,7 +9,7 @@ trap 'kill -KILL $job 2>/dev/null; rm -rf "$folder"' EXIT
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
 export FLUIDY_STYLES=$fixtures/styles TMPDIR=$folder/tmp
 mkdir tmp
-job=
+job='' address=''
 
 if "$program" --serve no-such-folder 2>err; grep -q 'this build has no live page' err; then
     result 0 'a build without libsoup says so'
@@ -44,6 +44,10 @@ result $? 'an output is refused, since the page writes none'
 "$program" film --serve=70000 2>err
 [ $? = 2 ] && says '“70000” is not a port from 0 to 65535'
 result $? 'so is what is no port'
+
+"$program" film --serve -c <(echo) 2>err
+[ $? = 2 ] && says 'expected a file, which can be read again'
+result $? 'and a config that cannot be read again'
 
 if ! command -v python3 >/dev/null; then
     skip 'the page is served' 'no python3'

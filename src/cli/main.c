@@ -244,16 +244,23 @@ static int watch_round(FlArgs *args, Voice *voice)
     return -1;
 }
 
-static int watch(FlArgs *args, Voice *voice)
+/* Whether the config, if there is one, is no pipe. */
+static bool can_reread_config(const FlArgs *args, const char *option, GError **error)
 {
     const char *config = args->render.config;
-    if (config && g_file_test(config, G_FILE_TEST_EXISTS) &&
-        !g_file_test(config, G_FILE_TEST_IS_REGULAR)) {
-        g_autoptr(GError) error =
-            g_error_new(FL_ERROR, FL_ERROR_USAGE,
-                        "--watch: %s: expected a file, which can be read again", config);
+    if (!config || !g_file_test(config, G_FILE_TEST_EXISTS) ||
+        g_file_test(config, G_FILE_TEST_IS_REGULAR))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: %s: expected a file, which can be read again",
+                option, config);
+    return false;
+}
+
+static int watch(FlArgs *args, Voice *voice)
+{
+    g_autoptr(GError) error = NULL;
+    if (!can_reread_config(args, "--watch", &error))
         return fail(args, error);
-    }
     int status = -1;
     while (status < 0) {
         g_autoptr(FlFileWatch) files = fl_file_watch_new(&args->render);
@@ -273,7 +280,8 @@ static int watch(FlArgs *args, Voice *voice)
 static int serve(FlArgs *args, GError **error)
 {
 #if HAVE_SOUP
-    return fl_serve(args, &stop, error) ? DONE : FAILURE;
+    return can_reread_config(args, "--serve", error) && fl_serve(args, &stop, error) ? DONE
+                                                                                     : FAILURE;
 #else
     g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                 "--serve: this build has no live page; it needs libsoup 3");

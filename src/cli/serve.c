@@ -110,6 +110,10 @@ static void get_config(Live *live, SoupServerMessage *message, GHashTable *query
 static void get_report(Live *live, SoupServerMessage *message, GHashTable *query)
 {
     const FlLiveState state = fl_live_render_state(live->render);
+    if (state.step != FL_LIVE_DONE) {
+        refuse(message, SOUP_STATUS_NOT_FOUND, "the film is still being painted");
+        return;
+    }
     answer(message, "text/html; charset=utf-8", state.page->str, state.page->len);
     attach(message, "index.html");
 }
