@@ -217,4 +217,29 @@ done
 kept now && same now whole
 result $? 'and leaves one that serves the next'
 
+# page FOLDER SHAPE: two frames of a page of one colour that lies over a shape.
+page() {
+    mkdir "$1"
+    for i in 1 2; do
+        echo "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56' viewBox='0 0 48 48'>$2" \
+            "<path id='page' d='M0,0h48v48h-48z' fill='#2255aa'/></svg>" >"$1/w_$i.svg"
+    done
+}
+
+# of_page FOLDER TO ARGUMENT...: paints it.
+of_page() {
+    rm -rf "$2"
+    "$program" "$1" -s "$style" -o "$2/%d.png" --progress none -y "${@:3}" >out 2>err
+}
+
+page bare ''
+page over "<path id='below' d='M9,9h20v20h-20z' fill='#aa3311'/>"
+rm -rf kept
+of_page bare bare.png --cache off && of_page over over.png --cache kept && same bare.png over.png &&
+    of_page over over.png --cache kept && took 2 0 && ! grep -q damaged err && same bare.png over.png
+result $? 'what others hide in all frames is not painted, and its shapes are not asked for again'
+of_page over apart.png --cache kept --layers 'layers/{region}/%d.png' && took 2 2 &&
+    of_page over over.png --cache kept && took 4 0 && same bare.png over.png
+result $? 'but it is where layers are stored'
+
 echo "1..$n"

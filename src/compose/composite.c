@@ -200,7 +200,13 @@ static bool fill_all(Stack *stack, GError **error)
     return fl_schedule_run(items, n, fill_one, stack, error);
 }
 
-/* A layer for each draw that is not left out. */
+static bool is_layer(const FlComposeInput *input, const FlDraw *draw)
+{
+    const int p = input->painted_of[draw->region];
+    return p != FL_LEFT_OUT && (p < 0 || !input->painted[p]->unseen);
+}
+
+/* A layer for each draw that is neither left out nor hidden in all frames. */
 static bool fill_layers(FlComposite *composite, const FlComposeInput *input, const FlEdgeMap *edges,
                         const int *exposures, GError **error)
 {
@@ -210,7 +216,7 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     composite->names = g_new0(char *, draws->n + 1);
     g_autofree int *draw = g_new0(int, MAX(draws->n, 1));
     for (int r = 0; r < draws->n; r++)
-        if (input->painted_of[draws->draw[r].region] != FL_LEFT_OUT) {
+        if (is_layer(input, &draws->draw[r])) {
             composite->names[composite->n_layers] = layer_name(input, draws, r);
             draw[composite->n_layers++] = r;
         }

@@ -35,7 +35,8 @@ typedef struct FlPaintedRegion {
     FlFrameStats stats;               // of the last frame that was painted, as is what follows
     FlSynthView view;                 // nnf NULL: nobody wanted it
     double seconds;
-    bool taken; // from the cache: nothing was painted, stats and view are empty
+    bool unseen; // in every frame others lie over it: it is not painted, and is no layer
+    bool taken;  // from the cache: nothing was painted, stats and view are empty
 } FlPaintedRegion;
 
 #endif

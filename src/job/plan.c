@@ -12,6 +12,7 @@
 #include "job/moved_paint.h"
 #include "job/paint_files.h"
 #include "job/resume.h"
+#include "job/sight.h"
 #include <stdatomic.h>
 #include <string.h>
 
@@ -427,6 +428,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->painted);
     g_free(plan->painted_of);
     g_free(plan->joins);
+    g_free(plan->seen);
     g_free(plan->hold_of);
     g_free(plan->hands);
     g_free(plan->painted_by_ebsynth);
@@ -450,6 +452,51 @@ static bool note_edges(FlPlan *plan, FlSharedEdges *edges, int frame, GError **e
     return draws;
 }
 
+bool fl_plan_frames_alone(const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    return !o->layers && !plan->format->takes_layers && !o->only_region && !o->paint && !o->dump &&
+           !o->ebsynth && !o->report;
+}
+
+/* Shapes that are held longer than others are shown below those of later frames. */
+static bool all_hold_alike(const FlPlan *plan)
+{
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
+        if (plan->hold_of[r] != plan->hold)
+            return false;
+    return true;
+}
+
+bool fl_plan_hides(const FlPlan *plan, int region)
+{
+    return plan->seen && !plan->seen[region];
+}
+
+static void begin_sight(FlPlan *plan)
+{
+    const int n = fl_drawing_regions(plan->drawing);
+    g_clear_pointer(&plan->seen, g_free);
+    if (!fl_plan_frames_alone(plan) || !all_hold_alike(plan))
+        return;
+    plan->seen = g_new(bool, MAX(n, 1));
+    for (int r = 0; r < n; r++)
+        plan->seen[r] = plan->painted_of[r] < 0;
+}
+
+/* Every style's rim, and a pixel where drafts are enlarged. */
+static bool note_sight(const FlPlan *plan, const FlDrawList *draws, GError **error)
+{
+    if (!plan->seen)
+        return true;
+    FlSight sight = {plan->joins, fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing),
+                     1};
+    for (int p = 0; p < plan->n_painted; p++)
+        sight.rim_px =
+            MAX(sight.rim_px, (int)(plan->painted[p].style->exemplar->border_px + 0.5f) + 1);
+    return fl_sight_note(&sight, draws, plan->seen, error);
+}
+
 /* Stores the masks of all painted regions in a frame. */
 static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
 {
@@ -469,7 +516,8 @@ static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **
         if (!fl_mask_store_put(plan->masks, region, frame, mask, error))
             return false;
     }
-    return fl_surround_put(plan->surround, frame, draws, plan->joins, edges, error);
+    return note_sight(plan, draws, error) &&
+           fl_surround_put(plan->surround, frame, draws, plan->joins, edges, error);
 }
 
 /* A pass over all frames. */
@@ -524,6 +572,7 @@ bool fl_plan_rasterise(FlPlan *plan, GError **error)
 {
     g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(fl_drawing_regions(plan->drawing));
     const bool alone = fl_drawing_regions(plan->drawing) < 2;
+    begin_sight(plan);
     const double share = alone ? 1 : .5;
     Pass note = {plan, edges, note_edges, 0, share, 0, g_thread_self()};
     Pass store = {plan, edges, store_masks, 1 - share, share, 0, g_thread_self()};

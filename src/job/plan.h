@@ -40,6 +40,7 @@ typedef struct FlPlan {
     FlMaskStore *masks;
     FlSurround *surround;
     FlJoin *joins; // by region
+    bool *seen;    // by region: it is not painted, or something of it shows; NULL: not known
     FlStyleCache *styles;
     int n_painted;
     FlRegionPlan *painted;
@@ -74,6 +75,14 @@ typedef struct FlPlan {
 FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error);
 
 void fl_plan_free(FlPlan *plan); // NULL is fine
+
+/** Whether frames are all that comes of the paint, so that what is hidden in them needs none:
+ * layers can be moved apart. */
+bool fl_plan_frames_alone(const FlPlan *plan);
+
+/** Whether others hide a region in every frame, and frames are all that comes of its paint; known
+ * after fl_plan_rasterise(). */
+bool fl_plan_hides(const FlPlan *plan, int region);
 
 /** Rasterises the masks of the painted regions in every frame into plan->masks. */
 bool fl_plan_rasterise(FlPlan *plan, GError **error);

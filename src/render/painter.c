@@ -135,6 +135,13 @@ static bool is_known(const FlPainter *painter)
     return painter->reuse && painter->reuse->known;
 }
 
+/* Whether no frame shows anything of the region: then it has no paint, no guides and no room. */
+static bool is_hidden(const FlPainter *painter, const FlPlan *plan)
+{
+    return is_known(painter) ? painter->reuse->known->len == 0
+                             : fl_plan_hides(plan, painter->plan->region);
+}
+
 void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region,
                      FlReuse *reuse)
 {
@@ -155,12 +162,16 @@ void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan 
     painter->n_pictures = (fl_drawing_frames(plan->drawing) - 1) / region->settings.hold + 1;
     painter->wrap = region->loops ? MIN(painter->n_pictures, WRAP) : 0;
     painter->reuse = reuse;
-    painter->result.rect = is_known(painter) ? reuse->rect : cropped(painter);
+    painter->result.unseen = is_hidden(painter, plan);
+    if (!painter->result.unseen)
+        painter->result.rect = is_known(painter) ? reuse->rect : cropped(painter);
 }
 
 bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
 {
     const FlRegionPlan *plan = painter->plan;
+    if (painter->result.unseen)
+        return true;
     if (plan->loops && !fl_loop_init(&painter->loop, painter->n_pictures, error))
         return false;
     if (plan->paint_files || is_known(painter))
@@ -347,7 +358,7 @@ bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
 bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)
 {
     const FlLoop *loop = &painter->loop;
-    return k >= loop->n ||
+    return painter->result.unseen || k >= loop->n ||
            (paint_picture(painter, k, loop->first + k, guides, error) &&
             fl_loop_keep(&painter->loop, k, painter->result.painted, painter->result.rect, error));
 }
@@ -363,6 +374,8 @@ static bool load_paint(FlPainter *painter, int frame, GError **error)
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
+    if (painter->result.unseen)
+        return true;
     if (painter->plan->paint_files)
         return load_paint(painter, frame, error);
     const int index = frame / painter->plan->settings.hold;
@@ -383,9 +396,10 @@ static bool keeps_picture(const FlPainter *painter)
 
 bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error)
 {
-    const bool holds = keeps_picture(painter) && !painter->plan->paint_files;
+    const bool none = painter->plan->paint_files || painter->result.unseen;
+    const bool holds = keeps_picture(painter) && !none;
     parts[2] = painter->reuse ? fl_reuse_save(painter->reuse) : g_bytes_new(NULL, 0);
-    if (painter->plan->paint_files || is_known(painter))
+    if (none || is_known(painter))
         parts[0] = g_bytes_new(NULL, 0);
     else if (painter->reuse && painter->reuse->state)
         parts[0] = g_bytes_ref(painter->reuse->state);
@@ -414,7 +428,7 @@ static bool load_state(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS]
 
 bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
 {
-    if (painter->plan->paint_files)
+    if (painter->plan->paint_files || painter->result.unseen)
         return true;
     const size_t bytes = keeps_picture(painter) ? 3 * fl_rect_pixels(painter->result.rect) : 0;
     if (g_bytes_get_size(parts[1]) != bytes) {

@@ -19,8 +19,9 @@ static FlDigest slot_of(const FlPlan *plan, int p)
     return slot;
 }
 
-/* The digests of all pictures, if they are kept and so is every picture. */
-static void recall(FlReuse *reuse)
+/* The digests of all pictures, if they are kept and so is every picture; of what is hidden in all
+ * frames none, which does for frames alone. */
+static void recall(FlReuse *reuse, bool frames_alone)
 {
     g_autoptr(GBytes) film = fl_paint_cache_get(reuse->cache, FL_CACHE_FILM, reuse->film);
     gsize bytes = 0;
@@ -28,6 +29,8 @@ static void recall(FlReuse *reuse)
     if (bytes < sizeof(FilmHeader) || (bytes - sizeof(FilmHeader)) % sizeof(FlDigest) != 0)
         return;
     const guint n = (guint)((bytes - sizeof(FilmHeader)) / sizeof(FlDigest));
+    if (n == 0 && !frames_alone)
+        return;
     g_autoptr(GArray) known = g_array_new(FALSE, FALSE, sizeof(FlDigest));
     memcpy(&reuse->rect, data, sizeof reuse->rect);
     g_array_append_vals(known, data + sizeof(FilmHeader), n);
@@ -54,7 +57,7 @@ bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlPlan *plan, int 
         return false;
     reuse->film = fl_fingerprint_digest(reuse->facts);
     if (reuse->takes)
-        recall(reuse);
+        recall(reuse, fl_plan_frames_alone(plan));
     return true;
 }
 
@@ -206,7 +209,8 @@ void fl_reuse_finish(FlReuse *reuse)
     FilmHeader header = {reuse->rect};
     const FlSpan film[] = {{&header, sizeof header},
                            {reuse->made->data, reuse->n_done * sizeof(FlDigest)}};
-    fl_paint_cache_put(reuse->cache, FL_CACHE_FILM, reuse->film, film, G_N_ELEMENTS(film));
+    const int n_spans = reuse->n_done > 0 ? G_N_ELEMENTS(film) : 1; // empty arrays have no data
+    fl_paint_cache_put(reuse->cache, FL_CACHE_FILM, reuse->film, film, n_spans);
     g_autoptr(GBytes) facts = fl_fingerprint_pack(reuse->facts);
     gsize bytes;
     const void *data = g_bytes_get_data(facts, &bytes);
