@@ -134,13 +134,24 @@ static void read_stream(FlLiveRender *render, GInputStream *input,
     read_next(stream);
 }
 
+const char *fl_live_step_name(FlLiveStep step)
+{
+    static const char *const names[] = {"preview", "draft", "full", "done", "failed"};
+    return names[step];
+}
+
 /* The film, a frame and the results are scripts of one line each. */
 static void take_page(FlLiveRender *render, const char *line)
 {
     g_string_append_printf(render->state.page, "%s\n", line);
-    if (g_str_has_prefix(line, "<script>") && g_str_has_suffix(line, "</script>"))
-        g_ptr_array_add(render->state.lines,
-                        g_strndup(line + 8, strlen(line) - strlen("<script></script>")));
+    if (!g_str_has_prefix(line, "<script>") || !g_str_has_suffix(line, "</script>"))
+        return;
+    g_autofree char *script = g_strndup(line + 8, strlen(line) - strlen("<script></script>"));
+    g_autoptr(GString) json = g_string_new("{");
+    fl_json_text(json, "step", fl_live_step_name(render->state.step));
+    fl_json_text(json, "script", script);
+    g_string_append_c(json, '}');
+    g_ptr_array_add(render->state.lines, g_string_free(g_steal_pointer(&json), FALSE));
 }
 
 /* The process names the copy of the config; its user knows her own. */
@@ -232,8 +243,6 @@ static void run_step(FlLiveRender *render, FlLiveStep step)
     g_autoptr(GError) error = NULL;
     g_autoptr(GPtrArray) command = command_of(render, step);
     render->state.step = step;
-    render->state.pass++;
-    g_ptr_array_set_size(render->state.lines, 0);
     g_ptr_array_set_size(render->state.messages, 0);
     g_string_truncate(render->state.page, 0);
     g_clear_pointer(&render->progress, g_free);
@@ -288,6 +297,7 @@ void fl_live_render_start(FlLiveRender *render, const char *config, const char *
     g_free(render->preview);
     render->preview = g_strdup(preview);
     render->drafts_only = drafts_only;
+    g_ptr_array_set_size(render->state.lines, 0);
     render->first = preview ? FL_LIVE_PREVIEW : FL_LIVE_DRAFT;
     if (!g_file_set_contents(render->config, config, -1, &error))
         tell_failure(render, error);

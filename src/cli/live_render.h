@@ -13,14 +13,16 @@ typedef enum FlLiveStep {
     FL_LIVE_FAILED, // what is wrong is among the messages
 } FlLiveStep;
 
+/** The step's name in the page; static. */
+const char *fl_live_step_name(FlLiveStep step);
+
 /** What is known of the render; borrowed until the main loop goes on. */
 typedef struct FlLiveState {
     FlLiveStep step;
-    int pass;             // the process that paints, from 1; a new one has new lines
-    GPtrArray *lines;     // char *: the pass's film and frames, lines of the report's page
-    GPtrArray *messages;  // char *: its warnings and errors, JSON objects
+    GPtrArray *lines;     // char *: the films and frames of all steps since the start, JSON objects
+    GPtrArray *messages;  // char *: the step's warnings and errors, JSON objects
     const char *progress; // a JSON object; NULL: nothing yet
-    GString *page;        // all of the report's page so far
+    GString *page;        // the step's report so far
 } FlLiveState;
 
 typedef struct FlLiveRender FlLiveRender;

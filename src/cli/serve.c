@@ -124,24 +124,13 @@ static int number_in(GHashTable *query, const char *name)
     return text ? (int)CLAMP(g_ascii_strtoll(text, NULL, 10), 0, G_MAXINT) : 0;
 }
 
-/* A name, and a list of what are JSON objects already. */
-static void append_objects(GString *json, const char *name, const GPtrArray *objects)
-{
-    g_string_append_printf(json, ",\"%s\":[", name);
-    for (guint k = 0; k < objects->len; k++)
-        g_string_append_printf(json, "%s%s", k > 0 ? "," : "", (const char *)objects->pdata[k]);
-    g_string_append_c(json, ']');
-}
-
-/* The lines that the page does not have, or the first of many. */
-static void append_lines(GString *json, const FlLiveState *state, guint from)
+/* A name, and a list of what are JSON objects already: the first of many. */
+static void append_objects(GString *json, const char *name, const GPtrArray *objects, guint from)
 {
     const gsize start = json->len;
-    g_string_append(json, ",\"lines\":[");
-    for (guint k = from; k < state->lines->len && json->len - start < ANSWER_BYTES; k++) {
-        g_string_append(json, k > from ? "," : "");
-        fl_json_string(json, state->lines->pdata[k]);
-    }
+    g_string_append_printf(json, ",\"%s\":[", name);
+    for (guint k = from; k < objects->len && json->len - start < ANSWER_BYTES; k++)
+        g_string_append_printf(json, "%s%s", k > from ? "," : "", (const char *)objects->pdata[k]);
     g_string_append_c(json, ']');
 }
 
@@ -165,23 +154,23 @@ static void append_command(GString *json, const Live *live)
     fl_json_text(json, "command", line->str);
 }
 
-/* Everything that changes; ?pass=N&from=K says which lines the page has, and generation=N which
- * config. */
+/* Everything that changes; ?generation=N&from=K says which config the page has, and how many lines.
+ */
 static void get_state(Live *live, SoupServerMessage *message, GHashTable *query)
 {
-    static const char *const steps[] = {"preview", "draft", "full", "done", "failed"};
     const FlLiveState state = fl_live_render_state(live->render);
-    const guint from = number_in(query, "pass") == state.pass ? (guint)number_in(query, "from") : 0;
+    const bool same = number_in(query, "generation") == live->generation;
+    const guint from = same ? (guint)number_in(query, "from") : 0;
     g_autoptr(GString) json = g_string_new("{");
-    fl_json_number(json, "pass", state.pass, true);
     fl_json_number(json, "from", from, true);
     fl_json_number(json, "generation", live->generation, true);
-    fl_json_text(json, "step", steps[state.step]);
+    fl_json_number(json, "total", state.lines->len, true);
+    fl_json_text(json, "step", fl_live_step_name(state.step));
     fl_json_text(json, "problem", live->problem);
     g_string_append_printf(json, ",\"progress\":%s", state.progress ? state.progress : "null");
-    append_objects(json, "messages", state.messages);
-    append_lines(json, &state, from);
-    if (number_in(query, "generation") != live->generation) {
+    append_objects(json, "messages", state.messages, 0);
+    append_objects(json, "lines", state.lines, from);
+    if (!same) {
         fl_json_text(json, "config", fl_live_config_text(live->config));
         fl_json_text(json, "file", config_name(live));
         append_command(json, live);
