@@ -101,6 +101,8 @@ tell("one that is broken is told", until("live.step === 'failed'") and
 with open(f"{folder}/w_0004.svg", "w") as file:
     file.write(drawing)
 tell("until it is mended", until("live.step === 'done' && !byId('told').textContent"))
+steps = 'fetch("state?from=0").then((r) => r.json()).then((told) => [...new Set(told.lines.map((l) => l.step))].join())'
+tell("who asks late gets the frames of every step", browser.ask(steps) == "preview,draft,full")
 tell("no script complains", not browser.complaints)
 for name, what in [("kept.conf", "config"), ("kept.html", "report")]:
     with open(name, "wb") as file:
