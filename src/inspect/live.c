@@ -2,8 +2,6 @@
 
 #include "inspect/page_script.h"
 
-#include <gio/gio.h>
-
 static void append(GByteArray *page, GBytes *part)
 {
     gsize n = 0;
@@ -16,7 +14,7 @@ GBytes *fl_live_page(void)
 {
     GByteArray *page = g_byte_array_new();
     append(page, fl_page_part(FL_PAGE_HEAD));
-    append(page, g_resources_lookup_data("/fluidy/report/live.html", 0, NULL));
+    append(page, fl_page_file("live.html"));
     append(page, fl_page_part(FL_PAGE_REST));
     return g_byte_array_free_to_bytes(page);
 }

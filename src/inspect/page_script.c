@@ -7,9 +7,18 @@
 
 #define MARK "<!-- the frames -->" // in page.html
 
+/* Of glib-compile-resources. A static library has its file only for who calls it. */
+GResource *fl_report_page_get_resource(void);
+
+GBytes *fl_page_file(const char *name)
+{
+    g_autofree char *path = g_strdup_printf("/fluidy/report/%s", name);
+    return g_resource_lookup_data(fl_report_page_get_resource(), path, 0, NULL);
+}
+
 GBytes *fl_page_part(FlPagePart part)
 {
-    g_autoptr(GBytes) page = g_resources_lookup_data("/fluidy/report/page.html", 0, NULL);
+    g_autoptr(GBytes) page = fl_page_file("page.html");
     gsize n = 0;
     const char *text = g_bytes_get_data(page, &n);
     const char *mark = g_strstr_len(text, (gssize)n, MARK);

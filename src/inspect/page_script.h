@@ -6,6 +6,9 @@
 #include <glib.h>
 #include <stdio.h>
 
+/** A file of report.gresource.xml. Returns: to be freed with g_bytes_unref(). */
+GBytes *fl_page_file(const char *name);
+
 /** The report's page before its frames, and what comes after them. */
 typedef enum FlPagePart { FL_PAGE_HEAD, FL_PAGE_REST } FlPagePart;
 
