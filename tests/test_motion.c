@@ -275,6 +275,20 @@ static FlPoint unbent(FlPoint now, int t)
     return (FlPoint){now.x, now.y - (bend(t) - bend(t - 1)) * now.x * now.x};
 }
 
+/** A plate that bulges as no affine motion does, drawn from another corner each time. */
+static void bulging_plate_with_other_starts(GString *out, int t)
+{
+    const FlPoint corner[4] = {{40, 40}, {160, 40}, {160, 160}, {40, 160}};
+    const FlPoint bulge[4] = {{100, 40 - 3 * t}, {160, 100}, {100, 160 - 5 * t}, {40, 100}};
+    g_string_append(out, "<path fill='" RED "' d='");
+    append_point(out, "M", corner[t % 4]);
+    for (int k = t; k < t + 4; k++) {
+        append_point(out, "Q", bulge[k % 4]);
+        append_point(out, " ", corner[(k + 1) % 4]);
+    }
+    g_string_append(out, "Z'/>");
+}
+
 static void turning_face(GString *out, int t)
 {
     const FlAffine m = turn(4 * t);
@@ -453,7 +467,7 @@ static void held_frames_move_by_what_is_between_them(void)
 static void regions_that_ask_later_get_the_same(void)
 {
     static float motion[2 * SIZE * SIZE], again[2 * SIZE * SIZE];
-    Draw *const draws[] = {star_with_other_starts, turning_face};
+    Draw *const draws[] = {bulging_plate_with_other_starts, turning_face};
     for (size_t k = 0; k < G_N_ELEMENTS(draws); k++) {
         g_auto(Sequence) s = sequence_of(draws[k], 12);
         get(&s, 0, 1, 2, motion, NULL);
