@@ -50,6 +50,7 @@ static void set_up(Case *c, bool rotate)
                            .target = &c->target.level[0],
                            .params = c->params,
                            .scale = &c->scale,
+                           .w_coh = c->params->w_coh,
                            .kernels = &c->kernels,
                            .nnf = &c->nnf,
                            .cost = c->cost,

@@ -245,6 +245,7 @@ static bool compare(const FlStyle *style, FlParams *params, GError **error)
                        .target = &target.level[0],
                        .params = params,
                        .scale = &scale,
+                       .w_coh = params->w_coh,
                        .kernels = &kernels,
                        .nnf = &nnf,
                        .cost = cost,

@@ -126,7 +126,8 @@ FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **er
                      .fps = style->fps / (float)use->step,
                      .scale = 1,
                      .medium = style->medium,
-                     .granulation = style->granulation};
+                     .granulation = style->granulation,
+                     .smoothness = style->smoothness};
     memcpy(out->paper, style->paper, sizeof out->paper);
     if (!sizes(style, use, out, error))
         return NULL;

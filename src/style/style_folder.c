@@ -7,6 +7,7 @@
 #include "style/border.h"
 #include "style/estimate.h"
 #include "style/find_style.h"
+#include "style/grain.h"
 #include "style/manifest.h"
 #include "style/paint_frames.h"
 
@@ -204,5 +205,6 @@ FlStyle *fl_style_load(const char *folder, GError **error)
     if (style->guessed & FL_GUESS_BORDER &&
         !fl_border_estimate(&clip, style->mask, &style->border_px, error))
         return NULL;
+    style->smoothness = fl_style_smoothness(style);
     return g_steal_pointer(&style);
 }

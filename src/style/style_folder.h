@@ -20,6 +20,7 @@ typedef struct FlStyle {
     uint8_t paper[3];           // sRGB of the bare paper
     FlMedium medium;            // FL_MEDIUM_AUTO: not given
     float granulation;          // of its paint on paper: see fl_granulate()
+    float smoothness;           // of its recording: see fl_style_smoothness()
     uint8_t *rgb;               // n_frames * height * width * 3, sRGB
     uint8_t *mask;              // n_frames * height * width, coverage 0..255
     float *flow;                // n_frames * height * width * 2, px per frame; NULL: construct it

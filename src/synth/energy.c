@@ -54,7 +54,7 @@ static double mean_coherence(const FlSearch *search)
             apart += !fl_match_continues(m, expected[k]);
         sum += beside > 0 ? (double)apart / beside : 0, n++;
     }
-    return n > 0 ? search->params->w_coh * sum / n : 0;
+    return n > 0 ? search->w_coh * sum / n : 0;
 }
 
 void fl_energy_of(const FlSearch *search, FlTargetLevel *target, uint32_t *costs, FlEnergy *energy)

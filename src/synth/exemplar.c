@@ -436,6 +436,7 @@ FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError
     g_autoptr(FlExemplarFrames) frames = g_new0(FlExemplarFrames, 1);
     SegmentCounts counts = {{0}};
     exemplar->border_px = params->border > 0 ? params->border : style->border_px;
+    exemplar->smoothness = style->smoothness;
     memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
     if (!init_levels(exemplar, style, all ? style->n_frames : params->style_window, error) ||
         !init_frames(frames, style, params, all, error) ||

@@ -38,9 +38,10 @@ typedef struct FlExemplar {
     FlExemplarLevel level[FL_MAX_LEVELS];
     bool separate; // border and interior are matched separately
     float border_px;
-    float margin_px; // how deep the paper is bare inside the masks: depth counts from there
-    float bare;      // sum of channels, 0 … 3: nearer to the paper is no paint of the interior
-    float ext_scale; // 1 / the largest extent, 1/px
+    float margin_px;  // how deep the paper is bare inside the masks: depth counts from there
+    float bare;       // sum of channels, 0 … 3: nearer to the paper is no paint of the interior
+    float ext_scale;  // 1 / the largest extent, 1/px
+    float smoothness; // of the style
     uint8_t paper[3];
     // Level 0, n_frames * height * width:
     float *distance, *ext_plus, *ext_minus; // px; like the levels, in memory in the window only

@@ -10,6 +10,7 @@ typedef struct FlSearch {
     const FlTargetLevel *target;
     const FlParams *params;
     const FlCostScale *scale;
+    double w_coh; // of params, less for a smooth exemplar, which it would lay in visible pieces
     const FlKernels *kernels;
     FlNnf *nnf;           // in and out; every pixel of the target has a valid match
     uint32_t *cost;       // width * height: cost of the match without uniformity and coherence

@@ -320,6 +320,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .target = target,
                        .params = params,
                        .scale = &synth->scale,
+                       .w_coh = (double)params->w_coh * (1 - (double)synth->exemplar->smoothness),
                        .kernels = &synth->kernels,
                        .nnf = &synth->nnf[l],
                        .cost = cost,

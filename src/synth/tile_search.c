@@ -67,7 +67,7 @@ void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search)
     for (int n = 0; n <= 4; n++)
         for (int apart = 0; apart <= n; apart++)
             tile_search->coherence[n][apart] =
-                n == 0 ? 0 : (uint32_t)(params->w_coh * search->scale->unit * apart / n);
+                n == 0 ? 0 : (uint32_t)(search->w_coh * search->scale->unit * apart / n);
 }
 
 /* Coherence in space, and in time where the drawing carries the paint. */
