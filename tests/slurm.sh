@@ -90,19 +90,24 @@ render() {
 render -o 'whole/s_%04d.png' >out 2>err
 
 # ends KILLS: no job is left in the queue, within five minutes; so many times a running task is requeued, as for a job that
-# matters more. Slurm would let it wait for two minutes.
+# matters more. Slurm would let it wait for two minutes, hold it, or close its node, if it is long in dying.
 ends() {
     local end=$((SECONDS + 300)) job
     while [ -n "$(squeue -h)" ]; do
-        [ $SECONDS -lt $end ] || return 1
+        [ $SECONDS -lt $end ] || {
+            squeue -h -r -o '# %i %t %r' && sinfo -h -N -o '# %N %t %E' && tail -n 20 "$farm/slurmctld.log" | sed 's/^/# /'
+            return 1
+        }
         job=$(squeue -h -r -t running -o %i | grep _ | shuf -n 1)
         if [ -n "$job" ] && [ "$(wc -l <killed)" -lt "$1" ]; then
             sleep "0.$((RANDOM % 5))"
             scontrol requeue "$job" 2>/dev/null && echo "$job" >>killed
         fi
-        for job in $(squeue -h -r -t pending -o '%i %r' | sed -n 's/ BeginTime$//p'); do
+        for job in $(squeue -h -r -t pending -o '%i %r' | sed -n '/ Dependency$/d; s/ .*//p'); do
+            scontrol release "$job" 2>/dev/null
             scontrol update "jobid=$job" starttime=now 2>/dev/null
         done
+        sinfo -h -N -o %t | grep -Eq 'drain|down' && scontrol update nodename=one,two state=resume 2>/dev/null
         sleep 0.2
     done
 }
