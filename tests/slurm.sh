@@ -89,30 +89,39 @@ render() {
 }
 render -o 'whole/s_%04d.png' >out 2>err
 
+# hasten: what was requeued starts in some seconds; Slurm would let it wait for two minutes. A start in the second in which
+# the job was taken from the node would be refused, since its old credential is revoked to the second.
+hasten() {
+    local job reason start
+    squeue -h -r -t pending -o '%i %r %S' | while read -r job reason start; do
+        if [ "$reason" = BeginTime ] && [ "$(date -d "$start" +%s 2>/dev/null || echo 0)" -gt $((EPOCHSECONDS + 5)) ]; then
+            scontrol update "jobid=$job" starttime=now+3 2>/dev/null
+        fi
+    done
+}
+
 # ends KILLS: no job is left in the queue, within five minutes; so many times a running task is requeued, as for a job that
-# matters more. Slurm would let it wait for two minutes. Sometimes it starts nothing any more though nothing is in the way:
-# that is told it, and if it does not help within a minute, `stalled` is set.
+# matters more. Sets `stalled` if Slurm starts nothing any more though both nodes are idle, even when told to.
 ends() {
     local end=$((SECONDS + 300)) moved=$SECONDS job
     while [ -n "$(squeue -h)" ]; do
-        [ $SECONDS -lt $end ] || return 1
         job=$(squeue -h -r -t running -o %i | grep _ | shuf -n 1)
         if [ -n "$job" ] && [ "$(wc -l <killed)" -lt "$1" ]; then
             sleep "0.$((RANDOM % 5))"
             scontrol requeue "$job" 2>/dev/null && echo "$job" >>killed
         fi
-        for job in $(squeue -h -r -t pending -o '%i %r' | sed -n 's/ BeginTime$//p'); do
-            scontrol update "jobid=$job" starttime=now 2>/dev/null
-        done
+        hasten
         if squeue -h -r -o '%T %r' | grep -qv '^PENDING None$' || sinfo -h -N -o %t | grep -qv '^idle$'; then
             moved=$SECONDS
         elif [ $((SECONDS - moved)) -gt 60 ]; then
             stalled=1
-            tail -n 200 "$farm/slurmctld.log" | sed 's/^/# /'
-            return 1
         elif [ $((SECONDS - moved)) -gt 15 ]; then
             scontrol reconfigure 2>/dev/null
             sleep 5
+        fi
+        if [ -n "$stalled" ] || [ $SECONDS -gt $end ] || squeue -h -o %r | grep -q DependencyNeverSatisfied; then
+            squeue -h -r -o '# %i %T %r' && tail -n 50 "$farm/slurmctld.log" | sed 's/^/# /'
+            return 1
         fi
         sleep 0.2
     done
@@ -143,10 +152,12 @@ done
 sleep 0.7
 scancel --full --signal=KILL "$(squeue -h -r -t running -o %i | head -1)"
 scancel --user="$(id -un)"
-for _ in {1..600}; do
+for _ in {1..300}; do
     [ -z "$(squeue -h)" ] && break
     sleep 0.2
 done
+[ -z "$(squeue -h)" ]
+result $? 'what is cancelled does not come back'
 [ ! -e farmed ] && bash plan.sh >out 2>err && ends 0 && same farmed whole
 result $? 'the same plan again goes on after all was killed'
 

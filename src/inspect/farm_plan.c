@@ -123,7 +123,11 @@ static void add_words(GString *text, const Farm *farm, const char *regions, bool
 
 /* ---- Slurm ---------------------------------------------------------------------------------- */
 
-/* Log lines say shot and region; a task that is told to stop ends with 75 and is queued again. */
+/**
+ * Log lines say shot and region; a task that is told to stop ends with 75 and is queued again,
+ * unless it is no more "RUNNING": who cancelled it does not want it back, and what Slurm requeues
+ * waits already.
+ */
 static void add_slurm_body(GString *text, const Farm *farm, bool merge)
 {
     g_string_append(text, "exec > >(sed -u \"s|^|$shot $regions: |\") 2>&1\n");
@@ -133,7 +137,11 @@ static void add_slurm_body(GString *text, const Farm *farm, bool merge)
                           "trap 'stopped=yes; kill -TERM $job' TERM INT\n"
                           "wait $job; status=$?\n"
                           "[ -z \"$stopped\" ] || { wait $job; status=$?; }\n"
-                          "[ $status != 75 ] || scontrol requeue \"$SLURM_JOB_ID\"\n"
+                          "if [ $status = 75 ]; then\n"
+                          "    case $(squeue -h -j \"$SLURM_JOB_ID\" -o %T) in\n"
+                          "    RUNNING | '') scontrol requeue \"$SLURM_JOB_ID\" ;;\n"
+                          "    esac\n"
+                          "fi\n"
                           "exit $status\n");
 }
 
