@@ -181,6 +181,12 @@ fi
 mkdir torn && svg torn/m_1.svg "$shape" && cp torn/m_1.svg torn/m_3.svg && head -c 60 torn/m_1.svg >torn/m_2.svg
 "$program" --list-regions torn --missing hold >out 2>err && says 'torn/m_2.svg: left out' && grep -q 'aa3311 *3/3' out
 result $? 'nor does a file that was cut off end a film'
+mv torn/m_1.svg torn/m_4.svg && mv torn/m_2.svg torn/m_1.svg && mv torn/m_3.svg torn/m_2.svg && mv torn/m_4.svg torn/m_3.svg
+for more in '' --register; do
+    "$program" --list-regions torn --missing hold $more >out 2>err && says 'torn/m_1.svg: left out' &&
+        grep -q 'aa3311 *3/3' out && "$program" --list-regions torn --missing skip $more >out 2>err && grep -q 'aa3311 *2/2' out
+    result $? "not even as the first $more"
+done
 body="<pattern id='p0' width='1' height='1'><rect width='1' height='1' fill='red'/></pattern>"
 for i in 1 2 3 4 5 6 7 8 9; do
     body="$body<pattern id='p$i' width='9' height='9' patternUnits='userSpaceOnUse'>$(

@@ -1,5 +1,7 @@
 #include "drawing/register_frames.h"
 
+#include "drawing/watch.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -124,9 +126,12 @@ static double *places_of(const FlSurvey *survey, FlCanvas *page, FlWarnings *war
     for (int t = 0; t < survey->n_frames; t++) {
         const char *file = survey->sequence->file[t];
         const int number = survey->sequence->number[t];
+        fl_watch_tell(survey->watch, 0, t);
         g_autoptr(GArray) now = measure(survey->sequence, t, survey->svg.dpi, error);
-        if (!now)
+        if (!now) {
+            fl_watch_fail(survey->watch, t);
             return NULL;
+        }
         g_autoptr(GArray) votes = before ? votes_of(before, now) : NULL;
         const Vote move = votes ? decide(votes) : (Vote){0};
         if (votes && before->len > 0 && now->len > 0 && move.weight <= 0)

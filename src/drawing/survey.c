@@ -197,9 +197,12 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, FlWarnings *wa
                      GError **error)
 {
     double width, height;
+    fl_watch_tell(survey->watch, 0, 0);
     survey->first = open_svg(survey, 0, warnings, error);
-    if (!survey->first || !fl_svg_size(survey->first, &width, &height, error))
+    if (!survey->first || !fl_svg_size(survey->first, &width, &height, error)) {
+        fl_watch_fail(survey->watch, 0);
         return false;
+    }
     if (o->scale < 0 || o->width < 0 || o->height < 0 ||
         (o->scale > 0 && (o->width > 0 || o->height > 0))) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
@@ -259,11 +262,10 @@ static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
                 keep(survey, t, &probe);
             if (good)
                 fl_warnings_append(warnings, remarks);
-            if (!scanned && good && survey->watch)
-                atomic_store(&survey->watch->failed, t + 1);
-            if (!scanned && good)
+            if (!scanned && good) {
+                fl_watch_fail(survey->watch, t);
                 g_propagate_error(error, reason);
-            else
+            } else
                 g_clear_error(&reason);
             good = good && scanned;
         }
@@ -307,7 +309,6 @@ bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawin
                          .n_frames = sequence->n,
                          .frame = g_new0(FlSurveyFrame, sequence->n),
                          .watch = watch};
-    fl_watch_tell(watch, 0, 0);
     fl_strings_add(&survey->strings, "");
     for (int t = 0; t < survey->n_frames; t++)
         survey->frame[t].canvas = options->canvas;

@@ -24,4 +24,11 @@ static inline void fl_watch_tell(FlWatch *watch, int thread, int frame)
     atomic_store(&watch->frame[thread % FL_WATCHED], frame + 1);
 }
 
+/** Records the first frame with an error. watch may be NULL. */
+static inline void fl_watch_fail(FlWatch *watch, int frame)
+{
+    if (watch)
+        atomic_store(&watch->failed, frame + 1);
+}
+
 #endif
