@@ -29,9 +29,10 @@ uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match)
                          match.theta, UINT32_MAX >> 1);
 }
 
-/* Mean Laplacian of a star in style 02 that turns by 3 degrees a frame, at carry 1, frames 5 and
- * 25: 15.7 and 15.7 with 0, 17.1 and 16.0 with 4; 16.6 and 16.5 with the motion of masks. */
-#define LEAVING 4 // times w_coh
+/* Mean Laplacian of a star in style 02 that turns by 3 degrees a frame, at carry 1, frames 10 and
+ * 395: 7.6 and 6.7 with 4, 7.7 and 7.3 with 8 or 16; but with 16 rims get rough as the shape turns.
+ */
+#define LEAVING 8 // times w_coh
 
 uint32_t fl_leaving_cost(const FlSearch *search, size_t pixel)
 {
