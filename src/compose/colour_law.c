@@ -10,14 +10,15 @@
  * light grey on cream would be lavender. Constants were found on 13 fills in six styles.
  */
 enum {
-    DARKEST = 14,         // levels; a channel of 0 has no density, and real black is no darker
-    DARKEST_NEGATIVE = 8, // the same in the negative
-    THIN = 113835,        // density of 0.30: thinner paint has slope left in every channel
-    STRAIGHT = 4096,      // density of 0.957: below it the way is straight, and so well divided
-    HEADROOM = 2836,      // density of exp(-0.03), by which light greys give way to thin paint
-    EVEN_SPREAD = 700,    // spread (0.68) from which on saturated fills are shaded less
-    LIGHT_AT = 5 * 256,   // L* / 256 above the paper's from where on a fill may be light paint,
-    LIGHT_OVER = 13 * 256 // and over which it becomes so altogether
+    DARKEST = 14,          // levels; a channel of 0 has no density, and real black is no darker
+    DARKEST_NEGATIVE = 8,  // the same in the negative
+    THIN = 113835,         // density of 0.30: thinner paint has slope left in every channel
+    STRAIGHT = 4096,       // density of 0.957: below it the way is straight, and so well divided
+    HEADROOM = 2836,       // density of exp(-0.03), by which light greys give way to thin paint
+    EVEN_SPREAD = 700,     // spread (0.68) from which on saturated fills are shaded less
+    LIGHT_AT = 5 * 256,    // L* / 256 above the paper's from where on a fill may be light paint,
+    LIGHT_OVER = 13 * 256, // and over which it becomes so altogether
+    FALL = 7 * 256         // L* / 256 from the paper down to the fill over which the knee goes
 };
 
 static const int32_t weight[3] = {13933, 46871, 4732}; // of linear light in Y [BT.709], / 65536
@@ -107,12 +108,17 @@ static int64_t saturation_of(const uint8_t fill[3])
     return most > 0 ? FRACTION * (most - least) / most : 0;
 }
 
-/** The slope in L* that the fill should have: 30, for near white 19. */
-static int64_t wanted_slope(int64_t lightness16, int64_t saturation, int spread)
+/** How far a fill is near white: light, and not saturated. */
+static int64_t whiteness_of(int64_t lightness16, int64_t saturation)
 {
-    const int64_t whiteness = clamp_share((lightness16 - 100 * FRACTION) / 10) *
-                              clamp_share(FRACTION - saturation * 5 / 2) / FRACTION;
-    const int64_t slope = 30 * (FRACTION - whiteness * 38 / 100);
+    return clamp_share((lightness16 - 100 * FRACTION) / 10) *
+           clamp_share(FRACTION - saturation * 5 / 2) / FRACTION;
+}
+
+/** The slope in L* that the fill should have: 30, for near white 24. */
+static int64_t wanted_slope(int64_t whiteness, int64_t saturation, int spread)
+{
+    const int64_t slope = 30 * (FRACTION - whiteness / 5);
     const int64_t uneven = spread > EVEN_SPREAD ? FRACTION - FRACTION * EVEN_SPREAD / spread : 0;
     return slope - slope * saturation * uneven / (FRACTION * FRACTION);
 }
@@ -146,6 +152,17 @@ static uint8_t lifted(uint8_t fill, uint8_t paper, int darkest)
     return (uint8_t)MAX(fill, MAX(MIN(darkest, paper), 1));
 }
 
+/**
+ * The amount about one within which thin paint passes into thick: a white that is no darker than
+ * its paper has no texture below one, and half of it would be flat. `room` is in 1 / FRACTION^2.
+ */
+static int32_t knee_of(int64_t whiteness, int64_t rise, int64_t room)
+{
+    const int64_t flat = FRACTION * CLAMP(FALL + rise, 0, FALL) / FALL;
+    return (int32_t)(FL_AMOUNT_ONE / 2 * flat * whiteness / (FRACTION * FRACTION) *
+                     (FRACTION * FRACTION - room) / (FRACTION * FRACTION));
+}
+
 static void curve_init(FlColourCurve *curve, const uint8_t rgb[3], const uint8_t paper[3],
                        int darkest, int spread)
 {
@@ -158,16 +175,18 @@ static void curve_init(FlColourCurve *curve, const uint8_t rgb[3], const uint8_t
     set_fill(curve, white);
     const int64_t saturation = saturation_of(fill);
     Lightness light = lightness_of(curve);
-    const int64_t slope = wanted_slope(light.lightness16, saturation, spread);
+    const int64_t whiteness = whiteness_of(light.lightness16, saturation);
+    const int64_t slope = wanted_slope(whiteness, saturation, spread);
     const int64_t rise = light.lightness16 - lightness16_of(paper);
-    const int64_t headroom = clamp_share(FRACTION - light.slope * FRACTION / slope) *
-                             clamp_share(FRACTION - 2 * saturation) / FRACTION *
-                             clamp_share(FRACTION - rise / 3);
+    const int64_t room = clamp_share(FRACTION - light.slope * FRACTION / slope) *
+                         clamp_share(FRACTION - 2 * saturation) / FRACTION *
+                         clamp_share(FRACTION - rise / 3);
     for (int c = 0; c < 3; c++)
-        curve->density[c] += (int32_t)(HEADROOM * headroom / (FRACTION * FRACTION));
+        curve->density[c] += (int32_t)(HEADROOM * room / (FRACTION * FRACTION));
     set_fill(curve, white);
     light = lightness_of(curve);
     set_shade(curve, &light, slope, fill);
+    curve->knee = knee_of(whiteness, rise, room);
     for (int c = 0; c < 3; c++) {
         const int32_t thin = curve->density[c] - fl_density(MAX(paper[c], 1));
         curve->paper[c] = paper[c] * 256;
@@ -201,18 +220,33 @@ static int32_t thin_level(const FlColourCurve *curve, int c, int amount)
     return (int32_t)(curve->paper[c] + (way * part - full / 2) / full);
 }
 
-static int32_t thick_level(const FlColourCurve *curve, int c, int amount)
+/** For an amount of one and `more`. */
+static int32_t thick_level(const FlColourCurve *curve, int c, int64_t more)
 {
-    const int64_t more = amount - FL_AMOUNT_ONE, two = 2 * FL_AMOUNT_ONE;
-    const int64_t ending = more * two / (two + more);
+    const int64_t two = 2 * FL_AMOUNT_ONE, ending = more * two / (two + more);
     const int64_t density =
         curve->density[c] + (more * curve->step[c] + ending * curve->shade[c]) / FL_AMOUNT_ONE;
     return fl_density_level((int32_t)MIN(density, FL_DENSITY_MAX));
 }
 
+/** How much more than one an amount counts: it begins to by a parabola. */
+static int64_t more_than_one(int64_t amount, int64_t knee)
+{
+    const int64_t more = amount - FL_AMOUNT_ONE;
+    return more >= knee ? more : (more + knee) * (more + knee) / (4 * knee);
+}
+
+/** Where thin paint ends. */
+static int turn_of(const FlColourCurve *curve)
+{
+    return FL_AMOUNT_ONE - curve->knee;
+}
+
 static int32_t level_at(const FlColourCurve *curve, int c, int amount)
 {
-    return amount < FL_AMOUNT_ONE ? thin_level(curve, c, amount) : thick_level(curve, c, amount);
+    const int turn = turn_of(curve);
+    return amount < turn ? thin_level(curve, c, amount * FL_AMOUNT_ONE / turn)
+                         : thick_level(curve, c, more_than_one(amount, curve->knee));
 }
 
 /** How far a fill counts as light paint on dark paper: by L*, since by luma magenta is dark. */
@@ -234,6 +268,11 @@ void fl_colour_law_init(FlColourLaw *law, const uint8_t fill[3], const uint8_t p
     for (int c = 0; c < 3; c++)
         other_fill[c] = 255 - fill[c], other_paper[c] = 255 - paper[c];
     curve_init(&law->light, other_fill, other_paper, DARKEST_NEGATIVE, spread);
+}
+
+int fl_colour_law_turn(const FlColourLaw *law)
+{
+    return turn_of(law->light_share < 32768 ? &law->dark : &law->light);
 }
 
 void fl_colour_law_at(const FlColourLaw *law, int amount, uint8_t colour[3])

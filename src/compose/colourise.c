@@ -35,8 +35,8 @@ static int opacity_of(FlMedium medium, int amount)
 
 /*
  * Alpha never falls as the amount rises: the least one does so where a channel crosses the paper's
- * level, and light paint over dark would be mottled. A channel turns at an amount of one if
- * anywhere, so that it is enough to look back at the steps below.
+ * level, and light paint over dark would be mottled. A channel turns at one amount if anywhere, so
+ * that it is enough to look back at that and at the steps below.
  */
 #define LEAST_STEP (FL_AMOUNT_ONE / 4)
 
@@ -47,6 +47,8 @@ typedef struct Fill {
     FlColourLaw law;
     int32_t turn[3]; // density that each channel gains where the second pigment prevails by one
     uint8_t least[FL_AMOUNTS / LEAST_STEP]; // the greatest of the least alphas up to a step
+    int turn_at;                            // the amount at which channels turn
+    uint8_t least_there;                    // the least alpha of that
 } Fill;
 
 /* Only the middle channel moves, so that orange goes to yellow and red, sky blue to cyan and
@@ -65,20 +67,28 @@ static void turns_of(const uint8_t rgb[3], float pigments, int32_t turn[3])
     }
 }
 
+static uint8_t least_alpha_at(const Fill *fill, const FlColouring *colouring, const FlScale *scale,
+                              int amount)
+{
+    uint8_t colour[3];
+    fl_colour_law_at(&fill->law, amount, colour);
+    return (uint8_t)fl_least_alpha(scale, colour, colouring->paper);
+}
+
 static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *colouring,
                       const FlScale *scale, const uint8_t rgb[3])
 {
-    int least = 0;
+    uint8_t least = 0;
     memcpy(fill->rgb, rgb, 3);
     fill->known = true;
     fl_colour_law_init(&fill->law, rgb, colouring->paper, ink->spread);
     turns_of(rgb, colouring->pigments, fill->turn);
     for (int i = 0; i < FL_AMOUNTS / LEAST_STEP; i++) {
-        uint8_t colour[3];
-        fl_colour_law_at(&fill->law, i * LEAST_STEP, colour);
-        least = MAX(least, fl_least_alpha(scale, colour, colouring->paper));
-        fill->least[i] = (uint8_t)least;
+        const uint8_t own = least_alpha_at(fill, colouring, scale, i * LEAST_STEP);
+        fill->least[i] = least = MAX(least, own);
     }
+    fill->turn_at = fl_colour_law_turn(&fill->law);
+    fill->least_there = least_alpha_at(fill, colouring, scale, fill->turn_at);
 }
 
 /* Thick paint shows the second pigment more. play: in 1 / FL_PLAY_ONE. */
@@ -101,8 +111,9 @@ static void colour_amount(const Fill *fill, const FlColouring *colouring, const 
     fl_colour_law_at(&fill->law, amount, colour);
     if (colouring->play)
         turn_hue(fill, amount, play, colour);
-    const int opacity =
-        MAX(opacity_of(colouring->medium, amount), fill->least[amount / LEAST_STEP]);
+    int opacity = MAX(opacity_of(colouring->medium, amount), fill->least[amount / LEAST_STEP]);
+    if (amount > fill->turn_at)
+        opacity = MAX(opacity, fill->least_there);
     fl_lift(scale, colour, colouring->paper, opacity, rgba);
 }
 
