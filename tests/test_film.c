@@ -281,6 +281,43 @@ static void a_mask_is_the_whole_shape(void)
     g_assert_cmpint(area, ==, 3200);
 }
 
+/** How many pixels of the only shape are inside. */
+static int inside_of(const char *shape)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg", shape));
+    const FlDrawingOptions options = {0};
+    g_autoptr(FlDrawing) drawing = open_film(&options, folder, NULL);
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, 0, NULL);
+    uint8_t mask[10000];
+    int inside = 0;
+    fl_draw_list_mask(draws, 0, 100, 100, mask);
+    for (int p = 0; p < 10000; p++)
+        inside += mask[p] >= 128;
+    return inside;
+}
+
+/** A disc of radius 40 has 5027 px; to half its opacity the glow has 1257. */
+static void what_fades_is_inside_as_far_as_it_is_seen(void)
+{
+    const int glow =
+        inside_of("<radialGradient id=\"g\"><stop stop-color=\"red\"/>"
+                  "<stop offset=\"1\" stop-color=\"red\" stop-opacity=\"0\"/></radialGradient>"
+                  "<circle cx=\"50\" cy=\"50\" r=\"40\" fill=\"url(#g)\"/>");
+    g_assert_cmpint(glow, >, 4200);
+    g_assert_cmpint(glow, <, 5000);
+    const int blurred = inside_of("<filter id=\"f\" x=\"-1\" y=\"-1\" width=\"3\" height=\"3\">"
+                                  "<feGaussianBlur stdDeviation=\"6\"/></filter>"
+                                  "<rect x=\"30\" y=\"30\" width=\"40\" height=\"40\" "
+                                  "fill=\"red\" filter=\"url(#f)\"/>");
+    g_assert_cmpint(blurred, >, 55 * 55);
+    const int fog = inside_of("<linearGradient id=\"g\"><stop stop-color=\"red\"/>"
+                              "<stop offset=\"1\" stop-color=\"red\" stop-opacity=\".1\"/>"
+                              "</linearGradient>"
+                              "<rect width=\"100\" height=\"100\" fill=\"url(#g)\"/>");
+    g_assert_cmpint(fog, ==, 10000);
+}
+
 /* Of an odd size; edges of one lie on pixels of the other. */
 static void a_film_of_half_the_size_has_the_same_shapes(void)
 {
@@ -645,6 +682,7 @@ int main(int argc, char **argv)
     TEST("rings-of-two-colours-are-regions-of-their-own",
          rings_of_two_colours_are_regions_of_their_own);
     TEST("a-mask-is-the-whole-shape", a_mask_is_the_whole_shape);
+    TEST("what-fades-is-inside-as-far-as-it-is-seen", what_fades_is_inside_as_far_as_it_is_seen);
     TEST("hairlines-are-drawn-even-where-strokes-are-painted",
          hairlines_are_drawn_even_where_strokes_are_painted);
     TEST("a-film-of-half-the-size-has-the-same-shapes",

@@ -153,7 +153,10 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
 FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
                                     GError **error);
 
-/** The region's whole-shape mask in a frame: the union of its draws' coverage. */
+/**
+ * The region's whole-shape mask in a frame: the union of its draws' coverage. A shape that fades,
+ * such as a glow, is inside as far as it is seen; what is drawn of it is up to its coverage.
+ */
 void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
                        uint8_t *coverage);
 
