@@ -12,7 +12,7 @@
 
 #define REACH 8           // px of the tile over which strain is judged
 #define LEAST_REACH 5     // px of the drawing
-#define FARTHEST 14.0f    // px that ink moves at most: what the squarings are good for
+#define FARTHEST 18.0f    // px of the tile that ink moves at most: what the squarings are good for
 #define AMOUNT_STEPS 1024 // in the table of colours, of an amount of 1
 #define MOST_AMOUNT 8
 
@@ -117,6 +117,7 @@ static float taper_at(const FlCarriedInk *ink, const FlGuides *guides, size_t p)
 static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, float *velocity)
 {
     const FlRect rect = ink->layers.old.rect;
+    const float farthest = FARTHEST * ink->input.scale;
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(rect)))
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
@@ -135,7 +136,7 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, float
             if (fresh > 0)
                 add_velocity(ink, &ink->layers.fresh, x, y, taper * fresh, v);
             const float speed = sqrtf(v[0] * v[0] + v[1] * v[1]);
-            const float held = speed > FARTHEST ? FARTHEST / speed : 1;
+            const float held = speed > farthest ? farthest / speed : 1;
             v[0] *= held, v[1] *= held;
         }
 }

@@ -15,8 +15,10 @@
 #define UNIT 0.015625f
 #define ZERO 32768
 #define BLUR_PX 0.45f // standard deviation in px of the drawing
+// What the solver saw of its potential: two central differences, one for the velocity and one for
+// the determinant, each with the variance of a smoothing. Waves of 2 px are free of them, and grow.
+#define LEAST_SMOOTHINGS 2
 #define MOST_SMOOTHINGS 50
-#define CORRECTIONS 12 // of the prefilter; what is left of a wave of 6 px is below 1e-3
 
 static char *tile_path(const char *folder)
 {
@@ -142,9 +144,9 @@ static void smooth(const float *in, int n, float *half, float *out)
                 6;
 }
 
-/* Coefficients whose spline goes through the values, by iteration; with smoothings, each of which
- * has a variance of a third of a square px, through values that are smoothed so often. */
-static bool prefilter(const float *value, int n, int smoothings, float *spline, GError **error)
+/* Coefficients whose spline is the values, smoothed so often; each time has a variance of a third
+ * of a square px. */
+static bool make_spline(const float *value, int n, int smoothings, float *spline, GError **error)
 {
     const size_t pixels = (size_t)n * (size_t)n;
     g_autofree float *scratch = fl_alloc(2 * pixels, sizeof(float), "a tile", error);
@@ -155,11 +157,6 @@ static bool prefilter(const float *value, int n, int smoothings, float *spline, 
     for (int k = 1; k < smoothings; k++) { // the spline itself is the last one
         smooth(spline, n, half, smoothed);
         memcpy(spline, smoothed, pixels * sizeof *spline);
-    }
-    for (int k = 0; k < CORRECTIONS && smoothings == 0; k++) {
-        smooth(spline, n, half, smoothed);
-        for (size_t i = 0; i < pixels; i++)
-            spline[i] += value[i] - smoothed[i];
     }
     return true;
 }
@@ -174,8 +171,9 @@ static bool fill(FlTile *tile, const FlPicture *picture, float scale, GError **e
         value[i] = UNIT * (float)(256 * picture->rgba[4 * i] + picture->rgba[4 * i + 1] - ZERO);
     // What is finer than the pixels of the drawing would be a weave of the grids' nodes there.
     const float blur = BLUR_PX / scale;
-    const int smoothings = (int)(fminf(3 * blur * blur, MOST_SMOOTHINGS) + 0.5f);
-    return prefilter(value, picture->width, smoothings, tile->spline, error);
+    const int smoothings =
+        (int)(fminf(fmaxf(3 * blur * blur, LEAST_SMOOTHINGS), MOST_SMOOTHINGS) + 0.5f);
+    return make_spline(value, picture->width, smoothings, tile->spline, error);
 }
 
 FlTile *fl_tile_load(const char *folder, float scale, GError **error)
