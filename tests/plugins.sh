@@ -68,4 +68,35 @@ else
     result $? 'Blender paints with its add-on, on one page'
 fi
 
+# A stand-in for lottie-web: a disc that moves by a pixel a frame, in a layer that is drawn when it is first seen.
+cat >player.js <<'END'
+window.lottie = {loadAnimation({container, animationData: film}) {
+    const add = (parent, name) => parent.appendChild(document.createElementNS("http://www.w3.org/2000/svg", name));
+    const svg = add(container, "svg"), renderer = {elements: film.layers.map(data => ({data}))};
+    svg.setAttribute("width", film.w);
+    svg.setAttribute("height", film.h);
+    return {renderer, totalFrames: film.op - film.ip, goToAndStop(frame, isFrame) {
+        for (const layer of renderer.elements) {
+            layer.baseElement ||= add(svg, "g");
+            const disc = layer.baseElement.firstChild || add(layer.baseElement, "circle");
+            for (const [name, value] of Object.entries({cx: frame + 12, cy: 16, r: 9, fill: "#aa3311"}))
+                disc.setAttribute(name, value);
+        }
+    }};
+}};
+END
+echo '{"w": 40, "h": 32, "ip": 2, "op": 5, "layers": [{"nm": "#sun & \u003cb>"}]}' >film.json
+echo '{"w": 40, "h": 32}' >empty.json
+if ! command -v chromium >/dev/null; then
+    skip 'a Lottie animation becomes frames' 'no chromium'
+else
+    "$plugins/lottie/lottie_frames.py" player.js film.json lottie >out 2>err && [ ! -s err ] &&
+        fluidy-svg lottie --list-regions >out && grep -q '^red.* 3/3 .*sun & <b>$' out &&
+        grep -q 'cx="14"' lottie/0003.svg
+    result $? 'a Lottie animation becomes frames with the names of its layers'
+    "$plugins/lottie/lottie_frames.py" player.js empty.json none >out 2>err
+    [ $? = 1 ] && grep -q 'empty.json: player.js drew no frame: .*' err && [ "$(wc -l <err)" = 1 ]
+    result $? 'and one that cannot be played is told'
+fi
+
 echo "1..$n"
