@@ -26,7 +26,7 @@ bl_info = {
 }
 
 STYLES = ['watercolour', 'ink', 'bloom', 'charcoal', 'wash', 'two-pigments', 'gouache', 'dry-brush',
-          'backruns', 'pastel']
+          'backruns', 'pastel', 'pools', 'batik', 'suminagashi', 'smoke']
 LINE_M = 0.001  # world size of a line's thickness of one
 
 
