@@ -176,7 +176,8 @@ static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *war
     if (fabs(frame->page_width - survey->page_width) > 0.5 ||
         fabs(frame->page_height - survey->page_height) > 0.5)
         fl_warnings_add(warnings, file, number, NULL,
-                        "its page is not as large as the first frame's; it keeps its scale");
+                        "its page is not as large as the first frame's; it keeps its scale; if the "
+                        "drawing slides, try ‘register’");
     return true;
 }
 
