@@ -1,4 +1,5 @@
 #include "small_style.h"
+#include "synth/shift.h"
 #include "synth/synth.h"
 #include "synth/vote.h"
 #include "threads.h"
@@ -136,6 +137,20 @@ static void depth_counts_from_where_paint_begins(void)
     g_assert_cmpfloat(margin_with(3, "fluidymation"), ==, 0);
 }
 
+static void the_middle_of_a_large_shape_is_trusted_by_the_carry(void)
+{
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = small_style();
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, NULL);
+    const FlMatch middle = {16 * STYLE_W / 2, 16 * STYLE_H / 2, .frame = STYLE_FRAMES - 1};
+    const float deep = 1000, border = exemplar->border_px;
+    const FlTemporalTrust paper = {1, 4, 0}, some = {1, 4, 0.125f}, all = {1, 4, 1};
+    g_assert_cmpfloat(fl_temporal_weight(exemplar, middle, deep, &paper), ==, 0);
+    g_assert_cmpfloat(fl_temporal_weight(exemplar, middle, deep, &some), ==, 0.125f);
+    g_assert_cmpfloat(fl_temporal_weight(exemplar, middle, deep, &all), ==, 1);
+    g_assert_cmpfloat(fl_temporal_weight(exemplar, middle, border - 4, &all), ==, 0);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -150,5 +165,7 @@ int main(int argc, char **argv)
                     a_region_at_rest_has_a_view_though_its_picture_had_none);
     g_test_add_func("/synth/depth-counts-from-where-paint-begins",
                     depth_counts_from_where_paint_begins);
+    g_test_add_func("/synth/the-middle-of-a-large-shape-is-trusted-by-the-carry",
+                    the_middle_of_a_large_shape_is_trusted_by_the_carry);
     return g_test_run();
 }

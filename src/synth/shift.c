@@ -94,20 +94,26 @@ void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *
     }
 }
 
+static float weight_of(float apart, const FlTemporalTrust *trust)
+{
+    if (apart <= trust->lower_px)
+        return 1;
+    if (apart >= trust->upper_px)
+        return 0;
+    const float v = (apart - trust->lower_px) / (trust->upper_px - trust->lower_px);
+    return 1 - v * v * (3 - 2 * v);
+}
+
 float fl_temporal_weight(const FlExemplar *exemplar, FlMatch shifted, float target_distance_px,
-                         float lower_px, float upper_px)
+                         const FlTemporalTrust *trust)
 {
     const FlExemplarLevel *full = &exemplar->level[0];
+    const size_t row = (size_t)shifted.frame * (size_t)full->height + (size_t)fl_match_y(shifted);
     const float source =
-        exemplar
-            ->distance[((size_t)shifted.frame * full->height + fl_match_y(shifted)) * full->width +
-                       fl_match_x(shifted)];
-    const float apart =
-        source < target_distance_px ? target_distance_px - source : source - target_distance_px;
-    if (apart <= lower_px)
-        return 1;
-    if (apart >= upper_px)
-        return 0;
-    const float v = (apart - lower_px) / (upper_px - lower_px);
-    return 1 - v * v * (3 - 2 * v);
+        exemplar->distance[row * (size_t)full->width + (size_t)fl_match_x(shifted)];
+    const float border = exemplar->border_px;
+    const float weight = weight_of(fabsf(source - target_distance_px), trust);
+    const float most =
+        weight_of(fabsf(MIN(source, border) - MIN(target_distance_px, border)), trust);
+    return weight + trust->below_border * (most - weight);
 }

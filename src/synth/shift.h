@@ -24,12 +24,20 @@ int fl_boil_step(float boil, int frame, int n_frames);
 
 #define FL_BOIL_TURN 12
 
+/** How far the last frame's matches are trusted [F21 §3.4]. */
+typedef struct FlTemporalTrust {
+    float lower_px, upper_px; // differences of depth: m_l, m_u
+    float below_border;       // 0 … 1: how far all depths below the border are taken for the same
+} FlTemporalTrust;
+
 /**
  * The temporal weight m(q) [F21 §3.4]: 1 where the shifted match lies as deep in its paint as q in
  * the target, 0 where the depths differ by upper_px or more. (The paper prints the opposite, which
- * would trust the previous frame most where it fits worst.)
+ * would trust the previous frame most where it fits worst.) In a shape that is much deeper than
+ * the exemplar's paint that is 0 in the middle, which is painted anew in every frame; so what is
+ * to be carried asks for below_border.
  */
 float fl_temporal_weight(const FlExemplar *exemplar, FlMatch shifted, float target_distance_px,
-                         float lower_px, float upper_px);
+                         const FlTemporalTrust *trust);
 
 #endif

@@ -144,6 +144,17 @@ static bool previous_of_level(const FlSynth *synth, const FlNnf *shifted, int l,
     return true;
 }
 
+/* Half a carry trusts the middle of large shapes by an eighth, so that paint is renewed there;
+ * where no motion is known nothing is carried. */
+static FlTemporalTrust trust_of(const FlSynth *synth)
+{
+    const FlParams *params = synth->params;
+    const float lower_px = params->temp_lower * synth->side;
+    const float upper_px = MAX(params->temp_upper * synth->side, lower_px + 1e-3f);
+    const float carry = synth->moves ? params->carry : 0;
+    return (FlTemporalTrust){lower_px, upper_px, carry * carry * carry};
+}
+
 /* T_temp and m(q) of a level from the last field in that level's size. */
 static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GError **error)
 {
@@ -154,16 +165,14 @@ static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GEr
         return false;
     fl_vote(shifted, &synth->exemplar->level[l], &synth->kernels, synth->params->vote_sharpness, 3,
             target->temporal, voted);
-    const float side = synth->side;
-    const float lower = synth->params->temp_lower * side;
-    const float upper = MAX(synth->params->temp_upper * side, lower + 1e-3f);
+    const FlTemporalTrust trust = trust_of(synth);
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < pixels; p++)
         if (voted[p] && shifted->match[p].frame != FL_NO_MATCH)
             target->temporal_weight[p] = fl_temporal_weight(
                 synth->exemplar,
                 fl_match_enlarged(shifted->match[p], l, &synth->exemplar->level[0]),
-                target->distance[p], lower, upper);
+                target->distance[p], &trust);
     return true;
 }
 
