@@ -128,7 +128,7 @@ table() {
 2|no region “red”; the regions are: red-aa3311|good --region red
 2|frames “3-1”: expected numbers and ranges *|good -f 3-1
 2|frames “99999999999”: expected *|good -f 99999999999
-1|good/a_1.svg: no file for frame 7; use --missing *|good -f 1,7
+1|good/a_%d.svg: no file for frame 7; use --missing *|good -f 1,7
 2|canvas “0x0”: expected WxH *|good --canvas 0x0
 2|canvas “9x9+1”: expected WxH or WxH+X+Y, *|good --canvas 9x9+1
 2|no limit “x”*the limits are: drawing, elements, *|good --limit x=1

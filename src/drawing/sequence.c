@@ -418,7 +418,7 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
     if (gaps->len > 0 && missing <= FL_MISSING_ERROR) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                     "%s: no file for frame%s %s; use ‘missing’ hold or skip to go on without",
-                    first->path, gaps->len > 1 ? "s" : "", list);
+                    pattern, gaps->len > 1 ? "s" : "", list);
         return NULL;
     }
     if (gaps->len > 0)
