@@ -157,6 +157,11 @@ table() {
 2|good/a_1.svg: is read by this render; *|good -y --layers good/a_%d.svg -o y_%d.png -f 1
 2|link.svg: is read by this render; *|link.svg -y --format png -o link.svg
 2|shows/sub/p_1.png: is read by this render; *|shows -y -o shows/sub/p_%d.png
+2|gap/a_4.svg: is read by this render; *|gap -y -f 1 --format png -o gap/a_4.svg
+2|shows/sub/p_1.png: is read by this render; *|shows -y --flat -o shows/sub/p_%d.png
+2|shows/sub/p_1.png: is read by this render; *|shows -y --check -o shows/sub/p_%d.png
+2|shows/sub/p_1.png: is read by this render; *|shows -y --styles 01 -o shows/sub/p_1.png
+2|clear.png: is read by this render; *|good -y -b clear.png --methods default -o clear.png
 2|styled/a.txt: is read by this render; *|styled -y --stats styled/a.txt -o y_%d.png
 2|styled/b.txt: is read by this render; *|styled -y --stats styled/b.txt -o y_%d.png
 2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --dump dumped -o y_%d.png

@@ -93,6 +93,11 @@ int fl_drawing_number(const FlDrawing *drawing, int frame)
     return drawing->sequence->number[frame];
 }
 
+const char *const *fl_drawing_found_files(const FlDrawing *drawing)
+{
+    return (const char *const *)drawing->sequence->found;
+}
+
 /* Frames that are held before the first one that is there stand for it, and it is like them. */
 int fl_drawing_shown(const FlDrawing *drawing, int frame)
 {

@@ -121,6 +121,9 @@ const char *fl_drawing_name(const FlDrawing *drawing);
 const char *fl_drawing_file(const FlDrawing *drawing, int frame);
 int fl_drawing_number(const FlDrawing *drawing, int frame);
 
+/** All files that the inputs name, those of frames that are not wanted as well; ends in NULL. */
+const char *const *fl_drawing_found_files(const FlDrawing *drawing);
+
 /**
  * The frame whose picture is shown: `frame` itself, unless a missing frame is held there; then the
  * first of those that show the same.

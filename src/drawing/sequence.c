@@ -381,6 +381,14 @@ static GArray *numbers_of(const GArray *found)
     return numbers;
 }
 
+static char **files_of(const GArray *found)
+{
+    char **files = g_new0(char *, found->len + 1);
+    for (guint i = 0; i < found->len; i++)
+        files[i] = g_strdup(g_array_index(found, Found, i).path);
+    return files;
+}
+
 /** Selects the wanted numbers among the found files. */
 static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing missing,
                           FlWarnings *warnings, GError **error)
@@ -394,6 +402,7 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
     s->stand_in = g_new0(bool, wanted->len + 1);
     s->layer = g_new0(int, wanted->len + 1);
     s->name = shared_name(first);
+    s->found = files_of(found);
     for (guint i = 0; i < wanted->len; i++) {
         const int number = g_array_index(wanted, int, i);
         const Found *f = look_up(found, number, missing == FL_MISSING_HOLD);
@@ -475,5 +484,6 @@ void fl_sequence_free(FlSequence *sequence)
     g_free(sequence->stand_in);
     g_free(sequence->layer);
     g_free(sequence->name);
+    g_strfreev(sequence->found);
     g_free(sequence);
 }

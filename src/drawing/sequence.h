@@ -17,6 +17,7 @@ typedef struct FlSequence {
     int *layer;     // the frame among the layers of its file, from 1; 0: the file is the frame
     bool alone;     // there is one file, and nobody said whether it is one frame
     int n_left_out; // frames whose files were found, but are held or skipped
+    char **found;   // all files that the inputs name, those of other frames as well; ends in NULL
 } FlSequence;
 
 /**

@@ -8,6 +8,7 @@
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
 #include "io/png.h"
+#include "job/guard.h"
 #include <fluidy/style.h>
 
 #include <math.h>
@@ -357,7 +358,8 @@ static bool write_frames(const FlRenderOptions *options, const char *what, Write
     if (!subject_configure(&subject, options, error))
         return false;
     g_autofree char *pattern = pattern_of(&subject, what, error);
-    if (!pattern || !subject_read(&subject, error))
+    if (!pattern || !subject_read(&subject, error) ||
+        !fl_guard_pictures(subject.drawing, &subject.options, pattern, error))
         return false;
     const int n = fl_drawing_frames(subject.drawing);
     for (int f = 0; f < n; f++)

@@ -2,6 +2,7 @@
 
 #include "io/pattern.h"
 #include "job/paint_files.h"
+#include <string.h>
 #include <sys/stat.h>
 
 /* A file whatever its name, as a key; to be freed. */
@@ -23,26 +24,28 @@ static void add_style(GPtrArray *inputs, const char *folder)
     }
 }
 
-/* The files of an option that may name one per frame and region. */
-static void add_named(GPtrArray *inputs, const FlPlan *plan, const char *pattern)
+/* The files of an option that may name one per frame and region. No plan: no regions. */
+static void add_named(GPtrArray *inputs, const FlDrawing *drawing, const FlPlan *plan,
+                      const char *pattern)
 {
     if (pattern)
         g_ptr_array_add(inputs, g_strdup(pattern));
-    for (int f = 0; pattern && f < fl_drawing_frames(plan->drawing); f++)
-        for (int p = 0; p < MAX(plan->n_painted, 1); p++) {
-            const char *region = p < plan->n_painted ? plan->painted[p].name : NULL;
-            const int number = fl_drawing_number(plan->drawing, f);
+    const int n = plan ? plan->n_painted : 0;
+    for (int f = 0; pattern && f < fl_drawing_frames(drawing); f++)
+        for (int p = 0; p < MAX(n, 1); p++) {
+            const char *region = p < n ? plan->painted[p].name : NULL;
+            const int number = fl_drawing_number(drawing, f);
             char *path = fl_output_name(pattern, number, region, NULL);
             if (path)
                 g_ptr_array_add(inputs, path);
         }
 }
 
-static void add_linked(GPtrArray *inputs, const FlPlan *plan)
+static void add_linked(GPtrArray *inputs, const FlDrawing *drawing)
 {
     GHashTableIter at;
     gpointer path;
-    g_hash_table_iter_init(&at, fl_drawing_linked_files(plan->drawing));
+    g_hash_table_iter_init(&at, fl_drawing_linked_files(drawing));
     while (g_hash_table_iter_next(&at, &path, NULL))
         g_ptr_array_add(inputs, g_strdup(path));
 }
@@ -53,7 +56,7 @@ GPtrArray *fl_guard_list_inputs(const FlPlan *plan)
     GPtrArray *inputs = g_ptr_array_new_with_free_func(g_free);
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
         g_ptr_array_add(inputs, g_strdup(fl_drawing_file(plan->drawing, f)));
-    add_linked(inputs, plan);
+    add_linked(inputs, plan->drawing);
     for (int p = 0; p < plan->n_painted; p++) {
         if (p == 0 || plan->painted[p].style != plan->painted[p - 1].style)
             add_style(inputs, plan->painted[p].style->path);
@@ -62,21 +65,22 @@ GPtrArray *fl_guard_list_inputs(const FlPlan *plan)
     }
     if (o->config)
         g_ptr_array_add(inputs, g_strdup(o->config));
-    add_named(inputs, plan, o->background);
+    add_named(inputs, plan->drawing, plan, o->background);
     if (o->paper)
         g_ptr_array_add(inputs, g_strdup(o->paper));
-    add_named(inputs, plan, o->flow);
+    add_named(inputs, plan->drawing, plan, o->flow);
     if (o->merge)
-        add_named(inputs, plan, o->paint);
+        add_named(inputs, plan->drawing, plan, o->paint);
     return inputs;
 }
 
 /* A link and what it leads to are both read; what is not there is told by whoever reads it. A
- * style's folder is written to by nobody. */
-static GHashTable *collect_inputs(const FlPlan *plan)
+ * style's folder is written to by nobody. Adds drawings of frames that are not wanted to paths. */
+static GHashTable *collect(const FlDrawing *drawing, GPtrArray *paths)
 {
     GHashTable *inputs = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    g_autoptr(GPtrArray) paths = fl_guard_list_inputs(plan);
+    for (const char *const *file = fl_drawing_found_files(drawing); *file; file++)
+        g_ptr_array_add(paths, g_strdup(*file));
     for (guint k = 0; k < paths->len; k++) {
         struct stat status;
         if (lstat(paths->pdata[k], &status) == 0)
@@ -156,7 +160,8 @@ static bool check_frame(const FlPlan *plan, GHashTable *inputs, int frame, GErro
 
 bool fl_guard_inputs(const FlPlan *plan, GError **error)
 {
-    g_autoptr(GHashTable) inputs = collect_inputs(plan);
+    g_autoptr(GPtrArray) paths = fl_guard_list_inputs(plan);
+    g_autoptr(GHashTable) inputs = collect(plan->drawing, paths);
     if ((plan->format->film && !may_write(inputs, g_strdup(plan->output), error)) ||
         !may_write(inputs, g_strdup(plan->movie), error) ||
         !may_write(inputs, g_strdup(plan->options.stats), error) ||
@@ -165,5 +170,27 @@ bool fl_guard_inputs(const FlPlan *plan, GError **error)
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
         if (!check_frame(plan, inputs, f, error))
             return false;
+    return true;
+}
+
+bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
+                       const char *pattern, GError **error)
+{
+    g_autoptr(GPtrArray) paths = g_ptr_array_new_with_free_func(g_free);
+    add_linked(paths, drawing);
+    for (size_t k = 0; k < options->n_settings; k++)
+        if (strcmp(options->settings[k].name, "style") == 0)
+            add_style(paths, options->settings[k].value);
+    if (options->config)
+        g_ptr_array_add(paths, g_strdup(options->config));
+    add_named(paths, drawing, NULL, options->background);
+    if (options->paper)
+        g_ptr_array_add(paths, g_strdup(options->paper));
+    g_autoptr(GHashTable) inputs = collect(drawing, paths);
+    for (int f = 0; f < fl_drawing_frames(drawing); f++) {
+        char *path = fl_output_name(pattern, fl_drawing_number(drawing, f), NULL, NULL);
+        if (!may_write(inputs, path, error))
+            return false;
+    }
     return true;
 }

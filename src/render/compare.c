@@ -10,6 +10,7 @@
 #include "io/contact_sheet.h"
 #include "io/pattern.h"
 #include "io/png.h"
+#include "job/guard.h"
 #include "render/render_frames.h"
 #include "style/style_folder.h"
 #include <string.h>
@@ -103,7 +104,8 @@ static bool comparison_init(Comparison *c, const Kind *kind, const FlRenderOptio
     fl_config_complete(c->config, &complete);
     complete.warning = NULL, complete.note = NULL; // the renders repeat them
     if (!name_sheet(c, &complete, error) ||
-        !(c->drawing = fl_drawing_from_options(&complete, c->config, error)))
+        !(c->drawing = fl_drawing_from_options(&complete, c->config, error)) ||
+        !fl_guard_pictures(c->drawing, &complete, c->path, error))
         return false;
     const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
     const double scale = MIN(1, (double)SHOWN_PX / MAX(width, height));
