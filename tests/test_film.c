@@ -533,7 +533,7 @@ static void a_mask_over_shapes_that_overlap_is_told(void)
         g_assert_cmpint(fl_drawing_regions(drawing), ==, 2);
         g_assert_cmpint(fl_warnings_count(warnings), ==, overlaps);
         if (overlaps)
-            g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, "slightly harder edge"));
+            g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, "harder edge"));
     }
 }
 

@@ -170,7 +170,7 @@ static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *war
                             "the frame looks slightly different when it is drawn shape by shape");
         else if (fl_self_check_has_hard_masks(f->check))
             fl_warnings_add(warnings, file, number, NULL,
-                            "shapes that overlap below a mask have a slightly harder edge there");
+                            "shapes that overlap below a mask have a harder edge there");
         break;
     }
     if (fabs(frame->page_width - survey->page_width) > 0.5 ||
