@@ -24,21 +24,25 @@ static void add_style(GPtrArray *inputs, const char *folder)
     }
 }
 
-/* The files of an option that may name one per frame and region. No plan: no regions. */
-static void add_named(GPtrArray *inputs, const FlDrawing *drawing, const FlPlan *plan,
-                      const char *pattern)
+/* The files of an option that may name one per frame; region: NULL for those of none. */
+static void add_frames(GPtrArray *inputs, const FlDrawing *drawing, const char *region,
+                       const char *pattern)
 {
     if (pattern)
         g_ptr_array_add(inputs, g_strdup(pattern));
-    const int n = plan ? plan->n_painted : 0;
-    for (int f = 0; pattern && f < fl_drawing_frames(drawing); f++)
-        for (int p = 0; p < MAX(n, 1); p++) {
-            const char *region = p < n ? plan->painted[p].name : NULL;
-            const int number = fl_drawing_number(drawing, f);
-            char *path = fl_output_name(pattern, number, region, NULL);
-            if (path)
-                g_ptr_array_add(inputs, path);
-        }
+    for (int f = 0; pattern && f < fl_drawing_frames(drawing); f++) {
+        char *path = fl_output_name(pattern, fl_drawing_number(drawing, f), region, NULL);
+        if (path)
+            g_ptr_array_add(inputs, path);
+    }
+}
+
+/* The same where the name may be that of a region as well. */
+static void add_named(GPtrArray *inputs, const FlPlan *plan, const char *pattern)
+{
+    for (int p = 0; p < MAX(plan->n_painted, 1); p++)
+        add_frames(inputs, plan->drawing, p < plan->n_painted ? plan->painted[p].name : NULL,
+                   pattern);
 }
 
 static void add_linked(GPtrArray *inputs, const FlDrawing *drawing)
@@ -65,12 +69,12 @@ GPtrArray *fl_guard_list_inputs(const FlPlan *plan)
     }
     if (o->config)
         g_ptr_array_add(inputs, g_strdup(o->config));
-    add_named(inputs, plan->drawing, plan, o->background);
+    add_named(inputs, plan, o->background);
     if (o->paper)
         g_ptr_array_add(inputs, g_strdup(o->paper));
-    add_named(inputs, plan->drawing, plan, o->flow);
+    add_named(inputs, plan, o->flow);
     if (o->merge)
-        add_named(inputs, plan->drawing, plan, o->paint);
+        add_named(inputs, plan, o->paint);
     return inputs;
 }
 
@@ -183,7 +187,7 @@ bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
             add_style(paths, options->settings[k].value);
     if (options->config)
         g_ptr_array_add(paths, g_strdup(options->config));
-    add_named(paths, drawing, NULL, options->background);
+    add_frames(paths, drawing, NULL, options->background);
     if (options->paper)
         g_ptr_array_add(paths, g_strdup(options->paper));
     g_autoptr(GHashTable) inputs = collect(drawing, paths);
