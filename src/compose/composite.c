@@ -283,21 +283,31 @@ static bool compose(FlComposite *composite, const FlComposeInput *input, int fra
     return background->opaque || fl_layers_bleed(composite->rgba, width, height, BLEED_PX, error);
 }
 
-bool fl_composite_init(FlComposite *composite, const FlComposeInput *input, int frame,
-                       FlDrawList *draws, bool with_16, GError **error)
-{
-    *composite = (FlComposite){.draws = draws};
-    return make_layers(composite, input, error) && compose(composite, input, frame, with_16, error);
-}
-
-void fl_composite_clear(FlComposite *composite)
+static void drop_layers(FlComposite *composite)
 {
     for (int k = 0; k < composite->n_layers; k++) {
         clear_layer(&composite->layers[k], composite->enlarged);
         g_free(composite->names[k]);
     }
-    g_free(composite->layers);
-    g_free(composite->names);
+    g_clear_pointer(&composite->layers, g_free);
+    g_clear_pointer(&composite->names, g_free);
+    composite->n_layers = 0;
+}
+
+bool fl_composite_init(FlComposite *composite, const FlComposeInput *input, int frame,
+                       FlDrawList *draws, bool with_16, GError **error)
+{
+    *composite = (FlComposite){.draws = draws};
+    if (!make_layers(composite, input, error) || !compose(composite, input, frame, with_16, error))
+        return false;
+    if (!input->layers_apart)
+        drop_layers(composite);
+    return true;
+}
+
+void fl_composite_clear(FlComposite *composite)
+{
+    drop_layers(composite);
     fl_draw_list_free(composite->draws);
     free(composite->ground);
     free(composite->sheet);

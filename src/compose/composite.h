@@ -9,7 +9,7 @@
  * where no paper has light; else the frame is that times the light of the sheet. */
 typedef struct FlComposite {
     FlDrawList *draws;
-    int n_layers;
+    int n_layers;     // 0: nobody wants them apart
     FlLayer *layers;  // bottom first; their areas, rgba and body are owned
     bool enlarged;    // coverage is owned as well; else it is the runs'
     char **names;     // of the layers, for files: unique in the frame
