@@ -143,7 +143,7 @@ static FlParams *params_of(const Variant *variant)
 static void paint(const FlExemplar *exemplar, const FlParams *params, Film *drawing, FieldScore *field)
 {
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, (FlSynthSize){W, H, W, H}, 1, &error);
+    g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, (FlSynthSize){W, H, W, H}, 1);
     for (int f = 0; f < FRAMES; f++) {
         FlSynthView view;
         if (!synth || !fl_synth_frame(synth, &drawing->guides[f], drawing->rgb + 3 * (size_t)W * H * f,

@@ -230,7 +230,7 @@ static bool run_case(const Case *c, Figures *f, GError **error)
     const double start = seconds(CLOCK_MONOTONIC);
     b.sequence = fl_guide_sequence_new(&source, &how, error);
     f->guides_s = (seconds(CLOCK_MONOTONIC) - start) / source.n_frames;
-    b.synth = b.sequence ? fl_synth_new(exemplar, params, size, (uint64_t)seed, error) : NULL;
+    b.synth = b.sequence ? fl_synth_new(exemplar, params, size, (uint64_t)seed) : NULL;
     b.rgb = g_malloc(3 * (size_t)c->width * c->height);
     const bool ok = b.synth && fl_guides_init(&b.guides, source.width, source.height, error) &&
                     timed_frames(&b, f, error) && measured_frames(&b, f, error);

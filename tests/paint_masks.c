@@ -103,7 +103,7 @@ static int paint(const FlStyle *style, Masks *masks, const char *out, int frames
     g_autoptr(FlGuideSequence) guides =
         exemplar ? fl_guide_sequence_new(&source, &how, error) : NULL;
     g_autoptr(FlSynth) synth =
-        guides ? fl_synth_new(exemplar, params, (FlSynthSize){w, h, w, h}, 1, error) : NULL;
+        guides ? fl_synth_new(exemplar, params, (FlSynthSize){w, h, w, h}, 1) : NULL;
     g_auto(FlGuides) now = {0};
     if (!synth || !fl_guides_init(&now, w, h, error))
         return 1;

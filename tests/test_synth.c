@@ -15,8 +15,7 @@ static uint8_t *painted(int threads)
     const FlGuideParams how = fl_guide_params(params);
     const FlGuideSource source = {48, 48, 3, small_moving_disc, NULL, NULL};
     g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, &error);
-    g_autoptr(FlSynth) synth =
-        fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7, &error);
+    g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7);
     g_auto(FlGuides) now = {0};
     g_assert_true(fl_guides_init(&now, 48, 48, &error));
     uint8_t *rgb = g_malloc0(3 * 48 * 48);
@@ -92,8 +91,7 @@ static void a_region_at_rest_has_a_view_though_its_picture_had_none(void)
     g_autoptr(FlParams) params = fl_params_new();
     g_autoptr(FlStyle) style = small_style();
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, NULL);
-    g_autoptr(FlSynth) synth =
-        fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7, NULL);
+    g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, (FlSynthSize){48, 48, 48, 48}, 7);
     const FlGuideParams how = fl_guide_params(params);
     const FlGuideSource source = {48, 48, 3, small_moving_disc, NULL, NULL};
     g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, NULL);

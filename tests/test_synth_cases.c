@@ -34,7 +34,7 @@ static void paint(const FlStyle *style, Target *t)
     const FlGuideSource source = {t->w, t->h, t->n_frames, draw, NULL, t};
     g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, &error);
     g_autoptr(FlSynth) synth =
-        fl_synth_new(exemplar, params, (FlSynthSize){t->w, t->h, t->w, t->h}, 1, &error);
+        fl_synth_new(exemplar, params, (FlSynthSize){t->w, t->h, t->w, t->h}, 1);
     g_auto(FlGuides) now = {0};
     g_assert_true(guides && synth && fl_guides_init(&now, t->w, t->h, &error));
     g_autofree uint8_t *rgb = g_malloc(3 * (size_t)t->w * t->h);

@@ -29,10 +29,6 @@ struct FlGuideSequence {
     FlGuideParams params;
     FlFrameRecord *frames; // source.n_frames
     FlSpill *spill;        // block of a plane of a frame: FL_N_GUIDE_PLANES * frame + plane
-
-    GMutex lock;     // guards what follows
-    float *distance; // the last one asked for, if the next frame has it too; or NULL
-    int32_t holder;  // of its shape
 };
 
 static inline size_t fl_guide_plane_block(int frame, FlGuidePlane plane)

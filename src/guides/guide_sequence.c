@@ -63,7 +63,6 @@ FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuid
     }
     g_autoptr(FlGuideSequence) sequence = g_new(FlGuideSequence, 1);
     *sequence = (FlGuideSequence){.source = *source, .params = *params};
-    g_mutex_init(&sequence->lock);
     sequence->frames = g_new0(FlFrameRecord, source->n_frames);
     sequence->spill = fl_spill_new((size_t)source->n_frames * FL_N_GUIDE_PLANES, error);
     if (!sequence->spill || !fl_guide_sequence_build(sequence, error) ||
@@ -77,8 +76,6 @@ void fl_guide_sequence_free(FlGuideSequence *sequence)
     if (!sequence)
         return;
     fl_spill_free(sequence->spill);
-    g_mutex_clear(&sequence->lock);
-    g_free(sequence->distance);
     g_free(sequence->frames);
     g_free(sequence);
 }
@@ -131,47 +128,15 @@ static bool get_motion(const FlGuideSequence *sequence, int frame, int32_t *scra
     return true;
 }
 
-static bool recall_distance(FlGuideSequence *sequence, int32_t holder, float *distance,
-                            size_t bytes)
+bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
 {
-    G_GNUC_UNUSED g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
-    const bool known = sequence->distance && sequence->holder == holder;
-    if (known)
-        memcpy(distance, sequence->distance, bytes);
-    return known;
-}
-
-/** Until it is asked for again, if it will be. */
-static void keep_distance(FlGuideSequence *sequence, bool again, int32_t holder,
-                          const float *distance, size_t bytes)
-{
-    G_GNUC_UNUSED g_autoptr(GMutexLocker) locker = g_mutex_locker_new(&sequence->lock);
-    if (!again)
-        g_clear_pointer(&sequence->distance, g_free);
-    else if (sequence->distance && sequence->holder == holder)
-        return;
-    else if (sequence->distance || (sequence->distance = fl_alloc(bytes, 1, "a distance", NULL)))
-        memcpy(sequence->distance, distance, bytes), sequence->holder = holder;
-}
-
-/** The frame that has a frame's shape; -1: there is none. */
-static int32_t shape_holder(const FlGuideSequence *sequence, int frame)
-{
-    const bool exists = frame < sequence->source.n_frames;
-    return exists ? sequence->frames[frame].holder[FL_GUIDE_PLANE_SHAPE] : -1;
-}
-
-/** The distance of a shape that the next frame has as well, as still ones do, is kept. */
-static bool get_distance(FlGuideSequence *sequence, int frame, const uint8_t *mask, float *distance,
-                         GError **error)
-{
-    const int w = sequence->source.width, h = sequence->source.height;
-    const size_t bytes = (size_t)w * h * sizeof *distance;
-    const int32_t holder = shape_holder(sequence, frame);
-    if (!recall_distance(sequence, holder, distance, bytes) &&
-        !fl_distance(mask, w, h, distance, error))
+    const FlFrameRecord *now = &sequence->frames[frame], *before = now - 1;
+    if (frame == 0 || now->empty || now->holder[FL_GUIDE_PLANE_FLOW] >= 0 ||
+        now->holder[FL_GUIDE_PLANE_MOTION] >= 0)
         return false;
-    keep_distance(sequence, shape_holder(sequence, frame + 1) == holder, holder, distance, bytes);
+    for (int plane = 0; plane < FL_N_GUIDE_PLANES; plane++)
+        if (plane != FL_GUIDE_PLANE_MOTION && now->holder[plane] != before->holder[plane])
+            return false;
     return true;
 }
 
@@ -204,9 +169,7 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
         if (!get_motion(sequence, frame, scratch, guides, error))
             return false;
     }
-    // the lock is what is not const about a sequence
-    if (!get_distance((FlGuideSequence *)(uintptr_t)sequence, frame, guides->mask, guides->distance,
-                      error))
+    if (!fl_distance(guides->mask, w, h, guides->distance, error))
         return false;
     memcpy(guides->depth, guides->distance, n * sizeof *guides->depth);
     return true;

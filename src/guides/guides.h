@@ -74,6 +74,10 @@ void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error);
 
+/** Whether a frame's guides are those of the frame before and nothing moves in it, so that they
+ * need not be got. */
+bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);
+
 /**
  * The flow that directions were made from, before it was rounded as FlGuides has it: a source that
  * gives it gets the same guides. flow: 2 * width * height. The source must keep it.

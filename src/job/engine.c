@@ -9,8 +9,7 @@
 
 static void *patch_open(const FlEngineInput *input, GError **error)
 {
-    return fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed,
-                        error);
+    return fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed);
 }
 
 static void patch_close(void *state)
@@ -27,6 +26,11 @@ static bool patch_frame(void *state, const FlGuides *guides, const FlEnginePaint
                         GError **error)
 {
     return fl_synth_frame(state, guides, paint->rgb, paint->stats, paint->view, error);
+}
+
+static bool patch_rest(void *state)
+{
+    return fl_synth_rest(state);
 }
 
 static bool patch_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
@@ -147,6 +151,7 @@ static const FlEngine engines[] = {
                          .close = patch_close,
                          .measure = patch_measure,
                          .frame = patch_frame,
+                         .rest = patch_rest,
                          .guide_pairs = patch_guide_pairs,
                          .save = patch_save,
                          .load = patch_load},

@@ -39,6 +39,10 @@ typedef struct FlEngine {
     void (*measure)(void *state, bool energies);
     /** The next frame, in order. An empty mask makes the next one a first frame again. */
     bool (*frame)(void *state, const FlGuides *guides, const FlEnginePaint *paint, GError **error);
+    /** The next frame where its guides are those of the frame before and nothing moves: that keeps
+     * its picture. Returns: false, and nothing has happened: it is to be painted. NULL: it always
+     * is. */
+    bool (*rest)(void *state);
     /** The guides of the frame just painted, if that had a view and levels in its statistics; NULL:
      * it has none. FL_ERROR_NO_MEMORY. */
     bool (*guide_pairs)(const void *state, FlGuidePairs *pairs, GError **error);

@@ -9,7 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#define WRAP 24 // pictures of a loop that guides use beyond each end
+#define NONE (-1) // before the first picture, and after those of an earlier render
+#define WRAP 24   // pictures of a loop that guides use beyond each end
 
 /* The frame of the film that has a picture of the guides. */
 static int frame_of(const FlPainter *painter, int picture)
@@ -146,6 +147,7 @@ void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan 
                      FlReuse *reuse)
 {
     *painter = (FlPainter){.plan = region,
+                           .picture = NONE,
                            .masks = plan->masks,
                            .surround = plan->surround,
                            .drawing = plan->drawing,
@@ -197,7 +199,6 @@ void fl_painter_clear(FlPainter *painter)
     if (painter->paint)
         painter->plan->engine->close(painter->paint);
     fl_loop_clear(&painter->loop);
-    free(painter->depth);
     free(painter->result.painted);
     *painter = (FlPainter){0};
 }
@@ -254,35 +255,23 @@ static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides,
            (!around.bordered || close_depth(&shape, around.closed, border, guides->depth, error));
 }
 
-/* Keeps the depth if the next picture has the same; where there is no memory, it is measured again.
- */
-static void keep_depth(FlPainter *painter, int from, const float *depth)
-{
-    const size_t n = fl_rect_pixels(painter->result.rect);
-    const int next = painter->picture + 1;
-    if (next >= painter->n_pictures + 2 * painter->wrap || depth_picture(painter, next) != from) {
-        g_clear_pointer(&painter->depth, free);
-        return;
-    }
-    if (painter->depth && painter->depth_from == from)
-        return;
-    if (painter->depth || (painter->depth = fl_alloc(n, sizeof *painter->depth, "a depth", NULL)))
-        memcpy(painter->depth, depth, n * sizeof *depth), painter->depth_from = from;
-}
-
 /* The depth that the paint takes the region to have, unless a preset's guides know none. */
 static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
 {
-    if (!fl_knows_depth(&painter->plan->settings.params))
-        return true;
-    const int from = depth_picture(painter, painter->picture);
-    if (painter->depth && painter->depth_from == from)
-        memcpy(guides->depth, painter->depth,
-               fl_rect_pixels(painter->result.rect) * sizeof *guides->depth);
-    else if (!measure_depth(painter, frame_of(painter, from), guides, error))
-        return false;
-    keep_depth(painter, from, guides->depth);
-    return true;
+    return !fl_knows_depth(&painter->plan->settings.params) ||
+           measure_depth(painter, frame_of(painter, depth_picture(painter, painter->picture)),
+                         guides, error);
+}
+
+/* Whether the picture has the guides of the one before, which result.painted still shows. */
+static bool rests(FlPainter *painter, int last)
+{
+    const int now = painter->picture;
+    const bool blended = painter->loop.n > 0 && last - painter->wrap >= painter->loop.first;
+    return now == last + 1 && !blended && painter->plan->engine->rest &&
+           fl_guide_sequence_rests(painter->guides, now) &&
+           (!fl_knows_depth(&painter->plan->settings.params) ||
+            depth_picture(painter, last) == depth_picture(painter, now));
 }
 
 /* The guides of the painter's picture, from which the engine paints it. */
@@ -318,12 +307,18 @@ static bool keep_picture(FlPainter *painter, GError **error)
     return true;
 }
 
-static bool run_engine(FlPainter *painter, const FlGuides *guides, GError **error)
+/* guided: the picture's guides are there; else it may need none. */
+static bool run_engine(FlPainter *painter, bool guided, FlGuides *guides, GError **error)
 {
+    const FlEngine *engine = painter->plan->engine;
     const FlEnginePaint paint = {painter->result.painted, &painter->result.stats,
                                  painter->wants_view ? &painter->result.view : NULL};
-    return catch_up(painter, error) &&
-           painter->plan->engine->frame(painter->paint, guides, &paint, error) &&
+    if (!catch_up(painter, error))
+        return false;
+    const bool rested = !guided && engine->rest(painter->paint);
+    if (!guided && !rested && !make_guides(painter, guides, error))
+        return false;
+    return (rested || engine->frame(painter->paint, guides, &paint, error)) &&
            keep_picture(painter, error);
 }
 
@@ -332,19 +327,23 @@ static bool run_engine(FlPainter *painter, const FlGuides *guides, GError **erro
 static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides, GError **error)
 {
     FlReuse *reuse = painter->reuse;
+    const int last = painter->picture;
     painter->picture = painter->wrap + index;
     painter->result.stats = (FlFrameStats){0};
     painter->result.view = (FlSynthView){0};
-    if (!is_known(painter) && !make_guides(painter, guides, error))
+    const bool known = is_known(painter), still = !known && rests(painter, last);
+    const bool guided = !known && (!still || painter->wants_guides);
+    if (guided && !make_guides(painter, guides, error))
         return false;
     if (reuse)
-        fl_reuse_next(reuse, k, guides, painter->plan->style->exemplar->level[0].first);
+        fl_reuse_next(reuse, k, still ? NULL : guides,
+                      painter->plan->style->exemplar->level[0].first);
     painter->result.taken = reuse && fl_reuse_take(reuse, painter->result.painted,
                                                    3 * fl_rect_pixels(painter->result.rect));
     if (painter->result.taken)
         return true;
-    if (!is_known(painter))
-        return run_engine(painter, guides, error);
+    if (!known)
+        return run_engine(painter, guided, guides, error);
     g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "region %s: its paint is gone from the cache",
                 painter->plan->name);
     return false;
@@ -441,6 +440,7 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
         g_prefix_error(error, "region %s: ", painter->plan->name);
         return false;
     }
+    painter->picture = NONE;
     if (bytes > 0)
         memcpy(painter->result.painted, g_bytes_get_data(parts[1], NULL), bytes);
     return true;

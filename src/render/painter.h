@@ -21,13 +21,12 @@ typedef struct FlPainter {
     int n_pictures;    // held frames counted once
     int wrap;          // pictures of a loop's other end that extend its guides, before and after
     int picture;       // the last one painted
-    float *depth;      // of a shape at rest, which the next picture has as well; or NULL
-    int depth_from;    // the picture around which it was measured
-    int asked, answer; // the same of the picture last asked for
+    int asked, answer; // a picture, and the one around which its depth is measured
     FlGuideSequence *guides;
-    void *paint;     // the state of plan->engine; NULL: all pictures are known
-    FlReuse *reuse;  // borrowed; NULL: nothing is taken or kept
-    bool wants_view; // whether to fill result.view, which takes the memory of a frame
+    void *paint;       // the state of plan->engine; NULL: all pictures are known
+    FlReuse *reuse;    // borrowed; NULL: nothing is taken or kept
+    bool wants_view;   // whether to fill result.view, which takes the memory of a frame
+    bool wants_guides; // of every frame; else a region at rest has none made
 } FlPainter;
 
 /** Sets sizes only; needs plan->masks, unless the pictures are known. reuse may be NULL. */

@@ -119,6 +119,7 @@ static bool paint_one(void *data, int p, int frame, FlGuides *guides, GError **e
     FlPainter *painter = &pipeline->painters.painter[p];
     const char *dump = plan->options.dump;
     const bool exports = plan->options.ebsynth && !plan->options.merge;
+    painter->wants_guides = dump || exports || pipeline->report;
     painter->wants_view = dump || exports || fl_report_wants_view(pipeline->report, frame);
     if (!fl_painter_frame(painter, frame, guides, error) ||
         !fl_report_guides(pipeline->report, p, &painter->result, frame, guides, error))

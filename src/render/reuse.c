@@ -103,7 +103,10 @@ void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window)
         reuse->last = g_array_index(reuse->known, FlDigest, k);
         return;
     }
-    add_guides(&reuse->last, guides);
+    if (guides)
+        add_guides(&reuse->last, guides);
+    else
+        fl_digest_add_text(&reuse->last, "rests");
     fl_digest_add(&reuse->last, &window, sizeof window);
     g_array_append_val(reuse->made, reuse->last);
 }

@@ -39,7 +39,7 @@ void fl_reuse_clear(FlReuse *reuse);
 void fl_reuse_begin(FlReuse *reuse, FlRect rect);
 
 /** Advances to picture k, counted as they are painted, from 0: the next one. It is known, or that
- * of guides and of a style whose window is there. */
+ * of guides (NULL: the region rests in them) and of a style whose window is there. */
 void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window);
 
 /** Takes the picture, 3 bytes a pixel, and the state after it. Returns: whether it was there. */

@@ -20,8 +20,8 @@ struct FlSynth {
     int width, height, n_levels;
     float side; // the larger one of the whole frames, px
     uint64_t key;
-    FlSynthState last; // after the last frame
-    GBytes *packed;    // it, as it was saved; NULL since it has changed
+    FlSynthState last; // after the last frame; its planes are here in a frame, and for a view
+    GBytes *packed;    // it, with its planes; NULL since they have changed
     int boil;          // fl_boil_step() before the frame in hand
     bool moves;        // the drawing's motion is known in the frame in hand
     bool wants_energies;
@@ -31,17 +31,10 @@ struct FlSynth {
     FlSynthView view; // of the last frame that was painted, where somebody wanted it
 };
 
-static bool make_buffers(FlSynth *synth, GError **error)
-{
-    const size_t pixels = (size_t)synth->width * synth->height;
-    return (synth->last.mask = fl_alloc(pixels, 1, "a mask", error)) &&
-           (synth->last.rgb = fl_alloc(3 * pixels, 1, "a picture", error));
-}
-
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
-                      uint64_t seed, GError **error)
+                      uint64_t seed)
 {
-    g_autoptr(FlSynth) synth = g_new0(FlSynth, 1);
+    FlSynth *synth = g_new0(FlSynth, 1);
     synth->exemplar = exemplar;
     synth->params = params;
     synth->width = size.width, synth->height = size.height;
@@ -50,7 +43,7 @@ FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynt
     synth->key = fl_hash64(seed);
     fl_cost_scale_init(&synth->scale, params);
     fl_kernels_init(&synth->kernels, fl_cpu_flags());
-    return make_buffers(synth, error) ? g_steal_pointer(&synth) : NULL;
+    return synth;
 }
 
 static void forget_packed(FlSynth *synth)
@@ -72,9 +65,7 @@ void fl_synth_free(FlSynth *synth)
         return;
     clear_frame(synth);
     forget_packed(synth);
-    fl_nnf_clear(&synth->last.nnf);
-    free(synth->last.mask);
-    free(synth->last.rgb);
+    fl_synth_state_clear(&synth->last);
     g_free(synth);
 }
 
@@ -423,11 +414,42 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
     return true;
 }
 
-static bool holds_still(const FlSynth *synth, const FlGuides *guides)
+/* Whether a region at rest has its picture in the frame-th frame as well. */
+static bool may_rest(const FlSynth *synth, int frame)
 {
     const FlParams *params = synth->params;
-    return params->rest && synth->boil == 0 && synth->last.valid &&
-           fl_rests(guides, synth->last.mask, params->flow_still);
+    return params->rest && synth->last.valid &&
+           fl_boil_step(params->boil, frame, synth->exemplar->level[0].window) == 0;
+}
+
+bool fl_synth_rest(FlSynth *synth)
+{
+    if (!may_rest(synth, synth->last.frame + 1))
+        return false;
+    synth->last.frame++;
+    return true;
+}
+
+/* The planes of the last frame: regions wait for their next one with packed planes. */
+static bool unpack_last(FlSynth *synth, GError **error)
+{
+    const int frame = synth->last.frame; // it may have rested since it was packed
+    if (!fl_synth_state_room(&synth->last, synth->width, synth->height, error))
+        return false;
+    if (!synth->last.valid || synth->last.nnf.match)
+        return true;
+    const bool done = fl_synth_state_unpack(&synth->last, synth->packed, &synth->exemplar->level[0],
+                                            synth->width, synth->height, error);
+    synth->last.frame = frame;
+    return done;
+}
+
+static bool pack_last(FlSynth *synth, GError **error)
+{
+    if (!synth->packed)
+        synth->packed = fl_synth_state_pack(&synth->last, synth->width, synth->height, error);
+    fl_synth_state_clear(&synth->last);
+    return synth->packed != NULL;
 }
 
 static bool run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats, GError **error)
@@ -459,7 +481,10 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
     synth->last.frame++;
     synth->boil =
         fl_boil_step(synth->params->boil, synth->last.frame, synth->exemplar->level[0].window);
-    if (holds_still(synth, guides)) {
+    if (!unpack_last(synth, error))
+        return false;
+    if (may_rest(synth, synth->last.frame) &&
+        fl_rests(guides, synth->last.mask, synth->params->flow_still)) {
         memcpy(rgb, synth->last.rgb, 3 * (size_t)synth->width * synth->height);
         *view = view_at_rest(synth);
         return true;
@@ -493,9 +518,10 @@ bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFram
     *s = (FlFrameStats){0};
     *v = (FlSynthView){0};
     const bool done = paint(synth, guides, rgb, s, v, error);
-    if (!view)
-        clear_frame(synth);
-    return done;
+    if (view)
+        return done;
+    clear_frame(synth);
+    return done && pack_last(synth, error);
 }
 
 bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **error)
@@ -506,19 +532,28 @@ bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **er
 
 GBytes *fl_synth_save(FlSynth *synth, GError **error)
 {
-    if (synth->packed)
-        return fl_synth_state_later(synth->packed, synth->last.frame);
-    synth->packed = fl_synth_state_pack(&synth->last, synth->width, synth->height, error);
-    return synth->packed ? g_bytes_ref(synth->packed) : NULL;
+    GBytes *packed = synth->packed
+                         ? fl_synth_state_later(synth->packed, synth->last.frame)
+                         : fl_synth_state_pack(&synth->last, synth->width, synth->height, error);
+    if (!packed)
+        return NULL;
+    forget_packed(synth);
+    synth->packed = packed;
+    return g_bytes_ref(packed);
 }
 
 bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
 {
-    fl_nnf_clear(&synth->last.nnf);
     forget_packed(synth);
-    if (fl_synth_state_unpack(&synth->last, state, &synth->exemplar->level[0], synth->width,
-                              synth->height, error))
-        return true;
-    synth->last.valid = false;
-    return false;
+    fl_synth_state_clear(&synth->last);
+    if (!fl_synth_state_room(&synth->last, synth->width, synth->height, error))
+        return false;
+    const bool done = fl_synth_state_unpack(&synth->last, state, &synth->exemplar->level[0],
+                                            synth->width, synth->height, error);
+    fl_synth_state_clear(&synth->last);
+    if (done)
+        synth->packed = g_bytes_ref(state);
+    else
+        synth->last.valid = false;
+    return done;
 }

@@ -44,7 +44,7 @@ typedef struct FlSynthSize {
 
 /** The exemplar and params must outlive it. */
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
-                      uint64_t seed, GError **error);
+                      uint64_t seed);
 void fl_synth_free(FlSynth *synth); // NULL is fine
 
 /** Whether statistics hold energies, which take a fifth of a frame's time (no); else they are 0. */
@@ -60,6 +60,10 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  */
 bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
+
+/** The next frame where its guides are those of the frame before and nothing moves: it has the same
+ * picture. Returns: false, and nothing has happened: it is to be painted. */
+bool fl_synth_rest(FlSynth *synth);
 
 /**
  * The guides of the frame just painted, which must have had a view and levels in its statistics.

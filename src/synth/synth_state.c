@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/state_bytes.h"
 #include <assert.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The bytes start with this; the packed field, mask and picture follow. Each match is stored as
@@ -59,6 +60,20 @@ static void parts_of(const FlSynthState *state, FlMatch *matches, int width, int
     parts[FIELD] = (FlSpan){matches, field};
     parts[MASK] = (FlSpan){state->mask, pixels};
     parts[PICTURE] = (FlSpan){state->rgb, 3 * pixels};
+}
+
+bool fl_synth_state_room(FlSynthState *state, int width, int height, GError **error)
+{
+    const size_t pixels = (size_t)width * height;
+    return (state->mask || (state->mask = fl_alloc(pixels, 1, "a mask", error))) &&
+           (state->rgb || (state->rgb = fl_alloc(3 * pixels, 1, "a picture", error)));
+}
+
+void fl_synth_state_clear(FlSynthState *state)
+{
+    fl_nnf_clear(&state->nnf);
+    g_clear_pointer(&state->mask, free);
+    g_clear_pointer(&state->rgb, free);
 }
 
 GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GError **error)

@@ -16,6 +16,12 @@ typedef struct FlSynthState {
     uint8_t *rgb;  // the picture of the whole frame, width * height * 3
 } FlSynthState;
 
+/** Makes room for mask and picture, unless there is. FL_ERROR_NO_MEMORY. */
+bool fl_synth_state_room(FlSynthState *state, int width, int height, GError **error);
+
+/** Frees the planes: field, mask and picture. The rest stays. */
+void fl_synth_state_clear(FlSynthState *state);
+
 /** Packed, in this machine's byte order; width * height px is the frame's size.
  *  Returns: NULL with FL_ERROR_NO_MEMORY set. */
 GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GError **error);
