@@ -9,22 +9,19 @@
 
 #define SMALLEST 8 // px: the shortest side worth searching
 
-/* Resamples one channel of interleaved bytes; reading and writing pixels are `channels` apart. */
-typedef struct Resampling {
+/* How the frames of an exemplar get another size. */
+typedef struct Sizes {
     int from_width, from_height, to_width, to_height;
-    int channels;
-} Resampling;
+    FlResampling *rows, *columns;
+} Sizes;
 
-static void resample(const float *from, const Resampling *r, float *between, float *to)
+static void resample(const float *from, const Sizes *s, int channels, float *between, float *to)
 {
-    const size_t c = (size_t)r->channels;
-    for (int y = 0; y < r->from_height; y++)
-        for (size_t k = 0; k < c; k++)
-            fl_resample_line(from + (size_t)y * r->from_width * c + k, r->from_width, c,
-                             between + (size_t)y * r->to_width * c + k, r->to_width, c);
-    const size_t row = (size_t)r->to_width * c;
-    for (size_t k = 0; k < row; k++)
-        fl_resample_line(between + k, r->from_height, row, to + k, r->to_height, row);
+    const size_t from_row = (size_t)s->from_width * channels, row = (size_t)s->to_width * channels;
+    for (int y = 0; y < s->from_height; y++)
+        fl_resample_row(s->rows, from + y * from_row, channels, between + y * row);
+    for (int y = 0; y < s->to_height; y++)
+        fl_resample_columns(s->columns, between, row, y, to + y * row);
 }
 
 /* The planes that one frame is resampled through. */
@@ -32,32 +29,33 @@ typedef struct Buffers {
     float *from, *between, *to;
 } Buffers;
 
-static void resample_bytes(const uint8_t *from, const Resampling *r, const Buffers *b, uint8_t *to)
+static void resample_bytes(const uint8_t *from, const Sizes *s, int channels, const Buffers *b,
+                           uint8_t *to)
 {
-    const size_t values = (size_t)r->from_width * r->from_height * r->channels;
-    if (r->from_width == r->to_width && r->from_height == r->to_height) {
+    const size_t values = (size_t)s->from_width * s->from_height * channels;
+    if (s->from_width == s->to_width && s->from_height == s->to_height) {
         memcpy(to, from, values);
         return;
     }
     for (size_t p = 0; p < values; p++)
         b->from[p] = from[p];
-    resample(b->from, r, b->between, b->to);
-    const size_t out = (size_t)r->to_width * r->to_height * r->channels;
+    resample(b->from, s, channels, b->between, b->to);
+    const size_t out = (size_t)s->to_width * s->to_height * channels;
     for (size_t p = 0; p < out; p++)
         to[p] = (uint8_t)(CLAMP(b->to[p], 0, 255) + 0.5f);
 }
 
-static void resample_flow(const float *from, const Resampling *r, const Buffers *b, float factor,
+static void resample_flow(const float *from, const Sizes *s, const Buffers *b, float factor,
                           float *to)
 {
-    resample(from, r, b->between, to);
-    for (size_t p = 0; p < (size_t)r->to_width * r->to_height * 2; p++)
+    resample(from, s, 2, b->between, to);
+    for (size_t p = 0; p < (size_t)s->to_width * s->to_height * 2; p++)
         to[p] *= factor;
 }
 
 /* Frame t of the exemplar; all: scratch, three planes of `third` values. */
-static void adapt_frame(const FlStyle *style, const FlStyleUse *use, FlStyle *out, int t,
-                        float *all, size_t third)
+static void adapt_frame(const FlStyle *style, const FlStyleUse *use, const Sizes *sizes,
+                        FlStyle *out, int t, float *all, size_t third)
 {
     const size_t from = (size_t)style->width * style->height;
     const size_t to = (size_t)out->width * out->height;
@@ -66,19 +64,19 @@ static void adapt_frame(const FlStyle *style, const FlStyleUse *use, FlStyle *ou
         (float)out->width / (float)style->width * (float)use->step * (use->reverse ? -1.0f : 1.0f);
     const int k = use->reverse ? out->n_frames - 1 - t : t;
     const size_t s = (size_t)(use->start - 1 + k * use->step);
-    Resampling r = {style->width, style->height, out->width, out->height, 3};
-    resample_bytes(style->rgb + 3 * s * from, &r, &b, out->rgb + 3 * to * t);
-    r.channels = 1;
-    resample_bytes(style->mask + s * from, &r, &b, out->mask + to * t);
-    r.channels = 2;
+    resample_bytes(style->rgb + 3 * s * from, sizes, 3, &b, out->rgb + 3 * to * t);
+    resample_bytes(style->mask + s * from, sizes, 1, &b, out->mask + to * t);
     if (style->flow)
-        resample_flow(style->flow + 2 * s * from, &r, &b, speed, out->flow + 2 * to * t);
+        resample_flow(style->flow + 2 * s * from, sizes, &b, speed, out->flow + 2 * to * t);
 }
 
 static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
 {
     const int widest = MAX(style->width, out->width), tallest = MAX(style->height, out->height);
     const size_t third = 3 * (size_t)widest * tallest;
+    g_autoptr(FlResampling) rows = fl_resampling_new(style->width, out->width);
+    g_autoptr(FlResampling) columns = fl_resampling_new(style->height, out->height);
+    const Sizes sizes = {style->width, style->height, out->width, out->height, rows, columns};
     GError *first = NULL;
 #pragma omp parallel
     {
@@ -87,13 +85,13 @@ static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *o
 #pragma omp for schedule(dynamic, 1)
         for (int t = 0; t < out->n_frames; t++)
             if (all)
-                adapt_frame(style, use, out, t, all, third);
+                adapt_frame(style, use, &sizes, out, t, all, third);
         fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_tell(error, first);
 }
 
-static bool sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
+static bool find_sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)
 {
     const double scale = use->scale > 0 ? use->scale : style->scale;
     const int left = (style->n_frames - use->start) / use->step + 1;
@@ -129,7 +127,7 @@ FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **er
                      .granulation = style->granulation,
                      .smoothness = style->smoothness};
     memcpy(out->paper, style->paper, sizeof out->paper);
-    if (!sizes(style, use, out, error))
+    if (!find_sizes(style, use, out, error))
         return NULL;
     const size_t pixels = (size_t)out->width * out->height * out->n_frames;
     if (!(out->rgb = fl_alloc(3 * pixels, 1, "an exemplar", error)) ||

@@ -27,22 +27,75 @@ static float cubic(float t)
     return t < 2 ? ((-.5f * t + 2.5f) * t - 4) * t + 2 : 0;
 }
 
-void fl_resample_line(const float *from, int from_n, size_t from_step, float *to, int to_n,
-                      size_t to_step)
+/* The samples that one is made of: their sum by weights, by the sum of these. */
+typedef struct Taps {
+    int first, n;
+    float sum;
+} Taps;
+
+struct FlResampling {
+    int n, most; // samples; taps of any
+    Taps *taps;
+    float *weight; // `most` for each sample
+};
+
+FlResampling *fl_resampling_new(int from_n, int to_n)
 {
     const float ratio = (float)from_n / (float)to_n, wide = ratio > 1 ? ratio : 1;
+    FlResampling *resampling = g_new(FlResampling, 1);
+    *resampling = (FlResampling){to_n, (int)(4 * wide) + 2, g_new0(Taps, to_n), NULL};
+    resampling->weight = g_new0(float, (size_t)to_n * resampling->most);
     for (int i = 0; i < to_n; i++) {
+        Taps *taps = &resampling->taps[i];
+        float *weight = resampling->weight + (size_t)i * resampling->most;
         const float centre = ((float)i + 0.5f) * ratio - 0.5f;
-        const int first = MAX(0, (int)ceilf(centre - 2 * wide));
         const int last = MIN(from_n - 1, (int)floorf(centre + 2 * wide));
-        float sum = 0, weight = 0;
-        for (int k = first; k <= last; k++) {
-            const float w = cubic(((float)k - centre) / wide);
-            sum += w * from[k * from_step];
-            weight += w;
+        taps->first = MAX(0, (int)ceilf(centre - 2 * wide));
+        for (int k = taps->first; k <= last; k++) {
+            weight[taps->n] = cubic(((float)k - centre) / wide);
+            taps->sum += weight[taps->n++];
         }
-        to[i * to_step] = sum / weight;
     }
+    return resampling;
+}
+
+void fl_resampling_free(FlResampling *resampling)
+{
+    if (!resampling)
+        return;
+    g_free(resampling->taps);
+    g_free(resampling->weight);
+    g_free(resampling);
+}
+
+void fl_resample_row(const FlResampling *resampling, const float *from, int channels, float *to)
+{
+    for (int i = 0; i < resampling->n; i++) {
+        const Taps *taps = &resampling->taps[i];
+        const float *weight = resampling->weight + (size_t)i * resampling->most;
+        for (int c = 0; c < channels; c++) {
+            const float *sample = from + (size_t)taps->first * channels + c;
+            float sum = 0;
+            for (int k = 0; k < taps->n; k++)
+                sum += weight[k] * sample[(size_t)k * channels];
+            *to++ = sum / taps->sum;
+        }
+    }
+}
+
+void fl_resample_columns(const FlResampling *resampling, const float *from, size_t row, int k,
+                         float *to)
+{
+    const Taps *taps = &resampling->taps[k];
+    const float *weight = resampling->weight + (size_t)k * resampling->most;
+    memset(to, 0, row * sizeof *to);
+    for (int j = 0; j < taps->n; j++) {
+        const float *sample = from + (size_t)(taps->first + j) * row;
+        for (size_t x = 0; x < row; x++)
+            to[x] += weight[j] * sample[x];
+    }
+    for (size_t x = 0; x < row; x++)
+        to[x] /= taps->sum;
 }
 
 /* Colours are weighted by alpha, so that transparent pixels lend no colour. */
@@ -68,21 +121,22 @@ static void unweigh_row(const float *weighted, int width, uint8_t *rgba)
 FlPicture *fl_picture_resize(const FlPicture *picture, int width, int height, GError **error)
 {
     const size_t from_row = 4 * (size_t)picture->width, row = 4 * (size_t)width;
-    const int tallest = MAX(picture->height, height);
     g_autoptr(FlPicture) resized = fl_picture_new(width, height, error);
-    g_autofree float *weighted =
-        resized ? fl_alloc(from_row + 2 * row * tallest, sizeof(float), "a picture", error) : NULL;
+    g_autofree float *weighted = resized ? fl_alloc(from_row + row * (picture->height + 1),
+                                                    sizeof(float), "a picture", error)
+                                         : NULL;
     if (!weighted)
         return NULL;
-    float *across = weighted + from_row, *both = across + row * tallest;
+    float *across = weighted + from_row, *both = across + row * picture->height;
+    g_autoptr(FlResampling) rows = fl_resampling_new(picture->width, width);
+    g_autoptr(FlResampling) columns = fl_resampling_new(picture->height, height);
     for (int y = 0; y < picture->height; y++) {
         weigh_row(picture->rgba + y * from_row, picture->width, weighted);
-        for (int c = 0; c < 4; c++)
-            fl_resample_line(weighted + c, picture->width, 4, across + y * row + c, width, 4);
+        fl_resample_row(rows, weighted, 4, across + y * row);
     }
-    for (size_t k = 0; k < row; k++)
-        fl_resample_line(across + k, picture->height, row, both + k, height, row);
-    for (int y = 0; y < height; y++)
-        unweigh_row(both + y * row, width, resized->rgba + y * row);
+    for (int y = 0; y < height; y++) {
+        fl_resample_columns(columns, across, row, y, both);
+        unweigh_row(both, width, resized->rgba + y * row);
+    }
     return g_steal_pointer(&resized);
 }
