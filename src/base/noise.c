@@ -13,7 +13,7 @@ typedef struct Cell {
 
 /* The last cell of each key, or nearly each: whoever asks along a row stays in a cell for some
  * steps, and hashing its corners takes longer than all else. */
-#define MEMO 64
+#define MEMO 256
 static _Thread_local Cell memo[MEMO];
 
 static void hash_corner(uint64_t key, int32_t ix, int32_t iy, float slope[2])

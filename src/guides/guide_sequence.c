@@ -140,8 +140,8 @@ bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
     return true;
 }
 
-bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
-                           GError **error)
+bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
+                              GError **error)
 {
     const int w = sequence->source.width, h = sequence->source.height;
     g_assert(frame >= 0 && frame < sequence->source.n_frames);
@@ -169,9 +169,17 @@ bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides 
         if (!get_motion(sequence, frame, scratch, guides, error))
             return false;
     }
-    if (!fl_distance(guides->mask, w, h, guides->distance, error))
+    return true;
+}
+
+bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
+                           GError **error)
+{
+    const int w = guides->width, h = guides->height;
+    if (!fl_guide_sequence_planes(sequence, frame, guides, error) ||
+        !fl_distance(guides->mask, w, h, guides->distance, error))
         return false;
-    memcpy(guides->depth, guides->distance, n * sizeof *guides->depth);
+    memcpy(guides->depth, guides->distance, (size_t)w * h * sizeof *guides->depth);
     return true;
 }
 

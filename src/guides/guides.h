@@ -74,6 +74,10 @@ void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error);
 
+/** The same but for the distance and the depth, which stay as they are. */
+bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
+                              GError **error);
+
 /** Whether a frame's guides are those of the frame before and nothing moves in it, so that they
  * need not be got. */
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);

@@ -33,7 +33,7 @@ bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border
 struct FlExemplarFrames {
     FlParams params;
     FlGuideSequence *sequence;
-    FlSpill *rgb;         // a block for each frame
+    FlSpill *rgb;         // a block for each frame; NULL: all are in the window
     int earliest, latest; // frames with paint
 };
 
@@ -56,6 +56,20 @@ static void keep_guides(FlExemplar *exemplar, const FlGuides *guides, int t)
     memcpy(exemplar->ext_minus + at, guides->ext_minus, pixels * sizeof(float));
 }
 
+/* The guides of a frame. Those of all frames were got once before: if there is room for all, their
+ * distances are where the exemplar's depths will be. */
+static bool get_guides(const FlExemplar *exemplar, const FlExemplarFrames *frames, int t,
+                       FlGuides *guides, GError **error)
+{
+    const size_t pixels = (size_t)guides->width * (size_t)guides->height;
+    if (frames->rgb)
+        return fl_guide_sequence_get(frames->sequence, t, guides, error);
+    memcpy(guides->distance, exemplar->distance + (size_t)t * pixels,
+           pixels * sizeof *guides->distance);
+    memcpy(guides->depth, guides->distance, pixels * sizeof *guides->depth);
+    return fl_guide_sequence_planes(frames->sequence, t, guides, error);
+}
+
 /* Level 0 of one frame: its guides, and its colours. */
 static bool fill_frame(FlExemplar *exemplar, const FlExemplarFrames *frames, const uint8_t *rgb,
                        int t, FlPyramid *pyramid, GError **error)
@@ -65,7 +79,7 @@ static bool fill_frame(FlExemplar *exemplar, const FlExemplarFrames *frames, con
     g_auto(FlGuides) guides = {0};
     float *shape = pyramid->plane[FL_PLANE_R]; // scratch: the colours come later
     if (!fl_guides_init(&guides, level->width, level->height, error) ||
-        !fl_guide_sequence_get(frames->sequence, t, &guides, error))
+        !get_guides(exemplar, frames, t, &guides, error))
         return false;
     for (size_t p = 0; p < pixels; p++)
         guides.depth[p] -= exemplar->margin_px;
@@ -338,6 +352,9 @@ static bool measure_extents(FlExemplar *exemplar, const FlStyle *style, FlExempl
         if (!fl_guide_sequence_get(frames->sequence, t, &guides, error))
             return false;
         memcpy(exemplar->mask + (size_t)t * pixels, guides.mask, pixels);
+        if (!frames->rgb)
+            memcpy(exemplar->distance + (size_t)t * pixels, guides.distance,
+                   pixels * sizeof *guides.distance);
         for (size_t p = 0; p < pixels; p++)
             most = MAX(most, MAX(guides.ext_plus[p], guides.ext_minus[p]));
         add_contrast(&contrast, &guides, style->rgb + 3 * pixels * (size_t)t, exemplar);
