@@ -147,6 +147,10 @@ result $? '--styles is a sheet'
     [ "$(ls fluidy)" = "$(printf 'w_methods.%s\n' html png)" ] &&
     grep -q '<dt><b>lazyfluids</b></dt><dd>.*begins again' fluidy/w_methods.html && rm -r fluidy
 result $? '--methods is a sheet and a page'
+: >page.html
+refuses 'a page that exists stays, and no sheet is painted' 1 'page.html: already exists*' \
+    --methods default -o page.png whole
+rm page.html
 "$program" --list-styles -o styles.png >out 2>err && [ -s styles.png ] &&
     grep -qE '^01 +Watercolour +soft and wet' out
 result $? '--list-styles is a list and a sheet'

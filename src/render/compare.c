@@ -46,6 +46,7 @@ typedef struct Comparison {
     FlDrawing *drawing;
     FlContactSheet contact;
     char *path;     // of the sheet
+    char *page;     // beside it; NULL: none
     int row, frame; // where the next painted frame goes
     int n_frames;
     uint8_t *slice; // of the row that is painted: of each frame the line in the middle, RGBA
@@ -58,20 +59,30 @@ static void comparison_clear(Comparison *c)
     fl_contact_sheet_clear(&c->contact);
     free(c->slice);
     g_free(c->path);
+    g_free(c->page);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Comparison, comparison_clear)
 
-/* The sheet's file, free if it must be, before the drawing is read. */
-static bool name_sheet(Comparison *c, const FlRenderOptions *complete, GError **error)
+static bool may_write(const Comparison *c, const char *path, GError **error)
+{
+    return !path || c->options.overwrite == FL_OVERWRITE_YES || fl_exists_not(path, error);
+}
+
+/* The files of the sheet and the page beside it, free if they must be, before the drawing is read.
+ */
+static bool name_files(Comparison *c, const FlRenderOptions *complete, GError **error)
 {
     const char *wanted = c->options.output;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(complete, error);
     if (!sequence)
         return false;
     c->path = fl_output_of_film(wanted ? wanted : c->kind->output, sequence->name);
-    return fl_png_named(c->path, "sheets are", error) &&
-           (c->options.overwrite == FL_OVERWRITE_YES || fl_exists_not(c->path, error));
+    if (!fl_png_named(c->path, "sheets are", error))
+        return false;
+    g_autofree char *stem = g_strndup(c->path, strlen(c->path) - strlen(".png"));
+    c->page = c->kind->has_page ? g_strconcat(stem, ".html", NULL) : NULL;
+    return may_write(c, c->path, error) && may_write(c, c->page, error);
 }
 
 static bool has_slice(const Comparison *c)
@@ -103,9 +114,10 @@ static bool comparison_init(Comparison *c, const Kind *kind, const FlRenderOptio
     FlRenderOptions complete = c->options;
     fl_config_complete(c->config, &complete);
     complete.warning = NULL, complete.note = NULL; // the renders repeat them
-    if (!name_sheet(c, &complete, error) ||
+    if (!name_files(c, &complete, error) ||
         !(c->drawing = fl_drawing_from_options(&complete, c->config, error)) ||
-        !fl_guard_pictures(c->drawing, &complete, c->path, error))
+        !fl_guard_pictures(c->drawing, &complete, c->path, error) ||
+        (c->page && !fl_guard_pictures(c->drawing, &complete, c->page, error)))
         return false;
     const int width = fl_drawing_width(c->drawing), height = fl_drawing_height(c->drawing);
     const double scale = MIN(1, (double)SHOWN_PX / MAX(width, height));
@@ -223,8 +235,6 @@ static void append_settings(GString *page, const FlRenderOptions *options)
 /* The page beside the sheet: what each row is. */
 static bool write_page(const Comparison *c, const Variant *variants, int n, GError **error)
 {
-    g_autofree char *stem = g_strndup(c->path, strlen(c->path) - strlen(".png"));
-    g_autofree char *path = g_strconcat(stem, ".html", NULL);
     g_autofree char *sheet = g_path_get_basename(c->path);
     g_autofree char *name = g_markup_escape_text(fl_drawing_name(c->drawing), -1);
     g_autofree char *picture = g_markup_escape_text(sheet, -1);
@@ -241,7 +251,7 @@ static bool write_page(const Comparison *c, const Variant *variants, int n, GErr
                                variants[k].says);
     g_string_append(page, "</dl>\n");
     g_auto(FlAtomicFile) file = {0};
-    if (!fl_atomic_open(&file, path, c->options.overwrite == FL_OVERWRITE_YES, error))
+    if (!fl_atomic_open(&file, c->page, c->options.overwrite == FL_OVERWRITE_YES, error))
         return false;
     (void)fwrite(page->str, 1, page->len, file.stream); // a full disk fails the commit
     return fl_atomic_commit(&file, error);
@@ -259,7 +269,8 @@ static bool compare(const Kind *kind, const FlRenderOptions *options, const Vari
     if (!fl_contact_sheet_save(&c.contact, c.path, options->overwrite == FL_OVERWRITE_YES, error) ||
         (kind->has_page && !write_page(&c, variants, n, error)))
         return false;
-    g_autofree char *line = g_strdup_printf("%d %ss: %s", n, kind->noun, c.path);
+    g_autofree char *line =
+        g_strdup_printf("%d %s%s: %s", n, kind->noun, n == 1 ? "" : "s", c.path);
     if (options->note)
         options->note(line, options->data);
     return true;
