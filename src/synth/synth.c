@@ -332,7 +332,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
     const int from_coarsest = synth->n_levels - 1 - l;
-    stats->rounds = l == 0 ? params->finest_rounds * (shifted ? 1 : params->first_rounds)
+    stats->rounds = l == 0 ? params->finest_rounds
                     : shifted
                         ? fl_list_at(&params->next_iterations, from_coarsest)
                         : fl_list_at(&params->opt_iterations, from_coarsest) * params->first_rounds;
