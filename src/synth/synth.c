@@ -378,10 +378,16 @@ static void clear_colours(FlSynth *synth)
     }
 }
 
+/* The last frame is large, and all that is needed of it is shifted: so that comes first. */
 static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *shifted,
                     FlFrameStats *stats, GError **error)
 {
     gint64 time = g_get_monotonic_time();
+    const bool continues = synth->last.valid;
+    if (continues && !shifted_previous(synth, guides, rect, shifted, error))
+        return false;
+    fl_synth_state_clear(&synth->last);
+    stats->seconds_temporal = lap(&time);
     g_autofree float *shape =
         fl_alloc((size_t)synth->width * synth->height, sizeof(float), "a guide", error);
     if (!shape ||
@@ -391,10 +397,9 @@ static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *
         return false;
     clear_colours(synth);
     stats->seconds_target = lap(&time);
-    if (synth->last.valid && (!shifted_previous(synth, guides, rect, shifted, error) ||
-                              !make_temporal(synth, shifted, error)))
+    if (continues && !make_temporal(synth, shifted, error))
         return false;
-    stats->seconds_temporal = lap(&time);
+    stats->seconds_temporal += lap(&time);
     return true;
 }
 
@@ -402,7 +407,8 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
 {
     const FlNnf *last = &synth->nnf[0];
     const size_t pixels = (size_t)synth->width * synth->height;
-    fl_nnf_clear(&synth->last.nnf);
+    if (!fl_synth_state_room(&synth->last, synth->width, synth->height, error))
+        return false;
     synth->last.valid = true;
     synth->last.rect = synth->target.rect;
     fl_rest_shape(guides, synth->last.mask);
