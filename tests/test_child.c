@@ -1,5 +1,6 @@
 /* Other programs, fed and read: how they are waited for. */
 #include "io/child_process.h"
+#include <fluidy/limits.h>
 #include <glib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -63,6 +64,13 @@ static void a_child_that_hangs_is_ended(void)
     assert_ends(&(FlPatience){.limit_s = 0.2}, FL_ERROR_OUTPUT, FL_ERROR_INPUT);
 }
 
+static void as_long_as_the_limit_says(void)
+{
+    g_assert_true(fl_limit_set("seconds=1", NULL));
+    assert_ends(NULL, FL_ERROR_OUTPUT, FL_ERROR_INPUT);
+    g_assert_true(fl_limit_set("seconds=60", NULL));
+}
+
 static bool soon(void *data)
 {
     return ++*(int *)data % 3 == 0;
@@ -108,6 +116,7 @@ int main(int argc, char **argv)
     TEST(what_a_child_writes_is_read_to_its_end);
     TEST(a_dying_child_is_quoted_in_one_line);
     TEST(a_child_that_hangs_is_ended);
+    TEST(as_long_as_the_limit_says);
     TEST(a_wait_can_be_interrupted);
     TEST(a_child_that_computes_is_waited_for);
     TEST(a_child_opens_the_file_that_it_is_given);

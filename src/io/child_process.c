@@ -1,5 +1,7 @@
 #include "io/child_process.h"
 
+#include "base/limits.h"
+
 #include <errno.h>
 #include <glib/gstdio.h>
 #include <poll.h>
@@ -13,7 +15,6 @@
 #include <sys/prctl.h>
 #endif
 
-#define LIMIT_S 60
 #define LONGEST_PAUSE_MS 100
 #define LEAST_WORK 0.01 // of a processor; a waiting process may wake now and then
 
@@ -140,7 +141,8 @@ static bool give_up(FlChild *child, int code, const char *why, GError **error)
 static bool wait_for(FlChild *child, short events, GError **error)
 {
     const FlPatience *patience = &child->patience;
-    const double limit_s = patience->limit_s > 0 ? patience->limit_s : LIMIT_S;
+    const double limit_s =
+        patience->limit_s > 0 ? patience->limit_s : (double)fl_limit(FL_LIMIT_SECONDS);
     double worked = worked_s(child);
     gint64 since = g_get_monotonic_time();
     for (int pause_ms = events ? LONGEST_PAUSE_MS : 1;; pause_ms *= 2) {

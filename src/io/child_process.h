@@ -16,7 +16,7 @@ typedef enum FlChildStream {
 
 /** How long to wait for a child. All 0: as long as it works. */
 typedef struct FlPatience {
-    double limit_s;              // without input, output or computation; 0: 60
+    double limit_s;              // without input, output or computation; 0: the limit seconds
     bool (*stopped)(void *data); // asked every tenth of a second, from any thread; or NULL
     void *data;
 } FlPatience;
