@@ -325,7 +325,7 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width
     if (check->top[where] == 0)
         return FL_VERDICT_DIFFERS;
     const FlLeaf *top = g_array_index(check->pieces, FlPiece, check->top[where] - 1).leaf;
-    *leaf = top->id;
+    *leaf = top->name[0] ? top->name : NULL;
     const bool judged =
         find_leaves(check, svg, top, page_width, page_height, group, error) &&
         (*group || find_group(check, svg, top, page_width, page_height, group, error));

@@ -28,8 +28,8 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
  * If they do, *group becomes the id of the smallest group around the topmost part of the worst
  * place that by itself does not look as its leaves do, to be freed; NULL if there is none. If that
  * part's shape does not look as its fill and stroke do, *group is the shape and all others like it,
- * by fl_leaf_key(), one a line. *leaf becomes that part's id, which is the frame's; NULL if nothing
- * is drawn there.
+ * by fl_leaf_key(), one a line. *leaf becomes that part's id in the file, which is the frame's;
+ * NULL if it has none or nothing is drawn there.
  */
 FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
                                double page_height, char **group, const char **leaf, GError **error);

@@ -294,7 +294,8 @@ static bool draw_for(FlSvg *svg, const FlLeaf *leaf, FlPart part, Purpose purpos
         return true;
     if (handle) {
         set_rsvg_error(svg, reason, error);
-        g_prefix_error(error, "#%s in ", leaf->id);
+        g_prefix_error(error, leaf->name[0] ? "#%s in " : "a shape without an id%s in ",
+                       leaf->name);
     }
     return false;
 }
