@@ -117,6 +117,13 @@ else
     skip 'the commands of --plan json give the same frames' 'no python3'
     skip '--plan openjd is a template of two steps' 'no python3'
 fi
+printf '[project]\nlayers = layers/{region}_%%d.png\n' >layers.conf
+render -c layers.conf --region red-aa3311 --no-frames --paint 'alone/{region}_%d.png' >out 2>err &&
+    [ "$(ls alone | wc -l)" = 6 ] && [ ! -e layers ]
+result $? 'a task writes none of the layers that a config asks for'
+render --region red-aa3311 --no-frames --paint 'other/{region}_%d.png' --paper tissue >out 2>err
+[ $? = 2 ] && says 'paper “tissue”' && [ ! -e other ]
+result $? 'and finds out about a paper that is none, which only the merge makes'
 render --plan condor >out 2>err
 [ $? = 2 ] && says 'slurm'
 result $? 'another scheduler is told which there are'

@@ -244,25 +244,37 @@ const uint8_t *fl_paper_ground(const char *paper)
     return grain->tinted ? grain->colour : NULL;
 }
 
+/* *kind becomes a word's, or -1 for a file or none. */
+static bool kind_of(const char *paper, int *kind, GError **error)
+{
+    *kind = g_str_equal(paper, "auto") ? FL_PAPER_COLD : -1;
+    if (*kind >= 0 || g_str_equal(paper, "none") || fl_text_choice(paper, FL_PAPER_WORDS, kind) ||
+        fl_picture_named(paper))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "paper “%s”: expected none, cold, hot, rough, laid, kraft or a " FL_PICTURE_FILES
+                " file",
+                paper);
+    return false;
+}
+
+bool fl_paper_check(const char *paper, GError **error)
+{
+    int kind;
+    return kind_of(paper ? paper : "auto", &kind, error);
+}
+
 bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int height,
                          FlPaperSheet **sheet, GError **error)
 {
     const char *paper = choice->paper ? choice->paper : "auto";
     const bool is_auto = g_str_equal(paper, "auto");
-    int kind = -1;
+    int kind;
     *sheet = NULL;
+    if (!kind_of(paper, &kind, error))
+        return false;
     if (g_str_equal(paper, "none"))
         return true;
-    if (is_auto)
-        kind = FL_PAPER_COLD;
-    else if (!fl_text_choice(paper, FL_PAPER_WORDS, &kind) && !fl_picture_named(paper)) {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_USAGE,
-            "paper “%s”: expected none, cold, hot, rough, laid, kraft or a " FL_PICTURE_FILES
-            " file",
-            paper);
-        return false;
-    }
     const float scale = choice->scale > 0 ? (float)choice->scale : fl_page_scale(width, height);
     const int room = choice->boil > 0 ? ROOM_PX : 0;
     g_autoptr(FlPaperSheet) made = g_new0(FlPaperSheet, 1);

@@ -33,6 +33,9 @@ typedef struct FlPaperSheet {
 /** The word for a paper that is made and tinted, and so is the ground of a film: its colour. */
 const uint8_t *fl_paper_ground(const char *paper);
 
+/** Whether such a paper can be asked for; NULL: "auto". Does not open its file. FL_ERROR_USAGE. */
+bool fl_paper_check(const char *paper, GError **error);
+
 /**
  * Makes the sheet for frames of a size. `plain`: they lie on paper and nothing else, so that "auto"
  * is cold; else it has its tooth alone.

@@ -412,8 +412,10 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
     const FlRenderOptions *o = &plan->options;
     if (o->merge && o->ebsynth && !o->paint)
         plan->options.paint = plan->painted_by_ebsynth = pattern_below(o->ebsynth);
-    // paint of some regions is no frame, even if the config says where frames are
+    // paint of some regions is no frame, even if the config says where frames and layers are
     const bool paint_alone = options->paint && options->only_region && !options->output;
+    if (paint_alone && o->no_frames && !options->layers)
+        plan->options.layers = NULL;
     plan->parts_only =
         o->no_frames && (o->paint || o->layers) && !o->merge && (!o->output || paint_alone);
     return make_plan(plan, error) ? g_steal_pointer(&plan) : NULL;
@@ -457,6 +459,12 @@ bool fl_plan_frames_alone(const FlPlan *plan)
     const FlRenderOptions *o = &plan->options;
     return !o->layers && !plan->format->takes_layers && !o->only_region && !o->paint && !o->dump &&
            !o->ebsynth && !o->report;
+}
+
+bool fl_plan_is_of_paint(const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    return plan->parts_only && !o->layers && !o->report && !o->dry_run;
 }
 
 /* Shapes that are held longer than others are shown below those of later frames. */

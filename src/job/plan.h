@@ -80,6 +80,9 @@ void fl_plan_free(FlPlan *plan); // NULL is fine
  * layers can be moved apart. */
 bool fl_plan_frames_alone(const FlPlan *plan);
 
+/** Whether paint is all that is made, as in the task of a farm: nothing is composed. */
+bool fl_plan_is_of_paint(const FlPlan *plan);
+
 /** Whether others hide a region in every frame, and frames are all that comes of its paint; known
  * after fl_plan_rasterise(). */
 bool fl_plan_hides(const FlPlan *plan, int region);

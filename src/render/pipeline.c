@@ -219,7 +219,8 @@ static FlComposeInput compose_input(const Pipeline *pipeline, int frame)
 }
 
 /* Paints and composes a frame, or where a missing one is held, the frame before again. Its shapes
- * are drawn beside the painting, those of frame `next` (-1: none) beside the composing. */
+ * are drawn beside the painting, those of frame `next` (-1: none) beside the composing. Where
+ * nobody looks at the picture, nothing is drawn and *composite stays empty. */
 static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *composite,
                         double *paint_s, GError **error)
 {
@@ -229,13 +230,16 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
                              plan->options.loop, error))
         return false;
     const int shown = fl_drawing_shown(plan->drawing, frame);
-    if (pipeline->drawn != shown)
+    const bool composed = !fl_plan_is_of_paint(plan);
+    if (composed && pipeline->drawn != shown)
         start_drawing(pipeline, shown);
     const bool painted =
         shown != frame || fl_painters_each(&pipeline->painters, frame, paint_one, pipeline, error);
     *paint_s = seconds_since(start);
     if (!fl_task_wait(&pipeline->drawing, painted ? error : NULL) || !painted)
         return false;
+    if (!composed)
+        return true;
     FlDrawList *draws = g_steal_pointer(&pipeline->draws);
     pipeline->drawn = -1;
     if (next >= 0 && overlaps(pipeline))
@@ -354,7 +358,8 @@ static bool check(Pipeline *pipeline, GError **error)
     const uint8_t *ground = fl_paper_ground(plan->options.paper);
     return fl_background_init(&pipeline->background, plan->options.background,
                               ground ? ground : plan->paper, plan->drawing, error) &&
-           make_sheet(pipeline, error);
+           (fl_plan_is_of_paint(plan) ? fl_paper_check(plan->options.paper, error)
+                                      : make_sheet(pipeline, error));
 }
 
 /* A dry run writes nothing, so that what is in the way of the real one is a note. */
