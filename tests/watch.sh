@@ -101,6 +101,41 @@ wait $job
 [ $? = 2 ] && grep -q 'expected a file' told
 result $? 'a config from a pipe is refused'
 
+# What the drawings link to lies elsewhere, and so does the background that the config names.
+mkdir film/linked ground
+cp nothing/w_0001.png film/linked/picture.png
+cp nothing/w_0001.png ground/ground.png
+printf 'circle { fill: #3355aa }' >film/linked/look.css
+{
+    echo "<?xml-stylesheet type='text/css' href='linked/look.css'?>" \
+        "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56' viewBox='0 0 48 48'>"
+    echo "<circle cx='30' cy='24' r='11'/><image href='linked/picture.png' width='9' height='9'/></svg>"
+} >film/w_0003.svg
+printf '[project]\nbackground = ground/ground.png\n' >one.conf
+rm -rf now kept
+watch -c one.conf
+follows
+result $? 'drawings may link to files'
+# touches FILE COMMAND...: the film follows a file that the command writes.
+touches() {
+    rm -rf before && cp -r now before
+    "${@:2}" >"$1"
+    follows && ! same now before && grep -qF "${1##*/} has changed" told && errors 0
+}
+# halves FILE: half of it, and after a while the other.
+halves() {
+    head -c 60 "$1" && sleep 0.7 && tail -c +61 "$1"
+}
+touches film/linked/picture.png halves nothing/w_0004.png
+result $? 'a picture that a drawing links to is followed, and not read while it is being written'
+touches film/linked/look.css echo 'circle { fill: #aa5533 }'
+result $? 'so is a style sheet'
+touches ground/ground.png cat film/linked/picture.png
+result $? 'and the background of the config'
+ends TERM 0
+drawing film/w_0003.svg 56 3
+echo >one.conf
+
 # Large frames take long enough to be stopped while they are painted, or changed.
 for i in 1 2 3 4 5 6 7; do
     drawing film/w_000$i.svg 400 $i

@@ -8,6 +8,7 @@ enum { TICK_MS = 50, SETTLE_MS = 200, ABANDONED_MS = 3000 };
 
 struct FlFileWatch {
     GPtrArray *folders; // Folder
+    GHashTable *added;  // files that were added, a set
     GHashTable *open;   // path of a file that is being written -> gint64 *: the last event
     gint64 last_us;     // of the last event; 0: none
     char *last;         // the name of its file
@@ -107,6 +108,22 @@ static void add_input(FlFileWatch *watch, const char *input)
         add_folder(watch, folder, drawings[k]);
 }
 
+void fl_file_watch_add(FlFileWatch *watch, const char *file)
+{
+    g_autofree char *folder = g_path_get_dirname(file), *name = g_path_get_basename(file);
+    if (g_hash_table_add(watch->added, g_strdup(file)))
+        add_folder(watch, folder, name);
+}
+
+void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old)
+{
+    GHashTableIter at;
+    gpointer file;
+    g_hash_table_iter_init(&at, old->added);
+    while (g_hash_table_iter_next(&at, &file, NULL))
+        fl_file_watch_add(watch, file);
+}
+
 static void add_style(FlFileWatch *watch, const char *path)
 {
     static const char *const parts[] = {"", "frames", "masks", "flow"};
@@ -116,8 +133,8 @@ static void add_style(FlFileWatch *watch, const char *path)
     }
 }
 
-/* Styles that the config names by their folders, which are relative to its own. */
-static void add_config_styles(FlFileWatch *watch, const char *config)
+/* Files and folders of styles that the config names; they are relative to its own folder. */
+static void add_config_files(FlFileWatch *watch, const char *config)
 {
     g_autoptr(GKeyFile) file = g_key_file_new();
     if (!config || !g_key_file_load_from_file(file, config, G_KEY_FILE_NONE, NULL))
@@ -126,6 +143,12 @@ static void add_config_styles(FlFileWatch *watch, const char *config)
     g_autofree char *base = g_canonicalize_filename(folder, NULL);
     g_auto(GStrv) sections = g_key_file_get_groups(file, NULL);
     for (char **section = sections; *section; section++) {
+        static const char *const keys[] = {"background", "paper"};
+        for (size_t k = 0; k < G_N_ELEMENTS(keys); k++) {
+            g_autofree char *name = g_key_file_get_string(file, *section, keys[k], NULL);
+            g_autofree char *file_path = name ? g_canonicalize_filename(name, base) : NULL;
+            add_files(watch, file_path);
+        }
         g_autofree char *style = g_key_file_get_string(file, *section, "style", NULL);
         g_autofree char *path = style ? g_canonicalize_filename(style, base) : NULL;
         if (path)
@@ -138,6 +161,7 @@ FlFileWatch *fl_file_watch_new(const FlRenderOptions *options)
     FlFileWatch *watch = g_new0(FlFileWatch, 1);
     watch->folders = g_ptr_array_new_with_free_func(folder_free);
     watch->open = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    watch->added = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     watch->last = g_strdup("");
     for (const char *const *input = options->inputs; *input; input++)
         add_input(watch, *input);
@@ -146,7 +170,7 @@ FlFileWatch *fl_file_watch_new(const FlRenderOptions *options)
     add_files(watch, options->paper);
     add_files(watch, options->flow);
     add_files(watch, options->merge ? options->paint : NULL);
-    add_config_styles(watch, options->config);
+    add_config_files(watch, options->config);
     for (size_t k = 0; k < options->n_settings; k++)
         if (strcmp(options->settings[k].name, "style") == 0)
             add_style(watch, options->settings[k].value);
@@ -205,6 +229,7 @@ void fl_file_watch_free(FlFileWatch *watch)
     if (!watch)
         return;
     g_ptr_array_unref(watch->folders);
+    g_hash_table_unref(watch->added);
     g_hash_table_unref(watch->open);
     g_free(watch->last);
     g_free(watch);

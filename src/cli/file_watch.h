@@ -9,12 +9,18 @@ typedef struct FlFileWatch FlFileWatch;
 
 /**
  * Watches drawings, config, flow, background, paper and styles from now on. Of folders only those
- * that exist; what a drawing links to is not watched. To be used by the thread that makes it, which
- * must own GLib's default main context.
+ * that exist; what a drawing links to is for fl_file_watch_add(). To be used by the thread that
+ * makes it, which must own GLib's default main context.
  *
  * Returns: to be freed with fl_file_watch_free().
  */
 FlFileWatch *fl_file_watch_new(const FlRenderOptions *options);
+
+/** Watches a file too, from now on, until the watch is freed; known ones stay as they are. */
+void fl_file_watch_add(FlFileWatch *watch, const char *file);
+
+/** Watches what `old` was told to add. */
+void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old);
 
 /** Whether anything has changed since fl_file_watch_new(). Does not wait. */
 bool fl_file_watch_changed(FlFileWatch *watch);

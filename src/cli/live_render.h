@@ -27,12 +27,17 @@ typedef struct FlLiveState {
 
 typedef struct FlLiveRender FlLiveRender;
 
+/** Told of each file that the drawings refer to. */
+typedef void (*FlTakeLinked)(const char *file, void *data);
+
 /**
- * args must outlive it; larger is the longer side of the frames, px, and width their width.
+ * args must outlive it; larger is the longer side of the frames, px, and width their width. data is
+ * handed to linked.
  *
  * Returns: to be freed with fl_live_render_free(); NULL if no temporary folder can be made.
  */
-FlLiveRender *fl_live_render_new(const FlArgs *args, int width, int larger, GError **error);
+FlLiveRender *fl_live_render_new(const FlArgs *args, int width, int larger, FlTakeLinked linked,
+                                 void *data, GError **error);
 
 /**
  * Ends what is being painted and begins anew.

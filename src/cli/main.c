@@ -81,6 +81,16 @@ static void show_note(const char *message, void *data)
     say(data, "note", message);
 }
 
+/* Who shows the film live reads it among the lines of JSON. */
+static void take_linked(const char *file, void *data)
+{
+    Voice *voice = data;
+    if (voice->files)
+        fl_file_watch_add(voice->files, file);
+    else if (voice->meter.mode == FL_PROGRESS_JSON)
+        fl_meter_say(&voice->meter, "linked", file);
+}
+
 static int status_of(const GError *error)
 {
     if (g_error_matches(error, FL_ERROR, FL_ERROR_INTERRUPTED))
@@ -262,8 +272,13 @@ static int watch(FlArgs *args, Voice *voice)
     if (!can_reread_config(args, "--watch", &error))
         return fail(args, error);
     int status = -1;
+    g_autoptr(FlFileWatch) before = NULL;
     while (status < 0) {
-        g_autoptr(FlFileWatch) files = fl_file_watch_new(&args->render);
+        FlFileWatch *files = fl_file_watch_new(&args->render);
+        if (before)
+            fl_file_watch_add_all(files, before);
+        fl_file_watch_free(before);
+        before = files;
         voice->files = files;
         status = watch_round(args, voice);
         if (status < 0 && !fl_file_watch_changed(files))
@@ -298,6 +313,7 @@ static int work(FlArgs *args)
     args->render.stopped = was_stopped;
     args->render.warning = show_warning;
     args->render.note = show_note;
+    args->render.linked = take_linked;
     args->render.data = &voice;
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);

@@ -47,8 +47,9 @@ static gboolean on_tick(void *data)
         g_main_loop_quit(live->loop);
     if (*live->stop || !fl_file_watch_has_settled(live->files))
         return G_SOURCE_CONTINUE;
-    fl_file_watch_free(live->files);
+    g_autoptr(FlFileWatch) before = live->files;
     live->files = fl_file_watch_new(&live->args->render);
+    fl_file_watch_add_all(live->files, before);
     g_clear_pointer(&live->problem, g_free);
     if (!fl_live_config_reload(live->config, &error))
         live->problem = g_strdup(error->message);
@@ -344,6 +345,12 @@ static bool open_server(Live *live, GError **error)
     return true;
 }
 
+static void watch_linked(const char *file, void *data)
+{
+    const Live *live = data;
+    fl_file_watch_add(live->files, file);
+}
+
 /* Reads a few frames, which shows what is wrong with the command line, and how large they are. */
 static bool prepare(Live *live, GError **error)
 {
@@ -354,8 +361,8 @@ static bool prepare(Live *live, GError **error)
     if (!list || !(live->config = fl_live_config_new(live->args, error)))
         return false;
     live->preview = live->args->render.frames ? NULL : g_strdup("~1");
-    live->render =
-        fl_live_render_new(live->args, list->width, MAX(list->width, list->height), error);
+    live->render = fl_live_render_new(live->args, list->width, MAX(list->width, list->height),
+                                      watch_linked, live, error);
     return live->render && open_server(live, error);
 }
 

@@ -371,6 +371,15 @@ static bool check_merge(const FlRenderOptions *options, GError **error)
     return !wrong;
 }
 
+static void tell_linked(const FlPlan *plan)
+{
+    GHashTableIter at;
+    gpointer file;
+    g_hash_table_iter_init(&at, fl_drawing_linked_files(plan->drawing));
+    while (plan->options.linked && g_hash_table_iter_next(&at, &file, NULL))
+        plan->options.linked(file, plan->options.data);
+}
+
 static bool make_plan(FlPlan *plan, GError **error)
 {
     if (!plan->options.inputs || !plan->options.inputs[0]) {
@@ -382,8 +391,10 @@ static bool make_plan(FlPlan *plan, GError **error)
         return false;
     if (plan->finished == FL_FINISHED_ALL)
         return true;
-    if (!open_drawing(plan, error) || !check_region_names(plan, error) ||
-        !plan_regions(plan, error))
+    if (!open_drawing(plan, error))
+        return false;
+    tell_linked(plan);
+    if (!check_region_names(plan, error) || !plan_regions(plan, error))
         return false;
     choose_size(plan);
     return choose_styles(plan, error) && check_regions_file(plan, plan->options.layers, error) &&
