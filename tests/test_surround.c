@@ -147,6 +147,41 @@ static void a_neighbour_that_moves_off_frees_the_edge(void)
     clear(crossed, 3);
 }
 
+/** A run that covers rows y0 … y1 - 1 wholly. */
+static FlDraw rows(int region, int y0, int y1, const uint8_t rgb[3])
+{
+    FlDraw draw = columns(region, 0, W, rgb);
+    draw.area.box = (FlRect){0, y0, W, y1 - y0};
+    return draw;
+}
+
+static void shapes_one_below_the_other_are_together(void)
+{
+    const FlJoin joins[3] = {FL_JOIN_ALIKE, FL_JOIN_ALIKE, FL_JOIN_ALIKE};
+    FlDraw draw[] = {rows(0, 0, 4, red), rows(1, 4, 8, reddish)};
+    FlDrawList draws = {2, draw};
+    g_assert_cmpint(together_at(&draws, joins, 20), ==, 255);
+    draw[1].area.box.y = 5;
+    g_assert_cmpint(together_at(&draws, joins, 20), ==, -1);
+    clear(draw, 2);
+}
+
+static void what_lies_over_any_part_of_a_region_hides_it(void)
+{
+    const FlJoin joins[3] = {FL_JOIN_ALONE, FL_JOIN_ALONE, FL_JOIN_ALONE};
+    FlDraw draw[] = {columns(0, 2, 12, red), columns(0, 20, 30, red), columns(1, 0, 4, blue),
+                     columns(1, 28, 40, blue), columns(2, 10, 22, blue)};
+    const FlDrawList draws = {5, draw};
+    g_auto(FlAround) around = {0};
+    around_of(&draws, 1, joins, &around);
+    g_assert_true(around.hidden);
+    for (int x = 0; x < W; x++) {
+        const bool seen = (x >= 4 && x < 10) || (x >= 22 && x < 28);
+        g_assert_cmpint(around.seen[5 * W + x], ==, seen ? 255 : 0);
+    }
+    clear(draw, 5);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -157,5 +192,7 @@ int main(int argc, char **argv)
     TEST(edges_are_shared_through_the_film_or_not_at_all);
     TEST(a_neighbour_that_moves_off_frees_the_edge);
     TEST(soft_edges_and_other_opacity_keep_shapes_apart);
+    TEST(shapes_one_below_the_other_are_together);
+    TEST(what_lies_over_any_part_of_a_region_hides_it);
     return g_test_run();
 }

@@ -121,13 +121,34 @@ static bool touch_at(const FlDraw *a, const FlDraw *b, int x, int y)
            (in_b && (shows(a, x + 1, y) || shows(a, x, y + 1)));
 }
 
+/** The columns of the frame between which a draw has coverage in row y or in the next. */
+static FlColumns columns_around(const FlDraw *draw, int y)
+{
+    const FlRect box = draw->area.box;
+    FlColumns sum = {box.x + box.width, box.x};
+    for (int row = MAX(y - box.y, 0); row <= MIN(y + 1 - box.y, box.height - 1); row++) {
+        const FlColumns span = fl_area_row(&draw->area, row);
+        if (span.first < span.last)
+            sum = (FlColumns){MIN(sum.first, box.x + span.first), MAX(sum.last, box.x + span.last)};
+    }
+    return sum;
+}
+
+/** Where touch_at() can hold in a row: no draw is more than a pixel to the right. */
+static FlColumns where_rows_meet(const FlDraw *a, const FlDraw *b, int y)
+{
+    const FlColumns p = columns_around(a, y), q = columns_around(b, y);
+    return (FlColumns){MAX(p.first, q.first) - 1, MIN(p.last, q.last)};
+}
+
 /** Looks at two draws until they are known to overlap. */
 static void look(const FlDraw *a, const FlDraw *b, Meeting *meeting)
 {
     const FlRect both = where_boxes_meet(a->area.box, b->area.box);
     int contact = 0;
-    for (int y = both.y; y < both.y + both.height; y++)
-        for (int x = both.x; x < both.x + both.width; x++) {
+    for (int y = both.y; y < both.y + both.height; y++) {
+        const FlColumns columns = where_rows_meet(a, b, y);
+        for (int x = columns.first; x < columns.last; x++) {
             if (!touch_at(a, b, x, y))
                 continue;
             contact++;
@@ -136,6 +157,7 @@ static void look(const FlDraw *a, const FlDraw *b, Meeting *meeting)
                 return;
             }
         }
+    }
     meeting->meet |= contact >= CONTACT_PX;
 }
 

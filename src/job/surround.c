@@ -60,16 +60,18 @@ static int opacity_of(const FlDraw *draw)
     return draw->mix == FL_BLEND_MODE_OVER ? MAX(5 * draw->alpha - 4 * 255, 0) : 0;
 }
 
-/** Takes a layer's share of what is free for those below it. */
-static void hide_below(const FlDraw *draw, int width, uint8_t *free_of)
+/** Takes a layer's share of what is free for those below it, within a part of the frame. */
+static void hide_below(const FlDraw *draw, FlRect within, int width, uint8_t *free_of)
 {
-    const FlRect box = draw->area.box;
+    const FlRect box = draw->area.box, part = fl_rect_and(box, within);
     const int opacity = opacity_of(draw);
-    for (int y = 0; y < box.height && opacity > 0; y++) {
+    for (int y = part.y - box.y; y < part.y + part.height - box.y && opacity > 0; y++) {
         const FlColumns span = fl_area_row(&draw->area, y);
+        const int first = MAX(span.first, part.x - box.x);
+        const int last = MIN(span.last, part.x + part.width - box.x);
         const uint8_t *from = draw->coverage + (size_t)y * (size_t)box.width;
         uint8_t *row = free_of + (size_t)(box.y + y) * (size_t)width + box.x;
-        for (int x = span.first; x < span.last; x++)
+        for (int x = first; x < last; x++)
             row[x] = (uint8_t)((row[x] * (255 * 255 - from[x] * opacity) + 32512) / 65025);
     }
 }
@@ -141,13 +143,14 @@ static int reach_of(const FlSurround *surround)
 static bool find_near_seen(const FlSurround *surround, const FlDrawList *draws, const bool *shares,
                            uint8_t *free_of, uint8_t **near, GError **error)
 {
-    memset(free_of, 255, (size_t)surround->width * (size_t)surround->height);
+    const FlRect page = {0, 0, surround->width, surround->height};
+    memset(free_of, 255, fl_rect_pixels(page));
     for (int r = draws->n - 1; r >= 0; r--) {
         const FlDraw *draw = &draws->draw[r];
         if (shares[r] && fl_rect_pixels(draw->area.box) > 0 &&
             !(near[r] = near_seen(draw, free_of, surround->width, reach_of(surround), error)))
             return false;
-        hide_below(draw, surround->width, free_of);
+        hide_below(draw, page, surround->width, free_of);
     }
     return true;
 }
@@ -198,19 +201,37 @@ static bool add_bordering(const FlSurround *surround, const Frame *frame, const 
     return any;
 }
 
-/** What is seen of a region and those of its colour. */
+/** Whether a draw is of the region or of its colour. */
+static bool is_together(const FlDraw *draw, int region, FlSharing sharing)
+{
+    return sharing == FL_SHARING_ALIKE || draw->region == region;
+}
+
+/** The rectangle around a region and those of its colour. */
+static FlRect around_together(const FlDrawList *draws, int region, const FlSharing *sharing)
+{
+    FlRect around = {0, 0, 0, 0};
+    for (int r = 0; r < draws->n; r++)
+        if (is_together(&draws->draw[r], region, sharing[r]))
+            around = fl_rect_or(around, draws->draw[r].area.box);
+    return around;
+}
+
+/** What is seen of a region and those of its colour. What is free is found around them only. */
 static void find_seen(const FlSurround *surround, int region, const Frame *frame,
                       const FlSharing *sharing)
 {
-    const size_t n = (size_t)surround->width * (size_t)surround->height;
-    memset(frame->free_of, 255, n);
-    memset(frame->seen, 0, n);
+    const FlRect around = around_together(frame->draws, region, sharing);
+    const size_t width = (size_t)surround->width;
+    for (int y = around.y; y < around.y + around.height; y++)
+        memset(frame->free_of + (size_t)y * width + around.x, 255, (size_t)around.width);
+    memset(frame->seen, 0, width * (size_t)surround->height);
     for (int r = frame->draws->n - 1; r >= 0; r--) {
         const FlDraw *draw = &frame->draws->draw[r];
-        if (sharing[r] == FL_SHARING_ALIKE || draw->region == region)
+        if (is_together(draw, region, sharing[r]))
             add_seen(draw, frame->free_of, surround->width, frame->seen);
         else
-            hide_below(draw, surround->width, frame->free_of);
+            hide_below(draw, around, surround->width, frame->free_of);
     }
 }
 
