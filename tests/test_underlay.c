@@ -85,6 +85,33 @@ static void a_shape_that_fades_over_its_like_never_pales(void)
     g_assert_cmpint(before, ==, 0);
 }
 
+/**
+ * Fades a rectangle that is seen through a notch in the corner of an upper one, turned over from
+ * left to right or from top to bottom.
+ */
+static void fade_turned(bool across, bool down, Sheet *lower)
+{
+    static Sheet upper;
+    FlLayer layers[2] = {rectangle(lower, across ? W - 5 - 40 : 5, down ? H - 4 - 28 : 4, 40, 28),
+                         rectangle(&upper, across ? W - 3 - 45 : 3, down ? H - 2 - 33 : 2, 45, 33)};
+    for (int y = 0; y < 10; y++)
+        memset(upper.coverage + (down ? H - 1 - y : y) * W + (across ? W - 14 : 0), 0, 14);
+    fade(layers);
+}
+
+static void a_drawing_turned_over_fades_alike(void)
+{
+    static Sheet upright, turned;
+    fade_turned(false, false, &upright);
+    for (int k = 1; k < 4; k++) {
+        fade_turned(k & 1, k & 2, &turned);
+        for (int p = 0; p < N; p++) {
+            const int x = k & 1 ? W - 1 - p % W : p % W, y = k & 2 ? H - 1 - p / W : p / W;
+            g_assert_cmpint(turned.knockout[y * W + x], ==, upright.knockout[p]);
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -93,5 +120,6 @@ int main(int argc, char **argv)
     TEST(it_shows_where_it_is_seen_beyond);
     TEST(a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays);
     TEST(a_shape_that_fades_over_its_like_never_pales);
+    TEST(a_drawing_turned_over_fades_alike);
     return g_test_run();
 }

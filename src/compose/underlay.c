@@ -40,19 +40,23 @@ static bool part_init(Part *part, const FlLayer *layer, int width, int height, G
            (part->to_seen = fl_alloc(n, sizeof *part->to_seen, "a matte", error));
 }
 
-/** One row of a distance transform: from the row before, and along itself. */
-static void lower_row(uint16_t *row, const uint16_t *before, int width, int on)
+/** A row of a distance transform, as far as the row before it tells: no pixel waits for another. */
+static void lower_from_before(uint16_t *restrict row, const uint16_t *restrict before, int width)
 {
-    for (int k = 0; k < width; k++) {
-        const int x = on > 0 ? k : width - 1 - k;
-        int least = row[x];
-        if (before) {
-            least = MIN(least, before[x] + SIDE);
-            least = MIN(least, x > 0 ? before[x - 1] + CORNER : FAR);
-            least = MIN(least, x < width - 1 ? before[x + 1] + CORNER : FAR);
-        }
-        if (k > 0)
-            least = MIN(least, row[x - on] + SIDE);
+    for (int x = 0; x < width; x++)
+        row[x] = MIN(row[x], (uint16_t)(before[x] + SIDE));
+    for (int x = 1; x < width; x++)
+        row[x] = MIN(row[x], (uint16_t)(before[x - 1] + CORNER));
+    for (int x = 0; x < width - 1; x++)
+        row[x] = MIN(row[x], (uint16_t)(before[x + 1] + CORNER));
+}
+
+/** The same along the row; on: 1 to the right, -1 to the left. */
+static void lower_along(uint16_t *row, int width, int on)
+{
+    int least = FAR;
+    for (int k = 0, x = on > 0 ? 0 : width - 1; k < width; k++, x += on) {
+        least = MIN(row[x], least + SIDE);
         row[x] = (uint16_t)least;
     }
 }
@@ -62,11 +66,15 @@ static void measure(uint16_t *plane, int width, int height)
 {
     for (int y = 0; y < height; y++) {
         uint16_t *row = plane + (size_t)y * (size_t)width;
-        lower_row(row, y > 0 ? row - width : NULL, width, 1);
+        if (y > 0)
+            lower_from_before(row, row - width, width);
+        lower_along(row, width, 1);
     }
     for (int y = height - 1; y >= 0; y--) {
         uint16_t *row = plane + (size_t)y * (size_t)width;
-        lower_row(row, y < height - 1 ? row + width : NULL, width, -1);
+        if (y < height - 1)
+            lower_from_before(row, row + width, width);
+        lower_along(row, width, -1);
     }
 }
 
@@ -76,41 +84,70 @@ typedef struct Above {
     uint8_t *hides;    // 0..255, the greatest of those that are there
 } Above;
 
-/** Fills over and seen. Returns: whether anything lies over the layer's shape. */
-static bool mark_pixels(Part *part, const FlLayer *layer, const Above *above, int width)
+/** Whether anything lies over the layer's shape. */
+static bool is_below(const FlLayer *layer, const Above *above, int width)
+{
+    const FlRect own = layer->area.box;
+    uint8_t any = 0;
+    for (int y = 0; y < own.height && !any; y++) {
+        const FlColumns span = fl_area_row(&layer->area, y);
+        const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)own.width;
+        const uint8_t *over = above->coverage + (size_t)(own.y + y) * (size_t)width + own.x;
+        for (int x = span.first; x < span.last; x++)
+            any |= coverage[x] && over[x];
+    }
+    return any;
+}
+
+/** Fills over and seen. */
+static void mark_pixels(Part *part, const FlLayer *layer, const Above *above, int width)
 {
     const FlRect own = layer->area.box, box = part->box;
-    bool any = false;
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
-            const int lx = box.x + x - own.x, ly = box.y + y - own.y;
-            const bool within = lx >= 0 && ly >= 0 && lx < own.width && ly < own.height;
-            const uint8_t coverage =
-                within ? layer->coverage[(size_t)ly * (size_t)own.width + (size_t)lx] : 0;
-            const size_t p = (size_t)y * (size_t)box.width + (size_t)x;
-            const size_t i = (size_t)(box.y + y) * (size_t)width + (size_t)(box.x + x);
-            const uint8_t over = above->coverage[i];
-            part->over[p] = over >= SHOWN ? above->hides[i] : 0;
-            part->seen[p] = coverage >= SHOWN && !part->over[p];
-            any |= coverage && over;
-        }
-    return any;
+    memset(part->seen, 0, fl_rect_pixels(box));
+    for (int y = 0; y < box.height; y++) {
+        uint8_t *over = part->over + (size_t)y * (size_t)box.width;
+        const size_t i = (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
+        for (int x = 0; x < box.width; x++)
+            over[x] = above->coverage[i + (size_t)x] >= SHOWN ? above->hides[i + (size_t)x] : 0;
+    }
+    for (int y = 0; y < own.height; y++) {
+        const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)own.width;
+        const size_t p = (size_t)(own.y + y - box.y) * (size_t)box.width + (size_t)(own.x - box.x);
+        const FlColumns span = fl_area_row(&layer->area, y);
+        for (int x = span.first; x < span.last; x++)
+            part->seen[p + (size_t)x] = coverage[x] >= SHOWN && !part->over[p + (size_t)x];
+    }
+}
+
+/** Marks blocks of 2x2 pixels, of two rows, in which the layer is seen: by their left columns. */
+static void mark_blocks(const uint8_t *seen, const uint8_t *below, int width, uint8_t *block)
+{
+    for (int x = 0; x + 1 < width; x++)
+        block[x] = seen[x] & seen[x + 1] & below[x] & below[x + 1];
+}
+
+/** Clears the distances of the pixels of a row that blocks hold. */
+static void clear_blocks(const uint8_t *block, int width, uint16_t *row)
+{
+    for (int x = 0; x + 1 < width; x++)
+        row[x] = block[x] ? 0 : row[x];
+    for (int x = 1; x < width; x++)
+        row[x] = block[x - 1] ? 0 : row[x];
 }
 
 /** Distances out, and to blocks of 2x2 pixels in which the layer is seen: not to slivers. */
 static void find_ways(Part *part)
 {
     const int w = part->box.width, h = part->box.height;
-    const uint8_t *seen = part->seen;
     for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
         part->to_open[p] = part->over[p] ? FAR : 0, part->to_seen[p] = FAR;
-    for (int y = 0; y + 1 < h; y++)
-        for (int x = 0; x + 1 < w; x++) {
-            const size_t p = (size_t)y * (size_t)w + (size_t)x, q = p + (size_t)w;
-            if (seen[p] & seen[p + 1] & seen[q] & seen[q + 1])
-                part->to_seen[p] = part->to_seen[p + 1] = part->to_seen[q] = part->to_seen[q + 1] =
-                    0;
-        }
+    g_autofree uint8_t *block = g_malloc((size_t)w);
+    for (int y = 0; y + 1 < h; y++) {
+        const size_t p = (size_t)y * (size_t)w, q = p + (size_t)w;
+        mark_blocks(part->seen + p, part->seen + q, w, block);
+        clear_blocks(block, w, part->to_seen + p);
+        clear_blocks(block, w, part->to_seen + q);
+    }
     measure(part->to_open, w, h);
     measure(part->to_seen, w, h);
 }
@@ -132,9 +169,10 @@ static int kept_at(const Part *part, int x, int y)
 {
     const size_t p = (size_t)y * (size_t)part->box.width + (size_t)x;
     const int out = part->to_open[p], to = part->to_seen[p];
-    const int keep = 255 * (5 * out + 12 * SIDE - 2 * to) / (2 * (out + 4 * SIDE));
-    if (keep >= 255)
+    const int share = 5 * out + 12 * SIDE - 2 * to, whole = 2 * (out + 4 * SIDE);
+    if (share >= whole) // nearly everywhere: without the division
         return 255;
+    const int keep = 255 * share / whole;
     const int hides = part->over[p] ? part->over[p] : hidden_beside(part, x, y);
     return 255 - ((255 - MAX(keep, 0)) * hides + 127) / 255;
 }
@@ -158,12 +196,13 @@ static void fade(const Part *part, FlLayer *layer)
 static bool fade_layer(FlLayer *layer, const Above *above, int width, int height, GError **error)
 {
     g_auto(Part) part = {0};
+    if (!is_below(layer, above, width))
+        return true;
     if (!part_init(&part, layer, width, height, error))
         return false;
-    if (mark_pixels(&part, layer, above, width)) {
-        find_ways(&part);
-        fade(&part, layer);
-    }
+    mark_pixels(&part, layer, above, width);
+    find_ways(&part);
+    fade(&part, layer);
     return true;
 }
 
