@@ -30,6 +30,7 @@ typedef struct FlStyle {
 } FlStyle;
 
 #define FL_STYLE_TILE "transport.png" // a file of styles that move ink: transport/tile.h
+#define FL_STYLE_NETWORK "transport.net" // the same of a network: transport/network.h
 #define FL_GRANULATION 0.08f          // where none is given: wet, barely visible as such
 
 /**

@@ -6,6 +6,7 @@
 #include "base/schedule.h"
 #include "base/state_bytes.h"
 #include "transport/material_layers.h"
+#include "transport/network_velocity.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -14,6 +15,7 @@
 #define LEAST_REACH 5     // px of the drawing
 #define FARTHEST 18.0f    // px of the tile that ink moves at most: what the squarings are good for
 #define TEAR_TAPERS 1.5f  // within which ink moves less where two shapes meet
+#define NEW 0.4f          // of a network's velocity in that of a frame; the rest is carried
 #define AMOUNT_STEPS 1024 // in the table of colours, of an amount of 1
 #define MOST_AMOUNT 8
 
@@ -115,6 +117,28 @@ static float taper_at(const FlCarriedInk *ink, const FlGuides *guides, size_t p)
     return guides->mask[p] ? t * t * (3 - 2 * t) : 0;
 }
 
+/* Adds `share` of what the two layers do, each as far as it is whole, in its shape. */
+static void add_layers(const FlCarriedInk *ink, const float *whole, int x, int y, float share,
+                       float velocity[2])
+{
+    const FlRect rect = ink->layers.old.rect;
+    const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
+    float old, fresh;
+    fl_material_layers_weights(&ink->layers, p, &old, &fresh);
+    if (ink->input.network) {
+        const float *of_both = ink->layers.velocity.shift + 2 * p;
+        const float w = old * old * whole[p] +
+                        (fresh > 0 ? fresh * fresh * whole[fl_rect_pixels(rect) + p] : 0);
+        velocity[0] += share * w * of_both[0], velocity[1] += share * w * of_both[1];
+        return;
+    }
+    if (old > 0)
+        add_velocity(ink, &ink->layers.old, x, y, share * old * whole[p], velocity);
+    if (fresh > 0)
+        add_velocity(ink, &ink->layers.fresh, x, y, share * fresh * whole[fl_rect_pixels(rect) + p],
+                     velocity);
+}
+
 /* whole: by pixel of the old layer, then by pixel of the fresh one. Ink stays in its shape, too. */
 static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const float *whole,
                           float *velocity)
@@ -129,20 +153,34 @@ static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const
                 taper_at(ink, guides,
                          (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x));
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
-            float *v = velocity + 2 * p, old, fresh;
+            float *v = velocity + 2 * p;
             v[0] = v[1] = 0;
             if (taper == 0)
                 continue;
-            fl_material_layers_weights(&ink->layers, p, &old, &fresh);
-            if (old > 0)
-                add_velocity(ink, &ink->layers.old, x, y, taper * old * whole[p], v);
-            if (fresh > 0)
-                add_velocity(ink, &ink->layers.fresh, x, y,
-                             taper * fresh * whole[fl_rect_pixels(rect) + p], v);
+            add_layers(ink, whole, x, y, taper, v);
             const float speed = sqrtf(v[0] * v[0] + v[1] * v[1]);
             const float held = speed > farthest ? farthest / speed : 1;
             v[0] *= held, v[1] *= held;
         }
+}
+
+/* The network sees each frame alone; what it says is a mean along the motion, so that the pattern
+ * rides and does not flicker. Part of the state, as the layers are. */
+static bool ask_network(FlCarriedInk *ink, const FlGuides *guides, GError **error)
+{
+    const FlRect rect = ink->layers.old.rect;
+    const size_t n = 2 * fl_rect_pixels(rect);
+    FlMaterial *kept = &ink->layers.velocity;
+    const FlNetworkPlace place = {
+        ink->input.scale, {ink->origin[0], ink->origin[1]}, fl_hash64(ink->input.seed)};
+    g_autofree float *now = fl_alloc(n, sizeof *now, "a velocity", error);
+    if (!now || !fl_network_velocity(ink->input.network, &place, &ink->layers, guides, now, error))
+        return false;
+    for (size_t i = 0; kept->shift && i < n; i++)
+        now[i] = kept->shift[i] + NEW * (now[i] - kept->shift[i]);
+    fl_material_clear(kept);
+    *kept = (FlMaterial){rect, g_steal_pointer(&now)};
+    return true;
 }
 
 /* ---- the ink -----------------------------------------------------------------------------------
@@ -268,7 +306,8 @@ static bool advance(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GErr
 {
     const int reach = MAX((int)(REACH * ink->input.scale + 0.5f), LEAST_REACH);
     if (rect.width > 0)
-        return fl_material_layers_advance(&ink->layers, guides, rect, reach, error);
+        return fl_material_layers_advance(&ink->layers, guides, rect, reach, error) &&
+               (!ink->input.network || ask_network(ink, guides, error));
     fl_material_layers_clear(&ink->layers);
     return true;
 }
@@ -319,33 +358,44 @@ bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rg
 /* ---- the state ---------------------------------------------------------------------------------
  */
 
-/* The bytes start with this; the shifts of the old layer and the motion follow and, if there are
- * two layers, the shifts of the fresh one and the shares. */
+/* The bytes start with this; the shifts of the old layer and the motion follow, with a network the
+ * velocity and, if there are two layers, the shifts of the fresh one and the shares. */
 typedef struct Header {
     int32_t planes, x, y, width, height;
 } Header;
 
 static_assert(sizeof(Header) == 20, "the header has no padding");
 
-#define LEAST_PLANES 2
-#define MOST_PLANES 4
+#define MOST_PLANES 5
+
+/* What is kept, in the order of the bytes. Returns: how many. */
+static int kept_planes(FlMaterialLayers *layers, bool network, bool two,
+                       FlMaterial *kept[MOST_PLANES])
+{
+    int n = 0;
+    kept[n++] = &layers->old, kept[n++] = &layers->motion;
+    if (network)
+        kept[n++] = &layers->velocity;
+    if (two)
+        kept[n++] = &layers->fresh, kept[n++] = &layers->share;
+    return n;
+}
 
 GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
 {
-    const FlMaterialLayers *layers = &ink->layers;
-    const FlRect r = layers->old.rect;
+    FlMaterialLayers layers = ink->layers;
+    const FlRect r = layers.old.rect;
     const size_t plane = 2 * fl_rect_pixels(r) * sizeof(float);
-    const float *planes[MOST_PLANES] = {layers->old.shift, layers->motion.shift,
-                                        layers->fresh.shift, layers->share.shift};
-    const Header header = {layers->share.shift ? MOST_PLANES : LEAST_PLANES, r.x, r.y, r.width,
-                           r.height};
-    const size_t size = sizeof header + (size_t)header.planes * plane;
+    FlMaterial *kept[MOST_PLANES];
+    const int planes = kept_planes(&layers, ink->input.network, layers.share.shift, kept);
+    const Header header = {planes, r.x, r.y, r.width, r.height};
+    const size_t size = sizeof header + (size_t)planes * plane;
     uint8_t *bytes = fl_alloc(size, 1, "the state of a region", error);
     if (!bytes)
         return NULL;
     memcpy(bytes, &header, sizeof header);
-    for (int k = 0; k < header.planes && plane > 0; k++)
-        memcpy(bytes + sizeof header + (size_t)k * plane, planes[k], plane);
+    for (int k = 0; k < planes && plane > 0; k++)
+        memcpy(bytes + sizeof header + (size_t)k * plane, kept[k]->shift, plane);
     return g_bytes_new_with_free_func(bytes, size, free, bytes);
 }
 
@@ -364,16 +414,16 @@ static bool load_plane(FlMaterial *material, FlRect rect, const uint8_t *bytes, 
     return true;
 }
 
-static bool load_planes(FlMaterialLayers *layers, const Header *h, const uint8_t *bytes,
-                        GError **error)
+static bool load_planes(FlCarriedInk *ink, const Header *h, const uint8_t *bytes, GError **error)
 {
     const FlRect rect = {h->x, h->y, h->width, h->height};
     const size_t plane = 2 * fl_rect_pixels(rect) * sizeof(float);
-    FlMaterial *material[MOST_PLANES] = {&layers->old, &layers->motion, &layers->fresh,
-                                         &layers->share};
-    const float most[MOST_PLANES] = {1e7f, 1e7f, 1e7f, 1};
+    FlMaterial *kept[MOST_PLANES];
+    const bool network = ink->input.network;
+    kept_planes(&ink->layers, network, h->planes > 2 + network, kept);
     for (int k = 0; k < h->planes; k++)
-        if (!load_plane(material[k], rect, bytes + (size_t)k * plane, most[k], error))
+        if (!load_plane(kept[k], rect, bytes + (size_t)k * plane,
+                        kept[k] == &ink->layers.share ? 1 : 1e7f, error))
             return false;
     return true;
 }
@@ -389,12 +439,13 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
     const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
                       h.width <= ink->input.width && h.height <= ink->input.height &&
                       h.x <= ink->input.width - h.width && h.y <= ink->input.height - h.height;
-    if (!fits || (h.planes != LEAST_PLANES && h.planes != MOST_PLANES))
+    const int least = ink->input.network ? 3 : 2; // two more are of a second layer
+    if (!fits || (h.planes != least && h.planes != least + 2))
         return fl_state_bytes_damaged("its material lies outside the frame", error);
     const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
     if (size != sizeof h + (size_t)h.planes * plane)
         return fl_state_bytes_damaged("it has another size", error);
-    if (plane == 0 || load_planes(&ink->layers, &h, bytes + sizeof h, error))
+    if (plane == 0 || load_planes(ink, &h, bytes + sizeof h, error))
         return true;
     fl_material_layers_clear(&ink->layers);
     return false;

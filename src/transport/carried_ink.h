@@ -3,6 +3,7 @@
 #define FLUIDY_TRANSPORT_CARRIED_INK_H
 
 #include "guides/guides.h"
+#include "transport/network.h"
 #include "transport/tile.h"
 
 /** The colour of ink on its paper. */
@@ -13,7 +14,8 @@ typedef struct FlInkColour {
 
 typedef struct FlCarriedInkInput {
     const FlTile *tile; // borrowed
-    int width, height;  // of what is painted
+    const FlNetwork *network; // moves the ink in place of the tile; NULL: the tile does; borrowed
+    int width, height;        // of what is painted
     float scale;        // px of the drawing per px of the tile
     float strength;     // factor on the motion of ink; 0: flat
     uint64_t seed;      // decides where on the tile the region lies

@@ -14,6 +14,7 @@ void fl_material_layers_clear(FlMaterialLayers *layers)
     fl_material_clear(&layers->fresh);
     fl_material_clear(&layers->share);
     fl_material_clear(&layers->motion);
+    fl_material_clear(&layers->velocity);
 }
 
 void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float *old, float *fresh)
@@ -113,6 +114,8 @@ static bool advance_all(FlMaterialLayers *layers, const FlGuides *guides, FlRect
     const bool two = layers->share.shift;
     if (!fl_revealed_find(&layers->motion, guides, rect, &revealed, error) ||
         !advance(fl_material_advance, &layers->old, guides, &revealed, error) ||
+        (layers->velocity.shift &&
+         !advance(fl_material_carry, &layers->velocity, guides, &revealed, error)) ||
         (two && !(advance(fl_material_advance, &layers->fresh, guides, &revealed, error) &&
                   advance(fl_material_carry, &layers->share, guides, &revealed, error))))
         return false;
