@@ -265,9 +265,7 @@ static void finish_row(const Layer *layer, const int32_t *sum, bool leaks, int w
 static void convolve_row(const Layer *layer, int output, const int16_t *const *rows,
                          const int16_t *taps, int n, bool leaks, Planes *out, int y, int32_t *sum)
 {
-    for (int x = 0; x < out->width; x++)
-        sum[x] = layer->bias[output];
-    fl_row_kernels()->convolve(sum, rows, taps, n, out->width);
+    fl_row_kernels()->convolve(sum, layer->bias[output], rows, taps, n, out->width);
     int16_t *row = row_of(out, output, y);
     finish_row(layer, sum, leaks, out->width, row);
     continue_row(row, out->width);
