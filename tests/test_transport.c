@@ -357,6 +357,37 @@ static void the_network_is_that_of_its_training(void)
     g_assert_cmpmem(found, 2 * n, values + FL_NETWORK_INPUTS * CASE_PLANE, 2 * n);
 }
 
+/* The mean change along the motion within the taper, by the deviation of the pattern. */
+static void a_network_does_not_flicker(void)
+{
+    g_autofree char *folder = network_folder();
+    g_autoptr(FlNetwork) network = fl_network_load(folder, NULL);
+    Disk *disk = disk_new(1);
+    FlCarriedInkInput input = {.tile = disk->tile,
+                               .network = network,
+                               .width = SIDE,
+                               .height = SIDE,
+                               .scale = 1,
+                               .strength = 1,
+                               .seed = 3};
+    fl_carried_ink_free(disk->ink);
+    disk->ink = fl_carried_ink_new(&input, NULL);
+    double change = 0, n = 0, deviation = 0;
+    float before[PIXELS];
+    for (int frame = 0; frame < 8; frame++) {
+        disk_frame(disk, 45 + 3 * (float)frame, frame ? 3 : 0);
+        for (size_t p = 3; frame && p < PIXELS; p++)
+            if (disk->guides.distance[p] > 8)
+                change += fabs((double)disk->amount[p] - (double)before[p - 3]), n++;
+        memcpy(before, disk->amount, sizeof before);
+        mean_of(disk, &deviation);
+    }
+    g_test_message("flicker %.3f of a deviation of %.3f", change / n / deviation, deviation);
+    g_assert_cmpfloat(deviation, >, 0.3);
+    g_assert_cmpfloat(change / n / deviation, <, 0.15);
+    disk_free(disk);
+}
+
 /* Whether a file with these bytes is read; if not, with one line that names it. */
 static bool reads(const char *folder, const uint8_t *bytes, size_t size)
 {
@@ -831,6 +862,7 @@ int main(int argc, char **argv)
     TEST(the_map_itself_keeps_the_ink);
     TEST(no_strength_is_a_flat_fill);
     TEST(the_network_is_that_of_its_training);
+    TEST(a_network_does_not_flicker);
     TEST(hostile_networks_are_rejected);
     TEST(a_frame_is_what_the_formulas_say);
     TEST(painted_ink_is_moved_and_stays_as_much);
