@@ -123,6 +123,10 @@ stop painted2 KILL 2 --paint 'painted2/paint/{region}_%04d.png'
 paint painted2 --paint 'painted2/paint/{region}_%04d.png' && same painted2/paint paint
 result $? 'and the paint that is kept is complete'
 
+paint net_whole "${ink[@]}" --solver network
+stop net KILL 3 "${ink[@]}" --solver network
+paint net "${ink[@]}" --solver network && same net net_whole
+result $? 'what a network moves goes on as well'
 tile=$(dirname "$style")/styles/11
 paint moved_whole --tile "$tile"
 stop moved KILL 3 --tile "$tile"

@@ -45,6 +45,11 @@ ink=(--style "$(dirname "$style")/styles/13")
 paint ink -j 1 "${ink[@]}" && paint ink_many -j 4 "${ink[@]}" && same ink_many ink &&
     FLUIDY_CPU_MASK=0 paint ink_plain "${ink[@]}" && same ink_plain ink && ! same ink one
 result $? 'ink is moved alike by four threads and without the larger instruction sets'
+net=(--style "$(dirname "$style")/styles/12" --solver network)
+paint net -j 1 "${net[@]}" && paint net_many -j 4 "${net[@]}" && same net_many net &&
+    FLUIDY_CPU_MASK=0 paint net_plain "${net[@]}" && same net_plain net &&
+    paint net_tile "${net[@]}" --solver tile && ! same net_tile net
+result $? 'and so does a network'
 paint flat "${ink[@]}" --strength 0 && ! same flat ink
 result $? 'without strength it stays where it is'
 

@@ -322,7 +322,8 @@ static void no_strength_is_a_flat_fill(void)
 #define CASE_HEIGHT 48
 #define CASE_PLANE ((size_t)CASE_WIDTH * CASE_HEIGHT)
 
-/* The network of the batik, and inputs with what the training script's own integers make of them. */
+/* The network of the batik, and inputs with what the training script's own integers make of them.
+ */
 static char *network_folder(void)
 {
     return g_build_filename(g_getenv("FLUIDY_FIXTURES"), "styles", "12", NULL);

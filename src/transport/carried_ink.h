@@ -13,12 +13,12 @@ typedef struct FlInkColour {
 } FlInkColour;
 
 typedef struct FlCarriedInkInput {
-    const FlTile *tile; // borrowed
+    const FlTile *tile;       // borrowed
     const FlNetwork *network; // moves the ink in place of the tile; NULL: the tile does; borrowed
     int width, height;        // of what is painted
-    float scale;        // px of the drawing per px of the tile
-    float strength;     // factor on the motion of ink; 0: flat
-    uint64_t seed;      // decides where on the tile the region lies
+    float scale;              // px of the drawing per px of the tile
+    float strength;           // factor on the motion of ink; 0: flat
+    uint64_t seed;            // decides where on the tile the region lies
     FlInkColour colour;
 } FlCarriedInkInput;
 

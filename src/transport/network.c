@@ -22,7 +22,25 @@
 #define MOST_ROWS 448 // of inputs to one row of a layer: 7 * MOST_CHANNELS planes, 3 rows or fewer
 
 typedef enum Name {
-    STEM, E1A, E1B, E2A, E2B, E3A, E3B, E4A, E4B, D3A, D3B, D2A, D2B, D1A, D1B, O1, O2, O3, LAYERS
+    STEM,
+    E1A,
+    E1B,
+    E2A,
+    E2B,
+    E3A,
+    E3B,
+    E4A,
+    E4B,
+    D3A,
+    D3B,
+    D2A,
+    D2B,
+    D1A,
+    D1B,
+    O1,
+    O2,
+    O3,
+    LAYERS
 } Name;
 
 /* Inputs and outputs in multiples of the network's channels; 0: the network's own, or one. */
@@ -133,8 +151,7 @@ static bool make_tables(FlNetwork *network, GError **error)
 {
     const int n = 2 * FL_NETWORK_MOST + 1;
     for (int h = 0; h < FL_NETWORK_HEADS; h++) {
-        float *table = network->tanh_of[h] =
-            fl_alloc((size_t)n, sizeof(float), "a network", error);
+        float *table = network->tanh_of[h] = fl_alloc((size_t)n, sizeof(float), "a network", error);
         for (int i = 0; table && i < n; i++)
             table[i] = (float)lrint(1024 * amplitudes[h] *
                                     tanh(ldexp(i - FL_NETWORK_MOST, -network->bits))) /
@@ -321,8 +338,7 @@ static bool stem(const Layer *layer, const Planes *in, Planes *out, GError **err
     if (!taps || !sums)
         return false;
     for (int i = 0; i < layer->outputs * n; i++) { // output, input, half, row
-        const int16_t *w =
-            layer->weight + 25 * (size_t)(i / 10) + 5 * (size_t)(i % 5) + i / 5 % 2;
+        const int16_t *w = layer->weight + 25 * (size_t)(i / 10) + 5 * (size_t)(i % 5) + i / 5 % 2;
         for (int k = 0; k < 3; k++)
             taps[3 * i + k] = (int16_t)(i / 5 % 2 && k == 2 ? 0 : w[2 * k]);
     }

@@ -118,8 +118,8 @@ static void make_input(const Job *job, float x, float y, int16_t *to, size_t pla
     const FlRect r = job->layers->old.rect;
     const Four at = four_around(x, y, job->guides->width, job->guides->height);
     const float depth = mean_of_four(job->guides->distance, 1, &at) / job->place->scale;
-    const bool near = x > (float)r.x - 1 && y > (float)r.y - 1 &&
-                      x < (float)(r.x + r.width) && y < (float)(r.y + r.height);
+    const bool near = x > (float)r.x - 1 && y > (float)r.y - 1 && x < (float)(r.x + r.width) &&
+                      y < (float)(r.y + r.height);
     const float coverage = near ? fminf(fmaxf(depth + 0.5f, 0), 1) : 0;
     float noise[2] = {0, 0}, old, fresh;
     if (coverage > 0) {
