@@ -385,7 +385,7 @@ static void a_network_does_not_flicker(void)
     }
     g_test_message("flicker %.3f of a deviation of %.3f", change / n / deviation, deviation);
     g_assert_cmpfloat(deviation, >, 0.3);
-    g_assert_cmpfloat(change / n / deviation, <, 0.15);
+    g_assert_cmpfloat(change / n / deviation, <, 0.08); // 0.14 without the mean along the motion
     disk_free(disk);
 }
 
