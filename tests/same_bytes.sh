@@ -53,6 +53,20 @@ result $? 'and so does a network'
 paint flat "${ink[@]}" --strength 0 && ! same flat ink
 result $? 'without strength it stays where it is'
 
+# Paint that is cut out, with alpha of its own.
+flames=(--style "$(dirname "$style")/style-flames" --engine lazyfluids --tint keep -b none)
+paint flames -j 1 "${flames[@]}" --paint "flames_paint/$layers" && paint flames_many -j 4 "${flames[@]}" &&
+    same flames_many flames && FLUIDY_CPU_MASK=0 paint flames_plain "${flames[@]}" && same flames_plain flames
+result $? 'what is cut out is painted alike by four threads and without the larger instruction sets'
+paint flames_merged "${flames[@]}" --merge --paint "flames_paint/$layers" && same flames_merged flames
+result $? 'and merged of its paint'
+paint flames_still "${flames[@]}" --style-frames 1 && ! same flames_still flames
+result $? 'its frames are played in step'
+export FLUIDY_CACHE=$PWD/cache
+paint flames_first "${flames[@]}" && paint flames_second "${flames[@]}" && same flames_second flames
+result $? 'and taken from the cache'
+export FLUIDY_CACHE=off
+
 # Lines over the paint, drawn by hand.
 mkdir lined
 for i in 1 2 3 4; do

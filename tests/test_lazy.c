@@ -84,6 +84,63 @@ static void paint(Film *film, int frames)
             fl_lazy_frame(film->lazy, &film->guides, film->rgb, film->alpha, NULL, NULL, &error));
 }
 
+#define CUT_OUT_RED 200 // of a cut-out, which has one colour: this, 120, 40
+
+/* A still disc that is cut out, full but for soft holes in its middle. */
+static FlStyle *cut_out(void)
+{
+    FlStyle *style = small_style();
+    style->n_frames = 1, style->cut_out = true;
+    for (int p = 0; p < STYLE_W * STYLE_H; p++) {
+        const int x = p % STYLE_W, y = p / STYLE_W;
+        const double inside = 22 - hypot(x - STYLE_W / 2, y - STYLE_H / 2);
+        const double hole = CLAMP(inside / 4 - 2, 0, 1) * small_blotches(x, y) * 1.6;
+        const double alpha = CLAMP(inside / 4, 0, 1) * (1 - CLAMP(hole - .3, 0, 1));
+        style->mask[p] = (uint8_t)lrint(255 * alpha);
+        for (int c = 0; c < 3; c++)
+            style->rgb[3 * p + c] =
+                (uint8_t)lrint((CUT_OUT_RED - 80 * c) * alpha + style->paper[c] * (1 - alpha));
+    }
+    return style;
+}
+
+/* Mean alpha around the middle, and the share that is less than half. */
+static void alpha_within(const uint8_t *alpha, int width, int height, double radius, double *mean,
+                         double *thin)
+{
+    double sum = 0, below = 0, n = 0;
+    for (int p = 0; p < width * height; p++) {
+        const double x = p % width - (width - 1) / 2.0, y = p / width - (height - 1) / 2.0;
+        if (hypot(x, y) < radius)
+            sum += alpha[p], below += alpha[p] < 128, n++;
+    }
+    *mean = sum / n, *thin = below / n;
+}
+
+static void a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours(void)
+{
+    g_auto(Film) film;
+    film_init(&film, cut_out(), "lazyfluids", "1");
+    turn_by(&film, .05);
+    paint(&film, 6);
+    double mean, thin, mean_there, thin_there;
+    alpha_within(film.alpha, SIDE, SIDE, 26, &mean, &thin);
+    alpha_within(film.style->mask, STYLE_W, STYLE_H, 16, &mean_there, &thin_there);
+    g_test_message("alpha %.0f, thin %.3f; exemplar %.0f, %.3f", mean, thin, mean_there,
+                   thin_there);
+    g_assert_cmpfloat(fabs(mean - mean_there), <, 10);
+    g_assert_cmpfloat(thin, >, .8 * thin_there);
+    g_assert_cmpfloat(thin, <, 1.25 * thin_there);
+    int soft = 0;
+    for (int p = 0; p < PIXELS; p++) {
+        soft += film.guides.mask[p] == 0 && film.alpha[p] > 16;
+        for (int c = 0; c < 3 && film.alpha[p] > 16; c++)
+            g_assert_cmpint(abs(film.rgb[3 * p + c] - (CUT_OUT_RED - 80 * c)), <=,
+                            2 + 255 / film.alpha[p]);
+    }
+    g_assert_cmpint(soft, >, 60); // its rim goes beyond the contour
+}
+
 /* The standard deviation of green, inside. */
 static double spread_of(const uint8_t *rgb, const uint8_t *mask, int pixels)
 {
@@ -223,11 +280,11 @@ static void motion_blur_keeps_what_rests_and_what_is_flat(void)
     float motion[2 * 16 * 16] = {0};
     for (int k = 0; k < 4 * 16 * 16; k++)
         rgba[k] = (uint16_t)(k * 12345);
-    g_autofree uint16_t *still = fl_motion_blur(rgba, motion, 16, 16, 1, &error);
+    g_autofree uint16_t *still = fl_motion_blur(rgba, motion, 16, 16, false, 1, &error);
     g_assert_cmpmem(still, sizeof rgba, rgba, sizeof rgba);
     for (int p = 0; p < 16 * 16; p++)
         motion[2 * p] = 7, memcpy(rgba + 4 * p, (uint16_t[]){900, 20000, 65535, 65535}, 8);
-    g_autofree uint16_t *flat = fl_motion_blur(rgba, motion, 16, 16, 1, &error);
+    g_autofree uint16_t *flat = fl_motion_blur(rgba, motion, 16, 16, false, 1, &error);
     for (int k = 0; k < 4 * 16 * 16; k++)
         g_assert_cmpint(abs(flat[k] - rgba[k]), <=, 1); // the kernel sums to 1
 }
@@ -264,6 +321,8 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/lazy/contrast-stays-where-use-is-equal-and-goes-where-it-is-not",
                     contrast_stays_where_use_is_equal_and_goes_where_it_is_not);
+    g_test_add_func("/lazy/a-cut-out-has-the-alpha-of-its-exemplar-and-no-paper-in-its-colours",
+                    a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours);
     g_test_add_func("/lazy/paint-turns-with-the-drawing", paint_turns_with_the_drawing);
     g_test_add_func("/lazy/same-picture-on-any-thread-count", same_picture_on_any_thread_count);
     g_test_add_func("/lazy/a-state-that-was-saved-goes-on-as-it-would-have",

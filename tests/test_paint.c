@@ -88,8 +88,8 @@ static void paint(Film *film)
     g_assert_cmpint(film->n_taken, ==, FRAMES);
 }
 
-/* The same block as a drawing. */
-static void render(const Film *film, const char *folder, const char *pattern)
+/* The same block as a drawing over nothing; merge: of paint that is there. */
+static void render(const Film *film, const char *folder, const char *pattern, bool merge)
 {
     g_autofree char *drawings = g_build_filename(folder, "d_%d.svg", NULL);
     g_autofree char *output = g_build_filename(folder, "o_%d.png", NULL);
@@ -106,6 +106,9 @@ static void render(const Film *film, const char *folder, const char *pattern)
     const FlRenderOptions options = {.inputs = inputs,
                                      .output = output,
                                      .paint = pattern,
+                                     .merge = merge,
+                                     .overwrite = FL_OVERWRITE_YES,
+                                     .background = "none",
                                      .settings = film->setting,
                                      .n_settings = film->region.n_settings};
     g_autoptr(GError) error = NULL;
@@ -117,7 +120,7 @@ static void assert_as_rendered(const Film *film)
 {
     g_autoptr(Scratch) folder = scratch_make();
     g_autofree char *pattern = g_build_filename(folder, "p_{region}_%d.png", NULL);
-    render(film, folder, pattern);
+    render(film, folder, pattern, false);
     for (int f = 0; f < FRAMES; f++) {
         g_autofree char *name = g_strdup_printf("p_%s_%d.png", film->region.name, f);
         g_autofree char *file = g_build_filename(folder, name, NULL);
@@ -164,6 +167,55 @@ static void the_layer_is_cut_out_and_has_the_colour(void)
         g_assert_cmpint(n, >, 34 * 30 / 2);
         g_assert_cmpfloat(sum[2] / n, >, sum[1] / n + 20); // #335588 is blue
         g_assert_cmpfloat(sum[1] / n, >, sum[0] / n + 10);
+    }
+}
+
+static FlPicture *output_of(const char *folder, int frame)
+{
+    g_autofree char *name = g_strdup_printf("o_%d.png", frame);
+    g_autofree char *file = g_build_filename(folder, name, NULL);
+    g_autoptr(GError) error = NULL;
+    FlPicture *picture = fl_picture_read_png(file, &error);
+    g_assert_no_error(error);
+    return picture;
+}
+
+/* Returns: how many pixels beyond the block are soft. */
+static int assert_flames(const FlPicture *picture, const uint8_t *layer, int frame)
+{
+    int beyond = 0;
+    for (int p = 0; p < PIXELS; p++) {
+        const uint8_t *rgba = picture->rgba + 4 * p;
+        g_assert_cmpint(abs(rgba[3] - layer[4 * p + 3]), <=, 2);
+        if (rgba[3] >= 16) { // neither paper nor the green of what is transparent
+            g_assert_cmpint(rgba[0], >=, 155);
+            g_assert_cmpint(rgba[1], <=, 215);
+            g_assert_cmpint(rgba[2], <=, 100);
+        }
+        if (!inside(p % WIDTH, p / WIDTH, frame))
+            beyond += rgba[3] > 8 && rgba[3] < 250;
+    }
+    return beyond;
+}
+
+static void a_cut_out_brings_its_own_alpha(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *pattern = g_build_filename(folder, "p_{region}_%d.png", NULL);
+    g_autoptr(Film) film = film_new();
+    g_free(film->style);
+    film->style = g_test_build_filename(G_TEST_DIST, "style-flames", NULL);
+    film->setting[0].value = film->style, film->setting[2].value = "keep";
+    film->setting[3] = (FlSetting){.name = "engine", .value = "lazyfluids"};
+    film->region.n_settings = 4;
+    paint(film);
+    assert_as_rendered(film);
+    for (int merge = 0; merge < 2; merge++) {
+        render(film, folder, pattern, merge);
+        for (int f = 0; f < FRAMES; f++) {
+            g_autoptr(FlPicture) picture = output_of(folder, f);
+            g_assert_cmpint(assert_flames(picture, film->layer[f], f), >, 40);
+        }
     }
 }
 
@@ -270,6 +322,7 @@ int main(int argc, char **argv)
     TEST(paints_what_a_drawing_is_painted);
     TEST(is_carried_as_a_drawing_is);
     TEST(the_layer_is_cut_out_and_has_the_colour);
+    TEST(a_cut_out_brings_its_own_alpha);
     TEST(threads_of_one_are_not_those_of_another);
     TEST(mistakes_are_told_in_one_line);
     TEST(a_region_that_never_comes_is_paper);

@@ -30,6 +30,8 @@ static int opacity_of(FlMedium medium, int amount)
 {
     if (medium == FL_MEDIUM_OPAQUE) // 1 - 2^-4a: FL_AMOUNT_ONE * 256 is four octaves
         return 255 - fl_density_level(256 * amount) / 256;
+    if (medium == FL_MEDIUM_SOLID)
+        return 255;
     return medium == FL_MEDIUM_BODY ? body_of(amount) : 0;
 }
 
@@ -177,11 +179,16 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *colouring, con
     }
 }
 
-/** Row y of an area's box in what has been painted. */
-static const uint8_t *painted_row(const FlPaintedPart *painted, FlRect box, int y)
+/** Where row y of an area's box begins in what has been painted. */
+static size_t painted_at(const FlPaintedPart *painted, FlRect box, int y)
 {
     const size_t row = (size_t)(box.y + y - painted->box.y) * (size_t)painted->box.width;
-    return painted->rgb + 3 * (row + (size_t)(box.x - painted->box.x));
+    return row + (size_t)(box.x - painted->box.x);
+}
+
+static const uint8_t *painted_row(const FlPaintedPart *painted, FlRect box, int y)
+{
+    return painted->rgb + 3 * painted_at(painted, box, y);
 }
 
 /** The exemplar's own colours on the output's paper. */
@@ -227,6 +234,34 @@ static void keep_colours(const FlInk *ink, const FlColouring *colouring, const F
     }
 }
 
+/** The exemplar's own colours as they are. */
+static void copy_colours(const FlPaintedPart *painted, const int16_t *amounts, const FlArea *area,
+                         uint8_t *rgba)
+{
+    for (int y = 0; y < area->box.height; y++) {
+        const size_t row = (size_t)y * (size_t)area->box.width;
+        const FlColumns span = fl_area_row(area, y);
+        const uint8_t *source = painted_row(painted, area->box, y);
+        for (int x = span.first; x < span.last; x++)
+            if (amounts[row + (size_t)x] >= 0)
+                memcpy(rgba + 4 * (row + (size_t)x), source + 3 * (size_t)x, 3);
+    }
+}
+
+/** As transparent as the paint itself is. */
+static void take_alpha(const FlPaintedPart *painted, const int16_t *amounts, const FlArea *area,
+                       uint8_t *rgba)
+{
+    for (int y = 0; y < area->box.height; y++) {
+        const size_t row = (size_t)y * (size_t)area->box.width;
+        const FlColumns span = fl_area_row(area, y);
+        const uint8_t *alpha = painted->alpha + painted_at(painted, area->box, y);
+        for (int x = span.first; x < span.last; x++)
+            if (amounts[row + (size_t)x] >= 0)
+                rgba[4 * (row + (size_t)x) + 3] = alpha[x];
+    }
+}
+
 /** Fills that have been met, each at the place of its colour: a later one takes it. */
 #define FILLS 1024
 
@@ -266,7 +301,9 @@ void fl_colourise(const FlInk *ink, const FlColouring *colouring, const FlPainte
 {
     FlScale scale;
     fl_scale_init(&scale, colouring->linear);
-    if (colouring->tint == FL_TINT_KEEP)
+    if (colouring->tint == FL_TINT_KEEP && painted->alpha)
+        copy_colours(painted, amounts, area, rgba);
+    else if (colouring->tint == FL_TINT_KEEP)
         keep_colours(ink, colouring, &scale, painted, amounts, area, rgba);
     else if (colouring->picture)
         colour_picture(ink, colouring, &scale, amounts, area, rgba);
@@ -274,6 +311,8 @@ void fl_colourise(const FlInk *ink, const FlColouring *colouring, const FlPainte
         colour_flat_play(ink, colouring, &scale, amounts, area, rgba);
     else
         colour_flat(ink, colouring, &scale, amounts, area, rgba);
+    if (painted && painted->alpha)
+        take_alpha(painted, amounts, area, rgba);
 }
 
 void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *painted,

@@ -28,6 +28,7 @@ typedef struct FlColouring {
 typedef struct FlPaintedPart {
     const uint8_t *rgb;
     FlRect box;
+    const uint8_t *alpha; // of the box: how far the paint hides, whatever its amount; or NULL
 } FlPaintedPart;
 
 /**
@@ -40,13 +41,16 @@ void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *p
 /**
  * Colours the pixels of an area that have an amount of paint, 0 or more.
  *
- * painted is read for FL_TINT_KEEP only. rgba, four bytes per pixel of the box, becomes
- * straight RGBA: the paint alone, without the coverage. Over the paper it has the painted colour in
- * every medium. Alpha is, and in a fill never falls as the amount a rises:
+ * The colours in painted are read for FL_TINT_KEEP only. rgba, four bytes per pixel of the box,
+ * becomes straight RGBA: the paint alone, without the coverage. Over the paper it has the painted
+ * colour in every medium. Alpha is, and in a fill never falls as the amount a rises:
  *
  *     transparent  the least with which that is so, so that thin paint is a glaze
  *     opaque       at least 1 - 2^-4a: the fill's own colour, and thin places let through
  *     body         at least 5a: as if painted on the paper and cut out with it
+ *     solid        all
+ *
+ * Paint with alpha of its own has that instead, and the exemplar's own colours are as they are.
  *
  * The other pixels, which were 0, are 0.
  */

@@ -11,6 +11,7 @@
 #include "compose/knockout.h"
 #include "compose/underlay.h"
 #include "compose/unevenness.h"
+#include "compose/visibility.h"
 #include <math.h>
 #include <string.h>
 
@@ -53,7 +54,7 @@ static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegi
 
 static FlPaintedPart part_of(const FlPaintedRegion *painted)
 {
-    return (FlPaintedPart){painted->painted, painted->rect};
+    return (FlPaintedPart){painted->painted, painted->rect, painted->alpha};
 }
 
 /* How much paint each pixel of a run's box has; to be freed with free(). */
@@ -97,42 +98,102 @@ static void roughen(const Stack *stack, const FlPaintedRegion *painted, const Fl
                  stack->input->tooth, area, amounts);
 }
 
+/* Colours a layer by its amounts of paint, once the grain of paper and hand is in them. */
+static bool colour_layer(FlLayer *layer, const Stack *stack, const FlPaintedRegion *painted,
+                         FlColouring *colouring, int16_t *amounts, GError **error)
+{
+    const FlPaintedPart part = part_of(painted);
+    const FlUneven uneven = uneven_of(stack, painted);
+    g_autofree int8_t *play = NULL;
+    if (colouring->pigments > 0) {
+        if (!(play = fl_alloc(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
+            return false;
+        fl_play_of_pigments(&uneven, &layer->area, play);
+    }
+    colouring->play = play;
+    roughen(stack, painted, &layer->area, amounts);
+    fl_colourise(painted->style->ink, colouring, &part, amounts, &layer->area, layer->rgba);
+    colouring->play = NULL;
+    return true;
+}
+
 /* Knockout is of the amounts before the paper's grain, which else would punch holes into it. */
 static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaintedRegion *painted,
                         int exposure, GError **error)
 {
     const FlDraw *draw = &stack->edges->draws->draw[r];
     FlColouring colouring = colouring_of(stack->input, painted, draw);
-    const FlPaintedPart part = part_of(painted);
-    const FlUneven uneven = uneven_of(stack, painted);
     const FlRect box = layer->area.box;
     g_autofree int16_t *amounts = amounts_of(stack->edges, r, painted, exposure, error);
-    g_autofree int8_t *play = NULL;
     uint8_t *knockout = amounts ? fl_alloc(fl_rect_pixels(box), 1, "a layer", error) : NULL;
     layer->knockout = knockout;
     layer->stacking = painted->settings->stacking;
-    if (!knockout ||
-        (colouring.pigments > 0 && !(play = fl_alloc(fl_rect_pixels(box), 1, "a layer", error))))
+    if (!knockout)
         return false;
-    if (play)
-        fl_play_of_pigments(&uneven, &layer->area, play);
-    colouring.play = play;
     const FlDrawing *drawing = stack->input->drawing;
     const int border_px = (int)(painted->style->exemplar->border_px + 0.5f);
-    if (!fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
-                     fl_drawing_height(drawing), MAX(border_px, 1), knockout, error))
-        return false;
-    roughen(stack, painted, &layer->area, amounts);
-    fl_colourise(painted->style->ink, &colouring, &part, amounts, &layer->area, layer->rgba);
-    return true;
+    return fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
+                       fl_drawing_height(drawing), MAX(border_px, 1), knockout, error) &&
+           colour_layer(layer, stack, painted, &colouring, amounts, error);
 }
 
-static void clear_layer(FlLayer *layer, bool with_coverage)
+/* Paint with alpha of its own fades out by that, beyond its shape: the layer of a grown one,
+ * through which what lies below is seen. */
+static bool reach_out(FlLayer *layer, const Stack *stack, const FlDraw *draw,
+                      const FlPaintedRegion *painted, GError **error)
+{
+    const int width = fl_drawing_width(stack->input->drawing);
+    const int height = fl_drawing_height(stack->input->drawing);
+    const FlVisibleShape shape = {&draw->area, draw->coverage};
+    g_autofree uint8_t *grown = fl_alloc((size_t)width * (size_t)height, 1, "a layer", error);
+    if (!grown)
+        return false;
+    fl_visibility_spread(&shape, width, height, painted->reach_px, grown);
+    fl_area_clear(&layer->area);
+    fl_area_init(&layer->area, grown, width, height);
+    const FlRect box = layer->area.box;
+    uint8_t *coverage = fl_alloc(fl_rect_pixels(box), 1, "a layer", error);
+    layer->coverage = coverage, layer->owns_coverage = true;
+    if (coverage)
+        fl_rect_copy(grown, (FlRect){0, 0, width, height}, coverage, box, 1);
+    return coverage != NULL;
+}
+
+/* It has the alpha of the paint, whatever the amounts. */
+static bool paint_cut_out(FlLayer *layer, const Stack *stack, int r, const FlPaintedRegion *painted,
+                          int exposure, GError **error)
+{
+    const FlDraw *draw = &stack->edges->draws->draw[r];
+    FlColouring colouring = colouring_of(stack->input, painted, draw);
+    const FlPaintedPart part = part_of(painted);
+    const FlRect box = layer->area.box;
+    g_autofree int16_t *amounts = fl_alloc(fl_rect_pixels(box), sizeof *amounts, "a layer", error);
+    g_autofree uint8_t *picture = NULL;
+    if (!amounts)
+        return false;
+    if (colouring.picture) {
+        if (!(picture = fl_alloc(4 * fl_rect_pixels(box), 1, "a layer", error)))
+            return false;
+        fl_rect_copy(colouring.picture, draw->area.box, picture, box, 4);
+        if (!fl_layers_bleed(picture, box.width, box.height, (int)painted->reach_px + 2, error))
+            return false;
+        colouring.picture = picture;
+    }
+    const bool glaze = painted->settings->stacking == FL_STACKING_GLAZE;
+    layer->stacking = glaze ? FL_STACKING_GLAZE : FL_STACKING_OVER;
+    colouring.medium = FL_MEDIUM_SOLID;
+    const bool keep = colouring.tint == FL_TINT_KEEP;
+    fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
+                         layer->coverage, &layer->area, amounts);
+    return colour_layer(layer, stack, painted, &colouring, amounts, error);
+}
+
+static void clear_layer(FlLayer *layer)
 {
     fl_area_clear(&layer->area);
     free(layer->rgba);
     free(layer->knockout);
-    if (with_coverage)
+    if (layer->owns_coverage)
         free((uint8_t *)layer->coverage);
     *layer = (FlLayer){0};
 }
@@ -149,10 +210,14 @@ static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **
                        .alpha = draw->alpha,
                        .stacking = FL_STACKING_KNOCKOUT,
                        .mix = draw->mix};
-    if (!(layer->rgba = fl_alloc(4 * fl_rect_pixels(box), 1, "a layer", error)))
+    const FlPaintedRegion *painted = p >= 0 ? stack->input->painted[p] : NULL;
+    const bool cut_out = painted && painted->alpha;
+    if ((cut_out && !reach_out(layer, stack, draw, painted, error)) ||
+        !(layer->rgba = fl_alloc(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
         return false;
-    if (p >= 0)
-        return paint_layer(layer, stack, r, stack->input->painted[p], stack->exposures[p], error);
+    if (painted)
+        return (cut_out ? paint_cut_out : paint_layer)(layer, stack, r, painted,
+                                                       stack->exposures[p], error);
     fl_colourise_plain(draw->picture, draw->rgb, draw->coverage, &layer->area, layer->rgba);
     return true;
 }
@@ -166,7 +231,7 @@ static bool fill_layer(FlLayer *layer, const Stack *stack, int r, GError **error
     FlLayer half;
     const bool done = fill_film_layer(&half, stack, r, error) &&
                       fl_layer_double(&half, input->width, input->height, layer, error);
-    clear_layer(&half, false);
+    clear_layer(&half);
     return done;
 }
 
@@ -212,7 +277,6 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
 {
     const FlDrawList *draws = composite->draws;
     composite->layers = g_new0(FlLayer, MAX(draws->n, 1));
-    composite->enlarged = input->half;
     composite->names = g_new0(char *, draws->n + 1);
     g_autofree int *draw = g_new0(int, MAX(draws->n, 1));
     for (int r = 0; r < draws->n; r++)
@@ -286,7 +350,7 @@ static bool compose(FlComposite *composite, const FlComposeInput *input, int fra
 static void drop_layers(FlComposite *composite)
 {
     for (int k = 0; k < composite->n_layers; k++) {
-        clear_layer(&composite->layers[k], composite->enlarged);
+        clear_layer(&composite->layers[k]);
         g_free(composite->names[k]);
     }
     g_clear_pointer(&composite->layers, g_free);

@@ -11,7 +11,6 @@ typedef struct FlComposite {
     FlDrawList *draws;
     int n_layers;     // 0: nobody wants them apart
     FlLayer *layers;  // bottom first; their areas, rgba and body are owned
-    bool enlarged;    // coverage is owned as well; else it is the runs'
     char **names;     // of the layers, for files: unique in the frame
     uint8_t *ground;  // what lies below the layers, opaque or a picture, if they are stored and
                       // there is something; else NULL

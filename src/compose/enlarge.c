@@ -148,6 +148,7 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
 {
     GError *first = NULL;
     *full = *half;
+    full->owns_coverage = true;
     full->coverage = full->knockout = NULL, full->rgba = NULL, full->area.row = NULL;
     if (half->area.box.width > 0)
         full->area.box = doubled(half->area.box, width, height);

@@ -12,8 +12,9 @@
 /** One layer; in arrays the bottom one comes first. */
 typedef struct FlLayer {
     FlArea area;             // where it may be seen
-    const uint8_t *coverage; // of the box, 0..255, borrowed: the whole shape, times the opacity of
-                             // its fill where that varies; 0 beyond the area
+    const uint8_t *coverage; // of the box, 0..255: the whole shape, times the opacity of its fill
+                             // where that varies; 0 beyond the area
+    bool owns_coverage;      // else it is borrowed
     uint8_t *knockout;       // box.width * box.height of fl_knockout(), borrowed: it knocks out
                              // where its paint has body only; NULL: wherever its shape is
     uint8_t *rgba;       // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by

@@ -5,6 +5,7 @@
 #include "compose/ink.h"
 #include "params/region_settings.h"
 #include "synth/synth.h"
+#include <string.h>
 
 /** What becomes of a region that is not painted, where else the index of its paint is. */
 enum { FL_DRAWN_AS_IT_IS = -1, FL_LEFT_OUT = -2 };
@@ -32,11 +33,26 @@ typedef struct FlPaintedRegion {
     int exposure;                     // of its amounts; 0: as the paint itself asks for
     FlRect rect;                      // the part of it in which the region ever is, with some room
     uint8_t *painted;                 // of rect: 3 bytes of sRGB a pixel, the exemplar's colours
+    uint8_t *alpha;                   // of rect, behind them in one piece; NULL: paint is on paper
+    float reach_px;                   // how far alpha goes beyond the shape; 0: there is none
     FlFrameStats stats;               // of the last frame that was painted, as is what follows
     FlSynthView view;                 // nnf NULL: nobody wanted it
     double seconds;
     bool unseen; // in every frame others lie over it: it is not painted, and is no layer
     bool taken;  // from the cache: nothing was painted, stats and view are empty
 } FlPaintedRegion;
+
+/** The bytes of its colours and alpha. */
+static inline size_t fl_painted_bytes(const FlPaintedRegion *painted)
+{
+    return (painted->reach_px > 0 ? 4 : 3) * fl_rect_pixels(painted->rect);
+}
+
+/** A pixel of rect as straight RGBA. */
+static inline void fl_painted_pixel(const FlPaintedRegion *painted, size_t p, uint8_t rgba[4])
+{
+    memcpy(rgba, painted->painted + 3 * p, 3);
+    rgba[3] = painted->alpha ? painted->alpha[p] : 255;
+}
 
 #endif

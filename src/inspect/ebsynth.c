@@ -1,5 +1,6 @@
 #include "inspect/ebsynth.h"
 
+#include "base/alloc.h"
 #include "io/atomic_file.h"
 #include "io/png.h"
 #include <string.h>
@@ -154,6 +155,12 @@ bool fl_ebsynth_frame(const char *folder, const FlPaintedRegion *painted, const 
         return write_step(&step, pairs, before, error);
     g_autofree char *name = picture_name(&step, "out", "");
     g_autofree char *path = g_build_filename(region, name, NULL);
-    return fl_png_write(path, painted->painted, painted->rect.width, painted->rect.height, 3,
-                        error);
+    const FlRect rect = painted->rect;
+    const size_t pixels = fl_rect_pixels(rect);
+    if (!painted->alpha)
+        return fl_png_write(path, painted->painted, rect.width, rect.height, 3, error);
+    g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "a painted region", error);
+    for (size_t p = 0; rgba && p < pixels; p++)
+        fl_painted_pixel(painted, p, rgba + 4 * p);
+    return rgba && fl_png_write(path, rgba, rect.width, rect.height, 4, error);
 }

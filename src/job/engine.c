@@ -65,7 +65,12 @@ static void lazy_close(void *state)
 static bool lazy_frame(void *state, const FlGuides *guides, const FlEnginePaint *paint,
                        GError **error)
 {
-    return fl_lazy_frame(state, guides, paint->rgb, NULL, paint->stats, paint->view, error);
+    return fl_lazy_frame(state, guides, paint->rgb, paint->alpha, paint->stats, paint->view, error);
+}
+
+static float lazy_reach(const FlStyleInstance *style, const FlParams *params)
+{
+    return style->exemplar->cut_out ? fl_lazy_reach(style->exemplar, params) : 0;
 }
 
 static bool lazy_guide_pairs(const void *state, FlGuidePairs *pairs, GError **error)
@@ -162,6 +167,7 @@ static const FlEngine engines[] = {
                          .save = patch_save,
                          .load = patch_load},
     [FL_ENGINE_LAZYFLUIDS] = {.name = "lazyfluids",
+                              .reach = lazy_reach,
                               .plays = true,
                               .open = lazy_open,
                               .close = lazy_close,

@@ -16,6 +16,7 @@ typedef struct FlEngineInput {
 /** What an engine gives back for a frame. */
 typedef struct FlEnginePaint {
     uint8_t *rgb;        // width * height * 3 sRGB in the style's colours, its paper without paint
+    uint8_t *alpha;      // width * height, of the colours in rgb; NULL unless it has a reach
     FlFrameStats *stats; // zeroed; an engine may leave it
     FlSynthView *view;   // zeroed; NULL: nobody wants it. An engine without a field leaves it
 } FlEnginePaint;
@@ -31,6 +32,9 @@ typedef struct FlEngine {
     /** The exposure of a style's paint whose amounts are meant as they are; NULL: it is measured.
      */
     int (*exposure)(const FlStyleInstance *style);
+    /** How far beyond its region paint has alpha of its own, px; 0, and NULL: it has no such alpha.
+     */
+    float (*reach)(const FlStyleInstance *style, const FlParams *params);
     bool plays; // shows the recording: whether it flows and is large enough matters
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);

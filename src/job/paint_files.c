@@ -12,6 +12,13 @@ char *fl_paint_file(const char *pattern, const FlDrawing *drawing, const FlRegio
     return fl_output_name(pattern, fl_drawing_number(drawing, first), region->name, error);
 }
 
+static void restore(const uint8_t *rgba, size_t p, FlPaintedRegion *painted)
+{
+    memcpy(painted->painted + 3 * p, rgba, 3);
+    if (painted->alpha)
+        painted->alpha[p] = rgba[3];
+}
+
 bool fl_paint_save(const FlPaintedRegion *painted, const char *path, bool overwrite, GError **error)
 {
     const size_t pixels = (size_t)painted->width * painted->height;
@@ -21,13 +28,17 @@ bool fl_paint_save(const FlPaintedRegion *painted, const char *path, bool overwr
     if (!rgba)
         return false;
     for (size_t p = 0; p < pixels; p++) // paper outside painted->rect
-        memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], 255}, 4);
+        memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], painted->alpha ? 0 : 255},
+               4);
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++)
-            memcpy(rgba + 4 * ((size_t)(rect.y + y) * (size_t)painted->width + rect.x + x),
-                   painted->painted + 3 * ((size_t)y * rect.width + x), 3);
-    const FlPng png = {
-        .width = painted->width, .height = painted->height, .rgba = rgba, .opaque = true};
+            fl_painted_pixel(painted, (size_t)y * (size_t)rect.width + (size_t)x,
+                             rgba +
+                                 4 * ((size_t)(rect.y + y) * (size_t)painted->width + rect.x + x));
+    const FlPng png = {.width = painted->width,
+                       .height = painted->height,
+                       .rgba = rgba,
+                       .opaque = !painted->alpha};
     return fl_png_save(&png, path, overwrite, error);
 }
 
@@ -55,8 +66,7 @@ bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t from = (size_t)(top + y) * (size_t)picture->width + (size_t)(left + x);
-            memcpy(painted->painted + 3 * ((size_t)y * rect.width + x), picture->rgba + 4 * from,
-                   3);
+            restore(picture->rgba + 4 * from, (size_t)y * (size_t)rect.width + (size_t)x, painted);
         }
     return true;
 }

@@ -1,6 +1,7 @@
 #include "lazy/fluid_exemplar.h"
 
 #include "base/alloc.h"
+#include "lazy/fluid_shape.h"
 #include <string.h>
 
 bool fl_fluid_splines_init(FlExemplarLevel *level, float *const plane[4], int width, int height,
@@ -37,21 +38,26 @@ static float alpha_of(const FlExemplar *exemplar, size_t p)
 {
     const float inside = CLAMP(exemplar->distance[p] + 0.5f, 0, 1);
     const float covered = (float)exemplar->mask[p] / 255;
-    return exemplar->margin_px > 0 ? MIN(covered, inside) : covered;
+    return exemplar->margin_px > 0 && !exemplar->cut_out ? MIN(covered, inside) : covered;
 }
 
-/* Colour and alpha of a frame into four planes. */
+/* Colour and alpha of a frame into four planes; of a cut-out without its paper, so that votes and
+ * distances know nothing of colours that are not seen. */
 static void fill_colour(const FlExemplar *exemplar, int t, float *const plane[4])
 {
     const FlExemplarLevel *full = &exemplar->level[0];
     const size_t pixels = (size_t)full->width * (size_t)full->height;
+    const float paper[] = {(float)exemplar->paper[0] / 255, (float)exemplar->paper[1] / 255,
+                           (float)exemplar->paper[2] / 255};
     for (int y = 0; y < full->height; y++)
         for (int x = 0; x < full->width; x++) {
             const size_t p = (size_t)y * (size_t)full->width + (size_t)x;
             const FlTexel *from = fl_exemplar_at(full, x, y, t);
+            const float alpha = alpha_of(exemplar, (size_t)t * pixels + p);
+            const float bare = exemplar->cut_out ? 1 - alpha : 0;
             for (int c = 0; c < 3; c++)
-                plane[c][p] = (float)from->c[FL_CH_R + c] / FL_TEXEL_ONE;
-            plane[3][p] = alpha_of(exemplar, (size_t)t * pixels + p);
+                plane[c][p] = MAX((float)from->c[FL_CH_R + c] / FL_TEXEL_ONE - bare * paper[c], 0);
+            plane[3][p] = alpha;
         }
 }
 
@@ -65,7 +71,9 @@ bool fl_fluid_exemplar_planes(const FlExemplar *exemplar, int frame, int before,
     fill_colour(exemplar, frame, planes->plane + FL_FLUID_PLANE_COLOUR);
     fill_colour(exemplar, before, planes->plane + FL_FLUID_PLANE_PAST);
     memcpy(planes->plane[FL_FLUID_PLANE_EDGE], planes->plane[3], bytes);
-    return fl_fluid_planes_blur(planes, sigma_px, error);
+    return (!exemplar->cut_out ||
+            fl_fluid_shape(planes->plane[FL_FLUID_PLANE_EDGE], width, height, error)) &&
+           fl_fluid_planes_blur(planes, sigma_px, error);
 }
 
 #define MIN_SEGMENT 25 // pixels: a patch of them, else segments are not separate

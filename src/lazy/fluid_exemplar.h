@@ -18,9 +18,9 @@ typedef struct FlFluidExemplar {
 } FlFluidExemplar;
 
 /**
- * Packs two frames of a style, colours as they are on its paper and alpha from the masks; nothing
- * is done where they are packed already. Both must be in the exemplar's window. sigma_px: of the
- * blur of alpha; weights and n_levels must not change.
+ * Packs two frames of a style, colours as they are on its paper and alpha from the masks; of a
+ * cut-out colours times its alpha. Nothing is done where they are packed already. Both must be in
+ * the exemplar's window. sigma_px: of the blur of alpha; weights and n_levels must not change.
  */
 bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, int frame,
                             int before, int n_levels, float sigma_px, const FlFluidWeights *weights,

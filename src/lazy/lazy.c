@@ -16,6 +16,7 @@
 #define BAND 2.56f      // sigmas from l = .1 to u = .9 on a straight edge
 #define SIGMA_LEAST 1.5 // px, of the style's own border
 #define SIGMA_MOST 6
+#define OUTER 1.28f // sigmas from the contour out to l
 
 /* One level of the target. */
 typedef struct Level {
@@ -50,6 +51,11 @@ static float sigma_of(const FlExemplar *exemplar, const FlParams *params)
 {
     const double own = CLAMP(exemplar->border_px / BAND, SIGMA_LEAST, SIGMA_MOST);
     return params->border > 0 ? params->border / BAND : (float)own;
+}
+
+float fl_lazy_reach(const FlExemplar *exemplar, const FlParams *params)
+{
+    return OUTER * sigma_of(exemplar, params) + 2 * FL_PATCH_RADIUS; // a patch's corner
 }
 
 FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
@@ -206,7 +212,8 @@ static void vote(const FlLazy *lazy, int l)
     const size_t pixels = (size_t)level->nnf.width * (size_t)level->nnf.height;
     for (size_t p = 0; p < pixels; p++) {
         for (size_t c = 0; c < 3; c++)
-            level->rgba[4 * p + c] = lazy->exemplar->paper[c] / 255.0f;
+            level->rgba[4 * p + c] =
+                lazy->exemplar->cut_out ? 0 : lazy->exemplar->paper[c] / 255.0f;
         level->rgba[4 * p + 3] = 0;
     }
     fl_vote(&level->nnf, &lazy->source.level[l].voted, &lazy->kernels, lazy->params->vote_sharpness,
@@ -337,6 +344,13 @@ static void remember(FlLazy *lazy, const FlGuides *guides)
     lazy->last.valid = true;
 }
 
+/* A colour as it is, where rgba has it times its alpha: where that is 0, the paper's. */
+static uint8_t straight(const uint16_t *rgba, int c, uint8_t paper)
+{
+    const uint32_t alpha = rgba[3], value = MIN(rgba[c], alpha);
+    return alpha > 0 ? (uint8_t)((value * 255 + alpha / 2) / alpha) : paper;
+}
+
 /* The last output, blurred along the motion where that is asked for. */
 static bool write_output(const FlLazy *lazy, uint8_t *rgb, uint8_t *alpha, GError **error)
 {
@@ -345,13 +359,15 @@ static bool write_output(const FlLazy *lazy, uint8_t *rgb, uint8_t *alpha, GErro
     g_autofree uint16_t *blurred = NULL;
     if (shutter > 0 && lazy->level[0].nnf.match) { // a first frame has no motion
         if (!(blurred = fl_motion_blur(lazy->last.past.rgba, lazy->motion, lazy->width,
-                                       lazy->height, shutter, error)))
+                                       lazy->height, lazy->exemplar->cut_out, shutter, error)))
             return false;
     }
     const uint16_t *rgba = blurred ? blurred : lazy->last.past.rgba;
     for (size_t p = 0; p < pixels; p++) {
         for (size_t c = 0; c < 3; c++)
-            rgb[3 * p + c] = (uint8_t)((rgba[4 * p + c] + 128) / 257);
+            rgb[3 * p + c] = lazy->exemplar->cut_out
+                                 ? straight(rgba + 4 * p, (int)c, lazy->exemplar->paper[c])
+                                 : (uint8_t)((rgba[4 * p + c] + 128) / 257);
         if (alpha)
             alpha[p] = (uint8_t)((rgba[4 * p + 3] + 128) / 257);
     }
@@ -427,7 +443,7 @@ bool fl_lazy_guide_pairs(const FlLazy *lazy, FlGuidePairs *pairs, GError **error
     return fl_fluid_exemplar_planes(lazy->exemplar, source->frame, source->before, lazy->sigma_px,
                                     &planes, error) &&
            fl_lazy_pairs(&planes, &lazy->level[0].planes, &lazy->weights, lazy->exemplar->paper,
-                         pairs, error);
+                         lazy->exemplar->cut_out, pairs, error);
 }
 
 GBytes *fl_lazy_save(FlLazy *lazy, GError **error)

@@ -22,12 +22,15 @@ void fl_lazy_free(FlLazy *lazy); // NULL is fine
 
 /**
  * Paints the next frame with the exemplar's frame in step, which begins again after its last. rgb:
- * width * height * 3 sRGB as over the style's paper; alpha: width * height, synthesised as the
- * colours are; or NULL. An empty mask makes the next frame a first frame. stats and view may be
- * NULL.
+ * width * height * 3 sRGB, its paper without paint: as over the paper, but of a cut-out straight.
+ * alpha: width * height, synthesised as the colours are; or NULL. An empty mask makes the next
+ * frame a first frame. stats and view may be NULL.
  */
 bool fl_lazy_frame(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
                    FlFrameStats *stats, FlSynthView *view, GError **error);
+
+/** How far beyond its mask a region has alpha, px. */
+float fl_lazy_reach(const FlExemplar *exemplar, const FlParams *params);
 
 /** As fl_synth_guide_pairs(). */
 bool fl_lazy_guide_pairs(const FlLazy *lazy, FlGuidePairs *pairs, GError **error);

@@ -60,15 +60,26 @@ static bool add_past(const FlFluidPlanes *source, const FlFluidPlanes *target, f
     return true;
 }
 
+/* Divides colours by their alpha. */
+static void straighten(uint8_t *rgba, size_t n, const uint8_t paper[3])
+{
+    for (size_t p = 0; p < n; p++, rgba += 4)
+        for (size_t c = 0; c < 3; c++)
+            rgba[c] =
+                rgba[3] ? (uint8_t)MIN((rgba[c] * 255 + rgba[3] / 2) / rgba[3], 255) : paper[c];
+}
+
 bool fl_lazy_pairs(const FlFluidPlanes *source, const FlFluidPlanes *target,
-                   const FlFluidWeights *weights, const uint8_t paper[3], FlGuidePairs *pairs,
-                   GError **error)
+                   const FlFluidWeights *weights, const uint8_t paper[3], bool multiplied,
+                   FlGuidePairs *pairs, GError **error)
 {
     FlGuidePair *pair = NULL;
     if (!fl_guide_pairs_init(pairs, (int[]){source->width, source->height},
                              (int[]){target->width, target->height}, 4, 1, error))
         return false;
     interleave(source, FL_FLUID_PLANE_COLOUR, 4, pairs->style);
+    if (multiplied)
+        straighten(pairs->style, (size_t)source->width * (size_t)source->height, paper);
     if (!add("alpha", FL_FLUID_PLANE_EDGE, 1, weights->edge, source, target, pairs, &pair, error) ||
         !fl_guide_pairs_add(pairs, "segment", 1, SEGMENT_WEIGHT, false, &pair, error))
         return false;

@@ -10,6 +10,7 @@ typedef struct Blur {
     const uint16_t *rgba;
     const float *motion;
     int width, height;
+    bool multiplied;
 } Blur;
 
 typedef struct Sum {
@@ -22,7 +23,7 @@ static void add(const Blur *blur, float x, float y, float weight, Sum *sum)
     const int u = CLAMP((int)lrintf(x), 0, blur->width - 1);
     const int v = CLAMP((int)lrintf(y), 0, blur->height - 1);
     const uint16_t *at = blur->rgba + 4 * ((size_t)v * (size_t)blur->width + (size_t)u);
-    const float w = weight * ((float)at[3] + 1);
+    const float w = blur->multiplied ? weight : weight * ((float)at[3] + 1);
     for (int c = 0; c < 3; c++)
         sum->rgb[c] += w * (float)at[c];
     sum->rgb_weight += w;
@@ -66,14 +67,14 @@ static void blur_pixel(const Blur *blur, int x, int y, float shutter, uint16_t *
 }
 
 uint16_t *fl_motion_blur(const uint16_t *rgba, const float *motion, int width, int height,
-                         float shutter, GError **error)
+                         bool multiplied, float shutter, GError **error)
 {
     const size_t pixels = (size_t)width * (size_t)height;
     uint16_t *out = fl_alloc(4 * pixels, sizeof *out, "a blurred picture", error);
     if (!out)
         return NULL;
     memcpy(out, rgba, 4 * pixels * sizeof *out);
-    const Blur blur = {rgba, motion, width, height};
+    const Blur blur = {rgba, motion, width, height, multiplied};
 #pragma omp parallel for schedule(static)
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++)

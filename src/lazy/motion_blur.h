@@ -3,16 +3,18 @@
 #define FLUIDY_LAZY_MOTION_BLUR_H
 
 #include <fluidy/error.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 /**
  * Line integral along the motion with a Gaussian of a quarter of shutter * |motion| px, cut at two
- * sigma, of at most 65 samples; colours weigh by their alpha. rgba: 4 * width * height straight;
- * motion: 2 per pixel, NAN is none. Where nothing moves the picture stays as it is.
+ * sigma, of at most 65 samples. rgba: 4 * width * height; colours weigh by their alpha, unless they
+ * are multiplied by it. motion: 2 per pixel, NAN is none. Where nothing moves the picture stays as
+ * it is.
  *
  * Returns: a picture like rgba, to be freed with free(); NULL with FL_ERROR_NO_MEMORY set.
  */
 uint16_t *fl_motion_blur(const uint16_t *rgba, const float *motion, int width, int height,
-                         float shutter, GError **error);
+                         bool multiplied, float shutter, GError **error);
 
 #endif

@@ -8,7 +8,8 @@
 
 #define FL_FLUID_DEPTH 65535 // 1.0 of a stored output
 
-/** The output that the next frame is warped from, straight RGBA; with its mask and field. */
+/** The output that the next frame is warped from, RGBA as the exemplar's planes are; with its mask
+ * and field. */
 typedef struct FlFluidPast {
     uint16_t *rgba; // 0 … FL_FLUID_DEPTH
     uint8_t *mask;  // coverage

@@ -7,6 +7,7 @@ typedef enum FlMedium {
     FL_MEDIUM_TRANSPARENT, // density over the background, as watercolour
     FL_MEDIUM_OPAQUE,      // hides it the more the thicker it is, as gouache
     FL_MEDIUM_BODY,        // hides it wherever there is paint, as if cut out of its paper
+    FL_MEDIUM_SOLID,       // hides it wherever it is, however thin; no word asks for it
 } FlMedium;
 
 /** The words, in the enum's order: the form of fl_text_choice(). */

@@ -10,6 +10,7 @@
 typedef enum FlStacking {
     FL_STACKING_KNOCKOUT, // removed: paper under the paint
     FL_STACKING_GLAZE,    // its density adds to theirs, as a wash over dry paint
+    FL_STACKING_OVER, // seen as far as it is transparent; of paint with alpha of its own, no word
 } FlStacking;
 
 /** What paint does at an edge that its shape shares with others. */

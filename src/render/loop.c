@@ -19,9 +19,10 @@ void fl_loop_clear(FlLoop *loop)
     *loop = (FlLoop){0};
 }
 
-bool fl_loop_keep(FlLoop *loop, int k, const uint8_t *rgb, FlRect rect, GError **error)
+bool fl_loop_keep(FlLoop *loop, int k, const FlPaintedRegion *painted, GError **error)
 {
-    return fl_spill_put(loop->pictures, (size_t)k, rgb, 3 * fl_rect_pixels(rect), error);
+    return fl_spill_put(loop->pictures, (size_t)k, painted->painted, fl_painted_bytes(painted),
+                        error);
 }
 
 static float random_at(int column, int row)
@@ -39,10 +40,32 @@ static float turn_at(int x, int y)
            (random_at(column, row + 1) * (1 - u) + random_at(column + 1, row + 1) * u) * v;
 }
 
-bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlRect rect, GError **error)
+static uint8_t between(uint8_t a, uint8_t b, int weight)
+{
+    return (uint8_t)((a * (256 - weight) + b * weight + 128) >> 8);
+}
+
+/* Colours count by their alpha, if they have any. */
+static void blend_pixel(const FlPaintedRegion *painted, size_t p, const uint8_t *lead_in,
+                        int weight)
+{
+    const size_t pixels = fl_rect_pixels(painted->rect);
+    uint8_t *rgb = painted->painted + 3 * p, *alpha = painted->alpha ? painted->alpha + p : NULL;
+    const uint8_t theirs = alpha ? lead_in[3 * pixels + p] : 0;
+    const int of_alpha =
+        alpha ? weight * theirs / MAX(((256 - weight) * *alpha + weight * theirs) / 256, 1)
+              : weight;
+    for (size_t c = 0; c < 3; c++)
+        rgb[c] = between(rgb[c], lead_in[3 * p + c], MIN(of_alpha, 256));
+    if (alpha)
+        *alpha = between(*alpha, theirs, weight);
+}
+
+bool fl_loop_blend(const FlLoop *loop, int index, FlPaintedRegion *painted, GError **error)
 {
     const int k = index - loop->first;
-    const size_t bytes = 3 * fl_rect_pixels(rect);
+    const FlRect rect = painted->rect;
+    const size_t bytes = fl_painted_bytes(painted);
     if (loop->n == 0 || k < 0)
         return true;
     g_autofree uint8_t *lead_in = fl_alloc(bytes, 1, "a picture", error);
@@ -53,10 +76,7 @@ bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlRect rect, GEr
         for (int x = 0; x < rect.width; x++) {
             const float share = (way - turn_at(rect.x + x, rect.y + y)) / SOFTNESS;
             const int weight = (int)(CLAMP(share, 0, 1) * 256);
-            const size_t p = 3 * ((size_t)y * rect.width + x);
-            for (int c = 0; c < 3; c++)
-                rgb[p + c] =
-                    (uint8_t)((rgb[p + c] * (256 - weight) + lead_in[p + c] * weight + 128) >> 8);
+            blend_pixel(painted, (size_t)y * (size_t)rect.width + (size_t)x, lead_in, weight);
         }
     return true;
 }

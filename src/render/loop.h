@@ -2,8 +2,8 @@
 #ifndef FLUIDY_RENDER_LOOP_H
 #define FLUIDY_RENDER_LOOP_H
 
-#include "base/rect.h"
 #include "base/spill.h"
+#include "compose/painted_region.h"
 
 /** Pictures over which the end turns into the lead-in: a third of the film, at most so many. */
 #define FL_LOOP_LONGEST 8
@@ -16,20 +16,20 @@
 typedef struct FlLoop {
     int n;             // pictures of the lead-in; 0: no loop
     int first;         // index of the first of them among the region's n_pictures
-    FlSpill *pictures; // width * height * 3 bytes each
+    FlSpill *pictures; // fl_painted_bytes() each
 } FlLoop;
 
 /** n_pictures: of the region in the film, held ones counted once. FL_ERROR_OUTPUT. */
 bool fl_loop_init(FlLoop *loop, int n_pictures, GError **error);
 void fl_loop_clear(FlLoop *loop);
 
-/** Stores the k-th picture of the lead-in, sRGB. FL_ERROR_OUTPUT. */
-bool fl_loop_keep(FlLoop *loop, int k, const uint8_t *rgb, FlRect rect, GError **error);
+/** Stores the k-th picture of the lead-in. FL_ERROR_OUTPUT. */
+bool fl_loop_keep(FlLoop *loop, int k, const FlPaintedRegion *painted, GError **error);
 
 /**
  * Blends the region's picture `index` into the lead-in's; those before the lead-in stay as they
- * are. The spots are fixed in the frame; rect is the picture's place in it. FL_ERROR_OUTPUT.
+ * are. The spots are fixed in the frame. FL_ERROR_OUTPUT.
  */
-bool fl_loop_blend(const FlLoop *loop, int index, uint8_t *rgb, FlRect rect, GError **error);
+bool fl_loop_blend(const FlLoop *loop, int index, FlPaintedRegion *painted, GError **error);
 
 #endif

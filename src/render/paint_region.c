@@ -31,7 +31,9 @@ typedef struct MaskPainter {
     void *state;                   // of the engine
     uint8_t *mask, *paint, *layer; // of the page
     float *flow;                   // of the page; NULL: none is given
-    uint8_t *painted;              // of rect
+    uint8_t *painted;              // of rect, and its alpha
+    float reach_px;                // of alpha; 0: there is none
+    uint8_t *alpha;                // of the page; NULL: there is none
 } MaskPainter;
 
 static bool refuse(GError **error, const char *what)
@@ -148,6 +150,8 @@ static bool choose_style(MaskPainter *painter, GError **error)
         return false;
     painter->engine =
         fl_engine_of_region(painter->styles, painter->style, settings, px, &painter->tile, error);
+    if (painter->engine && painter->engine->reach)
+        painter->reach_px = painter->engine->reach(painter->style, &settings->params);
     return painter->engine != NULL;
 }
 
@@ -159,7 +163,10 @@ static bool make_planes(MaskPainter *painter, GError **error)
     painter->layer = painter->paint ? fl_alloc(4 * pixels, 1, "a layer", error) : NULL;
     if (painter->layer && painter->region->flow)
         painter->flow = fl_alloc(2 * pixels, sizeof *painter->flow, "a flow field", error);
-    return painter->layer && (!painter->region->flow || painter->flow);
+    if (painter->layer && painter->reach_px > 0)
+        painter->alpha = fl_alloc(pixels, 1, "a layer", error);
+    return painter->layer && (!painter->region->flow || painter->flow) &&
+           (!(painter->reach_px > 0) || painter->alpha);
 }
 
 static bool find_extent(MaskPainter *painter, GError **error)
@@ -171,6 +178,7 @@ static bool find_extent(MaskPainter *painter, GError **error)
             return false;
         extent = fl_rect_or(extent, fl_rect_of(painter->mask, region->width, region->height));
     }
+    extent = fl_rect_grown(extent, (int)ceilf(painter->reach_px), painter->page);
     painter->rect = fl_painter_crop(extent, painter->page, painter->style);
     return true;
 }
@@ -194,7 +202,8 @@ static bool open_engine(MaskPainter *painter, GError **error)
                                  settings,
                                  {rect.width, rect.height, region->width, region->height},
                                  fl_key(MAX(region->seed, 1), g_str_hash(name_of(region)))};
-    painter->painted = fl_alloc(3 * fl_rect_pixels(rect), 1, "a painted region", error);
+    painter->painted =
+        fl_alloc((painter->alpha ? 4 : 3) * fl_rect_pixels(rect), 1, "a painted region", error);
     return painter->painted && fl_guides_init(&painter->guides, rect.width, rect.height, error) &&
            (painter->sequence = fl_guide_sequence_new(&source, &params, error)) &&
            (painter->state = painter->engine->open(&input, error));
@@ -202,11 +211,17 @@ static bool open_engine(MaskPainter *painter, GError **error)
 
 /* ---- a frame --------------------------------------------------------------------------------- */
 
+/* The alpha of the painted part, behind its colours. */
+static uint8_t *own_alpha(const MaskPainter *painter)
+{
+    return painter->alpha ? painter->painted + 3 * fl_rect_pixels(painter->rect) : NULL;
+}
+
 static bool paint_frame(MaskPainter *painter, int frame, GError **error)
 {
     FlGuides *guides = &painter->guides;
     FlFrameStats stats = {0};
-    const FlEnginePaint paint = {painter->painted, &stats, NULL};
+    const FlEnginePaint paint = {painter->painted, own_alpha(painter), &stats, NULL};
     if (!fl_style_cache_seek(painter->styles, frame, painter->region->n_frames, false, error) ||
         !fl_guide_sequence_get(painter->sequence, frame, guides, error))
         return false;
@@ -226,6 +241,10 @@ static void fill_paint(MaskPainter *painter)
     for (size_t p = 0; p < pixels; p++)
         memcpy(painter->paint + 3 * p, painter->style->paper, 3);
     fl_rect_copy(painter->painted, painter->rect, painter->paint, painter->page, 3);
+    if (painter->alpha) {
+        memset(painter->alpha, 0, pixels);
+        fl_rect_copy(own_alpha(painter), painter->rect, painter->alpha, painter->page, 1);
+    }
 }
 
 /* The colour of the fill, or the recording's own. */
@@ -237,6 +256,8 @@ static FlColouring colouring_of(const MaskPainter *painter)
                              .medium = given ? settings->medium : painter->style->medium};
     if (colouring.medium == FL_MEDIUM_AUTO)
         colouring.medium = FL_MEDIUM_OPAQUE; // it is laid over anything
+    if (painter->alpha)
+        colouring.medium = FL_MEDIUM_SOLID;
     memcpy(colouring.fill, settings->colour, 3);
     memcpy(colouring.paper, painter->style->paper, 3);
     return colouring;
@@ -247,7 +268,8 @@ static bool colour_layer(MaskPainter *painter, GError **error)
     const FlRegionPaint *region = painter->region;
     const FlInk *ink = painter->style->ink;
     const FlColouring colouring = colouring_of(painter);
-    const FlPaintedPart part = {painter->paint, painter->page};
+    const FlPaintedPart part = {painter->paint, painter->page, painter->alpha};
+    const uint8_t *coverage = painter->alpha ? painter->alpha : painter->mask;
     const FlArea area = {.box = painter->page};
     const size_t pixels = fl_rect_pixels(painter->page);
     int exposure = FL_EXPOSURE_ONE;
@@ -260,9 +282,9 @@ static bool colour_layer(MaskPainter *painter, GError **error)
     if (!amounts)
         return false;
     memset(painter->layer, 0, 4 * pixels);
-    fl_colourise_amounts(ink, exposure, &part, painter->mask, &area, amounts);
+    fl_colourise_amounts(ink, exposure, &part, coverage, &area, amounts);
     fl_colourise(ink, &colouring, &part, amounts, &area, painter->layer);
-    for (size_t p = 0; p < pixels; p++)
+    for (size_t p = 0; p < pixels && !painter->alpha; p++)
         painter->layer[4 * p + 3] =
             (uint8_t)((painter->layer[4 * p + 3] * painter->mask[p] + 127) / 255);
     return true;
@@ -295,6 +317,7 @@ static void clear(MaskPainter *painter)
     free(painter->paint);
     free(painter->layer);
     free(painter->flow);
+    free(painter->alpha);
     free(painter->painted);
 }
 

@@ -115,7 +115,8 @@ static FlRect cropped(const FlPainter *painter)
 {
     const FlRect extent = fl_mask_store_extent(painter->masks, painter->plan->region);
     const FlRect page = {0, 0, painter->result.width, painter->result.height};
-    return fl_painter_crop(extent, page, painter->plan->style);
+    return fl_painter_crop(fl_rect_grown(extent, (int)ceilf(painter->result.reach_px), page), page,
+                           painter->plan->style);
 }
 
 double fl_painter_bytes(const FlPainter *painter)
@@ -127,7 +128,9 @@ double fl_painter_bytes(const FlPainter *painter)
 static bool make_picture(FlPainter *painter, GError **error)
 {
     painter->result.painted =
-        fl_alloc(3 * fl_rect_pixels(painter->result.rect), 1, "a painted region", error);
+        fl_alloc(fl_painted_bytes(&painter->result), 1, "a painted region", error);
+    if (painter->result.painted && painter->result.reach_px > 0)
+        painter->result.alpha = painter->result.painted + 3 * fl_rect_pixels(painter->result.rect);
     return painter->result.painted != NULL;
 }
 
@@ -161,6 +164,8 @@ void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan 
                                       .height = fl_drawing_height(plan->drawing)}};
     if (region->engine->exposure)
         painter->result.exposure = region->engine->exposure(region->style);
+    if (region->engine->reach)
+        painter->result.reach_px = region->engine->reach(region->style, &region->settings.params);
     painter->n_pictures = (fl_drawing_frames(plan->drawing) - 1) / region->settings.hold + 1;
     painter->wrap = region->loops ? MIN(painter->n_pictures, WRAP) : 0;
     painter->reuse = reuse;
@@ -303,7 +308,7 @@ static bool keep_picture(FlPainter *painter, GError **error)
     g_autoptr(GBytes) state = painter->plan->engine->save(painter->paint, error);
     if (!state)
         return false;
-    fl_reuse_keep(reuse, painter->result.painted, 3 * fl_rect_pixels(painter->result.rect), state);
+    fl_reuse_keep(reuse, painter->result.painted, fl_painted_bytes(&painter->result), state);
     return true;
 }
 
@@ -311,7 +316,8 @@ static bool keep_picture(FlPainter *painter, GError **error)
 static bool run_engine(FlPainter *painter, bool guided, FlGuides *guides, GError **error)
 {
     const FlEngine *engine = painter->plan->engine;
-    const FlEnginePaint paint = {painter->result.painted, &painter->result.stats,
+    const FlEnginePaint paint = {painter->result.painted, painter->result.alpha,
+                                 &painter->result.stats,
                                  painter->wants_view ? &painter->result.view : NULL};
     if (!catch_up(painter, error))
         return false;
@@ -338,8 +344,8 @@ static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides
     if (reuse)
         fl_reuse_next(reuse, k, still ? NULL : guides,
                       painter->plan->style->exemplar->level[0].first);
-    painter->result.taken = reuse && fl_reuse_take(reuse, painter->result.painted,
-                                                   3 * fl_rect_pixels(painter->result.rect));
+    painter->result.taken =
+        reuse && fl_reuse_take(reuse, painter->result.painted, fl_painted_bytes(&painter->result));
     if (painter->result.taken)
         return true;
     if (!known)
@@ -359,7 +365,7 @@ bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **er
     const FlLoop *loop = &painter->loop;
     return painter->result.unseen || k >= loop->n ||
            (paint_picture(painter, k, loop->first + k, guides, error) &&
-            fl_loop_keep(&painter->loop, k, painter->result.painted, painter->result.rect, error));
+            fl_loop_keep(&painter->loop, k, &painter->result, error));
 }
 
 /* Loads the paint of a frame that another run has painted. */
@@ -381,7 +387,7 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     if (frame % painter->plan->settings.hold != 0)
         return true;
     if (!paint_picture(painter, painter->loop.n + index, index, guides, error) ||
-        !fl_loop_blend(&painter->loop, index, painter->result.painted, painter->result.rect, error))
+        !fl_loop_blend(&painter->loop, index, &painter->result, error))
         return false;
     painter->result.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
     return true;
@@ -404,8 +410,7 @@ bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], 
         parts[0] = g_bytes_ref(painter->reuse->state);
     else if (!(parts[0] = painter->plan->engine->save(painter->paint, error)))
         return false;
-    parts[1] =
-        g_bytes_new(painter->result.painted, holds ? 3 * fl_rect_pixels(painter->result.rect) : 0);
+    parts[1] = g_bytes_new(painter->result.painted, holds ? fl_painted_bytes(&painter->result) : 0);
     return true;
 }
 
@@ -429,7 +434,7 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
 {
     if (painter->plan->paint_files || painter->result.unseen)
         return true;
-    const size_t bytes = keeps_picture(painter) ? 3 * fl_rect_pixels(painter->result.rect) : 0;
+    const size_t bytes = keeps_picture(painter) ? fl_painted_bytes(&painter->result) : 0;
     if (g_bytes_get_size(parts[1]) != bytes) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "region %s: the picture of an earlier render has another size",

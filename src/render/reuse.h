@@ -42,7 +42,7 @@ void fl_reuse_begin(FlReuse *reuse, FlRect rect);
  * of guides (NULL: the region rests in them) and of a style whose window is there. */
 void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window);
 
-/** Takes the picture, 3 bytes a pixel, and the state after it. Returns: whether it was there. */
+/** Takes the picture, colours and alpha, and the state after it. Returns: whether it was there. */
 bool fl_reuse_take(FlReuse *reuse, uint8_t *rgb, size_t bytes);
 
 /** Keeps the picture that was painted in its place, and the state after it. */

@@ -123,6 +123,7 @@ FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **er
                      .licence = g_strdup(style->licence),
                      .fps = style->fps / (float)use->step,
                      .scale = 1,
+                     .cut_out = style->cut_out,
                      .medium = style->medium,
                      .granulation = style->granulation,
                      .smoothness = style->smoothness};

@@ -132,6 +132,7 @@ static bool find_masks(FlStyle *style, const FlSeries *frames, GError **error)
             memset(style->paper, 255, 3);
         fl_style_composite(style);
         style->guessed &= ~(unsigned)FL_GUESS_MASK;
+        style->cut_out = !given;
     }
     if (given && !read_masks(style, folder, frames, error))
         return false;

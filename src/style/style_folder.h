@@ -23,6 +23,7 @@ typedef struct FlStyle {
     float smoothness;           // of its recording: see fl_style_smoothness()
     uint8_t *rgb;               // n_frames * height * width * 3, sRGB
     uint8_t *mask;              // n_frames * height * width, coverage 0..255
+    bool cut_out;               // mask is the frames' own alpha, over the paper: see through it
     float *flow;                // n_frames * height * width * 2, px per frame; NULL: construct it
     char *made_by;              // what made the frames, such as a recipe's file name; may be NULL
     char *missing_orientations; // directions that no outline faces, by style.ini; "none" or NULL

@@ -454,6 +454,7 @@ FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError
     SegmentCounts counts = {{0}};
     exemplar->border_px = params->border > 0 ? params->border : style->border_px;
     exemplar->smoothness = style->smoothness;
+    exemplar->cut_out = style->cut_out;
     memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
     if (!init_levels(exemplar, style, all ? style->n_frames : params->style_window, error) ||
         !init_frames(frames, style, params, all, error) ||

@@ -43,6 +43,7 @@ typedef struct FlExemplar {
     float ext_scale;  // 1 / the largest extent, 1/px
     float smoothness; // of the style
     uint8_t paper[3];
+    bool cut_out; // as FlStyle's: the mask is alpha, and colours are over the paper by it
     // Level 0, n_frames * height * width:
     float *distance, *ext_plus, *ext_minus; // px; like the levels, in memory in the window only
     uint8_t *mask;
