@@ -15,7 +15,8 @@ typedef struct FlPaintedFrame {
     const uint8_t *paint; /**< width * height * 3 sRGB: the paint in the recording's own colours,
                              its paper where none is; what ‘paint’ writes */
     const uint8_t *layer; /**< width * height * 4 straight sRGBA: the paint cut out with the mask,
-                             in the colour of the setting "tint" */
+                             in the colour of the setting "tint"; paint with alpha of its own
+                             keeps that, and reaches some px beyond the mask */
 } FlPaintedFrame;
 
 /**
