@@ -10,7 +10,7 @@
  * light grey on cream would be lavender. Constants were found on 13 fills in six styles.
  */
 enum {
-    DARKEST = 14,          // levels; a channel of 0 has no density, and real black is no darker
+    DARKEST = 12,          // levels; a channel of 0 has no density, and real black is no darker
     DARKEST_NEGATIVE = 8,  // the same in the negative
     THIN = 113835,         // density of 0.30: thinner paint has slope left in every channel
     STRAIGHT = 4096,       // density of 0.957: below it the way is straight, and so well divided
