@@ -45,9 +45,12 @@ static bool by_masks(const FlMaskStore *masks, int region, int now, FlRect page,
 {
     const size_t n = fl_rect_pixels(page);
     g_autofree uint8_t *a = g_malloc(n), *b = g_malloc(n);
+    g_autoptr(FlOutline) before = NULL, outline = NULL;
     return fl_mask_store_get(masks, region, now - 1, page, a, error) &&
            fl_mask_store_get(masks, region, now, page, b, error) &&
-           fl_registration(a, b, page.width, page.height, motion, error);
+           (before = fl_outline_new(a, page.width, page.height, error)) &&
+           (outline = fl_outline_new(b, page.width, page.height, error)) &&
+           fl_registration(before, outline, motion, error);
 }
 
 /** Counts pixels of the region, and those that come from where it was. */
@@ -111,7 +114,7 @@ static void show(const char *folder, const Options *o)
                 g_assert_true(by_masks(masks, r, f, page, motion, &error));
             else if (f > 0)
                 g_assert_true(
-                    fl_motion_source_get(source, r, f - 1, f, page, motion, &shares, &error));
+                    fl_motion_source_get(source, &(FlRegionStep){r, f - 1, f, page, {0}}, motion, &shares, &error));
             seconds += (double)(g_get_monotonic_time() - start) * 1e-6;
             fields++;
             double speed = 0;

@@ -66,12 +66,19 @@ static Sequence sequence_of(Draw *draw, int frames)
     return s;
 }
 
+static bool registration(const uint8_t *mask_before, const uint8_t *mask_now, float *motion)
+{
+    g_autoptr(FlOutline) before = fl_outline_new(mask_before, SIZE, SIZE, NULL);
+    g_autoptr(FlOutline) now = fl_outline_new(mask_now, SIZE, SIZE, NULL);
+    return fl_registration(before, now, motion, NULL);
+}
+
 static void get(const Sequence *s, int region, int before, int now, float *motion,
                 FlMotionShares *shares)
 {
     g_autoptr(GError) error = NULL;
     g_assert_true(
-        fl_motion_source_get(s->source, region, before, now, page, motion, shares, &error));
+        fl_motion_source_get(s->source, &(FlRegionStep){region, before, now, page, {0}}, motion, shares, &error));
     g_assert_no_error(error);
 }
 
@@ -119,7 +126,7 @@ static double error_of_film(Draw *draw, Origin *origin, bool masks_only)
         g_assert_true(fl_mask_store_get(s.masks, region, t - 1, page, before, NULL));
         g_assert_true(fl_mask_store_get(s.masks, region, t, page, now, NULL));
         if (masks_only)
-            g_assert_true(fl_registration(before, now, SIZE, SIZE, motion, NULL));
+            g_assert_true(registration(before, now, motion));
         else
             get(&s, region, t - 1, t, motion, &shares);
         sum += error_of(now, motion, origin, t) / (FRAMES - 1);
@@ -372,9 +379,9 @@ static void a_disc_that_slides_does_not_turn(void)
     g_auto(Sequence) s = sequence_of(sliding_disc, 2);
     for (int f = 0; f < 2; f++)
         g_assert_true(fl_mask_store_get(s.masks, 0, f, page, mask[f], NULL));
-    g_assert_true(fl_registration(mask[0], mask[0], SIZE, SIZE, motion, NULL));
+    g_assert_true(registration(mask[0], mask[0], motion));
     g_assert_true(is_still(motion));
-    g_assert_true(fl_registration(mask[0], mask[1], SIZE, SIZE, motion, NULL));
+    g_assert_true(registration(mask[0], mask[1], motion));
     const int above = 2 * (65 * SIZE + 65), below = 2 * (115 * SIZE + 65);
     g_assert_cmpfloat(fabsf(motion[above] - motion[below]), <, 0.1);
     g_free(mask[0]);
@@ -417,7 +424,7 @@ static float registered_at(Draw *draw, int x, int y)
     g_auto(Sequence) s = sequence_of(draw, 2);
     for (int f = 0; f < 2; f++)
         g_assert_true(fl_mask_store_get(s.masks, region_of(&s, RED), f, page, mask[f], NULL));
-    g_assert_true(fl_registration(mask[0], mask[1], SIZE, SIZE, motion, NULL));
+    g_assert_true(registration(mask[0], mask[1], motion));
     g_assert_cmpfloat(motion[2 * (165 * SIZE + 100)], ==, 0); // the bar
     return motion[2 * (y * SIZE + x)];
 }

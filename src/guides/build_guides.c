@@ -342,13 +342,15 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
 }
 
 /** Stores the drawing's motion into this frame, if there is any. */
-static bool put_drawing_motion(Builder *b, int frame, const FlOutline *outline, GError **error)
+static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError **error)
 {
     const FlGuideSource *source = &b->sequence->source;
     const size_t n = 2 * fl_rect_pixels(outline->box);
+    FlOutlinePair outlines = {.now = outline};
     if (!source->motion || outline->empty)
         return true;
-    if (!source->motion(source->data, frame, b->given, error))
+    if (!outline_of(b, frame - 1, &outlines.before, error) ||
+        !source->motion(source->data, frame, &outlines, b->given, error))
         return false;
     g_autofree int32_t *fixed = fl_alloc(n, sizeof *fixed, "a drawing's motion", error);
     if (!fixed)

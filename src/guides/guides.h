@@ -2,6 +2,7 @@
 #ifndef FLUIDY_GUIDES_GUIDES_H
 #define FLUIDY_GUIDES_GUIDES_H
 
+#include "guides/outline.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -54,10 +55,11 @@ typedef struct FlGuideSource {
     /**
      * Writes the drawing's true displacement into the frame, 2 * width * height floats,
      * interleaved: the content of a pixel moved by it since the picture painted before; NAN:
-     * unknown. It is used as given, neither smoothed nor part of the flow. Frames come in order.
-     * NULL: none is known.
+     * unknown. It is used as given, neither smoothed nor part of the flow. Frames come in order,
+     * with the outlines of `mask`. NULL: none is known.
      */
-    bool (*motion)(void *data, int frame, float *motion, GError **error);
+    bool (*motion)(void *data, int frame, const FlOutlinePair *outlines, float *motion,
+                   GError **error);
     bool keeps_flow; // unrounded, for fl_guide_sequence_flow()
 } FlGuideSource;
 

@@ -336,6 +336,19 @@ static bool move_with_outline(const Work *w, int i, FlRect box, GError **error)
     return true;
 }
 
+static bool register_masks(const FlMovingRegion *r, float *motion, GError **error)
+{
+    const int width = r->rect.width, height = r->rect.height;
+    const FlOutlinePair known = r->outlines;
+    g_autoptr(FlOutline) before = known.before
+                                      ? fl_outline_ref(known.before)
+                                      : fl_outline_new(r->mask_before, width, height, error);
+    g_autoptr(FlOutline) now = known.now ? fl_outline_ref(known.now)
+                               : before  ? fl_outline_new(r->mask_now, width, height, error)
+                                         : NULL;
+    return now && fl_registration(before, now, motion, error);
+}
+
 /** Gives the pixels of a label, or those without, what the masks tell. */
 static bool move_by_masks(Work *w, int32_t label, GError **error)
 {
@@ -343,7 +356,7 @@ static bool move_by_masks(Work *w, int32_t label, GError **error)
     const FlMovingRegion *r = w->region;
     if (!w->masks) {
         w->masks = fl_alloc(2 * n, sizeof(float), "a motion", error);
-        if (!w->masks || !fl_registration(r->mask_before, r->mask_now, w->w, w->h, w->masks, error))
+        if (!w->masks || !register_masks(r, w->masks, error))
             return false;
     }
     for (size_t p = 0; p < n; p++)

@@ -3,12 +3,14 @@
 #define FLUIDY_GUIDES_MOTION_H
 
 #include "drawing/correspondence.h"
+#include "guides/outline.h"
 
 /** A region in two frames. All planes are of `rect`, row-major. */
 typedef struct FlMovingRegion {
     FlRect rect;                           // in the frame
     int side;                              // the frame's larger side, px: nothing moves farther
     const uint8_t *mask_before, *mask_now; // coverage 0..255
+    FlOutlinePair outlines;                // of these masks, made where they are not known
     const FlOutlines *before, *now;
     const FlCorrespondence *motions; // of all leaves of `now`
     const GArray *leaves;            // FlRegionLeaf of `now`, bottom up

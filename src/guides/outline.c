@@ -66,6 +66,12 @@ bool fl_outline_equal(const FlOutline *outline, const uint8_t *mask)
     return true;
 }
 
+bool fl_outlines_alike(const FlOutline *one, const FlOutline *other)
+{
+    return one == other || (memcmp(&one->box, &other->box, sizeof one->box) == 0 &&
+                            memcmp(one->coverage, other->coverage, fl_rect_pixels(one->box)) == 0);
+}
+
 bool fl_outline_contains(const FlOutline *outline, int x, int y)
 {
     const int bx = x - outline->box.x, by = y - outline->box.y;

@@ -20,6 +20,11 @@ typedef struct FlOutline {
     float *normal;     // of the box, fl_outline_normals(); NULL until then
 } FlOutline;
 
+/** Of a region in two frames, borrowed; NULL where they are not known. */
+typedef struct FlOutlinePair {
+    FlOutline *before, *now;
+} FlOutlinePair;
+
 /** mask: frame_width * frame_height coverages, copied. NULL with FL_ERROR_NO_MEMORY set. */
 FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height, GError **error);
 
@@ -28,6 +33,9 @@ void fl_outline_unref(FlOutline *outline);
 
 /** Whether the outline is that of this mask. */
 bool fl_outline_equal(const FlOutline *outline, const uint8_t *mask);
+
+/** Whether two outlines are those of the same mask. */
+bool fl_outlines_alike(const FlOutline *one, const FlOutline *other);
 
 /** Whether a pixel of the frame is inside. */
 bool fl_outline_contains(const FlOutline *outline, int x, int y);

@@ -31,7 +31,7 @@ typedef struct Point {
 
 typedef struct Work {
     int width, height;
-    FlOutline *before, *now;
+    FlOutline *before, *now;              // borrowed
     FlConnectedParts parts, parts_before; // the latter made when first needed
     FlRect *part_box;                     // in the frame, by part
     FlTrace *trace;
@@ -42,8 +42,6 @@ typedef struct Work {
 
 static void work_clear(Work *w)
 {
-    fl_outline_unref(w->before);
-    fl_outline_unref(w->now);
     fl_connected_parts_clear(&w->parts);
     fl_connected_parts_clear(&w->parts_before);
     g_free(w->part_box);
@@ -399,15 +397,9 @@ static void fill_rim(const Work *w)
         }
 }
 
-static bool prepare(Work *w, const uint8_t *before, const uint8_t *now, GError **error)
+static bool prepare(Work *w, GError **error)
 {
     const size_t n = (size_t)w->width * w->height;
-    w->before = fl_outline_new(before, w->width, w->height, error);
-    w->now = w->before ? fl_outline_new(now, w->width, w->height, error) : NULL;
-    if (!w->now)
-        return false;
-    if (w->before->empty || w->now->empty)
-        return true;
     w->smooth = fl_alloc(n, sizeof(float), "a distance", error);
     if (!w->smooth)
         return false;
@@ -423,18 +415,15 @@ static bool prepare(Work *w, const uint8_t *before, const uint8_t *now, GError *
     return fl_part_tracking_find(w->now, &w->parts, w->before, limit, w->trace, error);
 }
 
-bool fl_registration(const uint8_t *before, const uint8_t *now, int width, int height,
-                     float *motion, GError **error)
+bool fl_registration(FlOutline *before, FlOutline *now, float *motion, GError **error)
 {
-    g_auto(Work) w = {.width = width, .height = height, .motion = motion};
-    const size_t n = (size_t)width * height;
-    memset(motion, 0, 2 * n * sizeof *motion);
-    if (memcmp(before, now, n) == 0)
+    const int width = now->frame_width, height = now->frame_height;
+    memset(motion, 0, 2 * (size_t)width * height * sizeof *motion);
+    if (before->empty || now->empty || fl_outlines_alike(before, now))
         return true;
-    if (!prepare(&w, before, now, error))
+    g_auto(Work) w = {width, height, before, now, .motion = motion};
+    if (!prepare(&w, error))
         return false;
-    if (!w.trace)
-        return true;
     g_autoptr(GPtrArray) points = find_points(&w);
     for (int part = 1; part <= w.parts.n_parts; part++)
         if (!register_part(&w, part, g_ptr_array_index(points, part), error))

@@ -2,9 +2,7 @@
 #ifndef FLUIDY_GUIDES_REGISTRATION_H
 #define FLUIDY_GUIDES_REGISTRATION_H
 
-#include <fluidy/error.h>
-#include <stdbool.h>
-#include <stdint.h>
+#include "guides/outline.h"
 
 /**
  * The motion into `now` of all its pixels, interleaved, px; 0 where coverage is 0.
@@ -17,9 +15,9 @@
  * (part_tracking.h); if their contours differ, or it is too small to tell, or there is none, its
  * motion is unknown: NAN.
  *
- * Masks are width * height coverages. Returns: false with FL_ERROR_NO_MEMORY set.
+ * Both outlines are of frames of the same size, that of `motion`. Returns: false with
+ * FL_ERROR_NO_MEMORY set.
  */
-bool fl_registration(const uint8_t *before, const uint8_t *now, int width, int height,
-                     float *motion, GError **error);
+bool fl_registration(FlOutline *before, FlOutline *now, float *motion, GError **error);
 
 #endif

@@ -220,9 +220,11 @@ static bool is_there(const uint8_t *mask, size_t n)
     return found;
 }
 
-bool fl_motion_source_get(FlMotionSource *source, int region, int before, int now, FlRect rect,
-                          float *motion, FlMotionShares *shares, GError **error)
+bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, float *motion,
+                          FlMotionShares *shares, GError **error)
 {
+    const int region = step->region, before = step->before, now = step->now;
+    const FlRect rect = step->rect;
     const size_t n = fl_rect_pixels(rect);
     FlMotionShares none = {0, 0};
     shares = shares ? shares : &none;
@@ -247,6 +249,7 @@ bool fl_motion_source_get(FlMotionSource *source, int region, int before, int no
             MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing)),
             mask_before,
             mask_now,
+            step->outlines,
             use.before->outlines,
             use.now->outlines,
             use.step->motions,

@@ -16,6 +16,13 @@ FlMotionSource *fl_motion_source_new(const FlDrawing *drawing, const FlMaskStore
                                      GError **error);
 void fl_motion_source_free(FlMotionSource *source); // NULL is fine
 
+/** A region from one frame to another, within a part of them. */
+typedef struct FlRegionStep {
+    int region, before, now;
+    FlRect rect;
+    FlOutlinePair outlines; // of its masks in rect, where they are known
+} FlRegionStep;
+
 /**
  * The motion of a region from the frame painted before to this one, px of the film, interleaved,
  * 2 * area of rect: see fl_motion_of_region(). The frames need not be neighbours, and in a loop the
@@ -23,8 +30,8 @@ void fl_motion_source_free(FlMotionSource *source); // NULL is fine
  *
  * Returns: false with an error that names the file, or FL_ERROR_NO_MEMORY.
  */
-bool fl_motion_source_get(FlMotionSource *source, int region, int before, int now, FlRect rect,
-                          float *motion, FlMotionShares *shares, GError **error);
+bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, float *motion,
+                          FlMotionShares *shares, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMotionSource, fl_motion_source_free)
 

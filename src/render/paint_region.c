@@ -106,7 +106,8 @@ static bool flow_of(void *data, int frame, float *flow, GError **error)
     return flow_into(data, frame, 0, flow, error);
 }
 
-static bool motion_of(void *data, int frame, float *motion, GError **error)
+static bool motion_of(void *data, int frame, const FlOutlinePair *outlines, float *motion,
+                      GError **error)
 {
     return flow_into(data, frame, NAN, motion, error);
 }

@@ -63,13 +63,15 @@ static bool painter_flow(void *data, int frame, float *flow, GError **error)
     return flow_in_file(data, frame, 0, flow, error);
 }
 
-static bool painter_motion(void *data, int frame, float *motion, GError **error)
+static bool painter_motion(void *data, int frame, const FlOutlinePair *outlines, float *motion,
+                           GError **error)
 {
     return flow_in_file(data, frame, NAN, motion, error);
 }
 
 /* The drawing's own motion into a picture. Nothing comes before the first one, but in a loop. */
-static bool exact_motion(void *data, int frame, float *motion, GError **error)
+static bool exact_motion(void *data, int frame, const FlOutlinePair *outlines, float *motion,
+                         GError **error)
 {
     const FlPainter *painter = data;
     const int n = painter->n_pictures, hold = painter->plan->settings.hold;
@@ -81,8 +83,8 @@ static bool exact_motion(void *data, int frame, float *motion, GError **error)
             motion[k] = NAN;
         return true;
     }
-    return fl_motion_source_get(painter->motion, painter->plan->region, before, now,
-                                painter->result.rect, motion, NULL, error);
+    const FlRegionStep step = {painter->plan->region, before, now, painter->result.rect, *outlines};
+    return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
 }
 
 /* The source of the guides: the masks within the painter's rectangle, and the motion. Flow files

@@ -124,7 +124,7 @@ static void check_motion(const FlDrawing *drawing, FlMotionSource *source, int b
     const size_t n = 2 * fl_rect_pixels(page);
     g_autofree float *motion = g_new(float, n);
     for (int r = 0; r < MIN(fl_drawing_regions(drawing), MOST_REGIONS); r++) {
-        if (!fl_motion_source_get(source, r, before, now, page, motion, NULL, NULL))
+        if (!fl_motion_source_get(source, &(FlRegionStep){r, before, now, page, {0}}, motion, NULL, NULL))
             return;
         for (size_t k = 0; k < n; k++)
             g_assert_false(isinf(motion[k]));
