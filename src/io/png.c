@@ -51,6 +51,8 @@ static void put_header(png_structp png, png_infop info, const FlPng *picture)
                  picture->opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    if (picture->place)
+        png_set_oFFs(png, info, picture->place->x, picture->place->y, PNG_OFFSET_PIXEL);
     put_text(png, info, picture->text);
     png_write_info(png, info);
 }
@@ -233,6 +235,36 @@ FlPicture *fl_picture_read_png(const char *path, GError **error)
     }
     png_image_free(&png);
     return g_steal_pointer(&picture);
+}
+
+/** libpng jumps back here when it fails. */
+static bool get_place(png_structp png, png_infop info, FILE *file, FlRect *place)
+{
+    png_int_32 x = 0, y = 0;
+    int unit = PNG_OFFSET_LAST;
+    if (setjmp(png_jmpbuf(png)))
+        return false;
+    png_init_io(png, file);
+    png_read_info(png, info);
+    const png_uint_32 width = png_get_image_width(png, info);
+    const png_uint_32 height = png_get_image_height(png, info);
+    const bool says = png_get_oFFs(png, info, &x, &y, &unit) != 0 && unit == PNG_OFFSET_PIXEL;
+    *place = (FlRect){x, y, (int)width, (int)height};
+    return says && x >= 0 && y >= 0 && width <= INT32_MAX && height <= INT32_MAX;
+}
+
+bool fl_png_place(const char *path, FlRect *place)
+{
+    Trouble trouble = {""};
+    FILE *file = fl_file_check(path, FL_ERROR_INPUT, NULL) ? fopen(path, "rb") : NULL;
+    if (!file)
+        return false;
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &trouble, on_error, on_warning);
+    png_infop info = png ? png_create_info_struct(png) : NULL;
+    const bool says = info && get_place(png, info, file, place);
+    png_destroy_read_struct(&png, &info, NULL);
+    fclose(file);
+    return says;
 }
 
 bool fl_picture_is_opaque(const char *path)

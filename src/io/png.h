@@ -3,6 +3,7 @@
 #define FLUIDY_IO_PNG_H
 
 #include "base/picture.h"
+#include "base/rect.h"
 #include <stdbool.h>
 
 /** A picture to be written as PNG; one of rgba and rgba16 is set. */
@@ -12,6 +13,7 @@ typedef struct FlPng {
     const uint16_t *rgba16;  // the same, 16 bits, native byte order
     bool opaque;             // store no alpha
     bool fast;               // deflate at level 1 instead of 4
+    const FlRect *place;     // where it lies in a larger picture, from 0; NULL: nowhere
     const char *const *text; // keyword, text, …, NULL; or NULL
 } FlPng;
 
@@ -34,6 +36,12 @@ GBytes *fl_png_encode(const FlPng *png);
  * Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT set, naming the file.
  */
 FlPicture *fl_picture_read_png(const char *path, GError **error);
+
+/**
+ * Where a PNG file says that it lies in a larger picture: FlPng.place, with its own size. Reads the
+ * head of the file alone. Returns: false if it does not say so, or cannot be read.
+ */
+bool fl_png_place(const char *path, FlRect *place);
 
 /** Whether every pixel of a PNG file is opaque; true if it cannot be read. */
 bool fl_picture_is_opaque(const char *path);
