@@ -1,6 +1,7 @@
 #!/bin/bash
 # What it costs to paint a film in tasks: wall time of two workers of one thread each against one process of one thread, and
-# processor seconds, of which those of reading the drawing again. Machines that do other things want processor seconds.
+# processor seconds, of which those of reading the drawing again; and the wall time that follows from running the tasks one
+# after the other, for machines that do other things.
 # usage: farm_times.sh PROGRAM DRAWING ARGUMENT...
 set -e
 program=$(realpath "$1")
@@ -16,7 +17,7 @@ TIMEFORMAT='%U %S %R'
 timed() {
     local to=$1
     shift
-    { time "$@" >out 2>err; } 2>>"times/$to" || { cat err >&2 && return 1; }
+    { time "$@" >"$to.out" 2>"$to.err"; } 2>>"times/$to" || { cat "$to.err" >&2 && return 1; }
 }
 sum() {
     awk '{cpu += $1 + $2; wall += $3} END {printf "%.2f %.2f\n", cpu, wall}' "times/$1"
@@ -25,35 +26,53 @@ sum() {
 timed reading "$program" "$drawing" --list-regions "$@"
 timed one "$program" "$drawing" -j 1 -q -o 'one/%04d.png' "$@"
 "$program" "$drawing" -j 1 -q --plan json -o 'two/%04d.png' "$@" >plan.json
-n=$(python3 -c '
+read -r n parts <<<"$(python3 -c '
 import json, shlex
 plan = json.load(open("plan.json"))
-for k, task in enumerate(plan["tasks"] + [plan["merge"]]):
-    open(f"task.{k}", "w").write(shlex.join(task["command"]))
-print(len(plan["tasks"]))')
-worker() { # worker FILE: takes the next task that nobody has taken
+for step in "tasks", "merge":
+    for k, task in enumerate(plan[step]):
+        open(f"{step}.{k}", "w").write(shlex.join(task["command"]))
+print(len(plan["tasks"]), len(plan["merge"]))')"
+
+# One command after the other, and what two workers would make of them: each takes the next one when it is free.
+for ((k = 0; k < n; k++)); do
+    timed tasks bash "tasks.$k"
+done
+for ((k = 0; k < parts; k++)); do
+    timed merge bash "merge.$k"
+done
+diff -r one two
+longer() { # longer STEP: the seconds of the wall until both workers are free
+    awk '{if (a < b) a += $3; else b += $3} END {print (a > b ? a : b)}' "times/$1"
+}
+
+# Two workers in truth.
+rm -r two fluidy
+worker() { # worker STEP N: takes the next of N commands that nobody has taken
     local k
-    for ((k = 0; k < n; k++)); do
-        mkdir "taken.$k" 2>/dev/null || continue
-        timed "$1" bash "task.$k"
+    for ((k = 0; k < $2; k++)); do
+        mkdir "taken.$1.$k" 2>/dev/null || continue
+        timed "both.$BASHPID" bash "$1.$k"
     done
 }
 start=$EPOCHREALTIME
-worker tasks.1 &
-worker tasks.2
-wait $!
-timed merge bash "task.$n"
+for step in "tasks $n" "merge $parts"; do
+    # shellcheck disable=SC2086 # two words
+    worker $step &
+    # shellcheck disable=SC2086
+    (worker $step)
+    wait $!
+done
 wall=$(bc <<<"$EPOCHREALTIME - $start")
 diff -r one two
-cat times/tasks.[12] >times/tasks
+
 read -r one one_wall <<<"$(sum one)"
 read -r tasks _ <<<"$(sum tasks)"
 read -r merge _ <<<"$(sum merge)"
-read -r first _ <<<"$(sum tasks.1)"
-read -r second _ <<<"$(sum tasks.2)"
-best=$(awk "BEGIN {print $merge + ($first > $second ? $first : $second)}")
 read -r reading _ <<<"$(sum reading)"
+reckoned=$(bc <<<"$(longer tasks) + $(longer merge)")
 echo "one process: $one CPU-s, $one_wall s"
-echo "$n tasks: $tasks CPU-s, and the merge $merge; two workers $wall s, $(bc <<<"scale=2; $one_wall / $wall") times less"
-echo "on two processors with nothing else to do: $one s and $best s, $(bc <<<"scale=2; $one / $best") times less"
+echo "$n tasks: $tasks CPU-s, and the merge in $parts parts $merge"
+echo "two workers: $wall s, $(bc <<<"scale=2; $one_wall / $wall") times less"
+echo "with a processor each, from the times of one after the other: $reckoned s, $(bc <<<"scale=2; $one_wall / $reckoned") times less"
 echo "reading the drawing once: $reading CPU-s, in all tasks $(bc <<<"$reading * $n")"

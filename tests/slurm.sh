@@ -73,8 +73,9 @@ result 0 'two nodes wait for work'
 
 # Two large regions and five small ones, in drawings large enough for tasks to be killed at work.
 mkdir shot
-for i in 1 2 3 4 5 6; do
+for i in 01 02 03 04 05 06 07 08 09 10 11 12; do
     {
+        i=${i#0}
         echo "<svg xmlns='http://www.w3.org/2000/svg' width='240' height='240' viewBox='0 0 96 96'>" \
             "<rect x='4' y='6' width='60' height='80' fill='#2255aa'/>" \
             "<circle cx='$((40 + 3 * i))' cy='44' r='30' fill='#aa3311'/>"
@@ -82,7 +83,7 @@ for i in 1 2 3 4 5 6; do
             echo "<rect x='$((12 * k + i))' y='70' width='9' height='9' fill='#${k}0b0${k}0'/>"
         done
         echo '</svg>'
-    } >shot/s_000$i.svg
+    } >shot/s_00$i.svg
 done
 render() {
     "$program" shot -s "$style" -q -j 1 "$@"
@@ -137,9 +138,9 @@ if [ -n "$stalled" ]; then
     exit
 fi
 result $status "tasks that were taken from their nodes $(wc -l <killed) times give the frames of one process"
-[ "$(ls -A farmed 2>/dev/null | wc -l)" = 6 ] && [ -z "$(find fluidy -name '.*' -type f)" ]
+[ "$(ls -A farmed 2>/dev/null | wc -l)" = 12 ] && [ -z "$(find fluidy -name '.*' -type f)" ]
 result $? 'and leave nothing but paint'
-! grep -hv '^s [a-z0-9,-]*: ' slurm-*.out | grep -v '^slurmstepd-.* DUE TO JOB REQUEUE' >out
+! grep -hv '^s [a-z0-9,/ -]*: ' slurm-*.out | grep -v '^slurmstepd-.* DUE TO JOB REQUEUE' >out
 result $? 'each line of the logs begins with shot and regions'
 
 # A task whose processes are killed has failed, and its merge never comes; the same plan goes on.

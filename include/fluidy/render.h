@@ -62,6 +62,13 @@ typedef enum FlBlendSpace {
     FL_BLEND_LINEAR,
 } FlBlendSpace;
 
+/** How large the files of a region's paint are. */
+typedef enum FlPaintArea {
+    FL_PAINT_AREA_UNSET,  /**< FL_PAINT_AREA_FRAME */
+    FL_PAINT_AREA_FRAME,  /**< as the frames, so that other programs can stack them */
+    FL_PAINT_AREA_REGION, /**< as the region in all frames, which a merge reads sooner */
+} FlPaintArea;
+
 /** What to do about output files that exist. */
 typedef enum FlOverwrite {
     FL_OVERWRITE_REFUSE, /**< FL_ERROR_EXISTS before anything is painted */
@@ -130,7 +137,11 @@ typedef struct FlRenderOptions {
     const char *layers; /**< pattern with {region}: one RGBA file per region too; NULL: none */
     const char
         *paint; /**< the same for the paint itself, before colours and stacking; NULL: none */
+    FlPaintArea paint_area;
     bool merge; /**< paint nothing: compose the files of `paint` that other runs have written */
+    /** "K/N": merge the K-th of N parts of the frames alone, without their film; "film": make the
+     *  film of the frames that such merges have composed; NULL: all */
+    const char *part;
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
     /** "cold", "hot", "rough", "laid", "kraft", a PNG or JPEG file or "none"; "auto", NULL: cold
      * where there is no background, else its tooth alone */

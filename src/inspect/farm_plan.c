@@ -15,6 +15,8 @@ typedef struct Farm {
     char *folder, *paint;       // the working directory; the files between tasks and merge
     const char *const *command; // the render's
     GArray *tasks;              // of Task, largest first
+    int n_parts;                // of the merge
+    bool film;                  // which is made of the frames, after the parts
 } Farm;
 
 static void clear_task(Task *task)
@@ -45,16 +47,32 @@ static void add_task(Farm *farm, int p, double share)
     g_array_append_val(farm->tasks, task);
 }
 
+static bool is_painted(const FlPlan *plan, int p)
+{
+    return !fl_plan_hides(plan, plan->painted[p].region);
+}
+
+static int count_painted(const FlPlan *plan)
+{
+    int n = 0;
+    for (int p = 0; p < plan->n_painted; p++)
+        n += is_painted(plan, p);
+    return n;
+}
+
 /* Every task reads the whole drawing, so none is smaller than a quarter of the largest region or a
- * sixty-fourth of the work: small regions share one. */
+ * sixty-fourth of the work: small regions share one. What is hidden in all frames is painted by
+ * nobody. */
 static void make_tasks(Farm *farm)
 {
     const FlPlan *plan = farm->plan;
-    const int n = plan->n_painted;
-    g_autofree int *order = g_new(int, n);
+    int n = 0;
+    g_autofree int *order = g_new(int, plan->n_painted);
     double total = 0, filled = 0;
-    for (int p = 0; p < n; p++)
-        order[p] = p, total += work_of(plan, p);
+    for (int p = 0; p < plan->n_painted; p++) {
+        if (is_painted(plan, p))
+            order[n++] = p, total += work_of(plan, p);
+    }
     g_qsort_with_data(order, n, sizeof *order, larger_first, (void *)(uintptr_t)plan);
     const double least = MAX(work_of(plan, order[0]) / 4, total / 64);
     for (int k = 0; k < n; k++) {
@@ -71,6 +89,15 @@ static void make_tasks(Farm *farm)
     }
 }
 
+/* A part makes the whole sheet of paper, which takes as long as some frames. Statistics, and films
+ * without their frames, are one file. */
+static int count_parts(const FlPlan *plan)
+{
+    enum { FRAMES_OF_PART = 6, MOST = 16 };
+    const int n = fl_drawing_frames(plan->drawing) / FRAMES_OF_PART;
+    return plan->format->film || plan->options.stats ? 1 : CLAMP(n, 1, MOST);
+}
+
 /* ---- commands ------------------------------------------------------------------------------- */
 
 /* How many words from here on are of the merge alone: what it writes, and what exists of that. */
@@ -84,20 +111,56 @@ static int words_of_merge(const char *const *word)
     return g_strv_contains(values, *word) && word[1] ? 2 : 0;
 }
 
-/* The words of a command; `regions`: those of a task, NULL: the merge. To be freed. */
-static GPtrArray *words_of(const Farm *farm, const char *regions)
+/* What is done after one another, each with commands that differ in one word. */
+typedef enum Step {
+    STEP_PAINT, // by the regions of a task
+    STEP_MERGE, // by part
+    STEP_FILM,
+} Step;
+
+static int n_commands(const Farm *farm, Step step)
 {
-    const char *const task[] = {"--region", regions, "--no-frames", "--no-clobber", NULL};
-    const char *const merge[] = {"--merge", NULL};
-    GPtrArray *words = g_ptr_array_new_with_free_func(g_free);
-    const char *const *more = regions ? task : merge;
-    g_ptr_array_add(words, g_strdup(farm->command[0]));
+    const int n[] = {[STEP_PAINT] = (int)farm->tasks->len,
+                     [STEP_MERGE] = farm->n_parts,
+                     [STEP_FILM] = farm->film ? 1 : 0};
+    return n[step];
+}
+
+/* The word in which command k of a step differs; to be freed. */
+static char *word_of(const Farm *farm, Step step, int k)
+{
+    if (step == STEP_PAINT)
+        return g_strdup(g_array_index(farm->tasks, Task, k).regions->str);
+    return step == STEP_FILM ? g_strdup("film") : g_strdup_printf("%d/%d", k + 1, farm->n_parts);
+}
+
+static void add_all(GPtrArray *words, const char *const *more)
+{
     for (; *more; more++)
         g_ptr_array_add(words, g_strdup(*more));
-    g_ptr_array_add(words, g_strdup("--paint"));
-    g_ptr_array_add(words, g_strdup(farm->paint));
+}
+
+#define VARIABLE 2 // where the word is in which commands differ
+
+/* The words of a command. A part keeps frames that exist, as of an earlier try, unless they are to
+ * be replaced. To be freed. */
+static GPtrArray *words_of(const Farm *farm, Step step, const char *variable)
+{
+    const bool paints = step == STEP_PAINT, in_parts = farm->n_parts > 1;
+    const bool keeps =
+        step == STEP_MERGE && in_parts && farm->plan->options.overwrite == FL_OVERWRITE_REFUSE;
+    GPtrArray *words = g_ptr_array_new_with_free_func(g_free);
+    add_all(words, (const char *const[]){farm->command[0], NULL});
+    if (paints)
+        add_all(words, (const char *const[]){"--region", variable, "--no-frames", "--no-clobber",
+                                             "--paint-area=region", NULL});
+    else if (in_parts)
+        add_all(words, (const char *const[]){"--part", variable, NULL});
+    add_all(words, (const char *const[]){"--paint", farm->paint, NULL});
+    if (!paints)
+        add_all(words, (const char *const[]){"--merge", keeps ? "--no-clobber" : NULL, NULL});
     for (const char *const *word = farm->command + 1; *word;) {
-        const int skipped = regions ? words_of_merge(word) : 0;
+        const int skipped = paints ? words_of_merge(word) : 0;
         if (skipped == 0)
             g_ptr_array_add(words, g_strdup(*word));
         word += MAX(skipped, 1);
@@ -105,33 +168,54 @@ static GPtrArray *words_of(const Farm *farm, const char *regions)
     return words;
 }
 
-static void add_words(GString *text, const Farm *farm, const char *regions, bool shell)
+/* ---- Slurm ---------------------------------------------------------------------------------- */
+
+static const struct {
+    const char *variable, *label, *end;
+} slurm_steps[] = {[STEP_PAINT] = {"tasks", "", "TASKS"},
+                   [STEP_MERGE] = {"merge", "merge ", "MERGE"},
+                   [STEP_FILM] = {"film", "", "FILM"}};
+
+/* Sets $what, in which the commands of a step differ. */
+static void add_slurm_variable(GString *text, const Farm *farm, Step step)
 {
-    g_autoptr(GPtrArray) words = words_of(farm, regions);
-    for (guint k = 0; k < words->len; k++) {
-        const char *word = words->pdata[k];
-        const bool variable = regions && shell && word == words->pdata[2]; // "$regions"
-        g_autofree char *quoted = variable ? g_strdup("\"$regions\"") : g_shell_quote(word);
-        if (k > 0)
-            g_string_append(text, shell ? " " : ", ");
-        if (shell)
-            g_string_append(text, quoted);
-        else
-            fl_json_string(text, word);
+    const int n = n_commands(farm, step);
+    if (step == STEP_MERGE && n > 1) {
+        g_string_append_printf(text, "what=$((SLURM_ARRAY_TASK_ID + 1))/%d\n", n);
+    } else if (step == STEP_PAINT) {
+        g_string_append(text, "all=(\n");
+        for (int k = 0; k < n; k++) {
+            g_autofree char *word = word_of(farm, step, k);
+            g_string_append_printf(text, "%s\n", word);
+        }
+        g_string_append(text, ")\nwhat=${all[$SLURM_ARRAY_TASK_ID]}\n");
+    } else {
+        g_string_append_printf(text, "what=%s\n", step == STEP_FILM ? "film" : "1/1");
     }
 }
 
-/* ---- Slurm ---------------------------------------------------------------------------------- */
+static void add_shell_words(GString *text, const Farm *farm, Step step)
+{
+    g_autoptr(GPtrArray) words = words_of(farm, step, "");
+    const bool varies = step != STEP_MERGE || farm->n_parts > 1;
+    for (guint k = 0; k < words->len; k++) {
+        g_autofree char *quoted =
+            varies && k == VARIABLE ? g_strdup("\"$what\"") : g_shell_quote(words->pdata[k]);
+        g_string_append_printf(text, "%s%s", k > 0 ? " " : "", quoted);
+    }
+}
 
 /**
  * Log lines say shot and region; a task that is told to stop ends with 75 and is queued again,
  * unless it is no more "RUNNING": who cancelled it does not want it back, and what Slurm requeues
  * waits already.
  */
-static void add_slurm_body(GString *text, const Farm *farm, bool merge)
+static void add_slurm_body(GString *text, const Farm *farm, Step step)
 {
-    g_string_append(text, "exec > >(sed -u \"s|^|$shot $regions: |\") 2>&1\n");
-    add_words(text, farm, merge ? NULL : "", true);
+    add_slurm_variable(text, farm, step);
+    g_string_append_printf(text, "exec > >(sed -u \"s|^|$shot %s$what: |\") 2>&1\n",
+                           slurm_steps[step].label);
+    add_shell_words(text, farm, step);
     g_string_append(text, " --progress plain &\n"
                           "job=$! stopped=\n"
                           "trap 'stopped=yes; kill -TERM $job' TERM INT\n"
@@ -145,37 +229,71 @@ static void add_slurm_body(GString *text, const Farm *farm, bool merge)
                           "exit $status\n");
 }
 
+/* Submits a step, after the one before it. */
+static void add_slurm_step(GString *text, const Farm *farm, Step step, const char *shot)
+{
+    const char *name = slurm_steps[step].variable, *end = slurm_steps[step].end;
+    const int n = n_commands(farm, step);
+    g_string_append_printf(text,
+                           "%s=$(sbatch --parsable --requeue --open-mode=append "
+                           "--signal=B:TERM@60 --job-name=%s",
+                           name, shot);
+    if (step == STEP_PAINT || n > 1)
+        g_string_append_printf(text, " --array=0-%d", n - 1);
+    if (step > STEP_PAINT)
+        g_string_append_printf(text, " --dependency=afterok:\"${%s%%%%;*}\"",
+                               slurm_steps[step - 1].variable);
+    g_string_append_printf(text, " \"$@\" <<'%s'\n#!/bin/bash\nshot=%s\n", end, shot);
+    add_slurm_body(text, farm, step);
+    g_string_append_printf(text, "%s\n)\n", end);
+}
+
 static char *print_slurm(const Farm *farm)
 {
     const char *name = fl_drawing_name(farm->plan->drawing);
     g_autofree char *shot = g_shell_quote(name), *folder = g_shell_quote(farm->folder);
     GString *text = g_string_new("#!/bin/bash\n");
     g_string_append_printf(text,
-                           "# %s: %d regions in %u tasks, largest first, and then the merge.\n"
+                           "# %s: %d regions in %u tasks, largest first, and then a merge of %d "
+                           "part%s%s.\n"
                            "# Run it with bash; its arguments are handed on to sbatch.\n"
-                           "set -eu\ncd %s\n"
-                           "tasks=$(sbatch --parsable --requeue --open-mode=append "
-                           "--signal=B:TERM@60 --array=0-%u --job-name=%s \"$@\" <<'TASKS'\n"
-                           "#!/bin/bash\nshot=%s\nall=(\n",
-                           name, farm->plan->n_painted, farm->tasks->len, folder,
-                           farm->tasks->len - 1, shot, shot);
-    for (guint k = 0; k < farm->tasks->len; k++)
-        g_string_append_printf(text, "%s\n", g_array_index(farm->tasks, Task, k).regions->str);
-    g_string_append(text, ")\nregions=${all[$SLURM_ARRAY_TASK_ID]}\n");
-    add_slurm_body(text, farm, false);
-    g_string_append_printf(
-        text,
-        "TASKS\n)\n"
-        "sbatch --parsable --requeue --open-mode=append --signal=B:TERM@60 "
-        "--dependency=afterok:\"${tasks%%%%;*}\" --job-name=%s \"$@\" <<'MERGE'\n"
-        "#!/bin/bash\nshot=%s regions=merge\n",
-        shot, shot);
-    add_slurm_body(text, farm, true);
-    g_string_append(text, "MERGE\n");
+                           "set -eu\ncd %s\n",
+                           name, count_painted(farm->plan), farm->tasks->len, farm->n_parts,
+                           farm->n_parts > 1 ? "s" : "", farm->film ? ", and the film" : "",
+                           folder);
+    Step last = STEP_PAINT;
+    for (Step step = STEP_PAINT; step <= STEP_FILM; step++)
+        if (n_commands(farm, step) > 0)
+            add_slurm_step(text, farm, step, shot), last = step;
+    g_string_append_printf(text, "echo \"$%s\"\n", slurm_steps[last].variable);
     return g_string_free(text, FALSE);
 }
 
 /* ---- JSON ----------------------------------------------------------------------------------- */
+
+static void add_json_command(GString *text, const Farm *farm, Step step, const char *variable)
+{
+    g_autoptr(GPtrArray) words = words_of(farm, step, variable);
+    g_string_append(text, "\"command\": [");
+    for (guint k = 0; k < words->len; k++) {
+        g_string_append(text, k > 0 ? ", " : "");
+        fl_json_string(text, words->pdata[k]);
+    }
+    g_string_append(text, "]}");
+}
+
+static void add_json_step(GString *text, const Farm *farm, Step step)
+{
+    for (int k = 0; k < n_commands(farm, step); k++) {
+        g_autofree char *word = word_of(farm, step, k);
+        g_string_append(text, k > 0 ? ",\n  {" : "\n  {");
+        fl_json_text(text, step == STEP_PAINT ? "regions" : "part", word);
+        if (step == STEP_PAINT)
+            fl_json_number(text, "share", g_array_index(farm->tasks, Task, k).share, true);
+        g_string_append(text, ", ");
+        add_json_command(text, farm, step, word);
+    }
+}
 
 static char *print_json(const Farm *farm)
 {
@@ -185,26 +303,27 @@ static char *print_json(const Farm *farm)
     fl_json_number(text, "frames", fl_drawing_frames(farm->plan->drawing), true);
     fl_json_number(text, "again_status", 75, true);
     g_string_append(text, ",\n \"tasks\": [");
-    for (guint k = 0; k < farm->tasks->len; k++) {
-        const Task *task = &g_array_index(farm->tasks, Task, k);
-        g_string_append(text, k > 0 ? ",\n  {" : "\n  {");
-        fl_json_text(text, "regions", task->regions->str);
-        fl_json_number(text, "share", task->share, true);
-        g_string_append(text, ", \"command\": [");
-        add_words(text, farm, task->regions->str, false);
-        g_string_append(text, "]}");
-    }
-    g_string_append(text, "],\n \"merge\": {\"command\": [");
-    add_words(text, farm, NULL, false);
-    g_string_append(text, "]}\n}\n");
+    add_json_step(text, farm, STEP_PAINT);
+    g_string_append(text, "],\n \"merge\": [");
+    add_json_step(text, farm, STEP_MERGE);
+    g_string_append(text, "],\n \"film\": [");
+    add_json_step(text, farm, STEP_FILM);
+    g_string_append(text, "]\n}\n");
     return g_string_free(text, FALSE);
 }
 
 /* ---- Open Job Description ------------------------------------------------------------------- */
 
-static void add_action(GString *text, const Farm *farm, const char *regions)
+static const struct {
+    const char *name, *parameter;
+} openjd_steps[] = {[STEP_PAINT] = {"Paint", "Regions"},
+                    [STEP_MERGE] = {"Merge", "Part"},
+                    [STEP_FILM] = {"Film", "Part"}};
+
+static void add_action(GString *text, const Farm *farm, Step step)
 {
-    g_autoptr(GPtrArray) words = words_of(farm, regions);
+    g_autofree char *variable = g_strdup_printf("{{Task.Param.%s}}", openjd_steps[step].parameter);
+    g_autoptr(GPtrArray) words = words_of(farm, step, variable);
     g_string_append(text, "\"script\": {\"actions\": {\"onRun\": {");
     fl_json_text(text, "command", words->pdata[0]);
     g_string_append(text, ", \"args\": [");
@@ -215,6 +334,26 @@ static void add_action(GString *text, const Farm *farm, const char *regions)
     g_string_append(text, "]}}}");
 }
 
+static void add_openjd_step(GString *text, const Farm *farm, Step step)
+{
+    g_string_append(text, step > STEP_PAINT ? ",\n  {" : "\n  {");
+    fl_json_text(text, "name", openjd_steps[step].name);
+    if (step > STEP_PAINT)
+        g_string_append_printf(text, ", \"dependencies\": [{\"dependsOn\": \"%s\"}]",
+                               openjd_steps[step - 1].name);
+    g_string_append(text, ",\n   \"parameterSpace\": {\"taskParameterDefinitions\": [{\"name\": ");
+    fl_json_string(text, openjd_steps[step].parameter);
+    g_string_append(text, ", \"type\": \"STRING\", \"range\": [");
+    for (int k = 0; k < n_commands(farm, step); k++) {
+        g_autofree char *word = word_of(farm, step, k);
+        g_string_append(text, k > 0 ? ", " : "");
+        fl_json_string(text, word);
+    }
+    g_string_append(text, "]}]},\n   ");
+    add_action(text, farm, step);
+    g_string_append(text, "}");
+}
+
 /* Tasks start in the folder in which the template was made, which Open Job Description knows not
  * how to say: relative names want a session that starts there. */
 static char *print_openjd(const Farm *farm)
@@ -222,19 +361,11 @@ static char *print_openjd(const Farm *farm)
     GString *text = g_string_new("{");
     fl_json_text(text, "specificationVersion", "jobtemplate-2023-09");
     fl_json_text(text, "name", fl_drawing_name(farm->plan->drawing));
-    g_string_append(text, ",\n \"steps\": [\n  {\"name\": \"Paint\", \"parameterSpace\": "
-                          "{\"taskParameterDefinitions\": [{\"name\": \"Regions\", \"type\": "
-                          "\"STRING\", \"range\": [");
-    for (guint k = 0; k < farm->tasks->len; k++) {
-        g_string_append(text, k > 0 ? ", " : "");
-        fl_json_string(text, g_array_index(farm->tasks, Task, k).regions->str);
-    }
-    g_string_append(text, "]}]},\n   ");
-    add_action(text, farm, "{{Task.Param.Regions}}");
-    g_string_append(text, "},\n  {\"name\": \"Merge\", \"dependencies\": [{\"dependsOn\": "
-                          "\"Paint\"}],\n   ");
-    add_action(text, farm, NULL);
-    g_string_append(text, "}\n ]\n}\n");
+    g_string_append(text, ",\n \"steps\": [");
+    for (Step step = STEP_PAINT; step <= STEP_FILM; step++)
+        if (n_commands(farm, step) > 0)
+            add_openjd_step(text, farm, step);
+    g_string_append(text, "\n ]\n}\n");
     return g_string_free(text, FALSE);
 }
 
@@ -243,11 +374,11 @@ static char *print_openjd(const Farm *farm)
 static char *(*const printers[])(const Farm *) = {
     [FL_FARM_SLURM] = print_slurm, [FL_FARM_OPENJD] = print_openjd, [FL_FARM_JSON] = print_json};
 
-/* A pattern for the files between tasks and merge: that of ‘paint’, or beside the usual frames. */
-static char *paint_pattern(const FlPlan *plan)
+/* A pattern for the files between tasks and merge: `paint`, or beside the usual frames. */
+static char *paint_pattern(const FlPlan *plan, const char *paint)
 {
-    if (plan->options.paint)
-        return g_strdup(plan->options.paint);
+    if (paint)
+        return g_strdup(paint);
     g_autoptr(GString) name = g_string_new(fl_drawing_name(plan->drawing));
     g_string_replace(name, "%", "%%", 0);
     return g_strdup_printf("fluidy/%s_paint/{region}_%%04d.png", name->str);
@@ -259,17 +390,19 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
     FlRenderOptions whole = *options;
     whole.dry_run = true; // nothing is written
     whole.cache = NULL;
-    if (options->only_region || options->merge || options->report || options->dump ||
-        options->ebsynth) {
+    whole.merge = true; // what the merge shows is what is painted
+    whole.paint = options->paint ? options->paint : "{region}_%04d.png";
+    if (options->only_region || options->merge || options->part || options->report ||
+        options->dump || options->ebsynth) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "a plan is of all regions and their merge; leave out ‘region’, ‘merge’, "
-                    "‘report’, ‘dump’ and ‘ebsynth’");
+                    "‘part’, ‘report’, ‘dump’ and ‘ebsynth’");
         return NULL;
     }
     g_autoptr(FlPlan) plan = fl_plan_new(&whole, error);
     if (!plan)
         return NULL;
-    if (plan->n_painted == 0) {
+    if (count_painted(plan) == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
                     "%s: no region is painted, so that there is "
                     "nothing to plan",
@@ -278,10 +411,12 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
     }
     Farm all = {.plan = plan,
                 .folder = g_get_current_dir(),
-                .paint = paint_pattern(plan),
+                .paint = paint_pattern(plan, options->paint),
                 .command = command,
+                .n_parts = count_parts(plan),
                 .tasks = g_array_new(FALSE, FALSE, sizeof(Task))};
     g_array_set_clear_func(all.tasks, (GDestroyNotify)clear_task);
+    all.film = all.n_parts > 1 && plan->movie;
     make_tasks(&all);
     char *text = printers[farm](&all);
     g_array_unref(all.tasks);

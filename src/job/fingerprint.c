@@ -204,9 +204,10 @@ static bool add_pattern(FlFingerprint *print, const FlPlan *plan, const char *pa
                         const char *region, GError **error)
 {
     const bool itself = g_file_test(pattern, G_FILE_TEST_EXISTS);
-    const int n = fl_input_is_pattern(pattern) ? fl_drawing_frames(plan->drawing) : 1;
+    const bool each = fl_input_is_pattern(pattern);
+    const int first = each ? plan->first : 0, end = each ? plan->end : 1;
     g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
-    for (int f = 0; f < n; f++) {
+    for (int f = first; f < end; f++) {
         g_autofree char *file =
             itself ? g_strdup(pattern)
                    : fl_output_name(pattern, fl_drawing_number(plan->drawing, f), region, error);

@@ -150,7 +150,12 @@ static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
     if (o->overwrite != FL_OVERWRITE_KEEP || film_of(plan) || plan->parts_only || o->layers ||
         o->paint || o->stats || o->report || o->dump || o->ebsynth)
         return false;
-    for (int f = 0; f < sequence->n; f++) {
+    // frames that are found to be left out would move the bounds of parts
+    if (plan->n_parts > 1 && o->missing > FL_MISSING_ERROR)
+        return false;
+    int first, end;
+    fl_plan_part(plan, sequence->n, &first, &end);
+    for (int f = first; f < end; f++) {
         g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, NULL);
         if (!file || !g_file_test(file, G_FILE_TEST_EXISTS))
             return false;

@@ -19,11 +19,19 @@ static void restore(const uint8_t *rgba, size_t p, FlPaintedRegion *painted)
         painted->alpha[p] = rgba[3];
 }
 
-bool fl_paint_save(const FlPaintedRegion *painted, const char *path, bool overwrite, GError **error)
+/* A region that is never there has no rectangle of its own. */
+static FlRect area_of(const FlPaintedRegion *painted, FlPaintArea area)
 {
-    const size_t pixels = (size_t)painted->width * painted->height;
+    const bool whole = area != FL_PAINT_AREA_REGION || painted->rect.width == 0;
+    return whole ? (FlRect){0, 0, painted->width, painted->height} : painted->rect;
+}
+
+bool fl_paint_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
+                   bool overwrite, GError **error)
+{
+    const FlRect part = area_of(painted, area), rect = painted->rect;
+    const size_t pixels = fl_rect_pixels(part);
     const uint8_t *paper = painted->style->paper;
-    const FlRect rect = painted->rect;
     g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "the paint of a region", error);
     if (!rgba)
         return false;
@@ -33,13 +41,27 @@ bool fl_paint_save(const FlPaintedRegion *painted, const char *path, bool overwr
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++)
             fl_painted_pixel(painted, (size_t)y * (size_t)rect.width + (size_t)x,
-                             rgba +
-                                 4 * ((size_t)(rect.y + y) * (size_t)painted->width + rect.x + x));
-    const FlPng png = {.width = painted->width,
-                       .height = painted->height,
+                             rgba + 4 * ((size_t)(rect.y - part.y + y) * (size_t)part.width +
+                                         (size_t)(rect.x - part.x + x)));
+    const FlPng png = {.width = part.width,
+                       .height = part.height,
                        .rgba = rgba,
-                       .opaque = !painted->alpha};
+                       .opaque = !painted->alpha,
+                       .fast = area == FL_PAINT_AREA_REGION, // the merge is its only reader
+                       .place = area == FL_PAINT_AREA_REGION ? &part : NULL};
     return fl_png_save(&png, path, overwrite, error);
+}
+
+void fl_paint_find_place(const FlDrawing *drawing, FlRegionPlan *region)
+{
+    const FlRect page = {0, 0, fl_drawing_width(drawing), fl_drawing_height(drawing)};
+    g_autofree char *file = fl_paint_file(region->paint_files, drawing, region, 0, NULL);
+    FlRect place;
+    if (!file || !fl_png_place(file, &place) || place.width > page.width ||
+        place.height > page.height || place.x > page.width - place.width ||
+        place.y > page.height - place.height)
+        return;
+    region->place = place;
 }
 
 bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)

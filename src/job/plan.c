@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "base/limits.h"
 #include "base/page.h"
-#include "base/parallel_error.h"
 #include "base/suggest.h"
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
@@ -12,8 +11,6 @@
 #include "job/moved_paint.h"
 #include "job/paint_files.h"
 #include "job/resume.h"
-#include "job/sight.h"
-#include <stdatomic.h>
 #include <string.h>
 
 static bool open_drawing(FlPlan *plan, GError **error)
@@ -324,15 +321,64 @@ static bool name_parts(FlPlan *plan, const FlSequence *sequence, GError **error)
     return plan->format != NULL;
 }
 
+static bool is_of_film(const char *part)
+{
+    return part && strcmp(part, "film") == 0;
+}
+
+/* One of N parts; without one, or of the film alone, all of 1. */
+static bool parse_part(FlPlan *plan, GError **error)
+{
+    const char *part = plan->options.part;
+    int k = 1, length = 0;
+    plan->n_parts = 1;
+    if (part && !is_of_film(part) &&
+        (sscanf(part, "%5d/%5d%n", &k, &plan->n_parts, &length) != 2 || part[length] || k < 1 ||
+         k > plan->n_parts)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "‘part’: “%s” is not understood; expected film, or K/N such as 2/4, K from 1 "
+                    "to N",
+                    part);
+        return false;
+    }
+    plan->part = k - 1;
+    return true;
+}
+
+/* A part of a merge makes no film, and who makes the film composes nothing. */
+static bool choose_part(FlPlan *plan, GError **error)
+{
+    const char *part = plan->options.part;
+    const bool of_film = is_of_film(part);
+    if (of_film && !plan->movie)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: no film of frames that are kept, as ‘part’ film makes; expected a name "
+                    "such as walk.mov",
+                    plan->output);
+    else if (plan->format->film)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: has no parts; leave out ‘part’ or ‘no-frames’", plan->output);
+    else if (!of_film)
+        g_clear_pointer(&plan->movie, g_free);
+    return of_film ? plan->movie != NULL : !plan->format->film;
+}
+
+void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end)
+{
+    *first = (int)((int64_t)n_frames * plan->part / plan->n_parts);
+    *end = (int)((int64_t)n_frames * (plan->part + 1) / plan->n_parts);
+}
+
 /* Names the output and looks whether it is free, before the drawing is read. */
 static bool find_output(FlPlan *plan, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
     g_autoptr(FlSequence) sequence = fl_sequence_from_options(o, error);
-    if (!sequence || !(plan->parts_only ? name_parts : name_output)(plan, sequence, error))
+    if (!sequence || !(plan->parts_only ? name_parts : name_output)(plan, sequence, error) ||
+        !parse_part(plan, error) || (o->part && !choose_part(plan, error)))
         return false;
     plan->request = fl_fingerprint_of_request(plan, sequence);
-    plan->finished = fl_finished_look(plan, sequence);
+    plan->finished = is_of_film(o->part) ? FL_FINISHED_FRAMES : fl_finished_look(plan, sequence);
     plan->n_finished = plan->finished != FL_FINISHED_NOTHING ? sequence->n : 0;
     return plan->finished == FL_FINISHED_ALL ||
            (plan->options.dry_run || fl_resume_expect_free(plan, sequence, error));
@@ -366,6 +412,8 @@ static bool check_merge(const FlRenderOptions *options, GError **error)
         wrong = "‘merge’ paints nothing that ‘report’ or ‘dump’ could show; use it alone";
     else if (options->paint && !fl_output_is_pattern(options->paint))
         wrong = "‘paint’: one file for all frames; expected a number in the name, such as %04d";
+    else if (options->part && !options->merge)
+        wrong = "‘part’ is of a merge; use ‘merge’ too, or ‘frames’ for some of the frames";
     if (wrong)
         g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);
     return !wrong;
@@ -378,6 +426,14 @@ static void tell_linked(const FlPlan *plan)
     g_hash_table_iter_init(&at, fl_drawing_linked_files(plan->drawing));
     while (plan->options.linked && g_hash_table_iter_next(&at, &file, NULL))
         plan->options.linked(file, plan->options.data);
+}
+
+/* What a merge needs to know of the paint before it reads any. */
+static bool look_at_paint(FlPlan *plan, GError **error)
+{
+    for (int p = 0; p < plan->n_painted; p++)
+        fl_paint_find_place(plan->drawing, &plan->painted[p]);
+    return fl_plan_find_hidden(plan, error);
 }
 
 static bool make_plan(FlPlan *plan, GError **error)
@@ -393,12 +449,15 @@ static bool make_plan(FlPlan *plan, GError **error)
         return true;
     if (!open_drawing(plan, error))
         return false;
+    fl_plan_part(plan, fl_drawing_frames(plan->drawing), &plan->first, &plan->end);
     tell_linked(plan);
     if (!check_region_names(plan, error) || !plan_regions(plan, error))
         return false;
     choose_size(plan);
     return choose_styles(plan, error) && check_regions_file(plan, plan->options.layers, error) &&
-           check_regions_file(plan, plan->options.paint, error);
+           check_regions_file(plan, plan->options.paint, error) &&
+           (!plan->options.merge || plan->finished == FL_FINISHED_FRAMES ||
+            look_at_paint(plan, error));
 }
 
 /* To be freed with g_free(). */
@@ -456,144 +515,16 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan);
 }
 
-/* How the regions of a frame meet. */
-static bool note_edges(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
-{
-    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
-    if (draws)
-        fl_shared_edges_note(edges, draws, plan->joins);
-    return draws;
-}
-
 bool fl_plan_frames_alone(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
-    return !o->layers && !plan->format->takes_layers && !o->only_region && !o->paint && !o->dump &&
-           !o->ebsynth && !o->report;
+    const bool gives_paint = !o->merge && (o->paint || o->ebsynth);
+    return !o->layers && !plan->format->takes_layers && !o->only_region && !gives_paint &&
+           !o->dump && !o->report;
 }
 
 bool fl_plan_is_of_paint(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     return plan->parts_only && !o->layers && !o->report && !o->dry_run;
-}
-
-/* Shapes that are held longer than others are shown below those of later frames. */
-static bool all_hold_alike(const FlPlan *plan)
-{
-    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
-        if (plan->hold_of[r] != plan->hold)
-            return false;
-    return true;
-}
-
-bool fl_plan_hides(const FlPlan *plan, int region)
-{
-    return plan->seen && !plan->seen[region];
-}
-
-static void begin_sight(FlPlan *plan)
-{
-    const int n = fl_drawing_regions(plan->drawing);
-    g_clear_pointer(&plan->seen, g_free);
-    if (!fl_plan_frames_alone(plan) || !all_hold_alike(plan))
-        return;
-    plan->seen = g_new(bool, MAX(n, 1));
-    for (int r = 0; r < n; r++)
-        plan->seen[r] = plan->painted_of[r] < 0;
-}
-
-/* Every style's rim, and a pixel where drafts are enlarged. */
-static bool note_sight(const FlPlan *plan, const FlDrawList *draws, GError **error)
-{
-    if (!plan->seen)
-        return true;
-    FlSight sight = {plan->joins, fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing),
-                     1};
-    for (int p = 0; p < plan->n_painted; p++)
-        sight.rim_px =
-            MAX(sight.rim_px, (int)(plan->painted[p].style->exemplar->border_px + 0.5f) + 1);
-    return fl_sight_note(&sight, draws, plan->seen, error);
-}
-
-/* Stores the masks of all painted regions in a frame. */
-static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
-{
-    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
-    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
-    g_autofree uint8_t *mask = draws ? fl_alloc((size_t)width * height, 1, "a mask", error) : NULL;
-    if (!mask)
-        return false;
-    for (int p = 0; p < plan->n_painted; p++) {
-        const int region = plan->painted[p].region;
-        bool drawn = false;
-        for (int r = 0; r < draws->n; r++)
-            drawn = drawn || draws->draw[r].region == region;
-        if (!drawn)
-            continue;
-        fl_draw_list_mask(draws, region, width, height, mask);
-        if (!fl_mask_store_put(plan->masks, region, frame, mask, error))
-            return false;
-    }
-    return note_sight(plan, draws, error) &&
-           fl_surround_put(plan->surround, frame, draws, plan->joins, edges, error);
-}
-
-/* A pass over all frames. */
-typedef struct Pass {
-    FlPlan *plan;
-    FlSharedEdges *edges;
-    bool (*work)(FlPlan *, FlSharedEdges *, int, GError **);
-    double before, share; // of this stage: done in earlier passes, and this one's
-    atomic_int done;      // frames
-    GThread *caller;      // who tells the progress
-} Pass;
-
-static bool tell_masks(Pass *pass, int frame, GError **error)
-{
-    const FlPlan *plan = pass->plan;
-    const FlRenderOptions *o = &plan->options;
-    const int frames = fl_drawing_frames(plan->drawing);
-    const int done = atomic_fetch_add(&pass->done, 1) + 1;
-    if (!o->progress || g_thread_self() != pass->caller)
-        return true;
-    const FlProgress progress = {.stage = "masks",
-                                 .region_index = -1,
-                                 .n_regions = plan->n_painted,
-                                 .frame = fl_drawing_number(plan->drawing, frame),
-                                 .done = (int)(pass->before * frames + pass->share * done),
-                                 .total = frames,
-                                 .elapsed_s = (double)(g_get_monotonic_time() - plan->start) * 1e-6,
-                                 .remaining_s = -1};
-    if (o->progress(&progress, o->data))
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted before the first frame");
-    return false;
-}
-
-static bool each_frame(Pass *pass, GError **error)
-{
-    const int n = fl_drawing_frames(pass->plan->drawing);
-    GError *first = NULL;
-    int failed = 0;
-#pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
-    for (int f = 0; f < n; f++) {
-        GError *failure = NULL;
-        if (failed == 0 &&
-            !(pass->work(pass->plan, pass->edges, f, &failure) && tell_masks(pass, f, &failure)))
-            failed++;
-        fl_parallel_error_keep(&first, failure);
-    }
-    return fl_parallel_error_tell(error, first);
-}
-
-bool fl_plan_rasterise(FlPlan *plan, GError **error)
-{
-    g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(fl_drawing_regions(plan->drawing));
-    const bool alone = fl_drawing_regions(plan->drawing) < 2;
-    begin_sight(plan);
-    const double share = alone ? 1 : .5;
-    Pass note = {plan, edges, note_edges, 0, share, 0, g_thread_self()};
-    Pass store = {plan, edges, store_masks, 1 - share, share, 0, g_thread_self()};
-    return (alone || each_frame(&note, error)) && each_frame(&store, error);
 }

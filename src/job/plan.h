@@ -2,6 +2,7 @@
 #ifndef FLUIDY_JOB_PLAN_H
 #define FLUIDY_JOB_PLAN_H
 
+#include "base/rect.h"
 #include "drawing/drawing.h"
 #include "io/sink.h"
 #include "job/engine.h"
@@ -28,6 +29,7 @@ typedef struct FlRegionPlan {
     const FlStyleInstance *tile;  // borrowed: whose tile moves its paint; NULL: none does
     const FlEngine *engine;
     const char *paint_files; // borrowed: pattern of files of its paint; NULL: it is painted
+    FlRect place;            // of the paint in those files; nothing: they do not say it
     const char *flow_files;  // borrowed: pattern of flow files; NULL: flow from the masks
     bool keeps_flow;         // for a dump
     bool loops;              // the film's end leads into its beginning
@@ -49,6 +51,8 @@ typedef struct FlPlan {
     FlRegionHand *hands; // by region: what draws it where it is not painted
     int hold;            // the drawing changes on every hold-th frame
     int width, height;   // of the frames
+    int part, n_parts;   // of a merge, `part` from 0
+    int first, end;      // the frames of this run, up to and without `end`
     bool by_page;        // paint of some region, and so the paper, is as large as the page asks for
     float paper_px;      // px of the frames per px of the sheet of paper
     bool half;           // drafts: the drawing has half their size, and layers are enlarged
@@ -76,19 +80,25 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error);
 
 void fl_plan_free(FlPlan *plan); // NULL is fine
 
-/** Whether frames are all that comes of the paint, so that what is hidden in them needs none:
- * layers can be moved apart. */
+/** Whether frames are all that comes of the paint, here or in a merge, so that what is hidden in
+ * them needs none: layers can be moved apart. */
 bool fl_plan_frames_alone(const FlPlan *plan);
+
+/** Which of so many frames a part of a merge composes. */
+void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end);
 
 /** Whether paint is all that is made, as in the task of a farm: nothing is composed. */
 bool fl_plan_is_of_paint(const FlPlan *plan);
 
 /** Whether others hide a region in every frame, and frames are all that comes of its paint; known
- * after fl_plan_rasterise(). */
+ * after fl_plan_rasterise() or fl_plan_find_hidden(), and in a merge. */
 bool fl_plan_hides(const FlPlan *plan, int region);
 
 /** Rasterises the masks of the painted regions in every frame into plan->masks. */
 bool fl_plan_rasterise(FlPlan *plan, GError **error);
+
+/** Looks which regions are hidden, without masks: it draws as many frames as show all regions. */
+bool fl_plan_find_hidden(FlPlan *plan, GError **error);
 
 /** Makes the lengths in a region's parameters px of what is painted, of which px are one of theirs.
  */

@@ -14,8 +14,9 @@ static char *frame_file(const FlPlan *plan, int frame, GError **error)
     return fl_sink_file(&params, fl_drawing_number(plan->drawing, frame), error);
 }
 
-/* A hidden file beside the frames, one for each pattern, however it is spelt; with any_digits one
- * for all patterns that name the same files sooner or later, as %03d and %04d do from 1000 on. */
+/* A hidden file beside the frames, one for each pattern and part, however it is spelt; with
+ * any_digits one for all patterns that name the same files sooner or later, as %03d and %04d do
+ * from 1000 on. */
 static char *hidden_file(const FlPlan *plan, bool any_digits, const char *suffix)
 {
     g_autofree char *folder = g_path_get_dirname(plan->output);
@@ -25,7 +26,9 @@ static char *hidden_file(const FlPlan *plan, bool any_digits, const char *suffix
         pattern.width = 1;
     g_autofree char *text = parsed ? fl_pattern_text(&pattern) : g_strdup(plan->output);
     g_autofree char *base = g_path_get_basename(text);
-    g_autofree char *name = g_strdup_printf(".%s.%s", base, suffix);
+    g_autofree char *part =
+        plan->n_parts > 1 ? g_strdup_printf(".%d-%d", plan->part + 1, plan->n_parts) : g_strdup("");
+    g_autofree char *name = g_strdup_printf(".%s%s.%s", base, part, suffix);
     return g_build_filename(folder, name, NULL);
 }
 
@@ -106,9 +109,14 @@ static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, G
     if (frame < resume->first) {
         if (!file || g_file_test(file, G_FILE_TEST_EXISTS))
             return true;
-        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
-                    "%s: an earlier run painted it, but it is gone; use ‘overwrite’ to start anew",
-                    file);
+        if (plan->options.part)
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                        "%s: there is no such frame; ‘merge’ its ‘part’ first", file);
+        else
+            g_set_error(
+                error, FL_ERROR, FL_ERROR_CHANGED,
+                "%s: an earlier run painted it, but it is gone; use ‘overwrite’ to start anew",
+                file);
         return false;
     }
     return resume->keep_files || fl_resume_replaces(resume, frame) ||
@@ -121,7 +129,7 @@ static bool check_files(const FlResume *resume, const FlPlan *plan, GError **err
     const char *movie = resume->path ? plan->movie : plan->output;
     if (movie && !may_overwrite(plan) && !fl_exists_not(movie, error))
         return false;
-    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
+    for (int f = plan->first; f < plan->end; f++)
         if (!check_frame(resume, plan, f, error))
             return false;
     return true;
@@ -133,8 +141,8 @@ static void note_resume(const FlResume *resume, const FlPlan *plan)
     if (!o->note)
         return;
     g_autofree char *line =
-        g_strdup_printf("resuming an earlier run, which painted %d of %d frames", resume->first,
-                        fl_drawing_frames(plan->drawing));
+        g_strdup_printf("resuming an earlier run, which painted %d of %d frames",
+                        resume->first - plan->first, plan->end - plan->first);
     o->note(line, o->data);
 }
 
@@ -152,7 +160,7 @@ bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GErro
     if (plan->format->film || plan->finished == FL_FINISHED_FRAMES ||
         plan->options.overwrite == FL_OVERWRITE_KEEP || g_file_test(state, G_FILE_TEST_EXISTS))
         return true;
-    for (int f = 0; f < sequence->n; f++) {
+    for (int f = 0; plan->n_parts == 1 && f < sequence->n; f++) {
         g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, error);
         if (!file || !frame_is_free(plan, file, error))
             return false;
@@ -190,8 +198,8 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
     }
     fl_fingerprint_free(resume->state->print); // equal to print
     resume->state->print = g_steal_pointer(&print);
-    resume->first = plan->finished == FL_FINISHED_FRAMES ? fl_drawing_frames(plan->drawing)
-                                                         : resume->state->done;
+    resume->first =
+        plan->finished == FL_FINISHED_FRAMES ? plan->end : MAX(resume->state->done, plan->first);
     if (!check_files(resume, plan, error))
         return false;
     if (resume->found)

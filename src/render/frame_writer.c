@@ -50,7 +50,8 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
         if (!path)
             return false;
         if (frame % region->settings.hold == 0 && !fl_resume_keeps(writer->resume, path) &&
-            !fl_paint_save(painted[p], path, fl_resume_replaces(writer->resume, frame), error))
+            !fl_paint_save(painted[p], o->paint_area, path,
+                           fl_resume_replaces(writer->resume, frame), error))
             return false;
     }
     return true;

@@ -173,7 +173,9 @@ void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan 
     painter->reuse = reuse;
     painter->result.unseen = is_hidden(painter, plan);
     if (!painter->result.unseen)
-        painter->result.rect = is_known(painter) ? reuse->rect : cropped(painter);
+        painter->result.rect = is_known(painter)         ? reuse->rect
+                               : region->place.width > 0 ? region->place
+                                                         : cropped(painter);
 }
 
 bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)

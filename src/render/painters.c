@@ -87,9 +87,11 @@ bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, FlPaintCache *
 
 bool fl_painters_need_masks(const FlPainters *painters, const FlPlan *plan)
 {
-    bool needed = !painters->reuse;
+    bool needed = false;
     for (int p = 0; p < plan->n_painted && !needed; p++)
-        needed = !painters->reuse[p].known;
+        needed = painters->reuse ? !painters->reuse[p].known
+                                 : plan->painted[p].place.width == 0 &&
+                                       !fl_plan_hides(plan, plan->painted[p].region);
     return needed;
 }
 

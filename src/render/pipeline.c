@@ -50,24 +50,24 @@ static bool report_progress(const Pipeline *pipeline, const char *stage, int don
 {
     const FlPlan *plan = pipeline->plan;
     const FlRenderOptions *o = &plan->options;
-    const int total = fl_drawing_frames(plan->drawing);
+    const int total = plan->end - plan->first, made = MAX(done - plan->first, 0);
     FlProgress progress = {.stage = stage,
                            .region_index = -1,
                            .n_regions = plan->n_painted,
                            .frame = fl_drawing_number(plan->drawing, MAX(done - 1, 0)),
-                           .done = done,
+                           .done = made,
                            .total = total,
-                           .share = (double)done / total,
+                           .share = (double)made / MAX(total, 1),
                            .elapsed_s = seconds_since(pipeline->start),
                            .frame_s = frame_s,
                            .remaining_s = -1};
     const int painted = done - pipeline->resume.first;
     if (painted > 0)
-        progress.remaining_s = seconds_since(pipeline->first_frame) / painted * (total - done);
+        progress.remaining_s = seconds_since(pipeline->first_frame) / painted * (total - made);
     if (!o->progress || o->progress(&progress, o->data))
         return true;
     g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames; %s",
-                done, total, fl_resume_advice(&pipeline->resume));
+                made, total, fl_resume_advice(&pipeline->resume));
     return false;
 }
 
@@ -233,8 +233,10 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
     const bool composed = !fl_plan_is_of_paint(plan);
     if (composed && pipeline->drawn != shown)
         start_drawing(pipeline, shown);
+    // a merge that starts at a held frame still has to read what is held
+    const bool held = shown != frame && !(plan->options.merge && frame == pipeline->resume.first);
     const bool painted =
-        shown != frame || fl_painters_each(&pipeline->painters, frame, paint_one, pipeline, error);
+        held || fl_painters_each(&pipeline->painters, shown, paint_one, pipeline, error);
     *paint_s = seconds_since(start);
     if (!fl_task_wait(&pipeline->drawing, painted ? error : NULL) || !painted)
         return false;
@@ -283,7 +285,7 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
     const bool beside = overlaps(pipeline);
     double paint_s = 0;
     g_auto(FlComposite) composite = {0};
-    const int next = frame + 1 < fl_drawing_frames(pipeline->plan->drawing) ? frame + 1 : -1;
+    const int next = frame + 1 < pipeline->plan->end ? frame + 1 : -1;
     if (!paint_frame(pipeline, frame, next, &composite, &paint_s, error))
         return false;
     const double compose_s = seconds_since(start) - paint_s;
@@ -400,7 +402,7 @@ static bool prepare(Pipeline *pipeline, GError **error)
         !fl_stats_init(&pipeline->stats, &pipeline->plan->options, error) ||
         !open_report(pipeline, error) || !begin_export(pipeline, error))
         return false;
-    const bool painted = pipeline->resume.first == fl_drawing_frames(pipeline->plan->drawing);
+    const bool painted = pipeline->resume.first == pipeline->plan->end;
     if (painted ? !fl_resume_start(&pipeline->resume, pipeline->plan, error)
                 : !make_painters(pipeline, error) || !lead_in(pipeline, error) ||
                       !restore_state(pipeline, error))
@@ -420,7 +422,7 @@ static bool run(Pipeline *pipeline, GError **error)
     }
     if (!prepare(pipeline, error))
         return false;
-    for (int f = pipeline->resume.first; f < fl_drawing_frames(pipeline->plan->drawing); f++)
+    for (int f = pipeline->resume.first; f < pipeline->plan->end; f++)
         if (!render_frame(pipeline, f, error))
             return false;
     if (!finish_writing(pipeline, error) || !fl_frame_writer_finish(&pipeline->writer, error) ||

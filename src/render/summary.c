@@ -23,7 +23,7 @@ static const char *plural(int n)
 
 void fl_summary_of_render(const FlPlan *plan, const FlStats *stats)
 {
-    const int n = fl_drawing_frames(plan->drawing);
+    const int n = plan->end - plan->first;
     const char *movie = plan->movie ? plan->movie : "", *and = plan->movie ? " and " : "";
     g_autofree char *done = plan->finished == FL_FINISHED_FRAMES
                                 ? g_strdup_printf("made of %d frame%s that %s painted before: %s",

@@ -1,0 +1,159 @@
+#include "job/plan.h"
+
+#include "base/alloc.h"
+#include "base/parallel_error.h"
+#include "job/sight.h"
+#include <stdatomic.h>
+
+/* How the regions of a frame meet. */
+static bool note_edges(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
+{
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
+    if (draws)
+        fl_shared_edges_note(edges, draws, plan->joins);
+    return draws;
+}
+
+/* Shapes that are held longer than others are shown below those of later frames. */
+static bool all_hold_alike(const FlPlan *plan)
+{
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
+        if (plan->hold_of[r] != plan->hold)
+            return false;
+    return true;
+}
+
+bool fl_plan_hides(const FlPlan *plan, int region)
+{
+    return plan->seen && !plan->seen[region];
+}
+
+static void begin_sight(FlPlan *plan)
+{
+    const int n = fl_drawing_regions(plan->drawing);
+    g_clear_pointer(&plan->seen, g_free);
+    if (!fl_plan_frames_alone(plan) || !all_hold_alike(plan))
+        return;
+    plan->seen = g_new(bool, MAX(n, 1));
+    for (int r = 0; r < n; r++)
+        plan->seen[r] = plan->painted_of[r] < 0;
+}
+
+/* Every style's rim, and a pixel where drafts are enlarged. */
+static bool note_sight(const FlPlan *plan, const FlDrawList *draws, GError **error)
+{
+    if (!plan->seen)
+        return true;
+    FlSight sight = {plan->joins, fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing),
+                     1};
+    for (int p = 0; p < plan->n_painted; p++)
+        sight.rim_px =
+            MAX(sight.rim_px, (int)(plan->painted[p].style->exemplar->border_px + 0.5f) + 1);
+    return fl_sight_note(&sight, draws, plan->seen, error);
+}
+
+static bool all_seen(const FlPlan *plan)
+{
+    for (int p = 0; p < plan->n_painted; p++)
+        if (!__atomic_load_n(&plan->seen[plan->painted[p].region], __ATOMIC_RELAXED))
+            return false;
+    return true;
+}
+
+/* Looks what a frame shows, unless something of every region was seen before. */
+static bool look(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
+{
+    if (all_seen(plan))
+        return true;
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
+    return draws && note_sight(plan, draws, error);
+}
+
+/* Stores the masks of all painted regions in a frame. */
+static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
+{
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
+    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
+    g_autofree uint8_t *mask = draws ? fl_alloc((size_t)width * height, 1, "a mask", error) : NULL;
+    if (!mask)
+        return false;
+    for (int p = 0; p < plan->n_painted; p++) {
+        const int region = plan->painted[p].region;
+        bool drawn = false;
+        for (int r = 0; r < draws->n; r++)
+            drawn = drawn || draws->draw[r].region == region;
+        if (!drawn)
+            continue;
+        fl_draw_list_mask(draws, region, width, height, mask);
+        if (!fl_mask_store_put(plan->masks, region, frame, mask, error))
+            return false;
+    }
+    return note_sight(plan, draws, error) &&
+           fl_surround_put(plan->surround, frame, draws, plan->joins, edges, error);
+}
+
+/* A pass over all frames. */
+typedef struct Pass {
+    FlPlan *plan;
+    FlSharedEdges *edges;
+    bool (*work)(FlPlan *, FlSharedEdges *, int, GError **);
+    double before, share; // of this stage: done in earlier passes, and this one's
+    atomic_int done;      // frames
+    GThread *caller;      // who tells the progress
+} Pass;
+
+static bool tell_masks(Pass *pass, int frame, GError **error)
+{
+    const FlPlan *plan = pass->plan;
+    const FlRenderOptions *o = &plan->options;
+    const int frames = fl_drawing_frames(plan->drawing);
+    const int done = atomic_fetch_add(&pass->done, 1) + 1;
+    if (!o->progress || g_thread_self() != pass->caller)
+        return true;
+    const FlProgress progress = {.stage = "masks",
+                                 .region_index = -1,
+                                 .n_regions = plan->n_painted,
+                                 .frame = fl_drawing_number(plan->drawing, frame),
+                                 .done = (int)(pass->before * frames + pass->share * done),
+                                 .total = frames,
+                                 .elapsed_s = (double)(g_get_monotonic_time() - plan->start) * 1e-6,
+                                 .remaining_s = -1};
+    if (o->progress(&progress, o->data))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted before the first frame");
+    return false;
+}
+
+static bool each_frame(Pass *pass, GError **error)
+{
+    const int n = fl_drawing_frames(pass->plan->drawing);
+    GError *first = NULL;
+    int failed = 0;
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
+    for (int f = 0; f < n; f++) {
+        GError *failure = NULL;
+        if (failed == 0 &&
+            !(pass->work(pass->plan, pass->edges, f, &failure) && tell_masks(pass, f, &failure)))
+            failed++;
+        fl_parallel_error_keep(&first, failure);
+    }
+    return fl_parallel_error_tell(error, first);
+}
+
+bool fl_plan_rasterise(FlPlan *plan, GError **error)
+{
+    g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(fl_drawing_regions(plan->drawing));
+    const bool alone = fl_drawing_regions(plan->drawing) < 2;
+    begin_sight(plan);
+    const double share = alone ? 1 : .5;
+    Pass note = {plan, edges, note_edges, 0, share, 0, g_thread_self()};
+    Pass store = {plan, edges, store_masks, 1 - share, share, 0, g_thread_self()};
+    return (alone || each_frame(&note, error)) && each_frame(&store, error);
+}
+
+bool fl_plan_find_hidden(FlPlan *plan, GError **error)
+{
+    Pass pass = {plan, NULL, look, 0, 1, 0, g_thread_self()};
+    begin_sight(plan);
+    return !plan->seen || each_frame(&pass, error);
+}
