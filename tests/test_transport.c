@@ -707,6 +707,32 @@ static void what_is_not_stretched_stays(void)
     disk_free(disk);
 }
 
+/* A shape that turns fast is squeezed at once, along one axis or turned over as well: its ink keeps
+ * its contrast, however the material lies, and does not fold. */
+static void what_is_squeezed_at_once_keeps_its_contrast(void)
+{
+    static const float factors[] = {1.8f, 2.5f, 3, -1, -2};
+    for (size_t k = 0; k < G_N_ELEMENTS(factors); k++) {
+        Disk *disk = disk_new(1);
+        double before, after;
+        float most = 0;
+        draw_disk(&disk->guides, 60, 0);
+        stretch_disk(disk, 0, 0);
+        mean_of(disk, &before);
+        for (size_t p = 0; p < PIXELS; p++)
+            disk->guides.motion[2 * p] =
+                (int32_t)((1 - factors[k]) * ((float)(p % SIDE) - 60) * FL_MOTION_ONE);
+        g_assert_true(fl_carried_ink_amounts(disk->ink, &disk->guides, disk->amount, NULL));
+        mean_of(disk, &after);
+        for (size_t p = 0; p < PIXELS; p++)
+            most = fmaxf(most, disk->amount[p]);
+        g_test_message("%g: deviation %.3f, then %.3f, at most %.2f", (double)factors[k], before,
+                       after, (double)most);
+        g_assert_cmpfloat(fabs(after / before - 1), <, 0.25);
+        disk_free(disk);
+    }
+}
+
 static void a_state_in_a_fade_continues(void)
 {
     Disk *disk = disk_new(1), *other = disk_new(1);
@@ -874,6 +900,7 @@ int main(int argc, char **argv)
     TEST(a_damaged_state_is_refused);
     TEST(what_is_stretched_is_laid_anew_by_and_by);
     TEST(what_is_not_stretched_stays);
+    TEST(what_is_squeezed_at_once_keeps_its_contrast);
     TEST(a_state_in_a_fade_continues);
     TEST(what_is_revealed_belongs_to_its_shape);
     TEST(bad_style_folders_are_named);

@@ -78,19 +78,6 @@ static FlRect mask_rect(const FlGuides *guides)
 /* ---- the velocity ------------------------------------------------------------------------------
  */
 
-/* How the material is turned and enlarged at a pixel: a displacement of the material is one of the
- * frame times this. Two limbs that meet are torn apart there; it then stays the same. */
-static void similarity(const FlMaterial *material, int x, int y, float turn[2])
-{
-    float f[2][2];
-    fl_material_gradient(material, x, y, f);
-    const float a = 0.5f * (f[0][0] + f[1][1]), b = 0.5f * (f[1][0] - f[0][1]);
-    const float square = a * a + b * b;
-    const float held = fminf(fmaxf(square, 0.25f), 4); // a factor of 2 either way
-    turn[0] = square > 1e-6f ? a / sqrtf(square * held) : 1;
-    turn[1] = square > 1e-6f ? -b / sqrtf(square * held) : 0;
-}
-
 /* Adds `share` of what the tile does at a pixel: px. */
 static void add_velocity(const FlCarriedInk *ink, const FlMaterial *material, int x, int y,
                          float share, float velocity[2])
@@ -98,15 +85,15 @@ static void add_velocity(const FlCarriedInk *ink, const FlMaterial *material, in
     const float scale = ink->input.scale;
     const size_t p = (size_t)y * (size_t)material->rect.width + (size_t)x;
     const FlRect rect = material->rect;
-    float turn[2], g[2];
+    float inverse[2][2], g[2];
     fl_tile_gradient(
         ink->input.tile, ((float)(x + rect.x) + material->shift[2 * p] + ink->origin[0]) / scale,
         ((float)(y + rect.y) + material->shift[2 * p + 1] + ink->origin[1]) / scale, g);
-    similarity(material, x, y, turn);
+    fl_material_inverse(material, x, y, inverse);
     const bool stir = ink->input.tile->style.mode == FL_TRANSPORT_STIR;
     const float along = stir ? g[1] : g[0], down = stir ? -g[0] : g[1];
-    velocity[0] += share * scale * (turn[0] * along - turn[1] * down);
-    velocity[1] += share * scale * (turn[1] * along + turn[0] * down);
+    velocity[0] += share * scale * (inverse[0][0] * along + inverse[0][1] * down);
+    velocity[1] += share * scale * (inverse[1][0] * along + inverse[1][1] * down);
 }
 
 /* Ink stays in the region: the nearer to the contour, the less it moves. */

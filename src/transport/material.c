@@ -8,6 +8,8 @@
 #define LEAST_SIDE 2     // px; the coarsest level of what is continued
 #define UNSTRAINED 1.35f // factors by which a pattern may be stretched or squeezed
 #define STRAINED 1.9f
+#define MOST_STRETCHED 2.0f // factor by which the motion of ink follows
+#define LEAST_LENGTH 1e-6f
 #define WHOLE 0.75f // of factors, how far from 1 a pixel's is
 #define TORN 1.5f
 #define SHARED 0.1f // change of a share by px
@@ -186,6 +188,29 @@ void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2
     }
 }
 
+/* Of a factor, which is below 0 for what is turned over; near 0 ink stays. */
+static float inverse_of(float factor)
+{
+    return factor / fmaxf(factor * factor, 1 / (MOST_STRETCHED * MOST_STRETCHED));
+}
+
+/* A matrix is the sum of a turn with a factor and of a mirroring with one, whose lengths have the
+ * singular values as their sum and difference. */
+void fl_material_inverse(const FlMaterial *material, int x, int y, float inverse[2][2])
+{
+    float f[2][2];
+    fl_material_gradient(material, x, y, f);
+    const float a = 0.5f * (f[0][0] + f[1][1]), b = 0.5f * (f[1][0] - f[0][1]);
+    const float c = 0.5f * (f[0][0] - f[1][1]), d = 0.5f * (f[1][0] + f[0][1]);
+    const float turned = sqrtf(a * a + b * b), mirrored = sqrtf(c * c + d * d);
+    const float most = inverse_of(turned - mirrored);
+    const float least = inverse_of(turned + mirrored);
+    const float t = 0.5f * (most + least) / fmaxf(turned, LEAST_LENGTH);
+    const float m = 0.5f * (most - least) / fmaxf(mirrored, LEAST_LENGTH);
+    inverse[0][0] = t * a - m * c, inverse[1][1] = t * a + m * c;
+    inverse[0][1] = t * b - m * d, inverse[1][0] = -t * b - m * d;
+}
+
 bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y)
 {
     const FlRect r = material->rect;
@@ -218,12 +243,52 @@ static float strain_of(float f[2][2])
     return smooth_step((fmaxf(most, 1 / least) - UNSTRAINED) / (STRAINED - UNSTRAINED));
 }
 
-/* How torn a pixel is: two shapes meet there whose material is not the same. */
+/* By how much a pixel is torn out of what is beside it, from the gradient's excess over that. */
 static float tear_of(float f[2][2])
 {
     float most, least;
     factors_of(f, &most, &least);
     return smooth_step((fmaxf(most - 1, 1 - least) - WHOLE) / (TORN - WHOLE));
+}
+
+/* Less the gradient of the side that is more alike. Returns: whether a side is in the region. */
+static bool excess_of(const FlMaterial *material, const FlGuides *guides, const int side[2][2],
+                      float f[2][2])
+{
+    float least = HUGE_VALF, excess[2][2] = {{1, 0}, {0, 1}};
+    for (int k = 0; k < 2; k++) {
+        const int x = side[k][0], y = side[k][1];
+        float g[2][2], more[2][2], square = 0;
+        if (x < 0 || y < 0 || x >= material->rect.width || y >= material->rect.height ||
+            !fl_material_is_inside(material, guides, x, y))
+            continue;
+        fl_material_gradient(material, x, y, g);
+        for (int c = 0; c < 4; c++) {
+            const float d = f[c / 2][c % 2] - g[c / 2][c % 2];
+            more[c / 2][c % 2] = d + (c == 0 || c == 3);
+            square += d * d;
+        }
+        if (square < least)
+            least = square, memcpy(excess, more, sizeof excess);
+    }
+    memcpy(f, excess, sizeof excess);
+    return least < HUGE_VALF;
+}
+
+/* How torn a pixel is: two shapes meet there whose material is not the same. A shape that is
+ * squeezed as a whole is alike within `reach` of it, and not torn. */
+static float tear_at(const FlMaterial *material, const FlGuides *guides, int x, int y, int reach)
+{
+    float f[2][2], across[2][2], along[2][2];
+    fl_material_gradient(material, x, y, f);
+    if (tear_of(f) == 0)
+        return 0;
+    memcpy(across, f, sizeof f), memcpy(along, f, sizeof f);
+    const bool beside =
+        excess_of(material, guides, (const int[2][2]){{x - reach, y}, {x + reach, y}}, across);
+    const bool above =
+        excess_of(material, guides, (const int[2][2]){{x, y - reach}, {x, y + reach}}, along);
+    return beside || above ? fminf(fmaxf(tear_of(across), tear_of(along)), tear_of(f)) : tear_of(f);
 }
 
 /* The same of shares, where a layer ends. */
@@ -235,17 +300,15 @@ static float end_of(const FlMaterial *share, int x, int y)
 }
 
 static void find_tears(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
-                       float *tear)
+                       int reach, float *tear)
 {
     const FlRect r = material->rect;
     for (int y = 0; y < r.height; y++)
         for (int x = 0; x < r.width; x++) {
-            float f[2][2];
             if (!fl_material_is_inside(material, guides, x, y))
                 continue;
-            fl_material_gradient(material, x, y, f);
-            tear[(size_t)y * (size_t)r.width + (size_t)x] =
-                fmaxf(tear_of(f), share->shift ? end_of(share, x, y) : 0);
+            tear[(size_t)y * (size_t)r.width + (size_t)x] = fmaxf(
+                tear_at(material, guides, x, y, reach), share->shift ? end_of(share, x, y) : 0);
         }
 }
 
@@ -277,7 +340,7 @@ bool fl_material_whole(const FlMaterial *material, const FlMaterial *share, cons
     g_autofree float *tear = fl_alloc(fl_rect_pixels(r), sizeof *tear, "a taper", error);
     if (!tear)
         return false;
-    find_tears(material, share, guides, tear);
+    find_tears(material, share, guides, MAX((int)reach_px, 1), tear);
     for (size_t p = 0; p < fl_rect_pixels(r); p++)
         whole[p] = 1 - tear[p];
     for (int y = 0; y < r.height; y++)

@@ -39,6 +39,12 @@ bool fl_material_carry(const FlMaterial *before, const FlGuides *guides, const F
  */
 void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2]);
 
+/**
+ * What makes of a displacement of the material one of the frame at a pixel: the gradient's inverse,
+ * so that ink is as dense however the material lies. It stretches by a factor of 2 at most.
+ */
+void fl_material_inverse(const FlMaterial *material, int x, int y, float inverse[2][2]);
+
 /** Whether a pixel of the rectangle is in the region. */
 bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y);
 
@@ -52,8 +58,9 @@ bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int 
 
 /**
  * The share of each pixel that is whole, 0..1: 0 where two shapes of the region meet with materials
- * that do not fit, or one of them has another share of it, rising to 1 `reach_px` from there. share
- * has shifts or not. FL_ERROR_NO_MEMORY.
+ * that do not fit, or one of them has another share of it, rising to 1 `reach_px` from there. A
+ * shape whose material is squeezed alike all over is whole. share has shifts or not.
+ * FL_ERROR_NO_MEMORY.
  */
 bool fl_material_whole(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
                        float reach_px, float *whole, GError **error);
