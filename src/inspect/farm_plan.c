@@ -26,12 +26,15 @@ static void clear_task(Task *task)
 
 /* ---- tasks ---------------------------------------------------------------------------------- */
 
-/* Time follows the painted area; a region that is held is painted that much less often. */
+/* Time follows the painted area, and a small region takes as long as if it were a few thousandths
+ * of the page larger: measured, with its guides, 0.1 to 0.5 %. What is held is painted that much
+ * less often. */
 static double work_of(const FlPlan *plan, int p)
 {
     const FlRegionPlan *painted = &plan->painted[p];
     const FlRegion *region = fl_drawing_region(plan->drawing, painted->region);
-    return region->area_px * region->n_present / painted->settings.hold;
+    const double page = (double)fl_drawing_width(plan->drawing) * fl_drawing_height(plan->drawing);
+    return (region->area_px + page / 256) * region->n_present / painted->settings.hold;
 }
 
 static int larger_first(const void *a, const void *b, void *plan)
@@ -39,6 +42,12 @@ static int larger_first(const void *a, const void *b, void *plan)
     const int p = *(const int *)a, q = *(const int *)b;
     const double x = work_of(plan, p), y = work_of(plan, q);
     return x != y ? (x < y) - (x > y) : p - q;
+}
+
+static int larger_share_first(const void *a, const void *b)
+{
+    const Task *x = a, *y = b;
+    return (x->share < y->share) - (x->share > y->share);
 }
 
 static void add_task(Farm *farm, int p, double share)
@@ -87,6 +96,7 @@ static void make_tasks(Farm *farm)
         task->share += work / total;
         filled += work;
     }
+    g_array_sort(farm->tasks, larger_share_first);
 }
 
 /* A part makes the whole sheet of paper, which takes as long as some frames. Statistics, and films
