@@ -8,6 +8,7 @@
 #include "io/png.h"
 #include "scratch.h"
 #include "threads.h"
+#include <math.h>
 #include <string.h>
 
 #define SIDE 480
@@ -359,6 +360,21 @@ static void noise_is_a_function_of_place_alone(void)
     g_assert_cmpfloat(fl_noise(0, .5f, .5f), !=, 0);
 }
 
+static void noise_of_a_row_is_that_of_its_places(void)
+{
+    float x[FL_NOISE_ROW], y[FL_NOISE_ROW], one[FL_NOISE_ROW], many[FL_NOISE_ROW];
+    for (int n = 1; n <= FL_NOISE_ROW; n += 51) {
+        for (int i = 0; i < n; i++)
+            x[i] = .37f * (float)i - 40, y[i] = 3 * sinf((float)i) - (float)(i % 7 == 0);
+        fl_noise_row(5, x, y, n, one);
+        fl_noise_octaves_row(6, x, y, n, 3, .6f, many);
+        for (int i = 0; i < n; i++) {
+            g_assert_cmpfloat(one[i], ==, fl_noise(5, x[i], y[i]));
+            g_assert_cmpfloat(many[i], ==, fl_noise_octaves(6, x[i], y[i], 3, .6f));
+        }
+    }
+}
+
 static void load_is_the_same_in_a_part_of_the_area(void)
 {
     enum { PART_PX = 90 };
@@ -401,6 +417,8 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/load-moves-along-with-its-region", load_moves_along_with_its_region);
     g_test_add_func("/paper/load-is-the-same-in-a-part-of-the-area",
                     load_is_the_same_in_a_part_of_the_area);
+    g_test_add_func("/paper/noise-of-a-row-is-that-of-its-places",
+                    noise_of_a_row_is_that_of_its_places);
     g_test_add_func("/paper/noise-is-a-function-of-place-alone",
                     noise_is_a_function_of_place_alone);
     return g_test_run();

@@ -3,6 +3,7 @@
 #include "base/rng.h"
 
 #include <math.h>
+#include <string.h>
 
 /** The slopes at the corners of a lattice cell, row by row. */
 typedef struct Cell {
@@ -75,4 +76,84 @@ float fl_noise_octaves(uint64_t key, float x, float y, int octaves, float gain)
         x *= 2, y *= 2;
     }
     return sum / sqrtf(squares);
+}
+
+/* ---- rows ----------------------------------------------------------------------------------- */
+
+/* Places within their cells, and the slopes at the corners of those. */
+typedef struct Row {
+    int32_t ix[FL_NOISE_ROW], iy[FL_NOISE_ROW];
+    float dx[FL_NOISE_ROW], dy[FL_NOISE_ROW];
+    float slope[4][2][FL_NOISE_ROW];
+} Row;
+
+/* All of a row, whatever its length, so that the compiler makes vectors of it. A cast is a floor
+ * but for what lies below 0. */
+static void find_cells(const float *restrict x, const float *restrict y, Row *restrict row)
+{
+    for (int i = 0; i < FL_NOISE_ROW; i++) {
+        const int32_t ix = (int32_t)x[i], iy = (int32_t)y[i];
+        row->ix[i] = ix - (x[i] < (float)ix);
+        row->iy[i] = iy - (y[i] < (float)iy);
+        row->dx[i] = x[i] - (float)row->ix[i];
+        row->dy[i] = y[i] - (float)row->iy[i];
+    }
+}
+
+static void find_slopes(uint64_t key, int n, Row *row)
+{
+    Cell cell = {0};
+    for (int i = 0; i < n; i++) {
+        if (i == 0 || row->ix[i] != cell.x || row->iy[i] != cell.y)
+            hash_cell(key, row->ix[i], row->iy[i], &cell);
+        for (int k = 0; k < 4; k++)
+            row->slope[k][0][i] = cell.slope[k][0], row->slope[k][1][i] = cell.slope[k][1];
+    }
+}
+
+static float row_rise(const Row *row, int corner, int i, float dx, float dy)
+{
+    return row->slope[corner][0][i] * dx + row->slope[corner][1][i] * dy;
+}
+
+static void mix_slopes(const Row *restrict row, float *restrict noise)
+{
+    for (int i = 0; i < FL_NOISE_ROW; i++) {
+        const float dx = row->dx[i], dy = row->dy[i], tx = ease(dx);
+        const float upper = mix(row_rise(row, 0, i, dx, dy), row_rise(row, 1, i, dx - 1, dy), tx);
+        const float lower =
+            mix(row_rise(row, 2, i, dx, dy - 1), row_rise(row, 3, i, dx - 1, dy - 1), tx);
+        noise[i] = 2.0f * mix(upper, lower, ease(dy));
+    }
+}
+
+void fl_noise_row(uint64_t key, const float *x, const float *y, int n, float *noise)
+{
+    Row row;
+    float place[2][FL_NOISE_ROW] = {{0}};
+    memset(row.slope, 0, sizeof row.slope);
+    memcpy(place[0], x, (size_t)n * sizeof *x);
+    memcpy(place[1], y, (size_t)n * sizeof *y);
+    find_cells(place[0], place[1], &row);
+    find_slopes(key, n, &row);
+    mix_slopes(&row, noise);
+}
+
+void fl_noise_octaves_row(uint64_t key, const float *x, const float *y, int n, int octaves,
+                          float gain, float *noise)
+{
+    float at_x[FL_NOISE_ROW], at_y[FL_NOISE_ROW], one[FL_NOISE_ROW];
+    float weight = 1, squares = 0;
+    memcpy(at_x, x, (size_t)n * sizeof *x);
+    memcpy(at_y, y, (size_t)n * sizeof *y);
+    memset(noise, 0, (size_t)n * sizeof *noise);
+    for (int o = 0; o < octaves; o++) {
+        fl_noise_row(fl_key(key, (uint64_t)o), at_x, at_y, n, one);
+        for (int i = 0; i < n; i++)
+            noise[i] += weight * one[i], at_x[i] *= 2, at_y[i] *= 2;
+        squares += weight * weight;
+        weight *= gain;
+    }
+    for (int i = 0; i < n; i++)
+        noise[i] /= sqrtf(squares);
 }

@@ -2,6 +2,7 @@
 
 #include "base/fibre.h"
 #include "base/noise.h"
+#include <glib.h>
 #include <math.h>
 #include <string.h>
 
@@ -142,40 +143,92 @@ void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres)
 
 /* ---- height ---------------------------------------------------------------------------------- */
 
-/* Bumps as of a felt, bent so that they are not round, creased where they meet. x and y are px of
- * the sheet. */
-static float surface_at(const FlPaperPlace *place, float x, float y, float fibre)
+/* Part of a row of the sheet: places in its px. */
+typedef struct Stretch {
+    int n;
+    float x[FL_NOISE_ROW], y[FL_NOISE_ROW];
+} Stretch;
+
+static void noise_at(const FlPaperPlace *place, int key, const Stretch *at, float *noise)
+{
+    fl_noise_row(fl_key(place->seed, (uint64_t)key), at->x, at->y, at->n, noise);
+}
+
+static void octaves_at(const FlPaperPlace *place, int key, const Stretch *at, int octaves,
+                       float gain, float *noise)
+{
+    fl_noise_octaves_row(fl_key(place->seed, (uint64_t)key), at->x, at->y, at->n, octaves, gain,
+                         noise);
+}
+
+/* Where the felt's bumps lie, bent so that they are not round. */
+static void bend(const FlPaperPlace *place, const Stretch *at, Stretch *bent)
 {
     const FlPaperGrain *p = place->grain;
-    const uint64_t seed = place->seed;
-    const float wx = x / (2.2f * p->grain), wy = y / (2.2f * p->grain);
-    const float bent_x = x + p->warp * p->grain * fl_noise(fl_key(seed, KEY_WARP_X), wx, wy);
-    const float bent_y = y + p->warp * p->grain * fl_noise(fl_key(seed, KEY_WARP_Y), wx, wy);
-    const float gx = bent_x / (p->grain * p->stretch), gy = bent_y / p->grain;
-    const float bump =
-        fl_noise_octaves(fl_key(seed, KEY_BUMPS), gx, gy, p->grain > 10 ? 3 : 2, .55f);
-    const float crease =
-        1 - 2.5f * fabsf(fl_noise(fl_key(seed, KEY_CREASES), 1.7f * gx, 1.7f * gy));
-    const float tooth =
-        fl_noise_octaves(fl_key(seed, KEY_TOOTH), x / (2.2f * p->tooth_stretch), y / 2.2f, 2, .8f);
-    const float h =
-        1.6f * bump + 1.6f * p->crease * crease + 1.3f * p->tooth * tooth + .5f * p->fibre * fibre;
-    return p->laid > 0
-               ? .75f * h + p->laid * (.9f * line_at(place, x, y) + .9f * chain_at(place, x, y))
-               : h;
+    float by_x[FL_NOISE_ROW], by_y[FL_NOISE_ROW];
+    Stretch wide = {.n = at->n};
+    for (int i = 0; i < at->n; i++)
+        wide.x[i] = at->x[i] / (2.2f * p->grain), wide.y[i] = at->y[i] / (2.2f * p->grain);
+    noise_at(place, KEY_WARP_X, &wide, by_x);
+    noise_at(place, KEY_WARP_Y, &wide, by_y);
+    bent->n = at->n;
+    for (int i = 0; i < at->n; i++) {
+        bent->x[i] = (at->x[i] + p->warp * p->grain * by_x[i]) / (p->grain * p->stretch);
+        bent->y[i] = (at->y[i] + p->warp * p->grain * by_y[i]) / p->grain;
+    }
+}
+
+/* Bumps as of a felt, creased where they meet. */
+static void find_surface(const FlPaperPlace *place, const Stretch *at, const float *fibre,
+                         float *height)
+{
+    const FlPaperGrain *p = place->grain;
+    float bump[FL_NOISE_ROW], crease[FL_NOISE_ROW], tooth[FL_NOISE_ROW];
+    Stretch bumps, creases = {.n = at->n}, teeth = {.n = at->n};
+    bend(place, at, &bumps);
+    for (int i = 0; i < at->n; i++) {
+        creases.x[i] = 1.7f * bumps.x[i], creases.y[i] = 1.7f * bumps.y[i];
+        teeth.x[i] = at->x[i] / (2.2f * p->tooth_stretch), teeth.y[i] = at->y[i] / 2.2f;
+    }
+    octaves_at(place, KEY_BUMPS, &bumps, p->grain > 10 ? 3 : 2, .55f, bump);
+    noise_at(place, KEY_CREASES, &creases, crease);
+    octaves_at(place, KEY_TOOTH, &teeth, 2, .8f, tooth);
+    for (int i = 0; i < at->n; i++)
+        height[i] = 1.6f * bump[i] + 1.6f * p->crease * (1 - 2.5f * fabsf(crease[i])) +
+                    1.3f * p->tooth * tooth[i] + .5f * p->fibre * fibre[i];
+}
+
+/* The mould of laid paper. */
+static void add_mould(const FlPaperPlace *place, const Stretch *at, float *height)
+{
+    const float laid = place->grain->laid;
+    for (int i = 0; laid > 0 && i < at->n; i++)
+        height[i] = .75f * height[i] + laid * (.9f * line_at(place, at->x[i], at->y[i]) +
+                                               .9f * chain_at(place, at->x[i], at->y[i]));
+}
+
+static void fill_row(const FlPaperPlace *place, FlRect box, int y, const float *fibres,
+                     float *height)
+{
+    const float px = 1 / place->scale, mean = place->grain->mean, dev = place->grain->dev;
+    for (int x = 0; x < box.width; x += FL_NOISE_ROW) {
+        Stretch at = {.n = MIN(box.width - x, FL_NOISE_ROW)};
+        for (int i = 0; i < at.n; i++)
+            at.x[i] = (float)(box.x + x + i) * px, at.y[i] = (float)(box.y + y) * px;
+        find_surface(place, &at, fibres + x, height + x);
+        add_mould(place, &at, height + x);
+        for (int i = 0; i < at.n; i++)
+            height[x + i] = (height[x + i] - mean) / dev;
+    }
 }
 
 void fl_paper_height(const FlPaperPlace *place, FlRect box, const float *fibres, float *height)
 {
-    const float px = 1 / place->scale, mean = place->grain->mean, dev = place->grain->dev;
 #pragma omp parallel for schedule(static)
-    for (int y = 0; y < box.height; y++)
-        for (int x = 0; x < box.width; x++) {
-            const size_t at = (size_t)y * (size_t)box.width + (size_t)x;
-            const float h =
-                surface_at(place, (float)(box.x + x) * px, (float)(box.y + y) * px, fibres[at]);
-            height[at] = (h - mean) / dev;
-        }
+    for (int y = 0; y < box.height; y++) {
+        const size_t row = (size_t)y * (size_t)box.width;
+        fill_row(place, box, y, fibres + row, height + row);
+    }
 }
 
 float fl_paper_cloud(const FlPaperPlace *place, float x, float y)
