@@ -1,7 +1,7 @@
 #!/bin/bash
 # What it costs to paint a film in tasks: wall time of two workers of one thread each against one process of one thread, and
-# processor seconds, of which those of reading the drawing again; and the wall time that follows from running the tasks one
-# after the other, for machines that do other things.
+# processor seconds, of which those of reading the drawing again; and the time of two workers that follows from those
+# of one task after the other, for machines that do other things.
 # usage: farm_times.sh PROGRAM DRAWING ARGUMENT...
 set -e
 program=$(realpath "$1")
@@ -42,8 +42,8 @@ for ((k = 0; k < parts; k++)); do
     timed merge bash "merge.$k"
 done
 diff -r one two
-longer() { # longer STEP: the seconds of the wall until both workers are free
-    awk '{if (a < b) a += $3; else b += $3} END {print (a > b ? a : b)}' "times/$1"
+longer() { # longer STEP: processor seconds until both workers are free
+    awk '{if (a <= b) a += $1 + $2; else b += $1 + $2} END {print (a > b ? a : b)}' "times/$1"
 }
 
 # Two workers in truth.
@@ -74,5 +74,5 @@ reckoned=$(bc <<<"$(longer tasks) + $(longer merge)")
 echo "one process: $one CPU-s, $one_wall s"
 echo "$n tasks: $tasks CPU-s, and the merge in $parts parts $merge"
 echo "two workers: $wall s, $(bc <<<"scale=2; $one_wall / $wall") times less"
-echo "with a processor each, from the times of one after the other: $reckoned s, $(bc <<<"scale=2; $one_wall / $reckoned") times less"
+echo "with a processor each, from the CPU-s of one after the other: $reckoned s, $(bc <<<"scale=2; $one / $reckoned") times less"
 echo "reading the drawing once: $reading CPU-s, in all tasks $(bc <<<"$reading * $n")"

@@ -99,13 +99,15 @@ static void make_tasks(Farm *farm)
     g_array_sort(farm->tasks, larger_share_first);
 }
 
-/* A part makes the whole sheet of paper, which takes as long as some frames. Statistics, and films
- * without their frames, are one file. */
+/* A part reads the whole drawing and makes a sheet of paper, which takes as long as composing ten
+ * to twenty frames of 480 px. Statistics, and films without their frames, are one file. */
 static int count_parts(const FlPlan *plan)
 {
-    enum { FRAMES_OF_PART = 6, MOST = 16 };
-    const int n = fl_drawing_frames(plan->drawing) / FRAMES_OF_PART;
-    return plan->format->film || plan->options.stats ? 1 : CLAMP(n, 1, MOST);
+    enum { WHOLE = 11, FRAMES_OF_PART = 24, MOST = 16 };
+    const int n = fl_drawing_frames(plan->drawing);
+    return plan->format->film || plan->options.stats || n <= WHOLE
+               ? 1
+               : CLAMP(n / FRAMES_OF_PART, 2, MOST);
 }
 
 /* ---- commands ------------------------------------------------------------------------------- */
