@@ -156,8 +156,13 @@ static bool do_one(void *data, int p, int thread, GError **error)
     return step->work(step->data, p, step->step, &step->painters->scratch[thread], error);
 }
 
-/* All threads together paint a region that is larger than a thread's share of the total area. The
- * others follow, those first that took longest in the last frame. */
+/* While it is painted, a region takes 90 bytes a pixel of its rectangle: side by side, regions of
+ * more pixels would take as many hundreds of megabytes as there are threads. */
+#define BESIDE_PX (2.0 * (1 << 20))
+
+/* All threads together paint a region that is larger than a thread's share of the total area, or
+ * too large to be painted beside others. Those follow, first the ones that took longest in the last
+ * frame. */
 bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *data,
                       GError **error)
 {
@@ -169,9 +174,10 @@ bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
     for (int p = 0; p < painters->n; p++) {
         const double area = painters->plan->painted[p].area_px;
-        const double seconds = painters->painter[p].result.seconds;
-        items[p] = (FlWorkItem){p, seconds + 1e-9 * area / MAX(most, 1),
-                                fl_schedule_is_large(area, total)};
+        const FlPaintedRegion *result = &painters->painter[p].result;
+        items[p] = (FlWorkItem){p, result->seconds + 1e-9 * area / MAX(most, 1),
+                                fl_schedule_is_large(area, total) ||
+                                    (double)fl_rect_pixels(result->rect) > BESIDE_PX};
     }
     Step all = {painters, step, work, data};
     return fl_schedule_run(items, painters->n, do_one, &all, error);
