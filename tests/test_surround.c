@@ -22,7 +22,7 @@ static void around_of(const FlDrawList *frames, int n, const FlJoin *joins, FlAr
     g_autoptr(FlSurround) surround = fl_surround_new(3, 1, W, H, NULL);
     for (int f = 0; f < n; f++)
         fl_shared_edges_note(edges, &frames[f], joins);
-    g_assert_true(fl_surround_put(surround, 0, frames, joins, edges, NULL));
+    g_assert_true(fl_surround_put(surround, 0, frames, joins, NULL, edges, NULL));
     g_assert_true(fl_surround_get(surround, 0, 0, (FlRect){0, 0, W, H}, around, NULL));
 }
 
@@ -126,7 +126,7 @@ static bool joins_alike(const FlDrawList frames[2], const FlJoin *joins)
     for (int f = 0; f < 2; f++)
         fl_shared_edges_note(edges, &frames[f], joins);
     for (int f = 0; f < 2; f++)
-        g_assert_true(fl_surround_put(surround, f, &frames[f], joins, edges, NULL));
+        g_assert_true(fl_surround_put(surround, f, &frames[f], joins, NULL, edges, NULL));
     return fl_surround_joins_as_in(surround, 0, 1, 0);
 }
 

@@ -89,7 +89,8 @@ static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **
             return false;
     }
     return note_sight(plan, draws, error) &&
-           fl_surround_put(plan->surround, frame, draws, plan->joins, edges, error);
+           fl_surround_put(plan->surround, frame, draws, plan->joins, plan->painted_of, edges,
+                           error);
 }
 
 /* A pass over all frames. */

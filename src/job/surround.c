@@ -286,13 +286,19 @@ static bool find_sharing(const FlDrawList *draws, int region, const FlJoin *join
     return any;
 }
 
+/** Whether somebody asks what is around a region. */
+static bool is_wanted(int region, const FlJoin *joins, const int *painted_of)
+{
+    return joins[region] != FL_JOIN_UNPAINTED && (!painted_of || painted_of[region] >= 0);
+}
+
 static bool put_regions(FlSurround *surround, int number, const Frame *frame, const FlJoin *joins,
-                        const FlSharedEdges *edges, GError **error)
+                        const int *painted_of, const FlSharedEdges *edges, GError **error)
 {
     const FlDrawList *draws = frame->draws;
     g_autofree FlSharing *sharing = g_new0(FlSharing, MAX(draws->n, 1));
     for (int region = 0; region < surround->n_regions; region++) {
-        if (joins[region] == FL_JOIN_UNPAINTED)
+        if (!is_wanted(region, joins, painted_of))
             continue;
         const bool any = find_sharing(draws, region, joins, edges, sharing);
         if ((any || lies_below(draws, region, sharing)) &&
@@ -304,27 +310,28 @@ static bool put_regions(FlSurround *surround, int number, const Frame *frame, co
 
 /** Marks the draws of the colour of any other region. */
 static void find_sharers(const FlSurround *surround, const FlDrawList *draws, const FlJoin *joins,
-                         const FlSharedEdges *edges, bool *shares)
+                         const int *painted_of, const FlSharedEdges *edges, bool *shares)
 {
     g_autofree FlSharing *sharing = g_new0(FlSharing, MAX(draws->n, 1));
     for (int region = 0; region < surround->n_regions; region++)
-        if (find_sharing(draws, region, joins, edges, sharing))
+        if (is_wanted(region, joins, painted_of) &&
+            find_sharing(draws, region, joins, edges, sharing))
             for (int r = 0; r < draws->n; r++)
                 shares[r] |= sharing[r] == FL_SHARING_ALIKE;
 }
 
 bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlJoin *joins,
-                     const FlSharedEdges *edges, GError **error)
+                     const int *painted_of, const FlSharedEdges *edges, GError **error)
 {
     const size_t n = (size_t)surround->width * (size_t)surround->height;
     g_autofree uint8_t *planes = fl_alloc(3 * n, 1, "masks", error);
     g_autofree bool *shares = g_new0(bool, MAX(draws->n, 1));
     g_autofree uint8_t **near = g_new0(uint8_t *, MAX(draws->n, 1));
-    find_sharers(surround, draws, joins, edges, shares);
+    find_sharers(surround, draws, joins, painted_of, edges, shares);
     const Frame all = {draws, near, planes, planes + n, planes + 2 * n};
     const bool done = planes && put_shown(surround, frame, draws, planes, error) &&
                       find_near_seen(surround, draws, shares, planes, near, error) &&
-                      put_regions(surround, frame, &all, joins, edges, error);
+                      put_regions(surround, frame, &all, joins, painted_of, edges, error);
     for (int r = 0; r < draws->n; r++)
         free(near[r]);
     return done;

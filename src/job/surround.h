@@ -13,11 +13,12 @@ FlSurround *fl_surround_new(int n_regions, int n_frames, int width, int height, 
 void fl_surround_free(FlSurround *surround); // NULL is fine
 
 /**
- * Notes what a frame shows around its regions; joins: by region, edges: of the whole film. Any
+ * Notes what a frame shows around its regions; joins: by region, edges: of the whole film. Only
+ * around those that are painted, where painted_of is 0 or more; NULL: all that joins know. Any
  * thread; a frame once.
  */
 bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlJoin *joins,
-                     const FlSharedEdges *edges, GError **error);
+                     const int *painted_of, const FlSharedEdges *edges, GError **error);
 
 /** What is around a region, planes of a part of a frame. */
 typedef struct FlAround {
