@@ -69,18 +69,34 @@ static void claim(const Claims *claims, int x, int y)
         }
 }
 
-/* How differently the owner of a pixel's place moves, if it is not the pixel's shape; else 0. */
+/* How differently the next pixel of the same shape moves, by the side that is more alike. */
+static float step_of(const Claims *claims, int x, int y, int dx, int dy)
+{
+    const FlRect r = claims->now->rect;
+    float least = HUGE_VALF;
+    for (int side = -1; side <= 1; side += 2) {
+        const int i = x + side * dx, j = y + side * dy;
+        if (i >= 0 && j >= 0 && i < r.width && j < r.height &&
+            fl_material_motion(claims->guides, i + r.x, j + r.y, NULL))
+            least = fminf(least, distance_of(motion_now(claims, x, y), motion_now(claims, i, j)));
+    }
+    return least < HUGE_VALF ? least : 0;
+}
+
+/* How differently the owner of a pixel's place moves, if it is not the pixel's shape; else 0. Those
+ * who claim one place are at most two pixels apart, which differ as well in a shape that turns. */
 static float apart_of(const Claims *claims, int x, int y)
 {
     const float *u = motion_now(claims, x, y);
     const FlRect s = source_of(claims->before, claims->now, x, y);
+    const float alike = APART + 2 * (step_of(claims, x, y, 1, 0) + step_of(claims, x, y, 0, 1));
     float most = 0;
     for (int j = s.y; j < s.y + s.height; j++)
         for (int i = s.x; i < s.x + s.width; i++) {
             const size_t q = (size_t)j * (size_t)claims->before->rect.width + (size_t)i;
             const float apart = distance_of(u, claims->owner + 2 * q);
             const float change = distance_of(u, claims->before->shift + 2 * q);
-            if (apart > APART && change > 2 * claims->change[q] + APART)
+            if (apart > alike && change > 2 * claims->change[q] + APART)
                 most = fmaxf(most, apart);
         }
     return most;
