@@ -211,6 +211,22 @@ void fl_material_inverse(const FlMaterial *material, int x, int y, float inverse
     inverse[0][1] = t * b - m * d, inverse[1][0] = -t * b - m * d;
 }
 
+void fl_material_turn(const FlMaterial *material, bool back, FlMaterial *pairs)
+{
+    const FlRect r = material->rect;
+    for (int y = 0; y < r.height; y++)
+        for (int x = 0; x < r.width; x++) {
+            float f[2][2], *v = pairs->shift + 2 * ((size_t)y * (size_t)r.width + (size_t)x);
+            fl_material_gradient(material, x, y, f);
+            const float a = f[0][0] + f[1][1], b = back ? f[0][1] - f[1][0] : f[1][0] - f[0][1];
+            const float length = sqrtf(a * a + b * b);
+            if (length < LEAST_LENGTH)
+                continue;
+            const float along = (a * v[0] - b * v[1]) / length;
+            v[1] = (b * v[0] + a * v[1]) / length, v[0] = along;
+        }
+}
+
 bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y)
 {
     const FlRect r = material->rect;
@@ -396,40 +412,47 @@ bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int 
     return true;
 }
 
-/* Sums over a region's pixels (x, y) and their material (u, v). */
-typedef struct Fit {
-    double n, x, y, u, v, dot, cross;
-} Fit;
-
-static Fit sums_of(const FlMaterial *material, const FlGuides *guides)
+void fl_material_add_fit(const FlMaterial *material, const FlMaterial *share, size_t layer,
+                         const FlGuides *guides, FlFit *s)
 {
-    Fit s = {0};
-    for (int y = 0; y < material->rect.height; y++)
-        for (int x = 0; x < material->rect.width; x++)
-            if (fl_material_is_inside(material, guides, x, y)) {
-                const float *shift = material->shift + 2 * (y * material->rect.width + x);
-                const double u = x + (double)shift[0], v = y + (double)shift[1];
-                s.n++, s.x += x, s.y += y, s.u += u, s.v += v;
-                s.dot += x * u + y * v, s.cross += x * v - y * u;
+    const FlRect r = material->rect;
+    for (int j = 0; j < r.height; j++)
+        for (int i = 0; i < r.width; i++)
+            if (fl_material_is_inside(material, guides, i, j)) {
+                const size_t p = (size_t)j * (size_t)r.width + (size_t)i;
+                const double w = share->shift ? (double)share->shift[2 * p + layer] : 1;
+                const double x = i + r.x, y = j + r.y;
+                const double u = x + (double)material->shift[2 * p];
+                const double v = y + (double)material->shift[2 * p + 1];
+                s->n += w, s->x += w * x, s->y += w * y, s->u += w * u, s->v += w * v;
+                s->dot += w * (x * u + y * v), s->cross += w * (x * v - y * u);
             }
-    return s;
+}
+
+FlRigid fl_material_rigid(const FlFit *s)
+{
+    const double n = s->n > 0 ? s->n : 1;
+    const double x = s->x / n, y = s->y / n, u = s->u / n, v = s->v / n;
+    const double dot = s->dot - n * (x * u + y * v), cross = s->cross - n * (x * v - y * u);
+    const double length = sqrt(dot * dot + cross * cross);
+    return (FlRigid){length > 0 ? dot / length : 1, length > 0 ? cross / length : 0, x, y, u, v};
 }
 
 bool fl_material_relaxed(const FlMaterial *material, const FlGuides *guides, FlMaterial *relaxed,
                          GError **error)
 {
-    const Fit s = sums_of(material, guides);
-    if (!material_init(relaxed, material->rect, error))
+    FlFit sums = {0};
+    const FlRect r = material->rect;
+    fl_material_add_fit(material, &(FlMaterial){0}, 0, guides, &sums);
+    const FlRigid lies = fl_material_rigid(&sums);
+    if (!material_init(relaxed, r, error))
         return false;
-    const double n = MAX(s.n, 1), x = s.x / n, y = s.y / n, u = s.u / n, v = s.v / n;
-    const double dot = s.dot - n * (x * u + y * v), cross = s.cross - n * (x * v - y * u);
-    const double length = sqrt(dot * dot + cross * cross);
-    const double cosine = length > 0 ? dot / length : 1, sine = length > 0 ? cross / length : 0;
-    for (int j = 0; j < material->rect.height; j++)
-        for (int i = 0; i < material->rect.width; i++) {
-            float *shift = relaxed->shift + 2 * (j * material->rect.width + i);
-            shift[0] = (float)(u + cosine * (i - x) - sine * (j - y) - i);
-            shift[1] = (float)(v + sine * (i - x) + cosine * (j - y) - j);
+    for (int j = 0; j < r.height; j++)
+        for (int i = 0; i < r.width; i++) {
+            float *shift = relaxed->shift + 2 * ((size_t)j * (size_t)r.width + (size_t)i);
+            const double x = i + r.x - lies.x, y = j + r.y - lies.y;
+            shift[0] = (float)(lies.u + lies.cosine * x - lies.sine * y - (i + r.x));
+            shift[1] = (float)(lies.v + lies.sine * x + lies.cosine * y - (j + r.y));
         }
     return true;
 }

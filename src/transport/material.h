@@ -45,6 +45,12 @@ void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2
  */
 void fl_material_inverse(const FlMaterial *material, int x, int y, float inverse[2][2]);
 
+/**
+ * Turns pairs of numbers, which have the rectangle of the material, as it is turned at their
+ * pixels: from directions of the frame to those of the material, or back.
+ */
+void fl_material_turn(const FlMaterial *material, bool back, FlMaterial *pairs);
+
 /** Whether a pixel of the rectangle is in the region. */
 bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y);
 
@@ -64,6 +70,25 @@ bool fl_material_strain(const FlMaterial *material, const FlGuides *guides, int 
  */
 bool fl_material_whole(const FlMaterial *material, const FlMaterial *share, const FlGuides *guides,
                        float reach_px, float *whole, GError **error);
+
+/** Sums over a region's pixels (x, y) and their material (u, v). */
+typedef struct FlFit {
+    double n, x, y, u, v, dot, cross;
+} FlFit;
+
+/** How a material lies at best if it is only turned and moved: (x, y) of the frame on (u, v) of it,
+ * turned around there. */
+typedef struct FlRigid {
+    double cosine, sine, x, y, u, v;
+} FlRigid;
+
+/** Adds the region's pixels, as far as the `layer`, 0 or 1, is seen there; share has shifts or not.
+ * One after the other, so the sums are always the same. */
+void fl_material_add_fit(const FlMaterial *material, const FlMaterial *share, size_t layer,
+                         const FlGuides *guides, FlFit *sums);
+
+/** The best fit; without pixels as it lies in a first frame. */
+FlRigid fl_material_rigid(const FlFit *sums);
 
 /** The material as it would lie had it only been turned and moved: the best fit in the region. */
 bool fl_material_relaxed(const FlMaterial *material, const FlGuides *guides, FlMaterial *relaxed,

@@ -11,8 +11,8 @@
 static const int noise_px[2] = {4, 12};
 #define NOISE_DEVIATION 0.4795f // of cubic B-splines of independent values of deviation 1
 
-/* The network's pixels around a region; corners are multiples of its grid, wherever the region is.
- */
+/* The network's pixels around a region, as it lies on its material; corners are multiples of its
+ * grid, wherever the region is and however it is turned. */
 typedef struct Box {
     int x, y, width, height; // px of the network
 } Box;
@@ -22,13 +22,47 @@ static int grid_below(float px)
     return (int)floorf(px / FL_NETWORK_GRID) * FL_NETWORK_GRID;
 }
 
-static Box box_around(FlRect rect, float scale)
+/* From the frame to the network's plane, px of the drawing. */
+static void to_plane(const FlRigid *lies, float x, float y, float at[2])
 {
-    const int x0 = grid_below((float)rect.x / scale - MARGIN);
-    const int y0 = grid_below((float)rect.y / scale - MARGIN);
-    const int x1 = grid_below((float)(rect.x + rect.width) / scale + MARGIN) + FL_NETWORK_GRID;
-    const int y1 = grid_below((float)(rect.y + rect.height) / scale + MARGIN) + FL_NETWORK_GRID;
-    return (Box){x0, y0, x1 - x0, y1 - y0};
+    const float c = (float)lies->cosine, s = (float)lies->sine;
+    const float dx = x - (float)lies->x, dy = y - (float)lies->y;
+    at[0] = (float)lies->u + c * dx - s * dy, at[1] = (float)lies->v + s * dx + c * dy;
+}
+
+/* A direction or place of the plane, seen from the middle of the region, in the frame. */
+static void from_plane(const FlRigid *lies, float u, float v, float to[2])
+{
+    const float c = (float)lies->cosine, s = (float)lies->sine;
+    to[0] = c * u + s * v, to[1] = c * v - s * u;
+}
+
+static FlRigid lies_on_material(const FlMaterialLayers *layers, const FlGuides *guides)
+{
+    FlFit sums = {0};
+    fl_material_add_fit(&layers->old, &layers->share, 0, guides, &sums);
+    if (layers->share.shift)
+        fl_material_add_fit(&layers->fresh, &layers->share, 1, guides, &sums);
+    return fl_material_rigid(&sums);
+}
+
+static Box box_around(const FlRigid *lies, FlRect rect, const FlGuides *guides, float scale)
+{
+    float low[2] = {HUGE_VALF, HUGE_VALF}, high[2] = {-HUGE_VALF, -HUGE_VALF}, at[2];
+    for (int y = rect.y; y < rect.y + rect.height; y++)
+        for (int x = rect.x; x < rect.x + rect.width; x++) {
+            if (!guides->mask[(size_t)y * (size_t)guides->width + (size_t)x])
+                continue;
+            to_plane(lies, (float)x, (float)y, at);
+            for (int c = 0; c < 2; c++)
+                low[c] = fminf(low[c], at[c]), high[c] = fmaxf(high[c], at[c]);
+        }
+    int corner[2], end[2];
+    for (int c = 0; c < 2; c++) {
+        corner[c] = grid_below(low[c] / scale - MARGIN);
+        end[c] = grid_below(high[c] / scale + MARGIN) + FL_NETWORK_GRID;
+    }
+    return (Box){corner[0], corner[1], end[0] - corner[0], end[1] - corner[1]};
 }
 
 /* Of deviation 1: four uniform numbers are as good as normal here. */
@@ -101,6 +135,7 @@ typedef struct Job {
     const FlNetworkPlace *place;
     const FlMaterialLayers *layers;
     const FlGuides *guides;
+    FlRigid lies; // the region on its material
     Box box;
     float one; // of the inputs
     int16_t *inputs;
@@ -143,24 +178,31 @@ static void make_inputs(const Job *job)
     const float scale = job->place->scale;
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(plane))
     for (int y = 0; y < b.height; y++)
-        for (int x = 0; x < b.width; x++)
-            make_input(job, ((float)(x + b.x) + 0.5f) * scale - 0.5f,
-                       ((float)(y + b.y) + 0.5f) * scale - 0.5f,
+        for (int x = 0; x < b.width; x++) {
+            float at[2];
+            from_plane(&job->lies, ((float)(x + b.x) + 0.5f) * scale - 0.5f - (float)job->lies.u,
+                       ((float)(y + b.y) + 0.5f) * scale - 0.5f - (float)job->lies.v, at);
+            make_input(job, at[0] + (float)job->lies.x, at[1] + (float)job->lies.y,
                        job->inputs + (size_t)y * (size_t)b.width + (size_t)x, plane);
+        }
 }
 
 /* From the box's pixels to the frame's. */
-static void enlarge(const float *from, Box b, float scale, FlRect rect, float *velocity)
+static void enlarge(const Job *job, const float *from, FlRect rect, float *velocity)
 {
+    const Box b = job->box;
+    const float scale = job->place->scale;
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(rect)))
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
-            const Four four = four_around(((float)(x + rect.x) + 0.5f) / scale - 0.5f - (float)b.x,
-                                          ((float)(y + rect.y) + 0.5f) / scale - 0.5f - (float)b.y,
-                                          b.width, b.height);
-            float *v = velocity + 2 * ((size_t)y * (size_t)rect.width + (size_t)x);
-            v[0] = scale * mean_of_four(from, 2, &four);
-            v[1] = scale * mean_of_four(from + 1, 2, &four);
+            float at[2];
+            to_plane(&job->lies, (float)(x + rect.x), (float)(y + rect.y), at);
+            const Four four =
+                four_around((at[0] + 0.5f) / scale - 0.5f - (float)b.x,
+                            (at[1] + 0.5f) / scale - 0.5f - (float)b.y, b.width, b.height);
+            from_plane(&job->lies, scale * mean_of_four(from, 2, &four),
+                       scale * mean_of_four(from + 1, 2, &four),
+                       velocity + 2 * ((size_t)y * (size_t)rect.width + (size_t)x));
         }
 }
 
@@ -169,19 +211,20 @@ bool fl_network_velocity(const FlNetwork *network, const FlNetworkPlace *place,
                          GError **error)
 {
     const FlRect rect = layers->old.rect;
-    const Box box = box_around(rect, place->scale);
+    const FlRigid lies = lies_on_material(layers, guides);
+    const Box box = box_around(&lies, rect, guides, place->scale);
     const size_t n = (size_t)box.width * (size_t)box.height;
     g_autofree int16_t *inputs =
         fl_alloc(FL_NETWORK_INPUTS * n, sizeof *inputs, "a network's input", error);
     g_autofree float *potential = fl_alloc(3 * n, sizeof *potential, "a potential", error);
     if (!inputs || !potential)
         return false;
-    const Job job = {place, layers, guides, box, fl_network_one(network), inputs};
+    const Job job = {place, layers, guides, lies, box, fl_network_one(network), inputs};
     make_inputs(&job);
     if (!fl_network_potential(network, inputs, box.width, box.height, potential, error))
         return false;
     const FlFlowMap box_of = {.width = box.width, .height = box.height};
     fl_velocity(&box_of, potential, NULL, FL_TRANSPORT_GATHER, potential + n);
-    enlarge(potential + n, box, place->scale, rect, velocity);
+    enlarge(&job, potential + n, rect, velocity);
     return true;
 }

@@ -14,7 +14,9 @@ typedef struct FlNetworkPlace {
 
 /**
  * How the ink of a frame moves in the layers' rectangle, untapered px of the drawing: 2 by pixel.
- * The noise that breaks the symmetry of a flat fill lies on the material. FL_ERROR_NO_MEMORY.
+ * The noise that breaks the symmetry of a flat fill lies on the material, and the network sees the
+ * region as that lies, so that bands turn with the drawing. The region is not empty.
+ * FL_ERROR_NO_MEMORY.
  */
 bool fl_network_velocity(const FlNetwork *network, const FlNetworkPlace *place,
                          const FlMaterialLayers *layers, const FlGuides *guides, float *velocity,
