@@ -116,6 +116,13 @@ const FlEngine *fl_engine_of_region(FlStyleCache *styles, const FlStyleInstance 
                     engine->name);
         return NULL;
     }
+    if (settings->solver == FL_SOLVER_NETWORK) {
+        g_set_error(
+            error, FL_ERROR, FL_ERROR_USAGE,
+            "‘tile’ moves paint that is there, and ‘solver’ network flat ink only; leave out "
+            "one of them");
+        return NULL;
+    }
     of_tile.style = settings->tile;
     of_tile.params.style_start = of_tile.params.style_step = 1, of_tile.params.style_frames = 0;
     if (!(*tile = fl_style_cache_get(styles, &of_tile, texture_px, error)))
