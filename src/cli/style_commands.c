@@ -235,14 +235,22 @@ static bool run_transport(char **words, GError **error)
 
 static const GOptionEntry network_entries[] = {
     {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "replace its transport.net", NULL},
+    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "print errors only", NULL},
     {NULL},
 };
+
+static bool show_training(void *data, int done, int total, float loss)
+{
+    if (!options.quiet)
+        fprintf(stderr, "fluidy-style: step %d of %d, loss %.4f\n", done, total, loss);
+    return true;
+}
 
 static bool run_network(char **words, GError **error)
 {
     if (!words[0] || words[1])
         return usage(error, "network takes one %s, by name or folder", "style");
-    return fl_style_network(words[0], options.overwrite, error);
+    return fl_style_network(words[0], options.overwrite, show_training, NULL, error);
 }
 
 static const GOptionEntry list_entries[] = {

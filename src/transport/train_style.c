@@ -5,6 +5,8 @@
 #include "transport/tile.h"
 
 #include <glib/gstdio.h>
+#include <stdio.h>
+#include <string.h>
 
 #define SCRIPT "train_network.py" // beside the folders of styles
 #define PATIENCE_S 3600
@@ -36,7 +38,34 @@ static bool suits(const FlTransportStyle *wanted, const char *folder, GError **e
     return false;
 }
 
-static bool train(const FlStyle *style, const FlTransportStyle *wanted, GError **error)
+/* A training under way. */
+typedef struct Training {
+    FlChild *child;
+    FlTransportProgress progress; // or NULL
+    void *data;
+    int told; // the last step
+} Training;
+
+/* Tells the last line of the script, which writes one every 50 steps, once. Returns: whether to
+ * stop. */
+static bool tell(void *data)
+{
+    Training *training = data;
+    int step, steps;
+    if (!training->progress || !training->child)
+        return false;
+    g_autofree char *words = fl_child_words(training->child);
+    const char *line = g_strrstr(words, "step ");
+    if (!line || sscanf(line, "step %d of %d", &step, &steps) != 2 || step == training->told)
+        return false;
+    const char *loss = strstr(line, "loss ");
+    training->told = step;
+    return !training->progress(training->data, step, steps,
+                               loss ? (float)g_ascii_strtod(loss + strlen("loss "), NULL) : 0);
+}
+
+static bool train(const FlStyle *style, const FlTransportStyle *wanted, Training *training,
+                  GError **error)
 {
     g_autofree char *script = find_script(error);
     g_autofree float *density = script ? fl_style_ink(style, error) : NULL;
@@ -46,20 +75,19 @@ static bool train(const FlStyle *style, const FlTransportStyle *wanted, GError *
     g_ascii_dtostr(taper, sizeof taper, (double)wanted->taper_px);
     g_autofree char *out = g_build_filename(style->path, FL_STYLE_NETWORK, NULL);
     const char *const arguments[] = {"python3", script, width, height, taper, out, NULL};
-    const FlPatience patience = {.limit_s = PATIENCE_S};
+    const FlPatience patience = {PATIENCE_S, tell, training};
     if (!density)
         return false;
-    FlChild *child = fl_child_start(arguments, FL_CHILD_INPUT, -1, &patience, error);
+    g_autoptr(FlChild) child = fl_child_start(arguments, FL_CHILD_INPUT, -1, &patience, error);
     const size_t bytes = sizeof(float) * (size_t)style->width * (size_t)style->height;
-    bool good = child && fl_child_write(child, density, bytes, error);
-    if (good)
-        good = fl_child_finish(child, error);
-    fl_child_free(child);
-    return good;
+    training->child = child;
+    return child && fl_child_write(child, density, bytes, error) && fl_child_finish(child, error);
 }
 
-bool fl_style_network(const char *style_name, bool overwrite, GError **error)
+bool fl_style_network(const char *style_name, bool overwrite, FlTransportProgress progress,
+                      void *data, GError **error)
 {
+    Training training = {.progress = progress, .data = data, .told = -1};
     g_autofree char *folder = fl_style_find(style_name, error);
     g_autoptr(FlStyle) style = folder ? fl_style_load(folder, error) : NULL;
     FlTransportStyle wanted;
@@ -71,5 +99,5 @@ bool fl_style_network(const char *style_name, bool overwrite, GError **error)
                     "%s: has a " FL_STYLE_NETWORK " already; use ‘overwrite’", folder);
         return false;
     }
-    return train(style, &wanted, error);
+    return train(style, &wanted, &training, error);
 }
