@@ -155,6 +155,9 @@ result $? 'a part that is none, of no merge, or a film of no name, is told'
 merge_part film s.apng
 [ $? = 1 ] && says 's_0001.png: there is no such frame'
 result $? 'a film wants all parts'
+render --region "$(printf 'blue-2255aa,%.0s' {1..30})red-aa3311" --no-frames --paint 'many/{region}_%d.png' >out 2>err &&
+    [ "$(ls many | wc -l)" = 24 ]
+result $? 'a task of so many regions that no file may be named after them paints them'
 printf '[project]\nlayers = layers/{region}_%%d.png\n' >layers.conf
 render -c layers.conf --region red-aa3311 --no-frames --paint 'alone/{region}_%d.png' >out 2>err &&
     [ "$(ls alone | wc -l)" = 12 ] && [ ! -e layers ]

@@ -309,11 +309,22 @@ static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error
     return choose_frames(plan, error);
 }
 
+/* What stands for the regions of a run in the name of a file: they, or where they are many, a sum.
+ * To be freed. */
+static char *short_name(const char *regions)
+{
+    enum { LONGEST = 100, DIGITS = 16 };
+    if (strlen(regions) <= LONGEST)
+        return g_strdup(regions);
+    g_autofree char *sum = g_compute_checksum_for_string(G_CHECKSUM_SHA256, regions, -1);
+    return g_strndup(sum, DIGITS);
+}
+
 /* Layers and paint without frames: what an interrupted run leaves is named after one of them. */
 static bool name_parts(FlPlan *plan, const FlSequence *sequence, GError **error)
 {
     const FlRenderOptions *o = &plan->options;
-    const char *whose = o->only_region ? o->only_region : "regions";
+    g_autofree char *whose = short_name(o->only_region ? o->only_region : "regions");
     g_autoptr(GString) pattern = g_string_new(o->paint ? o->paint : o->layers);
     g_string_replace(pattern, "{region}", whose, 0);
     plan->output = fl_output_of_film(pattern->str, sequence->name);
