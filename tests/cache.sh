@@ -154,6 +154,12 @@ kept now -s "$PWD/own" && again -s "$PWD/own" && grep -q 'nothing to do' err
 sed -i 's/^title.*/&s/' own/style.ini && echo >>own/style.ini
 again -y -s "$PWD/own" && grep -q 'painted 6 frames' err && same now whole
 result $? 'nor a style whose files were edited'
+sed -i 's|</svg>|<image href="late.png" width="9" height="9"/></svg>|' film/w_0002.svg
+kept now && again && grep -q 'nothing to do' err
+cp now/w_0001.png film/late.png
+again -y && grep -q 'painted 6 frames' err && ! same now whole
+result $? 'nor a picture that was missing and came'
+rm -rf film && cp -r before film
 kept now
 rm now/w_0002.png
 again --no-clobber && grep -q 'painted 6 frames' err && same now whole &&

@@ -132,6 +132,12 @@ touches film/linked/look.css echo 'circle { fill: #aa5533 }'
 result $? 'so is a style sheet'
 touches ground/ground.png cat film/linked/picture.png
 result $? 'and the background of the config'
+mv film/linked/picture.png picture.png
+until_so grep -q 'does not exist' told && follows && ends TERM 0
+result $? 'a picture that is gone is told'
+watch -c one.conf -y
+follows && mv picture.png film/linked && follows && grep -q 'picture.png has changed' told
+result $? 'and followed when it comes'
 ends TERM 0
 drawing film/w_0003.svg 56 3
 echo >one.conf

@@ -71,23 +71,23 @@ static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const
                             GError **error)
 {
     static const char *const images[] = {"image", "feImage", NULL};
-    bool is_file = false;
-    g_autofree char *real = fl_reference_file(check->path, href, &is_file);
+    bool is_there = false;
+    g_autofree char *file = fl_reference_file(check->path, href, &is_there);
     int width = 0, height = 0;
-    if (real)
-        g_ptr_array_add(check->files, g_strdup(real));
-    if (real && !fl_file_check(real, FL_ERROR_INPUT, NULL)) {
+    if (file)
+        g_ptr_array_add(check->files, g_strdup(file));
+    if (is_there && !fl_file_check(file, FL_ERROR_INPUT, NULL)) {
         warn(check, node, href, "is a pipe or a device and is left out");
         xmlRemoveProp(a);
     } else if (!fl_is_one_of(node, images))
         return true;
-    else if (!is_file)
+    else if (!file)
         warn(check, node, href, "is not in a file and is left out: nothing is fetched");
-    else if (!real)
+    else if (!is_there)
         warn(check, node, href, "does not exist and is left out");
-    else if (!is_inside(check->path, real))
+    else if (!is_inside(check->path, file))
         warn(check, node, href, "is outside the drawing's folder and is left out");
-    else if (gdk_pixbuf_get_file_info(real, &width, &height))
+    else if (gdk_pixbuf_get_file_info(file, &width, &height))
         return check_pixels(check, width, height, error);
     return true;
 }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-char *fl_reference_file(const char *from, const char *href, bool *is_file)
+char *fl_reference_file(const char *from, const char *href, bool *is_there)
 {
     g_autoptr(GFile) file = g_file_new_for_path(from);
     g_autoptr(GFile) folder = g_file_get_parent(file);
@@ -13,6 +13,7 @@ char *fl_reference_file(const char *from, const char *href, bool *is_file)
     g_autofree char *bare = g_strndup(href, strcspn(href, "#"));
     g_autofree char *uri = g_uri_resolve_relative(slash, bare, G_URI_FLAGS_PARSE_RELAXED, NULL);
     g_autofree char *path = uri ? g_filename_from_uri(uri, NULL, NULL) : NULL;
-    *is_file = path != NULL;
-    return path ? realpath(path, NULL) : NULL;
+    char *real = path ? realpath(path, NULL) : NULL;
+    *is_there = real != NULL;
+    return !path || real ? real : g_canonicalize_filename(path, NULL);
 }

@@ -5,9 +5,9 @@
 #include <stdbool.h>
 
 /**
- * The real path of what `href` names in the file `from`, links followed; to be freed with free().
- * *is_file: whether it names a file at all. Returns: NULL if it does not, or if none is there.
+ * The real path of what `href` names in the file `from`, links followed, or where it would be.
+ * *is_there: whether something is there. Returns: NULL if it names no file; to be freed.
  */
-char *fl_reference_file(const char *from, const char *href, bool *is_file);
+char *fl_reference_file(const char *from, const char *href, bool *is_there);
 
 #endif

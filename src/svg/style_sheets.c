@@ -19,16 +19,16 @@ static bool check_imports(const Check *check, const char *from, const char *css,
 /** Adds a sheet and what it imports. Returns: false if librsvg would wait for it. */
 static bool check_file(const Check *check, const char *from, const char *href)
 {
-    bool is_file = false;
-    g_autofree char *real = fl_reference_file(from, href, &is_file), *css = NULL;
+    bool is_there = false;
+    g_autofree char *file = fl_reference_file(from, href, &is_there), *css = NULL;
     size_t bytes = 0;
-    if (!real || g_ptr_array_find_with_equal_func(check->files, real, g_str_equal, NULL))
+    if (!file || g_ptr_array_find_with_equal_func(check->files, file, g_str_equal, NULL))
         return true;
-    if (!fl_file_check(real, FL_ERROR_INPUT, NULL))
+    if (is_there && !fl_file_check(file, FL_ERROR_INPUT, NULL))
         return false;
-    g_ptr_array_add(check->files, g_strdup(real));
-    return !fl_file_read(real, LARGEST_BYTES, &css, &bytes, NULL) ||
-           check_imports(check, real, css, NULL);
+    g_ptr_array_add(check->files, g_strdup(file));
+    return !fl_file_read(file, LARGEST_BYTES, &css, &bytes, NULL) ||
+           check_imports(check, file, css, NULL);
 }
 
 /** What an @import names, after it: "a.css", url(a.css) or url("a.css"); to be freed. */
