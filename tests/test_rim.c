@@ -79,6 +79,39 @@ static void a_shape_that_moves_by_whole_pixels_keeps_its_half_widths(void)
         g_assert_cmpmem(here + y * W + 30, 160, there + (y + 11) * W + 37, 160);
 }
 
+static void half_widths_go_on_outside_for_twelve_pixels(void)
+{
+    static uint16_t half[N];
+    static float distance[N];
+    uint8_t bar[N] = {0};
+    bool narrow;
+    draw_box(bar, W, 40, 50, 80, 9);
+    measure(bar, distance);
+    g_assert_true(fl_local_width(distance, NULL, W, H, BORDER, half, &narrow, NULL));
+    g_assert_true(narrow);
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++) {
+            const int beside = MAX(MAX(40 - x, x - 119), MAX(50 - y, y - 58));
+            g_assert_cmpint(half[y * W + x] > 0, ==, beside <= FL_WIDTH_OUTSIDE_PX);
+            if (x >= 52 && x < 108 && beside <= FL_WIDTH_OUTSIDE_PX)
+                g_assert_cmpint(half[y * W + x], ==, half[54 * W + 80]);
+        }
+}
+
+static void what_surrounds_a_shape_alone_is_measured_as_among_others(void)
+{
+    static float alone[N], among[N];
+    uint8_t shape[N] = {0}, all[N];
+    draw_disc(shape, W, H, 60.3f, 50.6f, 8.4f);
+    draw_box(shape, W, 60, 45, 30, 7);
+    memcpy(all, shape, N);
+    draw_box(all, W, 90, 0, 40, H);
+    depth_of(shape, NULL, all, alone);
+    depth_of(shape, shape, all, among); // measured in a larger part of the frame
+    for (int p = 0; p < N; p++)
+        g_assert_cmpfloat_with_epsilon(alone[p], among[p], 1e-3);
+}
+
 static void a_wide_shape_keeps_its_distances(void)
 {
     static float distance[N], depth[N];
@@ -196,6 +229,8 @@ int main(int argc, char **argv)
 #define TEST(name) g_test_add_func("/rim/" #name, name)
     TEST(half_widths_of_a_bar_a_disc_and_a_ring_are_those_of_geometry);
     TEST(a_shape_that_moves_by_whole_pixels_keeps_its_half_widths);
+    TEST(half_widths_go_on_outside_for_twelve_pixels);
+    TEST(what_surrounds_a_shape_alone_is_measured_as_among_others);
     TEST(a_wide_shape_keeps_its_distances);
     TEST(a_corner_of_a_large_shape_is_no_narrow_part);
     TEST(a_line_is_core_paint_up_to_its_contour);

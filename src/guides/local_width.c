@@ -12,9 +12,6 @@
 #define SLOPE_SIDE 28
 #define SLOPE_CORNER 40
 
-#define OUTSIDE_PX                                                                                 \
-    12 // patches of pixels inside reach two pixels out, and far more on coarse levels
-
 /* Slopes of the depth along a corner's bisector, sin(angle / 2): of 50 degrees and of 80. */
 #define SLOPE_TAPER 0.42f
 #define SLOPE_BROAD 0.64f
@@ -295,26 +292,78 @@ static void smooth(uint16_t *plane, int width, int height, int r, Means *means)
             plane[p] = (uint16_t)((means->sum[p] + means->count[p] / 2) / means->count[p]);
 }
 
-/** The larger of each element and its neighbours at a distance of `step`; n of them. */
-static void spread(const uint16_t *restrict from, uint16_t *restrict to, size_t n, size_t step)
+/** A pixel outside, and the largest value around it. */
+typedef struct Reached {
+    int16_t x, y;
+    uint16_t value;
+} Reached;
+
+static uint16_t largest_around(const uint16_t *plane, int width, int height, int x, int y)
 {
-    memcpy(to, from, n * sizeof *to);
-    for (size_t p = step; p < n; p++)
-        to[p] = MAX(to[p], from[p - step]);
-    for (size_t p = 0; p + step < n; p++)
-        to[p] = MAX(to[p], from[p + step]);
+    uint16_t largest = 0;
+    for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
+        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++)
+            largest = MAX(largest, plane[(size_t)ny * (size_t)width + (size_t)nx]);
+    return largest;
 }
 
-/** One round: pixels outside next to what is known get the largest value around. */
-static void extend(uint16_t *plane, int width, int height, uint16_t *rows, uint16_t *around)
+/** Adds the pixels outside next to one that is known. */
+static void reach_around(const uint16_t *plane, int width, int height, int x, int y,
+                         GArray *reached)
 {
-    const size_t n = (size_t)width * (size_t)height;
-    for (int y = 0; y < height; y++)
-        spread(plane + (size_t)y * (size_t)width, rows + (size_t)y * (size_t)width, (size_t)width,
-               1);
-    spread(rows, around, n, (size_t)width);
-    for (size_t p = 0; p < n; p++)
-        plane[p] = plane[p] ? plane[p] : around[p];
+    for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
+        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++)
+            if (!plane[(size_t)ny * (size_t)width + (size_t)nx]) {
+                const uint16_t value = largest_around(plane, width, height, nx, ny);
+                const Reached pixel = {(int16_t)nx, (int16_t)ny, value};
+                g_array_append_val(reached, pixel);
+            }
+}
+
+/** Adds the pixels outside next to the shape: all of them are next to a pixel of its contour. */
+static void reach_from_shape(const uint16_t *plane, int width, int height, GArray *reached)
+{
+    for (int y = 0; y < height; y++) {
+        const uint16_t *row = plane + (size_t)y * (size_t)width;
+        const uint16_t *up = y > 0 ? row - width : row, *down = y < height - 1 ? row + width : row;
+        for (int x = 0; x < width; x++)
+            if (row[x] && !(up[x] && down[x] && row[MAX(x - 1, 0)] && row[MIN(x + 1, width - 1)]))
+                reach_around(plane, width, height, x, y, reached);
+    }
+}
+
+/** Sets the pixels that are not known yet, and drops the others. */
+static void settle(uint16_t *plane, int width, GArray *reached)
+{
+    Reached *pixel = (Reached *)(void *)reached->data;
+    guint n = 0;
+    for (guint k = 0; k < reached->len; k++) {
+        uint16_t *value = &plane[(size_t)pixel[k].y * (size_t)width + (size_t)pixel[k].x];
+        if (*value)
+            continue;
+        *value = pixel[k].value;
+        pixel[n++] = pixel[k];
+    }
+    g_array_set_size(reached, n);
+}
+
+/** Pixels outside get the largest value around them, ring by ring. */
+static void extend(uint16_t *plane, int width, int height)
+{
+    g_autoptr(GArray) last = g_array_new(FALSE, FALSE, sizeof(Reached));
+    g_autoptr(GArray) next = g_array_new(FALSE, FALSE, sizeof(Reached));
+    reach_from_shape(plane, width, height, last);
+    settle(plane, width, last);
+    for (int ring = 1; ring < FL_WIDTH_OUTSIDE_PX; ring++) {
+        g_array_set_size(next, 0);
+        for (guint k = 0; k < last->len; k++) {
+            const Reached *pixel = &g_array_index(last, Reached, k);
+            reach_around(plane, width, height, pixel->x, pixel->y, next);
+        }
+        settle(plane, width, next);
+        GArray *ring_before = last;
+        last = next, next = ring_before;
+    }
 }
 
 static bool any_narrow(const uint16_t *plane, size_t n, uint16_t cap)
@@ -341,7 +390,6 @@ bool fl_local_width(const float *distance, const uint8_t *seen, int width, int h
     limit_slope(half_width, width, height);
     smooth(half_width, width, height, MAX(cap / (4 * FL_WIDTH_ONE), 1), &means);
     smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), &means);
-    for (int round = 0; round < OUTSIDE_PX; round++)
-        extend(half_width, width, height, (uint16_t *)means.plane, (uint16_t *)means.rows);
+    extend(half_width, width, height);
     return true;
 }

@@ -9,6 +9,10 @@
 #define FL_WIDTH_ONE 16      /**< half widths are in sixteenths of a pixel */
 #define FL_WIDTH_MOST_PX 256 /**< the widest that is told apart */
 
+/** How far outside there are half widths: patches of pixels inside reach two pixels out, and far
+ * more on coarse levels. */
+#define FL_WIDTH_OUTSIDE_PX 12
+
 /** The half width of a shape that is as wide as anybody asks, of cap_px. */
 static inline uint16_t fl_width_cap(float cap_px)
 {
@@ -20,7 +24,7 @@ static inline uint16_t fl_width_cap(float cap_px)
  * Half the local width: the radius of the largest disc inside the shape that holds the pixel, at
  * most fl_width_cap(cap_px). It grows by at most 7/4 px a px, so that the mouth of a limb has the
  * limb's width and not its body's, and is smoothed within the shape. Pixels outside have that of
- * the shape next to them up to 3 px from it, then 0.
+ * the shape next to them up to FL_WIDTH_OUTSIDE_PX from it, then 0.
  *
  * Only discs count whose centre is seen, 128 … 255 in `seen`: a ring around what lies over the
  * shape is as narrow as it looks. NULL: all of it is seen.

@@ -85,11 +85,19 @@ static void part_clear(Part *part)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Part, part_clear)
 
+static int surround_radius(float border_px)
+{
+    return MAX((int)(border_px + 0.5f), 1);
+}
+
 /** Everything that a pixel's half width depends on: a disc that holds it, and the disc's contour.
+ * Where nothing is like the shape, both are in it: then what surrounds the last pixels is farther.
  */
 static FlRect part_box(const FlRimShape *shape, float border_px)
 {
-    const int px = 2 * (int)(DETAIL_WIDE * border_px + 1.0f) + MARGIN_PX;
+    const int disc = 2 * (int)(DETAIL_WIDE * border_px + 1.0f) + MARGIN_PX;
+    const int own = FL_WIDTH_OUTSIDE_PX + surround_radius(border_px);
+    const int px = shape->together ? disc : MIN(own, disc);
     const FlRect box = fl_rect_of(shape->mask, shape->width, shape->height);
     return box.width > 0 ? fl_rect_grown(box, px, (FlRect){0, 0, shape->width, shape->height})
                          : box;
@@ -122,7 +130,7 @@ static bool measure_surround(Part *part, const FlRimShape *shape, float border_p
 {
     const size_t n = fl_rect_pixels(part->box);
     const FlRect own = {0, 0, part->box.width, part->box.height};
-    const int radius = MAX((int)(border_px + 0.5f), 1);
+    const int radius = surround_radius(border_px);
     if (!(part->shown = fl_alloc(n, 1, "a guide", error)) ||
         !(part->plane = fl_alloc(n, sizeof *part->plane, "a guide", error)) ||
         !(part->rows = fl_alloc(n, sizeof *part->rows, "a guide", error)) ||
