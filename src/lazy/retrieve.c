@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "base/schedule.h"
+#include "lazy/cost_table.h"
 #include "lazy/nearest.h"
 #include <string.h>
 
@@ -14,6 +15,8 @@
 #define FEW_PAIRS 8      // unless there are more pairs than so many a target
 #define WARM 3           // free targets of the warm start that are compared
 #define CONTINUED 6      // won targets of a neighbour that are continued
+#define ANYWHERE 3       // free targets by hash that are compared
+#define CANDIDATES (WARM + 4 * (CONTINUED + 1) + ANYWHERE)
 #define NONE (-1)
 #define NO_OFFER UINT64_MAX
 
@@ -30,19 +33,18 @@ typedef struct Left {
     uint32_t source, row;
 } Left;
 
-/* Source patch s is place s / n_turns, turned by s % n_turns quarters. Targets are numbered as
- * in->targets has them. */
+/* Source patch s is place s / n_turns, turned by s % n_turns quarters. A target is its pixel. */
 typedef struct Run {
     const FlRetrieval *in;
     uint32_t n_turns, n_sources, n_targets;
     Turn turn[TURNS];
-    int32_t *place_at, *target_at; // numbers by pixel; NONE
-    int32_t *target;               // [n_sources]: what it proposes to
-    uint32_t *cost;                // of that
-    int32_t *won, *won_next;       // lists of targets: by source, by target
-    int32_t *warm, *warm_next;     // the same of the warm start
-    uint8_t *is_free;              // by target
-    uint32_t *open;                // free targets in scan order, and a few that are no longer
+    int32_t *place_at;         // by pixel of the source; NONE
+    int32_t *target;           // [n_sources]: what it proposes to
+    uint32_t *cost;            // of that
+    int32_t *won, *won_next;   // lists of targets: by source, by target
+    int32_t *warm, *warm_next; // the same of the warm start
+    uint8_t *is_free;          // by target
+    uint32_t *open;            // free targets in scan order, and a few that are no longer
     uint32_t n_open, n_free;
     uint64_t *offer;                // by target: the least cost << 32 | a hash of the source
     uint32_t *cell;                 // by source: what it counts for
@@ -50,10 +52,9 @@ typedef struct Run {
     uint32_t n_cells, quota, extra; // K, and the cells that may still be used K + 1 times
     uint32_t *tile_places, *tile_first;
     int tile_columns, n_tiles;
-    // Of the end of a retrieval, when few pairs are left: who with whom, and all costs.
-    Left *left;                             // in the order of the sources
-    uint32_t n_left, n_columns, *column_of; // of a target in the table
-    uint32_t *table;                        // [rows][n_columns]; NULL until then
+    FlCostTable table; // of the end, when few pairs are left; its costs are NULL until then
+    Left *left;        // then: in the order of the sources
+    uint32_t n_left;
     uint64_t pass_key;
     bool backwards; // the order of the pass
     FlRetrieved *done;
@@ -61,12 +62,13 @@ typedef struct Run {
 
 static void run_clear(Run *run)
 {
-    void *const arrays[] = {
-        run->place_at,    run->target_at,  run->target,  run->cost, run->won,   run->won_next,
-        run->warm,        run->warm_next,  run->is_free, run->open, run->offer, run->cell,
-        run->tile_places, run->tile_first, run->table,   run->use,  run->left,  run->column_of};
+    void *const arrays[] = {run->place_at,   run->target, run->cost,      run->won,
+                            run->won_next,   run->warm,   run->warm_next, run->is_free,
+                            run->open,       run->offer,  run->cell,      run->tile_places,
+                            run->tile_first, run->use,    run->left};
     for (size_t k = 0; k < G_N_ELEMENTS(arrays); k++)
         free(arrays[k]);
+    fl_cost_table_clear(&run->table);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Run, run_clear)
@@ -87,37 +89,35 @@ static void turn_init(Turn *turn, int quarters, ptrdiff_t pitch)
     }
 }
 
-static int32_t *numbers(const FlFluidPicture *picture, const uint32_t *places, size_t n,
-                        GError **error)
+static int32_t *number_places(const FlRetrieval *in, GError **error)
 {
-    const size_t pixels = (size_t)picture->width * (size_t)picture->height;
+    const size_t pixels = (size_t)in->source.width * (size_t)in->source.height;
     int32_t *at = fl_alloc(pixels, sizeof *at, "a retrieval", error);
     if (!at)
         return NULL;
     memset(at, 0xff, pixels * sizeof *at);
-    for (size_t k = 0; k < n; k++)
-        at[places[k]] = (int32_t)k;
+    for (size_t k = 0; k < in->n_sources; k++)
+        at[in->sources[k]] = (int32_t)k;
     return at;
 }
 
 static bool alloc_run(Run *run, GError **error)
 {
     const FlRetrieval *in = run->in;
-    const size_t s = run->n_sources, t = run->n_targets;
+    const size_t s = run->n_sources, pixels = (size_t)in->target.width * (size_t)in->target.height;
     const char *what = "a retrieval";
-    return (run->place_at = numbers(&in->source, in->sources, in->n_sources, error)) &&
-           (run->target_at = numbers(&in->target, in->targets, t, error)) &&
+    return (run->place_at = number_places(in, error)) &&
            (run->target = fl_alloc(s, sizeof(int32_t), what, error)) &&
            (run->cost = fl_alloc(s, sizeof(uint32_t), what, error)) &&
            (run->won = fl_alloc(s, sizeof(int32_t), what, error)) &&
            (run->warm = fl_alloc(s, sizeof(int32_t), what, error)) &&
            (run->cell = fl_alloc(s, sizeof(uint32_t), what, error)) &&
            (run->use = fl_alloc(s, sizeof(uint32_t), what, error)) &&
-           (run->won_next = fl_alloc(t, sizeof(int32_t), what, error)) &&
-           (run->warm_next = fl_alloc(t, sizeof(int32_t), what, error)) &&
-           (run->is_free = fl_alloc(t, 1, what, error)) &&
-           (run->open = fl_alloc(t, sizeof(uint32_t), what, error)) &&
-           (run->offer = fl_alloc(t, sizeof(uint64_t), what, error)) &&
+           (run->won_next = fl_alloc_scratch(pixels, sizeof(int32_t), what, error)) &&
+           (run->warm_next = fl_alloc_scratch(pixels, sizeof(int32_t), what, error)) &&
+           (run->is_free = fl_alloc_scratch(pixels, 1, what, error)) &&
+           (run->open = fl_alloc(run->n_targets, sizeof(uint32_t), what, error)) &&
+           (run->offer = fl_alloc_scratch(pixels, sizeof(uint64_t), what, error)) &&
            (run->tile_places = fl_alloc(in->n_sources, sizeof(uint32_t), what, error)) &&
            (run->tile_first = fl_alloc((size_t)run->n_tiles + 2, sizeof(uint32_t), what, error));
 }
@@ -193,12 +193,13 @@ static int32_t source_of(const Run *run, FlMatch m)
 
 static void start_warm(Run *run, const FlNnf *nnf)
 {
-    for (int32_t j = (int32_t)run->n_targets - 1; j >= 0; j--) { // lists run upwards
-        const int32_t s = source_of(run, nnf->match[run->in->targets[j]]);
+    for (uint32_t j = run->n_targets; j-- > 0;) { // lists run upwards
+        const uint32_t target = run->in->targets[j];
+        const int32_t s = source_of(run, nnf->match[target]);
         if (s == NONE)
             continue;
-        run->warm_next[j] = run->warm[s];
-        run->warm[s] = j;
+        run->warm_next[target] = run->warm[s];
+        run->warm[s] = (int32_t)target;
     }
 }
 
@@ -211,6 +212,8 @@ typedef struct Proposal {
     int32_t target;
     uint32_t cost;
     uint64_t evaluations;
+    int n_candidates;
+    uint32_t candidate[CANDIDATES];
 } Proposal;
 
 static uint32_t tie_of(const Run *run, uint32_t source, uint32_t target)
@@ -246,42 +249,49 @@ static void consider(const Run *run, Proposal *p, int32_t target, uint32_t cost)
     p->target = target, p->cost = cost;
 }
 
-static void try_target(const Run *run, Proposal *p, int32_t target)
+static void try_target(const Run *run, Proposal *p, uint32_t target)
 {
-    if (target == p->target)
+    if ((int32_t)target == p->target)
         return;
-    const FlFluidTexel *patch = patch_at(&run->in->target, run->in->targets[target]);
+    const FlFluidPicture *picture = &run->in->target;
     const uint32_t limit = p->target == NONE ? UINT32_MAX - 1 : p->cost;
     p->evaluations++;
-    consider(run, p, target, run->in->distance(p->patch, patch, run->in->target.pitch, limit));
+    consider(run, p, (int32_t)target,
+             run->in->distance(p->patch, patch_at(picture, target), picture->pitch, limit));
 }
 
-/* The target at a place, if it is one of the segment and free; NONE. */
-static int32_t free_at(const Run *run, int x, int y)
+/* Lets memory fetch the patch, while others are looked for. */
+static void prefetch(const FlFluidPicture *picture, uint32_t target)
 {
-    const FlFluidPicture *picture = &run->in->target;
-    if (x < 0 || y < 0 || x >= picture->width || y >= picture->height)
-        return NONE;
-    const int32_t target = run->target_at[(size_t)y * (size_t)picture->width + (size_t)x];
-    return target >= 0 && run->is_free[target] ? target : NONE;
+    const FlFluidTexel *row = patch_at(picture, target);
+    for (int y = 0; y < FL_PATCH; y++, row += picture->pitch)
+        for (int x = 0; x < FL_PATCH; x += 2)
+            __builtin_prefetch(row + x);
 }
 
-static void try_at(const Run *run, Proposal *p, int x, int y)
+/* Notes a target that is to be tried, unless it is taken or noted. */
+static void add_target(const Run *run, Proposal *p, uint32_t target)
 {
-    const int32_t target = free_at(run, x, y);
-    if (target != NONE)
-        try_target(run, p, target);
+    if (!run->is_free[target])
+        return;
+    for (int k = 0; k < p->n_candidates; k++)
+        if (p->candidate[k] == target)
+            return;
+    prefetch(&run->in->target, target);
+    p->candidate[p->n_candidates++] = target;
 }
 
-/* The pixel beside a target to which its match continues. */
-static void try_beside(const Run *run, Proposal *p, int32_t target, int step)
+/* Notes the pixel beside a target to which its match continues. */
+static void add_beside(const Run *run, Proposal *p, int32_t target, int step)
 {
-    const uint32_t width = (uint32_t)run->in->target.width, pixel = run->in->targets[target];
-    try_at(run, p, (int)(pixel % width) - steps[step][0], (int)(pixel / width) - steps[step][1]);
+    const int width = run->in->target.width, height = run->in->target.height;
+    const int x = target % width - steps[step][0], y = target / width - steps[step][1];
+    if (x >= 0 && y >= 0 && x < width && y < height)
+        add_target(run, p, (uint32_t)(y * width + x));
 }
 
 /* What the neighbours of a source propose to and have won, continued. */
-static void try_neighbours(const Run *run, Proposal *p)
+static void add_neighbours(const Run *run, Proposal *p)
 {
     const int width = run->in->source.width, height = run->in->source.height;
     const int pixel = (int)pixel_of(run, p->source);
@@ -296,41 +306,42 @@ static void try_neighbours(const Run *run, Proposal *p)
             continue;
         const size_t s = (size_t)place * run->n_turns + quarters;
         if (run->target[s] != NONE)
-            try_beside(run, p, run->target[s], k);
+            add_beside(run, p, run->target[s], k);
         int32_t won = run->won[s];
         for (int n = 0; n < CONTINUED && won != NONE; n++, won = run->won_next[won])
-            try_beside(run, p, won, k);
+            add_beside(run, p, won, k);
     }
+}
+
+/* Free targets by hash: the list has few that are not. Where most are taken, windows hit none. */
+static void add_anywhere(const Run *run, Proposal *p, FlRng *rng)
+{
+    for (int n = 0; n < ANYWHERE; n++) {
+        uint32_t k = fl_rng_below(rng, run->n_open);
+        while (!run->is_free[run->open[k]])
+            k = (k + 1) % run->n_open;
+        add_target(run, p, run->open[k]);
+    }
+}
+
+static void add_warm(const Run *run, Proposal *p)
+{
+    for (int32_t j = run->warm[p->source]; j != NONE && p->n_candidates < WARM;
+         j = run->warm_next[j])
+        add_target(run, p, (uint32_t)j);
 }
 
 /* Windows around the target in hand, each half as large as the one before. */
 static void try_windows(const Run *run, Proposal *p, FlRng *rng)
 {
     const int width = run->in->target.width, height = run->in->target.height;
-    for (int reach = MAX(width, height) / 2; reach >= 1; reach /= 2) {
-        const int pixel = (int)run->in->targets[p->target];
+    for (int reach = MAX(width, height) / 8; reach >= 1; reach /= 2) {
         const uint32_t side = 2 * (uint32_t)reach + 1;
-        const int x = pixel % width - reach + (int)fl_rng_below(rng, side);
-        const int y = pixel / width - reach + (int)fl_rng_below(rng, side);
-        try_at(run, p, x, y);
+        const int x = p->target % width - reach + (int)fl_rng_below(rng, side);
+        const int y = p->target / width - reach + (int)fl_rng_below(rng, side);
+        if (x >= 0 && y >= 0 && x < width && y < height && run->is_free[y * width + x])
+            try_target(run, p, (uint32_t)(y * width + x));
     }
-}
-
-/* A free target by hash: the list has few that are not. */
-static int32_t any_free(const Run *run, FlRng *rng)
-{
-    uint32_t k = fl_rng_below(rng, run->n_open);
-    while (!run->is_free[run->open[k]])
-        k = (k + 1) % run->n_open;
-    return (int32_t)run->open[k];
-}
-
-static void try_warm(const Run *run, Proposal *p)
-{
-    int n = 0;
-    for (int32_t j = run->warm[p->source]; j != NONE && n < WARM; j = run->warm_next[j])
-        if (run->is_free[j])
-            try_target(run, p, j), n++;
 }
 
 static void search(const Run *run, Proposal *p, FlRng *rng)
@@ -339,10 +350,11 @@ static void search(const Run *run, Proposal *p, FlRng *rng)
     if (last != NONE && run->is_free[last])
         p->target = last, p->cost = run->cost[p->source];
     else
-        try_warm(run, p);
-    if (p->target == NONE)
-        try_target(run, p, any_free(run, rng));
-    try_neighbours(run, p);
+        add_warm(run, p);
+    add_neighbours(run, p);
+    add_anywhere(run, p, rng);
+    for (int k = 0; k < p->n_candidates; k++)
+        try_target(run, p, p->candidate[k]);
     try_windows(run, p, rng);
 }
 
@@ -423,10 +435,9 @@ static void assign(Run *run, const Winner *winner, FlNnf *nnf)
     const uint32_t s = winner->source, pixel = pixel_of(run, s);
     const int32_t target = run->target[s];
     const uint32_t width = (uint32_t)run->in->source.width;
-    nnf->match[run->in->targets[target]] =
-        (FlMatch){.x_16 = (uint16_t)(16 * (pixel % width)),
-                  .y_16 = (uint16_t)(16 * (pixel / width)),
-                  .theta = (uint8_t)(s % run->n_turns * (FL_ANGLES / TURNS))};
+    nnf->match[target] = (FlMatch){.x_16 = (uint16_t)(16 * (pixel % width)),
+                                   .y_16 = (uint16_t)(16 * (pixel / width)),
+                                   .theta = (uint8_t)(s % run->n_turns * (FL_ANGLES / TURNS))};
     run->is_free[target] = 0;
     run->n_free--;
     run->use[winner->cell]++;
@@ -438,15 +449,16 @@ static void assign(Run *run, const Winner *winner, FlNnf *nnf)
 /* Every target's best offer; then the sources whose offer it is. */
 static uint32_t find_winners(Run *run, Winner *winners)
 {
-    const uint32_t sources = run->table ? run->n_left : run->n_sources;
+    const bool few = run->table.cost;
+    const uint32_t sources = few ? run->n_left : run->n_sources;
     uint32_t n = 0;
     for (uint32_t k = 0; k < sources; k++) {
-        const uint32_t s = run->table ? run->left[k].source : k;
+        const uint32_t s = few ? run->left[k].source : k;
         if (run->target[s] != NONE)
             run->offer[run->target[s]] = MIN(run->offer[run->target[s]], offer_key(run, s));
     }
     for (uint32_t k = 0; k < sources; k++) {
-        const uint32_t s = run->table ? run->left[k].source : k;
+        const uint32_t s = few ? run->left[k].source : k;
         if (run->target[s] != NONE && run->offer[run->target[s]] == offer_key(run, s))
             winners[n++] = (Winner){offer_key(run, s), s, run->cell[s]};
     }
@@ -478,10 +490,11 @@ static void settle(Run *run, Winner *winners, uint32_t n, FlNnf *nnf)
 
 /* ---- passes ---------------------------------------------------------------------------------- */
 
-static void compact_open(Run *run, bool exact)
+/* Drops the targets that are taken, as soon as they are more than a few. */
+static void compact_open(Run *run)
 {
     uint32_t n = 0;
-    if (!exact && run->n_free > run->n_open - run->n_open / 8)
+    if (run->n_free > run->n_open - run->n_open / 8)
         return;
     for (uint32_t k = 0; k < run->n_open; k++)
         if (run->is_free[run->open[k]])
@@ -492,33 +505,32 @@ static void compact_open(Run *run, bool exact)
 static void fill_row(Run *run, uint32_t row)
 {
     _Alignas(32) FlFluidTexel patch[FL_PATCH_PIXELS];
+    const FlFluidPicture *picture = &run->in->target;
     gather_source(run, run->left[row].source, patch);
-    for (uint32_t j = 0; j < run->n_columns; j++)
-        run->table[(size_t)row * run->n_columns + j] =
-            run->in->distance(patch, patch_at(&run->in->target, run->in->targets[run->open[j]]),
-                              run->in->target.pitch, UINT32_MAX);
+    for (uint32_t j = 0; j < run->table.n_columns; j++)
+        run->table.cost[(size_t)row * run->table.n_columns + j] = run->in->distance(
+            patch, patch_at(picture, run->table.target[j]), picture->pitch, UINT32_MAX);
 }
 
 /* All distances between the sources and the targets that are left. */
 static bool make_table(Run *run, uint32_t n_eligible, GError **error)
 {
-    compact_open(run, true);
-    run->n_columns = run->n_open;
+    uint32_t n = 0;
     if (!(run->left = fl_alloc(n_eligible, sizeof *run->left, "distances", error)) ||
-        !(run->column_of = fl_alloc(run->n_targets, sizeof(uint32_t), "distances", error)) ||
-        !(run->table = fl_alloc((size_t)n_eligible * run->n_columns, 4, "distances", error)))
+        !fl_cost_table_init(&run->table, n_eligible, run->n_free, run->in->key, error))
         return false;
     for (uint32_t s = 0; s < run->n_sources; s++)
         if (is_eligible(run, s)) {
             run->left[run->n_left] = (Left){s, run->n_left};
             run->n_left++;
         }
-    for (uint32_t j = 0; j < run->n_columns; j++)
-        run->column_of[run->open[j]] = j;
+    for (uint32_t k = 0; k < run->n_open; k++)
+        if (run->is_free[run->open[k]])
+            run->table.target[n++] = run->open[k];
 #pragma omp parallel for schedule(dynamic, 16) if (run->n_left > 64)
     for (uint32_t row = 0; row < run->n_left; row++)
         fill_row(run, row);
-    run->done->evaluations += (uint64_t)run->n_left * run->n_columns;
+    run->done->evaluations += (uint64_t)run->n_left * run->n_free;
     return true;
 }
 
@@ -535,46 +547,36 @@ static bool open_pass(Run *run, GError **error)
 {
     uint32_t n = 0;
     run->backwards = run->done->passes & 1;
-    if (!run->table) {
+    if (!run->table.cost) {
         for (uint32_t s = 0; s < run->n_sources; s++)
             n += is_eligible(run, s);
-        if (are_few(run, n))
-            return make_table(run, n, error);
-        compact_open(run, false);
-        return true;
+        compact_open(run);
+        return !are_few(run, n) || make_table(run, n, error);
     }
     for (uint32_t k = 0; k < run->n_left; k++)
         if (is_eligible(run, run->left[k].source))
             run->left[n++] = run->left[k];
     run->n_left = n;
-    compact_open(run, true);
     return true;
-}
-
-/* The nearest of all free targets. */
-static void propose_by_row(Run *run, uint32_t source, const uint32_t *row)
-{
-    Proposal p = {.source = source, .target = NONE};
-    for (uint32_t k = 0; k < run->n_open; k++)
-        consider(run, &p, (int32_t)run->open[k], row[run->column_of[run->open[k]]]);
-    run->target[source] = p.target, run->cost[source] = p.cost;
 }
 
 static void propose_by_table(Run *run)
 {
 #pragma omp parallel for schedule(dynamic, 64) if (run->n_left > 256)
-    for (uint32_t k = 0; k < run->n_left; k++)
-        propose_by_row(run, run->left[k].source,
-                       run->table + (size_t)run->left[k].row * run->n_columns);
+    for (uint32_t k = 0; k < run->n_left; k++) {
+        const Left *left = &run->left[k];
+        const FlOffer offer = fl_cost_table_nearest(&run->table, left->row, run->is_free);
+        run->target[left->source] = (int32_t)offer.target, run->cost[left->source] = offer.cost;
+    }
 }
 
 static bool pass(Run *run, Winner *winners, FlNnf *nnf, GError **error)
 {
     if (!open_pass(run, error))
         return false;
-    for (int sweep = 0; sweep < (run->table ? 1 : run->in->sweeps); sweep++) {
+    for (int sweep = 0; sweep < (run->table.cost ? 1 : run->in->sweeps); sweep++) {
         run->pass_key = fl_key(fl_key(run->in->key, (uint64_t)run->done->passes), (uint64_t)sweep);
-        if (run->table)
+        if (run->table.cost)
             propose_by_table(run);
         else
             propose_all(run);
@@ -589,8 +591,10 @@ static void start(Run *run, const FlNnf *nnf)
     memset(run->target, 0xff, run->n_sources * sizeof *run->target);
     memset(run->won, 0xff, run->n_sources * sizeof *run->won);
     memset(run->warm, 0xff, run->n_sources * sizeof *run->warm);
-    for (uint32_t j = 0; j < run->n_targets; j++)
-        run->is_free[j] = 1, run->open[j] = j, run->offer[j] = NO_OFFER;
+    for (uint32_t j = 0; j < run->n_targets; j++) {
+        const uint32_t target = run->in->targets[j];
+        run->is_free[target] = 1, run->open[j] = target, run->offer[target] = NO_OFFER;
+    }
     run->n_open = run->n_free = run->n_targets;
     start_warm(run, nnf);
 }
