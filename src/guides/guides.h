@@ -26,6 +26,7 @@ typedef struct FlGuideParams {
  */
 typedef struct FlGuides {
     int width, height;
+    bool disposable;  // nobody reads them after the engine, which may clear them before it paints
     uint8_t *mask;    // coverage 0..255; a pixel is inside from FL_INSIDE on
     float *distance;  // signed distance to the contour, px, positive inside, everywhere defined
     float *depth;     // as the paint takes it, fl_rim_depth(); the distance until that is made

@@ -22,8 +22,7 @@ static void patch_measure(void *state, bool energies)
     fl_synth_measure(state, energies);
 }
 
-static bool patch_frame(void *state, const FlGuides *guides, const FlEnginePaint *paint,
-                        GError **error)
+static bool patch_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
 {
     return fl_synth_frame(state, guides, paint->rgb, paint->stats, paint->view, error);
 }
@@ -62,8 +61,7 @@ static void lazy_close(void *state)
     fl_lazy_free(state);
 }
 
-static bool lazy_frame(void *state, const FlGuides *guides, const FlEnginePaint *paint,
-                       GError **error)
+static bool lazy_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
 {
     return fl_lazy_frame(state, guides, paint->rgb, paint->alpha, paint->stats, paint->view, error);
 }
@@ -136,7 +134,7 @@ static void *transport_open(const FlEngineInput *input, GError **error)
     return NULL;
 }
 
-static bool transport_frame(void *state, const FlGuides *guides, const FlEnginePaint *paint,
+static bool transport_frame(void *state, FlGuides *guides, const FlEnginePaint *paint,
                             GError **error)
 {
     return fl_carried_ink_frame(((Transport *)state)->ink, guides, paint->rgb, error);

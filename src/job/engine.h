@@ -41,8 +41,9 @@ typedef struct FlEngine {
     void (*close)(void *state); // NULL is fine
     /** Whether statistics hold energies; NULL: it costs nothing, or there are none. */
     void (*measure)(void *state, bool energies);
-    /** The next frame, in order. An empty mask makes the next one a first frame again. */
-    bool (*frame)(void *state, const FlGuides *guides, const FlEnginePaint *paint, GError **error);
+    /** The next frame, in order; clears the guides only if they are disposable. An empty mask makes
+     * the next one a first frame again. */
+    bool (*frame)(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error);
     /** The next frame where its guides are those of the frame before and nothing moves: that keeps
      * its picture. Returns: false, and nothing has happened: it is to be painted. NULL: it always
      * is. */

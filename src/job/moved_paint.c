@@ -47,10 +47,10 @@ static void moved_measure(void *state, bool energies)
         moved->painter->measure(moved->paint, energies);
 }
 
-static bool moved_frame(void *state, const FlGuides *guides, const FlEnginePaint *paint,
-                        GError **error)
+static bool moved_frame(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error)
 {
     Moved *moved = state;
+    guides->disposable = false; // the ink moves by them
     return moved->painter->frame(moved->paint, guides, paint, error) &&
            fl_carried_ink_move(moved->ink, guides, paint->rgb, error);
 }

@@ -286,7 +286,10 @@ static bool rests(FlPainter *painter, int last)
 /* The guides of the painter's picture, from which the engine paints it. */
 static bool make_guides(FlPainter *painter, FlGuides *guides, GError **error)
 {
-    guides->width = painter->result.rect.width, guides->height = painter->result.rect.height;
+    const FlRect rect = painter->result.rect;
+    if (!fl_guides_init(guides, rect.width, rect.height, error))
+        return false;
+    guides->disposable = !painter->wants_guides;
     return fl_guide_sequence_get(painter->guides, painter->picture, guides, error) &&
            make_depth(painter, guides, error);
 }

@@ -46,13 +46,13 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error);
 
 /**
  * Paints the k-th picture of the lead-in of a loop, in order; beyond painter->loop.n it does
- * nothing. After the last one comes frame 0. `guides` is scratch.
+ * nothing. After the last one comes frame 0. `guides` are empty.
  */
 bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error);
 
 /**
- * Paints the next frame of the film, in order; a held frame keeps the last picture. `guides` is
- * scratch of the drawing's size, and receives the frame's guides in the size of result.rect.
+ * Paints the next frame of the film, in order; a held frame keeps the last picture. `guides` are
+ * empty, and become the frame's in the size of result.rect where it needs any.
  */
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error);
 

@@ -41,18 +41,6 @@ static bool make_guides(FlPainters *painters, GError **error)
     return fl_schedule_run(items, painters->n, make_guides_of, painters, error);
 }
 
-static bool make_scratch(FlPainters *painters, GError **error)
-{
-    const FlDrawing *drawing = painters->plan->drawing;
-    painters->n_scratch = fl_schedule_threads(); // any of them may take the only item
-    painters->scratch = g_new0(FlGuides, painters->n_scratch);
-    for (int k = 0; k < painters->n_scratch; k++)
-        if (!fl_guides_init(&painters->scratch[k], fl_drawing_width(drawing),
-                            fl_drawing_height(drawing), error))
-            return false;
-    return true;
-}
-
 /* Whether a region is carried along the drawing's own motion. */
 static bool wants_motion(const FlRegionPlan *region)
 {
@@ -124,7 +112,7 @@ bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error)
             plan->painted[p].engine->measure(painters->painter[p].paint,
                                              plan->options.stats ||
                                                  fl_report_measures(&plan->options));
-    return make_scratch(painters, error);
+    return true;
 }
 
 void fl_painters_clear(FlPainters *painters)
@@ -133,18 +121,14 @@ void fl_painters_clear(FlPainters *painters)
         fl_painter_clear(&painters->painter[p]);
     for (int p = 0; painters->reuse && p < painters->n; p++)
         fl_reuse_clear(&painters->reuse[p]);
-    for (int k = 0; k < painters->n_scratch; k++)
-        fl_guides_clear(&painters->scratch[k]);
     fl_motion_source_free(painters->motion);
     g_free(painters->painter);
-    g_free(painters->scratch);
     g_free(painters->reuse);
     *painters = (FlPainters){0};
 }
 
 /* A step of all painters. */
 typedef struct Step {
-    FlPainters *painters;
     int step;
     FlPainterWork work;
     void *data;
@@ -153,7 +137,8 @@ typedef struct Step {
 static bool do_one(void *data, int p, int thread, GError **error)
 {
     const Step *step = data;
-    return step->work(step->data, p, step->step, &step->painters->scratch[thread], error);
+    g_auto(FlGuides) guides = {0};
+    return step->work(step->data, p, step->step, &guides, error);
 }
 
 /* While it is painted, a region takes 90 bytes a pixel of its rectangle: side by side, regions of
@@ -179,7 +164,7 @@ bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *
                                 fl_schedule_is_large(area, total) ||
                                     (double)fl_rect_pixels(result->rect) > BESIDE_PX};
     }
-    Step all = {painters, step, work, data};
+    Step all = {step, work, data};
     return fl_schedule_run(items, painters->n, do_one, &all, error);
 }
 

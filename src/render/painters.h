@@ -9,12 +9,10 @@ typedef struct FlPainters {
     int n;
     FlPainter *painter;     // one for each of plan->painted
     FlMotionSource *motion; // NULL: nobody asks for it
-    FlGuides *scratch;      // one for each thread
-    int n_scratch;
-    FlReuse *reuse; // one for each painter; NULL: nothing is taken or kept
+    FlReuse *reuse;         // one for each painter; NULL: nothing is taken or kept
 } FlPainters;
 
-/** Work for painter p; step is a frame, or a picture of the lead-in. guides is scratch. */
+/** Work for painter p; step is a frame, or a picture of the lead-in. guides are empty. */
 typedef bool (*FlPainterWork)(void *data, int p, int step, FlGuides *guides, GError **error);
 
 /**

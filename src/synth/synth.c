@@ -378,8 +378,24 @@ static void clear_colours(FlSynth *synth)
     }
 }
 
+/* The target, and what the next frame needs of the guides, which then may go. */
+static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **error)
+{
+    const size_t pixels = (size_t)synth->width * synth->height;
+    g_autofree float *shape = fl_alloc(pixels, sizeof(float), "a guide", error);
+    if (!shape || !(synth->last.mask = fl_alloc(pixels, 1, "a mask", error)) ||
+        !fl_shape_guide(guides, synth->params, synth->exemplar->border_px, shape, error) ||
+        !fl_target_init(&synth->target, guides, shape, rect, synth->n_levels, synth->exemplar,
+                        error))
+        return false;
+    fl_rest_shape(guides, synth->last.mask);
+    if (guides->disposable)
+        fl_guides_clear(guides);
+    return true;
+}
+
 /* The last frame is large, and all that is needed of it is shifted: so that comes first. */
-static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *shifted,
+static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlNnf *shifted,
                     FlFrameStats *stats, GError **error)
 {
     gint64 time = g_get_monotonic_time();
@@ -388,12 +404,7 @@ static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *
         return false;
     fl_synth_state_clear(&synth->last);
     stats->seconds_temporal = lap(&time);
-    g_autofree float *shape =
-        fl_alloc((size_t)synth->width * synth->height, sizeof(float), "a guide", error);
-    if (!shape ||
-        !fl_shape_guide(guides, synth->params, synth->exemplar->border_px, shape, error) ||
-        !fl_target_init(&synth->target, guides, shape, rect, synth->n_levels, synth->exemplar,
-                        error))
+    if (!take_guides(synth, guides, rect, error))
         return false;
     clear_colours(synth);
     stats->seconds_target = lap(&time);
@@ -403,7 +414,7 @@ static bool prepare(FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *
     return true;
 }
 
-static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb, GError **error)
+static bool remember(FlSynth *synth, const uint8_t *rgb, GError **error)
 {
     const FlNnf *last = &synth->nnf[0];
     const size_t pixels = (size_t)synth->width * synth->height;
@@ -411,7 +422,6 @@ static bool remember(FlSynth *synth, const FlGuides *guides, const uint8_t *rgb,
         return false;
     synth->last.valid = true;
     synth->last.rect = synth->target.rect;
-    fl_rest_shape(guides, synth->last.mask);
     memcpy(synth->last.rgb, rgb, 3 * pixels);
     if (!fl_nnf_init(&synth->last.nnf, last->width, last->height, error))
         return false;
@@ -479,7 +489,7 @@ static FlSynthView view_at_rest(const FlSynth *synth)
     return synth->view.nnf ? synth->view : (FlSynthView){last->rect, &last->nnf, NULL, NULL};
 }
 
-static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
+static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                   FlSynthView *view, GError **error)
 {
     FlRect rect;
@@ -511,10 +521,10 @@ static bool paint(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameS
     const bool has_temporal = synth->last.valid && finest_searched(synth) == 0;
     *view = synth->view = (FlSynthView){rect, &synth->nnf[0], has_temporal ? full->temporal : NULL,
                                         has_temporal ? full->temporal_weight : NULL};
-    return remember(synth, guides, rgb, error);
+    return remember(synth, rgb, error);
 }
 
-bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
+bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error)
 {
     FlFrameStats no_stats;

@@ -58,7 +58,7 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  * kept. With params->rest, a still region keeps its last picture until params->boil is
  * due; stats are then empty.
  */
-bool fl_synth_frame(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
+bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
 
 /** The next frame where its guides are those of the frame before and nothing moves: it has the same
