@@ -20,6 +20,15 @@ void fl_pyramid_clear(FlPyramid *pyramid)
     *pyramid = (FlPyramid){0};
 }
 
+FlPyramid fl_pyramid_rows(const FlPyramid *pyramid, int y, int height)
+{
+    FlPyramid rows = *pyramid;
+    rows.height = height;
+    for (int p = 0; p < rows.n_planes; p++)
+        rows.plane[p] += (size_t)y * pyramid->width;
+    return rows;
+}
+
 void fl_pyramid_fill(FlPyramid *pyramid, const FlGuides *guides, const float *shape, FlRect rect)
 {
     g_assert(rect.width == pyramid->width && rect.height == pyramid->height);

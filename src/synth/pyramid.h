@@ -31,6 +31,9 @@ typedef struct FlPyramid {
 bool fl_pyramid_init(FlPyramid *pyramid, int width, int height, int n_planes, GError **error);
 void fl_pyramid_clear(FlPyramid *pyramid);
 
+/** Borrows `height` rows of a pyramid from row y on. */
+FlPyramid fl_pyramid_rows(const FlPyramid *pyramid, int y, int height);
+
 /** Copies the rectangle's guides; `shape` is as large as the guides. */
 void fl_pyramid_fill(FlPyramid *pyramid, const FlGuides *guides, const float *shape, FlRect rect);
 

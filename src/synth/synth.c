@@ -476,6 +476,8 @@ static bool run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats
         gint64 time = g_get_monotonic_time();
         if (!run_level(synth, l, synth->last.valid ? shifted : NULL, &stats->level[l], error))
             return false;
+        if (l > 0) // the next one needs its field only
+            fl_target_level_clear(&synth->target.level[l]);
         stats->level[l].seconds = lap(&time);
     }
     stats->seconds_search = synth->seconds_search, stats->seconds_vote = synth->seconds_vote;

@@ -34,23 +34,30 @@ static bool level_init(FlTargetLevel *level, int width, int height, GError **err
     return (level->segment = fl_alloc(pixels, 1, "a target", error)) &&
            (level->angle = fl_alloc(pixels, 1, "a target", error)) &&
            (level->guide = fl_alloc(pixels, sizeof(FlCompressed), "a target", error)) &&
-           (level->colour = fl_alloc(3 * pixels, sizeof(float), "a target", error)) &&
-           (level->temporal = fl_alloc(3 * pixels, sizeof(float), "a target", error)) &&
-           (level->temporal_weight = fl_alloc(pixels, sizeof(float), "a target", error)) &&
            (level->distance = fl_alloc(pixels, sizeof(float), "a target", error)) &&
            (level->tiles = fl_alloc(tiles, sizeof(uint32_t), "a target", error));
 }
 
-static void fill_pixel(FlTargetLevel *level, const FlPyramid *pyramid, size_t p,
+/* Those of T_temp take memory when there is one. */
+static bool colours_init(FlTargetLevel *level, GError **error)
+{
+    const size_t pixels = (size_t)level->width * level->height;
+    return (level->colour = fl_alloc_scratch(3 * pixels, sizeof(float), "a target", error)) &&
+           (level->temporal = fl_alloc_scratch(3 * pixels, sizeof(float), "a target", error)) &&
+           (level->temporal_weight = fl_alloc_scratch(pixels, sizeof(float), "a target", error));
+}
+
+/* Pixel `to` of a level from pixel p of its planes. */
+static void fill_pixel(FlTargetLevel *level, size_t to, const FlPyramid *pyramid, size_t p,
                        const FlExemplar *exemplar)
 {
-    FlCompressed *guide = &level->guide[p];
+    FlCompressed *guide = &level->guide[to];
     const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
-    level->distance[p] = pyramid->plane[FL_PLANE_DISTANCE][p];
-    level->segment[p] =
-        (uint8_t)fl_segment_of(pyramid->plane[FL_PLANE_INSIDE][p] > 0, level->distance[p],
+    level->distance[to] = pyramid->plane[FL_PLANE_DISTANCE][p];
+    level->segment[to] =
+        (uint8_t)fl_segment_of(pyramid->plane[FL_PLANE_INSIDE][p] > 0, level->distance[to],
                                exemplar->border_px, exemplar->separate);
-    level->angle[p] = fl_pyramid_angle(pyramid, p);
+    level->angle[to] = fl_pyramid_angle(pyramid, p);
     guide->c[FL_CH_SHAPE] = fl_pack_channel(pyramid->plane[FL_PLANE_SHAPE][p]);
     guide->c[FL_CH_EXT_PLUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
     guide->c[FL_CH_EXT_MINUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
@@ -83,55 +90,106 @@ static void list_tiles(FlTargetLevel *level)
     level->n_tiles[FL_TILE_CLASSES] = n;
 }
 
-static void fill_level(FlTargetLevel *level, const FlPyramid *pyramid, const FlExemplar *exemplar)
+/* The rows of a level from row y on; the planes are of these alone. */
+static void fill_rows(FlTargetLevel *level, int y, const FlPyramid *rows,
+                      const FlExemplar *exemplar)
 {
-    const size_t pixels = (size_t)level->width * level->height;
+    const size_t first = (size_t)y * level->width, pixels = (size_t)rows->width * rows->height;
 #pragma omp parallel for schedule(static)
     for (size_t p = 0; p < pixels; p++)
-        fill_pixel(level, pyramid, p, exemplar);
-    for (size_t p = 0; p < pixels; p++)
+        fill_pixel(level, first + p, rows, p, exemplar);
+}
+
+static void count_segments(FlTargetLevel *level)
+{
+    for (size_t p = 0; p < (size_t)level->width * level->height; p++)
         level->n_inside[level->segment[p]]++;
-    list_tiles(level);
+}
+
+#define STRIP_ROWS 128 // even
+
+/* Level 0, and the planes of level 1 if there is one; those of level 0, which would take more than
+ * anything else of a target, are made strip by strip. */
+static bool fill_finest(FlTarget *target, const FlGuides *guides, const float *shape,
+                        const FlExemplar *exemplar, FlPyramid *coarse, GError **error)
+{
+    const FlRect rect = target->rect;
+    g_auto(FlPyramid) strip = {0};
+    if (!fl_pyramid_init(&strip, rect.width, MIN(rect.height, STRIP_ROWS), FL_PLANE_R, error))
+        return false;
+    for (int y = 0; y < rect.height; y += STRIP_ROWS) {
+        strip.height = MIN(rect.height - y, STRIP_ROWS);
+        fl_pyramid_fill(&strip, guides, shape,
+                        (FlRect){rect.x, rect.y + y, rect.width, strip.height});
+        fill_rows(&target->level[0], y, &strip, exemplar);
+        if (coarse->height > 0) {
+            FlPyramid rows = fl_pyramid_rows(coarse, y / 2, (strip.height + 1) / 2);
+            fl_pyramid_halve(&strip, &rows);
+        }
+    }
+    return true;
+}
+
+static bool fill_levels(FlTarget *target, const FlGuides *guides, const float *shape,
+                        const FlExemplar *exemplar, GError **error)
+{
+    g_auto(FlPyramid) fine = {0};
+    for (int l = 0; l < target->n_levels; l++) {
+        FlTargetLevel *level = &target->level[l];
+        g_auto(FlPyramid) coarse = {0};
+        if (l + 1 < target->n_levels &&
+            !fl_pyramid_init(&coarse, (level->width + 1) / 2, (level->height + 1) / 2, FL_PLANE_R,
+                             error))
+            return false;
+        if (l == 0 && !fill_finest(target, guides, shape, exemplar, &coarse, error))
+            return false;
+        if (l > 0) {
+            fill_rows(level, 0, &fine, exemplar);
+            if (coarse.height > 0)
+                fl_pyramid_halve(&fine, &coarse);
+        }
+        const FlPyramid done = fine;
+        fine = coarse, coarse = done;
+    }
+    return true;
 }
 
 bool fl_target_init(FlTarget *target, const FlGuides *guides, const float *shape, FlRect rect,
                     int n_levels, const FlExemplar *exemplar, GError **error)
 {
     *target = (FlTarget){.rect = rect, .n_levels = n_levels};
-    g_auto(FlPyramid) fine = {0};
-    if (!fl_pyramid_init(&fine, rect.width, rect.height, FL_PLANE_R, error))
-        return false;
-    fl_pyramid_fill(&fine, guides, shape, rect);
-    for (int l = 0; l < n_levels; l++) {
-        if (l > 0) {
-            FlPyramid coarse;
-            if (!fl_pyramid_init(&coarse, (fine.width + 1) / 2, (fine.height + 1) / 2, FL_PLANE_R,
-                                 error))
-                return false;
-            fl_pyramid_halve(&fine, &coarse);
-            fl_pyramid_clear(&fine);
-            fine = coarse;
-        }
-        if (!level_init(&target->level[l], fine.width, fine.height, error))
+    int width = rect.width, height = rect.height;
+    for (int l = 0; l < n_levels; l++, width = (width + 1) / 2, height = (height + 1) / 2)
+        if (!level_init(&target->level[l], width, height, error))
             return false;
-        fill_level(&target->level[l], &fine, exemplar);
+    if (!fill_levels(target, guides, shape, exemplar, error))
+        return false;
+    for (int l = 0; l < n_levels; l++) {
+        count_segments(&target->level[l]);
+        list_tiles(&target->level[l]);
+        if (!colours_init(&target->level[l], error))
+            return false;
     }
     return true;
 }
 
+void fl_target_level_clear(FlTargetLevel *level)
+{
+    free(level->segment);
+    free(level->angle);
+    free(level->guide);
+    free(level->colour);
+    free(level->temporal);
+    free(level->temporal_weight);
+    free(level->distance);
+    free(level->tiles);
+    *level = (FlTargetLevel){0};
+}
+
 void fl_target_clear(FlTarget *target)
 {
-    for (int l = 0; l < target->n_levels; l++) {
-        FlTargetLevel *level = &target->level[l];
-        free(level->segment);
-        free(level->angle);
-        free(level->guide);
-        free(level->colour);
-        free(level->temporal);
-        free(level->temporal_weight);
-        free(level->distance);
-        free(level->tiles);
-    }
+    for (int l = 0; l < target->n_levels; l++)
+        fl_target_level_clear(&target->level[l]);
     *target = (FlTarget){0};
 }
 

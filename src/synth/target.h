@@ -53,6 +53,7 @@ void fl_cost_scale_init(FlCostScale *scale, const FlParams *params);
 bool fl_target_init(FlTarget *target, const FlGuides *guides, const float *shape, FlRect rect,
                     int n_levels, const FlExemplar *exemplar, GError **error);
 void fl_target_clear(FlTarget *target);
+void fl_target_level_clear(FlTargetLevel *level);
 
 /** Averages T_temp and m of a level (set by the caller) down to the coarser ones. */
 void fl_target_temporal_pyramid(FlTarget *target, int from);
