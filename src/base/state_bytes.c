@@ -7,7 +7,8 @@ GBytes *fl_state_bytes_pack(const void *header, size_t size, const FlSpan *parts
                             GError **error)
 {
     const size_t capacity = n > 0 ? fl_compress_bound(parts, n) : 0;
-    g_autofree uint8_t *bytes = fl_alloc(size + capacity, 1, "the state of a region", error);
+    g_autofree uint8_t *bytes =
+        fl_alloc_scratch(size + capacity, 1, "the state of a region", error);
     if (!bytes)
         return NULL;
     memcpy(bytes, header, size);

@@ -125,7 +125,7 @@ static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaint
     FlColouring colouring = colouring_of(stack->input, painted, draw);
     const FlRect box = layer->area.box;
     g_autofree int16_t *amounts = amounts_of(stack->edges, r, painted, exposure, error);
-    uint8_t *knockout = amounts ? fl_alloc(fl_rect_pixels(box), 1, "a layer", error) : NULL;
+    uint8_t *knockout = amounts ? fl_alloc_scratch(fl_rect_pixels(box), 1, "a layer", error) : NULL;
     layer->knockout = knockout;
     layer->stacking = painted->settings->stacking;
     if (!knockout)
@@ -213,7 +213,7 @@ static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **
     const FlPaintedRegion *painted = p >= 0 ? stack->input->painted[p] : NULL;
     const bool cut_out = painted && painted->alpha;
     if ((cut_out && !reach_out(layer, stack, draw, painted, error)) ||
-        !(layer->rgba = fl_alloc(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
+        !(layer->rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
         return false;
     if (painted)
         return (cut_out ? paint_cut_out : paint_layer)(layer, stack, r, painted,
