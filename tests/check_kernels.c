@@ -8,6 +8,7 @@
 #include "base/rng.h"
 #include "synth/kernels.h"
 #include <glib.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
@@ -359,6 +360,8 @@ static void matches_are_upscaled_as_in_c(const void *version)
     }
 }
 
+enum { PIECES = 50 }; // of a contour
+
 /* Rows of noise, each from any address on, and what follows what is written. */
 typedef struct Noise {
     float f[8][2 * ROW + 16];
@@ -369,6 +372,9 @@ typedef struct Noise {
     uint32_t look[LOOKS], sum[4][ROW + 16];
     uint16_t above[ROW + 16];
     uint8_t area[ROW + 16];
+    FlContourPiece piece[PIECES];
+    FlContourLinks links[PIECES];
+    int32_t nearest[ROW + 16]; // a piece
 } Noise;
 
 /* Of the size of a flow, or from 0 and -0 to what cannot overflow in a sum. */
@@ -376,6 +382,27 @@ static float any_float(FlRng *rng, bool extreme)
 {
     static const float extremes[] = {0, -0.0f, 0x1p-149f, -0x1p-126f, 1, -1, 0x1p+110f, -0x1p+110f};
     return extreme ? extremes[fl_rng_below(rng, 8)] : (float)(int32_t)fl_rng_u32(rng) * 0x1p-26f;
+}
+
+/* Pieces of a contour in any order, linked at random; one in eight is a disc. */
+static void make_contour(Noise *noise, FlRng *rng)
+{
+    for (int k = 0; k < PIECES; k++) {
+        const float angle = (float)fl_rng_below(rng, 628) / 100, is_line = fl_rng_below(rng, 8) > 0;
+        noise->piece[k] = (FlContourPiece){(float)fl_rng_below(rng, 1000 * ROW) / 1000,
+                                    (float)fl_rng_below(rng, 20000) / 1000, is_line * cosf(angle),
+                                    is_line * sinf(angle), (float)fl_rng_below(rng, 700) / 1000};
+    }
+    for (int k = 0; k < PIECES; k++)
+        for (int link = 0; link < FL_LINKS; link++) {
+            const int32_t to = (int32_t)fl_rng_below(rng, PIECES);
+            FlContourLinks *links = &noise->links[k];
+            links->x[link] = noise->piece[to].x, links->y[link] = noise->piece[to].y;
+            links->nx[link] = noise->piece[to].nx, links->ny[link] = noise->piece[to].ny;
+            links->half[link] = noise->piece[to].half, links->piece[link] = to;
+        }
+    for (int i = 0; i < ROW + 16; i++)
+        noise->nearest[i] = (int32_t)fl_rng_below(rng, PIECES);
 }
 
 static void make_noise(Noise *noise, uint64_t seed)
@@ -396,6 +423,18 @@ static void make_noise(Noise *noise, uint64_t seed)
         for (int c = 0; c < 4; c++)
             noise->sum[c][i] = extreme ? 65535 * 255 : fl_rng_below(&rng, 65535 * 255 + 1);
     }
+    make_contour(noise, &rng);
+}
+
+static FlContourRow contour_of(Noise *z, int at)
+{
+    return (FlContourRow){.piece = z->piece,
+                          .links = z->links,
+                          .above = z->nearest,
+                          .own = z->nearest + at,
+                          .below = z->nearest + 16,
+                          .y = at,
+                          .near_px = 12};
 }
 
 static FlStencil stencil_of(Noise *z, int at)
@@ -420,6 +459,8 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     rows->halve_weighted(z->f[4] + at, z->f[5], z->f[1], z->f[2] + at, z->f[7] + at, n);
     rows->near_above(z->seed + at, n % 2 ? z->s[0] : NULL, 7, z->s[1] + at, n);
     rows->near_below(z->s[0], 9, z->s[1] + at, n);
+    const FlContourRow contour = contour_of(z, at);
+    rows->to_contour(&contour, z->f[3] + ROW + at, n);
     const FlStencil cells = stencil_of(z, at);
     rows->relax(&cells, n);
     rows->refine(z->any[1], parents, z->f[6] + at, z->any[0] + at, n);
@@ -573,6 +614,8 @@ static void time_rows(const FlRowKernels *rows)
     TIME("halve_weighted", rows->halve_weighted(z.f[4], z.f[5], z.f[1], z.f[2], z.f[7], ROW));
     TIME("near_above", rows->near_above(z.seed, z.s[0], 7, z.s[1], ROW));
     TIME("near_below", rows->near_below(z.s[0], 9, z.s[1], ROW));
+    const FlContourRow contour = contour_of(&z, 0);
+    TIME("to_contour", rows->to_contour(&contour, z.f[3], ROW));
     const FlStencil cells = stencil_of(&z, 0);
     TIME("relax", rows->relax(&cells, ROW));
     TIME("add_residual", rows->add_residual(&cells, z.f[0], z.f[7], ROW));

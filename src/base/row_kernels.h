@@ -39,6 +39,30 @@ typedef struct FlStencil {
     const float *inverse; // 1 / number of neighbours; 0 in a cell that keeps its value
 } FlStencil;
 
+/** A piece of contour: its middle, its inward unit normal, half its length; px. */
+typedef struct FlContourPiece {
+    float x, y;
+    float nx, ny; // 0, 0: not a piece of line but a disc
+    float half;   // a disc's radius
+} FlContourPiece;
+
+enum { FL_LINKS = 8 }; // of a piece to those around it
+
+/** The pieces around one, side by side; where there are fewer, the rest are that piece itself. */
+typedef struct FlContourLinks {
+    float x[FL_LINKS], y[FL_LINKS], nx[FL_LINKS], ny[FL_LINKS], half[FL_LINKS];
+    int32_t piece[FL_LINKS]; // their indices
+} FlContourLinks;
+
+/** A contour, and for rows y - 1, y and y + 1 the index of a piece near each pixel. */
+typedef struct FlContourRow {
+    const FlContourPiece *piece;
+    const FlContourLinks *links; // of each piece
+    const int32_t *above, *own, *below;
+    int y;
+    float near_px; // farther off than that the own piece will do
+} FlContourRow;
+
 /**
  * One version of every loop; all give the same bytes. They have one source, row_kernels.inc, which
  * the compiler vectorises for each instruction set. n is the length of the output, >= 0. Arrays
@@ -61,6 +85,10 @@ typedef struct FlRowKernels {
     /** near[i] is the nearest seed row at or above y, or -1: takes below[i] > y if that is nearer.
      */
     void (*near_below)(const int16_t *below, int y, int16_t *near, int n);
+
+    /** Squared distances to the contour: from the best of a pixel's piece and those of its four
+     * neighbours along links, as long as it gets nearer. */
+    void (*to_contour)(const FlContourRow *row, float *squared, int n);
 
     /** Diffusion: value = (sum of the neighbours' values + source) * inverse. */
     void (*relax)(const FlStencil *cells, int n);

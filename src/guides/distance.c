@@ -8,35 +8,32 @@
 #include "guides/distance.h"
 
 #include "base/alloc.h"
+#include "base/rect.h"
 #include "base/row_kernels.h"
 #include "guides/guides.h"
 #include <math.h>
 #include <string.h>
-
-/** A piece of contour: its middle, its inward unit normal, half its length; px. */
-typedef struct Seed {
-    float x, y;
-    float nx, ny;       // 0, 0: not a piece of line but a disc
-    float half;         // a disc's radius
-    int32_t pixel;      // that it sits on
-    int32_t next_to[8]; // seeds of the pixels around it; -1: no more
-} Seed;
 
 enum { NEAR_PX = 32 }; // within it a distance is as exact as the contour
 
 typedef struct Work {
     int width, height;
     const uint8_t *mask;
-    GArray *seeds;    // of Seed
-    int32_t *seed_at; // which seed sits on this pixel; -1: none
-    int16_t *near_y;  // row of the nearest seed in this column; -1: none
-    int32_t *nearest; // index of the seed with the nearest centre
+    GArray *seeds;         // of FlContourPiece
+    GArray *pixels;        // of int32_t: where each seed sits
+    FlContourLinks *links; // from each seed to those of the pixels around it
+    int32_t *seed_at;      // which seed sits on this pixel; -1: none
+    int16_t *near_y;       // row of the nearest seed in this column; -1: none
+    int32_t *nearest;      // index of the seed with the nearest centre
 } Work;
 
 static void work_clear(Work *work)
 {
     if (work->seeds)
         g_array_unref(work->seeds);
+    if (work->pixels)
+        g_array_unref(work->pixels);
+    g_free(work->links);
     g_free(work->seed_at);
     g_free(work->near_y);
     g_free(work->nearest);
@@ -48,7 +45,8 @@ static bool work_init(Work *work, const uint8_t *mask, int width, int height, GE
 {
     const size_t n = (size_t)width * height;
     *work = (Work){.width = width, .height = height, .mask = mask};
-    work->seeds = g_array_new(FALSE, FALSE, sizeof(Seed));
+    work->seeds = g_array_new(FALSE, FALSE, sizeof(FlContourPiece));
+    work->pixels = g_array_new(FALSE, FALSE, sizeof(int32_t));
     const char *what = "the distances of a mask";
     return (work->seed_at = fl_alloc(n, sizeof *work->seed_at, what, error)) &&
            (work->near_y = fl_alloc(n, sizeof *work->near_y, what, error)) &&
@@ -97,7 +95,7 @@ static float soften_depth(const Work *work, int x, int y, float nx, float ny, fl
 }
 
 /** A pixel that the contour passes through: position and normal follow from the coverages. */
-static Seed partial_seed(const Work *work, int x, int y)
+static FlContourPiece partial_seed(const Work *work, int x, int y)
 {
     const float diagonal = 0.70710678f;
     float gx = 0.0f, gy = 0.0f;
@@ -112,16 +110,16 @@ static Seed partial_seed(const Work *work, int x, int y)
     }
     const float norm = sqrtf(gx * gx + gy * gy), cx = (float)x, cy = (float)y;
     if (norm < 0.02f) // a dot, or a line thinner than a pixel
-        return (Seed){cx, cy, .half = 0.5f * coverage_at(work, x, y)};
+        return (FlContourPiece){cx, cy, .half = 0.5f * coverage_at(work, x, y)};
     gx /= norm, gy /= norm;
     const float depth =
         soften_depth(work, x, y, gx, gy, depth_of_coverage(coverage_at(work, x, y), gx, gy));
-    return (Seed){cx - depth * gx, cy - depth * gy, gx, gy,
-                  .half = 0.5f / fmaxf(fabsf(gx), fabsf(gy))};
+    return (FlContourPiece){cx - depth * gx, cy - depth * gy, gx, gy,
+                            .half = 0.5f / fmaxf(fabsf(gx), fabsf(gy))};
 }
 
 /** A full or empty pixel beside an empty or full one: the contour is the border between them. */
-static bool border_seed(const Work *work, int x, int y, Seed *seed)
+static bool border_seed(const Work *work, int x, int y, FlContourPiece *seed)
 {
     static const int8_t step[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
     const uint8_t own = work->mask[y * (size_t)work->width + x];
@@ -137,23 +135,23 @@ static bool border_seed(const Work *work, int x, int y, Seed *seed)
     if (sx != 0)
         sy = 0; // a corner: the pixels beside it have its other border
     const float inward = own ? -1.0f : 1.0f, dx = (float)sx, dy = (float)sy;
-    *seed =
-        (Seed){(float)x + 0.5f * dx, (float)y + 0.5f * dy, inward * dx, inward * dy, .half = 0.5f};
+    *seed = (FlContourPiece){(float)x + 0.5f * dx, (float)y + 0.5f * dy, inward * dx, inward * dy,
+                             .half = 0.5f};
     return true;
 }
 
 static void add_seed(Work *work, int x, int y)
 {
-    const size_t p = y * (size_t)work->width + x;
+    const int32_t p = y * work->width + x;
     const uint8_t own = work->mask[p];
-    Seed seed;
+    FlContourPiece seed;
     if (own > 0 && own < 255)
         seed = partial_seed(work, x, y);
     else if (!border_seed(work, x, y, &seed))
         return; // the contour passes through the neighbour
-    seed.pixel = (int32_t)p;
     work->seed_at[p] = (int32_t)work->seeds->len;
     g_array_append_val(work->seeds, seed);
+    g_array_append_val(work->pixels, p);
 }
 
 /** mixed |= where a row has the highest bit set apart from its neighbours left and right. */
@@ -165,22 +163,25 @@ static void mark_beside(const uint8_t *row, const uint8_t *other, int w, uint8_t
         mixed[x] |= row[x] ^ other[x + 1];
 }
 
-/** Step 1. Pixels with a neighbour on the other side, diagonals included; mixed: scratch, a row. */
+/** Step 1. Pixels with a neighbour on the other side, diagonals included, which are where the shape
+ * is or next to it; mixed: scratch, a row. */
 static void find_seeds(Work *work, uint8_t *mixed)
 {
-    const int w = work->width, h = work->height;
-    for (int y = 0; y < h; y++) {
-        const uint8_t *row = work->mask + y * (size_t)w;
-        const uint8_t *up = y > 0 ? row - w : row, *down = y < h - 1 ? row + w : row;
-        for (int x = 0; x < w; x++) // FL_INSIDE is the highest bit
+    const FlRect page = {0, 0, work->width, work->height};
+    const FlRect near = fl_rect_grown(fl_rect_of(work->mask, page.width, page.height), 1, page);
+    memset(work->seed_at, 0xff, fl_rect_pixels(page) * sizeof *work->seed_at);
+    for (int y = near.y; y < near.y + near.height; y++) {
+        const uint8_t *row = work->mask + y * (size_t)page.width + near.x;
+        const uint8_t *up = y > 0 ? row - page.width : row;
+        const uint8_t *down = y < page.height - 1 ? row + page.width : row;
+        for (int x = 0; x < near.width; x++) // FL_INSIDE is the highest bit
             mixed[x] = (row[x] ^ up[x]) | (row[x] ^ down[x]);
-        mark_beside(row, row, w, mixed);
-        mark_beside(row, up, w, mixed);
-        mark_beside(row, down, w, mixed);
-        memset(work->seed_at + y * (size_t)w, 0xff, w * sizeof *work->seed_at);
-        for (int x = 0; x < w; x++)
+        mark_beside(row, row, near.width, mixed);
+        mark_beside(row, up, near.width, mixed);
+        mark_beside(row, down, near.width, mixed);
+        for (int x = 0; x < near.width; x++)
             if (mixed[x] & FL_INSIDE)
-                add_seed(work, x, y);
+                add_seed(work, near.x + x, y);
     }
 }
 
@@ -199,8 +200,17 @@ static void search_columns(Work *work)
     }
 }
 
-/** Step 3 for one row. column, from: scratch, width + 1. */
-static void search_row(Work *work, int y, int *column, double *from)
+/**
+ * A parabola of the lower envelope: of the seed in a column, at `up` above the row at its vertex;
+ * it is the lowest from just right of num / den on.
+ */
+typedef struct Parabola {
+    int column;
+    int64_t up, num, den;
+} Parabola;
+
+/** Step 3 for one row. envelope: scratch, width + 1. */
+static void search_row(Work *work, int y, Parabola *envelope)
 {
     const int w = work->width;
     const int16_t *near_y = work->near_y + y * (size_t)w;
@@ -208,75 +218,62 @@ static void search_row(Work *work, int y, int *column, double *from)
     for (int x = 0; x < w; x++) {
         if (near_y[x] < 0)
             continue;
-        const double fx = (double)(near_y[x] - y) * (near_y[x] - y) + (double)x * x;
-        double start = -1.0;
+        const int64_t dy = near_y[x] - y, up = dy * dy + (int64_t)x * x;
+        int64_t num = -1, den = 1;
         for (; n > 0; n--) {
-            const int c = column[n - 1];
-            const double fc = (double)(near_y[c] - y) * (near_y[c] - y) + (double)c * c;
-            start = (fx - fc) / (2.0 * (x - c));
-            if (start > from[n - 1])
+            const Parabola *last = &envelope[n - 1];
+            num = up - last->up, den = 2 * (int64_t)(x - last->column);
+            if (num * last->den > last->num * den)
                 break;
         }
-        if (start >= w)
-            continue;
-        column[n] = x, from[n] = n > 0 ? start : -1.0, n++;
+        if (n == 0)
+            num = -1, den = 1;
+        if (num < w * den)
+            envelope[n++] = (Parabola){x, up, num, den};
     }
     int32_t *nearest = work->nearest + y * (size_t)w;
-    from[n] = w;
     for (int k = 0, x = 0; k < n; k++) {
-        const int32_t seed = work->seed_at[near_y[column[k]] * (size_t)w + column[k]];
-        for (; x < w && x <= from[k + 1]; x++)
+        const int column = envelope[k].column;
+        const int32_t seed = work->seed_at[near_y[column] * (size_t)w + column];
+        const Parabola *next = &envelope[k + 1];
+        const int64_t end = k + 1 == n ? w : next->num < 0 ? 0 : next->num / next->den + 1;
+        for (; x < end; x++)
             nearest[x] = seed;
     }
 }
 
-/** Fills next_to of a seed. */
-static void link_seed(const Work *work, Seed *seed)
+static void set_link(FlContourLinks *links, int k, const FlContourPiece *piece, int32_t index)
 {
-    const int w = work->width, h = work->height, x = seed->pixel % w, y = seed->pixel / w;
+    links->x[k] = piece->x, links->y[k] = piece->y;
+    links->nx[k] = piece->nx, links->ny[k] = piece->ny;
+    links->half[k] = piece->half, links->piece[k] = index;
+}
+
+static void link_seed(const Work *work, int32_t seed)
+{
+    const FlContourPiece *pieces = (const FlContourPiece *)(void *)work->seeds->data;
+    const int32_t pixel = g_array_index(work->pixels, int32_t, seed);
+    const int w = work->width, h = work->height, x = pixel % w, y = pixel / w;
+    FlContourLinks *links = &work->links[seed];
     int n = 0;
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, h - 1); ny++)
         for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, w - 1); nx++) {
             const int32_t other = work->seed_at[ny * (size_t)w + nx];
-            if (other >= 0 && (nx != x || ny != y))
-                seed->next_to[n++] = other;
+            if (other >= 0 && other != seed)
+                set_link(links, n++, &pieces[other], other);
         }
-    if (n < 8)
-        seed->next_to[n] = -1;
+    for (; n < FL_LINKS; n++)
+        set_link(links, n, &pieces[seed], seed);
 }
 
-static float squared_distance(const Seed *seed, int x, int y)
+static bool link_seeds(Work *work, GError **error)
 {
-    const float qx = (float)x - seed->x, qy = (float)y - seed->y;
-    if (seed->nx == 0.0f && seed->ny == 0.0f) {
-        const float d = sqrtf(qx * qx + qy * qy) - seed->half;
-        return d * d;
-    }
-    const float across = qx * seed->nx + qy * seed->ny;
-    const float aside = fabsf(qx * seed->ny - qy * seed->nx) - seed->half;
-    return across * across + (aside > 0.0f ? aside * aside : 0.0f);
-}
-
-/** From the best of a pixel's own seed and others along the contour, as long as it gets nearer. */
-static float search_near(const Seed *seeds, int32_t own, const int32_t others[4], int x, int y,
-                         float best)
-{
-    const Seed *seed = &seeds[own];
-    for (int k = 0; k < 4; k++) {
-        const float d = others[k] != own ? squared_distance(&seeds[others[k]], x, y) : best;
-        if (d < best)
-            best = d, seed = &seeds[others[k]];
-    }
-    while (seed) {
-        const Seed *better = NULL;
-        for (int k = 0; k < 8 && seed->next_to[k] >= 0; k++) {
-            const float d = squared_distance(&seeds[seed->next_to[k]], x, y);
-            if (d < best)
-                best = d, better = &seeds[seed->next_to[k]];
-        }
-        seed = better;
-    }
-    return best;
+    const guint n = work->seeds->len;
+    if (!(work->links = fl_alloc(n, sizeof *work->links, "the distances of a mask", error)))
+        return false;
+    for (guint seed = 0; seed < n; seed++)
+        link_seed(work, (int32_t)seed);
+    return true;
 }
 
 /**
@@ -286,18 +283,19 @@ static float search_near(const Seed *seeds, int32_t own, const int32_t others[4]
 static void measure_row(const Work *work, int y, float *distance)
 {
     const int w = work->width;
-    const int32_t *row = work->nearest + y * (size_t)w;
-    const int32_t *up = y > 0 ? row - w : row, *down = y < work->height - 1 ? row + w : row;
-    const Seed *seeds = (const Seed *)(void *)work->seeds->data;
+    const int32_t *own = work->nearest + y * (size_t)w;
+    const uint8_t *mask = work->mask + y * (size_t)w;
+    const FlContourRow row = {.piece = (const FlContourPiece *)(void *)work->seeds->data,
+                              .links = work->links,
+                              .above = y > 0 ? own - w : own,
+                              .own = own,
+                              .below = y < work->height - 1 ? own + w : own,
+                              .y = y,
+                              .near_px = NEAR_PX};
+    fl_row_kernels()->to_contour(&row, distance, w);
     for (int x = 0; x < w; x++) {
-        float best = squared_distance(&seeds[row[x]], x, y);
-        if (best < NEAR_PX * NEAR_PX) {
-            const int32_t others[4] = {up[x], down[x], row[x > 0 ? x - 1 : x],
-                                       row[x < w - 1 ? x + 1 : x]};
-            best = search_near(seeds, row[x], others, x, y, best);
-        }
-        const float d = sqrtf(best);
-        distance[x] = work->mask[y * (size_t)w + x] >= FL_INSIDE ? d : -d;
+        const float d = sqrtf(distance[x]);
+        distance[x] = mask[x] >= FL_INSIDE ? d : -d;
     }
 }
 
@@ -307,7 +305,7 @@ bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GE
     g_auto(Work) work = {0};
     if (!work_init(&work, mask, width, height, error))
         return false;
-    g_autofree uint8_t *mixed = g_malloc(width);
+    g_autofree uint8_t *mixed = g_malloc0(width);
     find_seeds(&work, mixed);
     if (work.seeds->len == 0) {
         const float far = (float)(mask[0] >= FL_INSIDE ? width + height : -(width + height));
@@ -315,16 +313,15 @@ bool fl_distance(const uint8_t *mask, int width, int height, float *distance, GE
             distance[p] = far;
         return true;
     }
-    for (guint k = 0; k < work.seeds->len; k++)
-        link_seed(&work, &g_array_index(work.seeds, Seed, k));
+    if (!link_seeds(&work, error))
+        return false;
     search_columns(&work);
 #pragma omp parallel
     {
-        g_autofree int *column = g_new(int, width + 1);
-        g_autofree double *from = g_new(double, width + 1);
+        g_autofree Parabola *envelope = g_new(Parabola, width + 1);
 #pragma omp for schedule(static)
         for (int y = 0; y < height; y++)
-            search_row(&work, y, column, from);
+            search_row(&work, y, envelope);
 #pragma omp for schedule(static)
         for (int y = 0; y < height; y++)
             measure_row(&work, y, distance + y * (size_t)width);
