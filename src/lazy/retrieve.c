@@ -12,9 +12,9 @@
 #define TABLE (1u << 18) // with as many pairs at most, all distances are known
 #define FEW_TARGETS 32   // free ones: all distances to them are known,
 #define FEW_SHARE 100    // as where they are a share of all,
-#define FEW_PAIRS 8      // unless there are more pairs than so many a target
+#define FEW_PAIRS 3      // unless there are more pairs than so many a target
 #define WARM 3           // free targets of the warm start that are compared
-#define CONTINUED 6      // won targets of a neighbour that are continued
+#define CONTINUED 4      // won targets of a neighbour that are continued
 #define ANYWHERE 3       // free targets by hash that are compared
 #define CANDIDATES (WARM + 4 * (CONTINUED + 1) + ANYWHERE)
 #define NONE (-1)
@@ -38,11 +38,12 @@ typedef struct Run {
     const FlRetrieval *in;
     uint32_t n_turns, n_sources, n_targets;
     Turn turn[TURNS];
-    int32_t *place_at;         // by pixel of the source; NONE
-    int32_t *target;           // [n_sources]: what it proposes to
-    uint32_t *cost;            // of that
-    int32_t *won, *won_next;   // lists of targets: by source, by target
-    int32_t *warm, *warm_next; // the same of the warm start
+    int32_t *place_at; // by pixel of the source; NONE
+    int32_t *target;   // [n_sources]: what it proposes to
+    uint32_t *cost;    // of that
+    int32_t *won;      // [n_sources][n_kept]: the last targets won, newest first; NONE
+    uint32_t n_kept;
+    int32_t *warm, *warm_next; // lists of targets of the warm start: by source, by target
     uint8_t *is_free;          // by target
     uint32_t *open;            // free targets in scan order, and a few that are no longer
     uint32_t n_open, n_free;
@@ -62,10 +63,9 @@ typedef struct Run {
 
 static void run_clear(Run *run)
 {
-    void *const arrays[] = {run->place_at,   run->target, run->cost,      run->won,
-                            run->won_next,   run->warm,   run->warm_next, run->is_free,
-                            run->open,       run->offer,  run->cell,      run->tile_places,
-                            run->tile_first, run->use,    run->left};
+    void *const arrays[] = {run->place_at,    run->target,     run->cost, run->won,   run->warm,
+                            run->warm_next,   run->is_free,    run->open, run->offer, run->cell,
+                            run->tile_places, run->tile_first, run->use,  run->left};
     for (size_t k = 0; k < G_N_ELEMENTS(arrays); k++)
         free(arrays[k]);
     fl_cost_table_clear(&run->table);
@@ -109,11 +109,10 @@ static bool alloc_run(Run *run, GError **error)
     return (run->place_at = number_places(in, error)) &&
            (run->target = fl_alloc(s, sizeof(int32_t), what, error)) &&
            (run->cost = fl_alloc(s, sizeof(uint32_t), what, error)) &&
-           (run->won = fl_alloc(s, sizeof(int32_t), what, error)) &&
+           (run->won = fl_alloc(s * run->n_kept, sizeof(int32_t), what, error)) &&
            (run->warm = fl_alloc(s, sizeof(int32_t), what, error)) &&
            (run->cell = fl_alloc(s, sizeof(uint32_t), what, error)) &&
            (run->use = fl_alloc(s, sizeof(uint32_t), what, error)) &&
-           (run->won_next = fl_alloc_scratch(pixels, sizeof(int32_t), what, error)) &&
            (run->warm_next = fl_alloc_scratch(pixels, sizeof(int32_t), what, error)) &&
            (run->is_free = fl_alloc_scratch(pixels, 1, what, error)) &&
            (run->open = fl_alloc(run->n_targets, sizeof(uint32_t), what, error)) &&
@@ -307,9 +306,9 @@ static void add_neighbours(const Run *run, Proposal *p)
         const size_t s = (size_t)place * run->n_turns + quarters;
         if (run->target[s] != NONE)
             add_beside(run, p, run->target[s], k);
-        int32_t won = run->won[s];
-        for (int n = 0; n < CONTINUED && won != NONE; n++, won = run->won_next[won])
-            add_beside(run, p, won, k);
+        const int32_t *won = run->won + s * run->n_kept;
+        for (uint32_t n = 0; n < run->n_kept && won[n] != NONE; n++)
+            add_beside(run, p, won[n], k);
     }
 }
 
@@ -324,11 +323,16 @@ static void add_anywhere(const Run *run, Proposal *p, FlRng *rng)
     }
 }
 
+/* Those that are taken leave the list. */
 static void add_warm(const Run *run, Proposal *p)
 {
-    for (int32_t j = run->warm[p->source]; j != NONE && p->n_candidates < WARM;
-         j = run->warm_next[j])
-        add_target(run, p, (uint32_t)j);
+    int32_t *link = &run->warm[p->source];
+    while (*link != NONE && p->n_candidates < WARM)
+        if (run->is_free[*link]) {
+            add_target(run, p, (uint32_t)*link);
+            link = &run->warm_next[*link];
+        } else
+            *link = run->warm_next[*link];
 }
 
 /* Windows around the target in hand, each half as large as the one before. */
@@ -441,8 +445,9 @@ static void assign(Run *run, const Winner *winner, FlNnf *nnf)
     run->is_free[target] = 0;
     run->n_free--;
     run->use[winner->cell]++;
-    run->won_next[target] = run->won[s];
-    run->won[s] = target;
+    int32_t *won = run->won + (size_t)s * run->n_kept;
+    memmove(won + 1, won, (run->n_kept - 1) * sizeof *won);
+    won[0] = target;
     run->done->energy += (double)(winner->key >> 32) / ((double)FL_FLUID_ONE * FL_FLUID_ONE);
 }
 
@@ -589,7 +594,7 @@ static bool pass(Run *run, Winner *winners, FlNnf *nnf, GError **error)
 static void start(Run *run, const FlNnf *nnf)
 {
     memset(run->target, 0xff, run->n_sources * sizeof *run->target);
-    memset(run->won, 0xff, run->n_sources * sizeof *run->won);
+    memset(run->won, 0xff, (size_t)run->n_sources * run->n_kept * sizeof *run->won);
     memset(run->warm, 0xff, run->n_sources * sizeof *run->warm);
     for (uint32_t j = 0; j < run->n_targets; j++) {
         const uint32_t target = run->in->targets[j];
@@ -624,6 +629,7 @@ bool fl_retrieve(const FlRetrieval *retrieval, FlNnf *nnf, FlRetrieved *done, GE
                        .tile_columns = (retrieval->source.width - 1) / TILE + 1,
                        .done = done};
     run.n_sources = (uint32_t)retrieval->n_sources * run.n_turns;
+    run.n_kept = MIN(run.n_targets / run.n_sources + 1, CONTINUED);
     run.n_tiles = run.tile_columns * ((retrieval->source.height - 1) / TILE + 1);
     for (int k = 0; k < TURNS; k++)
         turn_init(&run.turn[k], k, retrieval->source.pitch);
