@@ -218,6 +218,14 @@ bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
     return false;
 }
 
+void fl_guides_drop_motion(FlGuides *guides)
+{
+    g_clear_pointer(&guides->distance, g_free);
+    g_clear_pointer(&guides->flow, g_free);
+    g_clear_pointer(&guides->motion, g_free);
+    g_clear_pointer(&guides->turn, g_free);
+}
+
 void fl_guides_clear(FlGuides *guides)
 {
     g_free(guides->mask);

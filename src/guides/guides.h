@@ -95,6 +95,9 @@ bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *f
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error);
 void fl_guides_clear(FlGuides *guides);
 
+/** Frees the planes that no target is made from: distance, flow and the drawing's motion. */
+void fl_guides_drop_motion(FlGuides *guides);
+
 /**
  * The shape guide of a mask: Gaussian blur of its coverage, sigma = border_px / 3, cut at border_px
  * [F21 §3.1]. In 0..1; pixels beyond the frame count as their nearest pixel in it.

@@ -384,11 +384,14 @@ static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **
     const size_t pixels = (size_t)synth->width * synth->height;
     g_autofree float *shape = fl_alloc(pixels, sizeof(float), "a guide", error);
     if (!shape || !(synth->last.mask = fl_alloc(pixels, 1, "a mask", error)) ||
-        !fl_shape_guide(guides, synth->params, synth->exemplar->border_px, shape, error) ||
-        !fl_target_init(&synth->target, guides, shape, rect, synth->n_levels, synth->exemplar,
-                        error))
+        !fl_shape_guide(guides, synth->params, synth->exemplar->border_px, shape, error))
         return false;
     fl_rest_shape(guides, synth->last.mask);
+    if (guides->disposable)
+        fl_guides_drop_motion(guides);
+    if (!fl_target_init(&synth->target, guides, shape, rect, synth->n_levels, synth->exemplar,
+                        error))
+        return false;
     if (guides->disposable)
         fl_guides_clear(guides);
     return true;
