@@ -1,6 +1,9 @@
 #include "base/memory.h"
 
 #include <glib.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <string.h>
 #include <unistd.h>
 
@@ -53,4 +56,11 @@ int64_t fl_memory_mib(const char *root)
     for (int i = 0; line[i]; i++)
         least = MIN(least, group_mib(root, line[i]));
     return MAX(least, 1);
+}
+
+void fl_memory_trim(void)
+{
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
 }

@@ -12,4 +12,8 @@
  */
 int64_t fl_memory_mib(const char *root);
 
+/** Returns what has been freed to the system: holes between what is in use, too. It takes a
+ * millisecond or so, and whatever uses these pages next has to fault them in. */
+void fl_memory_trim(void);
+
 #endif

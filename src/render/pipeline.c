@@ -1,5 +1,6 @@
 /* The whole render: run() has its stages in order, render_frame() those of a frame. */
 #include "base/alloc.h"
+#include "base/memory.h"
 #include "base/page.h"
 #include "base/schedule.h"
 #include "base/task.h"
@@ -238,6 +239,7 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
     const bool painted =
         held || fl_painters_each(&pipeline->painters, shown, paint_one, pipeline, error);
     *paint_s = seconds_since(start);
+    fl_memory_trim(); // what painting has left over is of no use to composing, nor the reverse
     if (!fl_task_wait(&pipeline->drawing, painted ? error : NULL) || !painted)
         return false;
     if (!composed)
@@ -247,7 +249,10 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
     if (next >= 0 && overlaps(pipeline))
         start_drawing(pipeline, fl_drawing_shown(plan->drawing, next));
     const FlComposeInput input = compose_input(pipeline, shown);
-    return fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error);
+    const bool made =
+        fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error);
+    fl_memory_trim();
+    return made;
 }
 
 /* Adds a frame to statistics and report, once its files are written. */
