@@ -3,6 +3,7 @@
 
 #include "drawing/confined.h"
 #include "drawing/drawing_data.h"
+#include "drawing/packed_draws.h"
 #include "scratch.h"
 #include <signal.h>
 #include <string.h>
@@ -184,6 +185,45 @@ static void and_later_the_frame_before_and_counted_once(void)
     g_assert_cmpint(fl_draw_pool_lost(film.pool), ==, 1);
 }
 
+static uint8_t *plane_of(uint8_t first, int n)
+{
+    uint8_t *plane = g_malloc((gsize)n);
+    for (int i = 0; i < n; i++)
+        plane[i] = (uint8_t)(first + i);
+    return plane;
+}
+
+static void packed_draws_are_given_back_as_they_were(void)
+{
+    enum { N = 20 };
+    g_autoptr(GError) error = NULL;
+    FlDrawList *draws = g_new0(FlDrawList, 1);
+    draws->n = 3, draws->draw = g_new0(FlDraw, 3);
+    for (int r = 0; r < 3; r++)
+        draws->draw[r] = (FlDraw){.region = r,
+                                  .area = {.box = {r, 2, 5, r < 2 ? 4 : 0}},
+                                  .coverage = plane_of((uint8_t)r, N),
+                                  .by_hand = r == 0 ? plane_of(30, N) : NULL,
+                                  .picture = r == 1 ? plane_of(60, 4 * N) : NULL};
+    g_autoptr(FlDrawList) back = fl_packed_draws_open(fl_packed_draws_new(draws, &error), &error);
+    g_assert_no_error(error);
+    g_assert_cmpint(back->n, ==, 3);
+    for (int r = 0; r < 3; r++) {
+        g_autofree uint8_t *coverage = plane_of((uint8_t)r, N), *left = plane_of(30, N);
+        g_autofree uint8_t *picture = plane_of(60, 4 * N);
+        g_assert_cmpint(back->draw[r].region, ==, r);
+        g_assert_nonnull(back->draw[r].coverage);
+        if (r < 2)
+            g_assert_cmpmem(back->draw[r].coverage, N, coverage, N);
+        g_assert_true((back->draw[r].by_hand != NULL) == (r == 0));
+        g_assert_true((back->draw[r].picture != NULL) == (r == 1));
+        if (r == 0)
+            g_assert_cmpmem(back->draw[r].by_hand, N, left, N);
+        if (r == 1)
+            g_assert_cmpmem(back->draw[r].picture, 4 * N, picture, 4 * N);
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -199,5 +239,6 @@ int main(int argc, char **argv)
          a_frame_that_comes_to_crash_is_an_error_at_first);
     TEST("and-later-the-frame-before-and-counted-once",
          and_later_the_frame_before_and_counted_once);
+    TEST("packed-draws-are-given-back-as-they-were", packed_draws_are_given_back_as_they_were);
     return g_test_run();
 }

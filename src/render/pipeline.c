@@ -6,6 +6,7 @@
 #include "base/task.h"
 #include "compose/composite.h"
 #include "drawing/hold.h"
+#include "drawing/packed_draws.h"
 #include "inspect/dump.h"
 #include "inspect/ebsynth.h"
 #include "inspect/report.h"
@@ -34,7 +35,7 @@ typedef struct Pipeline {
     FlReport *report;          // NULL: none
     FlTask drawing, writing;   // run beside the painting
     int drawn;                 // the frame of `draws`, which `drawing` makes; -1: none
-    FlDrawList *draws;         // its shapes
+    FlPackedDraws *draws;      // its shapes
     int finished_frame;        // the last painted frame
     FlComposite finished;      // that frame, which `writing` writes
     double write_s;            // time that this took
@@ -167,9 +168,9 @@ static bool draw_shapes(void *data, GError **error)
                          .page = plan->half ? page / 2 : page,
                          .tooth =
                              fl_paper_sheet_tooth(pipeline->sheet, pipeline->drawn, plan->half)};
-    pipeline->draws =
+    FlDrawList *draws =
         fl_hold_draw_list(plan->drawing, &hand, plan->hold, plan->hold_of, pipeline->drawn, error);
-    return pipeline->draws != NULL;
+    return draws && (pipeline->draws = fl_packed_draws_new(draws, error));
 }
 
 static void start_drawing(Pipeline *pipeline, int frame)
@@ -244,8 +245,10 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
         return false;
     if (!composed)
         return true;
-    FlDrawList *draws = g_steal_pointer(&pipeline->draws);
+    FlDrawList *draws = fl_packed_draws_open(g_steal_pointer(&pipeline->draws), error);
     pipeline->drawn = -1;
+    if (!draws)
+        return false;
     if (next >= 0 && overlaps(pipeline))
         start_drawing(pipeline, fl_drawing_shown(plan->drawing, next));
     const FlComposeInput input = compose_input(pipeline, shown);
@@ -467,7 +470,7 @@ static void clear(Pipeline *pipeline)
 {
     fl_task_clear(&pipeline->drawing);
     fl_task_clear(&pipeline->writing);
-    fl_draw_list_free(pipeline->draws);
+    fl_packed_draws_free(pipeline->draws);
     fl_composite_clear(&pipeline->finished);
     fl_frame_writer_clear(&pipeline->writer);
     fl_stats_clear(&pipeline->stats);
