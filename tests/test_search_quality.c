@@ -9,6 +9,7 @@
 #include "small_style.h"
 #include "synth/energy.h"
 #include "synth/vote.h"
+#include <inttypes.h>
 
 typedef struct Case {
     FlParams *params;
@@ -156,6 +157,33 @@ static void a_search_with_rotation_is_as_good_as_the_best_field_of_two_rotations
     tear_down(&c);
 }
 
+/* The counts and the energy of two sweeps on a field that has been searched before. */
+static FlSearchCounts counts_of_two_sweeps(float settled, double *energy)
+{
+    Case c;
+    set_up(&c, true);
+    searched(&c, 0, 4);
+    fl_vote(&c.nnf, c.search.level, c.search.kernels, c.params->vote_sharpness, 3,
+            c.target.level[0].colour, NULL);
+    searched(&c, 1, 0);
+    c.search.settled = (uint32_t)(settled * fl_mean_cost(&c.search));
+    const FlSearchCounts counts = fl_search_run(&c.search, 2);
+    *energy = fl_mean_cost(&c.search);
+    tear_down(&c);
+    return counts;
+}
+
+static void matches_that_have_settled_take_few_tries_and_lose_little(void)
+{
+    double all, few;
+    const FlSearchCounts of_all = counts_of_two_sweeps(0, &all),
+                         of_few = counts_of_two_sweeps(1.5F, &few);
+    g_test_message("energy %.0f and %.0f, tries %" PRIu64 " and %" PRIu64, all, few, of_all.drawn,
+                   of_few.drawn);
+    g_assert_cmpuint(of_few.drawn, <, of_all.drawn / 2);
+    g_assert_cmpfloat(few, <, 1.15 * all);
+}
+
 static void the_terms_add_up_to_the_energy(void)
 {
     Case c;
@@ -180,6 +208,8 @@ int main(int argc, char **argv)
                     a_search_without_rotation_is_within_5_percent_of_the_best_field);
     g_test_add_func("/search/a-search-with-rotation-is-as-good-as-the-best-field-of-two-rotations",
                     a_search_with_rotation_is_as_good_as_the_best_field_of_two_rotations);
+    g_test_add_func("/search/matches-that-have-settled-take-few-tries-and-lose-little",
+                    matches_that_have_settled_take_few_tries_and_lose_little);
     g_test_add_func("/search/the-terms-add-up-to-the-energy", the_terms_add_up_to_the_energy);
     return g_test_run();
 }

@@ -60,6 +60,15 @@ int fl_matches_beside(const FlSearch *search, int x, int y, FlMatch expected[FL_
     return n;
 }
 
+double fl_mean_cost(const FlSearch *search)
+{
+    uint64_t sum = 0, n = 0;
+    for (size_t p = 0; p < (size_t)search->nnf->width * search->nnf->height; p++)
+        if (search->nnf->match[p].frame != FL_NO_MATCH)
+            sum += search->cost[p], n++;
+    return n > 0 ? (double)sum / (double)n : 0;
+}
+
 void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost)
 {
 #pragma omp parallel for schedule(dynamic, 8)

@@ -16,7 +16,9 @@ typedef struct FlSearch {
     uint32_t *cost;       // width * height: cost of the match without uniformity and coherence
     const FlNnf *carried; // the last field as the drawing has carried it here; NULL: it does not
     FlOccurrence *map;
-    uint64_t key; // of the random search
+    uint32_t settled; // a match of less cost is left to its neighbours after a first look around it
+    int near_px;      // how far that look goes; 0: none
+    uint64_t key;     // of the random search
 } FlSearch;
 
 /** Counters of a search. */
@@ -61,6 +63,9 @@ static inline bool fl_match_continues(FlMatch a, FlMatch b)
 
 /** Where the matches left, above, right and below continue at a pixel. Returns their number. */
 int fl_matches_beside(const FlSearch *search, int x, int y, FlMatch expected[FL_NEIGHBOURS]);
+
+/** The mean of search->cost over the pixels that have a match; 0 without any. */
+double fl_mean_cost(const FlSearch *search);
 
 /** Fills search->cost for a field; pixels outside get UINT32_MAX. */
 void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost);

@@ -56,12 +56,11 @@ static void work(Team *team)
     const FlSearch *search = team->tile_search->search;
     FlSearchCounts own = {0};
     for (int step = 0; step < team->sweeps * FL_TILE_CLASSES; step++) {
-        const uint64_t key = fl_key(search->key, (uint64_t)(step / FL_TILE_CLASSES));
         int k;
         while ((k = __atomic_fetch_add(&team->next_tile, FL_TILES_AT_ONCE, __ATOMIC_RELAXED)) <
                team->end_tile)
             fl_tile_search_run(team->tile_search, search->target->tiles + k,
-                               MIN(FL_TILES_AT_ONCE, team->end_tile - k), is_backwards(step), key,
+                               MIN(FL_TILES_AT_ONCE, team->end_tile - k), step / FL_TILE_CLASSES,
                                &own);
         finish_step(team, step);
     }

@@ -12,6 +12,8 @@
 #include <math.h>
 #include <string.h>
 
+#define NEAR_PX 8 // on the finest level; around a match that has settled, on coarser levels
+
 struct FlSynth {
     const FlExemplar *exemplar;
     const FlParams *params;
@@ -202,12 +204,7 @@ static void merge_previous(FlSearch *search, const FlNnf *previous)
 
 static double mean_energy(const FlSearch *search)
 {
-    uint64_t sum = 0;
-    size_t n = 0;
-    for (size_t p = 0; p < (size_t)search->nnf->width * search->nnf->height; p++)
-        if (search->nnf->match[p].frame != FL_NO_MATCH)
-            sum += search->cost[p], n++;
-    return n > 0 ? (double)sum / search->scale->unit / (double)n : 0;
+    return fl_mean_cost(search) / search->scale->unit;
 }
 
 /* Seconds since a monotonic time, which moves on to now. */
@@ -302,6 +299,14 @@ static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats
     stats->uniformity = energy.uniformity, stats->coherence = energy.coherence;
 }
 
+/* In a frame that continues another, matches that are good as they are cost little time: random
+ * tries find next to nothing for them, on the finest level least. */
+static void settle(FlSearch *search, int level)
+{
+    search->settled = (uint32_t)MIN(search->params->settled * fl_mean_cost(search), UINT32_MAX);
+    search->near_px = level > 0 ? NEAR_PX << level : 0;
+}
+
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
                       GError **error)
 {
@@ -331,6 +336,8 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
+    if (shifted)
+        settle(&search, l);
     const int from_coarsest = synth->n_levels - 1 - l;
     stats->rounds = l == 0 ? params->finest_rounds
                     : shifted

@@ -3,11 +3,10 @@
 #include "base/rng.h"
 
 /*
- * Time (perf; a snowman of 19 regions, 1000 px wide, AVX-512): the search takes two thirds of a
- * whole render, votes an eighth; guides, shapes of the drawing, compositing and files the rest. Of
- * the search, patch distances take four tenths, this file three, gathering the target's patch, the
- * sieve and the neighbours a twentieth each. A draft searches less: search and votes take a fifth
- * of the render each, the distances of the guides an eighth.
+ * Time (perf; a snowman of 19 regions, 1000 px wide, AVX-512): the search takes nearly half of a
+ * whole render, votes a fifth; guides, shapes of the drawing, compositing and files the rest. Of
+ * the search, patch distances take a third, this file two fifths, the occurrence map a tenth. A
+ * draft searches less: search and votes take a fifth of the render each.
  *
  * Each texel of a random try is a cache miss. So pixels go through three stages, each a stage ahead
  * of the next pixel of its tile:
@@ -30,6 +29,7 @@ typedef struct PixelSearch {
     FlTries tries;
     const FlTileSearch *tile_search;
     const FlSearch *search;
+    const FlWindows *windows; // that random tries are drawn from; NULL: none
     int x, y;
     size_t pixel;
     FlSegment segment;
@@ -48,6 +48,21 @@ typedef struct PixelSearch {
     Candidate candidate[FL_MAX_TRIES];
 } PixelSearch;
 
+/* Those of the windows that reach no farther than `most` px. */
+static FlWindows windows_near(const FlWindows *windows, int most)
+{
+    FlWindows near = *windows;
+    near.n = 0;
+    for (int k = 0; k < windows->n; k++) {
+        if (MAX(windows->reach[0][k], windows->reach[1][k]) > most)
+            continue;
+        for (int i = 0; i < 3; i++)
+            near.reach[i][near.n] = windows->reach[i][k];
+        near.n++;
+    }
+    return near;
+}
+
 void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search)
 {
     const FlExemplarLevel *level = search->level;
@@ -64,6 +79,7 @@ void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search)
         w->reach[1][w->n] = (uint16_t)(share * (float)level->height);
         w->reach[2][w->n] = (uint16_t)(share * (float)level->window + 1);
     }
+    tile_search->near = windows_near(w, search->near_px);
     for (int n = 0; n <= 4; n++)
         for (int apart = 0; apart <= n; apart++)
             tile_search->coherence[n][apart] =
@@ -110,7 +126,15 @@ static void find_expected(PixelSearch *ps)
     ps->n_expected = fl_matches_beside(ps->search, ps->x, ps->y, ps->expected);
 }
 
-static void draw(PixelSearch *ps, const FlTileSearch *tile_search, size_t pixel, uint64_t key)
+/* Where tries for a pixel are drawn from. */
+static const FlWindows *windows_for(const FlTileSearch *tile_search, size_t pixel, int sweep)
+{
+    if (tile_search->search->cost[pixel] >= tile_search->search->settled)
+        return &tile_search->windows;
+    return sweep == 0 && tile_search->near.n > 0 ? &tile_search->near : NULL;
+}
+
+static void draw(PixelSearch *ps, const FlTileSearch *tile_search, size_t pixel, int sweep)
 {
     const FlSearch *search = tile_search->search;
     const FlTexel *first = fl_exemplar_at(search->level, 0, 0, search->level->first);
@@ -120,11 +144,14 @@ static void draw(PixelSearch *ps, const FlTileSearch *tile_search, size_t pixel,
     ps->x = (int)(pixel % (size_t)search->target->width);
     ps->y = (int)(pixel / (size_t)search->target->width);
     ps->own = ps->best = search->nnf->match[pixel];
+    ps->windows = windows_for(tile_search, pixel, sweep);
+    if (!ps->windows)
+        return;
+    const uint64_t key = fl_key(search->key, (uint64_t)sweep);
     const uint16_t centre[3] = {(uint16_t)fl_match_x(ps->own), (uint16_t)fl_match_y(ps->own),
                                 (uint16_t)(ps->own.frame - search->level->first)};
-    search->kernels->draw_tries(&tile_search->windows, centre, (uint32_t)fl_key(key, pixel),
-                                &ps->tries);
-    for (int k = 0; k < tile_search->windows.n; k++)
+    search->kernels->draw_tries(ps->windows, centre, (uint32_t)fl_key(key, pixel), &ps->tries);
+    for (int k = 0; k < ps->windows->n; k++)
         __builtin_prefetch(first + ps->tries.pixel[k]);
 }
 
@@ -167,7 +194,8 @@ static void add_candidate(PixelSearch *ps, int k, uint32_t uniformity)
         __builtin_prefetch(c->centre + offsets[p]);
 }
 
-static void sift(PixelSearch *ps)
+/* What is known of a pixel before its tries, beside what its neighbours expect. */
+static void look_up(PixelSearch *ps)
 {
     const FlSearch *search = ps->search;
     ps->angle = search->target->angle[ps->pixel];
@@ -175,14 +203,19 @@ static void sift(PixelSearch *ps)
     ps->own_cell = fl_occurrence_cell(search->map, ps->own);
     ps->data = search->cost[ps->pixel];
     ps->own_uniformity = uniformity_cost(ps, ps->own);
-    find_expected(ps);
     find_carried(ps);
     ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
+    ps->n_candidates = 0;
+}
+
+static void sift(PixelSearch *ps)
+{
+    const FlSearch *search = ps->search;
+    find_expected(ps);
+    look_up(ps);
     const FlSieve sieve = sieve_of(ps);
     uint32_t uniformity[FL_MAX_TRIES];
-    ps->n_candidates = 0;
-    for (uint64_t left =
-             search->kernels->sift(&ps->tries, ps->tile_search->windows.n, &sieve, uniformity);
+    for (uint64_t left = search->kernels->sift(&ps->tries, ps->windows->n, &sieve, uniformity);
          left; left &= left - 1) {
         const int k = __builtin_ctzll(left);
         add_candidate(ps, k, uniformity[k]);
@@ -256,18 +289,34 @@ static int propagate(PixelSearch *ps, const FlTargetPatch *patch)
     return tried;
 }
 
+/* Whether a neighbour's match continues as another one than the pixel has. */
+static bool differs_from_neighbours(PixelSearch *ps)
+{
+    find_expected(ps);
+    for (int k = 0; k < ps->n_expected; k++)
+        if (ps->expected[k].frame != FL_NO_MATCH && !same_match(ps->expected[k], ps->own))
+            return true;
+    return false;
+}
+
 /* `stale`: a neighbour has changed its match since sift(). Returns: whether the pixel changes its.
  */
 static bool settle(PixelSearch *ps, bool stale, FlSearchCounts *counts)
 {
     const FlSearch *search = ps->search;
     FlTargetPatch patch;
-    fl_target_gather(search->target, ps->x, ps->y, &patch);
-    if (stale) {
+    if (!ps->windows) {
+        if (!differs_from_neighbours(ps))
+            return false;
+        look_up(ps);
+    } else if (stale) {
         find_expected(ps);
         ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
     }
+    fl_target_gather(search->target, ps->x, ps->y, &patch);
     counts->drawn += (uint64_t)ps->n_expected;
+    if (ps->windows)
+        counts->drawn += (uint64_t)ps->windows->n * (search->params->rotate ? 2 : 1);
     counts->tried += propagate(ps, &patch);
     for (int k = 0; k < ps->n_candidates; k++) {
         const Candidate *c = &ps->candidate[k];
@@ -300,21 +349,20 @@ static int list_pixels(const FlTargetLevel *target, uint32_t tile, bool backward
     return n;
 }
 
-void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, int n,
-                        bool backwards, uint64_t key, FlSearchCounts *counts)
+void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, int n, int sweep,
+                        FlSearchCounts *counts)
 {
+    const FlTargetLevel *target = tile_search->search->target;
     size_t pixels[FL_TILES_AT_ONCE * FL_TILE * FL_TILE];
     PixelSearch pixel[3];
     int end = 0;
     bool changed = false; // only the pixel before can, between the stages of one
     for (int k = 0; k < n; k++)
-        end += list_pixels(tile_search->search->target, tiles[k], backwards, pixels + end);
-    counts->drawn +=
-        (uint64_t)end * tile_search->windows.n * (tile_search->search->params->rotate ? 2 : 1);
+        end += list_pixels(target, tiles[k], sweep & 1, pixels + end);
     for (int k = 0; k < end + 2; k++) {
         if (k < end)
-            draw(&pixel[k % 3], tile_search, pixels[k], key);
-        if (k >= 1 && k <= end)
+            draw(&pixel[k % 3], tile_search, pixels[k], sweep);
+        if (k >= 1 && k <= end && pixel[(k - 1) % 3].windows)
             sift(&pixel[(k - 1) % 3]);
         if (k >= 2)
             changed = settle(&pixel[(k - 2) % 3], changed, counts);
