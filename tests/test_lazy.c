@@ -2,6 +2,7 @@
 #include "lazy/motion_blur.h"
 #include "lazy/warp.h"
 #include "small_style.h"
+#include "style/adapt.h"
 #include "threads.h"
 
 #define SIDE 72
@@ -139,6 +140,38 @@ static void a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours(
                             2 + 255 / film.alpha[p]);
     }
     g_assert_cmpint(soft, >, 60); // its rim goes beyond the contour
+}
+
+/* A cut-out disc that touches the sides of its frame, as it is trimmed in picture editors. */
+static FlStyle *trimmed(void)
+{
+    g_autoptr(GError) error = NULL;
+    g_autoptr(FlStyle) style = small_style();
+    style->n_frames = 1, style->cut_out = true, style->border_px = 15;
+    style->width = style->height = STYLE_H;
+    for (int p = 0; p < STYLE_H * STYLE_H; p++) {
+        const double x = p % STYLE_H - 23.5, y = p / STYLE_H - 23.5;
+        style->mask[p] = (uint8_t)lrint(255 * CLAMP(24 - hypot(x, y), 0, 1));
+        for (int c = 0; c < 3; c++)
+            style->rgb[3 * p + c] =
+                style->mask[p] ? (uint8_t)(60 + 100 * small_blotches(x + 24, y + 24)) : 250;
+    }
+    FlStyle *used = fl_style_adapt(style, &(FlStyleUse){.start = 1, .step = 1, .scale = 1}, &error);
+    g_assert_no_error(error);
+    return used;
+}
+
+static void a_trimmed_cut_out_paints_nothing_far_outside(void)
+{
+    g_auto(Film) film;
+    film_init(&film, trimmed(), "fluid", "1");
+    paint(&film, 2);
+    double sum = 0, n = 0;
+    for (int p = 0; p < PIXELS; p++)
+        if (film.guides.distance[p] < -4)
+            sum += film.alpha[p] / 255.0, n++;
+    g_test_message("alpha from 4 px outside on: %.3f", sum / n);
+    g_assert_cmpfloat(sum / n, <, .01);
 }
 
 /* The standard deviation of green, inside. */
@@ -323,6 +356,8 @@ int main(int argc, char **argv)
                     contrast_stays_where_use_is_equal_and_goes_where_it_is_not);
     g_test_add_func("/lazy/a-cut-out-has-the-alpha-of-its-exemplar-and-no-paper-in-its-colours",
                     a_cut_out_has_the_alpha_of_its_exemplar_and_no_paper_in_its_colours);
+    g_test_add_func("/lazy/a-trimmed-cut-out-paints-nothing-far-outside",
+                    a_trimmed_cut_out_paints_nothing_far_outside);
     g_test_add_func("/lazy/paint-turns-with-the-drawing", paint_turns_with_the_drawing);
     g_test_add_func("/lazy/same-picture-on-any-thread-count", same_picture_on_any_thread_count);
     g_test_add_func("/lazy/a-state-that-was-saved-goes-on-as-it-would-have",

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define SMALLEST 8 // px: the shortest side worth searching
+#define ROOM 14    // px around a cut-out: as far as paint reaches beyond its contour, and a bit
 
 /* How the frames of an exemplar get another size. */
 typedef struct Sizes {
@@ -114,6 +115,47 @@ static bool find_sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out
     return true;
 }
 
+/* Whether frames of a cut-out end where their paint does not: a material, not a shape. */
+static bool is_full(const FlStyle *style)
+{
+    const size_t width = (size_t)style->width, height = (size_t)style->height;
+    size_t covered = 0;
+    for (size_t p = 0; p < width * height; p++) {
+        const size_t x = p % width, y = p / width;
+        const bool outermost = x == 0 || y == 0 || x == width - 1 || y == height - 1;
+        covered += outermost && style->mask[p] > 127;
+    }
+    return covered > width + height - 2;
+}
+
+/* Bare paper around every frame. */
+static bool add_room(FlStyle *style, GError **error)
+{
+    const size_t from = (size_t)style->width, width = from + 2 * (size_t)ROOM;
+    const size_t rows = (size_t)style->height, height = rows + 2 * (size_t)ROOM;
+    const size_t pixels = width * height * (size_t)style->n_frames;
+    g_autofree uint8_t *rgb = fl_alloc(3 * pixels, 1, "an exemplar", error);
+    g_autofree uint8_t *mask = fl_alloc(pixels, 1, "an exemplar", error);
+    g_autofree float *flow =
+        style->flow ? fl_alloc(2 * pixels, sizeof *flow, "an exemplar", error) : NULL;
+    if (!rgb || !mask || (style->flow && !flow))
+        return false;
+    for (size_t p = 0; p < pixels; p++)
+        memcpy(rgb + 3 * p, style->paper, 3);
+    for (size_t k = 0; k < rows * (size_t)style->n_frames; k++) {
+        const size_t to = (k / rows * height + k % rows + ROOM) * width + ROOM;
+        memcpy(rgb + 3 * to, style->rgb + 3 * k * from, 3 * from);
+        memcpy(mask + to, style->mask + k * from, from);
+        if (flow)
+            memcpy(flow + 2 * to, style->flow + 2 * k * from, 2 * from * sizeof *flow);
+    }
+    free(style->rgb), free(style->mask), free(style->flow);
+    style->rgb = g_steal_pointer(&rgb), style->mask = g_steal_pointer(&mask);
+    style->flow = g_steal_pointer(&flow);
+    style->width = (int)width, style->height = (int)height;
+    return true;
+}
+
 FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **error)
 {
     g_autoptr(FlStyle) out = g_new0(FlStyle, 1);
@@ -134,7 +176,8 @@ FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **er
     if (!(out->rgb = fl_alloc(3 * pixels, 1, "an exemplar", error)) ||
         !(out->mask = fl_alloc(pixels, 1, "an exemplar", error)) ||
         (style->flow && !(out->flow = fl_alloc(2 * pixels, sizeof(float), "an exemplar", error))) ||
-        !adapt_frames(style, use, out, error))
+        !adapt_frames(style, use, out, error) ||
+        (out->cut_out && !is_full(out) && !add_room(out, error)))
         return NULL;
     return g_steal_pointer(&out);
 }

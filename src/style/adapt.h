@@ -15,7 +15,8 @@ typedef struct FlStyleUse {
 
 /**
  * Copies the used part at its new size. The border width scales with the pictures, flow with both
- * size and step.
+ * size and step. A cut-out gets bare paper around it, so that the exemplar has all of its rim,
+ * unless it fills its frames.
  *
  * Returns: to be freed with fl_style_free(); NULL with FL_ERROR_USAGE if no frame is left or the
  * pictures would be smaller than a patch, or FL_ERROR_NO_MEMORY.
