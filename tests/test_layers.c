@@ -248,6 +248,43 @@ static void stored_layers_recompose_to_the_frame_bit_for_bit(void)
     }
 }
 
+/** Knocks out all the way down; the same for the same key. */
+static void random_stack(FlLayer *layers, uint8_t (*coverage)[N], int n, uint64_t key)
+{
+    random_layers(layers, coverage, n, key);
+    for (int k = 0; k < n; k++)
+        layers[k].mix = FL_BLEND_MODE_OVER, layers[k].stacking = FL_STACKING_KNOCKOUT;
+}
+
+static void layers_packed_in_turn_are_the_same_picture(void)
+{
+    static uint8_t coverage[7][N];
+    g_autoptr(GError) error = NULL;
+    const FlBackdrop below = {.flat = {250, 240, 230, 255}};
+    for (int trial = 0; trial < 6; trial++) {
+        uint8_t out[4 * N], expected[4 * N];
+        FlLayer layers[7];
+        FlStackParams params = plain;
+        params.gap_px = trial % 2 ? 2.0f : 0.0f;
+        random_stack(layers, coverage, 7, (uint64_t)trial);
+        resolve(layers, 7, &params);
+        fl_layers_compose(layers, 7, &below, W, H, false, expected);
+        layers_clear(layers, 7);
+        g_auto(FlLayersAbove) above = {0};
+        g_assert_true(fl_layers_above_init(&above, W, H, params.gap_px, &error));
+        random_stack(layers, coverage, 7, (uint64_t)trial);
+        for (int k = 6; k >= 0; k--) {
+            fl_layer_occlude(&layers[k], &above);
+            g_assert_true(fl_layer_pack(&layers[k], &error));
+            g_assert_null(layers[k].rgba);
+        }
+        fl_layers_compose(layers, 7, &below, W, H, false, out);
+        g_assert_cmpmem(out, sizeof out, expected, sizeof expected);
+        for (int k = 0; k < 7; k++)
+            fl_layer_runs_clear(&layers[k].runs);
+    }
+}
+
 static void sixteen_bits_are_the_same_picture(void)
 {
     static uint8_t coverage[5][N];
@@ -407,6 +444,8 @@ int main(int argc, char **argv)
     g_test_add_func("/layers/stored-layers-recompose-to-the-frame-bit-for-bit",
                     stored_layers_recompose_to_the_frame_bit_for_bit);
     g_test_add_func("/layers/sixteen-bits-are-the-same-picture", sixteen_bits_are_the_same_picture);
+    g_test_add_func("/layers/layers-packed-in-turn-are-the-same-picture",
+                    layers_packed_in_turn_are_the_same_picture);
     g_test_add_func("/layers/linear-light-blends-brighter", linear_light_blends_brighter);
     g_test_add_func("/layers/colour-bleeds-under-transparent-pixels",
                     colour_bleeds_under_transparent_pixels);

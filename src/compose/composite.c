@@ -193,6 +193,7 @@ static void clear_layer(FlLayer *layer)
     fl_area_clear(&layer->area);
     free(layer->rgba);
     free(layer->knockout);
+    fl_layer_runs_clear(&layer->runs);
     if (layer->owns_coverage)
         free((uint8_t *)layer->coverage);
     *layer = (FlLayer){0};
@@ -251,18 +252,87 @@ static bool fill_one(void *data, int k, int thread, GError **error)
     return fill_layer(&stack->composite->layers[k], stack, stack->draw[k], error);
 }
 
-/* Small layers side by side, large ones by all threads together. */
-static bool fill_all(Stack *stack, GError **error)
+static size_t layer_pixels(const Stack *stack, int k)
 {
-    const int n = stack->composite->n_layers;
+    return fl_rect_pixels(stack->composite->draws->draw[stack->draw[k]].area.box);
+}
+
+/* Layers first … end - 1: small ones side by side, large ones by all threads together. */
+static bool fill_some(Stack *stack, int first, int end, GError **error)
+{
     const size_t frame = (size_t)stack->input->width * (size_t)stack->input->height;
-    g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(n, 1));
-    for (int k = 0; k < n; k++) {
-        const FlRect box = stack->composite->draws->draw[stack->draw[k]].area.box;
-        const size_t pixels = fl_rect_pixels(box);
-        items[k] = (FlWorkItem){k, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
+    g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(end - first, 1));
+    for (int k = first; k < end; k++) {
+        const size_t pixels = layer_pixels(stack, k);
+        items[k - first] = (FlWorkItem){k, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
     }
-    return fl_schedule_run(items, n, fill_one, stack, error);
+    return fl_schedule_run(items, end - first, fill_one, stack, error);
+}
+
+/* Whether all layers are needed at once: to be stored, or since some get their colours from what
+ * lies below them. */
+static bool needs_all(const Stack *stack)
+{
+    const FlComposeInput *input = stack->input;
+    bool all = input->layers_apart;
+    for (int k = 0; k < stack->composite->n_layers && !all; k++) {
+        const FlDraw *draw = &stack->composite->draws->draw[stack->draw[k]];
+        const int p = input->painted_of[draw->region];
+        all = draw->mix != FL_BLEND_MODE_OVER ||
+              (p >= 0 && input->painted[p]->settings->stacking == FL_STACKING_GLAZE);
+    }
+    return all;
+}
+
+static bool resolve_all(Stack *stack, GError **error)
+{
+    const FlComposeInput *input = stack->input;
+    FlLayer *layers = stack->composite->layers;
+    const int n = stack->composite->n_layers;
+    FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
+    memcpy(params.paper, input->background->paper, 3);
+    return fill_some(stack, 0, n, error) &&
+           fl_underlay_fade(layers, n, input->width, input->height, error) &&
+           fl_layers_resolve(layers, n, input->width, input->height, &params, error);
+}
+
+#define PAGES_AT_ONCE 2 // pages of layers that are not packed yet
+
+/* The first of the layers that are made together with layer end - 1. */
+static int first_of_batch(const Stack *stack, int end)
+{
+    const size_t most = PAGES_AT_ONCE * (size_t)stack->input->width * (size_t)stack->input->height;
+    int first = end - 1;
+    for (size_t pixels = layer_pixels(stack, first);
+         first > 0 && (pixels += layer_pixels(stack, first - 1)) <= most;)
+        first--;
+    return first;
+}
+
+/* The same some layers at a time, top first; of each only what shows is kept. */
+static bool resolve_in_turn(Stack *stack, GError **error)
+{
+    const int width = stack->input->width, height = stack->input->height;
+    g_auto(FlUnderlay) underlay = {0};
+    g_auto(FlLayersAbove) above = {0};
+    if (!fl_underlay_init(&underlay, width, height, error) ||
+        !fl_layers_above_init(&above, width, height, stack->input->gap_px, error))
+        return false;
+    for (int end = stack->composite->n_layers, first; end > 0; end = first) {
+        first = first_of_batch(stack, end);
+        if (!fill_some(stack, first, end, error))
+            return false;
+        for (int k = end - 1; k >= first; k--) {
+            FlLayer *layer = &stack->composite->layers[k];
+            if (!fl_underlay_fade_next(&underlay, layer, error))
+                return false;
+            fl_layer_occlude(layer, &above);
+            if (!fl_layer_pack(layer, error))
+                return false;
+            g_clear_pointer(&layer->knockout, free);
+        }
+    }
+    return true;
 }
 
 static bool is_layer(const FlComposeInput *input, const FlDraw *draw)
@@ -288,23 +358,16 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     g_autofree FlAnchor *anchors = g_new(FlAnchor, MAX(n_regions, 1));
     fl_anchors_find(draws, n_regions, anchors);
     Stack stack = {composite, input, edges, exposures, anchors, draw};
-    return fill_all(&stack, error);
+    return (needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error);
 }
 
 static bool make_layers(FlComposite *composite, const FlComposeInput *input, GError **error)
 {
     g_autofree int *exposures = g_new0(int, MAX(input->n_painted, 1));
     g_auto(FlEdgeMap) edges = {0};
-    if (!fl_exposures_find(input, composite->draws, exposures, error) ||
-        !fl_edges_init(&edges, input, composite->draws, error) ||
-        !fill_layers(composite, input, &edges, exposures, error) ||
-        !fl_underlay_fade(composite->layers, composite->n_layers, input->width, input->height,
-                          error))
-        return false;
-    FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
-    memcpy(params.paper, input->background->paper, 3);
-    return fl_layers_resolve(composite->layers, composite->n_layers, input->width, input->height,
-                             &params, error);
+    return fl_exposures_find(input, composite->draws, exposures, error) &&
+           fl_edges_init(&edges, input, composite->draws, error) &&
+           fill_layers(composite, input, &edges, exposures, error);
 }
 
 static bool compose(FlComposite *composite, const FlComposeInput *input, int frame, bool with_16,

@@ -7,33 +7,22 @@
 
 #include <string.h>
 
-/** What the layers above take of each pixel of the frame. */
-typedef struct Above {
-    int width, height;
-    uint8_t *area;   // the shapes that knock out, 0..255
-    uint16_t *paint; // the sum of their paint's alpha, 0..65535
-    uint8_t *spread; // a grown shape, if shapes are grown; else NULL
-    uint8_t *seen;   // the visible coverage of the layer at hand
-} Above;
+bool fl_layers_above_init(FlLayersAbove *above, int width, int height, float gap_px, GError **error)
+{
+    const size_t n = (size_t)width * height;
+    *above = (FlLayersAbove){.width = width, .height = height, .gap_px = gap_px};
+    return (above->area = fl_alloc(n, 1, "a matte", error)) &&
+           (above->paint = fl_alloc(n, 2, "a matte", error)) &&
+           (above->seen = fl_alloc(n, 1, "a matte", error)) &&
+           (gap_px <= 0 || (above->spread = fl_alloc(n, 1, "a matte", error)));
+}
 
-static void above_clear(Above *above)
+void fl_layers_above_clear(FlLayersAbove *above)
 {
     free(above->area);
     free(above->paint);
     free(above->spread);
     free(above->seen);
-}
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Above, above_clear)
-
-static bool above_init(Above *above, int width, int height, bool spreads, GError **error)
-{
-    const size_t n = (size_t)width * height;
-    *above = (Above){.width = width, .height = height};
-    return (above->area = fl_alloc(n, 1, "a matte", error)) &&
-           (above->paint = fl_alloc(n, 2, "a matte", error)) &&
-           (above->seen = fl_alloc(n, 1, "a matte", error)) &&
-           (!spreads || (above->spread = fl_alloc(n, 1, "a matte", error)));
 }
 
 static int scaled(int a, int b)
@@ -46,7 +35,7 @@ static bool knocks_out(const FlLayer *layer)
     return layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
 }
 
-static void resolve_rows(const FlLayer *layer, Above *above)
+static void resolve_rows(const FlLayer *layer, FlLayersAbove *above)
 {
     const FlRect box = layer->area.box;
     const bool knocks = knocks_out(layer);
@@ -65,26 +54,82 @@ static void resolve_rows(const FlLayer *layer, Above *above)
     }
 }
 
-static void grow_area(const FlLayer *layer, const FlStackParams *params, Above *above)
+static void grow_area(const FlLayer *layer, FlLayersAbove *above)
 {
     const size_t n = (size_t)above->width * above->height;
     const FlVisibleShape shape = {&layer->area, layer->coverage};
-    fl_visibility_spread(&shape, above->width, above->height, params->gap_px, above->spread);
+    fl_visibility_spread(&shape, above->width, above->height, above->gap_px, above->spread);
     for (size_t i = 0; i < n; i++)
         above->area[i] = (uint8_t)MAX(above->area[i], scaled(above->spread[i], layer->alpha));
 }
 
-/** Top layer first: what each one shows, and what it takes from those below. */
-static void resolve_occlusion(FlLayer *layers, int n, const FlStackParams *params, Above *above)
+void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above)
 {
-    for (int k = n - 1; k >= 0; k--) {
-        const FlLayer *layer = &layers[k];
-        const FlVisibleShape shape = {&layer->area, layer->coverage};
-        fl_visibility_visible(&shape, above->area, above->width, above->height, above->seen);
-        resolve_rows(layer, above);
-        if (above->spread && knocks_out(layer))
-            grow_area(layer, params, above);
+    const FlVisibleShape shape = {&layer->area, layer->coverage};
+    fl_visibility_visible(&shape, above->area, above->width, above->height, above->seen);
+    resolve_rows(layer, above);
+    if (above->spread && knocks_out(layer))
+        grow_area(layer, above);
+}
+
+#define GAP_PX 16 // pixels without alpha that end a run
+
+/** The next run of a row's pixels from column x on; no pixels: there is none. */
+static FlColumns next_run(const uint8_t *rgba, int x, int end)
+{
+    while (x < end && rgba[4 * x + 3] == 0)
+        x++;
+    int last = x;
+    for (int at = x; at < end && at < last + GAP_PX; at++)
+        if (rgba[4 * at + 3] > 0)
+            last = at + 1;
+    return (FlColumns){x, last};
+}
+
+/** Counts the runs of all rows and their pixels; keeps them where there is room. */
+static void find_runs(const FlLayer *layer, FlLayerRuns *runs, size_t *n, size_t *pixels)
+{
+    const FlRect box = layer->area.box;
+    *n = *pixels = 0;
+    for (int y = 0; y < box.height; y++) {
+        const FlColumns span = fl_area_row(&layer->area, y);
+        const uint8_t *row = layer->rgba + 4 * (size_t)y * (size_t)box.width;
+        FlColumns run = next_run(row, span.first, span.last);
+        runs->first[y] = *n;
+        for (; run.first < run.last; run = next_run(row, run.last, span.last)) {
+            const size_t length = (size_t)(run.last - run.first);
+            if (runs->run) {
+                runs->run[*n] = (FlLayerRun){run, *pixels};
+                memcpy(runs->rgba + 4 * *pixels, row + 4 * (size_t)run.first, 4 * length);
+            }
+            ++*n, *pixels += length;
+        }
     }
+    runs->first[box.height] = *n;
+}
+
+bool fl_layer_pack(FlLayer *layer, GError **error)
+{
+    size_t n, pixels;
+    FlLayerRuns *runs = &layer->runs;
+    if (!(runs->first =
+              fl_alloc((size_t)layer->area.box.height + 1, sizeof *runs->first, "a layer", error)))
+        return false;
+    find_runs(layer, runs, &n, &pixels);
+    if (!(runs->rgba = fl_alloc(pixels, 4, "a layer", error)) ||
+        !(runs->run = fl_alloc(n, sizeof *runs->run, "a layer", error)))
+        return false;
+    find_runs(layer, runs, &n, &pixels);
+    g_clear_pointer(&layer->rgba, free);
+    return true;
+}
+
+void fl_layer_runs_clear(FlLayerRuns *runs)
+{
+    free(runs->first);
+    free(runs->run);
+    free(runs->rgba);
+    *runs = (FlLayerRuns){0};
 }
 
 /** A blended pixel: values times alpha, and 65535 times alpha. */
@@ -138,6 +183,17 @@ static int32_t sum_value(const Sum *sum, int channel)
     return (int32_t)MIN(((uint64_t)sum->x[channel] * 65535 + sum->a / 2) / sum->a, 65535);
 }
 
+/** Blends row y of a packed layer whose box begins at column x. */
+static void sum_runs(const FlLayerRuns *runs, const FlScale *scale, int y, int x,
+                     const FlSums *sums)
+{
+    for (size_t r = runs->first[y]; r < runs->first[y + 1]; r++) {
+        const FlLayerRun *run = &runs->run[r];
+        const FlSums below = sums_from(sums, x + run->columns.first);
+        sum_over(&below, scale, runs->rgba + 4 * run->at, run->columns.last - run->columns.first);
+    }
+}
+
 /** Blends the layers' pixels of row y over the sums of that row. */
 static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, const FlSums *sums)
 {
@@ -145,6 +201,10 @@ static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, c
         const FlRect box = layers[k].area.box;
         if (y < box.y || y >= box.y + box.height)
             continue;
+        if (layers[k].runs.first) {
+            sum_runs(&layers[k].runs, scale, y - box.y, box.x, sums);
+            continue;
+        }
         const uint8_t *row = layers[k].rgba + (size_t)(y - box.y) * box.width * 4;
         const FlColumns span = fl_area_row(&layers[k].area, y - box.y);
         const FlSums below = sums_from(sums, box.x + span.first);
@@ -232,14 +292,15 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
 bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlStackParams *params,
                        GError **error)
 {
-    g_auto(Above) above = {0};
-    if (!above_init(&above, width, height, params->gap_px > 0, error))
+    g_auto(FlLayersAbove) above = {0};
+    if (!fl_layers_above_init(&above, width, height, params->gap_px, error))
         return false;
     g_autofree uint32_t *sums = fl_alloc(4 * (size_t)width, sizeof *sums, "a row", error);
     g_autofree uint8_t *drawn = sums ? fl_alloc((size_t)width, 1, "a row of pixels", error) : NULL;
     if (!drawn)
         return false;
-    resolve_occlusion(layers, n, params, &above);
+    for (int k = n - 1; k >= 0; k--)
+        fl_layer_occlude(&layers[k], &above);
     bool plain = true;
     for (int k = 0; k < n; k++)
         plain &= layers[k].stacking != FL_STACKING_GLAZE && layers[k].mix == FL_BLEND_MODE_OVER;

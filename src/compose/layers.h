@@ -9,6 +9,19 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/** Pixels of a row of a layer's box. */
+typedef struct FlLayerRun {
+    FlColumns columns;
+    size_t at; // where they begin, in pixels
+} FlLayerRun;
+
+/** A layer as fl_layers_compose() needs it: pixels that show, row by row. */
+typedef struct FlLayerRuns {
+    size_t *first; // the first run of each row, and behind them their number; NULL: not packed
+    FlLayerRun *run;
+    uint8_t *rgba;
+} FlLayerRuns;
+
 /** One layer; in arrays the bottom one comes first. */
 typedef struct FlLayer {
     FlArea area;             // where it may be seen
@@ -18,7 +31,8 @@ typedef struct FlLayer {
     uint8_t *knockout;       // box.width * box.height of fl_knockout(), borrowed: it knocks out
                              // where its paint has body only; NULL: wherever its shape is
     uint8_t *rgba;       // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by
-                         // the caller
+                         // the caller; NULL if it is packed
+    FlLayerRuns runs;    // of a packed one, owned by the caller as well
     bool sheer;          // drawn by hand: what lies below is seen through its grain
     uint8_t alpha;       // opacity of the layer, 255 opaque
     FlStacking stacking; // a layer that is mixed hides nothing, whatever this says
@@ -44,6 +58,28 @@ typedef struct FlStackParams {
  */
 bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlStackParams *params,
                        GError **error);
+
+/** What the layers above take of each pixel of a frame. */
+typedef struct FlLayersAbove {
+    int width, height;
+    float gap_px;    // of FlStackParams
+    uint8_t *area;   // the shapes that knock out, 0..255
+    uint16_t *paint; // the sum of their paint's alpha, 0..65535
+    uint8_t *spread; // a grown shape, if shapes are grown; else NULL
+    uint8_t *seen;   // the visible coverage of the layer at hand
+} FlLayersAbove;
+
+bool fl_layers_above_init(FlLayersAbove *above, int width, int height, float gap_px,
+                          GError **error);
+void fl_layers_above_clear(FlLayersAbove *above);
+
+/** fl_layers_resolve() of the next layer, the top one first; no layer may be a glaze or mixed. */
+void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above);
+
+/** Keeps only those pixels of a layer that has been resolved whose alpha is not 0: most of a stack
+ * are hidden. */
+bool fl_layer_pack(FlLayer *layer, GError **error);
+void fl_layer_runs_clear(FlLayerRuns *runs);
 
 /** What lies below the layers: a picture of the frame's size, or one colour; alpha 0: nothing. */
 typedef struct FlBackdrop {
@@ -78,5 +114,7 @@ void fl_layers_compose16(const FlLayer *layers, int n, const FlBackdrop *backdro
  * It comes after composing: the frame equals the recomposed layers but for colours under alpha 0.
  */
 bool fl_layers_bleed(uint8_t *rgba, int width, int height, int radius_px, GError **error);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlLayersAbove, fl_layers_above_clear)
 
 #endif

@@ -78,21 +78,15 @@ static void measure(uint16_t *plane, int width, int height)
     }
 }
 
-/** The shapes above the layer at hand. */
-typedef struct Above {
-    uint8_t *coverage; // of the frame, the greatest
-    uint8_t *hides;    // 0..255, the greatest of those that are there
-} Above;
-
 /** Whether anything lies over the layer's shape. */
-static bool is_below(const FlLayer *layer, const Above *above, int width)
+static bool is_below(const FlLayer *layer, const FlUnderlay *above)
 {
     const FlRect own = layer->area.box;
     uint8_t any = 0;
     for (int y = 0; y < own.height && !any; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)own.width;
-        const uint8_t *over = above->coverage + (size_t)(own.y + y) * (size_t)width + own.x;
+        const uint8_t *over = above->coverage + (size_t)(own.y + y) * (size_t)above->width + own.x;
         for (int x = span.first; x < span.last; x++)
             any |= coverage[x] && over[x];
     }
@@ -100,13 +94,13 @@ static bool is_below(const FlLayer *layer, const Above *above, int width)
 }
 
 /** Fills over and seen. */
-static void mark_pixels(Part *part, const FlLayer *layer, const Above *above, int width)
+static void mark_pixels(Part *part, const FlLayer *layer, const FlUnderlay *above)
 {
     const FlRect own = layer->area.box, box = part->box;
     memset(part->seen, 0, fl_rect_pixels(box));
     for (int y = 0; y < box.height; y++) {
         uint8_t *over = part->over + (size_t)y * (size_t)box.width;
-        const size_t i = (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
+        const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)box.x;
         for (int x = 0; x < box.width; x++)
             over[x] = above->coverage[i + (size_t)x] >= SHOWN ? above->hides[i + (size_t)x] : 0;
     }
@@ -193,14 +187,14 @@ static void fade(const Part *part, FlLayer *layer)
     }
 }
 
-static bool fade_layer(FlLayer *layer, const Above *above, int width, int height, GError **error)
+static bool fade_layer(FlLayer *layer, const FlUnderlay *above, GError **error)
 {
     g_auto(Part) part = {0};
-    if (!is_below(layer, above, width))
+    if (!is_below(layer, above))
         return true;
-    if (!part_init(&part, layer, width, height, error))
+    if (!part_init(&part, layer, above->width, above->height, error))
         return false;
-    mark_pixels(&part, layer, above, width);
+    mark_pixels(&part, layer, above);
     find_ways(&part);
     fade(&part, layer);
     return true;
@@ -215,14 +209,14 @@ static int hiding(int alpha)
     return MAX(8 * alpha - 7 * 255, 0);
 }
 
-static void add_above(const FlLayer *layer, int width, const Above *above)
+static void add_above(const FlLayer *layer, const FlUnderlay *above)
 {
     const FlRect box = layer->area.box;
     const int hides = hiding(layer->alpha);
     for (int y = 0; y < box.height && hides > 0; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)box.width;
-        const size_t i = (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
+        const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)box.x;
         for (int x = span.first; x < span.last; x++) {
             above->coverage[i + (size_t)x] = MAX(above->coverage[i + (size_t)x], coverage[x]);
             if (coverage[x] >= SHOWN)
@@ -231,23 +225,36 @@ static void add_above(const FlLayer *layer, int width, const Above *above)
     }
 }
 
-bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error)
+bool fl_underlay_init(FlUnderlay *above, int width, int height, GError **error)
 {
     const size_t pixels = (size_t)width * (size_t)height;
-    g_autofree uint8_t *coverage = fl_alloc(pixels, 1, "a matte", error);
-    g_autofree uint8_t *hides = coverage ? fl_alloc(pixels, 1, "a matte", error) : NULL;
-    if (!hides)
+    *above = (FlUnderlay){.width = width, .height = height};
+    return (above->coverage = fl_alloc(pixels, 1, "a matte", error)) &&
+           (above->hides = fl_alloc(pixels, 1, "a matte", error));
+}
+
+void fl_underlay_clear(FlUnderlay *above)
+{
+    free(above->coverage);
+    free(above->hides);
+}
+
+bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layer, GError **error)
+{
+    const bool knocks = layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
+    if (layer->knockout && knocks && fl_rect_pixels(layer->area.box) > 0 &&
+        !fade_layer(layer, above, error))
         return false;
-    const Above above = {coverage, hides};
-    for (int k = n - 1; k >= 0; k--) {
-        FlLayer *layer = &layers[k];
-        const bool knocks =
-            layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
-        if (layer->knockout && knocks && k < n - 1 && fl_rect_pixels(layer->area.box) > 0 &&
-            !fade_layer(layer, &above, width, height, error))
-            return false;
-        if (knocks && !layer->sheer)
-            add_above(layer, width, &above);
-    }
+    if (knocks && !layer->sheer)
+        add_above(layer, above);
     return true;
+}
+
+bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error)
+{
+    g_auto(FlUnderlay) above = {0};
+    bool done = fl_underlay_init(&above, width, height, error);
+    for (int k = n - 1; k >= 0 && done; k--)
+        done = fl_underlay_fade_next(&above, &layers[k], error);
+    return done;
 }

@@ -14,4 +14,19 @@
  */
 bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error);
 
+/** The shapes above a layer, to do the same layer by layer. */
+typedef struct FlUnderlay {
+    int width, height; // of the frame
+    uint8_t *coverage; // the greatest
+    uint8_t *hides;    // 0..255, the greatest of those that are there
+} FlUnderlay;
+
+bool fl_underlay_init(FlUnderlay *above, int width, int height, GError **error);
+void fl_underlay_clear(FlUnderlay *above);
+
+/** The next layer; the top one comes first. */
+bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layer, GError **error);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlUnderlay, fl_underlay_clear)
+
 #endif
