@@ -172,15 +172,29 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     return true;
 }
 
+bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGuides *guides,
+                                GError **error)
+{
+    const FlRect whole = {0, 0, guides->width, guides->height};
+    const FlRect box = sequence->frames[frame].box;
+    g_autofree uint8_t *shape = fl_alloc(2 * fl_rect_pixels(box), 1, "coverages", error);
+    memset(guides->mask, 0, fl_rect_pixels(whole));
+    if (!shape ||
+        (fl_rect_pixels(box) > 0 && !fl_guide_sequence_shape(sequence, frame, shape, error)))
+        return false;
+    fl_rect_copy(shape, box, guides->mask, whole, 1);
+    g_clear_pointer(&shape, g_free);
+    if (!fl_distance(guides->mask, whole.width, whole.height, guides->distance, error))
+        return false;
+    memcpy(guides->depth, guides->distance, fl_rect_pixels(whole) * sizeof *guides->depth);
+    return true;
+}
+
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error)
 {
-    const int w = guides->width, h = guides->height;
-    if (!fl_guide_sequence_planes(sequence, frame, guides, error) ||
-        !fl_distance(guides->mask, w, h, guides->distance, error))
-        return false;
-    memcpy(guides->depth, guides->distance, (size_t)w * h * sizeof *guides->depth);
-    return true;
+    return fl_guide_sequence_distance(sequence, frame, guides, error) &&
+           fl_guide_sequence_planes(sequence, frame, guides, error);
 }
 
 bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *flow, GError **error)

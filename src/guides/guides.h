@@ -77,7 +77,11 @@ void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error);
 
-/** The same but for the distance and the depth, which stay as they are. */
+/** The mask, the distance and the depth alone. */
+bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGuides *guides,
+                                GError **error);
+
+/** All but the distance and the depth, which stay as they are. */
 bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                               GError **error);
 

@@ -283,15 +283,17 @@ static bool rests(FlPainter *painter, int last)
             depth_picture(painter, last) == depth_picture(painter, now));
 }
 
-/* The guides of the painter's picture, from which the engine paints it. */
+/* The guides of the painter's picture, from which the engine paints it. The depth takes as much
+ * scratch as the other planes, which come after it. */
 static bool make_guides(FlPainter *painter, FlGuides *guides, GError **error)
 {
     const FlRect rect = painter->result.rect;
     if (!fl_guides_init(guides, rect.width, rect.height, error))
         return false;
     guides->disposable = !painter->wants_guides;
-    return fl_guide_sequence_get(painter->guides, painter->picture, guides, error) &&
-           make_depth(painter, guides, error);
+    return fl_guide_sequence_distance(painter->guides, painter->picture, guides, error) &&
+           make_depth(painter, guides, error) &&
+           fl_guide_sequence_planes(painter->guides, painter->picture, guides, error);
 }
 
 /* Where the picture before was taken, the engine still is at an older one. */

@@ -141,7 +141,7 @@ static bool do_one(void *data, int p, int thread, GError **error)
     return step->work(step->data, p, step->step, &guides, error);
 }
 
-/* While it is painted, a region takes 90 bytes a pixel of its rectangle: side by side, regions of
+/* While it is painted, a region takes 80 bytes a pixel of its rectangle: side by side, regions of
  * more pixels would take as many hundreds of megabytes as there are threads. */
 #define BESIDE_PX (2.0 * (1 << 20))
 
