@@ -184,6 +184,49 @@ static void matches_that_have_settled_take_few_tries_and_lose_little(void)
     g_assert_cmpfloat(few, <, 1.15 * all);
 }
 
+/* Whether the map is what a count of the field from nothing gives. */
+static bool counted_anew(const Case *c)
+{
+    g_auto(FlOccurrence) map = {0};
+    g_assert_true(fl_occurrence_init(&map, c->search.level, c->search.target, c->params, &c->scale,
+                                     NULL));
+    fl_occurrence_count(&map, &c->nnf, c->search.target);
+    const size_t bytes = (size_t)map.columns * map.rows * map.slices * sizeof(int32_t);
+    bool same = true;
+    for (int s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++)
+        same &= memcmp(map.filtered[s], c->map.filtered[s], bytes) == 0;
+    return same;
+}
+
+static void few_moves_and_many_leave_the_use_of_the_field(void)
+{
+    Case c;
+    set_up(&c, true);
+    c.params->w_uni = 1;
+    fl_occurrence_clear(&c.map);
+    g_assert_true(fl_occurrence_init(&c.map, c.search.level, c.search.target, c.params, &c.scale,
+                                     NULL));
+    fl_occurrence_count(&c.map, &c.nnf, c.search.target);
+    searched(&c, 0, 1);
+    g_assert_true(counted_anew(&c));
+    const uint8_t *segment = c.search.target->segment;
+    FlMatch *last = NULL; // in its own cell, so that the pair moves
+    for (int p = 0, moved = 0; p < TARGET_SIDE * TARGET_SIDE && moved < 5; p++) {
+        if (segment[p] != FL_SEGMENT_BORDER)
+            continue;
+        if (last) {
+            fl_occurrence_move(&c.map, FL_SEGMENT_BORDER, c.nnf.match[p], *last);
+            c.nnf.match[p] = *last, moved++;
+        }
+        last = &c.nnf.match[p];
+        p += 7;
+    }
+    g_assert_cmpint(c.map.n_moves[FL_SEGMENT_BORDER], <=, c.map.most_moves);
+    fl_occurrence_refresh(&c.map);
+    g_assert_true(counted_anew(&c));
+    tear_down(&c);
+}
+
 static void the_terms_add_up_to_the_energy(void)
 {
     Case c;
@@ -210,6 +253,8 @@ int main(int argc, char **argv)
                     a_search_with_rotation_is_as_good_as_the_best_field_of_two_rotations);
     g_test_add_func("/search/matches-that-have-settled-take-few-tries-and-lose-little",
                     matches_that_have_settled_take_few_tries_and_lose_little);
+    g_test_add_func("/search/few-moves-and-many-leave-the-use-of-the-field",
+                    few_moves_and_many_leave_the_use_of_the_field);
     g_test_add_func("/search/the-terms-add-up-to-the-energy", the_terms_add_up_to_the_energy);
     return g_test_run();
 }

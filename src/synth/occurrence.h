@@ -17,13 +17,21 @@
 
 #define FL_OCCURRENCE_MOST 536870912.0f // 2^29: what the term costs at most
 
+/** A match that went from one cell to another; their indices. */
+typedef struct FlCellMove {
+    uint32_t from, to;
+} FlCellMove;
+
 typedef struct FlOccurrence {
     int columns, rows, slices;
     int first;                      // the exemplar's first frame that is searched
     uint16_t slice_factor;          // the t-th from there is in slice (2t + 1) * slice_factor >> 16
     int32_t *count[FL_SEGMENTS];    // matches per cell
     int32_t *filtered[FL_SEGMENTS]; // the same under the tent, by _refresh
-    float price[FL_SEGMENTS];       // cost of one filtered unit
+    FlCellMove *moves[FL_SEGMENTS]; // since then: room for most_moves
+    int n_moves[FL_SEGMENTS];       // more than most_moves: some are not listed
+    int most_moves;
+    float price[FL_SEGMENTS]; // cost of one filtered unit
 } FlOccurrence;
 
 /** An empty map for a level and a target; w_uni 0 makes every term 0. */
@@ -38,7 +46,7 @@ void fl_occurrence_count(FlOccurrence *map, const FlNnf *nnf, const FlTargetLeve
 /** Moves one match. Threads may do so at the same time: additions have no order. */
 void fl_occurrence_move(FlOccurrence *map, FlSegment segment, FlMatch from, FlMatch to);
 
-/** Filters the counts again. One thread. */
+/** Filters the counts again, or adds the tents of the moves if these are few. One thread. */
 void fl_occurrence_refresh(FlOccurrence *map);
 
 static inline uint16_t fl_occurrence_slice(const FlOccurrence *map, int frame)
