@@ -235,7 +235,7 @@ void fl_params_detail(FlParams *params, FlDetail detail)
         "half-size",     "opt-iterations", "next-iterations", "patchmatch-iterations",
         "finest-rounds", "finest-sweeps",  "settled"};
     static const char *const values[][G_N_ELEMENTS(keys)] = {
-        [FL_DETAIL_DRAFT] = {"on", "1", "1", "4,1", "0", "1", "1.5"},
+        [FL_DETAIL_DRAFT] = {"on", "2,1", "1", "2,1", "0", "1", "0"},
         [FL_DETAIL_FINE] = {"off", "6,3,2", "6,3,2", "6,4", "2", "4", "0"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
