@@ -20,6 +20,12 @@ paint_disc plain -j 1 && ! same plain masks
 result $? 'the motion of the outlines carries the paint'
 paint_disc carried -j 1 --flow $slide && same plain carried
 result $? 'as the same motion in files does'
+mv slide_1.flo first.flo
+paint_disc without -j 1 --flow $slide && same without carried
+result $? 'and the first frame needs none'
+! paint_disc lacking --loop --flow $slide && grep -q 'slide_1.flo: ' err
+result $? 'but in a loop'
+mv first.flo slide_1.flo
 for threads in 2 5; do
     paint_disc threads -y -j $threads --flow $slide && same threads carried
     result $? "$threads threads carry it as one does"

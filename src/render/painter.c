@@ -41,6 +41,13 @@ static bool load_flow(const FlPainter *painter, const char *file, float unknown,
     return true;
 }
 
+/* Of nothing into the first frame: who writes a flow between frames has no file for it. */
+static bool may_lack_flow(const FlPainter *painter, int frame, const char *file)
+{
+    return frame_of(painter, frame) == 0 && !painter->plan->loops &&
+           !g_file_test(file, G_FILE_TEST_EXISTS);
+}
+
 /* The flow of a picture from its file, cropped to the painter's rectangle. */
 static bool flow_in_file(const FlPainter *painter, int frame, float unknown, float *flow,
                          GError **error)
@@ -51,7 +58,12 @@ static bool flow_in_file(const FlPainter *painter, int frame, float unknown, flo
     g_autofree char *file =
         whole ? fl_output_name(painter->plan->flow_files, number, painter->plan->name, error)
               : NULL;
-    if (!file || !load_flow(painter, file, unknown, whole, error))
+    if (!file)
+        return false;
+    if (may_lack_flow(painter, frame, file))
+        for (size_t k = 0; k < 2 * pixels; k++)
+            whole[k] = unknown;
+    else if (!load_flow(painter, file, unknown, whole, error))
         return false;
     fl_rect_copy(whole, (FlRect){0, 0, painter->result.width, painter->result.height}, flow,
                  painter->result.rect, 2 * sizeof(float));
