@@ -21,6 +21,8 @@
 #include "render/summary.h"
 #include <fluidy/fluidy.h>
 
+#define TRIM_PX 3000000 // a smaller page leaves little, and takes a tenth of a draft to fault it in
+
 /* A render in progress. */
 typedef struct Pipeline {
     FlPlan *plan;
@@ -220,6 +222,12 @@ static FlComposeInput compose_input(const Pipeline *pipeline, int frame)
                             .gap_px = (float)MAX(plan->options.gap, 0)};
 }
 
+static void trim(const FlPlan *plan)
+{
+    if ((size_t)plan->width * (size_t)plan->height > TRIM_PX)
+        fl_memory_trim();
+}
+
 /* Paints and composes a frame, or where a missing one is held, the frame before again. Its shapes
  * are drawn beside the painting, those of frame `next` (-1: none) beside the composing. Where
  * nobody looks at the picture, nothing is drawn and *composite stays empty. */
@@ -240,7 +248,7 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
     const bool painted =
         held || fl_painters_each(&pipeline->painters, shown, paint_one, pipeline, error);
     *paint_s = seconds_since(start);
-    fl_memory_trim(); // what painting has left over is of no use to composing, nor the reverse
+    trim(plan); // what painting has left over is of no use to composing, nor the reverse
     if (!fl_task_wait(&pipeline->drawing, painted ? error : NULL) || !painted)
         return false;
     if (!composed)
@@ -254,7 +262,7 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
     const FlComposeInput input = compose_input(pipeline, shown);
     const bool made =
         fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error);
-    fl_memory_trim();
+    trim(plan);
     return made;
 }
 
