@@ -118,18 +118,18 @@ static void join(const FlVotes *votes, int k, FlOpinion *opinion)
     opinion->n++;
 }
 
-int fl_find_opinions_c(const FlVotes *votes, FlOpinion *opinions)
+static int find_opinions_c(const FlVotes *votes, FlOpinion *opinions)
 {
     int n = 0;
     uint32_t left = 0;
     for (int k = 0; k < FL_PATCH_PIXELS; k++)
         left |= (uint32_t)(votes->frame[k] >= 0) << k;
     while (left) {
-        const int leader = __builtin_ctz(left);
+        const int leader = fl_vote_leader(left);
         FlOpinion *o = &opinions[n++];
         *o = (FlOpinion){
             .x = votes->x[leader], .y = votes->y[leader], .frame = votes->frame[leader]};
-        for (int k = leader; k < FL_PATCH_PIXELS; k++)
+        for (int k = 0; k < FL_PATCH_PIXELS; k++)
             if (left >> k & 1 && votes->frame[k] == o->frame &&
                 is_near(votes->x[k], votes->x[leader]) && is_near(votes->y[k], votes->y[leader])) {
                 join(votes, k, o);
@@ -137,6 +137,71 @@ int fl_find_opinions_c(const FlVotes *votes, FlOpinion *opinions)
             }
     }
     return n;
+}
+
+#define COLUMN_X(dx)                                                                               \
+    {dx, 2}, {dx, 1}, {dx, 0}, {dx, -1},                                                           \
+    {                                                                                              \
+        dx, -2                                                                                     \
+    }
+#define COLUMN_Y(dx)                                                                               \
+    {2, -(dx)}, {1, -(dx)}, {0, -(dx)}, {-1, -(dx)},                                               \
+    {                                                                                              \
+        -2, -(dx)                                                                                  \
+    }
+_Alignas(64) const int16_t fl_vote_steps[2][FL_VOTES][2] = {
+    {COLUMN_X(2), COLUMN_X(1), COLUMN_X(0), COLUMN_X(-1), COLUMN_X(-2)},
+    {COLUMN_Y(2), COLUMN_Y(1), COLUMN_Y(0), COLUMN_Y(-1), COLUMN_Y(-2)}};
+
+static int offset_along(const int16_t turn[2], const int16_t step[2])
+{
+    return (turn[0] * step[0] + turn[1] * step[1] + (1 << 9)) >> 10;
+}
+
+static void find_places(const FlCovering *covering, FlVotes *votes)
+{
+    for (int k = 0; k < FL_PATCH_PIXELS; k++) {
+        const int16_t *turn = covering->turn[k];
+        votes->x[k] = (uint16_t)(covering->x[k] + offset_along(turn, fl_vote_steps[0][k]));
+        votes->y[k] = (uint16_t)(covering->y[k] + offset_along(turn, fl_vote_steps[1][k]));
+        votes->frame[k] = covering->frame[k];
+    }
+}
+
+/* The mean of first + sum / n, half away from first. */
+static int mean_of(int first, int sum, int n, int most)
+{
+    const int mean = first - FL_VOTE_BIAS + (sum + (sum < 0 ? -n : n) / 2) / n;
+    return CLAMP(mean, 0, most);
+}
+
+bool fl_vote_of(const FlVotes *votes, FlFindOpinions find_opinions, FlSplineSample sample,
+                const FlVoted *voted, float colour[4])
+{
+    FlOpinion opinions[FL_PATCH_PIXELS];
+    float sum[4] = {0}, total = 0;
+    const int n = find_opinions(votes, opinions);
+    for (const FlOpinion *o = opinions; o < opinions + n; o++) {
+        float value[4];
+        const int x = mean_of(o->x, o->sum_x, o->n, voted->most[0]);
+        const int y = mean_of(o->y, o->sum_y, o->n, voted->most[1]);
+        sample(voted->colour + (size_t)o->frame * voted->frame_pixels +
+                   (size_t)(y >> 4) * voted->pitch + (x >> 4),
+               voted->pitch, fl_spline_phases[x & 15].x, fl_spline_phases[y & 15].y, value);
+        for (int c = 0; c < 4; c++)
+            sum[c] += voted->weight[o->n] * value[c];
+        total += voted->weight[o->n];
+    }
+    for (int c = 0; c < 4; c++)
+        colour[c] = CLAMP(sum[c] / total, 0.0f, 1.0f);
+    return n > 0;
+}
+
+bool fl_vote_c(const FlCovering *covering, const FlVoted *voted, float colour[4])
+{
+    FlVotes votes;
+    find_places(covering, &votes);
+    return fl_vote_of(&votes, find_opinions_c, fl_spline_sample_c, voted, colour);
 }
 
 void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
@@ -154,7 +219,7 @@ void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const u
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
     *kernels = (FlKernels){fl_patch_distance_c, patch_pair_c,        fl_draw_tries_c,
-                           fl_sift_c,           fl_spline_sample_c,  fl_find_opinions_c,
+                           fl_sift_c,           fl_spline_sample_c,  fl_vote_c,
                            fl_upscale_row_c,    fl_fluid_distance_c, "c"};
 #if HAVE_NEON
     if (flags & FL_CPU_NEON) {
@@ -164,10 +229,9 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
 #endif
 #if HAVE_AVX2
     if (flags & FL_CPU_AVX2)
-        *kernels =
-            (FlKernels){fl_patch_distance_avx2, fl_patch_pair_avx2,     fl_draw_tries_avx2,
-                        fl_sift_avx2,           fl_spline_sample_avx2,  fl_find_opinions_avx2,
-                        fl_upscale_row_avx2,    fl_fluid_distance_avx2, "avx2"};
+        *kernels = (FlKernels){fl_patch_distance_avx2, fl_patch_pair_avx2,     fl_draw_tries_avx2,
+                               fl_sift_avx2,           fl_spline_sample_avx2,  fl_vote_avx2,
+                               fl_upscale_row_avx2,    fl_fluid_distance_avx2, "avx2"};
 #endif
 #if HAVE_AVX512
     if (flags & FL_CPU_AVX512) {
@@ -175,7 +239,7 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
         kernels->patch_pair = fl_patch_pair_avx512;
         kernels->draw_tries = fl_draw_tries_avx512;
         kernels->sift = fl_sift_avx512;
-        kernels->opinions = fl_find_opinions_avx512;
+        kernels->vote = fl_vote_avx512;
         kernels->upscale_row = fl_upscale_row_avx512;
         kernels->name = "avx512";
     }

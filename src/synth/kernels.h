@@ -114,13 +114,42 @@ typedef void (*FlSplineSample)(const FlSplinePixel *first, size_t pitch, const i
 
 #define FL_SAME_PLACE 12 // 1/16 px: votes nearer than that mean the same place
 #define FL_VOTE_BIAS 64  // added to places, so that none is negative
+#define FL_VOTES 32      // numbers that are read of 25
 
-/** The places that the patches over a pixel point to, in 1/16 px; frame -1: no patch. */
+/** The FL_PATCH_PIXELS matches around a pixel, column by column; FL_VOTES can be read of each. */
+typedef struct FlCovering {
+    const uint16_t *x, *y;    // of the match, in 1/16 px, with FL_VOTE_BIAS
+    const int16_t *frame;     // -1: no match
+    const int16_t (*turn)[2]; // fl_turns of its rotation
+} FlCovering;
+
+/** What votes are sampled from. */
+typedef struct FlVoted {
+    const FlSplinePixel *colour;       // pixel (-1, -1) of frame 0
+    size_t pitch, frame_pixels;        // pixels from one row, frame to the next
+    int most[2];                       // the last column and row, 1/16 px
+    float weight[FL_PATCH_PIXELS + 1]; // of an opinion of so many votes
+} FlVoted;
+
+/** What the cosine and sine of a match's turn are multiplied by, and added, for the x and y of its
+ * vote: where the middle is from there. [axis], in the order of FlCovering, zeros at the end. */
+extern const int16_t fl_vote_steps[2][FL_VOTES][2];
+
+/** The places that the patches over a pixel point to, in 1/16 px, in that order; frame -1: none. */
 typedef struct FlVotes {
-    _Alignas(64) uint16_t x[32];
-    _Alignas(64) uint16_t y[32];
-    _Alignas(64) int16_t frame[32]; // the first FL_PATCH_PIXELS of each count
+    _Alignas(64) uint16_t x[FL_VOTES];
+    _Alignas(64) uint16_t y[FL_VOTES];
+    _Alignas(64) int16_t frame[FL_VOTES]; // the first FL_PATCH_PIXELS of each count
 } FlVotes;
+
+/** The first, row by row, of the votes whose bits are set. */
+static inline int fl_vote_leader(uint32_t left)
+{
+    uint32_t row = 0x108421; // the first of each column
+    while (!(left & row))
+        row <<= 1;
+    return __builtin_ctz(left & row);
+}
 
 /** Votes that agree on a place: the first, and the sum of the others' differences from it. */
 typedef struct FlOpinion {
@@ -130,10 +159,18 @@ typedef struct FlOpinion {
 } FlOpinion;
 
 /**
- * Clusters votes into opinions: the first remaining vote leads, all remaining ones in its frame and
- * near it join. opinions: FL_PATCH_PIXELS. Returns their number.
+ * Clusters votes into opinions: the first remaining vote, row by row, leads; all remaining ones in
+ * its frame and near it join. opinions: FL_PATCH_PIXELS. Returns their number.
  */
 typedef int (*FlFindOpinions)(const FlVotes *votes, FlOpinion *opinions);
+
+/**
+ * The colour of a pixel that patches cover: the mean of their opinions, weighted, each of which is
+ * sampled at the mean of its places, rounded away from the first. Every version rounds alike.
+ *
+ * Returns: false without any patch; colour is then undefined.
+ */
+typedef bool (*FlVote)(const FlCovering *covering, const FlVoted *voted, float colour[4]);
 
 /** NNF(q): the centre of the source patch in 1/16 px of its level, its frame, its rotation. */
 typedef struct FlMatch {
@@ -160,7 +197,7 @@ typedef struct FlKernels {
     FlDrawTries draw_tries;
     FlSift sift;
     FlSplineSample spline_sample;
-    FlFindOpinions opinions;
+    FlVote vote;
     FlUpscaleRow upscale_row;
     FlFluidDistance fluid_distance;
     const char *name; // "c", "avx2", …
@@ -202,9 +239,12 @@ void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t 
 void fl_spline_sample_avx2(const FlSplinePixel *first, size_t pitch, const int16_t *x,
                            const float *y, float value[4]);
 
-int fl_find_opinions_c(const FlVotes *votes, FlOpinion *opinions);
-int fl_find_opinions_avx2(const FlVotes *votes, FlOpinion *opinions);
-int fl_find_opinions_avx512(const FlVotes *votes, FlOpinion *opinions);
+/** The colour that votes give, by a version's own clustering and sampling. */
+bool fl_vote_of(const FlVotes *votes, FlFindOpinions find_opinions, FlSplineSample sample,
+                const FlVoted *voted, float colour[4]);
+bool fl_vote_c(const FlCovering *covering, const FlVoted *voted, float colour[4]);
+bool fl_vote_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4]);
+bool fl_vote_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4]);
 
 void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
                       FlMatch *fine, int n);

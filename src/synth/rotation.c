@@ -14,20 +14,6 @@ const int8_t fl_patch_offsets[FL_PATCH_PIXELS][2] = {
 static int16_t turns[FL_ANGLES][2];
 const int16_t (*fl_turns)[2] = turns;
 
-static FlOffset vote_offsets[FL_ANGLES][FL_PATCH_PIXELS];
-const FlOffset (*fl_vote_offsets)[FL_PATCH_PIXELS] = vote_offsets;
-
-static void fill_vote_offsets(void)
-{
-    for (int a = 0; a < FL_ANGLES; a++)
-        for (int k = 0; k < FL_PATCH_PIXELS; k++) {
-            int x, y;
-            fl_unrotate((uint8_t)a, FL_PATCH_RADIUS - k % FL_PATCH, FL_PATCH_RADIUS - k / FL_PATCH,
-                        &x, &y);
-            vote_offsets[a][k] = (FlOffset){(int16_t)x, (int16_t)y};
-        }
-}
-
 static FlOffset child_moves[2][FL_ANGLES][2];
 const FlOffset (*fl_child_moves)[FL_ANGLES][2] = child_moves;
 
@@ -52,7 +38,6 @@ void fl_rotation_init(void)
         turns[a][0] = (int16_t)lrint(16384 * cos(a * (2 * G_PI / FL_ANGLES)));
         turns[a][1] = (int16_t)lrint(16384 * sin(a * (2 * G_PI / FL_ANGLES)));
     }
-    fill_vote_offsets();
     fill_child_moves();
     g_once_init_leave(&once, 1);
 }

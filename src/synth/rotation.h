@@ -26,10 +26,6 @@ typedef struct FlOffset {
     int16_t x, y;
 } FlOffset;
 
-/** R(-theta) of minus the offset of place k of a patch (row by row), in 1/16 source pixels: where
- * the patch that is centred at place k takes the pixel in the middle from. */
-extern const FlOffset (*fl_vote_offsets)[FL_PATCH_PIXELS];
-
 /**
  * From twice a match's place to that of a pixel of the next finer level, in 1/16 px of it, -8 … 24:
  * fl_child_moves[row & 1][theta][column & 1].
@@ -39,12 +35,19 @@ extern const FlOffset (*fl_child_moves)[FL_ANGLES][2];
 /** Fills the tables; harmless to call again. To be called before the other modules run. */
 void fl_rotation_init(void);
 
-/** R(-theta) applied to a target offset in pixels; the result is in 1/16 source pixels. */
-static inline void fl_unrotate(uint8_t theta, int dx, int dy, int *sx_16, int *sy_16)
+/** R(-theta) applied to a target offset in pixels, theta by its row of fl_turns; the result is in
+ * 1/16 source pixels. */
+static inline void fl_turn_back(const int16_t turn[2], int dx, int dy, int *sx_16, int *sy_16)
 {
-    const int c = fl_turns[theta][0], s = fl_turns[theta][1];
+    const int c = turn[0], s = turn[1];
     *sx_16 = (c * dx + s * dy + (1 << 9)) >> 10;
     *sy_16 = (-s * dx + c * dy + (1 << 9)) >> 10;
+}
+
+/** The same for an angle. */
+static inline void fl_unrotate(uint8_t theta, int dx, int dy, int *sx_16, int *sy_16)
+{
+    fl_turn_back(fl_turns[theta], dx, dy, sx_16, sy_16);
 }
 
 /** How far an angle is from 0, in steps: 0 … 128. */

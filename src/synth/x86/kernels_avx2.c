@@ -278,11 +278,11 @@ static inline Half load_half(const FlVotes *votes, int at)
     return h;
 }
 
-/* A bit for each byte of both halves' lanes. */
-static inline uint64_t bits_of(__m256i low, __m256i high)
+/* A bit for each lane of both halves. */
+static inline uint32_t bits_of(__m256i low, __m256i high)
 {
-    return (uint32_t)_mm256_movemask_epi8(low) | (uint64_t)(uint32_t)_mm256_movemask_epi8(high)
-                                                     << 32;
+    const __m256i bytes = _mm256_packs_epi16(low, high);
+    return (uint32_t)_mm256_movemask_epi8(_mm256_permute4x64_epi64(bytes, _MM_SHUFFLE(3, 1, 2, 0)));
 }
 
 /* Takes the lanes near the leader out of `left`; adds their differences to (x, y) pairs. */
@@ -300,16 +300,16 @@ static inline __m256i take(Half *h, __m256i x, __m256i y, __m256i frame, __m256i
     return same;
 }
 
-int fl_find_opinions_avx2(const FlVotes *votes, FlOpinion *opinions)
+static int find_opinions(const FlVotes *votes, FlOpinion *opinions)
 {
     Half low = load_half(votes, 0), high = load_half(votes, 16);
     const __m256i first_nine = // of 25 votes
         _mm256_setr_epi16(-1, -1, -1, -1, -1, -1, -1, -1, -1, 0, 0, 0, 0, 0, 0, 0);
     high.left = _mm256_and_si256(high.left, first_nine);
     int n = 0;
-    uint64_t left;
+    uint32_t left;
     while ((left = bits_of(low.left, high.left)) != 0) {
-        const int leader = __builtin_ctzll(left) / 2;
+        const int leader = fl_vote_leader(left);
         const __m256i x = _mm256_set1_epi16((int16_t)votes->x[leader]);
         const __m256i y = _mm256_set1_epi16((int16_t)votes->y[leader]);
         const __m256i frame = _mm256_set1_epi16(votes->frame[leader]);
@@ -317,11 +317,43 @@ int fl_find_opinions_avx2(const FlVotes *votes, FlOpinion *opinions)
         const __m256i a = take(&low, x, y, frame, &sums), b = take(&high, x, y, frame, &sums);
         __m128i s = _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256(sums, 1));
         s = _mm_hadd_epi32(s, s);
-        opinions[n++] = (FlOpinion){
-            votes->x[leader],     votes->y[leader],        votes->frame[leader],
-            _mm_cvtsi128_si32(s), _mm_extract_epi32(s, 1), __builtin_popcountll(bits_of(a, b)) / 2};
+        opinions[n++] = (FlOpinion){votes->x[leader],        votes->y[leader],
+                                    votes->frame[leader],    _mm_cvtsi128_si32(s),
+                                    _mm_extract_epi32(s, 1), __builtin_popcount(bits_of(a, b))};
     }
     return n;
+}
+
+/* What sixteen turns add to the places of their matches, along an axis. */
+static inline __m256i offsets_along(const int16_t (*turn)[2], const int16_t (*step)[2])
+{
+    const __m256i half = _mm256_set1_epi32(1 << 9);
+    const __m256i low = _mm256_madd_epi16(_mm256_loadu_si256((const __m256i *)turn),
+                                          _mm256_load_si256((const __m256i *)step));
+    const __m256i high = _mm256_madd_epi16(_mm256_loadu_si256((const __m256i *)(turn + 8)),
+                                           _mm256_load_si256((const __m256i *)(step + 8)));
+    const __m256i both = _mm256_packs_epi32(_mm256_srai_epi32(_mm256_add_epi32(low, half), 10),
+                                            _mm256_srai_epi32(_mm256_add_epi32(high, half), 10));
+    return _mm256_permute4x64_epi64(both, _MM_SHUFFLE(3, 1, 2, 0));
+}
+
+static inline void add_offsets(const uint16_t *from, __m256i offsets, uint16_t *to)
+{
+    const __m256i places = _mm256_loadu_si256((const __m256i *)from);
+    _mm256_store_si256((__m256i *)to, _mm256_add_epi16(places, offsets));
+}
+
+bool fl_vote_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4])
+{
+    FlVotes votes;
+    for (int k = 0; k < FL_VOTES; k += 16) {
+        const int16_t(*turn)[2] = covering->turn + k;
+        add_offsets(covering->x + k, offsets_along(turn, fl_vote_steps[0] + k), votes.x + k);
+        add_offsets(covering->y + k, offsets_along(turn, fl_vote_steps[1] + k), votes.y + k);
+        _mm256_store_si256((__m256i *)(votes.frame + k),
+                           _mm256_loadu_si256((const __m256i *)(covering->frame + k)));
+    }
+    return fl_vote_of(&votes, find_opinions, fl_spline_sample_avx2, voted, colour);
 }
 
 /* In 16 bits: a place that overflows is above `most` anyway, and with 8 more no move is negative.

@@ -221,11 +221,34 @@ uint64_t fl_sift_avx512(const FlTries *tries, int n, const FlSieve *sieve, uint3
     return n < 64 ? passed & ((1ull << n) - 1) : passed;
 }
 
-/* The sum of the lanes of a mask. */
-static inline int masked_sum(__m512i v, __mmask32 mask)
+/* From columns to rows: 16-bit numbers, and the lower halves of 32-bit ones. */
+static inline __m512i rows_of(__m512i numbers)
 {
-    const __m512i pairs = _mm512_madd_epi16(_mm512_maskz_mov_epi16(mask, v), _mm512_set1_epi16(1));
-    return _mm512_reduce_add_epi32(pairs);
+    return _mm512_permutexvar_epi16(_mm512_set_epi16(31, 30, 29, 28, 27, 26, 25, 24, 19, 14, 9, 4,
+                                                     23, 18, 13, 8, 3, 22, 17, 12, 7, 2, 21, 16, 11,
+                                                     6, 1, 20, 15, 10, 5, 0),
+                                    numbers);
+}
+
+static inline __m512i rows_of_both(__m512i low, __m512i high)
+{
+    return _mm512_permutex2var_epi16(low,
+                                     _mm512_set_epi16(62, 60, 58, 56, 54, 52, 50, 48, 38, 28, 18, 8,
+                                                      46, 36, 26, 16, 6, 44, 34, 24, 14, 4, 42, 32,
+                                                      22, 12, 2, 40, 30, 20, 10, 0),
+                                     high);
+}
+
+/* Along one axis, how far the middle is from the matches as they are turned: madd of cosines and
+ * sines. */
+static inline __m512i offsets_along(const int16_t (*turn)[2], const int16_t (*step)[2])
+{
+    const __m512i half = _mm512_set1_epi32(1 << 9);
+    const __m512i low = _mm512_madd_epi16(_mm512_loadu_si512(turn), _mm512_load_si512(step));
+    const __m512i high =
+        _mm512_madd_epi16(_mm512_loadu_si512(turn + 16), _mm512_load_si512(step + 16));
+    return rows_of_both(_mm512_srai_epi32(_mm512_add_epi32(low, half), 10),
+                        _mm512_srai_epi32(_mm512_add_epi32(high, half), 10));
 }
 
 static inline __mmask32 near_zero(__m512i difference)
@@ -233,25 +256,134 @@ static inline __mmask32 near_zero(__m512i difference)
     return _mm512_cmplt_epi16_mask(_mm512_abs_epi16(difference), _mm512_set1_epi16(FL_SAME_PLACE));
 }
 
-int fl_find_opinions_avx512(const FlVotes *votes, FlOpinion *opinions)
+/* The sums of differences over the lanes of a mask, x in the lower half and y in the upper, each
+ * plus 32 a lane: a difference is a byte then. */
+static inline __m128i sums_of(__m512i dx, __m512i dy, __mmask32 mask)
 {
-    const __m512i x = _mm512_load_si512(votes->x), y = _mm512_load_si512(votes->y);
-    const __m512i frame = _mm512_load_si512(votes->frame);
-    __mmask32 left = _mm512_cmpge_epi16_mask(frame, _mm512_setzero_si512());
-    left &= (1u << FL_PATCH_PIXELS) - 1;
-    int n = 0;
+    const __m512i apart =
+        _mm512_broadcast_i32x4(_mm_setr_epi8(0, 2, 4, 6, 8, 10, 12, 14, 1, 3, 5, 7, 9, 11, 13, 15));
+    __m512i both = _mm512_add_epi16(dx, _mm512_slli_epi16(dy, 8));
+    both = _mm512_maskz_add_epi16(mask, both, _mm512_set1_epi16(0x2020));
+    both = _mm512_sad_epu8(_mm512_shuffle_epi8(both, apart), _mm512_setzero_si512());
+    const __m256i half =
+        _mm256_add_epi64(_mm512_castsi512_si256(both), _mm512_extracti64x4_epi64(both, 1));
+    return _mm_add_epi64(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1));
+}
+
+/* 65536 / n, rounded up: v * that >> 16 is v / n for v < 2600. */
+static const uint32_t inverse[FL_PATCH_PIXELS + 1] = {
+    0,    65536, 32768, 21846, 16384, 13108, 10923, 9363, 8192, 7282, 6554, 5958, 5462,
+    5042, 4682,  4370,  4096,  3856,  3641,  3450,  3277, 3121, 2979, 2850, 2731, 2622};
+
+/* The mean place of n votes, x and y in 64-bit lanes, as mean_of() has it. */
+static inline __m128i mean_place(__m128i first, __m128i sums, int n, const int most[2])
+{
+    const __m128i sum = _mm_sub_epi32(sums, _mm_set1_epi64x(32 * n));
+    const __m128i rounded = _mm_add_epi32(_mm_abs_epi32(sum), _mm_set1_epi64x(n / 2));
+    const __m128i mean = _mm_srli_epi64(_mm_mul_epu32(rounded, _mm_set1_epi64x(inverse[n])), 16);
+    const __m128i place = _mm_add_epi32(_mm_sub_epi32(first, _mm_set1_epi64x(FL_VOTE_BIAS)),
+                                        _mm_sign_epi32(mean, sum));
+    const __m128i end = _mm_cvtepi32_epi64(_mm_loadl_epi64((const __m128i *)most));
+    return _mm_min_epi32(_mm_max_epi32(place, _mm_setzero_si128()), end);
+}
+
+/* Two rows of four pixels as pairs of one channel, times the pairs of weights. */
+static inline __m512i two_row_sums(const FlSplinePixel *first, size_t pitch, __m512i x)
+{
+    const __m512i pairs =
+        _mm512_broadcast_i32x4(_mm_setr_epi8(0, 1, 8, 9, 2, 3, 10, 11, 4, 5, 12, 13, 6, 7, 14, 15));
+    const __m512i rows =
+        _mm512_inserti64x4(_mm512_castsi256_si512(_mm256_loadu_si256((const __m256i *)first)),
+                           _mm256_loadu_si256((const __m256i *)(first + pitch)), 1);
+    return _mm512_madd_epi16(_mm512_shuffle_epi8(rows, pairs), x);
+}
+
+/* The spline's value, as the contract of FlSplineSample has it. */
+static inline __m128 sample(const FlSplinePixel *first, size_t pitch, const FlSplinePhase *x,
+                            const FlSplinePhase *y)
+{
+    const __m512i weights = _mm512_broadcast_i64x4(_mm256_load_si256((const __m256i *)x->x));
+    const __m512i upper = two_row_sums(first, pitch, weights);
+    const __m512i lower = two_row_sums(first + 2 * pitch, pitch, weights);
+    const __m512i rows =
+        _mm512_add_epi32(_mm512_shuffle_i64x2(upper, lower, _MM_SHUFFLE(2, 0, 2, 0)),
+                         _mm512_shuffle_i64x2(upper, lower, _MM_SHUFFLE(3, 1, 3, 1)));
+    const __m512 each =
+        _mm512_permutexvar_ps(_mm512_setr_epi32(0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3),
+                              _mm512_castps128_ps512(_mm_load_ps(y->y)));
+    const __m512 parts = _mm512_mul_ps(each, _mm512_cvtepi32_ps(rows));
+    __m128 sum = _mm_add_ps(_mm512_castps512_ps128(parts), _mm512_extractf32x4_ps(parts, 1));
+    sum = _mm_add_ps(sum, _mm512_extractf32x4_ps(parts, 2));
+    return _mm_add_ps(sum, _mm512_extractf32x4_ps(parts, 3));
+}
+
+/* Where votes point to. */
+typedef struct Places {
+    __m512i x, y, frame;
+} Places;
+
+static inline Places places_of(const FlCovering *covering)
+{
+    return (Places){
+        _mm512_add_epi16(rows_of(_mm512_loadu_si512(covering->x)),
+                         offsets_along(covering->turn, fl_vote_steps[0])),
+        _mm512_add_epi16(rows_of(_mm512_loadu_si512(covering->y)),
+                         offsets_along(covering->turn, fl_vote_steps[1])),
+        rows_of(_mm512_loadu_si512(covering->frame)),
+    };
+}
+
+/* Those of the votes `left` that agree with the first of them, and its place in every lane. */
+static inline __mmask32 agreeing(const Places *at, __mmask32 left, Places *first)
+{
+    const __m512i k = _mm512_set1_epi16((int16_t)__builtin_ctz(left));
+    *first = (Places){_mm512_permutexvar_epi16(k, at->x), _mm512_permutexvar_epi16(k, at->y),
+                      _mm512_permutexvar_epi16(k, at->frame)};
+    left = _mm512_mask_cmpeq_epi16_mask(left, at->frame, first->frame);
+    return left & near_zero(_mm512_sub_epi16(at->x, first->x)) &
+           near_zero(_mm512_sub_epi16(at->y, first->y));
+}
+
+/* What an opinion of n votes says. */
+static inline __m128 opinion_of(const Places *at, __mmask32 votes, int n, const Places *first,
+                                const FlVoted *voted)
+{
+    const __m128i sums =
+        sums_of(_mm512_sub_epi16(at->x, first->x), _mm512_sub_epi16(at->y, first->y), votes);
+    const __m128i lead = _mm_and_si128(
+        _mm_unpacklo_epi64(_mm512_castsi512_si128(first->x), _mm512_castsi512_si128(first->y)),
+        _mm_set1_epi64x(0xffff));
+    const __m128i place = mean_place(lead, sums, n, voted->most);
+    const uint32_t x = (uint32_t)_mm_cvtsi128_si32(place);
+    const uint32_t y = (uint32_t)_mm_extract_epi32(place, 2);
+    const uint32_t frame =
+        (uint32_t)_mm_cvtsi128_si32(_mm512_castsi512_si128(first->frame)) & 0xffff;
+    return sample(voted->colour + frame * voted->frame_pixels + (y >> 4) * voted->pitch + (x >> 4),
+                  voted->pitch, &fl_spline_phases[x & 15], &fl_spline_phases[y & 15]);
+}
+
+bool fl_vote_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4])
+{
+    const __m512i frames = rows_of(_mm512_loadu_si512(covering->frame));
+    __mmask32 left = ((1u << FL_PATCH_PIXELS) - 1) & ~_mm512_movepi16_mask(frames);
+    if (!left)
+        return false;
+    const Places at = places_of(covering);
+    __m128 sum = _mm_setzero_ps();
+    float total = 0;
     while (left) {
-        const int k = __builtin_ctz(left);
-        const __m512i dx = _mm512_sub_epi16(x, _mm512_set1_epi16((int16_t)votes->x[k]));
-        const __m512i dy = _mm512_sub_epi16(y, _mm512_set1_epi16((int16_t)votes->y[k]));
-        const __mmask32 same = left & near_zero(dx) & near_zero(dy) &
-                               _mm512_cmpeq_epi16_mask(frame, _mm512_set1_epi16(votes->frame[k]));
-        left &= ~same;
-        opinions[n++] =
-            (FlOpinion){votes->x[k],          votes->y[k],          votes->frame[k],
-                        masked_sum(dx, same), masked_sum(dy, same), __builtin_popcount(same)};
+        Places first;
+        const __mmask32 votes = agreeing(&at, left, &first);
+        const int n = __builtin_popcount(votes);
+        const float weight = voted->weight[n];
+        sum = _mm_add_ps(sum,
+                         _mm_mul_ps(_mm_set1_ps(weight), opinion_of(&at, votes, n, &first, voted)));
+        total += weight;
+        left &= ~votes;
     }
-    return n;
+    sum = _mm_div_ps(sum, _mm_set1_ps(total));
+    _mm_storeu_ps(colour, _mm_min_ps(_mm_max_ps(sum, _mm_setzero_ps()), _mm_set1_ps(1)));
+    return true;
 }
 
 /* In 16 bits: a place that overflows is above `most` anyway, and with 8 more no move is negative.
