@@ -74,7 +74,7 @@ static void tear_down(Case *c)
 static double searched(Case *c, float w_texture, int sweeps)
 {
     fl_target_blend(&c->target.level[0], c->params, &c->scale, w_texture);
-    fl_search_costs(&c->search, &c->nnf, c->cost);
+    fl_search_costs(&c->search, NULL);
     fl_search_run(&c->search, sweeps);
     double sum = 0;
     int n = 0;

@@ -261,7 +261,7 @@ static bool compare(const FlStyle *style, FlParams *params, GError **error)
     report("sequential", &search);
     randomise(&nnf, &search);
     fl_occurrence_count(&map, &nnf, search.target);
-    fl_search_costs(&search, &nnf, cost);
+    fl_search_costs(&search, NULL);
     fl_search_run(&search, SWEEPS);
     report("tiles", &search);
     params->w_uni = 0;
@@ -269,7 +269,7 @@ static bool compare(const FlStyle *style, FlParams *params, GError **error)
     if (!fl_occurrence_init(&map, search.level, search.target, params, &scale, error))
         return false;
     randomise(&nnf, &search);
-    fl_search_costs(&search, &nnf, cost);
+    fl_search_costs(&search, NULL);
     fl_search_run(&search, SWEEPS);
     report("w-uni 0", &search);
     return true;

@@ -16,7 +16,8 @@ static double mean_cost(const FlSearch *search, FlTargetLevel *target, const FlP
     FlSearch part = *search;
     part.params = some;
     fl_target_blend(target, some, search->scale, some->w_texture);
-    fl_search_costs(&part, search->nnf, cost);
+    part.cost = cost;
+    fl_search_costs(&part, NULL);
     uint64_t sum = 0, n = 0;
     for (size_t p = 0; p < (size_t)target->width * target->height; p++)
         if (target->segment[p] != FL_SEGMENT_OUTSIDE)

@@ -18,15 +18,24 @@ uint32_t fl_patch_cost(const FlSearch *search, const FlTargetPatch *patch, uint8
                                                        &search->target->rest, limit - direction);
 }
 
+static const FlTexel *centre_of(const FlSearch *search, FlMatch m)
+{
+    return fl_exemplar_at(search->level, fl_match_x(m), fl_match_y(m), m.frame);
+}
+
+/* That of a match with its centre, against the patch around pixel p. */
+static uint32_t cost_of(const FlSearch *search, const FlTargetPatch *patch, size_t p, FlMatch match,
+                        const FlTexel *centre, uint32_t limit)
+{
+    return fl_patch_cost(search, patch, search->target->angle[p], centre, match.theta, limit);
+}
+
 uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match)
 {
+    const size_t p = (size_t)y * search->target->width + x;
     FlTargetPatch patch;
     fl_target_gather(search->target, x, y, &patch);
-    const FlTexel *centre =
-        fl_exemplar_at(search->level, fl_match_x(match), fl_match_y(match), match.frame);
-    return fl_patch_cost(search, &patch,
-                         search->target->angle[(size_t)y * search->target->width + x], centre,
-                         match.theta, UINT32_MAX >> 1);
+    return cost_of(search, &patch, p, match, centre_of(search, match), UINT32_MAX >> 1);
 }
 
 /* Mean Laplacian of a star in style 02 that turns by 3 degrees a frame, at carry 1, frames 10 and
@@ -69,14 +78,39 @@ double fl_mean_cost(const FlSearch *search)
     return n > 0 ? (double)sum / (double)n : 0;
 }
 
-void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost)
+/* The match of `previous` takes the place of the pixel's own if it is allowed to and costs less. */
+static void merge(FlSearch *search, const FlNnf *previous, const FlTargetPatch *patch, size_t p)
+{
+    const FlMatch m = previous->match[p];
+    const uint32_t limit = search->cost[p] + fl_leaving_cost(search, p);
+    if (m.frame == FL_NO_MATCH || limit == 0)
+        return;
+    const FlTexel *centre = centre_of(search, m);
+    if (centre->c[FL_CH_SEGMENT] != search->target->segment[p])
+        return;
+    const uint32_t cost = cost_of(search, patch, p, m, centre, limit - 1);
+    if (cost < limit)
+        search->nnf->match[p] = m, search->cost[p] = cost;
+}
+
+static void cost_pixel(FlSearch *search, const FlNnf *previous, int x, int y)
+{
+    const size_t p = (size_t)y * search->nnf->width + x;
+    const FlMatch m = search->nnf->match[p];
+    FlTargetPatch patch;
+    search->cost[p] = UINT32_MAX;
+    if (m.frame == FL_NO_MATCH)
+        return;
+    fl_target_gather(search->target, x, y, &patch);
+    search->cost[p] = cost_of(search, &patch, p, m, centre_of(search, m), UINT32_MAX >> 1);
+    if (previous)
+        merge(search, previous, &patch, p);
+}
+
+void fl_search_costs(FlSearch *search, const FlNnf *previous)
 {
 #pragma omp parallel for schedule(dynamic, 8)
-    for (int y = 0; y < nnf->height; y++)
-        for (int x = 0; x < nnf->width; x++) {
-            const size_t p = (size_t)y * nnf->width + x;
-            cost[p] = nnf->match[p].frame == FL_NO_MATCH
-                          ? UINT32_MAX
-                          : fl_match_cost(search, x, y, nnf->match[p]);
-        }
+    for (int y = 0; y < search->nnf->height; y++)
+        for (int x = 0; x < search->nnf->width; x++)
+            cost_pixel(search, previous, x, y);
 }

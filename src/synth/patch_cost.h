@@ -67,7 +67,10 @@ int fl_matches_beside(const FlSearch *search, int x, int y, FlMatch expected[FL_
 /** The mean of search->cost over the pixels that have a match; 0 without any. */
 double fl_mean_cost(const FlSearch *search);
 
-/** Fills search->cost for a field; pixels outside get UINT32_MAX. */
-void fl_search_costs(FlSearch *search, const FlNnf *nnf, uint32_t *cost);
+/**
+ * Fills search->cost; pixels outside get UINT32_MAX. Where the match of `previous` costs less, it
+ * takes the place of the pixel's own [F21 §3.6]; NULL: there is no such field.
+ */
+void fl_search_costs(FlSearch *search, const FlNnf *previous);
 
 #endif

@@ -182,26 +182,6 @@ static bool make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error)
     return true;
 }
 
-/* Where the previous field costs less than the upscaled match, it takes its place. */
-static void merge_previous(FlSearch *search, const FlNnf *previous)
-{
-    const size_t pixels = (size_t)previous->width * previous->height;
-#pragma omp parallel for schedule(dynamic, 1024)
-    for (size_t p = 0; p < pixels; p++) {
-        const FlMatch m = previous->match[p];
-        if (m.frame == FL_NO_MATCH || search->target->segment[p] == FL_SEGMENT_OUTSIDE)
-            continue;
-        const FlTexel *centre =
-            fl_exemplar_at(search->level, fl_match_x(m), fl_match_y(m), m.frame);
-        if (centre->c[FL_CH_SEGMENT] != search->target->segment[p])
-            continue;
-        const int x = (int)(p % (size_t)previous->width), y = (int)(p / (size_t)previous->width);
-        const uint32_t cost = fl_match_cost(search, x, y, m);
-        if (cost < search->cost[p] + fl_leaving_cost(search, p))
-            search->nnf->match[p] = m, search->cost[p] = cost;
-    }
-}
-
 static double mean_energy(const FlSearch *search)
 {
     return fl_mean_cost(search) / search->scale->unit;
@@ -235,7 +215,7 @@ static FlSearchCounts timed_search(FlSynth *synth, FlSearch *search, int sweeps,
     gint64 time = g_get_monotonic_time();
     fl_occurrence_count(search->map, search->nnf, search->target);
     if (stale)
-        fl_search_costs(search, search->nnf, search->cost);
+        fl_search_costs(search, NULL);
     const FlSearchCounts counts = fl_search_run(search, sweeps);
     synth->seconds_search += lap(&time);
     return counts;
@@ -261,9 +241,7 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     if (l < finest_searched(synth))
         return;
     vote_and_blend(synth, search, target);
-    fl_search_costs(search, search->nnf, search->cost);
-    if (!coarsest && previous)
-        merge_previous(search, previous);
+    fl_search_costs(search, coarsest ? NULL : previous);
 }
 
 /* Search and vote in turn [F21 alg. 2]; the field comes with its costs. The next level votes anew,
@@ -279,8 +257,10 @@ static void optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, in
         stats->counts.drawn += counts.drawn;
         stats->counts.tried += counts.tried;
         stats->counts.accepted += counts.accepted;
-        if (round + 1 < rounds || last_counts)
+        if (round + 1 < rounds)
             vote_and_blend(synth, search, target);
+        else if (last_counts)
+            vote(synth, search, target);
     }
     search->key = key;
 }
@@ -292,7 +272,7 @@ static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats
     fl_target_blend(target, search->params, search->scale, search->params->w_texture);
     fl_occurrence_count(search->map, search->nnf, target);
     fl_energy_of(search, target, search->cost, &energy);
-    fl_search_costs(search, search->nnf, search->cost);
+    fl_search_costs(search, NULL);
     stats->energy = mean_energy(search);
     stats->texture = energy.texture, stats->temporal = energy.temporal;
     stats->bound = energy.bound, stats->ext = energy.ext, stats->direction = energy.direction;
