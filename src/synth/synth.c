@@ -313,6 +313,8 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .map = &map,
                        .key = fl_key(fl_key(synth->key, (uint64_t)synth->last.frame), (uint64_t)l)};
     initialise(synth, &search, target, l, previous);
+    if (l + 1 < synth->n_levels) // its field is in this one now
+        fl_nnf_clear(&synth->nnf[l + 1]);
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
@@ -404,19 +406,21 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlNnf *shifte
     return true;
 }
 
-static bool remember(FlSynth *synth, const uint8_t *rgb, GError **error)
+/* The finest field, which is handed over, and where it lies. */
+static void remember(FlSynth *synth)
 {
-    const FlNnf *last = &synth->nnf[0];
-    const size_t pixels = (size_t)synth->width * synth->height;
-    if (!fl_synth_state_room(&synth->last, synth->width, synth->height, error))
-        return false;
     synth->last.valid = true;
     synth->last.rect = synth->target.rect;
-    memcpy(synth->last.rgb, rgb, 3 * pixels);
-    if (!fl_nnf_init(&synth->last.nnf, last->width, last->height, error))
+    synth->last.nnf = synth->nnf[0];
+    synth->nnf[0] = (FlNnf){0};
+}
+
+/* The picture as well, for as long as the planes of the frame are kept. */
+static bool remember_picture(FlSynth *synth, const uint8_t *rgb, GError **error)
+{
+    if (!fl_synth_state_room(&synth->last, synth->width, synth->height, error))
         return false;
-    memcpy(synth->last.nnf.match, last->match,
-           (size_t)last->width * last->height * sizeof *last->match);
+    memcpy(synth->last.rgb, rgb, 3 * (size_t)synth->width * synth->height);
     return true;
 }
 
@@ -440,20 +444,22 @@ bool fl_synth_rest(FlSynth *synth)
 static bool unpack_last(FlSynth *synth, GError **error)
 {
     const int frame = synth->last.frame; // it may have rested since it was packed
-    if (!fl_synth_state_room(&synth->last, synth->width, synth->height, error))
-        return false;
     if (!synth->last.valid || synth->last.nnf.match)
         return true;
-    const bool done = fl_synth_state_unpack(&synth->last, synth->packed, &synth->exemplar->level[0],
+    const bool done = fl_synth_state_room(&synth->last, synth->width, synth->height, error) &&
+                      fl_synth_state_unpack(&synth->last, synth->packed, &synth->exemplar->level[0],
                                             synth->width, synth->height, error);
     synth->last.frame = frame;
     return done;
 }
 
-static bool pack_last(FlSynth *synth, GError **error)
+/* Whose picture is `rgb`. */
+static bool pack_last(FlSynth *synth, uint8_t *rgb, GError **error)
 {
+    FlSynthState last = synth->last;
+    last.rgb = rgb;
     if (!synth->packed)
-        synth->packed = fl_synth_state_pack(&synth->last, synth->width, synth->height, error);
+        synth->packed = fl_synth_state_pack(&last, synth->width, synth->height, error);
     fl_synth_state_clear(&synth->last);
     return synth->packed != NULL;
 }
@@ -511,9 +517,11 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     write_rgb(synth, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
     const bool has_temporal = synth->last.valid && finest_searched(synth) == 0;
-    *view = synth->view = (FlSynthView){rect, &synth->nnf[0], has_temporal ? full->temporal : NULL,
-                                        has_temporal ? full->temporal_weight : NULL};
-    return remember(synth, rgb, error);
+    remember(synth);
+    *view = synth->view =
+        (FlSynthView){rect, &synth->last.nnf, has_temporal ? full->temporal : NULL,
+                      has_temporal ? full->temporal_weight : NULL};
+    return true;
 }
 
 bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
@@ -527,14 +535,14 @@ bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats
     *v = (FlSynthView){0};
     const bool done = paint(synth, guides, rgb, s, v, error);
     if (view)
-        return done;
+        return done && (!synth->last.valid || remember_picture(synth, rgb, error));
     clear_frame(synth);
-    return done && pack_last(synth, error);
+    return done && pack_last(synth, rgb, error);
 }
 
 bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **error)
 {
-    return fl_patch_pairs(synth->exemplar, synth->params, &synth->target, &synth->nnf[0],
+    return fl_patch_pairs(synth->exemplar, synth->params, &synth->target, &synth->last.nnf,
                           synth->width, synth->height, pairs, error);
 }
 
