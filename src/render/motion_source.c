@@ -226,9 +226,8 @@ bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, floa
     const int region = step->region, before = step->before, now = step->now;
     const FlRect rect = step->rect;
     const size_t n = fl_rect_pixels(rect);
-    FlMotionShares none = {0, 0};
-    shares = shares ? shares : &none;
-    *shares = none;
+    if (shares)
+        *shares = (FlMotionShares){0, 0};
     memset(motion, 0, 2 * n * sizeof *motion);
     if (fl_drawing_same_file(source->drawing, before, now))
         return true;
