@@ -12,6 +12,7 @@
  */
 #define HIDES_AMOUNT (FL_AMOUNT_ONE * 3 / 5)
 
+#define TILE_PX 128                 // a tile and what is around it fit into a processor's own cache
 #define ONE 1024                    // of shares
 #define RIM_SHARE (ONE * 7 / 10)    // up to here a pixel is at the contour; one half is on it
 #define INNER_SHARE (ONE * 19 / 20) // from here on amid the shape
@@ -36,26 +37,78 @@ static int hidden(int amount, uint32_t share)
     return body + (255 - body) * amid(share) / ONE;
 }
 
+/** A part of the box in which there is some of the shape, and room for what is around it. */
+typedef struct Tile {
+    FlRect own, around; // around: with all that its windows hold; of the box, as own is
+    int16_t *inside;    // of around
+    uint32_t *rows, *sums;
+} Tile;
+
+static void tile_clear(Tile *tile)
+{
+    free(tile->inside);
+    free(tile->rows);
+    free(tile->sums);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Tile, tile_clear)
+
+/** A tile of TILE_PX and more, with room for all of them. */
+static bool tile_init(Tile *tile, int radius_px, GError **error)
+{
+    const size_t side = (size_t)(TILE_PX + 2 * radius_px), n = side * side;
+    *tile = (Tile){0};
+    return (tile->inside = fl_alloc(n, sizeof *tile->inside, "a matte", error)) &&
+           (tile->rows = fl_alloc(n, sizeof *tile->rows, "a matte", error)) &&
+           (tile->sums = fl_alloc(n, sizeof *tile->sums, "a matte", error));
+}
+
+/** Sums what is inside the shape. */
+static void sum_tile(Tile *tile, FlRect own, FlRect box, const uint8_t *coverage, int radius_px)
+{
+    tile->own = own;
+    tile->around = fl_rect_grown(own, radius_px, (FlRect){0, 0, box.width, box.height});
+    fl_closing_inside(coverage, box.width, box.height, tile->around, tile->inside);
+    fl_window_sums(tile->inside, tile->around, radius_px, tile->rows, tile->sums);
+}
+
+/** Where rows and columns are in a frame. */
+typedef struct Windows {
+    FlRect box;
+    int width, height, radius_px; // of the frame
+} Windows;
+
+static void hide_tile(const Tile *tile, const Windows *w, const int16_t *amounts, uint8_t *knockout)
+{
+    const FlRect own = tile->own, around = tile->around;
+    for (int y = own.y; y < own.y + own.height; y++) {
+        const uint32_t *sums =
+            tile->sums + (size_t)(y - around.y) * (size_t)around.width - around.x;
+        const uint32_t down = side_around(w->box.y + y, w->height, w->radius_px);
+        for (int x = own.x; x < own.x + own.width; x++) {
+            const size_t p = (size_t)y * (size_t)w->box.width + (size_t)x;
+            const uint64_t all = 255ull * down * side_around(w->box.x + x, w->width, w->radius_px);
+            knockout[p] = (uint8_t)hidden(amounts[p], (uint32_t)((uint64_t)sums[x] * ONE / all));
+        }
+    }
+}
+
 bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const FlArea *area, int width,
                  int height, int radius_px, uint8_t *knockout, GError **error)
 {
-    const FlRect box = area->box, own = {0, 0, box.width, box.height};
-    const size_t n = fl_rect_pixels(box);
-    g_autofree int16_t *inside = fl_alloc(n, sizeof *inside, "a matte", error);
-    g_autofree uint32_t *rows = inside ? fl_alloc(n, sizeof *rows, "a matte", error) : NULL;
-    g_autofree uint32_t *sums = rows ? fl_alloc(n, sizeof *sums, "a matte", error) : NULL;
-    if (!sums)
+    const FlRect box = area->box;
+    const Windows windows = {box, width, height, radius_px};
+    g_auto(Tile) tile = {0};
+    if (!tile_init(&tile, radius_px, error))
         return false;
-    fl_closing_inside(coverage, box.width, box.height, own, inside);
-    fl_window_sums(inside, own, radius_px, rows, sums);
-    for (int y = 0; y < box.height; y++) {
-        const FlColumns span = fl_area_row(area, y);
-        const uint32_t down = side_around(box.y + y, height, radius_px);
-        for (int x = span.first; x < span.last; x++) {
-            const size_t p = (size_t)y * (size_t)box.width + (size_t)x;
-            const uint64_t all = 255ull * down * side_around(box.x + x, width, radius_px);
-            knockout[p] = (uint8_t)hidden(amounts[p], (uint32_t)((uint64_t)sums[p] * ONE / all));
+    for (int y = 0; y < box.height; y += TILE_PX)
+        for (int x = 0; x < box.width; x += TILE_PX) {
+            const FlRect whole = {x, y, MIN(TILE_PX, box.width - x), MIN(TILE_PX, box.height - y)};
+            const FlRect own = fl_rect_within(coverage, box.width, whole);
+            if (own.width == 0) // many shapes are far smaller than their box
+                continue;
+            sum_tile(&tile, own, box, coverage, radius_px);
+            hide_tile(&tile, &windows, amounts, knockout);
         }
-    }
     return true;
 }

@@ -9,7 +9,7 @@
 #include <stdint.h>
 
 /**
- * Sets knockout, 0..255 per pixel of the area: at the contour it rises with the amount of paint,
+ * Sets knockout, 0..255 per pixel with coverage: at the contour it rises with the amount of paint,
  * from nothing on bare paper to 255 at three fifths of the median, so that a rim fades into what
  * lies below; amid the shape it is 255 however thin the paint is, since there paper shows: paint
  * below went around the shape. One becomes the other within radius_px (>= 1) of the contour, as the
