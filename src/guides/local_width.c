@@ -251,14 +251,18 @@ static void limit_slope(uint16_t *plane, int width, int height)
     }
 }
 
-/** Room for means over windows. */
+#define TILE_PX 128 // a tile and what is around it fit into a processor's own cache
+
+/** Room for means over the windows of a tile. */
 typedef struct Means {
-    int16_t *plane;
+    uint16_t *before; // the whole plane
+    int16_t *plane;   // of the tile and what is around it, as what follows
     uint32_t *rows, *count, *sum;
 } Means;
 
 static void means_clear(Means *means)
 {
+    free(means->before);
     free(means->plane);
     free(means->rows);
     free(means->count);
@@ -267,29 +271,64 @@ static void means_clear(Means *means)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Means, means_clear)
 
-static bool means_init(Means *means, size_t n, GError **error)
+/** For n pixels and radii up to r. */
+static bool means_init(Means *means, size_t n, int r, GError **error)
 {
+    const size_t tile = (size_t)(TILE_PX + 2 * r) * (size_t)(TILE_PX + 2 * r);
     *means = (Means){0};
-    return (means->plane = fl_alloc(n, sizeof *means->plane, "local widths", error)) &&
-           (means->rows = fl_alloc(n, sizeof *means->rows, "local widths", error)) &&
-           (means->count = fl_alloc(n, sizeof *means->count, "local widths", error)) &&
-           (means->sum = fl_alloc(n, sizeof *means->sum, "local widths", error));
+    return (means->before = fl_alloc(n, sizeof *means->before, "local widths", error)) &&
+           (means->plane = fl_alloc(tile, sizeof *means->plane, "local widths", error)) &&
+           (means->rows = fl_alloc(tile, sizeof *means->rows, "local widths", error)) &&
+           (means->count = fl_alloc(tile, sizeof *means->count, "local widths", error)) &&
+           (means->sum = fl_alloc(tile, sizeof *means->sum, "local widths", error));
+}
+
+/** Whether nothing of a tile is inside. */
+static bool is_bare(const uint16_t *plane, int width, FlRect tile)
+{
+    bool bare = true;
+    for (int y = tile.y; y < tile.y + tile.height && bare; y++)
+        bare = fl_is_blank((const uint8_t *)(plane + (size_t)y * (size_t)width + tile.x),
+                           (size_t)tile.width * sizeof *plane);
+    return bare;
+}
+
+/** Sums what is inside, and its values. */
+static void sum_tile(Means *means, FlRect page, FlRect around, int r)
+{
+    const FlRect box = {0, 0, around.width, around.height};
+    const size_t n = fl_rect_pixels(box);
+    uint16_t *values = (uint16_t *)means->plane;
+    fl_rect_copy(means->before, page, values, around, sizeof *values);
+    fl_window_sums(means->plane, box, r, means->rows, means->sum);
+    for (size_t p = 0; p < n; p++)
+        means->plane[p] = means->plane[p] > 0;
+    fl_window_sums(means->plane, box, r, means->rows, means->count);
 }
 
 /** The mean of what is inside in a square of 2 r + 1 px. */
 static void smooth(uint16_t *plane, int width, int height, int r, Means *means)
 {
-    const FlRect box = {0, 0, width, height};
-    const size_t n = fl_rect_pixels(box);
-    for (size_t p = 0; p < n; p++)
-        means->plane[p] = plane[p] > 0;
-    fl_window_sums(means->plane, box, r, means->rows, means->count);
-    for (size_t p = 0; p < n; p++)
-        means->plane[p] = (int16_t)plane[p];
-    fl_window_sums(means->plane, box, r, means->rows, means->sum);
-    for (size_t p = 0; p < n; p++)
-        if (plane[p])
-            plane[p] = (uint16_t)((means->sum[p] + means->count[p] / 2) / means->count[p]);
+    const FlRect page = {0, 0, width, height};
+    memcpy(means->before, plane, fl_rect_pixels(page) * sizeof *plane);
+    for (int ty = 0; ty < height; ty += TILE_PX)
+        for (int tx = 0; tx < width; tx += TILE_PX) {
+            const FlRect tile = {tx, ty, MIN(TILE_PX, width - tx), MIN(TILE_PX, height - ty)};
+            const FlRect around = fl_rect_grown(tile, r, page);
+            if (is_bare(means->before, width, tile)) // as most are of many shapes
+                continue;
+            sum_tile(means, page, around, r);
+            for (int y = tile.y; y < tile.y + tile.height; y++) {
+                uint16_t *row = plane + (size_t)y * (size_t)width;
+                const size_t at = (size_t)(y - around.y) * (size_t)around.width;
+                for (int x = tile.x; x < tile.x + tile.width; x++) {
+                    const size_t p = at + (size_t)(x - around.x);
+                    if (row[x])
+                        row[x] =
+                            (uint16_t)((means->sum[p] + means->count[p] / 2) / means->count[p]);
+                }
+            }
+        }
 }
 
 /** A pixel outside, and the largest value around it. */
@@ -385,10 +424,11 @@ bool fl_local_width(const float *distance, const uint8_t *seen, int width, int h
     *narrow = any_narrow(half_width, n, cap);
     if (!*narrow) // as most are: nobody asks for more
         return true;
-    if (!means_init(&means, n, error))
+    const int r = MAX(cap / (4 * FL_WIDTH_ONE), 1);
+    if (!means_init(&means, n, r, error))
         return false;
     limit_slope(half_width, width, height);
-    smooth(half_width, width, height, MAX(cap / (4 * FL_WIDTH_ONE), 1), &means);
+    smooth(half_width, width, height, r, &means);
     smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), &means);
     extend(half_width, width, height);
     return true;
