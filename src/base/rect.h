@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 /** Whether n bytes are 0; as fast as the C library compares. */
 bool fl_is_blank(const uint8_t *bytes, size_t n);
@@ -62,6 +63,26 @@ static inline FlColumns fl_area_row(const FlArea *area, int y)
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlArea, fl_area_clear)
+
+/** Whether eight bytes are 0. */
+static inline bool fl_eight_blank(const uint8_t *bytes)
+{
+    uint64_t eight;
+    memcpy(&eight, bytes, sizeof eight);
+    return eight == 0;
+}
+
+/** The next columns from x on in which a row is anything but 0, but for a few: nearly all that is
+ * left out of a row are long stretches. Where they are empty, the row has ended. */
+static inline FlColumns fl_next_run(const uint8_t *row, int x, int end)
+{
+    while (x + 8 <= end && fl_eight_blank(row + x))
+        x += 8;
+    int last = x;
+    while (last < end && (last + 8 > end || !fl_eight_blank(row + last)))
+        last = MIN(last + 8, end);
+    return (FlColumns){x, last};
+}
 
 static inline size_t fl_rect_pixels(FlRect rect)
 {

@@ -46,10 +46,12 @@ static void add_seen(const FlDraw *draw, const uint8_t *free_of, int width, uint
         const FlColumns span = fl_area_row(&draw->area, y);
         const uint8_t *from = draw->coverage + (size_t)y * (size_t)box.width;
         const size_t row = (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
-        for (int x = span.first; x < span.last; x++) {
-            const size_t p = row + (size_t)x; // two halves of a pixel make a whole one
-            coverage[p] = (uint8_t)MIN(coverage[p] + (from[x] * free_of[p] + 127) / 255, 255);
-        }
+        for (FlColumns run = fl_next_run(from, span.first, span.last); run.first < run.last;
+             run = fl_next_run(from, run.last, span.last))
+            for (int x = run.first; x < run.last; x++) {
+                const size_t p = row + (size_t)x; // two halves of a pixel make a whole one
+                coverage[p] = (uint8_t)MIN(coverage[p] + (from[x] * free_of[p] + 127) / 255, 255);
+            }
     }
 }
 
@@ -71,8 +73,10 @@ static void hide_below(const FlDraw *draw, FlRect within, int width, uint8_t *fr
         const int last = MIN(span.last, part.x + part.width - box.x);
         const uint8_t *from = draw->coverage + (size_t)y * (size_t)box.width;
         uint8_t *row = free_of + (size_t)(box.y + y) * (size_t)width + box.x;
-        for (int x = first; x < last; x++)
-            row[x] = (uint8_t)((row[x] * (255 * 255 - from[x] * opacity) + 32512) / 65025);
+        for (FlColumns run = fl_next_run(from, first, last); run.first < run.last;
+             run = fl_next_run(from, run.last, last))
+            for (int x = run.first; x < run.last; x++)
+                row[x] = (uint8_t)((row[x] * (255 * 255 - from[x] * opacity) + 32512) / 65025);
     }
 }
 
@@ -264,8 +268,10 @@ static bool put_shown(FlSurround *surround, int frame, const FlDrawList *draws, 
             const FlRect box = draw->area.box;
             const uint8_t *from = draw->coverage + (size_t)y * (size_t)box.width;
             uint8_t *to = coverage + (size_t)(box.y + y) * (size_t)surround->width + box.x;
-            for (int x = span.first; x < span.last; x++)
-                to[x] = fl_over((uint8_t)(from[x] * opacity / 255), to[x]);
+            for (FlColumns run = fl_next_run(from, span.first, span.last); run.first < run.last;
+                 run = fl_next_run(from, run.last, span.last))
+                for (int x = run.first; x < run.last; x++)
+                    to[x] = fl_over((uint8_t)(from[x] * opacity / 255), to[x]);
         }
     }
     return fl_mask_store_put(surround->shown, 0, frame, coverage, error);
