@@ -108,7 +108,7 @@ static bool colour_layer(FlLayer *layer, const Stack *stack, const FlPaintedRegi
     if (colouring->pigments > 0) {
         if (!(play = fl_alloc(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
             return false;
-        fl_play_of_pigments(&uneven, &layer->area, play);
+        fl_play_of_pigments(&uneven, &layer->area, amounts, play);
     }
     colouring->play = play;
     roughen(stack, painted, &layer->area, amounts);

@@ -92,17 +92,30 @@ static Points make_points(const FlUneven *where, const FlArea *area, SlowNoise n
     return points;
 }
 
-/* A row of a box between the points: FL_PLAY_ONE is one. */
-static void fill_row(const Points *points, int y, int width, int16_t *row)
+/* Whether some of n amounts are of a pixel with paint: others are below 0. */
+static bool any_paint(const int16_t *amounts, int n)
 {
+    int all = -1;
+    for (int k = 0; k < n; k++)
+        all &= amounts[k];
+    return all >= 0;
+}
+
+/* A row of a box between the points, where there is paint: FL_PLAY_ONE is one. */
+static void fill_row(const Points *points, const FlArea *area, int y, const int16_t *amounts,
+                     int16_t *row)
+{
+    const FlColumns span = fl_area_row(area, y);
     const int step = points->step, one = 4096 / FL_PLAY_ONE * step * step;
     const int32_t *upper = points->value + (y / step) * points->width;
     const int32_t *lower = upper + points->width;
     const int ty = y % step;
-    for (int i = 0; i * step < width; i++) {
+    for (int i = span.first / step; i * step < span.last; i++) {
         const int32_t left = upper[i] * (step - ty) + lower[i] * ty;
         const int32_t right = upper[i + 1] * (step - ty) + lower[i + 1] * ty;
-        const int n = MIN(step, width - i * step);
+        const int n = MIN(step, area->box.width - i * step);
+        if (!any_paint(amounts + i * step, n))
+            continue;
         for (int k = 0; k < n; k++)
             row[i * step + k] = (int16_t)((left * (step - k) + right * k) / one);
     }
@@ -145,15 +158,16 @@ void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int
         g_autofree int16_t *noise = g_new(int16_t, area->box.width);
 #pragma omp for schedule(static)
         for (int y = 0; y < area->box.height; y++) {
-            fill_row(&points, y, area->box.width, noise);
-            load_row(noise, factor, fl_area_row(area, y),
-                     amounts + (size_t)y * (size_t)area->box.width);
+            int16_t *own = amounts + (size_t)y * (size_t)area->box.width;
+            fill_row(&points, area, y, own, noise);
+            load_row(noise, factor, fl_area_row(area, y), own);
         }
     }
     g_free(points.value);
 }
 
-void fl_play_of_pigments(const FlUneven *where, const FlArea *area, int8_t *play)
+void fl_play_of_pigments(const FlUneven *where, const FlArea *area, const int16_t *amounts,
+                         int8_t *play)
 {
     const FlRect box = area->box;
     const Points points = make_points(where, area, play_noise);
@@ -162,9 +176,11 @@ void fl_play_of_pigments(const FlUneven *where, const FlArea *area, int8_t *play
         g_autofree int16_t *row = g_new0(int16_t, box.width);
 #pragma omp for schedule(static)
         for (int y = 0; y < box.height; y++) {
-            fill_row(&points, y, box.width, row);
-            for (int x = 0; x < box.width; x++)
-                play[(size_t)y * (size_t)box.width + (size_t)x] = (int8_t)row[x];
+            const size_t first = (size_t)y * (size_t)box.width;
+            const FlColumns span = fl_area_row(area, y);
+            fill_row(&points, area, y, amounts + first, row);
+            for (int x = span.first; x < span.last; x++)
+                play[first + (size_t)x] = (int8_t)row[x];
         }
     }
     g_free(points.value);

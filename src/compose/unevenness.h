@@ -30,7 +30,8 @@ void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int
 #define FL_PLAY_ONE 64 // twice the standard deviation of the play of two pigments
 
 /** Which of two pigments prevails in each pixel of an area: -2 to below 2, in 1 / FL_PLAY_ONE. play
- * is of the box; beyond the area it means nothing. */
-void fl_play_of_pigments(const FlUneven *where, const FlArea *area, int8_t *play);
+ * is of the box, as amounts are; where these are below 0 it means nothing. */
+void fl_play_of_pigments(const FlUneven *where, const FlArea *area, const int16_t *amounts,
+                         int8_t *play);
 
 #endif
