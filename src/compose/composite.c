@@ -211,7 +211,10 @@ static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **
                        .alpha = draw->alpha,
                        .stacking = FL_STACKING_KNOCKOUT,
                        .mix = draw->mix};
-    const FlPaintedRegion *painted = p >= 0 ? stack->input->painted[p] : NULL;
+    g_auto(FlPaintedLook) look = {0};
+    const FlPaintedRegion *painted = p >= 0 ? &look.region : NULL;
+    if (painted && !fl_painted_look(stack->input->painted[p], &look, error))
+        return false;
     const bool cut_out = painted && painted->alpha;
     if ((cut_out && !reach_out(layer, stack, draw, painted, error)) ||
         !(layer->rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))

@@ -70,8 +70,11 @@ static bool find_exposure(const FlComposeInput *input, const FlDrawList *draws, 
     }
     if (seen < ENOUGH && !whole_shape(input, draws, painted, mask, error))
         return false;
+    g_auto(FlPaintedLook) look = {0};
+    if (!fl_painted_look(painted, &look, error))
+        return false;
     *exposure =
-        fl_ink_exposure(painted->style->ink, painted->painted, mask, rect.width, rect.height);
+        fl_ink_exposure(painted->style->ink, look.region.painted, mask, rect.width, rect.height);
     return true;
 }
 

@@ -32,11 +32,12 @@ typedef struct FlPaintedRegion {
     int width, height;                // of the drawing as it is painted, px
     int exposure;                     // of its amounts; 0: as the paint itself asks for
     FlRect rect;                      // the part of it in which the region ever is, with some room
-    uint8_t *painted;                 // of rect: 3 bytes of sRGB a pixel, the exemplar's colours
-    uint8_t *alpha;                   // of rect, behind them in one piece; NULL: paint is on paper
-    float reach_px;                   // how far alpha goes beyond the shape; 0: there is none
-    FlFrameStats stats;               // of the last frame that was painted, as is what follows
-    FlSynthView view;                 // nnf NULL: nobody wanted it
+    uint8_t *painted;   // of rect: 3 bytes of sRGB a pixel, the exemplar's colours; NULL: not open
+    uint8_t *alpha;     // of rect, behind them in one piece; NULL: paint is on paper
+    float reach_px;     // how far alpha goes beyond the shape; 0: there is none
+    GBytes *packed;     // both, while they are not open; NULL: there is no picture yet
+    FlFrameStats stats; // of the last frame that was painted, as is what follows
+    FlSynthView view;   // nnf NULL: nobody wanted it
     double seconds;
     bool unseen; // in every frame others lie over it: it is not painted, and is no layer
     bool taken;  // from the cache: nothing was painted, stats and view are empty
@@ -47,6 +48,29 @@ static inline size_t fl_painted_bytes(const FlPaintedRegion *painted)
 {
     return (painted->reach_px > 0 ? 4 : 3) * fl_rect_pixels(painted->rect);
 }
+
+/** Frees the picture. */
+void fl_painted_clear(FlPaintedRegion *painted);
+
+/** Packs the picture until the next fl_painted_open(): most of a rectangle is bare paper, which
+ * then takes no memory. FL_ERROR_NO_MEMORY. */
+bool fl_painted_pack(FlPaintedRegion *painted, GError **error);
+
+/** The reverse, for whoever writes to the picture; it may be open. One that was never open is made,
+ * for rect and reach_px as they are. FL_ERROR_NO_MEMORY. */
+bool fl_painted_open(FlPaintedRegion *painted, GError **error);
+
+/** A region to read from, whether its picture is packed or not. */
+typedef struct FlPaintedLook {
+    FlPaintedRegion region; // whose picture is open
+    uint8_t *own;           // picture, if it had to be unpacked
+} FlPaintedLook;
+
+/** Several threads may look at a region at once. FL_ERROR_NO_MEMORY. */
+bool fl_painted_look(const FlPaintedRegion *painted, FlPaintedLook *look, GError **error);
+void fl_painted_look_clear(FlPaintedLook *look);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlPaintedLook, fl_painted_look_clear)
 
 /** A pixel of rect as straight RGBA. */
 static inline void fl_painted_pixel(const FlPaintedRegion *painted, size_t p, uint8_t rgba[4])

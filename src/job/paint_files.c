@@ -32,21 +32,22 @@ bool fl_paint_save(const FlPaintedRegion *painted, FlPaintArea area, const char 
     const FlRect part = area_of(painted, area), rect = painted->rect;
     const size_t pixels = fl_rect_pixels(part);
     const uint8_t *paper = painted->style->paper;
+    g_auto(FlPaintedLook) look = {0};
     g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "the paint of a region", error);
-    if (!rgba)
+    if (!rgba || !fl_painted_look(painted, &look, error))
         return false;
     for (size_t p = 0; p < pixels; p++) // paper outside painted->rect
-        memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], painted->alpha ? 0 : 255},
+        memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], look.region.alpha ? 0 : 255},
                4);
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++)
-            fl_painted_pixel(painted, (size_t)y * (size_t)rect.width + (size_t)x,
+            fl_painted_pixel(&look.region, (size_t)y * (size_t)rect.width + (size_t)x,
                              rgba + 4 * ((size_t)(rect.y - part.y + y) * (size_t)part.width +
                                          (size_t)(rect.x - part.x + x)));
     const FlPng png = {.width = part.width,
                        .height = part.height,
                        .rgba = rgba,
-                       .opaque = !painted->alpha,
+                       .opaque = !look.region.alpha,
                        .fast = area == FL_PAINT_AREA_REGION, // the merge is its only reader
                        .place = area == FL_PAINT_AREA_REGION ? &part : NULL};
     return fl_png_save(&png, path, overwrite, error);
@@ -84,6 +85,8 @@ bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)
                     rect.width, rect.height);
         return false;
     }
+    if (!fl_painted_open(painted, error))
+        return false;
     const int left = whole ? rect.x : 0, top = whole ? rect.y : 0;
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {

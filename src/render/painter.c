@@ -139,15 +139,6 @@ double fl_painter_bytes(const FlPainter *painter)
            (double)fl_rect_pixels(painter->result.rect); // measured: fields, guides and the state
 }
 
-static bool make_picture(FlPainter *painter, GError **error)
-{
-    painter->result.painted =
-        fl_alloc(fl_painted_bytes(&painter->result), 1, "a painted region", error);
-    if (painter->result.painted && painter->result.reach_px > 0)
-        painter->result.alpha = painter->result.painted + 3 * fl_rect_pixels(painter->result.rect);
-    return painter->result.painted != NULL;
-}
-
 static bool is_known(const FlPainter *painter)
 {
     return painter->reuse && painter->reuse->known;
@@ -198,7 +189,7 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
     if (plan->loops && !fl_loop_init(&painter->loop, painter->n_pictures, error))
         return false;
     if (plan->paint_files || is_known(painter))
-        return make_picture(painter, error);
+        return true;
     if (painter->reuse && painter->reuse->cache)
         fl_reuse_begin(painter->reuse, painter->result.rect);
     const FlRect rect = painter->result.rect;
@@ -211,7 +202,7 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
         {rect.width, rect.height, painter->result.width, painter->result.height},
         fl_key(seed, g_str_hash(plan->name))};
     return (painter->guides = fl_guide_sequence_new(&source, &params, error)) &&
-           (painter->paint = plan->engine->open(&input, error)) && make_picture(painter, error);
+           (painter->paint = plan->engine->open(&input, error));
 }
 
 void fl_painter_clear(FlPainter *painter)
@@ -220,7 +211,7 @@ void fl_painter_clear(FlPainter *painter)
     if (painter->paint)
         painter->plan->engine->close(painter->paint);
     fl_loop_clear(&painter->loop);
-    free(painter->result.painted);
+    fl_painted_clear(&painter->result);
     *painter = (FlPainter){0};
 }
 
@@ -326,10 +317,11 @@ static bool keep_picture(FlPainter *painter, GError **error)
     reuse->n_painted++;
     if (!reuse->cache)
         return true;
+    g_auto(FlPaintedLook) look = {0};
     g_autoptr(GBytes) state = painter->plan->engine->save(painter->paint, error);
-    if (!state)
+    if (!state || !fl_painted_look(&painter->result, &look, error))
         return false;
-    fl_reuse_keep(reuse, painter->result.painted, fl_painted_bytes(&painter->result), state);
+    fl_reuse_keep(reuse, look.region.painted, fl_painted_bytes(&look.region), state);
     return true;
 }
 
@@ -337,16 +329,16 @@ static bool keep_picture(FlPainter *painter, GError **error)
 static bool run_engine(FlPainter *painter, bool guided, FlGuides *guides, GError **error)
 {
     const FlEngine *engine = painter->plan->engine;
-    const FlEnginePaint paint = {painter->result.painted, painter->result.alpha,
-                                 &painter->result.stats,
-                                 painter->wants_view ? &painter->result.view : NULL};
+    FlPaintedRegion *result = &painter->result;
     if (!catch_up(painter, error))
         return false;
-    const bool rested = !guided && engine->rest(painter->paint);
-    if (!guided && !rested && !make_guides(painter, guides, error))
+    if (!guided && engine->rest(painter->paint))
+        return keep_picture(painter, error);
+    if ((!guided && !make_guides(painter, guides, error)) || !fl_painted_open(result, error))
         return false;
-    return (rested || engine->frame(painter->paint, guides, &paint, error)) &&
-           keep_picture(painter, error);
+    const FlEnginePaint paint = {result->painted, result->alpha, &result->stats,
+                                 painter->wants_view ? &result->view : NULL};
+    return engine->frame(painter->paint, guides, &paint, error) && keep_picture(painter, error);
 }
 
 /* The region's picture `index`, held ones counted once, into painter->result.painted; k: how many
@@ -365,6 +357,8 @@ static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides
     if (reuse)
         fl_reuse_next(reuse, k, still ? NULL : guides,
                       painter->plan->style->exemplar->level[0].first);
+    if (reuse && reuse->cache && !fl_painted_open(&painter->result, error))
+        return false;
     painter->result.taken =
         reuse && fl_reuse_take(reuse, painter->result.painted, fl_painted_bytes(&painter->result));
     if (painter->result.taken)
@@ -431,7 +425,10 @@ bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], 
         parts[0] = g_bytes_ref(painter->reuse->state);
     else if (!(parts[0] = painter->plan->engine->save(painter->paint, error)))
         return false;
-    parts[1] = g_bytes_new(painter->result.painted, holds ? fl_painted_bytes(&painter->result) : 0);
+    g_auto(FlPaintedLook) look = {0};
+    if (holds && !fl_painted_look(&painter->result, &look, error))
+        return false;
+    parts[1] = g_bytes_new(look.region.painted, holds ? fl_painted_bytes(&look.region) : 0);
     return true;
 }
 
@@ -467,6 +464,8 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
         return false;
     }
     painter->picture = NONE;
+    if (bytes > 0 && !fl_painted_open(&painter->result, error))
+        return false;
     if (bytes > 0)
         memcpy(painter->result.painted, g_bytes_get_data(parts[1], NULL), bytes);
     return true;
