@@ -13,6 +13,8 @@
 #include "job/resume.h"
 #include <string.h>
 
+#define LARGE_PX 3000000
+
 static bool open_drawing(FlPlan *plan, GError **error)
 {
     g_auto(FlRegionSettings) general = {0};
@@ -532,6 +534,11 @@ bool fl_plan_frames_alone(const FlPlan *plan)
     const bool gives_paint = !o->merge && (o->paint || o->ebsynth);
     return !o->layers && !plan->format->takes_layers && !o->only_region && !gives_paint &&
            !o->dump && !o->report;
+}
+
+bool fl_plan_is_large(const FlPlan *plan)
+{
+    return (size_t)plan->width * (size_t)plan->height > LARGE_PX;
 }
 
 bool fl_plan_is_of_paint(const FlPlan *plan)

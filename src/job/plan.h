@@ -87,6 +87,10 @@ bool fl_plan_frames_alone(const FlPlan *plan);
 /** Which of so many frames a part of a merge composes. */
 void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end);
 
+/** Whether memory counts: pictures wait packed then, and what stages leave over goes back to the
+ * system. On small pages it would take a tenth of a draft to fault that in again. */
+bool fl_plan_is_large(const FlPlan *plan);
+
 /** Whether paint is all that is made, as in the task of a farm: nothing is composed. */
 bool fl_plan_is_of_paint(const FlPlan *plan);
 

@@ -133,10 +133,11 @@ static FlRect cropped(const FlPainter *painter)
                            painter->plan->style);
 }
 
-double fl_painter_bytes(const FlPainter *painter)
+/* Measured: the packed state, and what packing leaves of a picture; bare paper takes little. */
+double fl_painter_bytes(const FlPainter *painter, bool packed)
 {
-    return 45 *
-           (double)fl_rect_pixels(painter->result.rect); // measured: fields, guides and the state
+    const double rect = (double)fl_rect_pixels(painter->result.rect);
+    return 10 * MIN(painter->plan->area_px, rect) + (packed ? 0 : 3 * rect);
 }
 
 static bool is_known(const FlPainter *painter)

@@ -38,8 +38,8 @@ void fl_painter_clear(FlPainter *painter);
  * of the coarsest patches, on the grid of the coarsest level, so that it has the page's pyramid. */
 FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style);
 
-/** An estimate of the bytes that the painter will use. */
-double fl_painter_bytes(const FlPainter *painter);
+/** An estimate of the bytes that the painter keeps between frames. packed: its picture waits so. */
+double fl_painter_bytes(const FlPainter *painter, bool packed);
 
 /** Makes guides for the whole film. The random numbers depend on seed and the region's name. */
 bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error);

@@ -11,9 +11,13 @@ static bool check_memory(const FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
     const double pixels = (double)plan->width * plan->height;
-    double bytes = 20e6 + 125 * pixels; // measured: the libraries, scratch, a frame composed
-    for (int p = 0; p < painters->n; p++)
-        bytes += fl_painter_bytes(&painters->painter[p]);
+    double bytes = 50e6 + 30 * pixels, largest = 0; // measured: the libraries, paper, a frame
+    for (int p = 0; p < painters->n; p++) {
+        const FlPainter *painter = &painters->painter[p];
+        bytes += fl_painter_bytes(painter, fl_plan_is_large(plan));
+        largest = MAX(largest, (double)fl_rect_pixels(painter->result.rect));
+    }
+    bytes += 90 * largest; // measured: what is painted at a time, and scratch
     bytes += fl_style_cache_bytes(plan->styles);
     g_autofree char *where =
         g_strdup_printf("%s, %d regions in %dx%d pixels", fl_drawing_name(plan->drawing),

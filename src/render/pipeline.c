@@ -21,8 +21,6 @@
 #include "render/summary.h"
 #include <fluidy/fluidy.h>
 
-#define LARGE_PX 3000000 // on a smaller page memory is not worth the time that sparing it takes
-
 /* A render in progress. */
 typedef struct Pipeline {
     FlPlan *plan;
@@ -47,13 +45,6 @@ typedef struct Pipeline {
 static double seconds_since(gint64 start)
 {
     return (double)(g_get_monotonic_time() - start) * 1e-6;
-}
-
-/* Whether pictures wait packed, and what stages leave over goes back to the system. On small pages
- * it would take a tenth of a draft to fault that in again. */
-static bool is_large(const FlPlan *plan)
-{
-    return (size_t)plan->width * (size_t)plan->height > LARGE_PX;
 }
 
 static bool report_progress(const Pipeline *pipeline, const char *stage, int done, double frame_s,
@@ -138,7 +129,7 @@ static bool paint_one(void *data, int p, int frame, FlGuides *guides, GError **e
     if ((dump && !dump_frame(plan, painter, frame, guides, error)) ||
         (exports && !export_frame(plan, painter, frame, guides, error)))
         return false;
-    if (painter->wants_guides || !is_large(plan))
+    if (painter->wants_guides || !fl_plan_is_large(plan))
         return true;
     fl_memory_trim();
     return fl_painted_pack(&painter->result, error);
@@ -236,7 +227,7 @@ static FlComposeInput compose_input(const Pipeline *pipeline, int frame)
 
 static void trim(const FlPlan *plan)
 {
-    if (is_large(plan))
+    if (fl_plan_is_large(plan))
         fl_memory_trim();
 }
 
