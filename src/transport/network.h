@@ -13,7 +13,7 @@
 
 #define FL_NETWORK_INPUTS 4  // density - 1, coverage - 0.5, noise every 4 px, noise every 12 px
 #define FL_NETWORK_HEADS 3   // grids of the potential, of 2, 4 and 8 px
-#define FL_NETWORK_GRID 16   // px; sides are multiples of it
+#define FL_NETWORK_GRID 16   // px; sides are multiples of it, as those of a FlRegionPlane are
 #define FL_NETWORK_MOST 8191 // an input or activation at most, and - FL_NETWORK_MOST at least
 
 /** A U-Net of convolutions of 3x3, which starts with one of 5x5 that halves its input. */

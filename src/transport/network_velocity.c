@@ -4,66 +4,13 @@
 #include "base/rng.h"
 #include "base/schedule.h"
 #include "transport/flow_map.h"
+#include "transport/region_plane.h"
 #include <math.h>
 
-#define MARGIN 32 // px of the network around the region, beyond which nothing changes
+#define ROOM 32 // px of the network around the region, beyond which nothing changes
 
 static const int noise_px[2] = {4, 12};
 #define NOISE_DEVIATION 0.4795f // of cubic B-splines of independent values of deviation 1
-
-/* The network's pixels around a region, as it lies on its material; corners are multiples of its
- * grid, wherever the region is and however it is turned. */
-typedef struct Box {
-    int x, y, width, height; // px of the network
-} Box;
-
-static int grid_below(float px)
-{
-    return (int)floorf(px / FL_NETWORK_GRID) * FL_NETWORK_GRID;
-}
-
-/* From the frame to the network's plane, px of the drawing. */
-static void to_plane(const FlRigid *lies, float x, float y, float at[2])
-{
-    const float c = (float)lies->cosine, s = (float)lies->sine;
-    const float dx = x - (float)lies->x, dy = y - (float)lies->y;
-    at[0] = (float)lies->u + c * dx - s * dy, at[1] = (float)lies->v + s * dx + c * dy;
-}
-
-/* A direction or place of the plane, seen from the middle of the region, in the frame. */
-static void from_plane(const FlRigid *lies, float u, float v, float to[2])
-{
-    const float c = (float)lies->cosine, s = (float)lies->sine;
-    to[0] = c * u + s * v, to[1] = c * v - s * u;
-}
-
-static FlRigid lies_on_material(const FlMaterialLayers *layers, const FlGuides *guides)
-{
-    FlFit sums = {0};
-    fl_material_add_fit(&layers->old, &layers->share, 0, guides, &sums);
-    if (layers->share.shift)
-        fl_material_add_fit(&layers->fresh, &layers->share, 1, guides, &sums);
-    return fl_material_rigid(&sums);
-}
-
-static Box box_around(const FlRigid *lies, FlRect rect, const FlGuides *guides, float scale)
-{
-    float low[2] = {HUGE_VALF, HUGE_VALF}, high[2] = {-HUGE_VALF, -HUGE_VALF}, at[2];
-    for (int y = rect.y; y < rect.y + rect.height; y++)
-        for (int x = rect.x; x < rect.x + rect.width; x++) {
-            if (!guides->mask[(size_t)y * (size_t)guides->width + (size_t)x])
-                continue;
-            to_plane(lies, (float)x, (float)y, at);
-            for (int c = 0; c < 2; c++)
-                low[c] = fminf(low[c], at[c]), high[c] = fmaxf(high[c], at[c]);
-        }
-    int corner[2], end[2];
-    for (int c = 0; c < 2; c++) {
-        corner[c] = grid_below(low[c] / scale - MARGIN);
-        end[c] = grid_below(high[c] / scale + MARGIN) + FL_NETWORK_GRID;
-    }
-    return (Box){corner[0], corner[1], end[0] - corner[0], end[1] - corner[1]};
-}
 
 /* Of deviation 1: four uniform numbers are as good as normal here. */
 static float normal(uint64_t key, int x, int y)
@@ -92,39 +39,15 @@ static float noise_at(uint64_t key, float x, float y)
     return sum / NOISE_DEVIATION;
 }
 
-/* The four pixels around a place, held to the plane, and their shares. */
-typedef struct Four {
-    size_t p[4];
-    float share[4];
-} Four;
-
-static Four four_around(float x, float y, int width, int height)
-{
-    x = fminf(fmaxf(x, 0), (float)(width - 1)), y = fminf(fmaxf(y, 0), (float)(height - 1));
-    const int x0 = (int)x, y0 = (int)y, x1 = MIN(x0 + 1, width - 1), y1 = MIN(y0 + 1, height - 1);
-    const float fx = x - (float)x0, fy = y - (float)y0;
-    const size_t up = (size_t)y0 * (size_t)width, down = (size_t)y1 * (size_t)width;
-    return (Four){{up + (size_t)x0, up + (size_t)x1, down + (size_t)x0, down + (size_t)x1},
-                  {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
-}
-
-static float mean_of_four(const float *plane, size_t step, const Four *four)
-{
-    float sum = 0;
-    for (int k = 0; k < 4; k++)
-        sum += four->share[k] * plane[step * four->p[k]];
-    return sum;
-}
-
 /* Adds `share` of the noises of a layer at (x, y) of the frame; a layer's noises are its own by
  * where it lies. */
 static void add_noise(const FlNetworkPlace *place, const FlMaterial *material, float x, float y,
                       float share, float noise[2])
 {
     const FlRect r = material->rect;
-    const Four four = four_around(x - (float)r.x, y - (float)r.y, r.width, r.height);
-    const float mx = x + mean_of_four(material->shift, 2, &four) + place->origin[0];
-    const float my = y + mean_of_four(material->shift + 1, 2, &four) + place->origin[1];
+    const FlFour four = fl_four_around(x - (float)r.x, y - (float)r.y, r.width, r.height);
+    const float mx = x + fl_mean_of_four(material->shift, 2, &four) + place->origin[0];
+    const float my = y + fl_mean_of_four(material->shift + 1, 2, &four) + place->origin[1];
     for (int k = 0; k < 2; k++) {
         const float node = (float)noise_px[k] * place->scale;
         noise[k] += share * noise_at(fl_key(place->seed, (uint64_t)k), mx / node, my / node);
@@ -135,8 +58,7 @@ typedef struct Job {
     const FlNetworkPlace *place;
     const FlMaterialLayers *layers;
     const FlGuides *guides;
-    FlRigid lies; // the region on its material
-    Box box;
+    FlRegionPlane plane;
     float one; // of the inputs
     int16_t *inputs;
 } Job;
@@ -147,18 +69,15 @@ static int16_t as_input(float value, float one)
         fminf(fmaxf(value * one, (float)-FL_NETWORK_MOST), (float)FL_NETWORK_MOST));
 }
 
-/* One pixel of the box: at (x, y) of the frame. */
+/* One pixel of the plane: at (x, y) of the frame. */
 static void make_input(const Job *job, float x, float y, int16_t *to, size_t plane)
 {
     const FlRect r = job->layers->old.rect;
-    const Four at = four_around(x, y, job->guides->width, job->guides->height);
-    const float depth = mean_of_four(job->guides->distance, 1, &at) / job->place->scale;
-    const bool near = x > (float)r.x - 1 && y > (float)r.y - 1 && x < (float)(r.x + r.width) &&
-                      y < (float)(r.y + r.height);
-    const float coverage = near ? fminf(fmaxf(depth + 0.5f, 0), 1) : 0;
+    const float coverage =
+        fminf(fmaxf(fl_region_plane_depth(&job->plane, job->guides, r, x, y) + 0.5f, 0), 1);
     float noise[2] = {0, 0}, old, fresh;
     if (coverage > 0) {
-        const Four here = four_around(x - (float)r.x, y - (float)r.y, r.width, r.height);
+        const FlFour here = fl_four_around(x - (float)r.x, y - (float)r.y, r.width, r.height);
         fl_material_layers_weights(job->layers, here.p[0], &old, &fresh);
         if (old > 0)
             add_noise(job->place, &job->layers->old, x, y, old * coverage, noise);
@@ -173,36 +92,15 @@ static void make_input(const Job *job, float x, float y, int16_t *to, size_t pla
 
 static void make_inputs(const Job *job)
 {
-    const Box b = job->box;
-    const size_t plane = (size_t)b.width * (size_t)b.height;
-    const float scale = job->place->scale;
+    const FlRect b = job->plane.box;
+    const size_t plane = fl_rect_pixels(b);
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(plane))
     for (int y = 0; y < b.height; y++)
         for (int x = 0; x < b.width; x++) {
             float at[2];
-            from_plane(&job->lies, ((float)(x + b.x) + 0.5f) * scale - 0.5f - (float)job->lies.u,
-                       ((float)(y + b.y) + 0.5f) * scale - 0.5f - (float)job->lies.v, at);
-            make_input(job, at[0] + (float)job->lies.x, at[1] + (float)job->lies.y,
-                       job->inputs + (size_t)y * (size_t)b.width + (size_t)x, plane);
-        }
-}
-
-/* From the box's pixels to the frame's. */
-static void enlarge(const Job *job, const float *from, FlRect rect, float *velocity)
-{
-    const Box b = job->box;
-    const float scale = job->place->scale;
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(rect)))
-    for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            float at[2];
-            to_plane(&job->lies, (float)(x + rect.x), (float)(y + rect.y), at);
-            const Four four =
-                four_around((at[0] + 0.5f) / scale - 0.5f - (float)b.x,
-                            (at[1] + 0.5f) / scale - 0.5f - (float)b.y, b.width, b.height);
-            from_plane(&job->lies, scale * mean_of_four(from, 2, &four),
-                       scale * mean_of_four(from + 1, 2, &four),
-                       velocity + 2 * ((size_t)y * (size_t)rect.width + (size_t)x));
+            fl_region_plane_to_frame(&job->plane, x, y, at);
+            make_input(job, at[0], at[1], job->inputs + (size_t)y * (size_t)b.width + (size_t)x,
+                       plane);
         }
 }
 
@@ -211,20 +109,20 @@ bool fl_network_velocity(const FlNetwork *network, const FlNetworkPlace *place,
                          GError **error)
 {
     const FlRect rect = layers->old.rect;
-    const FlRigid lies = lies_on_material(layers, guides);
-    const Box box = box_around(&lies, rect, guides, place->scale);
-    const size_t n = (size_t)box.width * (size_t)box.height;
+    const FlRegionPlane plane = fl_region_plane(layers, guides, place->scale, ROOM);
+    const FlRect box = plane.box;
+    const size_t n = fl_rect_pixels(box);
     g_autofree int16_t *inputs =
         fl_alloc(FL_NETWORK_INPUTS * n, sizeof *inputs, "a network's input", error);
     g_autofree float *potential = fl_alloc(3 * n, sizeof *potential, "a potential", error);
     if (!inputs || !potential)
         return false;
-    const Job job = {place, layers, guides, lies, box, fl_network_one(network), inputs};
+    const Job job = {place, layers, guides, plane, fl_network_one(network), inputs};
     make_inputs(&job);
     if (!fl_network_potential(network, inputs, box.width, box.height, potential, error))
         return false;
-    const FlFlowMap box_of = {.width = box.width, .height = box.height};
-    fl_velocity(&box_of, potential, NULL, FL_TRANSPORT_GATHER, potential + n);
-    enlarge(&job, potential + n, rect, velocity);
+    const FlFlowMap of_plane = {.width = box.width, .height = box.height};
+    fl_velocity(&of_plane, potential, NULL, FL_TRANSPORT_GATHER, potential + n);
+    fl_region_plane_velocity(&plane, potential + n, rect, velocity);
     return true;
 }
