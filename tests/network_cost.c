@@ -39,7 +39,9 @@ static void draw(Scene *scene, float taper_px)
 static void show(Scene *scene, const char *name, double cpu_s)
 {
     g_auto(FlFlowMap) map = {0};
-    const FlSlicedTarget target = {SIDE, SIDE, scene->carried, scene->coverage};
+    g_auto(FlSlicedPlaces) places = {0};
+    g_assert_true(fl_sliced_places_init(&places, scene->coverage, SIDE, SIDE, NULL));
+    const FlSlicedTarget target = {scene->carried, &places};
     float loss[FL_SLICED_LEVELS];
     g_assert_true(fl_flow_map_init(&map, SIDE, SIDE, false, NULL));
     const clock_t start = clock();

@@ -50,6 +50,10 @@ paint net -j 1 "${net[@]}" && paint net_many -j 4 "${net[@]}" && same net_many n
     FLUIDY_CPU_MASK=0 paint net_plain "${net[@]}" && same net_plain net &&
     paint net_tile "${net[@]}" --solver tile && ! same net_tile net
 result $? 'and so does a network'
+fine=("${net[@]}" --refine 2)
+paint fine -j 1 "${fine[@]}" && paint fine_many -j 4 "${fine[@]}" && same fine_many fine &&
+    FLUIDY_CPU_MASK=0 paint fine_plain "${fine[@]}" && same fine_plain fine && ! same fine net
+result $? 'and so does what is refined'
 paint flat "${ink[@]}" --strength 0 && ! same flat ink
 result $? 'without strength it stays where it is'
 

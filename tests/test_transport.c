@@ -3,6 +3,7 @@
 #include "base/density.h"
 #include "base/rng.h"
 #include "transport/carried_ink.h"
+#include "transport/style_ink.h"
 #include "transport/material_layers.h"
 
 #include <glib/gstdio.h>
@@ -142,7 +143,9 @@ static void the_loss_has_the_derivative_it_says(void)
     g_autoptr(FlSliced) sliced = fl_sliced_new(picture, n, n, NULL);
     for (size_t i = 0; i < (size_t)n * n; i++)
         density[i] = 1 + 0.5f * noise(3, i);
-    FlSlicedTarget target = {n, n, density, NULL};
+    g_auto(FlSlicedPlaces) places = {0};
+    g_assert_true(fl_sliced_places_init(&places, NULL, n, n, NULL));
+    FlSlicedTarget target = {density, &places};
     fl_sliced_loss(sliced, &target, 7, 512, 96, 1, by, NULL, NULL);
     double length = 0, loss[2];
     for (int i = 0; i < n * n; i++)
@@ -178,7 +181,9 @@ static void a_solution_looks_like_its_picture(void)
     fl_flow_map_carry(&map, NULL, carried);
     for (int i = 0; i < n * n; i++)
         flat[i] = 1;
-    FlSlicedTarget target = {n, n, flat, NULL};
+    g_auto(FlSlicedPlaces) places = {0};
+    g_assert_true(fl_sliced_places_init(&places, NULL, n, n, NULL));
+    FlSlicedTarget target = {flat, &places};
     const float before = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL, NULL);
     target.density = carried;
     const float after = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL, NULL);
@@ -362,7 +367,7 @@ static void the_network_is_that_of_its_training(void)
 typedef struct Motion {
     const char *name;
     float shift, turn, growth; // px, radians and a factor of its size
-    float tile, network;       // bounds of flicker
+    float tile, network, refined; // bounds of flicker
 } Motion;
 
 /* The amount at a place between pixels. */
@@ -425,8 +430,8 @@ static double flicker_of(Disk *disk, const Motion *m, int frames)
     return change / n / deviation;
 }
 
-/* A disk with the tile and, if wanted, the network of the batik. */
-static Disk *batik_new(FlNetwork *network)
+/* A disk with the tile and, if wanted, the network and the patches of the batik. */
+static Disk *batik_new(FlNetwork *network, FlSliced *patches)
 {
     g_autofree char *folder = network_folder();
     Disk *disk = disk_new(1);
@@ -435,6 +440,8 @@ static Disk *batik_new(FlNetwork *network)
     g_assert_nonnull(disk->tile);
     FlCarriedInkInput input = {.tile = disk->tile,
                                .network = network,
+                               .patches = patches,
+                               .refine = 8,
                                .width = SIDE,
                                .height = SIDE,
                                .scale = 1,
@@ -449,22 +456,82 @@ static Disk *batik_new(FlNetwork *network)
 static void ink_does_not_flicker(void)
 {
     static const Motion motions[] = {
-        {"moving", 3, 0, 1, 0.08f, 0.08f},
-        {"growing", 2.8f, 0, 1.012f, 0.08f, 0.08f},
-        {"turning", 0, 0.0654498f, 1, 0.08f, 0.08f},
-        {"at rest", 0, 0, 1, 0, 0},
+        {"moving", 3, 0, 1, 0.08f, 0.08f, 0.15f},
+        {"growing", 2.8f, 0, 1.012f, 0.08f, 0.08f, 0.15f},
+        {"turning", 0, 0.0654498f, 1, 0.08f, 0.08f, 0.15f},
+        {"at rest", 0, 0, 1, 0, 0, 0},
     };
     g_autofree char *folder = network_folder();
     g_autoptr(FlNetwork) network = fl_network_load(folder, NULL);
+    g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     for (size_t k = 0; k < G_N_ELEMENTS(motions); k++)
-        for (int with = 0; with < 2; with++) {
+        for (int with = 0; with < 3; with++) {
+            static const char *const names[] = {"tile", "network", "refined"};
             const Motion *m = &motions[k];
-            Disk *disk = batik_new(with ? network : NULL);
+            const float bounds[] = {m->tile, m->network, m->refined};
+            Disk *disk = batik_new(with == 1 ? network : NULL, with == 2 ? patches : NULL);
             const double flicker = flicker_of(disk, m, m->turn > 0 ? 24 : 10);
-            g_test_message("%s, %s: flicker %.4f", m->name, with ? "network" : "tile", flicker);
-            g_assert_cmpfloat(flicker, <=, (double)(with ? m->network : m->tile));
+            g_test_message("%s, %s: flicker %.4f", m->name, names[with], flicker);
+            g_assert_cmpfloat(flicker, <=, (double)bounds[with]);
             disk_free(disk);
         }
+}
+
+/* The loss of the ink in the disk on the finest levels, as far as they have patches. */
+static double loss_of(const Disk *disk, const FlSliced *patches)
+{
+    enum { INNER = SIDE / 16 * 16 };
+    float density[INNER * INNER], coverage[INNER * INNER];
+    g_auto(FlSlicedPlaces) places = {0};
+    for (size_t p = 0; p < G_N_ELEMENTS(density); p++) {
+        const size_t q = p / INNER * SIDE + p % INNER;
+        density[p] = disk->amount[q];
+        coverage[p] = fminf(fmaxf(disk->guides.distance[q] - 4, 0), 1);
+    }
+    g_assert_true(fl_sliced_places_init(&places, coverage, INNER, INNER, NULL));
+    const FlSlicedTarget target = {density, &places};
+    return (double)fl_sliced_loss(patches, &target, 7, 2048, FL_SLICED_DIRECTIONS, 5, NULL, NULL,
+                                  NULL);
+}
+
+/* Where a shape grows, a tile's pattern grows along; what is refined keeps the style's size. */
+static void refined_ink_looks_like_its_style(void)
+{
+    const Motion growing = {.shift = 2.8f, .growth = 1.012f};
+    g_autofree char *folder = network_folder();
+    g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
+    double loss[2];
+    for (int refined = 0; refined < 2; refined++) {
+        Disk *disk = batik_new(NULL, refined ? patches : NULL);
+        (void)flicker_of(disk, &growing, 10);
+        loss[refined] = loss_of(disk, patches);
+        disk_free(disk);
+    }
+    g_test_message("loss %.4f of the tile, %.4f refined", loss[0], loss[1]);
+    g_assert_cmpfloat(loss[1], <, 0.5 * loss[0]);
+}
+
+/* Nothing fades or gains while a shape swings to and fro. */
+static void refined_ink_does_not_decay(void)
+{
+    enum { FRAMES = 60 };
+    const Motion motions[] = {{.shift = 2, .growth = 1}, {.shift = -2, .growth = 1}};
+    g_autofree char *folder = network_folder();
+    g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
+    Disk *disk = batik_new(NULL, patches);
+    double x = 50, early = 0, late = 0;
+    for (int frame = 0; frame < FRAMES; frame++) {
+        const Motion *m = &motions[frame / 10 % 2];
+        double deviation;
+        x += frame ? (double)m->shift : 0;
+        draw_moved(&disk->guides, frame ? m : &(Motion){.growth = 1}, x, 40);
+        g_assert_true(fl_carried_ink_amounts(disk->ink, &disk->guides, disk->amount, NULL));
+        mean_of(disk, &deviation);
+        early += frame < 10 ? deviation / 10 : 0, late += frame >= FRAMES - 10 ? deviation / 10 : 0;
+    }
+    g_test_message("deviation %.3f early, %.3f late", early, late);
+    g_assert_cmpfloat(fabs(late / early - 1), <, 0.05);
+    disk_free(disk);
 }
 
 /* Whether a file with these bytes is read; if not, with one line that names it. */
@@ -693,6 +760,34 @@ static void a_state_continues_as_if_nothing_had_been(void)
     g_assert_true(fl_carried_ink_load(other->ink, state, NULL));
     disk_frame(disk, 55, 2.4f), disk_frame(other, 55, 2.4f);
     g_assert_cmpmem(disk->amount, sizeof disk->amount, other->amount, sizeof disk->amount);
+    disk_free(disk);
+    disk_free(other);
+}
+
+static void a_refined_state_continues(void)
+{
+    const Motion growing = {.shift = 2.3f, .growth = 1.01f}, rest = {.growth = 1};
+    g_autofree char *folder = network_folder();
+    g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
+    Disk *disk = batik_new(NULL, patches), *other = batik_new(NULL, patches);
+    draw_moved(&disk->guides, &rest, 50, 40);
+    g_assert_true(fl_carried_ink_amounts(disk->ink, &disk->guides, disk->amount, NULL));
+    g_autoptr(GBytes) state = fl_carried_ink_save(disk->ink, NULL);
+    g_assert_true(fl_carried_ink_load(other->ink, state, NULL));
+    Disk *const both[] = {disk, other};
+    for (int k = 0; k < 2; k++) {
+        draw_moved(&both[k]->guides, &growing, 52.3, 40.4);
+        g_assert_true(
+            fl_carried_ink_amounts(both[k]->ink, &both[k]->guides, both[k]->amount, NULL));
+    }
+    g_assert_cmpmem(disk->amount, sizeof disk->amount, other->amount, sizeof disk->amount);
+    const gsize size = g_bytes_get_size(state), cuts[] = {1, 100, 4000};
+    for (gsize k = 0; k < G_N_ELEMENTS(cuts); k++) {
+        g_autoptr(GBytes) cut = g_bytes_new_from_bytes(state, 0, size - cuts[k]);
+        g_autoptr(GError) error = NULL;
+        g_assert_false(fl_carried_ink_load(other->ink, cut, &error));
+        g_assert_error(error, FL_ERROR, FL_ERROR_CHANGED);
+    }
     disk_free(disk);
     disk_free(other);
 }
@@ -997,6 +1092,9 @@ int main(int argc, char **argv)
     TEST(no_strength_is_a_flat_fill);
     TEST(the_network_is_that_of_its_training);
     TEST(ink_does_not_flicker);
+    TEST(refined_ink_looks_like_its_style);
+    TEST(refined_ink_does_not_decay);
+    TEST(a_refined_state_continues);
     TEST(hostile_networks_are_rejected);
     TEST(a_frame_is_what_the_formulas_say);
     TEST(painted_ink_is_moved_and_stays_as_much);

@@ -17,6 +17,7 @@ typedef struct FlStyleInstance {
     bool reverse;
     FlExemplar *exemplar;
     FlInk *ink;
+    struct FlSliced *patches; // of its ink, which transport refines by; NULL: nobody does
     FlMedium medium;
     float granulation; // as of fl_granulate()
     float enlarged;    // px of the drawing per px of its pictures

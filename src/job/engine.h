@@ -35,7 +35,8 @@ typedef struct FlEngine {
     /** How far beyond its region paint has alpha of its own, px; 0, and NULL: it has no such alpha.
      */
     float (*reach)(const FlStyleInstance *style, const FlParams *params);
-    bool plays; // shows the recording: whether it flows and is large enough matters
+    bool refines; // by the patches of its style, if ‘refine’ asks for it
+    bool plays;   // shows the recording: whether it flows and is large enough matters
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);
     void (*close)(void *state); // NULL is fine

@@ -108,6 +108,9 @@ const FlEngine *fl_engine_of_region(FlStyleCache *styles, const FlStyleInstance 
     const FlEngine *engine = fl_engine_choose(settings->engine, style->path);
     FlRegionSettings of_tile = *settings;
     *tile = NULL;
+    if (engine->refines && settings->refine > 0 &&
+        !fl_style_cache_learn_patches(styles, style, error))
+        return NULL;
     if (!settings->tile)
         return engine;
     if (!engine->plays) {
@@ -116,11 +119,10 @@ const FlEngine *fl_engine_of_region(FlStyleCache *styles, const FlStyleInstance 
                     engine->name);
         return NULL;
     }
-    if (settings->solver == FL_SOLVER_NETWORK) {
-        g_set_error(
-            error, FL_ERROR, FL_ERROR_USAGE,
-            "‘tile’ moves paint that is there, and ‘solver’ network flat ink only; leave out "
-            "one of them");
+    if (settings->solver == FL_SOLVER_NETWORK || settings->refine > 0) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "‘tile’ moves paint that is there, and %s flat ink only; leave out one of them",
+                    settings->refine > 0 ? "‘refine’" : "‘solver’ network");
         return NULL;
     }
     of_tile.style = settings->tile;

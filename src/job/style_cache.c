@@ -2,6 +2,7 @@
 
 #include "job/style_size.h"
 #include "style/adapt.h"
+#include "transport/style_ink.h"
 #include <string.h>
 
 #define BYTES_OF_WINDOW 50.0            // of a pixel, measured: with rotations
@@ -18,6 +19,7 @@ static void style_instance_free(FlStyleInstance *instance)
     g_free(instance->path);
     fl_exemplar_free(instance->exemplar);
     fl_ink_free(instance->ink);
+    fl_sliced_free(instance->patches);
     g_free(instance);
 }
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyleInstance, style_instance_free)
@@ -103,6 +105,15 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
     if (instance)
         g_ptr_array_add(cache->instances, instance);
     return instance;
+}
+
+bool fl_style_cache_learn_patches(FlStyleCache *cache, const FlStyleInstance *style, GError **error)
+{
+    guint i;
+    if (!g_ptr_array_find(cache->instances, style, &i))
+        g_error("a style of another cache");
+    FlStyleInstance *instance = cache->instances->pdata[i];
+    return instance->patches || (instance->patches = fl_style_patches(style->path, error));
 }
 
 double fl_style_cache_bytes(const FlStyleCache *cache)

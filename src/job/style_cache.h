@@ -21,6 +21,11 @@ void fl_style_cache_free(FlStyleCache *cache); // NULL is fine
 const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSettings *settings,
                                           float texture_px, GError **error);
 
+/** Fills the `patches` of an instance, by which transport refines. FL_ERROR_STYLE,
+ * FL_ERROR_NO_MEMORY. */
+bool fl_style_cache_learn_patches(FlStyleCache *cache, const FlStyleInstance *style,
+                                  GError **error);
+
 /** An estimate of the bytes of all instances. */
 double fl_style_cache_bytes(const FlStyleCache *cache);
 

@@ -66,6 +66,7 @@ typedef struct FlRegionSettings {
     FlEngineChoice engine;
     FlSolver solver;
     double strength; // of transport: factor on the way of the ink
+    int refine;      // of transport: iterations by frame
     char *tile;      // a transport style that moves the paint; NULL: none
     FlTint tint;
     bool has_colour;   // with FL_TINT_FILL: `colour` instead of the drawing's fill

@@ -7,6 +7,7 @@
 #include "base/state_bytes.h"
 #include "transport/material_layers.h"
 #include "transport/network_velocity.h"
+#include "transport/refinement.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -23,6 +24,7 @@ struct FlCarriedInk {
     FlCarriedInkInput input;
     float origin[2]; // of the region on the tile, px of the drawing
     FlMaterialLayers layers;
+    FlRefinement refinement;
     uint8_t (*colour)[3]; // by amount
 };
 
@@ -54,6 +56,7 @@ void fl_carried_ink_free(FlCarriedInk *ink)
     if (!ink)
         return;
     fl_material_layers_clear(&ink->layers);
+    fl_refinement_clear(&ink->refinement);
     free(ink->colour);
     g_free(ink);
 }
@@ -126,29 +129,50 @@ static void add_layers(const FlCarriedInk *ink, const float *whole, int x, int y
                      velocity);
 }
 
+/* Shortens a velocity to `farthest`. */
+static void hold(float velocity[2], float farthest)
+{
+    const float speed = sqrtf(velocity[0] * velocity[0] + velocity[1] * velocity[1]);
+    const float held = speed > farthest ? farthest / speed : 1;
+    velocity[0] *= held, velocity[1] *= held;
+}
+
 /* whole: by pixel of the old layer, then by pixel of the fresh one. Ink stays in its shape, too. */
 static void find_velocity(const FlCarriedInk *ink, const FlGuides *guides, const float *whole,
-                          float *velocity)
+                          float strength, float *velocity)
 {
     const FlRect rect = ink->layers.old.rect;
     const float farthest = FARTHEST * ink->input.scale;
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(rect)))
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
-            const float taper =
-                ink->input.strength *
-                taper_at(ink, guides,
-                         (size_t)(y + rect.y) * (size_t)guides->width + (size_t)(x + rect.x));
+            const float taper = strength * taper_at(ink, guides,
+                                                    (size_t)(y + rect.y) * (size_t)guides->width +
+                                                        (size_t)(x + rect.x));
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
             float *v = velocity + 2 * p;
             v[0] = v[1] = 0;
             if (taper == 0)
                 continue;
             add_layers(ink, whole, x, y, taper, v);
-            const float speed = sqrtf(v[0] * v[0] + v[1] * v[1]);
-            const float held = speed > farthest ? farthest / speed : 1;
-            v[0] *= held, v[1] *= held;
+            hold(v, farthest);
         }
+}
+
+/* Brings the velocity of a strength of 1 up to date with the region's shape. */
+static bool refine(FlCarriedInk *ink, const FlGuides *guides, float *velocity, GError **error)
+{
+    const FlRefinementInput input = {ink->input.patches, &ink->input.tile->style, ink->input.scale,
+                                     ink->input.refine, fl_hash64(ink->input.seed)};
+    const size_t n = fl_rect_pixels(ink->layers.old.rect);
+    if (!fl_refinement_advance(&ink->refinement, &input, &ink->layers, guides, velocity, error))
+        return false;
+    for (size_t p = 0; p < n; p++) {
+        float *v = velocity + 2 * p;
+        v[0] *= ink->input.strength, v[1] *= ink->input.strength;
+        hold(v, FARTHEST * ink->input.scale);
+    }
+    return true;
 }
 
 /* The network sees each frame alone; what it says is a mean along the motion, so that the pattern
@@ -205,7 +229,7 @@ static float to_mean_one(const FlGuides *guides, FlRect rect, const float *carri
 }
 
 /* The map by which the ink of a frame moves. */
-static bool find_map(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect, FlFlowMap *map,
+static bool find_map(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, FlFlowMap *map,
                      GError **error)
 {
     g_autofree float *velocity =
@@ -218,7 +242,9 @@ static bool find_map(const FlCarriedInk *ink, const FlGuides *guides, FlRect rec
         (layers->fresh.shift && !fl_material_whole(&layers->fresh, &layers->share, guides, reach,
                                                    whole + fl_rect_pixels(rect), error)))
         return false;
-    find_velocity(ink, guides, whole, velocity);
+    find_velocity(ink, guides, whole, ink->input.patches ? 1 : ink->input.strength, velocity);
+    if (ink->input.patches && !refine(ink, guides, velocity, error))
+        return false;
     fl_flow_map_run(map, velocity);
     return true;
 }
@@ -296,6 +322,7 @@ static bool advance(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GErr
         return fl_material_layers_advance(&ink->layers, guides, rect, reach, error) &&
                (!ink->input.network || ask_network(ink, guides, error));
     fl_material_layers_clear(&ink->layers);
+    fl_refinement_clear(&ink->refinement);
     return true;
 }
 
@@ -346,7 +373,8 @@ bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rg
  */
 
 /* The bytes start with this; the shifts of the old layer and the motion follow, with a network the
- * velocity and, if there are two layers, the shifts of the fresh one and the shares. */
+ * velocity, if there are two layers, the shifts of the fresh one and the shares, and where frames
+ * are refined, the refinement. */
 typedef struct Header {
     int32_t planes, x, y, width, height;
 } Header;
@@ -376,13 +404,16 @@ GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
     FlMaterial *kept[MOST_PLANES];
     const int planes = kept_planes(&layers, ink->input.network, layers.share.shift, kept);
     const Header header = {planes, r.x, r.y, r.width, r.height};
-    const size_t size = sizeof header + (size_t)planes * plane;
+    const size_t end = sizeof header + (size_t)planes * plane;
+    const size_t size = end + (ink->input.patches ? fl_refinement_bytes(&ink->refinement) : 0);
     uint8_t *bytes = fl_alloc(size, 1, "the state of a region", error);
     if (!bytes)
         return NULL;
     memcpy(bytes, &header, sizeof header);
     for (int k = 0; k < planes && plane > 0; k++)
         memcpy(bytes + sizeof header + (size_t)k * plane, kept[k]->shift, plane);
+    if (ink->input.patches)
+        fl_refinement_write(&ink->refinement, bytes + end);
     return g_bytes_new_with_free_func(bytes, size, free, bytes);
 }
 
@@ -415,12 +446,21 @@ static bool load_planes(FlCarriedInk *ink, const Header *h, const uint8_t *bytes
     return true;
 }
 
+/* A region's plane is no longer than the frame's diagonal and some room. */
+static bool load_refinement(FlCarriedInk *ink, const uint8_t *bytes, size_t size, GError **error)
+{
+    const float side = (float)(ink->input.width + ink->input.height);
+    return fl_refinement_read(&ink->refinement, bytes, size, (int)(side / ink->input.scale) + 128,
+                              error);
+}
+
 bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
 {
     size_t size;
     const uint8_t *bytes = g_bytes_get_data(state, &size);
     Header h;
     fl_material_layers_clear(&ink->layers);
+    fl_refinement_clear(&ink->refinement);
     if (!fl_state_bytes_header(state, &h, sizeof h, error))
         return false;
     const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
@@ -430,10 +470,13 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
     if (!fits || (h.planes != least && h.planes != least + 2))
         return fl_state_bytes_damaged("its material lies outside the frame", error);
     const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
-    if (size != sizeof h + (size_t)h.planes * plane)
+    const size_t end = sizeof h + (size_t)h.planes * plane;
+    if (size < end || (size > end && !ink->input.patches))
         return fl_state_bytes_damaged("it has another size", error);
-    if (plane == 0 || load_planes(ink, &h, bytes + sizeof h, error))
+    if ((plane == 0 || load_planes(ink, &h, bytes + sizeof h, error)) &&
+        (!ink->input.patches || load_refinement(ink, bytes + end, size - end, error)))
         return true;
     fl_material_layers_clear(&ink->layers);
+    fl_refinement_clear(&ink->refinement);
     return false;
 }

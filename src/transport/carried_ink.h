@@ -4,6 +4,7 @@
 
 #include "guides/guides.h"
 #include "transport/network.h"
+#include "transport/sliced.h"
 #include "transport/tile.h"
 
 /** The colour of ink on its paper. */
@@ -16,6 +17,8 @@ typedef struct FlCarriedInkInput {
     const FlTile *tile;       // borrowed
     const FlNetwork *network; // moves the ink in place of the tile; NULL: the tile does; borrowed
     int width, height;        // of what is painted
+    const FlSliced *patches;  // of the style, by which each frame is refined; NULL: none is
+    int refine;               // iterations a frame
     float scale;              // px of the drawing per px of the tile
     float strength;           // factor on the motion of ink; 0: flat
     uint64_t seed;            // decides where on the tile the region lies

@@ -167,6 +167,10 @@ static void square(const FlFlowMap *map, const float *u, float *twice)
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
+            if (u[2 * p] == 0 && u[2 * p + 1] == 0) { // as around a region
+                twice[2 * p] = twice[2 * p + 1] = 0;
+                continue;
+            }
             const Cell cell = cell_of(map, u, x, y);
             twice[2 * p] = u[2 * p] + sample(&cell, u, 2);
             twice[2 * p + 1] = u[2 * p + 1] + sample(&cell, u + 1, 2);
@@ -222,6 +226,8 @@ static void by_map(const FlFlowMap *map, const float *density, const float *by_c
                 by_u[2 * p + 1] += by_carried[p] * map->jacobian[p] * dy;
             }
             const float j = by_carried[p] * from + (by_jacobian ? by_jacobian[p] : 0);
+            if (j == 0)
+                continue;
             gradient(map, u, 2, x, y, &xx, &xy);
             gradient(map, u + 1, 2, x, y, &yx, &yy);
             scatter_gradient(map, by_u, 2, x, y, j * (1 + yy), -j * yx);
@@ -237,6 +243,8 @@ static void square_adjoint(const FlFlowMap *map, const float *u, const float *by
     for (int y = 0; y < map->height; y++)
         for (int x = 0; x < map->width; x++) {
             const size_t p = at(map, x, y);
+            if (by_twice[2 * p] == 0 && by_twice[2 * p + 1] == 0)
+                continue;
             const Cell cell = cell_of(map, u, x, y);
             for (int c = 0; c < 2; c++) {
                 const float by = by_twice[2 * p + (size_t)c];

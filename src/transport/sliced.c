@@ -253,21 +253,44 @@ void fl_sliced_free(FlSliced *sliced)
 /* ---- loss --------------------------------------------------------------------------------------
  */
 
-/* Where whole patches fit, of a level: corners, in scan order. */
+static bool is_whole(const float *coverage, int width, int height, uint32_t place)
+{
+    float patch[PATCH_PIXELS];
+    read_patch(coverage, width, height, place, patch);
+    for (int i = 0; i < PATCH_PIXELS; i++)
+        if (patch[i] <= 0.98f)
+            return false;
+    return true;
+}
+
+/* Of a level whose coverage is NULL or width * height. */
 static GArray *places_of(const float *coverage, int width, int height)
 {
     GArray *places = g_array_new(FALSE, FALSE, sizeof(uint32_t));
-    float patch[PATCH_PIXELS];
-    for (uint32_t place = 0; place < (uint32_t)(width * height); place++) {
-        bool whole = true;
-        if (coverage)
-            read_patch(coverage, width, height, place, patch);
-        for (int i = 0; coverage && i < PATCH_PIXELS && whole; i++)
-            whole = patch[i] > 0.98f;
-        if (whole)
+    for (uint32_t place = 0; place < (uint32_t)(width * height); place++)
+        if (!coverage || is_whole(coverage, width, height, place))
             g_array_append_val(places, place);
-    }
     return places;
+}
+
+bool fl_sliced_places_init(FlSlicedPlaces *places, const float *coverage, int width, int height,
+                           GError **error)
+{
+    g_auto(Pyramid) pyramid = {0};
+    *places = (FlSlicedPlaces){.width = width, .height = height};
+    if (coverage && !pyramid_init(&pyramid, width, height, error))
+        return false;
+    if (coverage)
+        fill_pyramid(&pyramid, coverage);
+    for (int l = 0; l < FL_SLICED_LEVELS; l++)
+        places->level[l] = places_of(pyramid.plane[l], width >> l, height >> l);
+    return true;
+}
+
+void fl_sliced_places_clear(FlSlicedPlaces *places)
+{
+    for (int l = 0; l < FL_SLICED_LEVELS; l++)
+        g_clear_pointer(&places->level[l], g_array_unref);
 }
 
 /* A level's sampled patches, and what is found for them. */
@@ -354,26 +377,21 @@ float fl_sliced_loss(const FlSliced *sliced, const FlSlicedTarget *target, unsig
                      int samples, int directions, uint64_t key, float *by_density,
                      float *levels_loss, GError **error)
 {
-    g_auto(Pyramid) density = {0}, coverage = {0}, by = {0};
-    if (!pyramid_init(&density, target->width, target->height, error) ||
-        !pyramid_init(&by, target->width, target->height, error) ||
-        (target->coverage && !pyramid_init(&coverage, target->width, target->height, error)))
+    g_auto(Pyramid) density = {0}, by = {0};
+    const int width = target->places->width, height = target->places->height;
+    if (!pyramid_init(&density, width, height, error) || !pyramid_init(&by, width, height, error))
         return -1;
     fill_pyramid(&density, target->density);
-    if (target->coverage)
-        fill_pyramid(&coverage, target->coverage);
     float total = 0;
     for (int l = FL_SLICED_LEVELS - 1; l >= 0; l--) {
         const int w = density.width[l], h = density.height[l];
         float loss = 0;
         if (l + 1 < FL_SLICED_LEVELS)
             reduce_adjoint(by.plane[l + 1], w, h, by.half, by.plane[l]);
-        if (levels >> l & 1 && sliced->known[l]) {
-            g_autoptr(GArray) places = places_of(coverage.plane[l], w, h);
-            if (places->len >= FEWEST_PLACES)
-                loss = level_loss(sliced, l, density.plane[l], w, h, places, samples, directions,
-                                  fl_key(key, (uint64_t)l), by.plane[l], error);
-        }
+        const GArray *places = target->places->level[l];
+        if (levels >> l & 1 && sliced->known[l] && places->len >= FEWEST_PLACES)
+            loss = level_loss(sliced, l, density.plane[l], w, h, places, samples, directions,
+                              fl_key(key, (uint64_t)l), by.plane[l], error);
         if (loss < 0)
             return -1;
         if (levels_loss)
@@ -381,6 +399,6 @@ float fl_sliced_loss(const FlSliced *sliced, const FlSlicedTarget *target, unsig
         total += loss;
     }
     if (by_density)
-        memcpy(by_density, by.plane[0], sizeof(float) * (size_t)target->width * target->height);
+        memcpy(by_density, by.plane[0], sizeof(float) * (size_t)width * (size_t)height);
     return total;
 }

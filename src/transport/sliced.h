@@ -24,11 +24,24 @@ typedef struct FlSliced FlSliced;
 FlSliced *fl_sliced_new(const float *density, int width, int height, GError **error);
 void fl_sliced_free(FlSliced *sliced); // NULL is fine
 
+/** Where the patches of a target may lie, by level: corners y * width + x in scan order. */
+typedef struct FlSlicedPlaces {
+    int width, height;
+    GArray *level[FL_SLICED_LEVELS]; // of uint32_t
+} FlSlicedPlaces;
+
+/**
+ * Whole patches where the coverage, 0 … 1, is above .98; NULL: everywhere. Sides are multiples of
+ * 1 << (FL_SLICED_LEVELS - 1). FL_ERROR_NO_MEMORY.
+ */
+bool fl_sliced_places_init(FlSlicedPlaces *places, const float *coverage, int width, int height,
+                           GError **error);
+void fl_sliced_places_clear(FlSlicedPlaces *places);
+
 /** A density to be judged. */
 typedef struct FlSlicedTarget {
-    int width, height; // multiples of 1 << (FL_SLICED_LEVELS - 1)
-    const float *density;
-    const float *coverage; // 0 … 1: patches lie where it is above .98; NULL: everywhere
+    const float *density; // of the places' size
+    const FlSlicedPlaces *places;
 } FlSlicedTarget;
 
 /**
@@ -44,5 +57,6 @@ float fl_sliced_loss(const FlSliced *sliced, const FlSlicedTarget *target, unsig
                      float *levels_loss, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSliced, fl_sliced_free)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlSlicedPlaces, fl_sliced_places_clear)
 
 #endif

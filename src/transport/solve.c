@@ -47,6 +47,8 @@ static const Stage stir_stages[] = {
     {0},
 };
 
+static const Stage refine_stage = {0, LEVELS(0, 3), LEVELS(0, 3), 0.03f, true};
+
 /* Adam's moments of one grid [Kingma, Ba 2015]. */
 typedef struct Moments {
     float *first, *second;
@@ -56,6 +58,7 @@ typedef struct Solver {
     const FlTransportProblem *problem;
     FlPotential *potential, by_node;
     FlFlowMap map;
+    FlSlicedPlaces places;
     float *sum, *velocity, *carried;               // the state
     float *by_carried, *by_jacobian, *by_velocity; // derivatives
     Moments moments[FL_POTENTIAL_GRIDS];
@@ -76,6 +79,7 @@ static void solver_clear(Solver *solver)
     clear_moments(solver);
     fl_potential_clear(&solver->by_node);
     fl_flow_map_clear(&solver->map);
+    fl_sliced_places_clear(&solver->places);
     float *const buffers[] = {solver->sum,        solver->velocity,    solver->carried,
                               solver->by_carried, solver->by_jacobian, solver->by_velocity};
     for (size_t k = 0; k < G_N_ELEMENTS(buffers); k++)
@@ -90,6 +94,8 @@ static bool solver_init(Solver *solver, const FlTransportProblem *problem, FlPot
     *solver = (Solver){.problem = problem, .potential = potential};
     return fl_potential_init(&solver->by_node, problem->width, problem->height, error) &&
            fl_flow_map_init(&solver->map, problem->width, problem->height, true, error) &&
+           fl_sliced_places_init(&solver->places, problem->coverage, problem->width,
+                                 problem->height, error) &&
            (solver->sum = fl_alloc(n, sizeof(float), "a potential", error)) &&
            (solver->carried = fl_alloc(n, sizeof(float), "a density", error)) &&
            (solver->by_carried = fl_alloc(n, sizeof(float), "a derivative", error)) &&
@@ -124,7 +130,8 @@ static void add_noise(FlPotential *potential, uint64_t key)
         }
 }
 
-/* Adds what the velocity's size and change cost to the derivative. */
+/* Adds what the velocity's size and change cost to the derivative: of what is solved, so that what
+ * was there besides stays where no patch says anything. */
 static void add_smoothness(Solver *solver)
 {
     const int w = solver->problem->width, h = solver->problem->height;
@@ -175,19 +182,28 @@ static float picture_loss(Solver *solver)
 static float patches_loss(Solver *solver, unsigned levels, uint64_t key, GError **error)
 {
     const FlTransportProblem *problem = solver->problem;
-    const FlSlicedTarget target = {problem->width, problem->height, solver->carried,
-                                   problem->coverage};
+    const FlSlicedTarget target = {solver->carried, &solver->places};
     return fl_sliced_loss(problem->style, &target, levels, SAMPLES, DIRECTIONS, key,
                           solver->by_carried, NULL, error);
+}
+
+static void add_to(float *sum, const float *more, size_t n)
+{
+    for (size_t i = 0; more && i < n; i++)
+        sum[i] += more[i];
 }
 
 /* The loss of the potential as it is; its derivative by node into by_node. */
 static float derive(Solver *solver, unsigned levels, uint64_t key, GError **error)
 {
     const FlTransportProblem *problem = solver->problem;
+    const size_t n = (size_t)problem->width * (size_t)problem->height;
     fl_potential_sum(solver->potential, solver->sum);
+    add_to(solver->sum, problem->before, n);
     fl_velocity(&solver->map, solver->sum, problem->taper, problem->mode, solver->velocity);
-    fl_flow_map_run(&solver->map, solver->velocity);
+    memcpy(solver->by_velocity, solver->velocity, 2 * n * sizeof(float)); // as scratch
+    add_to(solver->by_velocity, problem->velocity, 2 * n);
+    fl_flow_map_run(&solver->map, solver->by_velocity);
     fl_flow_map_carry(&solver->map, problem->density, solver->carried);
     const float loss =
         problem->picture ? picture_loss(solver) : patches_loss(solver, levels, key, error);
@@ -226,33 +242,56 @@ static bool interrupted(GError **error)
     return false;
 }
 
+/* What a run tells, and how far it is. */
+typedef struct Report {
+    FlTransportProgress progress; // NULL: nobody wants to know
+    void *data;
+    int done, total;
+} Report;
+
+static bool run_stage(Solver *solver, const Stage *stage, int n, Report *report, GError **error)
+{
+    const FlTransportProblem *problem = solver->problem;
+    if (!fresh_moments(solver, error))
+        return false;
+    for (int k = 0; k < n; k++) {
+        const float t = (float)k / (float)n, fall = t * t * (3 - 2 * t);
+        const float loss =
+            derive(solver, stage->levels, fl_key(problem->key, (uint64_t)++report->done), error);
+        if (loss < 0)
+            return false;
+        step(solver, stage->grids,
+             problem->pace * stage->step * (stage->settles ? 1 - 0.85f * fall : 1));
+        if (report->progress && !report->progress(report->data, report->done, report->total, loss))
+            return interrupted(error);
+    }
+    return true;
+}
+
 bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPotential *potential,
                         FlTransportProgress progress, void *data, GError **error)
 {
     g_auto(Solver) solver = {0};
+    Report report = {progress, data, 0, 0};
     if (!solver_init(&solver, problem, potential, error))
         return false;
     add_noise(potential, problem->key);
     const Stage *stages = problem->picture                     ? picture_stages
                           : problem->mode == FL_TRANSPORT_STIR ? stir_stages
                                                                : gather_stages;
-    int done = 0, total = 0;
     for (const Stage *s = stages; s->iterations; s++)
-        total += (int)((float)s->iterations * effort);
-    for (const Stage *s = stages; s->iterations; s++) {
-        const int n = (int)((float)s->iterations * effort);
-        if (!fresh_moments(&solver, error))
+        report.total += (int)((float)s->iterations * effort);
+    for (const Stage *s = stages; s->iterations; s++)
+        if (!run_stage(&solver, s, (int)((float)s->iterations * effort), &report, error))
             return false;
-        for (int k = 0; k < n; k++) {
-            const float t = (float)k / (float)n, fall = t * t * (3 - 2 * t);
-            const float loss =
-                derive(&solver, s->levels, fl_key(problem->key, (uint64_t)++done), error);
-            if (loss < 0)
-                return false;
-            step(&solver, s->grids, problem->pace * s->step * (s->settles ? 1 - 0.85f * fall : 1));
-            if (progress && !progress(data, done, total, loss))
-                return interrupted(error);
-        }
-    }
     return true;
+}
+
+bool fl_transport_refine(const FlTransportProblem *problem, int iterations, FlPotential *potential,
+                         GError **error)
+{
+    g_auto(Solver) solver = {0};
+    Report nobody = {0};
+    return solver_init(&solver, problem, potential, error) &&
+           run_stage(&solver, &refine_stage, iterations, &nobody, error);
 }

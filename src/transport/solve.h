@@ -16,6 +16,8 @@ typedef struct FlTransportProblem {
     const float *density;  // before the transport, mean 1; NULL: 1 everywhere
     const float *coverage; // where its patches count, 0 … 1; NULL: everywhere
     const float *taper;    // share of the velocity by pixel; NULL: 1
+    const float *velocity; // that is there besides, tapered, 2 by pixel; NULL: none
+    const float *before;   // a potential that is there besides; NULL: none
     FlTransportMode mode;
     float pace; // factor on the steps: 1 draws clean bands, 3 reaches the wide features of a wash
     uint64_t key;
@@ -30,5 +32,12 @@ typedef struct FlTransportProblem {
  */
 bool fl_transport_solve(const FlTransportProblem *problem, float effort, FlPotential *potential,
                         FlTransportProgress progress, void *data, GError **error);
+
+/**
+ * Brings what is there already nearer to the style, all grids and the finer levels at once: the
+ * potential, made by the caller and 0, is what is to be added. FL_ERROR_NO_MEMORY.
+ */
+bool fl_transport_refine(const FlTransportProblem *problem, int iterations, FlPotential *potential,
+                         GError **error);
 
 #endif

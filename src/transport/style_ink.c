@@ -38,3 +38,10 @@ float *fl_style_ink(const FlStyle *style, GError **error)
     }
     return normalise(density, n, style->path, error) ? g_steal_pointer(&density) : NULL;
 }
+
+FlSliced *fl_style_patches(const char *folder, GError **error)
+{
+    g_autoptr(FlStyle) style = fl_style_load(folder, error);
+    g_autofree float *density = style ? fl_style_ink(style, error) : NULL;
+    return density ? fl_sliced_new(density, style->width, style->height, error) : NULL;
+}
