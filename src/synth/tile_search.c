@@ -4,9 +4,9 @@
 
 /*
  * Time (perf; a snowman of 19 regions, 1000 px wide, AVX-512): the search takes nearly half of a
- * whole render, votes a fifth; guides, shapes of the drawing, compositing and files the rest. Of
+ * whole render, votes an eighth; guides, shapes of the drawing, compositing and files the rest. Of
  * the search, patch distances take a third, this file two fifths, the occurrence map a tenth. A
- * draft searches less: search and votes take a fifth of the render each.
+ * draft searches less: the search takes an eighth of the render, votes a fifteenth.
  *
  * Each texel of a random try is a cache miss. So pixels go through three stages, each a stage ahead
  * of the next pixel of its tile:
