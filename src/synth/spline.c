@@ -68,27 +68,35 @@ static int mirror(int i, int n)
     return CLAMP(m, 0, n - 1);
 }
 
-static void pack(float *const *plane, int n, int width, int height, FlSplinePixel *out, int pitch)
+/* NULL: zeros. */
+static void pack_channel(const float *plane, int c, int width, int height, FlSplinePixel *out,
+                         int pitch)
 {
-    for (int y = -FL_SPLINE_PAD; y < height + FL_SPLINE_PAD; y++)
+    for (int y = -FL_SPLINE_PAD; y < height + FL_SPLINE_PAD; y++) {
+        const size_t row = (size_t)mirror(y, height) * (size_t)width;
         for (int x = -FL_SPLINE_PAD; x < width + FL_SPLINE_PAD; x++) {
-            FlSplinePixel *to = out + y * (ptrdiff_t)pitch + x;
-            const size_t from = (size_t)mirror(y, height) * width + mirror(x, width);
-            for (int c = 0; c < 4; c++)
-                to->c[c] =
-                    c < n ? (int16_t)CLAMP(lrintf(plane[c][from] * FL_SPLINE_ONE), -32767, 32767)
-                          : 0;
+            const float value = plane ? plane[row + (size_t)mirror(x, width)] : 0;
+            out[y * (ptrdiff_t)pitch + x].c[c] =
+                (int16_t)CLAMP(lrintf(value * FL_SPLINE_ONE), -32767, 32767);
         }
+    }
+}
+
+void fl_spline_prefilter_channel(float *plane, int c, int width, int height,
+                                 FlSplinePixel *coefficients, int pitch)
+{
+    g_autofree float *sum = g_new(float, width);
+    for (int y = 0; y < height; y++)
+        filter(plane + (size_t)y * width, width, 1, sum);
+    filter(plane, height, width, sum);
+    pack_channel(plane, c, width, height, coefficients, pitch);
 }
 
 void fl_spline_prefilter(float *const *plane, int n, int width, int height,
                          FlSplinePixel *coefficients, int pitch)
 {
-    g_autofree float *sum = g_new(float, width);
-    for (int c = 0; c < n; c++) {
-        for (int y = 0; y < height; y++)
-            filter(plane[c] + (size_t)y * width, width, 1, sum);
-        filter(plane[c], height, width, sum);
-    }
-    pack(plane, n, width, height, coefficients, pitch);
+    for (int c = 0; c < n; c++)
+        fl_spline_prefilter_channel(plane[c], c, width, height, coefficients, pitch);
+    for (int c = n; c < 4; c++)
+        pack_channel(NULL, c, width, height, coefficients, pitch);
 }

@@ -30,4 +30,8 @@ void fl_spline_init(void);
 void fl_spline_prefilter(float *const *plane, int n, int width, int height,
                          FlSplinePixel *coefficients, int pitch);
 
+/** Those of one plane, as channel c; the others stay. */
+void fl_spline_prefilter_channel(float *plane, int c, int width, int height,
+                                 FlSplinePixel *coefficients, int pitch);
+
 #endif

@@ -2,8 +2,6 @@
 
 #include <string.h>
 
-#define STRIP_ROWS 16 // of the picture, for which a thread lays out its matches once
-
 /*
  * The matches around a row of pixels, column by column with FL_PATCH rows each, so that those over
  * a pixel are neighbours. The next row begins one place later: what enters a column takes the place
@@ -19,7 +17,7 @@ typedef struct Strip {
 static Strip strip_new(int width)
 {
     const size_t columns = (size_t)width + 2 * FL_PATCH_RADIUS;
-    const size_t n = FL_PATCH * columns + STRIP_ROWS + FL_VOTES;
+    const size_t n = FL_PATCH * columns + FL_VOTE_ROWS + FL_VOTES;
     Strip strip = {g_new0(uint16_t, n), g_new0(uint16_t, n), g_new0(int16_t, n),
                    g_malloc0(n * sizeof *strip.turn), columns};
     for (size_t k = 0; k < n; k++)
@@ -89,25 +87,56 @@ static void vote_row(const Strip *strip, size_t k, const FlVoted *voted, FlVote 
     }
 }
 
+/* What rows are voted with. */
+typedef struct Votes {
+    const FlNnf *nnf;
+    FlVoted source;
+    FlVote vote;
+    int channels;
+} Votes;
+
+static Votes votes_of(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
+                      float sharpness, int channels)
+{
+    return (Votes){nnf, voted_of(level, sharpness), kernels->vote, channels};
+}
+
+/* FL_VOTE_ROWS rows from y0 on, or what the picture has of them. */
+static void vote_rows(const Votes *votes, Strip *strip, int y0, float *colour, uint8_t *voted)
+{
+    const FlNnf *nnf = votes->nnf;
+    size_t rows = 0;
+    for (int y = y0 - FL_PATCH_RADIUS; y < y0 + FL_PATCH_RADIUS; y++)
+        add_row(strip, nnf, y, rows++);
+    for (int y = y0; y < MIN(y0 + FL_VOTE_ROWS, nnf->height); y++) {
+        const size_t p = (size_t)(y - y0) * (size_t)nnf->width;
+        add_row(strip, nnf, y + FL_PATCH_RADIUS, rows++);
+        vote_row(strip, rows - FL_PATCH, &votes->source, votes->vote, votes->channels,
+                 colour + (size_t)votes->channels * p, voted ? voted + p : NULL);
+    }
+}
+
 void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
              float sharpness, int channels, float *colour, uint8_t *voted)
 {
-    const FlVoted source = voted_of(level, sharpness);
+    const Votes votes = votes_of(nnf, level, kernels, sharpness, channels);
 #pragma omp parallel
     {
         Strip strip = strip_new(nnf->width);
 #pragma omp for schedule(dynamic, 1)
-        for (int y0 = 0; y0 < nnf->height; y0 += STRIP_ROWS) {
-            size_t rows = 0;
-            for (int y = y0 - FL_PATCH_RADIUS; y < y0 + FL_PATCH_RADIUS; y++)
-                add_row(&strip, nnf, y, rows++);
-            for (int y = y0; y < MIN(y0 + STRIP_ROWS, nnf->height); y++) {
-                const size_t p = (size_t)y * nnf->width;
-                add_row(&strip, nnf, y + FL_PATCH_RADIUS, rows++);
-                vote_row(&strip, rows - FL_PATCH, &source, kernels->vote, channels,
-                         colour + (size_t)channels * p, voted ? voted + p : NULL);
-            }
+        for (int y = 0; y < nnf->height; y += FL_VOTE_ROWS) {
+            const size_t p = (size_t)y * (size_t)nnf->width;
+            vote_rows(&votes, &strip, y, colour + (size_t)channels * p, voted ? voted + p : NULL);
         }
         strip_free(&strip);
     }
+}
+
+void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
+                  float sharpness, int channels, int y, float *colour)
+{
+    const Votes votes = votes_of(nnf, level, kernels, sharpness, channels);
+    Strip strip = strip_new(nnf->width);
+    vote_rows(&votes, &strip, y, colour, NULL);
+    strip_free(&strip);
 }

@@ -18,4 +18,11 @@
 void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
              float sharpness, int channels, float *colour, uint8_t *voted);
 
+#define FL_VOTE_ROWS 16 // of a picture, for which a thread lays out its matches once
+
+/** The same by the calling thread, of FL_VOTE_ROWS rows from y on, or what the picture has of them;
+ * `colour` begins with the first: for those who need no whole picture. */
+void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
+                  float sharpness, int channels, int y, float *colour);
+
 #endif
