@@ -346,8 +346,8 @@ static void new_fluid_has_no_past(void)
     fl_kernels_init(&kernels, fl_cpu_flags());
     const FlFluidPast past = {.rgba = rgba, .mask = mask};
     g_auto(FlFluidPlanes) planes = {0};
-    g_assert_true(fl_fluid_planes_init(&planes, SIDE, SIDE, &error) &&
-                  fl_fluid_warp(&past, &film.guides, motion, 1, &kernels, &planes, &error));
+    g_assert_true(fl_fluid_planes_init(&planes, SIDE, SIDE, 0, FL_FLUID_PLANES, &error) &&
+                  fl_fluid_warp(&past, film.guides.mask, motion, 1, &kernels, &planes, &error));
     g_assert_cmpfloat(planes.plane[FL_FLUID_PLANE_WEIGHT][36 * SIDE + 20], ==, 1);
     g_assert_cmpfloat(planes.plane[FL_FLUID_PLANE_WEIGHT][36 * SIDE + 50], ==, 0);
 }

@@ -4,18 +4,19 @@
 #include "lazy/fluid_shape.h"
 #include <string.h>
 
-bool fl_fluid_splines_init(FlExemplarLevel *level, float *const plane[4], int width, int height,
-                           GError **error)
+bool fl_fluid_splines_init(FlExemplarLevel *level, int width, int height, GError **error)
 {
     *level = (FlExemplarLevel){.width = width, .height = height, .n_frames = 1, .window = 1};
     level->pitch = (size_t)width + 2 * FL_PAD;
     level->frame_pixels = level->pitch * ((size_t)height + 2 * FL_PAD);
-    if (!(level->colour =
-              fl_alloc(level->frame_pixels, sizeof *level->colour, "an exemplar", error)))
-        return false;
-    fl_spline_prefilter(plane, 4, width, height, level->colour + FL_PAD * level->pitch + FL_PAD,
-                        (int)level->pitch);
-    return true;
+    level->colour = fl_alloc(level->frame_pixels, sizeof *level->colour, "an exemplar", error);
+    return level->colour != NULL;
+}
+
+void fl_fluid_splines_fill(const FlExemplarLevel *level, int c, float *plane)
+{
+    fl_spline_prefilter_channel(plane, c, level->width, level->height,
+                                level->colour + FL_PAD * level->pitch + FL_PAD, (int)level->pitch);
 }
 
 static void level_clear(FlFluidLevel *level)
@@ -66,7 +67,7 @@ bool fl_fluid_exemplar_planes(const FlExemplar *exemplar, int frame, int before,
 {
     const int width = exemplar->level[0].width, height = exemplar->level[0].height;
     const size_t bytes = (size_t)width * (size_t)height * sizeof(float);
-    if (!fl_fluid_planes_init(planes, width, height, error))
+    if (!fl_fluid_planes_init(planes, width, height, 0, FL_FLUID_PLANE_WEIGHT, error))
         return false;
     fill_colour(exemplar, frame, planes->plane + FL_FLUID_PLANE_COLOUR);
     fill_colour(exemplar, before, planes->plane + FL_FLUID_PLANE_PAST);
@@ -92,7 +93,7 @@ static bool pack_level(FlFluidLevel *level, FlFluidPlanes *planes, const FlFluid
     if (!fl_fluid_picture_init(&level->picture, planes->width, planes->height, error) ||
         !pack_segments(level, planes, error))
         return false;
-    fl_fluid_picture_pack(planes, weights, false, &level->picture);
+    fl_fluid_picture_pack(planes, weights, &level->picture);
     return true;
 }
 
@@ -109,11 +110,12 @@ bool fl_fluid_exemplar_pack(FlFluidExemplar *fluid, const FlExemplar *exemplar, 
     for (int l = 0; l < n_levels; l++) {
         FlFluidPlanes coarse = {0};
         if (!pack_level(&fluid->level[l], &fine, weights, error) ||
-            !fl_fluid_planes_init(&coarse, (fine.width + 1) / 2, (fine.height + 1) / 2, error))
+            !fl_fluid_planes_halve(&fine, &coarse, error))
             return false;
-        fl_fluid_planes_halve(&fine, &coarse);
-        const bool done = fl_fluid_splines_init(&fluid->level[l].voted, fine.plane, fine.width,
-                                                fine.height, error); // overwrites the colours
+        const bool done =
+            fl_fluid_splines_init(&fluid->level[l].voted, fine.width, fine.height, error);
+        for (int k = 0; k < 4 && done; k++)
+            fl_fluid_splines_fill(&fluid->level[l].voted, k, fine.plane[k]);
         fl_fluid_planes_clear(&fine);
         fine = coarse;
         if (!done)

@@ -34,8 +34,10 @@ void fl_fluid_exemplar_clear(FlFluidExemplar *fluid);
 bool fl_fluid_exemplar_planes(const FlExemplar *exemplar, int frame, int before, float sigma_px,
                               FlFluidPlanes *planes, GError **error);
 
-/** Straightens four planes, which are overwritten, into a picture for fl_vote(). */
-bool fl_fluid_splines_init(FlExemplarLevel *level, float *const plane[4], int width, int height,
-                           GError **error);
+/** A picture for fl_vote(), to be filled channel by channel; `colour` is to be freed. */
+bool fl_fluid_splines_init(FlExemplarLevel *level, int width, int height, GError **error);
+
+/** Straightens the plane of channel c, which is overwritten. */
+void fl_fluid_splines_fill(const FlExemplarLevel *level, int c, float *plane);
 
 #endif

@@ -5,19 +5,21 @@
 #include <math.h>
 #include <string.h>
 
-bool fl_fluid_planes_init(FlFluidPlanes *planes, int width, int height, GError **error)
+bool fl_fluid_planes_init(FlFluidPlanes *planes, int width, int height, int first, int end,
+                          GError **error)
 {
     const size_t pixels = (size_t)width * (size_t)height;
-    float *all = fl_alloc(FL_FLUID_PLANES * pixels, sizeof *all, "a region's guides", error);
-    *planes = (FlFluidPlanes){width, height, {NULL}};
-    for (size_t k = 0; all && k < FL_FLUID_PLANES; k++)
-        planes->plane[k] = all + k * pixels;
-    return all != NULL;
+    *planes = (FlFluidPlanes){.width = width, .height = height};
+    planes->all =
+        fl_alloc((size_t)(end - first) * pixels, sizeof(float), "a region's guides", error);
+    for (int k = first; planes->all && k < end; k++)
+        planes->plane[k] = planes->all + (size_t)(k - first) * pixels;
+    return planes->all != NULL;
 }
 
 void fl_fluid_planes_clear(FlFluidPlanes *planes)
 {
-    free(planes->plane[0]);
+    free(planes->all);
     *planes = (FlFluidPlanes){0};
 }
 
@@ -35,11 +37,20 @@ static void halve(const float *fine, int width, int height, float *coarse)
     }
 }
 
-void fl_fluid_planes_halve(const FlFluidPlanes *fine, FlFluidPlanes *coarse)
+bool fl_fluid_planes_halve(const FlFluidPlanes *fine, FlFluidPlanes *coarse, GError **error)
 {
+    int first = 0, end = FL_FLUID_PLANES;
+    while (first < end && !fine->plane[first])
+        first++;
+    while (end > first && !fine->plane[end - 1])
+        end--;
+    if (!fl_fluid_planes_init(coarse, (fine->width + 1) / 2, (fine->height + 1) / 2, first, end,
+                              error))
+        return false;
 #pragma omp parallel for schedule(static)
-    for (int k = 0; k < FL_FLUID_PLANES; k++)
+    for (int k = first; k < end; k++)
         halve(fine->plane[k], fine->width, fine->height, coarse->plane[k]);
+    return true;
 }
 
 bool fl_fluid_planes_blur(FlFluidPlanes *planes, float sigma_px, GError **error)
@@ -66,38 +77,55 @@ void fl_fluid_picture_clear(FlFluidPicture *picture)
     *picture = (FlFluidPicture){0};
 }
 
-/* What 1.0 is in a channel that has a plane. */
-static void scales_of(const FlFluidWeights *weights, float scale[FL_FLUID_PLANE_WEIGHT])
+/* What 1.0 is in the channel of a plane. */
+static void scales_of(const FlFluidWeights *weights, float scale[FL_FLUID_PLANES])
 {
     const float past = sqrtf(weights->past), alpha = sqrtf(3);
     const float of[] = {1, 1, 1, alpha, sqrtf(weights->edge), past, past, past, past * alpha};
     for (int k = 0; k < FL_FLUID_PLANE_WEIGHT; k++)
         scale[k] = of[k] * FL_FLUID_ONE;
+    scale[FL_FLUID_PLANE_WEIGHT] = INT16_MAX;
 }
 
 static int channel_of(int plane)
 {
-    return plane < FL_FLUID_PLANE_PAST ? plane : plane - FL_FLUID_PLANE_PAST + FL_FLUID_PAST;
+    return plane == FL_FLUID_PLANE_WEIGHT ? FL_FLUID_WEIGHT
+           : plane < FL_FLUID_PLANE_PAST  ? plane
+                                          : plane - FL_FLUID_PLANE_PAST + FL_FLUID_PAST;
+}
+
+/* Packs row y of `n` values a pixel as channels from `first` on, and what repeats it around. */
+static void pack_row(const float *values, int n, const float *scale, int first, int y,
+                     const FlFluidPicture *picture)
+{
+    const int r = FL_PATCH_RADIUS, width = picture->width, last = picture->height - 1;
+    for (int v = y == 0 ? -r : y; v <= (y == last ? last + r : y); v++)
+        for (int x = -r; x < width + r; x++) {
+            const float *from = values + (size_t)n * (size_t)CLAMP(x, 0, width - 1);
+            int16_t *to = picture->pixel[v * picture->pitch + x].c + first;
+            for (int c = 0; c < n; c++)
+                to[c] = (int16_t)(from[c] * scale[c] + 0.5f);
+        }
 }
 
 void fl_fluid_picture_pack(const FlFluidPlanes *planes, const FlFluidWeights *weights,
-                           bool is_target, FlFluidPicture *picture)
+                           const FlFluidPicture *picture)
 {
-    const int width = picture->width, height = picture->height;
-    float scale[FL_FLUID_PLANE_WEIGHT];
+    float scale[FL_FLUID_PLANES];
     scales_of(weights, scale);
 #pragma omp parallel for schedule(static)
-    for (int y = -FL_PATCH_RADIUS; y < height + FL_PATCH_RADIUS; y++)
-        for (int x = -FL_PATCH_RADIUS; x < width + FL_PATCH_RADIUS; x++) {
-            FlFluidTexel *to = picture->pixel + y * picture->pitch + x;
-            const size_t from =
-                (size_t)CLAMP(y, 0, height - 1) * (size_t)width + (size_t)CLAMP(x, 0, width - 1);
-            for (int k = 0; k < FL_FLUID_PLANE_WEIGHT; k++)
-                to->c[channel_of(k)] = (int16_t)(planes->plane[k][from] * scale[k] + 0.5f);
-            to->c[FL_FLUID_WEIGHT] =
-                (int16_t)(is_target ? planes->plane[FL_FLUID_PLANE_WEIGHT][from] * 32767 + 0.5f
-                                    : 0);
-        }
+    for (int y = 0; y < picture->height; y++)
+        for (int k = 0; k < FL_FLUID_PLANES; k++)
+            if (planes->plane[k])
+                pack_row(planes->plane[k] + (size_t)y * (size_t)planes->width, 1, &scale[k],
+                         channel_of(k), y, picture);
+}
+
+void fl_fluid_picture_pack_row(const float *rgba, int y, const FlFluidPicture *picture)
+{
+    float scale[FL_FLUID_PLANES];
+    scales_of(&(FlFluidWeights){0}, scale);
+    pack_row(rgba, 4, scale, FL_FLUID_R, y, picture);
 }
 
 bool fl_fluid_segments_init(FlFluidSegments *segments, const FlFluidPlanes *planes, GError **error)

@@ -15,17 +15,20 @@ typedef enum FlFluidPlane {
     FL_FLUID_PLANES
 } FlFluidPlane;
 
-/** One level; planes are row-major, width * height, in one piece of memory. */
+/** One level; planes are row-major, width * height. */
 typedef struct FlFluidPlanes {
     int width, height;
-    float *plane[FL_FLUID_PLANES];
+    float *plane[FL_FLUID_PLANES]; // NULL: not there, as if it were 0 all over
+    float *all;                    // the memory of those that are
 } FlFluidPlanes;
 
-bool fl_fluid_planes_init(FlFluidPlanes *planes, int width, int height, GError **error);
+/** Makes planes `first` to `end`, without the latter. */
+bool fl_fluid_planes_init(FlFluidPlanes *planes, int width, int height, int first, int end,
+                          GError **error);
 void fl_fluid_planes_clear(FlFluidPlanes *planes);
 
-/** Averages 2x2 pixels; `coarse` has been made in half the size, rounded up. */
-void fl_fluid_planes_halve(const FlFluidPlanes *fine, FlFluidPlanes *coarse);
+/** Makes `coarse` by averaging 2x2 pixels, in half the size, rounded up. */
+bool fl_fluid_planes_halve(const FlFluidPlanes *fine, FlFluidPlanes *coarse, GError **error);
 
 /** Blurs plane FL_FLUID_PLANE_EDGE, in which the mask stands [L15 §4.2]. */
 bool fl_fluid_planes_blur(FlFluidPlanes *planes, float sigma_px, GError **error);
@@ -38,9 +41,12 @@ typedef struct FlFluidWeights {
 bool fl_fluid_picture_init(FlFluidPicture *picture, int width, int height, GError **error);
 void fl_fluid_picture_clear(FlFluidPicture *picture);
 
-/** Packs all planes of an exemplar, or of a target, which has a weight of the past as well. */
+/** Packs the planes that are there into a picture that has been made in their size. */
 void fl_fluid_picture_pack(const FlFluidPlanes *planes, const FlFluidWeights *weights,
-                           bool is_target, FlFluidPicture *picture);
+                           const FlFluidPicture *picture);
+
+/** Packs row y of the colours and alpha, 4 floats per pixel. */
+void fl_fluid_picture_pack_row(const float *rgba, int y, const FlFluidPicture *picture);
 
 #define FL_FLUID_LOWER 0.1f // l: blurred alpha from which on there is fluid [L15 §5]
 #define FL_FLUID_UPPER 0.9f // u: from which on it is interior

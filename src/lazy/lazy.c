@@ -18,13 +18,12 @@
 #define SIGMA_MOST 6
 #define OUTER 1.28f // sigmas from the contour out to l
 
-/* One level of the target. */
+/* One level of the target. Coarser ones go before finer ones are made but for their planes. */
 typedef struct Level {
-    FlFluidPlanes planes;
+    FlFluidPlanes planes; // blurred alpha and the past; until they are packed
     FlFluidPicture picture;
     FlFluidSegments segments;
-    FlNnf nnf, warm; // warm: the carried field in this size; empty in a first frame
-    float *rgba;     // X, 4 per pixel
+    FlNnf nnf;
 } Level;
 
 struct FlLazy {
@@ -37,8 +36,10 @@ struct FlLazy {
     uint64_t key;
     FlLazyState last;
     FlFluidExemplar source;     // of the frame in hand
-    Level level[FL_MAX_LEVELS]; // likewise
-    float *motion;              // likewise, 2 per pixel
+    Level level[FL_MAX_LEVELS]; // likewise; after it, the planes of level 0 where they are shown
+    FlNnf warm;                 // likewise: the carried field; empty in a first frame
+    float *motion;              // likewise: 2 per pixel; NULL: there is none
+    bool shows;                 // somebody looks at the frame in hand when it is painted
 };
 
 static FlFluidWeights weights_of(const FlParams *params)
@@ -62,7 +63,6 @@ FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlSynthS
                     uint64_t seed, GError **error)
 {
     g_autoptr(FlLazy) lazy = g_new0(FlLazy, 1);
-    const size_t pixels = (size_t)size.width * (size_t)size.height;
     lazy->exemplar = exemplar, lazy->params = params;
     lazy->width = size.width, lazy->height = size.height;
     lazy->weights = weights_of(params);
@@ -70,9 +70,7 @@ FlLazy *fl_lazy_new(const FlExemplar *exemplar, const FlParams *params, FlSynthS
     lazy->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
     lazy->key = fl_hash64(seed);
     fl_kernels_init(&lazy->kernels, fl_cpu_flags());
-    if (!(lazy->motion = fl_alloc(2 * pixels, sizeof(float), "a flow field", error)) ||
-        !fl_lazy_state_init(&lazy->last, size.width, size.height, error))
-        return NULL;
+    lazy->last = (FlLazyState){.width = size.width, .height = size.height};
     return g_steal_pointer(&lazy);
 }
 
@@ -82,25 +80,23 @@ static void level_clear(Level *level)
     fl_fluid_picture_clear(&level->picture);
     fl_fluid_segments_clear(&level->segments);
     fl_nnf_clear(&level->nnf);
-    fl_nnf_clear(&level->warm);
-    free(level->rgba);
-    *level = (Level){0};
 }
 
-static void clear_levels(FlLazy *lazy)
+static void clear_frame(FlLazy *lazy)
 {
     for (int l = 0; l < FL_MAX_LEVELS; l++)
         level_clear(&lazy->level[l]);
+    fl_nnf_clear(&lazy->warm);
+    g_clear_pointer(&lazy->motion, free);
 }
 
 void fl_lazy_free(FlLazy *lazy)
 {
     if (!lazy)
         return;
-    clear_levels(lazy);
+    clear_frame(lazy);
     fl_fluid_exemplar_clear(&lazy->source);
-    fl_lazy_state_clear(&lazy->last);
-    free(lazy->motion);
+    fl_lazy_state_forget(&lazy->last);
     g_free(lazy);
 }
 
@@ -122,58 +118,77 @@ static bool pack_source(FlLazy *lazy, GError **error)
                                   &lazy->weights, error);
 }
 
-/* Blurred alpha, and the past if there is one. */
-static bool fill_planes(FlLazy *lazy, const FlGuides *guides, GError **error)
+static bool find_motion(FlLazy *lazy, const FlGuides *guides, GError **error)
+{
+    const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
+    const int reach = (int)(BAND * lazy->sigma_px) + 3;
+    return (lazy->motion = fl_alloc(2 * pixels, sizeof(float), "a flow field", error)) &&
+           fl_fluid_motion(guides, reach, lazy->motion, error);
+}
+
+static bool blur_mask(FlLazy *lazy, const uint8_t *mask, GError **error)
 {
     FlFluidPlanes *planes = &lazy->level[0].planes;
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
-    if (!fl_fluid_planes_init(planes, lazy->width, lazy->height, error))
+    const int end = lazy->last.valid ? FL_FLUID_PLANES : FL_FLUID_PLANE_PAST;
+    if (!fl_fluid_planes_init(planes, lazy->width, lazy->height, FL_FLUID_PLANE_EDGE, end, error))
         return false;
     for (size_t p = 0; p < pixels; p++)
-        planes->plane[FL_FLUID_PLANE_EDGE][p] = (float)guides->mask[p] / 255;
-    if (!fl_fluid_planes_blur(planes, lazy->sigma_px, error))
+        planes->plane[FL_FLUID_PLANE_EDGE][p] = (float)mask[p] / 255;
+    return fl_fluid_planes_blur(planes, lazy->sigma_px, error);
+}
+
+/* The last output and field in the place where they are now; they go themselves. */
+static bool carry_past(FlLazy *lazy, const uint8_t *mask, GError **error)
+{
+    FlLazyState *last = &lazy->last;
+    if (!fl_fluid_warp(&last->past, mask, lazy->motion, last->frame, &lazy->kernels,
+                       &lazy->level[0].planes, error))
         return false;
-    return !lazy->last.valid ||
-           (fl_fluid_motion(guides, (int)(BAND * lazy->sigma_px) + 3, lazy->motion, error) &&
-            fl_fluid_warp(&lazy->last.past, guides, lazy->motion, lazy->last.frame, &lazy->kernels,
-                          planes, error));
+    g_clear_pointer(&last->past.rgba, free);
+    if (!fl_nnf_init(&lazy->warm, lazy->width, lazy->height, error))
+        return false;
+    fl_fluid_carry(&last->past.nnf, lazy->motion, &lazy->warm);
+    if (!(lazy->params->motion_blur > 0))
+        g_clear_pointer(&lazy->motion, free);
+    return true;
 }
 
-static bool level_init(FlLazy *lazy, int l, GError **error)
+/* All that is needed of the guides, which then may go. */
+static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
 {
-    Level *level = &lazy->level[l];
-    FlFluidPlanes *planes = &level->planes;
-    if (l > 0) {
-        const FlFluidPlanes *fine = &lazy->level[l - 1].planes;
-        if (!fl_fluid_planes_init(planes, (fine->width + 1) / 2, (fine->height + 1) / 2, error))
-            return false;
-        fl_fluid_planes_halve(fine, planes);
-    }
-    const size_t pixels = (size_t)planes->width * (size_t)planes->height;
-    return (level->rgba = fl_alloc(4 * pixels, sizeof(float), "a picture", error)) &&
-           fl_fluid_picture_init(&level->picture, planes->width, planes->height, error) &&
-           fl_nnf_init(&level->nnf, planes->width, planes->height, error) &&
-           fl_fluid_segments_init(&level->segments, planes, error) &&
-           (lazy->source.level[l].segments.n[1] > 0 ||
-            fl_fluid_segments_merge(&level->segments, error));
-}
-
-/* The last field in the size of every level. */
-static bool carry_field(FlLazy *lazy, GError **error)
-{
-    for (int l = 0; l < lazy->n_levels; l++) {
-        Level *level = &lazy->level[l];
-        if (!fl_nnf_init(&level->warm, level->nnf.width, level->nnf.height, error))
-            return false;
-        if (l == 0)
-            fl_fluid_carry(&lazy->last.past.nnf, lazy->motion, &level->warm);
-        else
-            fl_nnf_downscale(&lazy->level[0].warm, l, &lazy->source.level[l].voted, &level->warm);
-    }
+    const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
+    g_autofree uint8_t *mask = fl_alloc(pixels, 1, "a mask", error);
+    g_autofree uint8_t *shape = mask ? fl_alloc(pixels, 1, "a mask", error) : NULL;
+    if (!shape || (lazy->last.valid && !find_motion(lazy, guides, error)))
+        return false;
+    memcpy(mask, guides->mask, pixels);
+    fl_rest_shape(guides, shape);
+    if (guides->disposable)
+        fl_guides_clear(guides);
+    if (!blur_mask(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, mask, error)))
+        return false;
+    fl_lazy_state_forget(&lazy->last);
+    lazy->last.past.mask = g_steal_pointer(&mask);
+    lazy->last.shape = g_steal_pointer(&shape);
     return true;
 }
 
 /* ---- a level --------------------------------------------------------------------------------- */
+
+/* The last field in the size of a level; none in a first frame. */
+static bool warm_field(FlLazy *lazy, int l, FlNnf *warm, GError **error)
+{
+    if (l == 0)
+        *warm = lazy->warm, lazy->warm = (FlNnf){0};
+    if (l == 0 || !lazy->warm.match)
+        return true;
+    const FlFluidPlanes *planes = &lazy->level[l].planes;
+    if (!fl_nnf_init(warm, planes->width, planes->height, error))
+        return false;
+    fl_nnf_downscale(&lazy->warm, l, &lazy->source.level[l].voted, warm);
+    return true;
+}
 
 static FlMatch random_match(const FlFluidLevel *source, int segment, uint64_t key)
 {
@@ -186,7 +201,7 @@ static FlMatch random_match(const FlFluidLevel *source, int segment, uint64_t ke
 
 /* A match for every pixel of the segments and none elsewhere: the carried one, else as it is, else
  * a random one. */
-static void complete(const FlLazy *lazy, int l, uint64_t key)
+static void complete(const FlLazy *lazy, int l, const FlNnf *warm, uint64_t key)
 {
     const Level *level = &lazy->level[l];
     const size_t pixels = (size_t)level->nnf.width * (size_t)level->nnf.height;
@@ -198,26 +213,41 @@ static void complete(const FlLazy *lazy, int l, uint64_t key)
         for (size_t k = 0; k < level->segments.n[s]; k++) {
             const uint32_t p = level->segments.place[s][k];
             FlMatch *m = &level->nnf.match[p];
-            if (level->warm.match && level->warm.match[p].frame != FL_NO_MATCH)
-                *m = level->warm.match[p];
+            if (warm->match && warm->match[p].frame != FL_NO_MATCH)
+                *m = warm->match[p];
             if (m->frame == FL_NO_MATCH)
                 *m = random_match(&lazy->source.level[l], s, fl_key(key, p));
         }
 }
 
-/* Nothing but paper where no patch votes. */
-static void vote(const FlLazy *lazy, int l)
+/* The first field of a level, from the coarser one, which goes. */
+static bool start_field(FlLazy *lazy, int l, uint64_t key, GError **error)
 {
-    const Level *level = &lazy->level[l];
-    const size_t pixels = (size_t)level->nnf.width * (size_t)level->nnf.height;
-    for (size_t p = 0; p < pixels; p++) {
-        for (size_t c = 0; c < 3; c++)
-            level->rgba[4 * p + c] =
-                lazy->exemplar->cut_out ? 0 : lazy->exemplar->paper[c] / 255.0f;
-        level->rgba[4 * p + 3] = 0;
+    Level *level = &lazy->level[l];
+    const FlFluidPlanes *planes = &level->planes;
+    g_auto(FlNnf) warm = {0};
+    if (!warm_field(lazy, l, &warm, error) ||
+        !fl_fluid_segments_init(&level->segments, planes, error) ||
+        (lazy->source.level[l].segments.n[1] == 0 &&
+         !fl_fluid_segments_merge(&level->segments, error)) ||
+        !fl_nnf_init(&level->nnf, planes->width, planes->height, error))
+        return false;
+    if (l + 1 < lazy->n_levels) {
+        fl_nnf_upscale(&level[1].nnf, &lazy->source.level[l].voted, &lazy->kernels, &level->nnf);
+        level_clear(&level[1]);
     }
-    fl_vote(&level->nnf, &lazy->source.level[l].voted, &lazy->kernels, lazy->params->vote_sharpness,
-            4, level->rgba, NULL);
+    complete(lazy, l, &warm, key);
+    return true;
+}
+
+/* Nothing but paper, for pixels for which no patch votes. */
+static void fill_paper(const FlExemplar *exemplar, int pixels, float *rgba)
+{
+    for (int p = 0; p < pixels; p++) {
+        for (int c = 0; c < 3; c++)
+            rgba[4 * p + c] = exemplar->cut_out ? 0 : exemplar->paper[c] / 255.0f;
+        rgba[4 * p + 3] = 0;
+    }
 }
 
 /*
@@ -226,24 +256,68 @@ static void vote(const FlLazy *lazy, int l)
  * coarse level, whose patches stay, and X counts more than X^ by 1 / lambda. Measured: the texture
  * of a translation moved by 0 of 2 px with lambda .5 and four levels.
  */
-static void start_from_past(const Level *level)
+static void start_from_past(const FlFluidPlanes *planes, int y, float *rgba)
 {
-    const size_t pixels = (size_t)level->nnf.width * (size_t)level->nnf.height;
-    for (size_t p = 0; p < pixels; p++)
+    const size_t row = (size_t)y * (size_t)planes->width;
+    for (size_t x = 0; x < (size_t)planes->width; x++)
         for (size_t c = 0; c < 4; c++) {
-            const float w = level->planes.plane[FL_FLUID_PLANE_WEIGHT][p];
-            const float past = level->planes.plane[FL_FLUID_PLANE_PAST + (int)c][p];
-            level->rgba[4 * p + c] += w * (past - level->rgba[4 * p + c]);
+            const float w = planes->plane[FL_FLUID_PLANE_WEIGHT][row + x];
+            const float past = planes->plane[FL_FLUID_PLANE_PAST + c][row + x];
+            rgba[4 * x + c] += w * (past - rgba[4 * x + c]);
         }
 }
 
-static void pack_target(const FlLazy *lazy, Level *level)
+static void store_row(const float *rgba, int n, uint16_t *output)
 {
-    const size_t pixels = (size_t)level->nnf.width * (size_t)level->nnf.height;
-    for (size_t c = 0; c < 4; c++)
-        for (size_t p = 0; p < pixels; p++)
-            level->planes.plane[c][p] = level->rgba[4 * p + c];
-    fl_fluid_picture_pack(&level->planes, &lazy->weights, true, &level->picture);
+    for (int k = 0; k < n; k++)
+        output[k] = (uint16_t)(rgba[k] * FL_FLUID_DEPTH + .5f);
+}
+
+/* A row of votes into an output of 4 values a pixel; NULL: into the level's picture. */
+static void take_row(const Level *level, const float *rgba, int y, uint16_t *output)
+{
+    const int values = 4 * level->nnf.width;
+    if (output)
+        store_row(rgba, values, output + (size_t)y * (size_t)values);
+    else
+        fl_fluid_picture_pack_row(rgba, y, &level->picture);
+}
+
+/* past: where the level begins; or NULL. */
+static void vote(const FlLazy *lazy, int l, const FlFluidPlanes *past, uint16_t *output)
+{
+    const Level *level = &lazy->level[l];
+    const int width = level->nnf.width, height = level->nnf.height;
+#pragma omp parallel
+    {
+        g_autofree float *strip = g_new(float, 4 * (size_t)width * FL_VOTE_ROWS);
+#pragma omp for schedule(dynamic, 1)
+        for (int first = 0; first < height; first += FL_VOTE_ROWS) {
+            fill_paper(lazy->exemplar, width * FL_VOTE_ROWS, strip);
+            fl_vote_rows(&level->nnf, &lazy->source.level[l].voted, &lazy->kernels,
+                         lazy->params->vote_sharpness, 4, first, strip);
+            for (int y = first; y < MIN(first + FL_VOTE_ROWS, height); y++) {
+                float *rgba = strip + 4 * (size_t)width * (size_t)(y - first);
+                if (past && past->plane[FL_FLUID_PLANE_WEIGHT])
+                    start_from_past(past, y, rgba);
+                take_row(level, rgba, y, output);
+            }
+        }
+    }
+}
+
+/* The target as it is before the first round. */
+static bool start_picture(FlLazy *lazy, int l, GError **error)
+{
+    Level *level = &lazy->level[l];
+    FlFluidPlanes *planes = &level->planes;
+    if (!fl_fluid_picture_init(&level->picture, planes->width, planes->height, error))
+        return false;
+    fl_fluid_picture_pack(planes, &lazy->weights, &level->picture);
+    vote(lazy, l, planes, NULL);
+    if (l > 0 || !lazy->shows)
+        fl_fluid_planes_clear(planes);
+    return true;
 }
 
 /* Border, then interior; on a level without separate ones the first is all. */
@@ -279,26 +353,21 @@ static bool retrieve(FlLazy *lazy, int l, uint64_t key, FlLevelStats *stats, GEr
 
 static bool run_level(FlLazy *lazy, int l, FlLevelStats *stats, GError **error)
 {
-    Level *level = &lazy->level[l];
+    const Level *level = &lazy->level[l];
     const FlParams *params = lazy->params;
     const uint64_t key = fl_key(fl_key(lazy->key, (uint64_t)lazy->last.frame), (uint64_t)l);
     const int from_coarsest = lazy->n_levels - 1 - l;
+    if (!start_field(lazy, l, fl_key(key, 1), error) || !start_picture(lazy, l, error))
+        return false;
     *stats = (FlLevelStats){.width = level->nnf.width, .height = level->nnf.height};
     stats->pixels = (int)(level->segments.n[0] + level->segments.n[1]);
     stats->rounds =
         l == 0 ? params->finest_rounds : fl_list_at(&params->opt_iterations, from_coarsest);
-    if (from_coarsest > 0)
-        fl_nnf_upscale(&lazy->level[l + 1].nnf, &lazy->source.level[l].voted, &lazy->kernels,
-                       &level->nnf);
-    complete(lazy, l, fl_key(key, 1));
-    vote(lazy, l);
-    if (lazy->last.valid)
-        start_from_past(level);
     for (int round = 0; round < stats->rounds; round++) {
-        pack_target(lazy, level);
+        if (round > 0)
+            vote(lazy, l, NULL, NULL);
         if (!retrieve(lazy, l, fl_key(key, 2 + (uint64_t)round), stats, error))
             return false;
-        vote(lazy, l);
     }
     return true;
 }
@@ -318,30 +387,33 @@ static bool run_levels(FlLazy *lazy, FlFrameStats *stats, GError **error)
     return true;
 }
 
-static bool prepare(FlLazy *lazy, const FlGuides *guides, GError **error)
+static bool prepare(FlLazy *lazy, FlGuides *guides, GError **error)
 {
-    if (!pack_source(lazy, error) || !fill_planes(lazy, guides, error))
+    if (!pack_source(lazy, error) || !take_guides(lazy, guides, error))
         return false;
-    for (int l = 0; l < lazy->n_levels; l++)
-        if (!level_init(lazy, l, error))
+    for (int l = 1; l < lazy->n_levels; l++)
+        if (!fl_fluid_planes_halve(&lazy->level[l - 1].planes, &lazy->level[l].planes, error))
             return false;
-    return !lazy->last.valid || carry_field(lazy, error);
+    return true;
 }
 
-/* What the next frame is warped from. */
-static void remember(FlLazy *lazy, const FlGuides *guides)
+/* What the next frame is warped from, and the output. */
+static bool remember(FlLazy *lazy, GError **error)
 {
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
     FlFluidPast *past = &lazy->last.past;
-    for (size_t k = 0; k < 4 * pixels; k++)
-        past->rgba[k] = (uint16_t)(lazy->level[0].rgba[k] * FL_FLUID_DEPTH + .5f);
-    memcpy(past->mask, guides->mask, pixels);
-    fl_rest_shape(guides, lazy->last.shape);
-    memcpy(past->nnf.match, lazy->level[0].nnf.match, pixels * sizeof(FlMatch));
+    Level *finest = &lazy->level[0];
+    fl_fluid_picture_clear(&finest->picture);
+    fl_fluid_segments_clear(&finest->segments);
+    if (!(past->rgba = fl_alloc(4 * pixels, sizeof *past->rgba, "a picture", error)))
+        return false;
+    vote(lazy, 0, NULL, past->rgba);
+    past->nnf = finest->nnf, finest->nnf = (FlNnf){0};
     for (size_t p = 0; p < pixels; p++)
         if (past->nnf.match[p].frame != FL_NO_MATCH)
             past->nnf.match[p].frame = (int16_t)lazy->source.frame;
     lazy->last.valid = true;
+    return true;
 }
 
 /* A colour as it is, where rgba has it times its alpha: where that is 0, the paper's. */
@@ -357,7 +429,7 @@ static bool write_output(const FlLazy *lazy, uint8_t *rgb, uint8_t *alpha, GErro
     const size_t pixels = (size_t)lazy->width * (size_t)lazy->height;
     const float shutter = lazy->params->motion_blur;
     g_autofree uint16_t *blurred = NULL;
-    if (shutter > 0 && lazy->level[0].nnf.match) { // a first frame has no motion
+    if (shutter > 0 && lazy->motion) {
         if (!(blurred = fl_motion_blur(lazy->last.past.rgba, lazy->motion, lazy->width,
                                        lazy->height, lazy->exemplar->cut_out, shutter, error)))
             return false;
@@ -381,7 +453,7 @@ static void write_nothing(FlLazy *lazy, uint8_t *rgb, uint8_t *alpha)
         memcpy(rgb + 3 * p, lazy->exemplar->paper, 3);
     if (alpha)
         memset(alpha, 0, pixels);
-    lazy->last.valid = false;
+    fl_lazy_state_forget(&lazy->last);
 }
 
 static bool is_empty(const FlLazy *lazy, const FlGuides *guides)
@@ -399,32 +471,28 @@ static bool holds_still(const FlLazy *lazy, const FlGuides *guides)
            fl_rests(guides, lazy->last.shape, lazy->params->flow_still);
 }
 
-static bool paint(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
-                  FlFrameStats *stats, GError **error)
+static bool paint(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha, FlFrameStats *stats,
+                  GError **error)
 {
-    clear_levels(lazy);
+    clear_frame(lazy);
     lazy->last.frame++;
     if (is_empty(lazy, guides)) {
         write_nothing(lazy, rgb, alpha);
         return true;
     }
-    if (!holds_still(lazy, guides)) {
-        const bool first = !lazy->last.valid;
-        if (!prepare(lazy, guides, error) || !run_levels(lazy, stats, error))
-            return false;
-        if (first)
-            memset(lazy->motion, 0, 2 * (size_t)lazy->width * (size_t)lazy->height * sizeof(float));
-        remember(lazy, guides);
-    }
-    return write_output(lazy, rgb, alpha, error);
+    return (holds_still(lazy, guides) ||
+            (prepare(lazy, guides, error) && run_levels(lazy, stats, error) &&
+             remember(lazy, error))) &&
+           write_output(lazy, rgb, alpha, error);
 }
 
-bool fl_lazy_frame(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
+bool fl_lazy_frame(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha,
                    FlFrameStats *stats, FlSynthView *view, GError **error)
 {
     FlFrameStats no_stats = {0};
     FlFrameStats *const s = stats ? stats : &no_stats;
     *s = (FlFrameStats){0};
+    lazy->shows = view != NULL;
     const bool done = paint(lazy, guides, rgb, alpha, s, error);
     if (view)
         *view = (FlSynthView){{0, 0, lazy->width, lazy->height},
@@ -432,7 +500,7 @@ bool fl_lazy_frame(FlLazy *lazy, const FlGuides *guides, uint8_t *rgb, uint8_t *
                               NULL,
                               NULL};
     else
-        clear_levels(lazy);
+        clear_frame(lazy);
     return done;
 }
 

@@ -47,6 +47,8 @@ static bool add_past(const FlFluidPlanes *source, const FlFluidPlanes *target, f
 {
     FlGuidePair *colour = NULL, *alpha = NULL;
     const float *counts = target->plane[FL_FLUID_PLANE_WEIGHT];
+    if (!counts) // a first frame
+        return true;
     if (!add("past", FL_FLUID_PLANE_PAST, 3, weight, source, target, pairs, &colour, error) ||
         !add("past-alpha", FL_FLUID_PLANE_PAST + 3, 1, 3 * weight, source, target, pairs, &alpha,
              error))
@@ -55,7 +57,7 @@ static bool add_past(const FlFluidPlanes *source, const FlFluidPlanes *target, f
         fill_paper(target, paper, colour->target);
         if (!fl_guide_fill(colour->target, 3, counts, target->width, target->height) ||
             !fl_guide_fill(alpha->target, 1, counts, target->width, target->height))
-            fl_guide_pairs_drop(pairs, 2); // a first frame
+            fl_guide_pairs_drop(pairs, 2); // all of it is new
     }
     return true;
 }

@@ -9,23 +9,22 @@ typedef struct Header {
 
 enum { FIELD, PICTURE, MASK, SHAPE, N_PARTS };
 
-bool fl_lazy_state_init(FlLazyState *state, int width, int height, GError **error)
+static bool make_room(FlLazyState *state, GError **error)
 {
-    const size_t pixels = (size_t)width * (size_t)height;
-    *state = (FlLazyState){.width = width, .height = height};
+    const size_t pixels = (size_t)state->width * (size_t)state->height;
     return (state->past.rgba = fl_alloc(4 * pixels, sizeof(uint16_t), "a picture", error)) &&
            (state->past.mask = fl_alloc(pixels, 1, "a mask", error)) &&
            (state->shape = fl_alloc(pixels, 1, "a mask", error)) &&
-           fl_nnf_init(&state->past.nnf, width, height, error);
+           fl_nnf_init(&state->past.nnf, state->width, state->height, error);
 }
 
-void fl_lazy_state_clear(FlLazyState *state)
+void fl_lazy_state_forget(FlLazyState *state)
 {
-    free(state->past.rgba);
-    free(state->past.mask);
-    free(state->shape);
+    g_clear_pointer(&state->past.rgba, free);
+    g_clear_pointer(&state->past.mask, free);
+    g_clear_pointer(&state->shape, free);
     fl_nnf_clear(&state->past.nnf);
-    *state = (FlLazyState){0};
+    state->valid = false;
 }
 
 static void parts_of(const FlLazyState *state, FlSpan parts[N_PARTS])
@@ -53,18 +52,25 @@ static bool unpack(FlLazyState *state, GBytes *bytes, const FlExemplarLevel *lev
     if (h.frame < 0 || (h.valid != 0 && h.valid != 1) || h.width != state->width ||
         h.height != state->height)
         return fl_state_bytes_damaged("it does not start as a state does", error);
-    state->frame = h.frame, state->valid = h.valid;
+    fl_lazy_state_forget(state);
+    state->frame = h.frame;
+    if (!h.valid)
+        return true;
+    if (!make_room(state, error))
+        return false;
     FlSpan parts[N_PARTS];
     parts_of(state, parts);
-    return !h.valid || (fl_state_bytes_parts(bytes, sizeof h, parts, N_PARTS, error) &&
-                        (fl_nnf_fits(&state->past.nnf, level) ||
-                         fl_state_bytes_damaged("its field points outside the style", error)));
+    state->valid = fl_state_bytes_parts(bytes, sizeof h, parts, N_PARTS, error) &&
+                   (fl_nnf_fits(&state->past.nnf, level) ||
+                    fl_state_bytes_damaged("its field points outside the style", error));
+    return state->valid;
 }
 
 bool fl_lazy_state_unpack(FlLazyState *state, GBytes *bytes, const FlExemplarLevel *level,
                           GError **error)
 {
     const bool whole = unpack(state, bytes, level, error);
-    state->valid = whole && state->valid;
+    if (!whole)
+        fl_lazy_state_forget(state);
     return whole;
 }

@@ -7,13 +7,13 @@
 typedef struct FlLazyState {
     int width, height;
     int frame;  // frames painted so far, >= 0
-    bool valid; // the last of them had fluid; else the rest is undefined
+    bool valid; // the last of them had fluid; else the rest is not there
     FlFluidPast past;
     uint8_t *shape; // fl_rest_shape()
 } FlLazyState;
 
-bool fl_lazy_state_init(FlLazyState *state, int width, int height, GError **error);
-void fl_lazy_state_clear(FlLazyState *state);
+/** Frees all that a frame without fluid, and so the first one, has none of. */
+void fl_lazy_state_forget(FlLazyState *state);
 
 /** In this machine's byte order. Returns: NULL with FL_ERROR_NO_MEMORY set. */
 GBytes *fl_lazy_state_pack(const FlLazyState *state, GError **error);

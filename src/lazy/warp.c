@@ -118,20 +118,21 @@ static bool splines_of(const FlFluidPast *past, int width, int height, FlExempla
                        GError **error)
 {
     const size_t pixels = (size_t)width * (size_t)height;
-    g_autofree float *all = fl_alloc(4 * pixels, sizeof *all, "a picture", error);
-    if (!all)
+    g_autofree float *plane = fl_alloc(pixels, sizeof *plane, "a picture", error);
+    if (!plane || !fl_fluid_splines_init(spline, width, height, error))
         return false;
-    float *const plane[4] = {all, all + pixels, all + 2 * pixels, all + 3 * pixels};
-    for (size_t p = 0; p < pixels; p++)
-        for (size_t c = 0; c < 4; c++)
-            plane[c][p] = (float)past->rgba[4 * p + c] / FL_FLUID_DEPTH;
-    return fl_fluid_splines_init(spline, plane, width, height, error);
+    for (int c = 0; c < 4; c++) {
+        for (size_t p = 0; p < pixels; p++)
+            plane[p] = (float)past->rgba[4 * p + (size_t)c] / FL_FLUID_DEPTH;
+        fl_fluid_splines_fill(spline, c, plane);
+    }
+    return true;
 }
 
-bool fl_fluid_warp(const FlFluidPast *past, const FlGuides *guides, const float *motion, int frame,
+bool fl_fluid_warp(const FlFluidPast *past, const uint8_t *mask, const float *motion, int frame,
                    const FlKernels *kernels, FlFluidPlanes *planes, GError **error)
 {
-    const int width = guides->width, height = guides->height;
+    const int width = planes->width, height = planes->height;
     FlExemplarLevel spline;
     if (!splines_of(past, width, height, &spline, error))
         return false;
@@ -141,7 +142,7 @@ bool fl_fluid_warp(const FlFluidPast *past, const FlGuides *guides, const float 
             const size_t p = (size_t)y * (size_t)width + (size_t)x;
             const float from[2] = {(float)x - motion[2 * p], (float)y - motion[2 * p + 1]};
             float value[4];
-            warp_pixel(past, &spline, kernels, from, (float)guides->mask[p] / 255, frame, value,
+            warp_pixel(past, &spline, kernels, from, (float)mask[p] / 255, frame, value,
                        &planes->plane[FL_FLUID_PLANE_WEIGHT][p]);
             for (int c = 0; c < 4; c++)
                 planes->plane[FL_FLUID_PLANE_PAST + c][p] = CLAMP(value[c], 0.0f, 1.0f);

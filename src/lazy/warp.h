@@ -9,7 +9,7 @@
 #define FL_FLUID_DEPTH 65535 // 1.0 of a stored output
 
 /** The output that the next frame is warped from, RGBA as the exemplar's planes are; with its mask
- * and field. */
+ * and field. Zeroed: nothing. */
 typedef struct FlFluidPast {
     uint16_t *rgba; // 0 … FL_FLUID_DEPTH
     uint8_t *mask;  // coverage
@@ -28,7 +28,7 @@ bool fl_fluid_motion(const FlGuides *guides, int reach, float *motion, GError **
  * the warped mask has none (6), per pixel. Sampled by cubic splines at 1/16 px; `frame` decides
  * which way places are rounded, so that slow motions add up.
  */
-bool fl_fluid_warp(const FlFluidPast *past, const FlGuides *guides, const float *motion, int frame,
+bool fl_fluid_warp(const FlFluidPast *past, const uint8_t *mask, const float *motion, int frame,
                    const FlKernels *kernels, FlFluidPlanes *planes, GError **error);
 
 /** The field carried along, to the nearest pixel; no match where nothing is known. Frames are 0. */
