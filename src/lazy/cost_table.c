@@ -1,6 +1,6 @@
 #include "lazy/cost_table.h"
 
-#include "base/alloc.h"
+#include "base/bits.h"
 #include "base/rng.h"
 
 #define NEAREST 16 // a row is looked through once for so many
@@ -47,14 +47,14 @@ static int insert(const FlCostTable *table, uint32_t row, FlOffer offer, FlOffer
     return n;
 }
 
-static void find_nearest(FlCostTable *table, uint32_t row, const uint8_t *is_free)
+static void find_nearest(FlCostTable *table, uint32_t row, const uint64_t *is_free)
 {
     const uint32_t *cost = table->cost + (size_t)row * table->n_columns;
     FlOffer *list = table->nearest + (size_t)row * NEAREST;
     int n = 0;
     for (uint32_t k = 0; k < table->n_columns; k++) {
         const FlOffer offer = {table->target[k], cost[k]};
-        if ((n == NEAREST && cost[k] > list[NEAREST - 1].cost) || !is_free[offer.target])
+        if ((n == NEAREST && cost[k] > list[NEAREST - 1].cost) || !fl_bit(is_free, offer.target))
             continue;
         if (n < NEAREST || is_before(table, row, offer, list[NEAREST - 1]))
             n = insert(table, row, offer, list, n);
@@ -64,12 +64,13 @@ static void find_nearest(FlCostTable *table, uint32_t row, const uint8_t *is_fre
     table->next[row] = 0;
 }
 
-FlOffer fl_cost_table_nearest(FlCostTable *table, uint32_t row, const uint8_t *is_free)
+FlOffer fl_cost_table_nearest(FlCostTable *table, uint32_t row, const uint64_t *is_free)
 {
     const FlOffer *list = table->nearest + (size_t)row * NEAREST;
     for (;;) {
         uint8_t *next = &table->next[row];
-        while (*next < NEAREST && list[*next].target != NOBODY && !is_free[list[*next].target])
+        while (*next < NEAREST && list[*next].target != NOBODY &&
+               !fl_bit(is_free, list[*next].target))
             (*next)++;
         if (*next < NEAREST && list[*next].target != NOBODY)
             return list[*next];

@@ -27,9 +27,9 @@ bool fl_cost_table_init(FlCostTable *table, uint32_t n_rows, uint32_t n_columns,
 void fl_cost_table_clear(FlCostTable *table);
 
 /**
- * The nearest free target of a row, of equals one by hash. is_free is by target, and one of the
- * table's targets must be; those that are not never become free again.
+ * The nearest free target of a row, of equals one by hash. is_free has a bit for each target, and
+ * one of the table's targets must be; those that are not never become free again.
  */
-FlOffer fl_cost_table_nearest(FlCostTable *table, uint32_t row, const uint8_t *is_free);
+FlOffer fl_cost_table_nearest(FlCostTable *table, uint32_t row, const uint64_t *is_free);
 
 #endif

@@ -63,7 +63,7 @@ bool fl_fluid_picture_init(FlFluidPicture *picture, int width, int height, GErro
 {
     const size_t pitch = (size_t)width + 2 * FL_PATCH_RADIUS;
     const size_t n = pitch * ((size_t)height + 2 * FL_PATCH_RADIUS);
-    FlFluidTexel *all = fl_alloc(n, sizeof *all, "a region's guides", error);
+    FlFluidTexel *all = fl_alloc_huge(n, sizeof *all, "a region's guides", error);
     *picture = (FlFluidPicture){width, height, (ptrdiff_t)pitch, NULL};
     if (all)
         picture->pixel = all + FL_PATCH_RADIUS * pitch + FL_PATCH_RADIUS;

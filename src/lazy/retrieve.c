@@ -1,6 +1,7 @@
 #include "lazy/retrieve.h"
 
 #include "base/alloc.h"
+#include "base/bits.h"
 #include "base/rng.h"
 #include "base/schedule.h"
 #include "lazy/cost_table.h"
@@ -43,9 +44,10 @@ typedef struct Run {
     uint32_t *cost;    // of that
     int32_t *won;      // [n_sources][n_kept]: the last targets won, newest first; NONE
     uint32_t n_kept;
-    int32_t *warm, *warm_next; // lists of targets of the warm start: by source, by target
-    uint8_t *is_free;          // by target
-    uint32_t *open;            // free targets in scan order, and a few that are no longer
+    uint32_t *warm;                  // targets of the warm start, source by source,
+    uint32_t *warm_first, *warm_end; // where those of a source stand; the first may be taken
+    uint64_t *is_free;               // by target, a bit each
+    uint32_t *open;                  // free targets in scan order, and a few that are no longer
     uint32_t n_open, n_free;
     uint64_t *offer;                // by target: the least cost << 32 | a hash of the source
     uint32_t *cell;                 // by source: what it counts for
@@ -63,9 +65,10 @@ typedef struct Run {
 
 static void run_clear(Run *run)
 {
-    void *const arrays[] = {run->place_at,    run->target,     run->cost, run->won,   run->warm,
-                            run->warm_next,   run->is_free,    run->open, run->offer, run->cell,
-                            run->tile_places, run->tile_first, run->use,  run->left};
+    void *const arrays[] = {run->place_at,   run->target,     run->cost,     run->won,
+                            run->warm,       run->warm_first, run->warm_end, run->is_free,
+                            run->open,       run->offer,      run->cell,     run->tile_places,
+                            run->tile_first, run->use,        run->left};
     for (size_t k = 0; k < G_N_ELEMENTS(arrays); k++)
         free(arrays[k]);
     fl_cost_table_clear(&run->table);
@@ -110,11 +113,12 @@ static bool alloc_run(Run *run, GError **error)
            (run->target = fl_alloc(s, sizeof(int32_t), what, error)) &&
            (run->cost = fl_alloc(s, sizeof(uint32_t), what, error)) &&
            (run->won = fl_alloc(s * run->n_kept, sizeof(int32_t), what, error)) &&
-           (run->warm = fl_alloc(s, sizeof(int32_t), what, error)) &&
+           (run->warm = fl_alloc(run->n_targets, sizeof(uint32_t), what, error)) &&
+           (run->warm_first = fl_alloc(s + 1, sizeof(uint32_t), what, error)) &&
+           (run->warm_end = fl_alloc(s, sizeof(uint32_t), what, error)) &&
            (run->cell = fl_alloc(s, sizeof(uint32_t), what, error)) &&
            (run->use = fl_alloc(s, sizeof(uint32_t), what, error)) &&
-           (run->warm_next = fl_alloc_scratch(pixels, sizeof(int32_t), what, error)) &&
-           (run->is_free = fl_alloc_scratch(pixels, 1, what, error)) &&
+           (run->is_free = fl_bits_new(pixels, what, error)) &&
            (run->open = fl_alloc(run->n_targets, sizeof(uint32_t), what, error)) &&
            (run->offer = fl_alloc_scratch(pixels, sizeof(uint64_t), what, error)) &&
            (run->tile_places = fl_alloc(in->n_sources, sizeof(uint32_t), what, error)) &&
@@ -190,15 +194,23 @@ static int32_t source_of(const Run *run, FlMatch m)
     return place < 0 ? NONE : (int32_t)((uint32_t)place * run->n_turns + turn);
 }
 
+/* Sorts the targets of the warm start by source; of one they stand in their order. */
 static void start_warm(Run *run, const FlNnf *nnf)
 {
-    for (uint32_t j = run->n_targets; j-- > 0;) { // lists run upwards
-        const uint32_t target = run->in->targets[j];
-        const int32_t s = source_of(run, nnf->match[target]);
-        if (s == NONE)
-            continue;
-        run->warm_next[target] = run->warm[s];
-        run->warm[s] = (int32_t)target;
+    uint32_t n = 0;
+    for (uint32_t j = 0; j < run->n_targets; j++) {
+        const int32_t s = source_of(run, nnf->match[run->in->targets[j]]);
+        if (s != NONE)
+            run->warm_end[s]++;
+    }
+    for (uint32_t s = 0; s < run->n_sources; s++) {
+        run->warm_first[s] = n;
+        n += run->warm_end[s], run->warm_end[s] = run->warm_first[s];
+    }
+    for (uint32_t j = 0; j < run->n_targets; j++) {
+        const int32_t s = source_of(run, nnf->match[run->in->targets[j]]);
+        if (s != NONE)
+            run->warm[run->warm_end[s]++] = run->in->targets[j];
     }
 }
 
@@ -271,7 +283,7 @@ static void prefetch(const FlFluidPicture *picture, uint32_t target)
 /* Notes a target that is to be tried, unless it is taken or noted. */
 static void add_target(const Run *run, Proposal *p, uint32_t target)
 {
-    if (!run->is_free[target])
+    if (!fl_bit(run->is_free, target))
         return;
     for (int k = 0; k < p->n_candidates; k++)
         if (p->candidate[k] == target)
@@ -312,27 +324,37 @@ static void add_neighbours(const Run *run, Proposal *p)
     }
 }
 
-/* Free targets by hash: the list has few that are not. Where most are taken, windows hit none. */
-static void add_anywhere(const Run *run, Proposal *p, FlRng *rng)
+/* Places in the list of free targets, which memory then fetches. */
+static void choose_anywhere(const Run *run, FlRng *rng, uint32_t places[ANYWHERE])
 {
     for (int n = 0; n < ANYWHERE; n++) {
-        uint32_t k = fl_rng_below(rng, run->n_open);
-        while (!run->is_free[run->open[k]])
+        places[n] = fl_rng_below(rng, run->n_open);
+        __builtin_prefetch(run->open + places[n]);
+    }
+}
+
+/* Free targets by hash: the list has few that are not. Where most are taken, windows hit none. */
+static void add_anywhere(const Run *run, Proposal *p, const uint32_t places[ANYWHERE])
+{
+    for (int n = 0; n < ANYWHERE; n++) {
+        uint32_t k = places[n];
+        while (!fl_bit(run->is_free, run->open[k]))
             k = (k + 1) % run->n_open;
         add_target(run, p, run->open[k]);
     }
 }
 
-/* Those that are taken leave the list. */
+/* Those that are taken leave the list, which then begins with the free ones that were found. */
 static void add_warm(const Run *run, Proposal *p)
 {
-    int32_t *link = &run->warm[p->source];
-    while (*link != NONE && p->n_candidates < WARM)
-        if (run->is_free[*link]) {
-            add_target(run, p, (uint32_t)*link);
-            link = &run->warm_next[*link];
-        } else
-            *link = run->warm_next[*link];
+    uint32_t found[WARM] = {0}, n = 0, k = run->warm_first[p->source];
+    for (; k < run->warm_end[p->source] && n < WARM; k++)
+        if (fl_bit(run->is_free, run->warm[k])) {
+            found[n] = run->warm[k];
+            add_target(run, p, found[n++]);
+        }
+    memcpy(run->warm + k - n, found, n * sizeof *found);
+    run->warm_first[p->source] = k - n;
 }
 
 /* Windows around the target in hand, each half as large as the one before. */
@@ -343,7 +365,8 @@ static void try_windows(const Run *run, Proposal *p, FlRng *rng)
         const uint32_t side = 2 * (uint32_t)reach + 1;
         const int x = p->target % width - reach + (int)fl_rng_below(rng, side);
         const int y = p->target / width - reach + (int)fl_rng_below(rng, side);
-        if (x >= 0 && y >= 0 && x < width && y < height && run->is_free[y * width + x])
+        if (x >= 0 && y >= 0 && x < width && y < height &&
+            fl_bit(run->is_free, (uint32_t)(y * width + x)))
             try_target(run, p, (uint32_t)(y * width + x));
     }
 }
@@ -351,12 +374,14 @@ static void try_windows(const Run *run, Proposal *p, FlRng *rng)
 static void search(const Run *run, Proposal *p, FlRng *rng)
 {
     const int32_t last = run->target[p->source];
-    if (last != NONE && run->is_free[last])
+    uint32_t places[ANYWHERE];
+    choose_anywhere(run, rng, places);
+    if (last != NONE && fl_bit(run->is_free, (uint32_t)last))
         p->target = last, p->cost = run->cost[p->source];
     else
         add_warm(run, p);
     add_neighbours(run, p);
-    add_anywhere(run, p, rng);
+    add_anywhere(run, p, places);
     for (int k = 0; k < p->n_candidates; k++)
         try_target(run, p, p->candidate[k]);
     try_windows(run, p, rng);
@@ -442,7 +467,7 @@ static void assign(Run *run, const Winner *winner, FlNnf *nnf)
     nnf->match[target] = (FlMatch){.x_16 = (uint16_t)(16 * (pixel % width)),
                                    .y_16 = (uint16_t)(16 * (pixel / width)),
                                    .theta = (uint8_t)(s % run->n_turns * (FL_ANGLES / TURNS))};
-    run->is_free[target] = 0;
+    fl_bit_clear(run->is_free, (uint32_t)target);
     run->n_free--;
     run->use[winner->cell]++;
     int32_t *won = run->won + (size_t)s * run->n_kept;
@@ -502,7 +527,7 @@ static void compact_open(Run *run)
     if (run->n_free > run->n_open - run->n_open / 8)
         return;
     for (uint32_t k = 0; k < run->n_open; k++)
-        if (run->is_free[run->open[k]])
+        if (fl_bit(run->is_free, run->open[k]))
             run->open[n++] = run->open[k];
     run->n_open = n;
 }
@@ -530,7 +555,7 @@ static bool make_table(Run *run, uint32_t n_eligible, GError **error)
             run->n_left++;
         }
     for (uint32_t k = 0; k < run->n_open; k++)
-        if (run->is_free[run->open[k]])
+        if (fl_bit(run->is_free, run->open[k]))
             run->table.target[n++] = run->open[k];
 #pragma omp parallel for schedule(dynamic, 16) if (run->n_left > 64)
     for (uint32_t row = 0; row < run->n_left; row++)
@@ -595,10 +620,9 @@ static void start(Run *run, const FlNnf *nnf)
 {
     memset(run->target, 0xff, run->n_sources * sizeof *run->target);
     memset(run->won, 0xff, (size_t)run->n_sources * run->n_kept * sizeof *run->won);
-    memset(run->warm, 0xff, run->n_sources * sizeof *run->warm);
     for (uint32_t j = 0; j < run->n_targets; j++) {
         const uint32_t target = run->in->targets[j];
-        run->is_free[target] = 1, run->open[j] = target, run->offer[target] = NO_OFFER;
+        fl_bit_set(run->is_free, target), run->open[j] = target, run->offer[target] = NO_OFFER;
     }
     run->n_open = run->n_free = run->n_targets;
     start_warm(run, nnf);
