@@ -54,9 +54,9 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  * Paints the next frame. rgb: width * height * 3 sRGB, written in the mask and a rim of 2 px, the
  * style's paper elsewhere. An empty mask makes the next frame a first frame again.
  *
- * stats and view may be NULL; without a view only the field and the picture of the frame are
- * kept. With params->rest, a still region keeps its last picture until params->boil is
- * due; stats are then empty.
+ * Guides that are disposable are cleared as soon as they are used. stats and view may be NULL;
+ * without a view only the field and the picture of the frame are kept. With params->rest, a still
+ * region keeps its last picture until params->boil is due; stats are then empty.
  */
 bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
