@@ -64,3 +64,11 @@ void fl_memory_trim(void)
     malloc_trim(0);
 #endif
 }
+
+void fl_memory_map_planes(void)
+{
+#ifdef __GLIBC__
+    enum { PLANE_BYTES = 4 << 20 };
+    (void)mallopt(M_MMAP_THRESHOLD, PLANE_BYTES);
+#endif
+}

@@ -16,4 +16,8 @@ int64_t fl_memory_mib(const char *root);
  * millisecond or so, and whatever uses these pages next has to fault them in. */
 void fl_memory_trim(void);
 
+/** For work with large planes, from here on and in the whole process: each is mapped by itself and
+ * returned to the system as soon as it is freed, so that no holes are left. */
+void fl_memory_map_planes(void);
+
 #endif

@@ -500,6 +500,8 @@ static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool 
     Pipeline pipeline = {.taker = taker, .drawn = -1, .start = g_get_monotonic_time()};
     pipeline.plan = fl_plan_new(options, error);
     const bool whole = pipeline.plan && pipeline.plan->finished != FL_FINISHED_ALL;
+    if (whole && fl_plan_is_large(pipeline.plan))
+        fl_memory_map_planes();
     const bool done = pipeline.plan && (!whole || fl_guard_inputs(pipeline.plan, error)) &&
                       (options->dry_run ? dry_run(&pipeline, error) : run(&pipeline, error));
     *stale = !done && fl_painters_stale(&pipeline.painters);
