@@ -11,7 +11,8 @@ GBytes *fl_state_bytes_pack(const void *header, size_t size, const FlSpan *parts
         fl_alloc_scratch(size + capacity, 1, "the state of a region", error);
     if (!bytes)
         return NULL;
-    memcpy(bytes, header, size);
+    if (size > 0)
+        memcpy(bytes, header, size);
     const size_t packed = n > 0 ? fl_compress(parts, n, bytes + size, capacity) : 0;
     if (n > 0 && packed == 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a state");

@@ -6,7 +6,7 @@
 #include <fluidy/error.h>
 
 /**
- * A header of `size` bytes and `n` parts behind it; with n == 0 the header alone.
+ * A header of `size` bytes, NULL for none, and `n` parts behind it; with n == 0 the header alone.
  *
  * Returns: to be freed with g_bytes_unref(); NULL with FL_ERROR_NO_MEMORY.
  */
