@@ -1,0 +1,189 @@
+/* The potential of an ink: its derivatives, the loss, and the search for one. */
+#include "base/rng.h"
+#include "transport/flow_map.h"
+#include "transport/potential.h"
+#include "transport/solve.h"
+
+#include <math.h>
+
+#define N 48 // px, the sides of a torus
+
+static float noise(uint64_t key, size_t i)
+{
+    FlRng rng = {fl_key(key, i)};
+    return 2 * fl_rng_float(&rng) - 1;
+}
+
+/* What is derived: the mean of by[i] * ink after a potential, and a little of the determinants. */
+typedef struct Problem {
+    FlPotential potential;
+    float density[N * N], taper[N * N], by[N * N], by_jacobian[N * N];
+    FlTransportMode mode;
+    bool periodic;
+} Problem;
+
+static Problem *problem_new(FlTransportMode mode, bool periodic)
+{
+    Problem *p = g_new0(Problem, 1);
+    p->mode = mode, p->periodic = periodic;
+    g_assert_true(fl_potential_init(&p->potential, N, N, NULL));
+    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++)
+        for (size_t i = 0; i < fl_potential_nodes(&p->potential, l); i++)
+            p->potential.grid[l][i] = noise((uint64_t)l, i) * (float)(1 << l);
+    for (size_t i = 0; i < (size_t)N * N; i++) {
+        p->density[i] = 1 + 0.4f * sinf((float)(i % N) * 0.26f) * cosf((float)(i / N) * 0.26f);
+        p->taper[i] = 0.6f + 0.4f * cosf((float)(i % N) * 0.13f);
+        p->by[i] = noise(10, i);
+        p->by_jacobian[i] = noise(11, i);
+    }
+    return p;
+}
+
+static void problem_free(Problem *p)
+{
+    fl_potential_clear(&p->potential);
+    g_free(p);
+}
+
+static double value_of(const Problem *p)
+{
+    g_auto(FlFlowMap) map = {0};
+    g_autofree float *sum = g_new(float, N *N), *velocity = g_new(float, 2 * N * N);
+    g_autofree float *carried = g_new(float, N *N);
+    g_assert_true(fl_flow_map_init(&map, N, N, p->periodic, NULL));
+    fl_potential_sum(&p->potential, sum);
+    fl_velocity(&map, sum, p->taper, p->mode, velocity);
+    fl_flow_map_run(&map, velocity);
+    fl_flow_map_carry(&map, p->density, carried);
+    double value = 0;
+    for (size_t i = 0; i < (size_t)N * N; i++)
+        value += (double)p->by[i] * carried[i] + (double)p->by_jacobian[i] * map.jacobian[i];
+    return value;
+}
+
+static void derivative_of(const Problem *p, FlPotential *by_node)
+{
+    g_auto(FlFlowMap) map = {0};
+    g_autofree float *sum = g_new(float, N *N), *velocity = g_new(float, 2 * N * N);
+    g_assert_true(fl_flow_map_init(&map, N, N, p->periodic, NULL));
+    fl_potential_sum(&p->potential, sum);
+    fl_velocity(&map, sum, p->taper, p->mode, velocity);
+    fl_flow_map_run(&map, velocity);
+    g_assert_true(fl_flow_map_adjoint(&map, p->density, p->by, p->by_jacobian, velocity, NULL));
+    fl_velocity_adjoint(&map, velocity, p->taper, p->mode, sum);
+    g_assert_true(fl_potential_init(by_node, N, N, NULL));
+    fl_potential_adjoint(sum, by_node);
+}
+
+/* The derivative along a direction of all nodes against central differences. Bilinear samples have
+ * kinks, which a small step along many nodes averages. */
+static void compare_derivatives(FlTransportMode mode, bool periodic)
+{
+    const float step = 0.1f; // length in all nodes
+    Problem *p = problem_new(mode, periodic);
+    g_auto(FlPotential) by = {0};
+    derivative_of(p, &by);
+    for (int l = 0; l < FL_POTENTIAL_GRIDS; l++) {
+        double expected = 0, length = 0;
+        const size_t n = fl_potential_nodes(&by, l);
+        g_autofree float *kept = g_memdup2(p->potential.grid[l], n * sizeof(float));
+        for (size_t i = 0; i < n; i++) // along the derivative itself, where it is largest
+            length += (double)by.grid[l][i] * by.grid[l][i];
+        length = sqrt(length);
+        double value[2];
+        for (int side = 0; side < 2; side++) {
+            for (size_t i = 0; i < n; i++)
+                p->potential.grid[l][i] =
+                    kept[i] + (side ? step : -step) * (float)(by.grid[l][i] / length);
+            value[side] = value_of(p);
+        }
+        memcpy(p->potential.grid[l], kept, n * sizeof(float));
+        expected = (value[1] - value[0]) / (2 * (double)step);
+        g_test_message("grid %d: adjoint %.5f, differences %.5f", l, length, expected);
+        g_assert_cmpfloat(fabs(length - expected), <, 0.01 * fabs(expected) + 0.004);
+    }
+    problem_free(p);
+}
+
+static void adjoints_agree_with_differences(void)
+{
+    for (int periodic = 0; periodic < 2; periodic++) {
+        compare_derivatives(FL_TRANSPORT_GATHER, periodic);
+        compare_derivatives(FL_TRANSPORT_STIR, periodic);
+    }
+}
+
+/* A picture of stripes 12 px apart, mean 1. */
+static float *striped(int n)
+{
+    float *picture = g_new(float, n *n);
+    for (int i = 0; i < n * n; i++)
+        picture[i] = 1 + 0.8f * sinf((float)(i / n + i % n / 3) * 0.5236f);
+    return picture;
+}
+
+static void the_loss_has_the_derivative_it_says(void)
+{
+    enum { n = 64 };
+    g_autofree float *picture = striped(n), *density = g_new(float, n *n);
+    g_autofree float *by = g_new(float, n *n), *moved = g_new(float, n *n);
+    g_autoptr(FlSliced) sliced = fl_sliced_new(picture, n, n, NULL);
+    for (size_t i = 0; i < (size_t)n * n; i++)
+        density[i] = 1 + 0.5f * noise(3, i);
+    g_auto(FlSlicedPlaces) places = {0};
+    g_assert_true(fl_sliced_places_init(&places, NULL, n, n, NULL));
+    FlSlicedTarget target = {density, &places};
+    fl_sliced_loss(sliced, &target, 7, 512, 96, 1, by, NULL, NULL);
+    double length = 0, loss[2];
+    for (int i = 0; i < n * n; i++)
+        length += (double)by[i] * by[i];
+    length = sqrt(length);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < n * n; i++)
+            moved[i] = density[i] + (side ? 0.02f : -0.02f) * (float)(by[i] / length);
+        target.density = moved;
+        loss[side] = fl_sliced_loss(sliced, &target, 7, 512, 96, 1, NULL, NULL, NULL);
+    }
+    const double expected = (loss[1] - loss[0]) / 0.04;
+    g_test_message("adjoint %.5f, differences %.5f", length, expected);
+    g_assert_cmpfloat(fabs(length - expected), <, 0.02 * expected);
+}
+
+static void a_solution_looks_like_its_picture(void)
+{
+    enum { n = 64 };
+    g_autofree float *picture = striped(n), *flat = g_new(float, n *n), *sum = g_new(float, n *n);
+    g_autofree float *velocity = g_new(float, 2 * n * n), *carried = g_new(float, n *n);
+    g_autoptr(FlSliced) sliced = fl_sliced_new(picture, n, n, NULL);
+    g_auto(FlPotential) potential = {0};
+    g_auto(FlFlowMap) map = {0};
+    g_assert_true(fl_potential_init(&potential, n, n, NULL) &&
+                  fl_flow_map_init(&map, n, n, true, NULL));
+    const FlTransportProblem problem = {
+        .width = n, .height = n, .style = sliced, .pace = 1, .key = 1};
+    g_assert_true(fl_transport_solve(&problem, 1, &potential, NULL, NULL, NULL));
+    fl_potential_sum(&potential, sum);
+    fl_velocity(&map, sum, NULL, FL_TRANSPORT_GATHER, velocity);
+    fl_flow_map_run(&map, velocity);
+    fl_flow_map_carry(&map, NULL, carried);
+    for (int i = 0; i < n * n; i++)
+        flat[i] = 1;
+    g_auto(FlSlicedPlaces) places = {0};
+    g_assert_true(fl_sliced_places_init(&places, NULL, n, n, NULL));
+    FlSlicedTarget target = {flat, &places};
+    const float before = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL, NULL);
+    target.density = carried;
+    const float after = fl_sliced_loss(sliced, &target, 7, 2048, 96, 5, NULL, NULL, NULL);
+    g_test_message("loss %.4f of the flat ink, %.4f of the solution", before, after);
+    g_assert_cmpfloat(after, <, 0.05 * before);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name) g_test_add_func("/potential/" #name, name)
+    TEST(adjoints_agree_with_differences);
+    TEST(the_loss_has_the_derivative_it_says);
+    TEST(a_solution_looks_like_its_picture);
+    return g_test_run();
+}
