@@ -1,4 +1,5 @@
 /* The network that moves ink: its integers, and files that are broken. */
+#include "bundled_style.h"
 #include "transport/network.h"
 
 #include <glib/gstdio.h>
@@ -8,12 +9,6 @@
 #define CASE_WIDTH 64
 #define CASE_HEIGHT 48
 #define CASE_PLANE ((size_t)CASE_WIDTH * CASE_HEIGHT)
-
-/* The style of the batik, which has a network. */
-static char *network_folder(void)
-{
-    return g_build_filename(g_getenv("FLUIDY_FIXTURES"), "styles", "12", NULL);
-}
 
 /* Inputs, and what the training script's own integers make of them. */
 static int16_t *stored_case(void)
@@ -34,7 +29,7 @@ static int16_t *stored_case(void)
 
 static void the_network_is_that_of_its_training(void)
 {
-    g_autofree char *folder = network_folder();
+    g_autofree char *folder = bundled_style(BATIK);
     g_autofree int16_t *values = stored_case(), *found = g_new(int16_t, CASE_PLANE);
     g_autoptr(FlNetwork) network = fl_network_load(folder, NULL);
     g_assert_nonnull(network);
@@ -69,7 +64,7 @@ static void sign(uint8_t *bytes, size_t size)
 
 static void hostile_networks_are_rejected(void)
 {
-    g_autofree char *folder = network_folder(), *temporary = g_dir_make_tmp("net-XXXXXX", NULL);
+    g_autofree char *folder = bundled_style(BATIK), *temporary = g_dir_make_tmp("net-XXXXXX", NULL);
     g_autofree char *path = g_build_filename(folder, "transport.net", NULL);
     g_autofree char *written = g_build_filename(temporary, "transport.net", NULL);
     g_autofree uint8_t *bytes = NULL;

@@ -1,14 +1,9 @@
 /* Ink from frame to frame by the tile, by the network, and refined: it neither flickers nor fades. */
+#include "bundled_style.h"
 #include "moving_disk.h"
 #include "transport/style_ink.h"
 
 #include <string.h>
-
-/* The style of the batik, which has a network. */
-static char *network_folder(void)
-{
-    return g_build_filename(g_getenv("FLUIDY_FIXTURES"), "styles", "12", NULL);
-}
 
 /* The amount at a place between pixels. */
 static double amount_at(const float *amount, double x, double y)
@@ -48,7 +43,7 @@ static double flicker_of(Disk *disk, const Motion *m, int frames)
 /* A disk with the tile and, if wanted, the network and the patches of the batik. */
 static Disk *batik_new(FlNetwork *network, FlSliced *patches)
 {
-    g_autofree char *folder = network_folder();
+    g_autofree char *folder = bundled_style(BATIK);
     Disk *disk = disk_new(1);
     fl_tile_free(disk->tile);
     disk->tile = fl_tile_load(folder, 1, NULL);
@@ -76,7 +71,7 @@ static void ink_does_not_flicker(void)
         {"turning", 0, 0.0654498f, 1, 0.08f, 0.08f, 0.15f},
         {"at rest", 0, 0, 1, 0, 0, 0},
     };
-    g_autofree char *folder = network_folder();
+    g_autofree char *folder = bundled_style(BATIK);
     g_autoptr(FlNetwork) network = fl_network_load(folder, NULL);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     for (size_t k = 0; k < G_N_ELEMENTS(motions); k++)
@@ -113,7 +108,7 @@ static double loss_of(const Disk *disk, const FlSliced *patches)
 static void refined_ink_looks_like_its_style(void)
 {
     const Motion growing = {.shift = 2.8f, .growth = 1.012f};
-    g_autofree char *folder = network_folder();
+    g_autofree char *folder = bundled_style(BATIK);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     double loss[2];
     for (int refined = 0; refined < 2; refined++) {
@@ -131,7 +126,7 @@ static void refined_ink_does_not_decay(void)
 {
     enum { FRAMES = 60 };
     const Motion motions[] = {{.shift = 2, .growth = 1}, {.shift = -2, .growth = 1}};
-    g_autofree char *folder = network_folder();
+    g_autofree char *folder = bundled_style(BATIK);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     Disk *disk = batik_new(NULL, patches);
     double x = 50, early = 0, late = 0;
@@ -152,7 +147,7 @@ static void refined_ink_does_not_decay(void)
 static void a_refined_state_continues(void)
 {
     const Motion growing = {.shift = 2.3f, .growth = 1.01f}, rest = {.growth = 1};
-    g_autofree char *folder = network_folder();
+    g_autofree char *folder = bundled_style(BATIK);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     Disk *disk = batik_new(NULL, patches), *other = batik_new(NULL, patches);
     draw_moved(&disk->guides, &rest, 50, 40);

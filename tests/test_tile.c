@@ -1,4 +1,5 @@
 /* The tile of a style: files, and bundled ones. */
+#include "bundled_style.h"
 #include "transport/flow_map.h"
 #include "transport/tile.h"
 
@@ -61,7 +62,7 @@ static void a_tile_is_read_as_it_was_written(void)
 /* The share of a tile, drawn at a scale, where the ink folds over: per cent. */
 static double folds_of(const char *style, float scale)
 {
-    g_autofree char *folder = g_build_filename(g_getenv("FLUIDY_FIXTURES"), "styles", style, NULL);
+    g_autofree char *folder = bundled_style(style);
     g_autoptr(FlTile) tile = fl_tile_load(folder, scale, NULL);
     g_assert_nonnull(tile);
     const int n = (int)((float)tile->style.size * scale + 0.5f);
