@@ -197,21 +197,28 @@ static void packed_draws_are_given_back_as_they_were(void)
 {
     enum { N = 20 };
     g_autoptr(GError) error = NULL;
-    FlDrawList *draws = g_new0(FlDrawList, 1);
+    g_auto(Film) film = open_film();
+    g_autoptr(FlDrawList) draws = g_new0(FlDrawList, 1);
     draws->n = 3, draws->draw = g_new0(FlDraw, 3);
     for (int r = 0; r < 3; r++)
-        draws->draw[r] = (FlDraw){.region = r,
+        draws->draw[r] = (FlDraw){.region = r % 2,
                                   .area = {.box = {r, 2, 5, r < 2 ? 4 : 0}},
                                   .coverage = plane_of((uint8_t)r, N),
                                   .by_hand = r == 0 ? plane_of(30, N) : NULL,
                                   .picture = r == 1 ? plane_of(60, 4 * N) : NULL};
-    g_autoptr(FlDrawList) back = fl_packed_draws_open(fl_packed_draws_new(draws, &error), &error);
+    draws->draw[0].area.row = g_new0(FlColumns, 4);
+    draws->draw[0].area.row[3] = (FlColumns){1, 5};
+    g_autoptr(GBytes) packed = fl_draws_pack(draws, &error);
+    g_assert_no_error(error);
+    g_autoptr(FlDrawList) back = fl_draws_unpack(packed, film.drawing, 3, &error);
     g_assert_no_error(error);
     g_assert_cmpint(back->n, ==, 3);
     for (int r = 0; r < 3; r++) {
         g_autofree uint8_t *coverage = plane_of((uint8_t)r, N), *left = plane_of(30, N);
         g_autofree uint8_t *picture = plane_of(60, 4 * N);
-        g_assert_cmpint(back->draw[r].region, ==, r);
+        g_assert_cmpint(back->draw[r].region, ==, r % 2);
+        g_assert_true((back->draw[r].area.row != NULL) == (r == 0));
+        g_assert_cmpint(fl_area_row(&back->draw[r].area, 3).first, ==, r == 0);
         g_assert_nonnull(back->draw[r].coverage);
         if (r < 2)
             g_assert_cmpmem(back->draw[r].coverage, N, coverage, N);
@@ -222,6 +229,36 @@ static void packed_draws_are_given_back_as_they_were(void)
         if (r == 1)
             g_assert_cmpmem(back->draw[r].picture, 4 * N, picture, 4 * N);
     }
+}
+
+/** Whether a list of one draw is damaged data once it is packed. */
+static bool is_damaged(const FlDrawing *drawing, FlDraw draw, int most)
+{
+    const FlDrawList draws = {1, &draw};
+    g_autoptr(GError) error = NULL;
+    g_autoptr(GBytes) packed = fl_draws_pack(&draws, NULL);
+    g_autoptr(FlDrawList) back = fl_draws_unpack(packed, drawing, most, &error);
+    g_assert_true(back != NULL || g_error_matches(error, FL_ERROR, FL_ERROR_INPUT));
+    return !back;
+}
+
+static void nothing_is_unpacked_that_the_drawing_cannot_have(void)
+{
+    g_auto(Film) film = open_film();
+    uint8_t plane[40 * 30] = {0};
+    FlColumns row[30] = {{0, 40}}, wide[30] = {{0, 41}};
+    const FlDraw fine = {.area = {{0, 0, 40, 30}, row}, .coverage = plane};
+    FlDraw beyond = fine, unknown = fine, too_wide = fine, bare = fine;
+    beyond.area.box.x = 1, unknown.region = 2, too_wide.area.row = wide, bare.coverage = NULL;
+    g_assert_false(is_damaged(film.drawing, fine, 1));
+    g_assert_true(is_damaged(film.drawing, fine, 0));
+    g_assert_true(is_damaged(film.drawing, beyond, 1));
+    g_assert_true(is_damaged(film.drawing, unknown, 1));
+    g_assert_true(is_damaged(film.drawing, too_wide, 1));
+    g_assert_true(is_damaged(film.drawing, bare, 1));
+    g_autoptr(GBytes) packed = fl_draws_pack(&(FlDrawList){1, (FlDraw *)&fine}, NULL);
+    g_autoptr(GBytes) part = g_bytes_new_from_bytes(packed, 0, g_bytes_get_size(packed) - 1);
+    g_assert_null(fl_draws_unpack(part, film.drawing, 1, NULL));
 }
 
 int main(int argc, char **argv)
@@ -240,5 +277,7 @@ int main(int argc, char **argv)
     TEST("and-later-the-frame-before-and-counted-once",
          and_later_the_frame_before_and_counted_once);
     TEST("packed-draws-are-given-back-as-they-were", packed_draws_are_given_back_as_they_were);
+    TEST("nothing-is-unpacked-that-the-drawing-cannot-have",
+         nothing_is_unpacked_that_the_drawing_cannot_have);
     return g_test_run();
 }

@@ -4,6 +4,7 @@
 #include "drawing/draw_worker.h"
 #include "drawing/drawing_data.h"
 #include "drawing/line_kind.h"
+#include "drawing/packed_draws.h"
 #include <errno.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
@@ -99,47 +100,6 @@ void fl_draw_pool_free(FlDrawPool *pool)
 
 /* ---- the parent ------------------------------------------------------------------------------ */
 
-static bool is_within(FlRect box, const FlDrawing *drawing)
-{
-    return box.x >= 0 && box.y >= 0 && box.width >= 0 && box.height >= 0 &&
-           box.width <= drawing->width - box.x && box.height <= drawing->height - box.y;
-}
-
-static bool take_rows(FlDrawResult *result, FlArea *area)
-{
-    area->row = g_new(FlColumns, area->box.height);
-    if (!fl_draw_result_take(result, area->row, (size_t)area->box.height * sizeof *area->row))
-        return false;
-    for (int y = 0; y < area->box.height; y++)
-        if (area->row[y].first < 0 || area->row[y].last > area->box.width)
-            return false;
-    return true;
-}
-
-/** *draw owns what it got even on failure, which has an error if memory was the reason. */
-static bool take_draw(FlDrawResult *result, const FlDrawing *drawing, FlDraw *draw, GError **error)
-{
-    FlDrawHeader header;
-    if (!fl_draw_result_take(result, &header, sizeof header) ||
-        !is_within(header.draw.area.box, drawing) || header.draw.region < 0 ||
-        header.draw.region >= (int)drawing->regions->len || (unsigned)header.draw.mix >= FL_N_MIXES)
-        return false;
-    *draw = header.draw;
-    draw->area.row = NULL;
-    draw->coverage = draw->by_hand = draw->picture = NULL;
-    const size_t n = fl_rect_pixels(draw->area.box);
-    if ((header.has_rows && !take_rows(result, &draw->area)) ||
-        !(draw->coverage = fl_alloc(n, 1, "the mask of a region", error)) ||
-        !fl_draw_result_take(result, draw->coverage, n))
-        return false;
-    if (header.is_by_hand && (!(draw->by_hand = fl_alloc(n, 1, "a line", error)) ||
-                              !fl_draw_result_take(result, draw->by_hand, n)))
-        return false;
-    return !header.has_picture ||
-           ((draw->picture = fl_alloc(n, 4, "the picture of a region", error)) &&
-            fl_draw_result_take(result, draw->picture, 4 * n));
-}
-
 static void set_damaged(const FlDrawPool *pool, int frame, GError **error)
 {
     g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
@@ -161,11 +121,11 @@ static void take_error(const FlDrawPool *pool, FlDrawResult *result, int frame, 
     g_set_error(error, FL_ERROR, code, "%s", text);
 }
 
-/** Takes how many of something follow, at most `most`. Returns: false with an error. */
-static bool take_count(const FlDrawPool *pool, FlDrawResult *result, int frame, int most, int *n,
+/** Takes how many bytes follow. Returns: false with an error. */
+static bool take_count(const FlDrawPool *pool, FlDrawResult *result, int frame, int *n,
                        GError **error)
 {
-    if (!fl_draw_result_take(result, n, sizeof *n) || *n > most)
+    if (!fl_draw_result_take(result, n, sizeof *n))
         set_damaged(pool, frame, error);
     else if (*n < 0)
         take_error(pool, result, frame, -1 - *n, error);
@@ -174,45 +134,48 @@ static bool take_count(const FlDrawPool *pool, FlDrawResult *result, int frame, 
     return false;
 }
 
-/** What a worker answered: a draw list or outlines. */
-typedef void *(*TakeAnswer)(const FlDrawPool *pool, const FlDrawWorker *worker, int frame,
-                            GError **error);
-
-static void *take_outlines(const FlDrawPool *pool, const FlDrawWorker *worker, int frame,
-                           GError **error)
+/** The bytes of an answer; NULL with an error. */
+static GBytes *take_bytes(const FlDrawPool *pool, const FlDrawWorker *worker, int frame,
+                          GError **error)
 {
     FlDrawResult result = {worker->pictures, 0};
     int n = 0;
-    if (!take_count(pool, &result, frame, INT_MAX, &n, error))
+    if (!take_count(pool, &result, frame, &n, error))
         return NULL;
-    g_autofree uint8_t *data = fl_alloc((size_t)n, 1, "the outlines of a frame", error);
+    uint8_t *data = fl_alloc((size_t)n, 1, "the shapes of a frame", error);
     if (!data)
         return NULL;
-    FlOutlines *outlines =
-        fl_draw_result_take(&result, data, (size_t)n) ? fl_outlines_unpack(data, (size_t)n) : NULL;
+    if (fl_draw_result_take(&result, data, (size_t)n))
+        return g_bytes_new_with_free_func(data, (size_t)n, free, data);
+    free(data);
+    set_damaged(pool, frame, error);
+    return NULL;
+}
+
+/** What a worker answered, opened: a draw list or outlines. */
+typedef void *(*OpenAnswer)(const FlDrawPool *pool, int frame, GBytes *answer, GError **error);
+
+static void *open_outlines(const FlDrawPool *pool, int frame, GBytes *answer, GError **error)
+{
+    size_t n = 0;
+    const uint8_t *data = g_bytes_get_data(answer, &n);
+    FlOutlines *outlines = fl_outlines_unpack(data, n);
     if (!outlines)
         set_damaged(pool, frame, error);
     return outlines;
 }
 
-static void *take_draws(const FlDrawPool *pool, const FlDrawWorker *worker, int frame,
-                        GError **error)
+static void *open_draws(const FlDrawPool *pool, int frame, GBytes *answer, GError **error)
 {
-    g_autoptr(FlDrawList) draws = g_new0(FlDrawList, 1);
     GError *problem = NULL;
-    FlDrawResult result = {worker->pictures, 0};
-    int n = 0;
-    if (!take_count(pool, &result, frame, pool->drawing->frame[frame].n, &n, error))
-        return NULL;
-    bool good = true;
-    draws->draw = g_new0(FlDraw, n + 1);
-    for (int i = 0; i < n && good; i++)
-        good = take_draw(&result, pool->drawing, &draws->draw[draws->n++], &problem);
-    if (!good && !problem)
-        set_damaged(pool, frame, &problem);
-    if (problem)
+    FlDrawList *draws =
+        fl_draws_unpack(answer, pool->drawing, pool->drawing->frame[frame].n, &problem);
+    if (g_error_matches(problem, FL_ERROR, FL_ERROR_INPUT)) {
+        g_clear_error(&problem);
+        set_damaged(pool, frame, error);
+    } else if (problem)
         g_propagate_error(error, problem);
-    return good ? g_steal_pointer(&draws) : NULL;
+    return draws;
 }
 
 static FlDrawWorker *first_free(FlDrawPool *pool, bool *none)
@@ -277,7 +240,7 @@ typedef struct Task {
     int frame;
     const FlHand *hand; // NULL: plain
     bool outlines;
-    TakeAnswer take;
+    OpenAnswer open;
 } Task;
 
 /** Sends a request and waits for the reply. */
@@ -321,6 +284,13 @@ int fl_draw_pool_lost(const FlDrawPool *pool)
     return n;
 }
 
+static void *take_answer(FlDrawPool *pool, const FlDrawWorker *worker, const Task *task,
+                         GError **error)
+{
+    g_autoptr(GBytes) bytes = take_bytes(pool, worker, task->frame, error);
+    return bytes ? task->open(pool, task->frame, bytes, error) : NULL;
+}
+
 /** Has whichever worker is free next do a task. Returns: NULL with an error. */
 static void *try_once(FlDrawPool *pool, const Task *task, GError **error)
 {
@@ -333,7 +303,7 @@ static void *try_once(FlDrawPool *pool, const Task *task, GError **error)
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: the process that draws was killed",
                     sequence->file[task->frame]);
     else if (reply.drawn)
-        answer = task->take(pool, worker, task->frame, error);
+        answer = take_answer(pool, worker, task, error);
     else
         fl_confined_tell(sequence, task->frame, reply.end, task->outlines ? "reading" : "drawing",
                          error);
@@ -377,10 +347,10 @@ static void *try_hard(FlDrawPool *pool, const Task *task, GError **error)
 
 FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error)
 {
-    return try_hard(pool, &(Task){frame, hand, false, take_draws}, error);
+    return try_hard(pool, &(Task){frame, hand, false, open_draws}, error);
 }
 
 FlOutlines *fl_draw_pool_outlines(FlDrawPool *pool, int frame, GError **error)
 {
-    return try_hard(pool, &(Task){frame, NULL, true, take_outlines}, error);
+    return try_hard(pool, &(Task){frame, NULL, true, open_outlines}, error);
 }

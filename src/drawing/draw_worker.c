@@ -4,6 +4,7 @@
 #include "base/schedule.h"
 #include "drawing/drawing_data.h"
 #include "drawing/outlines.h"
+#include "drawing/packed_draws.h"
 #include <signal.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -27,39 +28,20 @@ FILE *fl_draw_rewrite(int file)
     return copy >= 0 ? fdopen(copy, "w") : NULL;
 }
 
-static void put_draw(FILE *out, const FlDraw *draw)
-{
-    FlDrawHeader header = {*draw, draw->area.row != NULL, draw->by_hand != NULL,
-                           draw->picture != NULL};
-    const size_t n = fl_rect_pixels(draw->area.box);
-    header.draw.area.row = NULL;
-    header.draw.coverage = header.draw.by_hand = header.draw.picture = NULL;
-    fwrite(&header, sizeof header, 1, out);
-    if (header.has_rows)
-        fwrite(draw->area.row, sizeof *draw->area.row, (size_t)draw->area.box.height, out);
-    fwrite(draw->coverage, 1, n, out);
-    if (header.is_by_hand)
-        fwrite(draw->by_hand, 1, n, out);
-    if (header.has_picture)
-        fwrite(draw->picture, 4, n, out);
-}
-
-/** Begins a reply with the number of what follows; that of an error is all of it. */
-static FILE *open_reply(const FlDrawWorker *worker, int n, const GError *problem)
+/** Replies with what was made, or the error. Returns: whether all of it could be written. */
+static bool reply_with(const FlDrawWorker *worker, const uint8_t *data, size_t bytes,
+                       const GError *problem)
 {
     FILE *out = fl_draw_rewrite(worker->pictures);
+    if (!out)
+        return false;
     const int code = problem && problem->domain == FL_ERROR ? problem->code : FL_ERROR_INPUT;
-    const int first = problem ? -1 - code : n;
-    if (out)
-        fwrite(&first, sizeof first, 1, out);
-    if (out && problem)
+    const int first = problem ? -1 - code : (int)bytes;
+    fwrite(&first, sizeof first, 1, out);
+    if (problem)
         fputs(problem->message, out);
-    return out;
-}
-
-/** Returns: whether all of it could be written. */
-static bool close_reply(FILE *out)
-{
+    else
+        fwrite(data, 1, bytes, out);
     const bool good = !ferror(out);
     return fclose(out) == 0 && good;
 }
@@ -73,10 +55,7 @@ static bool read_outlines(const FlDrawing *drawing, const FlDrawWorker *worker, 
     if (bytes > INT_MAX)
         g_set_error(&problem, FL_ERROR, FL_ERROR_LIMIT, "%s: its outlines have more than 2 GiB",
                     drawing->sequence->file[frame]);
-    FILE *out = open_reply(worker, (int)bytes, problem);
-    if (out && !problem)
-        fwrite(data, 1, bytes, out);
-    return out && close_reply(out);
+    return reply_with(worker, data, bytes, problem);
 }
 
 /** Draws what is asked for and writes it. Returns: false if it cannot be written. */
@@ -97,10 +76,10 @@ static bool draw(const FlDrawing *drawing, const FlDrawWorker *worker, const FlD
     g_autoptr(GError) problem = NULL;
     g_autoptr(FlDrawList) draws =
         fl_draw_list_make(drawing, request->frame, request->has_hands ? &hand : NULL, &problem);
-    FILE *out = open_reply(worker, draws ? draws->n : 0, problem);
-    for (int i = 0; out && draws && i < draws->n; i++)
-        put_draw(out, &draws->draw[i]);
-    return out && close_reply(out);
+    g_autoptr(GBytes) packed = draws ? fl_draws_pack(draws, &problem) : NULL;
+    size_t bytes = 0;
+    const uint8_t *data = packed ? g_bytes_get_data(packed, &bytes) : NULL;
+    return reply_with(worker, data, bytes, problem);
 }
 
 /** The terminal's signals are for the parent, which ends the pool. */

@@ -30,19 +30,13 @@ typedef struct FlDrawRequest {
 } FlDrawRequest;
 
 /**
- * `pictures` holds an int: how many draws follow, each after its header, or how many bytes of
- * fl_outlines_pack(); below 0 it is -1 - the code of an error, whose text follows.
+ * `pictures` holds an int: how many bytes of fl_draws_pack() or fl_outlines_pack() follow; below 0
+ * it is -1 - the code of an error, whose text follows.
  */
 typedef struct FlDrawReply {
     bool drawn;
     FlConfinedEnd end; // of the process that drew, unless drawn
 } FlDrawReply;
-
-/** A draw without what its pointers point to, which follows: rows, coverage, by_hand, picture. */
-typedef struct FlDrawHeader {
-    FlDraw draw;
-    bool has_rows, is_by_hand, has_picture;
-} FlDrawHeader;
 
 /** What is left to read of a file in memory; the one who wrote it is not trusted. */
 typedef struct FlDrawResult {

@@ -3,94 +3,143 @@
 #include "base/alloc.h"
 #include "base/compress.h"
 
-enum { COVERAGE, BY_HAND, PICTURE, N_PLANES };
+enum { ROWS, COVERAGE, BY_HAND, PICTURE, N_PLANES };
 
-/* The planes of a draw. */
-typedef struct Packed {
-    bool has[N_PLANES];
-    uint8_t *data;
+/* A draw without what its pointers point to. The planes that it has follow, compressed as one. */
+typedef struct Header {
+    FlDraw draw;
+    unsigned planes; // bits
     size_t bytes;
-} Packed;
+} Header;
 
-struct FlPackedDraws {
-    FlDrawList *draws; // without planes
-    Packed *packed;    // of each
-};
-
-static uint8_t **plane_of(FlDraw *draw, int k)
+/* A plane of a draw; of no bytes if it has none. */
+static FlSpan part_of(const FlDraw *draw, unsigned planes, int k)
 {
-    return k == COVERAGE ? &draw->coverage : k == BY_HAND ? &draw->by_hand : &draw->picture;
+    void *const data[] = {draw->area.row, draw->coverage, draw->by_hand, draw->picture};
+    static const size_t pixel_bytes[] = {0, 1, 1, 4};
+    const FlRect box = draw->area.box;
+    const size_t bytes = k == ROWS ? (size_t)box.height * sizeof *draw->area.row
+                                   : fl_rect_pixels(box) * pixel_bytes[k];
+    return (FlSpan){data[k], planes >> k & 1 ? bytes : 0};
 }
 
-static FlSpan part_of(FlDraw *draw, const Packed *packed, int k)
+static unsigned planes_of(const FlDraw *draw)
 {
-    const size_t pixel = k == PICTURE ? 4 : 1;
-    return (FlSpan){*plane_of(draw, k),
-                    packed->has[k] ? fl_rect_pixels(draw->area.box) * pixel : 0};
+    return (draw->area.row ? 1U << ROWS : 0) | (draw->coverage ? 1U << COVERAGE : 0) |
+           (draw->by_hand ? 1U << BY_HAND : 0) | (draw->picture ? 1U << PICTURE : 0);
 }
 
-static bool pack(FlDraw *draw, Packed *packed, GError **error)
+static FlDraw without_planes(FlDraw draw)
 {
+    draw.area.row = NULL;
+    draw.coverage = draw.by_hand = draw.picture = NULL;
+    return draw;
+}
+
+static bool pack(const FlDraw *draw, GByteArray *to, GError **error)
+{
+    Header header = {without_planes(*draw), planes_of(draw), 0};
     FlSpan parts[N_PLANES];
-    for (int k = 0; k < N_PLANES; k++) {
-        packed->has[k] = *plane_of(draw, k) != NULL;
-        parts[k] = part_of(draw, packed, k);
-    }
-    const size_t capacity = fl_compress_bound(parts, N_PLANES);
-    if (!(packed->data = fl_alloc_scratch(capacity, 1, "a packed drawing", error)))
-        return false;
-    packed->bytes = fl_compress(parts, N_PLANES, packed->data, capacity);
-    packed->data = g_realloc(packed->data, MAX(packed->bytes, 1));
     for (int k = 0; k < N_PLANES; k++)
-        g_clear_pointer(plane_of(draw, k), free);
-    if (packed->bytes == 0)
+        parts[k] = part_of(draw, header.planes, k);
+    const size_t capacity = fl_compress_bound(parts, N_PLANES);
+    g_autofree uint8_t *data = fl_alloc_scratch(capacity, 1, "a packed drawing", error);
+    if (!data)
+        return false;
+    header.bytes = fl_compress(parts, N_PLANES, data, capacity);
+    if (header.bytes == 0 || header.bytes > INT_MAX - to->len - sizeof header) {
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to pack a drawing");
-    return packed->bytes > 0;
-}
-
-static bool unpack(FlDraw *draw, Packed *packed, GError **error)
-{
-    FlSpan parts[N_PLANES];
-    for (int k = 0; k < N_PLANES; k++) {
-        const size_t bytes = part_of(draw, packed, k).bytes;
-        if (packed->has[k] && !(*plane_of(draw, k) = fl_alloc(bytes, 1, "a drawing", error)))
-            return false;
-        parts[k] = part_of(draw, packed, k);
+        return false;
     }
-    const bool whole = fl_decompress(packed->data, packed->bytes, parts, N_PLANES);
-    g_clear_pointer(&packed->data, g_free);
-    if (!whole)
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to unpack a drawing");
-    return whole;
+    g_byte_array_append(to, (const uint8_t *)&header, sizeof header);
+    g_byte_array_append(to, data, (guint)header.bytes);
+    return true;
 }
 
-FlPackedDraws *fl_packed_draws_new(FlDrawList *draws, GError **error)
+GBytes *fl_draws_pack(const FlDrawList *draws, GError **error)
 {
-    g_autoptr(FlPackedDraws) packed = g_new0(FlPackedDraws, 1);
-    packed->draws = draws;
-    packed->packed = g_new0(Packed, MAX(draws->n, 1));
+    g_autoptr(GByteArray) packed = g_byte_array_new();
     for (int r = 0; r < draws->n; r++)
-        if (!pack(&draws->draw[r], &packed->packed[r], error))
+        if (!pack(&draws->draw[r], packed, error))
             return NULL;
-    return g_steal_pointer(&packed);
+    return g_byte_array_free_to_bytes(g_steal_pointer(&packed));
 }
 
-void fl_packed_draws_free(FlPackedDraws *packed)
+static bool is_of(const FlDraw *draw, const FlDrawing *drawing)
 {
-    if (!packed)
-        return;
-    for (int r = 0; packed->draws && r < packed->draws->n; r++)
-        g_free(packed->packed[r].data);
-    fl_draw_list_free(packed->draws);
-    g_free(packed->packed);
-    g_free(packed);
+    const FlRect box = draw->area.box;
+    const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
+    return box.x >= 0 && box.y >= 0 && box.width >= 0 && box.height >= 0 &&
+           box.width <= width - box.x && box.height <= height - box.y && draw->region >= 0 &&
+           draw->region < fl_drawing_regions(drawing) && (unsigned)draw->mix < FL_N_MIXES;
 }
 
-FlDrawList *fl_packed_draws_open(FlPackedDraws *packed, GError **error)
+static bool are_within(const FlArea *area)
 {
-    g_autoptr(FlPackedDraws) owned = packed;
-    for (int r = 0; r < packed->draws->n; r++)
-        if (!unpack(&packed->draws->draw[r], &packed->packed[r], error))
-            return NULL;
-    return g_steal_pointer(&owned->draws);
+    for (int y = 0; area->row && y < area->box.height; y++)
+        if (area->row[y].first < 0 || area->row[y].last > area->box.width)
+            return false;
+    return true;
+}
+
+static bool make_planes(FlDraw *draw, unsigned planes, GError **error)
+{
+    const FlRect box = draw->area.box;
+    const size_t n = fl_rect_pixels(box);
+    if (planes >> ROWS & 1)
+        draw->area.row = g_new(FlColumns, MAX(box.height, 1));
+    return (draw->coverage = fl_alloc(n, 1, "the mask of a region", error)) &&
+           (!(planes >> BY_HAND & 1) || (draw->by_hand = fl_alloc(n, 1, "a line", error))) &&
+           (!(planes >> PICTURE & 1) ||
+            (draw->picture = fl_alloc(n, 4, "the picture of a region", error)));
+}
+
+/* What is left to unpack. */
+typedef struct Rest {
+    const uint8_t *data;
+    size_t bytes;
+} Rest;
+
+/* *draw owns what it got even on failure, which has an error if memory was the reason. */
+static bool unpack(Rest *rest, const FlDrawing *drawing, FlDraw *draw, GError **error)
+{
+    Header header;
+    FlSpan parts[N_PLANES];
+    if (rest->bytes < sizeof header)
+        return false;
+    memcpy(&header, rest->data, sizeof header);
+    rest->data += sizeof header, rest->bytes -= sizeof header;
+    if (header.bytes > rest->bytes || !is_of(&header.draw, drawing) ||
+        !(header.planes >> COVERAGE & 1))
+        return false;
+    *draw = without_planes(header.draw);
+    if (!make_planes(draw, header.planes, error))
+        return false;
+    for (int k = 0; k < N_PLANES; k++)
+        parts[k] = part_of(draw, header.planes, k);
+    const bool whole = fl_decompress(rest->data, header.bytes, parts, N_PLANES);
+    rest->data += header.bytes, rest->bytes -= header.bytes;
+    return whole && are_within(&draw->area);
+}
+
+FlDrawList *fl_draws_unpack(GBytes *packed, const FlDrawing *drawing, int most, GError **error)
+{
+    Rest rest = {0};
+    GError *problem = NULL;
+    rest.data = g_bytes_get_data(packed, &rest.bytes);
+    g_autoptr(GArray) list = g_array_new(FALSE, FALSE, sizeof(FlDraw));
+    g_autoptr(FlDrawList) draws = g_new0(FlDrawList, 1);
+    bool good = true;
+    while (rest.bytes > 0 && good) {
+        FlDraw draw = {0};
+        good = draws->n < most && unpack(&rest, drawing, &draw, &problem);
+        g_array_append_val(list, draw);
+        draws->n = (int)list->len;
+    }
+    draws->draw = (FlDraw *)g_array_free(g_steal_pointer(&list), FALSE);
+    if (!good && !problem)
+        g_set_error(&problem, FL_ERROR, FL_ERROR_INPUT, "damaged data");
+    if (problem)
+        g_propagate_error(error, problem);
+    return good ? g_steal_pointer(&draws) : NULL;
 }

@@ -1,19 +1,18 @@
-/* A draw list that waits for its frame: coverage is the same over long runs, and packs well. */
+/* Draw lists that wait or travel: coverage is the same over long runs, and packs well. */
 #ifndef FLUIDY_DRAWING_PACKED_DRAWS_H
 #define FLUIDY_DRAWING_PACKED_DRAWS_H
 
 #include "drawing/drawing.h"
 
-typedef struct FlPackedDraws FlPackedDraws;
+/** The list stays the caller's. Returns: NULL with FL_ERROR_NO_MEMORY set. */
+GBytes *fl_draws_pack(const FlDrawList *draws, GError **error);
 
-/** Takes the list over, also on failure. Returns: NULL with FL_ERROR_NO_MEMORY set. */
-FlPackedDraws *fl_packed_draws_new(FlDrawList *draws, GError **error);
-void fl_packed_draws_free(FlPackedDraws *packed); // NULL is fine
-
-/** Gives the list back, and frees what it was packed in, also on failure. Returns: NULL with
- * FL_ERROR_NO_MEMORY set. */
-FlDrawList *fl_packed_draws_open(FlPackedDraws *packed, GError **error);
-
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPackedDraws, fl_packed_draws_free)
+/**
+ * The list anew. `packed` need not be trusted: it has at most `most` draws, all of regions of this
+ * drawing and within its picture.
+ *
+ * Returns: NULL with FL_ERROR_NO_MEMORY set, or FL_ERROR_INPUT: it is damaged.
+ */
+FlDrawList *fl_draws_unpack(GBytes *packed, const FlDrawing *drawing, int most, GError **error);
 
 #endif

@@ -35,7 +35,7 @@ typedef struct Pipeline {
     FlReport *report;          // NULL: none
     FlTask drawing, writing;   // run beside the painting
     int drawn;                 // the frame of `draws`, which `drawing` makes; -1: none
-    FlPackedDraws *draws;      // its shapes
+    GBytes *draws;             // its shapes, packed
     int finished_frame;        // the last painted frame
     FlComposite finished;      // that frame, which `writing` writes
     double write_s;            // time that this took
@@ -173,9 +173,9 @@ static bool draw_shapes(void *data, GError **error)
                          .page = plan->half ? page / 2 : page,
                          .tooth =
                              fl_paper_sheet_tooth(pipeline->sheet, pipeline->drawn, plan->half)};
-    FlDrawList *draws =
+    g_autoptr(FlDrawList) draws =
         fl_hold_draw_list(plan->drawing, &hand, plan->hold, plan->hold_of, pipeline->drawn, error);
-    return draws && (pipeline->draws = fl_packed_draws_new(draws, error));
+    return draws && (pipeline->draws = fl_draws_pack(draws, error));
 }
 
 static void start_drawing(Pipeline *pipeline, int frame)
@@ -256,7 +256,8 @@ static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *co
         return false;
     if (!composed)
         return true;
-    FlDrawList *draws = fl_packed_draws_open(g_steal_pointer(&pipeline->draws), error);
+    FlDrawList *draws = fl_draws_unpack(pipeline->draws, plan->drawing, INT_MAX, error);
+    g_clear_pointer(&pipeline->draws, g_bytes_unref);
     pipeline->drawn = -1;
     if (!draws)
         return false;
@@ -481,7 +482,7 @@ static void clear(Pipeline *pipeline)
 {
     fl_task_clear(&pipeline->drawing);
     fl_task_clear(&pipeline->writing);
-    fl_packed_draws_free(pipeline->draws);
+    g_clear_pointer(&pipeline->draws, g_bytes_unref);
     fl_composite_clear(&pipeline->finished);
     fl_frame_writer_clear(&pipeline->writer);
     fl_stats_clear(&pipeline->stats);
