@@ -185,6 +185,25 @@ static void and_later_the_frame_before_and_counted_once(void)
     g_assert_cmpint(fl_draw_pool_lost(film.pool), ==, 1);
 }
 
+static void a_plain_frame_is_drawn_once(void)
+{
+    g_auto(Film) film = open_film();
+    if (!film.pool)
+        return;
+    const FlRegionHand none[2] = {{.line = FL_LINE_PLAIN}, {.line = FL_LINE_PLAIN}};
+    const FlRegionHand pencil[2] = {{.line = FL_LINE_PENCIL}, {.line = FL_LINE_PENCIL}};
+    const FlHand idle = {.of_region = none, .page = 1}, hand = {.of_region = pencil, .page = 1};
+    g_autoptr(FlDrawList) first = fl_draw_pool_draw(film.pool, 1, NULL, NULL);
+    g_free(scratch_write(film.folder, "f2.svg", CRASHES)); // to draw it again would fail
+    g_autoptr(FlDrawList) again = fl_draw_pool_draw(film.pool, 1, NULL, NULL);
+    g_autoptr(FlDrawList) by_none = fl_draw_pool_draw(film.pool, 1, &idle, NULL);
+    assert_same(again, first);
+    assert_same(by_none, first);
+    g_assert_null(fl_draw_pool_draw(film.pool, 1, &hand, NULL));
+    fl_draw_pool_forget(film.pool);
+    g_assert_null(fl_draw_pool_draw(film.pool, 1, NULL, NULL));
+}
+
 static uint8_t *plane_of(uint8_t first, int n)
 {
     uint8_t *plane = g_malloc((gsize)n);
@@ -276,6 +295,7 @@ int main(int argc, char **argv)
          a_frame_that_comes_to_crash_is_an_error_at_first);
     TEST("and-later-the-frame-before-and-counted-once",
          and_later_the_frame_before_and_counted_once);
+    TEST("a-plain-frame-is-drawn-once", a_plain_frame_is_drawn_once);
     TEST("packed-draws-are-given-back-as-they-were", packed_draws_are_given_back_as_they_were);
     TEST("nothing-is-unpacked-that-the-drawing-cannot-have",
          nothing_is_unpacked_that_the_drawing_cannot_have);

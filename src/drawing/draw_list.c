@@ -163,13 +163,20 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
 
 /** Whether a hand draws a step: a line, or a flat opaque shape, which is a detail if it is small.
  */
-static bool is_by_hand(const Stage *stage, const FlStep *step)
+static bool is_by_hand(const FlStep *step, const FlHand *hand)
 {
     const bool line = step->width > 0;
     const bool shape = step->width == 0 && step->part != FL_PART_STROKE && step->flat &&
                        step->drawn == 255 && step->mix == FL_BLEND_MODE_OVER;
-    return step->leaf >= 0 && (line || shape) &&
-           fl_line_kind(stage->hand->of_region[step->region].line);
+    return step->leaf >= 0 && (line || shape) && fl_line_kind(hand->of_region[step->region].line);
+}
+
+bool fl_frame_is_by_hand(const FlDrawingFrame *frame, const FlHand *hand)
+{
+    for (int i = 0; hand && i < frame->n; i++)
+        if (is_by_hand(&frame->step[i], hand))
+            return true;
+    return false;
 }
 
 /** Ends that meet are no ends, within a region: programs write one line as several. */
@@ -191,7 +198,7 @@ static void find_paths(Stage *stage)
     g_autoptr(FlOutlines) outlines = NULL;
     for (int i = 0; i < stage->frame->n; i++) {
         const FlStep *step = &stage->frame->step[i];
-        if (!is_by_hand(stage, step))
+        if (!is_by_hand(step, stage->hand))
             continue;
         if (!outlines) {
             outlines =

@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "drawing/draw_worker.h"
 #include "drawing/drawing_data.h"
-#include "drawing/line_kind.h"
 #include "drawing/packed_draws.h"
 #include <errno.h>
 #include <sys/mman.h>
@@ -11,15 +10,20 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#define MOST_KEPT ((size_t)32 << 20) // bytes
+
 struct FlDrawPool {
     const FlDrawing *drawing;
-    GMutex mutex; // of `busy` and `gone`
+    GMutex mutex; // of `busy`, `gone` and what is kept
     GCond freed;
     int n;
     FlDrawWorker *worker;
     bool insists;       // see fl_draw_pool_insist()
     atomic_int n_plain; // frames drawn without hands since they failed with them
     atomic_bool *lost;  // by frame: drawn as the one before
+    GBytes **kept;      // plain draw lists by FlDrawingFrame.origin, packed; NULL: not kept
+    size_t kept_bytes;
+    int n_kept; // entries of `kept`
 };
 
 /* ---- starting and ending them ---------------------------------------------------------------- */
@@ -73,7 +77,9 @@ FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n)
     FlDrawPool *pool = g_new0(FlDrawPool, 1);
     *pool = (FlDrawPool){.drawing = drawing,
                          .worker = g_new0(FlDrawWorker, n),
-                         .lost = g_new0(atomic_bool, drawing->sequence->n)};
+                         .lost = g_new0(atomic_bool, drawing->sequence->n),
+                         .kept = g_new0(GBytes *, drawing->sequence->n),
+                         .n_kept = drawing->sequence->n};
     g_mutex_init(&pool->mutex);
     g_cond_init(&pool->freed);
     while (pool->n < n && start_worker(pool, drawing, &pool->worker[pool->n]))
@@ -85,16 +91,26 @@ FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n)
     return pool;
 }
 
+void fl_draw_pool_forget(FlDrawPool *pool)
+{
+    for (int i = 0; pool && i < pool->n_kept; i++)
+        g_clear_pointer(&pool->kept[i], g_bytes_unref);
+    if (pool)
+        pool->kept_bytes = 0;
+}
+
 void fl_draw_pool_free(FlDrawPool *pool)
 {
     if (!pool)
         return;
+    fl_draw_pool_forget(pool);
     for (int i = 0; i < pool->n; i++)
         close_worker(&pool->worker[i]);
     g_mutex_clear(&pool->mutex);
     g_cond_clear(&pool->freed);
     g_free(pool->worker);
     g_free(pool->lost);
+    g_free(pool->kept);
     g_free(pool);
 }
 
@@ -214,15 +230,6 @@ static void release(FlDrawPool *pool, FlDrawWorker *worker, bool gone)
     g_mutex_unlock(&pool->mutex);
 }
 
-/** Whether there is a region that a hand draws. */
-static bool has_hands(const FlDrawing *drawing, const FlHand *hand)
-{
-    for (guint r = 0; hand && r < drawing->regions->len; r++)
-        if (fl_line_kind(hand->of_region[r].line))
-            return true;
-    return false;
-}
-
 static bool put_hand(const FlDrawing *drawing, const FlHand *hand, const FlDrawWorker *worker)
 {
     FILE *out = fl_draw_rewrite(worker->pictures);
@@ -235,10 +242,10 @@ static bool put_hand(const FlDrawing *drawing, const FlHand *hand, const FlDrawW
     return fclose(out) == 0 && good;
 }
 
-/** What is asked of a worker, and how its answer is taken. */
+/** What is asked of a worker, and how its answer is opened. */
 typedef struct Task {
     int frame;
-    const FlHand *hand; // NULL: plain
+    const FlHand *hand; // that draws something in it; NULL: plain
     bool outlines;
     OpenAnswer open;
 } Task;
@@ -251,7 +258,7 @@ static bool ask(const FlDrawWorker *worker, const FlDrawing *drawing, const Task
     FlDrawRequest request = {.frame = drawing->frame[task->frame].origin,
                              .n_halved = drawing->n_halved,
                              .outlines = task->outlines};
-    if (has_hands(drawing, hand)) {
+    if (hand) {
         request.has_hands = true, request.has_tooth = hand->tooth.height != NULL;
         request.seed = hand->seed, request.page = hand->page;
         if (!put_hand(drawing, hand, worker))
@@ -284,11 +291,43 @@ int fl_draw_pool_lost(const FlDrawPool *pool)
     return n;
 }
 
+/** Where a frame is kept. */
+static GBytes **kept_of(const FlDrawPool *pool, int frame)
+{
+    return &pool->kept[pool->drawing->frame[frame].origin];
+}
+
+/** Keeps a plain frame, if there is room. */
+static void keep(FlDrawPool *pool, int frame, GBytes *packed)
+{
+    GBytes **kept = kept_of(pool, frame);
+    const size_t bytes = g_bytes_get_size(packed);
+    g_mutex_lock(&pool->mutex);
+    if (!*kept && bytes <= MOST_KEPT - pool->kept_bytes) {
+        *kept = g_bytes_ref(packed);
+        pool->kept_bytes += bytes;
+    }
+    g_mutex_unlock(&pool->mutex);
+}
+
+/** A plain frame, to be unreferenced; NULL: it is not kept. */
+static GBytes *find_kept(FlDrawPool *pool, int frame)
+{
+    g_mutex_lock(&pool->mutex);
+    GBytes *kept = *kept_of(pool, frame);
+    GBytes *found = kept ? g_bytes_ref(kept) : NULL;
+    g_mutex_unlock(&pool->mutex);
+    return found;
+}
+
 static void *take_answer(FlDrawPool *pool, const FlDrawWorker *worker, const Task *task,
                          GError **error)
 {
     g_autoptr(GBytes) bytes = take_bytes(pool, worker, task->frame, error);
-    return bytes ? task->open(pool, task->frame, bytes, error) : NULL;
+    void *answer = bytes ? task->open(pool, task->frame, bytes, error) : NULL;
+    if (answer && !task->outlines && !task->hand)
+        keep(pool, task->frame, bytes);
+    return answer;
 }
 
 /** Has whichever worker is free next do a task. Returns: NULL with an error. */
@@ -319,7 +358,6 @@ static void *try_once(FlDrawPool *pool, const Task *task, GError **error)
 static void *try_hard(FlDrawPool *pool, const Task *task, GError **error)
 {
     const int n_frames = pool->drawing->sequence->n;
-    const bool by_hand = has_hands(pool->drawing, task->hand);
     Task plain = *task, before = *task;
     plain.hand = before.hand = NULL;
     before.frame = task->frame > 0 ? task->frame - 1 : MIN(1, n_frames - 1);
@@ -328,7 +366,7 @@ static void *try_hard(FlDrawPool *pool, const Task *task, GError **error)
         bool is_due;
     } attempts[] = {{task, true},
                     {task, pool->insists},
-                    {&plain, pool->insists && by_hand},
+                    {&plain, pool->insists && task->hand},
                     {&before, pool->insists && n_frames > 1}};
     g_autoptr(GError) first = NULL;
     for (size_t i = 0; i < G_N_ELEMENTS(attempts); i++) {
@@ -347,7 +385,10 @@ static void *try_hard(FlDrawPool *pool, const Task *task, GError **error)
 
 FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error)
 {
-    return try_hard(pool, &(Task){frame, hand, false, open_draws}, error);
+    const bool by_hand = fl_frame_is_by_hand(&pool->drawing->frame[frame], hand);
+    const Task task = {frame, by_hand ? hand : NULL, false, open_draws};
+    g_autoptr(GBytes) kept = by_hand ? NULL : find_kept(pool, frame);
+    return kept ? open_draws(pool, frame, kept, error) : try_hard(pool, &task, error);
 }
 
 FlOutlines *fl_draw_pool_outlines(FlDrawPool *pool, int frame, GError **error)

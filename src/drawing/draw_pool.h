@@ -19,7 +19,8 @@ FlDrawPool *fl_draw_pool_new(FlDrawing *drawing, int n);
 
 /**
  * fl_drawing_draw_by_hand() in whichever process is free next. Any thread. A frame that crashes,
- * hangs or asks for too much is an error with its file and number.
+ * hangs or asks for too much is an error with its file and number. Where no hand draws, it is asked
+ * for several times: it is kept packed, as long as all that is kept takes 32 MiB at most.
  */
 FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, GError **error);
 
@@ -38,6 +39,9 @@ int fl_draw_pool_plain(const FlDrawPool *pool);
 
 /** How many frames were drawn, or their outlines read, as the one before; NULL is fine. */
 int fl_draw_pool_lost(const FlDrawPool *pool);
+
+/** Forgets the frames that it keeps, since they are drawn anew in another size; NULL is fine. */
+void fl_draw_pool_forget(FlDrawPool *pool);
 
 void fl_draw_pool_free(FlDrawPool *pool); // NULL is fine
 

@@ -25,6 +25,7 @@ int fl_drawing_height(const FlDrawing *drawing)
 /* The files are drawn to the page's size, and steps within their boxes. */
 void fl_drawing_halve(FlDrawing *drawing)
 {
+    fl_draw_pool_forget(drawing->pool);
     drawing->n_halved++;
     drawing->width = fl_half_side(drawing->width), drawing->height = fl_half_side(drawing->height);
     for (int f = 0; f < drawing->sequence->n; f++) {

@@ -87,7 +87,7 @@ typedef struct FlHand {
     FlTooth tooth; // of the frame's paper
 } FlHand;
 
-/** A sequence and its regions. It keeps no pictures: each call reads its file again. */
+/** A sequence and its regions. What it keeps of pictures does not grow with the film. */
 typedef struct FlDrawing FlDrawing;
 
 /**

@@ -36,6 +36,9 @@ void fl_drawing_frame_clear(FlDrawingFrame *frame);
 FlDrawList *fl_draw_list_make(const FlDrawing *drawing, int frame, const FlHand *hand,
                               GError **error);
 
+/** Whether a hand, NULL: none, draws anything in a frame. */
+bool fl_frame_is_by_hand(const FlDrawingFrame *frame, const FlHand *hand);
+
 /** fl_drawing_outlines() in this process. */
 FlOutlines *fl_outlines_make(const FlDrawing *drawing, int frame, GError **error);
 
