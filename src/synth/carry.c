@@ -135,13 +135,3 @@ void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *input, FlRect
                 arriving(&plan, before, rect.x + x, rect.y + y, -from.x, -from.y, &speed[p]);
         }
 }
-
-bool fl_drawing_moves(const FlGuides *guides)
-{
-    const size_t n = guides->has_motion ? (size_t)guides->width * guides->height : 0;
-    for (size_t p = 0; p < n; p++)
-        if (guides->motion[2 * p] != FL_MOTION_UNKNOWN &&
-            (guides->motion[2 * p] | guides->motion[2 * p + 1]) != 0)
-            return true;
-    return false;
-}

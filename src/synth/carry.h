@@ -26,7 +26,4 @@ typedef struct FlCarry {
 void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *input, FlRect rect,
                   const FlExemplarLevel *level, FlNnf *out, float *speed);
 
-/** Whether the drawing is known to move anywhere in its mask, be it ever so little. */
-bool fl_drawing_moves(const FlGuides *guides);
-
 #endif

@@ -30,7 +30,9 @@ struct FlSynth {
     double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
-    FlSynthView view; // of the last frame that was painted, where somebody wanted it
+    FlRest rest;       // of the frame in hand: its parts at rest
+    FlSynthState past; // in a frame with such parts: the planes of the last one
+    FlSynthView view;  // of the last frame that was painted, where somebody wanted it
 };
 
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
@@ -58,6 +60,8 @@ static void clear_frame(FlSynth *synth)
     for (int l = 0; l < synth->n_levels; l++)
         fl_nnf_clear(&synth->nnf[l]);
     fl_target_clear(&synth->target);
+    fl_rest_clear(&synth->rest);
+    fl_synth_state_clear(&synth->past);
     synth->view = (FlSynthView){0};
 }
 
@@ -386,6 +390,17 @@ static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **
     return true;
 }
 
+/* Parts at rest need the planes of the last frame until they have theirs. */
+static void forget_last(FlSynth *synth)
+{
+    if (synth->rest.keeps)
+        synth->past = synth->last;
+    else
+        fl_synth_state_clear(&synth->last);
+    synth->last.nnf = (FlNnf){0};
+    synth->last.mask = synth->last.rgb = NULL;
+}
+
 /* The last frame is large, and all that is needed of it is shifted: so that comes first. */
 static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlNnf *shifted,
                     FlFrameStats *stats, GError **error)
@@ -394,7 +409,7 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlNnf *shifte
     const bool continues = synth->last.valid;
     if (continues && !shifted_previous(synth, guides, rect, shifted, error))
         return false;
-    fl_synth_state_clear(&synth->last);
+    forget_last(synth);
     stats->seconds_temporal = lap(&time);
     if (!take_guides(synth, guides, rect, error))
         return false;
@@ -487,11 +502,77 @@ static FlSynthView view_at_rest(const FlSynth *synth)
     return synth->view.nnf ? synth->view : (FlSynthView){last->rect, &last->nnf, NULL, NULL};
 }
 
-static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
-                  FlSynthView *view, GError **error)
+/* Paints what the mask has in a rectangle. */
+static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *rgb,
+                       FlFrameStats *stats, GError **error)
 {
-    FlRect rect;
     g_auto(FlNnf) shifted = {0};
+    if (!prepare(synth, guides, rect, &shifted, stats, error) ||
+        !run_levels(synth, &shifted, stats, error))
+        return false;
+    write_rgb(synth, rgb);
+    const FlTargetLevel *full = &synth->target.level[0];
+    const bool has_temporal = synth->last.valid && finest_searched(synth) == 0;
+    remember(synth);
+    synth->view = (FlSynthView){rect, &synth->last.nnf, has_temporal ? full->temporal : NULL,
+                                has_temporal ? full->temporal_weight : NULL};
+    return true;
+}
+
+/* Looks which parts rest, and hides them, so that `rect` is that of the others. mask: that of the
+ * guides until then; NULL: all is painted. */
+static bool part(FlSynth *synth, FlGuides *guides, FlRect *rect, uint8_t **mask, GError **error)
+{
+    if (!may_rest(synth, synth->last.frame))
+        return true;
+    if (!fl_rest_init(&synth->rest, guides, synth->last.mask, synth->params->flow_still, error))
+        return false;
+    if (!synth->rest.keeps)
+        return true;
+    const size_t pixels = (size_t)synth->width * synth->height;
+    if (!(*mask = fl_alloc(pixels, 1, "a mask", error)))
+        return false;
+    memcpy(*mask, guides->mask, pixels);
+    fl_rest_hide(&synth->rest, guides->mask);
+    FlRect moving;
+    if (working_rect(synth, guides, &moving)) {
+        *rect = moving;
+        return true;
+    }
+    memcpy(guides->mask, *mask, pixels); // a part has gone, and no other moves
+    g_clear_pointer(mask, free);
+    fl_rest_clear(&synth->rest);
+    return true;
+}
+
+/* For a view: the target of all parts. Those at rest have no T_temp. */
+static bool show_all(FlSynth *synth, const FlGuides *guides, FlRect rect, GError **error)
+{
+    const size_t pixels = (size_t)synth->width * synth->height;
+    g_autofree float *shape = fl_alloc(pixels, sizeof(float), "a guide", error);
+    g_auto(FlTarget) moving = synth->target;
+    synth->target = (FlTarget){0};
+    if (!shape ||
+        !fl_shape_guide(guides, synth->params, synth->exemplar->border_px, shape, error) ||
+        !fl_target_init(&synth->target, guides, shape, rect, synth->n_levels, synth->exemplar,
+                        error))
+        return false;
+    const FlTargetLevel *from = &moving.level[0], *to = &synth->target.level[0];
+    fl_rect_copy(from->temporal, moving.rect, to->temporal, rect, 3 * sizeof *to->temporal);
+    fl_rect_copy(from->temporal_weight, moving.rect, to->temporal_weight, rect,
+                 sizeof *to->temporal_weight);
+    synth->view.rect = rect;
+    if (synth->view.temporal)
+        synth->view.temporal = to->temporal, synth->view.temporal_weight = to->temporal_weight;
+    return true;
+}
+
+/* Paints the frame; shows: somebody wants its view. */
+static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats, bool shows,
+                  GError **error)
+{
+    FlRect all, rect;
+    g_autofree uint8_t *mask = NULL;
     synth->last.frame++;
     synth->boil =
         fl_boil_step(synth->params->boil, synth->last.frame, synth->exemplar->level[0].window);
@@ -500,42 +581,41 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     if (may_rest(synth, synth->last.frame) &&
         fl_rests(guides, synth->last.mask, synth->params->flow_still)) {
         memcpy(rgb, synth->last.rgb, 3 * (size_t)synth->width * synth->height);
-        *view = view_at_rest(synth);
+        synth->view = view_at_rest(synth);
         return true;
     }
     clear_frame(synth);
     forget_packed(synth);
     synth->moves = guides->has_motion;
     fill_paper(synth, rgb);
-    if (!working_rect(synth, guides, &rect)) {
+    if (!working_rect(synth, guides, &all)) {
         synth->last.valid = false;
         return true;
     }
-    if (!prepare(synth, guides, rect, &shifted, stats, error) ||
-        !run_levels(synth, &shifted, stats, error))
+    rect = all;
+    const bool disposable = guides->disposable;
+    guides->disposable &= !shows;
+    if (!part(synth, guides, &rect, &mask, error) ||
+        !paint_rect(synth, guides, rect, rgb, stats, error))
         return false;
-    write_rgb(synth, rgb);
-    const FlTargetLevel *full = &synth->target.level[0];
-    const bool has_temporal = synth->last.valid && finest_searched(synth) == 0;
-    remember(synth);
-    *view = synth->view =
-        (FlSynthView){rect, &synth->last.nnf, has_temporal ? full->temporal : NULL,
-                      has_temporal ? full->temporal_weight : NULL};
-    return true;
+    guides->disposable = disposable;
+    if (mask && guides->mask)
+        memcpy(guides->mask, mask, (size_t)synth->width * synth->height);
+    return !mask || (fl_rest_keep(&synth->rest, &synth->past, all, &synth->last, rgb, error) &&
+                     (!shows || show_all(synth, guides, all, error)));
 }
 
 bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error)
 {
     FlFrameStats no_stats;
-    FlSynthView no_view;
     FlFrameStats *const s = stats ? stats : &no_stats;
-    FlSynthView *const v = view ? view : &no_view;
     *s = (FlFrameStats){0};
-    *v = (FlSynthView){0};
-    const bool done = paint(synth, guides, rgb, s, v, error);
-    if (view)
+    const bool done = paint(synth, guides, rgb, s, view, error);
+    if (view) {
+        *view = synth->view;
         return done && (!synth->last.valid || remember_picture(synth, rgb, error));
+    }
     clear_frame(synth);
     return done && pack_last(synth, rgb, error);
 }

@@ -56,7 +56,8 @@ void fl_synth_measure(FlSynth *synth, bool energies);
  *
  * Guides that are disposable are cleared as soon as they are used. stats and view may be NULL;
  * without a view only the field and the picture of the frame are kept. With params->rest, a still
- * region keeps its last picture until params->boil is due; stats are then empty.
+ * region keeps its last picture until params->boil is due; stats are then empty. So do still parts
+ * of one that lie apart from what moves; stats and T_temp are then of the other parts.
  */
 bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error);
