@@ -28,9 +28,9 @@ typedef struct Discs {
     int width, height;
     uint16_t cap;
     const float *distance;
-    const uint8_t *seen; // NULL: all of it
-    uint16_t *depth;     // sixteenths, at most cap; 0 outside
-    int reach;           // most rows of a disc above and below its centre
+    uint16_t *depth; // sixteenths, at most cap; 0 outside
+    uint16_t *seen;  // the same, 0 where it is not seen, too
+    int reach;       // most rows of a disc above and below its centre
     uint16_t *half;  // [radius * (reach + 1) + rows from the centre]: half a row's length, px, + 1
     GArray *centres; // of Disc, row by row
     int32_t *first;  // height + 1: where a row's centres begin
@@ -38,6 +38,8 @@ typedef struct Discs {
 
 static void discs_clear(Discs *discs)
 {
+    if (discs->seen != discs->depth)
+        free(discs->seen);
     free(discs->depth);
     free(discs->half);
     free(discs->first);
@@ -53,6 +55,15 @@ static void read_depths(const float *distance, size_t n, uint16_t cap, uint16_t 
         const float d = distance[p] * FL_WIDTH_ONE + 0.5f, inside = distance[p] > 0.0f;
         depth[p] = (uint16_t)(inside * CLAMP(d, 1.0f, (float)cap));
     }
+}
+
+/** The depths that are seen. */
+static bool read_seen(Discs *discs, const uint8_t *seen, size_t n, GError **error)
+{
+    discs->seen = seen ? fl_alloc(n, sizeof *discs->seen, "local widths", error) : discs->depth;
+    for (size_t p = 0; p < n && seen && discs->seen; p++)
+        discs->seen[p] = seen[p] >= 128 ? discs->depth[p] : 0;
+    return discs->seen;
 }
 
 /** The largest x with x² + row² <= radius², plus one; 0: the disc has no such row. */
@@ -72,7 +83,7 @@ static bool discs_init(Discs *discs, const float *distance, const uint8_t *seen,
 {
     const size_t n = (size_t)width * (size_t)height;
     const int radii = 3 * cap / 2 + FL_WIDTH_ONE + 1, reach = radii / FL_WIDTH_ONE;
-    *discs = (Discs){width, height, cap, .distance = distance, .seen = seen, .reach = reach};
+    *discs = (Discs){width, height, cap, .distance = distance, .reach = reach};
     discs->centres = g_array_new(FALSE, FALSE, sizeof(Disc));
     if (!(discs->depth = fl_alloc(n, sizeof *discs->depth, "local widths", error)) ||
         !(discs->half = fl_alloc((size_t)radii * (size_t)(reach + 1), sizeof *discs->half,
@@ -81,37 +92,46 @@ static bool discs_init(Discs *discs, const float *distance, const uint8_t *seen,
         return false;
     read_depths(distance, n, cap, discs->depth);
     fill_rows(discs, radii);
-    return true;
+    return read_seen(discs, seen, n, error);
 }
 
-static bool is_seen(const Discs *discs, int x, int y)
+/** A row of depths, the larger of those above and below, and the least of all three; each goes on
+ * by one at both ends. */
+typedef struct Column {
+    int16_t *own, *ends, *least;
+} Column;
+
+static void read_column(const Discs *discs, int y, Column column)
 {
-    return !discs->seen || discs->seen[(size_t)y * (size_t)discs->width + (size_t)x] >= 128;
+    const int w = discs->width;
+    const int16_t *row = (const int16_t *)discs->seen + (size_t)y * (size_t)w;
+    const int16_t *up = y > 0 ? row - w : row, *down = y < discs->height - 1 ? row + w : row;
+    int16_t *restrict own = column.own, *restrict ends = column.ends,
+                      *restrict least = column.least;
+    for (int x = 0; x < w; x++) {
+        own[x] = row[x];
+        ends[x] = MAX(up[x], down[x]);
+        least[x] = MIN(row[x], MIN(up[x], down[x]));
+    }
+    own[-1] = own[0], ends[-1] = ends[0], least[-1] = least[0];
+    own[w] = own[w - 1], ends[w] = ends[w - 1], least[w] = least[w - 1];
 }
 
 /**
  * Whether a disc around a pixel is not held by that of a neighbour. Of discs as large as any those
- * count that another kind is next to.
+ * count that another kind is next to: all are below such a one whose depth is less.
  */
-static bool is_centre(const Discs *discs, int x, int y)
+static void mark_centres(Column column, int n, int16_t cap, uint8_t *restrict centre)
 {
-    const uint16_t *depth = discs->depth + (size_t)y * (size_t)discs->width + x;
-    if (*depth == 0 || !is_seen(discs, x, y))
-        return false;
-    bool beside_lower = false;
-    const int down = y < discs->height - 1 ? 1 : 0, right = x < discs->width - 1 ? 1 : 0;
-    for (int dy = y > 0 ? -1 : 0; dy <= down; dy++)
-        for (int dx = x > 0 ? -1 : 0; dx <= right; dx++) {
-            if (!is_seen(discs, x + dx, y + dy)) {
-                beside_lower = true;
-                continue;
-            }
-            const int other = depth[dy * (ptrdiff_t)discs->width + dx];
-            if (other >= *depth + (dx && dy ? STEP_CORNER : STEP_SIDE))
-                return false;
-            beside_lower |= other < discs->cap;
-        }
-    return beside_lower; // as all are below it whose depth is less
+    const int16_t *own = column.own, *ends = column.ends, *least = column.least;
+    for (int x = 0; x < n; x++) {
+        const int16_t side = MAX(ends[x], MAX(own[x - 1], own[x + 1]));
+        const int16_t corner = MAX(ends[x - 1], ends[x + 1]);
+        const int16_t low = MIN(least[x], MIN(least[x - 1], least[x + 1]));
+        const int16_t held = (int16_t)(own[x] + STEP_SIDE);
+        const int16_t held_across = (int16_t)(own[x] + STEP_CORNER);
+        centre[x] = (own[x] > 0) & (side < held) & (corner < held_across) & (low < cap);
+    }
 }
 
 /** The distance some way from a pixel in one of 16 directions; far outside beyond the plane. */
@@ -161,10 +181,16 @@ static Disc disc_at(const Discs *discs, int x, int y)
 
 static void find_centres(Discs *discs)
 {
+    const size_t width = (size_t)discs->width;
+    g_autofree int16_t *rows = g_new0(int16_t, 3 * (width + 2));
+    g_autofree uint8_t *centre = g_new(uint8_t, width);
+    const Column column = {rows + 1, rows + width + 3, rows + 2 * width + 5};
     for (int32_t y = 0; y < discs->height; y++) {
         discs->first[y] = (int32_t)discs->centres->len;
+        read_column(discs, y, column);
+        mark_centres(column, discs->width, (int16_t)discs->cap, centre);
         for (int32_t x = 0; x < discs->width; x++)
-            if (is_centre(discs, x, y)) {
+            if (centre[x]) {
                 const Disc disc = disc_at(discs, x, y);
                 g_array_append_val(discs->centres, disc);
             }
@@ -172,35 +198,46 @@ static void find_centres(Discs *discs)
     discs->first[discs->height] = (int32_t)discs->centres->len;
 }
 
-/** Raises a row to the radii of the discs that reach it. A disc is a pixel larger than its depth,
+/** Raises the rows from `top` to `bottom` to the radius of a disc in row cy. */
+static void raise_to_disc(const Discs *discs, Disc disc, int cy, int top, int bottom,
+                          uint16_t *radius)
+{
+    const int rows = disc.radius / FL_WIDTH_ONE;
+    const uint16_t *half = discs->half + disc.radius * ((size_t)discs->reach + 1);
+    const int16_t value = (int16_t)disc.value;
+    for (int y = MAX(cy - rows, top); y <= MIN(cy + rows, bottom); y++) {
+        int16_t *row = (int16_t *)radius + (size_t)y * (size_t)discs->width;
+        const int columns = half[ABS(y - cy)];
+        for (int x = MAX(disc.x - columns + 1, 0); x < MIN(disc.x + columns, discs->width); x++)
+            row[x] = MAX(row[x], value);
+    }
+}
+
+/** Raises rows to the radii of the discs that reach them. A disc is a pixel larger than its depth,
  * so that it holds pixels at the contour. */
-static void raise_row(const Discs *discs, int y, uint16_t *radius)
+static void raise_band(const Discs *discs, int top, int bottom, uint16_t *radius)
 {
     const Disc *disc = (const Disc *)(void *)discs->centres->data;
-    const size_t columns = (size_t)discs->reach + 1;
-    const int from = MAX(y - discs->reach, 0), to = MIN(y + discs->reach, discs->height - 1);
+    const int from = MAX(top - discs->reach, 0), to = MIN(bottom + discs->reach, discs->height - 1);
     for (int cy = from; cy <= to; cy++)
-        for (int32_t k = discs->first[cy]; k < discs->first[cy + 1]; k++) {
-            const int x = disc[k].x;
-            const uint16_t value = disc[k].value;
-            const int half = discs->half[disc[k].radius * columns + (size_t)ABS(y - cy)];
-            for (int i = MAX(x - half + 1, 0); i < MIN(x + half, discs->width); i++)
-                radius[i] = MAX(radius[i], value);
-        }
+        for (int32_t k = discs->first[cy]; k < discs->first[cy + 1]; k++)
+            raise_to_disc(discs, disc[k], cy, top, bottom, radius);
 }
+
+#define BAND_ROWS 32
 
 /** All rows, where the shape is. */
 static void raise_rows(const Discs *discs, uint16_t *radius)
 {
     const size_t width = (size_t)discs->width;
-#pragma omp parallel for schedule(dynamic, 8)
-    for (int y = 0; y < discs->height; y++) {
-        const uint16_t *depth = discs->depth + (size_t)y * width;
-        uint16_t *row = radius + (size_t)y * width;
-        memcpy(row, depth, width * sizeof *row);
-        raise_row(discs, y, row);
-        for (size_t x = 0; x < width; x++)
-            row[x] = depth[x] ? row[x] : 0;
+#pragma omp parallel for schedule(dynamic)
+    for (int top = 0; top < discs->height; top += BAND_ROWS) {
+        const int bottom = MIN(top + BAND_ROWS, discs->height) - 1;
+        const size_t from = (size_t)top * width, n = (size_t)(bottom - top + 1) * width;
+        memcpy(radius + from, discs->depth + from, n * sizeof *radius);
+        raise_band(discs, top, bottom, radius);
+        for (size_t p = from; p < from + n; p++)
+            radius[p] = discs->depth[p] ? radius[p] : 0;
     }
 }
 
