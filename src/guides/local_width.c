@@ -252,40 +252,73 @@ bool fl_largest_discs(const float *distance, const uint8_t *seen, int width, int
     return true;
 }
 
-/** Lowers a pixel to what its neighbour, if it is inside, allows. */
-static void limit(uint16_t *value, uint16_t neighbour, int slope)
+/** The most that a neighbour allows, if it is inside. */
+static int16_t allowed(int16_t neighbour, int16_t slope)
 {
-    if (neighbour && *value > neighbour + slope)
-        *value = (uint16_t)(neighbour + slope);
+    return neighbour ? (int16_t)(neighbour + slope) : INT16_MAX;
 }
 
-/** One pass: from the row before, which is `step` away, and along the row in its direction. */
-static void limit_row(uint16_t *row, const uint16_t *before, int width, int step)
+static void limit_to(int16_t *restrict row, const int16_t *restrict neighbours, int n,
+                     int16_t slope)
 {
-    const int start = step < 0 ? 0 : width - 1, end = step < 0 ? width : -1, on = step < 0 ? 1 : -1;
-    for (int x = start; x != end; x += on) {
-        if (!row[x])
-            continue;
-        if (before) {
-            limit(&row[x], before[x], SLOPE_SIDE);
-            limit(&row[x], x > 0 ? before[x - 1] : 0, SLOPE_CORNER);
-            limit(&row[x], x < width - 1 ? before[x + 1] : 0, SLOPE_CORNER);
-        }
-        if (x != start)
-            limit(&row[x], row[x - on], SLOPE_SIDE);
+    for (int x = 0; x < n; x++) {
+        const int16_t most = allowed(neighbours[x], slope);
+        row[x] = MIN(row[x], most);
+    }
+}
+
+/** Whether a pixel of a row is above what the one on its left allows, or that one above what the
+ * right one does. */
+static bool is_steep(const int16_t *row, int n)
+{
+    int16_t steep = 0;
+    for (int x = 1; x < n; x++) {
+        const int16_t from_left = allowed(row[x - 1], SLOPE_SIDE);
+        const int16_t from_right = allowed(row[x], SLOPE_SIDE);
+        steep |= (int16_t)((row[x] > from_left) | (row[x - 1] > from_right));
+    }
+    return steep;
+}
+
+/** One pass: from the row before, and along the row in the direction of the pass. */
+static void limit_row(int16_t *row, const int16_t *before, int width, bool forward)
+{
+    if (before) {
+        limit_to(row, before, width, SLOPE_SIDE);
+        limit_to(row + 1, before, width - 1, SLOPE_CORNER);
+        limit_to(row, before + 1, width - 1, SLOPE_CORNER);
+    }
+    if (!is_steep(row, width))
+        return;
+    for (int k = 1; k < width; k++) {
+        const int x = forward ? k : width - 1 - k;
+        const int16_t most = allowed(row[forward ? x - 1 : x + 1], SLOPE_SIDE);
+        row[x] = MIN(row[x], most);
     }
 }
 
 static void limit_slope(uint16_t *plane, int width, int height)
 {
+    int16_t *rows = (int16_t *)plane; // no half width is larger
     for (int y = 0; y < height; y++) {
-        uint16_t *row = plane + (size_t)y * (size_t)width;
-        limit_row(row, y > 0 ? row - width : NULL, width, -1);
+        int16_t *row = rows + (size_t)y * (size_t)width;
+        limit_row(row, y > 0 ? row - width : NULL, width, true);
     }
     for (int y = height - 1; y >= 0; y--) {
-        uint16_t *row = plane + (size_t)y * (size_t)width;
-        limit_row(row, y < height - 1 ? row + width : NULL, width, 1);
+        int16_t *row = rows + (size_t)y * (size_t)width;
+        limit_row(row, y < height - 1 ? row + width : NULL, width, false);
     }
+}
+
+/** Whether any is below the cap, but for those outside. */
+static bool any_narrow(const uint16_t *plane, size_t n, uint16_t cap)
+{
+    int16_t narrow = 0;
+    for (size_t p = 0; p < n; p++) {
+        const int16_t value = (int16_t)plane[p];
+        narrow |= (int16_t)((value > 0) & (value < (int16_t)cap));
+    }
+    return narrow;
 }
 
 #define TILE_PX 128 // a tile and what is around it fit into a processor's own cache
@@ -320,14 +353,13 @@ static bool means_init(Means *means, size_t n, int r, GError **error)
            (means->sum = fl_alloc(tile, sizeof *means->sum, "local widths", error));
 }
 
-/** Whether nothing of a tile is inside. */
-static bool is_bare(const uint16_t *plane, int width, FlRect tile)
+/** Whether all that is inside is as wide as any: then the means are, too. */
+static bool is_wide(const uint16_t *plane, int width, FlRect rect, uint16_t cap)
 {
-    bool bare = true;
-    for (int y = tile.y; y < tile.y + tile.height && bare; y++)
-        bare = fl_is_blank((const uint8_t *)(plane + (size_t)y * (size_t)width + tile.x),
-                           (size_t)tile.width * sizeof *plane);
-    return bare;
+    for (int y = rect.y; y < rect.y + rect.height; y++)
+        if (any_narrow(plane + (size_t)y * (size_t)width + rect.x, (size_t)rect.width, cap))
+            return false;
+    return true;
 }
 
 /** Sums what is inside, and its values. */
@@ -344,7 +376,7 @@ static void sum_tile(Means *means, FlRect page, FlRect around, int r)
 }
 
 /** The mean of what is inside in a square of 2 r + 1 px. */
-static void smooth(uint16_t *plane, int width, int height, int r, Means *means)
+static void smooth(uint16_t *plane, int width, int height, int r, uint16_t cap, Means *means)
 {
     const FlRect page = {0, 0, width, height};
     memcpy(means->before, plane, fl_rect_pixels(page) * sizeof *plane);
@@ -352,7 +384,7 @@ static void smooth(uint16_t *plane, int width, int height, int r, Means *means)
         for (int tx = 0; tx < width; tx += TILE_PX) {
             const FlRect tile = {tx, ty, MIN(TILE_PX, width - tx), MIN(TILE_PX, height - ty)};
             const FlRect around = fl_rect_grown(tile, r, page);
-            if (is_bare(means->before, width, tile)) // as most are of many shapes
+            if (is_wide(means->before, width, around, cap)) // as most are, if not bare
                 continue;
             sum_tile(means, page, around, r);
             for (int y = tile.y; y < tile.y + tile.height; y++) {
@@ -360,7 +392,7 @@ static void smooth(uint16_t *plane, int width, int height, int r, Means *means)
                 const size_t at = (size_t)(y - around.y) * (size_t)around.width;
                 for (int x = tile.x; x < tile.x + tile.width; x++) {
                     const size_t p = at + (size_t)(x - around.x);
-                    if (row[x])
+                    if (row[x] && means->sum[p] != row[x] * means->count[p])
                         row[x] =
                             (uint16_t)((means->sum[p] + means->count[p] / 2) / means->count[p]);
                 }
@@ -368,59 +400,66 @@ static void smooth(uint16_t *plane, int width, int height, int r, Means *means)
         }
 }
 
-/** A pixel outside, and the largest value around it. */
+/** A pixel outside that has been reached. */
 typedef struct Reached {
     int16_t x, y;
     uint16_t value;
 } Reached;
 
-static uint16_t largest_around(const uint16_t *plane, int width, int height, int x, int y)
+#define REACHED UINT16_MAX // its value is not known yet
+
+static bool is_known(uint16_t value)
 {
-    uint16_t largest = 0;
-    for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
-        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++)
-            largest = MAX(largest, plane[(size_t)ny * (size_t)width + (size_t)nx]);
-    return largest;
+    return value > 0 && value < REACHED;
 }
 
 /** Adds the pixels outside next to one that is known. */
-static void reach_around(const uint16_t *plane, int width, int height, int x, int y,
-                         GArray *reached)
+static void reach_around(uint16_t *plane, int width, int height, int x, int y, GArray *reached)
 {
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
-        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++)
-            if (!plane[(size_t)ny * (size_t)width + (size_t)nx]) {
-                const uint16_t value = largest_around(plane, width, height, nx, ny);
-                const Reached pixel = {(int16_t)nx, (int16_t)ny, value};
-                g_array_append_val(reached, pixel);
-            }
+        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++) {
+            uint16_t *value = &plane[(size_t)ny * (size_t)width + (size_t)nx];
+            if (*value)
+                continue;
+            const Reached pixel = {(int16_t)nx, (int16_t)ny, 0};
+            g_array_append_val(reached, pixel);
+            *value = REACHED;
+        }
 }
 
 /** Adds the pixels outside next to the shape: all of them are next to a pixel of its contour. */
-static void reach_from_shape(const uint16_t *plane, int width, int height, GArray *reached)
+static void reach_from_shape(uint16_t *plane, int width, int height, GArray *reached)
 {
     for (int y = 0; y < height; y++) {
         const uint16_t *row = plane + (size_t)y * (size_t)width;
         const uint16_t *up = y > 0 ? row - width : row, *down = y < height - 1 ? row + width : row;
         for (int x = 0; x < width; x++)
-            if (row[x] && !(up[x] && down[x] && row[MAX(x - 1, 0)] && row[MIN(x + 1, width - 1)]))
+            if (is_known(row[x]) &&
+                !(is_known(up[x]) && is_known(down[x]) && is_known(row[MAX(x - 1, 0)]) &&
+                  is_known(row[MIN(x + 1, width - 1)])))
                 reach_around(plane, width, height, x, y, reached);
     }
 }
 
-/** Sets the pixels that are not known yet, and drops the others. */
-static void settle(uint16_t *plane, int width, GArray *reached)
+static uint16_t largest_around(const uint16_t *plane, int width, int height, int x, int y)
+{
+    uint16_t largest = 0;
+    for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
+        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++) {
+            const uint16_t value = plane[(size_t)ny * (size_t)width + (size_t)nx];
+            largest = value < REACHED ? MAX(largest, value) : largest;
+        }
+    return largest;
+}
+
+/** Sets the pixels that have been reached to the largest value around them. */
+static void settle(uint16_t *plane, int width, int height, GArray *reached)
 {
     Reached *pixel = (Reached *)(void *)reached->data;
-    guint n = 0;
-    for (guint k = 0; k < reached->len; k++) {
-        uint16_t *value = &plane[(size_t)pixel[k].y * (size_t)width + (size_t)pixel[k].x];
-        if (*value)
-            continue;
-        *value = pixel[k].value;
-        pixel[n++] = pixel[k];
-    }
-    g_array_set_size(reached, n);
+    for (guint k = 0; k < reached->len; k++)
+        pixel[k].value = largest_around(plane, width, height, pixel[k].x, pixel[k].y);
+    for (guint k = 0; k < reached->len; k++)
+        plane[(size_t)pixel[k].y * (size_t)width + (size_t)pixel[k].x] = pixel[k].value;
 }
 
 /** Pixels outside get the largest value around them, ring by ring. */
@@ -429,25 +468,17 @@ static void extend(uint16_t *plane, int width, int height)
     g_autoptr(GArray) last = g_array_new(FALSE, FALSE, sizeof(Reached));
     g_autoptr(GArray) next = g_array_new(FALSE, FALSE, sizeof(Reached));
     reach_from_shape(plane, width, height, last);
-    settle(plane, width, last);
+    settle(plane, width, height, last);
     for (int ring = 1; ring < FL_WIDTH_OUTSIDE_PX; ring++) {
         g_array_set_size(next, 0);
         for (guint k = 0; k < last->len; k++) {
             const Reached *pixel = &g_array_index(last, Reached, k);
             reach_around(plane, width, height, pixel->x, pixel->y, next);
         }
-        settle(plane, width, next);
+        settle(plane, width, height, next);
         GArray *ring_before = last;
         last = next, next = ring_before;
     }
-}
-
-static bool any_narrow(const uint16_t *plane, size_t n, uint16_t cap)
-{
-    bool narrow = false;
-    for (size_t p = 0; p < n; p++)
-        narrow |= plane[p] > 0 && plane[p] < cap;
-    return narrow;
 }
 
 bool fl_local_width(const float *distance, const uint8_t *seen, int width, int height, float cap_px,
@@ -465,8 +496,8 @@ bool fl_local_width(const float *distance, const uint8_t *seen, int width, int h
     if (!means_init(&means, n, r, error))
         return false;
     limit_slope(half_width, width, height);
-    smooth(half_width, width, height, r, &means);
-    smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), &means);
+    smooth(half_width, width, height, r, cap, &means);
+    smooth(half_width, width, height, MAX(cap / (8 * FL_WIDTH_ONE), 1), cap, &means);
     extend(half_width, width, height);
     return true;
 }
