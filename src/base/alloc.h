@@ -9,22 +9,31 @@
 #include <sys/mman.h>
 
 /**
- * count zeroed elements of element_bytes, aligned to 64 bytes; to be freed with free().
+ * count elements of element_bytes, aligned to 64 bytes, for what is written before it is read; to
+ * be freed with free().
  *
  * Returns: NULL with FL_ERROR_NO_MEMORY set, which names `what`.
  */
-static inline void *fl_alloc(size_t count, size_t element_bytes, const char *what, GError **error)
+static inline void *fl_alloc_unset(size_t count, size_t element_bytes, const char *what,
+                                   GError **error)
 {
     size_t bytes = 0;
     void *memory = NULL;
     if (!__builtin_mul_overflow(count, element_bytes, &bytes) && bytes <= SIZE_MAX - 64)
         memory = aligned_alloc(64, (bytes + 64) / 64 * 64);
     if (memory && fl_headroom_left())
-        return __builtin_memset(memory, 0, bytes);
+        return memory;
     free(memory);
     g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
                 "not enough memory for %s (%zu elements of %zu bytes)", what, count, element_bytes);
     return NULL;
+}
+
+/** The same, zeroed. */
+static inline void *fl_alloc(size_t count, size_t element_bytes, const char *what, GError **error)
+{
+    void *memory = fl_alloc_unset(count, element_bytes, what, error);
+    return memory ? __builtin_memset(memory, 0, count * element_bytes) : NULL;
 }
 
 /**

@@ -48,9 +48,9 @@ static bool work_init(Work *work, const uint8_t *mask, int width, int height, GE
     work->seeds = g_array_new(FALSE, FALSE, sizeof(FlContourPiece));
     work->pixels = g_array_new(FALSE, FALSE, sizeof(int32_t));
     const char *what = "the distances of a mask";
-    return (work->seed_at = fl_alloc(n, sizeof *work->seed_at, what, error)) &&
-           (work->near_y = fl_alloc(n, sizeof *work->near_y, what, error)) &&
-           (work->nearest = fl_alloc(n, sizeof *work->nearest, what, error));
+    return (work->seed_at = fl_alloc_unset(n, sizeof *work->seed_at, what, error)) &&
+           (work->near_y = fl_alloc_unset(n, sizeof *work->near_y, what, error)) &&
+           (work->nearest = fl_alloc_unset(n, sizeof *work->nearest, what, error));
 }
 
 /** Coverage in 0..1 of a pixel, or of the nearest one in the frame. */
@@ -269,7 +269,7 @@ static void link_seed(const Work *work, int32_t seed)
 static bool link_seeds(Work *work, GError **error)
 {
     const guint n = work->seeds->len;
-    if (!(work->links = fl_alloc(n, sizeof *work->links, "the distances of a mask", error)))
+    if (!(work->links = fl_alloc_unset(n, sizeof *work->links, "the distances of a mask", error)))
         return false;
     for (guint seed = 0; seed < n; seed++)
         link_seed(work, (int32_t)seed);

@@ -156,9 +156,9 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     const size_t area = fl_rect_pixels(record->box);
     guides->has_motion = false;
     if (area > 0) {
-        g_autofree uint8_t *shape = fl_alloc(2 * area, 1, "coverages and angles", error);
+        g_autofree uint8_t *shape = fl_alloc_unset(2 * area, 1, "coverages and angles", error);
         g_autofree int32_t *scratch =
-            shape ? fl_alloc(2 * area, sizeof *scratch, "a guide", error) : NULL;
+            shape ? fl_alloc_unset(2 * area, sizeof *scratch, "a guide", error) : NULL;
         if (!scratch || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
             !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, scratch, guides->flow, error) ||
             !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, scratch, guides->ext_plus, error) ||
@@ -177,7 +177,7 @@ bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGu
 {
     const FlRect whole = {0, 0, guides->width, guides->height};
     const FlRect box = sequence->frames[frame].box;
-    g_autofree uint8_t *shape = fl_alloc(2 * fl_rect_pixels(box), 1, "coverages", error);
+    g_autofree uint8_t *shape = fl_alloc_unset(2 * fl_rect_pixels(box), 1, "coverages", error);
     memset(guides->mask, 0, fl_rect_pixels(whole));
     if (!shape ||
         (fl_rect_pixels(box) > 0 && !fl_guide_sequence_shape(sequence, frame, shape, error)))
@@ -206,7 +206,7 @@ bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *f
     if (record->holder[FL_GUIDE_PLANE_UNROUNDED] < 0)
         return true;
     g_autofree int32_t *bits =
-        fl_alloc(2 * fl_rect_pixels(record->box), sizeof *bits, "a flow", error);
+        fl_alloc_unset(2 * fl_rect_pixels(record->box), sizeof *bits, "a flow", error);
     if (!bits || !fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_UNROUNDED, bits, error))
         return false;
     fl_rect_copy(bits, record->box, flow, whole, 2 * sizeof *flow);

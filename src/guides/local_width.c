@@ -60,7 +60,8 @@ static void read_depths(const float *distance, size_t n, uint16_t cap, uint16_t 
 /** The depths that are seen. */
 static bool read_seen(Discs *discs, const uint8_t *seen, size_t n, GError **error)
 {
-    discs->seen = seen ? fl_alloc(n, sizeof *discs->seen, "local widths", error) : discs->depth;
+    discs->seen =
+        seen ? fl_alloc_unset(n, sizeof *discs->seen, "local widths", error) : discs->depth;
     for (size_t p = 0; p < n && seen && discs->seen; p++)
         discs->seen[p] = seen[p] >= 128 ? discs->depth[p] : 0;
     return discs->seen;
@@ -85,10 +86,10 @@ static bool discs_init(Discs *discs, const float *distance, const uint8_t *seen,
     const int radii = 3 * cap / 2 + FL_WIDTH_ONE + 1, reach = radii / FL_WIDTH_ONE;
     *discs = (Discs){width, height, cap, .distance = distance, .reach = reach};
     discs->centres = g_array_new(FALSE, FALSE, sizeof(Disc));
-    if (!(discs->depth = fl_alloc(n, sizeof *discs->depth, "local widths", error)) ||
-        !(discs->half = fl_alloc((size_t)radii * (size_t)(reach + 1), sizeof *discs->half,
-                                 "local widths", error)) ||
-        !(discs->first = fl_alloc((size_t)height + 1, sizeof *discs->first, "a row", error)))
+    if (!(discs->depth = fl_alloc_unset(n, sizeof *discs->depth, "local widths", error)) ||
+        !(discs->half = fl_alloc_unset((size_t)radii * (size_t)(reach + 1), sizeof *discs->half,
+                                       "local widths", error)) ||
+        !(discs->first = fl_alloc_unset((size_t)height + 1, sizeof *discs->first, "a row", error)))
         return false;
     read_depths(distance, n, cap, discs->depth);
     fill_rows(discs, radii);
@@ -346,11 +347,11 @@ static bool means_init(Means *means, size_t n, int r, GError **error)
 {
     const size_t tile = (size_t)(TILE_PX + 2 * r) * (size_t)(TILE_PX + 2 * r);
     *means = (Means){0};
-    return (means->before = fl_alloc(n, sizeof *means->before, "local widths", error)) &&
-           (means->plane = fl_alloc(tile, sizeof *means->plane, "local widths", error)) &&
-           (means->rows = fl_alloc(tile, sizeof *means->rows, "local widths", error)) &&
-           (means->count = fl_alloc(tile, sizeof *means->count, "local widths", error)) &&
-           (means->sum = fl_alloc(tile, sizeof *means->sum, "local widths", error));
+    return (means->before = fl_alloc_unset(n, sizeof *means->before, "local widths", error)) &&
+           (means->plane = fl_alloc_unset(tile, sizeof *means->plane, "local widths", error)) &&
+           (means->rows = fl_alloc_unset(tile, sizeof *means->rows, "local widths", error)) &&
+           (means->count = fl_alloc_unset(tile, sizeof *means->count, "local widths", error)) &&
+           (means->sum = fl_alloc_unset(tile, sizeof *means->sum, "local widths", error));
 }
 
 /** Whether all that is inside is as wide as any: then the means are, too. */

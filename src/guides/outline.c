@@ -30,7 +30,7 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
     if (outline->empty)
         return g_steal_pointer(&outline);
     outline->distance =
-        fl_alloc((size_t)frame_width * frame_height, sizeof(float), "a distance", error);
+        fl_alloc_unset((size_t)frame_width * frame_height, sizeof(float), "a distance", error);
     if (!outline->distance ||
         !fl_distance(mask, frame_width, frame_height, outline->distance, error))
         return NULL;

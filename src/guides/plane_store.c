@@ -16,7 +16,7 @@ bool fl_plane_store_put(FlSpill *spill, size_t block, const int32_t *values, siz
     for (size_t k = 0; k < n; k++)
         used |= fold(values, k, step);
     const int n_planes = (39 - __builtin_clz(used)) / 8;
-    g_autofree uint8_t *bytes = fl_alloc(n, (size_t)n_planes, "a temporary plane", error);
+    g_autofree uint8_t *bytes = fl_alloc_unset(n, (size_t)n_planes, "a temporary plane", error);
     if (!bytes)
         return false;
     for (int b = 0; b < n_planes; b++)
@@ -29,7 +29,7 @@ bool fl_plane_store_get(const FlSpill *spill, size_t block, int32_t *values, siz
                         GError **error)
 {
     const int n_planes = (int)(fl_spill_bytes(spill, block) / n);
-    g_autofree uint8_t *bytes = fl_alloc(n, (size_t)n_planes, "a temporary plane", error);
+    g_autofree uint8_t *bytes = fl_alloc_unset(n, (size_t)n_planes, "a temporary plane", error);
     if (!bytes || !fl_spill_get(spill, block, bytes, n * n_planes, error))
         return false;
     for (size_t k = 0; k < n; k++) {

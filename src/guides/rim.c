@@ -108,16 +108,16 @@ static bool measure(Part *part, const FlRimShape *shape, float border_px, bool *
 {
     const FlRect frame = {0, 0, shape->width, shape->height}, box = part->box;
     const size_t n = fl_rect_pixels(box);
-    if (!(part->distance = fl_alloc(n, sizeof *part->distance, "a guide", error)) ||
-        !(part->half_width = fl_alloc(n, sizeof *part->half_width, "a guide", error)) ||
-        !(part->coverage = fl_alloc(n, 1, "a guide", error)))
+    if (!(part->distance = fl_alloc_unset(n, sizeof *part->distance, "a guide", error)) ||
+        !(part->half_width = fl_alloc_unset(n, sizeof *part->half_width, "a guide", error)) ||
+        !(part->coverage = fl_alloc_unset(n, 1, "a guide", error)))
         return false;
     fl_rect_copy(shape->together ? shape->together : shape->mask, frame, part->coverage, box, 1);
     if (!shape->together)
         fl_rect_copy(shape->distance, frame, part->distance, box, sizeof *part->distance);
     else if (!fl_distance(part->coverage, box.width, box.height, part->distance, error))
         return false;
-    if (shape->seen && !(part->seen = fl_alloc(n, 1, "a guide", error)))
+    if (shape->seen && !(part->seen = fl_alloc_unset(n, 1, "a guide", error)))
         return false;
     if (shape->seen)
         fl_rect_copy(shape->seen, frame, part->seen, box, 1);
@@ -131,11 +131,11 @@ static bool measure_surround(Part *part, const FlRimShape *shape, float border_p
     const size_t n = fl_rect_pixels(part->box);
     const FlRect own = {0, 0, part->box.width, part->box.height};
     const int radius = surround_radius(border_px);
-    if (!(part->shown = fl_alloc(n, 1, "a guide", error)) ||
-        !(part->plane = fl_alloc(n, sizeof *part->plane, "a guide", error)) ||
-        !(part->rows = fl_alloc(n, sizeof *part->rows, "a guide", error)) ||
-        !(part->free = fl_alloc(n, sizeof *part->free, "a guide", error)) ||
-        !(part->taken = fl_alloc(n, sizeof *part->taken, "a guide", error)))
+    if (!(part->shown = fl_alloc_unset(n, 1, "a guide", error)) ||
+        !(part->plane = fl_alloc_unset(n, sizeof *part->plane, "a guide", error)) ||
+        !(part->rows = fl_alloc_unset(n, sizeof *part->rows, "a guide", error)) ||
+        !(part->free = fl_alloc_unset(n, sizeof *part->free, "a guide", error)) ||
+        !(part->taken = fl_alloc_unset(n, sizeof *part->taken, "a guide", error)))
         return false;
     fl_rect_copy(shape->shown, (FlRect){0, 0, shape->width, shape->height}, part->shown, part->box,
                  1);
