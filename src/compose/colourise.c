@@ -150,14 +150,29 @@ static void colour_flat(const FlInk *ink, const FlColouring *colouring, const Fl
     }
 }
 
+/** The most paint that a pixel of an area has; -1: there is none. */
+static int most_amount(const int16_t *amounts, const FlArea *area)
+{
+    int most = -1;
+    for (int y = 0; y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const int16_t *row = amounts + (size_t)y * (size_t)area->box.width;
+        for (int x = span.first; x < span.last; x++)
+            most = MAX(most, row[x]);
+    }
+    return most;
+}
+
 #define PLAYS 64 // as many plays of pigments are told apart: one in four
 
 /** The same where pigments play: each pair of an amount and a play is looked up once it was met. */
 static void colour_flat_play(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
                              const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
-    g_autofree uint32_t *colours = g_new0(uint32_t, PLAYS * FL_AMOUNTS);
-    g_autofree bool *met = g_new0(bool, PLAYS *FL_AMOUNTS);
+    const size_t n_amounts = (size_t)(most_amount(amounts, area) + 1);
+    const size_t n = n_amounts * PLAYS;
+    g_autofree uint32_t *colours = g_new(uint32_t, n); // where it was met
+    g_autofree bool *met = g_new0(bool, n);
     Fill fill;
     fill_init(&fill, ink, colouring, scale, colouring->fill);
     for (int y = 0; y < area->box.height; y++) {
@@ -167,7 +182,7 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *colouring, con
             if (amounts[i] < 0)
                 continue;
             const int play = (colouring->play[i] + 128) * PLAYS / 256;
-            const size_t at = (size_t)play * FL_AMOUNTS + (size_t)amounts[i];
+            const size_t at = (size_t)play * n_amounts + (size_t)amounts[i];
             if (!met[at]) {
                 uint8_t of[4];
                 colour_amount(&fill, colouring, scale, amounts[i], play * 256 / PLAYS - 126, of);
