@@ -102,6 +102,17 @@ static void strokes_over_fills_are_drawn_as_they_are(void)
     assert_table(drawing, "gradient-ced1d7*3 gradient-f05c5c*3 [red-ef4444-line]*3");
 }
 
+static void tiny_shapes_are_found_and_large_ones_behind_masks_are_not(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_svg(folder, "1.svg",
+                       "<mask id=\"m\"/><rect width=\"90\" height=\"90\" fill=\"#00f\"/>"
+                       "<rect width=\"50\" height=\"50\" fill=\"#f00\" mask=\"url(#m)\"/>"
+                       "<circle cx=\"70.5\" cy=\"70.5\" r=\".007\" fill=\"#0f0\"/>"));
+    g_autoptr(FlDrawing) drawing = open_film(&(FlDrawingOptions){.scale = 10}, folder, NULL);
+    assert_table(drawing, "blue-0000ff*1 green-00ff00*1");
+}
+
 static void thick_strokes_are_limbs_and_thin_ones_lines(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -668,6 +679,8 @@ int main(int argc, char **argv)
     TEST("layers-that-come-and-go-keep-their-regions", layers_that_come_and_go_keep_their_regions);
     TEST("limbs-that-are-strokes-are-painted", limbs_that_are_strokes_are_painted);
     TEST("strokes-over-fills-are-drawn-as-they-are", strokes_over_fills_are_drawn_as_they_are);
+    TEST("tiny-shapes-are-found-and-large-ones-behind-masks-are-not",
+         tiny_shapes_are_found_and_large_ones_behind_masks_are_not);
     TEST("thick-strokes-are-limbs-and-thin-ones-lines",
          thick_strokes_are_limbs_and_thin_ones_lines);
     TEST("masked-parts-are-regions-and-faint-ones-over-others-shading",

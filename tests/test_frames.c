@@ -63,6 +63,14 @@ static void opacity_of_all_groups_counts(void)
     assert_painted("<rect " BOX " opacity=\"0\"/>", "");
 }
 
+static void what_is_parked_far_off_the_page_has_no_paint(void)
+{
+    assert_painted("<circle cx=\"-1e6\" r=\"5\" fill=\"red\"/><rect " BOX "/>", "fill #000000@255");
+    assert_painted("<circle cy=\"-1e6\" r=\"5\" fill=\"red\"/><rect " BOX "/>", "fill #000000@255");
+    assert_painted("<circle cx=\"-200\" r=\"5\" fill=\"red\"/><rect " BOX "/>",
+                   "fill #ff0000@255 | fill #000000@255"); // it may come in
+}
+
 static void fill_and_stroke_are_taken_apart_unless_they_are_one_colour(void)
 {
     assert_painted("<rect " BOX " fill=\"red\" stroke=\"blue\"/>",
@@ -385,6 +393,8 @@ int main(int argc, char **argv)
 #define TEST(path, function) g_test_add_func("/frames/" path, function)
     TEST("paint-is-what-css-makes-of-it", paint_is_what_css_makes_of_it);
     TEST("opacity-of-all-groups-counts", opacity_of_all_groups_counts);
+    TEST("what-is-parked-far-off-the-page-has-no-paint",
+         what_is_parked_far_off_the_page_has_no_paint);
     TEST("fill-and-stroke-are-taken-apart-unless-they-are-one-colour",
          fill_and_stroke_are_taken_apart_unless_they_are_one_colour);
     TEST("gradients-are-known-by-their-stops", gradients_are_known_by_their_stops);

@@ -5,6 +5,7 @@
 
 #define THICK 0.03f  // width of a stroke, share of the page's longer side, that is no line any more
 #define PROBE_PX 256 // longest side of the small pictures on which a frame is probed
+#define TINY_PX 4.0  // side of a shape that may be there without being drawn on them
 #define MOST_KEPT (16 << 20) // bytes of coverage that a frame's probes keep
 
 static void probe_clear(void *data)
@@ -148,6 +149,16 @@ static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlRect *box)
         *box = fl_rect_or(*box, at);
 }
 
+/**
+ * Whether the small picture may not show a leaf. What is larger and leaves nothing there is hidden:
+ * by a mask or a clip, or beside the page.
+ */
+static bool is_tiny(FlFrameProbe *f, const FlLeaf *leaf)
+{
+    const RsvgRectangle r = fl_svg_extents(f->svg, leaf, f->width, f->height);
+    return r.width < TINY_PX || r.height < TINY_PX;
+}
+
 /** Completes the parts of one leaf, from `first` on, with what they have in common. */
 static void relate_parts(GArray *probes, guint first)
 {
@@ -199,7 +210,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
             (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
         keep_cover(f, &probe);
         fl_surface_wipe(f->coverage, probe.box);
-        if (good && (leaf->text || probe.box.width == 0)) {
+        if (good && (leaf->text || (probe.box.width == 0 && is_tiny(f, leaf)))) {
             good = box_in_full(f, leaf, p->part, &probe.box, &probe.found.area_px, error);
             probe.found.area_px /= opacity;
         }

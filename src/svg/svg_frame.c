@@ -19,7 +19,8 @@
 #define PROBE_PX 256.0
 #define LARGE_PROBE_PX 4096.0
 #define SMALL_PX 4.0
-#define FAR_PX 9000.0 // cairo's script surface aborts at boxes much farther off
+#define FAR_PX 9000.0     // cairo's script surface aborts at boxes much farther off
+#define FAR_PROBE_PX 16.0 // size of the page on which that is looked for
 
 /** Whether any leaf is_far(). */
 typedef enum Far {
@@ -405,12 +406,13 @@ static bool is_endless(const GError *reason)
 
 /**
  * Finds whether a leaf may be far on the small page: only then each is measured, which takes as
- * long as drawing it. Boxes of all lie in that of the document. Returns: false with an error if the
- * document is_endless().
+ * long as drawing it, masks included. Boxes of all lie in that of the document, which is measured
+ * on a page of next to no pixels. Returns: false with an error if the document is_endless().
  */
 static bool find_far(FlSvg *svg, GError **error)
 {
-    const RsvgRectangle page = {0, 0, PROBE_PX, PROBE_PX};
+    const RsvgRectangle page = {0, 0, FAR_PROBE_PX, FAR_PROBE_PX};
+    const double far = -FAR_PX * FAR_PROBE_PX / PROBE_PX;
     RsvgRectangle box = {0};
     g_autoptr(GError) reason = NULL;
     if (svg->far != FAR_UNKNOWN)
@@ -421,7 +423,7 @@ static bool find_far(FlSvg *svg, GError **error)
         set_rsvg_error(svg, reason, error);
         return false;
     }
-    svg->far = measured && box.x > -FAR_PX && box.y > -FAR_PX ? FAR_NONE : FAR_SOME;
+    svg->far = measured && box.x > far && box.y > far ? FAR_NONE : FAR_SOME;
     return true;
 }
 
