@@ -118,7 +118,7 @@ static void lint_node(const Lint *lint, xmlNode *node)
         check_sheet(lint, node, (const char *)style);
     if (fl_is_one_of(node, animations))
         warn(lint, node->parent, "the animation in it is not played: the base value is drawn");
-    if (fl_is(node, "path"))
+    if (lint->warnings && fl_is(node, "path"))
         check_path(lint, node);
     if (fl_is(node, "style")) {
         g_autoptr(xmlChar) css = xmlNodeGetContent(node);
