@@ -120,7 +120,7 @@ bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, 
     g_assert(block < spill->n_blocks);
     const FlSpan part = {(void *)(uintptr_t)data, bytes}; // which is only read
     const size_t room = fl_compress_bound(&part, 1);
-    g_autofree uint8_t *packed = fl_alloc_unset(room, 1, "a temporary block", error);
+    g_autofree uint8_t *packed = fl_alloc_scratch(room, 1, "a temporary block", error);
     if (!packed)
         return false;
     const size_t packed_bytes = fl_compress(&part, 1, packed, room);

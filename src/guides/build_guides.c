@@ -49,7 +49,6 @@ typedef struct Builder {
     Motion *motions;
     Smoothed smoothed[3];
     uint8_t *mask; // scratch: a frame
-    float *given;  // scratch: the flow or the motion of a frame
     FlExtent *extent;
     bool previous_moves; // of the frame that was finished last
 } Builder;
@@ -67,7 +66,6 @@ static void builder_clear(Builder *b)
     g_free(b->flow_weight);
     g_free(b->dist_weight);
     g_free(b->mask);
-    g_free(b->given);
     fl_extent_free(b->extent);
 }
 
@@ -100,9 +98,6 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
     for (int s = 0; s < 3; s++)
         b->smoothed[s].frame = -1;
     if (!(b->mask = fl_alloc(n, 1, "a mask", error)))
-        return false;
-    if ((source->flow || source->motion) &&
-        !(b->given = fl_alloc(2 * n, sizeof *b->given, "a given motion", error)))
         return false;
     b->extent = fl_extent_new(source->width, source->height, error);
     return b->extent;
@@ -270,20 +265,28 @@ static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float
     return true;
 }
 
+/** Room for the flow or the motion of a frame, to be freed. */
+static float *room_for_motion(const FlGuideSource *source, GError **error)
+{
+    return fl_alloc_scratch(2 * (size_t)source->width * source->height, sizeof(float),
+                            "a given motion", error);
+}
+
 /** The flow that the source gives, cropped to the shape. */
 static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **flow,
                        GError **error)
 {
     const FlGuideSource *source = &b->sequence->source;
     const FlRect *box = &outline->box;
-    if (!source->flow(source->data, frame, b->given, error))
+    g_autofree float *given = room_for_motion(source, error);
+    if (!given || !source->flow(source->data, frame, given, error))
         return false;
     float *out = *flow = fl_alloc(2 * fl_rect_pixels(*box), sizeof *out, "a given flow", error);
     if (!out)
         return false;
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++, out += 2) {
-            const float *in = b->given + 2 * ((box->y + y) * (size_t)source->width + box->x + x);
+            const float *in = given + 2 * ((box->y + y) * (size_t)source->width + box->x + x);
             if (!isfinite(in[0]) || !isfinite(in[1])) {
                 g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
                             "the flow of frame %d is not a number at column %d, row %d", frame,
@@ -321,7 +324,7 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
     const size_t n = fl_rect_pixels(outline->box);
-    g_autofree int32_t *fixed = fl_alloc(2 * n, sizeof *fixed, "a flow", error);
+    g_autofree int32_t *fixed = fl_alloc_scratch(2 * n, sizeof *fixed, "a flow", error);
     g_autofree int32_t *norm = fixed ? fl_alloc(n, sizeof *norm, "an extent", error) : NULL;
     if (!norm)
         return false;
@@ -349,13 +352,15 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError
     FlOutlinePair outlines = {.now = outline};
     if (!source->motion || outline->empty)
         return true;
-    if (!outline_of(b, frame - 1, &outlines.before, error) ||
-        !source->motion(source->data, frame, &outlines, b->given, error))
+    g_autofree float *given = room_for_motion(source, error);
+    if (!given || !outline_of(b, frame - 1, &outlines.before, error) ||
+        !source->motion(source->data, frame, &outlines, given, error))
         return false;
-    g_autofree int32_t *fixed = fl_alloc(n, sizeof *fixed, "a drawing's motion", error);
+    g_autofree int32_t *fixed = fl_alloc_scratch(n, sizeof *fixed, "a drawing's motion", error);
     if (!fixed)
         return false;
-    fl_motion_to_fixed(b->given, outline, fixed);
+    fl_motion_to_fixed(given, outline, fixed);
+    g_clear_pointer(&given, g_free); // it is large, and so is what storing takes
     if (fl_is_blank((const uint8_t *)fixed, n * sizeof *fixed))
         return true;
     b->sequence->frames[frame].holder[FL_GUIDE_PLANE_MOTION] = frame;

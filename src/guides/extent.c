@@ -3,14 +3,13 @@
 #include "base/alloc.h"
 #include "guides/guides.h"
 #include <math.h>
-#include <string.h>
 
 enum { SUM_LIMIT = 1 << 30 };
 
 struct FlExtent {
     int width;
     FlRect box;   // outside it the sum is 0
-    int32_t *sum; // interleaved, of the frame
+    int32_t *sum; // interleaved, of the frame; takes memory where something moves
 };
 
 int32_t fl_flow_to_fixed(float px)
@@ -23,8 +22,8 @@ FlExtent *fl_extent_new(int frame_width, int frame_height, GError **error)
 {
     g_autoptr(FlExtent) extent = g_new(FlExtent, 1);
     *extent = (FlExtent){.width = frame_width};
-    extent->sum = fl_alloc(2 * (size_t)frame_width * frame_height, sizeof *extent->sum,
-                           "the motion extents", error);
+    extent->sum = fl_alloc_scratch(2 * (size_t)frame_width * frame_height, sizeof *extent->sum,
+                                   "the motion extents", error);
     return extent->sum ? g_steal_pointer(&extent) : NULL;
 }
 
@@ -41,6 +40,13 @@ static bool box_contains(const FlRect *box, int x, int y)
     return x >= box->x && y >= box->y && x < box->x + box->width && y < box->y + box->height;
 }
 
+/** Writes nothing where nothing has moved yet. */
+static void clear(int32_t sum[2])
+{
+    if (sum[0] != 0 || sum[1] != 0)
+        sum[0] = sum[1] = 0;
+}
+
 /** Clears the sum where the last mask's box lies outside the next one's. */
 static void leave_box(FlExtent *extent, const FlRect *next)
 {
@@ -48,7 +54,7 @@ static void leave_box(FlExtent *extent, const FlRect *next)
     for (int y = box->y; y < box->y + box->height; y++)
         for (int x = box->x; x < box->x + box->width; x++)
             if (!box_contains(next, x, y))
-                memset(extent->sum + 2 * (y * (size_t)extent->width + x), 0, 2 * sizeof(int32_t));
+                clear(extent->sum + 2 * (y * (size_t)extent->width + x));
     extent->box = *next;
 }
 
@@ -72,7 +78,7 @@ void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *cov
         for (int x = mask_box->x; x < mask_box->x + mask_box->width; x++) {
             int32_t *sum = extent->sum + 2 * (y * (size_t)extent->width + x);
             if (*coverage++ < FL_INSIDE) {
-                sum[0] = sum[1] = 0;
+                clear(sum);
             } else if (flow && box_contains(flow_box, x, y)) {
                 const int32_t *f =
                     flow + 2 * ((y - flow_box->y) * (size_t)flow_box->width + x - flow_box->x);

@@ -133,8 +133,9 @@ bool fl_outline_normals(FlOutline *outline, GError **error)
     const FlRect *box = &outline->box;
     const size_t n = fl_rect_pixels(*box);
     g_autofree uint8_t *cell = fl_alloc(n, sizeof *cell, "normals", error);
-    g_autofree float *normal = cell ? fl_alloc(2 * n, sizeof *normal, "normals", error) : NULL;
-    if (!normal)
+    g_autofree float *normal = fl_alloc_scratch(2 * n, sizeof *normal, "normals", error);
+    bool any = false;
+    if (!cell || !normal)
         return false;
     for (int y = 0; y < box->height; y++)
         for (int x = 0; x < box->width; x++) {
@@ -148,11 +149,12 @@ bool fl_outline_normals(FlOutline *outline, GError **error)
             const float norm = length(g);
             if (norm < least_gradient)
                 continue;
+            any = true;
             cell[p] = FL_CELL_FIXED;
             normal[2 * p] = -g[0] / norm;
             normal[2 * p + 1] = -g[1] / norm;
         }
-    if (!fl_laplace_solve(cell, box->width, box->height, 0, normal, error))
+    if (any && !fl_laplace_solve(cell, box->width, box->height, 0, normal, error))
         return false;
     g_free(outline->normal);
     outline->normal = g_steal_pointer(&normal);
