@@ -35,7 +35,7 @@ static double *lightness_of(const FlPaperSheet *sheet, const uint8_t colour[3])
     for (int i = 0; i < SIDE * SIDE; i++)
         for (int c = 0; c < 4; c++)
             rgba[4 * i + c] = (uint16_t)(257 * (c < 3 ? colour[c] : 255));
-    fl_paper_sheet_light(sheet, 0, SIDE, SIDE, NULL, rgba);
+    g_assert_true(fl_paper_sheet_light(sheet, 0, SIDE, SIDE, NULL, rgba, NULL));
     static double linear[65536];
     for (int i = 0; i < 65536 && linear[65535] == 0; i++) {
         const double s = i / 65535.0;
@@ -182,8 +182,8 @@ static void light_leaves_alpha_alone(void)
     uint8_t rgba[64 * 64 * 4], black[64 * 64 * 4] = {0};
     for (size_t i = 0; i < sizeof rgba; i++)
         rgba[i] = i % 4 == 3 ? (uint8_t)(i / 4) : 200;
-    fl_paper_sheet_light(sheet, 0, 64, 64, rgba, NULL);
-    fl_paper_sheet_light(sheet, 0, 64, 64, black, NULL);
+    g_assert_true(fl_paper_sheet_light(sheet, 0, 64, 64, rgba, NULL, NULL));
+    g_assert_true(fl_paper_sheet_light(sheet, 0, 64, 64, black, NULL, NULL));
     int changed = 0;
     for (size_t i = 0; i < sizeof rgba; i++) {
         const int wanted = (200 * sheet->factor[i] + FL_PAPER_ONE / 2) / FL_PAPER_ONE;
@@ -192,6 +192,21 @@ static void light_leaves_alpha_alone(void)
         changed += i % 4 != 3 && rgba[i] != 200;
     }
     g_assert_cmpint(changed, >, 64 * 64);
+}
+
+static void light_that_is_put_away_is_the_same(void)
+{
+    enum { WIDTH = 50, HEIGHT = 70 }; // not whole bands
+    g_autoptr(FlPaperSheet) here = sheet_of("cold", 1, WIDTH, HEIGHT, 1);
+    g_autoptr(FlPaperSheet) away = sheet_of("cold", 1, WIDTH, HEIGHT, 1);
+    g_assert_true(fl_paper_sheet_put_away(away, NULL));
+    g_assert_null(away->factor);
+    for (int frame = 0; frame < 20; frame++) {
+        uint8_t a[4 * WIDTH * HEIGHT], b[4 * WIDTH * HEIGHT];
+        g_assert_true(fl_paper_sheet_picture(here, frame, WIDTH, HEIGHT, a, NULL));
+        g_assert_true(fl_paper_sheet_picture(away, frame, WIDTH, HEIGHT, b, NULL));
+        g_assert_cmpmem(a, sizeof a, b, sizeof b);
+    }
 }
 
 static void a_page_of_half_the_size_shows_the_same_sheet(void)
@@ -406,6 +421,8 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/all-frames-have-the-same-sheet-unless-it-boils",
                     all_frames_have_the_same_sheet_unless_it_boils);
     g_test_add_func("/paper/light-leaves-alpha-alone", light_leaves_alpha_alone);
+    g_test_add_func("/paper/light-that-is-put-away-is-the-same",
+                    light_that_is_put_away_is_the_same);
     g_test_add_func("/paper/a-page-of-half-the-size-shows-the-same-sheet",
                     a_page_of_half_the_size_shows_the_same_sheet);
     g_test_add_func("/paper/papers-are-chosen", papers_are_chosen);

@@ -403,13 +403,14 @@ static bool compose(FlComposite *composite, const FlComposeInput *input, int fra
         fl_layers_compose(NULL, 0, &backdrop, width, height, linear, composite->ground);
     }
     if (input->sheet && input->sheet->lights && input->layers_apart) {
-        if (!(composite->sheet = fl_alloc(values, 1, "a sheet of paper", error)))
+        if (!(composite->sheet = fl_alloc(values, 1, "a sheet of paper", error)) ||
+            !fl_paper_sheet_picture(input->sheet, frame, width, height, composite->sheet, error))
             return false;
-        fl_paper_sheet_picture(input->sheet, frame, width, height, composite->sheet);
     }
-    if (input->sheet && input->sheet->lights && !background->none)
-        fl_paper_sheet_light(input->sheet, frame, width, height, composite->rgba,
-                             composite->rgba16);
+    if (input->sheet && input->sheet->lights && !background->none &&
+        !fl_paper_sheet_light(input->sheet, frame, width, height, composite->rgba,
+                              composite->rgba16, error))
+        return false;
     return background->opaque || fl_layers_bleed(composite->rgba, width, height, BLEED_PX, error);
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/page.h"
+#include "base/parallel_error.h"
 #include "base/picture.h"
 #include "base/rng.h"
 #include "base/row_kernels.h"
@@ -19,6 +20,7 @@
 #define ROOM_PX 256     // that the sheet is larger than a frame if other parts of it are wanted
 #define MOST_FINER 4    // times: as far as small pages are made larger, and
 #define MOST_PIXELS 2e7 // as large as that may be
+#define BAND_ROWS 32    // of a sheet that is put away are read at a time
 
 static float clamp(float x, float low, float high)
 {
@@ -294,12 +296,40 @@ void fl_paper_sheet_free(FlPaperSheet *sheet)
     if (!sheet)
         return;
     free(sheet->factor);
+    fl_spill_free(sheet->bands);
     free(sheet->tooth[0]);
     free(sheet->tooth[1]);
     g_free(sheet);
 }
 
 /* ---- use ------------------------------------------------------------------------------------- */
+
+/* The rows of a band. */
+static int band_rows(const FlPaperSheet *sheet, int band)
+{
+    return MIN(BAND_ROWS, sheet->height - band * BAND_ROWS);
+}
+
+/* Bytes of so many rows of the light. */
+static size_t light_bytes(const FlPaperSheet *sheet, int rows)
+{
+    return 4 * (size_t)sheet->width * (size_t)rows * sizeof *sheet->factor;
+}
+
+bool fl_paper_sheet_put_away(FlPaperSheet *sheet, GError **error)
+{
+    const int n = (sheet->height + BAND_ROWS - 1) / BAND_ROWS;
+    if (!(sheet->bands = fl_spill_new((size_t)n, error)))
+        return false;
+    for (int b = 0; b < n; b++) {
+        const uint8_t *rows = (const uint8_t *)sheet->factor + light_bytes(sheet, b * BAND_ROWS);
+        if (!fl_spill_put(sheet->bands, (size_t)b, rows, light_bytes(sheet, band_rows(sheet, b)),
+                          error))
+            return false;
+    }
+    g_clear_pointer(&sheet->factor, free);
+    return true;
+}
 
 int fl_paper_sheet_since(const FlPaperSheet *sheet, int frame)
 {
@@ -321,30 +351,70 @@ static void light_row16(const uint16_t *factor, uint16_t *rgba, int n)
             (uint16_t)MIN(((uint64_t)rgba[i] * factor[i] + FL_PAPER_ONE / 2) / FL_PAPER_ONE, 65535);
 }
 
-void fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int height,
-                          uint8_t *rgba, uint16_t *rgba16)
+/* What is laid on a sheet: a frame, one of the two, whose corner is at (x, y). */
+typedef struct Lit {
+    const FlPaperSheet *sheet;
+    int x, y, width, height;
+    uint8_t *rgba;
+    uint16_t *rgba16;
+} Lit;
+
+/* A row of the sheet, whose light is `factor`. */
+static void light_row(const Lit *lit, int row, const uint16_t *factor)
 {
-    int x0, y0;
-    fl_paper_sheet_origin(sheet, frame, &x0, &y0);
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < height; y++) {
-        const size_t row = 4 * (size_t)y * (size_t)width;
-        const uint16_t *factor =
-            sheet->factor + 4 * ((size_t)(y + y0) * (size_t)sheet->width + (size_t)x0);
-        if (rgba)
-            fl_row_kernels()->multiply(factor, rgba + row, 4 * width);
-        if (rgba16)
-            light_row16(factor, rgba16 + row, 4 * width);
-    }
+    const size_t at = 4 * (size_t)(row - lit->y) * (size_t)lit->width;
+    factor += 4 * (size_t)lit->x;
+    if (lit->rgba)
+        fl_row_kernels()->multiply(factor, lit->rgba + at, 4 * lit->width);
+    if (lit->rgba16)
+        light_row16(factor, lit->rgba16 + at, 4 * lit->width);
 }
 
-void fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
-                            uint8_t *rgba)
+/* The light of a band, from memory or in `room`, which is made; NULL with an error set. */
+static const uint16_t *band_of(const FlPaperSheet *sheet, int band, void **room, GError **error)
+{
+    const size_t bytes = light_bytes(sheet, band_rows(sheet, band));
+    if (sheet->factor)
+        return sheet->factor + 4 * (size_t)sheet->width * (size_t)(band * BAND_ROWS);
+    *room = fl_alloc_scratch(bytes, 1, "a sheet of paper", error);
+    return *room && fl_spill_get(sheet->bands, (size_t)band, *room, bytes, error) ? *room : NULL;
+}
+
+/* The frame's rows in a band of the sheet. */
+static bool light_band(const Lit *lit, int band, GError **error)
+{
+    const int first = band * BAND_ROWS, end = first + band_rows(lit->sheet, band);
+    g_autofree void *room = NULL;
+    const uint16_t *factor = band_of(lit->sheet, band, &room, error);
+    for (int y = MAX(first, lit->y); factor && y < MIN(end, lit->y + lit->height); y++)
+        light_row(lit, y, factor + 4 * (size_t)(y - first) * (size_t)lit->sheet->width);
+    return factor != NULL;
+}
+
+bool fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int height,
+                          uint8_t *rgba, uint16_t *rgba16, GError **error)
+{
+    Lit lit = {sheet, 0, 0, width, height, rgba, rgba16};
+    GError *first = NULL;
+    fl_paper_sheet_origin(sheet, frame, &lit.x, &lit.y);
+#pragma omp parallel for schedule(static)
+    for (int band = lit.y / BAND_ROWS; band <= (lit.y + height - 1) / BAND_ROWS; band++) {
+        GError *failure = NULL;
+        if (!light_band(&lit, band, &failure))
+            fl_parallel_error_keep(&first, failure);
+    }
+    return fl_parallel_error_tell(error, first);
+}
+
+bool fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
+                            uint8_t *rgba, GError **error)
 {
     memset(rgba, FL_SINK_ONE, 4 * (size_t)width * (size_t)height);
-    fl_paper_sheet_light(sheet, frame, width, height, rgba, NULL);
+    if (!fl_paper_sheet_light(sheet, frame, width, height, rgba, NULL, error))
+        return false;
     for (size_t i = 0; i < (size_t)width * (size_t)height; i++)
         rgba[4 * i + 3] = 255;
+    return true;
 }
 
 FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame, bool half)

@@ -3,6 +3,7 @@
 #ifndef FLUIDY_COMPOSE_PAPER_SHEET_H
 #define FLUIDY_COMPOSE_PAPER_SHEET_H
 
+#include "base/spill.h"
 #include "base/tooth.h"
 #include "compose/paper_height.h"
 
@@ -23,7 +24,8 @@ typedef struct FlPaperChoice {
  */
 typedef struct FlPaperSheet {
     int width, height; // the frame's, and with boil some room
-    uint16_t *factor;  // width * height * 4: of R, G, B, and FL_PAPER_ONE for alpha
+    uint16_t *factor;  // width * height * 4: of R, G, B, and FL_PAPER_ONE for alpha; NULL: put away
+    FlSpill *bands;    // then it is here, some rows in a block
     int8_t *tooth[2];  // width * height: the fine part of the height; the same at half the size
     int boil;
     uint64_t seed;
@@ -48,6 +50,10 @@ bool fl_paper_sheet_make(const FlPaperChoice *choice, bool plain, int width, int
 
 void fl_paper_sheet_free(FlPaperSheet *sheet); // NULL is fine
 
+/** Puts the light away into a temporary file, for large pages: it takes more than a frame does, and
+ * is only read when one is finished. The tooth stays. */
+bool fl_paper_sheet_put_away(FlPaperSheet *sheet, GError **error);
+
 /** The first frame that has the same part of the sheet. */
 int fl_paper_sheet_since(const FlPaperSheet *sheet, int frame);
 
@@ -57,16 +63,18 @@ void fl_paper_sheet_origin(const FlPaperSheet *sheet, int frame, int *x, int *y)
 /**
  * Lays a frame's straight sRGBA, one of the two, on the sheet: colours are multiplied by its light,
  * in sRGB levels, alpha stays.
+ *
+ * Returns: false with FL_ERROR_INPUT or FL_ERROR_NO_MEMORY set, if the light was put away.
  */
-void fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int height,
-                          uint8_t *rgba, uint16_t *rgba16);
+bool fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int height,
+                          uint8_t *rgba, uint16_t *rgba16, GError **error);
 
 /**
  * The light of a frame's sheet as an opaque picture to multiply by: level 240 stands for one, since
  * the light is above and below it. rgba: width * height * 4.
  */
-void fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
-                            uint8_t *rgba);
+bool fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
+                            uint8_t *rgba, GError **error);
 
 /** The tooth of a frame. half: of one that is painted at half the size. sheet may be NULL. */
 FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame, bool half);

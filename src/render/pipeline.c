@@ -369,8 +369,11 @@ static bool make_sheet(Pipeline *pipeline, GError **error)
                                                                    : o->paper_relief,
                                   .seed = MAX(o->paper_seed, 1),
                                   .boil = o->paper_boil};
-    return fl_paper_sheet_make(&choice, !o->background, plan->width, plan->height, &pipeline->sheet,
-                               error);
+    if (!fl_paper_sheet_make(&choice, !o->background, plan->width, plan->height, &pipeline->sheet,
+                             error))
+        return false;
+    return !pipeline->sheet || !fl_plan_is_large(plan) ||
+           fl_paper_sheet_put_away(pipeline->sheet, error);
 }
 
 /* Checks what could stop the render, before anything is made. */

@@ -73,8 +73,8 @@ static void check_paper(const char *paper, double scale)
     memset(rgba, 200, sizeof rgba);
     if (!sheet)
         return;
-    fl_paper_sheet_light(sheet, 0, WIDTH, HEIGHT, rgba, NULL);
-    fl_paper_sheet_picture(sheet, 1, WIDTH, HEIGHT, rgba);
+    g_assert_true(fl_paper_sheet_light(sheet, 0, WIDTH, HEIGHT, rgba, NULL, NULL));
+    g_assert_true(fl_paper_sheet_picture(sheet, 1, WIDTH, HEIGHT, rgba, NULL));
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
