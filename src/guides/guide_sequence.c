@@ -41,7 +41,8 @@ static bool make_minus_extents(FlGuideSequence *sequence, GError **error)
     if (!extent)
         return false;
     g_autofree uint8_t *shape = fl_alloc(2 * n, 1, "coverages and angles", error);
-    g_autofree int32_t *flow = shape ? fl_alloc(2 * n, sizeof *flow, "a flow", error) : NULL;
+    g_autofree int32_t *flow =
+        shape ? fl_alloc_scratch(2 * n, sizeof *flow, "a flow", error) : NULL;
     g_autofree int32_t *norm = flow ? fl_alloc(n, sizeof *norm, "an extent", error) : NULL;
     if (!norm)
         return false;
@@ -80,16 +81,18 @@ void fl_guide_sequence_free(FlGuideSequence *sequence)
     g_free(sequence);
 }
 
-/** Puts a cropped plane of integers of 1 / one px into one of the whole frame; channels: 1 or 2. */
+/** Puts a cropped plane of integers of 1 / one px into one of the whole frame, which is all 0 and,
+ * in rows of zeros, is not written to; channels: 1 or 2. */
 static void place_fixed(const FlRect *box, const int32_t *crop, int channels, int one, int width,
                         float *plane)
 {
     const float scale = 1.0f / (float)one;
     const size_t n = (size_t)box->width * channels;
-    for (int y = 0; y < box->height; y++) {
+    for (int y = 0; y < box->height; y++, crop += n) {
         float *row = plane + ((box->y + y) * (size_t)width + box->x) * channels;
-        for (size_t k = 0; k < n; k++)
-            row[k] = (float)*crop++ * scale;
+        const bool blank = fl_is_blank((const uint8_t *)crop, n * sizeof *crop);
+        for (size_t k = 0; k < n && !blank; k++)
+            row[k] = (float)crop[k] * scale;
     }
 }
 
@@ -107,21 +110,38 @@ static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane p
     return true;
 }
 
-/** What the drawing does; beside its box nothing is known of it. */
-static bool get_motion(const FlGuideSequence *sequence, int frame, int32_t *scratch,
-                       FlGuides *guides, GError **error)
+/** A plane of zeros; where it has not been written to, it goes on taking no memory. */
+static void clear_plane(void *plane, size_t bytes)
+{
+    if (!fl_is_blank(plane, bytes))
+        memset(plane, 0, bytes);
+}
+
+/** Whether a motion is known anywhere in a shape of so many coverages. */
+static bool any_known(const int32_t *motion, const uint8_t *coverage, size_t n)
+{
+    bool known = false;
+    for (size_t p = 0; p < n && !known; p++)
+        known = coverage[p] >= FL_INSIDE && motion[2 * p] != FL_MOTION_UNKNOWN;
+    return known;
+}
+
+/** What the drawing does; beside its shape nothing is known of it. */
+static bool get_motion(const FlGuideSequence *sequence, int frame, const uint8_t *coverage,
+                       int32_t *scratch, FlGuides *guides, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
     const FlRect whole = {0, 0, guides->width, guides->height};
     if (!sequence->source.motion)
         return true;
-    if (record->holder[FL_GUIDE_PLANE_MOTION] < 0)
-        memset(scratch, 0, 2 * fl_rect_pixels(record->box) * sizeof *scratch);
-    else if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, scratch, error))
-        return false;
-    for (size_t k = 0; k < 2 * fl_rect_pixels(whole); k++)
-        guides->motion[k] = FL_MOTION_UNKNOWN;
-    fl_rect_copy(scratch, record->box, guides->motion, whole, 2 * sizeof *scratch);
+    clear_plane(guides->motion, 2 * fl_rect_pixels(whole) * sizeof *guides->motion);
+    if (record->holder[FL_GUIDE_PLANE_MOTION] >= 0) {
+        if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, scratch, error))
+            return false;
+        if (!any_known(scratch, coverage, fl_rect_pixels(record->box)))
+            return true;
+        fl_rect_copy(scratch, record->box, guides->motion, whole, 2 * sizeof *scratch);
+    }
     guides->has_motion = fl_motion_confine(guides);
     if (guides->has_motion)
         fl_motion_turns(guides);
@@ -149,16 +169,16 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     const size_t n = (size_t)w * h;
     memset(guides->mask, 0, n);
     memset(guides->angle, 0, n);
-    memset(guides->flow, 0, 2 * n * sizeof *guides->flow);
-    memset(guides->ext_plus, 0, n * sizeof *guides->ext_plus);
-    memset(guides->ext_minus, 0, n * sizeof *guides->ext_minus);
+    clear_plane(guides->flow, 2 * n * sizeof *guides->flow);
+    clear_plane(guides->ext_plus, n * sizeof *guides->ext_plus);
+    clear_plane(guides->ext_minus, n * sizeof *guides->ext_minus);
     const FlFrameRecord *record = &sequence->frames[frame];
     const size_t area = fl_rect_pixels(record->box);
     guides->has_motion = false;
     if (area > 0) {
         g_autofree uint8_t *shape = fl_alloc_unset(2 * area, 1, "coverages and angles", error);
         g_autofree int32_t *scratch =
-            shape ? fl_alloc_unset(2 * area, sizeof *scratch, "a guide", error) : NULL;
+            shape ? fl_alloc_scratch(2 * area, sizeof *scratch, "a guide", error) : NULL;
         if (!scratch || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
             !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, scratch, guides->flow, error) ||
             !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, scratch, guides->ext_plus, error) ||
@@ -166,7 +186,7 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
             return false;
         fl_rect_copy(shape, record->box, guides->mask, (FlRect){0, 0, w, h}, 1);
         fl_rect_copy(shape + area, record->box, guides->angle, (FlRect){0, 0, w, h}, 1);
-        if (!get_motion(sequence, frame, scratch, guides, error))
+        if (!get_motion(sequence, frame, shape, scratch, guides, error))
             return false;
     }
     return true;
@@ -234,7 +254,6 @@ bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
 
 void fl_guides_drop_motion(FlGuides *guides)
 {
-    g_clear_pointer(&guides->distance, g_free);
     g_clear_pointer(&guides->flow, g_free);
     g_clear_pointer(&guides->motion, g_free);
     g_clear_pointer(&guides->turn, g_free);
