@@ -36,12 +36,10 @@ static void set_up(Case *c, bool rotate)
     const FlGuideSource source = {TARGET_SIDE, TARGET_SIDE, 3, small_moving_disc, NULL, NULL};
     g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, &error);
     g_auto(FlGuides) now = {0};
-    g_autofree float *shape = g_new(float, TARGET_SIDE *TARGET_SIDE);
     const FlRect all = {0, 0, TARGET_SIDE, TARGET_SIDE};
     g_assert_true(guides && fl_guides_init(&now, TARGET_SIDE, TARGET_SIDE, &error) &&
                   fl_guide_sequence_get(guides, 1, &now, &error) &&
-                  fl_shape_guide(&now, c->params, c->exemplar->border_px, shape, &error) &&
-                  fl_target_init(&c->target, &now, shape, all, 1, c->exemplar, &error));
+                  fl_target_init(&c->target, &now, c->params, all, 1, c->exemplar, &error));
     fl_cost_scale_init(&c->scale, c->params);
     fl_kernels_init(&c->kernels, fl_cpu_flags());
     g_assert_true(fl_nnf_init(&c->nnf, TARGET_SIDE, TARGET_SIDE, &error) &&

@@ -212,11 +212,9 @@ static bool make_target(FlTarget *target, const FlExemplar *exemplar, const FlPa
     const FlGuideSource source = {SIDE, SIDE, 4, disc, NULL, NULL};
     g_autoptr(FlGuideSequence) guides = fl_guide_sequence_new(&source, &how, error);
     g_auto(FlGuides) now = {0};
-    g_autofree float *shape = g_new(float, SIDE *SIDE);
     return guides && fl_guides_init(&now, SIDE, SIDE, error) &&
            fl_guide_sequence_get(guides, 1, &now, error) &&
-           fl_shape_guide(&now, params, exemplar->border_px, shape, error) &&
-           fl_target_init(target, &now, shape, (FlRect){0, 0, SIDE, SIDE}, 1, exemplar, error);
+           fl_target_init(target, &now, params, (FlRect){0, 0, SIDE, SIDE}, 1, exemplar, error);
 }
 
 static void randomise(FlNnf *nnf, const FlSearch *search)

@@ -56,6 +56,12 @@ bool fl_painted_open(FlPaintedRegion *painted, GError **error)
     return painted->painted != NULL;
 }
 
+bool fl_painted_renew(FlPaintedRegion *painted, GError **error)
+{
+    g_clear_pointer(&painted->packed, g_bytes_unref);
+    return fl_painted_open(painted, error);
+}
+
 bool fl_painted_look(const FlPaintedRegion *painted, FlPaintedLook *look, GError **error)
 {
     *look = (FlPaintedLook){.region = *painted};

@@ -61,6 +61,9 @@ bool fl_painted_pack(FlPaintedRegion *painted, GError **error);
  * for rect and reach_px as they are. FL_ERROR_NO_MEMORY. */
 bool fl_painted_open(FlPaintedRegion *painted, GError **error);
 
+/** The same for whoever writes all of it: what was there before may be gone. */
+bool fl_painted_renew(FlPaintedRegion *painted, GError **error);
+
 /** A region to read from, whether its picture is packed or not. */
 typedef struct FlPaintedLook {
     FlPaintedRegion region; // whose picture is open

@@ -99,7 +99,7 @@ bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *f
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error);
 void fl_guides_clear(FlGuides *guides);
 
-/** Frees the planes that no target is made from: distance, flow and the drawing's motion. */
+/** Frees the flow and the drawing's motion, from which no target is made. */
 void fl_guides_drop_motion(FlGuides *guides);
 
 /**

@@ -145,7 +145,7 @@ static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
     struct libdeflate_compressor *compressor =
         libdeflate_alloc_compressor(picture->fast ? LEVEL_FAST : LEVEL_FINAL);
     const size_t room = compressor ? libdeflate_zlib_compress_bound(compressor, n) : 0;
-    uint8_t *stream = rows && compressor ? fl_alloc(room, 1, "a PNG picture", error) : NULL;
+    uint8_t *stream = rows && compressor ? fl_alloc_scratch(room, 1, "a PNG picture", error) : NULL;
     *bytes = stream ? libdeflate_zlib_compress(compressor, rows, n, stream, room) : 0;
     if (compressor)
         libdeflate_free_compressor(compressor);

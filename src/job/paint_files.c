@@ -85,7 +85,7 @@ bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)
                     rect.width, rect.height);
         return false;
     }
-    if (!fl_painted_open(painted, error))
+    if (!fl_painted_renew(painted, error))
         return false;
     const int left = whole ? rect.x : 0, top = whole ? rect.y : 0;
     for (int y = 0; y < rect.height; y++)

@@ -335,7 +335,7 @@ static bool run_engine(FlPainter *painter, bool guided, FlGuides *guides, GError
         return false;
     if (!guided && engine->rest(painter->paint))
         return keep_picture(painter, error);
-    if ((!guided && !make_guides(painter, guides, error)) || !fl_painted_open(result, error))
+    if ((!guided && !make_guides(painter, guides, error)) || !fl_painted_renew(result, error))
         return false;
     const FlEnginePaint paint = {result->painted, result->alpha, &result->stats,
                                  painter->wants_view ? &result->view : NULL};

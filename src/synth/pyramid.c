@@ -39,7 +39,8 @@ void fl_pyramid_fill(FlPyramid *pyramid, const FlGuides *guides, const float *sh
             const size_t from = (size_t)(rect.y + y) * guides->width + rect.x + x;
             const int16_t *turn = fl_turns[guides->angle[from]];
             const bool inside = guides->mask[from] >= FL_INSIDE;
-            pyramid->plane[FL_PLANE_SHAPE][to] = shape[from];
+            if (shape)
+                pyramid->plane[FL_PLANE_SHAPE][to] = shape[from];
             pyramid->plane[FL_PLANE_EXT_PLUS][to] = guides->ext_plus[from];
             pyramid->plane[FL_PLANE_EXT_MINUS][to] = guides->ext_minus[from];
             pyramid->plane[FL_PLANE_DISTANCE][to] = guides->depth[from];

@@ -34,7 +34,9 @@ void fl_pyramid_clear(FlPyramid *pyramid);
 /** Borrows `height` rows of a pyramid from row y on. */
 FlPyramid fl_pyramid_rows(const FlPyramid *pyramid, int y, int height);
 
-/** Copies the rectangle's guides; `shape` is as large as the guides. */
+/** Copies the rectangle's guides; `shape` is as large as the guides, NULL: its plane stays as it
+ * is.
+ */
 void fl_pyramid_fill(FlPyramid *pyramid, const FlGuides *guides, const float *shape, FlRect rect);
 
 /** Averages 2x2 pixels; extents and directions count where they lie in the mask. */

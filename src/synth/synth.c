@@ -225,16 +225,18 @@ static FlSearchCounts timed_search(FlSynth *synth, FlSearch *search, int sweeps,
     return counts;
 }
 
-/* The field to start a level with: from the coarser level, from the previous frame, or random. */
+/* The field to start a level with: from the coarser level, which then may go, from the previous
+ * frame, or random. */
 static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l,
                        const FlNnf *previous)
 {
     const FlParams *params = synth->params;
     const bool coarsest = l == synth->n_levels - 1;
     const uint64_t key = fl_key(search->key, 1);
-    if (!coarsest)
+    if (!coarsest) {
         fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->kernels, search->nnf);
-    else if (previous && previous->match)
+        fl_nnf_clear(&synth->nnf[l + 1]);
+    } else if (previous && previous->match)
         memcpy(search->nnf->match, previous->match,
                (size_t)previous->width * previous->height * sizeof *previous->match);
     fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);
@@ -297,7 +299,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     const FlParams *params = synth->params;
     FlTargetLevel *target = &synth->target.level[l];
     const size_t pixels = (size_t)target->width * target->height;
-    g_autofree uint32_t *cost = fl_alloc(pixels, sizeof *cost, "a field", error);
+    g_autofree uint32_t *cost = fl_alloc_scratch(pixels, sizeof *cost, "a field", error);
     g_auto(FlOccurrence) map = {0};
     g_auto(FlNnf) down = {0};
     const FlNnf *previous;
@@ -317,8 +319,6 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .map = &map,
                        .key = fl_key(fl_key(synth->key, (uint64_t)synth->last.frame), (uint64_t)l)};
     initialise(synth, &search, target, l, previous);
-    if (l + 1 < synth->n_levels) // its field is in this one now
-        fl_nnf_clear(&synth->nnf[l + 1]);
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
@@ -375,15 +375,15 @@ static void clear_colours(FlSynth *synth)
 static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **error)
 {
     const size_t pixels = (size_t)synth->width * synth->height;
-    g_autofree float *shape = fl_alloc(pixels, sizeof(float), "a guide", error);
-    if (!shape || !(synth->last.mask = fl_alloc(pixels, 1, "a mask", error)) ||
-        !fl_shape_guide(guides, synth->params, synth->exemplar->border_px, shape, error))
+    if (!(synth->last.mask = fl_alloc(pixels, 1, "a mask", error)))
         return false;
     fl_rest_shape(guides, synth->last.mask);
     if (guides->disposable)
         fl_guides_drop_motion(guides);
-    if (!fl_target_init(&synth->target, guides, shape, rect, synth->n_levels, synth->exemplar,
-                        error))
+    if (guides->disposable && fl_knows_depth(synth->params))
+        g_clear_pointer(&guides->distance, g_free);
+    if (!fl_target_init(&synth->target, guides, synth->params, rect, synth->n_levels,
+                        synth->exemplar, error))
         return false;
     if (guides->disposable)
         fl_guides_clear(guides);
@@ -417,6 +417,7 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlNnf *shifte
     stats->seconds_target = lap(&time);
     if (continues && !make_temporal(synth, shifted, error))
         return false;
+    fl_target_drop_distances(&synth->target);
     stats->seconds_temporal += lap(&time);
     return true;
 }
@@ -510,6 +511,7 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
     if (!prepare(synth, guides, rect, &shifted, stats, error) ||
         !run_levels(synth, &shifted, stats, error))
         return false;
+    fill_paper(synth, rgb); // not before: until it is written to, it takes no memory
     write_rgb(synth, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
     const bool has_temporal = synth->last.valid && finest_searched(synth) == 0;
@@ -548,14 +550,10 @@ static bool part(FlSynth *synth, FlGuides *guides, FlRect *rect, uint8_t **mask,
 /* For a view: the target of all parts. Those at rest have no T_temp. */
 static bool show_all(FlSynth *synth, const FlGuides *guides, FlRect rect, GError **error)
 {
-    const size_t pixels = (size_t)synth->width * synth->height;
-    g_autofree float *shape = fl_alloc(pixels, sizeof(float), "a guide", error);
     g_auto(FlTarget) moving = synth->target;
     synth->target = (FlTarget){0};
-    if (!shape ||
-        !fl_shape_guide(guides, synth->params, synth->exemplar->border_px, shape, error) ||
-        !fl_target_init(&synth->target, guides, shape, rect, synth->n_levels, synth->exemplar,
-                        error))
+    if (!fl_target_init(&synth->target, guides, synth->params, rect, synth->n_levels,
+                        synth->exemplar, error))
         return false;
     const FlTargetLevel *from = &moving.level[0], *to = &synth->target.level[0];
     fl_rect_copy(from->temporal, moving.rect, to->temporal, rect, 3 * sizeof *to->temporal);
@@ -587,8 +585,8 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     clear_frame(synth);
     forget_packed(synth);
     synth->moves = guides->has_motion;
-    fill_paper(synth, rgb);
     if (!working_rect(synth, guides, &all)) {
+        fill_paper(synth, rgb);
         synth->last.valid = false;
         return true;
     }

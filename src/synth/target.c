@@ -108,10 +108,26 @@ static void count_segments(FlTargetLevel *level)
 
 #define STRIP_ROWS 128 // even
 
+/* What a target is made from. */
+typedef struct Source {
+    const FlGuides *guides;
+    const FlParams *params;
+    const FlExemplar *exemplar;
+    float *shape; // of the frame; NULL: it follows from the depth, pixel by pixel
+} Source;
+
+static void fill_strip(FlPyramid *strip, const Source *source, FlRect rect)
+{
+    const float border = source->exemplar->border_px;
+    fl_pyramid_fill(strip, source->guides, source->shape, rect);
+    if (!source->shape)
+        fl_shape_edge(strip->plane[FL_PLANE_DISTANCE], strip->width, strip->height, border,
+                      source->params->shape_edge * border, strip->plane[FL_PLANE_SHAPE]);
+}
+
 /* Level 0, and the planes of level 1 if there is one; those of level 0, which would take more than
  * anything else of a target, are made strip by strip. */
-static bool fill_finest(FlTarget *target, const FlGuides *guides, const float *shape,
-                        const FlExemplar *exemplar, FlPyramid *coarse, GError **error)
+static bool fill_finest(FlTarget *target, const Source *source, FlPyramid *coarse, GError **error)
 {
     const FlRect rect = target->rect;
     g_auto(FlPyramid) strip = {0};
@@ -119,9 +135,8 @@ static bool fill_finest(FlTarget *target, const FlGuides *guides, const float *s
         return false;
     for (int y = 0; y < rect.height; y += STRIP_ROWS) {
         strip.height = MIN(rect.height - y, STRIP_ROWS);
-        fl_pyramid_fill(&strip, guides, shape,
-                        (FlRect){rect.x, rect.y + y, rect.width, strip.height});
-        fill_rows(&target->level[0], y, &strip, exemplar);
+        fill_strip(&strip, source, (FlRect){rect.x, rect.y + y, rect.width, strip.height});
+        fill_rows(&target->level[0], y, &strip, source->exemplar);
         if (coarse->height > 0) {
             FlPyramid rows = fl_pyramid_rows(coarse, y / 2, (strip.height + 1) / 2);
             fl_pyramid_halve(&strip, &rows);
@@ -130,8 +145,7 @@ static bool fill_finest(FlTarget *target, const FlGuides *guides, const float *s
     return true;
 }
 
-static bool fill_levels(FlTarget *target, const FlGuides *guides, const float *shape,
-                        const FlExemplar *exemplar, GError **error)
+static bool fill_levels(FlTarget *target, const Source *source, GError **error)
 {
     g_auto(FlPyramid) fine = {0};
     for (int l = 0; l < target->n_levels; l++) {
@@ -141,10 +155,10 @@ static bool fill_levels(FlTarget *target, const FlGuides *guides, const float *s
             !fl_pyramid_init(&coarse, (level->width + 1) / 2, (level->height + 1) / 2, FL_PLANE_R,
                              error))
             return false;
-        if (l == 0 && !fill_finest(target, guides, shape, exemplar, &coarse, error))
+        if (l == 0 && !fill_finest(target, source, &coarse, error))
             return false;
         if (l > 0) {
-            fill_rows(level, 0, &fine, exemplar);
+            fill_rows(level, 0, &fine, source->exemplar);
             if (coarse.height > 0)
                 fl_pyramid_halve(&fine, &coarse);
         }
@@ -154,15 +168,30 @@ static bool fill_levels(FlTarget *target, const FlGuides *guides, const float *s
     return true;
 }
 
-bool fl_target_init(FlTarget *target, const FlGuides *guides, const float *shape, FlRect rect,
+/* Shapes that are blurred need the whole frame, and are given as the thesis' ramp is. */
+static bool fill_from_guides(FlTarget *target, Source *source, GError **error)
+{
+    const size_t pixels = (size_t)source->guides->width * source->guides->height;
+    g_autofree float *shape = NULL;
+    if (!fl_knows_depth(source->params)) {
+        shape = source->shape = fl_alloc(pixels, sizeof(float), "a guide", error);
+        if (!shape || !fl_shape_guide(source->guides, source->params, source->exemplar->border_px,
+                                      shape, error))
+            return false;
+    }
+    return fill_levels(target, source, error);
+}
+
+bool fl_target_init(FlTarget *target, const FlGuides *guides, const FlParams *params, FlRect rect,
                     int n_levels, const FlExemplar *exemplar, GError **error)
 {
+    Source source = {guides, params, exemplar, NULL};
     *target = (FlTarget){.rect = rect, .n_levels = n_levels};
     int width = rect.width, height = rect.height;
     for (int l = 0; l < n_levels; l++, width = (width + 1) / 2, height = (height + 1) / 2)
         if (!level_init(&target->level[l], width, height, error))
             return false;
-    if (!fill_levels(target, guides, shape, exemplar, error))
+    if (!fill_from_guides(target, &source, error))
         return false;
     for (int l = 0; l < n_levels; l++) {
         count_segments(&target->level[l]);
@@ -191,6 +220,12 @@ void fl_target_clear(FlTarget *target)
     for (int l = 0; l < target->n_levels; l++)
         fl_target_level_clear(&target->level[l]);
     *target = (FlTarget){0};
+}
+
+void fl_target_drop_distances(FlTarget *target)
+{
+    for (int l = 0; l < target->n_levels; l++)
+        g_clear_pointer(&target->level[l].distance, free);
 }
 
 /* Pixels without T_temp do not count in the colour; they do in the weight. */

@@ -47,13 +47,16 @@ typedef struct FlTarget {
 void fl_cost_scale_init(FlCostScale *scale, const FlParams *params);
 
 /**
- * Builds the levels of the rectangle from a frame's guides; `shape` is the whole frame's.
- * Colours and temporal guide are left empty.
+ * Builds the levels of the rectangle from a frame's guides, of which the distance may be missing if
+ * fl_knows_depth(). Colours and temporal guide are left empty.
  */
-bool fl_target_init(FlTarget *target, const FlGuides *guides, const float *shape, FlRect rect,
+bool fl_target_init(FlTarget *target, const FlGuides *guides, const FlParams *params, FlRect rect,
                     int n_levels, const FlExemplar *exemplar, GError **error);
 void fl_target_clear(FlTarget *target);
 void fl_target_level_clear(FlTargetLevel *level);
+
+/** Frees the distances, which T_temp alone is made with. */
+void fl_target_drop_distances(FlTarget *target);
 
 /** Averages T_temp and m of a level (set by the caller) down to the coarser ones. */
 void fl_target_temporal_pyramid(FlTarget *target, int from);
