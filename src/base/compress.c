@@ -6,10 +6,7 @@
 
 #include <lz4frame.h>
 
-static const LZ4F_preferences_t preferences = {
-    .frameInfo = {.contentChecksumFlag = LZ4F_contentChecksumEnabled},
-    .autoFlush = 1,
-};
+static const LZ4F_preferences_t preferences = {.autoFlush = 1};
 
 size_t fl_compress_bound(const FlSpan *parts, int n)
 {
