@@ -293,6 +293,14 @@ static void settle(FlSearch *search, int level)
     search->near_px = level > 0 ? NEAR_PX << level : 0;
 }
 
+/* Paper where no patch votes. The planes take memory from here on: of the finest level, which are
+ * the largest, once the coarser levels have gone. */
+static void clear_colours(const FlSynth *synth, FlTargetLevel *level)
+{
+    for (size_t p = 0; p < 3 * (size_t)level->width * level->height; p++)
+        level->colour[p] = synth->exemplar->paper[p % 3] / 255.0f;
+}
+
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
                       GError **error)
 {
@@ -318,6 +326,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .carried = synth->moves ? previous : NULL,
                        .map = &map,
                        .key = fl_key(fl_key(synth->key, (uint64_t)synth->last.frame), (uint64_t)l)};
+    clear_colours(synth, target);
     initialise(synth, &search, target, l, previous);
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
@@ -359,16 +368,6 @@ static void fill_paper(const FlSynth *synth, uint8_t *rgb)
 {
     for (size_t p = 0; p < (size_t)synth->width * synth->height; p++)
         memcpy(rgb + 3 * p, synth->exemplar->paper, 3);
-}
-
-/* Paper where no patch votes. */
-static void clear_colours(FlSynth *synth)
-{
-    for (int l = 0; l < synth->target.n_levels; l++) {
-        FlTargetLevel *level = &synth->target.level[l];
-        for (size_t p = 0; p < 3 * (size_t)level->width * level->height; p++)
-            level->colour[p] = synth->exemplar->paper[p % 3] / 255.0f;
-    }
 }
 
 /* The target, and what the next frame needs of the guides, which then may go. */
@@ -413,7 +412,6 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlNnf *shifte
     stats->seconds_temporal = lap(&time);
     if (!take_guides(synth, guides, rect, error))
         return false;
-    clear_colours(synth);
     stats->seconds_target = lap(&time);
     if (continues && !make_temporal(synth, shifted, error))
         return false;
