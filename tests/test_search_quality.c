@@ -155,17 +155,20 @@ static void a_search_with_rotation_is_as_good_as_the_best_field_of_two_rotations
     tear_down(&c);
 }
 
-/* The counts and the energy of two sweeps on a field that has been searched before. */
-static FlSearchCounts counts_of_two_sweeps(float settled, double *energy)
+/* The counts and the energy of some sweeps on a field that has been searched before. */
+static FlSearchCounts counts_of_sweeps(int sweeps, float settled, bool remembers, double *energy)
 {
     Case c;
+    g_autofree uint8_t *changed = NULL;
     set_up(&c, true);
     searched(&c, 0, 4);
     fl_vote(&c.nnf, c.search.level, c.search.kernels, c.params->vote_sharpness, 3,
             c.target.level[0].colour, NULL);
     searched(&c, 1, 0);
     c.search.settled = (uint32_t)(settled * fl_mean_cost(&c.search));
-    const FlSearchCounts counts = fl_search_run(&c.search, 2);
+    if (remembers)
+        c.search.changed = changed = g_malloc((size_t)c.nnf.width * c.nnf.height);
+    const FlSearchCounts counts = fl_search_run(&c.search, sweeps);
     *energy = fl_mean_cost(&c.search);
     tear_down(&c);
     return counts;
@@ -174,12 +177,24 @@ static FlSearchCounts counts_of_two_sweeps(float settled, double *energy)
 static void matches_that_have_settled_take_few_tries_and_lose_little(void)
 {
     double all, few;
-    const FlSearchCounts of_all = counts_of_two_sweeps(0, &all),
-                         of_few = counts_of_two_sweeps(1.5F, &few);
+    const FlSearchCounts of_all = counts_of_sweeps(2, 0, false, &all),
+                         of_few = counts_of_sweeps(2, 1.5F, false, &few);
     g_test_message("energy %.0f and %.0f, tries %" PRIu64 " and %" PRIu64, all, few, of_all.drawn,
                    of_few.drawn);
     g_assert_cmpuint(of_few.drawn, <, of_all.drawn / 2);
     g_assert_cmpfloat(few, <, 1.15 * all);
+}
+
+/* Settled, so that all tries are neighbours'. */
+static void neighbours_that_have_not_changed_are_not_tried_again(void)
+{
+    double all, new;
+    const FlSearchCounts of_all = counts_of_sweeps(6, 1e6F, false, &all),
+                         of_new = counts_of_sweeps(6, 1e6F, true, &new);
+    g_test_message("energy %.1f and %.1f, tries %" PRIu64 " and %" PRIu64, all, new, of_all.tried,
+                   of_new.tried);
+    g_assert_cmpuint(of_new.tried, <, of_all.tried / 2);
+    g_assert_cmpfloat(new, <, 1.01 * all);
 }
 
 /* Whether the map is what a count of the field from nothing gives. */
@@ -251,6 +266,8 @@ int main(int argc, char **argv)
                     a_search_with_rotation_is_as_good_as_the_best_field_of_two_rotations);
     g_test_add_func("/search/matches-that-have-settled-take-few-tries-and-lose-little",
                     matches_that_have_settled_take_few_tries_and_lose_little);
+    g_test_add_func("/search/neighbours-that-have-not-changed-are-not-tried-again",
+                    neighbours_that_have_not_changed_are_not_tried_again);
     g_test_add_func("/search/few-moves-and-many-leave-the-use-of-the-field",
                     few_moves_and_many_leave_the_use_of_the_field);
     g_test_add_func("/search/the-terms-add-up-to-the-energy", the_terms_add_up_to_the_energy);

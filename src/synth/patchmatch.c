@@ -72,6 +72,8 @@ static void work(Team *team)
 FlSearchCounts fl_search_run(FlSearch *search, int sweeps)
 {
     FlTileSearch tile_search;
+    if (search->changed)
+        memset(search->changed, 0, (size_t)search->nnf->width * search->nnf->height);
     fl_tile_search_init(&tile_search, search);
     Team team = {.tile_search = &tile_search, .sweeps = sweeps};
     open_step(&team, 0);

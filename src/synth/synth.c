@@ -285,12 +285,12 @@ static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats
     stats->uniformity = energy.uniformity, stats->coherence = energy.coherence;
 }
 
-/* In a frame that continues another, matches that are good as they are cost little time: random
- * tries find next to nothing for them, on the finest level least. */
-static void settle(FlSearch *search, int level)
+/* Matches that are good as they are cost little time: random tries find next to nothing for them,
+ * in a frame that continues another, where they were good before, least of all. */
+static void settle(FlSearch *search, int level, bool continues)
 {
     search->settled = (uint32_t)MIN(search->params->settled * fl_mean_cost(search), UINT32_MAX);
-    search->near_px = level > 0 ? NEAR_PX << level : 0;
+    search->near_px = !continues ? INT_MAX : level > 0 ? NEAR_PX << level : 0;
 }
 
 /* Paper where no patch votes. The planes take memory from here on: of the finest level, which are
@@ -308,10 +308,11 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     FlTargetLevel *target = &synth->target.level[l];
     const size_t pixels = (size_t)target->width * target->height;
     g_autofree uint32_t *cost = fl_alloc_scratch(pixels, sizeof *cost, "a field", error);
+    g_autofree uint8_t *changed = fl_alloc_scratch(pixels, 1, "a field", error);
     g_auto(FlOccurrence) map = {0};
     g_auto(FlNnf) down = {0};
     const FlNnf *previous;
-    if (!cost || !previous_of_level(synth, shifted, l, &down, &previous, error) ||
+    if (!cost || !changed || !previous_of_level(synth, shifted, l, &down, &previous, error) ||
         !fl_nnf_init(&synth->nnf[l], target->width, target->height, error) ||
         !fl_occurrence_init(&map, &synth->exemplar->level[l], target, params, &synth->scale, error))
         return false;
@@ -325,14 +326,14 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .cost = cost,
                        .carried = synth->moves ? previous : NULL,
                        .map = &map,
+                       .changed = params->settled > 0 ? changed : NULL,
                        .key = fl_key(fl_key(synth->key, (uint64_t)synth->last.frame), (uint64_t)l)};
     clear_colours(synth, target);
     initialise(synth, &search, target, l, previous);
     *stats = (FlLevelStats){.width = target->width, .height = target->height};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
-    if (shifted)
-        settle(&search, l);
+    settle(&search, l, shifted);
     const int from_coarsest = synth->n_levels - 1 - l;
     stats->rounds = l == 0 ? params->finest_rounds
                     : shifted

@@ -24,13 +24,17 @@ typedef struct Candidate {
     uint32_t uniformity;
 } Candidate;
 
+typedef struct Place {
+    uint16_t x, y;
+} Place;
+
 /* The search for the match of one pixel. */
 typedef struct PixelSearch {
     FlTries tries;
     const FlTileSearch *tile_search;
     const FlSearch *search;
     const FlWindows *windows; // that random tries are drawn from; NULL: none
-    int x, y;
+    int x, y, sweep;
     size_t pixel;
     FlSegment segment;
     uint8_t angle;
@@ -134,15 +138,17 @@ static const FlWindows *windows_for(const FlTileSearch *tile_search, size_t pixe
     return sweep == 0 && tile_search->near.n > 0 ? &tile_search->near : NULL;
 }
 
-static void draw(PixelSearch *ps, const FlTileSearch *tile_search, size_t pixel, int sweep)
+static void draw(PixelSearch *ps, const FlTileSearch *tile_search, Place place, int sweep)
 {
     const FlSearch *search = tile_search->search;
     const FlTexel *first = fl_exemplar_at(search->level, 0, 0, search->level->first);
+    const size_t pixel = (size_t)place.y * search->target->width + place.x;
     ps->tile_search = tile_search;
     ps->search = search;
     ps->pixel = pixel;
-    ps->x = (int)(pixel % (size_t)search->target->width);
-    ps->y = (int)(pixel / (size_t)search->target->width);
+    ps->x = place.x;
+    ps->y = place.y;
+    ps->sweep = sweep;
     ps->own = ps->best = search->nnf->match[pixel];
     ps->windows = windows_for(tile_search, pixel, sweep);
     if (!ps->windows)
@@ -289,6 +295,20 @@ static int propagate(PixelSearch *ps, const FlTargetPatch *patch)
     return tried;
 }
 
+/* Whether a neighbour has changed since the pixel was last visited; those that the sweep before
+ * visited first count once more. */
+static bool has_news(const PixelSearch *ps)
+{
+    if (!ps->search->changed || ps->sweep == 0)
+        return true;
+    const int width = ps->search->nnf->width, height = ps->search->nnf->height;
+    const uint8_t *changed = ps->search->changed + ps->pixel;
+    return (ps->x > 0 && changed[-1] >= ps->sweep) ||
+           (ps->x + 1 < width && changed[1] >= ps->sweep) ||
+           (ps->y > 0 && changed[-width] >= ps->sweep) ||
+           (ps->y + 1 < height && changed[width] >= ps->sweep);
+}
+
 /* Whether a neighbour's match continues as another one than the pixel has. */
 static bool differs_from_neighbours(PixelSearch *ps)
 {
@@ -304,9 +324,10 @@ static bool differs_from_neighbours(PixelSearch *ps)
 static bool settle(PixelSearch *ps, bool stale, FlSearchCounts *counts)
 {
     const FlSearch *search = ps->search;
+    const bool news = has_news(ps);
     FlTargetPatch patch;
     if (!ps->windows) {
-        if (!differs_from_neighbours(ps))
+        if (!news || !differs_from_neighbours(ps))
             return false;
         look_up(ps);
     } else if (stale) {
@@ -314,10 +335,12 @@ static bool settle(PixelSearch *ps, bool stale, FlSearchCounts *counts)
         ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
     }
     fl_target_gather(search->target, ps->x, ps->y, &patch);
-    counts->drawn += (uint64_t)ps->n_expected;
+    if (news)
+        counts->drawn += (uint64_t)ps->n_expected;
     if (ps->windows)
         counts->drawn += (uint64_t)ps->windows->n * (search->params->rotate ? 2 : 1);
-    counts->tried += propagate(ps, &patch);
+    if (news)
+        counts->tried += propagate(ps, &patch);
     for (int k = 0; k < ps->n_candidates; k++) {
         const Candidate *c = &ps->candidate[k];
         counts->tried += search->params->rotate
@@ -330,11 +353,13 @@ static bool settle(PixelSearch *ps, bool stale, FlSearchCounts *counts)
     fl_occurrence_move(search->map, ps->segment, ps->own, ps->best);
     search->nnf->match[ps->pixel] = ps->best;
     search->cost[ps->pixel] = ps->data;
+    if (search->changed)
+        search->changed[ps->pixel] = (uint8_t)(ps->sweep + 1);
     return true;
 }
 
 /* Lists a tile's pixels in the order of the scan. Returns their number. */
-static int list_pixels(const FlTargetLevel *target, uint32_t tile, bool backwards, size_t *pixels)
+static int list_pixels(const FlTargetLevel *target, uint32_t tile, bool backwards, Place *pixels)
 {
     const int x0 = (int)(tile % target->tile_columns) * FL_TILE;
     const int y0 = (int)(tile / target->tile_columns) * FL_TILE;
@@ -344,7 +369,7 @@ static int list_pixels(const FlTargetLevel *target, uint32_t tile, bool backward
         const int x = x0 + at % FL_TILE, y = y0 + at / FL_TILE;
         const size_t p = (size_t)y * target->width + x;
         if (x < target->width && y < target->height && target->segment[p] != FL_SEGMENT_OUTSIDE)
-            pixels[n++] = p;
+            pixels[n++] = (Place){(uint16_t)x, (uint16_t)y};
     }
     return n;
 }
@@ -353,7 +378,7 @@ void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, 
                         FlSearchCounts *counts)
 {
     const FlTargetLevel *target = tile_search->search->target;
-    size_t pixels[FL_TILES_AT_ONCE * FL_TILE * FL_TILE];
+    Place pixels[FL_TILES_AT_ONCE * FL_TILE * FL_TILE];
     PixelSearch pixel[3];
     int end = 0;
     bool changed = false; // only the pixel before can, between the stages of one
