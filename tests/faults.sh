@@ -56,39 +56,45 @@ paint file/below
 [ $? = 1 ] && says 'file' && [ ! -s out ]
 result $? 'a folder that cannot be made is one message'
 
-# after FRAME FOLDER COMMAND ARGUMENT...: paints, runs the command once the frame is there; the
-# status is the program's. Drawings are large enough that the rest takes longer than the command.
-after() {
-    local frame=$1 to=$2 command=$3
-    shift 3
-    "$program" film -s "$style" -o "$to/w_%04d.png" --progress none "$@" >out 2>err &
-    local job=$!
-    while [ ! -e "$to/w_000$frame.png" ] && kill -0 $job 2>/dev/null; do
-        sleep 0.002
-    done
-    $command 2>/dev/null
-    wait $job
+# An ffmpeg that runs what is in the file `fault` once the first frame has begun to come. A frame is
+# wider than a pipe holds, so the program waits for it, with the last drawing still to be read.
+mkdir slow
+printf '#!/bin/bash\nhead -c 1 >/dev/null\n[ ! -e fault ] || . ./fault\nexec cat >&3\n' >slow/ffmpeg
+chmod +x slow/ffmpeg
+
+# paint_film FOLDER [COMMAND]: a film with its frames beside it; the command is run during the first.
+paint_film() {
+    rm -f fault
+    if [ $# = 2 ]; then echo "$2" >fault; fi
+    PATH=$PWD/slow:$PATH timeout 120 "$program" film -s "$style" -W 200 -o "$1/w.mov" \
+        --progress none >out 2>err
 }
 
-after 1 vanished 'mv film/w_0006.svg .'
+mv whole small
+paint_film whole
+
+paint_film vanished 'mv film/w_0006.svg .'
 [ $? = 1 ] && says 'w_0006.svg' && no_litter vanished && whole_frames vanished
 result $? 'a drawing that vanishes is named; the frames before it are whole'
 mv w_0006.svg film/
-paint vanished && same vanished whole
+paint_film vanished && same vanished whole
 result $? 'and once it is back the same command completes the film'
 
 drawing w_0006.svg 56 1
 cp film/w_0006.svg kept.svg
-after 1 changed 'mv w_0006.svg film/'
+paint_film changed 'mv w_0006.svg film/'
 [ $? = 1 ] && says 'w_0006.svg: has changed since the render began' && whole_frames changed
 result $? 'a drawing that changes in between is named, and no frame of both is written'
 mv kept.svg film/w_0006.svg
-paint changed && same changed whole
+paint_film changed && same changed whole
 result $? 'and once it is as it was the same command completes the film'
 
-after 1 undone 'rm -rf undone'
+paint_film undone 'rm -rf undone'
 [ $? = 1 ] || [ -e undone/w_0006.png ] # the folder is made again where that can be
 result $? 'a folder of frames that vanishes does no more harm'
+
+rm -rf whole vanished changed undone
+mv small whole
 
 "$program" film --list-regions >&- 2>err
 [ $? = 1 ] && : >out && says 'standard output cannot be written'
