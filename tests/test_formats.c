@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #if HAVE_EXR
+#include "io/exr_chunk.h"
 #include <OpenEXR/openexr.h>
 #endif
 #if HAVE_ORA
@@ -417,6 +418,24 @@ static void an_exr_holds_linear_premultiplied_layers(void)
     exr_finish(&context);
 }
 
+static void an_exr_chunk_that_does_not_get_smaller_is_stored_as_it_is(void)
+{
+    enum { n = 999 };
+    g_auto(FlExrChunk) chunk = {0};
+    size_t n_bytes;
+    g_assert_true(fl_exr_chunk_init(&chunk, n, NULL));
+    fl_exr_chunk_blank(&chunk);
+    fl_exr_chunk_pack(&chunk, n, &n_bytes);
+    g_assert_cmpuint(n_bytes, <, n / 4);
+    g_autoptr(GRand) noise = g_rand_new_with_seed(1);
+    for (int i = 0; i < n; i++)
+        chunk.low[i] = (uint8_t)g_rand_int(noise), chunk.high[i] = (uint8_t)g_rand_int(noise);
+    const uint8_t *bytes = fl_exr_chunk_pack(&chunk, n, &n_bytes);
+    g_assert_cmpuint(n_bytes, ==, 2 * n);
+    for (int i = 0; i < n; i++)
+        g_assert_true(bytes[2 * i] == chunk.low[i] && bytes[2 * i + 1] == chunk.high[i]);
+}
+
 #endif
 
 #if HAVE_ORA
@@ -483,6 +502,8 @@ int main(int argc, char **argv)
 #if HAVE_EXR
     g_test_add_func("/formats/an-exr-holds-linear-premultiplied-layers",
                     an_exr_holds_linear_premultiplied_layers);
+    g_test_add_func("/formats/an-exr-chunk-that-does-not-get-smaller-is-stored-as-it-is",
+                    an_exr_chunk_that_does_not_get_smaller_is_stored_as_it_is);
 #endif
 #if HAVE_ORA
     g_test_add_func("/formats/an-openraster-file-has-its-layers-in-order",

@@ -1,6 +1,7 @@
 /* Layered OpenEXR files, half float. */
 #include "base/density.h"
 #include "io/atomic_file.h"
+#include "io/exr_chunk.h"
 #include "io/formats.h"
 
 #include <OpenEXR/openexr.h>
@@ -10,7 +11,7 @@
 /** A picture's place in the frame; name "" is the whole frame's own picture. */
 typedef FlSinkLayer Layer;
 
-/** An open file, and the rows that the next chunk is made of. */
+/** An open file, and the chunk that is written next. */
 typedef struct Writer {
     exr_context_t context;
     exr_result_t result; // the first failure
@@ -19,7 +20,7 @@ typedef struct Writer {
     const Layer **layer; // of each channel, in the file's order
     int *component;      // of each channel: 0..3, R G B A
     int n_channels;
-    uint16_t *rows; // n_channels * chunk_rows * width halves
+    FlExrChunk chunk;
 } Writer;
 
 static const char components[] = "RGBA";
@@ -42,22 +43,34 @@ static uint16_t half_of(float value)
     return (uint16_t)(base + kept + (rest > half || (rest == half && (kept & 1))));
 }
 
+static uint16_t halves[256][256]; // by alpha and level
+
 /** OpenEXR's convention: linear light times alpha. */
-static uint16_t component_of(const uint8_t *rgba, int component)
+static void fill_halves(void)
 {
-    const float alpha = rgba[3] / 255.0f;
-    return half_of(component == 3 ? alpha : fl_srgb_to_linear(rgba[component]) / 65535.0f * alpha);
+    static gsize made;
+    if (!g_once_init_enter(&made))
+        return;
+    for (int alpha = 0; alpha < 256; alpha++)
+        for (int level = 0; level < 256; level++)
+            halves[alpha][level] =
+                half_of(fl_srgb_to_linear((uint8_t)level) / 65535.0f * ((float)alpha / 255.0f));
+    g_once_init_leave(&made, 1);
 }
 
-static void fill_row(const Writer *writer, int channel, int y, uint16_t *row)
+/** A row of a channel at `at` of the chunk, which is blank. */
+static void fill_row(Writer *writer, int channel, int y, size_t at)
 {
     const Layer *layer = writer->layer[channel];
-    memset(row, 0, (size_t)writer->width * sizeof *row);
+    const int component = writer->component[channel];
     if (y < layer->y || y >= layer->y + layer->height)
         return;
     const uint8_t *rgba = layer->rgba + (size_t)(y - layer->y) * layer->width * 4;
-    for (int x = 0; x < layer->width; x++)
-        row[layer->x + x] = component_of(rgba + 4 * x, writer->component[channel]);
+    uint8_t *low = writer->chunk.low + at + layer->x, *high = writer->chunk.high + at + layer->x;
+    for (int x = 0; x < layer->width; x++, rgba += 4) {
+        const uint16_t half = halves[rgba[3]][component == 3 ? 255 : rgba[component]];
+        low[x] = (uint8_t)(half & 0xff), high[x] = (uint8_t)(half >> 8);
+    }
 }
 
 static int64_t write_bytes(exr_const_context_t context, void *data, const void *buffer,
@@ -133,56 +146,36 @@ static void map_channel(Writer *writer, int channel, const char *name, const Lay
             writer->layer[channel] = &frame->layers[k];
 }
 
-static void prepare_rows(Writer *writer, exr_encode_pipeline_t *pipe, const Layer *whole,
-                         const FlSinkFrame *frame)
+static bool prepare_chunk(Writer *writer, const Layer *whole, const FlSinkFrame *frame,
+                          GError **error)
 {
-    writer->n_channels = pipe->channel_count;
+    const exr_attr_chlist_t *list;
+    if (!went(writer, exr_get_channels(writer->context, 0, &list)))
+        return false;
+    writer->n_channels = list->num_channels;
     writer->layer = g_new(const Layer *, writer->n_channels);
     writer->component = g_new(int, writer->n_channels);
-    writer->rows = g_new(uint16_t, (size_t)writer->n_channels * writer->chunk_rows * writer->width);
     for (int c = 0; c < writer->n_channels; c++)
-        map_channel(writer, c, pipe->channels[c].channel_name, whole, frame);
+        map_channel(writer, c, list->entries[c].name.str, whole, frame);
+    const size_t row = (size_t)writer->n_channels * writer->width;
+    return fl_exr_chunk_init(&writer->chunk, writer->chunk_rows * row, error);
 }
 
-static void fill_chunk(Writer *writer, exr_encode_pipeline_t *pipe, int y, int rows)
+static bool put_chunk(Writer *writer, int y)
 {
-    const size_t plane = (size_t)writer->chunk_rows * writer->width;
-    for (int c = 0; c < writer->n_channels; c++) {
-        exr_coding_channel_info_t *channel = &pipe->channels[c];
-        for (int r = 0; r < rows; r++)
-            fill_row(writer, c, y + r, writer->rows + c * plane + (size_t)r * writer->width);
-        channel->encode_from_ptr = (const uint8_t *)(writer->rows + c * plane);
-        channel->user_bytes_per_element = sizeof(uint16_t);
-        channel->user_data_type = EXR_PIXEL_HALF;
-        channel->user_pixel_stride = sizeof(uint16_t);
-        channel->user_line_stride = writer->width * (int)sizeof(uint16_t);
-    }
+    const int rows = MIN(writer->chunk_rows, writer->height - y);
+    size_t at = 0, n_bytes;
+    fl_exr_chunk_blank(&writer->chunk);
+    for (int r = 0; r < rows; r++)
+        for (int c = 0; c < writer->n_channels; c++, at += (size_t)writer->width)
+            fill_row(writer, c, y + r, at);
+    const void *bytes = fl_exr_chunk_pack(&writer->chunk, at, &n_bytes);
+    return went(writer, exr_write_scanline_chunk(writer->context, 0, y, bytes, n_bytes));
 }
 
-static bool put_chunks(Writer *writer, const Layer *whole, const FlSinkFrame *frame)
+static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *frame, GError **error)
 {
-    exr_encode_pipeline_t pipe = EXR_ENCODE_PIPELINE_INITIALIZER;
-    exr_chunk_info_t info;
-    bool ok = true;
-    for (int y = 0; ok && y < writer->height; y += writer->chunk_rows) {
-        ok = went(writer, exr_write_scanline_chunk_info(writer->context, 0, y, &info)) &&
-             went(writer, y == 0 ? exr_encoding_initialize(writer->context, 0, &info, &pipe)
-                                 : exr_encoding_update(writer->context, 0, &info, &pipe));
-        if (ok && y == 0)
-            prepare_rows(writer, &pipe, whole, frame);
-        if (ok)
-            fill_chunk(writer, &pipe, y, MIN(writer->chunk_rows, writer->height - y));
-        if (ok && y == 0)
-            ok = went(writer, exr_encoding_choose_default_routines(writer->context, 0, &pipe));
-        ok = ok && went(writer, exr_encoding_run(writer->context, 0, &pipe));
-    }
-    exr_encoding_destroy(writer->context, &pipe);
-    return ok;
-}
-
-static bool put_file(Writer *writer, FlAtomicFile *file, const Layer *whole,
-                     const FlSinkFrame *frame)
-{
+    const Layer whole = {"", 0, 0, writer->width, writer->height, frame->rgba};
     exr_context_initializer_t context = EXR_DEFAULT_CONTEXT_INITIALIZER;
     context.user_data = file;
     context.write_fn = write_bytes;
@@ -190,9 +183,10 @@ static bool put_file(Writer *writer, FlAtomicFile *file, const Layer *whole,
     if (!went(writer,
               exr_start_write(&writer->context, file->path, EXR_WRITE_FILE_DIRECTLY, &context)))
         return false;
-    if (put_header(writer, whole, frame))
-        put_chunks(writer, whole, frame);
-    return went(writer, exr_finish(&writer->context));
+    bool put = put_header(writer, &whole, frame) && prepare_chunk(writer, &whole, frame, error);
+    for (int y = 0; put && y < writer->height; y += writer->chunk_rows)
+        put = put_chunk(writer, y);
+    return went(writer, exr_finish(&writer->context)) && put;
 }
 
 static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
@@ -201,17 +195,21 @@ static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     g_autofree char *path = fl_sink_file(params, frame->number, error);
     g_auto(FlAtomicFile) file = {0};
     Writer writer = {.width = params->width, .height = params->height};
-    const Layer whole = {"", 0, 0, params->width, params->height, frame->rgba};
+    GError *problem = NULL;
     if (!path || !fl_atomic_open(&file, path, params->overwrite, error))
         return false;
-    const bool put = put_file(&writer, &file, &whole, frame);
+    fill_halves();
+    const bool put = put_file(&writer, &file, frame, &problem);
     g_free(writer.layer);
     g_free(writer.component);
-    g_free(writer.rows);
+    fl_exr_chunk_clear(&writer.chunk);
     if (put)
         return fl_atomic_commit(&file, error);
-    g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
-                exr_get_default_error_message(writer.result));
+    if (problem)
+        g_propagate_prefixed_error(error, problem, "%s: ", path);
+    else
+        g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot be written: %s", path,
+                    exr_get_default_error_message(writer.result));
     return false;
 }
 
