@@ -96,11 +96,25 @@ static void pack_row16(const uint16_t *rgba, int width, int channels, uint8_t *r
             out[0] = (uint8_t)(rgba[4 * x + c] >> 8), out[1] = (uint8_t)(rgba[4 * x + c] & 0xff);
 }
 
+static bool is_blank(const FlPng *picture, int y)
+{
+    const FlRect *filled = picture->filled;
+    return filled && (y < filled->y || y >= filled->y + filled->height);
+}
+
 /** Row y as it is stored. */
 static void pack_row(const FlPng *picture, int y, uint8_t *out)
 {
     const size_t first = (size_t)y * picture->width * 4;
-    if (picture->rgba16)
+    const FlRect *filled = picture->filled;
+    if (filled)
+        memset(out, 0, picture->width * pixel_bytes(picture));
+    if (is_blank(picture, y))
+        return;
+    if (filled)
+        pack_row8(picture->rgba + (size_t)(y - filled->y) * filled->width * 4, filled->width, 4,
+                  out + (size_t)filled->x * 4);
+    else if (picture->rgba16)
         pack_row16(picture->rgba16 + first, picture->width, picture->opaque ? 3 : 4, out);
     else if (picture->opaque)
         pack_row8(picture->rgba + first, picture->width, 3, out);
@@ -123,10 +137,13 @@ static uint8_t *filter_rows(const FlPng *picture, GError **error)
 {
     const size_t pixel = pixel_bytes(picture), n = picture->width * pixel;
     g_autofree uint8_t *rows = fl_alloc(2, n, "a PNG picture", error);
-    uint8_t *out = rows ? fl_alloc((size_t)picture->height, n + 1, "a PNG picture", error) : NULL;
+    uint8_t *out =
+        rows ? fl_alloc_scratch((size_t)picture->height, n + 1, "a PNG picture", error) : NULL;
     for (int y = 0; out && y < picture->height; y++) {
         uint8_t *row = rows + (y % 2) * n, *to = out + (size_t)y * (n + 1);
         pack_row(picture, y, row);
+        if (is_blank(picture, y) && (y == 0 || is_blank(picture, y - 1)))
+            continue; // as it is, without a filter
         to[0] = picture->rgba16 ? PNG_FILTER_VALUE_NONE : PNG_FILTER_VALUE_AVG;
         if (picture->rgba16)
             memcpy(to + 1, row, n);

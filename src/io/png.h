@@ -10,6 +10,7 @@
 typedef struct FlPng {
     int width, height;       // pixels, >= 1
     const uint8_t *rgba;     // width * height * 4 straight sRGBA, 8 bits a channel
+    const FlRect *filled;    // the part that rgba is of, in whole; the rest is clear; NULL: all
     const uint16_t *rgba16;  // the same, 16 bits, native byte order
     bool opaque;             // store no alpha
     bool fast;               // deflate at level 1 instead of 4

@@ -1,6 +1,6 @@
 #include "render/frame_writer.h"
 
-#include "base/alloc.h"
+#include "base/parallel_error.h"
 #include "io/formats.h"
 #include "io/pattern.h"
 #include "io/png.h"
@@ -9,34 +9,35 @@
 #define SHEET "paper_sheet" // no region's name has such a line in it
 #define GROUND "paper_ground"
 
-static bool write_layer(const FlFrameWriter *writer, const uint8_t *rgba, const char *name,
-                        int frame, GError **error)
+/* Writes a layer in the whole frame's size, so that any program can stack them. */
+static bool write_layer(const FlFrameWriter *writer, const uint8_t *rgba, const FlRect *box,
+                        const char *name, int frame, GError **error)
 {
     const FlPlan *plan = writer->plan;
     const int number = fl_drawing_number(plan->drawing, frame);
-    const FlPng png = {.width = plan->width, .height = plan->height, .rgba = rgba};
+    const FlPng png = {.width = plan->width, .height = plan->height, .rgba = rgba, .filled = box};
     g_autofree char *path = fl_output_name(plan->options.layers, number, name, error);
     return path && (fl_resume_keeps(writer->resume, path) ||
                     fl_png_save(&png, path, fl_resume_replaces(writer->resume, frame), error));
 }
 
-/* Writes layers in the whole frame's size, so that any program can stack them. */
+/* Each file is a wait for the disk, which one thread leaves to another. */
 static bool write_layers(const FlFrameWriter *writer, const FlComposite *composite, int frame,
                          GError **error)
 {
-    const FlPlan *plan = writer->plan;
-    const int width = plan->width, height = plan->height;
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic)
     for (int k = 0; k < composite->n_layers; k++) {
         const FlLayer *layer = &composite->layers[k];
-        g_autofree uint8_t *rgba = fl_alloc(4 * (size_t)width * height, 1, "a layer", error);
-        if (!rgba)
-            return false;
-        fl_rect_copy(layer->rgba, layer->area.box, rgba, (FlRect){0, 0, width, height}, 4);
-        if (!write_layer(writer, rgba, composite->names[k], frame, error))
-            return false;
+        GError *failure = NULL;
+        if (!write_layer(writer, layer->rgba, &layer->area.box, composite->names[k], frame,
+                         &failure))
+            fl_parallel_error_keep(&first, failure);
     }
+    if (!fl_parallel_error_tell(error, first))
+        return false;
     return !composite->sheet || fl_paper_sheet_since(writer->paper, frame) != frame ||
-           write_layer(writer, composite->sheet, SHEET, frame, error);
+           write_layer(writer, composite->sheet, NULL, SHEET, frame, error);
 }
 
 bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *const *painted,
