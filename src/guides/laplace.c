@@ -45,10 +45,17 @@ typedef struct Grid {
     float low[2], high[2]; // of what is fixed
 } Grid;
 
+/** Frees the levels from the first-th on. */
+static void drop_levels(Grid *grid, int first)
+{
+    for (int l = first; l < grid->n_levels; l++)
+        free(grid->level[l].memory);
+    grid->n_levels = MIN(grid->n_levels, first);
+}
+
 static void grid_clear(Grid *grid)
 {
-    for (int l = 0; l < grid->n_levels; l++)
-        free(grid->level[l].memory);
+    drop_levels(grid, 0);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Grid, grid_clear)
@@ -346,6 +353,7 @@ bool fl_laplace_solve(const uint8_t *cell, int width, int height, int cycles, fl
     }
     for (int cycle = 0; cycle < cycles; cycle++)
         v_cycle(&grid);
+    drop_levels(&grid, 1); // the field may take memory only from here on
     for (int y = 0; y < height; y++)
         for (int k = 0; k < 4; k++)
             store_half(&grid, k / 2, k % 2, y, field + 2 * y * (size_t)width);

@@ -316,7 +316,8 @@ static bool move_with_outline(const Work *w, int i, FlRect box, GError **error)
 {
     const size_t n = fl_rect_pixels(box);
     g_autofree uint8_t *cell = fl_alloc(n, 1, "a motion", error);
-    g_autofree float *value = cell ? fl_alloc(2 * n, sizeof(float), "a motion", error) : NULL;
+    g_autofree float *value =
+        cell ? fl_alloc_scratch(2 * n, sizeof(float), "a motion", error) : NULL;
     g_autofree float *nearest = value ? fl_alloc(n, sizeof(float), "a motion", error) : NULL;
     if (!nearest)
         return false;
@@ -327,6 +328,7 @@ static bool move_with_outline(const Work *w, int i, FlRect box, GError **error)
     }
     Stamps s = {w, i + 1, stroke_of(w, i) > 0, box, cell, value, nearest};
     stamp_leaf(&s, i);
+    g_clear_pointer(&nearest, g_free); // the diffusion takes much itself
     if (!fl_laplace_solve(cell, box.width, box.height, 2, value, error))
         return false;
     for (size_t k = 0; k < n; k++)
@@ -460,6 +462,7 @@ bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionSh
     if (!work_init(&w, region, motion, error))
         return false;
     const bool all = find_trusted(&w);
+    g_clear_pointer(&w.near, g_free);
     for (guint i = 0; i < region->leaves->len; i++)
         if (w.trusted[i])
             label_leaf(&w, (int)i);

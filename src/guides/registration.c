@@ -272,7 +272,8 @@ static bool fill_part(const Work *w, int part, const Map *map, const GArray *poi
     const FlRect box = w->part_box[part];
     const size_t n = fl_rect_pixels(box);
     g_autofree uint8_t *cell = fl_alloc(n, 1, "a motion", error);
-    g_autofree float *rest = cell ? fl_alloc(2 * n, sizeof(float), "a motion", error) : NULL;
+    g_autofree float *rest =
+        cell ? fl_alloc_scratch(2 * n, sizeof(float), "a motion", error) : NULL;
     if (!rest)
         return false;
     for (size_t p = 0; p < n; p++) {
