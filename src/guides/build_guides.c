@@ -233,6 +233,17 @@ static void add_motion(const FlOutline *to, const FlOutline *from, const float *
     }
 }
 
+/** Frees the motion that the window of the next frame no longer has. */
+static void drop_motion(Builder *b, int frame)
+{
+    const int first = frame - b->flow_radius;
+    if (first < 0)
+        return;
+    Motion *slot = &b->motions[first % b->n_slots];
+    g_clear_pointer(&slot->flow, g_free);
+    slot->frame = -1;
+}
+
 /** *flow: NULL if nothing moves in the whole window, else of outline's box, to be freed. */
 static bool smooth_motion(Builder *b, int frame, const FlOutline *outline, float **flow,
                           GError **error)
@@ -303,16 +314,15 @@ static bool given_flow(Builder *b, int frame, const FlOutline *outline, float **
 static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *flow, GError **error)
 {
     const size_t n = fl_rect_pixels(outline->box);
+    if (!outline->empty && !outline->normal && !fl_outline_normals(outline, error))
+        return false;
     g_autofree uint8_t *shape = fl_alloc(2 * n, 1, "coverages and angles", error);
     if (!shape)
         return false;
     memcpy(shape, outline->coverage, n);
-    if (!outline->empty) {
-        if (!outline->normal && !fl_outline_normals(outline, error))
-            return false;
+    if (!outline->empty)
         fl_direction(outline->coverage, flow, outline->normal, n, b->sequence->params.still_px,
                      shape + n);
-    }
     b->sequence->frames[frame].holder[FL_GUIDE_PLANE_SHAPE] = frame;
     return fl_spill_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_SHAPE),
                         shape, 2 * n, error);
@@ -385,6 +395,14 @@ static bool put_unrounded(Builder *b, int frame, const FlOutline *outline, const
                               error);
 }
 
+/** Directions alone need normals, which are large: those of an outline may go, unless the next
+ * frame has it as well. */
+static void drop_normals(const Builder *b, int frame, FlOutline *outline)
+{
+    if (b->outlines[(frame + 1) % b->n_slots].outline != outline)
+        g_clear_pointer(&outline->normal, g_free);
+}
+
 static bool finish_frame(Builder *b, int frame, GError **error)
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
@@ -402,6 +420,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
         !(b->sequence->source.flow ? given_flow(b, frame, outline, &flow, error)
                                    : smooth_motion(b, frame, outline, &flow, error)))
         return false;
+    drop_motion(b, frame);
     const OutlineSlot *last = &b->outlines[(frame + b->n_slots - 1) % b->n_slots];
     const bool still = frame > 0 && last->outline == outline && !flow && !b->previous_moves;
     b->previous_moves = flow != NULL;
@@ -413,6 +432,8 @@ static bool finish_frame(Builder *b, int frame, GError **error)
                !put_unrounded(b, frame, outline, flow, error)) {
         return false;
     }
+    drop_normals(b, frame, outline);
+    g_clear_pointer(&flow, g_free); // the drawing's motion takes much itself
     return put_drawing_motion(b, frame, outline, error);
 }
 
