@@ -27,6 +27,7 @@ struct FlSynth {
     int boil;          // fl_boil_step() before the frame in hand
     bool moves;        // the drawing's motion is known in the frame in hand
     bool wants_energies;
+    bool wants_view;                     // of the frame in hand
     double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
@@ -250,25 +251,60 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     fl_search_costs(search, coarsest ? NULL : previous);
 }
 
+/* Paper where no patch votes. The plane takes memory from here on: of the finest level, which is
+ * the largest, once the coarser levels have gone. */
+static void clear_colours(const FlSynth *synth, FlTargetLevel *level)
+{
+    for (size_t p = 0; p < 3 * (size_t)level->width * level->height; p++)
+        level->colour[p] = synth->exemplar->paper[p % 3] / 255.0f;
+}
+
+/* The search reads the blend alone: colours and T_temp are not needed after the last one. */
+static void drop_blended(const FlSynth *synth, FlTargetLevel *target)
+{
+    if (synth->wants_energies || synth->wants_view)
+        return;
+    g_clear_pointer(&target->temporal, free);
+    g_clear_pointer(&target->colour, free);
+}
+
+/* Votes for the picture, or for energies. */
+static bool last_vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *target, GError **error)
+{
+    if (!target->colour) {
+        const size_t values = 3 * (size_t)target->width * target->height;
+        target->colour = fl_alloc_unset(values, sizeof *target->colour, "a target", error);
+        if (!target->colour)
+            return false;
+        clear_colours(synth, target);
+    }
+    vote(synth, search, target);
+    return true;
+}
+
 /* Search and vote in turn [F21 alg. 2]; the field comes with its costs. The next level votes anew,
  * so that the last vote is for the finest level's picture, or for energies. */
-static void optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int rounds,
-                     int sweeps, FlLevelStats *stats)
+static bool optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int rounds,
+                     int sweeps, FlLevelStats *stats, GError **error)
 {
     const bool last_counts = target == &synth->target.level[0] || synth->wants_energies;
     const uint64_t key = search->key;
     for (int round = 0; round < rounds; round++) {
+        const bool last = round + 1 == rounds;
         search->key = fl_key(key, 2 + (uint64_t)round);
+        if (last)
+            drop_blended(synth, target);
         const FlSearchCounts counts = timed_search(synth, search, sweeps, round > 0);
         stats->counts.drawn += counts.drawn;
         stats->counts.tried += counts.tried;
         stats->counts.accepted += counts.accepted;
-        if (round + 1 < rounds)
+        if (!last)
             vote_and_blend(synth, search, target);
-        else if (last_counts)
-            vote(synth, search, target);
+        else if (last_counts && !last_vote(synth, search, target, error))
+            return false;
     }
     search->key = key;
+    return true;
 }
 
 /* The energy of the field that the level ends with, and its terms. */
@@ -291,14 +327,6 @@ static void settle(FlSearch *search, int level, bool continues)
 {
     search->settled = (uint32_t)MIN(search->params->settled * fl_mean_cost(search), UINT32_MAX);
     search->near_px = !continues ? INT_MAX : level > 0 ? NEAR_PX << level : 0;
-}
-
-/* Paper where no patch votes. The planes take memory from here on: of the finest level, which are
- * the largest, once the coarser levels have gone. */
-static void clear_colours(const FlSynth *synth, FlTargetLevel *level)
-{
-    for (size_t p = 0; p < 3 * (size_t)level->width * level->height; p++)
-        level->colour[p] = synth->exemplar->paper[p % 3] / 255.0f;
 }
 
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
@@ -339,10 +367,10 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                     : shifted
                         ? fl_list_at(&params->next_iterations, from_coarsest)
                         : fl_list_at(&params->opt_iterations, from_coarsest) * params->first_rounds;
-    optimise(synth, &search, target, stats->rounds,
-             l == 0 ? params->finest_sweeps
-                    : fl_list_at(&params->patchmatch_iterations, from_coarsest),
-             stats);
+    const int sweeps =
+        l == 0 ? params->finest_sweeps : fl_list_at(&params->patchmatch_iterations, from_coarsest);
+    if (!optimise(synth, &search, target, stats->rounds, sweeps, stats, error))
+        return false;
     if (stats->rounds == 0 && l == 0) // the field has not been voted yet
         vote(synth, &search, target);
     if (synth->wants_energies)
@@ -592,6 +620,7 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     rect = all;
     const bool disposable = guides->disposable;
     guides->disposable &= !shows;
+    synth->wants_view = shows;
     if (!part(synth, guides, &rect, &mask, error) ||
         !paint_rect(synth, guides, rect, rgb, stats, error))
         return false;
