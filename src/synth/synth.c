@@ -208,10 +208,22 @@ static void vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
     synth->seconds_vote += lap(&time);
 }
 
-static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
+/* The search reads the blend alone: colours and T_temp are not needed after the last one. */
+static void drop_blended(const FlSynth *synth, FlTargetLevel *target)
+{
+    if (synth->wants_energies || synth->wants_view)
+        return;
+    g_clear_pointer(&target->temporal, free);
+    g_clear_pointer(&target->colour, free);
+}
+
+/* last: the level's last blend. */
+static void vote_and_blend(FlSynth *synth, const FlSearch *search, FlTargetLevel *target, bool last)
 {
     vote(synth, search, target);
     fl_target_blend(target, search->params, search->scale, search->params->w_texture);
+    if (last)
+        drop_blended(synth, target);
 }
 
 /* The costs of the field must be those of the target as it is, unless they are `stale`. */
@@ -228,7 +240,7 @@ static FlSearchCounts timed_search(FlSynth *synth, FlSearch *search, int sweeps,
 
 /* The field to start a level with: from the coarser level, which then may go, from the previous
  * frame, or random. */
-static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l,
+static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l, int rounds,
                        const FlNnf *previous)
 {
     const FlParams *params = synth->params;
@@ -247,7 +259,7 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     }
     if (l < finest_searched(synth))
         return;
-    vote_and_blend(synth, search, target);
+    vote_and_blend(synth, search, target, rounds == 1);
     fl_search_costs(search, coarsest ? NULL : previous);
 }
 
@@ -257,15 +269,6 @@ static void clear_colours(const FlSynth *synth, FlTargetLevel *level)
 {
     for (size_t p = 0; p < 3 * (size_t)level->width * level->height; p++)
         level->colour[p] = synth->exemplar->paper[p % 3] / 255.0f;
-}
-
-/* The search reads the blend alone: colours and T_temp are not needed after the last one. */
-static void drop_blended(const FlSynth *synth, FlTargetLevel *target)
-{
-    if (synth->wants_energies || synth->wants_view)
-        return;
-    g_clear_pointer(&target->temporal, free);
-    g_clear_pointer(&target->colour, free);
 }
 
 /* Votes for the picture, or for energies. */
@@ -292,14 +295,12 @@ static bool optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, in
     for (int round = 0; round < rounds; round++) {
         const bool last = round + 1 == rounds;
         search->key = fl_key(key, 2 + (uint64_t)round);
-        if (last)
-            drop_blended(synth, target);
         const FlSearchCounts counts = timed_search(synth, search, sweeps, round > 0);
         stats->counts.drawn += counts.drawn;
         stats->counts.tried += counts.tried;
         stats->counts.accepted += counts.accepted;
         if (!last)
-            vote_and_blend(synth, search, target);
+            vote_and_blend(synth, search, target, round + 2 == rounds);
         else if (last_counts && !last_vote(synth, search, target, error))
             return false;
     }
@@ -356,22 +357,22 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .map = &map,
                        .changed = params->settled > 0 ? changed : NULL,
                        .key = fl_key(fl_key(synth->key, (uint64_t)synth->last.frame), (uint64_t)l)};
+    const int from_coarsest = synth->n_levels - 1 - l;
+    const int rounds =
+        l == 0    ? params->finest_rounds
+        : shifted ? fl_list_at(&params->next_iterations, from_coarsest)
+                  : fl_list_at(&params->opt_iterations, from_coarsest) * params->first_rounds;
     clear_colours(synth, target);
-    initialise(synth, &search, target, l, previous);
-    *stats = (FlLevelStats){.width = target->width, .height = target->height};
+    initialise(synth, &search, target, l, rounds, previous);
+    *stats = (FlLevelStats){.width = target->width, .height = target->height, .rounds = rounds};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
     settle(&search, l, shifted);
-    const int from_coarsest = synth->n_levels - 1 - l;
-    stats->rounds = l == 0 ? params->finest_rounds
-                    : shifted
-                        ? fl_list_at(&params->next_iterations, from_coarsest)
-                        : fl_list_at(&params->opt_iterations, from_coarsest) * params->first_rounds;
     const int sweeps =
         l == 0 ? params->finest_sweeps : fl_list_at(&params->patchmatch_iterations, from_coarsest);
-    if (!optimise(synth, &search, target, stats->rounds, sweeps, stats, error))
+    if (!optimise(synth, &search, target, rounds, sweeps, stats, error))
         return false;
-    if (stats->rounds == 0 && l == 0) // the field has not been voted yet
+    if (rounds == 0 && l == 0) // the field has not been voted yet
         vote(synth, &search, target);
     if (synth->wants_energies)
         end_statistics(&search, target, stats);
