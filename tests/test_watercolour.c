@@ -1,9 +1,11 @@
 /* The paint simulation: what each stage conserves, the colours, and recipes. */
 #include "style/adapt.h"
+#include "style/write_style.h"
 #include "threads.h"
 #include "watercolour/brush.h"
 #include "watercolour/fine_sheet.h"
 #include "watercolour/kubelka_munk.h"
+#include "watercolour/simulate.h"
 #include "watercolour/stages.h"
 
 #include <fluidy/watercolour.h>
@@ -521,6 +523,29 @@ static FlStyle *load_style(const char *path)
     return style;
 }
 
+/* Of paint with an interior, whose grain says how smooth it is. */
+static void a_style_is_the_same_when_it_is_read_again(void)
+{
+    g_autofree char *made = g_build_filename(folder, "again", NULL);
+    g_autofree char *path =
+        g_build_filename(g_getenv("FLUIDY_FIXTURES"), "styles/01", "recipe.ini", NULL);
+    g_autoptr(GError) error = NULL;
+    g_autoptr(FlRecipe) recipe = fl_recipe_load(path, &error);
+    g_assert_no_error(error);
+    recipe->frames = 2; // of many
+    g_autoptr(FlStyle) painted = fl_recipe_paint(recipe, path, 1, NULL, NULL, &error);
+    g_assert_no_error(error);
+    g_assert_true(fl_style_write(painted, made, true, &error));
+    g_autoptr(FlStyle) read = load_style(made);
+    g_assert_cmpfloat(read->smoothness, >, 0);
+    g_assert_cmpfloat(read->smoothness, ==, painted->smoothness);
+    g_assert_cmpfloat(read->border_px, ==, painted->border_px);
+    g_assert_cmpfloat(read->scale, ==, painted->scale);
+    g_assert_cmpfloat(read->fps, ==, painted->fps);
+    g_assert_cmpfloat(read->granulation, ==, painted->granulation);
+    g_assert_cmpmem(read->paper, 3, painted->paper, 3);
+}
+
 /* The mean of a square of four of the first channel, and the square of its deviation. */
 static double mean_of_four(const FlStyle *style, int x, int y, double *variance)
 {
@@ -620,6 +645,8 @@ int main(int argc, char **argv)
     TEST(a_recipe_error_names_file_and_line);
     TEST(a_missing_recipe_is_named);
     TEST(a_small_style_rebuilds_byte_for_byte);
+    g_test_add_func("/watercolour/a-style-is-the-same-when-it-is-read-again",
+                    a_style_is_the_same_when_it_is_read_again);
     TEST(paint_of_four_times_the_size_is_the_same_with_finer_grain);
     TEST(paint_within_the_cells_has_the_same_bytes_on_any_thread_count);
     const int status = g_test_run();

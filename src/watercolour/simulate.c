@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/headroom.h"
 #include "base/limits.h"
+#include "style/grain.h"
 #include "style/write_style.h"
 #include "watercolour/brush.h"
 #include "watercolour/dust.h"
@@ -192,8 +193,10 @@ FlStyle *fl_recipe_paint(const FlRecipe *recipe, const char *path, int size,
     if (!within_limit(recipe, size, path, error))
         return NULL;
     g_autoptr(FlStyle) style = new_style(recipe, size, path, error);
-    return style && simulate(style, recipe, size, progress, data, error) ? g_steal_pointer(&style)
-                                                                         : NULL;
+    if (!style || !simulate(style, recipe, size, progress, data, error))
+        return NULL;
+    style->smoothness = fl_style_smoothness(style);
+    return g_steal_pointer(&style);
 }
 
 bool fl_watercolour_simulate(const char *recipe_path, const char *folder, int size, bool overwrite,
