@@ -11,7 +11,7 @@ svg() {
 }
 
 look() { # look ARGUMENT...: what the drawing x.svg is made of
-    timeout 20 "$program" --list-regions --progress none "$@" x.svg >out 2>err
+    timeout 120 "$program" --list-regions --progress none "$@" x.svg >out 2>err
 }
 
 # limited SENTENCE LIMIT MESSAGE: x.svg is too much for the limit, and not for a larger one
