@@ -10,9 +10,10 @@ svg() {
         "width='48' height='48'>$2</svg>" >"$1"
 }
 
+slowness=${ASAN_OPTIONS:+6} # as meson's timeouts are multiplied
 look() { # look ARGUMENT...: what the drawing x.svg is made of; 20 seconds of the CPU, or $cpu_seconds
-    (ulimit -t "${cpu_seconds:-20}" &&
-        timeout 120 "$program" --list-regions --progress none "$@" x.svg >out 2>err)
+    (ulimit -t $((${cpu_seconds:-20} * ${slowness:-1})) &&
+        timeout $((120 * ${slowness:-1})) "$program" --list-regions --progress none "$@" x.svg >out 2>err)
 }
 
 # limited SENTENCE LIMIT MESSAGE: x.svg is too much for the limit, and not for a larger one
@@ -207,19 +208,22 @@ large=(--flat -j 1 -W 3000 -o 'o/%d.png' -y --progress none)
 flat() { # flat ARGUMENT...: a large picture of x.svg, or of the film mixed/
     timeout 120 "$program" "${large[@]}" "$@" >out 2>err
 }
-children() { # children PID...: of these processes
-    awk -v parents=" $* " 'index(parents, " " $4 " ") { print $1 }' /proc/[0-9]*/stat 2>/dev/null | xargs
+children() { # children SECONDS PID...: of these processes, those that have had so much of the CPU
+    local least=$(($(getconf CLK_TCK) * $1))
+    shift
+    awk -v parents=" $* " -v least="$least" \
+        'index(parents, " " $4 " ") && $14 + $15 >= least { print $1 }' /proc/[0-9]*/stat 2>/dev/null | xargs
 }
-crash_one() { # crash_one ARGUMENT...: flat, and the processes that draw get a signal
+crash_one() { # crash_one ARGUMENT...: flat, and the process that draws gets a signal
     local painter drawing=''
     "$program" "${large[@]}" "$@" >out 2>err &
     painter=$!
     for _ in $(seq 300); do
-        # shellcheck disable=SC2046,SC2086 # lists; processes that read have no children
-        drawing=$(children $(children $painter)) && [ -n "$drawing" ] && break
+        # Processes that read have no children, and those that wait take no time.
+        # shellcheck disable=SC2046,SC2086 # lists
+        drawing=$(children 1 $(children 0 $painter)) && [ -n "$drawing" ] && break
         sleep 0.1
     done
-    sleep 0.3
     # shellcheck disable=SC2086
     [ -n "$drawing" ] && kill -SEGV $drawing
     wait $painter
