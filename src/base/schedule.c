@@ -1,6 +1,7 @@
 #include "base/schedule.h"
 
 #include "base/parallel_error.h"
+#include <math.h>
 #include <stdlib.h>
 #ifdef _OPENMP
 #include <omp.h>
@@ -47,34 +48,55 @@ bool fl_schedule_fits_beside(size_t pixels, size_t frame_pixels)
     return pixels * (size_t)fl_schedule_threads() <= frame_pixels;
 }
 
-bool fl_schedule_is_large(double share, double total)
+double fl_schedule_gain(void)
 {
-    return share * fl_schedule_threads() > total;
+    return 1 + 0.8 * (fl_schedule_threads() - 1); // measured: searches of the film's regions
 }
 
-/* Large ones first, then by cost; equal ones in the order of their indices. */
+/* Those that are alone first, then by cost; equal ones in the order of their indices. */
 static int by_turn(const void *a, const void *b)
 {
     const FlWorkItem *p = a, *q = b;
-    if (p->large != q->large)
-        return q->large - p->large;
+    if (p->alone != q->alone)
+        return q->alone - p->alone;
     if (p->cost != q->cost)
         return (p->cost < q->cost) - (p->cost > q->cost);
     return (p->index > q->index) - (p->index < q->index);
 }
 
+/* How many of the items, which are in the order of their turns, all threads do together. */
+static int count_together(const FlWorkItem *items, int n)
+{
+    double beside = 0, together = 0, least = INFINITY;
+    int best = 0;
+    for (int k = 0; k < n; k++)
+        beside += items[k].cost;
+    for (int k = 0; k <= n; k++) {
+        const double longest = k < n ? items[k].cost : 0;
+        const double time =
+            together / fl_schedule_gain() + MAX(beside / fl_schedule_threads(), longest);
+        if (time < least || (k > 0 && items[k - 1].alone))
+            least = time, best = k;
+        if (k < n)
+            beside -= items[k].cost, together += items[k].cost;
+    }
+    return best;
+}
+
 bool fl_schedule_run(FlWorkItem *items, int n, FlItemWork work, void *data, GError **error)
 {
-    int first_small = 0;
     qsort(items, (size_t)n, sizeof *items, by_turn);
-    for (; first_small < n && items[first_small].large; first_small++)
-        if (!work(data, items[first_small].index, 0, error))
+    const int n_together = count_together(items, n);
+    for (int k = 0; k < n; k++)
+        items[k].together = k < n_together;
+    for (int k = 0; k < n_together; k++)
+        if (!work(data, items[k].index, 0, error))
             return false;
-    if (first_small == n)
+    if (n_together == n)
         return true;
     GError *first = NULL;
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int k = first_small; k < n; k++) {
+    for (int k = n_together; k < n; k++) {
         GError *failure = NULL;
         if (!work(data, items[k].index, team_member(), &failure))
             fl_parallel_error_keep(&first, failure);

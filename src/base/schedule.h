@@ -28,25 +28,28 @@ static inline bool fl_schedule_worth_threads(size_t pixels)
  */
 bool fl_schedule_fits_beside(size_t pixels, size_t frame_pixels);
 
-/** Whether an item is larger than a thread's share of the total: all threads do it together. */
-bool fl_schedule_is_large(double share, double total);
+/** How many times as fast all threads together do what one does: they wait for each other. */
+double fl_schedule_gain(void);
 
 /** One of several pieces of work. */
 typedef struct FlWorkItem {
-    int index;   // passed to the work function
-    double cost; // in any unit: the most expensive ones begin first
-    bool large;  // uses all threads itself
+    int index;     // passed to the work function
+    double cost;   // of one thread, in any unit that all items share
+    bool alone;    // is too large to be done beside others
+    bool together; // result: all threads did it together
 } FlWorkItem;
 
 /** thread: 0 … fl_schedule_threads() - 1, no two at a time the same. */
 typedef bool (*FlItemWork)(void *data, int index, int thread, GError **error);
 
 /**
- * Does all items: large ones in turn with all threads, outside any team, since inside one, even of
- * one thread, a search would start and end its own threads at every step; then the others side by
- * side, a thread each, the most expensive first, so that none is left for the end.
+ * Does all items: those that are alone and the most expensive of the others in turn with all
+ * threads, outside any team, since inside one, even of one thread, a search would start and end its
+ * own threads at every step; then the rest side by side, a thread each, the most expensive first,
+ * so that none is left for the end. How many are done in turn is what takes least by their costs.
  *
- * Reorders the items. Returns: false with the first error; nothing follows a large item that fails.
+ * Reorders the items. Returns: false with the first error; nothing follows an item of all threads
+ * that fails.
  */
 bool fl_schedule_run(FlWorkItem *items, int n, FlItemWork work, void *data, GError **error);
 

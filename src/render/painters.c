@@ -31,17 +31,22 @@ static bool make_guides_of(void *data, int p, int thread, GError **error)
     return fl_painter_prepare(&painters->painter[p], painters->plan->options.seed, error);
 }
 
-/* The guides of a large region use all threads themselves; their scratch is as large as the
- * region. */
+/* While it is painted, a region takes 80 bytes a pixel of its rectangle, and about as many while
+ * its guides are made: side by side, regions of more pixels would take as many hundreds of
+ * megabytes as there are threads. */
+#define BESIDE_PX ((size_t)2 << 20)
+
+static FlWorkItem item_of(const FlPainters *painters, int p, double cost)
+{
+    const size_t pixels = fl_rect_pixels(painters->painter[p].result.rect);
+    return (FlWorkItem){p, cost, .alone = pixels > BESIDE_PX};
+}
+
 static bool make_guides(FlPainters *painters, GError **error)
 {
-    const FlPlan *plan = painters->plan;
-    const size_t frame = (size_t)plan->width * (size_t)plan->height;
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
-    for (int p = 0; p < painters->n; p++) {
-        const size_t pixels = fl_rect_pixels(painters->painter[p].result.rect);
-        items[p] = (FlWorkItem){p, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
-    }
+    for (int p = 0; p < painters->n; p++)
+        items[p] = item_of(painters, p, (double)fl_rect_pixels(painters->painter[p].result.rect));
     return fl_schedule_run(items, painters->n, make_guides_of, painters, error);
 }
 
@@ -145,31 +150,32 @@ static bool do_one(void *data, int p, int thread, GError **error)
     return step->work(step->data, p, step->step, &guides, error);
 }
 
-/* While it is painted, a region takes 80 bytes a pixel of its rectangle: side by side, regions of
- * more pixels would take as many hundreds of megabytes as there are threads. */
-#define BESIDE_PX (2.0 * (1 << 20))
+/* How long a thread takes, in seconds: what it took the last time, or what is usual for the area.
+ */
+static double cost_of(const FlPainter *painter)
+{
+    return painter->cost_s > 0 ? painter->cost_s : 3e-6 * painter->plan->area_px;
+}
 
-/* All threads together paint a region that is larger than a thread's share of the total area, or
- * too large to be painted beside others. Those follow, first the ones that took longest in the last
- * frame. */
+/* A region that rests costs nothing, but it does when it moves again. */
+static void note_cost(FlPainter *painter, bool together)
+{
+    if (painter->result.stats.n_levels > 0)
+        painter->cost_s = painter->result.seconds * (together ? fl_schedule_gain() : 1);
+}
+
 bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *data,
                       GError **error)
 {
-    double total = 0, most = 0;
-    for (int p = 0; p < painters->n; p++) {
-        total += painters->plan->painted[p].area_px;
-        most = MAX(most, painters->plan->painted[p].area_px);
-    }
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
-    for (int p = 0; p < painters->n; p++) {
-        const double area = painters->plan->painted[p].area_px;
-        const FlPaintedRegion *result = &painters->painter[p].result;
-        items[p] = (FlWorkItem){p, result->seconds + 1e-9 * area / MAX(most, 1),
-                                fl_schedule_is_large(area, total) ||
-                                    (double)fl_rect_pixels(result->rect) > BESIDE_PX};
-    }
+    for (int p = 0; p < painters->n; p++)
+        items[p] = item_of(painters, p, cost_of(&painters->painter[p]));
     Step all = {step, work, data};
-    return fl_schedule_run(items, painters->n, do_one, &all, error);
+    if (!fl_schedule_run(items, painters->n, do_one, &all, error))
+        return false;
+    for (int k = 0; k < painters->n; k++)
+        note_cost(&painters->painter[items[k].index], items[k].together);
+    return true;
 }
 
 bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **error)
