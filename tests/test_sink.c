@@ -69,6 +69,37 @@ static void a_png_reads_back_as_it_was_written(void)
     g_rmdir(folder);
 }
 
+/** A picture that is clear but for a part reads back so, wherever the part lies. */
+static void expect_part_back(FlRect part, const char *path)
+{
+    enum { WIDTH = 301, HEIGHT = 403 }; // clear rows of more than one of the pieces that repeat
+    g_autoptr(GError) error = NULL;
+    g_autofree uint8_t *rgba = g_malloc0(4 * (size_t)MAX(part.width * part.height, 1));
+    g_autofree uint8_t *whole = g_malloc0((size_t)4 * WIDTH * HEIGHT);
+    for (int i = 0; i < part.width * part.height; i++) {
+        const int x = part.x + i % part.width, y = part.y + i / part.width;
+        const uint8_t pixel[4] = {(uint8_t)i, (uint8_t)(i / 7), (uint8_t)(i * 37), 255};
+        memcpy(rgba + (size_t)4 * i, pixel, sizeof pixel);
+        memcpy(whole + 4 * ((size_t)y * WIDTH + x), pixel, sizeof pixel);
+    }
+    const FlPng png = {.width = WIDTH, .height = HEIGHT, .rgba = rgba, .filled = &part};
+    g_assert_true(fl_png_save(&png, path, true, &error));
+    g_autoptr(FlPicture) back = fl_picture_read_png(path, &error);
+    g_assert_no_error(error);
+    g_assert_cmpmem(back->rgba, (size_t)4 * WIDTH * HEIGHT, whole, (size_t)4 * WIDTH * HEIGHT);
+}
+
+static void a_picture_that_is_clear_but_for_a_part_reads_back_whole(void)
+{
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *path = in(&scratch, "a.png");
+    const FlRect parts[] = {{0, 0, 301, 403}, {0, 0, 301, 150}, {0, 250, 301, 153},
+                            {9, 180, 30, 20}, {300, 402, 1, 1}, {0, 0, 1, 1},
+                            {5, 5, 200, 300}, {0, 0, 0, 0}};
+    for (size_t i = 0; i < G_N_ELEMENTS(parts); i++)
+        expect_part_back(parts[i], path);
+}
+
 static void sixteen_bit_files_keep_all_bits(void)
 {
     g_autoptr(GError) error = NULL;
@@ -204,6 +235,8 @@ int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/sink/a-png-reads-back-as-it-was-written", a_png_reads_back_as_it_was_written);
+    g_test_add_func("/sink/a-picture-that-is-clear-but-for-a-part-reads-back-whole",
+                    a_picture_that_is_clear_but_for_a_part_reads_back_whole);
     g_test_add_func("/sink/sixteen-bit-files-keep-all-bits", sixteen_bit_files_keep_all_bits);
     g_test_add_func("/sink/an-existing-file-is-kept-unless-overwriting-is-allowed",
                     an_existing_file_is_kept_unless_overwriting_is_allowed);

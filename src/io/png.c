@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/file.h"
 #include "io/atomic_file.h"
+#include "io/sparse_stream.h"
 
 #include <errno.h>
 #include <libdeflate.h>
@@ -16,6 +17,8 @@
  */
 #define LEVEL_FINAL 4
 #define LEVEL_FAST 1
+#define SPARSE_FINAL 6 // zlib's
+#define SPARSE_FAST 1
 
 /** Receives libpng's message before it jumps. */
 typedef struct Trouble {
@@ -132,15 +135,21 @@ static void filter_row(const uint8_t *row, const uint8_t *above, size_t n, size_
         out[i] = (uint8_t)(row[i] - (row[i - pixel] + above[i]) / 2);
 }
 
-/** All rows, each preceded by its filter byte. */
-static uint8_t *filter_rows(const FlPng *picture, GError **error)
+/** Rows of a picture, from `first` to the one before `end`. */
+typedef struct Rows {
+    int first, end;
+} Rows;
+
+/** Rows that have something in them, each preceded by its filter byte; those around are clear. */
+static uint8_t *filter_rows(const FlPng *picture, Rows part, GError **error)
 {
     const size_t pixel = pixel_bytes(picture), n = picture->width * pixel;
     g_autofree uint8_t *rows = fl_alloc(2, n, "a PNG picture", error);
     uint8_t *out =
-        rows ? fl_alloc_scratch((size_t)picture->height, n + 1, "a PNG picture", error) : NULL;
-    for (int y = 0; out && y < picture->height; y++) {
-        uint8_t *row = rows + (y % 2) * n, *to = out + (size_t)y * (n + 1);
+        rows ? fl_alloc_scratch((size_t)(part.end - part.first), n + 1, "a PNG picture", error)
+             : NULL;
+    for (int y = part.first; out && y < part.end; y++) {
+        uint8_t *row = rows + (y % 2) * n, *to = out + (size_t)(y - part.first) * (n + 1);
         pack_row(picture, y, row);
         if (is_blank(picture, y) && (y == 0 || is_blank(picture, y - 1)))
             continue; // as it is, without a filter
@@ -153,12 +162,11 @@ static uint8_t *filter_rows(const FlPng *picture, GError **error)
     return out;
 }
 
-/** The picture's pixels as a zlib stream of *bytes; NULL, maybe with an error, if memory is short.
- */
-static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
+/** All rows as a zlib stream of *bytes; NULL, maybe with an error, if memory is short. */
+static uint8_t *compress_all(const FlPng *picture, size_t *bytes, GError **error)
 {
     const size_t n = (picture->width * pixel_bytes(picture) + 1) * (size_t)picture->height;
-    g_autofree uint8_t *rows = filter_rows(picture, error);
+    g_autofree uint8_t *rows = filter_rows(picture, (Rows){0, picture->height}, error);
     struct libdeflate_compressor *compressor =
         libdeflate_alloc_compressor(picture->fast ? LEVEL_FAST : LEVEL_FINAL);
     const size_t room = compressor ? libdeflate_zlib_compress_bound(compressor, n) : 0;
@@ -167,6 +175,34 @@ static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
     if (compressor)
         libdeflate_free_compressor(compressor);
     return stream;
+}
+
+/** The same of a picture that is clear but for some rows. */
+static uint8_t *compress_part(const FlPng *picture, Rows part, size_t *bytes, GError **error)
+{
+    const size_t row = picture->width * pixel_bytes(picture) + 1;
+    g_autofree uint8_t *rows = filter_rows(picture, part, error);
+    if (!rows)
+        return NULL;
+    g_autoptr(GByteArray) stream = g_byte_array_new();
+    const FlSparse sparse = {.before = (size_t)part.first * row,
+                             .after = (size_t)(picture->height - part.end) * row,
+                             .middle = rows,
+                             .n = (size_t)(part.end - part.first) * row};
+    if (!fl_sparse_compress(&sparse, picture->fast ? SPARSE_FAST : SPARSE_FINAL, stream))
+        return NULL;
+    return g_byte_array_steal(stream, bytes);
+}
+
+/** Libdeflate is faster where most rows have something in them. */
+static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
+{
+    const FlRect *filled = picture->filled;
+    if (!filled || 2 * filled->height > picture->height)
+        return compress_all(picture, bytes, error);
+    // the row below is not clear: it is filtered by the last one
+    const Rows part = {filled->y, MIN(filled->y + filled->height + 1, picture->height)};
+    return compress_part(picture, part, bytes, error);
 }
 
 #define CHUNK_BYTES ((size_t)1 << 30) // of a file's parts, at most
