@@ -12,6 +12,7 @@
 #if HAVE_EXR
 #include "io/exr_chunk.h"
 #include <OpenEXR/openexr.h>
+#include <zlib.h>
 #endif
 #if HAVE_ORA
 #include <zip.h>
@@ -418,6 +419,37 @@ static void an_exr_holds_linear_premultiplied_layers(void)
     exr_finish(&context);
 }
 
+/** Undoes OpenEXR's predictor, and compares the bytes. */
+static void expect_chunk(const FlExrChunk *chunk, const uint8_t *stream, size_t n_bytes, size_t n)
+{
+    g_autofree uint8_t *bytes = g_malloc(2 * n);
+    uLongf size = 2 * n;
+    g_assert_cmpint(uncompress(bytes, &size, stream, n_bytes), ==, Z_OK);
+    g_assert_cmpuint(size, ==, 2 * n);
+    for (size_t i = 1; i < 2 * n; i++)
+        bytes[i] = (uint8_t)(bytes[i - 1] + bytes[i] - 128);
+    g_assert_true(memcmp(bytes, chunk->low, n) == 0);
+    g_assert_true(memcmp(bytes + n, chunk->high, n) == 0);
+}
+
+static void an_exr_chunk_of_small_layers_keeps_what_is_in_them(void)
+{
+    enum { N = 100003 };
+    g_auto(FlExrChunk) chunk = {0};
+    size_t n_bytes;
+    g_assert_true(fl_exr_chunk_init(&chunk, N, NULL));
+    for (int part = 0; part < 40; part++) { // until libdeflate compresses it
+        const size_t n = part % 2 ? N : N - 5000;
+        for (int i = 0; i < 400 * part; i++) {
+            const size_t at = ((size_t)i % 200 + (size_t)i / 200 * 1733) % N;
+            chunk.low[at] = (uint8_t)(i * 7), chunk.high[at] = (uint8_t)(60 + i % 3);
+        }
+        const uint8_t *stream = fl_exr_chunk_pack(&chunk, n, &n_bytes);
+        g_assert_cmpuint(n_bytes, <, 2 * n);
+        expect_chunk(&chunk, stream, n_bytes, n);
+    }
+}
+
 static void an_exr_chunk_that_does_not_get_smaller_is_stored_as_it_is(void)
 {
     enum { n = 999 };
@@ -504,6 +536,8 @@ int main(int argc, char **argv)
                     an_exr_holds_linear_premultiplied_layers);
     g_test_add_func("/formats/an-exr-chunk-that-does-not-get-smaller-is-stored-as-it-is",
                     an_exr_chunk_that_does_not_get_smaller_is_stored_as_it_is);
+    g_test_add_func("/formats/an-exr-chunk-of-small-layers-keeps-what-is-in-them",
+                    an_exr_chunk_of_small_layers_keeps_what_is_in_them);
 #endif
 #if HAVE_ORA
     g_test_add_func("/formats/an-openraster-file-has-its-layers-in-order",

@@ -3,6 +3,7 @@
 #define FLUIDY_IO_EXR_CHUNK_H
 
 #include <fluidy/error.h>
+#include <glib.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -15,6 +16,7 @@ typedef struct FlExrChunk {
     uint8_t *bytes; // of the chunk's own
     size_t room;
     struct libdeflate_compressor *compressor;
+    GByteArray *stream; // the last one, if the chunk was sparse
 } FlExrChunk;
 
 /**

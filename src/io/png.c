@@ -185,12 +185,14 @@ static uint8_t *compress_part(const FlPng *picture, Rows part, size_t *bytes, GE
     if (!rows)
         return NULL;
     g_autoptr(GByteArray) stream = g_byte_array_new();
-    const FlSparse sparse = {.before = (size_t)part.first * row,
-                             .after = (size_t)(picture->height - part.end) * row,
-                             .middle = rows,
-                             .n = (size_t)(part.end - part.first) * row};
-    if (!fl_sparse_compress(&sparse, picture->fast ? SPARSE_FAST : SPARSE_FINAL, stream))
+    FlSparseStream *sparse =
+        fl_sparse_stream_new(picture->fast ? SPARSE_FAST : SPARSE_FINAL, stream);
+    if (!sparse)
         return NULL;
+    fl_sparse_stream_run(sparse, 0, (size_t)part.first * row);
+    fl_sparse_stream_put(sparse, rows, (size_t)(part.end - part.first) * row);
+    fl_sparse_stream_run(sparse, 0, (size_t)(picture->height - part.end) * row);
+    fl_sparse_stream_end(sparse);
     return g_byte_array_steal(stream, bytes);
 }
 

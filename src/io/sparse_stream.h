@@ -1,23 +1,26 @@
-/* A compressed picture of which most rows are clear. */
+/* A zlib stream of bytes that are mostly long runs of one value, as in layers of a frame. */
 #ifndef FLUIDY_IO_SPARSE_STREAM_H
 #define FLUIDY_IO_SPARSE_STREAM_H
 
 #include <glib.h>
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/** Bytes of which only some in the middle are not 0. */
-typedef struct FlSparse {
-    size_t before, after;  // how many are 0 on either side
-    const uint8_t *middle; // n bytes of any value
-    size_t n;
-} FlSparse;
+/** A stream that is being written. Runs take next to no time: pieces of them are compressed once
+ * and repeated. */
+typedef struct FlSparseStream FlSparseStream;
 
-/**
- * Appends a zlib stream of the bytes, at zlib's level 1 … 9. Clear bytes take next to no time: a
- * piece of them is compressed once and repeated. Returns: false if memory is short.
- */
-bool fl_sparse_compress(const FlSparse *sparse, int level, GByteArray *stream);
+/** Begins a stream at zlib's level 1 … 9, at the end of `out`, which stays the caller's. Returns:
+ * NULL if memory is short. */
+FlSparseStream *fl_sparse_stream_new(int level, GByteArray *out);
+
+/** Adds bytes of any value. */
+void fl_sparse_stream_put(FlSparseStream *stream, const uint8_t *bytes, size_t n);
+
+/** Adds n bytes of one value. */
+void fl_sparse_stream_run(FlSparseStream *stream, uint8_t value, size_t n);
+
+/** Ends the stream, and frees it. */
+void fl_sparse_stream_end(FlSparseStream *stream);
 
 #endif
