@@ -420,14 +420,17 @@ static void make_contour(Noise *noise, FlRng *rng)
             (float)fl_rng_below(rng, 1000 * ROW) / 1000, (float)fl_rng_below(rng, 20000) / 1000,
             is_line * cosf(angle), is_line * sinf(angle), (float)fl_rng_below(rng, 700) / 1000};
     }
-    for (int k = 0; k < PIECES; k++)
+    for (int k = 0; k < PIECES; k++) {
+        noise->links[k].has_discs = false;
         for (int link = 0; link < FL_LINKS; link++) {
             const int32_t to = (int32_t)fl_rng_below(rng, PIECES);
             FlContourLinks *links = &noise->links[k];
             links->x[link] = noise->piece[to].x, links->y[link] = noise->piece[to].y;
             links->nx[link] = noise->piece[to].nx, links->ny[link] = noise->piece[to].ny;
             links->half[link] = noise->piece[to].half, links->piece[link] = to;
+            links->has_discs |= noise->piece[to].nx == 0 && noise->piece[to].ny == 0;
         }
+    }
     for (int i = 0; i < ROW + 16; i++)
         noise->nearest[i] = (int32_t)fl_rng_below(rng, PIECES);
 }

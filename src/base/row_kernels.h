@@ -52,6 +52,7 @@ enum { FL_LINKS = 8 }; // of a piece to those around it
 typedef struct FlContourLinks {
     float x[FL_LINKS], y[FL_LINKS], nx[FL_LINKS], ny[FL_LINKS], half[FL_LINKS];
     int32_t piece[FL_LINKS]; // their indices
+    bool has_discs;          // any of them is one
 } FlContourLinks;
 
 /** A contour, and for rows y - 1, y and y + 1 the index of a piece near each pixel. */

@@ -247,6 +247,7 @@ static void set_link(FlContourLinks *links, int k, const FlContourPiece *piece, 
     links->x[k] = piece->x, links->y[k] = piece->y;
     links->nx[k] = piece->nx, links->ny[k] = piece->ny;
     links->half[k] = piece->half, links->piece[k] = index;
+    links->has_discs |= piece->nx == 0 && piece->ny == 0;
 }
 
 static void link_seed(const Work *work, int32_t seed)
@@ -256,6 +257,7 @@ static void link_seed(const Work *work, int32_t seed)
     const int w = work->width, h = work->height, x = pixel % w, y = pixel / w;
     FlContourLinks *links = &work->links[seed];
     int n = 0;
+    links->has_discs = false;
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, h - 1); ny++)
         for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, w - 1); nx++) {
             const int32_t other = work->seed_at[ny * (size_t)w + nx];
