@@ -2,18 +2,25 @@
 
 #define BAND 128 // columns that are summed side by side, as they lie in memory
 
-/** Sums of a row over 2 r + 1 columns. */
-static void sum_columns(const int16_t *plane, uint32_t *out, int n, int r)
+/** The value of a column; 0 beyond the row. */
+static uint32_t value_at(const int16_t *plane, int n, int i)
 {
+    return i >= 0 && i < n ? (uint32_t)plane[i] : 0;
+}
+
+/** Sums of a row over 2 r + 1 columns; both ends of most windows are within the row. */
+static void sum_columns(const int16_t *plane, uint32_t *restrict out, int n, int r)
+{
+    const int whole = MIN(r + 1, n), end = MAX(n - r, whole);
     uint32_t sum = 0;
-    for (int i = -r; i < n; i++) {
-        if (i + r < n)
-            sum += (uint32_t)plane[i + r];
-        if (i >= 0)
-            out[i] = sum;
-        if (i - r >= 0)
-            sum -= (uint32_t)plane[i - r];
-    }
+    for (int i = 0; i < MIN(r, n); i++)
+        sum += (uint32_t)plane[i];
+    for (int i = 0; i < whole; i++)
+        out[i] = sum += value_at(plane, n, i + r);
+    for (int i = whole; i < end; i++)
+        out[i] = sum += (uint32_t)(plane[i + r] - plane[i - r - 1]);
+    for (int i = end; i < n; i++)
+        out[i] = sum -= value_at(plane, n, i - r - 1);
 }
 
 /** Sums of the sums over 2 r + 1 rows, of n <= BAND columns of a box. */
