@@ -49,6 +49,11 @@ static void discs_clear(Discs *discs)
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Discs, discs_clear)
 
+static bool is_blank(const uint16_t *row, int n)
+{
+    return fl_is_blank((const uint8_t *)row, (size_t)n * sizeof *row);
+}
+
 static void read_depths(const float *distance, size_t n, uint16_t cap, uint16_t *depth)
 {
     for (size_t p = 0; p < n; p++) {
@@ -180,21 +185,31 @@ static Disc disc_at(const Discs *discs, int x, int y)
     return (Disc){x, (uint16_t)(d * growth + FL_WIDTH_ONE), d};
 }
 
+static void add_centres(Discs *discs, int y, FlColumns columns, const uint8_t *centre)
+{
+    for (int x = columns.first; x < columns.last; x++)
+        if (centre[x]) {
+            const Disc disc = disc_at(discs, x, y);
+            g_array_append_val(discs->centres, disc);
+        }
+}
+
 static void find_centres(Discs *discs)
 {
+    const int w = discs->width;
     const size_t width = (size_t)discs->width;
     g_autofree int16_t *rows = g_new0(int16_t, 3 * (width + 2));
     g_autofree uint8_t *centre = g_new(uint8_t, width);
     const Column column = {rows + 1, rows + width + 3, rows + 2 * width + 5};
     for (int32_t y = 0; y < discs->height; y++) {
         discs->first[y] = (int32_t)discs->centres->len;
+        if (is_blank(discs->seen + (size_t)y * width, w))
+            continue;
         read_column(discs, y, column);
-        mark_centres(column, discs->width, (int16_t)discs->cap, centre);
-        for (int32_t x = 0; x < discs->width; x++)
-            if (centre[x]) {
-                const Disc disc = disc_at(discs, x, y);
-                g_array_append_val(discs->centres, disc);
-            }
+        mark_centres(column, w, (int16_t)discs->cap, centre);
+        for (FlColumns run = fl_next_run(centre, 0, w); run.first < run.last;
+             run = fl_next_run(centre, run.last, w))
+            add_centres(discs, y, run, centre);
     }
     discs->first[discs->height] = (int32_t)discs->centres->len;
 }
@@ -303,11 +318,13 @@ static void limit_slope(uint16_t *plane, int width, int height)
     int16_t *rows = (int16_t *)plane; // no half width is larger
     for (int y = 0; y < height; y++) {
         int16_t *row = rows + (size_t)y * (size_t)width;
-        limit_row(row, y > 0 ? row - width : NULL, width, true);
+        if (!is_blank((const uint16_t *)row, width))
+            limit_row(row, y > 0 ? row - width : NULL, width, true);
     }
     for (int y = height - 1; y >= 0; y--) {
         int16_t *row = rows + (size_t)y * (size_t)width;
-        limit_row(row, y < height - 1 ? row + width : NULL, width, false);
+        if (!is_blank((const uint16_t *)row, width))
+            limit_row(row, y < height - 1 ? row + width : NULL, width, false);
     }
 }
 
@@ -403,23 +420,17 @@ static void smooth(uint16_t *plane, int width, int height, int r, uint16_t cap, 
 
 /** A pixel outside that has been reached. */
 typedef struct Reached {
-    int16_t x, y;
-    uint16_t value;
+    int16_t x, y, value;
 } Reached;
 
-#define REACHED UINT16_MAX // its value is not known yet
-
-static bool is_known(uint16_t value)
-{
-    return value > 0 && value < REACHED;
-}
+#define REACHED (-1) // its value is not known yet
 
 /** Adds the pixels outside next to one that is known. */
-static void reach_around(uint16_t *plane, int width, int height, int x, int y, GArray *reached)
+static void reach_around(int16_t *plane, int width, int height, int x, int y, GArray *reached)
 {
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
         for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++) {
-            uint16_t *value = &plane[(size_t)ny * (size_t)width + (size_t)nx];
+            int16_t *value = &plane[(size_t)ny * (size_t)width + (size_t)nx];
             if (*value)
                 continue;
             const Reached pixel = {(int16_t)nx, (int16_t)ny, 0};
@@ -428,33 +439,47 @@ static void reach_around(uint16_t *plane, int width, int height, int x, int y, G
         }
 }
 
-/** Adds the pixels outside next to the shape: all of them are next to a pixel of its contour. */
-static void reach_from_shape(uint16_t *plane, int width, int height, GArray *reached)
+/** Whether pixels of a row are known and one of their four neighbours in the plane is not. */
+static void find_contour(const int16_t *row, const int16_t *up, const int16_t *down, int n,
+                         uint8_t *restrict contour)
 {
+    for (int x = 0; x < n; x++)
+        contour[x] = MIN(up[x], down[x]) <= 0;
+    for (int x = 1; x < n; x++)
+        contour[x] |= row[x - 1] <= 0;
+    for (int x = 0; x < n - 1; x++)
+        contour[x] |= row[x + 1] <= 0;
+    for (int x = 0; x < n; x++)
+        contour[x] &= row[x] > 0;
+}
+
+/** Adds the pixels outside next to the shape: all of them are next to a pixel of its contour. */
+static void reach_from_shape(int16_t *plane, int width, int height, GArray *reached)
+{
+    g_autofree uint8_t *contour = g_malloc(width);
     for (int y = 0; y < height; y++) {
-        const uint16_t *row = plane + (size_t)y * (size_t)width;
-        const uint16_t *up = y > 0 ? row - width : row, *down = y < height - 1 ? row + width : row;
-        for (int x = 0; x < width; x++)
-            if (is_known(row[x]) &&
-                !(is_known(up[x]) && is_known(down[x]) && is_known(row[MAX(x - 1, 0)]) &&
-                  is_known(row[MIN(x + 1, width - 1)])))
-                reach_around(plane, width, height, x, y, reached);
+        const int16_t *row = plane + (size_t)y * (size_t)width;
+        const int16_t *up = y > 0 ? row - width : row, *down = y < height - 1 ? row + width : row;
+        find_contour(row, up, down, width, contour);
+        for (FlColumns run = fl_next_run(contour, 0, width); run.first < run.last;
+             run = fl_next_run(contour, run.last, width))
+            for (int x = run.first; x < run.last; x++)
+                if (contour[x])
+                    reach_around(plane, width, height, x, y, reached);
     }
 }
 
-static uint16_t largest_around(const uint16_t *plane, int width, int height, int x, int y)
+static int16_t largest_around(const int16_t *plane, int width, int height, int x, int y)
 {
-    uint16_t largest = 0;
+    int16_t largest = 0;
     for (int ny = MAX(y - 1, 0); ny <= MIN(y + 1, height - 1); ny++)
-        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++) {
-            const uint16_t value = plane[(size_t)ny * (size_t)width + (size_t)nx];
-            largest = value < REACHED ? MAX(largest, value) : largest;
-        }
+        for (int nx = MAX(x - 1, 0); nx <= MIN(x + 1, width - 1); nx++)
+            largest = MAX(largest, plane[(size_t)ny * (size_t)width + (size_t)nx]);
     return largest;
 }
 
 /** Sets the pixels that have been reached to the largest value around them. */
-static void settle(uint16_t *plane, int width, int height, GArray *reached)
+static void settle(int16_t *plane, int width, int height, GArray *reached)
 {
     Reached *pixel = (Reached *)(void *)reached->data;
     for (guint k = 0; k < reached->len; k++)
@@ -464,8 +489,9 @@ static void settle(uint16_t *plane, int width, int height, GArray *reached)
 }
 
 /** Pixels outside get the largest value around them, ring by ring. */
-static void extend(uint16_t *plane, int width, int height)
+static void extend(uint16_t *half_width, int width, int height)
 {
+    int16_t *plane = (int16_t *)half_width; // no half width is larger
     g_autoptr(GArray) last = g_array_new(FALSE, FALSE, sizeof(Reached));
     g_autoptr(GArray) next = g_array_new(FALSE, FALSE, sizeof(Reached));
     reach_from_shape(plane, width, height, last);
