@@ -48,10 +48,11 @@ static Rim rim_of(float u, float others)
                  taper.amount + (detail.amount - taper.amount) * others};
 }
 
-/** As if the rim were as wide as the border, and as if a pixel without a rim lay amid the shape. */
+/** As if the rim were as wide as the border, and as if a pixel without a rim lay amid the shape.
+ * u: below DETAIL_WIDE. */
 static float depth_of(float distance, float border_px, float u, float others)
 {
-    if (u >= DETAIL_WIDE || (u >= 1.0f && others == 0.0f))
+    if (u >= 1.0f && others == 0.0f)
         return distance;
     const Rim rim = rim_of(u, others);
     const float rim_px = MAX(rim.width * border_px, 0.5f);
@@ -153,7 +154,7 @@ static float others_at(const Part *part, size_t p)
     return part->taken && part->free[p] ? (float)part->taken[p] / (float)part->free[p] : 0.0f;
 }
 
-static void write_part(const Part *part, int width, float border_px, bool narrow, float *depth)
+static void write_part(const Part *part, int width, float border_px, float *depth)
 {
     const float border = (float)fl_width_cap(DETAIL_WIDE * border_px) / DETAIL_WIDE;
     for (int y = 0; y < part->box.height; y++) {
@@ -161,9 +162,9 @@ static void write_part(const Part *part, int width, float border_px, bool narrow
         const size_t p = (size_t)y * (size_t)part->box.width;
         for (int x = 0; x < part->box.width; x++) {
             const size_t i = p + (size_t)x;
-            const float u =
-                narrow && part->half_width[i] ? (float)part->half_width[i] / border : DETAIL_WIDE;
-            row[x] = depth_of(part->distance[i], border_px, u, others_at(part, i));
+            const float u = part->half_width[i] ? (float)part->half_width[i] / border : DETAIL_WIDE;
+            row[x] = u < DETAIL_WIDE ? depth_of(part->distance[i], border_px, u, others_at(part, i))
+                                     : part->distance[i];
         }
     }
 }
@@ -179,6 +180,10 @@ bool fl_rim_depth(const FlRimShape *shape, float border_px, float *depth, GError
     if (!measure(&part, shape, border_px, &narrow, error) ||
         (narrow && shape->shown && !measure_surround(&part, shape, border_px, error)))
         return false;
-    write_part(&part, shape->width, border_px, narrow, depth);
+    if (narrow)
+        write_part(&part, shape->width, border_px, depth);
+    else
+        fl_rect_copy(part.distance, part.box, depth, (FlRect){0, 0, shape->width, shape->height},
+                     sizeof *depth);
     return true;
 }
