@@ -11,6 +11,7 @@
 #include "guides/laplace.h"
 
 #include "base/alloc.h"
+#include "base/rect.h"
 #include "base/row_kernels.h"
 #include <math.h>
 #include <string.h>
@@ -25,6 +26,7 @@ typedef struct Level {
     bool is_finest;
     int pairs;        // of cells in half a row; the last may be beyond the width, outside
     size_t half;      // cells from half a row to the next; the last is of the rim
+    FlColumns *span;  // of each row: where in its halves cells are; else all arrays are 0
     void *memory;     // of the arrays
     float *inverse;   // 1 / number of neighbours that are not outside, in free cells; else 0
     float *parents;   // weight of the coarse cells around a free one that are inside; else 0
@@ -48,8 +50,10 @@ typedef struct Grid {
 /** Frees the levels from the first-th on. */
 static void drop_levels(Grid *grid, int first)
 {
-    for (int l = first; l < grid->n_levels; l++)
+    for (int l = first; l < grid->n_levels; l++) {
         free(grid->level[l].memory);
+        g_free(grid->level[l].span);
+    }
     grid->n_levels = MIN(grid->n_levels, first);
 }
 
@@ -66,11 +70,13 @@ static bool level_init(Level *level, int width, int height, bool finest, GError 
     const int pairs = (width + 15) / 16 * 4;
     const size_t half = ((size_t)pairs * 2 + 16) / 16 * 16, n = ((size_t)height + 2) * 2 * half;
     const size_t sources = finest ? half : 2 * n;
-    float *memory =
-        fl_alloc(4 * n + sources + n / 4, sizeof *memory, "the diffusion of a flow", error);
-    *level = (Level){width, height, finest, pairs, half, .memory = memory};
-    if (!memory)
+    void *scratch = fl_alloc_scratch(4 * n + sources + n / 4 + 16, sizeof(float),
+                                     "the diffusion of a flow", error);
+    *level = (Level){width, height, finest, pairs, half, .memory = scratch};
+    if (!scratch)
         return false;
+    level->span = g_new0(FlColumns, height);
+    float *memory = (float *)(((uintptr_t)scratch + 63) / 64 * 64);
     level->inverse = memory;
     level->parents = memory + n;
     for (size_t k = 0; k < 2; k++) {
@@ -81,8 +87,47 @@ static bool level_init(Level *level, int width, int height, bool finest, GError 
     return true;
 }
 
-/** What is done to a row of a level, from what is in another one. */
+/** The smallest span with some places of half a row that loops are fast in. */
+static FlColumns span_around(const Level *level, int first, int last)
+{
+    return (FlColumns){first / 16 * 16, MIN((last + 7) / 8 * 8, 2 * level->pairs)};
+}
+
+/** Where the finest level has cells. */
+static void find_spans(const Level *level, const uint8_t *cell)
+{
+    g_auto(FlArea) area = {0};
+    fl_area_init(&area, cell, level->width, level->height);
+    for (int y = 0; y < area.box.height; y++) {
+        const FlColumns row = fl_area_row(&area, y);
+        if (row.first < row.last)
+            level->span[area.box.y + y] =
+                span_around(level, (area.box.x + row.first) / 2, (area.box.x + row.last + 1) / 2);
+    }
+}
+
+/** Where a coarse level has cells. */
+static void halve_spans(const Level *coarse, const Level *fine)
+{
+    for (int y = 0; y < coarse->height; y++) {
+        const FlColumns upper = fine->span[2 * y];
+        const FlColumns lower = 2 * y + 1 < fine->height ? fine->span[2 * y + 1] : upper;
+        const bool none = upper.first >= upper.last, one = none || lower.first >= lower.last;
+        const FlColumns both = {MIN(upper.first, lower.first), MAX(upper.last, lower.last)};
+        const FlColumns row = !one ? both : none ? lower : upper;
+        if (row.first < row.last)
+            coarse->span[y] = span_around(coarse, row.first / 2, (row.last + 1) / 2);
+    }
+}
+
+/** Does something to a row of a level, if it has cells, from what is in another one. */
 typedef void RowWork(const Level *level, const Level *other, int y);
+
+static void do_row(const Level *level, const Level *other, RowWork *work, int y)
+{
+    if (level->span[y].first < level->span[y].last)
+        work(level, other, y);
+}
 
 /** Does it to every row; a small level is not worth even a team of one thread. */
 static void for_rows(const Level *level, const Level *other, RowWork *work)
@@ -90,10 +135,10 @@ static void for_rows(const Level *level, const Level *other, RowWork *work)
     if (level->height > 64) {
 #pragma omp parallel for schedule(static)
         for (int y = 0; y < level->height; y++)
-            work(level, other, y);
+            do_row(level, other, work, y);
     } else {
         for (int y = 0; y < level->height; y++)
-            work(level, other, y);
+            do_row(level, other, work, y);
     }
 }
 
@@ -117,12 +162,13 @@ static Cross cross_at(const Level *level, int odd, int y)
 /** A cell without neighbours stays as it is: its inverse is 0, like that of a fixed one. */
 static void count_neighbours(const Level *level, const Level *other, int y)
 {
+    const FlColumns span = level->span[y];
     for (int odd = 0; odd < 2; odd++) {
         const Cross at = cross_at(level, odd, y);
         const uint8_t *own = level->cell + at.own, *beside = level->cell + at.left;
         const uint8_t *above = level->cell + at.above, *below = level->cell + at.below;
         float *restrict inverse = level->inverse + at.own;
-        for (int i = 0; i < 2 * level->pairs; i++) {
+        for (int i = span.first; i < span.last; i++) {
             const int n =
                 (beside[i] != 0) + (beside[i + 1] != 0) + (above[i] != 0) + (below[i] != 0);
             const float free = own[i] == FL_CELL_FREE && n > 0;
@@ -148,10 +194,12 @@ static void fix(const Level *coarse, size_t c, const Level *fine, size_t child)
 /** Makes the coarse cells of a row, each over four fine ones, any of which may be in the rim. */
 static void coarsen(const Level *coarse, const Level *fine, int y)
 {
-    const size_t h = fine->half;
+    const size_t h = fine->half, first = (size_t)coarse->span[y].first;
+    const int end = MIN(2 * coarse->span[y].last, coarse->width);
     for (int odd = 0; odd < 2; odd++) {
-        size_t c = half_row(coarse, odd, y), f = half_row(fine, 0, 2 * y) + odd;
-        for (int x = odd; x < coarse->width; x += 2, c++, f += 2) {
+        size_t c = half_row(coarse, odd, y) + first;
+        size_t f = half_row(fine, 0, 2 * y) + odd + 2 * first;
+        for (int x = 2 * (int)first + odd; x < end; x += 2, c++, f += 2) {
             const uint8_t *child = fine->cell + f;
             coarse->cell[c] = child[0] | child[h] | child[2 * h] | child[3 * h];
             if (coarse->cell[c] & FL_CELL_FIXED) {
@@ -192,7 +240,7 @@ static void weigh_parents(const Level *fine, const Level *coarse, int y)
         float *restrict weight = fine->parents + half_row(fine, odd, y);
         size_t at[2][4];
         find_parents(coarse, odd, y, at);
-        for (int i = 0; i < fine->pairs; i++) {
+        for (int i = fine->span[y].first / 2; i < fine->span[y].last / 2; i++) {
             const int even = weight_of(coarse->cell, at[0], i);
             const int next = weight_of(coarse->cell, at[1], i);
             weight[2 * i] = inverse[2 * i] > 0 ? (float)even : 0.0f;
@@ -205,7 +253,7 @@ static void weigh_parents(const Level *fine, const Level *coarse, int y)
 static void load_row(Grid *grid, int y, const uint8_t *cell, const float *field)
 {
     const Level *level = &grid->level[0];
-    for (int x = 0; x < level->width; x++) {
+    for (int x = 2 * level->span[y].first; x < MIN(2 * level->span[y].last, level->width); x++) {
         const size_t c = half_row(level, x & 1, y) + (size_t)(x / 2);
         level->cell[c] = cell[x];
         for (int k = 0; k < 2 && cell[x] == FL_CELL_FIXED; k++) {
@@ -217,6 +265,17 @@ static void load_row(Grid *grid, int y, const uint8_t *cell, const float *field)
     }
 }
 
+/** The finest level. */
+static void load(Grid *grid, const uint8_t *cell, const float *field)
+{
+    const Level *level = &grid->level[0];
+    find_spans(level, cell);
+    for (int y = 0; y < level->height; y++)
+        if (level->span[y].first < level->span[y].last)
+            load_row(grid, y, cell + y * (size_t)level->width,
+                     field + 2 * y * (size_t)level->width);
+}
+
 static bool grid_init(Grid *grid, const uint8_t *cell, int width, int height, const float *field,
                       GError **error)
 {
@@ -226,8 +285,10 @@ static bool grid_init(Grid *grid, const uint8_t *cell, int width, int height, co
         const bool finest = grid->n_levels == 1;
         if (!level_init(level, width, height, finest, error))
             return false;
-        for (int y = 0; y < height && finest; y++)
-            load_row(grid, y, cell + y * (size_t)width, field + 2 * y * (size_t)width);
+        if (finest)
+            load(grid, cell, field);
+        else
+            halve_spans(level, level - 1);
         if (!finest)
             for_rows(level, level - 1, coarsen);
         for_rows(level, NULL, count_neighbours);
@@ -239,23 +300,26 @@ static bool grid_init(Grid *grid, const uint8_t *cell, int width, int height, co
     return true;
 }
 
-static FlStencil stencil_at(const Level *level, int component, int odd, int y)
+/** From a place of half a row on. */
+static FlStencil stencil_at(const Level *level, int component, int odd, int y, size_t first)
 {
-    const Cross at = cross_at(level, odd, y);
+    Cross at = cross_at(level, odd, y);
+    at.own += first, at.left += first, at.above += first, at.below += first;
     float *value = level->value[component];
     return (FlStencil){.value = value + at.own,
                        .beside = value + at.left,
                        .above = value + at.above,
                        .below = value + at.below,
-                       .source = level->source[component] + (level->is_finest ? 0 : at.own),
+                       .source = level->source[component] + (level->is_finest ? first : at.own),
                        .inverse = level->inverse + at.own};
 }
 
 static void relax_half(const Level *level, int odd, int y)
 {
     for (int component = 0; component < 2; component++) {
-        const FlStencil cells = stencil_at(level, component, odd, y);
-        fl_row_kernels()->relax(&cells, 2 * level->pairs);
+        const FlColumns span = level->span[y];
+        const FlStencil cells = stencil_at(level, component, odd, y, (size_t)span.first);
+        fl_row_kernels()->relax(&cells, span.last - span.first);
     }
 }
 
@@ -281,13 +345,15 @@ static void relax(const Level *level, int sweeps)
 /** Adds to the free cells of a fine row (which may be 0) the coarse field. */
 static void refine(const Level *fine, const Level *coarse, int y)
 {
+    const FlColumns span = fine->span[y];
     for (int odd = 0; odd < 2; odd++) {
-        const size_t row = half_row(fine, odd, y);
+        const size_t row = half_row(fine, odd, y) + (size_t)span.first;
         size_t parents[2][4];
         find_parents(coarse, odd, y, parents);
         for (int k = 0; k < 2; k++)
-            fl_row_kernels()->refine(coarse->value[k], parents, fine->parents + row,
-                                     fine->value[k] + row, fine->pairs);
+            fl_row_kernels()->refine(coarse->value[k] + span.first / 2, parents,
+                                     fine->parents + row, fine->value[k] + row,
+                                     (span.last - span.first) / 2);
     }
 }
 
@@ -300,8 +366,11 @@ static void restrict_residual(const Level *coarse, const Level *fine, int y)
         memset(coarse->value[k] + even, 0, 2 * coarse->half * sizeof(float));
         memset(source + even, 0, 2 * coarse->half * sizeof(float));
         for (int child = 0; child < 4 && 2 * y + child / 2 < fine->height; child++) {
-            const FlStencil cells = stencil_at(fine, k, child & 1, 2 * y + child / 2);
-            fl_row_kernels()->add_residual(&cells, source + even, source + odd, fine->pairs);
+            const FlColumns span = fine->span[2 * y + child / 2];
+            const size_t first = (size_t)span.first, half = first / 2;
+            const FlStencil cells = stencil_at(fine, k, child & 1, 2 * y + child / 2, first);
+            fl_row_kernels()->add_residual(&cells, source + even + half, source + odd + half,
+                                           (span.last - span.first) / 2);
         }
     }
 }
@@ -328,7 +397,7 @@ static void store_half(const Grid *grid, int component, int odd, int y, float *f
     const uint8_t *cell = level->cell + row;
     const float low = grid->low[component], high = grid->high[component];
     float *restrict value = level->value[component] + row;
-    for (int i = 0; i < 2 * level->pairs; i++) {
+    for (int i = level->span[y].first; i < level->span[y].last; i++) {
         const float clamped = MAX(low, MIN(high, value[i]));
         value[i] = cell[i] ? clamped : 0.0f;
     }
