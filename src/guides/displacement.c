@@ -14,14 +14,16 @@ void fl_motion_to_fixed(const float *motion, const FlOutline *outline, int32_t *
 {
     const FlRect *box = &outline->box;
     const float limit = (float)MAX(outline->frame_width, outline->frame_height);
-    for (int y = box->y; y < box->y + box->height; y++)
-        for (int x = box->x; x < box->x + box->width; x++, fixed += 2) {
-            const float *u = motion + 2 * (y * (size_t)outline->frame_width + x);
-            const bool inside = fl_outline_contains(outline, x, y);
-            const bool known = !isnan(u[0]) && !isnan(u[1]);
+    const uint8_t *coverage = outline->coverage;
+    for (int y = box->y; y < box->y + box->height; y++) {
+        const float *u = motion + 2 * (y * (size_t)outline->frame_width + box->x);
+        for (int x = 0; x < box->width; x++, coverage++, u += 2, fixed += 2) {
+            const bool inside = *coverage >= FL_INSIDE;
+            const bool known = inside && !isnan(u[0]) && !isnan(u[1]);
             for (int c = 0; c < 2; c++)
                 fixed[c] = !inside ? 0 : known ? to_fixed(u[c], limit) : FL_MOTION_UNKNOWN;
         }
+    }
 }
 
 #define SEAM (FL_MOTION_ONE / 8) // differences that differ by more on both sides meet at a seam

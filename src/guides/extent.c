@@ -77,14 +77,15 @@ void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *cov
     for (int y = mask_box->y; y < mask_box->y + mask_box->height; y++)
         for (int x = mask_box->x; x < mask_box->x + mask_box->width; x++) {
             int32_t *sum = extent->sum + 2 * (y * (size_t)extent->width + x);
-            if (*coverage++ < FL_INSIDE) {
-                clear(sum);
-            } else if (flow && box_contains(flow_box, x, y)) {
+            const bool inside = *coverage++ >= FL_INSIDE;
+            if (inside && flow && box_contains(flow_box, x, y)) {
                 const int32_t *f =
                     flow + 2 * ((y - flow_box->y) * (size_t)flow_box->width + x - flow_box->x);
                 sum[0] = add(sum[0], f[0]);
                 sum[1] = add(sum[1], f[1]);
             }
-            *norm++ = norm_of(sum);
+            if (!inside)
+                clear(sum);
+            *norm++ = inside ? norm_of(sum) : 0;
         }
 }
