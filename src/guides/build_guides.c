@@ -192,7 +192,7 @@ static bool construct_motion(Builder *b, int frame, float **flow, GError **error
     if (now.outline->empty || (!b->smooths && now.outline == before.outline))
         return true;
     g_autofree float *fresh =
-        fl_alloc(2 * fl_rect_pixels(now.outline->box), sizeof *fresh, "a flow", error);
+        fl_alloc_unset(2 * fl_rect_pixels(now.outline->box), sizeof *fresh, "a flow", error);
     bool moves;
     if (!fresh || !fl_flow_construct(&now, &before, &after, limit, fresh, &moves, error))
         return false;
@@ -335,7 +335,7 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
     FlFrameRecord *record = &b->sequence->frames[frame];
     const size_t n = fl_rect_pixels(outline->box);
     g_autofree int32_t *fixed = fl_alloc_scratch(2 * n, sizeof *fixed, "a flow", error);
-    g_autofree int32_t *norm = fixed ? fl_alloc(n, sizeof *norm, "an extent", error) : NULL;
+    g_autofree int32_t *norm = fixed ? fl_alloc_unset(n, sizeof *norm, "an extent", error) : NULL;
     if (!norm)
         return false;
     for (size_t k = 0; k < 2 * n && flow; k++)
@@ -385,7 +385,7 @@ static bool put_unrounded(Builder *b, int frame, const FlOutline *outline, const
     const size_t n = 2 * fl_rect_pixels(outline->box);
     if (!flow || !b->sequence->source.keeps_flow)
         return true;
-    g_autofree int32_t *bits = fl_alloc(n, sizeof *bits, "a flow", error);
+    g_autofree int32_t *bits = fl_alloc_unset(n, sizeof *bits, "a flow", error);
     if (!bits)
         return false;
     memcpy(bits, flow, n * sizeof *bits);

@@ -46,7 +46,7 @@ bool fl_connected_parts_init(FlConnectedParts *parts, const uint8_t *plane, int 
 {
     const size_t n = (size_t)width * height;
     *parts = (FlConnectedParts){.n_pixels = n};
-    if (!(parts->part = fl_alloc(n, sizeof *parts->part, "the parts of a mask", error)))
+    if (!(parts->part = fl_alloc_unset(n, sizeof *parts->part, "the parts of a mask", error)))
         return false;
     const int32_t outside = 0;
     g_autoptr(GArray) parents = g_array_new(FALSE, FALSE, sizeof(int32_t));

@@ -112,7 +112,7 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
     const FlRect *box = &now->outline->box;
     const size_t n = fl_rect_pixels(*box);
     g_auto(Traces) traces = {0};
-    g_autofree uint8_t *cell = fl_alloc(n, sizeof *cell, "a flow", error);
+    g_autofree uint8_t *cell = fl_alloc_unset(n, sizeof *cell, "a flow", error);
     if (!cell ||
         !traces_init(&traces, now->outline, before->outline, after->outline, limit_px, error))
         return false;
@@ -132,7 +132,7 @@ bool fl_outline_normals(FlOutline *outline, GError **error)
 {
     const FlRect *box = &outline->box;
     const size_t n = fl_rect_pixels(*box);
-    g_autofree uint8_t *cell = fl_alloc(n, sizeof *cell, "normals", error);
+    g_autofree uint8_t *cell = fl_alloc_unset(n, sizeof *cell, "normals", error);
     g_autofree float *normal = fl_alloc_scratch(2 * n, sizeof *normal, "normals", error);
     bool any = false;
     if (!cell || !normal)

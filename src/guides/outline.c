@@ -22,7 +22,7 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
                            .frame_height = frame_height,
                            .box = fl_rect_of(mask, frame_width, frame_height)};
     const FlRect *box = &outline->box;
-    outline->coverage = fl_alloc(fl_rect_pixels(*box) + 1, 1, "a mask", error);
+    outline->coverage = fl_alloc_unset(fl_rect_pixels(*box) + 1, 1, "a mask", error);
     if (!outline->coverage)
         return NULL;
     fl_rect_copy(mask, (FlRect){0, 0, frame_width, frame_height}, outline->coverage, *box, 1);

@@ -66,7 +66,7 @@ bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect p
     memset(coverage, 0, fl_rect_pixels(part));
     if (box.width == 0)
         return true;
-    g_autofree uint8_t *cropped = fl_alloc(fl_rect_pixels(box), 1, "a mask", error);
+    g_autofree uint8_t *cropped = fl_alloc_unset(fl_rect_pixels(box), 1, "a mask", error);
     if (!cropped || !fl_spill_get(masks->spill, block, cropped, fl_rect_pixels(box), error))
         return false;
     fl_rect_copy(cropped, box, coverage, part, 1);

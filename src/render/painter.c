@@ -240,7 +240,7 @@ static bool close_depth(const FlRimShape *alone, const uint8_t *closed, float bo
                         float *depth, GError **error)
 {
     const size_t n = (size_t)alone->width * (size_t)alone->height;
-    g_autofree float *with_others = fl_alloc(n, sizeof *with_others, "a guide", error);
+    g_autofree float *with_others = fl_alloc_unset(n, sizeof *with_others, "a guide", error);
     FlRimShape shape = *alone;
     shape.together = closed, shape.seen = NULL;
     if (!with_others || !fl_rim_depth(&shape, border_px, with_others, error))
