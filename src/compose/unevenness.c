@@ -36,21 +36,35 @@ void fl_anchors_find(const FlDrawList *draws, int n_regions, FlAnchor *anchors)
 
 /* ---- slow fields ----------------------------------------------------------------------------- */
 
-/* Noise at a place that is counted from the anchor, in px of the sheet. */
-typedef float (*SlowNoise)(uint64_t key, float x, float y);
+/* Places that are counted from the anchor, in px of the sheet. */
+typedef struct Places {
+    int n;
+    float x[FL_NOISE_ROW], y[FL_NOISE_ROW];
+} Places;
+
+typedef void (*SlowNoise)(uint64_t key, const Places *at, float *noise);
 
 /* As the brush is emptied and filled again, here and there. */
-static float load_noise(uint64_t key, float x, float y)
+static void load_noise(uint64_t key, const Places *at, float *noise)
 {
-    const float wx = x / 60, wy = y / 60;
-    const float u = x + 30 * fl_noise(fl_key(key, KEY_WARP_X), wx, wy);
-    const float v = y + 30 * fl_noise(fl_key(key, KEY_WARP_Y), wx, wy);
-    return fl_noise_octaves(fl_key(key, KEY_LOAD), u / 95, v / 75, 3, .55f);
+    Places wide = {.n = at->n}, bent = {.n = at->n};
+    for (int i = 0; i < at->n; i++)
+        wide.x[i] = at->x[i] / 60, wide.y[i] = at->y[i] / 60;
+    fl_noise_row(fl_key(key, KEY_WARP_X), wide.x, wide.y, at->n, bent.x);
+    fl_noise_row(fl_key(key, KEY_WARP_Y), wide.x, wide.y, at->n, bent.y);
+    for (int i = 0; i < at->n; i++) {
+        bent.x[i] = (at->x[i] + 30 * bent.x[i]) / 95;
+        bent.y[i] = (at->y[i] + 30 * bent.y[i]) / 75;
+    }
+    fl_noise_octaves_row(fl_key(key, KEY_LOAD), bent.x, bent.y, at->n, 3, .55f, noise);
 }
 
-static float play_noise(uint64_t key, float x, float y)
+static void play_noise(uint64_t key, const Places *at, float *noise)
 {
-    return fl_noise_octaves(fl_key(key, KEY_PLAY), x / 70, y / 55, 3, .6f);
+    Places wide = {.n = at->n};
+    for (int i = 0; i < at->n; i++)
+        wide.x[i] = at->x[i] / 70, wide.y[i] = at->y[i] / 55;
+    fl_noise_octaves_row(fl_key(key, KEY_PLAY), wide.x, wide.y, at->n, 3, .6f, noise);
 }
 
 /* Points every so many px of a box, and one beyond its end: in 1 / 4096; 0 where no pixel of the
@@ -73,22 +87,47 @@ static FlColumns points_of(const FlArea *area, int step, int j)
                                   : (FlColumns){0, 0};
 }
 
+/* Some of the points, to be computed together: a row of noise is many more than most rows hold. */
+typedef struct Batch {
+    Places at;
+    int32_t *to[FL_NOISE_ROW];
+} Batch;
+
+static void compute_batch(Batch *batch, uint64_t key, SlowNoise noise)
+{
+    float value[FL_NOISE_ROW];
+    noise(key, &batch->at, value);
+    for (int i = 0; i < batch->at.n; i++)
+        *batch->to[i] = (int32_t)lrintf(4096 * CLAMP(value[i], -1.98f, 1.98f));
+    batch->at.n = 0;
+}
+
+static void add_point(Batch *batch, const FlUneven *where, int x, int y, int32_t *to)
+{
+    const int n = batch->at.n++;
+    const float px = 1 / where->scale;
+    batch->at.x[n] = (float)(16 * x - where->anchor.x) / 16 * px;
+    batch->at.y[n] = (float)(16 * y - where->anchor.y) / 16 * px;
+    batch->to[n] = to;
+}
+
 static Points make_points(const FlUneven *where, const FlArea *area, SlowNoise noise)
 {
     const FlRect box = area->box;
     const int step = CLAMP((int)(STEP * where->scale), 1, STEP);
     Points points = {step, box.width / step + 2, box.height / step + 2, NULL};
     points.value = g_new0(int32_t, (size_t)points.width * (size_t)points.height);
-    const float px = 1 / where->scale;
+    Batch batch = {.at = {.n = 0}};
     for (int j = 0; j < points.height; j++) {
         const FlColumns span = points_of(area, step, j);
         for (int i = span.first; i < span.last; i++) {
-            const float x = (float)(16 * (box.x + i * step) - where->anchor.x) / 16;
-            const float y = (float)(16 * (box.y + j * step) - where->anchor.y) / 16;
-            const float n = CLAMP(noise(where->key, x * px, y * px), -1.98f, 1.98f);
-            points.value[j * points.width + i] = (int32_t)lrintf(4096 * n);
+            add_point(&batch, where, box.x + i * step, box.y + j * step,
+                      &points.value[j * points.width + i]);
+            if (batch.at.n == FL_NOISE_ROW)
+                compute_batch(&batch, where->key, noise);
         }
     }
+    compute_batch(&batch, where->key, noise);
     return points;
 }
 
