@@ -100,12 +100,28 @@ static void find_cells(const float *restrict x, const float *restrict y, Row *re
     }
 }
 
+/* Two corners are those of the cell before where it is the one on the left, as along a row. */
+static void move_cell(uint64_t key, int32_t ix, int32_t iy, Cell *cell)
+{
+    if (ix != cell->x + 1 || iy != cell->y) {
+        hash_cell(key, ix, iy, cell);
+        return;
+    }
+    cell->x = ix;
+    memcpy(cell->slope[0], cell->slope[1], sizeof cell->slope[0]);
+    memcpy(cell->slope[2], cell->slope[3], sizeof cell->slope[0]);
+    hash_corner(key, ix + 1, iy, cell->slope[1]);
+    hash_corner(key, ix + 1, iy + 1, cell->slope[3]);
+}
+
 static void find_slopes(uint64_t key, int n, Row *row)
 {
-    Cell cell = {0};
+    Cell cell;
+    if (n > 0)
+        hash_cell(key, row->ix[0], row->iy[0], &cell);
     for (int i = 0; i < n; i++) {
-        if (i == 0 || row->ix[i] != cell.x || row->iy[i] != cell.y)
-            hash_cell(key, row->ix[i], row->iy[i], &cell);
+        if (row->ix[i] != cell.x || row->iy[i] != cell.y)
+            move_cell(key, row->ix[i], row->iy[i], &cell);
         for (int k = 0; k < 4; k++)
             row->slope[k][0][i] = cell.slope[k][0], row->slope[k][1][i] = cell.slope[k][1];
     }
