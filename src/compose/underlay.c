@@ -34,10 +34,10 @@ static bool part_init(Part *part, const FlLayer *layer, int width, int height, G
     const FlRect page = {0, 0, width, height};
     *part = (Part){.box = fl_rect_grown(layer->area.box, MARGIN_PX, page)};
     const size_t n = fl_rect_pixels(part->box);
-    return (part->over = fl_alloc(n, 1, "a matte", error)) &&
-           (part->seen = fl_alloc(n, 1, "a matte", error)) &&
-           (part->to_open = fl_alloc(n, sizeof *part->to_open, "a matte", error)) &&
-           (part->to_seen = fl_alloc(n, sizeof *part->to_seen, "a matte", error));
+    return (part->over = fl_alloc_unset(n, 1, "a matte", error)) &&
+           (part->seen = fl_alloc_unset(n, 1, "a matte", error)) &&
+           (part->to_open = fl_alloc_unset(n, sizeof *part->to_open, "a matte", error)) &&
+           (part->to_seen = fl_alloc_unset(n, sizeof *part->to_seen, "a matte", error));
 }
 
 /** A row of a distance transform, as far as the row before it tells: no pixel waits for another. */
@@ -51,30 +51,38 @@ static void lower_from_before(uint16_t *restrict row, const uint16_t *restrict b
         row[x] = MIN(row[x], (uint16_t)(before[x + 1] + CORNER));
 }
 
-/** The same along the row; on: 1 to the right, -1 to the left. */
-static void lower_along(uint16_t *row, int width, int on)
+/** The same along rows of two planes, which do not wait for each other; on: 1 to the right, -1 to
+ * the left. */
+static void lower_along(uint16_t *restrict one, uint16_t *restrict other, int width, int on)
 {
-    int least = FAR;
+    int least = FAR, other_least = FAR; // less a step for each column up to this one
     for (int k = 0, x = on > 0 ? 0 : width - 1; k < width; k++, x += on) {
-        least = MIN(row[x], least + SIDE);
-        row[x] = (uint16_t)least;
+        least = MIN(least, one[x] - k * SIDE);
+        other_least = MIN(other_least, other[x] - k * SIDE);
+        one[x] = (uint16_t)(least + k * SIDE);
+        other[x] = (uint16_t)(other_least + k * SIDE);
     }
 }
 
-/** Distances from the pixels that are 0; others come in as FAR. */
-static void measure(uint16_t *plane, int width, int height)
+/** Distances of both planes from the pixels that are 0; others come in as FAR. */
+static void measure(Part *part)
 {
-    for (int y = 0; y < height; y++) {
-        uint16_t *row = plane + (size_t)y * (size_t)width;
-        if (y > 0)
-            lower_from_before(row, row - width, width);
-        lower_along(row, width, 1);
+    const ptrdiff_t width = part->box.width;
+    for (int y = 0; y < part->box.height; y++) {
+        uint16_t *open = part->to_open + y * width, *seen = part->to_seen + y * width;
+        if (y > 0) {
+            lower_from_before(open, open - width, part->box.width);
+            lower_from_before(seen, seen - width, part->box.width);
+        }
+        lower_along(open, seen, part->box.width, 1);
     }
-    for (int y = height - 1; y >= 0; y--) {
-        uint16_t *row = plane + (size_t)y * (size_t)width;
-        if (y < height - 1)
-            lower_from_before(row, row + width, width);
-        lower_along(row, width, -1);
+    for (int y = part->box.height - 1; y >= 0; y--) {
+        uint16_t *open = part->to_open + y * width, *seen = part->to_seen + y * width;
+        if (y < part->box.height - 1) {
+            lower_from_before(open, open + width, part->box.width);
+            lower_from_before(seen, seen + width, part->box.width);
+        }
+        lower_along(open, seen, part->box.width, -1);
     }
 }
 
@@ -88,7 +96,7 @@ static bool is_below(const FlLayer *layer, const FlUnderlay *above)
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)own.width;
         const uint8_t *over = above->coverage + (size_t)(own.y + y) * (size_t)above->width + own.x;
         for (int x = span.first; x < span.last; x++)
-            any |= coverage[x] && over[x];
+            any |= MIN(coverage[x], over[x]);
     }
     return any;
 }
@@ -99,17 +107,20 @@ static void mark_pixels(Part *part, const FlLayer *layer, const FlUnderlay *abov
     const FlRect own = layer->area.box, box = part->box;
     memset(part->seen, 0, fl_rect_pixels(box));
     for (int y = 0; y < box.height; y++) {
-        uint8_t *over = part->over + (size_t)y * (size_t)box.width;
+        uint8_t *restrict over = part->over + (size_t)y * (size_t)box.width;
         const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)box.x;
+        const uint8_t *coverage = above->coverage + i, *hides = above->hides + i;
         for (int x = 0; x < box.width; x++)
-            over[x] = above->coverage[i + (size_t)x] >= SHOWN ? above->hides[i + (size_t)x] : 0;
+            over[x] = hides[x] & (coverage[x] >= SHOWN ? 255 : 0);
     }
     for (int y = 0; y < own.height; y++) {
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)own.width;
         const size_t p = (size_t)(own.y + y - box.y) * (size_t)box.width + (size_t)(own.x - box.x);
         const FlColumns span = fl_area_row(&layer->area, y);
+        const uint8_t *over = part->over + p;
+        uint8_t *restrict seen = part->seen + p;
         for (int x = span.first; x < span.last; x++)
-            part->seen[p + (size_t)x] = coverage[x] >= SHOWN && !part->over[p + (size_t)x];
+            seen[x] = (coverage[x] >= SHOWN) & (over[x] == 0);
     }
 }
 
@@ -142,48 +153,78 @@ static void find_ways(Part *part)
         clear_blocks(block, w, part->to_seen + p);
         clear_blocks(block, w, part->to_seen + q);
     }
-    measure(part->to_open, w, h);
-    measure(part->to_seen, w, h);
+    measure(part);
 }
 
-/** How far what is above hides, at most, within BESIDE_PX. */
-static int hidden_beside(const Part *part, int x, int y)
+/** Raises each of n values to the one that comes `reach` later, if that is more. */
+static void raise_by(uint8_t *value, int n, int reach)
 {
-    const FlRect box = part->box;
-    int most = 0;
-    for (int ny = MAX(y - BESIDE_PX, 0); ny <= MIN(y + BESIDE_PX, box.height - 1); ny++)
-        for (int nx = MAX(x - BESIDE_PX, 0); nx <= MIN(x + BESIDE_PX, box.width - 1); nx++)
-            most = MAX(most, part->over[(size_t)ny * (size_t)box.width + (size_t)nx]);
-    return most;
+    for (int x = 0; x < n; x++)
+        value[x] = MAX(value[x], value[x + reach]);
+}
+
+/**
+ * How far what is above hides each pixel of a row, or where nothing is, at most within BESIDE_PX.
+ * hides has 2 * BESIDE_PX more than the row.
+ */
+static void find_hides(const Part *part, int y, uint8_t *hides)
+{
+    const int width = part->box.width, padded = width + 2 * BESIDE_PX;
+    const int last = MIN(y + BESIDE_PX, part->box.height - 1);
+    memset(hides, 0, (size_t)padded);
+    for (int ny = MAX(y - BESIDE_PX, 0); ny <= last; ny++) {
+        const uint8_t *over = part->over + (size_t)ny * (size_t)width;
+        uint8_t *restrict own = hides + BESIDE_PX;
+        for (int x = 0; x < width; x++)
+            own[x] = MAX(own[x], over[x]);
+    }
+    raise_by(hides, padded - 1, 1); // of two, four and then seven
+    raise_by(hides, padded - 3, 2);
+    raise_by(hides, width, BESIDE_PX);
+    const uint8_t *over = part->over + (size_t)y * (size_t)width;
+    for (int x = 0; x < width; x++)
+        hides[x] = over[x] ? over[x] : hides[x];
 }
 
 /** How much of the layer stays, 0..255: (2.5 out + 6 - to) / (out + 4), in pixels, where what is
  * above hides all. */
-static int kept_at(const Part *part, int x, int y)
+static int kept_at(const Part *part, size_t p, int hides)
 {
-    const size_t p = (size_t)y * (size_t)part->box.width + (size_t)x;
     const int out = part->to_open[p], to = part->to_seen[p];
     const int share = 5 * out + 12 * SIDE - 2 * to, whole = 2 * (out + 4 * SIDE);
     if (share >= whole) // nearly everywhere: without the division
         return 255;
     const int keep = 255 * share / whole;
-    const int hides = part->over[p] ? part->over[p] : hidden_beside(part, x, y);
     return 255 - ((255 - MAX(keep, 0)) * hides + 127) / 255;
 }
 
-static void fade(const Part *part, FlLayer *layer)
+/** Row y of the layer; hides is of the pixels of its box. */
+static void fade_row(const Part *part, FlLayer *layer, int y, const uint8_t *hides)
 {
     const FlRect own = layer->area.box;
-    for (int y = 0; y < own.height; y++) {
-        const FlColumns span = fl_area_row(&layer->area, y);
-        for (int x = span.first; x < span.last; x++) {
-            const size_t p = (size_t)y * (size_t)own.width + (size_t)x;
-            const int keep = kept_at(part, own.x + x - part->box.x, own.y + y - part->box.y);
+    const FlColumns span = fl_area_row(&layer->area, y);
+    const size_t row = (size_t)y * (size_t)own.width;
+    const size_t of_part =
+        (size_t)(own.y + y - part->box.y) * (size_t)part->box.width + (size_t)(own.x - part->box.x);
+    for (FlColumns run = fl_next_run(hides, span.first, span.last); run.first < run.last;
+         run = fl_next_run(hides, run.last, span.last))
+        for (int x = run.first; x < run.last; x++) {
+            const size_t p = row + (size_t)x;
+            const int keep = kept_at(part, of_part + (size_t)x, hides[x]);
             if (keep == 255)
                 continue;
             layer->rgba[4 * p + 3] = (uint8_t)((layer->rgba[4 * p + 3] * keep + 127) / 255);
             layer->knockout[p] = (uint8_t)((layer->knockout[p] * keep + 127) / 255);
         }
+}
+
+static void fade(const Part *part, FlLayer *layer)
+{
+    const FlRect own = layer->area.box;
+    g_autofree uint8_t *hides = g_malloc((size_t)(part->box.width + 2 * BESIDE_PX));
+    for (int y = 0; y < own.height; y++) {
+        find_hides(part, own.y + y - part->box.y, hides);
+        fade_row(part, layer, y, hides + (own.x - part->box.x));
     }
 }
 
@@ -212,15 +253,16 @@ static int hiding(int alpha)
 static void add_above(const FlLayer *layer, const FlUnderlay *above)
 {
     const FlRect box = layer->area.box;
-    const int hides = hiding(layer->alpha);
-    for (int y = 0; y < box.height && hides > 0; y++) {
+    const int hiding_here = hiding(layer->alpha);
+    for (int y = 0; y < box.height && hiding_here > 0; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)box.width;
         const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)box.x;
+        uint8_t *restrict most = above->coverage + i, *restrict hides = above->hides + i;
         for (int x = span.first; x < span.last; x++) {
-            above->coverage[i + (size_t)x] = MAX(above->coverage[i + (size_t)x], coverage[x]);
-            if (coverage[x] >= SHOWN)
-                above->hides[i + (size_t)x] = (uint8_t)MAX(above->hides[i + (size_t)x], hides);
+            const uint8_t here = (uint8_t)(coverage[x] >= SHOWN ? hiding_here : 0);
+            most[x] = MAX(most[x], coverage[x]);
+            hides[x] = MAX(hides[x], here);
         }
     }
 }
