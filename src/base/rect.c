@@ -69,6 +69,12 @@ FlRect fl_rect_on_grid(FlRect rect, int grid)
     return (FlRect){rect.x - left, rect.y - above, rect.width + left, rect.height + above};
 }
 
+void fl_rect_clear(uint8_t *plane, int width, FlRect part)
+{
+    for (int y = part.y; y < part.y + part.height; y++)
+        memset(plane + (size_t)y * (size_t)width + part.x, 0, (size_t)part.width);
+}
+
 void fl_rect_copy(const void *from, FlRect from_rect, void *to, FlRect to_rect, size_t pixel_bytes)
 {
     const FlRect both = fl_rect_and(from_rect, to_rect);

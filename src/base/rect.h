@@ -38,6 +38,9 @@ FlRect fl_rect_of(const uint8_t *plane, int width, int height);
 /** The same within a part of a plane that is `width` wide. */
 FlRect fl_rect_within(const uint8_t *plane, int width, FlRect part);
 
+/** Clears a part of a plane that is `width` wide. */
+void fl_rect_clear(uint8_t *plane, int width, FlRect part);
+
 /** Copies the pixels that two rectangles of a frame share; from and to have one rectangle each. */
 void fl_rect_copy(const void *from, FlRect from_rect, void *to, FlRect to_rect, size_t pixel_bytes);
 

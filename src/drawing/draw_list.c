@@ -486,11 +486,11 @@ static bool fades(const FlDraw *draw, FlRect page, int x, int y)
     return true;
 }
 
-void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
-                       uint8_t *coverage)
+FlRect fl_draw_list_put_mask(const FlDrawList *draws, int region, int width, int height,
+                             uint8_t *coverage)
 {
     const FlRect page = {0, 0, width, height};
-    memset(coverage, 0, fl_rect_pixels(page));
+    FlRect around = {0, 0, 0, 0};
     for (int r = 0; r < draws->n; r++) {
         const FlDraw *draw = &draws->draw[r];
         const FlRect box = draw->area.box;
@@ -503,7 +503,17 @@ void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int heigh
                             ? 255
                             : fl_over(from[x], to[x]);
         }
+        if (draw->region == region)
+            around = fl_rect_or(around, box);
     }
+    return around;
+}
+
+void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
+                       uint8_t *coverage)
+{
+    memset(coverage, 0, (size_t)width * (size_t)height);
+    fl_draw_list_put_mask(draws, region, width, height, coverage);
 }
 
 void fl_draw_clear(FlDraw *draw)

@@ -163,6 +163,10 @@ FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const F
 void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
                        uint8_t *coverage);
 
+/** The same into a plane that is 0. Returns: a rectangle beyond which it stays so. */
+FlRect fl_draw_list_put_mask(const FlDrawList *draws, int region, int width, int height,
+                             uint8_t *coverage);
+
 /** The frame without paint: all draws composited, as width * height * 4 straight sRGBA. */
 void fl_draw_list_flat(const FlDrawList *draws, int width, int height, uint8_t *rgba);
 

@@ -41,13 +41,20 @@ void fl_mask_store_free(FlMaskStore *masks)
 bool fl_mask_store_put(FlMaskStore *masks, int region, int frame, const uint8_t *coverage,
                        GError **error)
 {
+    const FlRect page = {0, 0, masks->width, masks->height};
+    return fl_mask_store_put_part(masks, region, frame, coverage, page, error);
+}
+
+bool fl_mask_store_put_part(FlMaskStore *masks, int region, int frame, const uint8_t *coverage,
+                            FlRect part, GError **error)
+{
     const size_t block = (size_t)region * masks->n_frames + frame;
-    const FlRect box = fl_rect_of(coverage, masks->width, masks->height);
+    const FlRect box = fl_rect_within(coverage, masks->width, part);
     masks->boxes[block] = box;
     if (box.width == 0)
         return true;
     const size_t bytes = fl_rect_pixels(box);
-    g_autofree uint8_t *cropped = fl_alloc(bytes, 1, "a mask", error);
+    g_autofree uint8_t *cropped = fl_alloc_unset(bytes, 1, "a mask", error);
     if (!cropped)
         return false;
     fl_rect_copy(coverage, (FlRect){0, 0, masks->width, masks->height}, cropped, box, 1);

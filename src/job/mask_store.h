@@ -17,6 +17,10 @@ void fl_mask_store_free(FlMaskStore *masks); // NULL is fine
 bool fl_mask_store_put(FlMaskStore *masks, int region, int frame, const uint8_t *coverage,
                        GError **error);
 
+/** The same of a mask that is 0 beyond `part`. */
+bool fl_mask_store_put_part(FlMaskStore *masks, int region, int frame, const uint8_t *coverage,
+                            FlRect part, GError **error);
+
 /** Reads `part` of a mask, part.width * part.height bytes; all 0 if none was stored. */
 bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect part,
                        uint8_t *coverage, GError **error);

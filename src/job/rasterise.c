@@ -79,14 +79,10 @@ static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **
         return false;
     for (int p = 0; p < plan->n_painted; p++) {
         const int region = plan->painted[p].region;
-        bool drawn = false;
-        for (int r = 0; r < draws->n; r++)
-            drawn = drawn || draws->draw[r].region == region;
-        if (!drawn)
-            continue;
-        fl_draw_list_mask(draws, region, width, height, mask);
-        if (!fl_mask_store_put(plan->masks, region, frame, mask, error))
+        const FlRect box = fl_draw_list_put_mask(draws, region, width, height, mask);
+        if (!fl_mask_store_put_part(plan->masks, region, frame, mask, box, error))
             return false;
+        fl_rect_clear(mask, width, box);
     }
     return note_sight(plan, draws, error) &&
            fl_surround_put(plan->surround, frame, draws, plan->joins, plan->painted_of, edges,

@@ -46,11 +46,13 @@ static void add_seen(const FlDraw *draw, const uint8_t *free_of, int width, uint
         const FlColumns span = fl_area_row(&draw->area, y);
         const uint8_t *from = draw->coverage + (size_t)y * (size_t)box.width;
         const size_t row = (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
+        const uint8_t *free_there = free_of + row;
+        uint8_t *restrict to = coverage + row;
         for (FlColumns run = fl_next_run(from, span.first, span.last); run.first < run.last;
              run = fl_next_run(from, run.last, span.last))
-            for (int x = run.first; x < run.last; x++) {
-                const size_t p = row + (size_t)x; // two halves of a pixel make a whole one
-                coverage[p] = (uint8_t)MIN(coverage[p] + (from[x] * free_of[p] + 127) / 255, 255);
+            for (int x = run.first; x < run.last; x++) { // two halves of a pixel make a whole one
+                const uint8_t seen = (uint8_t)((from[x] * free_there[x] + 127) / 255);
+                to[x] = (uint8_t)MIN(to[x] + seen, 255);
             }
     }
 }
@@ -60,6 +62,21 @@ static void add_seen(const FlDraw *draw, const uint8_t *free_of, int width, uint
 static int opacity_of(const FlDraw *draw)
 {
     return draw->mix == FL_BLEND_MODE_OVER ? MAX(5 * draw->alpha - 4 * 255, 0) : 0;
+}
+
+/** What n coverages of an opaque layer leave free. */
+static void keep_free(const uint8_t *coverage, uint8_t *restrict free_of, int n)
+{
+    for (int x = 0; x < n; x++)
+        free_of[x] = (uint8_t)((free_of[x] * (255 - coverage[x]) + 127) / 255);
+}
+
+/** The same of one with an opacity. */
+static void keep_part_free(const uint8_t *coverage, int opacity, uint8_t *restrict free_of, int n)
+{
+    for (int x = 0; x < n; x++)
+        free_of[x] =
+            (uint8_t)((free_of[x] * (255 * 255 - coverage[x] * opacity) + 32512) / (255 * 255));
 }
 
 /** Takes a layer's share of what is free for those below it, within a part of the frame. */
@@ -75,8 +92,10 @@ static void hide_below(const FlDraw *draw, FlRect within, int width, uint8_t *fr
         uint8_t *row = free_of + (size_t)(box.y + y) * (size_t)width + box.x;
         for (FlColumns run = fl_next_run(from, first, last); run.first < run.last;
              run = fl_next_run(from, run.last, last))
-            for (int x = run.first; x < run.last; x++)
-                row[x] = (uint8_t)((row[x] * (255 * 255 - from[x] * opacity) + 32512) / 65025);
+            if (opacity == 255)
+                keep_free(from + run.first, row + run.first, run.last - run.first);
+            else
+                keep_part_free(from + run.first, opacity, row + run.first, run.last - run.first);
     }
 }
 
@@ -95,7 +114,8 @@ static bool lies_below(const FlDrawList *draws, int region, const FlSharing *sha
 typedef struct Frame {
     const FlDrawList *draws;
     uint8_t *const *near_seen; // by draw: its coverage near to where it is seen; NULL: not needed
-    uint8_t *free_of, *coverage, *seen;
+    uint8_t *free_of;
+    uint8_t *coverage; // 0, but for what is made of it between two masks that are stored
 } Frame;
 
 /** The same of a plane of the draw's box. */
@@ -105,7 +125,7 @@ static void add_coverage(const FlDraw *draw, const uint8_t *plane, int width, ui
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(&draw->area, y);
         const uint8_t *from = plane + (size_t)y * (size_t)box.width;
-        uint8_t *to = coverage + (size_t)(box.y + y) * (size_t)width + box.x;
+        uint8_t *restrict to = coverage + (size_t)(box.y + y) * (size_t)width + box.x;
         for (int x = span.first; x < span.last; x++)
             to[x] = (uint8_t)MIN(to[x] + from[x], 255);
     }
@@ -120,19 +140,23 @@ static uint8_t *near_seen(const FlDraw *draw, const uint8_t *free_of, int width,
 {
     const FlRect box = draw->area.box;
     const size_t n = fl_rect_pixels(box);
-    g_autofree int16_t *seen = fl_alloc(n, sizeof *seen, "a mask", error);
-    g_autofree uint32_t *rows = seen ? fl_alloc(n, sizeof *rows, "a mask", error) : NULL;
-    g_autofree uint32_t *sums = rows ? fl_alloc(n, sizeof *sums, "a mask", error) : NULL;
-    uint8_t *near = sums ? fl_alloc(n, 1, "a mask", error) : NULL;
+    g_autofree int16_t *seen = fl_alloc_unset(n, sizeof *seen, "a mask", error);
+    g_autofree uint32_t *rows = seen ? fl_alloc_unset(n, sizeof *rows, "a mask", error) : NULL;
+    g_autofree uint32_t *sums = rows ? fl_alloc_unset(n, sizeof *sums, "a mask", error) : NULL;
+    uint8_t *near = sums ? fl_alloc_unset(n, 1, "a mask", error) : NULL;
     if (!near)
         return NULL;
-    for (size_t p = 0; p < n; p++) {
-        const size_t at = (box.y + p / (size_t)box.width) * (size_t)width + box.x;
-        seen[p] = (int16_t)((draw->coverage[p] * free_of[at + p % (size_t)box.width] + 127) / 255);
+    for (int y = 0; y < box.height; y++) {
+        const uint8_t *free_there = free_of + (size_t)(box.y + y) * (size_t)width + box.x;
+        const size_t row = (size_t)y * (size_t)box.width;
+        for (int x = 0; x < box.width; x++)
+            seen[row + (size_t)x] =
+                (int16_t)((draw->coverage[row + (size_t)x] * free_there[x] + 127) / 255);
     }
     fl_window_sums(seen, box, reach_px, rows, sums);
+    const uint32_t side = (uint32_t)(2 * reach_px + 1);
     for (size_t p = 0; p < n; p++) { // a line of pixels that crosses the window is enough
-        const uint32_t share = MIN(sums[p] / (uint32_t)(2 * reach_px + 1), 255);
+        const uint32_t share = sums[p] < 255 * side ? sums[p] / side : 255;
         near[p] = (uint8_t)MAX(seen[p], (int)(draw->coverage[p] * share / 255));
     }
     return near;
@@ -159,24 +183,25 @@ static bool find_near_seen(const FlSurround *surround, const FlDrawList *draws, 
     return true;
 }
 
-/** Onto the coverage, the draws of the region's colour. Returns: whether there are any. */
-static bool add_alike(const FlSurround *surround, const Frame *frame, const FlSharing *sharing)
+/** Onto the coverage, the draws of the region's colour. Returns: the rectangle around them. */
+static FlRect add_alike(const FlSurround *surround, const Frame *frame, const FlSharing *sharing)
 {
-    bool any = false;
+    FlRect around = {0, 0, 0, 0};
     for (int r = 0; r < frame->draws->n; r++)
         if (sharing[r] == FL_SHARING_ALIKE && frame->near_seen[r]) {
             add_coverage(&frame->draws->draw[r], frame->near_seen[r], surround->width,
                          frame->coverage);
-            any = true;
+            around = fl_rect_or(around, frame->draws->draw[r].area.box);
         }
-    return any;
+    return around;
 }
 
-/** What of a frame the rim of the region may depend on: more than three borders around it. */
-static FlRect near_region(const FlSurround *surround, const Frame *frame)
+/** What of a frame the rim of the region in `own` may depend on: more than three borders around
+ * it. */
+static FlRect near_region(const FlSurround *surround, const Frame *frame, FlRect own)
 {
     const FlRect page = {0, 0, surround->width, surround->height};
-    const FlRect box = fl_rect_of(frame->coverage, page.width, page.height);
+    const FlRect box = fl_rect_within(frame->coverage, page.width, own);
     return box.width > 0 ? fl_rect_grown(box, 4 * reach_of(surround), page) : box;
 }
 
@@ -221,38 +246,53 @@ static FlRect around_together(const FlDrawList *draws, int region, const FlShari
     return around;
 }
 
-/** What is seen of a region and those of its colour. What is free is found around them only. */
-static void find_seen(const FlSurround *surround, int region, const Frame *frame,
+/** What is seen of a region and those of its colour, which `around` holds. What is free is found
+ * there only. */
+static void find_seen(const FlSurround *surround, int region, const Frame *frame, FlRect around,
                       const FlSharing *sharing)
 {
-    const FlRect around = around_together(frame->draws, region, sharing);
     const size_t width = (size_t)surround->width;
     for (int y = around.y; y < around.y + around.height; y++)
         memset(frame->free_of + (size_t)y * width + around.x, 255, (size_t)around.width);
-    memset(frame->seen, 0, width * (size_t)surround->height);
     for (int r = frame->draws->n - 1; r >= 0; r--) {
         const FlDraw *draw = &frame->draws->draw[r];
         if (is_together(draw, region, sharing[r]))
-            add_seen(draw, frame->free_of, surround->width, frame->seen);
+            add_seen(draw, frame->free_of, surround->width, frame->coverage);
         else
             hide_below(draw, around, surround->width, frame->free_of);
     }
 }
 
-/** The region with those that share its edges, and what is seen of it. */
-static bool put_region(FlSurround *surround, int number, int region, const Frame *frame,
+/** The region with those that share its edges. */
+static bool put_shared(FlSurround *surround, int number, int region, const Frame *frame,
                        const FlSharing *sharing, GError **error)
 {
-    fl_draw_list_mask(frame->draws, region, surround->width, surround->height, frame->coverage);
-    const FlRect near = near_region(surround, frame);
-    if (add_alike(surround, frame, sharing) &&
-        !fl_mask_store_put(surround->together, region, number, frame->coverage, error))
+    uint8_t *coverage = frame->coverage;
+    const FlRect own =
+        fl_draw_list_put_mask(frame->draws, region, surround->width, surround->height, coverage);
+    const FlRect near = near_region(surround, frame, own);
+    const FlRect alike = add_alike(surround, frame, sharing), both = fl_rect_or(own, alike);
+    if (alike.width > 0 &&
+        !fl_mask_store_put_part(surround->together, region, number, coverage, both, error))
         return false;
+    const FlRect all = fl_rect_or(both, near);
     if (add_bordering(surround, frame, sharing, near) &&
-        !fl_mask_store_put(surround->closed, region, number, frame->coverage, error))
+        !fl_mask_store_put_part(surround->closed, region, number, coverage, all, error))
         return false;
-    find_seen(surround, region, frame, sharing);
-    return fl_mask_store_put(surround->seen, region, number, frame->seen, error);
+    fl_rect_clear(coverage, surround->width, all);
+    return true;
+}
+
+/** What is seen of it. */
+static bool put_seen(FlSurround *surround, int number, int region, const Frame *frame,
+                     const FlSharing *sharing, GError **error)
+{
+    const FlRect around = around_together(frame->draws, region, sharing);
+    find_seen(surround, region, frame, around, sharing);
+    if (!fl_mask_store_put_part(surround->seen, region, number, frame->coverage, around, error))
+        return false;
+    fl_rect_clear(frame->coverage, surround->width, around);
+    return true;
 }
 
 /** Everything that hides what is below it. */
@@ -308,7 +348,8 @@ static bool put_regions(FlSurround *surround, int number, const Frame *frame, co
             continue;
         const bool any = find_sharing(draws, region, joins, edges, sharing);
         if ((any || lies_below(draws, region, sharing)) &&
-            !put_region(surround, number, region, frame, sharing, error))
+            !(put_shared(surround, number, region, frame, sharing, error) &&
+              put_seen(surround, number, region, frame, sharing, error)))
             return false;
     }
     return true;
@@ -330,11 +371,11 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
                      const int *painted_of, const FlSharedEdges *edges, GError **error)
 {
     const size_t n = (size_t)surround->width * (size_t)surround->height;
-    g_autofree uint8_t *planes = fl_alloc(3 * n, 1, "masks", error);
+    g_autofree uint8_t *planes = fl_alloc(2 * n, 1, "masks", error);
     g_autofree bool *shares = g_new0(bool, MAX(draws->n, 1));
     g_autofree uint8_t **near = g_new0(uint8_t *, MAX(draws->n, 1));
     find_sharers(surround, draws, joins, painted_of, edges, shares);
-    const Frame all = {draws, near, planes, planes + n, planes + 2 * n};
+    const Frame all = {draws, near, planes, planes + n};
     const bool done = planes && put_shown(surround, frame, draws, planes, error) &&
                       find_near_seen(surround, draws, shares, planes, near, error) &&
                       put_regions(surround, frame, &all, joins, painted_of, edges, error);
