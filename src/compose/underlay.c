@@ -13,10 +13,10 @@
 /** A layer's box with some room, and what is known of it. */
 typedef struct Part {
     FlRect box;
-    uint8_t *over;     // how far what covers the pixel from above hides, 0..255; 0: nothing does
-    uint8_t *seen;     // 1: the layer is seen
-    uint16_t *to_open; // distances, fifths of a px: to what nothing above covers
-    uint16_t *to_seen; // to where the layer is seen
+    uint8_t *over;    // how far what covers the pixel from above hides, 0..255; 0: nothing does
+    uint8_t *seen;    // 1: the layer is seen
+    int16_t *to_open; // distances, fifths of a px: to what nothing above covers
+    int16_t *to_seen; // to where the layer is seen
 } Part;
 
 static void part_clear(Part *part)
@@ -40,50 +40,63 @@ static bool part_init(Part *part, const FlLayer *layer, int width, int height, G
            (part->to_seen = fl_alloc_unset(n, sizeof *part->to_seen, "a matte", error));
 }
 
-/** A row of a distance transform, as far as the row before it tells: no pixel waits for another. */
-static void lower_from_before(uint16_t *restrict row, const uint16_t *restrict before, int width)
+/** The first column from x on with another value than that of x. */
+static int end_of_run(const int16_t *row, int x, int width)
+{
+    const int16_t value[4] = {row[x], row[x], row[x], row[x]};
+    while (x + 4 <= width && memcmp(row + x, value, sizeof value) == 0)
+        x += 4;
+    while (x < width && row[x] == value[0])
+        x++;
+    return x;
+}
+
+/** Distances along a row from its pixels that are 0; others come in as FAR. */
+static void measure_row(int16_t *row, int width)
+{
+    for (int x = 0, end; x < width; x = end) {
+        end = end_of_run(row, x, width);
+        if (row[x] == 0)
+            continue;
+        const int from_left = x > 0 ? SIDE : FAR, from_right = end < width ? SIDE : FAR;
+        const int n = end - x;
+        for (int k = 0; k < n; k++) {
+            const int near = MIN(from_left + k * SIDE, from_right + (n - 1 - k) * SIDE);
+            row[x + k] = (int16_t)MIN(near, FAR);
+        }
+    }
+}
+
+static int16_t least(int16_t a, int16_t b)
+{
+    return MIN(a, b);
+}
+
+/** Lowers a row's distances to what those of the row before or after it tell. */
+static void lower_from(const int16_t *beside, int16_t *restrict row, int width)
 {
     for (int x = 0; x < width; x++)
-        row[x] = MIN(row[x], (uint16_t)(before[x] + SIDE));
+        row[x] = least(row[x], (int16_t)(beside[x] + SIDE));
     for (int x = 1; x < width; x++)
-        row[x] = MIN(row[x], (uint16_t)(before[x - 1] + CORNER));
+        row[x] = least(row[x], (int16_t)(beside[x - 1] + CORNER));
     for (int x = 0; x < width - 1; x++)
-        row[x] = MIN(row[x], (uint16_t)(before[x + 1] + CORNER));
+        row[x] = least(row[x], (int16_t)(beside[x + 1] + CORNER));
 }
 
-/** The same along rows of two planes, which do not wait for each other; on: 1 to the right, -1 to
- * the left. */
-static void lower_along(uint16_t *restrict one, uint16_t *restrict other, int width, int on)
+/**
+ * Distances from the pixels that are 0; others come in as FAR. The steps of a shortest way may come
+ * in any order: those along a row first, so that from row to row no pixel waits for its neighbour.
+ */
+static void measure(int16_t *plane, int width, int height)
 {
-    int least = FAR, other_least = FAR; // less a step for each column up to this one
-    for (int k = 0, x = on > 0 ? 0 : width - 1; k < width; k++, x += on) {
-        least = MIN(least, one[x] - k * SIDE);
-        other_least = MIN(other_least, other[x] - k * SIDE);
-        one[x] = (uint16_t)(least + k * SIDE);
-        other[x] = (uint16_t)(other_least + k * SIDE);
-    }
-}
-
-/** Distances of both planes from the pixels that are 0; others come in as FAR. */
-static void measure(Part *part)
-{
-    const ptrdiff_t width = part->box.width;
-    for (int y = 0; y < part->box.height; y++) {
-        uint16_t *open = part->to_open + y * width, *seen = part->to_seen + y * width;
-        if (y > 0) {
-            lower_from_before(open, open - width, part->box.width);
-            lower_from_before(seen, seen - width, part->box.width);
-        }
-        lower_along(open, seen, part->box.width, 1);
-    }
-    for (int y = part->box.height - 1; y >= 0; y--) {
-        uint16_t *open = part->to_open + y * width, *seen = part->to_seen + y * width;
-        if (y < part->box.height - 1) {
-            lower_from_before(open, open + width, part->box.width);
-            lower_from_before(seen, seen + width, part->box.width);
-        }
-        lower_along(open, seen, part->box.width, -1);
-    }
+    for (int y = 0; y < height; y++)
+        measure_row(plane + (size_t)y * (size_t)width, width);
+    for (int y = 1; y < height; y++)
+        lower_from(plane + (size_t)(y - 1) * (size_t)width, plane + (size_t)y * (size_t)width,
+                   width);
+    for (int y = height - 2; y >= 0; y--)
+        lower_from(plane + (size_t)(y + 1) * (size_t)width, plane + (size_t)y * (size_t)width,
+                   width);
 }
 
 /** Whether anything lies over the layer's shape. */
@@ -132,7 +145,7 @@ static void mark_blocks(const uint8_t *seen, const uint8_t *below, int width, ui
 }
 
 /** Clears the distances of the pixels of a row that blocks hold. */
-static void clear_blocks(const uint8_t *block, int width, uint16_t *row)
+static void clear_blocks(const uint8_t *block, int width, int16_t *restrict row)
 {
     for (int x = 0; x + 1 < width; x++)
         row[x] = block[x] ? 0 : row[x];
@@ -153,7 +166,8 @@ static void find_ways(Part *part)
         clear_blocks(block, w, part->to_seen + p);
         clear_blocks(block, w, part->to_seen + q);
     }
-    measure(part);
+    measure(part->to_open, w, h);
+    measure(part->to_seen, w, h);
 }
 
 /** Raises each of n values to the one that comes `reach` later, if that is more. */
