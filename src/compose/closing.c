@@ -9,10 +9,10 @@ typedef struct Around {
     uint32_t free, taken;
 } Around;
 
-static Around around_of(const uint8_t *coverage, const uint8_t *others, size_t i)
+static Around around_of(uint8_t coverage, uint8_t others)
 {
-    const uint32_t free = 255u - coverage[i];
-    return (Around){free, free * others[i] / 255};
+    const uint32_t free = 255u - coverage;
+    return (Around){free, free * others / 255};
 }
 
 static void add(Around *sum, Around one)
@@ -25,19 +25,23 @@ static void take(Around *sum, Around one)
     sum->free -= one.free, sum->taken -= one.taken;
 }
 
-/** Sums over 2 r + 1 columns, one for each column of the box. */
-static void sum_row(const uint8_t *coverage, const uint8_t *others, size_t row, int width,
-                    FlRect box, int r, Around *out)
+/**
+ * Sums over 2 r + 1 columns, one for each column of the box. one: room for each pixel of these,
+ * 2 r more than the box has; what is beyond the row stays as it is.
+ */
+static void sum_row(const uint8_t *coverage, const uint8_t *others, int width, FlRect box, int r,
+                    Around *restrict one, Around *restrict out)
 {
+    const int first = box.x - r;
+    for (int x = MAX(first, 0); x < MIN(box.x + box.width + r, width); x++)
+        one[x - first] = around_of(coverage[x], others[x]);
     Around sum = {0};
-    for (int x = MAX(box.x - r, 0); x < MIN(box.x + r, width); x++)
-        add(&sum, around_of(coverage, others, row + (size_t)x));
-    for (int x = box.x; x < box.x + box.width; x++) {
-        if (x + r < width)
-            add(&sum, around_of(coverage, others, row + (size_t)(x + r)));
-        out[x - box.x] = sum;
-        if (x - r >= 0)
-            take(&sum, around_of(coverage, others, row + (size_t)(x - r)));
+    for (int x = 0; x < 2 * r; x++)
+        add(&sum, one[x]);
+    for (int x = 0; x < box.width; x++) {
+        add(&sum, one[x + 2 * r]);
+        out[x] = sum;
+        take(&sum, one[x]);
     }
 }
 
@@ -66,12 +70,15 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
     const int r = radius_px, y0 = MAX(box.y - r, 0), y1 = MIN(box.y + box.height + r, height);
     g_assert(r >= 1 && r <= FL_CLOSING_MAX_PX);
     const size_t n = (size_t)box.width;
-    g_autofree Around *rows = fl_alloc((size_t)(y1 - y0) * n, sizeof *rows, "a matte", error);
+    g_autofree Around *rows = fl_alloc_unset((size_t)(y1 - y0) * n, sizeof *rows, "a matte", error);
     g_autofree Around *sums = rows ? fl_alloc(n, sizeof *sums, "a row of a matte", error) : NULL;
-    if (!sums)
+    g_autofree Around *one =
+        sums ? fl_alloc(n + 2 * (size_t)r, sizeof *one, "a row of a matte", error) : NULL;
+    if (!one)
         return false;
     for (int y = y0; y < y1; y++)
-        sum_row(coverage, others, (size_t)y * width, width, box, r, rows + (size_t)(y - y0) * n);
+        sum_row(coverage + (size_t)y * width, others + (size_t)y * width, width, box, r, one,
+                rows + (size_t)(y - y0) * n);
     const uint32_t window = 255u * (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
     for (int y = y0; y < MIN(box.y + r, y1); y++)
         add_row(sums, rows + (size_t)(y - y0) * n, n);
@@ -86,17 +93,31 @@ bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width,
     return true;
 }
 
+/** Three rows of coverage. */
+typedef struct Rows {
+    const uint8_t *own, *above, *below;
+} Rows;
+
+static int16_t inside_at(const Rows *rows, int x, int left, int right)
+{
+    const uint8_t beside = MIN(rows->own[left], rows->own[right]);
+    const uint8_t least = MIN(MIN(rows->own[x], beside), MIN(rows->above[x], rows->below[x]));
+    return least > 0 ? 255 : rows->own[x];
+}
+
 void fl_closing_inside(const uint8_t *coverage, int width, int height, FlRect box, int16_t *inside)
 {
+    const int end = box.x + box.width;
     for (int y = box.y; y < box.y + box.height; y++) {
-        const uint8_t *row = coverage + (size_t)y * (size_t)width;
-        const uint8_t *above = y > 0 ? row - width : row;
-        const uint8_t *below = y + 1 < height ? row + width : row;
-        for (int x = box.x; x < box.x + box.width; x++) {
-            const uint8_t left = row[MAX(x - 1, 0)], right = row[MIN(x + 1, width - 1)];
-            const bool within = row[x] && left && right && above[x] && below[x];
-            *inside++ = within ? 255 : row[x];
-        }
+        const uint8_t *own = coverage + (size_t)y * (size_t)width;
+        const Rows rows = {own, y > 0 ? own - width : own, y + 1 < height ? own + width : own};
+        int16_t *restrict row = inside + (size_t)(y - box.y) * (size_t)box.width;
+        for (int x = MAX(box.x, 1); x < MIN(end, width - 1); x++)
+            row[x - box.x] = inside_at(&rows, x, x - 1, x + 1);
+        if (box.x == 0)
+            row[0] = inside_at(&rows, 0, 0, MIN(1, width - 1));
+        if (end == width)
+            row[width - 1 - box.x] = inside_at(&rows, width - 1, MAX(width - 2, 0), width - 1);
     }
 }
 
@@ -136,11 +157,11 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Windows, windows_clear)
 static bool windows_init(Windows *windows, size_t n, GError **error)
 {
     *windows = (Windows){0};
-    return (windows->rows = fl_alloc(n, sizeof *windows->rows, "a matte", error)) &&
-           (windows->around = fl_alloc(n, sizeof *windows->around, "a matte", error)) &&
-           (windows->wide = fl_alloc(n, sizeof *windows->wide, "a matte", error)) &&
-           (windows->paint = fl_alloc(n, sizeof *windows->paint, "a matte", error)) &&
-           (windows->weighed = fl_alloc(n, sizeof *windows->weighed, "a matte", error));
+    return (windows->rows = fl_alloc_unset(n, sizeof *windows->rows, "a matte", error)) &&
+           (windows->around = fl_alloc_unset(n, sizeof *windows->around, "a matte", error)) &&
+           (windows->wide = fl_alloc_unset(n, sizeof *windows->wide, "a matte", error)) &&
+           (windows->paint = fl_alloc_unset(n, sizeof *windows->paint, "a matte", error)) &&
+           (windows->weighed = fl_alloc_unset(n, sizeof *windows->weighed, "a matte", error));
 }
 
 /** What is left of the contrast, of FL_AMOUNT_ONE: less the less of the window is the shape's. */

@@ -154,11 +154,11 @@ static bool tile_init(Tile *tile, const FlEdgeMap *edges, int draw, FlRect box, 
         shape_in(&edges->draws->draw[draw], fl_rect_grown(box, fl_closing_reach(radius_px), frame));
     *tile = (Tile){.part = part, .around = fl_rect_grown(part, radius_px, frame)};
     const size_t n = fl_rect_pixels(part), around = fl_rect_pixels(tile->around);
-    return (tile->amounts = fl_alloc(n, sizeof *tile->amounts, "a matte", error)) &&
-           (tile->inside = fl_alloc(n, sizeof *tile->inside, "a matte", error)) &&
+    return (tile->amounts = fl_alloc_unset(n, sizeof *tile->amounts, "a matte", error)) &&
+           (tile->inside = fl_alloc_unset(n, sizeof *tile->inside, "a matte", error)) &&
            (tile->share = fl_alloc(n, 1, "a matte", error)) &&
            (tile->coverage = fl_alloc(around, 1, "a matte", error)) &&
-           (tile->others = fl_alloc(around, 1, "a matte", error));
+           (tile->others = fl_alloc_unset(around, 1, "a matte", error));
 }
 
 /** Where the part is in what is around it. */
@@ -166,6 +166,13 @@ static FlRect part_of(const Tile *tile)
 {
     const FlRect around = tile->around, part = tile->part;
     return (FlRect){part.x - around.x, part.y - around.y, part.width, part.height};
+}
+
+/** What hides counts by how much of a run with an opacity it would. */
+static void count_hidden(int alpha, uint8_t counts[256])
+{
+    for (int hidden = 0; hidden < 256; hidden++)
+        counts[hidden] = (uint8_t)MIN(hidden * 255 / MAX(alpha, 1), 255);
 }
 
 /**
@@ -176,18 +183,17 @@ static bool find_share(Tile *tile, const FlEdgeMap *edges, int draw, int radius_
 {
     const bool *overlap = edges->overlap + (size_t)(draw + 1) * (size_t)edges->n;
     const FlRect around = tile->around;
-    const int alpha = MAX(edges->draws->draw[draw].alpha, 1);
-    uint8_t *others = tile->others, any = 0;
+    uint8_t *others = tile->others, any = 0, counts[256];
+    count_hidden(edges->draws->draw[draw].alpha, counts);
     for (int y = 0; y < around.height; y++) {
         const size_t first = in_frame(edges, around, y);
         const uint16_t *row = edges->top + first;
         const uint8_t *hidden = edges->hidden + first;
         for (int x = 0; x < around.width; x++) {
             const bool other = row[x] && row[x] != draw + 1 && !overlap[row[x]];
-            any |= *others++ = other ? (uint8_t)MIN(hidden[x] * 255 / alpha, 255) : 0;
+            any |= *others++ = other ? counts[hidden[x]] : 0;
         }
     }
-    memset(tile->share, 0, fl_rect_pixels(tile->part));
     return !any || fl_closing_share(tile->coverage, tile->others, around.width, around.height,
                                     part_of(tile), radius_px, tile->share, error);
 }
@@ -250,7 +256,7 @@ bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *pai
         return true;
     const float border = painted->style->exemplar->border_px;
     const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
-    g_autofree int16_t *copy = fl_alloc(n, sizeof *copy, "a layer", error);
+    g_autofree int16_t *copy = fl_alloc_unset(n, sizeof *copy, "a layer", error);
     if (!copy)
         return false;
     memcpy(copy, amounts, n * sizeof *copy);

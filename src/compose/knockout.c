@@ -58,9 +58,9 @@ static bool tile_init(Tile *tile, int radius_px, GError **error)
 {
     const size_t side = (size_t)(TILE_PX + 2 * radius_px), n = side * side;
     *tile = (Tile){0};
-    return (tile->inside = fl_alloc(n, sizeof *tile->inside, "a matte", error)) &&
-           (tile->rows = fl_alloc(n, sizeof *tile->rows, "a matte", error)) &&
-           (tile->sums = fl_alloc(n, sizeof *tile->sums, "a matte", error));
+    return (tile->inside = fl_alloc_unset(n, sizeof *tile->inside, "a matte", error)) &&
+           (tile->rows = fl_alloc_unset(n, sizeof *tile->rows, "a matte", error)) &&
+           (tile->sums = fl_alloc_unset(n, sizeof *tile->sums, "a matte", error));
 }
 
 /** Sums what is inside the shape. */
