@@ -49,6 +49,7 @@ typedef struct Fill {
     FlColourLaw law;
     int32_t turn[3]; // density that each channel gains where the second pigment prevails by one
     uint8_t least[FL_AMOUNTS / LEAST_STEP]; // the greatest of the least alphas up to a step
+    int n_least;                            // of them are known: most paint is far from the last
     int turn_at;                            // the amount at which channels turn
     uint8_t least_there;                    // the least alpha of that
 } Fill;
@@ -80,17 +81,24 @@ static uint8_t least_alpha_at(const Fill *fill, const FlColouring *colouring, co
 static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *colouring,
                       const FlScale *scale, const uint8_t rgb[3])
 {
-    uint8_t least = 0;
     memcpy(fill->rgb, rgb, 3);
     fill->known = true;
+    fill->n_least = 0;
     fl_colour_law_init(&fill->law, rgb, colouring->paper, ink->spread);
     turns_of(rgb, colouring->pigments, fill->turn);
-    for (int i = 0; i < FL_AMOUNTS / LEAST_STEP; i++) {
-        const uint8_t own = least_alpha_at(fill, colouring, scale, i * LEAST_STEP);
-        fill->least[i] = least = MAX(least, own);
-    }
     fill->turn_at = fl_colour_law_turn(&fill->law);
     fill->least_there = least_alpha_at(fill, colouring, scale, fill->turn_at);
+}
+
+/* The greatest of the least alphas up to a step. */
+static int least_up_to(Fill *fill, const FlColouring *colouring, const FlScale *scale, int step)
+{
+    for (int i = fill->n_least; i <= step; i++) {
+        const uint8_t own = least_alpha_at(fill, colouring, scale, i * LEAST_STEP);
+        fill->least[i] = i > 0 ? MAX(fill->least[i - 1], own) : own;
+        fill->n_least = i + 1;
+    }
+    return fill->least[step];
 }
 
 /* Thick paint shows the second pigment more. play: in 1 / FL_PLAY_ONE. */
@@ -106,14 +114,15 @@ static void turn_hue(const Fill *fill, int amount, int play, uint8_t colour[3])
     }
 }
 
-static void colour_amount(const Fill *fill, const FlColouring *colouring, const FlScale *scale,
+static void colour_amount(Fill *fill, const FlColouring *colouring, const FlScale *scale,
                           int amount, int play, uint8_t rgba[4])
 {
     uint8_t colour[3];
     fl_colour_law_at(&fill->law, amount, colour);
     if (colouring->play)
         turn_hue(fill, amount, play, colour);
-    int opacity = MAX(opacity_of(colouring->medium, amount), fill->least[amount / LEAST_STEP]);
+    int opacity = MAX(opacity_of(colouring->medium, amount),
+                      least_up_to(fill, colouring, scale, amount / LEAST_STEP));
     if (amount > fill->turn_at)
         opacity = MAX(opacity, fill->least_there);
     fl_lift(scale, colour, colouring->paper, opacity, rgba);
@@ -280,8 +289,8 @@ static void take_alpha(const FlPaintedPart *painted, const int16_t *amounts, con
 /** Fills that have been met, each at the place of its colour: a later one takes it. */
 #define FILLS 1024
 
-static const Fill *find_fill(Fill *fills, const FlInk *ink, const FlColouring *colouring,
-                             const FlScale *scale, const uint8_t *rgb)
+static Fill *find_fill(Fill *fills, const FlInk *ink, const FlColouring *colouring,
+                       const FlScale *scale, const uint8_t *rgb)
 {
     const uint32_t colour = (uint32_t)(rgb[0] << 16 | rgb[1] << 8 | rgb[2]);
     Fill *fill = &fills[(colour * 2654435761u >> 16) % FILLS];
