@@ -51,6 +51,26 @@ static int mixed_edge(int covered, int above, int cosine256)
                          : chance + (behind - chance) * cosine256 / 256;
 }
 
+/** Whether an edge runs through a pixel. */
+static bool is_partial(uint8_t value)
+{
+    return value > 0 && value < 255;
+}
+
+/** A row but for the pixels through which both edges run. Returns: whether there are any. */
+static bool visible_row(const uint8_t *coverage, const uint8_t *above, FlColumns span,
+                        uint8_t *restrict visible)
+{
+    uint8_t any = 0;
+    for (int x = span.first; x < span.last; x++) {
+        const uint8_t c = coverage[x], u = above[x];
+        const uint8_t of_full = c == 255 ? 255 - u : 0;
+        visible[x] = u == 0 ? c : of_full;
+        any |= (uint8_t)((uint8_t)(c - 1) < 254) & (uint8_t)((uint8_t)(u - 1) < 254);
+    }
+    return any;
+}
+
 void fl_visibility_visible(const FlVisibleShape *shape, const uint8_t *above, int width, int height,
                            uint8_t *visible)
 {
@@ -61,15 +81,17 @@ void fl_visibility_visible(const FlVisibleShape *shape, const uint8_t *above, in
     for (int row = 0; row < box.height; row++) {
         const FlColumns span = fl_area_row(shape->area, row);
         const int y = box.y + row;
-        for (int column = span.first; column < span.last; column++) {
-            const int x = box.x + column;
-            const int c = shape->coverage[(size_t)row * box.width + column];
-            const int u = above[(size_t)y * width + x];
-            int v = u == 0 ? c : c == 255 ? 255 - u : 0;
-            if (c > 0 && c < 255 && u > 0 && u < 255)
-                v = mixed_edge(c, u, cosine(gradient(&lower, x, y), gradient(&upper, x, y)));
-            visible[(size_t)row * box.width + column] = (uint8_t)v;
-        }
+        const uint8_t *coverage = shape->coverage + (size_t)row * box.width;
+        const uint8_t *hidden = above + (size_t)y * width + box.x;
+        uint8_t *seen = visible + (size_t)row * box.width;
+        if (!visible_row(coverage, hidden, span, seen))
+            continue;
+        for (int column = span.first; column < span.last; column++)
+            if (is_partial(coverage[column]) && is_partial(hidden[column])) {
+                const int x = box.x + column;
+                const int angle = cosine(gradient(&lower, x, y), gradient(&upper, x, y));
+                seen[column] = (uint8_t)mixed_edge(coverage[column], hidden[column], angle);
+            }
     }
 }
 
