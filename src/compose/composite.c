@@ -65,7 +65,7 @@ static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion 
     const FlDraw *draw = &edges->draws->draw[r];
     const FlPaintedPart part = part_of(painted);
     g_autofree int16_t *amounts =
-        fl_alloc(fl_rect_pixels(draw->area.box), sizeof *amounts, "a layer", error);
+        fl_alloc_unset(fl_rect_pixels(draw->area.box), sizeof *amounts, "a layer", error);
     if (!amounts)
         return NULL;
     fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
@@ -106,7 +106,7 @@ static bool colour_layer(FlLayer *layer, const Stack *stack, const FlPaintedRegi
     const FlUneven uneven = uneven_of(stack, painted);
     g_autofree int8_t *play = NULL;
     if (colouring->pigments > 0) {
-        if (!(play = fl_alloc(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
+        if (!(play = fl_alloc_unset(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
             return false;
         fl_play_of_pigments(&uneven, &layer->area, amounts, play);
     }
@@ -388,8 +388,8 @@ static bool compose(FlComposite *composite, const FlComposeInput *input, int fra
     if (background->pattern && !picture)
         return false;
     backdrop.rgba = picture ? picture->rgba : NULL;
-    if (!(composite->rgba = fl_alloc(values, 1, "a frame", error)) ||
-        (with_16 && !(composite->rgba16 = fl_alloc(values, 2, "a frame", error))))
+    if (!(composite->rgba = fl_alloc_unset(values, 1, "a frame", error)) ||
+        (with_16 && !(composite->rgba16 = fl_alloc_unset(values, 2, "a frame", error))))
         return false;
     const bool linear = input->linear;
     fl_layers_compose(composite->layers, composite->n_layers, &backdrop, width, height, linear,
@@ -398,7 +398,7 @@ static bool compose(FlComposite *composite, const FlComposeInput *input, int fra
         fl_layers_compose16(composite->layers, composite->n_layers, &backdrop, width, height,
                             linear, composite->rgba16);
     if (input->layers_apart && !background->none) {
-        if (!(composite->ground = fl_alloc(values, 1, "a background", error)))
+        if (!(composite->ground = fl_alloc_unset(values, 1, "a background", error)))
             return false;
         fl_layers_compose(NULL, 0, &backdrop, width, height, linear, composite->ground);
     }

@@ -14,7 +14,7 @@ static uint16_t *find_owners(const FlComposeInput *input, const FlDrawList *draw
 {
     const size_t width = (size_t)fl_drawing_width(input->drawing);
     const size_t n = width * (size_t)fl_drawing_height(input->drawing);
-    uint16_t *owner = fl_alloc(n, sizeof *owner, "a matte", error);
+    uint16_t *owner = fl_alloc_unset(n, sizeof *owner, "a matte", error);
     if (!owner)
         return NULL;
     memset(owner, 0xff, n * sizeof *owner);
@@ -56,7 +56,7 @@ static bool find_exposure(const FlComposeInput *input, const FlDrawList *draws, 
     const FlRect rect = painted->rect;
     if ((*exposure = painted->exposure) > 0 || painted->unseen)
         return true;
-    g_autofree uint8_t *mask = fl_alloc(fl_rect_pixels(rect), 1, "a mask", error);
+    g_autofree uint8_t *mask = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
     if (!mask)
         return false;
     int seen = 0;

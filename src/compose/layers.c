@@ -116,8 +116,8 @@ bool fl_layer_pack(FlLayer *layer, GError **error)
               fl_alloc((size_t)layer->area.box.height + 1, sizeof *runs->first, "a layer", error)))
         return false;
     find_runs(layer, runs, &n, &pixels);
-    if (!(runs->rgba = fl_alloc(pixels, 4, "a layer", error)) ||
-        !(runs->run = fl_alloc(n, sizeof *runs->run, "a layer", error)))
+    if (!(runs->rgba = fl_alloc_unset(pixels, 4, "a layer", error)) ||
+        !(runs->run = fl_alloc_unset(n, sizeof *runs->run, "a layer", error)))
         return false;
     find_runs(layer, runs, &n, &pixels);
     g_clear_pointer(&layer->rgba, free);
