@@ -87,6 +87,10 @@ static void hide_tile(const Tile *tile, const Windows *w, const int16_t *amounts
         const uint32_t down = side_around(w->box.y + y, w->height, w->radius_px);
         for (int x = own.x; x < own.x + own.width; x++) {
             const size_t p = (size_t)y * (size_t)w->box.width + (size_t)x;
+            if (amounts[p] >= HIDES_AMOUNT) { // wherever it is
+                knockout[p] = 255;
+                continue;
+            }
             const uint64_t all = 255ull * down * side_around(w->box.x + x, w->width, w->radius_px);
             knockout[p] = (uint8_t)hidden(amounts[p], (uint32_t)((uint64_t)sums[x] * ONE / all));
         }
