@@ -486,6 +486,22 @@ static bool fades(const FlDraw *draw, FlRect page, int x, int y)
     return true;
 }
 
+static bool is_faint(uint8_t coverage)
+{
+    return (uint8_t)(coverage - 1) < HALF - 1;
+}
+
+/** A row over what is below it. Returns: whether some pixel of it is less than half covered. */
+static bool put_over(const uint8_t *from, FlColumns span, uint8_t *restrict to)
+{
+    uint8_t any = 0;
+    for (int x = span.first; x < span.last; x++) {
+        any |= is_faint(from[x]);
+        to[x] = fl_over(from[x], to[x]);
+    }
+    return any;
+}
+
 FlRect fl_draw_list_put_mask(const FlDrawList *draws, int region, int width, int height,
                              uint8_t *coverage)
 {
@@ -498,10 +514,11 @@ FlRect fl_draw_list_put_mask(const FlDrawList *draws, int region, int width, int
             const FlColumns span = fl_area_row(&draw->area, y);
             const uint8_t *from = draw->coverage + (size_t)y * (size_t)box.width;
             uint8_t *to = coverage + (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
+            if (!put_over(from, span, to))
+                continue;
             for (int x = span.first; x < span.last; x++)
-                to[x] = from[x] > 0 && from[x] < HALF && fades(draw, page, x, y)
-                            ? 255
-                            : fl_over(from[x], to[x]);
+                if (is_faint(from[x]) && fades(draw, page, x, y))
+                    to[x] = 255;
         }
         if (draw->region == region)
             around = fl_rect_or(around, box);
