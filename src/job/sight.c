@@ -55,9 +55,9 @@ static void add_cover(const FlSight *sight, const FlDraw *draw, int *run, uint8_
             memset(full, 1, (size_t)box.width);
         for (int x = 0; x < box.width; x++) {
             run[x] = full[x] ? run[x] + 1 : 0;
-            if (y >= reach && run[x] > 2 * reach)
-                row[x] = 1;
         }
+        for (int x = 0; x < box.width && y >= reach; x++)
+            row[x] |= run[x] > 2 * reach;
     }
 }
 
