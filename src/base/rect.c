@@ -11,8 +11,12 @@ bool fl_is_blank(const uint8_t *bytes, size_t n)
 static FlColumns span_of(const uint8_t *row, int width)
 {
     FlColumns span = {0, width};
+    while (span.first + 8 <= width && fl_eight_blank(row + span.first))
+        span.first += 8;
     while (!row[span.first])
         span.first++;
+    while (span.last >= 8 && fl_eight_blank(row + span.last - 8))
+        span.last -= 8;
     while (!row[span.last - 1])
         span.last--;
     return span;
