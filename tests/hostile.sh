@@ -218,10 +218,10 @@ crash_one() { # crash_one ARGUMENT...: flat, and the process that draws gets a s
     local painter drawing=''
     "$program" "${large[@]}" "$@" >out 2>err &
     painter=$!
-    for _ in $(seq 300); do
-        # Processes that read have no children, and those that wait take no time.
+    for _ in $(seq 1200); do
+        # Processes that read have no children; those that wait, or draw a simple frame, take less time.
         # shellcheck disable=SC2046,SC2086 # lists
-        drawing=$(children 1 $(children 0 $painter)) && [ -n "$drawing" ] && break
+        drawing=$(children 3 $(children 0 $painter)) && [ -n "$drawing" ] && break
         sleep 0.1
     done
     # shellcheck disable=SC2086
