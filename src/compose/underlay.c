@@ -192,6 +192,7 @@ static void find_hides(const Part *part, int y, uint8_t *hides)
         for (int x = 0; x < width; x++)
             own[x] = MAX(own[x], over[x]);
     }
+    G_STATIC_ASSERT(BESIDE_PX == 3);
     raise_by(hides, padded - 1, 1); // of two, four and then seven
     raise_by(hides, padded - 3, 2);
     raise_by(hides, width, BESIDE_PX);

@@ -54,7 +54,7 @@ static int mixed_edge(int covered, int above, int cosine256)
 /** Whether an edge runs through a pixel. */
 static bool is_partial(uint8_t value)
 {
-    return value > 0 && value < 255;
+    return (uint8_t)(value - 1) < 254;
 }
 
 /** A row but for the pixels through which both edges run. Returns: whether there are any. */
@@ -66,7 +66,7 @@ static bool visible_row(const uint8_t *coverage, const uint8_t *above, FlColumns
         const uint8_t c = coverage[x], u = above[x];
         const uint8_t of_full = c == 255 ? 255 - u : 0;
         visible[x] = u == 0 ? c : of_full;
-        any |= (uint8_t)((uint8_t)(c - 1) < 254) & (uint8_t)((uint8_t)(u - 1) < 254);
+        any |= is_partial(c) & is_partial(u);
     }
     return any;
 }

@@ -157,10 +157,11 @@ static double cost_of(const FlPainter *painter)
     return painter->cost_s > 0 ? painter->cost_s : 3e-6 * painter->plan->area_px;
 }
 
-/* A region that rests costs nothing, but it does when it moves again. */
-static void note_cost(FlPainter *painter, bool together)
+/* A region that rests costs nothing, but it does when it moves again; and a held frame shows the
+ * picture of an earlier step. */
+static void note_cost(FlPainter *painter, int step, bool together)
 {
-    if (painter->result.stats.n_levels > 0)
+    if (step % painter->plan->settings.hold == 0 && painter->result.stats.n_levels > 0)
         painter->cost_s = painter->result.seconds * (together ? fl_schedule_gain() : 1);
 }
 
@@ -174,7 +175,7 @@ bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *
     if (!fl_schedule_run(items, painters->n, do_one, &all, error))
         return false;
     for (int k = 0; k < painters->n; k++)
-        note_cost(&painters->painter[items[k].index], items[k].together);
+        note_cost(&painters->painter[items[k].index], step, items[k].together);
     return true;
 }
 
