@@ -66,7 +66,7 @@ static bool visible_row(const uint8_t *coverage, const uint8_t *above, FlColumns
         const uint8_t c = coverage[x], u = above[x];
         const uint8_t of_full = c == 255 ? 255 - u : 0;
         visible[x] = u == 0 ? c : of_full;
-        any |= is_partial(c) & is_partial(u);
+        any |= is_partial(c) && is_partial(u);
     }
     return any;
 }
