@@ -86,9 +86,25 @@ static void turn_patterns(xmlNode *node)
     }
 }
 
+static void drop_masks(xmlNode *node)
+{
+    for (; node; node = node->next) {
+        if (node->type != XML_ELEMENT_NODE)
+            continue;
+        g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+        if (fl_is_one_of(node, shapes) && style && strstr((const char *)style, "mask")) {
+            g_autofree char *none = g_strconcat((const char *)style, ";mask:none", NULL);
+            xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)none);
+        }
+        xmlUnsetProp(node, (const xmlChar *)"mask");
+        drop_masks(node->children);
+    }
+}
+
 void fl_paint_probe_prepare(xmlDoc *doc)
 {
     xmlNode *root = xmlDocGetRootElement(doc);
+    drop_masks(root);
     shrink_images(root);
     turn_children(root);
     turn_patterns(root->children);

@@ -11,6 +11,7 @@
 bool fl_paint_probe_is_needed(xmlDoc *doc);
 
 /**
+ * Leaves out masks, which hide paint and do not change it, but are most of what librsvg would do.
  * Makes every image one grey pixel, since cairo's script surface would store it, and rotates
  * everything: that surface fails for axis-aligned fills other than boxes, and aborts at boxes
  * farther than 9999 px left of or above it. Rotating the page alone reaches neither patterns nor
