@@ -23,8 +23,7 @@ static FlDrawing *neighbours(const char *folder)
  * itself its rim is bare. */
 static int at_the_edge(const FlDrawing *drawing, FlDrawList *draws, int left, int right)
 {
-    FlExemplar exemplar = {.border_px = BORDER_PX};
-    const FlStyleInstance style = {.exemplar = &exemplar};
+    const FlStyleInstance style = {.border_px = BORDER_PX};
     const FlRegionSettings settings = {.edges = FL_EDGES_CLOSED};
     const FlPaintedRegion painted = {.settings = &settings, .style = &style};
     const FlPaintedRegion *const all[] = {&painted, &painted};

@@ -131,7 +131,7 @@ static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaint
     if (!knockout)
         return false;
     const FlDrawing *drawing = stack->input->drawing;
-    const int border_px = (int)(painted->style->exemplar->border_px + 0.5f);
+    const int border_px = (int)(painted->style->border_px + 0.5f);
     return fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
                        fl_drawing_height(drawing), MAX(border_px, 1), knockout, error) &&
            colour_layer(layer, stack, painted, &colouring, amounts, error);

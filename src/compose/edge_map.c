@@ -254,7 +254,7 @@ bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *pai
     if (t->edges == FL_EDGES_SOFT || t->stacking == FL_STACKING_GLAZE || edges->input->gap_px > 0 ||
         n == 0 || draw >= edges->n - 1)
         return true;
-    const float border = painted->style->exemplar->border_px;
+    const float border = painted->style->border_px;
     const int radius = CLAMP((int)(border + 0.5f), 2, FL_CLOSING_MAX_PX);
     g_autofree int16_t *copy = fl_alloc_unset(n, sizeof *copy, "a layer", error);
     if (!copy)

@@ -47,8 +47,7 @@ static bool note_sight(const FlPlan *plan, const FlDrawList *draws, GError **err
     FlSight sight = {plan->joins, fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing),
                      1};
     for (int p = 0; p < plan->n_painted; p++)
-        sight.rim_px =
-            MAX(sight.rim_px, (int)(plan->painted[p].style->exemplar->border_px + 0.5f) + 1);
+        sight.rim_px = MAX(sight.rim_px, (int)(plan->painted[p].style->border_px + 0.5f) + 1);
     return fl_sight_note(&sight, draws, plan->seen, error);
 }
 

@@ -86,6 +86,7 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
     if (!(instance->ink = fl_ink_of_style(style, error)) ||
         !(instance->exemplar = fl_exemplar_new(style, &packed, error)))
         return NULL;
+    instance->border_px = instance->exemplar->border_px;
     return g_steal_pointer(&instance);
 }
 
