@@ -42,7 +42,8 @@ FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynt
     FlSynth *synth = g_new0(FlSynth, 1);
     synth->exemplar = exemplar;
     synth->params = params;
-    synth->width = size.width, synth->height = size.height;
+    synth->width = synth->last.width = synth->last.painted_width = size.width;
+    synth->height = synth->last.height = synth->last.painted_height = size.height;
     synth->side = (float)MAX(size.frame_width, size.frame_height);
     synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
     synth->key = fl_hash64(seed);
@@ -396,8 +397,8 @@ static void write_rgb(const FlSynth *synth, uint8_t *rgb)
 
 static void fill_paper(const FlSynth *synth, uint8_t *rgb)
 {
-    for (size_t p = 0; p < (size_t)synth->width * synth->height; p++)
-        memcpy(rgb + 3 * p, synth->exemplar->paper, 3);
+    for (size_t p = 0; p < fl_synth_state_painted(&synth->last); p += 3)
+        memcpy(rgb + p, synth->exemplar->paper, 3);
 }
 
 /* The target, and what the next frame needs of the guides, which then may go. */
@@ -462,9 +463,9 @@ static void remember(FlSynth *synth)
 /* The picture as well, for as long as the planes of the frame are kept. */
 static bool remember_picture(FlSynth *synth, const uint8_t *rgb, GError **error)
 {
-    if (!fl_synth_state_room(&synth->last, synth->width, synth->height, error))
+    if (!fl_synth_state_room(&synth->last, error))
         return false;
-    memcpy(synth->last.rgb, rgb, 3 * (size_t)synth->width * synth->height);
+    memcpy(synth->last.rgb, rgb, fl_synth_state_painted(&synth->last));
     return true;
 }
 
@@ -490,9 +491,9 @@ static bool unpack_last(FlSynth *synth, GError **error)
     const int frame = synth->last.frame; // it may have rested since it was packed
     if (!synth->last.valid || synth->last.nnf.match)
         return true;
-    const bool done = fl_synth_state_room(&synth->last, synth->width, synth->height, error) &&
-                      fl_synth_state_unpack(&synth->last, synth->packed, &synth->exemplar->level[0],
-                                            synth->width, synth->height, error);
+    const bool done =
+        fl_synth_state_room(&synth->last, error) &&
+        fl_synth_state_unpack(&synth->last, synth->packed, &synth->exemplar->level[0], error);
     synth->last.frame = frame;
     return done;
 }
@@ -503,7 +504,7 @@ static bool pack_last(FlSynth *synth, uint8_t *rgb, GError **error)
     FlSynthState last = synth->last;
     last.rgb = rgb;
     if (!synth->packed)
-        synth->packed = fl_synth_state_pack(&last, synth->width, synth->height, error);
+        synth->packed = fl_synth_state_pack(&last, error);
     fl_synth_state_clear(&synth->last);
     return synth->packed != NULL;
 }
@@ -606,7 +607,7 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
         return false;
     if (may_rest(synth, synth->last.frame) &&
         fl_rests(guides, synth->last.mask, synth->params->flow_still)) {
-        memcpy(rgb, synth->last.rgb, 3 * (size_t)synth->width * synth->height);
+        memcpy(rgb, synth->last.rgb, fl_synth_state_painted(&synth->last));
         synth->view = view_at_rest(synth);
         return true;
     }
@@ -655,9 +656,8 @@ bool fl_synth_guide_pairs(const FlSynth *synth, FlGuidePairs *pairs, GError **er
 
 GBytes *fl_synth_save(FlSynth *synth, GError **error)
 {
-    GBytes *packed = synth->packed
-                         ? fl_synth_state_later(synth->packed, synth->last.frame)
-                         : fl_synth_state_pack(&synth->last, synth->width, synth->height, error);
+    GBytes *packed = synth->packed ? fl_synth_state_later(synth->packed, synth->last.frame)
+                                   : fl_synth_state_pack(&synth->last, error);
     if (!packed)
         return NULL;
     forget_packed(synth);
@@ -669,10 +669,9 @@ bool fl_synth_load(FlSynth *synth, GBytes *state, GError **error)
 {
     forget_packed(synth);
     fl_synth_state_clear(&synth->last);
-    if (!fl_synth_state_room(&synth->last, synth->width, synth->height, error))
+    if (!fl_synth_state_room(&synth->last, error))
         return false;
-    const bool done = fl_synth_state_unpack(&synth->last, state, &synth->exemplar->level[0],
-                                            synth->width, synth->height, error);
+    const bool done = fl_synth_state_unpack(&synth->last, state, &synth->exemplar->level[0], error);
     fl_synth_state_clear(&synth->last);
     if (done)
         synth->packed = g_bytes_ref(state);

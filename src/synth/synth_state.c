@@ -51,22 +51,25 @@ static void add_up(FlNnf *nnf)
         nnf->match[p] = plus(nnf->match[p], nnf->match[p - 1]);
 }
 
-/* `matches`: as they are packed. */
-static void parts_of(const FlSynthState *state, FlMatch *matches, int width, int height,
-                     FlSpan parts[N_PARTS])
+static size_t mask_bytes(const FlSynthState *state)
 {
-    const size_t pixels = (size_t)width * height;
-    const size_t field = (size_t)state->nnf.width * (size_t)state->nnf.height * sizeof *matches;
-    parts[FIELD] = (FlSpan){matches, field};
-    parts[MASK] = (FlSpan){state->mask, pixels};
-    parts[PICTURE] = (FlSpan){state->rgb, 3 * pixels};
+    return (size_t)state->width * (size_t)state->height;
 }
 
-bool fl_synth_state_room(FlSynthState *state, int width, int height, GError **error)
+/* `matches`: as they are packed. */
+static void parts_of(const FlSynthState *state, FlMatch *matches, FlSpan parts[N_PARTS])
 {
-    const size_t pixels = (size_t)width * height;
-    return (state->mask || (state->mask = fl_alloc(pixels, 1, "a mask", error))) &&
-           (state->rgb || (state->rgb = fl_alloc(3 * pixels, 1, "a picture", error)));
+    const size_t field = (size_t)state->nnf.width * (size_t)state->nnf.height * sizeof *matches;
+    parts[FIELD] = (FlSpan){matches, field};
+    parts[MASK] = (FlSpan){state->mask, mask_bytes(state)};
+    parts[PICTURE] = (FlSpan){state->rgb, fl_synth_state_painted(state)};
+}
+
+bool fl_synth_state_room(FlSynthState *state, GError **error)
+{
+    return (state->mask || (state->mask = fl_alloc(mask_bytes(state), 1, "a mask", error))) &&
+           (state->rgb ||
+            (state->rgb = fl_alloc(fl_synth_state_painted(state), 1, "a picture", error)));
 }
 
 void fl_synth_state_clear(FlSynthState *state)
@@ -76,7 +79,7 @@ void fl_synth_state_clear(FlSynthState *state)
     g_clear_pointer(&state->rgb, free);
 }
 
-GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GError **error)
+GBytes *fl_synth_state_pack(const FlSynthState *state, GError **error)
 {
     const FlRect rect = state->valid ? state->rect : (FlRect){0};
     const Header header = {state->frame, state->valid, rect.x, rect.y, rect.width, rect.height};
@@ -84,7 +87,7 @@ GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GE
     if (state->valid && !matches)
         return NULL;
     FlSpan parts[N_PARTS];
-    parts_of(state, matches, width, height, parts);
+    parts_of(state, matches, parts);
     return fl_state_bytes_pack(&header, sizeof header, parts, state->valid ? N_PARTS : 0, error);
 }
 
@@ -101,20 +104,21 @@ GBytes *fl_synth_state_later(GBytes *bytes, int frame)
 }
 
 /* Whether a rectangle has pixels, and all of them in the frame. */
-static bool fits(const Header *h, int width, int height)
+static bool fits(const Header *h, const FlSynthState *state)
 {
+    const int width = state->width, height = state->height;
     return h->x >= 0 && h->y >= 0 && h->width >= 1 && h->height >= 1 && h->width <= width &&
            h->height <= height && h->x <= width - h->width && h->y <= height - h->height;
 }
 
 /* The field, mask and picture of the last frame. */
 static bool unpack_frame(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
-                         int width, int height, GError **error)
+                         GError **error)
 {
     if (!fl_nnf_init(&state->nnf, state->rect.width, state->rect.height, error))
         return false;
     FlSpan parts[N_PARTS];
-    parts_of(state, state->nnf.match, width, height, parts);
+    parts_of(state, state->nnf.match, parts);
     bool whole = fl_state_bytes_parts(bytes, sizeof(Header), parts, N_PARTS, error);
     if (whole) {
         add_up(&state->nnf);
@@ -127,7 +131,7 @@ static bool unpack_frame(FlSynthState *state, GBytes *bytes, const FlExemplarLev
 }
 
 bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
-                           int width, int height, GError **error)
+                           GError **error)
 {
     Header h;
     state->nnf = (FlNnf){0};
@@ -135,10 +139,10 @@ bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarL
         return false;
     if (h.frame < 0 || (h.valid != 0 && h.valid != 1))
         return fl_state_bytes_damaged("it does not start as a state does", error);
-    if (h.valid && !fits(&h, width, height))
+    if (h.valid && !fits(&h, state))
         return fl_state_bytes_damaged("its field lies outside the frame", error);
     state->frame = h.frame;
     state->valid = h.valid;
     state->rect = (FlRect){h.x, h.y, h.width, h.height};
-    return !state->valid || unpack_frame(state, bytes, level, width, height, error);
+    return !state->valid || unpack_frame(state, bytes, level, error);
 }

@@ -8,36 +8,43 @@
 
 /** What the next frame of a region needs from those before it. */
 typedef struct FlSynthState {
-    int frame;     // frames painted so far, >= 0
-    bool valid;    // the last of them had paint; else the rest is undefined
-    FlRect rect;   // its part of the frame
-    FlNnf nnf;     // its level-0 field, as large as rect
-    uint8_t *mask; // fl_rest_shape() of the whole frame, width * height
-    uint8_t *rgb;  // the picture of the whole frame, width * height * 3
+    int width, height;                 // of the frame
+    int painted_width, painted_height; // of its picture: the same, or larger
+    int frame;                         // frames painted so far, >= 0
+    bool valid;                        // the last of them had paint; else the rest is undefined
+    FlRect rect;                       // its part of the frame
+    FlNnf nnf;                         // its level-0 field, as large as rect
+    uint8_t *mask;                     // fl_rest_shape() of the whole frame, width * height
+    uint8_t *rgb; // the picture of the whole frame, painted_width * painted_height * 3
 } FlSynthState;
 
+/** The bytes of the picture. */
+static inline size_t fl_synth_state_painted(const FlSynthState *state)
+{
+    return 3 * (size_t)state->painted_width * (size_t)state->painted_height;
+}
+
 /** Makes room for mask and picture, unless there is. FL_ERROR_NO_MEMORY. */
-bool fl_synth_state_room(FlSynthState *state, int width, int height, GError **error);
+bool fl_synth_state_room(FlSynthState *state, GError **error);
 
 /** Frees the planes: field, mask and picture. The rest stays. */
 void fl_synth_state_clear(FlSynthState *state);
 
-/** Packed, in this machine's byte order; width * height px is the frame's size.
- *  Returns: NULL with FL_ERROR_NO_MEMORY set. */
-GBytes *fl_synth_state_pack(const FlSynthState *state, int width, int height, GError **error);
+/** Packed, in this machine's byte order. Returns: NULL with FL_ERROR_NO_MEMORY set. */
+GBytes *fl_synth_state_pack(const FlSynthState *state, GError **error);
 
 /** The same bytes for a region that has rested since: `frame` frames have been painted. */
 GBytes *fl_synth_state_later(GBytes *bytes, int frame);
 
 /**
- * The reverse, for an exemplar whose level 0 is `level`. state->mask and state->rgb are the
- * caller's and are filled. The bytes need not be trusted: a field that points outside the exemplar
- * is an error.
+ * The reverse, for an exemplar whose level 0 is `level`. The sizes are the caller's, as are
+ * state->mask and state->rgb, which are filled. The bytes need not be trusted: a field that points
+ * outside the exemplar is an error.
  *
  * Returns: false with FL_ERROR_CHANGED or FL_ERROR_NO_MEMORY set; the field is then empty, and mask
  * and rgb hold anything. Else state->nnf is to be cleared.
  */
 bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
-                           int width, int height, GError **error);
+                           GError **error);
 
 #endif
