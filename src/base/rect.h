@@ -98,4 +98,16 @@ static inline int fl_half_side(int px)
     return (px + 1) / 2;
 }
 
+/** A rectangle in a frame of half the size; its corner is even. */
+static inline FlRect fl_rect_halved(FlRect rect)
+{
+    return (FlRect){rect.x / 2, rect.y / 2, fl_half_side(rect.width), fl_half_side(rect.height)};
+}
+
+/** A rectangle of fl_half_side() of a frame in the frame, which is as large as `page`. */
+static inline FlRect fl_rect_doubled(FlRect rect, FlRect page)
+{
+    return fl_rect_and((FlRect){2 * rect.x, 2 * rect.y, 2 * rect.width, 2 * rect.height}, page);
+}
+
 #endif

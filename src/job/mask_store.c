@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/rect.h"
 #include "base/spill.h"
+#include "guides/half_guides.h"
 #include <libdeflate.h>
 #include <string.h>
 
@@ -77,6 +78,16 @@ bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect p
     if (!cropped || !fl_spill_get(masks->spill, block, cropped, fl_rect_pixels(box), error))
         return false;
     fl_rect_copy(cropped, box, coverage, part, 1);
+    return true;
+}
+
+bool fl_mask_store_get_half(const FlMaskStore *masks, int region, int frame, FlRect part,
+                            uint8_t *coverage, GError **error)
+{
+    g_autofree uint8_t *full = fl_alloc_unset(fl_rect_pixels(part), 1, "a mask", error);
+    if (!full || !fl_mask_store_get(masks, region, frame, part, full, error))
+        return false;
+    fl_mask_halve(full, part.width, part.height, coverage);
     return true;
 }
 

@@ -25,6 +25,10 @@ bool fl_mask_store_put_part(FlMaskStore *masks, int region, int frame, const uin
 bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect part,
                        uint8_t *coverage, GError **error);
 
+/** The same in half the size, fl_rect_halved(part), by fl_mask_halve(). */
+bool fl_mask_store_get_half(const FlMaskStore *masks, int region, int frame, FlRect part,
+                            uint8_t *coverage, GError **error);
+
 /** Whether a mask that is not blank was put. */
 bool fl_mask_store_has(const FlMaskStore *masks, int region, int frame);
 

@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel_error.h"
+#include "base/rect.h"
 #include "style/resample.h"
 
 #include <math.h>
@@ -156,28 +157,91 @@ static bool add_room(FlStyle *style, GError **error)
     return true;
 }
 
-FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **error)
+/* What does not depend on size and number of the frames. */
+static FlStyle *new_like(const FlStyle *style)
 {
-    g_autoptr(FlStyle) out = g_new0(FlStyle, 1);
+    FlStyle *out = g_new0(FlStyle, 1);
     *out = (FlStyle){.name = g_strdup(style->name),
                      .path = g_strdup(style->path),
                      .author = g_strdup(style->author),
                      .licence = g_strdup(style->licence),
-                     .fps = style->fps / (float)use->step,
+                     .fps = style->fps,
                      .scale = 1,
                      .cut_out = style->cut_out,
                      .medium = style->medium,
                      .granulation = style->granulation,
                      .smoothness = style->smoothness};
     memcpy(out->paper, style->paper, sizeof out->paper);
-    if (!find_sizes(style, use, out, error))
-        return NULL;
-    const size_t pixels = (size_t)out->width * out->height * out->n_frames;
-    if (!(out->rgb = fl_alloc(3 * pixels, 1, "an exemplar", error)) ||
-        !(out->mask = fl_alloc(pixels, 1, "an exemplar", error)) ||
-        (style->flow && !(out->flow = fl_alloc(2 * pixels, sizeof(float), "an exemplar", error))) ||
+    return out;
+}
+
+static bool make_planes(FlStyle *out, bool flow, GError **error)
+{
+    const size_t pixels = (size_t)out->width * (size_t)out->height * (size_t)out->n_frames;
+    return (out->rgb = fl_alloc(3 * pixels, 1, "an exemplar", error)) &&
+           (out->mask = fl_alloc(pixels, 1, "an exemplar", error)) &&
+           (!flow || (out->flow = fl_alloc(2 * pixels, sizeof(float), "an exemplar", error)));
+}
+
+FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **error)
+{
+    g_autoptr(FlStyle) out = new_like(style);
+    out->fps /= (float)use->step;
+    if (!find_sizes(style, use, out, error) || !make_planes(out, style->flow, error) ||
         !adapt_frames(style, use, out, error) ||
         (out->cut_out && !is_full(out) && !add_room(out, error)))
         return NULL;
+    return g_steal_pointer(&out);
+}
+
+/* Means of 2x2 pixels; the last column and row count again where there are no more. */
+static void halve_bytes(const uint8_t *plane, int width, int height, int channels, uint8_t *half)
+{
+    for (int y = 0; y < fl_half_side(height); y++)
+        for (int x = 0; x < fl_half_side(width); x++) {
+            const int right = channels * MIN(2 * x + 1, width - 1), left = channels * 2 * x;
+            const size_t row = (size_t)channels * (size_t)width;
+            const uint8_t *upper = plane + (size_t)(2 * y) * row;
+            const uint8_t *lower = plane + (size_t)MIN(2 * y + 1, height - 1) * row;
+            for (int c = 0; c < channels; c++)
+                *half++ = (uint8_t)((upper[left + c] + upper[right + c] + lower[left + c] +
+                                     lower[right + c] + 2) /
+                                    4);
+        }
+}
+
+static void halve_flow(const float *flow, int width, int height, float *half)
+{
+    for (int y = 0; y < fl_half_side(height); y++)
+        for (int x = 0; x < fl_half_side(width); x++, half += 2) {
+            const int right = MIN(2 * x + 1, width - 1), lower = MIN(2 * y + 1, height - 1);
+            const float *rows[] = {flow + 4 * (size_t)y * (size_t)width,
+                                   flow + 2 * (size_t)lower * (size_t)width};
+            for (int c = 0; c < 2; c++)
+                half[c] = (rows[0][4 * x + c] + rows[0][2 * right + c] + rows[1][4 * x + c] +
+                           rows[1][2 * right + c]) /
+                          8;
+        }
+}
+
+FlStyle *fl_style_halve(const FlStyle *style, GError **error)
+{
+    const size_t pixels = (size_t)style->width * (size_t)style->height;
+    g_autoptr(FlStyle) out = new_like(style);
+    out->width = fl_half_side(style->width), out->height = fl_half_side(style->height);
+    out->n_frames = style->n_frames;
+    out->border_px = style->border_px / 2;
+    if (!make_planes(out, style->flow, error))
+        return NULL;
+    const size_t half = (size_t)out->width * (size_t)out->height;
+#pragma omp parallel for schedule(static)
+    for (size_t t = 0; t < (size_t)style->n_frames; t++) {
+        halve_bytes(style->rgb + 3 * t * pixels, style->width, style->height, 3,
+                    out->rgb + 3 * t * half);
+        halve_bytes(style->mask + t * pixels, style->width, style->height, 1, out->mask + t * half);
+        if (style->flow)
+            halve_flow(style->flow + 2 * t * pixels, style->width, style->height,
+                       out->flow + 2 * t * half);
+    }
     return g_steal_pointer(&out);
 }

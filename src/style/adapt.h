@@ -23,4 +23,7 @@ typedef struct FlStyleUse {
  */
 FlStyle *fl_style_adapt(const FlStyle *style, const FlStyleUse *use, GError **error);
 
+/** A style of half the size, fl_half_side(): means of 2x2 pixels. FL_ERROR_NO_MEMORY. */
+FlStyle *fl_style_halve(const FlStyle *style, GError **error);
+
 #endif

@@ -335,6 +335,13 @@ FlOutlines *fl_outlines_new(const FlSvg *svg, double width, double height)
     return outlines;
 }
 
+void fl_outlines_scale(FlOutlines *outlines, double factor)
+{
+    const FlAffine scale = {factor, 0, 0, factor, 0, 0};
+    for (int i = 0; i < outlines->n_leaves; i++)
+        outlines->leaf[i].ctm = fl_affine_after(&scale, &outlines->leaf[i].ctm);
+}
+
 void fl_outlines_free(FlOutlines *outlines)
 {
     if (!outlines)

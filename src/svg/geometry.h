@@ -58,6 +58,9 @@ typedef struct FlOutlines {
  */
 FlOutlines *fl_outlines_new(const FlSvg *svg, double width, double height);
 
+/** Makes the picture that they are in `factor` times as large. */
+void fl_outlines_scale(FlOutlines *outlines, double factor);
+
 void fl_outlines_free(FlOutlines *outlines); // NULL is fine
 
 /** Serialises the outlines; to be freed with g_free(). */

@@ -1,0 +1,25 @@
+/* Guides of half the size, by which drafts are painted. */
+#ifndef FLUIDY_GUIDES_HALF_GUIDES_H
+#define FLUIDY_GUIDES_HALF_GUIDES_H
+
+#include "guides/guides.h"
+
+/** A mask of width * height in the size of fl_half_side(): the mean of 2x2 coverages, those of the
+ * last column and row again where there are no more. A pixel is inside where one of the four is, so
+ * that nothing is lost. half may be the mask. */
+void fl_mask_halve(const uint8_t *mask, int width, int height, uint8_t *half);
+
+/** A flow in twice its size, width * height, in px of that. */
+void fl_flow_double(const float *half, int width, int height, float *full);
+
+/** A plane of `bytes` a pixel in twice its size, width * height: each pixel four times. */
+void fl_plane_double(const void *half, int width, int height, size_t bytes, void *full);
+
+/**
+ * The guides in twice their size, with lengths of the large frame, for whoever looks at them.
+ *
+ * full: empty, to be cleared. FL_ERROR_NO_MEMORY.
+ */
+bool fl_guides_double(const FlGuides *half, int width, int height, FlGuides *full, GError **error);
+
+#endif
