@@ -439,6 +439,15 @@ for half in on off; do
 done
 diff -r some-on some-off >out && [ -s some-on/w_1.png ]
 result $? 'among others a draft is not made at half the size'
+printf '[defaults]\nstyle = 01\n[region one]\nmatch-fill = #a93311\nengine = lazyfluids\n' >two-engines.conf
+drafted() { # a folder, options
+    "$program" all.d -c two-engines.conf --detail draft -W 61 -o "$1/w_%d.png" -q "${@:2}" >out 2>err
+}
+drafted drafted -j1 && drafted drafted-many -j2 &&
+    drafted drafted-seen --report drafted-report --dump drafted-dump --stats drafted.json &&
+    diff -r drafted drafted-many >out && diff -r drafted drafted-seen >out &&
+    [ "$(for plane in drafted-dump/*/distance_*.png; do sides "$plane"; done | sort -u)" = '31 23' ]
+result $? 'drafts of two engines are the same on two threads, and where their guides are looked at'
 
 # An edge is closed where shapes end at each other, and soft where one lies over the other; shading
 # over both hides neither.

@@ -100,7 +100,7 @@ static void show(const char *folder, const Options *o)
     const FlRect page = {0, 0, fl_drawing_width(drawing), fl_drawing_height(drawing)};
     g_autoptr(FlMaskStore) masks = masks_of(drawing, &error);
     g_assert_no_error(error);
-    g_autoptr(FlMotionSource) source = fl_motion_source_new(drawing, masks, &error);
+    g_autoptr(FlMotionSource) source = fl_motion_source_new(drawing, masks, false, &error);
     g_autofree float *motion = g_new0(float, 2 * fl_rect_pixels(page));
     double exact = 0, registered = 0, moved = 0, seconds = 0, all = 0, lands = 0;
     int fields = 0;
@@ -113,8 +113,8 @@ static void show(const char *folder, const Options *o)
             if (f > 0 && o->masks)
                 g_assert_true(by_masks(masks, r, f, page, motion, &error));
             else if (f > 0)
-                g_assert_true(
-                    fl_motion_source_get(source, &(FlRegionStep){r, f - 1, f, page, {0}}, motion, &shares, &error));
+                g_assert_true(fl_motion_source_get(source, &(FlRegionStep){r, f - 1, f, page, {0}},
+                                                   motion, &shares, &error));
             seconds += (double)(g_get_monotonic_time() - start) * 1e-6;
             fields++;
             double speed = 0;

@@ -61,7 +61,7 @@ static Sequence sequence_of(Draw *draw, int frames)
     g_assert_no_error(error);
     s.masks = fl_mask_store_new(fl_drawing_regions(s.drawing), frames, SIZE, SIZE, &error);
     fill_masks(&s);
-    s.source = fl_motion_source_new(s.drawing, s.masks, &error);
+    s.source = fl_motion_source_new(s.drawing, s.masks, false, &error);
     g_assert_no_error(error);
     return s;
 }
@@ -77,8 +77,8 @@ static void get(const Sequence *s, int region, int before, int now, float *motio
                 FlMotionShares *shares)
 {
     g_autoptr(GError) error = NULL;
-    g_assert_true(
-        fl_motion_source_get(s->source, &(FlRegionStep){region, before, now, page, {0}}, motion, shares, &error));
+    g_assert_true(fl_motion_source_get(s->source, &(FlRegionStep){region, before, now, page, {0}},
+                                       motion, shares, &error));
     g_assert_no_error(error);
 }
 

@@ -202,13 +202,6 @@ static float texture_px(const FlPlan *plan, const FlParams *params)
     return plan->half ? .5f : 1;
 }
 
-void fl_scale_lengths(FlParams *params, float px)
-{
-    params->border *= px;
-    params->blur_sigma *= px;
-    params->flow_still *= px;
-}
-
 /* What goes to ebsynth are pairs of guides. */
 static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
@@ -230,10 +223,12 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->keeps_flow = plan->options.dump != NULL;
     painted->loops = plan->options.loop && !painted->paint_files;
     const float px = texture_px(plan, &painted->settings.params);
-    fl_scale_lengths(&painted->settings.params, px);
+    fl_params_scale_lengths(&painted->settings.params, px);
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style)
         return false;
+    if (painted->style->enlargement)
+        fl_params_scale_lengths(&painted->settings.params, .5f);
     painted->engine = fl_engine_of_region(plan->styles, painted->style, &painted->settings, px,
                                           &painted->tile, error);
     if (!painted->engine) {

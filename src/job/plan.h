@@ -104,10 +104,6 @@ bool fl_plan_rasterise(FlPlan *plan, GError **error);
 /** Looks which regions are hidden, without masks: it draws as many frames as show all regions. */
 bool fl_plan_find_hidden(FlPlan *plan, GError **error);
 
-/** Makes the lengths in a region's parameters px of what is painted, of which px are one of theirs.
- */
-void fl_scale_lengths(FlParams *params, float px);
-
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPlan, fl_plan_free)
 
 #endif

@@ -245,6 +245,13 @@ void fl_params_detail(FlParams *params, FlDetail detail)
     }
 }
 
+void fl_params_scale_lengths(FlParams *params, float px)
+{
+    params->border *= px;
+    params->blur_sigma *= px;
+    params->flow_still *= px;
+}
+
 bool fl_params_preset(FlParams *params, const char *preset, GError **error)
 {
     for (int i = 0; fl_preset_names[i]; i++)

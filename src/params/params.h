@@ -35,6 +35,9 @@ typedef enum FlDetail { FL_DETAIL_DRAFT, FL_DETAIL_NORMAL, FL_DETAIL_FINE } FlDe
  */
 void fl_params_detail(FlParams *params, FlDetail detail);
 
+/** Makes the lengths px of what is painted, of which `px` are one of theirs. */
+void fl_params_scale_lengths(FlParams *params, float px);
+
 /** The value for a level `from_coarsest` steps finer than the coarsest; >= 0. */
 static inline int fl_list_at(const FlIntList *list, int from_coarsest)
 {

@@ -27,6 +27,7 @@ typedef struct Step {
 struct FlMotionSource {
     const FlDrawing *drawing;
     const FlMaskStore *masks;
+    bool halved;
     GMutex lock;     // of what follows
     FlSpill *spill;  // outlines by frame, then the steps into each frame
     bool *spilled;   // by frame
@@ -54,7 +55,7 @@ static void step_unref(Step *step)
 }
 
 FlMotionSource *fl_motion_source_new(const FlDrawing *drawing, const FlMaskStore *masks,
-                                     GError **error)
+                                     bool halved, GError **error)
 {
     const size_t n = (size_t)fl_drawing_frames(drawing);
     FlSpill *spill = fl_spill_new(2 * n, error);
@@ -62,6 +63,7 @@ FlMotionSource *fl_motion_source_new(const FlDrawing *drawing, const FlMaskStore
         return NULL;
     FlMotionSource *source = g_new0(FlMotionSource, 1);
     source->drawing = drawing, source->masks = masks, source->spill = spill;
+    source->halved = halved;
     source->spilled = g_new0(bool, n + 1);
     source->spilled_to = g_new(int, n + 1);
     for (size_t f = 0; f < n; f++)
@@ -108,6 +110,8 @@ static FlOutlines *outlines_from_file(FlMotionSource *source, int frame, GError 
     g_autoptr(FlOutlines) outlines = fl_drawing_outlines(source->drawing, frame, error);
     if (!outlines)
         return NULL;
+    if (source->halved)
+        fl_outlines_scale(outlines, .5);
     size_t bytes = 0;
     g_autofree uint8_t *data = fl_outlines_pack(outlines, &bytes);
     if (!fl_spill_put(source->spill, (size_t)frame, data, bytes, error))
@@ -142,6 +146,13 @@ static Frame *frame_of(FlMotionSource *source, int frame, GError **error)
     return f;
 }
 
+/** The larger side of the frames. */
+static int side_of(const FlMotionSource *source)
+{
+    const int side = MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing));
+    return source->halved ? fl_half_side(side) : side;
+}
+
 /** Pairs the leaves of two frames, and keeps that for the other regions, which come one by one. */
 static FlCorrespondence *correspond(FlMotionSource *source, const Frame *before, const Frame *now,
                                     GError **error)
@@ -152,9 +163,8 @@ static FlCorrespondence *correspond(FlMotionSource *source, const Frame *before,
         g_autofree uint8_t *kept = read_block(source, block, &bytes, error);
         return kept ? fl_correspondence_unpack(kept, bytes) : NULL;
     }
-    const FlTwoFrames frames = {
-        before->outlines, now->outlines, before->fill, now->fill,
-        MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing))};
+    const FlTwoFrames frames = {before->outlines, now->outlines, before->fill, now->fill,
+                                side_of(source)};
     g_autoptr(FlCorrespondence) motions = fl_correspond(&frames);
     g_autofree uint8_t *data = fl_correspondence_pack(motions, &bytes);
     if (!fl_spill_put(source->spill, block, data, bytes, error))
@@ -212,6 +222,25 @@ static bool acquire(FlMotionSource *source, int before, int now, Use *use, GErro
     return use->step != NULL;
 }
 
+/** A mask of a region in a part of a frame. */
+static bool get_mask(const FlMotionSource *source, int region, int frame, FlRect rect,
+                     uint8_t *mask, GError **error)
+{
+    return source->halved ? fl_mask_store_get_half(source->masks, region, frame, rect, mask, error)
+                          : fl_mask_store_get(source->masks, region, frame, rect, mask, error);
+}
+
+/** The leaves of a region, with their boxes as large as its motion. */
+static GArray *leaves_of(const FlMotionSource *source, int frame, int region,
+                         const FlOutlines *outlines)
+{
+    GArray *leaves = fl_drawing_region_leaves(source->drawing, frame, region, outlines);
+    for (guint i = 0; i < leaves->len && source->halved; i++)
+        for (int side = 0; side < 4; side++)
+            g_array_index(leaves, FlRegionLeaf, i).box[side] /= 2;
+    return leaves;
+}
+
 static bool is_there(const uint8_t *mask, size_t n)
 {
     bool found = false;
@@ -224,7 +253,7 @@ bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, floa
                           FlMotionShares *shares, GError **error)
 {
     const int region = step->region, before = step->before, now = step->now;
-    const FlRect rect = step->rect;
+    const FlRect rect = source->halved ? fl_rect_halved(step->rect) : step->rect;
     const size_t n = fl_rect_pixels(rect);
     if (shares)
         *shares = (FlMotionShares){0, 0};
@@ -233,25 +262,18 @@ bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, floa
         return true;
     g_autofree uint8_t *mask_before = fl_alloc(n, 1, "a mask", error);
     g_autofree uint8_t *mask_now = mask_before ? fl_alloc(n, 1, "a mask", error) : NULL;
-    if (!mask_now || !fl_mask_store_get(source->masks, region, before, rect, mask_before, error) ||
-        !fl_mask_store_get(source->masks, region, now, rect, mask_now, error))
+    if (!mask_now || !get_mask(source, region, before, step->rect, mask_before, error) ||
+        !get_mask(source, region, now, step->rect, mask_now, error))
         return false;
     if (!is_there(mask_before, n) || !is_there(mask_now, n))
         return true;
     Use use = {0};
     bool good = acquire(source, before, now, &use, error);
     if (good) {
-        g_autoptr(GArray) leaves =
-            fl_drawing_region_leaves(source->drawing, now, region, use.now->outlines);
+        g_autoptr(GArray) leaves = leaves_of(source, now, region, use.now->outlines);
         const FlMovingRegion moving = {
-            rect,
-            MAX(fl_drawing_width(source->drawing), fl_drawing_height(source->drawing)),
-            mask_before,
-            mask_now,
-            step->outlines,
-            use.before->outlines,
-            use.now->outlines,
-            use.step->motions,
+            rect,           side_of(source),      mask_before,       mask_now,
+            step->outlines, use.before->outlines, use.now->outlines, use.step->motions,
             leaves,
         };
         good = fl_motion_of_region(&moving, motion, shares, error);

@@ -11,22 +11,24 @@
  */
 typedef struct FlMotionSource FlMotionSource;
 
-/** film and masks must stay; masks are filled when motion is asked for. FL_ERROR_OUTPUT. */
+/** film and masks must stay; masks are filled when motion is asked for. halved: motion is that of
+ * frames of half the size. FL_ERROR_OUTPUT. */
 FlMotionSource *fl_motion_source_new(const FlDrawing *drawing, const FlMaskStore *masks,
-                                     GError **error);
+                                     bool halved, GError **error);
 void fl_motion_source_free(FlMotionSource *source); // NULL is fine
 
 /** A region from one frame to another, within a part of them. */
 typedef struct FlRegionStep {
     int region, before, now;
-    FlRect rect;
-    FlOutlinePair outlines; // of its masks in rect, where they are known
+    FlRect rect;            // px of the drawing
+    FlOutlinePair outlines; // of its masks in rect, where they are known; halved as the motion is
 } FlRegionStep;
 
 /**
- * The motion of a region from the frame painted before to this one, px of the film, interleaved,
- * 2 * area of rect: see fl_motion_of_region(). The frames need not be neighbours, and in a loop the
- * first follows the last. All 0 if the region is in one of them only; shares may be NULL.
+ * The motion of a region from the frame painted before to this one, px, interleaved, 2 * area of
+ * rect, or of fl_rect_halved(rect): see fl_motion_of_region(). The frames need not be neighbours,
+ * and in a loop the first follows the last. All 0 if the region is in one of them only; shares may
+ * be NULL.
  *
  * Returns: false with an error that names the file, or FL_ERROR_NO_MEMORY.
  */

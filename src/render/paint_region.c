@@ -144,7 +144,7 @@ static bool choose_style(MaskPainter *painter, GError **error)
     const float px =
         settings->params.style_by_page ? fl_page_scale(region->width, region->height) : 1;
     settings->params.half_size = false;
-    fl_scale_lengths(&settings->params, px);
+    fl_params_scale_lengths(&settings->params, px);
     painter->styles = fl_style_cache_new(&nobody);
     painter->style = fl_style_cache_get(painter->styles, settings, px, error);
     if (!painter->style)
@@ -202,6 +202,8 @@ static bool open_engine(MaskPainter *painter, GError **error)
                                  painter->tile,
                                  settings,
                                  {rect.width, rect.height, region->width, region->height},
+                                 rect.width,
+                                 rect.height,
                                  fl_key(MAX(region->seed, 1), g_str_hash(name_of(region)))};
     painter->painted =
         fl_alloc((painter->alpha ? 4 : 3) * fl_rect_pixels(rect), 1, "a painted region", error);

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "guides/flow_file.h"
+#include "guides/half_guides.h"
 #include "guides/rim.h"
 #include "io/pattern.h"
 #include "job/paint_files.h"
@@ -19,11 +20,37 @@ static int frame_of(const FlPainter *painter, int picture)
     return (picture - painter->wrap + n) % n * painter->plan->settings.hold;
 }
 
+/* Whether guides have half the size of the picture. */
+static bool halves(const FlPainter *painter)
+{
+    return painter->plan->style->enlargement != NULL;
+}
+
+/* A part of the page in px of the guides. */
+static FlRect in_guides(const FlStyleInstance *style, FlRect part)
+{
+    return style->enlargement ? fl_rect_halved(part) : part;
+}
+
+/* That which is painted. */
+static FlRect guided_rect(const FlPainter *painter)
+{
+    return in_guides(painter->plan->style, painter->result.rect);
+}
+
+static FlRect page_of(const FlPainter *painter)
+{
+    return (FlRect){0, 0, painter->result.width, painter->result.height};
+}
+
 static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **error)
 {
     const FlPainter *painter = data;
-    return fl_mask_store_get(painter->masks, painter->plan->region, frame_of(painter, frame),
-                             painter->result.rect, coverage, error);
+    const FlRect rect = painter->result.rect;
+    const int region = painter->plan->region, shown = frame_of(painter, frame);
+    return halves(painter)
+               ? fl_mask_store_get_half(painter->masks, region, shown, rect, coverage, error)
+               : fl_mask_store_get(painter->masks, region, shown, rect, coverage, error);
 }
 
 /* The flow of the whole frame; files have the size of the output, which drafts halve. */
@@ -65,8 +92,18 @@ static bool flow_in_file(const FlPainter *painter, int frame, float unknown, flo
             whole[k] = unknown;
     else if (!load_flow(painter, file, unknown, whole, error))
         return false;
-    fl_rect_copy(whole, (FlRect){0, 0, painter->result.width, painter->result.height}, flow,
-                 painter->result.rect, 2 * sizeof(float));
+    const FlRect page = page_of(painter);
+    if (!halves(painter)) {
+        fl_rect_copy(whole, page, flow, painter->result.rect, 2 * sizeof(float));
+        return true;
+    }
+    const FlRect half_page = fl_rect_halved(page);
+    g_autofree float *half =
+        fl_alloc(2 * fl_rect_pixels(half_page), sizeof(float), "a flow field", error);
+    if (!half)
+        return false;
+    fl_flow_halve(whole, page.width, page.height, half);
+    fl_rect_copy(half, half_page, flow, guided_rect(painter), 2 * sizeof(float));
     return true;
 }
 
@@ -89,7 +126,7 @@ static bool exact_motion(void *data, int frame, const FlOutlinePair *outlines, f
     const int n = painter->n_pictures, hold = painter->plan->settings.hold;
     const int now = frame_of(painter, frame), last = (n - 1) * hold;
     const int before = now > 0 ? now - hold : last;
-    const size_t values = 2 * fl_rect_pixels(painter->result.rect);
+    const size_t values = 2 * fl_rect_pixels(guided_rect(painter));
     if (now == 0 && !painter->plan->loops) {
         for (size_t k = 0; k < values; k++)
             motion[k] = NAN;
@@ -105,7 +142,7 @@ static FlGuideSource source_of(FlPainter *painter)
 {
     const bool masks = painter->plan->settings.motion == FL_MOTION_MASKS;
     const bool files = painter->plan->flow_files != NULL;
-    const FlRect rect = painter->result.rect;
+    const FlRect rect = guided_rect(painter);
     return (FlGuideSource){.width = rect.width,
                            .height = rect.height,
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
@@ -120,15 +157,17 @@ static FlGuideSource source_of(FlPainter *painter)
 
 FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style)
 {
-    const int levels = MIN(style->exemplar->n_levels, fl_levels_of(page.width, page.height));
-    const int grid = 1 << (levels - 1), margin = (FL_PATCH_RADIUS + 1) * grid;
+    const FlRect guided = in_guides(style, page);
+    const int levels = MIN(style->exemplar->n_levels, fl_levels_of(guided.width, guided.height));
+    const int grid = (style->enlargement ? 2 : 1) << (levels - 1);
+    const int margin = (FL_PATCH_RADIUS + 1) * grid;
     return fl_rect_on_grid(fl_rect_grown(extent, margin, page), grid);
 }
 
 static FlRect cropped(const FlPainter *painter)
 {
     const FlRect extent = fl_mask_store_extent(painter->masks, painter->plan->region);
-    const FlRect page = {0, 0, painter->result.width, painter->result.height};
+    const FlRect page = page_of(painter);
     return fl_painter_crop(fl_rect_grown(extent, (int)ceilf(painter->result.reach_px), page), page,
                            painter->plan->style);
 }
@@ -193,15 +232,16 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
         return true;
     if (painter->reuse && painter->reuse->cache)
         fl_reuse_begin(painter->reuse, painter->result.rect);
-    const FlRect rect = painter->result.rect;
+    const FlRect rect = guided_rect(painter), page = in_guides(plan->style, page_of(painter));
     const FlGuideSource source = source_of(painter);
     const FlGuideParams params = fl_guide_params(&plan->settings.params);
-    const FlEngineInput input = {
-        plan->style,
-        plan->tile,
-        &plan->settings,
-        {rect.width, rect.height, painter->result.width, painter->result.height},
-        fl_key(seed, g_str_hash(plan->name))};
+    const FlEngineInput input = {plan->style,
+                                 plan->tile,
+                                 &plan->settings,
+                                 {rect.width, rect.height, page.width, page.height},
+                                 painter->result.rect.width,
+                                 painter->result.rect.height,
+                                 fl_key(seed, g_str_hash(plan->name))};
     return (painter->guides = fl_guide_sequence_new(&source, &params, error)) &&
            (painter->paint = plan->engine->open(&input, error));
 }
@@ -250,12 +290,23 @@ static bool close_depth(const FlRimShape *alone, const uint8_t *closed, float bo
     return true;
 }
 
+/* In place: a pixel of the half lies before the four that it is made of. */
+static void halve_around(FlAround *around, int width, int height)
+{
+    uint8_t *const planes[] = {around->together, around->closed, around->seen, around->shown};
+    for (size_t k = 0; k < G_N_ELEMENTS(planes); k++)
+        if (planes[k])
+            fl_mask_halve(planes[k], width, height, planes[k]);
+}
+
 static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const FlPaintedRegion *result = &painter->result;
     g_auto(FlAround) around = {0};
     if (!fl_surround_get(painter->surround, result->region, frame, result->rect, &around, error))
         return false;
+    if (halves(painter))
+        halve_around(&around, result->rect.width, result->rect.height);
     const FlRimShape shape = {.width = guides->width,
                               .height = guides->height,
                               .mask = guides->mask,
@@ -291,7 +342,7 @@ static bool rests(FlPainter *painter, int last)
  * scratch as the other planes, which come after it. */
 static bool make_guides(FlPainter *painter, FlGuides *guides, GError **error)
 {
-    const FlRect rect = painter->result.rect;
+    const FlRect rect = guided_rect(painter);
     if (!fl_guides_init(guides, rect.width, rect.height, error))
         return false;
     guides->disposable = !painter->wants_guides;
@@ -373,7 +424,26 @@ static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides
 
 bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
 {
-    return fl_guide_sequence_flow(painter->guides, painter->picture, flow, error);
+    const FlRect rect = painter->result.rect;
+    if (!halves(painter))
+        return fl_guide_sequence_flow(painter->guides, painter->picture, flow, error);
+    g_autofree float *half = fl_alloc_unset(2 * fl_rect_pixels(guided_rect(painter)), sizeof(float),
+                                            "a flow field", error);
+    if (!half || !fl_guide_sequence_flow(painter->guides, painter->picture, half, error))
+        return false;
+    fl_flow_double(half, rect.width, rect.height, flow);
+    return true;
+}
+
+/* Who looks at guides beside the picture wants them in its size. */
+static bool show_guides(const FlPainter *painter, FlGuides *guides, GError **error)
+{
+    const FlRect rect = painter->result.rect;
+    if (!halves(painter) || !painter->wants_guides || !guides->mask)
+        return true;
+    g_auto(FlGuides) half = *guides;
+    *guides = (FlGuides){0};
+    return fl_guides_double(&half, rect.width, rect.height, guides, error);
 }
 
 bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)
@@ -403,7 +473,8 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     if (frame % painter->plan->settings.hold != 0)
         return true;
     if (!paint_picture(painter, painter->loop.n + index, index, guides, error) ||
-        !fl_loop_blend(&painter->loop, index, &painter->result, error))
+        !fl_loop_blend(&painter->loop, index, &painter->result, error) ||
+        !show_guides(painter, guides, error))
         return false;
     painter->result.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
     return true;

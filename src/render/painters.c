@@ -59,14 +59,16 @@ static bool wants_motion(const FlRegionPlan *region)
 static bool open_motion(FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
-    bool wanted = false;
-    for (int p = 0; p < plan->n_painted; p++)
-        wanted = wanted || (wants_motion(&plan->painted[p]) &&
-                            !(painters->reuse && painters->reuse[p].known));
-    if (wanted && !(painters->motion = fl_motion_source_new(plan->drawing, plan->masks, error)))
-        return false;
-    for (int p = 0; p < painters->n; p++)
-        painters->painter[p].motion = painters->motion;
+    for (int p = 0; p < plan->n_painted; p++) {
+        const bool halved = plan->painted[p].style->enlargement;
+        if (!wants_motion(&plan->painted[p]) || (painters->reuse && painters->reuse[p].known))
+            continue;
+        FlMotionSource **motion = &painters->motion[halved];
+        if (!*motion &&
+            !(*motion = fl_motion_source_new(plan->drawing, plan->masks, halved, error)))
+            return false;
+        painters->painter[p].motion = *motion;
+    }
     return true;
 }
 
@@ -130,7 +132,8 @@ void fl_painters_clear(FlPainters *painters)
         fl_painter_clear(&painters->painter[p]);
     for (int p = 0; painters->reuse && p < painters->n; p++)
         fl_reuse_clear(&painters->reuse[p]);
-    fl_motion_source_free(painters->motion);
+    fl_motion_source_free(painters->motion[0]);
+    fl_motion_source_free(painters->motion[1]);
     g_free(painters->painter);
     g_free(painters->reuse);
     *painters = (FlPainters){0};

@@ -7,9 +7,9 @@
 typedef struct FlPainters {
     const FlPlan *plan; // borrowed
     int n;
-    FlPainter *painter;     // one for each of plan->painted
-    FlMotionSource *motion; // NULL: nobody asks for it
-    FlReuse *reuse;         // one for each painter; NULL: nothing is taken or kept
+    FlPainter *painter;        // one for each of plan->painted
+    FlMotionSource *motion[2]; // for guides of half the size second; NULL: nobody asks for it
+    FlReuse *reuse;            // one for each painter; NULL: nothing is taken or kept
 } FlPainters;
 
 /** Work for painter p; step is a frame, or a picture of the lead-in. guides are empty. */

@@ -109,6 +109,12 @@ void fl_rest_clear(FlRest *rest)
     g_clear_pointer(&rest->keeps, free);
 }
 
+/* A plane of so many bytes a pixel, `by` times as large as the guides. */
+typedef struct Plane {
+    int width, height, by;
+    size_t bytes;
+} Plane;
+
 /* A stretch of a row, from *x on: its end is *end. Returns: whether parts at rest keep it. */
 static bool stretch(const FlRest *rest, int x, int y, int *end)
 {
@@ -121,14 +127,16 @@ static bool stretch(const FlRest *rest, int x, int y, int *end)
     return keeps;
 }
 
-/* Copies what parts at rest keep of a plane of so many bytes a pixel; from NULL: clears it. */
-static void copy_kept(const FlRest *rest, const uint8_t *from, uint8_t *to, size_t bytes)
+/* Copies what parts at rest keep of a plane; from NULL: clears it. */
+static void copy_kept(const FlRest *rest, const uint8_t *from, const Plane *plane, uint8_t *to)
 {
-    for (int y = 0; y < rest->height; y++)
-        for (int x = 0, end; x < rest->width; x = end) {
-            const bool keeps = stretch(rest, x, y, &end);
-            const size_t at = bytes * ((size_t)y * (size_t)rest->width + (size_t)x);
-            const size_t n = bytes * (size_t)(end - x);
+    const int by = plane->by;
+    for (int y = 0; y < plane->height; y++)
+        for (int x = 0, end; x < plane->width; x = end) {
+            const bool keeps = stretch(rest, x / by, y / by, &end);
+            const size_t at = plane->bytes * ((size_t)y * (size_t)plane->width + (size_t)x);
+            end = MIN(end * by, plane->width);
+            const size_t n = plane->bytes * (size_t)(end - x);
             if (keeps && from)
                 memcpy(to + at, from + at, n);
             else if (keeps)
@@ -138,7 +146,8 @@ static void copy_kept(const FlRest *rest, const uint8_t *from, uint8_t *to, size
 
 void fl_rest_hide(const FlRest *rest, uint8_t *mask)
 {
-    copy_kept(rest, NULL, mask, 1);
+    const Plane plane = {rest->width, rest->height, 1, 1};
+    copy_kept(rest, NULL, &plane, mask);
 }
 
 /* The matches of a field that lies at `from`, where they are of parts that are kept or not. */
@@ -168,7 +177,10 @@ bool fl_rest_keep(const FlRest *rest, const FlSynthState *last, FlRect rect, FlS
         copy_field(rest, &now->nnf, now->rect, false, rect, &whole);
     fl_nnf_clear(&now->nnf);
     now->nnf = whole, now->rect = rect;
-    copy_kept(rest, last->mask, now->mask, 1);
-    copy_kept(rest, last->rgb, rgb, 3);
+    const Plane mask = {rest->width, rest->height, 1, 1};
+    const Plane picture = {last->painted_width, last->painted_height,
+                           last->painted_width > rest->width ? 2 : 1, 3};
+    copy_kept(rest, last->mask, &mask, now->mask);
+    copy_kept(rest, last->rgb, &picture, rgb);
     return true;
 }

@@ -38,7 +38,8 @@ void fl_rest_hide(const FlRest *rest, uint8_t *mask);
 
 /**
  * Gives the parts at rest what they were in the last frame: picture, shape and field. now->nnf
- * becomes a field of rect, which has all parts; it comes as one of now->rect, or empty.
+ * becomes a field of rect, which has all parts; it comes as one of now->rect, or empty. rgb: as
+ * large as the last picture.
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_rest_keep(const FlRest *rest, const FlSynthState *last, FlRect rect, FlSynthState *now,

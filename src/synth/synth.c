@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "guides/half_guides.h"
 #include "synth/carry.h"
 #include "synth/energy.h"
 #include "synth/patch_pairs.h"
@@ -16,6 +17,7 @@
 
 struct FlSynth {
     const FlExemplar *exemplar;
+    const FlEnlargement *enlargement; // by which pictures are made; NULL: in the size of the field
     const FlParams *params;
     FlCostScale scale;
     FlKernels kernels;
@@ -34,6 +36,7 @@ struct FlSynth {
     FlRest rest;       // of the frame in hand: its parts at rest
     FlSynthState past; // in a frame with such parts: the planes of the last one
     FlSynthView view;  // of the last frame that was painted, where somebody wanted it
+    FlNnf shown;       // its field in the size of the picture, where that is another
 };
 
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
@@ -52,6 +55,12 @@ FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynt
     return synth;
 }
 
+void fl_synth_enlarge(FlSynth *synth, const FlEnlargement *enlargement, int width, int height)
+{
+    synth->enlargement = enlargement;
+    synth->last.painted_width = width, synth->last.painted_height = height;
+}
+
 static void forget_packed(FlSynth *synth)
 {
     g_clear_pointer(&synth->packed, g_bytes_unref);
@@ -64,6 +73,7 @@ static void clear_frame(FlSynth *synth)
     fl_target_clear(&synth->target);
     fl_rest_clear(&synth->rest);
     fl_synth_state_clear(&synth->past);
+    fl_nnf_clear(&synth->shown);
     synth->view = (FlSynthView){0};
 }
 
@@ -124,7 +134,7 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
  * the coarser level's field, enlarged. */
 static int finest_searched(const FlSynth *synth)
 {
-    return synth->params->finest_rounds == 0 && synth->n_levels > 1 ? 1 : 0;
+    return synth->params->finest_rounds == 0 && !synth->enlargement && synth->n_levels > 1 ? 1 : 0;
 }
 
 /* The previous field in a level's size: `shifted`, or `down`, which is made. *previous stays NULL
@@ -291,7 +301,8 @@ static bool last_vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *tar
 static bool optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int rounds,
                      int sweeps, FlLevelStats *stats, GError **error)
 {
-    const bool last_counts = target == &synth->target.level[0] || synth->wants_energies;
+    const bool shown = target == &synth->target.level[0] && !synth->enlargement;
+    const bool last_counts = shown || synth->wants_energies;
     const uint64_t key = search->key;
     for (int round = 0; round < rounds; round++) {
         const bool last = round + 1 == rounds;
@@ -359,8 +370,9 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .changed = params->settled > 0 ? changed : NULL,
                        .key = fl_key(fl_key(synth->key, (uint64_t)synth->last.frame), (uint64_t)l)};
     const int from_coarsest = synth->n_levels - 1 - l;
+    const bool finest = l == 0 && !synth->enlargement;
     const int rounds =
-        l == 0    ? params->finest_rounds
+        finest    ? params->finest_rounds
         : shifted ? fl_list_at(&params->next_iterations, from_coarsest)
                   : fl_list_at(&params->opt_iterations, from_coarsest) * params->first_rounds;
     clear_colours(synth, target);
@@ -370,19 +382,22 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
     settle(&search, l, shifted);
     const int sweeps =
-        l == 0 ? params->finest_sweeps : fl_list_at(&params->patchmatch_iterations, from_coarsest);
+        finest ? params->finest_sweeps : fl_list_at(&params->patchmatch_iterations, from_coarsest);
     if (!optimise(synth, &search, target, rounds, sweeps, stats, error))
         return false;
-    if (rounds == 0 && l == 0) // the field has not been voted yet
+    if (rounds == 0 && finest) // the field has not been voted yet
         vote(synth, &search, target);
     if (synth->wants_energies)
         end_statistics(&search, target, stats);
     return true;
 }
 
-static uint8_t to_8bit(float value)
+/* The picture in twice the size of the field. */
+static bool enlarge(const FlSynth *synth, uint8_t *rgb, GError **error)
 {
-    return (uint8_t)(value * 255 + 0.5f);
+    const FlEnlarged enlarged = {&synth->kernels, synth->params->vote_sharpness,
+                                 synth->last.painted_width, synth->last.painted_height, rgb};
+    return fl_enlarge(synth->enlargement, &synth->nnf[0], synth->target.rect, &enlarged, error);
 }
 
 static void write_rgb(const FlSynth *synth, uint8_t *rgb)
@@ -392,7 +407,7 @@ static void write_rgb(const FlSynth *synth, uint8_t *rgb)
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < 3 * rect.width; x++)
             rgb[3 * ((size_t)(rect.y + y) * synth->width + rect.x) + x] =
-                to_8bit(full->colour[3 * (size_t)y * rect.width + x]);
+                fl_vote_byte(full->colour[3 * (size_t)y * rect.width + x]);
 }
 
 static void fill_paper(const FlSynth *synth, uint8_t *rgb)
@@ -541,9 +556,13 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
         !run_levels(synth, &shifted, stats, error))
         return false;
     fill_paper(synth, rgb); // not before: until it is written to, it takes no memory
-    write_rgb(synth, rgb);
+    if (!synth->enlargement)
+        write_rgb(synth, rgb);
+    else if (!enlarge(synth, rgb, error))
+        return false;
     const FlTargetLevel *full = &synth->target.level[0];
-    const bool has_temporal = synth->last.valid && finest_searched(synth) == 0;
+    const bool has_temporal =
+        synth->last.valid && finest_searched(synth) == 0 && !synth->enlargement;
     remember(synth);
     synth->view = (FlSynthView){rect, &synth->last.nnf, has_temporal ? full->temporal : NULL,
                                 has_temporal ? full->temporal_weight : NULL};
@@ -633,13 +652,30 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
                      (!shows || show_all(synth, guides, all, error)));
 }
 
+/* The view in the size of the picture. */
+static bool double_view(FlSynth *synth, GError **error)
+{
+    FlSynthView *view = &synth->view;
+    const FlRect page = {0, 0, synth->last.painted_width, synth->last.painted_height};
+    if (!synth->enlargement || !view->nnf || synth->shown.match)
+        return true;
+    view->rect = fl_rect_doubled(view->rect, page);
+    if (!fl_nnf_init(&synth->shown, view->rect.width, view->rect.height, error))
+        return false;
+    fl_plane_double(view->nnf->match, view->rect.width, view->rect.height, sizeof(FlMatch),
+                    synth->shown.match);
+    view->nnf = &synth->shown;
+    return true;
+}
+
 bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats,
                     FlSynthView *view, GError **error)
 {
     FlFrameStats no_stats;
     FlFrameStats *const s = stats ? stats : &no_stats;
     *s = (FlFrameStats){0};
-    const bool done = paint(synth, guides, rgb, s, view, error);
+    const bool done =
+        paint(synth, guides, rgb, s, view, error) && (!view || double_view(synth, error));
     if (view) {
         *view = synth->view;
         return done && (!synth->last.valid || remember_picture(synth, rgb, error));

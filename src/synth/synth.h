@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SYNTH_SYNTH_H
 #define FLUIDY_SYNTH_SYNTH_H
 
+#include "synth/enlargement.h"
 #include "synth/guide_pairs.h"
 #include "synth/patchmatch.h"
 
@@ -23,7 +24,8 @@ typedef struct FlFrameStats {
     double seconds_target, seconds_temporal, seconds_search, seconds_vote;
 } FlFrameStats;
 
-/** How a frame was synthesised, for inspection: valid until the next frame. All level 0, `rect`. */
+/** How a frame was synthesised, for inspection: valid until the next frame. All of level 0 and
+ * `rect`, in the size of the picture. */
 typedef struct FlSynthView {
     FlRect rect;
     const FlNnf *nnf;
@@ -46,6 +48,13 @@ typedef struct FlSynthSize {
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed);
 void fl_synth_free(FlSynth *synth); // NULL is fine
+
+/**
+ * Before the first frame: pictures shall have this size, twice that of guides and field. The finest
+ * level is then searched as coarser ones are, and views have no T_temp. The enlargement must
+ * outlive the synthesis.
+ */
+void fl_synth_enlarge(FlSynth *synth, const FlEnlargement *enlargement, int width, int height);
 
 /** Whether statistics hold energies, which take a fifth of a frame's time (no); else they are 0. */
 void fl_synth_measure(FlSynth *synth, bool energies);

@@ -25,4 +25,10 @@ void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *ke
 void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
                   float sharpness, int channels, int y, float *colour);
 
+/** A colour of a vote as a byte. */
+static inline uint8_t fl_vote_byte(float value)
+{
+    return (uint8_t)(value * 255 + 0.5f);
+}
+
 #endif

@@ -1,6 +1,7 @@
 /*
- * A whole film: its frames stand in one file with FRAME_MARK between them. Its regions are found, it
- * is drawn, and its outlines and the motion between frames are asked for. The bytes after a first
+ * A whole film: its frames stand in one file with FRAME_MARK between them. Its regions are found,
+ * it is drawn, and its outlines and the motion between frames are asked for. The bytes after a
+ * first
  * "<?film " say how it is read.
  */
 #include "apart.h"
@@ -124,7 +125,8 @@ static void check_motion(const FlDrawing *drawing, FlMotionSource *source, int b
     const size_t n = 2 * fl_rect_pixels(page);
     g_autofree float *motion = g_new(float, n);
     for (int r = 0; r < MIN(fl_drawing_regions(drawing), MOST_REGIONS); r++) {
-        if (!fl_motion_source_get(source, &(FlRegionStep){r, before, now, page, {0}}, motion, NULL, NULL))
+        if (!fl_motion_source_get(source, &(FlRegionStep){r, before, now, page, {0}}, motion, NULL,
+                                  NULL))
             return;
         for (size_t k = 0; k < n; k++)
             g_assert_false(isinf(motion[k]));
@@ -138,7 +140,7 @@ static void look_at(FlDrawing *drawing)
     g_autoptr(FlMaskStore) masks =
         fl_mask_store_new(fl_drawing_regions(drawing), n, fl_drawing_width(drawing),
                           fl_drawing_height(drawing), NULL);
-    g_autoptr(FlMotionSource) source = fl_motion_source_new(drawing, masks, NULL);
+    g_autoptr(FlMotionSource) source = fl_motion_source_new(drawing, masks, false, NULL);
     if (!draw_frames(drawing, masks))
         return;
     for (int f = 0; f < n; f++) {

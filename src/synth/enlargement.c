@@ -1,0 +1,177 @@
+#include "synth/enlargement.h"
+
+#include "base/alloc.h"
+#include "base/parallel_error.h"
+#include "base/spill.h"
+#include "synth/spline.h"
+#include "synth/vote.h"
+#include <string.h>
+
+struct FlEnlargement {
+    FlExemplarLevel level; // its colours only
+    uint8_t paper[3];
+    FlSpill *rgb; // a block for each frame; NULL: all are in the window
+};
+
+void fl_enlargement_free(FlEnlargement *enlargement)
+{
+    if (!enlargement)
+        return;
+    free(enlargement->level.colour);
+    fl_spill_free(enlargement->rgb);
+    g_free(enlargement);
+}
+
+static size_t pixels_of(const FlEnlargement *enlargement)
+{
+    return (size_t)enlargement->level.width * (size_t)enlargement->level.height;
+}
+
+/* ---- the window ------------------------------------------------------------------------------ */
+
+/* The spline coefficients of frame t; planes: scratch for three. */
+static void pack_frame(FlEnlargement *enlargement, const uint8_t *rgb, int t, float *planes)
+{
+    FlExemplarLevel *level = &enlargement->level;
+    const size_t n = pixels_of(enlargement);
+    float *const plane[3] = {planes, planes + n, planes + 2 * n};
+    for (size_t c = 0; c < 3; c++)
+        for (size_t p = 0; p < n; p++)
+            plane[c][p] = rgb[3 * p + c] / 255.0f;
+    fl_spline_prefilter(plane, 3, level->width, level->height,
+                        level->colour + (size_t)t * level->frame_pixels + FL_PAD * level->pitch +
+                            FL_PAD,
+                        (int)level->pitch);
+}
+
+static bool pack_window(FlEnlargement *enlargement, const FlStyle *style, GError **error)
+{
+    const FlExemplarLevel *level = &enlargement->level;
+    const size_t n = 3 * pixels_of(enlargement);
+    GError *first = NULL;
+#pragma omp parallel
+    {
+        GError *failure = NULL;
+        g_autofree float *planes = fl_alloc(n, sizeof *planes, "an exemplar", &failure);
+#pragma omp for schedule(dynamic, 1)
+        for (int t = level->first; t < level->first + level->window; t++)
+            if (planes)
+                pack_frame(enlargement, style->rgb + n * (size_t)t, t, planes);
+        fl_parallel_error_keep(&first, failure);
+    }
+    return fl_parallel_error_tell(error, first);
+}
+
+static bool spill_frames(FlEnlargement *enlargement, const FlStyle *style, GError **error)
+{
+    const size_t bytes = 3 * pixels_of(enlargement);
+    if (!(enlargement->rgb = fl_spill_new((size_t)style->n_frames, error)))
+        return false;
+    for (int t = 0; t < style->n_frames; t++)
+        if (!fl_spill_put(enlargement->rgb, (size_t)t, style->rgb + bytes * (size_t)t, bytes,
+                          error))
+            return false;
+    return true;
+}
+
+FlEnlargement *fl_enlargement_new(const FlStyle *style, const FlExemplar *exemplar, GError **error)
+{
+    const FlExemplarLevel *half = &exemplar->level[0];
+    g_autoptr(FlEnlargement) enlargement = g_new0(FlEnlargement, 1);
+    FlExemplarLevel *level = &enlargement->level;
+    memcpy(enlargement->paper, style->paper, sizeof enlargement->paper);
+    level->width = style->width, level->height = style->height;
+    level->n_frames = style->n_frames;
+    level->first = half->first, level->window = half->window;
+    level->pitch = (size_t)style->width + 2 * FL_PAD;
+    level->frame_pixels = level->pitch * ((size_t)style->height + 2 * FL_PAD);
+    const size_t pixels = level->frame_pixels * (size_t)level->n_frames;
+    level->colour = level->window < level->n_frames
+                        ? fl_alloc_lazy(pixels, sizeof *level->colour, "an exemplar", error)
+                        : fl_alloc_huge(pixels, sizeof *level->colour, "an exemplar", error);
+    if (!level->colour || !pack_window(enlargement, style, error) ||
+        (level->window < level->n_frames && !spill_frames(enlargement, style, error)))
+        return NULL;
+    return g_steal_pointer(&enlargement);
+}
+
+double fl_enlargement_bytes(const FlEnlargement *enlargement)
+{
+    const FlExemplarLevel *level = &enlargement->level;
+    return (double)level->frame_pixels * level->window * sizeof *level->colour;
+}
+
+/* Frees the frames t to end - 1. */
+static void release_frames(FlEnlargement *enlargement, int t, int end)
+{
+    const FlExemplarLevel *level = &enlargement->level;
+    fl_release(level->colour + (size_t)t * level->frame_pixels,
+               (size_t)(end - t) * level->frame_pixels * sizeof *level->colour);
+}
+
+bool fl_enlargement_seek(FlEnlargement *enlargement, const FlExemplar *exemplar, GError **error)
+{
+    FlExemplarLevel *level = &enlargement->level;
+    const int old = level->first, window = level->window, now = exemplar->level[0].first;
+    const size_t values = 3 * pixels_of(enlargement);
+    if (now == old)
+        return true;
+    g_autofree uint8_t *rgb = fl_alloc(values, 1, "an exemplar", error);
+    g_autofree float *planes = rgb ? fl_alloc(values, sizeof *planes, "an exemplar", error) : NULL;
+    if (!planes)
+        return false;
+    level->first = now;
+    release_frames(enlargement, 0, now);
+    release_frames(enlargement, now + window, level->n_frames);
+    for (int t = now; t < now + window; t++) {
+        if (t >= old && t < old + window)
+            continue;
+        if (!fl_spill_get(enlargement->rgb, (size_t)t, rgb, values, error))
+            return false;
+        pack_frame(enlargement, rgb, t, planes);
+    }
+    return true;
+}
+
+/* ---- votes ----------------------------------------------------------------------------------- */
+
+/* FL_VOTE_ROWS rows of the large field from row y on; row: scratch for their colours. */
+static void enlarge_rows(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect, int y,
+                         const FlEnlarged *enlarged, float *colour)
+{
+    const size_t row = 3 * (size_t)rect.width;
+    const int rows = MIN(FL_VOTE_ROWS, rect.height - y);
+    for (size_t k = 0; k < row * (size_t)rows; k++)
+        colour[k] = enlargement->paper[k % 3] / 255.0f;
+    fl_vote_rows(nnf, &enlargement->level, enlarged->kernels, enlarged->sharpness, 3, y, colour);
+    for (int k = 0; k < rows; k++) {
+        uint8_t *to =
+            enlarged->rgb + 3 * ((size_t)(rect.y + y + k) * (size_t)enlarged->width) + 3 * rect.x;
+        for (size_t c = 0; c < row; c++)
+            to[c] = fl_vote_byte(colour[row * (size_t)k + c]);
+    }
+}
+
+bool fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect,
+                const FlEnlarged *enlarged, GError **error)
+{
+    const FlRect page = {0, 0, enlarged->width, enlarged->height};
+    const FlRect full = fl_rect_doubled(rect, page);
+    g_auto(FlNnf) large = {0};
+    if (!fl_nnf_init(&large, full.width, full.height, error))
+        return false;
+    fl_nnf_upscale(nnf, &enlargement->level, enlarged->kernels, &large);
+    GError *first = NULL;
+#pragma omp parallel
+    {
+        GError *failure = NULL;
+        g_autofree float *colour =
+            fl_alloc(3 * FL_VOTE_ROWS * (size_t)full.width, sizeof *colour, "a picture", &failure);
+#pragma omp for schedule(dynamic, 1)
+        for (int y = 0; y < full.height; y += FL_VOTE_ROWS)
+            if (colour)
+                enlarge_rows(enlargement, &large, full, y, enlarged, colour);
+        fl_parallel_error_keep(&first, failure);
+    }
+    return fl_parallel_error_tell(error, first);
+}

@@ -1,0 +1,44 @@
+/* Pictures of twice the size of their field, by votes: what drafts show. */
+#ifndef FLUIDY_SYNTH_ENLARGEMENT_H
+#define FLUIDY_SYNTH_ENLARGEMENT_H
+
+#include "synth/exemplar.h"
+#include "synth/nnf.h"
+
+/** The colours of a style in twice the size of an exemplar's level 0, in the window of that. */
+typedef struct FlEnlargement FlEnlargement;
+
+/**
+ * style: the one whose half, fl_style_halve(), the exemplar was made of.
+ *
+ * Returns: to be freed with fl_enlargement_free(); NULL with FL_ERROR_NO_MEMORY or FL_ERROR_OUTPUT.
+ */
+FlEnlargement *fl_enlargement_new(const FlStyle *style, const FlExemplar *exemplar, GError **error);
+void fl_enlargement_free(FlEnlargement *enlargement); // NULL is fine
+
+/** An estimate of its bytes. */
+double fl_enlargement_bytes(const FlEnlargement *enlargement);
+
+/** Follows the exemplar's window, as fl_exemplar_seek() has moved it. FL_ERROR_INPUT,
+ * FL_ERROR_NO_MEMORY. */
+bool fl_enlargement_seek(FlEnlargement *enlargement, const FlExemplar *exemplar, GError **error);
+
+/** Where pictures are made. */
+typedef struct FlEnlarged {
+    const FlKernels *kernels;
+    float sharpness;   // of votes, see fl_vote()
+    int width, height; // of the picture
+    uint8_t *rgb;      // width * height * 3, sRGB; the style's paper
+} FlEnlarged;
+
+/**
+ * Paints the field of a part of a frame, `rect`, in twice its size: all that its patches cover.
+ *
+ * Returns: false with FL_ERROR_NO_MEMORY set.
+ */
+bool fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect,
+                const FlEnlarged *enlarged, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlEnlargement, fl_enlargement_free)
+
+#endif
