@@ -1,0 +1,41 @@
+/* The data of an FlSynth; private to synth/. */
+#ifndef FLUIDY_SYNTH_SYNTH_DATA_H
+#define FLUIDY_SYNTH_SYNTH_DATA_H
+
+#include "synth/rest.h"
+#include "synth/synth.h"
+#include "synth/synth_state.h"
+
+struct FlSynth {
+    const FlExemplar *exemplar;
+    const FlEnlargement *enlargement; // by which pictures are made; NULL: in the size of the field
+    const FlParams *params;
+    FlCostScale scale;
+    FlKernels kernels;
+    int width, height, n_levels;
+    float side; // the larger one of the whole frames, px
+    uint64_t key;
+    FlSynthState last; // after the last frame; its planes are here in a frame, and for a view
+    GBytes *packed;    // it, with its planes; NULL since they have changed
+    int boil;          // fl_boil_step() before the frame in hand
+    bool moves;        // the drawing's motion is known in the frame in hand
+    bool wants_energies;
+    bool wants_view;                     // of the frame in hand
+    double seconds_search, seconds_vote; // of the frame in hand
+    FlTarget target; // of the frame in hand; kept until the next for FlSynthView
+    FlNnf nnf[FL_MAX_LEVELS];
+    FlRest rest;       // of the frame in hand: its parts at rest
+    FlSynthState past; // in a frame with such parts: the planes of the last one
+    FlSynthView view;  // of the last frame that was painted, where somebody wanted it
+    FlNnf shown;       // its field in the size of the picture, where that is another
+};
+
+/** Seconds since a monotonic time, which moves on to now. */
+static inline double fl_lap(gint64 *since)
+{
+    const gint64 now = g_get_monotonic_time(), before = *since;
+    *since = now;
+    return (double)(now - before) * 1e-6;
+}
+
+#endif
