@@ -91,11 +91,13 @@ void fl_boxes_of_labels(const int32_t *label, FlRect plane, int most, FlRect *bo
     g_autofree Edges *edges = g_new0(Edges, most + 1);
     for (int l = 0; l <= most; l++)
         edges[l] = (Edges){plane.x + plane.width, plane.y + plane.height, plane.x, plane.y};
-    for (int y = plane.y; y < plane.y + plane.height; y++)
-        for (int x = plane.x; x < plane.x + plane.width; x++) {
-            Edges *e = &edges[*label++];
-            e->left = MIN(e->left, x), e->right = MAX(e->right, x + 1);
-            e->top = MIN(e->top, y), e->bottom = y + 1;
+    for (int y = 0; y < plane.height; y++, label += plane.width)
+        for (int x = 0, end; x < plane.width; x = end) {
+            Edges *e = &edges[label[x]];
+            for (end = x + 1; end < plane.width && label[end] == label[x];)
+                end++;
+            e->left = MIN(e->left, plane.x + x), e->right = MAX(e->right, plane.x + end);
+            e->top = MIN(e->top, plane.y + y), e->bottom = plane.y + y + 1;
         }
     for (int l = 0; l <= most; l++)
         box[l] = fl_rect_between(edges[l].left, edges[l].top, edges[l].right, edges[l].bottom);
