@@ -16,6 +16,11 @@ int fl_schedule_threads(void)
 #endif
 }
 
+int fl_schedule_threads_up_to(int most)
+{
+    return MIN(fl_schedule_threads(), most);
+}
+
 int fl_schedule_set_threads(int n)
 {
     const int before = fl_schedule_threads();

@@ -9,6 +9,9 @@
 /** The number of threads of a team, >= 1; 1 without OpenMP. */
 int fl_schedule_threads(void);
 
+/** The same, but no more than `most`: for threads that take much memory each. */
+int fl_schedule_threads_up_to(int most);
+
 /** Sets that number for the calling thread. Returns: the number before. */
 int fl_schedule_set_threads(int n);
 

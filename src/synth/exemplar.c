@@ -1,6 +1,8 @@
 #include "synth/exemplar.h"
 
 #include "base/alloc.h"
+#include "base/parallel_error.h"
+#include "base/schedule.h"
 #include "base/spill.h"
 #include "style/adapt.h"
 #include "synth/spline.h"
@@ -336,66 +338,128 @@ static float margin_of(const Contrast *contrast, float border_px)
     return 0.0f;
 }
 
+#define PACKERS 4 // threads at most: each takes the planes of a frame
+
+/* What the guides of all frames say. */
+typedef struct Measured {
+    float most; // extent
+    Contrast contrast;
+} Measured;
+
+static void merge_contrast(Contrast *sum, const Contrast *contrast)
+{
+    sum->sum += contrast->sum, sum->n += contrast->n;
+    for (int d = 0; d < DEEPEST_MARGIN; d++)
+        sum->sum_at[d] += contrast->sum_at[d], sum->n_at[d] += contrast->n_at[d];
+}
+
+/* Copies the mask of frame t, and adds what its guides say. */
+static bool measure_frame(FlExemplar *exemplar, const FlStyle *style,
+                          const FlExemplarFrames *frames, int t, FlGuides *guides,
+                          Measured *measured, GError **error)
+{
+    const size_t pixels = (size_t)guides->width * (size_t)guides->height;
+    if (!fl_guide_sequence_get(frames->sequence, t, guides, error))
+        return false;
+    memcpy(exemplar->mask + (size_t)t * pixels, guides->mask, pixels);
+    if (!frames->rgb)
+        memcpy(exemplar->distance + (size_t)t * pixels, guides->distance,
+               pixels * sizeof *guides->distance);
+    for (size_t p = 0; p < pixels; p++)
+        measured->most = MAX(measured->most, MAX(guides->ext_plus[p], guides->ext_minus[p]));
+    add_contrast(&measured->contrast, guides, style->rgb + 3 * pixels * (size_t)t, exemplar);
+    return true;
+}
+
 /* Copies the masks and finds the extents of all frames, which give the scale, and what is bare,
  * but for guides as the papers have them. */
 static bool measure_extents(FlExemplar *exemplar, const FlStyle *style, FlExemplarFrames *frames,
                             GError **error)
 {
     const FlExemplarLevel *level = &exemplar->level[0];
-    const size_t pixels = (size_t)level->width * (size_t)level->height;
-    g_auto(FlGuides) guides = {0};
-    float most = 0;
-    Contrast contrast = {0};
-    if (!fl_guides_init(&guides, level->width, level->height, error))
-        return false;
-    for (int t = 0; t < level->n_frames; t++) {
-        if (!fl_guide_sequence_get(frames->sequence, t, &guides, error))
-            return false;
-        memcpy(exemplar->mask + (size_t)t * pixels, guides.mask, pixels);
-        if (!frames->rgb)
-            memcpy(exemplar->distance + (size_t)t * pixels, guides.distance,
-                   pixels * sizeof *guides.distance);
-        for (size_t p = 0; p < pixels; p++)
-            most = MAX(most, MAX(guides.ext_plus[p], guides.ext_minus[p]));
-        add_contrast(&contrast, &guides, style->rgb + 3 * pixels * (size_t)t, exemplar);
+    Measured all = {0};
+    GError *first = NULL;
+#pragma omp parallel num_threads(fl_schedule_threads_up_to(PACKERS))
+    {
+        GError *failure = NULL;
+        Measured own = {0};
+        g_auto(FlGuides) guides = {0};
+        const bool ready = fl_guides_init(&guides, level->width, level->height, &failure);
+#pragma omp for schedule(dynamic, 1)
+        for (int t = 0; t < level->n_frames; t++)
+            if (ready && !failure)
+                (void)measure_frame(exemplar, style, frames, t, &guides, &own, &failure);
+#pragma omp critical
+        {
+            all.most = MAX(all.most, own.most);
+            merge_contrast(&all.contrast, &own.contrast);
+        }
+        fl_parallel_error_keep(&first, failure);
     }
-    exemplar->ext_scale = most > 0 ? 1 / most : 1;
-    if (fl_knows_depth(&frames->params) && contrast.n > 0) {
-        exemplar->bare = (float)(BARE * (double)contrast.sum / (double)contrast.n / 255);
-        exemplar->margin_px = margin_of(&contrast, exemplar->border_px);
+    exemplar->ext_scale = all.most > 0 ? 1 / all.most : 1;
+    if (fl_knows_depth(&frames->params) && all.contrast.n > 0) {
+        exemplar->bare = (float)(BARE * (double)all.contrast.sum / (double)all.contrast.n / 255);
+        exemplar->margin_px = margin_of(&all.contrast, exemplar->border_px);
     }
-    return true;
+    return fl_parallel_error_tell(error, first);
 }
 
 typedef size_t SegmentCounts[FL_MAX_LEVELS][FL_SEGMENTS]; // pixels of each level and segment
+
+/* Packs frame t, and keeps it if it is one of the window. own: its counts. */
+static bool pack_one(FlExemplar *exemplar, const FlStyle *style, const FlExemplarFrames *frames,
+                     int t, FlPyramid *full, SegmentCounts own, GError **error)
+{
+    const size_t bytes = 3 * (size_t)style->width * (size_t)style->height;
+    const uint8_t *rgb = style->rgb + bytes * (size_t)t;
+    if (!fill_frame(exemplar, frames, rgb, t, full, error) ||
+        !pack_pyramid(exemplar, full, t, error) ||
+        (frames->rgb && !fl_spill_put(frames->rgb, (size_t)t, rgb, bytes, error)))
+        return false;
+    for (int l = 0; l < exemplar->n_levels; l++)
+        count_segments(&exemplar->level[l], t, own[l]);
+    if (t >= exemplar->level[0].window)
+        release_frames(exemplar, t, t + 1);
+    return true;
+}
+
+static void merge_counts(FlExemplarFrames *frames, int t, SegmentCounts own, SegmentCounts counts)
+{
+    for (int l = 0; l < FL_MAX_LEVELS; l++)
+        for (int s = 0; s < FL_SEGMENTS; s++)
+            counts[l][s] += own[l][s];
+    if (own[0][FL_SEGMENT_BORDER] == 0)
+        return;
+    frames->earliest = frames->earliest < 0 ? t : MIN(frames->earliest, t);
+    frames->latest = MAX(frames->latest, t);
+}
 
 /* Packs every frame once, to count its segments, and keeps those of the window. */
 static bool pack_frames(FlExemplar *exemplar, const FlStyle *style, FlExemplarFrames *frames,
                         SegmentCounts counts, GError **error)
 {
-    const size_t pixels = (size_t)style->width * (size_t)style->height;
-    g_auto(FlPyramid) full = {0};
-    if (!fl_pyramid_init(&full, style->width, style->height, FL_PLANES, error))
-        return false;
+    const int window = exemplar->level[0].window;
+    GError *first = NULL;
     exemplar->separate = true; // until decide_levels()
-    frames->earliest = -1;
-    for (int t = 0; t < style->n_frames; t++) {
-        const uint8_t *rgb = style->rgb + 3 * pixels * (size_t)t;
-        const size_t before = counts[0][FL_SEGMENT_BORDER];
-        if (!fill_frame(exemplar, frames, rgb, t, &full, error) ||
-            !pack_pyramid(exemplar, &full, t, error) ||
-            (frames->rgb && !fl_spill_put(frames->rgb, (size_t)t, rgb, 3 * pixels, error)))
-            return false;
-        for (int l = 0; l < exemplar->n_levels; l++)
-            count_segments(&exemplar->level[l], t, counts[l]);
-        if (t >= exemplar->level[0].window)
-            release_frames(exemplar, exemplar->level[0].window, t + 1);
-        if (counts[0][FL_SEGMENT_BORDER] == before)
-            continue;
-        frames->earliest = frames->earliest < 0 ? t : frames->earliest;
-        frames->latest = t;
+    frames->earliest = frames->latest = -1;
+#pragma omp parallel num_threads(fl_schedule_threads_up_to(PACKERS))
+    {
+        GError *failure = NULL;
+        g_auto(FlPyramid) full = {0};
+        const bool ready = fl_pyramid_init(&full, style->width, style->height, FL_PLANES, &failure);
+#pragma omp for schedule(dynamic, 1)
+        for (int t = 0; t < style->n_frames; t++) {
+            SegmentCounts own = {{0}};
+            if (!ready || failure || !pack_one(exemplar, style, frames, t, &full, own, &failure))
+                continue;
+#pragma omp critical
+            merge_counts(frames, t, own, counts);
+        }
+        fl_parallel_error_keep(&first, failure);
     }
-    return true;
+    if (window < style->n_frames)
+        release_frames(exemplar, window, style->n_frames);
+    return fl_parallel_error_tell(error, first);
 }
 
 /* Decides whether segments are matched separately, and the number of levels. */
