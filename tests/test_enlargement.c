@@ -33,7 +33,7 @@ static void style_init(Style *style, int window)
     fl_params_detail(style->params, FL_DETAIL_DRAFT);
     style->params->style_window = window;
     style->half = fl_style_halve(style->full, &error);
-    style->exemplar = fl_exemplar_new(style->half, style->params, &error);
+    style->exemplar = fl_exemplar_new_half(style->half, style->full, style->params, &error);
     style->enlargement = fl_enlargement_new(style->full, style->exemplar, &error);
     g_assert_no_error(error);
 }
@@ -81,6 +81,33 @@ static void a_style_of_an_odd_size_loses_nothing(void)
     g_assert_cmpint(half->height, ==, 3);
     for (int p = 0; p < 9; p++)
         g_assert_true(half->rgb[3 * p] == 90 && half->mask[p] == 200);
+}
+
+/* Whether a pixel lies within two of the mask's contour. */
+static bool is_near_contour(const uint8_t *mask, int x, int y)
+{
+    for (int k = 0; k < 25; k++) {
+        const int at_x = x + k % 5 - 2, at_y = y + k / 5 - 2;
+        if (at_x < 0 || at_y < 0 || at_x >= STYLE_W || at_y >= STYLE_H ||
+            mask[at_y * STYLE_W + at_x] < FL_INSIDE)
+            return true;
+    }
+    return false;
+}
+
+static void a_half_has_the_margin_of_the_whole(void)
+{
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = small_style();
+    for (int t = 0; t < STYLE_FRAMES; t++)
+        for (int p = 0; p < STYLE_W * STYLE_H; p++) // the paint ends before the mask does
+            if (is_near_contour(style->mask + t * STYLE_W * STYLE_H, p % STYLE_W, p / STYLE_W))
+                memset(style->rgb + 3 * (t * STYLE_W * STYLE_H + p), 250, 3);
+    g_autoptr(FlStyle) half = fl_style_halve(style, NULL);
+    g_autoptr(FlExemplar) whole = fl_exemplar_new(style, params, NULL);
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new_half(half, style, params, NULL);
+    g_assert_cmpfloat(whole->margin_px, >, 0.5f);
+    g_assert_cmpfloat(exemplar->margin_px, ==, whole->margin_px / 2);
 }
 
 static void own_places_give_the_frame_in_full_size(void)
@@ -231,6 +258,7 @@ int main(int argc, char **argv)
     g_test_init(&argc, &argv, NULL);
     TEST(a_halved_style_is_the_mean_of_its_pixels);
     TEST(a_style_of_an_odd_size_loses_nothing);
+    TEST(a_half_has_the_margin_of_the_whole);
     TEST(own_places_give_the_frame_in_full_size);
     TEST(a_window_follows_that_of_the_exemplar);
     TEST(pictures_have_twice_the_size_and_paint_in_the_mask);

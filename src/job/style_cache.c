@@ -81,7 +81,8 @@ static bool pack(FlStyleInstance *instance, const FlStyle *style, FlParams *para
         return false;
     if (enlarges)
         fl_params_scale_lengths(params, .5f);
-    if (!(instance->exemplar = fl_exemplar_new(half ? half : style, params, error)))
+    if (!(instance->exemplar = half ? fl_exemplar_new_half(half, style, params, error)
+                                    : fl_exemplar_new(style, params, error)))
         return false;
     instance->border_px = instance->exemplar->border_px * (enlarges ? 2 : 1);
     return !enlarges ||

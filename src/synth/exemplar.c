@@ -4,6 +4,7 @@
 #include "base/parallel_error.h"
 #include "base/schedule.h"
 #include "base/spill.h"
+#include "guides/distance.h"
 #include "style/adapt.h"
 #include "synth/spline.h"
 #include <math.h>
@@ -307,17 +308,20 @@ typedef struct Contrast {
     uint64_t sum_at[DEEPEST_MARGIN], n_at[DEEPEST_MARGIN];
 } Contrast;
 
-static void add_contrast(Contrast *contrast, const FlGuides *guides, const uint8_t *rgb,
-                         const FlExemplar *exemplar)
+static void add_contrast(Contrast *contrast, const FlStyle *style, int t, const float *distance,
+                         float border_px)
 {
-    for (size_t p = 0; p < (size_t)guides->width * (size_t)guides->height; p++) {
-        const float depth = guides->distance[p];
+    const size_t pixels = (size_t)style->width * (size_t)style->height;
+    const uint8_t *mask = style->mask + (size_t)t * pixels;
+    const uint8_t *rgb = style->rgb + 3 * (size_t)t * pixels;
+    for (size_t p = 0; p < pixels; p++) {
+        const float depth = distance[p];
         uint64_t apart = 0;
-        if (guides->mask[p] < FL_INSIDE || depth < 0)
+        if (mask[p] < FL_INSIDE || depth < 0)
             continue;
         for (size_t c = 0; c < 3; c++)
-            apart += (uint64_t)abs(rgb[3 * p + c] - exemplar->paper[c]);
-        if (depth >= exemplar->border_px)
+            apart += (uint64_t)abs(rgb[3 * p + c] - style->paper[c]);
+        if (depth >= border_px)
             contrast->sum += apart, contrast->n++;
         if (depth < DEEPEST_MARGIN)
             contrast->sum_at[(int)depth] += apart, contrast->n_at[(int)depth]++;
@@ -367,7 +371,7 @@ static bool measure_frame(FlExemplar *exemplar, const FlStyle *style,
                pixels * sizeof *guides->distance);
     for (size_t p = 0; p < pixels; p++)
         measured->most = MAX(measured->most, MAX(guides->ext_plus[p], guides->ext_minus[p]));
-    add_contrast(&measured->contrast, guides, style->rgb + 3 * pixels * (size_t)t, exemplar);
+    add_contrast(&measured->contrast, style, t, guides->distance, exemplar->border_px);
     return true;
 }
 
@@ -401,6 +405,31 @@ static bool measure_extents(FlExemplar *exemplar, const FlStyle *style, FlExempl
         exemplar->bare = (float)(BARE * (double)all.contrast.sum / (double)all.contrast.n / 255);
         exemplar->margin_px = margin_of(&all.contrast, exemplar->border_px);
     }
+    return fl_parallel_error_tell(error, first);
+}
+
+/* The margin of a style, without any other guides. */
+static bool measure_margin(const FlStyle *style, float border_px, float *margin_px, GError **error)
+{
+    const size_t pixels = (size_t)style->width * (size_t)style->height;
+    Contrast all = {0};
+    GError *first = NULL;
+#pragma omp parallel num_threads(fl_schedule_threads_up_to(PACKERS))
+    {
+        GError *failure = NULL;
+        Contrast own = {0};
+        g_autofree float *distance =
+            fl_alloc_unset(pixels, sizeof *distance, "an exemplar", &failure);
+#pragma omp for schedule(dynamic, 1)
+        for (int t = 0; t < style->n_frames; t++)
+            if (!failure && fl_distance(style->mask + (size_t)t * pixels, style->width,
+                                        style->height, distance, &failure))
+                add_contrast(&own, style, t, distance, border_px);
+#pragma omp critical
+        merge_contrast(&all, &own);
+        fl_parallel_error_keep(&first, failure);
+    }
+    *margin_px = all.n > 0 ? margin_of(&all, border_px) : 0;
     return fl_parallel_error_tell(error, first);
 }
 
@@ -508,7 +537,22 @@ static bool init_frames(FlExemplarFrames *frames, const FlStyle *style, const Fl
            (all || (frames->rgb = fl_spill_new((size_t)style->n_frames, error)));
 }
 
-FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error)
+/* A margin is less than a pixel of the half, of which the full one's says more. */
+static bool halve_margin(FlExemplar *exemplar, const FlStyle *full, const FlParams *params,
+                         GError **error)
+{
+    float margin_px = 0;
+    if (!fl_knows_depth(params))
+        return true;
+    if (!measure_margin(full, 2 * exemplar->border_px, &margin_px, error))
+        return false;
+    exemplar->margin_px = margin_px / 2;
+    return true;
+}
+
+/* full: the style whose half `style` is; NULL: it is none. */
+static FlExemplar *make_exemplar(const FlStyle *style, const FlStyle *full, const FlParams *params,
+                                 GError **error)
 {
     fl_rotation_init();
     fl_spline_init();
@@ -523,6 +567,7 @@ FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError
     if (!init_levels(exemplar, style, all ? style->n_frames : params->style_window, error) ||
         !init_frames(frames, style, params, all, error) ||
         !measure_extents(exemplar, style, frames, error) ||
+        (full && !halve_margin(exemplar, full, params, error)) ||
         !pack_frames(exemplar, style, frames, counts, error) ||
         !decide_levels(exemplar, style, counts, error))
         return NULL;
@@ -532,6 +577,17 @@ FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError
         if (!list_valid(&exemplar->level[l], error))
             return NULL;
     return fl_exemplar_seek(exemplar, 0, error) ? g_steal_pointer(&exemplar) : NULL;
+}
+
+FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error)
+{
+    return make_exemplar(style, NULL, params, error);
+}
+
+FlExemplar *fl_exemplar_new_half(const FlStyle *half, const FlStyle *full, const FlParams *params,
+                                 GError **error)
+{
+    return make_exemplar(half, full, params, error);
 }
 
 /* Packs a frame that enters the window. */

@@ -59,6 +59,11 @@ typedef struct FlExemplar {
  */
 FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error);
 
+/** The same of a style made by fl_style_halve(): what it takes finer pixels to measure is that of
+ * the `full` one. */
+FlExemplar *fl_exemplar_new_half(const FlStyle *half, const FlStyle *full, const FlParams *params,
+                                 GError **error);
+
 void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
 
 /**
