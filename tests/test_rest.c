@@ -139,6 +139,35 @@ static void a_part_may_go_and_come_back(void)
     g_assert_cmpint(film->rgb[FRAMES - 1][3 * (24 * WIDTH + 109)], <, 200);
 }
 
+/* Paints a frame from guides of those parts alone that move. Returns: whether some rest. */
+static bool paint_part(Film *film, int f)
+{
+    g_autofree uint8_t *square = NULL;
+    g_auto(FlGuides) part = {0};
+    FlRestingParts resting = {0};
+    FlRect whole = {0, 0, WIDTH, HEIGHT}, moving = whole;
+    g_assert_true(fl_guide_sequence_stirring(film->guides, f, &square, NULL));
+    g_assert_true(!square ||
+                  fl_resting_parts_init(&resting, WIDTH, HEIGHT, square, &moving, NULL));
+    const FlRect rect = fl_rect_grown(moving, 24, whole);
+    g_assert_true(fl_guides_init(&part, rect.width, rect.height, NULL));
+    part.x = rect.x, part.y = rect.y;
+    part.resting = resting;
+    g_assert_true(fl_guide_sequence_get(film->guides, f, &part, NULL) &&
+                  fl_synth_frame(film->synth, &part, film->rgb[f], NULL, NULL, NULL));
+    return rect.width < WIDTH;
+}
+
+static void what_moves_needs_guides_of_that_part_only(void)
+{
+    bool goes = true;
+    g_autoptr(Film) whole = painted((FlGuideSource){.mask = two_discs, .data = &goes});
+    g_autoptr(Film) film = film_new((FlGuideSource){.mask = two_discs, .data = &goes});
+    for (int f = 0; f < FRAMES; f++)
+        g_assert_cmpint(paint_part(film, f), ==, f > 0);
+    g_assert_cmpmem(film->rgb, sizeof film->rgb, whole->rgb, sizeof whole->rgb);
+}
+
 /* Whether a pixel of a view has a match. */
 static bool has_match(const FlSynthView *view, int x, int y)
 {
@@ -188,6 +217,7 @@ int main(int argc, char **argv)
     TEST(only_what_moves_is_searched);
     TEST(parts_beside_each_other_are_painted_together);
     TEST(a_part_may_go_and_come_back);
+    TEST(what_moves_needs_guides_of_that_part_only);
     TEST(a_view_shows_all_parts_and_changes_nothing);
     TEST(a_state_has_all_parts);
     return g_test_run();

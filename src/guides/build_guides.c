@@ -20,6 +20,7 @@
 #include "guides/flow.h"
 #include "guides/gauss.h"
 #include "guides/plane_store.h"
+#include "guides/stirring.h"
 #include <math.h>
 #include <string.h>
 
@@ -50,6 +51,7 @@ typedef struct Builder {
     Smoothed smoothed[3];
     uint8_t *mask; // scratch: a frame
     FlExtent *extent;
+    FlStirring stirring; // of the frame that is being finished
     bool previous_moves; // of the frame that was finished last
 } Builder;
 
@@ -67,6 +69,7 @@ static void builder_clear(Builder *b)
     g_free(b->dist_weight);
     g_free(b->mask);
     fl_extent_free(b->extent);
+    fl_stirring_clear(&b->stirring);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Builder, builder_clear)
@@ -97,7 +100,8 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
         b->outlines[s].frame = b->motions[s].frame = -1;
     for (int s = 0; s < 3; s++)
         b->smoothed[s].frame = -1;
-    if (!(b->mask = fl_alloc(n, 1, "a mask", error)))
+    if (!(b->mask = fl_alloc(n, 1, "a mask", error)) ||
+        !fl_stirring_init(&b->stirring, source->width, source->height, error))
         return false;
     b->extent = fl_extent_new(source->width, source->height, error);
     return b->extent;
@@ -340,6 +344,8 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
         return false;
     for (size_t k = 0; k < 2 * n && flow; k++)
         fixed[k] = fl_flow_to_fixed(flow[k]);
+    if (flow)
+        fl_stirring_mark_flow(&b->stirring, outline, fixed, b->sequence->params.still_px);
     // a frame without predecessor borrows its flow from the next interval: nothing has moved yet
     const bool counts = flow && frame > 0 && !record[-1].empty;
     fl_extent_step(b->extent, &record->box, outline->coverage, &record->box, counts ? fixed : NULL,
@@ -376,6 +382,7 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError
     g_clear_pointer(&given, g_free); // it is large, and so is what storing takes
     if (fl_is_blank((const uint8_t *)fixed, n * sizeof *fixed))
         return true;
+    fl_stirring_mark_motion(&b->stirring, outline, fixed);
     b->sequence->frames[frame].holder[FL_GUIDE_PLANE_MOTION] = frame;
     return fl_plane_store_put(
         b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_MOTION), fixed, n, 2, error);
@@ -406,6 +413,26 @@ static void drop_normals(const Builder *b, int frame, FlOutline *outline)
         g_clear_pointer(&outline->normal, g_free);
 }
 
+/** Notes whether the frame rests and, where it does not, stores what stirs since the one before.
+ * A frame that follows no shape is all new. */
+static bool put_stirring(Builder *b, int frame, const FlOutline *outline, GError **error)
+{
+    FlFrameRecord *record = &b->sequence->frames[frame];
+    const FlOutline *before = b->outlines[(frame + b->n_slots - 1) % b->n_slots].outline;
+    FlStirring *stirring = &b->stirring;
+    if (frame == 0 || outline->empty || record[-1].empty)
+        return true;
+    fl_stirring_mark_change(stirring, before, outline);
+    record->rests = !stirring->any;
+    if (record->rests)
+        return true;
+    fl_stirring_mark_taken(stirring, before);
+    fl_stirring_mark_taken(stirring, outline);
+    record->holder[FL_GUIDE_PLANE_STIRRING] = frame;
+    return fl_spill_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_STIRRING),
+                        stirring->square, fl_stirring_squares(stirring), error);
+}
+
 static bool finish_frame(Builder *b, int frame, GError **error)
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
@@ -414,7 +441,8 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     if (!outline_of(b, frame, &outline, error))
         return false;
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
-    *record = (FlFrameRecord){outline->box, outline->empty, {-1, -1, -1, -1, -1, -1}};
+    *record = (FlFrameRecord){outline->box, outline->empty, false, {-1, -1, -1, -1, -1, -1, -1}};
+    fl_stirring_reset(&b->stirring);
     if (outline->box.width == 0) {
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);
         return true;
@@ -429,7 +457,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     b->previous_moves = flow != NULL;
     if (still) { // equals the frame before
         memcpy(record->holder, record[-1].holder, sizeof record->holder);
-        record->holder[FL_GUIDE_PLANE_MOTION] = -1;
+        record->holder[FL_GUIDE_PLANE_MOTION] = record->holder[FL_GUIDE_PLANE_STIRRING] = -1;
     } else if (!put_shape(b, frame, outline, flow, error) ||
                !put_motion(b, frame, outline, flow, error) ||
                !put_unrounded(b, frame, outline, flow, error)) {
@@ -437,7 +465,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     }
     drop_normals(b, frame, outline);
     g_clear_pointer(&flow, g_free); // the drawing's motion takes much itself
-    return put_drawing_motion(b, frame, outline, error);
+    return put_drawing_motion(b, frame, outline, error) && put_stirring(b, frame, outline, error);
 }
 
 /** The last frame whose outline the motion of a frame needs. */

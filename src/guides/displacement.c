@@ -84,16 +84,12 @@ int fl_motion_room(const FlGuides *guides, int x, int y)
     return (int)CLAMP((m.xx * m.yy - m.xy * m.yx) / unit, 0, FL_ROOM_ONE);
 }
 
-bool fl_motion_confine(FlGuides *guides)
+void fl_motion_confine(FlGuides *guides)
 {
     const size_t n = (size_t)guides->width * guides->height;
-    bool known = false;
     for (size_t p = 0; p < n; p++)
         if (guides->mask[p] < FL_INSIDE)
             guides->motion[2 * p] = guides->motion[2 * p + 1] = FL_MOTION_UNKNOWN;
-        else
-            known |= guides->motion[2 * p] != FL_MOTION_UNKNOWN;
-    return known;
 }
 
 void fl_motion_turns(FlGuides *guides)

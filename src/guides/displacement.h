@@ -12,8 +12,8 @@
  */
 void fl_motion_to_fixed(const float *motion, const FlOutline *outline, int32_t *fixed);
 
-/** Makes the motion outside the mask unknown. Returns: whether it is known anywhere. */
-bool fl_motion_confine(FlGuides *guides);
+/** Makes the motion outside the mask unknown. */
+void fl_motion_confine(FlGuides *guides);
 
 /**
  * Fills guides->turn: the rotation that is nearest to the motion around each pixel. Differences are
@@ -25,7 +25,7 @@ void fl_motion_turns(FlGuides *guides);
 
 /**
  * Which share of its present room the paint around a pixel had in the frame before, FL_ROOM_ONE is
- * all: less where a shape grows, never more. All where motion is unknown.
+ * all: less where a shape grows, never more. All where motion is unknown. x, y: of the planes.
  */
 int fl_motion_room(const FlGuides *guides, int x, int y);
 

@@ -4,6 +4,7 @@
 #include "guides/distance.h"
 #include "guides/extent.h"
 #include "guides/plane_store.h"
+#include "guides/stirring.h"
 #include <string.h>
 
 /** One frame of the way back: the sum goes from frame + 1 to frame. Room: three frames. */
@@ -81,22 +82,24 @@ void fl_guide_sequence_free(FlGuideSequence *sequence)
     g_free(sequence);
 }
 
-/** Puts a cropped plane of integers of 1 / one px into one of the whole frame, which is all 0 and,
- * in rows of zeros, is not written to; channels: 1 or 2. */
-static void place_fixed(const FlRect *box, const int32_t *crop, int channels, int one, int width,
+/** Puts a plane of integers of 1 / one px, cropped to `box`, into one of `part`, which is all 0
+ * and, in rows of zeros, is not written to; channels: 1 or 2. */
+static void place_fixed(FlRect box, const int32_t *crop, int channels, int one, FlRect part,
                         float *plane)
 {
     const float scale = 1.0f / (float)one;
-    const size_t n = (size_t)box->width * channels;
-    for (int y = 0; y < box->height; y++, crop += n) {
-        float *row = plane + ((box->y + y) * (size_t)width + box->x) * channels;
-        const bool blank = fl_is_blank((const uint8_t *)crop, n * sizeof *crop);
+    const FlRect both = fl_rect_and(box, part);
+    const size_t n = (size_t)both.width * channels;
+    for (int y = both.y; y < both.y + both.height; y++) {
+        const int32_t *from = crop + ((y - box.y) * (size_t)box.width + both.x - box.x) * channels;
+        float *to = plane + ((y - part.y) * (size_t)part.width + both.x - part.x) * channels;
+        const bool blank = fl_is_blank((const uint8_t *)from, n * sizeof *from);
         for (size_t k = 0; k < n && !blank; k++)
-            row[k] = (float)crop[k] * scale;
+            to[k] = (float)from[k] * scale;
     }
 }
 
-static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane,
+static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane, FlRect part,
                       int32_t *scratch, float *out, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
@@ -105,8 +108,7 @@ static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane p
     if (!fl_guide_sequence_plane(sequence, frame, plane, scratch, error))
         return false;
     const bool flow = plane == FL_GUIDE_PLANE_FLOW;
-    place_fixed(&record->box, scratch, flow ? 2 : 1, flow ? FL_FLOW_ONE : FL_EXTENT_ONE,
-                sequence->source.width, out);
+    place_fixed(record->box, scratch, flow ? 2 : 1, flow ? FL_FLOW_ONE : FL_EXTENT_ONE, part, out);
     return true;
 }
 
@@ -131,18 +133,19 @@ static bool get_motion(const FlGuideSequence *sequence, int frame, const uint8_t
                        int32_t *scratch, FlGuides *guides, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
-    const FlRect whole = {0, 0, guides->width, guides->height};
+    const FlRect part = fl_guides_rect(guides);
     if (!sequence->source.motion)
         return true;
-    clear_plane(guides->motion, 2 * fl_rect_pixels(whole) * sizeof *guides->motion);
+    clear_plane(guides->motion, 2 * fl_rect_pixels(part) * sizeof *guides->motion);
     if (record->holder[FL_GUIDE_PLANE_MOTION] >= 0) {
         if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, scratch, error))
             return false;
         if (!any_known(scratch, coverage, fl_rect_pixels(record->box)))
             return true;
-        fl_rect_copy(scratch, record->box, guides->motion, whole, 2 * sizeof *scratch);
+        fl_rect_copy(scratch, record->box, guides->motion, part, 2 * sizeof *scratch);
     }
-    guides->has_motion = fl_motion_confine(guides);
+    guides->has_motion = !record->empty; // of the frame, whatever part this is
+    fl_motion_confine(guides);
     if (guides->has_motion)
         fl_motion_turns(guides);
     return true;
@@ -150,23 +153,48 @@ static bool get_motion(const FlGuideSequence *sequence, int frame, const uint8_t
 
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
 {
-    const FlFrameRecord *now = &sequence->frames[frame], *before = now - 1;
-    if (frame == 0 || now->empty || now->holder[FL_GUIDE_PLANE_FLOW] >= 0 ||
-        now->holder[FL_GUIDE_PLANE_MOTION] >= 0)
+    return sequence->frames[frame].rests;
+}
+
+/** What a frame takes that has the mask of the one before. */
+static bool mark_taken(const FlGuideSequence *sequence, int frame, FlStirring *stirring,
+                       GError **error)
+{
+    const FlRect box = sequence->frames[frame].box;
+    g_autofree uint8_t *shape = fl_alloc_unset(2 * fl_rect_pixels(box), 1, "coverages", error);
+    if (!shape || !fl_guide_sequence_shape(sequence, frame, shape, error))
         return false;
-    for (int plane = 0; plane < FL_N_GUIDE_PLANES; plane++)
-        if (plane != FL_GUIDE_PLANE_MOTION && now->holder[plane] != before->holder[plane])
-            return false;
+    const FlOutline outline = {.box = box, .coverage = shape};
+    fl_stirring_mark_taken(stirring, &outline);
+    return true;
+}
+
+bool fl_guide_sequence_stirring(const FlGuideSequence *sequence, int frame, uint8_t **square,
+                                GError **error)
+{
+    const FlGuideSource *source = &sequence->source;
+    const FlFrameRecord *record = &sequence->frames[frame];
+    const int holder = record->holder[FL_GUIDE_PLANE_STIRRING];
+    g_auto(FlStirring) stirring = {0};
+    *square = NULL;
+    if (holder < 0 && !record->rests)
+        return true;
+    if (!fl_stirring_init(&stirring, source->width, source->height, error) ||
+        !(record->rests
+              ? mark_taken(sequence, frame, &stirring, error)
+              : fl_spill_get(sequence->spill, fl_guide_plane_block(holder, FL_GUIDE_PLANE_STIRRING),
+                             stirring.square, fl_stirring_squares(&stirring), error)))
+        return false;
+    *square = g_steal_pointer(&stirring.square);
     return true;
 }
 
 bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                               GError **error)
 {
-    const int w = sequence->source.width, h = sequence->source.height;
+    const FlRect part = fl_guides_rect(guides);
     g_assert(frame >= 0 && frame < sequence->source.n_frames);
-    g_assert(guides->width == w && guides->height == h);
-    const size_t n = (size_t)w * h;
+    const size_t n = fl_rect_pixels(part);
     memset(guides->mask, 0, n);
     memset(guides->angle, 0, n);
     clear_plane(guides->flow, 2 * n * sizeof *guides->flow);
@@ -180,12 +208,14 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
         g_autofree int32_t *scratch =
             shape ? fl_alloc_scratch(2 * area, sizeof *scratch, "a guide", error) : NULL;
         if (!scratch || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, scratch, guides->flow, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, scratch, guides->ext_plus, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, scratch, guides->ext_minus, error))
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, part, scratch, guides->flow, error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, part, scratch, guides->ext_plus,
+                       error) ||
+            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, part, scratch, guides->ext_minus,
+                       error))
             return false;
-        fl_rect_copy(shape, record->box, guides->mask, (FlRect){0, 0, w, h}, 1);
-        fl_rect_copy(shape + area, record->box, guides->angle, (FlRect){0, 0, w, h}, 1);
+        fl_rect_copy(shape, record->box, guides->mask, part, 1);
+        fl_rect_copy(shape + area, record->box, guides->angle, part, 1);
         if (!get_motion(sequence, frame, shape, scratch, guides, error))
             return false;
     }
@@ -195,18 +225,18 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
 bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                                 GError **error)
 {
-    const FlRect whole = {0, 0, guides->width, guides->height};
+    const FlRect part = fl_guides_rect(guides);
     const FlRect box = sequence->frames[frame].box;
     g_autofree uint8_t *shape = fl_alloc_unset(2 * fl_rect_pixels(box), 1, "coverages", error);
-    memset(guides->mask, 0, fl_rect_pixels(whole));
+    memset(guides->mask, 0, fl_rect_pixels(part));
     if (!shape ||
         (fl_rect_pixels(box) > 0 && !fl_guide_sequence_shape(sequence, frame, shape, error)))
         return false;
-    fl_rect_copy(shape, box, guides->mask, whole, 1);
+    fl_rect_copy(shape, box, guides->mask, part, 1);
     g_clear_pointer(&shape, g_free);
-    if (!fl_distance(guides->mask, whole.width, whole.height, guides->distance, error))
+    if (!fl_distance(guides->mask, part.width, part.height, guides->distance, error))
         return false;
-    memcpy(guides->depth, guides->distance, fl_rect_pixels(whole) * sizeof *guides->depth);
+    memcpy(guides->depth, guides->distance, fl_rect_pixels(part) * sizeof *guides->depth);
     return true;
 }
 
@@ -270,5 +300,6 @@ void fl_guides_clear(FlGuides *guides)
     g_free(guides->ext_minus);
     g_free(guides->motion);
     g_free(guides->turn);
+    fl_resting_parts_clear(&guides->resting);
     *guides = (FlGuides){0};
 }

@@ -3,6 +3,7 @@
 #define FLUIDY_GUIDES_GUIDES_H
 
 #include "guides/outline.h"
+#include "guides/resting_parts.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -19,12 +20,14 @@ typedef struct FlGuideParams {
 } FlGuideParams;
 
 /**
- * The guides of one frame. All planes are row-major, width * height, without padding.
+ * The guides of one frame, or of a part of it, beside which everything rests. All planes are
+ * row-major, width * height, without padding.
  *
  * Directions are angles of 256 steps a turn, 0 along +x, 64 along +y (down), and are defined
  * inside the mask, still pixels included. Flow, angle and extents are 0 outside the mask.
  */
 typedef struct FlGuides {
+    int x, y; // where the part lies in the frame; 0, 0: as the frame does
     int width, height;
     bool disposable;  // nobody reads them after the engine, which may clear them before it paints
     uint8_t *mask;    // coverage 0..255; a pixel is inside from FL_INSIDE on
@@ -38,7 +41,19 @@ typedef struct FlGuides {
     bool has_motion; // somewhere in the mask; else the two planes mean nothing
     int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height
     int16_t *turn;   // the turn of the drawing, 65536 a turn; 0 where that is unknown
+    FlRestingParts resting; // of the frame: they are as in the one before; others may be as well
 } FlGuides;
+
+/** The pixel of the planes that lies at a place of the frame. */
+static inline size_t fl_guides_at(const FlGuides *guides, int x, int y)
+{
+    return (size_t)(y - guides->y) * (size_t)guides->width + (size_t)(x - guides->x);
+}
+
+static inline FlRect fl_guides_rect(const FlGuides *guides)
+{
+    return (FlRect){guides->x, guides->y, guides->width, guides->height};
+}
 
 #define FL_MOTION_ONE 16384
 #define FL_MOTION_UNKNOWN INT32_MIN // of both components: where motion is unknown, or no mask
@@ -73,7 +88,8 @@ FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuid
 
 void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 
-/** Fills `guides`, which the caller made with fl_guides_init() in the sequence's size. */
+/** Fills `guides`, which the caller made with fl_guides_init() for the sequence's frame, or part of
+ * it. */
 bool fl_guide_sequence_get(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                            GError **error);
 
@@ -85,9 +101,16 @@ bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGu
 bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                               GError **error);
 
-/** Whether a frame's guides are those of the frame before and nothing moves in it, so that they
+/** Whether a frame has the mask of the frame before and nothing moves in it, so that its guides
  * need not be got. */
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);
+
+/**
+ * What stirs in a frame since the one before, and what either takes: see fl_resting_parts_init(),
+ * to be freed; *square stays NULL where nothing was before. FL_ERROR_NO_MEMORY.
+ */
+bool fl_guide_sequence_stirring(const FlGuideSequence *sequence, int frame, uint8_t **square,
+                                GError **error);
 
 /**
  * The flow that directions were made from, before it was rounded as FlGuides has it: a source that

@@ -19,6 +19,9 @@ typedef struct FlRimShape {
     const uint8_t *shown;    // coverage of all shapes of the frame; NULL: there are no others
 } FlRimShape;
 
+/** How far from a pixel its depth may depend on the shapes, px. */
+int fl_rim_reach(float border_px);
+
 /**
  * How deep each pixel of the shape lies for the paint, px, below border_px or as `distance` says.
  *

@@ -390,6 +390,32 @@ bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int 
            fl_mask_store_same(surround->closed, region, a, b);
 }
 
+/* Adds where the masks of a store differ; scratch: two masks of `part`. */
+static bool add_difference(const FlMaskStore *masks, int region, int a, int b, FlRect part,
+                           uint8_t *scratch, uint8_t *differs, GError **error)
+{
+    const size_t n = fl_rect_pixels(part);
+    if (fl_mask_store_same(masks, region, a, b))
+        return true;
+    if (!fl_mask_store_get(masks, region, a, part, scratch, error) ||
+        !fl_mask_store_get(masks, region, b, part, scratch + n, error))
+        return false;
+    for (size_t p = 0; p < n; p++)
+        differs[p] |= scratch[p] ^ scratch[n + p];
+    return true;
+}
+
+bool fl_surround_differs(const FlSurround *surround, int region, int a, int b, FlRect part,
+                         uint8_t *differs, GError **error)
+{
+    const size_t n = fl_rect_pixels(part);
+    g_autofree uint8_t *scratch = fl_alloc_unset(2 * n, 1, "a mask", error);
+    memset(differs, 0, n);
+    return scratch &&
+           add_difference(surround->together, region, a, b, part, scratch, differs, error) &&
+           add_difference(surround->closed, region, a, b, part, scratch, differs, error);
+}
+
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,
                      FlAround *around, GError **error)
 {

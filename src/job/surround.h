@@ -35,6 +35,10 @@ typedef struct FlAround {
  * whatever else moves there. */
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b);
 
+/** Where they are not: differs, a byte a pixel of `part`, is 0 where they are. */
+bool fl_surround_differs(const FlSurround *surround, int region, int a, int b, FlRect part,
+                         uint8_t *differs, GError **error);
+
 /** Reads a part of a frame. Returns: true with `around` to be cleared. */
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,
                      FlAround *around, GError **error);

@@ -163,7 +163,7 @@ static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
     if (!shape || (lazy->last.valid && !find_motion(lazy, guides, error)))
         return false;
     memcpy(mask, guides->mask, pixels);
-    fl_rest_shape(guides, shape);
+    fl_rest_shape(guides, shape, guides->width);
     if (guides->disposable)
         fl_guides_clear(guides);
     if (!blur_mask(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, mask, error)))

@@ -155,13 +155,24 @@ static FlGuideSource source_of(FlPainter *painter)
                            .keeps_flow = painter->plan->keeps_flow};
 }
 
-FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style)
+/* The grid of the coarsest level, px of the guides. */
+static int coarsest_grid(const FlStyleInstance *style, FlRect page)
 {
     const FlRect guided = in_guides(style, page);
-    const int levels = MIN(style->exemplar->n_levels, fl_levels_of(guided.width, guided.height));
-    const int grid = (style->enlargement ? 2 : 1) << (levels - 1);
-    const int margin = (FL_PATCH_RADIUS + 1) * grid;
-    return fl_rect_on_grid(fl_rect_grown(extent, margin, page), grid);
+    return 1 << (MIN(style->exemplar->n_levels, fl_levels_of(guided.width, guided.height)) - 1);
+}
+
+/* How far patches of the coarsest level reach, and its grid, px of the guides. */
+static int patches_px(const FlStyleInstance *style, FlRect page)
+{
+    return (FL_PATCH_RADIUS + 1) * coarsest_grid(style, page);
+}
+
+FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style)
+{
+    const int scale = style->enlargement ? 2 : 1;
+    const FlRect grown = fl_rect_grown(extent, scale * patches_px(style, page), page);
+    return fl_rect_on_grid(grown, scale * coarsest_grid(style, page));
 }
 
 static FlRect cropped(const FlPainter *painter)
@@ -299,14 +310,25 @@ static void halve_around(FlAround *around, int width, int height)
             fl_mask_halve(planes[k], width, height, planes[k]);
 }
 
+/* The place on the page of what guides are of. */
+static FlRect guided_place(const FlPainter *painter, const FlGuides *guides)
+{
+    const FlRect whole = guided_rect(painter);
+    const FlRect place = {whole.x + guides->x, whole.y + guides->y, guides->width, guides->height};
+    return halves(painter)
+               ? fl_rect_and(fl_rect_doubled(place, page_of(painter)), painter->result.rect)
+               : place;
+}
+
 static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides, GError **error)
 {
     const FlPaintedRegion *result = &painter->result;
+    const FlRect place = guided_place(painter, guides);
     g_auto(FlAround) around = {0};
-    if (!fl_surround_get(painter->surround, result->region, frame, result->rect, &around, error))
+    if (!fl_surround_get(painter->surround, result->region, frame, place, &around, error))
         return false;
     if (halves(painter))
-        halve_around(&around, result->rect.width, result->rect.height);
+        halve_around(&around, place.width, place.height);
     const FlRimShape shape = {.width = guides->width,
                               .height = guides->height,
                               .mask = guides->mask,
@@ -338,13 +360,91 @@ static bool rests(FlPainter *painter, int last)
             depth_picture(painter, last) == depth_picture(painter, now));
 }
 
+/* Whether the engine keeps parts at rest in the picture. */
+static bool keeps_parts(const FlPainter *painter)
+{
+    const FlParams *params = &painter->plan->settings.params;
+    return painter->follows && painter->plan->engine->rest && params->rest && params->boil == 0;
+}
+
+/* A square of the guides' frame stirs if a shape with which the region shares edges differs in px
+ * around it: there its depth may change. */
+static void stir_around(uint8_t *square, FlRect guided, FlRect px)
+{
+    const int columns = fl_rest_squares(guided.width);
+    const FlRect around = fl_rect_and(px, (FlRect){0, 0, guided.width, guided.height});
+    for (int y = around.y / FL_REST_PX; y < fl_rest_squares(around.y + around.height); y++)
+        for (int x = around.x / FL_REST_PX; x < fl_rest_squares(around.x + around.width); x++)
+            if (square[y * columns + x])
+                square[y * columns + x] |= FL_REST_STIRS;
+}
+
+static bool stir_joins(const FlPainter *painter, uint8_t *square, GError **error)
+{
+    const int region = painter->plan->region, scale = halves(painter) ? 2 : 1;
+    const int now = frame_of(painter, painter->picture);
+    const int before = frame_of(painter, painter->picture - 1);
+    const FlRect rect = painter->result.rect, guided = guided_rect(painter);
+    const int reach = fl_rim_reach(painter->plan->style->exemplar->border_px) + FL_REST_PX;
+    if (fl_surround_joins_as_in(painter->surround, region, now, before))
+        return true;
+    g_autofree uint8_t *differs = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
+    if (!differs ||
+        !fl_surround_differs(painter->surround, region, now, before, rect, differs, error))
+        return false;
+    for (int y = 0; y < guided.height; y += FL_REST_PX)
+        for (int x = 0; x < guided.width; x += FL_REST_PX) {
+            const FlRect px = {scale * x, scale * y, scale * FL_REST_PX, scale * FL_REST_PX};
+            const FlRect cell = fl_rect_and(px, (FlRect){0, 0, rect.width, rect.height});
+            if (fl_rect_within(differs, rect.width, cell).width > 0)
+                stir_around(
+                    square, guided,
+                    (FlRect){x - reach, y - reach, FL_REST_PX + 2 * reach, FL_REST_PX + 2 * reach});
+        }
+    return true;
+}
+
+/* Parts whose mask and motion say that they rest, and with whose depth nothing interferes; the
+ * engine looks at the others. moving: their rectangle, or that of all. */
+static bool find_resting(const FlPainter *painter, FlRestingParts *resting, FlRect *moving,
+                         GError **error)
+{
+    const FlRect rect = guided_rect(painter);
+    *moving = (FlRect){0, 0, rect.width, rect.height};
+    g_autofree uint8_t *square = NULL;
+    if (!keeps_parts(painter))
+        return true;
+    if (!fl_guide_sequence_stirring(painter->guides, painter->picture, &square, error))
+        return false;
+    return !square ||
+           ((!fl_knows_depth(&painter->plan->settings.params) ||
+             stir_joins(painter, square, error)) &&
+            fl_resting_parts_init(resting, rect.width, rect.height, square, moving, error));
+}
+
+/* The part of the frame that guides are needed of: with all that they depend on there. */
+static FlRect needed_part(const FlPainter *painter, FlRect moving)
+{
+    const FlStyleInstance *style = painter->plan->style;
+    const FlRect rect = guided_rect(painter), whole = {0, 0, rect.width, rect.height};
+    const int patches = patches_px(style, page_of(painter));
+    const int reach = MAX(patches, fl_rim_reach(style->exemplar->border_px));
+    return painter->wants_guides ? whole : fl_rect_grown(moving, reach, whole);
+}
+
 /* The guides of the painter's picture, from which the engine paints it. The depth takes as much
  * scratch as the other planes, which come after it. */
 static bool make_guides(FlPainter *painter, FlGuides *guides, GError **error)
 {
-    const FlRect rect = guided_rect(painter);
-    if (!fl_guides_init(guides, rect.width, rect.height, error))
+    g_auto(FlRestingParts) resting = {0};
+    FlRect moving;
+    if (!find_resting(painter, &resting, &moving, error))
         return false;
+    const FlRect part = needed_part(painter, moving);
+    if (!fl_guides_init(guides, part.width, part.height, error))
+        return false;
+    guides->x = part.x, guides->y = part.y;
+    guides->resting = resting, resting = (FlRestingParts){0};
     guides->disposable = !painter->wants_guides;
     return fl_guide_sequence_distance(painter->guides, painter->picture, guides, error) &&
            make_depth(painter, guides, error) &&
@@ -411,6 +511,7 @@ static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides
                       painter->plan->style->exemplar->level[0].first);
     if (reuse && reuse->cache && !fl_painted_open(&painter->result, error))
         return false;
+    painter->follows = true;
     painter->result.taken =
         reuse && fl_reuse_take(reuse, painter->result.painted, fl_painted_bytes(&painter->result));
     if (painter->result.taken)
@@ -536,6 +637,7 @@ bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], 
         return false;
     }
     painter->picture = NONE;
+    painter->follows = true;
     if (bytes > 0 && !fl_painted_open(&painter->result, error))
         return false;
     if (bytes > 0)

@@ -74,7 +74,8 @@ static FlMatch carried(const Plan *plan, FlMatch m, Vector rest, int16_t turn)
  * grow with a shape. */
 static int left_of(const Plan *plan, int x, int y)
 {
-    const int room = fl_motion_room(plan->input->guides, x, y);
+    const FlGuides *guides = plan->input->guides;
+    const int room = fl_motion_room(guides, x - guides->x, y - guides->y);
     return CARRY_ONE - plan->carry * room / FL_ROOM_ONE * room / FL_ROOM_ONE;
 }
 
@@ -109,7 +110,7 @@ static FlMatch arriving(const Plan *plan, const FlNnf *before, int x, int y, int
                         float *speed)
 {
     const FlGuides *guides = plan->input->guides;
-    const size_t pixel = (size_t)y * guides->width + x;
+    const size_t pixel = fl_guides_at(guides, x, y);
     const bool inside = guides->mask[pixel] >= FL_INSIDE;
     *speed = inside ? length_of_flow(guides, pixel) : 0;
     if (!guides->has_motion || (inside && guides->motion[2 * pixel] == FL_MOTION_UNKNOWN))

@@ -36,7 +36,7 @@ void fl_pyramid_fill(FlPyramid *pyramid, const FlGuides *guides, const float *sh
     for (int y = 0; y < rect.height; y++) {
         for (int x = 0; x < rect.width; x++) {
             const size_t to = (size_t)y * rect.width + x;
-            const size_t from = (size_t)(rect.y + y) * guides->width + rect.x + x;
+            const size_t from = fl_guides_at(guides, rect.x + x, rect.y + y);
             const int16_t *turn = fl_turns[guides->angle[from]];
             const bool inside = guides->mask[from] >= FL_INSIDE;
             if (shape)

@@ -1,7 +1,6 @@
 #include "synth/rest.h"
 
 #include "base/alloc.h"
-#include "guides/connected_parts.h"
 #include <string.h>
 
 static uint8_t shape_at(const FlGuides *guides, size_t p)
@@ -11,16 +10,18 @@ static uint8_t shape_at(const FlGuides *guides, size_t p)
     return mask < FL_INSIDE ? mask : mask ^ (uint8_t)((int)(guides->depth[p] * STEPS) & 0x7f);
 }
 
-void fl_rest_shape(const FlGuides *guides, uint8_t *shape)
+void fl_rest_shape(const FlGuides *guides, uint8_t *shape, int width)
 {
-    for (size_t p = 0; p < (size_t)guides->width * guides->height; p++)
-        shape[p] = shape_at(guides, p);
+    size_t p = 0;
+    for (int y = guides->y; y < guides->y + guides->height; y++)
+        for (int x = 0; x < guides->width; x++, p++)
+            shape[(size_t)y * (size_t)width + (size_t)(guides->x + x)] = shape_at(guides, p);
 }
 
 /* Whether a pixel has another shape than in the last frame, or moves. */
-static bool stirs(const FlGuides *guides, size_t p, const uint8_t *last_shape, float still)
+static bool stirs(const FlGuides *guides, size_t p, uint8_t last_shape, float still)
 {
-    if (last_shape[p] != shape_at(guides, p))
+    if (last_shape != shape_at(guides, p))
         return true;
     if (guides->has_motion && guides->motion[2 * p] != FL_MOTION_UNKNOWN &&
         (guides->motion[2 * p] | guides->motion[2 * p + 1]) != 0)
@@ -32,81 +33,76 @@ static bool stirs(const FlGuides *guides, size_t p, const uint8_t *last_shape, f
 bool fl_rests(const FlGuides *guides, const uint8_t *last_shape, float still)
 {
     for (size_t p = 0; p < (size_t)guides->width * guides->height; p++)
-        if (stirs(guides, p, last_shape, still))
+        if (stirs(guides, p, last_shape[p], still))
             return false;
     return true;
 }
 
 /* ---- parts ----------------------------------------------------------------------------------- */
 
-/* What there is in a square. */
-enum { TAKEN = 1, STIRRED = 2 };
-
-static void find_squares(const FlRest *rest, const FlGuides *guides, const uint8_t *last_shape,
-                         float still, uint8_t *square)
+/* Columns x … end - 1 of a row of the frame, which are of one square's row. */
+static void find_squares(const FlGuides *guides, const FlSynthState *last, float still, int y,
+                         FlColumns columns, uint8_t *squares)
 {
-    for (int y = 0; y < rest->height; y++) {
-        uint8_t *row = square + y / FL_REST_PX * rest->columns;
-        for (int x = 0; x < rest->width; x++) {
-            const size_t p = (size_t)y * (size_t)rest->width + (size_t)x;
-            if (guides->mask[p] || last_shape[p])
-                row[x / FL_REST_PX] |=
-                    stirs(guides, p, last_shape, still) ? TAKEN | STIRRED : TAKEN;
+    for (int x = columns.first; x < columns.last; x++) {
+        const size_t p = fl_guides_at(guides, x, y);
+        const uint8_t shape = last->mask[(size_t)y * (size_t)last->width + (size_t)x];
+        if (guides->mask[p] || shape)
+            squares[x / FL_REST_PX] |=
+                stirs(guides, p, shape, still) ? FL_REST_TAKEN | FL_REST_STIRS : FL_REST_TAKEN;
+    }
+}
+
+/* The squares of parts that guides do not know to rest. Returns: whether any stirs. */
+static bool find_stirring(const FlGuides *guides, const FlSynthState *last, float still,
+                          uint8_t *square)
+{
+    const FlRect part = fl_guides_rect(guides);
+    const int columns = fl_rest_squares(last->width), right = part.x + part.width;
+    for (int y = part.y; y < part.y + part.height; y++)
+        for (int x = part.x, end = right; x < right; x = end, end = right) {
+            const bool keeps =
+                guides->resting.keeps && fl_resting_parts_stretch(&guides->resting, x, y, &end);
+            end = MIN(end, right);
+            if (!keeps)
+                find_squares(guides, last, still, y, (FlColumns){x, end},
+                             square + y / FL_REST_PX * columns);
         }
-    }
-}
-
-/* 1 in taken squares and beside them, corners included. */
-static void spread(const FlRest *rest, const uint8_t *square, uint8_t *near)
-{
-    for (int j = 0; j < rest->rows; j++)
-        for (int i = 0; i < rest->columns; i++)
-            for (int k = 0; k < 9 && square[j * rest->columns + i]; k++) {
-                const int x = i + k % 3 - 1, y = j + k / 3 - 1;
-                if (x >= 0 && y >= 0 && x < rest->columns && y < rest->rows)
-                    near[y * rest->columns + x] = 1;
-            }
-}
-
-/* Keeps the parts without a stirred square. Returns: whether there is one. */
-static bool choose(FlRest *rest, const FlConnectedParts *parts, const uint8_t *square)
-{
-    g_autofree bool *moves = g_new0(bool, parts->n_parts + 1);
     bool any = false;
-    for (size_t s = 0; s < parts->n_pixels; s++)
-        moves[parts->part[s]] |= square[s] & STIRRED;
-    for (size_t s = 0; s < parts->n_pixels; s++) {
-        rest->keeps[s] = parts->part[s] && !moves[parts->part[s]];
-        any |= rest->keeps[s];
-    }
+    for (size_t s = 0; s < (size_t)columns * (size_t)fl_rest_squares(last->height); s++)
+        any |= square[s] & FL_REST_STIRS;
     return any;
 }
 
-bool fl_rest_init(FlRest *rest, const FlGuides *guides, const uint8_t *last_shape, float still,
-                  GError **error)
+/* Adds those that guides know. */
+static bool add_known(FlRestingParts *parts, const FlRestingParts *known, GError **error)
 {
-    *rest = (FlRest){.width = guides->width,
-                     .height = guides->height,
-                     .columns = (guides->width + FL_REST_PX - 1) / FL_REST_PX,
-                     .rows = (guides->height + FL_REST_PX - 1) / FL_REST_PX};
-    const size_t n = (size_t)rest->columns * (size_t)rest->rows;
-    g_autofree uint8_t *square = fl_alloc(2 * n, 1, "the parts of a mask", error);
-    rest->keeps = square ? fl_alloc(n, sizeof *rest->keeps, "the parts of a mask", error) : NULL;
-    g_auto(FlConnectedParts) parts = {0};
-    if (!rest->keeps)
-        return false;
-    find_squares(rest, guides, last_shape, still, square);
-    spread(rest, square, square + n);
-    if (!fl_connected_parts_init(&parts, square + n, rest->columns, rest->rows, 1, 1, error))
-        return false;
-    if (!choose(rest, &parts, square))
-        fl_rest_clear(rest);
+    const size_t n = (size_t)known->columns * (size_t)known->rows;
+    if (!known->keeps)
+        return true;
+    if (!parts->keeps) {
+        parts->keeps = fl_alloc(n, sizeof *parts->keeps, "the parts of a mask", error);
+        if (!parts->keeps)
+            return false;
+    }
+    for (size_t s = 0; s < n; s++)
+        parts->keeps[s] |= known->keeps[s];
     return true;
 }
 
-void fl_rest_clear(FlRest *rest)
+bool fl_rest_find(FlRestingParts *parts, const FlGuides *guides, const FlSynthState *last,
+                  float still, bool *moves, GError **error)
 {
-    g_clear_pointer(&rest->keeps, free);
+    const size_t n = (size_t)fl_rest_squares(last->width) * (size_t)fl_rest_squares(last->height);
+    g_autofree uint8_t *square = fl_alloc(n, 1, "the parts of a mask", error);
+    FlRect moving;
+    *parts = (FlRestingParts){0};
+    if (!square)
+        return false;
+    *moves = find_stirring(guides, last, still, square);
+    return !*moves ||
+           (fl_resting_parts_init(parts, last->width, last->height, square, &moving, error) &&
+            add_known(parts, &guides->resting, error));
 }
 
 /* A plane of so many bytes a pixel, `by` times as large as the guides. */
@@ -115,49 +111,60 @@ typedef struct Plane {
     size_t bytes;
 } Plane;
 
-/* A stretch of a row, from *x on: its end is *end. Returns: whether parts at rest keep it. */
-static bool stretch(const FlRest *rest, int x, int y, int *end)
-{
-    const bool *row = rest->keeps + y / FL_REST_PX * rest->columns;
-    const bool keeps = row[x / FL_REST_PX];
-    int column = x / FL_REST_PX + 1;
-    while (column < rest->columns && row[column] == keeps)
-        column++;
-    *end = MIN(column * FL_REST_PX, rest->width);
-    return keeps;
-}
-
-/* Copies what parts at rest keep of a plane; from NULL: clears it. */
-static void copy_kept(const FlRest *rest, const uint8_t *from, const Plane *plane, uint8_t *to)
+/* Copies what parts at rest keep of a plane. */
+static void copy_kept(const FlRestingParts *parts, const uint8_t *from, const Plane *plane,
+                      uint8_t *to)
 {
     const int by = plane->by;
     for (int y = 0; y < plane->height; y++)
         for (int x = 0, end; x < plane->width; x = end) {
-            const bool keeps = stretch(rest, x / by, y / by, &end);
+            const bool keeps = fl_resting_parts_stretch(parts, x / by, y / by, &end);
             const size_t at = plane->bytes * ((size_t)y * (size_t)plane->width + (size_t)x);
             end = MIN(end * by, plane->width);
             const size_t n = plane->bytes * (size_t)(end - x);
-            if (keeps && from)
+            if (keeps)
                 memcpy(to + at, from + at, n);
-            else if (keeps)
-                memset(to + at, 0, n);
         }
 }
 
-void fl_rest_hide(const FlRest *rest, uint8_t *mask)
+FlRect fl_rest_box(const FlRestingParts *parts, const uint8_t *shape)
 {
-    const Plane plane = {rest->width, rest->height, 1, 1};
-    copy_kept(rest, NULL, &plane, mask);
+    FlRect box = {0};
+    for (int y = 0; y < parts->height; y++)
+        for (int x = 0, end; x < parts->width; x = end) {
+            const uint8_t *row = shape + (size_t)y * (size_t)parts->width;
+            if (!fl_resting_parts_stretch(parts, x, y, &end))
+                continue;
+            int first = x, last = end;
+            while (first < end && row[first] < FL_INSIDE)
+                first++;
+            while (last > first && row[last - 1] < FL_INSIDE)
+                last--;
+            box = fl_rect_or(box, fl_rect_between(first, y, last, y + 1));
+        }
+    return box;
+}
+
+void fl_rest_hide(const FlRestingParts *parts, FlGuides *guides)
+{
+    const int right = guides->x + guides->width;
+    for (int y = guides->y; y < guides->y + guides->height; y++)
+        for (int x = guides->x, end; x < right; x = end) {
+            const bool keeps = fl_resting_parts_stretch(parts, x, y, &end);
+            end = MIN(end, right);
+            if (keeps)
+                memset(guides->mask + fl_guides_at(guides, x, y), 0, (size_t)(end - x));
+        }
 }
 
 /* The matches of a field that lies at `from`, where they are of parts that are kept or not. */
-static void copy_field(const FlRest *rest, const FlNnf *nnf, FlRect from, bool kept, FlRect rect,
-                       FlNnf *out)
+static void copy_field(const FlRestingParts *parts, const FlNnf *nnf, FlRect from, bool kept,
+                       FlRect rect, FlNnf *out)
 {
     const FlRect both = fl_rect_and(from, rect);
     for (int y = both.y; y < both.y + both.height; y++)
         for (int x = both.x, end; x < both.x + both.width; x = end) {
-            const bool keeps = stretch(rest, x, y, &end);
+            const bool keeps = fl_resting_parts_stretch(parts, x, y, &end);
             end = MIN(end, both.x + both.width);
             if (keeps == kept)
                 memcpy(out->match + (size_t)(y - rect.y) * (size_t)rect.width + (x - rect.x),
@@ -166,21 +173,21 @@ static void copy_field(const FlRest *rest, const FlNnf *nnf, FlRect from, bool k
         }
 }
 
-bool fl_rest_keep(const FlRest *rest, const FlSynthState *last, FlRect rect, FlSynthState *now,
-                  uint8_t *rgb, GError **error)
+bool fl_rest_keep(const FlRestingParts *parts, const FlSynthState *last, FlRect rect,
+                  FlSynthState *now, uint8_t *rgb, GError **error)
 {
     FlNnf whole;
     if (!fl_nnf_init(&whole, rect.width, rect.height, error))
         return false;
-    copy_field(rest, &last->nnf, last->rect, true, rect, &whole);
+    copy_field(parts, &last->nnf, last->rect, true, rect, &whole);
     if (now->nnf.match)
-        copy_field(rest, &now->nnf, now->rect, false, rect, &whole);
+        copy_field(parts, &now->nnf, now->rect, false, rect, &whole);
     fl_nnf_clear(&now->nnf);
     now->nnf = whole, now->rect = rect;
-    const Plane mask = {rest->width, rest->height, 1, 1};
+    const Plane mask = {parts->width, parts->height, 1, 1};
     const Plane picture = {last->painted_width, last->painted_height,
-                           last->painted_width > rest->width ? 2 : 1, 3};
-    copy_kept(rest, last->mask, &mask, now->mask);
-    copy_kept(rest, last->rgb, &picture, rgb);
+                           last->painted_width > parts->width ? 2 : 1, 3};
+    copy_kept(parts, last->mask, &mask, now->mask);
+    copy_kept(parts, last->rgb, &picture, rgb);
     return true;
 }

@@ -6,10 +6,10 @@
 #include "synth/synth_state.h"
 
 /**
- * Fills in what a region at rest is known by, width * height: its mask, and inside it the depth,
- * which also depends on what moves beside it.
+ * Fills in what a region at rest is known by, of a frame that is `width` wide and where guides are
+ * of it: its mask, and inside it the depth, which also depends on what moves beside it.
  */
-void fl_rest_shape(const FlGuides *guides, uint8_t *shape);
+void fl_rest_shape(const FlGuides *guides, uint8_t *shape, int width);
 
 /**
  * Whether a region rests: its shape is that of the last frame, which fl_rest_shape() filled in, and
@@ -18,23 +18,18 @@ void fl_rest_shape(const FlGuides *guides, uint8_t *shape);
  */
 bool fl_rests(const FlGuides *guides, const uint8_t *last_shape, float still);
 
-#define FL_REST_PX 8 // side of a square
+/**
+ * Finds the parts at rest: those that guides know, and others by what fl_rests() asks of a region.
+ * *moves: whether there are parts that do not rest. FL_ERROR_NO_MEMORY.
+ */
+bool fl_rest_find(FlRestingParts *parts, const FlGuides *guides, const FlSynthState *last,
+                  float still, bool *moves, GError **error);
 
-/** Which parts of a region rest while others move, by squares of FL_REST_PX px. Parts are at least
- * two squares apart, so that no patch of one looks at another on any but the coarsest levels. */
-typedef struct FlRest {
-    int width, height; // of the guides, px
-    int columns, rows;
-    bool *keeps; // by square: there is a part at rest in it, or beside it; NULL: none rests
-} FlRest;
+/** The bounding box of what a shape, fl_rest_shape(), has inside the parts at rest. */
+FlRect fl_rest_box(const FlRestingParts *parts, const uint8_t *shape);
 
-/** Finds the parts at rest, by what fl_rests() asks of a region. FL_ERROR_NO_MEMORY. */
-bool fl_rest_init(FlRest *rest, const FlGuides *guides, const uint8_t *last_shape, float still,
-                  GError **error);
-void fl_rest_clear(FlRest *rest);
-
-/** Takes the parts at rest out of a mask, width * height. */
-void fl_rest_hide(const FlRest *rest, uint8_t *mask);
+/** Takes the parts at rest out of the mask of guides. */
+void fl_rest_hide(const FlRestingParts *parts, FlGuides *guides);
 
 /**
  * Gives the parts at rest what they were in the last frame: picture, shape and field. now->nnf
@@ -42,9 +37,7 @@ void fl_rest_hide(const FlRest *rest, uint8_t *mask);
  * large as the last picture.
  * FL_ERROR_NO_MEMORY.
  */
-bool fl_rest_keep(const FlRest *rest, const FlSynthState *last, FlRect rect, FlSynthState *now,
-                  uint8_t *rgb, GError **error);
-
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRest, fl_rest_clear)
+bool fl_rest_keep(const FlRestingParts *parts, const FlSynthState *last, FlRect rect,
+                  FlSynthState *now, uint8_t *rgb, GError **error);
 
 #endif

@@ -43,7 +43,7 @@ static void clear_frame(FlSynth *synth)
     for (int l = 0; l < synth->n_levels; l++)
         fl_nnf_clear(&synth->nnf[l]);
     fl_target_clear(&synth->target);
-    fl_rest_clear(&synth->rest);
+    fl_resting_parts_clear(&synth->resting);
     fl_synth_state_clear(&synth->past);
     fl_nnf_clear(&synth->shown);
     synth->view = (FlSynthView){0};
@@ -64,21 +64,25 @@ void fl_synth_measure(FlSynth *synth, bool energies)
     synth->wants_energies = energies;
 }
 
-/* The mask's bounding box, enlarged by the coarsest patches, on the coarsest grid. */
-static bool working_rect(const FlSynth *synth, const FlGuides *guides, FlRect *rect)
+/* The bounding box of what guides have of the mask, in the frame. */
+static FlRect guided_box(const FlGuides *guides)
 {
-    int x0 = synth->width, y0 = synth->height, x1 = -1, y1 = -1;
-    for (int y = 0; y < synth->height; y++)
-        for (int x = 0; x < synth->width; x++)
-            if (guides->mask[(size_t)y * synth->width + x] >= FL_INSIDE) {
+    int x0 = guides->width, y0 = guides->height, x1 = -1, y1 = -1;
+    for (int y = 0; y < guides->height; y++)
+        for (int x = 0; x < guides->width; x++)
+            if (guides->mask[(size_t)y * (size_t)guides->width + (size_t)x] >= FL_INSIDE) {
                 x0 = MIN(x0, x), x1 = MAX(x1, x);
                 y0 = MIN(y0, y), y1 = MAX(y1, y);
             }
+    return fl_rect_between(guides->x + x0, guides->y + y0, guides->x + x1 + 1, guides->y + y1 + 1);
+}
+
+/* A bounding box, enlarged by the coarsest patches, on the coarsest grid. */
+static FlRect working_rect(const FlSynth *synth, FlRect box)
+{
     const int grid = 1 << (synth->n_levels - 1);
     const FlRect page = {0, 0, synth->width, synth->height};
-    const FlRect box = fl_rect_between(x0, y0, x1 + 1, y1 + 1);
-    *rect = fl_rect_on_grid(fl_rect_grown(box, FL_PATCH_RADIUS * grid, page), grid);
-    return box.width > 0;
+    return fl_rect_on_grid(fl_rect_grown(box, FL_PATCH_RADIUS * grid, page), grid);
 }
 
 /* The previous field in the new rectangle, carried along the drawing's motion and shifted in the
@@ -96,7 +100,7 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
                  speed);
     for (int y = 0; y < rect.height; y++)
         memcpy(angle + (size_t)y * rect.width,
-               guides->angle + (size_t)(rect.y + y) * synth->width + rect.x, (size_t)rect.width);
+               guides->angle + fl_guides_at(guides, rect.x, rect.y + y), (size_t)rect.width);
     const FlTargetMotion motion = {speed, angle, synth->params->flow_still, synth->boil};
     fl_nnf_shift(out, synth->exemplar, &motion);
     return true;
@@ -126,13 +130,20 @@ static void fill_paper(const FlSynth *synth, uint8_t *rgb)
         memcpy(rgb + p, synth->exemplar->paper, 3);
 }
 
-/* The target, and what the next frame needs of the guides, which then may go. */
-static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **error)
+static bool take_shape(FlSynth *synth, const FlGuides *guides, GError **error)
 {
     const size_t pixels = (size_t)synth->width * synth->height;
     if (!(synth->last.mask = fl_alloc(pixels, 1, "a mask", error)))
         return false;
-    fl_rest_shape(guides, synth->last.mask);
+    fl_rest_shape(guides, synth->last.mask, synth->width);
+    return true;
+}
+
+/* The target, and what the next frame needs of the guides, which then may go. */
+static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **error)
+{
+    if (!take_shape(synth, guides, error))
+        return false;
     if (guides->disposable)
         fl_guides_drop_motion(guides);
     if (guides->disposable && fl_knows_depth(synth->params))
@@ -148,7 +159,7 @@ static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **
 /* Parts at rest need the planes of the last frame until they have theirs. */
 static void forget_last(FlSynth *synth)
 {
-    if (synth->rest.keeps)
+    if (synth->resting.keeps)
         synth->past = synth->last;
     else
         fl_synth_state_clear(&synth->last);
@@ -263,30 +274,54 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
     return true;
 }
 
-/* Looks which parts rest, and hides them, so that `rect` is that of the others. mask: that of the
- * guides until then; NULL: all is painted. */
-static bool part(FlSynth *synth, FlGuides *guides, FlRect *rect, uint8_t **mask, GError **error)
+/* Parts have gone, and no other moves. */
+static bool paint_nothing(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, GError **error)
 {
-    if (!may_rest(synth, synth->last.frame))
-        return true;
-    if (!fl_rest_init(&synth->rest, guides, synth->last.mask, synth->params->flow_still, error))
+    forget_last(synth);
+    if (!take_shape(synth, guides, error))
         return false;
-    if (!synth->rest.keeps)
-        return true;
-    const size_t pixels = (size_t)synth->width * synth->height;
-    if (!(*mask = fl_alloc(pixels, 1, "a mask", error)))
-        return false;
-    memcpy(*mask, guides->mask, pixels);
-    fl_rest_hide(&synth->rest, guides->mask);
-    FlRect moving;
-    if (working_rect(synth, guides, &moving)) {
-        *rect = moving;
-        return true;
-    }
-    memcpy(guides->mask, *mask, pixels); // a part has gone, and no other moves
-    g_clear_pointer(mask, free);
-    fl_rest_clear(&synth->rest);
+    fill_paper(synth, rgb);
+    synth->last.rect = synth->target.rect = (FlRect){0};
+    synth->view = (FlSynthView){.nnf = &synth->last.nnf};
     return true;
+}
+
+/* Which parts rest, and whether any does not. */
+static bool find_resting(const FlSynth *synth, const FlGuides *guides, FlRestingParts *resting,
+                         bool *moves, GError **error)
+{
+    if (may_rest(synth, synth->last.frame))
+        return fl_rest_find(resting, guides, &synth->last, synth->params->flow_still, moves, error);
+    g_assert(!guides->resting.keeps);
+    *moves = true;
+    return true;
+}
+
+/* The bounding box of all parts. */
+static FlRect whole_box(const FlSynth *synth, const FlGuides *guides)
+{
+    const FlRect box = guided_box(guides);
+    return synth->resting.keeps ? fl_rect_or(box, fl_rest_box(&synth->resting, synth->last.mask))
+                                : box;
+}
+
+/* Paints the parts that do not rest into a picture and a field of `all`, beside the others. */
+static bool paint_beside(FlSynth *synth, FlGuides *guides, FlRect all, uint8_t *rgb,
+                         FlFrameStats *stats, GError **error)
+{
+    const size_t pixels = fl_rect_pixels(fl_guides_rect(guides));
+    g_autofree uint8_t *mask = fl_alloc_unset(pixels, 1, "a mask", error);
+    if (!mask)
+        return false;
+    memcpy(mask, guides->mask, pixels);
+    fl_rest_hide(&synth->resting, guides);
+    const FlRect box = guided_box(guides);
+    if (!(box.width > 0 ? paint_rect(synth, guides, working_rect(synth, box), rgb, stats, error)
+                        : paint_nothing(synth, guides, rgb, error)))
+        return false;
+    if (guides->mask)
+        memcpy(guides->mask, mask, pixels);
+    return fl_rest_keep(&synth->resting, &synth->past, all, &synth->last, rgb, error);
 }
 
 /* For a view: the target of all parts. Those at rest have no T_temp. */
@@ -311,15 +346,16 @@ static bool show_all(FlSynth *synth, const FlGuides *guides, FlRect rect, GError
 static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats, bool shows,
                   GError **error)
 {
-    FlRect all, rect;
-    g_autofree uint8_t *mask = NULL;
     synth->last.frame++;
     synth->boil =
         fl_boil_step(synth->params->boil, synth->last.frame, synth->exemplar->level[0].window);
     if (!unpack_last(synth, error))
         return false;
-    if (may_rest(synth, synth->last.frame) &&
-        fl_rests(guides, synth->last.mask, synth->params->flow_still)) {
+    g_auto(FlRestingParts) resting = {0};
+    bool moves;
+    if (!find_resting(synth, guides, &resting, &moves, error))
+        return false;
+    if (!moves) {
         memcpy(rgb, synth->last.rgb, fl_synth_state_painted(&synth->last));
         synth->view = view_at_rest(synth);
         return true;
@@ -327,23 +363,21 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     clear_frame(synth);
     forget_packed(synth);
     synth->moves = guides->has_motion;
-    if (!working_rect(synth, guides, &all)) {
+    synth->resting = resting, resting = (FlRestingParts){0};
+    const FlRect box = whole_box(synth, guides), all = working_rect(synth, box);
+    if (box.width == 0) {
         fill_paper(synth, rgb);
         synth->last.valid = false;
         return true;
     }
-    rect = all;
     const bool disposable = guides->disposable;
     guides->disposable &= !shows;
     synth->wants_view = shows;
-    if (!part(synth, guides, &rect, &mask, error) ||
-        !paint_rect(synth, guides, rect, rgb, stats, error))
+    if (!(synth->resting.keeps ? paint_beside(synth, guides, all, rgb, stats, error)
+                               : paint_rect(synth, guides, all, rgb, stats, error)))
         return false;
     guides->disposable = disposable;
-    if (mask && guides->mask)
-        memcpy(guides->mask, mask, (size_t)synth->width * synth->height);
-    return !mask || (fl_rest_keep(&synth->rest, &synth->past, all, &synth->last, rgb, error) &&
-                     (!shows || show_all(synth, guides, all, error)));
+    return !shows || !synth->resting.keeps || show_all(synth, guides, all, error);
 }
 
 /* The view in the size of the picture. */

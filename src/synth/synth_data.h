@@ -24,10 +24,10 @@ struct FlSynth {
     double seconds_search, seconds_vote; // of the frame in hand
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
-    FlRest rest;       // of the frame in hand: its parts at rest
-    FlSynthState past; // in a frame with such parts: the planes of the last one
-    FlSynthView view;  // of the last frame that was painted, where somebody wanted it
-    FlNnf shown;       // its field in the size of the picture, where that is another
+    FlRestingParts resting; // of the frame in hand
+    FlSynthState past;      // in a frame with such parts: the planes of the last one
+    FlSynthView view;       // of the last frame that was painted, where somebody wanted it
+    FlNnf shown;            // its field in the size of the picture, where that is another
 };
 
 /** Seconds since a monotonic time, which moves on to now. */

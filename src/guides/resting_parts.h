@@ -1,0 +1,44 @@
+/* Which parts of a mask rest while others move. */
+#ifndef FLUIDY_GUIDES_RESTING_PARTS_H
+#define FLUIDY_GUIDES_RESTING_PARTS_H
+
+#include "base/rect.h"
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#define FL_REST_PX 8 // side of a square
+
+/** What there is of a mask in a square, now or in the frame before. */
+enum { FL_REST_TAKEN = 1, FL_REST_STIRS = 2 };
+
+/** The parts at rest, by squares of FL_REST_PX px. Parts are at least two squares apart, so that no
+ * patch of one looks at another on any but the coarsest levels. */
+typedef struct FlRestingParts {
+    int width, height; // of the frame, px
+    int columns, rows;
+    bool *keeps; // by square: there is a part at rest in it, or beside it; NULL: none rests
+} FlRestingParts;
+
+/** How many squares a side has. */
+static inline int fl_rest_squares(int px)
+{
+    return (px + FL_REST_PX - 1) / FL_REST_PX;
+}
+
+/**
+ * Finds the parts without a square that stirs. square: FL_REST_TAKEN and FL_REST_STIRS of all
+ * squares, row by row. moving: becomes the rectangle of the others, in px. FL_ERROR_NO_MEMORY.
+ */
+bool fl_resting_parts_init(FlRestingParts *parts, int width, int height, const uint8_t *square,
+                           FlRect *moving, GError **error);
+
+void fl_resting_parts_clear(FlRestingParts *parts);
+
+/** A stretch of row y from column x on, all of parts at rest or none. *end: its end. Returns:
+ * whether they keep it. */
+bool fl_resting_parts_stretch(const FlRestingParts *parts, int x, int y, int *end);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRestingParts, fl_resting_parts_clear)
+
+#endif
