@@ -1,4 +1,4 @@
-/* The bytes in which an engine keeps a region's state: a header, then parts packed as one. */
+/* The bytes in which an engine keeps a region's state: a header, then packed parts. */
 #ifndef FLUIDY_BASE_STATE_BYTES_H
 #define FLUIDY_BASE_STATE_BYTES_H
 

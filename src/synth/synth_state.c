@@ -1,14 +1,15 @@
 #include "synth/synth_state.h"
 
 #include "base/alloc.h"
+#include "base/schedule.h"
 #include "base/state_bytes.h"
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* The bytes start with this; the packed field, mask and picture follow. Each match is stored as
- * its difference from the one before, mostly the same in a coherent field: states are a quarter
- * smaller and packed in two thirds of the time. */
+ * its difference from the one before in its row, mostly the same in a coherent field: states are a
+ * quarter smaller and packed in two thirds of the time. */
 typedef struct Header {
     int32_t frame, valid;
     int32_t x, y, width, height;
@@ -34,21 +35,31 @@ static FlMatch plus(FlMatch a, FlMatch b)
                      .theta = (uint8_t)(a.theta + b.theta)};
 }
 
-/* Each match but the first minus the one before; to be freed with free(). */
+/* Each match of a row but the first minus the one before; to be freed with free(). */
 static FlMatch *differences(const FlNnf *nnf, GError **error)
 {
     const size_t n = (size_t)nnf->width * (size_t)nnf->height;
-    FlMatch *out = fl_alloc(n, sizeof *out, "the state of a region", error);
-    for (size_t p = 0; out && p < n; p++)
-        out[p] = p > 0 ? minus(nnf->match[p], nnf->match[p - 1]) : nnf->match[p];
+    FlMatch *out = fl_alloc_unset(n, sizeof *out, "the state of a region", error);
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(n))
+    for (int y = 0; y < (out ? nnf->height : 0); y++) {
+        const FlMatch *from = nnf->match + (size_t)y * (size_t)nnf->width;
+        FlMatch *to = out + (size_t)y * (size_t)nnf->width;
+        to[0] = from[0];
+        for (int x = 1; x < nnf->width; x++)
+            to[x] = minus(from[x], from[x - 1]);
+    }
     return out;
 }
 
 static void add_up(FlNnf *nnf)
 {
     const size_t n = (size_t)nnf->width * (size_t)nnf->height;
-    for (size_t p = 1; p < n; p++)
-        nnf->match[p] = plus(nnf->match[p], nnf->match[p - 1]);
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(n))
+    for (int y = 0; y < nnf->height; y++) {
+        FlMatch *row = nnf->match + (size_t)y * (size_t)nnf->width;
+        for (int x = 1; x < nnf->width; x++)
+            row[x] = plus(row[x], row[x - 1]);
+    }
 }
 
 static size_t mask_bytes(const FlSynthState *state)
