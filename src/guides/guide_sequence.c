@@ -1,4 +1,5 @@
 #include "base/alloc.h"
+#include "base/parallel_error.h"
 #include "guides/build_guides.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
@@ -100,16 +101,38 @@ static void place_fixed(FlRect box, const int32_t *crop, int channels, int one, 
 }
 
 static bool get_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane, FlRect part,
-                      int32_t *scratch, float *out, GError **error)
+                      float *out, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
+    const bool flow = plane == FL_GUIDE_PLANE_FLOW;
     if (record->holder[plane] < 0)
         return true;
-    if (!fl_guide_sequence_plane(sequence, frame, plane, scratch, error))
+    g_autofree int32_t *scratch = fl_alloc_scratch((flow ? 2 : 1) * fl_rect_pixels(record->box),
+                                                   sizeof *scratch, "a guide", error);
+    if (!scratch || !fl_guide_sequence_plane(sequence, frame, plane, scratch, error))
         return false;
-    const bool flow = plane == FL_GUIDE_PLANE_FLOW;
     place_fixed(record->box, scratch, flow ? 2 : 1, flow ? FL_FLOW_ONE : FL_EXTENT_ONE, part, out);
     return true;
+}
+
+/** The planes but shape and motion, side by side: each is a chain of differences. */
+static bool get_planes(const FlGuideSequence *sequence, int frame, FlRect part, FlGuides *guides,
+                       GError **error)
+{
+    GError *first = NULL, *of_flow = NULL, *of_extents = NULL;
+#pragma omp parallel sections
+    {
+#pragma omp section
+        (void)get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, part, guides->flow, &of_flow);
+#pragma omp section
+        (void)(get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, part, guides->ext_plus,
+                         &of_extents) &&
+               get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, part, guides->ext_minus,
+                         &of_extents));
+    }
+    fl_parallel_error_keep(&first, of_flow);
+    fl_parallel_error_keep(&first, of_extents);
+    return fl_parallel_error_tell(error, first);
 }
 
 /** A plane of zeros; where it has not been written to, it goes on taking no memory. */
@@ -130,7 +153,7 @@ static bool any_known(const int32_t *motion, const uint8_t *coverage, size_t n)
 
 /** What the drawing does; beside its shape nothing is known of it. */
 static bool get_motion(const FlGuideSequence *sequence, int frame, const uint8_t *coverage,
-                       int32_t *scratch, FlGuides *guides, GError **error)
+                       FlGuides *guides, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
     const FlRect part = fl_guides_rect(guides);
@@ -138,7 +161,10 @@ static bool get_motion(const FlGuideSequence *sequence, int frame, const uint8_t
         return true;
     clear_plane(guides->motion, 2 * fl_rect_pixels(part) * sizeof *guides->motion);
     if (record->holder[FL_GUIDE_PLANE_MOTION] >= 0) {
-        if (!fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, scratch, error))
+        g_autofree int32_t *scratch =
+            fl_alloc_scratch(2 * fl_rect_pixels(record->box), sizeof *scratch, "a motion", error);
+        if (!scratch ||
+            !fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, scratch, error))
             return false;
         if (!any_known(scratch, coverage, fl_rect_pixels(record->box)))
             return true;
@@ -205,18 +231,12 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     guides->has_motion = false;
     if (area > 0) {
         g_autofree uint8_t *shape = fl_alloc_unset(2 * area, 1, "coverages and angles", error);
-        g_autofree int32_t *scratch =
-            shape ? fl_alloc_scratch(2 * area, sizeof *scratch, "a guide", error) : NULL;
-        if (!scratch || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_FLOW, part, scratch, guides->flow, error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_PLUS, part, scratch, guides->ext_plus,
-                       error) ||
-            !get_plane(sequence, frame, FL_GUIDE_PLANE_MINUS, part, scratch, guides->ext_minus,
-                       error))
+        if (!shape || !fl_guide_sequence_shape(sequence, frame, shape, error) ||
+            !get_planes(sequence, frame, part, guides, error))
             return false;
         fl_rect_copy(shape, record->box, guides->mask, part, 1);
         fl_rect_copy(shape + area, record->box, guides->angle, part, 1);
-        if (!get_motion(sequence, frame, shape, scratch, guides, error))
+        if (!get_motion(sequence, frame, shape, guides, error))
             return false;
     }
     return true;

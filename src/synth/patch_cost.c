@@ -72,6 +72,7 @@ int fl_matches_beside(const FlSearch *search, int x, int y, FlMatch expected[FL_
 double fl_mean_cost(const FlSearch *search)
 {
     uint64_t sum = 0, n = 0;
+#pragma omp parallel for schedule(static) reduction(+ : sum, n)
     for (size_t p = 0; p < (size_t)search->nnf->width * search->nnf->height; p++)
         if (search->nnf->match[p].frame != FL_NO_MATCH)
             sum += search->cost[p], n++;

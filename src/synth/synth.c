@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "base/schedule.h"
 #include "guides/half_guides.h"
 #include "synth/carry.h"
 #include "synth/patch_pairs.h"
@@ -91,8 +92,8 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
                              GError **error)
 {
     const size_t pixels = (size_t)rect.width * rect.height;
-    g_autofree float *speed = fl_alloc(pixels, sizeof(float), "a field", error);
-    g_autofree uint8_t *angle = fl_alloc(pixels, 1, "a field", error);
+    g_autofree float *speed = fl_alloc_unset(pixels, sizeof(float), "a field", error);
+    g_autofree uint8_t *angle = fl_alloc_unset(pixels, 1, "a field", error);
     if (!speed || !angle || !fl_nnf_init(out, rect.width, rect.height, error))
         return false;
     const FlCarry carry = {guides, synth->params->carry, synth->params->rotate, synth->last.frame};
@@ -118,6 +119,7 @@ static void write_rgb(const FlSynth *synth, uint8_t *rgb)
 {
     const FlTargetLevel *full = &synth->target.level[0];
     const FlRect rect = synth->target.rect;
+#pragma omp parallel for schedule(static)
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < 3 * rect.width; x++)
             rgb[3 * ((size_t)(rect.y + y) * synth->width + rect.x) + x] =
@@ -126,8 +128,10 @@ static void write_rgb(const FlSynth *synth, uint8_t *rgb)
 
 static void fill_paper(const FlSynth *synth, uint8_t *rgb)
 {
-    for (size_t p = 0; p < fl_synth_state_painted(&synth->last); p += 3)
-        memcpy(rgb + p, synth->exemplar->paper, 3);
+    const size_t pixels = fl_synth_state_painted(&synth->last) / 3;
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(pixels))
+    for (size_t p = 0; p < pixels; p++)
+        memcpy(rgb + 3 * p, synth->exemplar->paper, 3);
 }
 
 static bool take_shape(FlSynth *synth, const FlGuides *guides, GError **error)

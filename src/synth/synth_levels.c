@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "base/schedule.h"
 #include "synth/energy.h"
 #include "synth/shift.h"
 #include "synth/synth_data.h"
@@ -147,7 +148,9 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
  * the largest, once the coarser levels have gone. */
 static void clear_colours(const FlSynth *synth, FlTargetLevel *level)
 {
-    for (size_t p = 0; p < 3 * (size_t)level->width * level->height; p++)
+    const size_t values = 3 * (size_t)level->width * level->height;
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(values))
+    for (size_t p = 0; p < values; p++)
         level->colour[p] = synth->exemplar->paper[p % 3] / 255.0f;
 }
 

@@ -251,6 +251,7 @@ void fl_target_temporal_pyramid(FlTarget *target, int from)
 {
     for (int l = from + 1; l < target->n_levels; l++) {
         FlTargetLevel *coarse = &target->level[l];
+#pragma omp parallel for schedule(static)
         for (int y = 0; y < coarse->height; y++)
             for (int x = 0; x < coarse->width; x++)
                 halve_temporal(&target->level[l - 1], coarse, x, y);
