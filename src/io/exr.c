@@ -1,5 +1,7 @@
 /* Layered OpenEXR files, half float. */
 #include "base/density.h"
+#include "base/rect.h"
+#include "base/schedule.h"
 #include "io/atomic_file.h"
 #include "io/exr_chunk.h"
 #include "io/formats.h"
@@ -11,7 +13,7 @@
 /** A picture's place in the frame; name "" is the whole frame's own picture. */
 typedef FlSinkLayer Layer;
 
-/** An open file, and the chunk that is written next. */
+/** An open file. */
 typedef struct Writer {
     exr_context_t context;
     exr_result_t result; // the first failure
@@ -20,7 +22,6 @@ typedef struct Writer {
     const Layer **layer; // of each channel, in the file's order
     int *component;      // of each channel: 0..3, R G B A
     int n_channels;
-    FlExrChunk chunk;
 } Writer;
 
 static const char components[] = "RGBA";
@@ -43,7 +44,7 @@ static uint16_t half_of(float value)
     return (uint16_t)(base + kept + (rest > half || (rest == half && (kept & 1))));
 }
 
-static uint16_t halves[256][256]; // by alpha and level
+static uint8_t bytes_of[2][256][256]; // of halves, low and high, by alpha and level
 
 /** OpenEXR's convention: linear light times alpha. */
 static void fill_halves(void)
@@ -52,25 +53,27 @@ static void fill_halves(void)
     if (!g_once_init_enter(&made))
         return;
     for (int alpha = 0; alpha < 256; alpha++)
-        for (int level = 0; level < 256; level++)
-            halves[alpha][level] =
+        for (int level = 0; level < 256; level++) {
+            const uint16_t half =
                 half_of(fl_srgb_to_linear((uint8_t)level) / 65535.0f * ((float)alpha / 255.0f));
+            bytes_of[0][alpha][level] = (uint8_t)(half & 0xff);
+            bytes_of[1][alpha][level] = (uint8_t)(half >> 8);
+        }
     g_once_init_leave(&made, 1);
 }
 
-/** A row of a channel at `at` of the chunk, which is blank. */
-static void fill_row(Writer *writer, int channel, int y, size_t at)
+/** The columns of the frame from the first to the last pixel of a layer with alpha in row y. */
+static FlColumns filled_columns(const Layer *layer, int y)
 {
-    const Layer *layer = writer->layer[channel];
-    const int component = writer->component[channel];
     if (y < layer->y || y >= layer->y + layer->height)
-        return;
-    const uint8_t *rgba = layer->rgba + (size_t)(y - layer->y) * layer->width * 4;
-    uint8_t *low = writer->chunk.low + at + layer->x, *high = writer->chunk.high + at + layer->x;
-    for (int x = 0; x < layer->width; x++, rgba += 4) {
-        const uint16_t half = halves[rgba[3]][component == 3 ? 255 : rgba[component]];
-        low[x] = (uint8_t)(half & 0xff), high[x] = (uint8_t)(half >> 8);
-    }
+        return (FlColumns){0, 0};
+    const uint8_t *rgba = layer->rgba + (size_t)(y - layer->y) * (size_t)layer->width * 4;
+    int first = 0, last = layer->width;
+    while (first < last && rgba[4 * first + 3] == 0)
+        first++;
+    while (last > first && rgba[4 * (last - 1) + 3] == 0)
+        last--;
+    return first < last ? (FlColumns){layer->x + first, layer->x + last} : (FlColumns){0, 0};
 }
 
 static int64_t write_bytes(exr_const_context_t context, void *data, const void *buffer,
@@ -146,8 +149,7 @@ static void map_channel(Writer *writer, int channel, const char *name, const Lay
             writer->layer[channel] = &frame->layers[k];
 }
 
-static bool prepare_chunk(Writer *writer, const Layer *whole, const FlSinkFrame *frame,
-                          GError **error)
+static bool list_channels(Writer *writer, const Layer *whole, const FlSinkFrame *frame)
 {
     const exr_attr_chlist_t *list;
     if (!went(writer, exr_get_channels(writer->context, 0, &list)))
@@ -157,20 +159,108 @@ static bool prepare_chunk(Writer *writer, const Layer *whole, const FlSinkFrame 
     writer->component = g_new(int, writer->n_channels);
     for (int c = 0; c < writer->n_channels; c++)
         map_channel(writer, c, list->entries[c].name.str, whole, frame);
-    const size_t row = (size_t)writer->n_channels * writer->width;
-    return fl_exr_chunk_init(&writer->chunk, writer->chunk_rows * row, error);
+    return true;
 }
 
-static bool put_chunk(Writer *writer, int y)
+/** Rows of a file that are compressed together. */
+typedef struct Rows {
+    int y, n;
+    FlColumns *filled; // of each row and channel
+    uint8_t *bytes;    // of a row of a channel
+    FlExrChunk chunk;
+    const uint8_t *packed; // n_bytes
+    size_t n_bytes;
+} Rows;
+
+static void rows_clear(Rows *rows)
 {
-    const int rows = MIN(writer->chunk_rows, writer->height - y);
-    size_t at = 0, n_bytes;
-    fl_exr_chunk_blank(&writer->chunk);
-    for (int r = 0; r < rows; r++)
-        for (int c = 0; c < writer->n_channels; c++, at += (size_t)writer->width)
-            fill_row(writer, c, y + r, at);
-    const void *bytes = fl_exr_chunk_pack(&writer->chunk, at, &n_bytes);
-    return went(writer, exr_write_scanline_chunk(writer->context, 0, y, bytes, n_bytes));
+    g_free(rows->filled);
+    g_free(rows->bytes);
+    fl_exr_chunk_clear(&rows->chunk);
+}
+
+static bool rows_init(Rows *rows, const Writer *writer, GError **error)
+{
+    rows->filled = g_new(FlColumns, writer->chunk_rows * writer->n_channels);
+    rows->bytes = g_malloc((size_t)writer->width);
+    return fl_exr_chunk_init(&rows->chunk, error);
+}
+
+#define SPARSE_SHARE 4 // a chunk is sparse if this times what is filled is less than all
+
+/** Returns: whether the rows are sparse. */
+static bool find_filled(Rows *rows, const Writer *writer)
+{
+    size_t filled = 0, all = 0;
+    for (int r = 0; r < rows->n; r++)
+        for (int c = 0; c < writer->n_channels; c++, all += (size_t)writer->width) {
+            const bool again = c > 0 && writer->layer[c] == writer->layer[c - 1];
+            FlColumns *columns = &rows->filled[r * writer->n_channels + c];
+            *columns = again ? columns[-1] : filled_columns(writer->layer[c], rows->y + r);
+            filled += (size_t)(columns->last - columns->first);
+        }
+    return SPARSE_SHARE * filled < all;
+}
+
+/** Adds the low or the high bytes of a channel's row. */
+static void put_row(Rows *rows, const Writer *writer, int r, int c, bool high)
+{
+    const FlColumns filled = rows->filled[r * writer->n_channels + c];
+    const Layer *layer = writer->layer[c];
+    const int n = filled.last - filled.first, component = writer->component[c];
+    fl_exr_chunk_blank(&rows->chunk, (size_t)filled.first);
+    if (n > 0) {
+        const uint8_t *rgba = layer->rgba + ((size_t)(rows->y + r - layer->y) * layer->width +
+                                             (size_t)(filled.first - layer->x)) *
+                                                4;
+        for (int x = 0; x < n; x++, rgba += 4)
+            rows->bytes[x] = bytes_of[high][rgba[3]][component == 3 ? 255 : rgba[component]];
+        fl_exr_chunk_put(&rows->chunk, rows->bytes, (size_t)n);
+    }
+    fl_exr_chunk_blank(&rows->chunk, (size_t)(writer->width - filled.last));
+}
+
+static void pack_rows(Rows *rows, const Writer *writer, int y)
+{
+    rows->y = y, rows->n = MIN(writer->chunk_rows, writer->height - y);
+    const bool sparse = find_filled(rows, writer);
+    fl_exr_chunk_begin(&rows->chunk, (size_t)rows->n * writer->n_channels * writer->width, sparse);
+    for (int high = 0; high < 2; high++)
+        for (int r = 0; r < rows->n; r++)
+            for (int c = 0; c < writer->n_channels; c++)
+                put_row(rows, writer, r, c, high);
+    rows->packed = fl_exr_chunk_end(&rows->chunk, &rows->n_bytes);
+}
+
+/** Packs all chunks, some side by side, and writes them in order. rows: room for `beside`. */
+static bool put_chunks(Writer *writer, Rows *rows, int beside)
+{
+    const int step = writer->chunk_rows;
+    bool put = true;
+    for (int y = 0; put && y < writer->height; y += beside * step) {
+        const int n = MIN(beside, (writer->height - y + step - 1) / step);
+#pragma omp parallel for schedule(dynamic, 1)
+        for (int k = 0; k < n; k++)
+            pack_rows(&rows[k], writer, y + k * step);
+        for (int k = 0; put && k < n; k++)
+            put = went(writer, exr_write_scanline_chunk(writer->context, 0, rows[k].y,
+                                                        rows[k].packed, rows[k].n_bytes));
+    }
+    return put;
+}
+
+static bool put_rows(Writer *writer, GError **error)
+{
+    const int beside = 4 * fl_schedule_threads(); // chunks: threads hardly wait for the last
+    Rows *rows = g_new0(Rows, beside);
+    bool put = true;
+    for (int k = 0; k < beside && put; k++)
+        put = rows_init(&rows[k], writer, error);
+    put = put && put_chunks(writer, rows, beside);
+    for (int k = 0; k < beside; k++)
+        rows_clear(&rows[k]);
+    g_free(rows);
+    return put;
 }
 
 static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *frame, GError **error)
@@ -183,9 +273,8 @@ static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *fram
     if (!went(writer,
               exr_start_write(&writer->context, file->path, EXR_WRITE_FILE_DIRECTLY, &context)))
         return false;
-    bool put = put_header(writer, &whole, frame) && prepare_chunk(writer, &whole, frame, error);
-    for (int y = 0; put && y < writer->height; y += writer->chunk_rows)
-        put = put_chunk(writer, y);
+    const bool put = put_header(writer, &whole, frame) && list_channels(writer, &whole, frame) &&
+                     put_rows(writer, error);
     return went(writer, exr_finish(&writer->context)) && put;
 }
 
@@ -202,7 +291,6 @@ static bool exr_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     const bool put = put_file(&writer, &file, frame, &problem);
     g_free(writer.layer);
     g_free(writer.component);
-    fl_exr_chunk_clear(&writer.chunk);
     if (put)
         return fl_atomic_commit(&file, error);
     if (problem)

@@ -1,121 +1,140 @@
 #include "io/exr_chunk.h"
 
-#include "base/alloc.h"
-#include "io/sparse_stream.h"
-
 #include <libdeflate.h>
 #include <string.h>
 
 #define LEVEL 4
-#define SPARSE_LEVEL 4     // zlib's
-#define SAME 128           // the predictor's byte where a byte is as the one before
-#define BLOCK 1024         // bytes that are looked at together
-#define RUN_BLOCKS 4       // from which on a run is worth a piece of its own
-#define SPARSE_SHARE 0.75f // of a chunk, in runs: then zlib's speed with the rest does not matter
+#define SPARSE_LEVEL 4 // zlib's
+#define SAME 128       // the predictor's byte where a byte is as the one before
+#define LONG_RUN 4096  // from which on a run is worth a piece of its own
 
-bool fl_exr_chunk_init(FlExrChunk *chunk, size_t n, GError **error)
+bool fl_exr_chunk_init(FlExrChunk *chunk, GError **error)
 {
-    *chunk = (FlExrChunk){
-        .n = n, .compressor = libdeflate_alloc_compressor(LEVEL), .stream = g_byte_array_new()};
-    if (!chunk->compressor) {
+    *chunk = (FlExrChunk){.compressor = libdeflate_alloc_compressor(LEVEL),
+                          .predicted = g_byte_array_new(),
+                          .packed = g_byte_array_new()};
+    if (!chunk->compressor)
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to compress");
-        return false;
-    }
-    // what is stored: differences, and behind them their stream
-    chunk->room = 2 * n + libdeflate_zlib_compress_bound(chunk->compressor, 2 * n);
-    chunk->low = fl_alloc(2, n, "rows of an OpenEXR file", error);
-    chunk->high = chunk->low ? chunk->low + n : NULL;
-    chunk->bytes =
-        chunk->low ? fl_alloc_scratch(chunk->room, 1, "rows of an OpenEXR file", error) : NULL;
-    return chunk->bytes != NULL;
-}
-
-void fl_exr_chunk_blank(FlExrChunk *chunk)
-{
-    memset(chunk->low, 0, 2 * chunk->n);
-}
-
-/* OpenEXR's predictor [ImfZip.cpp, "Predictor"]: each byte less the one before, and 128. */
-static void predict(const uint8_t *bytes, size_t n, uint8_t before, uint8_t *restrict out)
-{
-    if (n > 0)
-        out[0] = (uint8_t)(bytes[0] - before + 128);
-    for (size_t i = 1; i < n; i++)
-        out[i] = (uint8_t)(bytes[i] - bytes[i - 1] + 128);
-}
-
-/* Whether a block of the bytes is all SAME. */
-static bool is_same(const uint8_t *bytes)
-{
-    return bytes[0] == SAME && memcmp(bytes, bytes + 1, BLOCK - 1) == 0;
-}
-
-/* How many bytes from `at` on, in whole blocks, are SAME. */
-static size_t run_at(const uint8_t *bytes, size_t at, size_t n)
-{
-    size_t end = at;
-    while (end + BLOCK <= n && is_same(bytes + end))
-        end += BLOCK;
-    return end - at;
-}
-
-static bool is_sparse(const uint8_t *bytes, size_t n)
-{
-    size_t blank = 0;
-    for (size_t at = 0; at + BLOCK <= n; at += BLOCK)
-        blank += is_same(bytes + at) ? BLOCK : 0;
-    return (float)blank > SPARSE_SHARE * (float)n;
-}
-
-/* Layers are small in a large frame: most of the bytes lie in long runs. Returns: false if memory
- * is short. */
-static bool compress_sparse(const uint8_t *bytes, size_t n, GByteArray *out)
-{
-    FlSparseStream *stream = fl_sparse_stream_new(SPARSE_LEVEL, out);
-    if (!stream)
-        return false;
-    size_t put = 0; // those before are in the stream
-    for (size_t at = 0; at < n;) {
-        const size_t run = run_at(bytes, at, n);
-        if (run >= RUN_BLOCKS * BLOCK) {
-            fl_sparse_stream_put(stream, bytes + put, at - put);
-            fl_sparse_stream_run(stream, SAME, run);
-            put = at + run;
-        }
-        at += MAX(run, BLOCK);
-    }
-    fl_sparse_stream_put(stream, bytes + put, n - put);
-    fl_sparse_stream_end(stream);
-    return true;
-}
-
-const void *fl_exr_chunk_pack(FlExrChunk *chunk, size_t n, size_t *n_bytes)
-{
-    uint8_t *stream = chunk->bytes + 2 * n;
-    predict(chunk->low, n, 0, chunk->bytes);
-    predict(chunk->high, n, n > 0 ? chunk->low[n - 1] : 0, chunk->bytes + n);
-    chunk->bytes[0] = (uint8_t)(chunk->bytes[0] - 128); // the first one stands as it is
-    g_byte_array_set_size(chunk->stream, 0);
-    if (is_sparse(chunk->bytes, 2 * n) && compress_sparse(chunk->bytes, 2 * n, chunk->stream)) {
-        *n_bytes = chunk->stream->len;
-        return chunk->stream->data;
-    }
-    *n_bytes = libdeflate_zlib_compress(chunk->compressor, chunk->bytes, 2 * n, stream,
-                                        chunk->room - 2 * n);
-    if (*n_bytes > 0 && *n_bytes < 2 * n)
-        return stream;
-    for (size_t i = 0; i < n; i++)
-        chunk->bytes[2 * i] = chunk->low[i], chunk->bytes[2 * i + 1] = chunk->high[i];
-    *n_bytes = 2 * n;
-    return chunk->bytes;
+    return chunk->compressor;
 }
 
 void fl_exr_chunk_clear(FlExrChunk *chunk)
 {
     if (chunk->compressor)
         libdeflate_free_compressor(chunk->compressor);
-    g_clear_pointer(&chunk->stream, g_byte_array_unref);
-    free(chunk->low);
-    free(chunk->bytes);
+    if (chunk->stream)
+        fl_sparse_stream_end(chunk->stream);
+    g_clear_pointer(&chunk->predicted, g_byte_array_unref);
+    g_clear_pointer(&chunk->packed, g_byte_array_unref);
     *chunk = (FlExrChunk){0};
+}
+
+void fl_exr_chunk_begin(FlExrChunk *chunk, size_t n, bool sparse)
+{
+    chunk->n = n, chunk->done = chunk->run = 0, chunk->last = 0;
+    g_byte_array_set_size(chunk->predicted, 0);
+    g_byte_array_set_size(chunk->packed, 0);
+    // beside runs, nothing in paint comes twice: looking for it would take twice as long, for 2 %
+    chunk->stream = sparse ? fl_sparse_stream_new(SPARSE_LEVEL, true, chunk->packed) : NULL;
+}
+
+/* Room for n more bytes. */
+static uint8_t *grow(GByteArray *bytes, size_t n)
+{
+    const guint before = bytes->len;
+    g_byte_array_set_size(bytes, before + (guint)n);
+    return bytes->data + before;
+}
+
+/* What is not in the stream goes there. */
+static void drain(FlExrChunk *chunk)
+{
+    fl_sparse_stream_put(chunk->stream, chunk->predicted->data, chunk->predicted->len);
+    g_byte_array_set_size(chunk->predicted, 0);
+}
+
+static void end_run(FlExrChunk *chunk)
+{
+    if (chunk->stream && chunk->run >= LONG_RUN) {
+        drain(chunk);
+        fl_sparse_stream_run(chunk->stream, SAME, chunk->run);
+    } else
+        memset(grow(chunk->predicted, chunk->run), SAME, chunk->run);
+    chunk->run = 0;
+}
+
+/* OpenEXR's predictor [ImfZip.cpp, "Predictor"]: each byte less the one before, and 128; the first
+ * one stands as it is. */
+static void predict(FlExrChunk *chunk, const uint8_t *bytes, size_t n)
+{
+    uint8_t *restrict to = grow(chunk->predicted, n);
+    to[0] = (uint8_t)(bytes[0] - chunk->last + (chunk->done > 0 ? SAME : 0));
+    for (size_t i = 1; i < n; i++)
+        to[i] = (uint8_t)(bytes[i] - bytes[i - 1] + SAME);
+    chunk->last = bytes[n - 1];
+    chunk->done += n;
+}
+
+/* Adds n bytes of one value. */
+static void put_run(FlExrChunk *chunk, uint8_t value, size_t n)
+{
+    size_t left = n;
+    if (left > 0 && (chunk->done == 0 || chunk->last != value)) {
+        end_run(chunk);
+        predict(chunk, &value, 1);
+        left--;
+    }
+    chunk->run += left;
+    chunk->done += left;
+}
+
+void fl_exr_chunk_blank(FlExrChunk *chunk, size_t n)
+{
+    put_run(chunk, 0, n);
+}
+
+void fl_exr_chunk_put(FlExrChunk *chunk, const uint8_t *bytes, size_t n)
+{
+    if (n == 0)
+        return;
+    if (memcmp(bytes, bytes + 1, n - 1) == 0) {
+        put_run(chunk, bytes[0], n);
+        return;
+    }
+    end_run(chunk);
+    predict(chunk, bytes, n);
+}
+
+/* The chunk without compression: what the predictor was given, low and high bytes by turns. */
+static const uint8_t *plain(FlExrChunk *chunk)
+{
+    const uint8_t *predicted = chunk->predicted->data;
+    g_byte_array_set_size(chunk->packed, (guint)(2 * chunk->n));
+    uint8_t byte = 0;
+    for (size_t i = 0; i < 2 * chunk->n; i++) {
+        byte = (uint8_t)(byte + predicted[i] - (i > 0 ? SAME : 0));
+        chunk->packed->data[i < chunk->n ? 2 * i : 2 * (i - chunk->n) + 1] = byte;
+    }
+    return chunk->packed->data;
+}
+
+const uint8_t *fl_exr_chunk_end(FlExrChunk *chunk, size_t *n_bytes)
+{
+    const size_t n = 2 * chunk->n;
+    g_assert(chunk->done == n);
+    end_run(chunk);
+    if (chunk->stream) {
+        drain(chunk);
+        fl_sparse_stream_end(g_steal_pointer(&chunk->stream));
+        *n_bytes = chunk->packed->len;
+        return chunk->packed->data;
+    }
+    const size_t room = libdeflate_zlib_compress_bound(chunk->compressor, n);
+    g_byte_array_set_size(chunk->packed, (guint)room);
+    *n_bytes = libdeflate_zlib_compress(chunk->compressor, chunk->predicted->data, n,
+                                        chunk->packed->data, room);
+    if (*n_bytes > 0 && *n_bytes < n)
+        return chunk->packed->data;
+    *n_bytes = n;
+    return plain(chunk);
 }

@@ -2,42 +2,45 @@
 #ifndef FLUIDY_IO_EXR_CHUNK_H
 #define FLUIDY_IO_EXR_CHUNK_H
 
+#include "io/sparse_stream.h"
 #include <fluidy/error.h>
-#include <glib.h>
 #include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
 
-/** A chunk's half floats in the file's order: row by row, in a row channel by channel. */
+/** A chunk that is filled in the order of its compressor: the low bytes of all its half floats,
+ * then their high bytes; both row by row, in a row channel by channel. */
 typedef struct FlExrChunk {
-    size_t n;       // halves of a whole chunk, >= 1
-    uint8_t *low;   // n: the halves' low bytes, filled by the caller
-    uint8_t *high;  // n, right behind: their high bytes
-    uint8_t *bytes; // of the chunk's own
-    size_t room;
+    size_t n;              // halves of the whole chunk
+    size_t done;           // bytes so far
+    uint8_t last;          // the last of them
+    size_t run;            // how many at the end are as the one before, beyond `predicted`
+    GByteArray *predicted; // what the predictor makes of the others; of a sparse chunk, of those
+                           // that are not in the stream
+    GByteArray *packed;
+    FlSparseStream *stream; // of a sparse chunk
     struct libdeflate_compressor *compressor;
-    GByteArray *stream; // the last one, if the chunk was sparse
 } FlExrChunk;
 
-/**
- * Makes a chunk of n halves.
- *
- * Returns: true; false with FL_ERROR_NO_MEMORY set. To be cleared in both cases.
- */
-bool fl_exr_chunk_init(FlExrChunk *chunk, size_t n, GError **error);
-
-/** All halves 0. */
-void fl_exr_chunk_blank(FlExrChunk *chunk);
-
-/**
- * The first n halves as they are stored, and how many bytes that is: 2 n if they do not get
- * smaller.
- *
- * Returns: the chunk's own bytes, until it is next packed.
- */
-const void *fl_exr_chunk_pack(FlExrChunk *chunk, size_t n, size_t *n_bytes);
-
+/** Returns: true; false with FL_ERROR_NO_MEMORY set. To be cleared in both cases. */
+bool fl_exr_chunk_init(FlExrChunk *chunk, GError **error);
 void fl_exr_chunk_clear(FlExrChunk *chunk); // all 0 is fine
+
+/** Begins a chunk of n halves; sparse: most of them are blank, which takes next to no time. */
+void fl_exr_chunk_begin(FlExrChunk *chunk, size_t n, bool sparse);
+
+/** Adds n bytes of 0. */
+void fl_exr_chunk_blank(FlExrChunk *chunk, size_t n);
+
+/** Adds n bytes of any value. */
+void fl_exr_chunk_put(FlExrChunk *chunk, const uint8_t *bytes, size_t n);
+
+/**
+ * Ends a chunk, of which all bytes are there.
+ *
+ * Returns: what is stored, until the chunk begins anew: *n_bytes, 2 n if they do not get smaller.
+ */
+const uint8_t *fl_exr_chunk_end(FlExrChunk *chunk, size_t *n_bytes);
+
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlExrChunk, fl_exr_chunk_clear)
 
 #endif

@@ -186,7 +186,7 @@ static uint8_t *compress_part(const FlPng *picture, Rows part, size_t *bytes, GE
         return NULL;
     g_autoptr(GByteArray) stream = g_byte_array_new();
     FlSparseStream *sparse =
-        fl_sparse_stream_new(picture->fast ? SPARSE_FAST : SPARSE_FINAL, stream);
+        fl_sparse_stream_new(picture->fast ? SPARSE_FAST : SPARSE_FINAL, false, stream);
     if (!sparse)
         return NULL;
     fl_sparse_stream_run(sparse, 0, (size_t)part.first * row);

@@ -27,12 +27,13 @@ static void drain(z_stream *zlib, int flush, GByteArray *out)
     } while (zlib->avail_out == 0);
 }
 
-FlSparseStream *fl_sparse_stream_new(int level, GByteArray *out)
+FlSparseStream *fl_sparse_stream_new(int level, bool runs, GByteArray *out)
 {
     static const uint8_t head[] = {0x78, 0x01}; // deflate, a window of 32 KiB
     FlSparseStream *stream = g_new0(FlSparseStream, 1);
     *stream = (FlSparseStream){.out = out, .sum = 1};
-    if (deflateInit2(&stream->zlib, level, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
+    if (deflateInit2(&stream->zlib, level, Z_DEFLATED, -MAX_WBITS, 8,
+                     runs ? Z_RLE : Z_DEFAULT_STRATEGY) != Z_OK) {
         g_free(stream);
         return NULL;
     }

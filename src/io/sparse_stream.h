@@ -3,6 +3,7 @@
 #define FLUIDY_IO_SPARSE_STREAM_H
 
 #include <glib.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,9 +11,9 @@
  * and repeated. */
 typedef struct FlSparseStream FlSparseStream;
 
-/** Begins a stream at zlib's level 1 … 9, at the end of `out`, which stays the caller's. Returns:
- * NULL if memory is short. */
-FlSparseStream *fl_sparse_stream_new(int level, GByteArray *out);
+/** Begins a stream at zlib's level 1 … 9, at the end of `out`, which stays the caller's. runs: of
+ * what comes twice, only runs of a byte are looked for. Returns: NULL if memory is short. */
+FlSparseStream *fl_sparse_stream_new(int level, bool runs, GByteArray *out);
 
 /** Adds bytes of any value. */
 void fl_sparse_stream_put(FlSparseStream *stream, const uint8_t *bytes, size_t n);
