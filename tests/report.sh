@@ -1,8 +1,9 @@
 #!/bin/bash
-# The page of --report in a real browser. usage: report.sh PROGRAM; speaks TAP.
+# The page of --report in a real browser. usage: report.sh PROGRAM FIXTURES; speaks TAP.
 # shellcheck source-path=SCRIPTDIR source=tap.sh
 . "${0%/*}/tap.sh"
 program=$(realpath "$1")
+board=$(realpath "$2")/animations/board-game
 visit=$(realpath "${0%/*}")/visit_report.py
 browser=$(command -v chromium || command -v chromium-browser || command -v google-chrome)
 cd "$folder" || exit 1
@@ -22,6 +23,15 @@ result $? 'the page has energies and the use of the recording'
 "$program" w_%04d.svg -s 01 -q -o 'new_%d.png' --report page 2>err
 [ $? = 1 ] && grep -q 'page/index.html: already exists; use -y' err && [ ! -e new_1.png ]
 result $? 'a page that exists stays, and nothing is painted'
+
+# in which parts of regions rest, whose guides the page has and the paint needs not
+board_game() { # board_game NAME OPTION...
+    "$program" "$board" -s 01 -W 500 -q --cache off -o "$1_%d.png" "${@:2}"
+}
+board_game plain && board_game seen --report board-page && for frame in 12 13 14; do
+    cmp plain_$frame.png seen_$frame.png || break
+done
+result $? 'a page changes nothing in the picture'
 
 streams() { # streams PAGE: it is written to standard output, with paint from the cache if there is any
     "$program" w_%04d.svg -s 01 --cache kept --format null --report - >"$1" 2>err &&

@@ -42,6 +42,7 @@ typedef struct FlGuides {
     int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height
     int16_t *turn;   // the turn of the drawing, 65536 a turn; 0 where that is unknown
     FlRestingParts resting; // of the frame: they are as in the one before; others may be as well
+    const struct FlGuides *whole; // of a part: the frame's, where somebody looks at it; else NULL
 } FlGuides;
 
 /** The pixel of the planes that lies at a place of the frame. */

@@ -154,6 +154,11 @@ static bool carry_past(FlLazy *lazy, const uint8_t *mask, GError **error)
     return true;
 }
 
+static FlRestRule rest_rule(const FlLazy *lazy)
+{
+    return (FlRestRule){lazy->exemplar->border_px, lazy->params->flow_still};
+}
+
 /* All that is needed of the guides, which then may go. */
 static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
 {
@@ -163,7 +168,8 @@ static bool take_guides(FlLazy *lazy, FlGuides *guides, GError **error)
     if (!shape || (lazy->last.valid && !find_motion(lazy, guides, error)))
         return false;
     memcpy(mask, guides->mask, pixels);
-    fl_rest_shape(guides, shape, guides->width);
+    const FlRestRule rule = rest_rule(lazy);
+    fl_rest_shape(guides, &rule, shape, guides->width);
     if (guides->disposable)
         fl_guides_clear(guides);
     if (!blur_mask(lazy, mask, error) || (lazy->last.valid && !carry_past(lazy, mask, error)))
@@ -467,8 +473,9 @@ static bool is_empty(const FlLazy *lazy, const FlGuides *guides)
 /* A video goes on while the drawing holds; a still has nothing to show. */
 static bool holds_still(const FlLazy *lazy, const FlGuides *guides)
 {
+    const FlRestRule rule = rest_rule(lazy);
     return lazy->params->rest && lazy->last.valid && lazy->exemplar->level[0].window == 1 &&
-           fl_rests(guides, lazy->last.shape, lazy->params->flow_still);
+           fl_rests(guides, &rule, lazy->last.shape);
 }
 
 static bool paint(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha, FlFrameStats *stats,

@@ -428,27 +428,40 @@ static FlRect needed_part(const FlPainter *painter, FlRect moving)
     const FlStyleInstance *style = painter->plan->style;
     const FlRect rect = guided_rect(painter), whole = {0, 0, rect.width, rect.height};
     const int patches = patches_px(style, page_of(painter));
-    const int reach = MAX(patches, fl_rim_reach(style->exemplar->border_px));
-    return painter->wants_guides ? whole : fl_rect_grown(moving, reach, whole);
+    return fl_rect_grown(moving, MAX(patches, fl_rim_reach(style->exemplar->border_px)), whole);
 }
 
-/* The guides of the painter's picture, from which the engine paints it. The depth takes as much
- * scratch as the other planes, which come after it. */
-static bool make_guides(FlPainter *painter, FlGuides *guides, GError **error)
+/* The depth takes as much scratch as the other planes, which come after it. */
+static bool fill_guides(FlPainter *painter, FlRect part, FlGuides *guides, GError **error)
 {
-    g_auto(FlRestingParts) resting = {0};
-    FlRect moving;
-    if (!find_resting(painter, &resting, &moving, error))
-        return false;
-    const FlRect part = needed_part(painter, moving);
     if (!fl_guides_init(guides, part.width, part.height, error))
         return false;
     guides->x = part.x, guides->y = part.y;
-    guides->resting = resting, resting = (FlRestingParts){0};
-    guides->disposable = !painter->wants_guides;
     return fl_guide_sequence_distance(painter->guides, painter->picture, guides, error) &&
            make_depth(painter, guides, error) &&
            fl_guide_sequence_planes(painter->guides, painter->picture, guides, error);
+}
+
+/* The guides of the painter's picture, for whoever looks at them, and those from which the engine
+ * paints it: the same, or of the part that does not rest. */
+static bool make_guides(FlPainter *painter, FlGuides *guides, FlGuides *part, GError **error)
+{
+    g_auto(FlRestingParts) resting = {0};
+    const FlRect rect = guided_rect(painter), whole = {0, 0, rect.width, rect.height};
+    FlRect moving;
+    if (!find_resting(painter, &resting, &moving, error))
+        return false;
+    if ((!resting.keeps || painter->wants_guides) && !fill_guides(painter, whole, guides, error))
+        return false;
+    guides->disposable = !painter->wants_guides;
+    if (!resting.keeps)
+        return true;
+    if (!fill_guides(painter, needed_part(painter, moving), part, error))
+        return false;
+    part->resting = resting, resting = (FlRestingParts){0};
+    part->disposable = true;
+    part->whole = painter->wants_guides ? guides : NULL;
+    return true;
 }
 
 /* Where the picture before was taken, the engine still is at an older one. */
@@ -477,8 +490,15 @@ static bool keep_picture(FlPainter *painter, GError **error)
     return true;
 }
 
+/* The engine's guides of the picture: see make_guides(). */
+static FlGuides *engine_guides(FlGuides *guides, FlGuides *part)
+{
+    return part->mask ? part : guides;
+}
+
 /* guided: the picture's guides are there; else it may need none. */
-static bool run_engine(FlPainter *painter, bool guided, FlGuides *guides, GError **error)
+static bool run_engine(FlPainter *painter, bool guided, FlGuides *guides, FlGuides *part,
+                       GError **error)
 {
     const FlEngine *engine = painter->plan->engine;
     FlPaintedRegion *result = &painter->result;
@@ -486,11 +506,12 @@ static bool run_engine(FlPainter *painter, bool guided, FlGuides *guides, GError
         return false;
     if (!guided && engine->rest(painter->paint))
         return keep_picture(painter, error);
-    if ((!guided && !make_guides(painter, guides, error)) || !fl_painted_renew(result, error))
+    if ((!guided && !make_guides(painter, guides, part, error)) || !fl_painted_renew(result, error))
         return false;
     const FlEnginePaint paint = {result->painted, result->alpha, &result->stats,
                                  painter->wants_view ? &result->view : NULL};
-    return engine->frame(painter->paint, guides, &paint, error) && keep_picture(painter, error);
+    return engine->frame(painter->paint, engine_guides(guides, part), &paint, error) &&
+           keep_picture(painter, error);
 }
 
 /* The region's picture `index`, held ones counted once, into painter->result.painted; k: how many
@@ -504,10 +525,11 @@ static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides
     painter->result.view = (FlSynthView){0};
     const bool known = is_known(painter), still = !known && rests(painter, last);
     const bool guided = !known && (!still || painter->wants_guides);
-    if (guided && !make_guides(painter, guides, error))
+    g_auto(FlGuides) part = {0};
+    if (guided && !make_guides(painter, guides, &part, error))
         return false;
     if (reuse)
-        fl_reuse_next(reuse, k, still ? NULL : guides,
+        fl_reuse_next(reuse, k, still ? NULL : engine_guides(guides, &part),
                       painter->plan->style->exemplar->level[0].first);
     if (reuse && reuse->cache && !fl_painted_open(&painter->result, error))
         return false;
@@ -517,7 +539,7 @@ static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides
     if (painter->result.taken)
         return true;
     if (!known)
-        return run_engine(painter, guided, guides, error);
+        return run_engine(painter, guided, guides, &part, error);
     g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "region %s: its paint is gone from the cache",
                 painter->plan->name);
     return false;

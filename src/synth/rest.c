@@ -3,37 +3,39 @@
 #include "base/alloc.h"
 #include <string.h>
 
-static uint8_t shape_at(const FlGuides *guides, size_t p)
+static uint8_t shape_at(const FlGuides *guides, size_t p, float border_px)
 {
-    enum { STEPS = 8 }; // of a px
+    enum { STEPS = 127 }; // of a border
     const uint8_t mask = guides->mask[p];
-    return mask < FL_INSIDE ? mask : mask ^ (uint8_t)((int)(guides->depth[p] * STEPS) & 0x7f);
+    const float share = CLAMP(guides->depth[p] / MAX(border_px, 1e-3f), 0, 1);
+    return mask < FL_INSIDE ? mask : mask ^ (uint8_t)(int)(share * STEPS);
 }
 
-void fl_rest_shape(const FlGuides *guides, uint8_t *shape, int width)
+void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shape, int width)
 {
     size_t p = 0;
     for (int y = guides->y; y < guides->y + guides->height; y++)
         for (int x = 0; x < guides->width; x++, p++)
-            shape[(size_t)y * (size_t)width + (size_t)(guides->x + x)] = shape_at(guides, p);
+            shape[(size_t)y * (size_t)width + (size_t)(guides->x + x)] =
+                shape_at(guides, p, rule->border_px);
 }
 
 /* Whether a pixel has another shape than in the last frame, or moves. */
-static bool stirs(const FlGuides *guides, size_t p, uint8_t last_shape, float still)
+static bool stirs(const FlGuides *guides, size_t p, uint8_t last_shape, const FlRestRule *rule)
 {
-    if (last_shape != shape_at(guides, p))
+    if (last_shape != shape_at(guides, p, rule->border_px))
         return true;
     if (guides->has_motion && guides->motion[2 * p] != FL_MOTION_UNKNOWN &&
         (guides->motion[2 * p] | guides->motion[2 * p + 1]) != 0)
         return true;
     const float u = guides->flow[2 * p], v = guides->flow[2 * p + 1];
-    return guides->mask[p] >= FL_INSIDE && u * u + v * v > still * still;
+    return guides->mask[p] >= FL_INSIDE && u * u + v * v > rule->still * rule->still;
 }
 
-bool fl_rests(const FlGuides *guides, const uint8_t *last_shape, float still)
+bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape)
 {
     for (size_t p = 0; p < (size_t)guides->width * guides->height; p++)
-        if (stirs(guides, p, last_shape[p], still))
+        if (stirs(guides, p, last_shape[p], rule))
             return false;
     return true;
 }
@@ -41,20 +43,20 @@ bool fl_rests(const FlGuides *guides, const uint8_t *last_shape, float still)
 /* ---- parts ----------------------------------------------------------------------------------- */
 
 /* Columns x … end - 1 of a row of the frame, which are of one square's row. */
-static void find_squares(const FlGuides *guides, const FlSynthState *last, float still, int y,
-                         FlColumns columns, uint8_t *squares)
+static void find_squares(const FlGuides *guides, const FlRestRule *rule, const FlSynthState *last,
+                         int y, FlColumns columns, uint8_t *squares)
 {
     for (int x = columns.first; x < columns.last; x++) {
         const size_t p = fl_guides_at(guides, x, y);
         const uint8_t shape = last->mask[(size_t)y * (size_t)last->width + (size_t)x];
         if (guides->mask[p] || shape)
             squares[x / FL_REST_PX] |=
-                stirs(guides, p, shape, still) ? FL_REST_TAKEN | FL_REST_STIRS : FL_REST_TAKEN;
+                stirs(guides, p, shape, rule) ? FL_REST_TAKEN | FL_REST_STIRS : FL_REST_TAKEN;
     }
 }
 
 /* The squares of parts that guides do not know to rest. Returns: whether any stirs. */
-static bool find_stirring(const FlGuides *guides, const FlSynthState *last, float still,
+static bool find_stirring(const FlGuides *guides, const FlRestRule *rule, const FlSynthState *last,
                           uint8_t *square)
 {
     const FlRect part = fl_guides_rect(guides);
@@ -65,7 +67,7 @@ static bool find_stirring(const FlGuides *guides, const FlSynthState *last, floa
                 guides->resting.keeps && fl_resting_parts_stretch(&guides->resting, x, y, &end);
             end = MIN(end, right);
             if (!keeps)
-                find_squares(guides, last, still, y, (FlColumns){x, end},
+                find_squares(guides, rule, last, y, (FlColumns){x, end},
                              square + y / FL_REST_PX * columns);
         }
     bool any = false;
@@ -90,8 +92,8 @@ static bool add_known(FlRestingParts *parts, const FlRestingParts *known, GError
     return true;
 }
 
-bool fl_rest_find(FlRestingParts *parts, const FlGuides *guides, const FlSynthState *last,
-                  float still, bool *moves, GError **error)
+bool fl_rest_find(FlRestingParts *parts, const FlGuides *guides, const FlRestRule *rule,
+                  const FlSynthState *last, bool *moves, GError **error)
 {
     const size_t n = (size_t)fl_rest_squares(last->width) * (size_t)fl_rest_squares(last->height);
     g_autofree uint8_t *square = fl_alloc(n, 1, "the parts of a mask", error);
@@ -99,7 +101,7 @@ bool fl_rest_find(FlRestingParts *parts, const FlGuides *guides, const FlSynthSt
     *parts = (FlRestingParts){0};
     if (!square)
         return false;
-    *moves = find_stirring(guides, last, still, square);
+    *moves = find_stirring(guides, rule, last, square);
     return !*moves ||
            (fl_resting_parts_init(parts, last->width, last->height, square, &moving, error) &&
             add_known(parts, &guides->resting, error));

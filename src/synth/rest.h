@@ -5,25 +5,31 @@
 #include "guides/guides.h"
 #include "synth/synth_state.h"
 
+/** What rest is. */
+typedef struct FlRestRule {
+    float border_px; // up to it the depth counts
+    float still;     // the fastest flow, px a frame
+} FlRestRule;
+
 /**
  * Fills in what a region at rest is known by, of a frame that is `width` wide and where guides are
  * of it: its mask, and inside it the depth, which also depends on what moves beside it.
  */
-void fl_rest_shape(const FlGuides *guides, uint8_t *shape, int width);
+void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shape, int width);
 
 /**
  * Whether a region rests: its shape is that of the last frame, which fl_rest_shape() filled in, and
- * no flow inside is faster than `still`, px a frame. A motion of the drawing that is known is no
- * rest, however slow it is, since it is seen after some frames.
+ * no flow inside is faster than the rule has it. A motion of the drawing that is known is no rest,
+ * however slow it is, since it is seen after some frames.
  */
-bool fl_rests(const FlGuides *guides, const uint8_t *last_shape, float still);
+bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape);
 
 /**
  * Finds the parts at rest: those that guides know, and others by what fl_rests() asks of a region.
  * *moves: whether there are parts that do not rest. FL_ERROR_NO_MEMORY.
  */
-bool fl_rest_find(FlRestingParts *parts, const FlGuides *guides, const FlSynthState *last,
-                  float still, bool *moves, GError **error);
+bool fl_rest_find(FlRestingParts *parts, const FlGuides *guides, const FlRestRule *rule,
+                  const FlSynthState *last, bool *moves, GError **error);
 
 /** The bounding box of what a shape, fl_rest_shape(), has inside the parts at rest. */
 FlRect fl_rest_box(const FlRestingParts *parts, const uint8_t *shape);

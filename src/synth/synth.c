@@ -134,12 +134,18 @@ static void fill_paper(const FlSynth *synth, uint8_t *rgb)
         memcpy(rgb + 3 * p, synth->exemplar->paper, 3);
 }
 
+static FlRestRule rest_rule(const FlSynth *synth)
+{
+    return (FlRestRule){synth->exemplar->border_px, synth->params->flow_still};
+}
+
 static bool take_shape(FlSynth *synth, const FlGuides *guides, GError **error)
 {
     const size_t pixels = (size_t)synth->width * synth->height;
     if (!(synth->last.mask = fl_alloc(pixels, 1, "a mask", error)))
         return false;
-    fl_rest_shape(guides, synth->last.mask, synth->width);
+    const FlRestRule rule = rest_rule(synth);
+    fl_rest_shape(guides, &rule, synth->last.mask, synth->width);
     return true;
 }
 
@@ -294,8 +300,9 @@ static bool paint_nothing(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, 
 static bool find_resting(const FlSynth *synth, const FlGuides *guides, FlRestingParts *resting,
                          bool *moves, GError **error)
 {
+    const FlRestRule rule = rest_rule(synth);
     if (may_rest(synth, synth->last.frame))
-        return fl_rest_find(resting, guides, &synth->last, synth->params->flow_still, moves, error);
+        return fl_rest_find(resting, guides, &rule, &synth->last, moves, error);
     g_assert(!guides->resting.keeps);
     *moves = true;
     return true;
@@ -333,8 +340,8 @@ static bool show_all(FlSynth *synth, const FlGuides *guides, FlRect rect, GError
 {
     g_auto(FlTarget) moving = synth->target;
     synth->target = (FlTarget){0};
-    if (!fl_target_init(&synth->target, guides, synth->params, rect, synth->n_levels,
-                        synth->exemplar, error))
+    if (!fl_target_init(&synth->target, guides->whole ? guides->whole : guides, synth->params, rect,
+                        synth->n_levels, synth->exemplar, error))
         return false;
     const FlTargetLevel *from = &moving.level[0], *to = &synth->target.level[0];
     fl_rect_copy(from->temporal, moving.rect, to->temporal, rect, 3 * sizeof *to->temporal);
