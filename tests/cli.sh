@@ -378,14 +378,17 @@ on_paper() { # on_paper NAME ARGUMENT...: a frame, and its paint, in sheet/NAMEâ
     "$program" whole --frames 1 -s 01 -W 60 -q -o "sheet/$1%d.png" --paint "sheet/$1-{region}_%d.png" \
         "${@:2}" >out 2>err
 }
+same_paint() { # same_paint NAMEâ€¦: the paint of each is that of sheet/auto
+    for other; do
+        cmp -s sheet/auto-*_1.png sheet/"$other"-*_1.png || return 1
+    done
+}
 printf '[project]\npaper = kraft\n' >kraft.conf
 on_paper auto && on_paper cold --paper cold && on_paper bare --paper none --granulation 0 &&
     on_paper relief --paper-relief 0 && on_paper seed --paper-seed 5 && on_paper kraft -c kraft.conf &&
     cmp -s sheet/auto1.png sheet/cold1.png && ! cmp -s sheet/auto1.png sheet/bare1.png &&
     ! cmp -s sheet/auto1.png sheet/seed1.png && ! cmp -s sheet/auto1.png sheet/kraft1.png &&
-    ! cmp -s sheet/bare1.png sheet/relief1.png && for other in cold bare relief seed kraft; do
-    cmp -s sheet/auto-*_1.png sheet/$other-*_1.png || break
-done
+    ! cmp -s sheet/bare1.png sheet/relief1.png && same_paint cold bare relief seed kraft
 result $? 'paper is cold unless it is said, and changes no paint'
 on_paper white -b '#ffffff' && on_paper white-none -b '#ffffff' --paper none &&
     on_paper white-cold -b '#ffffff' --paper cold && ! cmp -s sheet/white1.png sheet/white-cold1.png &&
