@@ -49,7 +49,8 @@ static uint8_t *grow(GByteArray *bytes, size_t n)
 /* What is not in the stream goes there. */
 static void drain(FlExrChunk *chunk)
 {
-    fl_sparse_stream_put(chunk->stream, chunk->predicted->data, chunk->predicted->len);
+    if (chunk->predicted->len > 0)
+        fl_sparse_stream_put(chunk->stream, chunk->predicted->data, chunk->predicted->len);
     g_byte_array_set_size(chunk->predicted, 0);
 }
 
@@ -58,7 +59,7 @@ static void end_run(FlExrChunk *chunk)
     if (chunk->stream && chunk->run >= LONG_RUN) {
         drain(chunk);
         fl_sparse_stream_run(chunk->stream, SAME, chunk->run);
-    } else
+    } else if (chunk->run > 0)
         memset(grow(chunk->predicted, chunk->run), SAME, chunk->run);
     chunk->run = 0;
 }
