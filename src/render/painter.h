@@ -58,9 +58,6 @@ bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **er
  */
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error);
 
-/** The flow of the last painted picture, as in its file: 2 floats per pixel of rect. */
-bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error);
-
 /** The number of parts of a painter's state: see fl_painter_save(). */
 #define FL_PAINTER_PARTS 3
 

@@ -16,6 +16,7 @@
 #include "job/plan.h"
 #include "job/resume.h"
 #include "render/frame_writer.h"
+#include "render/painter_guides.h"
 #include "render/painters.h"
 #include "render/render_frames.h"
 #include "render/summary.h"

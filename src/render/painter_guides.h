@@ -1,0 +1,43 @@
+/* The guides of a painter's pictures: where they come from, and which part of them is needed. */
+#ifndef FLUIDY_RENDER_PAINTER_GUIDES_H
+#define FLUIDY_RENDER_PAINTER_GUIDES_H
+
+#include "render/painter.h"
+
+/** A part of the page in px of the guides, which drafts have half of. */
+FlRect fl_guided_part(const FlStyleInstance *style, FlRect part);
+
+/** The grid of the coarsest level, px of the guides. */
+int fl_guided_grid(const FlStyleInstance *style, FlRect page);
+
+/** How far patches of the coarsest level reach, and its grid, px of the guides. */
+int fl_guided_patches(const FlStyleInstance *style, FlRect page);
+
+/** The page that a painter's rectangle lies on. */
+FlRect fl_painter_page(const FlPainter *painter);
+
+/** The painter's rectangle, px of the guides. */
+FlRect fl_painter_guided(const FlPainter *painter);
+
+/**
+ * The source of a painter's guides: the masks within its rectangle, and the motion. Flow files
+ * replace the flow from the masks under motion = masks, else carry the paint.
+ */
+FlGuideSource fl_painter_guide_source(FlPainter *painter);
+
+/** Whether the painter's picture has the guides of picture `last`, which its result still shows. */
+bool fl_painter_rests(FlPainter *painter, int last);
+
+/**
+ * The guides of the painter's picture. guides: of all, if somebody looks at them; part: those from
+ * which the engine paints, if some parts rest, else it stays empty, and they are `guides`.
+ */
+bool fl_painter_make_guides(FlPainter *painter, FlGuides *guides, FlGuides *part, GError **error);
+
+/** Who looks at guides beside the picture wants them in its size. */
+bool fl_painter_show_guides(const FlPainter *painter, FlGuides *guides, GError **error);
+
+/** The flow of the last painted picture, as in its file: 2 floats per pixel of rect. */
+bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error);
+
+#endif
