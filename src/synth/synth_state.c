@@ -53,8 +53,8 @@ static FlMatch *differences(const FlNnf *nnf, GError **error)
 
 static void add_up(FlNnf *nnf)
 {
-    const size_t n = (size_t)nnf->width * (size_t)nnf->height;
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(n))
+#pragma omp parallel for schedule(                                                                 \
+    static) if (fl_schedule_worth_threads((size_t)nnf->width * (size_t)nnf->height))
     for (int y = 0; y < nnf->height; y++) {
         FlMatch *row = nnf->match + (size_t)y * (size_t)nnf->width;
         for (int x = 1; x < nnf->width; x++)
