@@ -1,5 +1,6 @@
 /* Layered OpenEXR files, half float. */
 #include "base/density.h"
+#include "base/parallel_error.h"
 #include "base/rect.h"
 #include "base/schedule.h"
 #include "io/atomic_file.h"
@@ -179,6 +180,8 @@ static void rows_clear(Rows *rows)
     fl_exr_chunk_clear(&rows->chunk);
 }
 
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Rows, rows_clear)
+
 static bool rows_init(Rows *rows, const Writer *writer, GError **error)
 {
     rows->filled = g_new(FlColumns, writer->chunk_rows * writer->n_channels);
@@ -232,35 +235,36 @@ static void pack_rows(Rows *rows, const Writer *writer, int y)
     rows->packed = fl_exr_chunk_end(&rows->chunk, &rows->n_bytes);
 }
 
-/** Packs all chunks, some side by side, and writes them in order. rows: room for `beside`. */
-static bool put_chunks(Writer *writer, Rows *rows, int beside)
+/** Packs the chunks that fall to a thread and writes them, all threads' in their order. */
+static void put_chunks(Writer *writer, bool *put, GError **error)
 {
     const int step = writer->chunk_rows;
-    bool put = true;
-    for (int y = 0; put && y < writer->height; y += beside * step) {
-        const int n = MIN(beside, (writer->height - y + step - 1) / step);
-#pragma omp parallel for schedule(dynamic, 1)
-        for (int k = 0; k < n; k++)
-            pack_rows(&rows[k], writer, y + k * step);
-        for (int k = 0; put && k < n; k++)
-            put = went(writer, exr_write_scanline_chunk(writer->context, 0, rows[k].y,
-                                                        rows[k].packed, rows[k].n_bytes));
+    g_auto(Rows) rows = {0};
+    const bool ready = rows_init(&rows, writer, error);
+#pragma omp for ordered schedule(dynamic, 1)
+    for (int y = 0; y < writer->height; y += step) {
+        if (ready)
+            pack_rows(&rows, writer, y);
+#pragma omp ordered
+        *put = *put && ready &&
+               went(writer,
+                    exr_write_scanline_chunk(writer->context, 0, y, rows.packed, rows.n_bytes));
     }
-    return put;
 }
+
+#define PACKERS 8 // threads, at most: each has the chunk that it packs
 
 static bool put_rows(Writer *writer, GError **error)
 {
-    const int beside = 4 * fl_schedule_threads(); // chunks: threads hardly wait for the last
-    Rows *rows = g_new0(Rows, beside);
+    GError *first = NULL;
     bool put = true;
-    for (int k = 0; k < beside && put; k++)
-        put = rows_init(&rows[k], writer, error);
-    put = put && put_chunks(writer, rows, beside);
-    for (int k = 0; k < beside; k++)
-        rows_clear(&rows[k]);
-    g_free(rows);
-    return put;
+#pragma omp parallel num_threads(fl_schedule_threads_up_to(PACKERS))
+    {
+        GError *failure = NULL;
+        put_chunks(writer, &put, &failure);
+        fl_parallel_error_keep(&first, failure);
+    }
+    return fl_parallel_error_tell(error, first) && put;
 }
 
 static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *frame, GError **error)

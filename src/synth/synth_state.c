@@ -19,6 +19,11 @@ static_assert(sizeof(Header) == FL_SYNTH_STATE_HEADER, "the header has no paddin
 
 enum { FIELD, MASK, PICTURE, N_PARTS };
 
+static size_t matches_of(const FlNnf *nnf)
+{
+    return (size_t)nnf->width * (size_t)nnf->height;
+}
+
 static FlMatch minus(FlMatch a, FlMatch b)
 {
     return (FlMatch){.x_16 = (uint16_t)(a.x_16 - b.x_16),
@@ -38,9 +43,8 @@ static FlMatch plus(FlMatch a, FlMatch b)
 /* Each match of a row but the first minus the one before; to be freed with free(). */
 static FlMatch *differences(const FlNnf *nnf, GError **error)
 {
-    const size_t n = (size_t)nnf->width * (size_t)nnf->height;
-    FlMatch *out = fl_alloc_unset(n, sizeof *out, "the state of a region", error);
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(n))
+    FlMatch *out = fl_alloc_unset(matches_of(nnf), sizeof *out, "the state of a region", error);
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(matches_of(nnf)))
     for (int y = 0; y < (out ? nnf->height : 0); y++) {
         const FlMatch *from = nnf->match + (size_t)y * (size_t)nnf->width;
         FlMatch *to = out + (size_t)y * (size_t)nnf->width;
@@ -53,8 +57,7 @@ static FlMatch *differences(const FlNnf *nnf, GError **error)
 
 static void add_up(FlNnf *nnf)
 {
-#pragma omp parallel for schedule(                                                                 \
-    static) if (fl_schedule_worth_threads((size_t)nnf->width * (size_t)nnf->height))
+#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(matches_of(nnf)))
     for (int y = 0; y < nnf->height; y++) {
         FlMatch *row = nnf->match + (size_t)y * (size_t)nnf->width;
         for (int x = 1; x < nnf->width; x++)
@@ -70,8 +73,7 @@ static size_t mask_bytes(const FlSynthState *state)
 /* `matches`: as they are packed. */
 static void parts_of(const FlSynthState *state, FlMatch *matches, FlSpan parts[N_PARTS])
 {
-    const size_t field = (size_t)state->nnf.width * (size_t)state->nnf.height * sizeof *matches;
-    parts[FIELD] = (FlSpan){matches, field};
+    parts[FIELD] = (FlSpan){matches, matches_of(&state->nnf) * sizeof *matches};
     parts[MASK] = (FlSpan){state->mask, mask_bytes(state)};
     parts[PICTURE] = (FlSpan){state->rgb, fl_synth_state_painted(state)};
 }
