@@ -384,6 +384,12 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
     return done;
 }
 
+bool fl_surround_joins(const FlSurround *surround, int region, int frame)
+{
+    return fl_mask_store_has(surround->together, region, frame) ||
+           fl_mask_store_has(surround->closed, region, frame);
+}
+
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b)
 {
     return fl_mask_store_same(surround->together, region, a, b) &&

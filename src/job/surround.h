@@ -31,6 +31,9 @@ typedef struct FlAround {
     uint8_t *shown;    // the coverage of all shapes
 } FlAround;
 
+/** Whether there are any with which a region shares edges. */
+bool fl_surround_joins(const FlSurround *surround, int region, int frame);
+
 /** Whether the shapes with which a region shares edges are the same in two frames, near to it,
  * whatever else moves there. */
 bool fl_surround_joins_as_in(const FlSurround *surround, int region, int a, int b);

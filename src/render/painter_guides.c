@@ -7,6 +7,8 @@
 #include "io/pattern.h"
 #include <math.h>
 
+/* ---- where they come from ------------------------------------------------------------------ */
+
 /* The frame of the film that has a picture of the guides. */
 static int frame_of(const FlPainter *painter, int picture)
 {
@@ -156,8 +158,7 @@ int fl_guided_patches(const FlStyleInstance *style, FlRect page)
     return (FL_PATCH_RADIUS + 1) * fl_guided_grid(style, page);
 }
 
-/* ---- depth ------------------------------------------------------------------------------------
- */
+/* ---- depth --------------------------------------------------------------------------------- */
 
 /* The picture around which the depth of another one is measured. A shape at rest keeps the depth
  * with which it came to rest, whatever crosses it, as its paint is kept; only where those that it
@@ -233,13 +234,36 @@ static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides,
            (!around.bordered || close_depth(&shape, around.closed, border, guides->depth, error));
 }
 
+/* The same of the whole region, of which guides take their part: among shapes that share edges a
+ * pixel may lie deep, and a part that changes from frame to frame would make that jump. */
+static bool measure_among_others(const FlPainter *painter, int frame, FlGuides *guides,
+                                 GError **error)
+{
+    const FlRect rect = fl_painter_guided(painter), frame_rect = {0, 0, rect.width, rect.height};
+    g_auto(FlGuides) whole = {0};
+    if (!fl_guides_init(&whole, rect.width, rect.height, error) ||
+        !fl_guide_sequence_distance(painter->guides, painter->picture, &whole, error) ||
+        !measure_depth(painter, frame, &whole, error))
+        return false;
+    fl_rect_copy(whole.depth, frame_rect, guides->depth, fl_guides_rect(guides),
+                 sizeof *guides->depth);
+    return true;
+}
+
 /* The depth that the paint takes the region to have, unless a preset's guides know none. */
 static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
 {
-    return !fl_knows_depth(&painter->plan->settings.params) ||
-           measure_depth(painter, frame_of(painter, depth_picture(painter, painter->picture)),
-                         guides, error);
+    if (!fl_knows_depth(&painter->plan->settings.params))
+        return true;
+    const int frame = frame_of(painter, depth_picture(painter, painter->picture));
+    const FlRect rect = fl_painter_guided(painter);
+    const bool part = guides->width < rect.width || guides->height < rect.height;
+    return part && fl_surround_joins(painter->surround, painter->plan->region, frame)
+               ? measure_among_others(painter, frame, guides, error)
+               : measure_depth(painter, frame, guides, error);
 }
+
+/* ---- what is needed ------------------------------------------------------------------------ */
 
 bool fl_painter_rests(FlPainter *painter, int last)
 {
@@ -353,8 +377,7 @@ bool fl_painter_make_guides(FlPainter *painter, FlGuides *guides, FlGuides *part
     return true;
 }
 
-/* ---- for others -------------------------------------------------------------------------------
- */
+/* ---- for who looks at them ---------------------------------------------------------------- */
 
 bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
 {
