@@ -139,16 +139,23 @@ static void a_part_may_go_and_come_back(void)
     g_assert_cmpint(film->rgb[FRAMES - 1][3 * (24 * WIDTH + 109)], <, 200);
 }
 
+/* The rectangle of what stirs in a frame, of all if nobody can tell; and what rests beside it. */
+static FlRect moving_in(const Film *film, int f, FlRestingParts *resting)
+{
+    g_autofree uint8_t *square = NULL;
+    FlRect moving = {0, 0, WIDTH, HEIGHT};
+    *resting = (FlRestingParts){0};
+    g_assert_true(fl_guide_sequence_stirring(film->guides, f, &square, NULL));
+    g_assert_true(!square || fl_resting_parts_init(resting, WIDTH, HEIGHT, square, &moving, NULL));
+    return moving;
+}
+
 /* Paints a frame from guides of those parts alone that move. Returns: whether some rest. */
 static bool paint_part(Film *film, int f)
 {
-    g_autofree uint8_t *square = NULL;
     g_auto(FlGuides) part = {0};
-    FlRestingParts resting = {0};
-    FlRect whole = {0, 0, WIDTH, HEIGHT}, moving = whole;
-    g_assert_true(fl_guide_sequence_stirring(film->guides, f, &square, NULL));
-    g_assert_true(!square ||
-                  fl_resting_parts_init(&resting, WIDTH, HEIGHT, square, &moving, NULL));
+    FlRestingParts resting;
+    const FlRect moving = moving_in(film, f, &resting), whole = {0, 0, WIDTH, HEIGHT};
     const FlRect rect = fl_rect_grown(moving, 24, whole);
     g_assert_true(fl_guides_init(&part, rect.width, rect.height, NULL));
     part.x = rect.x, part.y = rect.y;
@@ -166,6 +173,42 @@ static void what_moves_needs_guides_of_that_part_only(void)
     for (int f = 0; f < FRAMES; f++)
         g_assert_cmpint(paint_part(film, f), ==, f > 0);
     g_assert_cmpmem(film->rgb, sizeof film->rgb, whole->rgb, sizeof whole->rgb);
+}
+
+/* Both discs stay, and what is in the right one turns. */
+static bool still_discs(void *data, int frame, uint8_t *coverage, GError **error)
+{
+    return two_discs(NULL, 0, coverage, error);
+}
+
+static bool turning_right(void *data, int frame, const FlOutlinePair *outlines, float *motion,
+                          GError **error)
+{
+    for (int p = 0; p < PIXELS; p++) {
+        const bool turns = frame == 2 && p % WIDTH > HALF;
+        motion[2 * p] = turns ? -.1f * (float)(p / WIDTH - 24) : 0;
+        motion[2 * p + 1] = turns ? .1f * (float)(p % WIDTH - 100) : 0;
+    }
+    return true;
+}
+
+static FlRect stirring_in(const Film *film, int f)
+{
+    g_auto(FlRestingParts) resting = {0};
+    return moving_in(film, f, &resting);
+}
+
+static void what_moves_in_a_shape_that_stays_stirs(void)
+{
+    g_autoptr(Film) film = film_new((FlGuideSource){.mask = still_discs, .motion = turning_right});
+    g_assert_cmpint(stirring_in(film, 0).width, ==, WIDTH);
+    g_assert_true(fl_guide_sequence_rests(film->guides, 1) && stirring_in(film, 1).width == 0);
+    g_assert_false(fl_guide_sequence_rests(film->guides, 2));
+    const FlRect turning = stirring_in(film, 2);
+    g_assert_cmpint(turning.x, >, HALF);
+    g_assert_cmpint(turning.x, <=, 100 - RADIUS);
+    g_assert_cmpint(turning.x + turning.width, >=, 100 + RADIUS);
+    g_assert_true(fl_guide_sequence_rests(film->guides, 3));
 }
 
 /* Whether a pixel of a view has a match. */
@@ -218,6 +261,7 @@ int main(int argc, char **argv)
     TEST(parts_beside_each_other_are_painted_together);
     TEST(a_part_may_go_and_come_back);
     TEST(what_moves_needs_guides_of_that_part_only);
+    TEST(what_moves_in_a_shape_that_stays_stirs);
     TEST(a_view_shows_all_parts_and_changes_nothing);
     TEST(a_state_has_all_parts);
     return g_test_run();

@@ -5,7 +5,8 @@
  *   outline_of   mask, box, distance
  *   distance_of  the distance smoothed along time and in space, if asked for [P21 §4.1]
  *   motion_of    the flow of one interval
- *   finish_frame the flow smoothed along time [F21 App. A], direction, extent; into the spill
+ *   finish_frame the flow smoothed along time [F21 App. A], direction, extent, what stirs; into the
+ *                spill
  *
  * The outline of one frame, the motion of an earlier one and the finish of a yet earlier one run in
  * parallel, for one region is often most of a film; none needs the results of the others.

@@ -45,7 +45,7 @@ typedef struct FlEngine {
     /** Whether statistics hold energies; NULL: it costs nothing, or there are none. */
     void (*measure)(void *state, bool energies);
     /** The next frame, in order; clears the guides only if they are disposable. An empty mask makes
-     * the next one a first frame again. */
+     * the next one a first frame again. Guides of a part of the frame come to engines that rest. */
     bool (*frame)(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error);
     /** The next frame where its guides are those of the frame before and nothing moves: that keeps
      * its picture. Returns: false, and nothing has happened: it is to be painted. NULL: it always
