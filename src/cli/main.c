@@ -379,12 +379,16 @@ static void fill_standard_streams(void)
 }
 
 /* glibc gives every thread a heap of its own, and planes that one of them has freed are of no use
- * to the others: memory grew with the film. We allocate seldom and much, so that nobody waits. */
+ * to the others: memory grew with the film. Of the one heap it would return to the system what a
+ * frame has freed, while all threads wait for it, only to take it again for the next. */
 static void share_one_heap(void)
 {
 #ifdef __GLIBC__
+    enum { PLANE_BYTES = 32 << 20, KEPT_BYTES = 128 << 20 };
     if (!g_getenv("MALLOC_ARENA_MAX"))
         mallopt(M_ARENA_MAX, 1);
+    mallopt(M_MMAP_THRESHOLD, PLANE_BYTES);
+    mallopt(M_TRIM_THRESHOLD, KEPT_BYTES);
 #endif
 }
 
