@@ -27,11 +27,21 @@ static bool can_map(size_t bytes)
     return memory != MAP_FAILED && munmap(memory, bytes) == 0;
 }
 
+/* Asked for once: a frame of many regions takes memory ten thousand times. */
+static bool is_limited(void)
+{
+    static gsize answer;
+    if (g_once_init_enter(&answer)) {
+        struct rlimit limit;
+        const bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+        g_once_init_leave(&answer, limited ? 2 : 1);
+    }
+    return answer == 2;
+}
+
 bool fl_headroom_left(void)
 {
-    struct rlimit limit;
-    return getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY ||
-           can_map(SMALL_BYTES);
+    return !is_limited() || can_map(SMALL_BYTES);
 }
 
 bool fl_headroom_check(GError **error)

@@ -15,8 +15,8 @@
 bool fl_headroom_check(GError **error);
 
 /**
- * Whether a process with a limited address space still has memory for small allocations. fl_alloc()
- * fails where it has not, since only fl_alloc() can report that.
+ * Whether a process whose address space was limited when it first asked still has memory for small
+ * allocations. fl_alloc() fails where it has not, since only fl_alloc() can report that.
  */
 bool fl_headroom_left(void);
 
