@@ -299,6 +299,21 @@ static void votes_are_those_of_c(const void *version)
     }
 }
 
+static void doubled_votes_are_those_of_c(const void *version)
+{
+    const FlKernels *kernels = version;
+    g_autofree Votes *v = g_new(Votes, 1);
+    for (uint64_t seed = 1; seed <= 5000; seed++) {
+        FlRng rng = {seed};
+        float want[4][4], got[4][4];
+        make_votes(v, &rng);
+        const bool any = fl_vote_doubled_c(&v->covering, &v->voted, want);
+        g_assert_cmpint(kernels->vote_doubled(&v->covering, &v->voted, got), ==, any);
+        if (any)
+            g_assert_cmpmem(got, sizeof got, want, sizeof want);
+    }
+}
+
 static void splines_are_sampled_as_in_c(const void *version)
 {
     const FlKernels *kernels = version;
@@ -608,7 +623,7 @@ static void time_version(const FlKernels *kernels)
     FlSieve sieve;
     static Votes votes;
     uint32_t pair[2], uniformity[FL_MAX_TRIES];
-    float value[4];
+    float value[4], four[4][4];
     FlMatch coarse[ROW], fine[ROW];
     uint16_t most[2];
     make_case(&c, 1);
@@ -628,6 +643,7 @@ static void time_version(const FlKernels *kernels)
     TIME("draw_tries", kernels->draw_tries(&w, (uint16_t[3]){0, 0, 0}, k, &tries));
     TIME("sift", kernels->sift(&tries, w.n, &sieve, uniformity));
     TIME("vote", kernels->vote(&votes.covering, &votes.voted, value));
+    TIME("vote_doubled", kernels->vote_doubled(&votes.covering, &votes.voted, four));
     TIME("spline_sample", kernels->spline_sample(pixels, 8, fl_spline_phases[k % 16].x,
                                                  fl_spline_phases[k % 16].y, value));
     TIME("upscale_row", kernels->upscale_row(coarse, fl_child_moves[k % 2], most, fine, ROW));
@@ -676,6 +692,7 @@ static const Check checks[] = {
     {"the-same-tries-are-drawn-inside-the-windows", the_same_tries_are_drawn_inside_the_windows},
     {"the-same-tries-pass-as-in-c", the_same_tries_pass_as_in_c},
     {"votes-are-those-of-c", votes_are_those_of_c},
+    {"doubled-votes-are-those-of-c", doubled_votes_are_those_of_c},
     {"matches-are-upscaled-as-in-c", matches_are_upscaled_as_in_c},
     {"splines-are-sampled-as-in-c", splines_are_sampled_as_in_c},
     {"fluids-are-compared-as-in-c", fluids_are_compared_as_in_c},

@@ -3,6 +3,7 @@
 #include "small_style.h"
 #include "style/adapt.h"
 #include "synth/synth.h"
+#include "synth/vote.h"
 #include "threads.h"
 
 enum { SIDE = 48, LONG = 160, FRAMES = 3, SMALL = SIDE * LONG, LARGE = 4 * SMALL, RADIUS = 14 };
@@ -52,9 +53,56 @@ static uint8_t *frame_again(const Style *style, int t)
         nnf.match[p] = (FlMatch){.x_16 = (uint16_t)(16 * (p % width)),
                                  .y_16 = (uint16_t)(16 * (p / width)),
                                  .frame = (int16_t)t};
-    g_assert_true(
-        fl_enlarge(style->enlargement, &nnf, (FlRect){0, 0, width, height}, &enlarged, NULL));
+    fl_enlarge(style->enlargement, &nnf, (FlRect){0, 0, width, height}, &enlarged);
     return rgb;
+}
+
+/* Stripes of a turned piece of the style and of its own, with a hole. */
+static void make_pieces(FlNnf *nnf, const FlExemplarLevel *level)
+{
+    for (int p = 0; p < nnf->width * nnf->height; p++) {
+        const int x = p % nnf->width - nnf->width / 2, y = p / nnf->width - nnf->height / 2;
+        const bool turned = (x + y) % 8 < 4;
+        const uint8_t theta = turned ? 20 : 0;
+        int dx, dy;
+        fl_unrotate(theta, x, y, &dx, &dy);
+        nnf->match[p] =
+            (FlMatch){.x_16 = (uint16_t)CLAMP(8 * level->width + dx, 0, 16 * (level->width - 1)),
+                      .y_16 = (uint16_t)CLAMP(8 * level->height + dy, 0, 16 * (level->height - 1)),
+                      .frame = (int16_t)(x > 3 && y > 0 ? FL_NO_MATCH : turned),
+                      .theta = theta};
+    }
+}
+
+/* Each match is heard once in place of four: roundings differ, and nothing else. */
+static void an_enlarged_field_votes_as_one_of_twice_the_size(void)
+{
+    g_auto(Style) style;
+    style_init(&style, 0);
+    const FlExemplarLevel *half = &style.exemplar->level[0];
+    g_autoptr(FlExemplar) whole = fl_exemplar_new(style.full, style.params, NULL);
+    FlKernels kernels;
+    g_auto(FlNnf) nnf = {0}, large = {0};
+    g_autofree uint8_t *rgb = g_malloc0(3 * STYLE_W * STYLE_H);
+    g_autofree uint8_t *voted = g_malloc0(STYLE_W * STYLE_H);
+    g_autofree float *colour = g_new0(float, 3 * STYLE_W * STYLE_H);
+    const FlEnlarged enlarged = {&kernels, 4, STYLE_W, STYLE_H, rgb};
+    fl_kernels_init(&kernels, fl_cpu_flags());
+    g_assert_true(fl_nnf_init(&nnf, half->width, half->height, NULL) &&
+                  fl_nnf_init(&large, STYLE_W, STYLE_H, NULL));
+    make_pieces(&nnf, half);
+    fl_enlarge(style.enlargement, &nnf, (FlRect){0, 0, nnf.width, nnf.height}, &enlarged);
+    fl_nnf_upscale(&nnf, &whole->level[0], &kernels, &large);
+    fl_vote(&large, &whole->level[0], &kernels, 4, 3, colour, voted);
+    double sum = 0;
+    int n = 0;
+    for (int p = 0; p < STYLE_W * STYLE_H; p++) {
+        g_assert_cmpint(rgb[3 * p] + rgb[3 * p + 1] + rgb[3 * p + 2] > 0, ==, voted[p]);
+        for (int c = 0; c < 3 && voted[p]; c++, n++)
+            sum += abs(rgb[3 * p + c] - fl_vote_byte(colour[3 * p + c]));
+    }
+    g_test_message("mean difference of %d values: %.3f levels", n, sum / n);
+    g_assert_cmpfloat(sum / n, <, 0.3);
 }
 
 static void a_halved_style_is_the_mean_of_its_pixels(void)
@@ -260,6 +308,7 @@ int main(int argc, char **argv)
     TEST(a_style_of_an_odd_size_loses_nothing);
     TEST(a_half_has_the_margin_of_the_whole);
     TEST(own_places_give_the_frame_in_full_size);
+    TEST(an_enlarged_field_votes_as_one_of_twice_the_size);
     TEST(a_window_follows_that_of_the_exemplar);
     TEST(pictures_have_twice_the_size_and_paint_in_the_mask);
     TEST(a_part_at_rest_keeps_its_picture);

@@ -9,8 +9,7 @@
 
 struct FlEnlargement {
     FlExemplarLevel level; // its colours only
-    uint8_t paper[3];
-    FlSpill *rgb; // a block for each frame; NULL: all are in the window
+    FlSpill *rgb;          // a block for each frame; NULL: all are in the window
 };
 
 void fl_enlargement_free(FlEnlargement *enlargement)
@@ -79,7 +78,6 @@ FlEnlargement *fl_enlargement_new(const FlStyle *style, const FlExemplar *exempl
     const FlExemplarLevel *half = &exemplar->level[0];
     g_autoptr(FlEnlargement) enlargement = g_new0(FlEnlargement, 1);
     FlExemplarLevel *level = &enlargement->level;
-    memcpy(enlargement->paper, style->paper, sizeof enlargement->paper);
     level->width = style->width, level->height = style->height;
     level->n_frames = style->n_frames;
     level->first = half->first, level->window = half->window;
@@ -135,43 +133,24 @@ bool fl_enlargement_seek(FlEnlargement *enlargement, const FlExemplar *exemplar,
 
 /* ---- votes ----------------------------------------------------------------------------------- */
 
-/* FL_VOTE_ROWS rows of the large field from row y on; row: scratch for their colours. */
-static void enlarge_rows(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect, int y,
-                         const FlEnlarged *enlarged, float *colour)
+/* What becomes of FL_VOTE_ROWS rows of the field from row y on; full: the picture's part. */
+static void enlarge_rows(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect full, int y,
+                         const FlEnlarged *enlarged)
 {
-    const size_t row = 3 * (size_t)rect.width;
-    const int rows = MIN(FL_VOTE_ROWS, rect.height - y);
-    for (size_t k = 0; k < row * (size_t)rows; k++)
-        colour[k] = enlargement->paper[k % 3] / 255.0f;
-    fl_vote_rows(nnf, &enlargement->level, enlarged->kernels, enlarged->sharpness, 3, y, colour);
-    for (int k = 0; k < rows; k++) {
-        uint8_t *to =
-            enlarged->rgb + 3 * ((size_t)(rect.y + y + k) * (size_t)enlarged->width) + 3 * rect.x;
-        for (size_t c = 0; c < row; c++)
-            to[c] = fl_vote_byte(colour[row * (size_t)k + c]);
-    }
+    const size_t stride = (size_t)enlarged->width;
+    const FlDoubledRows rows = {enlarged->rgb +
+                                    3 * ((size_t)(full.y + 2 * y) * stride + (size_t)full.x),
+                                stride, full.width, MIN(2 * FL_VOTE_ROWS, full.height - 2 * y)};
+    fl_vote_rows_doubled(nnf, &enlargement->level, enlarged->kernels, enlarged->sharpness, y,
+                         &rows);
 }
 
-bool fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect,
-                const FlEnlarged *enlarged, GError **error)
+void fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect,
+                const FlEnlarged *enlarged)
 {
     const FlRect page = {0, 0, enlarged->width, enlarged->height};
     const FlRect full = fl_rect_doubled(rect, page);
-    g_auto(FlNnf) large = {0};
-    if (!fl_nnf_init(&large, full.width, full.height, error))
-        return false;
-    fl_nnf_upscale(nnf, &enlargement->level, enlarged->kernels, &large);
-    GError *first = NULL;
-#pragma omp parallel
-    {
-        GError *failure = NULL;
-        g_autofree float *colour =
-            fl_alloc(3 * FL_VOTE_ROWS * (size_t)full.width, sizeof *colour, "a picture", &failure);
-#pragma omp for schedule(dynamic, 1)
-        for (int y = 0; y < full.height; y += FL_VOTE_ROWS)
-            if (colour)
-                enlarge_rows(enlargement, &large, full, y, enlarged, colour);
-        fl_parallel_error_keep(&first, failure);
-    }
-    return fl_parallel_error_tell(error, first);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int y = 0; y < rect.height; y += FL_VOTE_ROWS)
+        enlarge_rows(enlargement, nnf, full, y, enlarged);
 }

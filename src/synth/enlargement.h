@@ -28,16 +28,12 @@ typedef struct FlEnlarged {
     const FlKernels *kernels;
     float sharpness;   // of votes, see fl_vote()
     int width, height; // of the picture
-    uint8_t *rgb;      // width * height * 3, sRGB; the style's paper
+    uint8_t *rgb;      // width * height * 3, sRGB
 } FlEnlarged;
 
-/**
- * Paints the field of a part of a frame, `rect`, in twice its size: all that its patches cover.
- *
- * Returns: false with FL_ERROR_NO_MEMORY set.
- */
-bool fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect,
-                const FlEnlarged *enlarged, GError **error);
+/** Paints the field of a part of a frame, `rect`, in twice its size: all that its patches cover. */
+void fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect,
+                const FlEnlarged *enlarged);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlEnlargement, fl_enlargement_free)
 

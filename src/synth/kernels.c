@@ -116,6 +116,7 @@ static void join(const FlVotes *votes, int k, FlOpinion *opinion)
     opinion->sum_x += votes->x[k] - opinion->x;
     opinion->sum_y += votes->y[k] - opinion->y;
     opinion->n++;
+    opinion->votes |= 1u << k;
 }
 
 static int find_opinions_c(const FlVotes *votes, FlOpinion *opinions)
@@ -169,31 +170,79 @@ static void find_places(const FlCovering *covering, FlVotes *votes)
 }
 
 /* The mean of first + sum / n, half away from first. */
-static int mean_of(int first, int sum, int n, int most)
+static int mean_of(int first, int sum, int n)
 {
-    const int mean = first - FL_VOTE_BIAS + (sum + (sum < 0 ? -n : n) / 2) / n;
-    return CLAMP(mean, 0, most);
+    return first - FL_VOTE_BIAS + (sum + (sum < 0 ? -n : n) / 2) / n;
+}
+
+/* The weighted sum of what opinions say. */
+typedef struct Sum {
+    float value[4], weight;
+} Sum;
+
+/* What an opinion of n votes says, whose place may lie beyond the borders. */
+static void add_opinion(Sum *sum, const FlOpinion *opinion, int n, int x, int y,
+                        FlSplineSample sample, const FlVoted *voted)
+{
+    float value[4];
+    x = CLAMP(x, 0, voted->most[0]), y = CLAMP(y, 0, voted->most[1]);
+    sample(voted->colour + (size_t)opinion->frame * voted->frame_pixels +
+               (size_t)(y >> 4) * voted->pitch + (x >> 4),
+           voted->pitch, fl_spline_phases[x & 15].x, fl_spline_phases[y & 15].y, value);
+    for (int c = 0; c < 4; c++)
+        sum->value[c] += voted->weight[n] * value[c];
+    sum->weight += voted->weight[n];
+}
+
+static void colour_of(const Sum *sum, float colour[4])
+{
+    for (int c = 0; c < 4; c++)
+        colour[c] = CLAMP(sum->value[c] / sum->weight, 0.0f, 1.0f);
 }
 
 bool fl_vote_of(const FlVotes *votes, FlFindOpinions find_opinions, FlSplineSample sample,
                 const FlVoted *voted, float colour[4])
 {
     FlOpinion opinions[FL_PATCH_PIXELS];
-    float sum[4] = {0}, total = 0;
+    Sum sum = {0};
     const int n = find_opinions(votes, opinions);
-    for (const FlOpinion *o = opinions; o < opinions + n; o++) {
-        float value[4];
-        const int x = mean_of(o->x, o->sum_x, o->n, voted->most[0]);
-        const int y = mean_of(o->y, o->sum_y, o->n, voted->most[1]);
-        sample(voted->colour + (size_t)o->frame * voted->frame_pixels +
-                   (size_t)(y >> 4) * voted->pitch + (x >> 4),
-               voted->pitch, fl_spline_phases[x & 15].x, fl_spline_phases[y & 15].y, value);
-        for (int c = 0; c < 4; c++)
-            sum[c] += voted->weight[o->n] * value[c];
-        total += voted->weight[o->n];
+    for (const FlOpinion *o = opinions; o < opinions + n; o++)
+        add_opinion(&sum, o, o->n, mean_of(o->x, o->sum_x, o->n), mean_of(o->y, o->sum_y, o->n),
+                    sample, voted);
+    colour_of(&sum, colour);
+    return n > 0;
+}
+
+/* Votes are column by column: child % 2 is along lines. */
+static void add_children(Sum sum[4], const FlOpinion *opinion, const int16_t turn[2],
+                         FlSplineSample sample, const FlVoted *voted)
+{
+    const int x = mean_of(opinion->x, opinion->sum_x, opinion->n);
+    const int y = mean_of(opinion->y, opinion->sum_y, opinion->n);
+    for (int child = 0; child < 4; child++) {
+        const FlOffset move = fl_child_move(turn, child % 2, child / 2);
+        const int n =
+            fl_votes_doubled(opinion->votes, FL_LINES_TWICE(child % 2), FL_PLACES_TWICE(child / 2));
+        add_opinion(&sum[child], opinion, n, x + move.x, y + move.y, sample, voted);
     }
-    for (int c = 0; c < 4; c++)
-        colour[c] = CLAMP(sum[c] / total, 0.0f, 1.0f);
+}
+
+bool fl_vote_doubled_of(FlVotes *votes, const int16_t (*turn)[2], FlFindOpinions find_opinions,
+                        FlSplineSample sample, const FlVoted *voted, float colour[4][4])
+{
+    FlOpinion opinions[FL_PATCH_PIXELS];
+    Sum sum[4] = {0};
+    for (int k = 0; k < FL_PATCH_PIXELS; k++) {
+        votes->x[k] = (uint16_t)(2 * votes->x[k] - FL_VOTE_BIAS);
+        votes->y[k] = (uint16_t)(2 * votes->y[k] - FL_VOTE_BIAS);
+        if (!(FL_VOTES_BESIDE >> k & 1))
+            votes->frame[k] = FL_NO_MATCH;
+    }
+    const int n = find_opinions(votes, opinions);
+    for (const FlOpinion *o = opinions; o < opinions + n; o++)
+        add_children(sum, o, turn[fl_vote_leader(o->votes)], sample, voted);
+    for (int child = 0; child < 4; child++)
+        colour_of(&sum[child], colour[child]);
     return n > 0;
 }
 
@@ -202,6 +251,14 @@ bool fl_vote_c(const FlCovering *covering, const FlVoted *voted, float colour[4]
     FlVotes votes;
     find_places(covering, &votes);
     return fl_vote_of(&votes, find_opinions_c, fl_spline_sample_c, voted, colour);
+}
+
+bool fl_vote_doubled_c(const FlCovering *covering, const FlVoted *voted, float colour[4][4])
+{
+    FlVotes votes;
+    find_places(covering, &votes);
+    return fl_vote_doubled_of(&votes, covering->turn, find_opinions_c, fl_spline_sample_c, voted,
+                              colour);
 }
 
 void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
@@ -218,9 +275,9 @@ void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const u
 
 void fl_kernels_init(FlKernels *kernels, unsigned flags)
 {
-    *kernels = (FlKernels){fl_patch_distance_c, patch_pair_c,        fl_draw_tries_c,
-                           fl_sift_c,           fl_spline_sample_c,  fl_vote_c,
-                           fl_upscale_row_c,    fl_fluid_distance_c, "c"};
+    *kernels = (FlKernels){fl_patch_distance_c, patch_pair_c, fl_draw_tries_c,   fl_sift_c,
+                           fl_spline_sample_c,  fl_vote_c,    fl_vote_doubled_c, fl_upscale_row_c,
+                           fl_fluid_distance_c, "c"};
 #if HAVE_NEON
     if (flags & FL_CPU_NEON) {
         kernels->patch_distance = fl_patch_distance_neon;
@@ -229,9 +286,11 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
 #endif
 #if HAVE_AVX2
     if (flags & FL_CPU_AVX2)
-        *kernels = (FlKernels){fl_patch_distance_avx2, fl_patch_pair_avx2,     fl_draw_tries_avx2,
-                               fl_sift_avx2,           fl_spline_sample_avx2,  fl_vote_avx2,
-                               fl_upscale_row_avx2,    fl_fluid_distance_avx2, "avx2"};
+        *kernels = (FlKernels){fl_patch_distance_avx2, fl_patch_pair_avx2,
+                               fl_draw_tries_avx2,     fl_sift_avx2,
+                               fl_spline_sample_avx2,  fl_vote_avx2,
+                               fl_vote_doubled_avx2,   fl_upscale_row_avx2,
+                               fl_fluid_distance_avx2, "avx2"};
 #endif
 #if HAVE_AVX512
     if (flags & FL_CPU_AVX512) {
@@ -240,6 +299,7 @@ void fl_kernels_init(FlKernels *kernels, unsigned flags)
         kernels->draw_tries = fl_draw_tries_avx512;
         kernels->sift = fl_sift_avx512;
         kernels->vote = fl_vote_avx512;
+        kernels->vote_doubled = fl_vote_doubled_avx512;
         kernels->upscale_row = fl_upscale_row_avx512;
         kernels->name = "avx512";
     }

@@ -155,7 +155,8 @@ static inline int fl_vote_leader(uint32_t left)
 typedef struct FlOpinion {
     int x, y, frame;
     int sum_x, sum_y;
-    int n; // of votes, the first included
+    int n;          // of votes, the first included
+    uint32_t votes; // a bit for each
 } FlOpinion;
 
 /**
@@ -171,6 +172,27 @@ typedef int (*FlFindOpinions)(const FlVotes *votes, FlOpinion *opinions);
  * Returns: false without any patch; colour is then undefined.
  */
 typedef bool (*FlVote)(const FlCovering *covering, const FlVoted *voted, float colour[4]);
+
+/**
+ * The same for the four pixels, row by row, that a pixel is in twice the size, in which `voted` is:
+ * what votes would say there if each match were four. Of the patches around a pixel the nine next
+ * to it cover its four, some of them twice along a row or column.
+ */
+typedef bool (*FlVoteDoubled)(const FlCovering *covering, const FlVoted *voted, float colour[4][4]);
+
+/** Of the FL_PATCH_PIXELS votes around a pixel those next to it, in either order; and of child 0 or
+ * 1 along an axis those that count twice, by lines of FL_PATCH and by places in them. */
+#define FL_VOTES_BESIDE 0x739c0u
+#define FL_LINES_TWICE(child) (0x7fe0u << (FL_PATCH * (child)))
+#define FL_PLACES_TWICE(child) (0x6318c6u << (child))
+
+/** How many votes of twice the size those of an opinion are, for a child. */
+static inline int fl_votes_doubled(uint32_t votes, uint32_t lines_twice, uint32_t places_twice)
+{
+    return __builtin_popcount(votes) + __builtin_popcount(votes & lines_twice) +
+           __builtin_popcount(votes & places_twice) +
+           __builtin_popcount(votes & lines_twice & places_twice);
+}
 
 /** NNF(q): the centre of the source patch in 1/16 px of its level, its frame, its rotation. */
 typedef struct FlMatch {
@@ -198,6 +220,7 @@ typedef struct FlKernels {
     FlSift sift;
     FlSplineSample spline_sample;
     FlVote vote;
+    FlVoteDoubled vote_doubled;
     FlUpscaleRow upscale_row;
     FlFluidDistance fluid_distance;
     const char *name; // "c", "avx2", …
@@ -245,6 +268,13 @@ bool fl_vote_of(const FlVotes *votes, FlFindOpinions find_opinions, FlSplineSamp
 bool fl_vote_c(const FlCovering *covering, const FlVoted *voted, float colour[4]);
 bool fl_vote_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4]);
 bool fl_vote_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4]);
+
+/** Likewise for FlVoteDoubled; votes, which are changed, and turn: those of its covering. */
+bool fl_vote_doubled_of(FlVotes *votes, const int16_t (*turn)[2], FlFindOpinions find_opinions,
+                        FlSplineSample sample, const FlVoted *voted, float colour[4][4]);
+bool fl_vote_doubled_c(const FlCovering *covering, const FlVoted *voted, float colour[4][4]);
+bool fl_vote_doubled_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4][4]);
+bool fl_vote_doubled_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4][4]);
 
 void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
                       FlMatch *fine, int n);

@@ -22,11 +22,8 @@ const FlOffset (*fl_child_moves)[FL_ANGLES][2] = child_moves;
 static void fill_child_moves(void)
 {
     for (int a = 0; a < FL_ANGLES; a++)
-        for (int k = 0; k < 4; k++) {
-            int dx, dy;
-            fl_unrotate((uint8_t)a, 2 * (k % 2) - 1, 2 * (k / 2) - 1, &dx, &dy);
-            child_moves[k / 2][a][k % 2] = (FlOffset){(int16_t)(8 + dx / 2), (int16_t)(8 + dy / 2)};
-        }
+        for (int k = 0; k < 4; k++)
+            child_moves[k / 2][a][k % 2] = fl_child_move(turns[a], k % 2, k / 2);
 }
 
 void fl_rotation_init(void)

@@ -50,6 +50,14 @@ static inline void fl_unrotate(uint8_t theta, int dx, int dy, int *sx_16, int *s
     fl_turn_back(fl_turns[theta], dx, dy, sx_16, sy_16);
 }
 
+/** As fl_child_moves has it, for the row of fl_turns of an angle. */
+static inline FlOffset fl_child_move(const int16_t turn[2], int column, int row)
+{
+    int dx, dy;
+    fl_turn_back(turn, 2 * column - 1, 2 * row - 1, &dx, &dy);
+    return (FlOffset){(int16_t)(8 + dx / 2), (int16_t)(8 + dy / 2)};
+}
+
 /** How far an angle is from 0, in steps: 0 … 128. */
 static inline int fl_angle_distance(uint8_t angle)
 {

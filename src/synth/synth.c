@@ -108,11 +108,11 @@ static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRec
 }
 
 /* The picture in twice the size of the field. */
-static bool enlarge(const FlSynth *synth, uint8_t *rgb, GError **error)
+static void enlarge(const FlSynth *synth, uint8_t *rgb)
 {
     const FlEnlarged enlarged = {&synth->kernels, synth->params->vote_sharpness,
                                  synth->last.painted_width, synth->last.painted_height, rgb};
-    return fl_enlarge(synth->enlargement, &synth->nnf[0], synth->target.rect, &enlarged, error);
+    fl_enlarge(synth->enlargement, &synth->nnf[0], synth->target.rect, &enlarged);
 }
 
 static void write_rgb(const FlSynth *synth, uint8_t *rgb)
@@ -271,10 +271,7 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
         !fl_synth_run_levels(synth, &shifted, stats, error))
         return false;
     fill_paper(synth, rgb); // not before: until it is written to, it takes no memory
-    if (!synth->enlargement)
-        write_rgb(synth, rgb);
-    else if (!enlarge(synth, rgb, error))
-        return false;
+    (synth->enlargement ? enlarge : write_rgb)(synth, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
     const bool has_temporal =
         synth->last.valid && fl_synth_finest_searched(synth) == 0 && !synth->enlargement;

@@ -70,14 +70,19 @@ static FlVoted voted_of(const FlExemplarLevel *level, float sharpness)
     return voted;
 }
 
+/* The patches over column x of row k of a strip. */
+static FlCovering covering_at(const Strip *strip, size_t x, size_t k)
+{
+    const size_t at = FL_PATCH * x + k;
+    return (FlCovering){strip->x + at, strip->y + at, strip->frame + at, strip->turn + at};
+}
+
 /* Row k of a strip. */
 static void vote_row(const Strip *strip, size_t k, const FlVoted *voted, FlVote vote, int channels,
                      float *colour, uint8_t *any)
 {
     for (size_t x = 0; x + 2 * FL_PATCH_RADIUS < strip->columns; x++, colour += channels) {
-        const size_t at = FL_PATCH * x + k;
-        const FlCovering covering = {strip->x + at, strip->y + at, strip->frame + at,
-                                     strip->turn + at};
+        const FlCovering covering = covering_at(strip, x, k);
         float value[4];
         const bool covered = vote(&covering, voted, value);
         if (covered)
@@ -92,22 +97,30 @@ typedef struct Votes {
     const FlNnf *nnf;
     FlVoted source;
     FlVote vote;
+    FlVoteDoubled vote_doubled;
     int channels;
 } Votes;
 
 static Votes votes_of(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
                       float sharpness, int channels)
 {
-    return (Votes){nnf, voted_of(level, sharpness), kernels->vote, channels};
+    return (Votes){nnf, voted_of(level, sharpness), kernels->vote, kernels->vote_doubled, channels};
+}
+
+/* What lies above row y0 and its patches. Returns: the number of rows. */
+static size_t begin_strip(Strip *strip, const FlNnf *nnf, int y0)
+{
+    size_t rows = 0;
+    for (int y = y0 - FL_PATCH_RADIUS; y < y0 + FL_PATCH_RADIUS; y++)
+        add_row(strip, nnf, y, rows++);
+    return rows;
 }
 
 /* FL_VOTE_ROWS rows from y0 on, or what the picture has of them. */
 static void vote_rows(const Votes *votes, Strip *strip, int y0, float *colour, uint8_t *voted)
 {
     const FlNnf *nnf = votes->nnf;
-    size_t rows = 0;
-    for (int y = y0 - FL_PATCH_RADIUS; y < y0 + FL_PATCH_RADIUS; y++)
-        add_row(strip, nnf, y, rows++);
+    size_t rows = begin_strip(strip, nnf, y0);
     for (int y = y0; y < MIN(y0 + FL_VOTE_ROWS, nnf->height); y++) {
         const size_t p = (size_t)(y - y0) * (size_t)nnf->width;
         add_row(strip, nnf, y + FL_PATCH_RADIUS, rows++);
@@ -138,5 +151,36 @@ void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernel
     const Votes votes = votes_of(nnf, level, kernels, sharpness, channels);
     Strip strip = strip_new(nnf->width);
     vote_rows(&votes, &strip, y, colour, NULL);
+    strip_free(&strip);
+}
+
+/* Row k of a strip as two rows of a picture, in which pixels beyond its size have no place. */
+static void vote_doubled(const Strip *strip, size_t k, const Votes *votes,
+                         const FlDoubledRows *rows, int row)
+{
+    for (int x = 0; 2 * x < rows->width; x++) {
+        const FlCovering covering = covering_at(strip, (size_t)x, k);
+        float value[4][4];
+        if (!votes->vote_doubled(&covering, &votes->source, value))
+            continue;
+        for (int child = 0; child < 4; child++) {
+            const int at_x = 2 * x + child % 2, at_y = row + child / 2;
+            for (int c = 0; at_x < rows->width && at_y < rows->n && c < 3; c++)
+                rows->rgb[3 * ((size_t)at_y * rows->stride + (size_t)at_x) + (size_t)c] =
+                    fl_vote_byte(value[child][c]);
+        }
+    }
+}
+
+void fl_vote_rows_doubled(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
+                          float sharpness, int y0, const FlDoubledRows *rows)
+{
+    const Votes votes = votes_of(nnf, level, kernels, sharpness, 3);
+    Strip strip = strip_new(nnf->width);
+    size_t n = begin_strip(&strip, nnf, y0);
+    for (int y = y0; 2 * (y - y0) < rows->n; y++) {
+        add_row(&strip, nnf, y + FL_PATCH_RADIUS, n++);
+        vote_doubled(&strip, n - FL_PATCH, &votes, rows, 2 * (y - y0));
+    }
     strip_free(&strip);
 }

@@ -25,6 +25,18 @@ void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *ke
 void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
                   float sharpness, int channels, int y, float *colour);
 
+/** Rows of a picture of twice the size of a field, with width or height one less if that is odd. */
+typedef struct FlDoubledRows {
+    uint8_t *rgb;  // 3 bytes of sRGB a pixel, untouched where nothing votes
+    size_t stride; // pixels from row to row
+    int width, n;  // of the picture; how many rows, at most 2 * FL_VOTE_ROWS
+} FlDoubledRows;
+
+/** fl_vote_rows() as if each match, from row y on, were four in `level`, which has the colours of
+ * twice the size: those of a coherent field agree, so that each is heard once. */
+void fl_vote_rows_doubled(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
+                          float sharpness, int y, const FlDoubledRows *rows);
+
 /** A colour of a vote as a byte. */
 static inline uint8_t fl_vote_byte(float value)
 {

@@ -317,9 +317,14 @@ static int find_opinions(const FlVotes *votes, FlOpinion *opinions)
         const __m256i a = take(&low, x, y, frame, &sums), b = take(&high, x, y, frame, &sums);
         __m128i s = _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256(sums, 1));
         s = _mm_hadd_epi32(s, s);
-        opinions[n++] = (FlOpinion){votes->x[leader],        votes->y[leader],
-                                    votes->frame[leader],    _mm_cvtsi128_si32(s),
-                                    _mm_extract_epi32(s, 1), __builtin_popcount(bits_of(a, b))};
+        const uint32_t taken = bits_of(a, b);
+        opinions[n++] = (FlOpinion){votes->x[leader],
+                                    votes->y[leader],
+                                    votes->frame[leader],
+                                    _mm_cvtsi128_si32(s),
+                                    _mm_extract_epi32(s, 1),
+                                    __builtin_popcount(taken),
+                                    taken};
     }
     return n;
 }
@@ -343,17 +348,30 @@ static inline void add_offsets(const uint16_t *from, __m256i offsets, uint16_t *
     _mm256_store_si256((__m256i *)to, _mm256_add_epi16(places, offsets));
 }
 
+static void find_places(const FlCovering *covering, FlVotes *votes)
+{
+    for (int k = 0; k < FL_VOTES; k += 16) {
+        const int16_t(*turn)[2] = covering->turn + k;
+        add_offsets(covering->x + k, offsets_along(turn, fl_vote_steps[0] + k), votes->x + k);
+        add_offsets(covering->y + k, offsets_along(turn, fl_vote_steps[1] + k), votes->y + k);
+        _mm256_store_si256((__m256i *)(votes->frame + k),
+                           _mm256_loadu_si256((const __m256i *)(covering->frame + k)));
+    }
+}
+
 bool fl_vote_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4])
 {
     FlVotes votes;
-    for (int k = 0; k < FL_VOTES; k += 16) {
-        const int16_t(*turn)[2] = covering->turn + k;
-        add_offsets(covering->x + k, offsets_along(turn, fl_vote_steps[0] + k), votes.x + k);
-        add_offsets(covering->y + k, offsets_along(turn, fl_vote_steps[1] + k), votes.y + k);
-        _mm256_store_si256((__m256i *)(votes.frame + k),
-                           _mm256_loadu_si256((const __m256i *)(covering->frame + k)));
-    }
+    find_places(covering, &votes);
     return fl_vote_of(&votes, find_opinions, fl_spline_sample_avx2, voted, colour);
+}
+
+bool fl_vote_doubled_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4][4])
+{
+    FlVotes votes;
+    find_places(covering, &votes);
+    return fl_vote_doubled_of(&votes, covering->turn, find_opinions, fl_spline_sample_avx2, voted,
+                              colour);
 }
 
 /* In 16 bits: a place that overflows is above `most` anyway, and with 8 more no move is negative.

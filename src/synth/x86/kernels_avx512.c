@@ -276,15 +276,13 @@ static const uint32_t inverse[FL_PATCH_PIXELS + 1] = {
     5042, 4682,  4370,  4096,  3856,  3641,  3450,  3277, 3121, 2979, 2850, 2731, 2622};
 
 /* The mean place of n votes, x and y in 64-bit lanes, as mean_of() has it. */
-static inline __m128i mean_place(__m128i first, __m128i sums, int n, const int most[2])
+static inline __m128i mean_place(__m128i first, __m128i sums, int n)
 {
     const __m128i sum = _mm_sub_epi32(sums, _mm_set1_epi64x(32 * n));
     const __m128i rounded = _mm_add_epi32(_mm_abs_epi32(sum), _mm_set1_epi64x(n / 2));
     const __m128i mean = _mm_srli_epi64(_mm_mul_epu32(rounded, _mm_set1_epi64x(inverse[n])), 16);
-    const __m128i place = _mm_add_epi32(_mm_sub_epi32(first, _mm_set1_epi64x(FL_VOTE_BIAS)),
-                                        _mm_sign_epi32(mean, sum));
-    const __m128i end = _mm_cvtepi32_epi64(_mm_loadl_epi64((const __m128i *)most));
-    return _mm_min_epi32(_mm_max_epi32(place, _mm_setzero_si128()), end);
+    return _mm_add_epi32(_mm_sub_epi32(first, _mm_set1_epi64x(FL_VOTE_BIAS)),
+                         _mm_sign_epi32(mean, sum));
 }
 
 /* Two rows of four pixels as pairs of one channel, times the pairs of weights. */
@@ -344,22 +342,40 @@ static inline __mmask32 agreeing(const Places *at, __mmask32 left, Places *first
            near_zero(_mm512_sub_epi16(at->y, first->y));
 }
 
-/* What an opinion of n votes says. */
-static inline __m128 opinion_of(const Places *at, __mmask32 votes, int n, const Places *first,
-                                const FlVoted *voted)
+/* The place of an opinion of n votes, x and y in 64-bit lanes. */
+static inline __m128i place_of(const Places *at, __mmask32 votes, int n, const Places *first)
 {
     const __m128i sums =
         sums_of(_mm512_sub_epi16(at->x, first->x), _mm512_sub_epi16(at->y, first->y), votes);
     const __m128i lead = _mm_and_si128(
         _mm_unpacklo_epi64(_mm512_castsi512_si128(first->x), _mm512_castsi512_si128(first->y)),
         _mm_set1_epi64x(0xffff));
-    const __m128i place = mean_place(lead, sums, n, voted->most);
+    return mean_place(lead, sums, n);
+}
+
+/* What an opinion says, by the frame of its first vote and its place, which may lie beyond the
+ * borders. */
+static inline __m128 opinion_of(const Places *first, __m128i place, const FlVoted *voted)
+{
+    const __m128i end = _mm_cvtepi32_epi64(_mm_loadl_epi64((const __m128i *)voted->most));
+    place = _mm_min_epi32(_mm_max_epi32(place, _mm_setzero_si128()), end);
     const uint32_t x = (uint32_t)_mm_cvtsi128_si32(place);
     const uint32_t y = (uint32_t)_mm_extract_epi32(place, 2);
     const uint32_t frame =
         (uint32_t)_mm_cvtsi128_si32(_mm512_castsi512_si128(first->frame)) & 0xffff;
     return sample(voted->colour + frame * voted->frame_pixels + (y >> 4) * voted->pitch + (x >> 4),
                   voted->pitch, &fl_spline_phases[x & 15], &fl_spline_phases[y & 15]);
+}
+
+static inline __m128 add_weighted(__m128 sum, float weight, __m128 value)
+{
+    return _mm_add_ps(sum, _mm_mul_ps(_mm_set1_ps(weight), value));
+}
+
+static inline void store_colour(__m128 sum, float total, float colour[4])
+{
+    sum = _mm_div_ps(sum, _mm_set1_ps(total));
+    _mm_storeu_ps(colour, _mm_min_ps(_mm_max_ps(sum, _mm_setzero_ps()), _mm_set1_ps(1)));
 }
 
 bool fl_vote_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4])
@@ -375,14 +391,51 @@ bool fl_vote_avx512(const FlCovering *covering, const FlVoted *voted, float colo
         Places first;
         const __mmask32 votes = agreeing(&at, left, &first);
         const int n = __builtin_popcount(votes);
-        const float weight = voted->weight[n];
-        sum = _mm_add_ps(sum,
-                         _mm_mul_ps(_mm_set1_ps(weight), opinion_of(&at, votes, n, &first, voted)));
-        total += weight;
+        const __m128i place = place_of(&at, votes, n, &first);
+        sum = add_weighted(sum, voted->weight[n], opinion_of(&first, place, voted));
+        total += voted->weight[n];
         left &= ~votes;
     }
-    sum = _mm_div_ps(sum, _mm_set1_ps(total));
-    _mm_storeu_ps(colour, _mm_min_ps(_mm_max_ps(sum, _mm_setzero_ps()), _mm_set1_ps(1)));
+    store_colour(sum, total, colour);
+    return true;
+}
+
+/* The places of four times as many votes in twice the size. */
+static inline __m512i doubled(__m512i places)
+{
+    return _mm512_sub_epi16(_mm512_slli_epi16(places, 1), _mm512_set1_epi16(FL_VOTE_BIAS));
+}
+
+/* Votes are row by row: child / 2 is along lines. */
+bool fl_vote_doubled_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4][4])
+{
+    const __m512i frames = rows_of(_mm512_loadu_si512(covering->frame));
+    __mmask32 left = FL_VOTES_BESIDE & ~_mm512_movepi16_mask(frames);
+    if (!left)
+        return false;
+    const Places half = places_of(covering);
+    const Places at = {doubled(half.x), doubled(half.y), half.frame};
+    __m128 sum[4] = {_mm_setzero_ps(), _mm_setzero_ps(), _mm_setzero_ps(), _mm_setzero_ps()};
+    float total[4] = {0};
+    while (left) {
+        Places first;
+        const int leader = __builtin_ctz(left);
+        const __mmask32 votes = agreeing(&at, left, &first);
+        const __m128i place = place_of(&at, votes, __builtin_popcount(votes), &first);
+        const int16_t *turn = covering->turn[leader % FL_PATCH * FL_PATCH + leader / FL_PATCH];
+        for (int child = 0; child < 4; child++) {
+            const FlOffset move = fl_child_move(turn, child % 2, child / 2);
+            const int n =
+                fl_votes_doubled(votes, FL_LINES_TWICE(child / 2), FL_PLACES_TWICE(child % 2));
+            const __m128i moved = _mm_add_epi32(place, _mm_set_epi64x(move.y, move.x));
+            sum[child] =
+                add_weighted(sum[child], voted->weight[n], opinion_of(&first, moved, voted));
+            total[child] += voted->weight[n];
+        }
+        left &= ~votes;
+    }
+    for (int child = 0; child < 4; child++)
+        store_colour(sum[child], total[child], colour[child]);
     return true;
 }
 
