@@ -77,7 +77,7 @@ static void make_pieces(FlNnf *nnf, const FlExemplarLevel *level)
 /* Each match is heard once in place of four: roundings differ, and nothing else. */
 static void an_enlarged_field_votes_as_one_of_twice_the_size(void)
 {
-    g_auto(Style) style;
+    g_auto(Style) style = {0};
     style_init(&style, 0);
     const FlExemplarLevel *half = &style.exemplar->level[0];
     g_autoptr(FlExemplar) whole = fl_exemplar_new(style.full, style.params, NULL);

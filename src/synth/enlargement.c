@@ -5,7 +5,6 @@
 #include "base/spill.h"
 #include "synth/spline.h"
 #include "synth/vote.h"
-#include <string.h>
 
 struct FlEnlargement {
     FlExemplarLevel level; // its colours only

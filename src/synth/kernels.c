@@ -115,7 +115,6 @@ static void join(const FlVotes *votes, int k, FlOpinion *opinion)
 {
     opinion->sum_x += votes->x[k] - opinion->x;
     opinion->sum_y += votes->y[k] - opinion->y;
-    opinion->n++;
     opinion->votes |= 1u << k;
 }
 
@@ -169,9 +168,10 @@ static void find_places(const FlCovering *covering, FlVotes *votes)
     }
 }
 
-/* The mean of first + sum / n, half away from first. */
-static int mean_of(int first, int sum, int n)
+/* The mean of first + sum / n over the n votes, half away from first. */
+static int mean_of(int first, int sum, uint32_t votes)
 {
+    const int n = __builtin_popcount(votes);
     return first - FL_VOTE_BIAS + (sum + (sum < 0 ? -n : n) / 2) / n;
 }
 
@@ -207,8 +207,8 @@ bool fl_vote_of(const FlVotes *votes, FlFindOpinions find_opinions, FlSplineSamp
     Sum sum = {0};
     const int n = find_opinions(votes, opinions);
     for (const FlOpinion *o = opinions; o < opinions + n; o++)
-        add_opinion(&sum, o, o->n, mean_of(o->x, o->sum_x, o->n), mean_of(o->y, o->sum_y, o->n),
-                    sample, voted);
+        add_opinion(&sum, o, __builtin_popcount(o->votes), mean_of(o->x, o->sum_x, o->votes),
+                    mean_of(o->y, o->sum_y, o->votes), sample, voted);
     colour_of(&sum, colour);
     return n > 0;
 }
@@ -217,8 +217,8 @@ bool fl_vote_of(const FlVotes *votes, FlFindOpinions find_opinions, FlSplineSamp
 static void add_children(Sum sum[4], const FlOpinion *opinion, const int16_t turn[2],
                          FlSplineSample sample, const FlVoted *voted)
 {
-    const int x = mean_of(opinion->x, opinion->sum_x, opinion->n);
-    const int y = mean_of(opinion->y, opinion->sum_y, opinion->n);
+    const int x = mean_of(opinion->x, opinion->sum_x, opinion->votes);
+    const int y = mean_of(opinion->y, opinion->sum_y, opinion->votes);
     for (int child = 0; child < 4; child++) {
         const FlOffset move = fl_child_move(turn, child % 2, child / 2);
         const int n =

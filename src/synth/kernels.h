@@ -155,8 +155,7 @@ static inline int fl_vote_leader(uint32_t left)
 typedef struct FlOpinion {
     int x, y, frame;
     int sum_x, sum_y;
-    int n;          // of votes, the first included
-    uint32_t votes; // a bit for each
+    uint32_t votes; // a bit for each, the first included
 } FlOpinion;
 
 /**

@@ -96,15 +96,14 @@ static void vote_row(const Strip *strip, size_t k, const FlVoted *voted, FlVote 
 typedef struct Votes {
     const FlNnf *nnf;
     FlVoted source;
-    FlVote vote;
-    FlVoteDoubled vote_doubled;
+    const FlKernels *kernels;
     int channels;
 } Votes;
 
 static Votes votes_of(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
                       float sharpness, int channels)
 {
-    return (Votes){nnf, voted_of(level, sharpness), kernels->vote, kernels->vote_doubled, channels};
+    return (Votes){nnf, voted_of(level, sharpness), kernels, channels};
 }
 
 /* What lies above row y0 and its patches. Returns: the number of rows. */
@@ -124,7 +123,7 @@ static void vote_rows(const Votes *votes, Strip *strip, int y0, float *colour, u
     for (int y = y0; y < MIN(y0 + FL_VOTE_ROWS, nnf->height); y++) {
         const size_t p = (size_t)(y - y0) * (size_t)nnf->width;
         add_row(strip, nnf, y + FL_PATCH_RADIUS, rows++);
-        vote_row(strip, rows - FL_PATCH, &votes->source, votes->vote, votes->channels,
+        vote_row(strip, rows - FL_PATCH, &votes->source, votes->kernels->vote, votes->channels,
                  colour + (size_t)votes->channels * p, voted ? voted + p : NULL);
     }
 }
@@ -161,7 +160,7 @@ static void vote_doubled(const Strip *strip, size_t k, const Votes *votes,
     for (int x = 0; 2 * x < rows->width; x++) {
         const FlCovering covering = covering_at(strip, (size_t)x, k);
         float value[4][4];
-        if (!votes->vote_doubled(&covering, &votes->source, value))
+        if (!votes->kernels->vote_doubled(&covering, &votes->source, value))
             continue;
         for (int child = 0; child < 4; child++) {
             const int at_x = 2 * x + child % 2, at_y = row + child / 2;

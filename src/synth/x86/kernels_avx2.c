@@ -317,14 +317,9 @@ static int find_opinions(const FlVotes *votes, FlOpinion *opinions)
         const __m256i a = take(&low, x, y, frame, &sums), b = take(&high, x, y, frame, &sums);
         __m128i s = _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256(sums, 1));
         s = _mm_hadd_epi32(s, s);
-        const uint32_t taken = bits_of(a, b);
-        opinions[n++] = (FlOpinion){votes->x[leader],
-                                    votes->y[leader],
-                                    votes->frame[leader],
-                                    _mm_cvtsi128_si32(s),
-                                    _mm_extract_epi32(s, 1),
-                                    __builtin_popcount(taken),
-                                    taken};
+        opinions[n++] =
+            (FlOpinion){votes->x[leader],     votes->y[leader],        votes->frame[leader],
+                        _mm_cvtsi128_si32(s), _mm_extract_epi32(s, 1), bits_of(a, b)};
     }
     return n;
 }
