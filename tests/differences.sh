@@ -21,6 +21,7 @@ filter-of-the-root 2
 marker-from-a-style 2
 marker-of-a-group 2
 mask-over-overlapping-shapes 2
+masks-in-masks-and-clips 4
 opacity-of-a-group 2
 opacity-of-a-stroked-shape 2
 sheet-from-a-file 2

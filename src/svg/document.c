@@ -52,6 +52,17 @@ char *fl_property(const xmlNode *node, const char *name)
     return attribute ? g_strstrip(g_strdup((const char *)attribute)) : NULL;
 }
 
+bool fl_declare(xmlNode *node, const char *declarations)
+{
+    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    if (style && g_str_has_suffix((const char *)style, declarations))
+        return false;
+    g_autofree char *all =
+        g_strconcat(style ? (const char *)style : "", style ? ";" : "", declarations, NULL);
+    xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)all);
+    return true;
+}
+
 bool fl_document_is_huge(void)
 {
     return fl_limit(FL_LIMIT_DEPTH) > 250 || fl_limit(FL_LIMIT_PATH) > 9000000 ||

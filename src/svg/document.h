@@ -45,4 +45,10 @@ char *fl_attribute(const xmlNode *node, const char *name);
  */
 char *fl_property(const xmlNode *node, const char *name);
 
+/**
+ * Adds declarations, such as "fill:none !important", to those of `style=""`. Returns: false if they
+ * were its last ones already.
+ */
+bool fl_declare(xmlNode *node, const char *declarations);
+
 #endif

@@ -5,10 +5,6 @@
 #include "svg/normalise.h"
 #include <string.h>
 
-// Shapes of a group with a mask, times the elements of the document: each needs a document of its
-// own. 60,000 take some seconds and 200 MiB.
-#define MOST_MASKED 60000
-
 /** What a leaf inherits from the groups around it; strings grow inwards and are cut back. */
 typedef struct Walk {
     GString *labels, *layers, *ids, *groups, *classes, *tree;
@@ -17,10 +13,8 @@ typedef struct Walk {
     FlCss *css;
     GHashTable *by_id; // id -> xmlNode, the first of that id
     int unit;          // outermost unit around, -1: none
-    char *masked;      // id of the outermost group around with a mask, NULL: none
-    int turn;          // leaves found in it
+    int mask;          // innermost group around with a mask, -1: none
     int n_made;        // ids made
-    int n_elements;    // of the document
 } Walk;
 
 typedef struct Mark {
@@ -129,6 +123,15 @@ char *fl_leaf_key(const FlLeaf *leaf)
                : g_strconcat(FL_SHAPE_AT, leaf->tree, NULL);
 }
 
+/** The id of the outermost group around with a mask; NULL: none. */
+static const char *outermost_mask(const Walk *w)
+{
+    const FlGroupMask *mask = NULL;
+    for (int i = w->mask; i >= 0; i = mask->around)
+        mask = &g_array_index(w->leaves->mask, FlGroupMask, i);
+    return mask ? mask->group : NULL;
+}
+
 static FlLeaf make_leaf(Walk *w, xmlNode *node)
 {
     g_autoptr(xmlChar) name = (xmlChar *)authored_id(node);
@@ -141,10 +144,11 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
         whole = marker && strcmp(marker, "none") != 0;
     }
     char *id = give_id(w, node);
+    const char *masked = outermost_mask(w);
     FlLeaf leaf = {
         .id = id,
-        .layer = g_strdup(w->masked ? w->masked : id),
-        .turn = w->masked ? w->turn++ : -1,
+        .layer = g_strdup(masked ? masked : id),
+        .mask = w->mask,
         .name = g_strdup(name ? (const char *)name : ""),
         .labels = g_strdup(w->labels->str),
         .layers = g_strdup(w->layers->str),
@@ -224,32 +228,28 @@ static bool has_blend(const Walk *w, const xmlNode *node)
 
 static void walk(Walk *w, xmlNode *node);
 
-/**
- * Walks a group with a mask. librsvg draws the mask's content only if the group itself, or one
- * around it, is the layer it renders; its leaves are then shown in turn, the others being
- * hidden. One of very many leaves is a leaf itself.
- */
 static void walk_masked(Walk *w, xmlNode *node)
 {
-    w->masked = give_id(w, node);
-    w->turn = 0;
-    const guint first = w->leaves->leaf->len;
+    FlLeaves *leaves = w->leaves;
+    const int around = w->mask;
+    const guint first = leaves->leaf->len, first_mask = leaves->mask->len;
+    const FlGroupMask mask = {
+        give_id(w, node), around,
+        around < 0 ? 0 : 1 + g_array_index(leaves->mask, FlGroupMask, around).depth};
+    w->mask = (int)first_mask;
+    g_array_append_val(leaves->mask, mask);
     walk(w, node);
-    const guint n = w->leaves->leaf->len - first;
-    if (n == 1)
-        g_array_index(w->leaves->leaf, FlLeaf, first).turn = -1;
-    g_clear_pointer(&w->masked, g_free);
-    if (n < 2 || (double)n * w->n_elements <= MOST_MASKED)
+    w->mask = around;
+    if (around >= 0 || leaves->leaf->len - first > 1)
         return;
-    g_array_set_size(w->leaves->leaf, first);
-    const FlLeaf one = make_leaf(w, node);
-    g_array_append_val(w->leaves->leaf, one);
-    w->leaves->n_joined++;
+    g_array_set_size(leaves->mask, first_mask);
+    if (leaves->leaf->len > first)
+        g_array_index(leaves->leaf, FlLeaf, first).mask = -1;
 }
 
 static void walk_group(Walk *w, xmlNode *node)
 {
-    if (!w->masked && has_mask(w, node))
+    if (has_mask(w, node))
         walk_masked(w, node);
     else
         walk(w, node);
@@ -300,15 +300,6 @@ static void walk(Walk *w, xmlNode *node)
     }
 }
 
-static int count_elements(const xmlNode *node)
-{
-    int n = 0;
-    for (; node; node = node->next)
-        if (node->type == XML_ELEMENT_NODE)
-            n += 1 + count_elements(node->children);
-    return n;
-}
-
 /** Makes the whole document one leaf. */
 static void add_all(Walk *w, xmlNode *root)
 {
@@ -336,13 +327,20 @@ static void unit_clear(void *data)
     leaf_clear(&((FlUnit *)data)->leaf);
 }
 
+static void mask_clear(void *data)
+{
+    g_free(((FlGroupMask *)data)->group);
+}
+
 FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
 {
     FlLeaves *leaves = g_new0(FlLeaves, 1);
     leaves->leaf = g_array_new(FALSE, FALSE, sizeof(FlLeaf));
     leaves->unit = g_array_new(FALSE, FALSE, sizeof(FlUnit));
+    leaves->mask = g_array_new(FALSE, FALSE, sizeof(FlGroupMask));
     g_array_set_clear_func(leaves->leaf, leaf_clear);
     g_array_set_clear_func(leaves->unit, unit_clear);
+    g_array_set_clear_func(leaves->mask, mask_clear);
     Walk w = {.labels = g_string_new(NULL),
               .layers = g_string_new(NULL),
               .ids = g_string_new(NULL),
@@ -352,9 +350,9 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
               .tree = g_string_new(NULL),
               .leaves = leaves,
               .css = fl_css_new(doc),
-              .unit = -1};
+              .unit = -1,
+              .mask = -1};
     w.by_id = fl_document_ids(doc);
-    w.n_elements = count_elements(xmlDocGetRootElement(doc));
     if (whole && g_strv_contains(whole, FL_WHOLE_ALL))
         add_all(&w, xmlDocGetRootElement(doc));
     else
@@ -376,5 +374,6 @@ void fl_leaves_free(FlLeaves *leaves)
         return;
     g_array_unref(leaves->leaf);
     g_array_unref(leaves->unit);
+    g_array_unref(leaves->mask);
     g_free(leaves);
 }

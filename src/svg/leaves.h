@@ -11,8 +11,8 @@
  */
 typedef struct FlLeaf {
     char *id;      // in the normalised document, unique
-    char *layer;   // id of what is rendered for it: the outermost group around with a mask, else id
-    int turn;      // its place among the leaves of such a group; -1: it is alone there
+    char *layer;   // id of the outermost group around with a mask, else id
+    int mask;      // FlLeaves.mask around it, -1: none, or it is the only leaf of `layer`
     char *name;    // the authored id, or ""
     char *labels;  // of it and its groups: layer labels, meaningful ids
     char *layers;  // the layers among them; the outermost group if there are none
@@ -36,10 +36,17 @@ typedef struct FlUnit {
     bool inseparable; // a filter or blend mode, also of what is in it: even without overlap
 } FlUnit;
 
+/** A group with a mask, of two or more leaves, which are drawn without it and masked then. */
+typedef struct FlGroupMask {
+    char *group; // its id
+    int around;  // index of the next one outwards, -1: none
+    int depth;   // how many there are outwards
+} FlGroupMask;
+
 typedef struct FlLeaves {
     GArray *leaf; // FlLeaf
     GArray *unit; // FlUnit
-    int n_joined; // groups with a mask that are one leaf because they have too many shapes
+    GArray *mask; // FlGroupMask
 } FlLeaves;
 
 /** The name of a leaf in a list of what is drawn as one, see fl_leaves_new(); to be freed. */

@@ -92,10 +92,8 @@ static void drop_masks(xmlNode *node)
         if (node->type != XML_ELEMENT_NODE)
             continue;
         g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
-        if (fl_is_one_of(node, shapes) && style && strstr((const char *)style, "mask")) {
-            g_autofree char *none = g_strconcat((const char *)style, ";mask:none", NULL);
-            xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)none);
-        }
+        if (fl_is_one_of(node, shapes) && style && strstr((const char *)style, "mask"))
+            fl_declare(node, "mask:none");
         xmlUnsetProp(node, (const xmlChar *)"mask");
         drop_masks(node->children);
     }

@@ -1,0 +1,65 @@
+/* The data of an FlSvg and the handles that librsvg draws it with; private to svg/. */
+#ifndef FLUIDY_SVG_SVG_DATA_H
+#define FLUIDY_SVG_SVG_DATA_H
+
+#include "svg/svg_frame.h"
+
+/** Whether any leaf is parked far off the page. */
+typedef enum FlFar {
+    FL_FAR_UNKNOWN,
+    FL_FAR_NONE,
+    FL_FAR_SOME,
+} FlFar;
+
+/** What a group's mask and those around it let through on a page of that size. */
+typedef struct FlMaskCover {
+    cairo_surface_t *surface; // A8; NULL: not drawn yet
+    double width, height;     // of the page, px
+} FlMaskCover;
+
+struct FlSvg {
+    char *path;
+    double dpi;
+    xmlDoc *doc;
+    char *original; // the text before it was normalised
+    size_t original_bytes;
+    RsvgHandle *handle; // of the normalised document
+    RsvgHandle *before; // of the original, made when first needed
+    bool has_probe;     // paints are read from a separate document
+    FlFar far;
+    int n_nameless;       // groups without an id
+    GHashTable *variants; // handles of the document without some parts or masks
+    FlLeaves *leaves;
+    FlMaskCover *cover; // by FlLeaves.mask; NULL: cannot be drawn
+    size_t cover_bytes; // of their surfaces
+    GPtrArray *files;   // that it refers to
+};
+
+/** What a handle is for. */
+typedef enum FlPurpose {
+    FL_TO_DRAW,
+    FL_TO_DRAW_BARE, // without the masks of FlLeaves.mask
+    FL_TO_READ,      // so, too; see fl_paint_probe_prepare()
+    FL_N_PURPOSES
+} FlPurpose;
+
+/** A handle of the document with that text; NULL with FL_ERROR_INPUT. */
+RsvgHandle *fl_svg_make_handle(const FlSvg *svg, const char *text, size_t bytes, GError **error);
+
+/** The handle for this part of the leaves, which svg owns; NULL with FL_ERROR_INPUT. */
+RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, FlPurpose purpose, GError **error);
+
+/** Likewise the handle whose layers are the groups of that depth, see fl_group_masks_flood(). */
+RsvgHandle *fl_svg_mask_handle(FlSvg *svg, int depth, GError **error);
+
+/** Sets FL_ERROR_INPUT in plain words. */
+void fl_svg_set_error(const FlSvg *svg, const GError *reason, GError **error);
+
+/** Draws a part of a leaf with that handle: without the masks around it but for FL_TO_DRAW. */
+bool fl_svg_draw_leaf(FlSvg *svg, const FlLeaf *leaf, FlPart part, FlPurpose purpose, cairo_t *cr,
+                      double width, double height, GError **error);
+
+/** Frees the surfaces of all covers. */
+void fl_svg_drop_covers(FlSvg *svg);
+
+#endif
