@@ -1,6 +1,7 @@
 #include "compose/composite.h"
 
 #include "base/alloc.h"
+#include "base/parallel_error.h"
 #include "base/rng.h"
 #include "base/schedule.h"
 #include "compose/colourise.h"
@@ -312,6 +313,20 @@ static int first_of_batch(const Stack *stack, int end)
     return first;
 }
 
+/* Packs layers side by side. */
+static bool pack_some(FlLayer *layers, int n, GError **error)
+{
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < n; k++) {
+        GError *failure = NULL;
+        if (!fl_layer_pack(&layers[k], &failure))
+            fl_parallel_error_keep(&first, failure);
+        g_clear_pointer(&layers[k].knockout, free);
+    }
+    return fl_parallel_error_tell(error, first);
+}
+
 /* The same some layers at a time, top first; of each only what shows is kept. */
 static bool resolve_in_turn(Stack *stack, GError **error)
 {
@@ -323,17 +338,14 @@ static bool resolve_in_turn(Stack *stack, GError **error)
         return false;
     for (int end = stack->composite->n_layers, first; end > 0; end = first) {
         first = first_of_batch(stack, end);
-        if (!fill_some(stack, first, end, error))
+        FlLayer *layers = stack->composite->layers + first;
+        if (!fill_some(stack, first, end, error) ||
+            !fl_underlay_fade_next(&underlay, layers, end - first, error))
             return false;
-        for (int k = end - 1; k >= first; k--) {
-            FlLayer *layer = &stack->composite->layers[k];
-            if (!fl_underlay_fade_next(&underlay, layer, error))
-                return false;
-            fl_layer_occlude(layer, &above);
-            if (!fl_layer_pack(layer, error))
-                return false;
-            g_clear_pointer(&layer->knockout, free);
-        }
+        for (int k = end - first - 1; k >= 0; k--)
+            fl_layer_occlude(&layers[k], &above);
+        if (!pack_some(layers, end - first, error))
+            return false;
     }
     return true;
 }

@@ -1,6 +1,7 @@
 #include "compose/underlay.h"
 
 #include "base/alloc.h"
+#include "base/parallel_error.h"
 #include <string.h>
 
 #define SHOWN 128 // coverage from which on a shape is there
@@ -9,35 +10,50 @@
 #define CORNER 7
 #define FAR 30000
 #define BESIDE_PX 3 // a sliver farther from what lies above is a shape of its own
+#define PAGES 2     // of layers that are faded side by side
 
-/** A layer's box with some room, and what is known of it. */
+/** A layer that fades, with some room around its box. */
 typedef struct Part {
+    FlLayer *layer;
     FlRect box;
-    uint8_t *over;    // how far what covers the pixel from above hides, 0..255; 0: nothing does
-    uint8_t *seen;    // 1: the layer is seen
-    int16_t *to_open; // distances, fifths of a px: to what nothing above covers
-    int16_t *to_seen; // to where the layer is seen
+    uint8_t *over; // how far what covers the pixel from above hides, 0..255; 0: nothing does
+    uint8_t *seen; // 1: the layer is seen
 } Part;
 
 static void part_clear(Part *part)
 {
     free(part->over);
     free(part->seen);
-    free(part->to_open);
-    free(part->to_seen);
+    *part = (Part){0};
 }
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Part, part_clear)
-
-static bool part_init(Part *part, const FlLayer *layer, int width, int height, GError **error)
+static bool part_init(Part *part, FlLayer *layer, int width, int height, GError **error)
 {
     const FlRect page = {0, 0, width, height};
-    *part = (Part){.box = fl_rect_grown(layer->area.box, MARGIN_PX, page)};
+    *part = (Part){.layer = layer, .box = fl_rect_grown(layer->area.box, MARGIN_PX, page)};
     const size_t n = fl_rect_pixels(part->box);
     return (part->over = fl_alloc_unset(n, 1, "a matte", error)) &&
-           (part->seen = fl_alloc_unset(n, 1, "a matte", error)) &&
-           (part->to_open = fl_alloc_unset(n, sizeof *part->to_open, "a matte", error)) &&
-           (part->to_seen = fl_alloc_unset(n, sizeof *part->to_seen, "a matte", error));
+           (part->seen = fl_alloc_unset(n, 1, "a matte", error));
+}
+
+/** Distances of a part's pixels, fifths of a px. */
+typedef struct Ways {
+    int16_t *to_open; // to what nothing above covers
+    int16_t *to_seen; // to where the layer is seen
+} Ways;
+
+static void ways_clear(Ways *ways)
+{
+    free(ways->to_open);
+    free(ways->to_seen);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Ways, ways_clear)
+
+static bool ways_init(Ways *ways, size_t n, GError **error)
+{
+    return (ways->to_open = fl_alloc_unset(n, sizeof *ways->to_open, "a matte", error)) &&
+           (ways->to_seen = fl_alloc_unset(n, sizeof *ways->to_seen, "a matte", error));
 }
 
 /** The first column from x on with another value than that of x. */
@@ -77,10 +93,12 @@ static void lower_from(const int16_t *beside, int16_t *restrict row, int width)
 {
     for (int x = 0; x < width; x++)
         row[x] = least(row[x], (int16_t)(beside[x] + SIDE));
-    for (int x = 1; x < width; x++)
-        row[x] = least(row[x], (int16_t)(beside[x - 1] + CORNER));
-    for (int x = 0; x < width - 1; x++)
-        row[x] = least(row[x], (int16_t)(beside[x + 1] + CORNER));
+    for (int x = 1; x < width - 1; x++)
+        row[x] = least(row[x], (int16_t)(least(beside[x - 1], beside[x + 1]) + CORNER));
+    if (width > 1) {
+        row[0] = least(row[0], (int16_t)(beside[1] + CORNER));
+        row[width - 1] = least(row[width - 1], (int16_t)(beside[width - 2] + CORNER));
+    }
 }
 
 /**
@@ -154,20 +172,20 @@ static void clear_blocks(const uint8_t *block, int width, int16_t *restrict row)
 }
 
 /** Distances out, and to blocks of 2x2 pixels in which the layer is seen: not to slivers. */
-static void find_ways(Part *part)
+static void find_ways(const Part *part, const Ways *ways)
 {
     const int w = part->box.width, h = part->box.height;
     for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
-        part->to_open[p] = part->over[p] ? FAR : 0, part->to_seen[p] = FAR;
+        ways->to_open[p] = part->over[p] ? FAR : 0, ways->to_seen[p] = FAR;
     g_autofree uint8_t *block = g_malloc((size_t)w);
     for (int y = 0; y + 1 < h; y++) {
         const size_t p = (size_t)y * (size_t)w, q = p + (size_t)w;
         mark_blocks(part->seen + p, part->seen + q, w, block);
-        clear_blocks(block, w, part->to_seen + p);
-        clear_blocks(block, w, part->to_seen + q);
+        clear_blocks(block, w, ways->to_seen + p);
+        clear_blocks(block, w, ways->to_seen + q);
     }
-    measure(part->to_open, w, h);
-    measure(part->to_seen, w, h);
+    measure(ways->to_open, w, h);
+    measure(ways->to_seen, w, h);
 }
 
 /** Raises each of n values to the one that comes `reach` later, if that is more. */
@@ -203,9 +221,9 @@ static void find_hides(const Part *part, int y, uint8_t *hides)
 
 /** How much of the layer stays, 0..255: (2.5 out + 6 - to) / (out + 4), in pixels, where what is
  * above hides all. */
-static int kept_at(const Part *part, size_t p, int hides)
+static int kept_at(const Ways *ways, size_t p, int hides)
 {
-    const int out = part->to_open[p], to = part->to_seen[p];
+    const int out = ways->to_open[p], to = ways->to_seen[p];
     const int share = 5 * out + 12 * SIDE - 2 * to, whole = 2 * (out + 4 * SIDE);
     if (share >= whole) // nearly everywhere: without the division
         return 255;
@@ -214,8 +232,9 @@ static int kept_at(const Part *part, size_t p, int hides)
 }
 
 /** Row y of the layer; hides is of the pixels of its box. */
-static void fade_row(const Part *part, FlLayer *layer, int y, const uint8_t *hides)
+static void fade_row(const Part *part, const Ways *ways, int y, const uint8_t *hides)
 {
+    FlLayer *layer = part->layer;
     const FlRect own = layer->area.box;
     const FlColumns span = fl_area_row(&layer->area, y);
     const size_t row = (size_t)y * (size_t)own.width;
@@ -225,7 +244,7 @@ static void fade_row(const Part *part, FlLayer *layer, int y, const uint8_t *hid
          run = fl_next_run(hides, run.last, span.last))
         for (int x = run.first; x < run.last; x++) {
             const size_t p = row + (size_t)x;
-            const int keep = kept_at(part, of_part + (size_t)x, hides[x]);
+            const int keep = kept_at(ways, of_part + (size_t)x, hides[x]);
             if (keep == 255)
                 continue;
             layer->rgba[4 * p + 3] = (uint8_t)((layer->rgba[4 * p + 3] * keep + 127) / 255);
@@ -233,26 +252,19 @@ static void fade_row(const Part *part, FlLayer *layer, int y, const uint8_t *hid
         }
 }
 
-static void fade(const Part *part, FlLayer *layer)
+/** Fades the layer where it has been marked. */
+static bool fade(const Part *part, GError **error)
 {
-    const FlRect own = layer->area.box;
+    g_auto(Ways) ways = {0};
+    if (!ways_init(&ways, fl_rect_pixels(part->box), error))
+        return false;
+    find_ways(part, &ways);
+    const FlRect own = part->layer->area.box;
     g_autofree uint8_t *hides = g_malloc((size_t)(part->box.width + 2 * BESIDE_PX));
     for (int y = 0; y < own.height; y++) {
         find_hides(part, own.y + y - part->box.y, hides);
-        fade_row(part, layer, y, hides + (own.x - part->box.x));
+        fade_row(part, &ways, y, hides + (own.x - part->box.x));
     }
-}
-
-static bool fade_layer(FlLayer *layer, const FlUnderlay *above, GError **error)
-{
-    g_auto(Part) part = {0};
-    if (!is_below(layer, above))
-        return true;
-    if (!part_init(&part, layer, above->width, above->height, error))
-        return false;
-    mark_pixels(&part, layer, above);
-    find_ways(&part);
-    fade(&part, layer);
     return true;
 }
 
@@ -296,22 +308,64 @@ void fl_underlay_clear(FlUnderlay *above)
     free(above->hides);
 }
 
-bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layer, GError **error)
+/** Marks what of the next layer fades, if anything does: a part more. */
+static bool mark_next(FlUnderlay *above, FlLayer *layer, Part *parts, int *n, GError **error)
 {
     const bool knocks = layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
-    if (layer->knockout && knocks && fl_rect_pixels(layer->area.box) > 0 &&
-        !fade_layer(layer, above, error))
-        return false;
+    if (layer->knockout && knocks && is_below(layer, above)) {
+        Part *part = &parts[(*n)++];
+        if (!part_init(part, layer, above->width, above->height, error))
+            return false;
+        mark_pixels(part, layer, above);
+    }
     if (knocks && !layer->sheer)
         add_above(layer, above);
     return true;
 }
 
+/** Fades parts side by side. */
+static bool fade_all(const Part *parts, int n, GError **error)
+{
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < n; k++) {
+        GError *failure = NULL;
+        if (!fade(&parts[k], &failure))
+            fl_parallel_error_keep(&first, failure);
+    }
+    return fl_parallel_error_tell(error, first);
+}
+
+/** The first of the layers that are faded together with layer end - 1. */
+static int first_beside(const FlLayer *layers, int end, const FlUnderlay *above)
+{
+    const size_t most = PAGES * (size_t)above->width * (size_t)above->height;
+    int first = end - 1;
+    for (size_t pixels = fl_rect_pixels(layers[first].area.box);
+         first > 0 && (pixels += fl_rect_pixels(layers[first - 1].area.box)) <= most;)
+        first--;
+    return first;
+}
+
+bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layers, int n, GError **error)
+{
+    g_autofree Part *parts = g_new0(Part, MAX(n, 1));
+    bool done = true;
+    for (int end = n, first; end > 0 && done; end = first) {
+        int n_parts = 0;
+        first = first_beside(layers, end, above);
+        for (int k = end - 1; k >= first && done; k--)
+            done = mark_next(above, &layers[k], parts, &n_parts, error);
+        done = done && fade_all(parts, n_parts, error);
+        for (int k = 0; k < n_parts; k++)
+            part_clear(&parts[k]);
+    }
+    return done;
+}
+
 bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error)
 {
     g_auto(FlUnderlay) above = {0};
-    bool done = fl_underlay_init(&above, width, height, error);
-    for (int k = n - 1; k >= 0 && done; k--)
-        done = fl_underlay_fade_next(&above, &layers[k], error);
-    return done;
+    return fl_underlay_init(&above, width, height, error) &&
+           fl_underlay_fade_next(&above, layers, n, error);
 }

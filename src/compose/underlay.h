@@ -14,7 +14,7 @@
  */
 bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error);
 
-/** The shapes above a layer, to do the same layer by layer. */
+/** The shapes above some layers, to do the same part by part. */
 typedef struct FlUnderlay {
     int width, height; // of the frame
     uint8_t *coverage; // the greatest
@@ -24,8 +24,8 @@ typedef struct FlUnderlay {
 bool fl_underlay_init(FlUnderlay *above, int width, int height, GError **error);
 void fl_underlay_clear(FlUnderlay *above);
 
-/** The next layer; the top one comes first. */
-bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layer, GError **error);
+/** The next n layers, which lie below those before. */
+bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layers, int n, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlUnderlay, fl_underlay_clear)
 
