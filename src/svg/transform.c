@@ -4,11 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-FlPoint fl_affine_apply(const FlAffine *m, FlPoint p)
-{
-    return (FlPoint){m->xx * p.x + m->xy * p.y + m->x0, m->yx * p.x + m->yy * p.y + m->y0};
-}
-
 FlAffine fl_affine_after(const FlAffine *outer, const FlAffine *inner)
 {
     const FlPoint at = fl_affine_apply(outer, (FlPoint){inner->x0, inner->y0});

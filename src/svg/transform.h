@@ -15,7 +15,10 @@ typedef struct FlAffine {
 
 #define FL_AFFINE_NONE ((FlAffine){1, 0, 0, 1, 0, 0})
 
-FlPoint fl_affine_apply(const FlAffine *m, FlPoint p);
+static inline FlPoint fl_affine_apply(const FlAffine *m, FlPoint p)
+{
+    return (FlPoint){m->xx * p.x + m->xy * p.y + m->x0, m->yx * p.x + m->yy * p.y + m->y0};
+}
 
 /** The composition that applies `inner` first. */
 FlAffine fl_affine_after(const FlAffine *outer, const FlAffine *inner);
