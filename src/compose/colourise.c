@@ -237,7 +237,7 @@ static void keep_colours(const FlInk *ink, const FlColouring *colouring, const F
 {
     Kept kept;
     kept_init(&kept, ink, colouring->paper);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 8)
     for (int y = 0; y < area->box.height; y++) {
         const size_t row = (size_t)y * area->box.width;
         const FlColumns span = fl_area_row(area, y);
@@ -306,7 +306,7 @@ static void colour_picture(const FlInk *ink, const FlColouring *colouring, const
 #pragma omp parallel
     {
         g_autofree Fill *fills = g_new0(Fill, FILLS);
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, 8)
         for (int y = 0; y < area->box.height; y++) {
             const FlColumns span = fl_area_row(area, y);
             const size_t row = (size_t)y * area->box.width;

@@ -128,7 +128,7 @@ void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *input, FlRect
                   const FlExemplarLevel *level, FlNnf *out, float *speed)
 {
     const Plan plan = plan_of(input, level);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 8)
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * rect.width + x;

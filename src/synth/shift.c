@@ -79,7 +79,7 @@ int fl_boil_step(float boil, int frame, int n_frames)
 void fl_nnf_shift(FlNnf *nnf, const FlExemplar *exemplar, const FlTargetMotion *motion)
 {
     const size_t pixels = (size_t)nnf->width * nnf->height;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4096)
     for (size_t p = 0; p < pixels; p++) {
         FlMatch *m = &nnf->match[p];
         if (m->frame != FL_NO_MATCH)

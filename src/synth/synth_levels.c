@@ -54,7 +54,7 @@ static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GEr
     fl_vote(shifted, &synth->exemplar->level[l], &synth->kernels, synth->params->vote_sharpness, 3,
             target->temporal, voted);
     const FlTemporalTrust trust = trust_of(synth);
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4096)
     for (size_t p = 0; p < pixels; p++)
         if (voted[p] && shifted->match[p].frame != FL_NO_MATCH)
             target->temporal_weight[p] = fl_temporal_weight(

@@ -95,7 +95,7 @@ static void fill_rows(FlTargetLevel *level, int y, const FlPyramid *rows,
                       const FlExemplar *exemplar)
 {
     const size_t first = (size_t)y * level->width, pixels = (size_t)rows->width * rows->height;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4096)
     for (size_t p = 0; p < pixels; p++)
         fill_pixel(level, first + p, rows, p, exemplar);
 }
@@ -251,7 +251,7 @@ void fl_target_temporal_pyramid(FlTarget *target, int from)
 {
     for (int l = from + 1; l < target->n_levels; l++) {
         FlTargetLevel *coarse = &target->level[l];
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 8)
         for (int y = 0; y < coarse->height; y++)
             for (int x = 0; x < coarse->width; x++)
                 halve_temporal(&target->level[l - 1], coarse, x, y);
@@ -270,7 +270,7 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
     const int16_t w_ext = quantise_weight(params->w_ext / EXT_UNIT_SQUARED, scale);
     level->rest.c[FL_CH_SHAPE] = quantise_weight(params->w_bound, scale);
     level->rest.c[FL_CH_EXT_PLUS] = level->rest.c[FL_CH_EXT_MINUS] = w_ext;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4096)
     for (size_t p = 0; p < pixels; p++) {
         const float w_temporal = params->w_temp * level->temporal_weight[p];
         const float w = w_texture + w_temporal;
