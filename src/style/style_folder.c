@@ -1,6 +1,7 @@
 #include "style/style_folder.h"
 
 #include "base/alloc.h"
+#include "base/parallel_error.h"
 #include "guides/flow_file.h"
 #include "io/picture_series.h"
 #include "io/png.h"
@@ -81,6 +82,26 @@ static FlPicture *read_picture(const char *path, GError **error)
     return picture;
 }
 
+typedef void (*StorePicture)(FlStyle *style, int frame, const FlPicture *picture);
+
+/* Stores the pictures of a series from `first` on, read side by side; the error is that of the
+ * first that fails. */
+static bool read_pictures(FlStyle *style, const FlSeries *series, int first, const char *like,
+                          StorePicture store, GError **error)
+{
+    GError *failure = NULL;
+#pragma omp parallel for ordered schedule(static, 1)
+    for (int i = first; i < series->n; i++) {
+        GError *reason = NULL;
+        g_autoptr(FlPicture) picture = read_picture(series->path[i], &reason);
+        if (picture && check_size(picture, style, series->path[i], like, &reason))
+            store(style, i, picture);
+#pragma omp ordered
+        fl_parallel_error_keep(&failure, reason);
+    }
+    return fl_parallel_error_tell(error, failure);
+}
+
 static FlSeries *read_frames(FlStyle *style, GError **error)
 {
     g_autofree char *folder = g_build_filename(style->path, "frames", NULL);
@@ -89,14 +110,13 @@ static FlSeries *read_frames(FlStyle *style, GError **error)
         return NULL;
     }
     g_autoptr(FlSeries) series = only_series(folder, ".png", error);
-    for (int i = 0; series && i < series->n; i++) {
-        g_autoptr(FlPicture) picture = read_picture(series->path[i], error);
-        if (!picture || (i == 0 && !fl_style_allocate(style, picture, series->n, error)) ||
-            !check_size(picture, style, series->path[i], series->path[0], error))
-            return NULL;
-        fl_style_store_frame(style, i, picture);
-    }
-    return g_steal_pointer(&series);
+    g_autoptr(FlPicture) first = series ? read_picture(series->path[0], error) : NULL;
+    if (!first || !fl_style_allocate(style, first, series->n, error))
+        return NULL;
+    fl_style_store_frame(style, 0, first);
+    return read_pictures(style, series, 1, series->path[0], fl_style_store_frame, error)
+               ? g_steal_pointer(&series)
+               : NULL;
 }
 
 static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frames, GError **error)
@@ -110,14 +130,8 @@ static bool read_masks(FlStyle *style, const char *folder, const FlSeries *frame
                     series->n, frames->n);
         return false;
     }
-    for (int i = 0; i < series->n; i++) {
-        g_autoptr(FlPicture) picture = read_picture(series->path[i], error);
-        if (!picture || !check_size(picture, style, series->path[i], frames->path[0], error))
-            return false;
-        fl_style_store_mask(style, i, picture);
-    }
     style->guessed &= ~(unsigned)FL_GUESS_MASK;
-    return true;
+    return read_pictures(style, series, 0, frames->path[0], fl_style_store_mask, error);
 }
 
 /* The masks, by priority: files, the frames' alpha, the difference from the paper. */
