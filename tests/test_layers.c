@@ -281,7 +281,7 @@ static void layers_packed_in_turn_are_the_same_picture(void)
         fl_layers_compose(layers, 7, &below, W, H, false, out);
         g_assert_cmpmem(out, sizeof out, expected, sizeof expected);
         for (int k = 0; k < 7; k++)
-            fl_layer_runs_clear(&layers[k].runs);
+            fl_pixel_runs_clear(&layers[k].runs);
     }
 }
 

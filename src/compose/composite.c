@@ -194,7 +194,7 @@ static void clear_layer(FlLayer *layer)
     fl_area_clear(&layer->area);
     free(layer->rgba);
     free(layer->knockout);
-    fl_layer_runs_clear(&layer->runs);
+    fl_pixel_runs_clear(&layer->runs);
     if (layer->owns_coverage)
         free((uint8_t *)layer->coverage);
     *layer = (FlLayer){0};
@@ -273,12 +273,11 @@ static bool fill_some(Stack *stack, int first, int end, GError **error)
     return fl_schedule_run(items, end - first, fill_one, stack, error);
 }
 
-/* Whether all layers are needed at once: to be stored, or since some get their colours from what
- * lies below them. */
+/* Whether all layers are needed at once, since some get their colours from what lies below them. */
 static bool needs_all(const Stack *stack)
 {
     const FlComposeInput *input = stack->input;
-    bool all = input->layers_apart;
+    bool all = false;
     for (int k = 0; k < stack->composite->n_layers && !all; k++) {
         const FlDraw *draw = &stack->composite->draws->draw[stack->draw[k]];
         const int p = input->painted_of[draw->region];
@@ -286,6 +285,20 @@ static bool needs_all(const Stack *stack)
               (p >= 0 && input->painted[p]->settings->stacking == FL_STACKING_GLAZE);
     }
     return all;
+}
+
+/* Keeps what shows of layers, side by side. */
+static bool pack_some(FlLayer *layers, int n, GError **error)
+{
+    GError *first = NULL;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < n; k++) {
+        GError *failure = NULL;
+        if (!fl_layer_pack(&layers[k], &failure))
+            fl_parallel_error_keep(&first, failure);
+        g_clear_pointer(&layers[k].knockout, free);
+    }
+    return fl_parallel_error_tell(error, first);
 }
 
 static bool resolve_all(Stack *stack, GError **error)
@@ -297,7 +310,8 @@ static bool resolve_all(Stack *stack, GError **error)
     memcpy(params.paper, input->background->paper, 3);
     return fill_some(stack, 0, n, error) &&
            fl_underlay_fade(layers, n, input->width, input->height, error) &&
-           fl_layers_resolve(layers, n, input->width, input->height, &params, error);
+           fl_layers_resolve(layers, n, input->width, input->height, &params, error) &&
+           pack_some(layers, n, error);
 }
 
 #define PAGES_AT_ONCE 2 // pages of layers that are not packed yet
@@ -313,21 +327,7 @@ static int first_of_batch(const Stack *stack, int end)
     return first;
 }
 
-/* Packs layers side by side. */
-static bool pack_some(FlLayer *layers, int n, GError **error)
-{
-    GError *first = NULL;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int k = 0; k < n; k++) {
-        GError *failure = NULL;
-        if (!fl_layer_pack(&layers[k], &failure))
-            fl_parallel_error_keep(&first, failure);
-        g_clear_pointer(&layers[k].knockout, free);
-    }
-    return fl_parallel_error_tell(error, first);
-}
-
-/* The same some layers at a time, top first; of each only what shows is kept. */
+/* The same some layers at a time, top first. */
 static bool resolve_in_turn(Stack *stack, GError **error)
 {
     const int width = stack->input->width, height = stack->input->height;

@@ -72,64 +72,11 @@ void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above)
         grow_area(layer, above);
 }
 
-#define GAP_PX 16 // pixels without alpha that end a run
-
-/** The next run of a row's pixels from column x on; no pixels: there is none. */
-static FlColumns next_run(const uint8_t *rgba, int x, int end)
-{
-    while (x < end && rgba[4 * x + 3] == 0)
-        x++;
-    int last = x;
-    for (int at = x; at < end && at < last + GAP_PX; at++)
-        if (rgba[4 * at + 3] > 0)
-            last = at + 1;
-    return (FlColumns){x, last};
-}
-
-/** Counts the runs of all rows and their pixels; keeps them where there is room. */
-static void find_runs(const FlLayer *layer, FlLayerRuns *runs, size_t *n, size_t *pixels)
-{
-    const FlRect box = layer->area.box;
-    *n = *pixels = 0;
-    for (int y = 0; y < box.height; y++) {
-        const FlColumns span = fl_area_row(&layer->area, y);
-        const uint8_t *row = layer->rgba + 4 * (size_t)y * (size_t)box.width;
-        FlColumns run = next_run(row, span.first, span.last);
-        runs->first[y] = *n;
-        for (; run.first < run.last; run = next_run(row, run.last, span.last)) {
-            const size_t length = (size_t)(run.last - run.first);
-            if (runs->run) {
-                runs->run[*n] = (FlLayerRun){run, *pixels};
-                memcpy(runs->rgba + 4 * *pixels, row + 4 * (size_t)run.first, 4 * length);
-            }
-            ++*n, *pixels += length;
-        }
-    }
-    runs->first[box.height] = *n;
-}
-
 bool fl_layer_pack(FlLayer *layer, GError **error)
 {
-    size_t n, pixels;
-    FlLayerRuns *runs = &layer->runs;
-    if (!(runs->first =
-              fl_alloc((size_t)layer->area.box.height + 1, sizeof *runs->first, "a layer", error)))
-        return false;
-    find_runs(layer, runs, &n, &pixels);
-    if (!(runs->rgba = fl_alloc_unset(pixels, 4, "a layer", error)) ||
-        !(runs->run = fl_alloc_unset(n, sizeof *runs->run, "a layer", error)))
-        return false;
-    find_runs(layer, runs, &n, &pixels);
+    const bool packed = fl_pixel_runs_init(&layer->runs, &layer->area, layer->rgba, error);
     g_clear_pointer(&layer->rgba, free);
-    return true;
-}
-
-void fl_layer_runs_clear(FlLayerRuns *runs)
-{
-    free(runs->first);
-    free(runs->run);
-    free(runs->rgba);
-    *runs = (FlLayerRuns){0};
+    return packed;
 }
 
 /** A blended pixel: values times alpha, and 65535 times alpha. */
@@ -184,11 +131,11 @@ static int32_t sum_value(const Sum *sum, int channel)
 }
 
 /** Blends row y of a packed layer whose box begins at column x. */
-static void sum_runs(const FlLayerRuns *runs, const FlScale *scale, int y, int x,
+static void sum_runs(const FlPixelRuns *runs, const FlScale *scale, int y, int x,
                      const FlSums *sums)
 {
     for (size_t r = runs->first[y]; r < runs->first[y + 1]; r++) {
-        const FlLayerRun *run = &runs->run[r];
+        const FlPixelRun *run = &runs->run[r];
         const FlSums below = sums_from(sums, x + run->columns.first);
         sum_over(&below, scale, runs->rgba + 4 * run->at, run->columns.last - run->columns.first);
     }

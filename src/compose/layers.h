@@ -3,24 +3,11 @@
 #define FLUIDY_COMPOSE_LAYERS_H
 
 #include "base/blend_mode.h"
-#include "base/rect.h"
+#include "base/pixel_runs.h"
 #include "params/region_settings.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-/** Pixels of a row of a layer's box. */
-typedef struct FlLayerRun {
-    FlColumns columns;
-    size_t at; // where they begin, in pixels
-} FlLayerRun;
-
-/** A layer as fl_layers_compose() needs it: pixels that show, row by row. */
-typedef struct FlLayerRuns {
-    size_t *first; // the first run of each row, and behind them their number; NULL: not packed
-    FlLayerRun *run;
-    uint8_t *rgba;
-} FlLayerRuns;
 
 /** One layer; in arrays the bottom one comes first. */
 typedef struct FlLayer {
@@ -32,7 +19,7 @@ typedef struct FlLayer {
                              // where its paint has body only; NULL: wherever its shape is
     uint8_t *rgba;       // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by
                          // the caller; NULL if it is packed
-    FlLayerRuns runs;    // of a packed one, owned by the caller as well
+    FlPixelRuns runs;    // of a packed one, owned by the caller as well
     bool sheer;          // drawn by hand: what lies below is seen through its grain
     uint8_t alpha;       // opacity of the layer, 255 opaque
     FlStacking stacking; // a layer that is mixed hides nothing, whatever this says
@@ -79,7 +66,6 @@ void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above);
 /** Keeps only those pixels of a layer that has been resolved whose alpha is not 0: most of a stack
  * are hidden. */
 bool fl_layer_pack(FlLayer *layer, GError **error);
-void fl_layer_runs_clear(FlLayerRuns *runs);
 
 /** What lies below the layers: a picture of the frame's size, or one colour; alpha 0: nothing. */
 typedef struct FlBackdrop {

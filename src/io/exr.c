@@ -68,6 +68,11 @@ static FlColumns filled_columns(const Layer *layer, int y)
 {
     if (y < layer->y || y >= layer->y + layer->height)
         return (FlColumns){0, 0};
+    if (layer->runs) {
+        const FlColumns filled = fl_pixel_runs_filled(layer->runs, y - layer->y);
+        return filled.last == 0 ? filled
+                                : (FlColumns){layer->x + filled.first, layer->x + filled.last};
+    }
     const uint8_t *rgba = layer->rgba + (size_t)(y - layer->y) * (size_t)layer->width * 4;
     int first = 0, last = layer->width;
     while (first < last && rgba[4 * first + 3] == 0)
@@ -205,20 +210,41 @@ static bool find_filled(Rows *rows, const Writer *writer)
     return SPARSE_SHARE * filled < all;
 }
 
-/** Adds the low or the high bytes of a channel's row. */
+/** Adds the low or the high bytes of n pixels of a channel. */
+static void put_pixels(Rows *rows, const uint8_t *rgba, int n, int component, bool high)
+{
+    for (int x = 0; x < n; x++, rgba += 4)
+        rows->bytes[x] = bytes_of[high][rgba[3]][component == 3 ? 255 : rgba[component]];
+    fl_exr_chunk_put(&rows->chunk, rows->bytes, (size_t)n);
+}
+
+/** Likewise those of a row of runs, up to the last one. */
+static void put_runs(Rows *rows, const Layer *layer, int y, int component, bool high)
+{
+    const FlPixelRuns *runs = layer->runs;
+    int at = 0;
+    for (size_t k = runs->first[y]; k < runs->first[y + 1]; k++) {
+        const FlColumns run = runs->run[k].columns;
+        fl_exr_chunk_blank(&rows->chunk, (size_t)(layer->x + run.first - at));
+        put_pixels(rows, runs->rgba + 4 * runs->run[k].at, run.last - run.first, component, high);
+        at = layer->x + run.last;
+    }
+}
+
+/** Likewise those of a channel's row. */
 static void put_row(Rows *rows, const Writer *writer, int r, int c, bool high)
 {
     const FlColumns filled = rows->filled[r * writer->n_channels + c];
     const Layer *layer = writer->layer[c];
-    const int n = filled.last - filled.first, component = writer->component[c];
-    fl_exr_chunk_blank(&rows->chunk, (size_t)filled.first);
-    if (n > 0) {
-        const uint8_t *rgba = layer->rgba + ((size_t)(rows->y + r - layer->y) * layer->width +
-                                             (size_t)(filled.first - layer->x)) *
-                                                4;
-        for (int x = 0; x < n; x++, rgba += 4)
-            rows->bytes[x] = bytes_of[high][rgba[3]][component == 3 ? 255 : rgba[component]];
-        fl_exr_chunk_put(&rows->chunk, rows->bytes, (size_t)n);
+    const int n = filled.last - filled.first, y = rows->y + r - layer->y;
+    if (n > 0 && layer->runs) {
+        put_runs(rows, layer, y, writer->component[c], high);
+    } else if (n > 0) {
+        const uint8_t *rgba =
+            layer->rgba +
+            ((size_t)y * (size_t)layer->width + (size_t)(filled.first - layer->x)) * 4;
+        fl_exr_chunk_blank(&rows->chunk, (size_t)filled.first);
+        put_pixels(rows, rgba, n, writer->component[c], high);
     }
     fl_exr_chunk_blank(&rows->chunk, (size_t)(writer->width - filled.last));
 }
@@ -269,7 +295,8 @@ static bool put_rows(Writer *writer, GError **error)
 
 static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *frame, GError **error)
 {
-    const Layer whole = {"", 0, 0, writer->width, writer->height, frame->rgba};
+    const Layer whole = {
+        .name = "", .width = writer->width, .height = writer->height, .rgba = frame->rgba};
     exr_context_initializer_t context = EXR_DEFAULT_CONTEXT_INITIALIZER;
     context.user_data = file;
     context.write_fn = write_bytes;

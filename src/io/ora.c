@@ -56,12 +56,17 @@ static bool add_text(Archive *archive, const char *name, const char *text)
     return archive_add(archive, name, g_bytes_new(text, strlen(text)));
 }
 
+static bool add_png(Archive *archive, const char *name, const FlPng *png)
+{
+    GBytes *bytes = fl_png_encode(png);
+    return bytes && archive_add(archive, name, bytes);
+}
+
 static bool add_picture(Archive *archive, const char *name, const uint8_t *rgba, int width,
                         int height, bool fast)
 {
     const FlPng png = {.width = width, .height = height, .rgba = rgba, .fast = fast};
-    GBytes *bytes = fl_png_encode(&png);
-    return bytes && archive_add(archive, name, bytes);
+    return add_png(archive, name, &png);
 }
 
 /** The frame at most THUMBNAIL_PX wide and high: every n-th pixel will do. */
@@ -141,8 +146,14 @@ static bool add_part(Archive *archive, const char *name, const Part *part, bool 
     const FlSinkLayer *layer = part->layer;
     if (layer->width == 0 || layer->height == 0)
         return add_picture(archive, name, clear, 1, 1, fast);
-    if (!layer->multiply)
-        return add_picture(archive, name, layer->rgba, layer->width, layer->height, fast);
+    if (!layer->multiply) {
+        const FlPng png = {.width = layer->width,
+                           .height = layer->height,
+                           .rgba = layer->rgba,
+                           .runs = layer->runs,
+                           .fast = fast};
+        return add_png(archive, name, &png);
+    }
     const size_t values = 4 * (size_t)layer->width * (size_t)layer->height;
     g_autofree uint8_t *rgba = g_malloc(values);
     for (size_t i = 0; i < values; i++)

@@ -102,7 +102,10 @@ static void pack_row16(const uint16_t *rgba, int width, int channels, uint8_t *r
 static bool is_blank(const FlPng *picture, int y)
 {
     const FlRect *filled = picture->filled;
-    return filled && (y < filled->y || y >= filled->y + filled->height);
+    if (filled && (y < filled->y || y >= filled->y + filled->height))
+        return true;
+    return picture->runs &&
+           fl_pixel_runs_filled(picture->runs, filled ? y - filled->y : y).last == 0;
 }
 
 /** Row y as it is stored. */
@@ -110,11 +113,14 @@ static void pack_row(const FlPng *picture, int y, uint8_t *out)
 {
     const size_t first = (size_t)y * picture->width * 4;
     const FlRect *filled = picture->filled;
-    if (filled)
+    if (filled || picture->runs)
         memset(out, 0, picture->width * pixel_bytes(picture));
     if (is_blank(picture, y))
         return;
-    if (filled)
+    if (picture->runs)
+        fl_pixel_runs_copy(picture->runs, filled ? y - filled->y : y,
+                           out + (filled ? (size_t)filled->x * 4 : 0));
+    else if (filled)
         pack_row8(picture->rgba + (size_t)(y - filled->y) * filled->width * 4, filled->width, 4,
                   out + (size_t)filled->x * 4);
     else if (picture->rgba16)

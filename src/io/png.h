@@ -3,14 +3,15 @@
 #define FLUIDY_IO_PNG_H
 
 #include "base/picture.h"
-#include "base/rect.h"
+#include "base/pixel_runs.h"
 #include <stdbool.h>
 
-/** A picture to be written as PNG; one of rgba and rgba16 is set. */
+/** A picture to be written as PNG; one of rgba, runs and rgba16 is set. */
 typedef struct FlPng {
     int width, height;       // pixels, >= 1
     const uint8_t *rgba;     // width * height * 4 straight sRGBA, 8 bits a channel
-    const FlRect *filled;    // the part that rgba is of, in whole; the rest is clear; NULL: all
+    const FlPixelRuns *runs; // the same as runs
+    const FlRect *filled;    // the part that rgba or runs are of; the rest is clear; NULL: all
     const uint16_t *rgba16;  // the same, 16 bits, native byte order
     bool opaque;             // store no alpha
     bool fast;               // deflate at level 1 instead of 4

@@ -2,6 +2,7 @@
 #ifndef FLUIDY_IO_SINK_H
 #define FLUIDY_IO_SINK_H
 
+#include "base/pixel_runs.h"
 #include "io/child_process.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
@@ -13,7 +14,8 @@
 typedef struct FlSinkLayer {
     const char *name;
     int x, y, width, height; // its place in the frame
-    const uint8_t *rgba;     // width * height * 4
+    const uint8_t *rgba;     // width * height * 4; NULL: it is `runs`
+    const FlPixelRuns *runs; // of its rows; NULL: it is `rgba`
     bool multiply;           // what is below is multiplied by it, where FL_SINK_ONE stands for one
 } FlSinkLayer;
 

@@ -10,12 +10,12 @@
 #define GROUND "paper_ground"
 
 /* Writes a layer in the whole frame's size, so that any program can stack them. */
-static bool write_layer(const FlFrameWriter *writer, const uint8_t *rgba, const FlRect *box,
-                        const char *name, int frame, GError **error)
+static bool write_layer(const FlFrameWriter *writer, FlPng png, const char *name, int frame,
+                        GError **error)
 {
     const FlPlan *plan = writer->plan;
     const int number = fl_drawing_number(plan->drawing, frame);
-    const FlPng png = {.width = plan->width, .height = plan->height, .rgba = rgba, .filled = box};
+    png.width = plan->width, png.height = plan->height;
     g_autofree char *path = fl_output_name(plan->options.layers, number, name, error);
     return path && (fl_resume_keeps(writer->resume, path) ||
                     fl_png_save(&png, path, fl_resume_replaces(writer->resume, frame), error));
@@ -30,14 +30,14 @@ static bool write_layers(const FlFrameWriter *writer, const FlComposite *composi
     for (int k = 0; k < composite->n_layers; k++) {
         const FlLayer *layer = &composite->layers[k];
         GError *failure = NULL;
-        if (!write_layer(writer, layer->rgba, &layer->area.box, composite->names[k], frame,
-                         &failure))
+        if (!write_layer(writer, (FlPng){.runs = &layer->runs, .filled = &layer->area.box},
+                         composite->names[k], frame, &failure))
             fl_parallel_error_keep(&first, failure);
     }
     if (!fl_parallel_error_tell(error, first))
         return false;
     return !composite->sheet || fl_paper_sheet_since(writer->paper, frame) != frame ||
-           write_layer(writer, composite->sheet, NULL, SHEET, frame, error);
+           write_layer(writer, (FlPng){.rgba = composite->sheet}, SHEET, frame, error);
 }
 
 bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *const *painted,
@@ -65,15 +65,24 @@ static int stack_layers(const FlFrameWriter *writer, const FlComposite *composit
     const int width = writer->plan->width, height = writer->plan->height;
     int n = 0;
     if (composite->ground)
-        layers[n++] = (FlSinkLayer){GROUND, 0, 0, width, height, composite->ground};
+        layers[n++] = (FlSinkLayer){
+            .name = GROUND, .width = width, .height = height, .rgba = composite->ground};
     for (int k = 0; k < composite->n_layers; k++) {
         const FlLayer *from = &composite->layers[k];
         const FlRect box = from->area.box;
-        layers[n++] =
-            (FlSinkLayer){composite->names[k], box.x, box.y, box.width, box.height, from->rgba};
+        layers[n++] = (FlSinkLayer){.name = composite->names[k],
+                                    .x = box.x,
+                                    .y = box.y,
+                                    .width = box.width,
+                                    .height = box.height,
+                                    .runs = &from->runs};
     }
     if (composite->sheet && composite->ground) // frames over nothing are not multiplied
-        layers[n++] = (FlSinkLayer){SHEET, 0, 0, width, height, composite->sheet, true};
+        layers[n++] = (FlSinkLayer){.name = SHEET,
+                                    .width = width,
+                                    .height = height,
+                                    .rgba = composite->sheet,
+                                    .multiply = true};
     return n;
 }
 
