@@ -24,11 +24,18 @@ static FlLayer rectangle(Sheet *sheet, int x, int y, int width, int height)
                      .stacking = FL_STACKING_KNOCKOUT};
 }
 
-static void fade(FlLayer *layers)
+static void fade_in_size(FlLayer *layers, bool half)
 {
     g_autoptr(GError) error = NULL;
-    g_assert_true(fl_underlay_fade(layers, 2, W, H, &error));
+    g_auto(FlUnderlay) above = {0};
+    g_assert_true(fl_underlay_init(&above, W, H, half, &error) &&
+                  fl_underlay_fade_next(&above, layers, 2, &error));
     g_assert_no_error(error);
+}
+
+static void fade(FlLayer *layers)
+{
+    fade_in_size(layers, false);
 }
 
 static void a_lower_shape_shows_through_no_rim_where_both_end_on_one_line(void)
@@ -64,6 +71,20 @@ static void a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays(void
     FlLayer line[2] = {rectangle(&lower, 5, 45, 50, 1), rectangle(&upper, 5, 5, 50, 35)};
     fade(line);
     g_assert_cmpint(lower.rgba[4 * (45 * W + 25) + 3], ==, 255);
+}
+
+/* A row of it is two of the frame; one that is about half covered by both is where both end. */
+static void in_half_the_size_a_row_is_seen_and_an_edge_is_not(void)
+{
+    static Sheet lower, upper;
+    FlLayer layers[2] = {rectangle(&lower, 10, 10, 30, 31), rectangle(&upper, 5, 5, 50, 35)};
+    for (int x = 10; x < 40; x++)
+        lower.coverage[40 * W + x] = 132, upper.coverage[40 * W + x] = 124;
+    fade_in_size(layers, true);
+    g_assert_cmpint(lower.rgba[4 * (39 * W + 25) + 3], <, 40);
+    FlLayer row[2] = {rectangle(&lower, 10, 10, 30, 31), rectangle(&upper, 5, 5, 50, 35)};
+    fade_in_size(row, true);
+    g_assert_cmpint(lower.rgba[4 * (39 * W + 25) + 3], ==, 255);
 }
 
 /* Something black fades to what is the same below it: the picture stays black at every opacity. */
@@ -119,6 +140,7 @@ int main(int argc, char **argv)
     TEST(a_lower_shape_shows_through_no_rim_where_both_end_on_one_line);
     TEST(it_shows_where_it_is_seen_beyond);
     TEST(a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays);
+    TEST(in_half_the_size_a_row_is_seen_and_an_edge_is_not);
     TEST(a_shape_that_fades_over_its_like_never_pales);
     TEST(a_drawing_turned_over_fades_alike);
     return g_test_run();

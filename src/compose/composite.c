@@ -227,15 +227,11 @@ static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **
     return true;
 }
 
-/* In the size of the frame. */
-static bool fill_layer(FlLayer *layer, const Stack *stack, int r, GError **error)
+/* Brings a layer into the size of the frame. */
+static bool double_layer(FlLayer *layer, const FlComposeInput *input, GError **error)
 {
-    const FlComposeInput *input = stack->input;
-    if (!input->half)
-        return fill_film_layer(layer, stack, r, error);
-    FlLayer half;
-    const bool done = fill_film_layer(&half, stack, r, error) &&
-                      fl_layer_double(&half, input->width, input->height, layer, error);
+    FlLayer half = *layer;
+    const bool done = fl_layer_double(&half, input->width, input->height, layer, error);
     clear_layer(&half);
     return done;
 }
@@ -253,7 +249,13 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
 static bool fill_one(void *data, int k, int thread, GError **error)
 {
     const Stack *stack = data;
-    return fill_layer(&stack->composite->layers[k], stack, stack->draw[k], error);
+    return fill_film_layer(&stack->composite->layers[k], stack, stack->draw[k], error);
+}
+
+static bool double_one(void *data, int k, int thread, GError **error)
+{
+    const Stack *stack = data;
+    return double_layer(&stack->composite->layers[k], stack->input, error);
 }
 
 static size_t layer_pixels(const Stack *stack, int k)
@@ -262,7 +264,7 @@ static size_t layer_pixels(const Stack *stack, int k)
 }
 
 /* Layers first … end - 1: small ones side by side, large ones by all threads together. */
-static bool fill_some(Stack *stack, int first, int end, GError **error)
+static bool do_some(Stack *stack, int first, int end, FlItemWork work, GError **error)
 {
     const size_t frame = (size_t)stack->input->width * (size_t)stack->input->height;
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(end - first, 1));
@@ -270,7 +272,25 @@ static bool fill_some(Stack *stack, int first, int end, GError **error)
         const size_t pixels = layer_pixels(stack, k);
         items[k - first] = (FlWorkItem){k, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
     }
-    return fl_schedule_run(items, end - first, fill_one, stack, error);
+    return fl_schedule_run(items, end - first, work, stack, error);
+}
+
+/* Makes layers first … end - 1 and fades them below those above, in the size of the film, then
+ * brings them into that of the frame. */
+static bool make_some(Stack *stack, int first, int end, FlUnderlay *above, GError **error)
+{
+    FlLayer *layers = stack->composite->layers + first;
+    return do_some(stack, first, end, fill_one, error) &&
+           fl_underlay_fade_next(above, layers, end - first, error) &&
+           (!stack->input->half || do_some(stack, first, end, double_one, error));
+}
+
+/* The shapes above the layers of a film. */
+static bool init_underlay(FlUnderlay *above, const Stack *stack, GError **error)
+{
+    const FlDrawing *drawing = stack->input->drawing;
+    return fl_underlay_init(above, fl_drawing_width(drawing), fl_drawing_height(drawing),
+                            stack->input->half, error);
 }
 
 /* Whether all layers are needed at once, since some get their colours from what lies below them. */
@@ -308,8 +328,8 @@ static bool resolve_all(Stack *stack, GError **error)
     const int n = stack->composite->n_layers;
     FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
     memcpy(params.paper, input->background->paper, 3);
-    return fill_some(stack, 0, n, error) &&
-           fl_underlay_fade(layers, n, input->width, input->height, error) &&
+    g_auto(FlUnderlay) underlay = {0};
+    return init_underlay(&underlay, stack, error) && make_some(stack, 0, n, &underlay, error) &&
            fl_layers_resolve(layers, n, input->width, input->height, &params, error) &&
            pack_some(layers, n, error);
 }
@@ -333,14 +353,13 @@ static bool resolve_in_turn(Stack *stack, GError **error)
     const int width = stack->input->width, height = stack->input->height;
     g_auto(FlUnderlay) underlay = {0};
     g_auto(FlLayersAbove) above = {0};
-    if (!fl_underlay_init(&underlay, width, height, error) ||
+    if (!init_underlay(&underlay, stack, error) ||
         !fl_layers_above_init(&above, width, height, stack->input->gap_px, error))
         return false;
     for (int end = stack->composite->n_layers, first; end > 0; end = first) {
         first = first_of_batch(stack, end);
         FlLayer *layers = stack->composite->layers + first;
-        if (!fill_some(stack, first, end, error) ||
-            !fl_underlay_fade_next(&underlay, layers, end - first, error))
+        if (!make_some(stack, first, end, &underlay, error))
             return false;
         for (int k = end - first - 1; k >= 0; k--)
             fl_layer_occlude(&layers[k], &above);

@@ -10,12 +10,14 @@
 #define CORNER 7
 #define FAR 30000
 #define BESIDE_PX 3 // a sliver farther from what lies above is a shape of its own
-#define PAGES 2     // of layers that are faded side by side
+#define BESIDE_HALF_PX 2
+#define PAGES 2 // of layers that are faded side by side
 
 /** A layer that fades, with some room around its box. */
 typedef struct Part {
     FlLayer *layer;
     FlRect box;
+    bool half;
     uint8_t *over; // how far what covers the pixel from above hides, 0..255; 0: nothing does
     uint8_t *seen; // 1: the layer is seen
 } Part;
@@ -27,10 +29,12 @@ static void part_clear(Part *part)
     *part = (Part){0};
 }
 
-static bool part_init(Part *part, FlLayer *layer, int width, int height, GError **error)
+static bool part_init(Part *part, FlLayer *layer, const FlUnderlay *above, GError **error)
 {
-    const FlRect page = {0, 0, width, height};
-    *part = (Part){.layer = layer, .box = fl_rect_grown(layer->area.box, MARGIN_PX, page)};
+    const FlRect page = {0, 0, above->width, above->height};
+    *part = (Part){.layer = layer,
+                   .box = fl_rect_grown(layer->area.box, MARGIN_PX, page),
+                   .half = above->half};
     const size_t n = fl_rect_pixels(part->box);
     return (part->over = fl_alloc_unset(n, 1, "a matte", error)) &&
            (part->seen = fl_alloc_unset(n, 1, "a matte", error));
@@ -149,9 +153,13 @@ static void mark_pixels(Part *part, const FlLayer *layer, const FlUnderlay *abov
         const size_t p = (size_t)(own.y + y - box.y) * (size_t)box.width + (size_t)(own.x - box.x);
         const FlColumns span = fl_area_row(&layer->area, y);
         const uint8_t *over = part->over + p;
+        const uint8_t *covered =
+            above->coverage + (size_t)(own.y + y) * (size_t)above->width + (size_t)own.x;
         uint8_t *restrict seen = part->seen + p;
-        for (int x = span.first; x < span.last; x++)
-            seen[x] = (coverage[x] >= SHOWN) & (over[x] == 0);
+        for (int x = span.first; x < span.last; x++) {
+            const int most = part->half ? coverage[x] - covered[x] : coverage[x];
+            seen[x] = (most >= SHOWN) & (over[x] == 0);
+        }
     }
 }
 
@@ -171,19 +179,30 @@ static void clear_blocks(const uint8_t *block, int width, int16_t *restrict row)
         row[x] = block[x - 1] ? 0 : row[x];
 }
 
-/** Distances out, and to blocks of 2x2 pixels in which the layer is seen: not to slivers. */
-static void find_ways(const Part *part, const Ways *ways)
+/** Clears the distances of the pixels of blocks of 2x2 in which the layer is seen. */
+static void clear_seen(const Part *part, int16_t *to_seen)
 {
     const int w = part->box.width, h = part->box.height;
-    for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
-        ways->to_open[p] = part->over[p] ? FAR : 0, ways->to_seen[p] = FAR;
     g_autofree uint8_t *block = g_malloc((size_t)w);
     for (int y = 0; y + 1 < h; y++) {
         const size_t p = (size_t)y * (size_t)w, q = p + (size_t)w;
         mark_blocks(part->seen + p, part->seen + q, w, block);
-        clear_blocks(block, w, ways->to_seen + p);
-        clear_blocks(block, w, ways->to_seen + q);
+        clear_blocks(block, w, to_seen + p);
+        clear_blocks(block, w, to_seen + q);
     }
+}
+
+/** Distances out, and to where more of the layer is seen than a sliver. */
+static void find_ways(const Part *part, const Ways *ways)
+{
+    const int w = part->box.width, h = part->box.height;
+    const uint8_t is_block = part->half; // will be one of 2x2
+    for (size_t p = 0; p < (size_t)w * (size_t)h; p++) {
+        ways->to_open[p] = part->over[p] ? FAR : 0;
+        ways->to_seen[p] = is_block & part->seen[p] ? 0 : FAR;
+    }
+    if (!is_block)
+        clear_seen(part, ways->to_seen);
     measure(ways->to_open, w, h);
     measure(ways->to_seen, w, h);
 }
@@ -195,25 +214,31 @@ static void raise_by(uint8_t *value, int n, int reach)
         value[x] = MAX(value[x], value[x + reach]);
 }
 
+static int beside_px(const Part *part)
+{
+    return part->half ? BESIDE_HALF_PX : BESIDE_PX;
+}
+
 /**
- * How far what is above hides each pixel of a row, or where nothing is, at most within BESIDE_PX.
- * hides has 2 * BESIDE_PX more than the row.
+ * How far what is above hides each pixel of a row, or where nothing is, at most within beside_px().
+ * hides has twice that more than the row.
  */
 static void find_hides(const Part *part, int y, uint8_t *hides)
 {
-    const int width = part->box.width, padded = width + 2 * BESIDE_PX;
-    const int last = MIN(y + BESIDE_PX, part->box.height - 1);
+    const int beside = beside_px(part), window = 2 * beside + 1;
+    const int width = part->box.width, padded = width + 2 * beside;
+    const int last = MIN(y + beside, part->box.height - 1);
     memset(hides, 0, (size_t)padded);
-    for (int ny = MAX(y - BESIDE_PX, 0); ny <= last; ny++) {
+    for (int ny = MAX(y - beside, 0); ny <= last; ny++) {
         const uint8_t *over = part->over + (size_t)ny * (size_t)width;
-        uint8_t *restrict own = hides + BESIDE_PX;
+        uint8_t *restrict own = hides + beside;
         for (int x = 0; x < width; x++)
             own[x] = MAX(own[x], over[x]);
     }
-    G_STATIC_ASSERT(BESIDE_PX == 3);
-    raise_by(hides, padded - 1, 1); // of two, four and then seven
-    raise_by(hides, padded - 3, 2);
-    raise_by(hides, width, BESIDE_PX);
+    int size = 1; // of the windows that hides are of
+    for (int left = padded; 2 * size <= window; size *= 2)
+        raise_by(hides, left -= size, size);
+    raise_by(hides, width, window - size);
     const uint8_t *over = part->over + (size_t)y * (size_t)width;
     for (int x = 0; x < width; x++)
         hides[x] = over[x] ? over[x] : hides[x];
@@ -221,9 +246,10 @@ static void find_hides(const Part *part, int y, uint8_t *hides)
 
 /** How much of the layer stays, 0..255: (2.5 out + 6 - to) / (out + 4), in pixels, where what is
  * above hides all. */
-static int kept_at(const Ways *ways, size_t p, int hides)
+static int kept_at(const Part *part, const Ways *ways, size_t p, int hides)
 {
-    const int out = ways->to_open[p], to = ways->to_seen[p];
+    const int px = part->half ? 2 : 1;
+    const int out = px * ways->to_open[p], to = px * ways->to_seen[p];
     const int share = 5 * out + 12 * SIDE - 2 * to, whole = 2 * (out + 4 * SIDE);
     if (share >= whole) // nearly everywhere: without the division
         return 255;
@@ -244,7 +270,7 @@ static void fade_row(const Part *part, const Ways *ways, int y, const uint8_t *h
          run = fl_next_run(hides, run.last, span.last))
         for (int x = run.first; x < run.last; x++) {
             const size_t p = row + (size_t)x;
-            const int keep = kept_at(ways, of_part + (size_t)x, hides[x]);
+            const int keep = kept_at(part, ways, of_part + (size_t)x, hides[x]);
             if (keep == 255)
                 continue;
             layer->rgba[4 * p + 3] = (uint8_t)((layer->rgba[4 * p + 3] * keep + 127) / 255);
@@ -260,7 +286,7 @@ static bool fade(const Part *part, GError **error)
         return false;
     find_ways(part, &ways);
     const FlRect own = part->layer->area.box;
-    g_autofree uint8_t *hides = g_malloc((size_t)(part->box.width + 2 * BESIDE_PX));
+    g_autofree uint8_t *hides = g_malloc((size_t)(part->box.width + 2 * beside_px(part)));
     for (int y = 0; y < own.height; y++) {
         find_hides(part, own.y + y - part->box.y, hides);
         fade_row(part, &ways, y, hides + (own.x - part->box.x));
@@ -294,10 +320,10 @@ static void add_above(const FlLayer *layer, const FlUnderlay *above)
     }
 }
 
-bool fl_underlay_init(FlUnderlay *above, int width, int height, GError **error)
+bool fl_underlay_init(FlUnderlay *above, int width, int height, bool half, GError **error)
 {
     const size_t pixels = (size_t)width * (size_t)height;
-    *above = (FlUnderlay){.width = width, .height = height};
+    *above = (FlUnderlay){.width = width, .height = height, .half = half};
     return (above->coverage = fl_alloc(pixels, 1, "a matte", error)) &&
            (above->hides = fl_alloc(pixels, 1, "a matte", error));
 }
@@ -314,7 +340,7 @@ static bool mark_next(FlUnderlay *above, FlLayer *layer, Part *parts, int *n, GE
     const bool knocks = layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
     if (layer->knockout && knocks && is_below(layer, above)) {
         Part *part = &parts[(*n)++];
-        if (!part_init(part, layer, above->width, above->height, error))
+        if (!part_init(part, layer, above, error))
             return false;
         mark_pixels(part, layer, above);
     }
@@ -361,11 +387,4 @@ bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layers, int n, GError **e
             part_clear(&parts[k]);
     }
     return done;
-}
-
-bool fl_underlay_fade(FlLayer *layers, int n, int width, int height, GError **error)
-{
-    g_auto(FlUnderlay) above = {0};
-    return fl_underlay_init(&above, width, height, error) &&
-           fl_underlay_fade_next(&above, layers, n, error);
 }
