@@ -60,6 +60,9 @@ static void assert_same(const FlDrawList *a, const FlDrawList *b)
         g_assert_cmpint(a->draw[i].region, ==, b->draw[i].region);
         g_assert_cmpmem(a->draw[i].coverage, n, b->draw[i].coverage,
                         (int)fl_rect_pixels(b->draw[i].area.box));
+        g_assert_cmpint(!a->draw[i].picture, ==, !b->draw[i].picture);
+        if (a->draw[i].picture)
+            g_assert_cmpmem(a->draw[i].picture, 4 * n, b->draw[i].picture, 4 * n);
     }
 }
 
@@ -69,7 +72,7 @@ static void frames_and_outlines_are_those_of_one_process(void)
     for (int frame = 0; film.pool && frame < 2; frame++) {
         size_t n = 0, n_here = 0;
         g_autoptr(FlDrawList) apart = fl_draw_pool_draw(film.pool, frame, NULL, NULL);
-        g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, frame, NULL, NULL);
+        g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, frame, NULL, NULL, NULL);
         g_autoptr(FlOutlines) read = fl_draw_pool_outlines(film.pool, frame, NULL);
         g_autoptr(FlOutlines) read_here = fl_outlines_make(film.drawing, frame, NULL);
         assert_same(apart, here);
@@ -77,6 +80,32 @@ static void frames_and_outlines_are_those_of_one_process(void)
         g_autofree uint8_t *bytes = fl_outlines_pack(read, &n);
         g_autofree uint8_t *bytes_here = fl_outlines_pack(read_here, &n_here);
         g_assert_cmpmem(bytes, (int)n, bytes_here, (int)n_here);
+    }
+}
+
+/* One shape rests while the paint of another, of the same text, changes and a third moves. */
+static void what_rests_is_drawn_once_and_nothing_else(void)
+{
+    g_auto(FlFrameCache) cache = {0};
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int frame = 1; frame <= 4; frame++) {
+        g_autofree char *name = g_strdup_printf("f%d.svg", frame);
+        g_autofree char *text = g_strdup_printf(
+            SVG("<linearGradient id='g'><stop stop-color='#a31'/><stop offset='.%d' "
+                "stop-color='#fff' stop-opacity='0'/></linearGradient>"
+                "<rect x='20' width='12' height='9' fill='#383'/>"
+                "<rect width='12' height='9' fill='url(#g)'/><circle cx='%d' cy='20' r='4'/>"),
+            frame, 5 * frame);
+        g_free(scratch_write(folder, name, text));
+    }
+    const char *const inputs[] = {folder};
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1, .apart = true};
+    g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, NULL);
+    for (int frame = 0; frame < 4; frame++) {
+        g_autoptr(FlDrawList) with = fl_draw_list_make(drawing, frame, NULL, &cache, NULL);
+        g_autoptr(FlDrawList) without = fl_draw_list_make(drawing, frame, NULL, NULL, NULL);
+        g_assert_cmpint(with->n, ==, 3);
+        assert_same(with, without);
     }
 }
 
@@ -109,7 +138,7 @@ static void a_drawing_whose_process_was_killed_is_drawn_by_another(void)
     g_assert_null(fl_draw_pool_draw(film.pool, 0, NULL, &error));
     g_assert_nonnull(strstr(error->message, "was killed"));
     g_autoptr(FlDrawList) again = fl_draw_pool_draw(film.pool, 0, NULL, NULL);
-    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 0, NULL, NULL);
+    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 0, NULL, NULL, NULL);
     assert_same(again, here);
 }
 
@@ -124,7 +153,7 @@ static void once_all_were_drawn_that_is_no_error(void)
     kill(MIN(waiting[0], waiting[1]), SIGKILL);
     g_autoptr(FlOutlines) read = fl_draw_pool_outlines(film.pool, 0, NULL);
     g_autoptr(FlDrawList) again = fl_draw_pool_draw(film.pool, 0, NULL, NULL);
-    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 0, NULL, NULL);
+    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 0, NULL, NULL, NULL);
     g_assert_nonnull(read);
     assert_same(again, here);
     g_assert_cmpint(fl_draw_pool_plain(film.pool), ==, 0);
@@ -152,7 +181,7 @@ static void lines_that_no_hand_can_draw_are_plain_and_counted(void)
     g_assert_cmpint(fl_draw_pool_plain(film.pool), ==, 0);
     fl_draw_pool_insist(film.pool);
     g_autoptr(FlDrawList) plain = fl_draw_pool_draw(film.pool, 1, &hand, NULL);
-    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 1, NULL, NULL);
+    g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 1, NULL, NULL, NULL);
     assert_same(plain, here);
     g_assert_cmpint(fl_draw_pool_plain(film.pool), ==, 1);
 }
@@ -179,7 +208,7 @@ static void and_later_the_frame_before_and_counted_once(void)
     g_free(scratch_write(film.folder, "f2.svg", CRASHES));
     for (int pass = 0; pass < 2; pass++) {
         g_autoptr(FlDrawList) instead = fl_draw_pool_draw(film.pool, 1, NULL, NULL);
-        g_autoptr(FlDrawList) before = fl_draw_list_make(film.drawing, 0, NULL, NULL);
+        g_autoptr(FlDrawList) before = fl_draw_list_make(film.drawing, 0, NULL, NULL, NULL);
         assert_same(instead, before);
     }
     g_assert_cmpint(fl_draw_pool_lost(film.pool), ==, 1);
@@ -296,6 +325,7 @@ int main(int argc, char **argv)
     TEST("and-later-the-frame-before-and-counted-once",
          and_later_the_frame_before_and_counted_once);
     TEST("a-plain-frame-is-drawn-once", a_plain_frame_is_drawn_once);
+    TEST("what-rests-is-drawn-once-and-nothing-else", what_rests_is_drawn_once_and_nothing_else);
     TEST("packed-draws-are-given-back-as-they-were", packed_draws_are_given_back_as_they_were);
     TEST("nothing-is-unpacked-that-the-drawing-cannot-have",
          nothing_is_unpacked_that_the_drawing_cannot_have);

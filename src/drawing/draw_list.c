@@ -1,9 +1,11 @@
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "drawing/draw_cache.h"
 #include "drawing/draw_pool.h"
 #include "drawing/drawing_data.h"
 #include "drawing/hand_line.h"
 #include "drawing/raster.h"
+#include "svg/leaf_digest.h"
 #include <math.h>
 #include <string.h>
 
@@ -79,6 +81,9 @@ typedef struct Stage {
     FlSvg *svg;
     cairo_surface_t *coverage, *picture; // scratch, blank between draws; picture may be NULL
     const FlHand *hand;                  // NULL: plain
+    FlFrameCache *cache;                 // of arrays of one FlDraw; NULL: none
+    size_t cached_bytes;                 // that this frame has kept
+    FlDigest *leaf_digest, *unit_digest; // with a cache
     int index;                           // of the frame
     FlLinePaths **paths;                 // by step, of those that a hand draws; NULL: none
 } Stage;
@@ -93,6 +98,10 @@ static void stage_clear(Stage *stage)
     for (int i = 0; stage->paths && i < stage->frame->n; i++)
         fl_line_paths_free(stage->paths[i]);
     g_free(stage->paths);
+    g_free(stage->leaf_digest);
+    g_free(stage->unit_digest);
+    if (stage->cache)
+        fl_frame_cache_turn(stage->cache);
 }
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Stage, stage_clear)
 
@@ -430,12 +439,79 @@ static bool draw_steps(Stage *stage, const Draw *draw, FlDraw *out, GError **err
     return draw_in(stage, draw, &target, error) && keep_drawn(&target, out, error);
 }
 
+/* ---- what looks as in the frame before ------------------------------------------------------- */
+
+static void cache_stage(Stage *stage, FlFrameCache *cache)
+{
+    const FlLeaves *leaves = fl_svg_leaves(stage->svg);
+    stage->cache = cache;
+    if (!cache)
+        return;
+    stage->leaf_digest = g_new(FlDigest, leaves->leaf->len + 1);
+    stage->unit_digest = g_new(FlDigest, leaves->unit->len + 1);
+    fl_leaf_digests(fl_svg_document(stage->svg), leaves, stage->leaf_digest, stage->unit_digest);
+}
+
+/** Of all that a step is drawn from; unknown with its leaf. */
+static FlDigest digest_of_step(const Stage *stage, const FlStep *step)
+{
+    const FlLeaves *leaves = fl_svg_leaves(stage->svg);
+    const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;
+    const guint index = (guint)(step->leaf >= 0 ? step->leaf : -1 - step->leaf);
+    const uint8_t how[] = {step->part,   step->flat,  step->rgb[0], step->rgb[1],
+                           step->rgb[2], step->alpha, step->drawn,  step->mix};
+    FlDigest digest = {0, 0};
+    if (index < list->len)
+        digest = (step->leaf >= 0 ? stage->leaf_digest : stage->unit_digest)[index];
+    if (!fl_digest_is_known(digest))
+        return digest;
+    fl_digest_add(&digest, how, sizeof how);
+    fl_digest_add(&digest, step->box, sizeof step->box);
+    return digest;
+}
+
+/** Of all that a draw is drawn from; unknown where a hand draws. */
+static FlDigest digest_of_draw(const Stage *stage, const Draw *draw)
+{
+    const FlDrawing *drawing = stage->drawing;
+    const double page[] = {drawing->width, drawing->height, stage->frame->page_width,
+                           stage->frame->page_height};
+    FlDigest digest = {0, 0};
+    if (!stage->cache || has_hand(stage, draw))
+        return digest;
+    fl_digest_add(&digest, page, sizeof page);
+    for (guint i = 0; i < draw->steps->len; i++) {
+        const FlDigest step =
+            digest_of_step(stage, &stage->frame->step[g_array_index(draw->steps, int, i)]);
+        if (!fl_digest_is_known(step))
+            return step;
+        fl_digest_add(&digest, &step, sizeof step);
+    }
+    return digest;
+}
+
+/** Draws it, or copies what was drawn in the frame before. */
+static bool make_draw(Stage *stage, const Draw *draw, FlDraw *out, GError **error)
+{
+    const FlDigest digest = digest_of_draw(stage, draw);
+    const FlDraw *known = stage->cache ? fl_draw_cache_find(stage->cache, digest) : NULL;
+    if (!known)
+        return draw_steps(stage, draw, out, error) &&
+               (!stage->cache ||
+                fl_draw_cache_keep(stage->cache, digest, out, &stage->cached_bytes, error));
+    stage->cached_bytes += fl_draw_bytes(known);
+    const bool copied = fl_draw_copy(known, out, error);
+    out->region = draw->region;
+    return copied;
+}
+
 FlDrawList *fl_draw_list_make(const FlDrawing *drawing, int frame, const FlHand *hand,
-                              GError **error)
+                              FlFrameCache *cache, GError **error)
 {
     g_auto(Stage) stage = {0};
     if (!stage_init(&stage, drawing, frame, error))
         return NULL;
+    cache_stage(&stage, cache);
     if ((stage.hand = hand))
         find_paths(&stage);
     g_autoptr(GArray) draws = draws_of(stage.frame);
@@ -443,7 +519,7 @@ FlDrawList *fl_draw_list_make(const FlDrawing *drawing, int frame, const FlHand 
     out->draw = g_new0(FlDraw, draws->len + 1);
     for (guint r = 0; r < draws->len; r++) {
         out->n++;
-        if (!draw_steps(&stage, &g_array_index(draws, Draw, r), &out->draw[r], error))
+        if (!make_draw(&stage, &g_array_index(draws, Draw, r), &out->draw[r], error))
             return NULL;
     }
     return g_steal_pointer(&out);
@@ -454,83 +530,12 @@ FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const F
 {
     g_assert(frame >= 0 && frame < drawing->sequence->n);
     return drawing->pool ? fl_draw_pool_draw(drawing->pool, frame, hand, error)
-                         : fl_draw_list_make(drawing, frame, hand, error);
+                         : fl_draw_list_make(drawing, frame, hand, NULL, error);
 }
 
 FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error)
 {
     return fl_drawing_draw_by_hand(drawing, frame, NULL, error);
-}
-
-#define HALF 128     // coverage from which on a pixel is inside, FL_INSIDE
-#define SEEN 3       // coverage that is seen
-#define CONTOUR_PX 2 // as wide as coverage rises at a contour
-
-/**
- * Whether a pixel that is less than half covered belongs to a shape that fades, as a glow or a
- * blurred shadow does: it is not at a contour, for all around it on the page is seen.
- */
-static bool fades(const FlDraw *draw, FlRect page, int x, int y)
-{
-    const FlRect box = draw->area.box;
-    const int x0 = MAX(x - CONTOUR_PX, page.x - box.x);
-    const int x1 = MIN(x + CONTOUR_PX, page.x + page.width - 1 - box.x);
-    const int y0 = MAX(y - CONTOUR_PX, page.y - box.y);
-    const int y1 = MIN(y + CONTOUR_PX, page.y + page.height - 1 - box.y);
-    if (x0 < 0 || y0 < 0 || x1 >= box.width || y1 >= box.height)
-        return false;
-    for (int row = y0; row <= y1; row++)
-        for (int column = x0; column <= x1; column++)
-            if (draw->coverage[(size_t)row * (size_t)box.width + (size_t)column] < SEEN)
-                return false;
-    return true;
-}
-
-static bool is_faint(uint8_t coverage)
-{
-    return (uint8_t)(coverage - 1) < HALF - 1;
-}
-
-/** A row over what is below it. Returns: whether some pixel of it is less than half covered. */
-static bool put_over(const uint8_t *from, FlColumns span, uint8_t *restrict to)
-{
-    uint8_t any = 0;
-    for (int x = span.first; x < span.last; x++) {
-        any |= is_faint(from[x]);
-        to[x] = fl_over(from[x], to[x]);
-    }
-    return any;
-}
-
-FlRect fl_draw_list_put_mask(const FlDrawList *draws, int region, int width, int height,
-                             uint8_t *coverage)
-{
-    const FlRect page = {0, 0, width, height};
-    FlRect around = {0, 0, 0, 0};
-    for (int r = 0; r < draws->n; r++) {
-        const FlDraw *draw = &draws->draw[r];
-        const FlRect box = draw->area.box;
-        for (int y = 0; draw->region == region && y < box.height; y++) {
-            const FlColumns span = fl_area_row(&draw->area, y);
-            const uint8_t *from = draw->coverage + (size_t)y * (size_t)box.width;
-            uint8_t *to = coverage + (size_t)(box.y + y) * (size_t)width + (size_t)box.x;
-            if (!put_over(from, span, to))
-                continue;
-            for (int x = span.first; x < span.last; x++)
-                if (is_faint(from[x]) && fades(draw, page, x, y))
-                    to[x] = 255;
-        }
-        if (draw->region == region)
-            around = fl_rect_or(around, box);
-    }
-    return around;
-}
-
-void fl_draw_list_mask(const FlDrawList *draws, int region, int width, int height,
-                       uint8_t *coverage)
-{
-    memset(coverage, 0, (size_t)width * (size_t)height);
-    fl_draw_list_put_mask(draws, region, width, height, coverage);
 }
 
 void fl_draw_clear(FlDraw *draw)

@@ -59,7 +59,8 @@ static bool read_outlines(const FlDrawing *drawing, const FlDrawWorker *worker, 
 }
 
 /** Draws what is asked for and writes it. Returns: false if it cannot be written. */
-static bool draw(const FlDrawing *drawing, const FlDrawWorker *worker, const FlDrawRequest *request)
+static bool draw(const FlDrawing *drawing, const FlDrawWorker *worker, const FlDrawRequest *request,
+                 FlFrameCache *cache)
 {
     const int n = (int)drawing->regions->len;
     const size_t pixels = (size_t)drawing->width * (size_t)drawing->height;
@@ -74,8 +75,8 @@ static bool draw(const FlDrawing *drawing, const FlDrawWorker *worker, const FlD
         (request->has_tooth && !fl_draw_result_take(&given, tooth, pixels)))
         return false;
     g_autoptr(GError) problem = NULL;
-    g_autoptr(FlDrawList) draws =
-        fl_draw_list_make(drawing, request->frame, request->has_hands ? &hand : NULL, &problem);
+    g_autoptr(FlDrawList) draws = fl_draw_list_make(
+        drawing, request->frame, request->has_hands ? &hand : NULL, cache, &problem);
     g_autoptr(GBytes) packed = draws ? fl_draws_pack(draws, &problem) : NULL;
     size_t bytes = 0;
     const uint8_t *data = packed ? g_bytes_get_data(packed, &bytes) : NULL;
@@ -103,6 +104,7 @@ static void confine(const FlDrawing *drawing, const FlDrawWorker *worker)
 G_GNUC_NORETURN static void serve(FlDrawing *drawing, const FlDrawWorker *worker)
 {
     FlDrawRequest request;
+    FlFrameCache cache = {0};
     confine(drawing, worker);
     while (recv(worker->line, &request, sizeof request, MSG_WAITALL) == sizeof request) {
         atomic_store(worker->draws, 1);
@@ -111,7 +113,7 @@ G_GNUC_NORETURN static void serve(FlDrawing *drawing, const FlDrawWorker *worker
         alarm((unsigned)fl_limit(FL_LIMIT_SECONDS));
         const FlDrawReply reply = {.drawn = request.outlines
                                                 ? read_outlines(drawing, worker, request.frame)
-                                                : draw(drawing, worker, &request)};
+                                                : draw(drawing, worker, &request, &cache)};
         alarm(0);
         if (!reply.drawn)
             _exit(1);

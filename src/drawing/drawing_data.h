@@ -2,6 +2,7 @@
 #ifndef FLUIDY_DRAWING_DRAWING_DATA_H
 #define FLUIDY_DRAWING_DRAWING_DATA_H
 
+#include "base/frame_cache.h"
 #include "drawing/drawing.h"
 #include "svg/geometry.h"
 
@@ -34,7 +35,7 @@ void fl_drawing_frame_clear(FlDrawingFrame *frame);
 
 /** fl_drawing_draw_by_hand() in this process. */
 FlDrawList *fl_draw_list_make(const FlDrawing *drawing, int frame, const FlHand *hand,
-                              GError **error);
+                              FlFrameCache *cache, GError **error);
 
 /** Whether a hand, NULL: none, draws anything in a frame. */
 bool fl_frame_is_by_hand(const FlDrawingFrame *frame, const FlHand *hand);

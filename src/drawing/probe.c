@@ -1,5 +1,6 @@
 #include "drawing/probe.h"
 
+#include "svg/leaf_digest.h"
 #include <math.h>
 #include <string.h>
 
@@ -12,20 +13,59 @@ static void probe_clear(void *data)
 {
     FlProbe *probe = data;
     g_free(probe->paint);
-    g_free(probe->kept);
+    g_clear_pointer(&probe->kept, g_bytes_unref);
 }
 
-bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, double page_width, double page_height,
-                         int width, int height, GError **error)
+static GArray *new_probes(void)
 {
-    *f = (FlFrameProbe){.svg = svg, .full_width = width, .full_height = height};
+    GArray *probes = g_array_new(FALSE, FALSE, sizeof(FlProbe));
+    g_array_set_clear_func(probes, probe_clear);
+    return probes;
+}
+
+/** Adds copies of parts, from `first` on. */
+static void add_probes(GArray *probes, const GArray *parts, guint first)
+{
+    for (guint i = first; i < parts->len; i++) {
+        FlProbe copy = g_array_index(parts, FlProbe, i);
+        copy.paint = g_strdup(copy.paint);
+        if (copy.kept)
+            g_bytes_ref(copy.kept);
+        g_array_append_val(probes, copy);
+    }
+}
+
+/** Adds the size of the page to digests that are known. */
+static void add_page(const FlFrameProbe *f, FlDigest *digest, guint n)
+{
+    const double page[] = {f->width, f->height, f->factor, f->full_width, f->full_height};
+    for (guint i = 0; i < n; i++)
+        if (fl_digest_is_known(digest[i]))
+            fl_digest_add(&digest[i], page, sizeof page);
+}
+
+/** Digests what the leaves and units look like on the page. */
+static void digest_leaves(FlFrameProbe *f)
+{
+    const FlLeaves *leaves = fl_svg_leaves(f->svg);
+    f->leaf_digest = g_new(FlDigest, leaves->leaf->len + 1);
+    f->unit_digest = g_new(FlDigest, leaves->unit->len + 1);
+    fl_leaf_digests(fl_svg_document(f->svg), leaves, f->leaf_digest, f->unit_digest);
+    add_page(f, f->leaf_digest, leaves->leaf->len);
+    add_page(f, f->unit_digest, leaves->unit->len);
+}
+
+bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlFrameCache *cache, double page_width,
+                         double page_height, int width, int height, GError **error)
+{
+    *f = (FlFrameProbe){.svg = svg, .cache = cache, .full_width = width, .full_height = height};
     f->factor = MAX(1, (double)MAX(width, height) / PROBE_PX);
     f->width = page_width / f->factor;
     f->height = page_height / f->factor;
     f->all =
         (FlRect){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
-    f->probes = g_array_new(FALSE, FALSE, sizeof(FlProbe));
-    g_array_set_clear_func(f->probes, probe_clear);
+    f->probes = new_probes();
+    digest_leaves(f);
     f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
     f->check = f->coverage ? fl_self_check_new(f->all.width, f->all.height, error) : NULL;
     return f->check != NULL;
@@ -35,6 +75,8 @@ void fl_frame_probe_clear(FlFrameProbe *f)
 {
     if (f->probes)
         g_array_unref(f->probes);
+    g_free(f->leaf_digest);
+    g_free(f->unit_digest);
     fl_svg_free(f->svg);
     if (f->coverage)
         cairo_surface_destroy(f->coverage);
@@ -55,30 +97,37 @@ static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect where
     return drawn;
 }
 
-/** Copies rows between the frame's coverage and what a probe keeps of it. */
-static void copy_kept(const FlFrameProbe *f, const FlProbe *probe, bool back)
-{
-    const FlRect box = probe->kept_box;
-    const size_t stride = (size_t)cairo_image_surface_get_stride(f->coverage);
-    unsigned char *data = cairo_image_surface_get_data(f->coverage);
-    for (int y = 0; y < box.height; y++) {
-        unsigned char *drawn = data + (size_t)(box.y + y) * stride + box.x;
-        uint8_t *kept = probe->kept + (size_t)y * (size_t)box.width;
-        memcpy(back ? drawn : kept, back ? kept : drawn, (size_t)box.width);
-    }
-}
-
 /** Keeps what a part covers, if there is room: it is needed again in stack(). */
 static void keep_cover(FlFrameProbe *f, FlProbe *probe)
 {
-    const size_t bytes = fl_rect_pixels(probe->box);
+    const FlRect box = probe->box;
+    const size_t bytes = fl_rect_pixels(box);
+    const size_t stride = (size_t)cairo_image_surface_get_stride(f->coverage);
+    const unsigned char *data = cairo_image_surface_get_data(f->coverage);
     probe->is_kept = f->kept_bytes + bytes <= MOST_KEPT;
     if (!probe->is_kept)
         return;
     f->kept_bytes += bytes;
-    probe->kept_box = probe->box;
-    probe->kept = g_malloc(bytes);
-    copy_kept(f, probe, false);
+    probe->kept_box = box;
+    uint8_t *kept = g_malloc(bytes);
+    for (int y = 0; y < box.height; y++)
+        memcpy(kept + (size_t)y * (size_t)box.width, data + (size_t)(box.y + y) * stride + box.x,
+               (size_t)box.width);
+    probe->kept = g_bytes_new_take(kept, bytes);
+}
+
+/** Puts what was kept of a part back into the frame's coverage. */
+static void put_kept(FlFrameProbe *f, const FlProbe *probe)
+{
+    const FlRect box = probe->kept_box;
+    const size_t stride = (size_t)cairo_image_surface_get_stride(f->coverage);
+    const uint8_t *kept = probe->kept ? g_bytes_get_data(probe->kept, NULL) : NULL;
+    cairo_surface_flush(f->coverage);
+    unsigned char *data = cairo_image_surface_get_data(f->coverage);
+    for (int y = 0; kept && y < box.height; y++)
+        memcpy(data + (size_t)(box.y + y) * stride + box.x, kept + (size_t)y * (size_t)box.width,
+               (size_t)box.width);
+    cairo_surface_mark_dirty(f->coverage);
 }
 
 /** As cover(), of a part that was covered before. */
@@ -88,9 +137,7 @@ static bool cover_again(FlFrameProbe *f, const FlProbe *probe, FlRect *box, GErr
     const FlRect where = probe->leaf->text ? f->all : probe->box;
     if (!probe->is_kept)
         return cover(f, probe->leaf, probe->found.part, where, box, error);
-    cairo_surface_flush(f->coverage);
-    copy_kept(f, probe, true);
-    cairo_surface_mark_dirty(f->coverage);
+    put_kept(f, probe);
     *box = probe->kept_box;
     return true;
 }
@@ -183,9 +230,29 @@ static float width_of(const FlFrameProbe *f, const FlLeaf *leaf, const FlPainted
     return p->stroke ? p->width * (float)(MAX(f->width, f->height) * f->factor) : 0;
 }
 
+/** Adds the parts of a leaf that looks as one did in the frame before. */
+static bool add_known(FlFrameProbe *f, const FlLeaf *leaf, int index, FlDigest digest)
+{
+    const guint first = f->probes->len;
+    const GArray *parts = fl_frame_cache_find(f->cache, digest);
+    if (!parts)
+        return false;
+    add_probes(f->probes, parts, 0);
+    for (guint i = first; i < f->probes->len; i++) {
+        FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
+        probe->leaf = leaf;
+        probe->found.leaf = index;
+        probe->found.unit = index < 0 ? -index : 0;
+    }
+    return true;
+}
+
 static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
 {
     const guint first = f->probes->len;
+    const FlDigest digest = index < 0 ? f->unit_digest[-1 - index] : f->leaf_digest[index];
+    if (add_known(f, leaf, index, digest))
+        return true;
     FlPainted parts[FL_MOST_PARTS];
     const int n = fl_svg_paint(f->svg, leaf, parts, error);
     bool good = n >= 0;
@@ -216,12 +283,16 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
         }
         if (p->width > 0)
             widen(f, leaf, &probe.box);
-        if (good && probe.box.width > 0 && p->paint.alpha > 0)
-            g_array_append_val(f->probes, probe);
-        else
-            probe_clear(&probe);
+        g_array_append_val(f->probes, probe);
+        if (!good || probe.box.width == 0 || p->paint.alpha == 0)
+            g_array_set_size(f->probes, f->probes->len - 1);
     }
     relate_parts(f->probes, first);
+    if (good && fl_digest_is_known(digest)) {
+        GArray *kept = new_probes();
+        add_probes(kept, f->probes, first);
+        fl_frame_cache_keep(f->cache, digest, kept);
+    }
     return good;
 }
 

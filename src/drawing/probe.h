@@ -2,9 +2,9 @@
 #ifndef FLUIDY_DRAWING_PROBE_H
 #define FLUIDY_DRAWING_PROBE_H
 
+#include "base/frame_cache.h"
 #include "drawing/raster.h"
 #include "drawing/self_check.h"
-#include "drawing/survey.h"
 
 /** A part under construction: as FlSurveyPart, but its strings still belong to the frame. */
 typedef struct FlProbe {
@@ -14,7 +14,7 @@ typedef struct FlProbe {
     FlRect box;      // px of the small picture
     bool is_kept;    // what was drawn is known, and not drawn again
     FlRect kept_box; // of it; may be empty
-    uint8_t *kept;   // its coverage, of kept_box
+    GBytes *kept;    // its coverage, of kept_box; NULL if that is empty
 } FlProbe;
 
 /** What one thread needs for one frame. */
@@ -27,7 +27,9 @@ typedef struct FlFrameProbe {
     int full_width, full_height;
     FlRect all;
     GArray *probes;
-    size_t kept_bytes; // of the probes
+    FlFrameCache *cache;                 // borrowed; arrays of FlProbe
+    FlDigest *leaf_digest, *unit_digest; // of what the leaves and units look like
+    size_t kept_bytes;                   // of the probes
     FlSelfCheck *check;
 } FlFrameProbe;
 
@@ -35,8 +37,8 @@ typedef struct FlFrameProbe {
  * Opens what `svg` shows; the probe owns svg then. The page has page_width * page_height px in a
  * picture of width * height. Clear it with fl_frame_probe_clear(), also after an error.
  */
-bool fl_frame_probe_init(FlFrameProbe *probe, FlSvg *svg, double page_width, double page_height,
-                         int width, int height, GError **error);
+bool fl_frame_probe_init(FlFrameProbe *probe, FlSvg *svg, FlFrameCache *cache, double page_width,
+                         double page_height, int width, int height, GError **error);
 
 /** Finds the parts, bottom up, and draws them over each other for the self-check. */
 bool fl_frame_probe_run(FlFrameProbe *probe, GError **error);

@@ -1,6 +1,7 @@
 #include "drawing/survey.h"
 
 #include "base/limits.h"
+#include "base/schedule.h"
 #include "drawing/probe.h"
 #include "drawing/register_frames.h"
 #include "drawing/watch.h"
@@ -80,6 +81,15 @@ static FlSvg *open_svg(const FlSurvey *survey, int t, FlWarnings *warnings, GErr
     return fl_svg_open(sequence->file[t], sequence->number[t], &options, warnings, error);
 }
 
+static int thread_number(void)
+{
+#ifdef _OPENMP
+    return omp_get_thread_num();
+#else
+    return 0;
+#endif
+}
+
 /** Opens a frame and sets its page in the picture. */
 static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings *warnings,
                        GError **error)
@@ -95,8 +105,9 @@ static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings 
     frame->n_nameless = fl_svg_nameless_groups(svg);
     g_strfreev(frame->files);
     frame->files = copy_of(fl_svg_files(svg));
-    return fl_frame_probe_init(probe, g_steal_pointer(&svg), frame->page_width, frame->page_height,
-                               survey->width, survey->height, error);
+    return fl_frame_probe_init(probe, g_steal_pointer(&svg), &survey->cache[thread_number()],
+                               frame->page_width, frame->page_height, survey->width, survey->height,
+                               error);
 }
 
 /** Draws a frame leaf by leaf and compares it with the file; see fl_self_check_finish(). */
@@ -232,17 +243,8 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, FlWarnings *wa
     return true;
 }
 
-static int thread_number(void)
-{
-#ifdef _OPENMP
-    return omp_get_thread_num();
-#else
-    return 0;
-#endif
-}
-
 /** Probes the frames that are left; false with the error of the first that fails. */
-static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
+static bool scan_each(FlSurvey *survey, FlWarnings *warnings, GError **error)
 {
     bool good = true;
 #pragma omp parallel for ordered schedule(static, 1)
@@ -254,6 +256,7 @@ static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
         const int thread = thread_number();
         fl_watch_tell(survey->watch, thread, t);
         const bool scanned = known || scan_frame(survey, t, &probe, remarks, &reason);
+        fl_frame_cache_turn(&survey->cache[thread]);
         fl_watch_tell(survey->watch, thread, -1);
         if (survey->watch && scanned && !known)
             atomic_fetch_add(&survey->watch->done, 1);
@@ -271,6 +274,17 @@ static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
             good = good && scanned;
         }
     }
+    return good;
+}
+
+static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
+{
+    const int n = fl_schedule_threads();
+    survey->cache = g_new0(FlFrameCache, n);
+    const bool good = scan_each(survey, warnings, error);
+    for (int k = 0; k < n; k++)
+        fl_frame_cache_clear(&survey->cache[k]);
+    g_clear_pointer(&survey->cache, g_free);
     return good;
 }
 

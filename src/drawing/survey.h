@@ -52,6 +52,7 @@ typedef struct FlSurvey {
     double scale;                   // px of the picture per px of the drawing
     int n_frames;
     FlSurveyFrame *frame;
+    struct FlFrameCache *cache; // of each thread
     FlSvg *first;          // the first frame, opened for its size and not probed yet; else NULL
     struct FlWatch *watch; // records what is being read; may be NULL
 } FlSurvey;

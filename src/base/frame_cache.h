@@ -1,0 +1,33 @@
+/* What was made for a frame, for the next one, in which most is the same. */
+#ifndef FLUIDY_BASE_FRAME_CACHE_H
+#define FLUIDY_BASE_FRAME_CACHE_H
+
+#include "base/digest.h"
+#include <glib.h>
+#include <stdbool.h>
+
+/** For one thread; zero is an empty one. */
+typedef struct FlFrameCache {
+    GHashTable *last, *now; // FlDigest -> GArray: of the frame before, and of this one
+} FlFrameCache;
+
+void fl_frame_cache_clear(FlFrameCache *cache);
+
+/** Whether a digest is that of something: nothing is kept for others. */
+static inline bool fl_digest_is_known(FlDigest digest)
+{
+    return digest.a || digest.b;
+}
+
+/** What is kept for a digest, or NULL; the cache's own. */
+const GArray *fl_frame_cache_find(FlFrameCache *cache, FlDigest digest);
+
+/** Keeps things for this frame and the next; the cache owns them then. */
+void fl_frame_cache_keep(FlFrameCache *cache, FlDigest digest, GArray *things);
+
+/** Begins another frame: forgets what this one has neither asked for nor kept. */
+void fl_frame_cache_turn(FlFrameCache *cache);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFrameCache, fl_frame_cache_clear)
+
+#endif

@@ -1,0 +1,182 @@
+#include "svg/leaf_digest.h"
+
+#include "svg/normalise.h"
+#include <string.h>
+
+/** What elements refer to, beside themselves. */
+typedef enum Reach {
+    REACH_NONE,
+    REACH_DEFINITIONS, // what is drawn only when it is referred to
+    REACH_ALL,         // anything in the document
+} Reach;
+
+static Reach farther(Reach a, Reach b)
+{
+    return MAX(a, b);
+}
+
+typedef struct Work {
+    GHashTable *place;    // id -> Place
+    FlDigest definitions; // of REACH_DEFINITIONS
+    FlDigest all;         // of REACH_ALL
+    bool unknown;         // the document has something that is not looked at
+} Work;
+
+/** Where the digest of an element goes. */
+typedef struct Place {
+    FlDigest *digest;
+    const FlLeaf *leaf;
+} Place;
+
+/** Whether an attribute names something elsewhere in the document. */
+static Reach reach_of(const xmlNode *node, const xmlAttr *attribute, const char *value)
+{
+    static const char *const definitions[] = {"linearGradient", "radialGradient", "pattern",
+                                              "filter", NULL};
+    if (xmlStrEqual(attribute->name, (const xmlChar *)"href") && value[0] == '#')
+        return fl_is_one_of(node, definitions) ? REACH_DEFINITIONS : REACH_ALL;
+    return strstr(value, "url(") ? REACH_DEFINITIONS : REACH_NONE;
+}
+
+/** The only text of an attribute; an entity in it is not looked at. */
+static const char *value_of(Work *work, const xmlAttr *attribute)
+{
+    const xmlNode *text = attribute->children;
+    if (!text)
+        return "";
+    work->unknown |= text->type != XML_TEXT_NODE || text->next;
+    return text->content ? (const char *)text->content : "";
+}
+
+static bool is_made_id(const xmlAttr *attribute, const char *value)
+{
+    return xmlStrEqual(attribute->name, (const xmlChar *)"id") && g_str_has_prefix(value, "fl-");
+}
+
+/** Adds an element's name and attributes. Ids made for reading it depend on what is before it. */
+static Reach add_element(Work *work, const xmlNode *node, FlDigest *digest)
+{
+    Reach reach = REACH_NONE;
+    fl_digest_add_text(digest, (const char *)node->name);
+    for (const xmlAttr *a = node->properties; a; a = a->next) {
+        const char *value = value_of(work, a);
+        if (is_made_id(a, value))
+            continue;
+        fl_digest_add_text(digest, (const char *)a->name);
+        fl_digest_add_text(digest, value);
+        reach = farther(reach, reach_of(node, a, value));
+    }
+    return reach;
+}
+
+/** Adds an element with all that is in it. */
+static Reach add_tree(Work *work, const xmlNode *node, FlDigest *digest)
+{
+    Reach reach = add_element(work, node, digest);
+    for (const xmlNode *child = node->children; child; child = child->next) {
+        if (child->type == XML_ELEMENT_NODE)
+            reach = farther(reach, add_tree(work, child, digest));
+        else if (child->type == XML_TEXT_NODE || child->type == XML_CDATA_SECTION_NODE)
+            fl_digest_add_text(digest, (const char *)child->content);
+        work->unknown |= child->type == XML_ENTITY_REF_NODE;
+    }
+    fl_digest_add_text(digest, NULL);
+    return reach;
+}
+
+/** Adds a style sheet. One whose rules look at what is beside an element is not looked at. */
+static Reach add_sheet(Work *work, const xmlNode *node, FlDigest *digest)
+{
+    static const char *const beside[] = {"+",     "~",      ":nth", ":first", ":last",
+                                         ":only", ":empty", ":not", "@import"};
+    g_autoptr(xmlChar) text = xmlNodeGetContent(node);
+    for (size_t k = 0; text && k < G_N_ELEMENTS(beside); k++)
+        work->unknown |= strstr((const char *)text, beside[k]) != NULL;
+    add_tree(work, node, digest);
+    return text && strstr((const char *)text, "url(") ? REACH_DEFINITIONS : REACH_NONE;
+}
+
+/** Digests what is drawn only when it is referred to, and style sheets. */
+static void digest_definitions(Work *work, const xmlNode *node, FlDigest *sheets, Reach *reach)
+{
+    for (const xmlNode *child = node->children; child; child = child->next) {
+        if (child->type != XML_ELEMENT_NODE)
+            continue;
+        if (fl_is(child, "style"))
+            *reach = farther(*reach, add_sheet(work, child, sheets));
+        else if (fl_is_undrawn(child) && add_tree(work, child, &work->definitions) == REACH_ALL)
+            work->definitions = work->all;
+        digest_definitions(work, child, sheets, reach);
+    }
+}
+
+static void add_reached(const Work *work, Reach reach, FlDigest *digest)
+{
+    const FlDigest *reached = reach == REACH_ALL ? &work->all : &work->definitions;
+    if (reach > REACH_NONE)
+        fl_digest_add(digest, reached, sizeof *reached);
+}
+
+static void put_leaf(Work *work, const xmlNode *node, const Place *place, FlDigest around,
+                     Reach reach)
+{
+    const FlLeaf *leaf = place->leaf;
+    const uint8_t how[] = {leaf->whole, leaf->text, leaf->all, leaf->mask >= 0};
+    FlDigest digest = around;
+    reach = farther(reach, add_tree(work, node, &digest));
+    add_reached(work, reach, &digest);
+    fl_digest_add(&digest, how, sizeof how);
+    *place->digest = digest;
+}
+
+/** around: of the elements around. A group that refers to something may do so by its box, which is
+ * that of all that is in it. */
+static void walk(Work *work, const xmlNode *node, FlDigest around, Reach reach)
+{
+    for (const xmlNode *child = node->children; child; child = child->next) {
+        work->unknown |= child->type == XML_ENTITY_REF_NODE;
+        if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
+            continue;
+        g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(child, "id");
+        const Place *place = id ? g_hash_table_lookup(work->place, id) : NULL;
+        if (place)
+            put_leaf(work, child, place, around, reach);
+        FlDigest own = around;
+        const bool says = child->properties && (child->properties->next || !id); // more than an id
+        const Reach of_own = says ? add_element(work, child, &own) : REACH_NONE;
+        if (of_own > REACH_NONE || reach > REACH_NONE)
+            add_tree(work, child, &own);
+        walk(work, child, own, farther(reach, of_own));
+    }
+}
+
+static void list_places(Work *work, const GArray *leaves, size_t bytes, FlDigest *digest)
+{
+    for (guint i = 0; i < leaves->len; i++) {
+        const FlLeaf *leaf = (const FlLeaf *)(const void *)(leaves->data + i * bytes);
+        Place *place = g_new(Place, 1);
+        *place = (Place){&digest[i], leaf};
+        digest[i] = (FlDigest){0, 0};
+        g_hash_table_insert(work->place, leaf->id, place);
+    }
+}
+
+void fl_leaf_digests(const xmlDoc *doc, const FlLeaves *leaves, FlDigest *leaf, FlDigest *unit)
+{
+    const xmlNode *root = xmlDocGetRootElement(doc);
+    Work work = {.place = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free)};
+    FlDigest around = {0, 0};
+    Reach reach = REACH_NONE;
+    list_places(&work, leaves->leaf, sizeof(FlLeaf), leaf);
+    G_STATIC_ASSERT(offsetof(FlUnit, leaf) == 0);
+    list_places(&work, leaves->unit, sizeof(FlUnit), unit);
+    add_tree(&work, root, &work.all);
+    digest_definitions(&work, root, &around, &reach);
+    reach = farther(reach, add_element(&work, root, &around));
+    walk(&work, root, around, reach);
+    if (work.unknown) {
+        memset(leaf, 0, leaves->leaf->len * sizeof *leaf);
+        memset(unit, 0, leaves->unit->len * sizeof *unit);
+    }
+    g_hash_table_unref(work.place);
+}
