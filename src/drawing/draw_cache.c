@@ -3,7 +3,7 @@
 #include "base/alloc.h"
 #include <string.h>
 
-#define MOST_BYTES ((size_t)32 << 20) // of a frame
+#define MOST_BYTES ((size_t)16 << 20) // of a frame
 
 size_t fl_draw_bytes(const FlDraw *draw)
 {
