@@ -1,16 +1,6 @@
-#include "scratch.h"
+#include "open_svg.h"
 #include "svg/path_data.h"
-#include "svg/svg_frame.h"
 #include <string.h>
-
-static FlSvg *open_svg(const char *path, FlWarnings *warnings)
-{
-    const FlSvgOptions options = {0};
-    g_autoptr(GError) error = NULL;
-    FlSvg *svg = fl_svg_open(path, 1, &options, warnings, &error);
-    g_assert_no_error(error);
-    return svg;
-}
 
 /** "fill #00ff00@255 | stroke gradient@128 …": the parts of all leaves, bottom up. */
 static char *describe(FlSvg *svg)

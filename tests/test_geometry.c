@@ -1,16 +1,11 @@
 #include "drawing/raster.h"
-#include "scratch.h"
+#include "open_svg.h"
 #include "svg/geometry.h"
 #include <math.h>
 
 static FlOutlines *outlines_of(const char *content, double width, double height, FlSvg **opened)
 {
-    const FlSvgOptions options = {0};
-    g_autoptr(Scratch) folder = scratch_make();
-    g_autofree char *path = scratch_svg(folder, "a.svg", content);
-    g_autoptr(GError) error = NULL;
-    g_autoptr(FlSvg) svg = fl_svg_open(path, 1, &options, NULL, &error);
-    g_assert_no_error(error);
+    g_autoptr(FlSvg) svg = open_svg_of(content);
     FlOutlines *outlines = fl_outlines_new(svg, width, height);
     if (opened)
         *opened = g_steal_pointer(&svg);

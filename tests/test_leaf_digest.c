@@ -1,27 +1,25 @@
 /* What the digest of a leaf tells apart: the last shape of small drawings. */
-#include "scratch.h"
+#include "open_svg.h"
 #include "svg/leaf_digest.h"
-#include "svg/svg_frame.h"
 
-static FlDigest digest_of(const char *content)
+static FlDigest digest_in(FlSvg *svg)
 {
-    const FlSvgOptions options = {0};
-    g_autoptr(Scratch) folder = scratch_make();
-    g_autofree char *path = scratch_svg(folder, "a.svg", content);
-    g_autoptr(GError) error = NULL;
-    g_autoptr(FlSvg) svg = fl_svg_open(path, 1, &options, NULL, &error);
-    g_assert_no_error(error);
     const FlLeaves *leaves = fl_svg_leaves(svg);
     g_autofree FlDigest *leaf = g_new(FlDigest, leaves->leaf->len);
     g_autofree FlDigest *unit = g_new(FlDigest, leaves->unit->len + 1);
-    fl_leaf_digests(fl_svg_document(svg), leaves, leaf, unit);
+    fl_leaf_digests(svg, leaf, unit);
     return leaf[leaves->leaf->len - 1];
+}
+
+static bool equal(FlDigest a, FlDigest b)
+{
+    return fl_digest_is_known(a) && a.a == b.a && a.b == b.b;
 }
 
 static bool alike(const char *one, const char *other)
 {
-    const FlDigest a = digest_of(one), b = digest_of(other);
-    return (a.a || a.b) && a.a == b.a && a.b == b.b;
+    g_autoptr(FlSvg) a = open_svg_of(one), b = open_svg_of(other);
+    return equal(digest_in(a), digest_in(b));
 }
 
 #define SHAPE "<circle id='c' r='9' fill='#a31'/>"
@@ -87,10 +85,36 @@ static void shapes_beside_it_count_below_a_mask(void)
     g_assert_false(alike(one, other));
 }
 
-static void sheets_that_look_around_leave_all_unknown(void)
+/* A path is told from where the drawing is. */
+static void files_of_one_name_in_two_folders_are_two(void)
+{
+    FlDigest digest[2][2];
+    for (int k = 0; k < 2; k++) {
+        g_autoptr(Scratch) folder = scratch_make();
+        g_free(scratch_svg(folder, "b.svg", SHAPE));
+        g_autofree char *path =
+            scratch_svg(folder, "a.svg", "<image href='b.svg' width='9' height='9'/>");
+        for (int again = 0; again < 2; again++) {
+            g_autoptr(FlSvg) svg = open_svg(path, NULL);
+            digest[k][again] = digest_in(svg);
+        }
+        g_assert_true(equal(digest[k][0], digest[k][1]));
+    }
+    g_assert_false(equal(digest[0][0], digest[1][0]));
+}
+
+static void sheets_that_look_around_or_are_files_leave_all_unknown(void)
 {
     const char *beside = "<style>rect + circle{fill:red}</style><circle r='9'/>";
     g_assert_false(alike(beside, beside));
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_write(folder, "a.css", "circle{fill:red}"));
+    g_autofree char *path = scratch_write(
+        folder, "a.svg",
+        "<?xml-stylesheet href='a.css'?><svg xmlns='http://www.w3.org/2000/svg' width='9' "
+        "height='9'>" SHAPE "</svg>");
+    g_autoptr(FlSvg) svg = open_svg(path, NULL);
+    g_assert_false(fl_digest_is_known(digest_in(svg)));
 }
 
 int main(int argc, char **argv)
@@ -101,6 +125,7 @@ int main(int argc, char **argv)
     TEST(what_is_said_of_it_and_around_it_counts);
     TEST(what_it_refers_to_counts);
     TEST(shapes_beside_it_count_below_a_mask);
-    TEST(sheets_that_look_around_leave_all_unknown);
+    TEST(files_of_one_name_in_two_folders_are_two);
+    TEST(sheets_that_look_around_or_are_files_leave_all_unknown);
     return g_test_run();
 }

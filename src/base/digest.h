@@ -2,6 +2,7 @@
 #ifndef FLUIDY_BASE_DIGEST_H
 #define FLUIDY_BASE_DIGEST_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,6 +11,12 @@
 typedef struct FlDigest {
     uint64_t a, b;
 } FlDigest;
+
+/** Whether it is the digest of something. */
+static inline bool fl_digest_is_known(FlDigest digest)
+{
+    return digest.a || digest.b;
+}
 
 /** Adds a piece; where it begins and ends counts, as does the order of pieces. */
 void fl_digest_add(FlDigest *digest, const void *data, size_t bytes);

@@ -4,7 +4,6 @@
 
 #include "base/digest.h"
 #include <glib.h>
-#include <stdbool.h>
 
 /** For one thread; zero is an empty one. */
 typedef struct FlFrameCache {
@@ -13,13 +12,7 @@ typedef struct FlFrameCache {
 
 void fl_frame_cache_clear(FlFrameCache *cache);
 
-/** Whether a digest is that of something: nothing is kept for others. */
-static inline bool fl_digest_is_known(FlDigest digest)
-{
-    return digest.a || digest.b;
-}
-
-/** What is kept for a digest, or NULL; the cache's own. */
+/** What is kept for a digest, or NULL, as for that of nothing; the cache's own. */
 const GArray *fl_frame_cache_find(FlFrameCache *cache, FlDigest digest);
 
 /** Keeps things for this frame and the next; the cache owns them then. */

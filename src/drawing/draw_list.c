@@ -449,7 +449,7 @@ static void cache_stage(Stage *stage, FlFrameCache *cache)
         return;
     stage->leaf_digest = g_new(FlDigest, leaves->leaf->len + 1);
     stage->unit_digest = g_new(FlDigest, leaves->unit->len + 1);
-    fl_leaf_digests(fl_svg_document(stage->svg), leaves, stage->leaf_digest, stage->unit_digest);
+    fl_leaf_digests(stage->svg, stage->leaf_digest, stage->unit_digest);
 }
 
 /** Of all that a step is drawn from; unknown with its leaf. */

@@ -50,7 +50,7 @@ static void digest_leaves(FlFrameProbe *f)
     const FlLeaves *leaves = fl_svg_leaves(f->svg);
     f->leaf_digest = g_new(FlDigest, leaves->leaf->len + 1);
     f->unit_digest = g_new(FlDigest, leaves->unit->len + 1);
-    fl_leaf_digests(fl_svg_document(f->svg), leaves, f->leaf_digest, f->unit_digest);
+    fl_leaf_digests(f->svg, f->leaf_digest, f->unit_digest);
     add_page(f, f->leaf_digest, leaves->leaf->len);
     add_page(f, f->unit_digest, leaves->unit->len);
 }

@@ -6,10 +6,11 @@
 /** What elements refer to, beside themselves. */
 typedef enum Reach {
     REACH_NONE,
-    REACH_DEFINITIONS, // what is drawn only when it is referred to
+    REACH_DEFINITIONS, // what is drawn only when it is referred to, and files
     REACH_ALL,         // anything in the document
 } Reach;
 
+/** MAX() would digest its arguments twice. */
 static Reach farther(Reach a, Reach b)
 {
     return MAX(a, b);
@@ -33,8 +34,8 @@ static Reach reach_of(const xmlNode *node, const xmlAttr *attribute, const char 
 {
     static const char *const definitions[] = {"linearGradient", "radialGradient", "pattern",
                                               "filter", NULL};
-    if (xmlStrEqual(attribute->name, (const xmlChar *)"href") && value[0] == '#')
-        return fl_is_one_of(node, definitions) ? REACH_DEFINITIONS : REACH_ALL;
+    if (xmlStrEqual(attribute->name, (const xmlChar *)"href") && !g_str_has_prefix(value, "data:"))
+        return value[0] != '#' || fl_is_one_of(node, definitions) ? REACH_DEFINITIONS : REACH_ALL;
     return strstr(value, "url(") ? REACH_DEFINITIONS : REACH_NONE;
 }
 
@@ -161,8 +162,21 @@ static void list_places(Work *work, const GArray *leaves, size_t bytes, FlDigest
     }
 }
 
-void fl_leaf_digests(const xmlDoc *doc, const FlLeaves *leaves, FlDigest *leaf, FlDigest *unit)
+/** Adds the files that anything refers to; a sheet in one is not looked at. */
+static void add_files(Work *work, const FlSvg *svg, const xmlDoc *doc)
 {
+    const GPtrArray *files = fl_svg_files(svg);
+    for (guint i = 0; i < files->len; i++)
+        fl_digest_add_text(&work->definitions, g_ptr_array_index(files, i));
+    work->all = work->definitions;
+    for (const xmlNode *node = doc->children; node; node = node->next)
+        work->unknown |= node->type == XML_PI_NODE;
+}
+
+void fl_leaf_digests(FlSvg *svg, FlDigest *leaf, FlDigest *unit)
+{
+    const FlLeaves *leaves = fl_svg_leaves(svg);
+    const xmlDoc *doc = fl_svg_document(svg);
     const xmlNode *root = xmlDocGetRootElement(doc);
     Work work = {.place = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free)};
     FlDigest around = {0, 0};
@@ -170,6 +184,7 @@ void fl_leaf_digests(const xmlDoc *doc, const FlLeaves *leaves, FlDigest *leaf, 
     list_places(&work, leaves->leaf, sizeof(FlLeaf), leaf);
     G_STATIC_ASSERT(offsetof(FlUnit, leaf) == 0);
     list_places(&work, leaves->unit, sizeof(FlUnit), unit);
+    add_files(&work, svg, doc);
     add_tree(&work, root, &work.all);
     digest_definitions(&work, root, &around, &reach);
     reach = farther(reach, add_element(&work, root, &around));

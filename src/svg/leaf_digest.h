@@ -3,16 +3,15 @@
 #define FLUIDY_SVG_LEAF_DIGEST_H
 
 #include "base/digest.h"
-#include "svg/leaves.h"
+#include "svg/svg_frame.h"
 
 /**
- * Digests all that a leaf of a normalised document is drawn from: its element, what the groups
- * around it say, style sheets and, where something refers to them, what is only drawn when it is
- * referred to. Files that it shows are expected to stay the same. Rather too much is digested than
- * too little.
+ * Digests all that a leaf is drawn from: its element, what the groups around it say, style sheets
+ * and, where something refers to them, definitions and the paths of files. What is in a file is
+ * expected to stay the same. Rather too much is digested than too little.
  *
- * leaf: of leaves->leaf; unit: of leaves->unit, filled likewise. Both 0: unknown, unlike any other.
+ * leaf, unit: one for each in the lists of fl_svg_leaves(), filled; that of nothing: unknown.
  */
-void fl_leaf_digests(const xmlDoc *doc, const FlLeaves *leaves, FlDigest *leaf, FlDigest *unit);
+void fl_leaf_digests(FlSvg *svg, FlDigest *leaf, FlDigest *unit);
 
 #endif
