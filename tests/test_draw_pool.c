@@ -83,7 +83,31 @@ static void frames_and_outlines_are_those_of_one_process(void)
     }
 }
 
-/* One shape rests while the paint of another, of the same text, changes and a third moves. */
+/** What the cache keeps of the last frame, each with a reference, so that no other gets its place.
+ */
+static GList *kept_by(const FlFrameCache *cache)
+{
+    GList *kept = g_hash_table_get_values(cache->last);
+    for (GList *one = kept; one; one = one->next)
+        g_array_ref(one->data);
+    return kept;
+}
+
+static void free_kept(GList *kept)
+{
+    g_list_free_full(kept, (GDestroyNotify)g_array_unref);
+}
+
+/** How many of one list are in another. */
+static int in_both(GList *kept, GList *other)
+{
+    int n = 0;
+    for (GList *one = kept; one; one = one->next)
+        n += g_list_find(other, one->data) != NULL;
+    return n;
+}
+
+/* One shape rests while the hole in the mask of another goes on and a third moves. */
 static void what_rests_is_drawn_once_and_nothing_else(void)
 {
     g_auto(FlFrameCache) cache = {0};
@@ -91,22 +115,28 @@ static void what_rests_is_drawn_once_and_nothing_else(void)
     for (int frame = 1; frame <= 4; frame++) {
         g_autofree char *name = g_strdup_printf("f%d.svg", frame);
         g_autofree char *text = g_strdup_printf(
-            SVG("<linearGradient id='g'><stop stop-color='#a31'/><stop offset='.%d' "
-                "stop-color='#fff' stop-opacity='0'/></linearGradient>"
+            SVG("<mask id='m'><path d='M0 0h20v20h-20zM%d 3v3h3v-3z' fill='#fff'/></mask>"
                 "<rect x='20' width='12' height='9' fill='#383'/>"
-                "<rect width='12' height='9' fill='url(#g)'/><circle cx='%d' cy='20' r='4'/>"),
+                "<rect width='12' height='9' fill='#a31' mask='url(#m)'/>"
+                "<circle cx='%d' cy='20' r='4'/>"),
             frame, 5 * frame);
         g_free(scratch_write(folder, name, text));
     }
     const char *const inputs[] = {folder};
     const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1, .apart = true};
     g_autoptr(FlDrawing) drawing = fl_drawing_open(&options, NULL, NULL);
+    GList *before = NULL;
     for (int frame = 0; frame < 4; frame++) {
         g_autoptr(FlDrawList) with = fl_draw_list_make(drawing, frame, NULL, &cache, NULL);
         g_autoptr(FlDrawList) without = fl_draw_list_make(drawing, frame, NULL, NULL, NULL);
         g_assert_cmpint(with->n, ==, 3);
         assert_same(with, without);
+        GList *now = kept_by(&cache);
+        g_assert_cmpint(in_both(before, now), ==, frame > 0);
+        free_kept(before);
+        before = now;
     }
+    free_kept(before);
 }
 
 /** The processes whose parent is `parent`. Returns: how many, at most `most`. */

@@ -227,15 +227,6 @@ static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **
     return true;
 }
 
-/* Brings a layer into the size of the frame. */
-static bool double_layer(FlLayer *layer, const FlComposeInput *input, GError **error)
-{
-    FlLayer half = *layer;
-    const bool done = fl_layer_double(&half, input->width, input->height, layer, error);
-    clear_layer(&half);
-    return done;
-}
-
 /* The region's name, with a number from its second layer on. */
 static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, int draw)
 {
@@ -252,10 +243,15 @@ static bool fill_one(void *data, int k, int thread, GError **error)
     return fill_film_layer(&stack->composite->layers[k], stack, stack->draw[k], error);
 }
 
+/* Brings a layer into the size of the frame. */
 static bool double_one(void *data, int k, int thread, GError **error)
 {
     const Stack *stack = data;
-    return double_layer(&stack->composite->layers[k], stack->input, error);
+    FlLayer *layer = &stack->composite->layers[k], half = *layer;
+    const bool done =
+        fl_layer_double(&half, stack->input->width, stack->input->height, layer, error);
+    clear_layer(&half);
+    return done;
 }
 
 static size_t layer_pixels(const Stack *stack, int k)
@@ -321,20 +317,7 @@ static bool pack_some(FlLayer *layers, int n, GError **error)
     return fl_parallel_error_tell(error, first);
 }
 
-static bool resolve_all(Stack *stack, GError **error)
-{
-    const FlComposeInput *input = stack->input;
-    FlLayer *layers = stack->composite->layers;
-    const int n = stack->composite->n_layers;
-    FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
-    memcpy(params.paper, input->background->paper, 3);
-    g_auto(FlUnderlay) underlay = {0};
-    return init_underlay(&underlay, stack, error) && make_some(stack, 0, n, &underlay, error) &&
-           fl_layers_resolve(layers, n, input->width, input->height, &params, error) &&
-           pack_some(layers, n, error);
-}
-
-#define PAGES_AT_ONCE 2 // pages of layers that are not packed yet
+#define PAGES_AT_ONCE 2 // pages of layers that are made together
 
 /* The first of the layers that are made together with layer end - 1. */
 static int first_of_batch(const Stack *stack, int end)
@@ -345,6 +328,23 @@ static int first_of_batch(const Stack *stack, int end)
          first > 0 && (pixels += layer_pixels(stack, first - 1)) <= most;)
         first--;
     return first;
+}
+
+static bool resolve_all(Stack *stack, GError **error)
+{
+    const FlComposeInput *input = stack->input;
+    FlLayer *layers = stack->composite->layers;
+    const int n = stack->composite->n_layers;
+    FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
+    memcpy(params.paper, input->background->paper, 3);
+    g_auto(FlUnderlay) underlay = {0};
+    bool made = init_underlay(&underlay, stack, error);
+    for (int end = n, first; made && end > 0; end = first) {
+        first = first_of_batch(stack, end);
+        made = make_some(stack, first, end, &underlay, error);
+    }
+    return made && fl_layers_resolve(layers, n, input->width, input->height, &params, error) &&
+           pack_some(layers, n, error);
 }
 
 /* The same some layers at a time, top first. */

@@ -11,7 +11,6 @@
 #define FAR 30000
 #define BESIDE_PX 3 // a sliver farther from what lies above is a shape of its own
 #define BESIDE_HALF_PX 2
-#define PAGES 2 // of layers that are faded side by side
 
 /** A layer that fades, with some room around its box. */
 typedef struct Part {
@@ -362,29 +361,15 @@ static bool fade_all(const Part *parts, int n, GError **error)
     return fl_parallel_error_tell(error, first);
 }
 
-/** The first of the layers that are faded together with layer end - 1. */
-static int first_beside(const FlLayer *layers, int end, const FlUnderlay *above)
-{
-    const size_t most = PAGES * (size_t)above->width * (size_t)above->height;
-    int first = end - 1;
-    for (size_t pixels = fl_rect_pixels(layers[first].area.box);
-         first > 0 && (pixels += fl_rect_pixels(layers[first - 1].area.box)) <= most;)
-        first--;
-    return first;
-}
-
 bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layers, int n, GError **error)
 {
     g_autofree Part *parts = g_new0(Part, MAX(n, 1));
+    int n_parts = 0;
     bool done = true;
-    for (int end = n, first; end > 0 && done; end = first) {
-        int n_parts = 0;
-        first = first_beside(layers, end, above);
-        for (int k = end - 1; k >= first && done; k--)
-            done = mark_next(above, &layers[k], parts, &n_parts, error);
-        done = done && fade_all(parts, n_parts, error);
-        for (int k = 0; k < n_parts; k++)
-            part_clear(&parts[k]);
-    }
+    for (int k = n - 1; k >= 0 && done; k--)
+        done = mark_next(above, &layers[k], parts, &n_parts, error);
+    done = done && fade_all(parts, n_parts, error);
+    for (int k = 0; k < n_parts; k++)
+        part_clear(&parts[k]);
     return done;
 }

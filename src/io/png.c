@@ -99,30 +99,33 @@ static void pack_row16(const uint16_t *rgba, int width, int channels, uint8_t *r
             out[0] = (uint8_t)(rgba[4 * x + c] >> 8), out[1] = (uint8_t)(rgba[4 * x + c] & 0xff);
 }
 
+/** What the pixels are of. */
+static FlRect filled_of(const FlPng *picture)
+{
+    return picture->filled ? *picture->filled : (FlRect){0, 0, picture->width, picture->height};
+}
+
 static bool is_blank(const FlPng *picture, int y)
 {
-    const FlRect *filled = picture->filled;
-    if (filled && (y < filled->y || y >= filled->y + filled->height))
-        return true;
-    return picture->runs &&
-           fl_pixel_runs_filled(picture->runs, filled ? y - filled->y : y).last == 0;
+    const FlRect filled = filled_of(picture);
+    return y < filled.y || y >= filled.y + filled.height ||
+           (picture->runs && fl_pixel_runs_filled(picture->runs, y - filled.y).last == 0);
 }
 
 /** Row y as it is stored. */
 static void pack_row(const FlPng *picture, int y, uint8_t *out)
 {
     const size_t first = (size_t)y * picture->width * 4;
-    const FlRect *filled = picture->filled;
-    if (filled || picture->runs)
+    const FlRect filled = filled_of(picture);
+    if (picture->filled || picture->runs)
         memset(out, 0, picture->width * pixel_bytes(picture));
     if (is_blank(picture, y))
         return;
     if (picture->runs)
-        fl_pixel_runs_copy(picture->runs, filled ? y - filled->y : y,
-                           out + (filled ? (size_t)filled->x * 4 : 0));
-    else if (filled)
-        pack_row8(picture->rgba + (size_t)(y - filled->y) * filled->width * 4, filled->width, 4,
-                  out + (size_t)filled->x * 4);
+        fl_pixel_runs_copy(picture->runs, y - filled.y, out + (size_t)filled.x * 4);
+    else if (picture->filled)
+        pack_row8(picture->rgba + (size_t)(y - filled.y) * filled.width * 4, filled.width, 4,
+                  out + (size_t)filled.x * 4);
     else if (picture->rgba16)
         pack_row16(picture->rgba16 + first, picture->width, picture->opaque ? 3 : 4, out);
     else if (picture->opaque)
