@@ -16,7 +16,8 @@
  * things to do. OMP_WAIT_POLICY=passive is set, so that waiting is not working.
  *
  * The energy is that of the data; the total one has uniformity and coherence with it, which a
- * search that breaks up the field pays for. Each of N rounds has a seed of its own.
+ * search that breaks up the field pays for; `first` is the first frame's. Each of N rounds has a
+ * seed of its own.
  */
 #include "base/rect.h"
 #include "config.h"
@@ -60,8 +61,15 @@ static Case half_of(const Case *c)
     F(vote_s)                                                                                      \
     F(core_s_per_mpx)                                                                              \
     F(s_per_mpx)                                                                                   \
-    F(scaling) F(evaluations_per_px) F(evaluations_per_s_core) F(tries_per_s_core) F(energy)       \
-        F(total_energy) F(painted_px) F(peak_mib)
+    F(scaling)                                                                                     \
+    F(evaluations_per_px)                                                                          \
+    F(evaluations_per_s_core)                                                                      \
+    F(tries_per_s_core)                                                                            \
+    F(energy)                                                                                      \
+    F(total_energy)                                                                                \
+    F(first_total_energy)                                                                          \
+    F(painted_px)                                                                                  \
+    F(peak_mib)
 
 typedef struct Figures {
 #define FIELD(name) double name;
@@ -161,6 +169,11 @@ static double painted_pixels(const Bench *b)
     return b->c->half ? 4 * n : n;
 }
 
+static double total_energy(const FlLevelStats *level)
+{
+    return level->energy + level->uniformity + level->coherence;
+}
+
 static bool measured_frames(Bench *b, Figures *f, GError **error)
 {
     double drawn = 0, tried = 0;
@@ -176,8 +189,7 @@ static bool measured_frames(Bench *b, Figures *f, GError **error)
         }
         const FlLevelStats *finest = &s.level[0];
         f->energy += finest->energy / FRAMES_MEASURED;
-        f->total_energy +=
-            (finest->energy + finest->uniformity + finest->coherence) / FRAMES_MEASURED;
+        f->total_energy += total_energy(finest) / FRAMES_MEASURED;
         f->target_s += s.seconds_target / FRAMES_MEASURED;
         f->temporal_s += s.seconds_temporal / FRAMES_MEASURED;
         f->search_s += s.seconds_search / FRAMES_MEASURED;
@@ -191,6 +203,18 @@ static bool measured_frames(Bench *b, Figures *f, GError **error)
     f->evaluations_per_s_core = f->evaluations_per_px / searching;
     f->tries_per_s_core = drawn / f->painted_px / searching;
     f->s_per_mpx = f->frame_s / f->painted_px * 1e6;
+    return true;
+}
+
+/* Of the first frame once more: it is timed without statistics. */
+static bool measure_first(Bench *b, FlSynth *synth, Figures *f, GError **error)
+{
+    FlFrameStats stats;
+    fl_synth_measure(synth, true);
+    if (!fl_guide_sequence_get(b->sequence, 0, &b->guides, error) ||
+        !fl_synth_frame(synth, &b->guides, b->rgb, &stats, NULL, error))
+        return false;
+    f->first_total_energy = total_energy(&stats.level[0]);
     return true;
 }
 
@@ -232,8 +256,10 @@ static bool run_case(const Case *c, Figures *f, GError **error)
     f->guides_s = (seconds(CLOCK_MONOTONIC) - start) / source.n_frames;
     b.synth = b.sequence ? fl_synth_new(exemplar, params, size, (uint64_t)seed) : NULL;
     b.rgb = g_malloc(3 * (size_t)c->width * c->height);
+    g_autoptr(FlSynth) first = fl_synth_new(exemplar, params, size, (uint64_t)seed);
     const bool ok = b.synth && fl_guides_init(&b.guides, source.width, source.height, error) &&
-                    timed_frames(&b, f, error) && measured_frames(&b, f, error);
+                    timed_frames(&b, f, error) && measured_frames(&b, f, error) &&
+                    measure_first(&b, first, f, error);
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     f->peak_mib = (double)usage.ru_maxrss / 1024;
@@ -313,12 +339,11 @@ static Figures medians(const Figures *runs, int n)
 static void print_row(const char *name, const Figures *f)
 {
     printf("%-10s %7.0f %8.3f %8.3f %7.3f %7.3f %7.3f %7.3f %7.3f %8.2f %7.2f %7.1f %7.1f %7.1f "
-           "%7.3f %7.3f "
-           "%6.0f\n",
+           "%7.3f %7.3f %7.3f %6.0f\n",
            name, f->painted_px, f->frame_s, f->first_frame_s, f->guides_s, f->target_s,
            f->temporal_s, f->search_s, f->vote_s, f->core_s_per_mpx, f->scaling,
            f->evaluations_per_px, f->evaluations_per_s_core * 1e-6, f->tries_per_s_core * 1e-6,
-           f->energy, f->total_energy, f->peak_mib);
+           f->energy, f->total_energy, f->first_total_energy, f->peak_mib);
 }
 
 /* One case, in this program and the other in turn. */
@@ -338,10 +363,11 @@ static bool compare_case(const char *self, const Case *c, GString *out, GError *
     const Figures o = medians(others, rounds);
     print_row("  other", &o);
     printf("  ratio    frame %.2f, core-s/Mpx %.2f, evaluations/s %.2f, energy %.3f, total %.3f, "
-           "memory %.2f\n",
+           "first frame %.2f, its total %.3f, memory %.2f\n",
            f.frame_s / o.frame_s, f.core_s_per_mpx / o.core_s_per_mpx,
            f.evaluations_per_s_core / o.evaluations_per_s_core, f.energy / o.energy,
-           f.total_energy / o.total_energy, f.peak_mib / o.peak_mib);
+           f.total_energy / o.total_energy, f.first_frame_s / o.first_frame_s,
+           f.first_total_energy / o.first_total_energy, f.peak_mib / o.peak_mib);
     return true;
 }
 
@@ -367,7 +393,7 @@ static bool run_all(const char *self, GError **error)
     g_autoptr(GString) out = g_string_new("{");
     printf("%d frames, %d threads, medians of %d; seconds per frame\n", frames, threads, rounds);
     puts("case       painted    frame    first  guides  target    temp  search    vote core/Mpx"
-         " scaling eval/px Meval/s Mtry/s  energy   total    MiB");
+         " scaling eval/px Meval/s Mtry/s  energy   total   first    MiB");
     for (size_t k = 0; k < G_N_ELEMENTS(cases); k++)
         if ((!only || g_str_equal(cases[k].name, only)) &&
             !compare_case(self, &cases[k], out, error))
