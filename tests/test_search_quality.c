@@ -156,7 +156,8 @@ static void a_search_with_rotation_is_as_good_as_the_best_field_of_two_rotations
 }
 
 /* The counts and the energy of some sweeps on a field that has been searched before. */
-static FlSearchCounts counts_of_sweeps(int sweeps, float settled, bool remembers, double *energy)
+static FlSearchCounts counts_of_sweeps(int sweeps, int propagate_from, float settled,
+                                       bool remembers, double *energy)
 {
     Case c;
     g_autofree uint8_t *changed = NULL;
@@ -166,6 +167,7 @@ static FlSearchCounts counts_of_sweeps(int sweeps, float settled, bool remembers
             c.target.level[0].colour, NULL);
     searched(&c, 1, 0);
     c.search.settled = (uint32_t)(settled * fl_mean_cost(&c.search));
+    c.search.propagate_from = propagate_from;
     if (remembers)
         c.search.changed = changed = g_malloc((size_t)c.nnf.width * c.nnf.height);
     const FlSearchCounts counts = fl_search_run(&c.search, sweeps);
@@ -177,20 +179,32 @@ static FlSearchCounts counts_of_sweeps(int sweeps, float settled, bool remembers
 static void matches_that_have_settled_take_few_tries_and_lose_little(void)
 {
     double all, few;
-    const FlSearchCounts of_all = counts_of_sweeps(2, 0, false, &all),
-                         of_few = counts_of_sweeps(2, 1.5F, false, &few);
+    const FlSearchCounts of_all = counts_of_sweeps(2, 0, 0, false, &all),
+                         of_few = counts_of_sweeps(2, 0, 1.5F, false, &few);
     g_test_message("energy %.0f and %.0f, tries %" PRIu64 " and %" PRIu64, all, few, of_all.drawn,
                    of_few.drawn);
     g_assert_cmpuint(of_few.drawn, <, of_all.drawn / 2);
     g_assert_cmpfloat(few, <, 1.15 * all);
 }
 
+static void sweeps_that_propagate_draw_no_tries_and_lose_little(void)
+{
+    double all, few, two;
+    const FlSearchCounts of_all = counts_of_sweeps(4, 0, 0, false, &all),
+                         of_few = counts_of_sweeps(4, 2, 0, false, &few);
+    counts_of_sweeps(2, 0, 0, false, &two);
+    g_test_message("energy %.0f and %.0f, of two sweeps %.0f", all, few, two);
+    g_assert_cmpuint(of_few.drawn, <, of_all.drawn * 6 / 10);
+    g_assert_cmpfloat(few, <, 1.05 * all);
+    g_assert_cmpfloat(few, <, two);
+}
+
 /* Settled, so that all tries are neighbours'. */
 static void neighbours_that_have_not_changed_are_not_tried_again(void)
 {
     double all, new;
-    const FlSearchCounts of_all = counts_of_sweeps(6, 1e6F, false, &all),
-                         of_new = counts_of_sweeps(6, 1e6F, true, &new);
+    const FlSearchCounts of_all = counts_of_sweeps(6, 0, 1e6F, false, &all),
+                         of_new = counts_of_sweeps(6, 0, 1e6F, true, &new);
     g_test_message("energy %.1f and %.1f, tries %" PRIu64 " and %" PRIu64, all, new, of_all.tried,
                    of_new.tried);
     g_assert_cmpuint(of_new.tried, <, of_all.tried / 2);
@@ -201,8 +215,8 @@ static void neighbours_that_have_not_changed_are_not_tried_again(void)
 static bool counted_anew(const Case *c)
 {
     g_auto(FlOccurrence) map = {0};
-    g_assert_true(fl_occurrence_init(&map, c->search.level, c->search.target, c->params, &c->scale,
-                                     NULL));
+    g_assert_true(
+        fl_occurrence_init(&map, c->search.level, c->search.target, c->params, &c->scale, NULL));
     fl_occurrence_count(&map, &c->nnf, c->search.target);
     const size_t bytes = (size_t)map.columns * map.rows * map.slices * sizeof(int32_t);
     bool same = true;
@@ -217,8 +231,8 @@ static void few_moves_and_many_leave_the_use_of_the_field(void)
     set_up(&c, true);
     c.params->w_uni = 1;
     fl_occurrence_clear(&c.map);
-    g_assert_true(fl_occurrence_init(&c.map, c.search.level, c.search.target, c.params, &c.scale,
-                                     NULL));
+    g_assert_true(
+        fl_occurrence_init(&c.map, c.search.level, c.search.target, c.params, &c.scale, NULL));
     fl_occurrence_count(&c.map, &c.nnf, c.search.target);
     searched(&c, 0, 1);
     g_assert_true(counted_anew(&c));
@@ -266,6 +280,8 @@ int main(int argc, char **argv)
                     a_search_with_rotation_is_as_good_as_the_best_field_of_two_rotations);
     g_test_add_func("/search/matches-that-have-settled-take-few-tries-and-lose-little",
                     matches_that_have_settled_take_few_tries_and_lose_little);
+    g_test_add_func("/search/sweeps-that-propagate-draw-no-tries-and-lose-little",
+                    sweeps_that_propagate_draw_no_tries_and_lose_little);
     g_test_add_func("/search/neighbours-that-have-not-changed-are-not-tried-again",
                     neighbours_that_have_not_changed_are_not_tried_again);
     g_test_add_func("/search/few-moves-and-many-leave-the-use-of-the-field",

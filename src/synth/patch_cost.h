@@ -18,7 +18,8 @@ typedef struct FlSearch {
     FlOccurrence *map;
     uint32_t settled; // a match of less cost is left to its neighbours after a first look around it
     int near_px;      // how far that look goes; 0: none
-    uint64_t key;     // of the random search
+    int propagate_from; // sweeps from this one on try no random matches; 0: all sweeps do
+    uint64_t key;       // of the random search
     // width * height, of the search: 1 + the last sweep in which a match changed, 0: in none. Where
     // no neighbour has changed since a visit, the next does not try theirs again. NULL: it does.
     uint8_t *changed;

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #define NEAR_PX 8 // on the finest level; around a match that has settled, on coarser levels
+#define FINEST_RANDOM_SWEEPS 2 // later ones gain .5 % of the energy for a tenth of the time
 
 int fl_synth_finest_searched(const FlSynth *synth)
 {
@@ -207,11 +208,13 @@ static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats
 }
 
 /* Matches that are good as they are cost little time: random tries find next to nothing for them,
- * in a frame that continues another, where they were good before, least of all. */
-static void settle(FlSearch *search, int level, bool continues)
+ * least of all where the field comes from the coarser level or the frame before. */
+static void settle(FlSearch *search, int level, bool from_nothing)
 {
-    search->settled = (uint32_t)MIN(search->params->settled * fl_mean_cost(search), UINT32_MAX);
-    search->near_px = !continues ? INT_MAX : level > 0 ? NEAR_PX << level : 0;
+    const float settled = search->params->settled;
+    search->settled = (uint32_t)MIN(settled * fl_mean_cost(search), UINT32_MAX);
+    search->near_px = from_nothing ? INT_MAX : level > 0 ? NEAR_PX << level : 0;
+    search->propagate_from = settled > 0 && level == 0 ? FINEST_RANDOM_SWEEPS : 0;
 }
 
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
@@ -252,7 +255,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     *stats = (FlLevelStats){.width = target->width, .height = target->height, .rounds = rounds};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
-    settle(&search, l, shifted);
+    settle(&search, l, from_coarsest == 0 && !shifted);
     const int sweeps =
         finest ? params->finest_sweeps : fl_list_at(&params->patchmatch_iterations, from_coarsest);
     if (!optimise(synth, &search, target, rounds, sweeps, stats, error))

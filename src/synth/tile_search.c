@@ -133,7 +133,10 @@ static void find_expected(PixelSearch *ps)
 /* Where tries for a pixel are drawn from. */
 static const FlWindows *windows_for(const FlTileSearch *tile_search, size_t pixel, int sweep)
 {
-    if (tile_search->search->cost[pixel] >= tile_search->search->settled)
+    const FlSearch *search = tile_search->search;
+    if (search->propagate_from > 0 && sweep >= search->propagate_from)
+        return NULL;
+    if (search->cost[pixel] >= search->settled)
         return &tile_search->windows;
     return sweep == 0 && tile_search->near.n > 0 ? &tile_search->near : NULL;
 }
