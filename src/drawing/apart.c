@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/limits.h"
 #include "drawing/confined.h"
+#include "drawing/packed_survey.h"
 #include "drawing/watch.h"
 #include <errno.h>
 #include <poll.h>
@@ -17,154 +18,6 @@
 
 #define TICK_MS 100
 
-/* ---- serialising the survey ---------------------------------------------------------------- */
-
-static void put(GByteArray *out, const void *data, size_t bytes)
-{
-    g_byte_array_append(out, data, (guint)bytes);
-}
-
-static void put_int(GByteArray *out, int value)
-{
-    put(out, &value, sizeof value);
-}
-
-static void put_text(GByteArray *out, const char *text)
-{
-    put(out, text, strlen(text) + 1);
-}
-
-static void put_texts(GByteArray *out, char **texts)
-{
-    const int n = texts ? (int)g_strv_length(texts) : 0;
-    put_int(out, n);
-    for (int i = 0; i < n; i++)
-        put_text(out, texts[i]);
-}
-
-static void put_frame(GByteArray *out, const FlSurveyFrame *frame)
-{
-    FlSurveyFrame plain = *frame;
-    plain.parts = NULL, plain.whole = plain.files = NULL;
-    put(out, &plain, sizeof plain);
-    put_texts(out, frame->whole);
-    put_texts(out, frame->files);
-    put_int(out, (int)frame->parts->len);
-    put(out, frame->parts->data, frame->parts->len * sizeof(FlSurveyPart));
-}
-
-/** Everything of a survey but its inputs. */
-static void put_survey(GByteArray *out, const FlSurvey *survey)
-{
-    put(out, survey, sizeof *survey);
-    put_int(out, (int)survey->strings.text->len);
-    for (guint i = 0; i < survey->strings.text->len; i++)
-        put_text(out, fl_strings_get(&survey->strings, (int)i));
-    for (int t = 0; t < survey->n_frames; t++)
-        put_frame(out, &survey->frame[t]);
-}
-
-static void put_warnings(GByteArray *out, const FlWarnings *warnings)
-{
-    put_int(out, fl_warnings_count(warnings));
-    for (int i = 0; i < fl_warnings_count(warnings); i++) {
-        const FlWarning *w = fl_warnings_get(warnings, i);
-        put_text(out, w->file);
-        put_text(out, w->element);
-        put_text(out, w->text);
-        put(out, &w->frame, 3 * sizeof(int)); // frame, last, n_frames
-    }
-}
-
-/* ---- and reading it ------------------------------------------------------------------------ */
-
-/** The bytes left to read; the child is not trusted. */
-typedef struct Reader {
-    const char *at, *end;
-    bool good;
-} Reader;
-
-static void take(Reader *r, void *data, size_t bytes)
-{
-    r->good = r->good && (size_t)(r->end - r->at) >= bytes;
-    if (r->good)
-        memcpy(data, r->at, bytes);
-    else
-        memset(data, 0, bytes);
-    r->at += r->good ? bytes : 0;
-}
-
-static int take_count(Reader *r)
-{
-    int n = 0;
-    take(r, &n, sizeof n);
-    r->good = r->good && n >= 0 && n <= r->end - r->at;
-    return r->good ? n : 0;
-}
-
-static const char *take_text(Reader *r)
-{
-    const char *text = r->at;
-    const char *end = r->good ? memchr(text, '\0', (size_t)(r->end - r->at)) : NULL;
-    r->good = end != NULL;
-    if (!end)
-        return "";
-    r->at = end + 1;
-    return text;
-}
-
-/** NULL if there are none. */
-static char **take_texts(Reader *r)
-{
-    const int n = take_count(r);
-    char **texts = n > 0 ? g_new0(char *, (size_t)n + 1) : NULL;
-    for (int i = 0; i < n; i++)
-        texts[i] = g_strdup(take_text(r));
-    return texts;
-}
-
-static void take_frame(Reader *r, FlSurveyFrame *frame)
-{
-    take(r, frame, sizeof *frame);
-    frame->whole = take_texts(r);
-    frame->files = take_texts(r);
-    const int n_parts = take_count(r);
-    frame->parts = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), (guint)n_parts);
-    for (int i = 0; i < n_parts && r->good; i++) {
-        FlSurveyPart part;
-        take(r, &part, sizeof part);
-        g_array_append_val(frame->parts, part);
-    }
-}
-
-static void take_survey(Reader *r, FlSurvey *survey, const FlSequence *sequence)
-{
-    take(r, survey, sizeof *survey);
-    survey->sequence = sequence;
-    survey->strings = (FlStrings){0};
-    survey->first = NULL, survey->watch = NULL;
-    survey->n_frames = sequence->n;
-    survey->frame = g_new0(FlSurveyFrame, sequence->n);
-    const int n = take_count(r);
-    for (int i = 0; i < n; i++)
-        fl_strings_add(&survey->strings, take_text(r));
-    for (int t = 0; t < survey->n_frames; t++)
-        take_frame(r, &survey->frame[t]);
-}
-
-static void take_warnings(Reader *r, FlWarnings *warnings)
-{
-    const int n = take_count(r);
-    for (int i = 0; i < n && r->good; i++) {
-        FlWarning w = {.file = (char *)take_text(r),
-                       .element = (char *)take_text(r),
-                       .text = (char *)take_text(r)};
-        take(r, &w.frame, 3 * sizeof(int));
-        if (warnings && r->good)
-            fl_warnings_repeat(warnings, &w);
-    }
-}
-
 /* ---- the child ----------------------------------------------------------------------------- */
 
 G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawingOptions *options,
@@ -174,16 +27,8 @@ G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawing
     GError *problem = NULL;
     FlSurvey survey = {0};
     FlWarnings *warnings = fl_warnings_new();
-    GByteArray *out = g_byte_array_new();
-    const bool good = fl_survey_init(&survey, sequence, options, watch, warnings, &problem);
-    put_int(out, good);
-    if (good) {
-        put_survey(out, &survey);
-    } else {
-        put_int(out, problem->domain == FL_ERROR ? problem->code : FL_ERROR_INPUT);
-        put_text(out, problem->message);
-    }
-    put_warnings(out, warnings);
+    (void)fl_survey_init(&survey, sequence, options, watch, warnings, &problem);
+    const GByteArray *out = fl_survey_pack(&survey, problem, warnings);
     _exit(fl_write_all(fd, out->data, out->len) ? 0 : 1);
 }
 
@@ -274,22 +119,11 @@ static bool take_all(int fd, FlSurvey *survey, const FlSequence *sequence, FlWat
         g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY, "not enough memory to read the drawing");
         return false;
     }
-    Reader r = {data, (const char *)data + bytes, true};
-    int good = 0, code = FL_ERROR_INPUT;
-    take(&r, &good, sizeof good);
-    if (good) {
-        take_survey(&r, survey, sequence);
-    } else {
-        take(&r, &code, sizeof code);
-        g_set_error(error, FL_ERROR, code, "%s", take_text(&r));
-        *bad = atomic_load(&watch->failed) - 1;
-    }
-    take_warnings(&r, warnings);
+    const bool good = fl_survey_unpack(data, (size_t)bytes, sequence, survey, warnings, error);
     munmap(data, (size_t)bytes);
-    if (good && !r.good)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: the process that read it returned damaged data", sequence->file[0]);
-    return good && r.good;
+    if (!good)
+        *bad = atomic_load(&watch->failed) - 1;
+    return good;
 }
 
 static bool tell_end(const FlSequence *sequence, int frame, FlConfinedEnd end, GError **error)

@@ -298,7 +298,7 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     }
     FlDrawing *drawing = g_new0(FlDrawing, 1);
     *drawing = (FlDrawing){.sequence = sequence,
-                           .dpi = survey->svg.dpi,
+                           .dpi = options->dpi,
                            .width = survey->width,
                            .height = survey->height,
                            .regions = g_array_new(FALSE, TRUE, sizeof(FlRegion)),

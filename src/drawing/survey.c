@@ -13,9 +13,8 @@
 #include <omp.h>
 #endif
 
-#define MOST_SIDE 32767 // px; cairo's limit
-#define MOST_WHOLE 8    // groups of a frame that become one leaf, each after another probe
-#define MOST_ROUNDS 3   // in which that spreads to other frames
+#define MOST_WHOLE 8  // groups of a frame that become one leaf, each after another probe
+#define MOST_ROUNDS 3 // in which that spreads to other frames
 
 int fl_strings_add(FlStrings *strings, const char *text)
 {
@@ -227,10 +226,10 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, FlWarnings *wa
                             o->height > 0 ? o->height / height : INFINITY);
     const double w = MAX(1, round(width * survey->scale)),
                  h = MAX(1, round(height * survey->scale));
-    if (!(w <= MOST_SIDE && h <= MOST_SIDE)) {
+    if (!(w <= FL_SURVEY_MOST_SIDE && h <= FL_SURVEY_MOST_SIDE)) {
         g_set_error(error, FL_ERROR, FL_ERROR_LIMIT,
                     "%s: a picture of %.0f x %.0f px; at most %d px on each side can be drawn",
-                    survey->sequence->file[0], w, h, MOST_SIDE);
+                    survey->sequence->file[0], w, h, FL_SURVEY_MOST_SIDE);
         return false;
     }
     if (!fl_limit_check(FL_LIMIT_FRAME, w * h / 1e6, survey->sequence->file[0], error))

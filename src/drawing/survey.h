@@ -4,6 +4,8 @@
 
 #include "drawing/drawing.h"
 
+#define FL_SURVEY_MOST_SIDE 32767 // px; cairo's limit
+
 /** Strings as numbers, so that they are kept once and compared fast. 0 is "". */
 typedef struct FlStrings {
     GPtrArray *text;
