@@ -108,3 +108,31 @@ bool fl_write_all(int fd, const void *data, size_t bytes)
     }
     return true;
 }
+
+bool fl_pwrite_all(int fd, const void *data, size_t bytes, int64_t offset)
+{
+    for (const uint8_t *at = data; bytes > 0;) {
+        const ssize_t n = pwrite(fd, at, bytes, offset);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n <= 0)
+            return false;
+        at += n, offset += n, bytes -= (size_t)n;
+    }
+    return true;
+}
+
+bool fl_pread_all(int fd, void *data, size_t bytes, int64_t offset)
+{
+    for (uint8_t *at = data; bytes > 0;) {
+        const ssize_t n = pread(fd, at, bytes, offset);
+        if (n < 0 && errno == EINTR)
+            continue;
+        if (n == 0)
+            errno = 0;
+        if (n <= 0)
+            return false;
+        at += n, offset += n, bytes -= (size_t)n;
+    }
+    return true;
+}

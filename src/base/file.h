@@ -42,4 +42,10 @@ bool fl_file_read_pipe(const char *path, size_t most, const FlFileWait *wait, ch
 /** Writes all of the bytes; a signal that comes in does not stop it. Returns: false with errno. */
 bool fl_write_all(int fd, const void *data, size_t bytes);
 
+/** The same from `offset` on, which is not moved. */
+bool fl_pwrite_all(int fd, const void *data, size_t bytes, int64_t offset);
+
+/** Reads all of the bytes from `offset` on. Returns: false with errno, 0 where the file ends. */
+bool fl_pread_all(int fd, void *data, size_t bytes, int64_t offset);
+
 #endif

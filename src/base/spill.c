@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/compress.h"
+#include "base/file.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <glib/gstdio.h>
@@ -89,32 +90,6 @@ static int64_t reserve(size_t bytes)
     return offset;
 }
 
-static bool write_all(int fd, const uint8_t *data, size_t bytes, int64_t offset)
-{
-    while (bytes > 0) {
-        const ssize_t n = pwrite(fd, data, bytes, offset);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return false;
-        data += n, offset += n, bytes -= (size_t)n;
-    }
-    return true;
-}
-
-static bool read_all(int fd, uint8_t *data, size_t bytes, int64_t offset)
-{
-    while (bytes > 0) {
-        const ssize_t n = pread(fd, data, bytes, offset);
-        if (n < 0 && errno == EINTR)
-            continue;
-        if (n <= 0)
-            return false;
-        data += n, offset += n, bytes -= (size_t)n;
-    }
-    return true;
-}
-
 bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, GError **error)
 {
     g_assert(block < spill->n_blocks);
@@ -129,13 +104,20 @@ bool fl_spill_put(FlSpill *spill, size_t block, const void *data, size_t bytes, 
         return false;
     }
     const int64_t offset = reserve(packed_bytes);
-    if (!write_all(shared.fd, packed, packed_bytes, offset)) {
+    if (!fl_pwrite_all(shared.fd, packed, packed_bytes, offset)) {
         g_set_error(error, FL_ERROR, FL_ERROR_OUTPUT, "%s: cannot write a temporary file: %s",
                     g_get_tmp_dir(), g_strerror(errno));
         return false;
     }
     spill->blocks[block] = (Block){offset, packed_bytes, bytes};
     return true;
+}
+
+static bool cannot_read(const char *why, GError **error)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read a temporary file back: %s",
+                g_get_tmp_dir(), why);
+    return false;
 }
 
 bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, GError **error)
@@ -146,13 +128,11 @@ bool fl_spill_get(const FlSpill *spill, size_t block, void *data, size_t bytes, 
     g_autofree uint8_t *packed = fl_alloc_unset(b->packed_bytes, 1, "a temporary block", error);
     if (!packed)
         return false;
-    if (!read_all(shared.fd, packed, b->packed_bytes, b->offset) ||
-        !fl_decompress(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: cannot read a temporary file back: %s",
-                    g_get_tmp_dir(), g_strerror(errno));
-        return false;
-    }
-    return true;
+    if (!fl_pread_all(shared.fd, packed, b->packed_bytes, b->offset))
+        return cannot_read(errno ? g_strerror(errno) : "it is shorter than what was written",
+                           error);
+    return fl_decompress(packed, b->packed_bytes, &(FlSpan){data, bytes}, 1) ||
+           cannot_read("it is damaged", error);
 }
 
 size_t fl_spill_bytes(const FlSpill *spill, size_t block)

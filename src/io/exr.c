@@ -1,5 +1,6 @@
 /* Layered OpenEXR files, half float. */
 #include "base/density.h"
+#include "base/file.h"
 #include "base/parallel_error.h"
 #include "base/rect.h"
 #include "base/schedule.h"
@@ -9,7 +10,6 @@
 
 #include <OpenEXR/openexr.h>
 #include <string.h>
-#include <unistd.h>
 
 /** A picture's place in the frame; name "" is the whole frame's own picture. */
 typedef FlSinkLayer Layer;
@@ -86,14 +86,8 @@ static int64_t write_bytes(exr_const_context_t context, void *data, const void *
                            uint64_t bytes, uint64_t offset, exr_stream_error_func_ptr_t on_error)
 {
     FlAtomicFile *file = data;
-    const uint8_t *at = buffer;
-    for (uint64_t left = bytes; left > 0;) {
-        const ssize_t n = pwrite(fileno(file->stream), at, left, (off_t)offset);
-        if (n <= 0)
-            return -1;
-        at += n, offset += (uint64_t)n, left -= (uint64_t)n;
-    }
-    return (int64_t)bytes;
+    return fl_pwrite_all(fileno(file->stream), buffer, bytes, (int64_t)offset) ? (int64_t)bytes
+                                                                               : -1;
 }
 
 static void be_silent(exr_const_context_t context, exr_result_t code, const char *message)
