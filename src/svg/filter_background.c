@@ -72,10 +72,11 @@ static bool change_filters(xmlNode *node, GHashTable *modes)
     for (; node; node = node->next) {
         if (node->type != XML_ELEMENT_NODE)
             continue;
-        char *mode = fl_is(node, "filter") ? blend_mode(node) : NULL;
+        g_autofree char *mode = fl_is(node, "filter") ? blend_mode(node) : NULL;
         g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
         if (mode && id)
-            g_hash_table_replace(modes, g_strdup_printf("url(#%s)", (const char *)id), mode);
+            g_hash_table_replace(modes, g_strdup_printf("url(#%s)", (const char *)id),
+                                 g_steal_pointer(&mode));
         else if (fl_is(node, "filter"))
             emptied = empty_background(node) || emptied;
         else
