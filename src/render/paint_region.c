@@ -49,9 +49,12 @@ static bool stopped(GError **error, const char *call, int frame)
     return false;
 }
 
+/* Fields after `threads` are of later versions: a program may be older than they are. */
+#define FIRST_SIZE (offsetof(FlRegionPaint, threads) + sizeof(int))
+
 static bool check(const FlRegionPaint *region, GError **error)
 {
-    if (!region || region->size < sizeof *region)
+    if (region->size < FIRST_SIZE)
         return refuse(error, "‘size’ is too small; expected sizeof(FlRegionPaint)");
     if (region->width < 1 || region->width > 32767 || region->height < 1 || region->height > 32767)
         return refuse(error, "‘width’ and ‘height’: expected 1 to 32767");
@@ -338,12 +341,15 @@ static bool paint(MaskPainter *painter, GError **error)
 
 bool fl_paint_region(const FlRegionPaint *region, GError **error)
 {
-    if (!check(region, error))
+    FlRegionPaint known = {0};
+    if (region)
+        memcpy(&known, region, MIN(region->size, sizeof known));
+    if (!check(&known, error))
         return false;
     const int threads = fl_schedule_threads();
-    MaskPainter painter = {.region = region, .page = {0, 0, region->width, region->height}};
-    if (region->threads > 0)
-        (void)fl_schedule_set_threads(region->threads);
+    MaskPainter painter = {.region = &known, .page = {0, 0, known.width, known.height}};
+    if (known.threads > 0)
+        (void)fl_schedule_set_threads(known.threads);
     const bool done = paint(&painter, error);
     clear(&painter);
     (void)fl_schedule_set_threads(threads);
