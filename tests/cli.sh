@@ -388,7 +388,8 @@ on_paper auto && on_paper cold --paper cold && on_paper bare --paper none --gran
     on_paper relief --paper-relief 0 && on_paper seed --paper-seed 5 && on_paper kraft -c kraft.conf &&
     cmp -s sheet/auto1.png sheet/cold1.png && ! cmp -s sheet/auto1.png sheet/bare1.png &&
     ! cmp -s sheet/auto1.png sheet/seed1.png && ! cmp -s sheet/auto1.png sheet/kraft1.png &&
-    ! cmp -s sheet/bare1.png sheet/relief1.png && same_paint cold bare relief seed kraft
+    ! cmp -s sheet/bare1.png sheet/relief1.png && ! cmp -s sheet/auto1.png sheet/relief1.png &&
+    same_paint cold bare relief seed kraft
 result $? 'paper is cold unless it is said, and changes no paint'
 on_paper white -b '#ffffff' && on_paper white-none -b '#ffffff' --paper none &&
     on_paper white-cold -b '#ffffff' --paper cold && ! cmp -s sheet/white1.png sheet/white-cold1.png &&

@@ -1,5 +1,6 @@
 /* The config file: what it says, and what it says about its mistakes. */
 #include "params/config.h"
+#include "params/options.h"
 
 #include <glib/gstdio.h>
 #include <string.h>
@@ -180,8 +181,11 @@ static void the_options_win_over_the_project(void)
 {
     g_autoptr(FlConfig) config = load("[project]\nfps = 12\nseed = 5\nloop = on\ngap = 3\nstroke = "
                                       "drop\nmissing = hold\nkey = id\n"
+                                      "paper-boil = 4\n"
                                       "background = #ffffff\n");
     FlRenderOptions options = {.fps = 30, .missing = FL_MISSING_ERROR, .gap = -1};
+    g_assert_true(fl_option_set(fl_option_find(FL_SCOPE_RENDER, "paper-boil"), "0", NULL, &options,
+                                NULL, NULL));
     fl_config_complete(config, &options);
     g_assert_cmpfloat(options.fps, ==, 30);
     g_assert_cmpint(options.missing, ==, FL_MISSING_ERROR);
@@ -192,6 +196,7 @@ static void the_options_win_over_the_project(void)
     g_assert_null(options.output);
     g_assert_cmpint(options.stroke, ==, FL_STROKES_DROP);
     g_assert_cmpfloat(options.gap, ==, 0);
+    g_assert_cmpint(options.paper_boil, ==, 0);
     g_assert_cmpint(options.blend, ==, FL_BLEND_SRGB);
 }
 

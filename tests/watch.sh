@@ -111,7 +111,7 @@ printf 'circle { fill: #3355aa }' >film/linked/look.css
         "<svg xmlns='http://www.w3.org/2000/svg' width='56' height='56' viewBox='0 0 48 48'>"
     echo "<circle cx='30' cy='24' r='11'/><image href='linked/picture.png' width='9' height='9'/></svg>"
 } >film/w_0003.svg
-printf '[project]\nbackground = ground/ground.png\n' >one.conf
+printf '; a remark\n[project]\nbackground = ground/ground.png\n' >one.conf
 rm -rf now kept
 watch -c one.conf
 follows

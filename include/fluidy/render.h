@@ -147,7 +147,7 @@ typedef struct FlRenderOptions {
      * where there is no background, else its tooth alone */
     const char *paper;
     double paper_scale;  /**< factor on the grain's size, which follows the page's; 0: 1 */
-    double paper_relief; /**< ..2; 0: 1 */
+    double paper_relief; /**< ..2; 0: 1, below 0: none */
     uint64_t paper_seed; /**< 0: 1 */
     int paper_boil;      /**< frames after which another part of the sheet is taken; 0: never */
     int width, height;   /**< px; 0: from the other, by the drawing's aspect; both 0: scale */

@@ -1,5 +1,7 @@
 #include "file_watch.h"
 
+#include "config_edit.h"
+#include "params/options.h"
 #include <gio/gio.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -133,27 +135,34 @@ static void add_style(FlFileWatch *watch, const char *path)
     }
 }
 
-/* Files and folders of styles that the config names; they are relative to its own folder. */
+/* What a config is read for: the files that it names, relative to its own folder. */
+typedef struct ConfigFiles {
+    FlFileWatch *watch;
+    const char *folder;
+} ConfigFiles;
+
+static char *add_entry(const char *section, const char *key, const char *value, void *data)
+{
+    const ConfigFiles *files = data;
+    const FlOption *option = fl_option_find(FL_SCOPE_RENDER, key);
+    g_autofree char *path = g_canonicalize_filename(value, files->folder);
+    (void)section;
+    if (fl_option_names_style(key))
+        add_style(files->watch, path);
+    else if (option && option->type == FL_OPTION_GROUND)
+        add_files(files->watch, path);
+    return NULL;
+}
+
 static void add_config_files(FlFileWatch *watch, const char *config)
 {
-    g_autoptr(GKeyFile) file = g_key_file_new();
-    if (!config || !g_key_file_load_from_file(file, config, G_KEY_FILE_NONE, NULL))
+    g_autofree char *text = NULL;
+    if (!config || !g_file_get_contents(config, &text, NULL, NULL))
         return;
-    g_autofree char *folder = g_path_get_dirname(config);
-    g_autofree char *base = g_canonicalize_filename(folder, NULL);
-    g_auto(GStrv) sections = g_key_file_get_groups(file, NULL);
-    for (char **section = sections; *section; section++) {
-        static const char *const keys[] = {"background", "paper"};
-        for (size_t k = 0; k < G_N_ELEMENTS(keys); k++) {
-            g_autofree char *name = g_key_file_get_string(file, *section, keys[k], NULL);
-            g_autofree char *file_path = name ? g_canonicalize_filename(name, base) : NULL;
-            add_files(watch, file_path);
-        }
-        g_autofree char *style = g_key_file_get_string(file, *section, "style", NULL);
-        g_autofree char *path = style ? g_canonicalize_filename(style, base) : NULL;
-        if (path)
-            add_style(watch, path);
-    }
+    g_autofree char *named_folder = g_path_get_dirname(config);
+    g_autofree char *folder = g_canonicalize_filename(named_folder, NULL);
+    ConfigFiles files = {watch, folder};
+    g_free(fl_config_edit_map(text, add_entry, &files));
 }
 
 FlFileWatch *fl_file_watch_new(const FlRenderOptions *options)
@@ -172,7 +181,7 @@ FlFileWatch *fl_file_watch_new(const FlRenderOptions *options)
     add_files(watch, options->merge ? options->paint : NULL);
     add_config_files(watch, options->config);
     for (size_t k = 0; k < options->n_settings; k++)
-        if (strcmp(options->settings[k].name, "style") == 0)
+        if (fl_option_names_style(options->settings[k].name))
             add_style(watch, options->settings[k].value);
     g_autoptr(GPtrArray) styles = fl_style_list();
     for (guint k = 0; k < styles->len; k++)

@@ -2,6 +2,7 @@
 
 #include "io/pattern.h"
 #include "job/paint_files.h"
+#include "params/options.h"
 #include <string.h>
 #include <sys/stat.h>
 
@@ -183,7 +184,7 @@ bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
     g_autoptr(GPtrArray) paths = g_ptr_array_new_with_free_func(g_free);
     add_linked(paths, drawing);
     for (size_t k = 0; k < options->n_settings; k++)
-        if (strcmp(options->settings[k].name, "style") == 0)
+        if (fl_option_names_style(options->settings[k].name))
             add_style(paths, options->settings[k].value);
     if (options->config)
         g_ptr_array_add(paths, g_strdup(options->config));

@@ -303,9 +303,7 @@ void fl_config_complete(const FlConfig *config, FlRenderOptions *options)
         if (option->scope != FL_SCOPE_RENDER)
             continue;
         complete(config, option, options);
-        double *number = (double *)((char *)options + option->offset);
-        if (option->type == FL_OPTION_REAL)
-            *number = MAX(*number, 0); // -1 is an explicit 0
+        fl_option_drop_marker(option, options);
     }
 }
 

@@ -80,6 +80,12 @@ const FlOption *fl_option_find(FlOptionScope scope, const char *name)
     return NULL;
 }
 
+bool fl_option_names_style(const char *name)
+{
+    const FlOption *option = fl_option_find(FL_SCOPE_REGION, name);
+    return option && option->type == FL_OPTION_STYLE;
+}
+
 const FlOption *fl_option_find_argument(const char *name)
 {
     for (int i = 0; i < fl_option_count(); i++) {
@@ -188,7 +194,7 @@ static bool set_number(const FlOption *option, const char *value, void *field)
     else if (option->type == FL_OPTION_COUNT)
         *(uint64_t *)field = (uint64_t)number;
     else
-        *(int *)field = (int)number;
+        *(int *)field = number > 0 ? (int)number : -1;
     return true;
 }
 
@@ -286,6 +292,15 @@ bool fl_option_is_set(const FlOption *option, const FlRenderOptions *options)
     return memcmp(field, nothing, field_bytes(option)) != 0;
 }
 
+void fl_option_drop_marker(const FlOption *option, FlRenderOptions *options)
+{
+    void *const field = field_of(option, options);
+    if (option->type == FL_OPTION_REAL)
+        *(double *)field = MAX(*(double *)field, 0);
+    else if (option->type == FL_OPTION_INT)
+        *(int *)field = MAX(*(int *)field, 0);
+}
+
 void fl_option_copy(const FlOption *option, const FlRenderOptions *from, FlRenderOptions *to)
 {
     memcpy(field_of(option, to), (const char *)from + option->offset, field_bytes(option));
@@ -321,10 +336,10 @@ char *fl_option_get(const FlOption *option, const void *object)
     case FL_OPTION_BOOL:
         return g_strdup(*(const bool *)field ? "on" : "off");
     case FL_OPTION_INT:
-        return g_strdup_printf("%d", *(const int *)field);
+        return g_strdup_printf("%d", MAX(*(const int *)field, 0)); // 0 that was set is -1
     case FL_OPTION_COUNT:
         return g_strdup_printf("%" G_GUINT64_FORMAT, *(const uint64_t *)field);
-    case FL_OPTION_REAL: // 0 that was set is -1
+    case FL_OPTION_REAL: // likewise
         return number_text(MAX(*(const double *)field, 0));
     case FL_OPTION_DIAL:
         return isnan(*(const double *)field) ? g_strdup("auto")

@@ -88,6 +88,9 @@ const FlOption *fl_option_at(int index);
 /** NULL: there is none. "scale" is an option of a render as well as a key of a region. */
 const FlOption *fl_option_find(FlOptionScope scope, const char *name);
 
+/** Whether the value of a region's option is a style's name or folder. */
+bool fl_option_names_style(const char *name);
+
 /** The option of the command line: "width" or the letter "W"; NULL: there is none. */
 const FlOption *fl_option_find_argument(const char *name);
 
@@ -114,6 +117,9 @@ bool fl_option_reject(const FlOption *option, const char *value, GError **error)
  */
 bool fl_option_set(const FlOption *option, const char *value, const char *folder,
                    FlRenderOptions *options, GPtrArray *strings, GError **error);
+
+/** Makes an explicit 0, kept as -1, a 0 again: the option has overridden what it may. */
+void fl_option_drop_marker(const FlOption *option, FlRenderOptions *options);
 
 /** Whether the field is anything but zero. */
 bool fl_option_is_set(const FlOption *option, const FlRenderOptions *options);

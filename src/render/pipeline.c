@@ -365,9 +365,7 @@ static bool make_sheet(Pipeline *pipeline, GError **error)
     const FlPaperChoice choice = {.paper = o->paper,
                                   .scale =
                                       plan->paper_px * (o->paper_scale > 0 ? o->paper_scale : 1),
-                                  .relief = o->paper_relief < 0    ? 0
-                                            : o->paper_relief == 0 ? 1
-                                                                   : o->paper_relief,
+                                  .relief = o->paper_relief,
                                   .seed = MAX(o->paper_seed, 1),
                                   .boil = o->paper_boil};
     if (!fl_paper_sheet_make(&choice, !o->background, plan->width, plan->height, &pipeline->sheet,
