@@ -140,14 +140,15 @@ static FlParams *params_of(const Variant *variant)
     return params;
 }
 
-static void paint(const FlExemplar *exemplar, const FlParams *params, Film *drawing, FieldScore *field)
+static void paint(const FlExemplar *exemplar, const FlParams *params, Film *drawing,
+                  FieldScore *field)
 {
     g_autoptr(GError) error = NULL;
     g_autoptr(FlSynth) synth = fl_synth_new(exemplar, params, (FlSynthSize){W, H, W, H}, 1);
     for (int f = 0; f < FRAMES; f++) {
         FlSynthView view;
-        if (!synth || !fl_synth_frame(synth, &drawing->guides[f], drawing->rgb + 3 * (size_t)W * H * f,
-                                      NULL, &view, &error))
+        if (!synth || !fl_synth_frame(synth, &drawing->guides[f],
+                                      drawing->rgb + 3 * (size_t)W * H * f, NULL, &view, &error))
             g_error("%s", error->message);
         add_field(field, exemplar, &view, &drawing->guides[f]);
     }
@@ -171,7 +172,8 @@ static void show(const Film *drawing, cairo_surface_t *sheet, int row)
         for (int x = 0; x < W; x++) {
             for (int k = 0; k < 3; k++)
                 copy_pixel(drawing, frames[k], x, y, sheet, k * W + x, row * H + y);
-            copy_pixel(drawing, MIN(y / 10, FRAMES - 1), x, SLICE_ROW, sheet, 3 * W + x, row * H + y);
+            copy_pixel(drawing, MIN(y / 10, FRAMES - 1), x, SLICE_ROW, sheet, 3 * W + x,
+                       row * H + y);
         }
     cairo_surface_mark_dirty(sheet);
     cairo_t *cr = cairo_create(sheet);
@@ -190,7 +192,8 @@ static void run(const FlStyle *style, int row, cairo_surface_t *sheet)
     g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, &error);
     if (!exemplar)
         g_error("%s", error->message);
-    Film *model = film_of_style(style, &how, exemplar->margin_px), *drawing = film_new(&source, &how);
+    Film *model = film_of_style(style, &how, exemplar->margin_px),
+         *drawing = film_new(&source, &how);
     FieldScore field = {.columns = style->width / CELL + 1, .rows = style->height / CELL + 1};
     field.n_cells = field.columns * field.rows * (style->n_frames / CELL + 1);
     field.cells = g_new0(int, field.n_cells);
@@ -199,12 +202,12 @@ static void run(const FlStyle *style, int row, cairo_surface_t *sheet)
     double entropy, most;
     spread(&field, exemplar, &entropy, &most);
     if (row == 0)
-        printf("%-14s sharp   std  edge  turn motion entropy  most flicker  rest(%.1f) rim(%.1f)\n", "",
-               want.rest, want.rim);
-    printf("%-14s %5.2f %5.2f %5.1f %5.2f %6.3f %7.3f %5.1f %7.2f  %9.2f %9.1f\n", variants[row].name,
-           got.sharp / want.sharp, got.deviation / want.deviation, profile_error(&want, &got),
-           field.turn / MAX(field.n_turns, 1), field.motion / field.n, entropy, most,
-           got.flicker / want.flicker, got.rest, got.rim);
+        printf("%-14s sharp   std  edge  turn motion entropy  most flicker  rest(%.1f) rim(%.1f)\n",
+               "", want.rest, want.rim);
+    printf("%-14s %5.2f %5.2f %5.1f %5.2f %6.3f %7.3f %5.1f %7.2f  %9.2f %9.1f\n",
+           variants[row].name, got.sharp / want.sharp, got.deviation / want.deviation,
+           profile_error(&want, &got), field.turn / MAX(field.n_turns, 1), field.motion / field.n,
+           entropy, most, got.flicker / want.flicker, got.rest, got.rim);
     fflush(stdout);
     show(drawing, sheet, row);
     film_free(model);

@@ -146,8 +146,8 @@ table() {
 1|region red-aa3311: ./still: has no tile; expected a style of transport*|good --tile ./still
 1|*11/transport.net: no such file; expected a style for which fluidy-style network*|good -s 11 --solver network
 2|region red-aa3311: the engine transport moves ink by its own style; *|good --engine transport --tile ./still
-2|region red-aa3311: --tile moves paint that is there, and --solver network flat ink only; *|good --tile ./still --solver network
-2|region red-aa3311: --tile moves paint that is there, and --refine flat ink only; *|good --tile ./still --refine 8
+2|region red-aa3311: --tile moves existing paint, but --solver network needs flat ink; *|good --tile ./still --solver network
+2|region red-aa3311: --tile moves existing paint, but --refine needs flat ink; *|good --tile ./still --refine 8
 2|refine: “x” is not an integer from 0 to 1000|good -s 11 --refine x
 2|region red-aa3311: the engine transport has no guides for --ebsynth; *|good --engine transport --ebsynth eb
 2|dumped/red-aa3311/clear.png: is read by this render; *|good -y -b dumped/red-aa3311/clear.png --ebsynth dumped -o y_%d.png

@@ -18,12 +18,12 @@
 
 typedef struct Case {
     FlTexel source[FIELD * FIELD];
-    _Alignas(64) FlCompressed target[FL_PATCH_PIXELS + 3];
-    FlCompressed rest;
+    _Alignas(64) FlTargetTexel target[FL_PATCH_PIXELS + 3];
+    FlTargetTexel rest;
     int16_t offsets[FL_PATCH_PIXELS];
 } Case;
 
-static void fill(FlCompressed *pixels, int n, FlRng *rng, int limit)
+static void fill(FlTargetTexel *pixels, int n, FlRng *rng, int limit)
 {
     for (int p = 0; p < n; p++)
         for (int c = 0; c < FL_CHANNELS; c++)
@@ -168,9 +168,9 @@ static void a_pair_is_the_distances_of_both_half_turns(const void *version)
 }
 
 /* Windows of an exemplar of up to `most` pixels and frames a side. */
-static void make_windows(FlWindows *windows, uint32_t most, FlRng *rng)
+static void make_windows(FlSearchWindows *windows, uint32_t most, FlRng *rng)
 {
-    *windows = (FlWindows){.n = 1 + (int)fl_rng_below(rng, FL_MAX_TRIES)};
+    *windows = (FlSearchWindows){.n = 1 + (int)fl_rng_below(rng, FL_MAX_CANDIDATES)};
     windows->step[0] = 1;
     for (int axis = 0; axis < 3; axis++) {
         windows->size[axis] = (uint16_t)(1 + fl_rng_below(rng, most));
@@ -186,15 +186,15 @@ static void the_same_tries_are_drawn_inside_the_windows(const void *version)
     const FlKernels *kernels = version;
     for (uint64_t seed = 1; seed <= 2000; seed++) {
         FlRng rng = {seed};
-        FlWindows w;
-        FlTries want, got;
+        FlSearchWindows w;
+        FlCandidates want, got;
         make_windows(&w, seed % 2 ? 30 : 32767, &rng);
         uint16_t centre[3];
         for (int axis = 0; axis < 3; axis++)
             centre[axis] = (uint16_t)fl_rng_below(&rng, w.size[axis]);
         const uint32_t key = fl_rng_u32(&rng);
-        fl_draw_tries_c(&w, centre, key, &want);
-        kernels->draw_tries(&w, centre, key, &got);
+        fl_draw_candidates_c(&w, centre, key, &want);
+        kernels->draw_candidates(&w, centre, key, &got);
         g_assert_cmpmem(got.pixel, w.n * sizeof *got.pixel, want.pixel, w.n * sizeof *want.pixel);
         for (int axis = 0; axis < 3; axis++)
             for (int k = 0; k < w.n; k++) {
@@ -207,19 +207,20 @@ static void the_same_tries_are_drawn_inside_the_windows(const void *version)
 
 enum { CELLS = 8 }; // side of the occurrence map, in time too
 
-static void make_sieve(FlSieve *sieve, const FlTexel *first, const int32_t *use, FlRng *rng)
+static void make_sieve(FlCandidateFilter *filter, const FlTexel *first, const int32_t *use,
+                       FlRng *rng)
 {
-    *sieve = (FlSieve){.first = first,
-                       .segment = (uint8_t)fl_rng_below(rng, 3),
-                       .use = use,
-                       .step = {1, CELLS, CELLS * CELLS},
-                       .factor = {10923, 10923, 8192},
-                       .price = (float)fl_rng_below(rng, 5000) / 7,
-                       .most = 536870912.0f,
-                       .limit = fl_rng_below(rng, 1u << 20),
-                       .frames = {-1, -1, (int16_t)fl_rng_below(rng, 16), -1}};
+    *filter = (FlCandidateFilter){.first = first,
+                                  .segment = (uint8_t)fl_rng_below(rng, 3),
+                                  .use = use,
+                                  .step = {1, CELLS, CELLS * CELLS},
+                                  .factor = {10923, 10923, 8192},
+                                  .price = (float)fl_rng_below(rng, 5000) / 7,
+                                  .most = 536870912.0f,
+                                  .limit = fl_rng_below(rng, 1u << 20),
+                                  .frames = {-1, -1, (int16_t)fl_rng_below(rng, 16), -1}};
     for (int axis = 0; axis < 3; axis++)
-        sieve->own[axis] = (uint16_t)fl_rng_below(rng, CELLS);
+        filter->own[axis] = (uint16_t)fl_rng_below(rng, CELLS);
 }
 
 static void the_same_tries_pass_as_in_c(const void *version)
@@ -229,19 +230,19 @@ static void the_same_tries_pass_as_in_c(const void *version)
     int32_t use[CELLS * CELLS * CELLS];
     for (uint64_t seed = 1; seed <= 1000; seed++) {
         FlRng rng = {seed};
-        FlWindows w;
-        FlTries tries;
-        FlSieve sieve;
-        uint32_t want[FL_MAX_TRIES], got[FL_MAX_TRIES];
+        FlSearchWindows w;
+        FlCandidates candidates;
+        FlCandidateFilter filter;
+        uint32_t want[FL_MAX_CANDIDATES], got[FL_MAX_CANDIDATES];
         make_windows(&w, 16, &rng);
         for (int k = 0; k < 16 * 16 * 16; k++)
             texels[k].c[FL_CH_SEGMENT] = (uint8_t)fl_rng_below(&rng, 3);
         for (int k = 0; k < CELLS * CELLS * CELLS; k++)
             use[k] = (int32_t)fl_rng_below(&rng, seed % 5 ? 3000 : INT32_MAX);
-        kernels->draw_tries(&w, (uint16_t[3]){0, 0, 0}, fl_rng_u32(&rng), &tries);
-        make_sieve(&sieve, texels, use, &rng);
-        const uint64_t passed = fl_sift_c(&tries, w.n, &sieve, want);
-        g_assert_cmpuint(kernels->sift(&tries, w.n, &sieve, got), ==, passed);
+        kernels->draw_candidates(&w, (uint16_t[3]){0, 0, 0}, fl_rng_u32(&rng), &candidates);
+        make_sieve(&filter, texels, use, &rng);
+        const uint64_t passed = fl_filter_candidates_c(&candidates, w.n, &filter, want);
+        g_assert_cmpuint(kernels->filter_candidates(&candidates, w.n, &filter, got), ==, passed);
         for (int k = 0; k < w.n; k++)
             if (passed >> k & 1)
                 g_assert_cmpuint(got[k], ==, want[k]);
@@ -255,8 +256,8 @@ typedef struct Votes {
     uint16_t x[FL_VOTES], y[FL_VOTES];
     int16_t frame[FL_VOTES], turn[FL_VOTES][2];
     FlSplinePixel colour[VOTED_FRAMES * VOTED_PITCH * VOTED_PITCH];
-    FlCovering covering;
-    FlVoted voted;
+    FlVoteMatches covering;
+    FlVoteSource voted;
 } Votes;
 
 /* In a part of the exemplar, so that some agree, and beyond its borders; of few angles. */
@@ -275,11 +276,11 @@ static void make_votes(Votes *v, FlRng *rng)
     for (size_t p = 0; p < G_N_ELEMENTS(v->colour); p++)
         for (int c = 0; c < 4; c++)
             v->colour[p].c[c] = (int16_t)(fl_rng_below(rng, 65535) - 32767);
-    v->covering = (FlCovering){v->x, v->y, v->frame, (const int16_t(*)[2])v->turn};
-    v->voted = (FlVoted){.colour = v->colour + (FL_SPLINE_PAD - 1) * (VOTED_PITCH + 1),
-                         .pitch = VOTED_PITCH,
-                         .frame_pixels = VOTED_PITCH * VOTED_PITCH,
-                         .most = {16 * (VOTED - 1), 16 * (VOTED - 1)}};
+    v->covering = (FlVoteMatches){v->x, v->y, v->frame, (const int16_t(*)[2])v->turn};
+    v->voted = (FlVoteSource){.colour = v->colour + (FL_SPLINE_PAD - 1) * (VOTED_PITCH + 1),
+                              .pitch = VOTED_PITCH,
+                              .frame_pixels = VOTED_PITCH * VOTED_PITCH,
+                              .most = {16 * (VOTED - 1), 16 * (VOTED - 1)}};
     for (int n = 1; n <= FL_PATCH_PIXELS; n++)
         v->voted.weight[n] = 0.5f + (float)fl_rng_below(rng, 1000);
 }
@@ -610,7 +611,8 @@ static void print_time(const char *kernel, double seconds)
         print_time(name, since(start));                                                            \
     } while (0)
 
-/* A patch whose distances run to the end, 20 tries of which most are sifted out, a mixed field. */
+/* A patch whose distances run to the end, 20 candidates of which most are sifted out, a mixed
+ * field. */
 static void time_version(const FlKernels *kernels)
 {
     FlRng rng = {1};
@@ -618,18 +620,18 @@ static void time_version(const FlKernels *kernels)
     static FlTexel texels[16 * 16 * 16];
     static const int32_t use[CELLS * CELLS * CELLS];
     static const FlSplinePixel pixels[64];
-    FlWindows w;
-    FlTries tries;
-    FlSieve sieve;
+    FlSearchWindows w;
+    FlCandidates candidates;
+    FlCandidateFilter filter;
     static Votes votes;
-    uint32_t pair[2], uniformity[FL_MAX_TRIES];
+    uint32_t pair[2], uniformity[FL_MAX_CANDIDATES];
     float value[4], four[4][4];
     FlMatch coarse[ROW], fine[ROW];
     uint16_t most[2];
     make_case(&c, 1);
     make_windows(&w, 16, &rng);
     w.n = 20;
-    make_sieve(&sieve, texels, use, &rng);
+    make_sieve(&filter, texels, use, &rng);
     do
         make_votes(&votes, &rng);
     while (!fl_vote_c(&votes.covering, &votes.voted, value));
@@ -640,8 +642,8 @@ static void time_version(const FlKernels *kernels)
          kernels->patch_distance(centre + k % 64, c.offsets, k % 2, c.target, &c.rest, UINT32_MAX));
     TIME("patch_pair",
          kernels->patch_pair(centre + k % 64, c.offsets, c.target, &c.rest, UINT32_MAX, pair));
-    TIME("draw_tries", kernels->draw_tries(&w, (uint16_t[3]){0, 0, 0}, k, &tries));
-    TIME("sift", kernels->sift(&tries, w.n, &sieve, uniformity));
+    TIME("draw_candidates", kernels->draw_candidates(&w, (uint16_t[3]){0, 0, 0}, k, &candidates));
+    TIME("filter_candidates", kernels->filter_candidates(&candidates, w.n, &filter, uniformity));
     TIME("vote", kernels->vote(&votes.covering, &votes.voted, value));
     TIME("vote_doubled", kernels->vote_doubled(&votes.covering, &votes.voted, four));
     TIME("spline_sample", kernels->spline_sample(pixels, 8, fl_spline_phases[k % 16].x,
@@ -689,8 +691,9 @@ static const Check checks[] = {
     {"a-limit-never-changes-which-side-of-it-a-distance-is-on",
      a_limit_never_changes_which_side_of_it_a_distance_is_on},
     {"a-pair-is-the-distances-of-both-half-turns", a_pair_is_the_distances_of_both_half_turns},
-    {"the-same-tries-are-drawn-inside-the-windows", the_same_tries_are_drawn_inside_the_windows},
-    {"the-same-tries-pass-as-in-c", the_same_tries_pass_as_in_c},
+    {"the-same-candidates-are-drawn-inside-the-windows",
+     the_same_tries_are_drawn_inside_the_windows},
+    {"the-same-candidates-pass-as-in-c", the_same_tries_pass_as_in_c},
     {"votes-are-those-of-c", votes_are_those_of_c},
     {"doubled-votes-are-those-of-c", doubled_votes_are_those_of_c},
     {"matches-are-upscaled-as-in-c", matches_are_upscaled_as_in_c},

@@ -48,7 +48,7 @@ static uint16_t *find_tops(const FlPlan *plan, const FlDrawList *draws)
     for (int r = 0; r < draws->n; r++) {
         const FlDraw *draw = &draws->draw[r];
         const bool plain = plan->painted_of[draw->region] >= 0 && !draw->picture &&
-                           draw->alpha == 255 && draw->mix == FL_BLEND_MODE_OVER;
+                           draw->alpha == 255 && draw->blend_mode == FL_BLEND_MODE_OVER;
         const int first = first_like(draws, r);
         const FlRect box = draw->area.box;
         for (int y = 0; y < box.height; y++)

@@ -149,8 +149,8 @@ gap -o 'held/s_%04d.png' && gap --no-frames --paint 'held_paint/{region}_%d.png'
 result $? 'a part that begins with a held frame shows the one before'
 merge_part 5/4
 [ $? = 2 ] && says 'K from 1 to N' && render --part 1/2 -o 'farmed/%d.png' >out 2>err
-[ $? = 2 ] && says 'use --merge too' && merge_part film
-[ $? = 2 ] && says 'no film'
+[ $? = 2 ] && says 'needs --merge' && merge_part film
+[ $? = 2 ] && says 'needs a film'
 result $? 'a part that is none, of no merge, or a film of no name, is told'
 merge_part film s.apng
 [ $? = 1 ] && says 's_0001.png: there is no such frame'

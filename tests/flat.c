@@ -25,7 +25,8 @@ static void print_sequence(const char *folder)
     }
     g_autofree char *name = g_path_get_basename(folder);
     printf("%-22s %5.1f %5.1f  frame %3d of %3d, %2d regions, read in %.3f s a frame\n", name,
-           least, sum / n, fl_drawing_number(drawing, where), n, fl_drawing_regions(drawing), read_s / n);
+           least, sum / n, fl_drawing_number(drawing, where), n, fl_drawing_regions(drawing),
+           read_s / n);
     fflush(stdout);
 }
 

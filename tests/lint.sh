@@ -67,7 +67,8 @@ names_are_unique() {
 
 # Every work that a comment cites is in the list.
 references_are_listed() {
-    git grep -ohE '\[[A-Z][A-Za-z]*[0-9]{2}' -- src include | tr -d '[' | sort -u | while read -r tag; do
+    git grep -ohE '\[[A-Z][A-Za-z]*[0-9]{2}[]0-9 ,;.§A-Za-z()–]*' -- src include |
+        grep -oE '(^\[|[;,] )[A-Z][A-Za-z]*[0-9]{2}\b' | tr -d '[;, ' | sort -u | while read -r tag; do
         grep -q "^| $tag " src/REFERENCES.md || echo "REFERENCES.md has no $tag"
     done
     git grep -nE '\[DESIGN' -- src include

@@ -55,7 +55,8 @@ static bool all_inside(void *data, int frame, uint8_t *coverage, GError **error)
     return true;
 }
 
-static bool moving(void *data, int frame, const FlOutlinePair *outlines, float *motion, GError **error)
+static bool moving(void *data, int frame, const FlOutlinePair *outlines, float *motion,
+                   GError **error)
 {
     for (int p = 0; p < SIDE * SIDE; p++) {
         double u[2];

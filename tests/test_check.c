@@ -1,6 +1,6 @@
 #include "base/alloc.h"
-#include "style/style_guides.h"
 #include "style/measure.h"
+#include "style/style_guides.h"
 
 #include <fluidy/style.h>
 #include <glib/gstdio.h>

@@ -179,7 +179,7 @@ static void once_all_were_drawn_that_is_no_error(void)
         return;
     pid_t waiting[WORKERS];
     g_assert_cmpint(children_of(getpid(), waiting, WORKERS), ==, WORKERS);
-    fl_draw_pool_insist(film.pool);
+    fl_draw_pool_enable_fallbacks(film.pool);
     kill(MIN(waiting[0], waiting[1]), SIGKILL);
     g_autoptr(FlOutlines) read = fl_draw_pool_outlines(film.pool, 0, NULL);
     g_autoptr(FlDrawList) again = fl_draw_pool_draw(film.pool, 0, NULL, NULL);
@@ -209,7 +209,7 @@ static void lines_that_no_hand_can_draw_are_plain_and_counted(void)
     g_assert_null(fl_draw_pool_draw(film.pool, 1, &hand, &error));
     g_assert_nonnull(strstr(error->message, "f2.svg"));
     g_assert_cmpint(fl_draw_pool_plain(film.pool), ==, 0);
-    fl_draw_pool_insist(film.pool);
+    fl_draw_pool_enable_fallbacks(film.pool);
     g_autoptr(FlDrawList) plain = fl_draw_pool_draw(film.pool, 1, &hand, NULL);
     g_autoptr(FlDrawList) here = fl_draw_list_make(film.drawing, 1, NULL, NULL, NULL);
     assert_same(plain, here);
@@ -234,7 +234,7 @@ static void and_later_the_frame_before_and_counted_once(void)
     g_auto(Film) film = open_film();
     if (!film.pool)
         return;
-    fl_draw_pool_insist(film.pool);
+    fl_draw_pool_enable_fallbacks(film.pool);
     g_free(scratch_write(film.folder, "f2.svg", CRASHES));
     for (int pass = 0; pass < 2; pass++) {
         g_autoptr(FlDrawList) instead = fl_draw_pool_draw(film.pool, 1, NULL, NULL);

@@ -9,13 +9,13 @@ static char *describe(FlSvg *svg)
     const GArray *leaves = fl_svg_leaves(svg)->leaf;
     for (guint i = 0; i < leaves->len; i++) {
         FlPainted parts[FL_MOST_PARTS];
-        const int n = fl_svg_paint(svg, &g_array_index(leaves, FlLeaf, i), parts, NULL);
+        const int n = fl_svg_leaf_paints(svg, &g_array_index(leaves, FlLeaf, i), parts, NULL);
         g_assert_cmpint(n, >=, 0);
         for (int p = 0; p < n; p++) {
             g_string_append_printf(text, "%s%s %s@%d", text->len ? " | " : "",
                                    parts[p].stroke ? "stroke" : "fill", parts[p].paint.key,
                                    parts[p].paint.alpha);
-            fl_paint_clear(&parts[p].paint);
+            fl_svg_paint_clear(&parts[p].paint);
         }
     }
     return g_string_free(text, FALSE);

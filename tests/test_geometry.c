@@ -193,7 +193,7 @@ static RsvgRectangle drawn_box(FlSvg *svg, int width, int height)
     g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_A8, width, height, NULL);
     g_autoptr(cairo_t) cr = cairo_create(surface);
     g_assert_true(fl_svg_draw(svg, leaf, FL_PART_WHOLE, cr, width, height, NULL));
-    const FlRect ink = fl_surface_ink(surface, all);
+    const FlRect ink = fl_surface_bounds(surface, all);
     return (RsvgRectangle){ink.x, ink.y, ink.width, ink.height};
 }
 
@@ -264,12 +264,12 @@ static void turns_are_right(void)
 {
     for (int d = -1000; d <= 1000; d += 7) {
         double s, c;
-        fl_turn_of_degrees(d + 0.25, &s, &c);
+        fl_sincos_degrees(d + 0.25, &s, &c);
         g_assert_cmpfloat(fabs(s - sin((d + 0.25) * G_PI / 180)), <, 1e-13);
         g_assert_cmpfloat(fabs(c - cos((d + 0.25) * G_PI / 180)), <, 1e-13);
     }
     double s, c;
-    fl_turn_of_degrees(90, &s, &c);
+    fl_sincos_degrees(90, &s, &c);
     g_assert_true(s == 1 && c == 0);
 }
 

@@ -206,7 +206,8 @@ static void random_layers(FlLayer *layers, uint8_t coverage[][N], int n, uint64_
         for (int i = 0; i < 4 * N; i++)
             layers[k].rgba[i] = (uint8_t)fl_rng_u32(&rng);
         layers[k].alpha = fl_rng_below(&rng, 2) ? 255 : (uint8_t)fl_rng_u32(&rng);
-        layers[k].mix = fl_rng_below(&rng, 3) ? FL_BLEND_MODE_OVER : fl_rng_below(&rng, FL_N_MIXES);
+        layers[k].blend_mode =
+            fl_rng_below(&rng, 3) ? FL_BLEND_MODE_OVER : fl_rng_below(&rng, FL_N_BLEND_MODES);
         layers[k].stacking = fl_rng_below(&rng, 4) ? FL_STACKING_KNOCKOUT : FL_STACKING_GLAZE;
     }
 }
@@ -253,7 +254,7 @@ static void random_stack(FlLayer *layers, uint8_t (*coverage)[N], int n, uint64_
 {
     random_layers(layers, coverage, n, key);
     for (int k = 0; k < n; k++)
-        layers[k].mix = FL_BLEND_MODE_OVER, layers[k].stacking = FL_STACKING_KNOCKOUT;
+        layers[k].blend_mode = FL_BLEND_MODE_OVER, layers[k].stacking = FL_STACKING_KNOCKOUT;
 }
 
 static void layers_packed_in_turn_are_the_same_picture(void)

@@ -139,7 +139,7 @@ static double error_of_film(Draw *draw, Origin *origin, bool masks_only)
 static FlAffine turn(double degrees)
 {
     double s, c;
-    fl_turn_of_degrees(degrees, &s, &c);
+    fl_sincos_degrees(degrees, &s, &c);
     return (FlAffine){c, s, -s, c, 100 - 100 * c + 100 * s, 100 - 100 * s - 100 * c};
 }
 
@@ -194,7 +194,7 @@ static void strip_behind_a_window(GString *out, int t)
 static FlPoint star(int k, int t)
 {
     double s, c;
-    fl_turn_of_degrees(36 * k - 90, &s, &c);
+    fl_sincos_degrees(36 * k - 90, &s, &c);
     const double r = k % 2 ? 40 : 90;
     const FlAffine m = turn(4 * t);
     return fl_affine_apply(&m, (FlPoint){100 + r * c, 100 + r * s});

@@ -23,13 +23,13 @@ static char *another(const FlOption *o)
             return g_strdup(samples[i][1]);
     g_auto(GStrv) words = g_strsplit(o->value, "|", -1);
     for (int i = 0; words[0] && words[1] && words[i]; i++)
-        if (g_ascii_islower(words[i][0]) && strcmp(words[i], o->preset) != 0)
+        if (g_ascii_islower(words[i][0]) && strcmp(words[i], o->default_value) != 0)
             return g_strdup(words[i]);
     if (o->max <= o->min)
         return g_strdup("other");
     char text[G_ASCII_DTOSTR_BUF_SIZE];
     const double value = o->max < 2 ? (o->min + o->max) / 2 : o->min + 2;
-    const bool taken = value == g_ascii_strtod(o->preset, NULL);
+    const bool taken = value == g_ascii_strtod(o->default_value, NULL);
     const double next = o->max < 2 ? (value + o->max) / 2 : value + 1;
     return g_strdup(g_ascii_dtostr(text, sizeof text, taken ? next : value));
 }
@@ -70,11 +70,11 @@ static void every_default_is_a_value(void)
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *o = fl_option_at(i);
         FlRenderOptions options = {0};
-        if (o->scope != FL_SCOPE_RENDER || !*o->preset)
+        if (o->scope != FL_SCOPE_RENDER || !*o->default_value)
             continue;
-        set(o, o->preset, &options);
+        set(o, o->default_value, &options);
         g_autofree char *text = fl_option_get(o, &options);
-        g_assert_cmpstr(text, ==, o->preset);
+        g_assert_cmpstr(text, ==, o->default_value);
     }
 }
 

@@ -86,8 +86,8 @@ static void a_picture_waits_packed(void)
     g_assert_null(painted.painted);
     g_assert_null(painted.alpha);
     g_assert_cmpint(g_bytes_get_size(painted.packed), <, 2000);
-    g_auto(FlPaintedLook) look = {0};
-    g_assert_true(fl_painted_look(&painted, &look, &error));
+    g_auto(FlPaintedReader) look = {0};
+    g_assert_true(fl_painted_read(&painted, &look, &error));
     g_assert_true(memcmp(look.region.painted, picture, bytes) == 0);
     g_assert_true(look.region.alpha == look.region.painted + 3 * 100 * 80);
     g_assert_true(fl_painted_pack(&painted, &error)); // it is already

@@ -112,7 +112,7 @@ static void nothing_out_of_range_is_unpacked(void)
     FlSurveyPart text = fine, below = fine, mode = fine, kind = fine, box = fine, flag = fine;
     text.tree = (int)film.survey.strings.text->len;
     below.paint = -1;
-    mode.mix = FL_N_MIXES;
+    mode.blend_mode = FL_N_BLEND_MODES;
     kind.kind = FL_PAINT_MIXED + 1;
     box.box[2] = 1e30F;
     memset(&flag.stroke, 2, 1);

@@ -1,4 +1,5 @@
-/* Ink from frame to frame by the tile, by the network, and refined: it neither flickers nor fades. */
+/* Ink from frame to frame by the tile, by the network, and refined: it neither flickers nor fades.
+ */
 #include "bundled_style.h"
 #include "moving_disk.h"
 #include "transport/style_ink.h"

@@ -145,7 +145,7 @@ static FlRect moving_in(const Film *film, int f, FlRestingParts *resting)
     g_autofree uint8_t *square = NULL;
     FlRect moving = {0, 0, WIDTH, HEIGHT};
     *resting = (FlRestingParts){0};
-    g_assert_true(fl_guide_sequence_stirring(film->guides, f, &square, NULL));
+    g_assert_true(fl_guide_sequence_changes(film->guides, f, &square, NULL));
     g_assert_true(!square || fl_resting_parts_init(resting, WIDTH, HEIGHT, square, &moving, NULL));
     return moving;
 }

@@ -1,4 +1,5 @@
-/* Frame-sized buffers: an allocation that fails is an error, not an abort. */
+/* Frame-sized buffers: an allocation that fails is an error, not an abort. Free them with free() or
+ * g_autofree: g_free() is free() since GLib 2.46. */
 #ifndef FLUIDY_BASE_ALLOC_H
 #define FLUIDY_BASE_ALLOC_H
 
@@ -105,7 +106,5 @@ static inline void fl_release(void *part, size_t bytes)
         (void)madvise((void *)from, to - from, MADV_DONTNEED);
 #endif
 }
-
-/** g_autofree frees with g_free(), which is free() since GLib 2.46; so both fit fl_alloc(). */
 
 #endif

@@ -22,7 +22,7 @@ typedef enum FlBlendMode {
     FL_BLEND_MODE_SATURATION,
     FL_BLEND_MODE_COLOUR,
     FL_BLEND_MODE_LUMINOSITY,
-    FL_N_MIXES
+    FL_N_BLEND_MODES
 } FlBlendMode;
 
 /**

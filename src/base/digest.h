@@ -6,8 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** 128 bits; zero is that of nothing. Two different inputs meet by chance alone, but whoever wants
- * them to can make them meet: it is no seal. In this machine's byte order. */
+/** 128 bits in this machine's byte order; zero: no digest. Not cryptographic: collisions are
+ * unlikely but can be made on purpose. */
 typedef struct FlDigest {
     uint64_t a, b;
 } FlDigest;

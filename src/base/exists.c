@@ -6,7 +6,7 @@ void fl_exists_error(GError **error, const char *path)
                 "%s: already exists; use ‘overwrite’ to replace it", path);
 }
 
-bool fl_exists_not(const char *path, GError **error)
+bool fl_check_not_exists(const char *path, GError **error)
 {
     if (!g_file_test(path, G_FILE_TEST_EXISTS))
         return true;

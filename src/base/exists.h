@@ -9,6 +9,6 @@
 void fl_exists_error(GError **error, const char *path);
 
 /** Returns: true if there is no such file; else false with FL_ERROR_EXISTS set. */
-bool fl_exists_not(const char *path, GError **error);
+bool fl_check_not_exists(const char *path, GError **error);
 
 #endif

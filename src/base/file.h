@@ -1,5 +1,5 @@
-/* Files that others name, read without waiting for what never comes or for more than there is room;
- * and writing to descriptors. */
+/* Reads untrusted files: refuses pipes and devices, bounds the size, can be cancelled. Writes all
+ * bytes to a descriptor. */
 #ifndef FLUIDY_BASE_FILE_H
 #define FLUIDY_BASE_FILE_H
 

@@ -36,7 +36,7 @@ const GArray *fl_frame_cache_find(FlFrameCache *cache, FlDigest digest)
     return things;
 }
 
-void fl_frame_cache_turn(FlFrameCache *cache)
+void fl_frame_cache_next_frame(FlFrameCache *cache)
 {
     g_clear_pointer(&cache->last, g_hash_table_unref);
     cache->last = g_steal_pointer(&cache->now);

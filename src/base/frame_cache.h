@@ -19,7 +19,7 @@ const GArray *fl_frame_cache_find(FlFrameCache *cache, FlDigest digest);
 void fl_frame_cache_keep(FlFrameCache *cache, FlDigest digest, GArray *things);
 
 /** Begins another frame: forgets what this one has neither asked for nor kept. */
-void fl_frame_cache_turn(FlFrameCache *cache);
+void fl_frame_cache_next_frame(FlFrameCache *cache);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFrameCache, fl_frame_cache_clear)
 

@@ -6,10 +6,10 @@
 
 static const struct {
     const char *name;
-    int64_t preset, most; // preset 0: fl_memory_mib()
+    int64_t default_value, most; // default_value 0: fl_memory_mib()
     const char *what;
 } limits[] = {
-#define FL_LIMIT(constant, name, preset, most, what) {name, preset, most, what},
+#define FL_LIMIT(constant, name, default_value, most, what) {name, default_value, most, what},
 #include "base/limits.def"
 #undef FL_LIMIT
 };
@@ -20,7 +20,7 @@ int64_t fl_limit(FlLimit limit)
 {
     if (chosen[limit] > 0)
         return chosen[limit];
-    return limits[limit].preset > 0 ? limits[limit].preset : fl_memory_mib("/");
+    return limits[limit].default_value > 0 ? limits[limit].default_value : fl_memory_mib("/");
 }
 
 static bool no_such_limit(const char *name, GError **error)

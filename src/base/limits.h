@@ -5,7 +5,7 @@
 #include <fluidy/limits.h>
 
 typedef enum FlLimit {
-#define FL_LIMIT(constant, name, preset, most, what) FL_LIMIT_##constant,
+#define FL_LIMIT(constant, name, default_value, most, what) FL_LIMIT_##constant,
 #include "base/limits.def"
 #undef FL_LIMIT
     FL_N_LIMITS

@@ -12,7 +12,7 @@ typedef struct Cell {
     float slope[4][2];
 } Cell;
 
-/* The last cell of each key, or nearly each: whoever asks along a row stays in a cell for some
+/* The last cell of each key, or nearly each: a query along a row stays in a cell for some
  * steps, and hashing its corners takes longer than all else. */
 #define MEMO 256
 static _Thread_local Cell memo[MEMO];

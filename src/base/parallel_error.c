@@ -10,7 +10,7 @@ void fl_parallel_error_keep(GError **first, GError *failure)
     g_clear_error(&failure);
 }
 
-bool fl_parallel_error_tell(GError **error, GError *first)
+bool fl_parallel_error_propagate(GError **error, GError *first)
 {
     if (first)
         g_propagate_error(error, first);

@@ -10,6 +10,6 @@
 void fl_parallel_error_keep(GError **first, GError *failure);
 
 /** After the parallel part: moves `first` to `error`. Returns: true if there was none. */
-bool fl_parallel_error_tell(GError **error, GError *first);
+bool fl_parallel_error_propagate(GError **error, GError *first);
 
 #endif

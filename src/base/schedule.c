@@ -106,5 +106,5 @@ bool fl_schedule_run(FlWorkItem *items, int n, FlItemWork work, void *data, GErr
         if (!work(data, items[k].index, team_member(), &failure))
             fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }

@@ -13,7 +13,7 @@ typedef struct FlTask {
     void *data;
     GThread *thread;
     bool failed;
-    int threads;   // of its team: as many as whoever started it has
+    int threads;   // of its team: as many as its starter has
     GError *error; // of work that failed, until fl_task_wait()
 } FlTask;
 

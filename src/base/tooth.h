@@ -1,4 +1,4 @@
-/* The tooth of a sheet of paper, for whoever paints or draws on it. */
+/* The tooth of a sheet of paper, for what is painted or drawn on it. */
 #ifndef FLUIDY_BASE_TOOTH_H
 #define FLUIDY_BASE_TOOTH_H
 

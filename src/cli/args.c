@@ -187,7 +187,7 @@ typedef gboolean (*Reader)(const char *, const char *, gpointer, GError **);
         read_setting, FL_COMMAND_RENDER                                                            \
     }
 #define ACTION_PROGRAM(type, field) ACTION_##type(field)
-#define ACTION_TASK(field)                                                                         \
+#define ACTION_COMMAND(field)                                                                      \
     {                                                                                              \
         read_task, FL_COMMAND_##field                                                              \
     }

@@ -206,7 +206,7 @@ static gboolean on_tick(void *data)
     return G_SOURCE_CONTINUE; // the loop looks
 }
 
-/* Whoever opened the file does no longer write to it, or was killed. */
+/* The writer that opened the file no longer writes to it, or was killed. */
 static gboolean is_abandoned(void *path, void *time, void *data)
 {
     return g_get_monotonic_time() - *(gint64 *)time > (gint64)ABANDONED_MS * 1000;

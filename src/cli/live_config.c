@@ -208,7 +208,8 @@ bool fl_live_config_choose(FlLiveConfig *config, const char *section, const char
     const FlOption *option = is_section(section) ? option_of(section, key) : NULL;
     if (!option || is_output(option) || !is_plain(value) || strlen(value) > LONGEST_VALUE ||
         !g_utf8_validate(value, -1, NULL)) {
-        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "nothing of the kind can be chosen");
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "[%s] %s: cannot be set here, or the value is not valid text", section, key);
         return false;
     }
     for (guint k = config->choices->len; k > 0; k--) {
@@ -288,7 +289,7 @@ static void append_option(GString *json, const FlOption *option)
     fl_json_text(json, "unit", option->unit);
     fl_json_number(json, "min", option->min, option->max > option->min);
     fl_json_number(json, "max", option->max, option->max > option->min);
-    fl_json_text(json, "preset", option->preset);
+    fl_json_text(json, "default", option->default_value);
     fl_json_text(json, "help", help);
     g_string_append_c(json, '}');
 }

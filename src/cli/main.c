@@ -32,48 +32,48 @@ static void on_signal(int number)
     signal(SIGTERM, SIG_DFL);
 }
 
-typedef struct Voice {
+typedef struct Reporter {
     FlMeter meter;
     bool quiet;
     int n_warnings;
     FlFileWatch *files; // a change stops the render; NULL: none are watched
-} Voice;
+} Reporter;
 
 static bool show_progress(const FlProgress *progress, void *data)
 {
-    Voice *voice = data;
-    fl_meter_show(&voice->meter, progress);
-    return !stop && !(voice->files && fl_file_watch_changed(voice->files));
+    Reporter *reporter = data;
+    fl_meter_show(&reporter->meter, progress);
+    return !stop && !(reporter->files && fl_file_watch_changed(reporter->files));
 }
 
 static bool was_stopped(void *data)
 {
-    const Voice *voice = data;
-    return stop || (voice->files && fl_file_watch_has_changed(voice->files));
+    const Reporter *reporter = data;
+    return stop || (reporter->files && fl_file_watch_has_changed(reporter->files));
 }
 
 /* Prints a message with options as --name. */
-static void say(Voice *voice, const char *kind, const char *message)
+static void say(Reporter *reporter, const char *kind, const char *message)
 {
     g_autofree char *line = fl_help_translate(message);
-    if (!voice->quiet)
-        fl_meter_say(&voice->meter, kind, line);
+    if (!reporter->quiet)
+        fl_meter_say(&reporter->meter, kind, line);
 }
 
 static void show_warning(const char *message, void *data)
 {
-    Voice *voice = data;
-    voice->n_warnings++;
-    say(voice, "warning", message);
+    Reporter *reporter = data;
+    reporter->n_warnings++;
+    say(reporter, "warning", message);
 }
 
 /* Reminds at the end of warnings that may have scrolled away. */
-static void recall_warnings(Voice *voice)
+static void recall_warnings(Reporter *reporter)
 {
-    const int n = voice->n_warnings;
+    const int n = reporter->n_warnings;
     g_autofree char *line = g_strdup_printf("%d warning%s at the beginning", n, n == 1 ? "" : "s");
-    if (n > 0 && !voice->quiet)
-        fl_meter_say(&voice->meter, "note", line);
+    if (n > 0 && !reporter->quiet)
+        fl_meter_say(&reporter->meter, "note", line);
 }
 
 static void show_note(const char *message, void *data)
@@ -84,11 +84,11 @@ static void show_note(const char *message, void *data)
 /* Who shows the film live reads it among the lines of JSON. */
 static void take_linked(const char *file, void *data)
 {
-    Voice *voice = data;
-    if (voice->files)
-        fl_file_watch_add(voice->files, file);
-    else if (voice->meter.mode == FL_PROGRESS_JSON)
-        fl_meter_say(&voice->meter, "linked", file);
+    Reporter *reporter = data;
+    if (reporter->files)
+        fl_file_watch_add(reporter->files, file);
+    else if (reporter->meter.mode == FL_PROGRESS_JSON)
+        fl_meter_say(&reporter->meter, "linked", file);
 }
 
 static int status_of(const GError *error)
@@ -229,23 +229,23 @@ static bool is_final(const FlArgs *args, const GError *error)
            (status_of(error) == USAGE && !args->render.config);
 }
 
-static void note_change(Voice *voice)
+static void note_change(Reporter *reporter)
 {
-    g_autofree char *line = g_strdup_printf("%s has changed", fl_file_watch_last(voice->files));
-    say(voice, "note", line);
+    g_autofree char *line = g_strdup_printf("%s has changed", fl_file_watch_last(reporter->files));
+    say(reporter, "note", line);
 }
 
 /* Paints; where that fails since a file is changing, the next round comes soon.
  * Returns: the status to end with; -1: go on. */
-static int watch_round(FlArgs *args, Voice *voice)
+static int watch_round(FlArgs *args, Reporter *reporter)
 {
     g_autoptr(GError) error = NULL;
-    voice->n_warnings = 0;
+    reporter->n_warnings = 0;
     const bool painted = paint_twice(args, &error);
-    fl_meter_hide(&voice->meter);
+    fl_meter_hide(&reporter->meter);
     if (painted)
-        recall_warnings(voice);
-    else if (stop || !fl_file_watch_changed(voice->files)) {
+        recall_warnings(reporter);
+    else if (stop || !fl_file_watch_changed(reporter->files)) {
         const int status = fail(args, error);
         if (stop || is_final(args, error))
             return status;
@@ -266,7 +266,7 @@ static bool can_reread_config(const FlArgs *args, const char *option, GError **e
     return false;
 }
 
-static int watch(FlArgs *args, Voice *voice)
+static int watch(FlArgs *args, Reporter *reporter)
 {
     g_autoptr(GError) error = NULL;
     if (!can_reread_config(args, "--watch", &error))
@@ -279,15 +279,15 @@ static int watch(FlArgs *args, Voice *voice)
             fl_file_watch_add_all(files, before);
         fl_file_watch_free(before);
         before = files;
-        voice->files = files;
-        status = watch_round(args, voice);
+        reporter->files = files;
+        status = watch_round(args, reporter);
         if (status < 0 && !fl_file_watch_changed(files))
-            say(voice, "note", "waiting for a change of drawings, config or styles");
+            say(reporter, "note", "waiting for a change of drawings, config or styles");
         if (status < 0 && !fl_file_watch_wait(files, &stop))
             status = DONE;
         else if (status < 0)
-            note_change(voice);
-        voice->files = NULL;
+            note_change(reporter);
+        reporter->files = NULL;
     }
     return status;
 }
@@ -307,14 +307,14 @@ static int serve(FlArgs *args, GError **error)
 /* The commands that read the drawing, and may be interrupted. */
 static int work(FlArgs *args)
 {
-    Voice voice = {.quiet = args->quiet};
-    fl_meter_init(&voice.meter, args->quiet ? FL_PROGRESS_NONE : args->progress, stderr);
+    Reporter reporter = {.quiet = args->quiet};
+    fl_meter_init(&reporter.meter, args->quiet ? FL_PROGRESS_NONE : args->progress, stderr);
     args->render.progress = show_progress;
     args->render.stopped = was_stopped;
     args->render.warning = show_warning;
     args->render.note = show_note;
     args->render.linked = take_linked;
-    args->render.data = &voice;
+    args->render.data = &reporter;
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);
     if (args->task == FL_COMMAND_RENDER)
@@ -338,12 +338,12 @@ static int work(FlArgs *args)
     else if (args->task == FL_COMMAND_SERVE)
         status = serve(args, &error);
     else if (args->render.watch)
-        status = watch(args, &voice);
+        status = watch(args, &reporter);
     else
         fl_render(&args->render, &error);
-    fl_meter_hide(&voice.meter);
+    fl_meter_hide(&reporter.meter);
     if (!error && args->task == FL_COMMAND_RENDER && !args->render.watch)
-        recall_warnings(&voice);
+        recall_warnings(&reporter);
     // NOLINTNEXTLINE(clang-analyzer-core.StackAddressEscape): args are only cleared after this
     return error ? fail(args, error) : status;
 }

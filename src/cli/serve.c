@@ -261,10 +261,10 @@ static void on_headers(SoupServer *server, SoupServerMessage *message, const cha
         refuse(message, SOUP_STATUS_FORBIDDEN, "this page is for a browser on this machine");
     else if (!g_str_has_prefix(path, live->root))
         refuse(message, SOUP_STATUS_NOT_FOUND,
-               "not here; the page's whole address is the one that fluidy-svg printed");
+               "not found; open the full address that fluidy-svg printed");
     else if ((encoding != SOUP_ENCODING_NONE && encoding != SOUP_ENCODING_CONTENT_LENGTH) ||
              soup_message_headers_get_content_length(headers) > LONGEST_BODY)
-        refuse(message, SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE, "too much");
+        refuse(message, SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE, "the request is larger than 64 KiB");
 }
 
 static void on_request(SoupServer *server, SoupServerMessage *message, const char *path,
@@ -278,7 +278,7 @@ static void on_request(SoupServer *server, SoupServerMessage *message, const cha
             resources[k].answer(live, message, query);
             return;
         }
-    refuse(message, SOUP_STATUS_NOT_FOUND, "there is no such thing");
+    refuse(message, SOUP_STATUS_NOT_FOUND, "not found");
 }
 
 /* ---- the whole ------------------------------------------------------------------------------ */

@@ -70,8 +70,8 @@ static void turns_of(const uint8_t rgb[3], float pigments, int32_t turn[3])
     }
 }
 
-static uint8_t least_alpha_at(const Fill *fill, const FlColouring *colouring, const FlScale *scale,
-                              int amount)
+static uint8_t least_alpha_at(const Fill *fill, const FlColouring *colouring,
+                              const FlTransfer *scale, int amount)
 {
     uint8_t colour[3];
     fl_colour_law_at(&fill->law, amount, colour);
@@ -79,7 +79,7 @@ static uint8_t least_alpha_at(const Fill *fill, const FlColouring *colouring, co
 }
 
 static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *colouring,
-                      const FlScale *scale, const uint8_t rgb[3])
+                      const FlTransfer *scale, const uint8_t rgb[3])
 {
     memcpy(fill->rgb, rgb, 3);
     fill->known = true;
@@ -91,7 +91,7 @@ static void fill_init(Fill *fill, const FlInk *ink, const FlColouring *colouring
 }
 
 /* The greatest of the least alphas up to a step. */
-static int least_up_to(Fill *fill, const FlColouring *colouring, const FlScale *scale, int step)
+static int least_up_to(Fill *fill, const FlColouring *colouring, const FlTransfer *scale, int step)
 {
     for (int i = fill->n_least; i <= step; i++) {
         const uint8_t own = least_alpha_at(fill, colouring, scale, i * LEAST_STEP);
@@ -114,7 +114,7 @@ static void turn_hue(const Fill *fill, int amount, int play, uint8_t colour[3])
     }
 }
 
-static void colour_amount(Fill *fill, const FlColouring *colouring, const FlScale *scale,
+static void colour_amount(Fill *fill, const FlColouring *colouring, const FlTransfer *scale,
                           int amount, int play, uint8_t rgba[4])
 {
     uint8_t colour[3];
@@ -125,11 +125,11 @@ static void colour_amount(Fill *fill, const FlColouring *colouring, const FlScal
                       least_up_to(fill, colouring, scale, amount / LEAST_STEP));
     if (amount > fill->turn_at)
         opacity = MAX(opacity, fill->least_there);
-    fl_lift(scale, colour, colouring->paper, opacity, rgba);
+    fl_unblend(scale, colour, colouring->paper, opacity, rgba);
 }
 
 /** One fill for the whole region: each amount that it has is looked up. */
-static void colour_flat(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
+static void colour_flat(const FlInk *ink, const FlColouring *colouring, const FlTransfer *scale,
                         const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
     const size_t width = (size_t)area->box.width;
@@ -175,8 +175,9 @@ static int most_amount(const int16_t *amounts, const FlArea *area)
 #define PLAYS 64 // as many plays of pigments are told apart: one in four
 
 /** The same where pigments play: each pair of an amount and a play is looked up once it was met. */
-static void colour_flat_play(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
-                             const int16_t *amounts, const FlArea *area, uint8_t *rgba)
+static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
+                             const FlTransfer *scale, const int16_t *amounts, const FlArea *area,
+                             uint8_t *rgba)
 {
     const size_t n_amounts = (size_t)(most_amount(amounts, area) + 1);
     const size_t n = n_amounts * PLAYS;
@@ -231,7 +232,7 @@ static void kept_init(Kept *kept, const FlInk *ink, const uint8_t paper[3])
     }
 }
 
-static void keep_colours(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
+static void keep_colours(const FlInk *ink, const FlColouring *colouring, const FlTransfer *scale,
                          const FlPaintedPart *painted, const int16_t *amounts, const FlArea *area,
                          uint8_t *rgba)
 {
@@ -252,8 +253,8 @@ static void keep_colours(const FlInk *ink, const FlColouring *colouring, const F
                     (uint8_t)((fl_density_level(kept.paper[c] + kept.step[c][source[3 * x + c]]) +
                                128) >>
                               8);
-            fl_lift(scale, colour, colouring->paper, opacity_of(colouring->medium, amount),
-                    rgba + 4 * (row + x));
+            fl_unblend(scale, colour, colouring->paper, opacity_of(colouring->medium, amount),
+                       rgba + 4 * (row + x));
         }
     }
 }
@@ -290,7 +291,7 @@ static void take_alpha(const FlPaintedPart *painted, const int16_t *amounts, con
 #define FILLS 1024
 
 static Fill *find_fill(Fill *fills, const FlInk *ink, const FlColouring *colouring,
-                       const FlScale *scale, const uint8_t *rgb)
+                       const FlTransfer *scale, const uint8_t *rgb)
 {
     const uint32_t colour = (uint32_t)(rgb[0] << 16 | rgb[1] << 8 | rgb[2]);
     Fill *fill = &fills[(colour * 2654435761u >> 16) % FILLS];
@@ -300,7 +301,7 @@ static Fill *find_fill(Fill *fills, const FlInk *ink, const FlColouring *colouri
 }
 
 /** Each pixel has a fill of its own. */
-static void colour_picture(const FlInk *ink, const FlColouring *colouring, const FlScale *scale,
+static void colour_picture(const FlInk *ink, const FlColouring *colouring, const FlTransfer *scale,
                            const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
 #pragma omp parallel
@@ -323,8 +324,8 @@ static void colour_picture(const FlInk *ink, const FlColouring *colouring, const
 void fl_colourise(const FlInk *ink, const FlColouring *colouring, const FlPaintedPart *painted,
                   const int16_t *amounts, const FlArea *area, uint8_t *rgba)
 {
-    FlScale scale;
-    fl_scale_init(&scale, colouring->linear);
+    FlTransfer scale;
+    fl_transfer_init(&scale, colouring->linear);
     if (colouring->tint == FL_TINT_KEEP && painted->alpha)
         copy_colours(painted, amounts, area, rgba);
     else if (colouring->tint == FL_TINT_KEEP)
@@ -343,9 +344,9 @@ void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *p
                           const uint8_t *coverage, const FlArea *area, int16_t *amounts)
 {
     const FlRect box = area->box;
-    g_autofree int16_t *toned = g_new(int16_t, FL_AMOUNTS);
+    g_autofree int16_t *exposed = g_new(int16_t, FL_AMOUNTS);
     for (int i = 0; i < FL_AMOUNTS; i++)
-        toned[i] = (int16_t)fl_ink_exposed(ink, i, exposure);
+        exposed[i] = (int16_t)fl_ink_exposed(ink, i, exposure);
     memset(amounts, 0xff, fl_rect_pixels(box) * sizeof *amounts); // -1
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
@@ -353,7 +354,7 @@ void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *p
         const size_t row = (size_t)y * (size_t)box.width;
         for (int x = span.first; x < span.last; x++)
             if (coverage[row + x])
-                amounts[row + x] = toned[fl_ink_amount(ink, rgb + 3 * (size_t)x)];
+                amounts[row + x] = exposed[fl_ink_amount(ink, rgb + 3 * (size_t)x)];
     }
 }
 

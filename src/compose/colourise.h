@@ -33,7 +33,8 @@ typedef struct FlPaintedPart {
 
 /**
  * The amounts of paint of an area, one per pixel of its box; -1 where coverage is 0 and beyond the
- * area. tone is of fl_ink_exposure(); FL_EXPOSURE_ONE: as in the exemplar. coverage is of the box.
+ * area. exposure is of fl_ink_exposure(); FL_EXPOSURE_ONE: as in the exemplar. coverage is of the
+ * box.
  */
 void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *painted,
                           const uint8_t *coverage, const FlArea *area, int16_t *amounts);

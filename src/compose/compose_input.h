@@ -20,7 +20,7 @@ typedef struct FlComposeInput {
     int width, height;         // of the frame, px
     float paper_px;            // of the frame per px of the sheet of paper
     bool half;                 // the drawing has half that size: layers are enlarged
-    bool layers_apart;         // layers are stored as well, for whoever puts them on something else
+    bool layers_apart;         // layers are stored as well, to be put on something else
     bool linear;               // blend in linear light
     float gap_px;              // as in FlStackParams
 } FlComposeInput;

@@ -16,9 +16,9 @@
 #include <math.h>
 #include <string.h>
 
-#define BLEED_PX 8 // how far colours reach into transparency, for whoever scales the frames
+#define BLEED_PX 8 // how far colours reach into transparency, for frames that are scaled later
 
-/* Where nobody says, paint that will lie on something else than its paper is opaque. */
+/* The default: opaque where the output is not the style's paper. */
 static FlMedium medium_of(const FlComposeInput *input, const FlPaintedRegion *painted)
 {
     const FlMedium said = painted->settings->medium, of_style = painted->style->medium;
@@ -58,7 +58,7 @@ static FlPaintedPart part_of(const FlPaintedRegion *painted)
     return (FlPaintedPart){painted->painted, painted->rect, painted->alpha};
 }
 
-/* How much paint each pixel of a run's box has; to be freed with free(). */
+/* How much paint each pixel of a draw's box has; to be freed with free(). */
 static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion *painted,
                            int exposure, GError **error)
 {
@@ -211,10 +211,10 @@ static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **
                        .sheer = p < 0 && draw->by_hand,
                        .alpha = draw->alpha,
                        .stacking = FL_STACKING_KNOCKOUT,
-                       .mix = draw->mix};
-    g_auto(FlPaintedLook) look = {0};
+                       .blend_mode = draw->blend_mode};
+    g_auto(FlPaintedReader) look = {0};
     const FlPaintedRegion *painted = p >= 0 ? &look.region : NULL;
-    if (painted && !fl_painted_look(stack->input->painted[p], &look, error))
+    if (painted && !fl_painted_read(stack->input->painted[p], &look, error))
         return false;
     const bool cut_out = painted && painted->alpha;
     if ((cut_out && !reach_out(layer, stack, draw, painted, error)) ||
@@ -297,7 +297,7 @@ static bool needs_all(const Stack *stack)
     for (int k = 0; k < stack->composite->n_layers && !all; k++) {
         const FlDraw *draw = &stack->composite->draws->draw[stack->draw[k]];
         const int p = input->painted_of[draw->region];
-        all = draw->mix != FL_BLEND_MODE_OVER ||
+        all = draw->blend_mode != FL_BLEND_MODE_OVER ||
               (p >= 0 && input->painted[p]->settings->stacking == FL_STACKING_GLAZE);
     }
     return all;
@@ -314,7 +314,7 @@ static bool pack_some(FlLayer *layers, int n, GError **error)
             fl_parallel_error_keep(&first, failure);
         g_clear_pointer(&layers[k].knockout, free);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 #define PAGES_AT_ONCE 2 // pages of layers that are made together

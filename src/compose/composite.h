@@ -9,8 +9,8 @@
  * where no paper has light; else the frame is that times the light of the sheet. */
 typedef struct FlComposite {
     FlDrawList *draws;
-    int n_layers;     // 0: nobody wants them apart
-    FlLayer *layers;  // bottom first; their areas, rgba and body are owned
+    int n_layers;     // 0: not wanted apart
+    FlLayer *layers;  // bottom first; their areas, rgba and knockout are owned
     char **names;     // of the layers, for files: unique in the frame
     uint8_t *ground;  // what lies below the layers, opaque or a picture, if they are stored and
                       // there is something; else NULL

@@ -6,16 +6,16 @@
 #include "compose/interior.h"
 #include <string.h>
 
-#define SHOWN 128      // coverage from which on a shape can be uppermost
-#define TRAP_PX 4      // neighbours overlap by so much at most where a program traps them
-#define MOST_RUNS 4095 // whose overlaps are known
-#define TILE_PX 128    // a tile and what is around it fit into a processor's own cache
+#define SHOWN 128       // coverage from which on a shape can be uppermost
+#define TRAP_PX 4       // neighbours overlap by so much at most where a program traps them
+#define MOST_DRAWS 4095 // whose overlaps are known
+#define TILE_PX 128     // a tile and what is around it fit into a processor's own cache
 
-/** How much a run hides of what it lies over, 0 … 255. Shading does not: the edges below it are
+/** How much a draw hides of what it lies over, 0 … 255. Shading does not: the edges below it are
  * seen. What fades must not let go of its neighbours in one frame. */
 static int hiding(const FlComposeInput *input, const FlDraw *draw)
 {
-    if (draw->mix != FL_BLEND_MODE_OVER)
+    if (draw->blend_mode != FL_BLEND_MODE_OVER)
         return 0;
     const bool painted = input->painted_of[draw->region] >= 0;
     return painted ? draw->alpha : MAX((int)draw->alpha * 4 - 3 * 255, 0);
@@ -27,7 +27,7 @@ static size_t in_frame(const FlEdgeMap *edges, FlRect box, int y)
     return (size_t)(box.y + y) * (size_t)fl_drawing_width(edges->input->drawing) + (size_t)box.x;
 }
 
-/** The coverage of a run from column 0 of row y of its box on. */
+/** The coverage of a draw from column 0 of row y of its box on. */
 static const uint8_t *coverage_row(const FlDraw *draw, int y)
 {
     return draw->coverage + (size_t)y * (size_t)draw->area.box.width;
@@ -40,7 +40,7 @@ static bool holds_square(const uint8_t *upper, const uint8_t *lower)
            lower[TRAP_PX] >= SHOWN;
 }
 
-/** The run that is uppermost at all corners of the one from pixel i on; 0: none. */
+/** The draw that is uppermost at all corners of the one from pixel i on; 0: none. */
 static uint16_t top_of_square(const uint16_t *top, size_t i, size_t width)
 {
     const size_t down = i + TRAP_PX * width;
@@ -49,7 +49,7 @@ static uint16_t top_of_square(const uint16_t *top, size_t i, size_t width)
     return same ? top[i] : 0;
 }
 
-/** Notes which runs a run, put over those below it, overlaps in some square of TRAP_PX. */
+/** Notes which draws one, put over those below it, overlaps in some square of TRAP_PX. */
 static void note_overlaps(FlEdgeMap *edges, int draw)
 {
     const FlDraw *r = &edges->draws->draw[draw];
@@ -67,7 +67,7 @@ static void note_overlaps(FlEdgeMap *edges, int draw)
     }
 }
 
-/** Where more of a run is seen than of what was uppermost, it is that now. */
+/** Where more of a draw is seen than of what was uppermost, it is that now. */
 static void put_on_top(FlEdgeMap *edges, int draw)
 {
     const FlDraw *r = &edges->draws->draw[draw];
@@ -94,7 +94,7 @@ bool fl_edges_init(FlEdgeMap *edges, const FlComposeInput *input, const FlDrawLi
     const size_t pixels =
         (size_t)fl_drawing_width(input->drawing) * (size_t)fl_drawing_height(input->drawing);
     *edges = (FlEdgeMap){.input = input, .draws = draws};
-    edges->n = MIN(draws->n, MOST_RUNS) + 1;
+    edges->n = MIN(draws->n, MOST_DRAWS) + 1;
     const size_t pairs = (size_t)edges->n * (size_t)edges->n;
     if (!(edges->top = fl_alloc(pixels, sizeof *edges->top, "a matte", error)) ||
         !(edges->hidden = fl_alloc(pixels, 1, "a matte", error)) ||
@@ -115,7 +115,7 @@ void fl_edges_clear(FlEdgeMap *edges)
     *edges = (FlEdgeMap){0};
 }
 
-/** A part of a run's box that is closed by itself, and room for it. */
+/** A part of a draw's box that is closed by itself, and room for it. */
 typedef struct Tile {
     FlRect part;                // what is closed, with what may change it
     FlRect around;              // with what the shares are of
@@ -168,7 +168,7 @@ static FlRect part_of(const Tile *tile)
     return (FlRect){part.x - around.x, part.y - around.y, part.width, part.height};
 }
 
-/** What hides counts by how much of a run with an opacity it would. */
+/** What hides counts by how much of a draw with an opacity it would. */
 static void count_hidden(int alpha, uint8_t counts[256])
 {
     for (int hidden = 0; hidden < 256; hidden++)
@@ -176,8 +176,8 @@ static void count_hidden(int alpha, uint8_t counts[256])
 }
 
 /**
- * The share of the edges of a run with those below or above which it does not lie. Others count by
- * how much they hide for one as opaque as the run: a group that fades keeps its seams closed.
+ * The share of the edges of a draw with those below or above which it does not lie. Others count by
+ * how much they hide for one as opaque as the draw: a group that fades keeps its seams closed.
  */
 static bool find_share(Tile *tile, const FlEdgeMap *edges, int draw, int radius_px, GError **error)
 {
@@ -243,7 +243,7 @@ static bool close_tiles(const FlEdgeMap *edges, int draw, int radius_px, const i
         if (box.width > 0 && !close_tile(edges, draw, box, radius_px, amounts, closed, &failure))
             fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *painted,
@@ -263,7 +263,7 @@ bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *pai
     return close_tiles(edges, draw, radius, copy, amounts, error);
 }
 
-/** 255 where a run is all that is seen, else 0; of a box that may be larger than the run's. */
+/** 255 where a draw is all that is seen, else 0; of a box that may be larger than the draw's. */
 static uint8_t *own_pixels(const FlEdgeMap *edges, int draw, FlRect box, GError **error)
 {
     uint8_t *own = fl_alloc(fl_rect_pixels(box), 1, "a matte", error);
@@ -280,7 +280,7 @@ static uint8_t *own_pixels(const FlEdgeMap *edges, int draw, FlRect box, GError 
     return own;
 }
 
-/** Counts the amounts of a run deep enough inside what is seen of it. */
+/** Counts the amounts of a draw deep enough inside what is seen of it. */
 static bool count_inner(const FlEdgeMap *edges, int draw, const int16_t *amounts,
                         FlAmountCounts *counts, GError **error)
 {

@@ -12,10 +12,10 @@
 typedef struct FlEdgeMap {
     const FlComposeInput *input;
     const FlDrawList *draws;
-    uint16_t *top;   // a whole frame: 1 + the run that hides most of what is below it, 0: none
+    uint16_t *top;   // a whole frame: 1 + the draw that hides most of what is below it, 0: none
     uint8_t *hidden; // how much it hides, 0 … 255
-    int n;           // runs that count, and one: the lowest few thousand
-    bool *overlap;   // n * n: whether two runs, 1 + their numbers, lie over each other
+    int n;           // draws that count, and one: the lowest few thousand
+    bool *overlap;   // n * n: whether two draws, 1 + their numbers, lie over each other
 } FlEdgeMap;
 
 /** Everything is borrowed. FL_ERROR_NO_MEMORY. */
@@ -24,19 +24,19 @@ bool fl_edges_init(FlEdgeMap *edges, const FlComposeInput *input, const FlDrawLi
 void fl_edges_clear(FlEdgeMap *edges);
 
 /**
- * Closes up the amounts of paint of a run where its shape ends at another one, unless its edges are
- * soft. Where the two overlap, paint keeps its rim, as it does at free edges, and what lies below
- * is seen beyond it.
+ * Closes up the amounts of paint of a draw where its shape ends at another one, unless its edges
+ * are soft. Where the two overlap, paint keeps its rim, as it does at free edges, and what lies
+ * below is seen beyond it.
  *
- * amounts: of the run's box, below 0 outside the shape. Several threads may call it at once.
+ * amounts: of the draw's box, below 0 outside the shape. Several threads may call it at once.
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */
 bool fl_edges_close(const FlEdgeMap *edges, int draw, const FlPaintedRegion *painted,
                     int16_t *amounts, GError **error);
 
 /**
- * Brings the median of the amounts, where the run is seen, to one, by a factor of 2/3 … 3/2: what
- * was closed up, or belongs to a region with other tones elsewhere, may be off it.
+ * Brings the median of the amounts, where the draw is seen, to one, by a factor of 2/3 … 3/2: what
+ * was closed up, or belongs to a region with other exposures elsewhere, may be off it.
  *
  * Returns: false with FL_ERROR_NO_MEMORY set.
  */

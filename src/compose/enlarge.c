@@ -135,13 +135,13 @@ static FlRect doubled(FlRect box, int width, int height)
     return (FlRect){x0, y0, x1 - x0, y1 - y0};
 }
 
-static bool make_planes(FlLayer *full, bool with_body, GError **error)
+static bool make_planes(FlLayer *full, bool with_knockout, GError **error)
 {
     const size_t n = fl_rect_pixels(full->area.box);
     full->area.row = g_new0(FlColumns, full->area.box.height);
     return (full->coverage = fl_alloc(n, 1, "a layer", error)) &&
            (full->rgba = fl_alloc(4 * n, 1, "a layer", error)) &&
-           (!with_body || (full->knockout = fl_alloc(n, 1, "a layer", error)));
+           (!with_knockout || (full->knockout = fl_alloc(n, 1, "a layer", error)));
 }
 
 bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, GError **error)
@@ -177,5 +177,5 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
         free(rows.memory);
         fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }

@@ -4,10 +4,10 @@
 #include "base/parallel_error.h"
 #include <string.h>
 
-#define NOBODY UINT16_MAX
-#define ENOUGH 64 // pixels of a region from which its tone is that of what is seen of it
+#define NO_REGION UINT16_MAX
+#define ENOUGH 64 // pixels of a region from which its exposure is that of what is seen of it
 
-/* Which painted region each pixel shows, NOBODY where it is none or several. What is translucent
+/* Which painted region each pixel shows, NO_REGION where it is none or several. What is translucent
  * leaves what is below it in sight; regions that are not painted this time hide all the same, so
  * that one that is painted alone has the exposure it has among others. */
 static uint16_t *find_owners(const FlComposeInput *input, const FlDrawList *draws, GError **error)
@@ -21,7 +21,7 @@ static uint16_t *find_owners(const FlComposeInput *input, const FlDrawList *draw
     for (int r = 0; r < draws->n; r++) {
         const FlDraw *draw = &draws->draw[r];
         const int p = input->painted_of[draw->region];
-        if (draw->alpha < 255 || draw->mix != FL_BLEND_MODE_OVER)
+        if (draw->alpha < 255 || draw->blend_mode != FL_BLEND_MODE_OVER)
             continue;
         const FlRect box = draw->area.box;
         for (int y = 0; y < box.height; y++) {
@@ -30,7 +30,7 @@ static uint16_t *find_owners(const FlComposeInput *input, const FlDrawList *draw
             uint16_t *row = owner + (size_t)(box.y + y) * width + (size_t)box.x;
             for (int x = span.first; x < span.last; x++)
                 if (coverage[x])
-                    row[x] = p >= 0 && coverage[x] == 255 ? (uint16_t)p : NOBODY;
+                    row[x] = p >= 0 && coverage[x] == 255 ? (uint16_t)p : NO_REGION;
         }
     }
     return owner;
@@ -70,8 +70,8 @@ static bool find_exposure(const FlComposeInput *input, const FlDrawList *draws, 
     }
     if (seen < ENOUGH && !whole_shape(input, draws, painted, mask, error))
         return false;
-    g_auto(FlPaintedLook) look = {0};
-    if (!fl_painted_look(painted, &look, error))
+    g_auto(FlPaintedReader) look = {0};
+    if (!fl_painted_read(painted, &look, error))
         return false;
     *exposure =
         fl_ink_exposure(painted->style->ink, look.region.painted, mask, rect.width, rect.height);
@@ -91,5 +91,5 @@ bool fl_exposures_find(const FlComposeInput *input, const FlDrawList *draws, int
         if (!find_exposure(input, draws, p, owner, &exposures[p], &failure))
             fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }

@@ -206,9 +206,9 @@ static int64_t bent(const FlInk *ink, int64_t amount)
 
 int fl_ink_exposed(const FlInk *ink, int amount, int exposure)
 {
-    int64_t toned = bent(ink, (int64_t)amount * exposure / FL_EXPOSURE_ONE);
-    const int64_t excess = toned - FL_AMOUNT_ONE;
+    int64_t exposed = bent(ink, (int64_t)amount * exposure / FL_EXPOSURE_ONE);
+    const int64_t excess = exposed - FL_AMOUNT_ONE;
     if (excess > 0 && ink->shoulder > 0)
-        toned = FL_AMOUNT_ONE + excess * ink->shoulder / (excess + ink->shoulder);
-    return (int)MIN(toned, FL_AMOUNTS - 1);
+        exposed = FL_AMOUNT_ONE + excess * ink->shoulder / (excess + ink->shoulder);
+    return (int)MIN(exposed, FL_AMOUNTS - 1);
 }

@@ -11,7 +11,7 @@
 #define FL_AMOUNT_ONE 1024
 #define FL_AMOUNTS 8192
 
-/** A tone scales amounts; FL_EXPOSURE_ONE leaves them as they are. */
+/** An exposure scales amounts; FL_EXPOSURE_ONE leaves them as they are. */
 #define FL_EXPOSURE_ONE 4096
 #define FL_EXPOSURE_MIN (FL_EXPOSURE_ONE / 4)
 #define FL_EXPOSURE_MAX (FL_EXPOSURE_ONE * 8)
@@ -22,7 +22,7 @@ typedef struct FlAmountCounts {
     uint64_t total;
 } FlAmountCounts;
 
-#define FL_COUNTS_ENOUGH 64 // pixels that are trusted with a tone
+#define FL_COUNTS_ENOUGH 64 // pixels that are trusted with an exposure
 
 /**
  * What is known of a style's paint.
@@ -74,24 +74,25 @@ static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
 }
 
 /**
- * The tone that brings a painted region's own median amount to one.
+ * The exposure that brings a painted region's own median amount to one.
  *
  * painted is width * height * 3, coverage width * height: what counts of the shape. A region takes
  * other parts of the exemplar than its median (a thin limb is all rim, an early frame all fresh
- * paint), and without the tone its colour would not be the drawing's. The median is over pixels 2
+ * paint), and without it its colour would not be the drawing's. The median is over pixels 2
  * px inside the contour; where they are fewer than FL_COUNTS_ENOUGH, as in thin lines, over pixels
- * nearer to it. The tone is a function of this frame alone.
+ * nearer to it. It is a function of this frame alone.
  *
  * Returns: FL_EXPOSURE_MIN … FL_EXPOSURE_MAX.
  */
 int fl_ink_exposure(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
                     int height);
 
-/** The tone that brings the median of what was counted to one; fewer pixels than FL_COUNTS_ENOUGH
- * lean to FL_EXPOSURE_ONE. Returns: FL_EXPOSURE_MIN … FL_EXPOSURE_MAX. */
+/** The exposure that brings the median of what was counted to one; fewer pixels than
+ * FL_COUNTS_ENOUGH lean to FL_EXPOSURE_ONE. Returns: FL_EXPOSURE_MIN … FL_EXPOSURE_MAX. */
 int fl_counts_exposure(const FlAmountCounts *counts);
 
-/** The amount after tone, toe and shoulder, 0 … FL_AMOUNTS - 1; it never falls as amount rises. */
+/** The amount after exposure, toe and shoulder, 0 … FL_AMOUNTS - 1; it never falls as amount rises.
+ */
 int fl_ink_exposed(const FlInk *ink, int amount, int exposure);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlInk, fl_ink_free)

@@ -32,7 +32,7 @@ static int scaled(int a, int b)
 
 static bool knocks_out(const FlLayer *layer)
 {
-    return layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
+    return layer->stacking == FL_STACKING_KNOCKOUT && layer->blend_mode == FL_BLEND_MODE_OVER;
 }
 
 static void resolve_rows(const FlLayer *layer, FlLayersAbove *above)
@@ -102,7 +102,7 @@ static FlSums sums_from(const FlSums *sums, int first)
     return (FlSums){{sums->x[0] + first, sums->x[1] + first, sums->x[2] + first}, sums->a + first};
 }
 
-static void sum_over(const FlSums *sums, const FlScale *scale, const uint8_t *rgba, int n)
+static void sum_over(const FlSums *sums, const FlTransfer *scale, const uint8_t *rgba, int n)
 {
     if (!scale->linear)
         fl_row_kernels()->over(rgba, sums, n);
@@ -131,7 +131,7 @@ static int32_t sum_value(const Sum *sum, int channel)
 }
 
 /** Blends row y of a packed layer whose box begins at column x. */
-static void sum_runs(const FlPixelRuns *runs, const FlScale *scale, int y, int x,
+static void sum_runs(const FlPixelRuns *runs, const FlTransfer *scale, int y, int x,
                      const FlSums *sums)
 {
     for (size_t r = runs->first[y]; r < runs->first[y + 1]; r++) {
@@ -142,7 +142,8 @@ static void sum_runs(const FlPixelRuns *runs, const FlScale *scale, int y, int x
 }
 
 /** Blends the layers' pixels of row y over the sums of that row. */
-static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, const FlSums *sums)
+static void sum_row(const FlLayer *layers, int n, const FlTransfer *scale, int y,
+                    const FlSums *sums)
 {
     for (int k = 0; k < n; k++) {
         const FlRect box = layers[k].area.box;
@@ -159,7 +160,7 @@ static void sum_row(const FlLayer *layers, int n, const FlScale *scale, int y, c
     }
 }
 
-static void sum_backdrop(const FlBackdrop *backdrop, const FlScale *scale, int y, int width,
+static void sum_backdrop(const FlBackdrop *backdrop, const FlTransfer *scale, int y, int width,
                          const FlSums *sums)
 {
     uint32_t *const planes[4] = {sums->x[0], sums->x[1], sums->x[2], sums->a};
@@ -174,27 +175,28 @@ static void sum_backdrop(const FlBackdrop *backdrop, const FlScale *scale, int y
 }
 
 /** Lays the density of a glaze over what lies below it: the layer's pixel that does so. */
-static void glaze_pixel(const Sum *below, const FlScale *scale, const uint8_t *paper, uint8_t *rgba)
+static void glaze_pixel(const Sum *below, const FlTransfer *scale, const uint8_t *paper,
+                        uint8_t *rgba)
 {
     uint8_t under[3], target[3], lifted[4];
     for (int c = 0; c < 3; c++) {
-        under[c] = fl_scale_level(scale, sum_value(below, c));
+        under[c] = fl_transfer_level(scale, sum_value(below, c));
         const int32_t p = scale->value[paper[c]], k = scale->value[rgba[c]];
-        const int thin = fl_scale_level(scale, p + (int64_t)(k - p) * rgba[3] / 255);
+        const int thin = fl_transfer_level(scale, p + (int64_t)(k - p) * rgba[3] / 255);
         target[c] = (uint8_t)MIN((under[c] * thin + paper[c] / 2) / MAX(paper[c], 1), 255);
     }
-    fl_lift(scale, target, under, 0, lifted);
+    fl_unblend(scale, target, under, 0, lifted);
     memcpy(rgba, lifted, 4);
 }
 
-/** Gives a mixed layer's pixel the colour that is right over what lies below it. */
-static void mix_pixel(const Sum *below, int drawn, const FlScale *scale, FlBlendMode mix,
-                      uint8_t *rgba)
+/** Gives a pixel of a layer with a blend mode the colour that is right over what lies below it. */
+static void blend_pixel(const Sum *below, int drawn, const FlTransfer *scale,
+                        FlBlendMode blend_mode, uint8_t *rgba)
 {
     uint8_t under[3];
     for (int c = 0; c < 3; c++)
-        under[c] = fl_scale_level(scale, sum_value(below, c));
-    fl_blend_mode_apply(mix, under, drawn, rgba);
+        under[c] = fl_transfer_level(scale, sum_value(below, c));
+    fl_blend_mode_apply(blend_mode, under, drawn, rgba);
 }
 
 /** A row of the stack, from the paper up to the layer at hand. */
@@ -209,9 +211,10 @@ static void add_shape(const FlLayer *layer, FlColumns span, const uint8_t *cover
         drawn[x] = (uint8_t)(drawn[x] + scaled(255 - drawn[x], scaled(coverage[x], layer->alpha)));
 }
 
-/** Bottom layer first: gives glazes and mixed layers the colours for what lies below them. */
+/** Bottom layer first: gives glazes and layers with a blend mode the colours for what lies below
+ * them. */
 static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlStackParams *params,
-                            const FlScale *scale, Row below)
+                            const FlTransfer *scale, Row below)
 {
     const FlBackdrop paper = {.flat = {params->paper[0], params->paper[1], params->paper[2], 255}};
     sum_backdrop(&paper, scale, y, width, &below.sums);
@@ -225,9 +228,10 @@ static void resolve_colours(FlLayer *layers, int n, int width, int y, const FlSt
         const FlColumns span = fl_area_row(&layer->area, y - box.y);
         for (int x = span.first; x < span.last; x++) {
             const Sum under = sum_at(&below.sums, box.x + x);
-            if (layer->mix != FL_BLEND_MODE_OVER && row[4 * x + 3])
-                mix_pixel(&under, below.drawn[box.x + x], scale, layer->mix, row + 4 * x);
-            else if (layer->stacking == FL_STACKING_GLAZE && layer->mix == FL_BLEND_MODE_OVER)
+            if (layer->blend_mode != FL_BLEND_MODE_OVER && row[4 * x + 3])
+                blend_pixel(&under, below.drawn[box.x + x], scale, layer->blend_mode, row + 4 * x);
+            else if (layer->stacking == FL_STACKING_GLAZE &&
+                     layer->blend_mode == FL_BLEND_MODE_OVER)
                 glaze_pixel(&under, scale, params->paper, row + 4 * x);
         }
         sum_row(layer, 1, scale, y, &below.sums);
@@ -250,9 +254,10 @@ bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlSt
         fl_layer_occlude(&layers[k], &above);
     bool plain = true;
     for (int k = 0; k < n; k++)
-        plain &= layers[k].stacking != FL_STACKING_GLAZE && layers[k].mix == FL_BLEND_MODE_OVER;
-    FlScale scale;
-    fl_scale_init(&scale, params->linear);
+        plain &=
+            layers[k].stacking != FL_STACKING_GLAZE && layers[k].blend_mode == FL_BLEND_MODE_OVER;
+    FlTransfer scale;
+    fl_transfer_init(&scale, params->linear);
     for (int y = 0; !plain && y < height; y++)
         resolve_colours(layers, n, width, y, params, &scale, (Row){sums_in(sums, width), drawn});
     return true;
@@ -266,7 +271,7 @@ static bool is_opaque(const FlSums *sums, int width)
     return other == 0;
 }
 
-static void store_row(const FlSums *sums, const FlScale *scale, int width, uint8_t *out)
+static void store_row(const FlSums *sums, const FlTransfer *scale, int width, uint8_t *out)
 {
     if (!scale->linear && is_opaque(sums, width)) {
         fl_row_kernels()->level_opaque(sums, out, width);
@@ -275,17 +280,17 @@ static void store_row(const FlSums *sums, const FlScale *scale, int width, uint8
     for (int x = 0; x < width; x++) {
         const Sum sum = sum_at(sums, x);
         for (int c = 0; c < 3; c++)
-            out[4 * x + c] = sum.a ? fl_scale_level(scale, sum_value(&sum, c)) : 0;
+            out[4 * x + c] = sum.a ? fl_transfer_level(scale, sum_value(&sum, c)) : 0;
         out[4 * x + 3] = (uint8_t)((sum.a + 32767) / 65535);
     }
 }
 
-static void store_row16(const FlSums *sums, const FlScale *scale, int width, uint16_t *out)
+static void store_row16(const FlSums *sums, const FlTransfer *scale, int width, uint16_t *out)
 {
     for (int x = 0; x < width; x++) {
         const Sum sum = sum_at(sums, x);
         for (int c = 0; c < 3; c++)
-            out[4 * x + c] = fl_scale_level16(scale, sum_value(&sum, c));
+            out[4 * x + c] = fl_transfer_level16(scale, sum_value(&sum, c));
         out[4 * x + 3] = (uint16_t)((sum.a + 127) / 255);
     }
 }
@@ -293,8 +298,8 @@ static void store_row16(const FlSums *sums, const FlScale *scale, int width, uin
 static void compose(const FlLayer *layers, int n, const FlBackdrop *backdrop, int width, int height,
                     bool linear, uint8_t *out, uint16_t *out16)
 {
-    FlScale scale;
-    fl_scale_init(&scale, linear);
+    FlTransfer scale;
+    fl_transfer_init(&scale, linear);
 #pragma omp parallel
     {
         g_autofree uint32_t *values = g_new(uint32_t, 4 * (size_t)width);

@@ -15,15 +15,15 @@ typedef struct FlLayer {
     const uint8_t *coverage; // of the box, 0..255: the whole shape, times the opacity of its fill
                              // where that varies; 0 beyond the area
     bool owns_coverage;      // else it is borrowed
-    uint8_t *knockout;       // box.width * box.height of fl_knockout(), borrowed: it knocks out
-                             // where its paint has body only; NULL: wherever its shape is
-    uint8_t *rgba;       // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by
-                         // the caller; NULL if it is packed
-    FlPixelRuns runs;    // of a packed one, owned by the caller as well
-    bool sheer;          // drawn by hand: what lies below is seen through its grain
-    uint8_t alpha;       // opacity of the layer, 255 opaque
-    FlStacking stacking; // a layer that is mixed hides nothing, whatever this says
-    FlBlendMode mix;     // with what is below it
+    uint8_t *knockout;       // box.width * box.height of fl_knockout(), borrowed: it knocks out as
+                             // far as its paint covers; NULL: wherever its shape is
+    uint8_t *rgba;          // box.width * box.height * 4 straight RGBA, 0 beyond the area; owned by
+                            // the caller; NULL if it is packed
+    FlPixelRuns runs;       // of a packed one, owned by the caller as well
+    bool sheer;             // drawn by hand: what lies below is seen through its grain
+    uint8_t alpha;          // opacity of the layer, 255 opaque
+    FlStacking stacking;    // a layer with a blend mode hides nothing, whatever this says
+    FlBlendMode blend_mode; // with what is below it
 } FlLayer;
 
 typedef struct FlStackParams {
@@ -40,8 +40,8 @@ typedef struct FlStackParams {
  * part of each pixel that is its own: where a neighbour above takes the rest of an edge pixel, the
  * layer is full below it, so that shared edges show no seam. Where a layer is wholly hidden it
  * keeps its paint, except that transparent paint above takes away what would shine through. Glazes
- * and layers that are mixed get the colours with which `over` does the same above what lies below
- * them on the paper; bare paper is nothing to be mixed with, as in the drawing.
+ * and layers with a blend mode get the colours with which `over` does the same above what lies
+ * below them on the paper; bare paper is nothing to blend with, as in the drawing.
  */
 bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlStackParams *params,
                        GError **error);
@@ -60,7 +60,8 @@ bool fl_layers_above_init(FlLayersAbove *above, int width, int height, float gap
                           GError **error);
 void fl_layers_above_clear(FlLayersAbove *above);
 
-/** fl_layers_resolve() of the next layer, the top one first; no layer may be a glaze or mixed. */
+/** fl_layers_resolve() of the next layer, the top one first; no layer may be a glaze or have a
+ * blend mode. */
 void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above);
 
 /** Keeps only those pixels of a layer that has been resolved whose alpha is not 0: most of a stack

@@ -62,17 +62,17 @@ bool fl_painted_renew(FlPaintedRegion *painted, GError **error)
     return fl_painted_open(painted, error);
 }
 
-bool fl_painted_look(const FlPaintedRegion *painted, FlPaintedLook *look, GError **error)
+bool fl_painted_read(const FlPaintedRegion *painted, FlPaintedReader *look, GError **error)
 {
-    *look = (FlPaintedLook){.region = *painted};
+    *look = (FlPaintedReader){.region = *painted};
     if (painted->painted)
         return true;
     set_picture(&look->region, look->own = unpacked(painted, error));
     return look->own != NULL;
 }
 
-void fl_painted_look_clear(FlPaintedLook *look)
+void fl_painted_reader_clear(FlPaintedReader *look)
 {
     free(look->own);
-    *look = (FlPaintedLook){0};
+    *look = (FlPaintedReader){0};
 }

@@ -18,7 +18,7 @@ typedef struct FlStyleInstance {
     FlExemplar *exemplar;
     FlEnlargement *enlargement; // drafts: exemplar and guides have half the size; else NULL
     FlInk *ink;
-    struct FlSliced *patches; // of its ink, which transport refines by; NULL: nobody does
+    struct FlSliced *patches; // of its ink, which transport refines by; NULL: not needed
     FlMedium medium;
     float granulation; // as of fl_granulate()
     float enlarged;    // px of the drawing per px of its pictures
@@ -40,7 +40,7 @@ typedef struct FlPaintedRegion {
     float reach_px;     // how far alpha goes beyond the shape; 0: there is none
     GBytes *packed;     // both, while they are not open; NULL: there is no picture yet
     FlFrameStats stats; // of the last frame that was painted, as is what follows
-    FlSynthView view;   // nnf NULL: nobody wanted it
+    FlSynthView view;   // nnf NULL: not needed
     double seconds;
     bool unseen; // in every frame others lie over it: it is not painted, and is no layer
     bool taken;  // from the cache: nothing was painted, stats and view are empty
@@ -59,24 +59,24 @@ void fl_painted_clear(FlPaintedRegion *painted);
  * then takes no memory. FL_ERROR_NO_MEMORY. */
 bool fl_painted_pack(FlPaintedRegion *painted, GError **error);
 
-/** The reverse, for whoever writes to the picture; it may be open. One that was never open is made,
+/** The reverse, before the picture is written to; it may be open. One that was never open is made,
  * for rect and reach_px as they are. FL_ERROR_NO_MEMORY. */
 bool fl_painted_open(FlPaintedRegion *painted, GError **error);
 
-/** The same for whoever writes all of it: what was there before may be gone. */
+/** The same before all of it is written: what was there before may be gone. */
 bool fl_painted_renew(FlPaintedRegion *painted, GError **error);
 
 /** A region to read from, whether its picture is packed or not. */
-typedef struct FlPaintedLook {
+typedef struct FlPaintedReader {
     FlPaintedRegion region; // whose picture is open
     uint8_t *own;           // picture, if it had to be unpacked
-} FlPaintedLook;
+} FlPaintedReader;
 
 /** Several threads may look at a region at once. FL_ERROR_NO_MEMORY. */
-bool fl_painted_look(const FlPaintedRegion *painted, FlPaintedLook *look, GError **error);
-void fl_painted_look_clear(FlPaintedLook *look);
+bool fl_painted_read(const FlPaintedRegion *painted, FlPaintedReader *look, GError **error);
+void fl_painted_reader_clear(FlPaintedReader *look);
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlPaintedLook, fl_painted_look_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlPaintedReader, fl_painted_reader_clear)
 
 /** A pixel of rect as straight RGBA. */
 static inline void fl_painted_pixel(const FlPaintedRegion *painted, size_t p, uint8_t rgba[4])

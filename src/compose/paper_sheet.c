@@ -403,7 +403,7 @@ bool fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int h
         if (!light_band(&lit, band, &failure))
             fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 bool fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,

@@ -336,7 +336,8 @@ void fl_underlay_clear(FlUnderlay *above)
 /** Marks what of the next layer fades, if anything does: a part more. */
 static bool mark_next(FlUnderlay *above, FlLayer *layer, Part *parts, int *n, GError **error)
 {
-    const bool knocks = layer->stacking == FL_STACKING_KNOCKOUT && layer->mix == FL_BLEND_MODE_OVER;
+    const bool knocks =
+        layer->stacking == FL_STACKING_KNOCKOUT && layer->blend_mode == FL_BLEND_MODE_OVER;
     if (layer->knockout && knocks && is_below(layer, above)) {
         Part *part = &parts[(*n)++];
         if (!part_init(part, layer, above, error))
@@ -358,7 +359,7 @@ static bool fade_all(const Part *parts, int n, GError **error)
         if (!fade(&parts[k], &failure))
             fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layers, int n, GError **error)

@@ -130,7 +130,7 @@ static bool tell_end(const FlSequence *sequence, int frame, FlConfinedEnd end, G
 {
     const int number = WIFSIGNALED(end.status) ? WTERMSIG(end.status) : 0;
     if (number != SIGINT && number != SIGTERM && number != SIGHUP)
-        return fl_confined_tell(sequence, frame, end, "reading", error);
+        return fl_confined_set_error(sequence, frame, end, "reading", error);
     g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted");
     return false;
 }
@@ -144,7 +144,7 @@ static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDraw
     pid_t child = -1;
     memset(watch, 0, sizeof *watch);
     *again = false;
-    const int fd = memfd_create("fluidy-survey", MFD_CLOEXEC), words = fl_confined_words();
+    const int fd = memfd_create("fluidy-survey", MFD_CLOEXEC), words = fl_confined_stderr_file();
     bool good = false;
     if (fd < 0 || !start(sequence, options, watch, fd, words, *one_thread, &child, &alive)) {
         good = fl_survey_init(survey, sequence, options, NULL, warnings, error);

@@ -20,7 +20,7 @@ bool fl_confined_may_fork(void)
     return n == 1;
 }
 
-int fl_confined_words(void)
+int fl_confined_stderr_file(void)
 {
     return memfd_create("fluidy-words", MFD_CLOEXEC);
 }
@@ -85,8 +85,8 @@ bool fl_confined_asked_too_much(int words)
     return false;
 }
 
-bool fl_confined_tell(const FlSequence *sequence, int frame, FlConfinedEnd end, const char *work,
-                      GError **error)
+bool fl_confined_set_error(const FlSequence *sequence, int frame, FlConfinedEnd end,
+                           const char *work, GError **error)
 {
     const int number = WIFSIGNALED(end.status) ? WTERMSIG(end.status) : 0;
     const char *file = sequence->file[MAX(frame, 0)];

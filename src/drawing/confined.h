@@ -1,4 +1,5 @@
-/* Child processes that read or draw the files of a sequence: their means, and their ends. */
+/* Sandboxed child processes that read or draw a sequence: set-up, and errors from how they ended.
+ */
 #ifndef FLUIDY_DRAWING_CONFINED_H
 #define FLUIDY_DRAWING_CONFINED_H
 
@@ -9,7 +10,7 @@
 bool fl_confined_may_fork(void);
 
 /** A file in memory for what libraries say on standard error when they die; -1 on failure. */
-int fl_confined_words(void);
+int fl_confined_stderr_file(void);
 
 /** For a new child: it ends when its parent, which had this number, does. */
 void fl_confined_ends_with(pid_t parent);
@@ -34,7 +35,7 @@ bool fl_confined_asked_too_much(int words);
  * Sets the error that names file and frame of what ended the child. `work` is "reading" or
  * "drawing". Returns: false.
  */
-bool fl_confined_tell(const FlSequence *sequence, int frame, FlConfinedEnd end, const char *work,
-                      GError **error);
+bool fl_confined_set_error(const FlSequence *sequence, int frame, FlConfinedEnd end,
+                           const char *work, GError **error);
 
 #endif

@@ -271,7 +271,7 @@ static bool by_transform(const Pair *p, FlAffine *back)
     FlAffine inverse;
     if (!fl_affine_invert(&p->b->ctm, &inverse) || !locally_same(p))
         return false;
-    *back = fl_affine_after(&p->a->ctm, &inverse);
+    *back = fl_affine_multiply(&p->a->ctm, &inverse);
     return fl_affine_invert(&p->a->ctm, &inverse);
 }
 

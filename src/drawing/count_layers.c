@@ -72,7 +72,7 @@ int fl_count_layers(const char *file, GError **error)
     char *files[] = {(char *)file, NULL};
     int number = 1;
     const FlSequence sequence = {.n = 1, .file = files, .number = &number};
-    const int words = fl_confined_words();
+    const int words = fl_confined_stderr_file();
     Answer answer = {0};
     FlConfinedEnd end = {0};
     if (!ask_child(&sequence, words, &answer, &end))
@@ -83,6 +83,6 @@ int fl_count_layers(const char *file, GError **error)
     if (answer.count == 0 && answer.code)
         g_set_error(error, FL_ERROR, answer.code, "%s", answer.message);
     else if (answer.count == 0)
-        fl_confined_tell(&sequence, 0, end, "reading", error);
+        fl_confined_set_error(&sequence, 0, end, "reading", error);
     return answer.count;
 }

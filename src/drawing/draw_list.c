@@ -16,7 +16,7 @@
 typedef struct Draw {
     int region;
     bool flat;
-    uint8_t rgb[3], alpha, drawn, mix;
+    uint8_t rgb[3], alpha, drawn, blend_mode;
     GArray *steps; // indices
 } Draw;
 
@@ -42,10 +42,11 @@ static bool meets(const Draw *draw, const FlDrawingFrame *frame, const FlStep *s
 static bool fits(const Draw *draw, const FlDrawingFrame *frame, const FlStep *step)
 {
     if (draw->region != step->region || draw->flat != step->flat || draw->alpha != step->alpha ||
-        draw->drawn != step->drawn || draw->mix != step->mix ||
+        draw->drawn != step->drawn || draw->blend_mode != step->blend_mode ||
         (step->flat && memcmp(draw->rgb, step->rgb, 3) != 0))
         return false;
-    return (step->alpha == 255 && step->mix == FL_BLEND_MODE_OVER) || !meets(draw, frame, step);
+    return (step->alpha == 255 && step->blend_mode == FL_BLEND_MODE_OVER) ||
+           !meets(draw, frame, step);
 }
 
 static GArray *draws_of(const FlDrawingFrame *frame)
@@ -63,9 +64,13 @@ static GArray *draws_of(const FlDrawingFrame *frame)
                 break;
         }
         if (!found) {
-            const Draw draw = {
-                step->region, step->flat, {step->rgb[0], step->rgb[1], step->rgb[2]}, step->alpha,
-                step->drawn,  step->mix,  g_array_new(FALSE, FALSE, sizeof(int))};
+            const Draw draw = {step->region,
+                               step->flat,
+                               {step->rgb[0], step->rgb[1], step->rgb[2]},
+                               step->alpha,
+                               step->drawn,
+                               step->blend_mode,
+                               g_array_new(FALSE, FALSE, sizeof(int))};
             g_array_append_val(draws, draw);
             found = &g_array_index(draws, Draw, draws->len - 1);
         }
@@ -101,7 +106,7 @@ static void stage_clear(Stage *stage)
     g_free(stage->leaf_digest);
     g_free(stage->unit_digest);
     if (stage->cache)
-        fl_frame_cache_turn(stage->cache);
+        fl_frame_cache_next_frame(stage->cache);
 }
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Stage, stage_clear)
 
@@ -176,7 +181,7 @@ static bool is_by_hand(const FlStep *step, const FlHand *hand)
 {
     const bool line = step->width > 0;
     const bool shape = step->width == 0 && step->part != FL_PART_STROKE && step->flat &&
-                       step->drawn == 255 && step->mix == FL_BLEND_MODE_OVER;
+                       step->drawn == 255 && step->blend_mode == FL_BLEND_MODE_OVER;
     return step->leaf >= 0 && (line || shape) && fl_line_kind(hand->of_region[step->region].line);
 }
 
@@ -426,7 +431,8 @@ static bool draw_steps(Stage *stage, const Draw *draw, FlDraw *out, GError **err
 {
     const FlRect box = draw_box(stage, draw);
     const size_t n = fl_rect_pixels(box);
-    *out = (FlDraw){.region = draw->region, .alpha = draw->alpha, .mix = (FlBlendMode)draw->mix};
+    *out = (FlDraw){
+        .region = draw->region, .alpha = draw->alpha, .blend_mode = (FlBlendMode)draw->blend_mode};
     memcpy(out->rgb, draw->rgb, 3);
     g_autofree uint8_t *coverage = fl_alloc(n, 1, "the mask of a region", error);
     g_autofree uint8_t *picture =
@@ -459,7 +465,7 @@ static FlDigest digest_of_step(const Stage *stage, const FlStep *step)
     const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;
     const guint index = (guint)(step->leaf >= 0 ? step->leaf : -1 - step->leaf);
     const uint8_t how[] = {step->part,   step->flat,  step->rgb[0], step->rgb[1],
-                           step->rgb[2], step->alpha, step->drawn,  step->mix};
+                           step->rgb[2], step->alpha, step->drawn,  step->blend_mode};
     FlDigest digest = {0, 0};
     if (index < list->len)
         digest = (step->leaf >= 0 ? stage->leaf_digest : stage->unit_digest)[index];

@@ -18,7 +18,7 @@ struct FlDrawPool {
     GCond freed;
     int n;
     FlDrawWorker *worker;
-    bool insists;       // see fl_draw_pool_insist()
+    bool insists;       // see fl_draw_pool_enable_fallbacks()
     atomic_int n_plain; // frames drawn without hands since they failed with them
     atomic_bool *lost;  // by frame: drawn as the one before
     GBytes **kept;      // plain draw lists by FlDrawingFrame.origin, packed; NULL: not kept
@@ -49,7 +49,7 @@ static bool start_worker(FlDrawPool *pool, FlDrawing *drawing, FlDrawWorker *wor
     int ends[2];
     *worker = (FlDrawWorker){.line = -1,
                              .pictures = memfd_create("fluidy-pictures", MFD_CLOEXEC),
-                             .words = fl_confined_words()};
+                             .words = fl_confined_stderr_file()};
     void *shared = mmap(NULL, sizeof *worker->draws, PROT_READ | PROT_WRITE,
                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     worker->draws = shared == MAP_FAILED ? NULL : shared;
@@ -128,7 +128,7 @@ static void take_error(const FlDrawPool *pool, FlDrawResult *result, int frame, 
 {
     if (code == FL_ERROR_NO_MEMORY) {
         const FlConfinedEnd end = {.too_much = true};
-        fl_confined_tell(pool->drawing->sequence, frame, end, "drawing", error);
+        fl_confined_set_error(pool->drawing->sequence, frame, end, "drawing", error);
         return;
     }
     char text[4096] = "";
@@ -273,7 +273,7 @@ static bool ask(const FlDrawWorker *worker, const FlDrawing *drawing, const Task
     return got == (ssize_t)sizeof *reply;
 }
 
-void fl_draw_pool_insist(FlDrawPool *pool)
+void fl_draw_pool_enable_fallbacks(FlDrawPool *pool)
 {
     pool->insists = true;
 }
@@ -344,8 +344,8 @@ static void *try_once(FlDrawPool *pool, const Task *task, GError **error)
     else if (reply.drawn)
         answer = take_answer(pool, worker, task, error);
     else
-        fl_confined_tell(sequence, task->frame, reply.end, task->outlines ? "reading" : "drawing",
-                         error);
+        fl_confined_set_error(sequence, task->frame, reply.end,
+                              task->outlines ? "reading" : "drawing", error);
     if (worker)
         release(pool, worker, !answered);
     return answer;

@@ -28,11 +28,10 @@ FlDrawList *fl_draw_pool_draw(FlDrawPool *pool, int frame, const FlHand *hand, G
 FlOutlines *fl_draw_pool_outlines(FlDrawPool *pool, int frame, GError **error);
 
 /**
- * Every frame was drawn once, so a failure from now on is the machine's (another process takes the
- * memory or the time), the hand's or that of a file that has changed: a frame is drawn a second
- * time, then with plain lines, and then as the frame before it.
+ * Enables fallbacks, once every frame has been drawn successfully: a frame that fails is drawn
+ * again, then with plain lines, then replaced by the frame before it.
  */
-void fl_draw_pool_insist(FlDrawPool *pool);
+void fl_draw_pool_enable_fallbacks(FlDrawPool *pool);
 
 /** How many draw lists have plain lines since they failed with hands; NULL is fine. */
 int fl_draw_pool_plain(const FlDrawPool *pool);

@@ -131,7 +131,7 @@ static char *label_path(const char *labels)
     return g_strdelimit(g_strdup(labels), "\n", '/');
 }
 
-static char *paint_text(const FlGroup *group)
+static char *paint_text(const FlRegionIdentity *group)
 {
     const uint8_t *rgb = group->rgb;
     switch (group->kind) {
@@ -144,7 +144,7 @@ static char *paint_text(const FlGroup *group)
     }
 }
 
-static bool is_paintable(const FlGroup *group, const FlRegionRule *rules)
+static bool is_paintable(const FlRegionIdentity *group, const FlRegionRule *rules)
 {
     const FlPassthrough override =
         group->rule >= 0 ? rules[group->rule].passthrough : FL_PASSTHROUGH_AUTO;
@@ -158,7 +158,7 @@ static void describe(FlDrawing *drawing, const FlSurvey *survey, const GArray *g
 {
     g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
     for (guint r = 0; r < groups->len; r++) {
-        const FlGroup *group = &g_array_index(groups, FlGroup, r);
+        const FlRegionIdentity *group = &g_array_index(groups, FlRegionIdentity, r);
         const FlRegion region = {
             .name = g_strdup(names[r]),
             .label = label_path(fl_strings_get(&survey->strings, group->label)),
@@ -212,7 +212,7 @@ static void merge_regions(FlSurvey *survey, GArray *groups, const FlRegionRule *
     g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
     g_autofree int *into = g_new(int, groups->len + 1);
     for (guint r = 0; r < groups->len; r++) {
-        const int rule = g_array_index(groups, FlGroup, r).rule;
+        const int rule = g_array_index(groups, FlRegionIdentity, r).rule;
         const char *override = rule >= 0 ? rules[rule].merge_with : NULL;
         into[r] = (int)r;
         for (guint q = 0; override && q < groups->len; q++)
@@ -227,7 +227,8 @@ static void merge_regions(FlSurvey *survey, GArray *groups, const FlRegionRule *
     for (guint r = 0; r < groups->len; r++) {
         number[r] = (int)kept;
         if (end[r] == (int)r)
-            g_array_index(groups, FlGroup, kept++) = g_array_index(groups, FlGroup, r);
+            g_array_index(groups, FlRegionIdentity, kept++) =
+                g_array_index(groups, FlRegionIdentity, r);
     }
     for (int t = 0; t < survey->n_frames && kept < groups->len; t++)
         for (guint i = 0; i < survey->frame[t].parts->len; i++) {
@@ -264,7 +265,7 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
                              .rgb = {s->rgb[0], s->rgb[1], s->rgb[2]},
                              .alpha = s->peak,
                              .drawn = s->peak,
-                             .mix = (uint8_t)s->mix,
+                             .blend_mode = (uint8_t)s->blend_mode,
                              .nth = (uint16_t)s->nth,
                              .width = s->width};
             memcpy(step->box, s->box, sizeof step->box);
@@ -277,7 +278,7 @@ static void apply_names(const FlSurvey *survey, GArray *groups, const FlRegionRu
 {
     g_auto(GStrv) names = fl_name_groups(survey, groups, rules);
     for (guint r = 0; r < groups->len; r++) {
-        FlGroup *group = &g_array_index(groups, FlGroup, r);
+        FlRegionIdentity *group = &g_array_index(groups, FlRegionIdentity, r);
         for (int i = 0; i < n && group->rule < 0; i++)
             if (rules[i].by_name && strcmp(rules[i].name, names[r]) == 0)
                 group->rule = i;
@@ -287,7 +288,7 @@ static void apply_names(const FlSurvey *survey, GArray *groups, const FlRegionRu
 static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequence, FlSurvey *survey,
                             GError **error)
 {
-    g_autoptr(GArray) groups = fl_identify(survey, options);
+    g_autoptr(GArray) groups = fl_region_identities_find(survey, options);
     apply_names(survey, groups, options->rules, options->n_rules);
     merge_regions(survey, groups, options->rules);
     if (groups->len > INT16_MAX) {

@@ -30,7 +30,7 @@ typedef struct FlDrawingOptions {
     FlStrokes strokes;
     FlRegionKey key;
     /** Tells now and then, from the calling thread, how many frames were read; false interrupts.
-     *  Only where they are read apart; NULL: nobody is told. */
+     *  Only where they are read apart; NULL: not called. */
     bool (*reading)(void *data, const FlSequence *sequence, int done);
     void *data;                // for reading
     const FlRegionRule *rules; // the first that matches wins; used during fl_drawing_open() only
@@ -65,7 +65,7 @@ typedef struct FlDraw {
                        // flat `rgb`. A is coverage again, colours are defined where A > 0
     uint8_t rgb[3];    // the fill; of a picture its mean
     uint8_t alpha;     // opacity of the draw, 255 opaque; not part of coverage
-    FlBlendMode mix;   // with what is below it
+    FlBlendMode blend_mode; // with what is below it
 } FlDraw;
 
 typedef struct FlDrawList {

@@ -14,12 +14,12 @@ typedef struct FlStep {
     uint8_t part;   // FlPart
     uint8_t flat;   // else drawn as a picture
     uint8_t rgb[3];
-    uint8_t alpha; // of its draw
-    uint8_t drawn; // FlPaint.peak: the opacity drawn at full coverage
-    uint8_t mix;   // FlBlendMode
-    uint16_t nth;  // FlSurveyPart.nth
-    float width;   // FlSurveyPart.width
-    float box[4];  // x0, y0, x1, y1 that it lies in, px
+    uint8_t alpha;      // of its draw
+    uint8_t drawn;      // FlSvgPaint.peak: the opacity drawn at full coverage
+    uint8_t blend_mode; // FlBlendMode
+    uint16_t nth;       // FlSurveyPart.nth
+    float width;        // FlSurveyPart.width
+    float box[4];       // x0, y0, x1, y1 that it lies in, px
 } FlStep;
 
 typedef struct FlDrawingFrame {

@@ -11,8 +11,8 @@ static void lay_row(const FlDraw *draw, const uint8_t *rgb, size_t p, int n, uin
             continue;
         uint8_t colour[3];
         memcpy(colour, rgb ? rgb : draw->picture ? draw->picture + 4 * p : draw->rgb, 3);
-        if (!rgb && draw->mix != FL_BLEND_MODE_OVER)
-            fl_blend_mode_apply(draw->mix, out, out[3], colour);
+        if (!rgb && draw->blend_mode != FL_BLEND_MODE_OVER)
+            fl_blend_mode_apply(draw->blend_mode, out, out[3], colour);
         const uint32_t rest = out[3] * (255 - a); // weights out of 255 * 255
         const uint32_t all = 255 * a + rest;
         for (int c = 0; c < 3; c++)

@@ -117,6 +117,6 @@ bool fl_drawing_draw_apart(FlDrawing *drawing, FlMissing missing, FlWarnings *wa
         g_propagate_error(error, g_steal_pointer(&failed[0]));
     for (int t = 0; t < n; t++)
         g_clear_error(&failed[t]);
-    fl_draw_pool_insist(drawing->pool);
+    fl_draw_pool_enable_fallbacks(drawing->pool);
     return good < n;
 }

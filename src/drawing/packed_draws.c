@@ -71,7 +71,8 @@ static bool is_of(const FlDraw *draw, const FlDrawing *drawing)
     const int width = fl_drawing_width(drawing), height = fl_drawing_height(drawing);
     return box.x >= 0 && box.y >= 0 && box.width >= 0 && box.height >= 0 &&
            box.width <= width - box.x && box.height <= height - box.y && draw->region >= 0 &&
-           draw->region < fl_drawing_regions(drawing) && (unsigned)draw->mix < FL_N_MIXES;
+           draw->region < fl_drawing_regions(drawing) &&
+           (unsigned)draw->blend_mode < FL_N_BLEND_MODES;
 }
 
 static bool are_within(const FlArea *area)

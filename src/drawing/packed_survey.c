@@ -158,9 +158,9 @@ static bool is_sound(const FlSurveyPart *part, const FlStrings *strings)
                         part->ids,   part->classes, part->tree};
     bool sound = is_bool(&part->stroke) && is_bool(&part->has_fill) && is_bool(&part->has_stroke) &&
                  is_bool(&part->thick) && (unsigned)part->part <= FL_PART_STROKE &&
-                 (unsigned)part->kind <= FL_PAINT_MIXED && (unsigned)part->mix < FL_N_MIXES &&
-                 part->unit >= 0 && isfinite(part->width) && isfinite(part->area_px) &&
-                 isfinite(part->covers);
+                 (unsigned)part->kind <= FL_PAINT_MIXED &&
+                 (unsigned)part->blend_mode < FL_N_BLEND_MODES && part->unit >= 0 &&
+                 isfinite(part->width) && isfinite(part->area_px) && isfinite(part->covers);
     for (size_t i = 0; i < G_N_ELEMENTS(text); i++)
         sound &= text[i] >= 0 && text[i] < (int)strings->text->len;
     for (int c = 0; c < 4; c++)

@@ -93,7 +93,7 @@ static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect where
     cairo_t *cr = cairo_create(f->coverage);
     const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->width, f->height, error);
     cairo_destroy(cr);
-    *box = fl_surface_ink(f->coverage, where);
+    *box = fl_surface_bounds(f->coverage, where);
     return drawn;
 }
 
@@ -176,7 +176,7 @@ static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect
     const bool drawn =
         fl_svg_draw(f->svg, leaf, part, cr, f->width * f->factor, f->height * f->factor, error);
     cairo_destroy(cr);
-    const FlRect ink = fl_surface_ink(f->full, all);
+    const FlRect ink = fl_surface_bounds(f->full, all);
     *area_px = sum_of(f->full, ink);
     fl_surface_wipe(f->full, ink);
     *box = small_box(f, ink.x, ink.y, ink.x + ink.width, ink.y + ink.height);
@@ -254,7 +254,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
     if (add_known(f, leaf, index, digest))
         return true;
     FlPainted parts[FL_MOST_PARTS];
-    const int n = fl_svg_paint(f->svg, leaf, parts, error);
+    const int n = fl_svg_leaf_paints(f->svg, leaf, parts, error);
     bool good = n >= 0;
     for (int i = 0; i < n; i++) {
         const FlPainted *p = &parts[i];
@@ -267,7 +267,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
                                      .kind = p->paint.kind,
                                      .alpha = p->paint.alpha,
                                      .peak = p->paint.peak,
-                                     .mix = p->mix,
+                                     .blend_mode = p->blend_mode,
                                      .unit = index < 0 ? -index : 0,
                                      .region = -1};
         memcpy(probe.found.rgb, p->paint.rgb, 3);
@@ -318,7 +318,7 @@ static int is_separable(FlFrameProbe *f, const FlUnit *unit, guint first, GError
     g_autofree FlPiece *piece = g_new(FlPiece, n);
     for (guint i = 0; i < n; i++) {
         const FlProbe *probe = &g_array_index(f->probes, FlProbe, first + i);
-        piece[i] = (FlPiece){probe->leaf, probe->found.part, probe->found.mix};
+        piece[i] = (FlPiece){probe->leaf, probe->found.part, probe->found.blend_mode};
     }
     return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->width, f->height, error);
 }

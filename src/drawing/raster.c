@@ -17,7 +17,7 @@ void fl_surface_wipe(cairo_surface_t *surface, FlRect box)
     cairo_surface_mark_dirty(surface);
 }
 
-FlRect fl_surface_ink(cairo_surface_t *surface, FlRect box)
+FlRect fl_surface_bounds(cairo_surface_t *surface, FlRect box)
 {
     const int stride = cairo_image_surface_get_stride(surface), size = pixel_bytes(surface);
     cairo_surface_flush(surface);

@@ -10,7 +10,7 @@
 void fl_surface_wipe(cairo_surface_t *surface, FlRect box);
 
 /** The smallest box of all pixels that are not 0, within `box`; A8 or ARGB32. */
-FlRect fl_surface_ink(cairo_surface_t *surface, FlRect box);
+FlRect fl_surface_bounds(cairo_surface_t *surface, FlRect box);
 
 /** a over b for coverages and opacities 0..255. */
 static inline uint8_t fl_over(uint8_t a, uint8_t b)

@@ -202,7 +202,9 @@ static char *key_of(const Work *w, const FlSurveyPart *s, int track)
 {
     const FlTrack *tr = &g_array_index(w->tracks, FlTrack, track);
     const int label = w->label_of[s->labels];
-    const char *apart = is_apart(w, s, track) ? "s" : s->mix != FL_BLEND_MODE_OVER ? "m" : "";
+    const char *apart = is_apart(w, s, track)                 ? "s"
+                        : s->blend_mode != FL_BLEND_MODE_OVER ? "m"
+                                                              : "";
     if (w->rule_of[track] >= 0) // a rule's name makes the region; other rules of that name join
         return g_strdup_printf("rule %s", w->options->rules[w->rule_of[track]].name);
     switch (w->options->key) {
@@ -226,8 +228,8 @@ static char *key_of(const Work *w, const FlSurveyPart *s, int track)
 }
 
 /** Adds a part to its group. */
-static void add_up(const Work *w, const FlSurveyPart *s, int track, FlGroup *group, Sum *sum,
-                   GHashTable *areas)
+static void add_up(const Work *w, const FlSurveyPart *s, int track, FlRegionIdentity *group,
+                   Sum *sum, GHashTable *areas)
 {
     const int64_t key = (int64_t)s->region << 32 | s->paint;
     double *area = g_hash_table_lookup(areas, &key);
@@ -247,7 +249,7 @@ static void add_up(const Work *w, const FlSurveyPart *s, int track, FlGroup *gro
     sum->area += s->area_px;
     sum->covered += s->covers * s->area_px;
     sum->alpha = MAX(sum->alpha, s->alpha);
-    sum->plain |= s->mix == FL_BLEND_MODE_OVER;
+    sum->plain |= s->blend_mode == FL_BLEND_MODE_OVER;
     group->stroke = group->stroke && is_apart(w, s, track);
 }
 
@@ -271,7 +273,7 @@ static void number_tracks(const Work *w, guint n_regions)
 
 static GArray *gather(Work *w)
 {
-    GArray *groups = g_array_new(FALSE, FALSE, sizeof(FlGroup));
+    GArray *groups = g_array_new(FALSE, FALSE, sizeof(FlRegionIdentity));
     g_autoptr(GArray) sums = g_array_new(FALSE, FALSE, sizeof(Sum));
     g_autoptr(GHashTable) numbers = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     g_autoptr(GHashTable) areas =
@@ -285,7 +287,7 @@ static GArray *gather(Work *w)
             g_autofree char *key = key_of(w, s, track);
             gpointer number = NULL;
             if (!g_hash_table_lookup_extended(numbers, key, NULL, &number)) {
-                const FlGroup group = {.rule = w->rule_of[track], .stroke = true};
+                const FlRegionIdentity group = {.rule = w->rule_of[track], .stroke = true};
                 const Sum sum = {0};
                 number = GINT_TO_POINTER(groups->len);
                 g_hash_table_insert(numbers, g_steal_pointer(&key), number);
@@ -293,18 +295,18 @@ static GArray *gather(Work *w)
                 g_array_append_val(sums, sum);
             }
             s->region = GPOINTER_TO_INT(number);
-            add_up(w, s, track, &g_array_index(groups, FlGroup, s->region),
+            add_up(w, s, track, &g_array_index(groups, FlRegionIdentity, s->region),
                    &g_array_index(sums, Sum, s->region), areas);
         }
     for (guint r = 0; r < groups->len; r++) {
         const Sum *sum = &g_array_index(sums, Sum, r);
-        g_array_index(groups, FlGroup, r).shade =
+        g_array_index(groups, FlRegionIdentity, r).shade =
             (sum->alpha < SHADE_ALPHA || !sum->plain) && sum->covered >= SHADE_COVERS * sum->area;
     }
     return groups;
 }
 
-GArray *fl_identify(FlSurvey *survey, const FlDrawingOptions *options)
+GArray *fl_region_identities_find(FlSurvey *survey, const FlDrawingOptions *options)
 {
     Work w = {.survey = survey, .options = options};
     fl_survey_choose_units(survey);

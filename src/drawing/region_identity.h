@@ -5,20 +5,21 @@
 #include "drawing/survey.h"
 
 /** What makes up a region, before it has a name. */
-typedef struct FlGroup {
+typedef struct FlRegionIdentity {
     int label;          // label path without frame numbers, a number in FlSurvey.strings
     int rule;           // -1: none
     bool stroke, shade; // of strokes that are not painted; a translucent overlay
     FlPaintKind kind;   // of the paint that covers most
     uint8_t rgb[3];     // its colour
-} FlGroup;
+} FlRegionIdentity;
 
 /**
  * Sets FlSurveyPart.region of every part; strokes that are dropped get -1.
  *
- * Regions are numbered by their first frame, and there bottom up. Returns: an array of FlGroup.
+ * Regions are numbered by their first frame, and there bottom up. Returns: an array of
+ * FlRegionIdentity.
  */
-GArray *fl_identify(FlSurvey *survey, const FlDrawingOptions *options);
+GArray *fl_region_identities_find(FlSurvey *survey, const FlDrawingOptions *options);
 
 /** For every string that is a list of labels, the same without frame numbers; survey->strings
  * grows.

@@ -30,7 +30,7 @@ static guint shared_depth(const FlSurvey *survey, const GArray *groups)
     g_auto(GStrv) first = NULL;
     guint depth = 0;
     for (guint r = 0; r < groups->len; r++) {
-        const int label = g_array_index(groups, FlGroup, r).label;
+        const int label = g_array_index(groups, FlRegionIdentity, r).label;
         g_auto(GStrv) items = g_strsplit(fl_strings_get(&survey->strings, label), "\n", -1);
         if (!first) {
             first = g_steal_pointer(&items);
@@ -45,7 +45,7 @@ static guint shared_depth(const FlSurvey *survey, const GArray *groups)
     return depth;
 }
 
-static char *make_name(const FlSurvey *survey, const FlGroup *group, guint shared,
+static char *make_name(const FlSurvey *survey, const FlRegionIdentity *group, guint shared,
                        const FlRegionRule *rules)
 {
     GString *name = g_string_new(NULL);
@@ -89,9 +89,10 @@ char **fl_name_groups(const FlSurvey *survey, const GArray *groups, const FlRegi
     char **names = g_new0(char *, groups->len + 1);
     g_autoptr(GHashTable) taken = g_hash_table_new(g_str_hash, g_str_equal);
     for (guint r = 0; r < groups->len; r++) {
-        char *name = make_name(survey, &g_array_index(groups, FlGroup, r), shared, rules);
+        char *name = make_name(survey, &g_array_index(groups, FlRegionIdentity, r), shared, rules);
         for (int n = 2; name[0] == '\0' || g_hash_table_contains(taken, name); n++) {
-            char *base = make_name(survey, &g_array_index(groups, FlGroup, r), shared, rules);
+            char *base =
+                make_name(survey, &g_array_index(groups, FlRegionIdentity, r), shared, rules);
             g_free(name);
             name = g_strdup_printf("%s-%d", base[0] ? base : "region", n);
             g_free(base);

@@ -33,11 +33,11 @@ static GArray *measure(const FlSequence *sequence, int t, double dpi, GError **e
     for (guint i = 0; i < leaves->len; i++) {
         const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
         FlPainted parts[FL_MOST_PARTS];
-        const int n = fl_svg_paint(svg, leaf, parts, error);
+        const int n = fl_svg_leaf_paints(svg, leaf, parts, error);
         Shape shape = {.box = fl_svg_extents(svg, leaf, PAGE_PX, PAGE_PX)};
         for (int k = 0; k < n; k++) {
             shape.paint = shape.paint * 31 + g_str_hash(parts[k].paint.key);
-            fl_paint_clear(&parts[k].paint);
+            fl_svg_paint_clear(&parts[k].paint);
         }
         if (n < 0)
             return NULL;
@@ -126,7 +126,7 @@ static double *places_of(const FlSurvey *survey, FlCanvas *page, FlWarnings *war
     for (int t = 0; t < survey->n_frames; t++) {
         const char *file = survey->sequence->file[t];
         const int number = survey->sequence->number[t];
-        fl_watch_tell(survey->watch, 0, t);
+        fl_watch_begin(survey->watch, 0, t);
         g_autoptr(GArray) now = measure(survey->sequence, t, survey->svg.dpi, error);
         if (!now) {
             fl_watch_fail(survey->watch, t);

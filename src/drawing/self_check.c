@@ -42,12 +42,12 @@ void fl_self_check_free(FlSelfCheck *check)
 }
 
 /** Composites a premultiplied pixel over another with its blend mode. */
-static void mix_pixel(uint32_t *below, uint32_t pixel, FlBlendMode mix)
+static void mix_pixel(uint32_t *below, uint32_t pixel, FlBlendMode blend_mode)
 {
     uint8_t rgb[4], under[4];
     fl_straighten(pixel, 0, rgb);
     fl_straighten(*below, 0, under);
-    fl_blend_mode_apply(mix, under, (int)(*below >> 24), rgb);
+    fl_blend_mode_apply(blend_mode, under, (int)(*below >> 24), rgb);
     *below = fl_blend(*below, rgb, pixel >> 24);
 }
 
@@ -56,7 +56,7 @@ static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surfac
 {
     const int width = cairo_image_surface_get_width(surface);
     const int height = cairo_image_surface_get_height(surface);
-    const bool plain = piece->mix == FL_BLEND_MODE_OVER;
+    const bool plain = piece->blend_mode == FL_BLEND_MODE_OVER;
     /* A mixed one is drawn apart: librsvg mixes it only with what is in the group around it. */
     g_autoptr(cairo_surface_t) apart =
         plain ? NULL : fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
@@ -72,7 +72,7 @@ static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surfac
     const uint32_t *pixels = plain ? NULL : (const uint32_t *)cairo_image_surface_get_data(apart);
     for (size_t p = 0; drawn && pixels && p < (size_t)width * height; p++)
         if (pixels[p])
-            mix_pixel(&below[p], pixels[p], piece->mix);
+            mix_pixel(&below[p], pixels[p], piece->blend_mode);
     return drawn;
 }
 
@@ -83,8 +83,8 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
     const unsigned char *own = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
     uint32_t *sum = (uint32_t *)cairo_image_surface_get_data(check->sum);
-    const bool flat = part->kind == FL_PAINT_FLAT && part->mix == FL_BLEND_MODE_OVER;
-    const FlPiece piece = {leaf, part->part, part->mix};
+    const bool flat = part->kind == FL_PAINT_FLAT && part->blend_mode == FL_BLEND_MODE_OVER;
+    const FlPiece piece = {leaf, part->part, part->blend_mode};
     g_array_append_val(check->pieces, piece);
     const uint16_t index = (uint16_t)MIN(check->pieces->len, UINT16_MAX);
     for (int y = box.y; y < box.y + box.height; y++)

@@ -47,7 +47,7 @@ bool fl_self_check_is_gross(const FlSelfCheck *check);
 typedef struct FlPiece {
     const FlLeaf *leaf;
     FlPart part;
-    FlBlendMode mix;
+    FlBlendMode blend_mode;
 } FlPiece;
 
 /**

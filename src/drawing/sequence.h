@@ -15,7 +15,7 @@ typedef struct FlSequence {
     bool *stand_in; // whether the file is that of another number, which is held
     char *name;     // what the names share, such as "walk" of walk_0001.svg; never empty
     int *layer;     // the frame among the layers of its file, from 1; 0: the file is the frame
-    bool alone;     // there is one file, and nobody said whether it is one frame
+    bool alone;     // there is one file, and it is not known whether it is one frame
     int n_left_out; // frames whose files were found, but are held or skipped
     char **found;   // all files that the inputs name, those of other frames as well; ends in NULL
 } FlSequence;

@@ -208,7 +208,7 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, FlWarnings *wa
                      GError **error)
 {
     double width, height;
-    fl_watch_tell(survey->watch, 0, 0);
+    fl_watch_begin(survey->watch, 0, 0);
     survey->first = open_svg(survey, 0, warnings, error);
     if (!survey->first || !fl_svg_size(survey->first, &width, &height, error)) {
         fl_watch_fail(survey->watch, 0);
@@ -253,10 +253,10 @@ static bool scan_each(FlSurvey *survey, FlWarnings *warnings, GError **error)
         GError *reason = NULL;
         const bool known = survey->frame[t].parts != NULL;
         const int thread = thread_number();
-        fl_watch_tell(survey->watch, thread, t);
+        fl_watch_begin(survey->watch, thread, t);
         const bool scanned = known || scan_frame(survey, t, &probe, remarks, &reason);
-        fl_frame_cache_turn(&survey->cache[thread]);
-        fl_watch_tell(survey->watch, thread, -1);
+        fl_frame_cache_next_frame(&survey->cache[thread]);
+        fl_watch_begin(survey->watch, thread, -1);
         if (survey->watch && scanned && !known)
             atomic_fetch_add(&survey->watch->done, 1);
 #pragma omp ordered

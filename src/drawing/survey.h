@@ -24,9 +24,9 @@ typedef struct FlSurveyPart {
     float width;               // of a stroke, px of the picture; 0: a fill alone; below 0: neither
     bool thick;                // a stroke without a fill that is a limb rather than a line
     FlPaintKind kind;
-    uint8_t rgb[3], alpha, peak; // see FlPaint
-    FlBlendMode mix;
-    int paint; // FlPaint.key
+    uint8_t rgb[3], alpha, peak; // see FlSvgPaint
+    FlBlendMode blend_mode;
+    int paint; // FlSvgPaint.key
     int name, labels, layers, ids, classes, tree;
     float box[4];  // x0, y0, x1, y1 of what is drawn, px of the picture; a pixel too wide
     float area_px; // sum of its coverage

@@ -16,7 +16,7 @@ typedef struct FlWatch {
 } FlWatch;
 
 /** Records that a thread begins a frame, or with -1 that it has ended one. watch may be NULL. */
-static inline void fl_watch_tell(FlWatch *watch, int thread, int frame)
+static inline void fl_watch_begin(FlWatch *watch, int thread, int frame)
 {
     if (!watch)
         return;

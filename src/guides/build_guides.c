@@ -5,8 +5,8 @@
  *   outline_of   mask, box, distance
  *   distance_of  the distance smoothed along time and in space, if asked for [P21 §4.1]
  *   motion_of    the flow of one interval
- *   finish_frame the flow smoothed along time [F21 App. A], direction, extent, what stirs; into the
- *                spill
+ *   finish_frame the flow smoothed along time [F21 App. A], direction, extent, what changes; into
+ * the spill
  *
  * The outline of one frame, the motion of an earlier one and the finish of a yet earlier one run in
  * parallel, for one region is often most of a film; none needs the results of the others.
@@ -15,13 +15,13 @@
 #include "base/alloc.h"
 #include "base/parallel_error.h"
 #include "guides/blur.h"
+#include "guides/change_map.h"
 #include "guides/direction.h"
 #include "guides/displacement.h"
 #include "guides/extent.h"
 #include "guides/flow.h"
 #include "guides/gauss.h"
 #include "guides/plane_store.h"
-#include "guides/stirring.h"
 #include <math.h>
 #include <string.h>
 
@@ -52,7 +52,7 @@ typedef struct Builder {
     Smoothed smoothed[3];
     uint8_t *mask; // scratch: a frame
     FlExtent *extent;
-    FlStirring stirring; // of the frame that is being finished
+    FlChangeMap changes; // of the frame that is being finished
     bool previous_moves; // of the frame that was finished last
 } Builder;
 
@@ -70,7 +70,7 @@ static void builder_clear(Builder *b)
     g_free(b->dist_weight);
     g_free(b->mask);
     fl_extent_free(b->extent);
-    fl_stirring_clear(&b->stirring);
+    fl_change_map_clear(&b->changes);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Builder, builder_clear)
@@ -102,7 +102,7 @@ static bool builder_init(Builder *b, FlGuideSequence *sequence, GError **error)
     for (int s = 0; s < 3; s++)
         b->smoothed[s].frame = -1;
     if (!(b->mask = fl_alloc(n, 1, "a mask", error)) ||
-        !fl_stirring_init(&b->stirring, source->width, source->height, error))
+        !fl_change_map_init(&b->changes, source->width, source->height, error))
         return false;
     b->extent = fl_extent_new(source->width, source->height, error);
     return b->extent;
@@ -328,9 +328,10 @@ static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *fl
     if (!outline->empty)
         fl_direction(outline->coverage, flow, outline->normal, n, b->sequence->params.still_px,
                      shape + n);
-    b->sequence->frames[frame].holder[FL_GUIDE_PLANE_SHAPE] = frame;
-    return fl_spill_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_SHAPE),
-                        shape, 2 * n, error);
+    b->sequence->frames[frame].holder[FL_GUIDE_PLANE_COVERAGE_ANGLE] = frame;
+    return fl_spill_put(b->sequence->spill,
+                        fl_guide_plane_block(frame, FL_GUIDE_PLANE_COVERAGE_ANGLE), shape, 2 * n,
+                        error);
 }
 
 /** Stores the flow and the extent up to this frame; flow may be NULL. */
@@ -346,7 +347,7 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
     for (size_t k = 0; k < 2 * n && flow; k++)
         fixed[k] = fl_flow_to_fixed(flow[k]);
     if (flow)
-        fl_stirring_mark_flow(&b->stirring, outline, fixed, b->sequence->params.still_px);
+        fl_change_map_mark_flow(&b->changes, outline, fixed, b->sequence->params.still_px);
     // a frame without predecessor borrows its flow from the next interval: nothing has moved yet
     const bool counts = flow && frame > 0 && !record[-1].empty;
     fl_extent_step(b->extent, &record->box, outline->coverage, &record->box, counts ? fixed : NULL,
@@ -383,7 +384,7 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError
     g_clear_pointer(&given, g_free); // it is large, and so is what storing takes
     if (fl_is_blank((const uint8_t *)fixed, n * sizeof *fixed))
         return true;
-    fl_stirring_mark_motion(&b->stirring, outline, fixed);
+    fl_change_map_mark_motion(&b->changes, outline, fixed);
     b->sequence->frames[frame].holder[FL_GUIDE_PLANE_MOTION] = frame;
     return fl_plane_store_put(
         b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_MOTION), fixed, n, 2, error);
@@ -414,24 +415,24 @@ static void drop_normals(const Builder *b, int frame, FlOutline *outline)
         g_clear_pointer(&outline->normal, g_free);
 }
 
-/** Notes whether the frame rests and, where it does not, stores what stirs since the one before.
+/** Notes whether the frame rests and, where it does not, stores what changes since the one before.
  * A frame that follows no shape is all new. */
-static bool put_stirring(Builder *b, int frame, const FlOutline *outline, GError **error)
+static bool put_changes(Builder *b, int frame, const FlOutline *outline, GError **error)
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
     const FlOutline *before = b->outlines[(frame + b->n_slots - 1) % b->n_slots].outline;
-    FlStirring *stirring = &b->stirring;
+    FlChangeMap *changes = &b->changes;
     if (frame == 0 || outline->empty || record[-1].empty)
         return true;
-    fl_stirring_mark_change(stirring, before, outline);
-    record->rests = !stirring->any;
+    fl_change_map_mark_change(changes, before, outline);
+    record->rests = !changes->any;
     if (record->rests)
         return true;
-    fl_stirring_mark_taken(stirring, before);
-    fl_stirring_mark_taken(stirring, outline);
-    record->holder[FL_GUIDE_PLANE_STIRRING] = frame;
-    return fl_spill_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_STIRRING),
-                        stirring->square, fl_stirring_squares(stirring), error);
+    fl_change_map_mark_taken(changes, before);
+    fl_change_map_mark_taken(changes, outline);
+    record->holder[FL_GUIDE_PLANE_CHANGES] = frame;
+    return fl_spill_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_CHANGES),
+                        changes->square, fl_change_map_squares(changes), error);
 }
 
 static bool finish_frame(Builder *b, int frame, GError **error)
@@ -443,7 +444,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
         return false;
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
     *record = (FlFrameRecord){outline->box, outline->empty, false, {-1, -1, -1, -1, -1, -1, -1}};
-    fl_stirring_reset(&b->stirring);
+    fl_change_map_reset(&b->changes);
     if (outline->box.width == 0) {
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);
         return true;
@@ -458,7 +459,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     b->previous_moves = flow != NULL;
     if (still) { // equals the frame before
         memcpy(record->holder, record[-1].holder, sizeof record->holder);
-        record->holder[FL_GUIDE_PLANE_MOTION] = record->holder[FL_GUIDE_PLANE_STIRRING] = -1;
+        record->holder[FL_GUIDE_PLANE_MOTION] = record->holder[FL_GUIDE_PLANE_CHANGES] = -1;
     } else if (!put_shape(b, frame, outline, flow, error) ||
                !put_motion(b, frame, outline, flow, error) ||
                !put_unrounded(b, frame, outline, flow, error)) {
@@ -466,7 +467,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     }
     drop_normals(b, frame, outline);
     g_clear_pointer(&flow, g_free); // the drawing's motion takes much itself
-    return put_drawing_motion(b, frame, outline, error) && put_stirring(b, frame, outline, error);
+    return put_drawing_motion(b, frame, outline, error) && put_changes(b, frame, outline, error);
 }
 
 /** The last frame whose outline the motion of a frame needs. */
@@ -518,7 +519,7 @@ static bool step(Builder *b, int frame, GError **error)
     fl_parallel_error_keep(&first, of_frame); // the earliest frame's
     fl_parallel_error_keep(&first, of_motion);
     fl_parallel_error_keep(&first, of_outline);
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 bool fl_guide_sequence_build(FlGuideSequence *sequence, GError **error)

@@ -6,10 +6,10 @@ bool fl_guide_sequence_shape(const FlGuideSequence *sequence, int frame, uint8_t
                              GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
-    return fl_spill_get(
-        sequence->spill,
-        fl_guide_plane_block(record->holder[FL_GUIDE_PLANE_SHAPE], FL_GUIDE_PLANE_SHAPE),
-        coverage_angle, 2 * fl_rect_pixels(record->box), error);
+    return fl_spill_get(sequence->spill,
+                        fl_guide_plane_block(record->holder[FL_GUIDE_PLANE_COVERAGE_ANGLE],
+                                             FL_GUIDE_PLANE_COVERAGE_ANGLE),
+                        coverage_angle, 2 * fl_rect_pixels(record->box), error);
 }
 
 bool fl_guide_sequence_plane(const FlGuideSequence *sequence, int frame, FlGuidePlane plane,

@@ -8,13 +8,13 @@
 
 /** What is stored of a frame, cropped to its box. */
 typedef enum FlGuidePlane {
-    FL_GUIDE_PLANE_SHAPE, // coverages, then angles; bytes
-    FL_GUIDE_PLANE_FLOW,  // interleaved, FL_FLOW_ONE a px
-    FL_GUIDE_PLANE_PLUS,  // FL_EXTENT_ONE a px, as is MINUS
+    FL_GUIDE_PLANE_COVERAGE_ANGLE, // coverages, then angles; bytes
+    FL_GUIDE_PLANE_FLOW,           // interleaved, FL_FLOW_ONE a px
+    FL_GUIDE_PLANE_PLUS,           // FL_EXTENT_ONE a px, as is MINUS
     FL_GUIDE_PLANE_MINUS,
     FL_GUIDE_PLANE_MOTION,    // interleaved, FL_MOTION_ONE a px
     FL_GUIDE_PLANE_UNROUNDED, // the flow's floats, bit by bit, if the source keeps them
-    FL_GUIDE_PLANE_STIRRING,  // FlStirring.square; not cropped, and of this frame alone
+    FL_GUIDE_PLANE_CHANGES,   // FlChangeMap.square; not cropped, and of this frame alone
     FL_N_GUIDE_PLANES,
 } FlGuidePlane;
 
@@ -22,7 +22,7 @@ typedef enum FlGuidePlane {
 typedef struct FlFrameRecord {
     FlRect box;
     bool empty;                        // no pixel inside
-    bool rests;                        // nothing stirs since the frame before
+    bool rests;                        // nothing changes since the frame before
     int32_t holder[FL_N_GUIDE_PLANES]; // the frame whose block holds the plane; -1: all 0
 } FlFrameRecord;
 

@@ -1,11 +1,11 @@
 #include "base/alloc.h"
 #include "base/parallel_error.h"
 #include "guides/build_guides.h"
+#include "guides/change_map.h"
 #include "guides/displacement.h"
 #include "guides/distance.h"
 #include "guides/extent.h"
 #include "guides/plane_store.h"
-#include "guides/stirring.h"
 #include <string.h>
 
 /** One frame of the way back: the sum goes from frame + 1 to frame. Room: three frames. */
@@ -20,7 +20,8 @@ static bool step_back(FlGuideSequence *sequence, int frame, FlExtent *extent, ui
         return true;
     }
     if (next && !moves &&
-        next->holder[FL_GUIDE_PLANE_SHAPE] == record->holder[FL_GUIDE_PLANE_SHAPE]) {
+        next->holder[FL_GUIDE_PLANE_COVERAGE_ANGLE] ==
+            record->holder[FL_GUIDE_PLANE_COVERAGE_ANGLE]) {
         record->holder[FL_GUIDE_PLANE_MINUS] = next->holder[FL_GUIDE_PLANE_MINUS];
         return true;
     }
@@ -132,7 +133,7 @@ static bool get_planes(const FlGuideSequence *sequence, int frame, FlRect part, 
     }
     fl_parallel_error_keep(&first, of_flow);
     fl_parallel_error_keep(&first, of_extents);
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 /** A plane of zeros; where it has not been written to, it goes on taking no memory. */
@@ -183,7 +184,7 @@ bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame)
 }
 
 /** What a frame takes that has the mask of the one before. */
-static bool mark_taken(const FlGuideSequence *sequence, int frame, FlStirring *stirring,
+static bool mark_taken(const FlGuideSequence *sequence, int frame, FlChangeMap *changes,
                        GError **error)
 {
     const FlRect box = sequence->frames[frame].box;
@@ -191,27 +192,27 @@ static bool mark_taken(const FlGuideSequence *sequence, int frame, FlStirring *s
     if (!shape || !fl_guide_sequence_shape(sequence, frame, shape, error))
         return false;
     const FlOutline outline = {.box = box, .coverage = shape};
-    fl_stirring_mark_taken(stirring, &outline);
+    fl_change_map_mark_taken(changes, &outline);
     return true;
 }
 
-bool fl_guide_sequence_stirring(const FlGuideSequence *sequence, int frame, uint8_t **square,
-                                GError **error)
+bool fl_guide_sequence_changes(const FlGuideSequence *sequence, int frame, uint8_t **square,
+                               GError **error)
 {
     const FlGuideSource *source = &sequence->source;
     const FlFrameRecord *record = &sequence->frames[frame];
-    const int holder = record->holder[FL_GUIDE_PLANE_STIRRING];
-    g_auto(FlStirring) stirring = {0};
+    const int holder = record->holder[FL_GUIDE_PLANE_CHANGES];
+    g_auto(FlChangeMap) changes = {0};
     *square = NULL;
     if (holder < 0 && !record->rests)
         return true;
-    if (!fl_stirring_init(&stirring, source->width, source->height, error) ||
+    if (!fl_change_map_init(&changes, source->width, source->height, error) ||
         !(record->rests
-              ? mark_taken(sequence, frame, &stirring, error)
-              : fl_spill_get(sequence->spill, fl_guide_plane_block(holder, FL_GUIDE_PLANE_STIRRING),
-                             stirring.square, fl_stirring_squares(&stirring), error)))
+              ? mark_taken(sequence, frame, &changes, error)
+              : fl_spill_get(sequence->spill, fl_guide_plane_block(holder, FL_GUIDE_PLANE_CHANGES),
+                             changes.square, fl_change_map_squares(&changes), error)))
         return false;
-    *square = g_steal_pointer(&stirring.square);
+    *square = g_steal_pointer(&changes.square);
     return true;
 }
 

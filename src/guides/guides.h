@@ -29,7 +29,7 @@ typedef struct FlGuideParams {
 typedef struct FlGuides {
     int x, y; // where the part lies in the frame; 0, 0: as the frame does
     int width, height;
-    bool disposable;  // nobody reads them after the engine, which may clear them before it paints
+    bool disposable;  // not read after the engine, which may clear them before it paints
     uint8_t *mask;    // coverage 0..255; a pixel is inside from FL_INSIDE on
     float *distance;  // signed distance to the contour, px, positive inside, everywhere defined
     float *depth;     // as the paint takes it, fl_rim_depth(); the distance until that is made
@@ -42,7 +42,7 @@ typedef struct FlGuides {
     int32_t *motion; // interleaved, FL_MOTION_ONE a px, FL_MOTION_UNKNOWN; 2 * width * height
     int16_t *turn;   // the turn of the drawing, 65536 a turn; 0 where that is unknown
     FlRestingParts resting; // of the frame: they are as in the one before; others may be as well
-    const struct FlGuides *whole; // of a part: the frame's, where somebody looks at it; else NULL
+    const struct FlGuides *whole; // of a part: the frame's, where it is inspected; else NULL
 } FlGuides;
 
 /** The pixel of the planes that lies at a place of the frame. */
@@ -107,11 +107,11 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
 bool fl_guide_sequence_rests(const FlGuideSequence *sequence, int frame);
 
 /**
- * What stirs in a frame since the one before, and what either takes: see fl_resting_parts_init(),
+ * What changes in a frame since the one before, and what either takes: see fl_resting_parts_init(),
  * to be freed; *square stays NULL where nothing was before. FL_ERROR_NO_MEMORY.
  */
-bool fl_guide_sequence_stirring(const FlGuideSequence *sequence, int frame, uint8_t **square,
-                                GError **error);
+bool fl_guide_sequence_changes(const FlGuideSequence *sequence, int frame, uint8_t **square,
+                               GError **error);
 
 /**
  * The flow that directions were made from, before it was rounded as FlGuides has it: a source that

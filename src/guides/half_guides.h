@@ -16,7 +16,7 @@ void fl_flow_double(const float *half, int width, int height, float *full);
 void fl_plane_double(const void *half, int width, int height, size_t bytes, void *full);
 
 /**
- * The guides in twice their size, with lengths of the large frame, for whoever looks at them.
+ * The guides in twice their size, with lengths of the large frame, for inspection.
  *
  * full: empty, to be cleared. FL_ERROR_NO_MEMORY.
  */

@@ -13,7 +13,7 @@ typedef enum FlSolverCell {
 } FlSolverCell;
 
 /**
- * Fills the free cells with the harmonic field of the fixed ones [F21 App. A, Joh02]; no value
+ * Fills the free cells with the harmonic field of the fixed ones [F21 App. A, Johnston02]; no value
  * passes through outside cells or the frame, which insulate.
  *
  * cell: width * height FlSolverCell. field: interleaved pairs, 2 * width * height; read where

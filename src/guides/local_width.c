@@ -517,7 +517,7 @@ bool fl_local_width(const float *distance, const uint8_t *seen, int width, int h
     if (!fl_largest_discs(distance, seen, width, height, cap_px, half_width, error))
         return false;
     *narrow = any_narrow(half_width, n, cap);
-    if (!*narrow) // as most are: nobody asks for more
+    if (!*narrow) // as most are: no more is needed
         return true;
     const int r = MAX(cap / (4 * FL_WIDTH_ONE), 1);
     if (!means_init(&means, n, r, error))

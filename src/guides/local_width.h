@@ -13,7 +13,7 @@
  * more on coarse levels. */
 #define FL_WIDTH_OUTSIDE_PX 12
 
-/** The half width of a shape that is as wide as anybody asks, of cap_px. */
+/** The half width of a shape that is as wide as is ever asked for, cap_px. */
 static inline uint16_t fl_width_cap(float cap_px)
 {
     const float cap = cap_px * FL_WIDTH_ONE + 0.5f, most = FL_WIDTH_MOST_PX * FL_WIDTH_ONE;

@@ -372,7 +372,7 @@ static bool by_masks(const Work *w, int32_t label)
     return label == UNLABELLED || motion_of(w, label - 1)->kind == FL_MOTION_REGISTERED;
 }
 
-/** Whether nobody knows where the leaf's paint was: what is added is spread, not moved. */
+/** Whether it is not known where the leaf's paint was: what is added is spread, not moved. */
 static bool is_unknown(const Work *w, int i)
 {
     const FlMotionKind kind = motion_of(w, i)->kind;

@@ -15,15 +15,15 @@ static void spread(const FlRestingParts *parts, const uint8_t *square, uint8_t *
             }
 }
 
-/* Keeps the parts without a square that stirs, and bounds the others, in squares. Returns: whether
- * any part is kept. */
+/* Keeps the parts without a square that changes, and bounds the others, in squares. Returns:
+ * whether any part is kept. */
 static bool choose(FlRestingParts *parts, const FlConnectedParts *connected, const uint8_t *square,
                    FlRect *moving)
 {
     g_autofree bool *moves = g_new0(bool, connected->n_parts + 1);
     bool any = false;
     for (size_t s = 0; s < connected->n_pixels; s++)
-        moves[connected->part[s]] |= square[s] & FL_REST_STIRS;
+        moves[connected->part[s]] |= square[s] & FL_SQUARE_CHANGES;
     *moving = (FlRect){0};
     for (int y = 0, s = 0; y < parts->rows; y++)
         for (int x = 0; x < parts->columns; x++, s++) {

@@ -10,7 +10,7 @@
 #define FL_REST_PX 8 // side of a square
 
 /** What there is of a mask in a square, now or in the frame before. */
-enum { FL_REST_TAKEN = 1, FL_REST_STIRS = 2 };
+enum { FL_SQUARE_TAKEN = 1, FL_SQUARE_CHANGES = 2 };
 
 /** The parts at rest, by squares of FL_REST_PX px. Parts are at least two squares apart, so that no
  * patch of one looks at another on any but the coarsest levels. */
@@ -27,8 +27,8 @@ static inline int fl_rest_squares(int px)
 }
 
 /**
- * Finds the parts without a square that stirs. square: FL_REST_TAKEN and FL_REST_STIRS of all
- * squares, row by row. moving: becomes the rectangle of the others, in px. FL_ERROR_NO_MEMORY.
+ * Finds the parts without a square that changes. square: FL_SQUARE_TAKEN and FL_SQUARE_CHANGES of
+ * all squares, row by row. moving: becomes the rectangle of the others, in px. FL_ERROR_NO_MEMORY.
  */
 bool fl_resting_parts_init(FlRestingParts *parts, int width, int height, const uint8_t *square,
                            FlRect *moving, GError **error);

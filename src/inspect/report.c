@@ -256,7 +256,7 @@ static void write_seconds(FlReport *report, const FlReportFrame *frame)
     fputc(']', report->out);
 }
 
-/* Whoever reads standard output sees every frame once it is painted. */
+/* Readers of standard output see every frame once it is painted. */
 static bool send_page(const FlReport *report, GError **error)
 {
     if (fflush(report->out) == 0 && !ferror(report->out))

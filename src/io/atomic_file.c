@@ -23,7 +23,7 @@ static bool prepare(FlAtomicFile *file, const char *path, bool overwrite, GError
 {
     g_autofree char *folder = g_path_get_dirname(path);
     *file = (FlAtomicFile){0};
-    if (!overwrite && !fl_exists_not(path, error))
+    if (!overwrite && !fl_check_not_exists(path, error))
         return false;
     if (g_file_test(path, G_FILE_TEST_IS_DIR)) {
         fl_output_error(error, path, EISDIR);

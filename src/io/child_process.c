@@ -25,7 +25,7 @@ struct FlChild {
     GPid pid;   // 0: it has ended, with `status`
     int status; // as waitpid() has it
     int ours;   // our end of the stream, -1: closed
-    int errors; // a nameless file with its standard error: a pipe that nobody reads could block it
+    int errors; // a nameless file with its standard error: a pipe that is not read could block it
 };
 
 /* In the child, before the program. */
@@ -89,7 +89,7 @@ FlChild *fl_child_start(const char *const *arguments, FlChildStream stream, int 
     return started ? g_steal_pointer(&child) : NULL;
 }
 
-char *fl_child_words(const FlChild *child)
+char *fl_child_stderr_tail(const FlChild *child)
 {
     char text[1024] = "";
     const off_t end = lseek(child->errors, 0, SEEK_END);
@@ -103,7 +103,7 @@ static bool has_ended(FlChild *child)
 {
     const pid_t ended = child->pid ? waitpid(child->pid, &child->status, WNOHANG) : 0;
     if (ended < 0 && errno == ECHILD)
-        child->status = 0; // somebody else has reaped it
+        child->status = 0; // another part of the program has reaped it
     if (ended != 0)
         child->pid = 0;
     return child->pid == 0;
@@ -167,7 +167,7 @@ static bool report_death(FlChild *child, GError **error)
 {
     if (!wait_for(child, 0, error))
         return false;
-    g_autofree char *words = fl_child_words(child);
+    g_autofree char *words = fl_child_stderr_tail(child);
     const char *line = strrchr(words, '\n');
     g_set_error(error, FL_ERROR, error_code(child), "%s stopped: %s", child->program,
                 !*words ? "it did not say why"

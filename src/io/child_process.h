@@ -49,7 +49,7 @@ bool fl_child_read(FlChild *child, void *data, size_t bytes, size_t *got, GError
 bool fl_child_finish(FlChild *child, GError **error);
 
 /** The last kilobyte that the child wrote to its standard error; to be freed. */
-char *fl_child_words(const FlChild *child);
+char *fl_child_stderr_tail(const FlChild *child);
 
 /** Kills the child if it still runs. NULL is fine. */
 void fl_child_free(FlChild *child);

@@ -284,7 +284,7 @@ static bool put_rows(Writer *writer, GError **error)
         put_chunks(writer, &put, &failure);
         fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first) && put;
+    return fl_parallel_error_propagate(error, first) && put;
 }
 
 static bool put_file(Writer *writer, FlAtomicFile *file, const FlSinkFrame *frame, GError **error)

@@ -58,7 +58,7 @@ static bool end(const FlFfmpeg *ffmpeg, bool whole, GError **error)
     const bool well = fl_child_finish(ffmpeg->child, &below);
     if (well && whole)
         return true;
-    g_autofree char *words = fl_child_words(ffmpeg->child);
+    g_autofree char *words = fl_child_stderr_tail(ffmpeg->child);
     if (strstr(words, "matches no streams"))
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: has no video stream", ffmpeg->path);
     else

@@ -1,4 +1,4 @@
-/* Pictures that somebody names as paper or background: PNG or JPEG files. */
+/* Pictures named as paper or background: PNG or JPEG files. */
 #ifndef FLUIDY_IO_PICTURE_FILE_H
 #define FLUIDY_IO_PICTURE_FILE_H
 

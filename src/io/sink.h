@@ -35,7 +35,7 @@ typedef bool (*FlTakeFrame)(void *taker, const FlSinkFrame *frame, int width, in
 
 /** The callback for frames that stay in memory. */
 typedef struct FlFrameTaker {
-    FlTakeFrame take; // NULL: nobody
+    FlTakeFrame take; // NULL: not called
     void *data;       // is handed to take
 } FlFrameTaker;
 

@@ -19,7 +19,7 @@ typedef struct FlEnginePaint {
     uint8_t *rgb;        // width * height * 3 sRGB in the style's colours, its paper without paint
     uint8_t *alpha;      // width * height, of the colours in rgb; NULL unless it has a reach
     FlFrameStats *stats; // zeroed; an engine may leave it
-    FlSynthView *view;   // zeroed; NULL: nobody wants it. An engine without a field leaves it
+    FlSynthView *view;   // zeroed; NULL: not needed. An engine without a field leaves it
 } FlEnginePaint;
 
 /**

@@ -79,8 +79,8 @@ GPtrArray *fl_guard_list_inputs(const FlPlan *plan)
     return inputs;
 }
 
-/* A link and what it leads to are both read; what is not there is told by whoever reads it. A
- * style's folder is written to by nobody. Adds drawings of frames that are not wanted to paths. */
+/* A link and what it leads to are both read; what is not there is told by its reader. A
+ * style's folder is never written to. Adds drawings of frames that are not wanted to paths. */
 static GHashTable *collect(const FlDrawing *drawing, GPtrArray *paths)
 {
     GHashTable *inputs = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
@@ -157,7 +157,8 @@ static bool check_frame(const FlPlan *plan, GHashTable *inputs, int frame, GErro
             !may_write(inputs, fl_output_name(o->layers, number, region->name, NULL), error))
             return false;
         if (o->paint && !o->merge &&
-            !may_write(inputs, fl_paint_file(o->paint, plan->drawing, region, frame, NULL), error))
+            !may_write(inputs, fl_paint_file_name(o->paint, plan->drawing, region, frame, NULL),
+                       error))
             return false;
     }
     return true;

@@ -121,7 +121,7 @@ const FlEngine *fl_engine_of_region(FlStyleCache *styles, const FlStyleInstance 
     }
     if (settings->solver == FL_SOLVER_NETWORK || settings->refine > 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "‘tile’ moves paint that is there, and %s flat ink only; leave out one of them",
+                    "‘tile’ moves existing paint, but %s needs flat ink; use only one of them",
                     settings->refine > 0 ? "‘refine’" : "‘solver’ network");
         return NULL;
     }

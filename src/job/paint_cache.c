@@ -66,7 +66,7 @@ static void keep_problem(FlPaintCache *cache, char *text)
         cache->problem = text;
 }
 
-void fl_paint_cache_tell(FlPaintCache *cache)
+void fl_paint_cache_warn(FlPaintCache *cache)
 {
     if (!cache)
         return;
@@ -243,7 +243,7 @@ void fl_paint_cache_close(FlPaintCache *cache)
         return;
     if (cache->added > 0)
         trim(cache);
-    fl_paint_cache_tell(cache);
+    fl_paint_cache_warn(cache);
     g_mutex_clear(&cache->lock);
     g_free(cache->folder);
     g_free(cache);

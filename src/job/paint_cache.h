@@ -10,7 +10,7 @@
 /**
  * A cache in use. Any thread, and several processes with one folder: files appear whole or not at
  * all, and what another process removes is painted again. Nothing of it is an error: the first
- * thing that is wrong is a warning of the options, when fl_paint_cache_tell() is called.
+ * thing that is wrong is a warning of the options, when fl_paint_cache_warn() is called.
  */
 typedef struct FlPaintCache FlPaintCache;
 
@@ -41,7 +41,7 @@ void fl_paint_cache_put(FlPaintCache *cache, FlCacheKind kind, FlDigest name, co
 void fl_paint_cache_drop(FlPaintCache *cache, FlCacheKind kind, FlDigest name);
 
 /** Warns of what was wrong since the last call; from the thread that the options want. */
-void fl_paint_cache_tell(FlPaintCache *cache);
+void fl_paint_cache_warn(FlPaintCache *cache);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPaintCache, fl_paint_cache_close)
 

@@ -5,8 +5,8 @@
 #include "io/png.h"
 #include <string.h>
 
-char *fl_paint_file(const char *pattern, const FlDrawing *drawing, const FlRegionPlan *region,
-                    int frame, GError **error)
+char *fl_paint_file_name(const char *pattern, const FlDrawing *drawing, const FlRegionPlan *region,
+                         int frame, GError **error)
 {
     const int first = frame - frame % region->settings.hold;
     return fl_output_name(pattern, fl_drawing_number(drawing, first), region->name, error);
@@ -26,15 +26,15 @@ static FlRect area_of(const FlPaintedRegion *painted, FlPaintArea area)
     return whole ? (FlRect){0, 0, painted->width, painted->height} : painted->rect;
 }
 
-bool fl_paint_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
-                   bool overwrite, GError **error)
+bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
+                        bool overwrite, GError **error)
 {
     const FlRect part = area_of(painted, area), rect = painted->rect;
     const size_t pixels = fl_rect_pixels(part);
     const uint8_t *paper = painted->style->paper;
-    g_auto(FlPaintedLook) look = {0};
+    g_auto(FlPaintedReader) look = {0};
     g_autofree uint8_t *rgba = fl_alloc(4 * pixels, 1, "the paint of a region", error);
-    if (!rgba || !fl_painted_look(painted, &look, error))
+    if (!rgba || !fl_painted_read(painted, &look, error))
         return false;
     for (size_t p = 0; p < pixels; p++) // paper outside painted->rect
         memcpy(rgba + 4 * p, (uint8_t[]){paper[0], paper[1], paper[2], look.region.alpha ? 0 : 255},
@@ -53,10 +53,10 @@ bool fl_paint_save(const FlPaintedRegion *painted, FlPaintArea area, const char 
     return fl_png_save(&png, path, overwrite, error);
 }
 
-void fl_paint_find_place(const FlDrawing *drawing, FlRegionPlan *region)
+void fl_paint_file_find_place(const FlDrawing *drawing, FlRegionPlan *region)
 {
     const FlRect page = {0, 0, fl_drawing_width(drawing), fl_drawing_height(drawing)};
-    g_autofree char *file = fl_paint_file(region->paint_files, drawing, region, 0, NULL);
+    g_autofree char *file = fl_paint_file_name(region->paint_files, drawing, region, 0, NULL);
     FlRect place;
     if (!file || !fl_png_place(file, &place) || place.width > page.width ||
         place.height > page.height || place.x > page.width - place.width ||
@@ -65,7 +65,7 @@ void fl_paint_find_place(const FlDrawing *drawing, FlRegionPlan *region)
     region->place = place;
 }
 
-bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error)
+bool fl_paint_file_load(FlPaintedRegion *painted, const char *path, GError **error)
 {
     if (!g_file_test(path, G_FILE_TEST_EXISTS)) {
         g_set_error(error, FL_ERROR, FL_ERROR_INPUT,

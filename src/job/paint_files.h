@@ -12,20 +12,20 @@
  *
  * Returns: to be freed with g_free(); NULL with FL_ERROR_USAGE.
  */
-char *fl_paint_file(const char *pattern, const FlDrawing *drawing, const FlRegionPlan *region,
-                    int frame, GError **error);
+char *fl_paint_file_name(const char *pattern, const FlDrawing *drawing, const FlRegionPlan *region,
+                         int frame, GError **error);
 
 /**
  * Writes the paint of a region, in the exemplar's colours, as PNG: as large as the frame, or as
  * painted->rect, with its place.
  */
-bool fl_paint_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
-                   bool overwrite, GError **error);
+bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
+                        bool overwrite, GError **error);
 
 /** Sets region->place from the first frame's file of its paint, if that is there and says it. */
-void fl_paint_find_place(const FlDrawing *drawing, FlRegionPlan *region);
+void fl_paint_file_find_place(const FlDrawing *drawing, FlRegionPlan *region);
 
 /** Reads the part painted->rect of such a file, or one that has that part alone. FL_ERROR_INPUT. */
-bool fl_paint_load(FlPaintedRegion *painted, const char *path, GError **error);
+bool fl_paint_file_load(FlPaintedRegion *painted, const char *path, GError **error);
 
 #endif

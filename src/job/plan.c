@@ -89,7 +89,7 @@ static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
 static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
     enum { MUCH_BEYOND = 10 };  // percent
-    const float coarse = 1.25f; // below it nobody sees that pictures are enlarged
+    const float coarse = 1.25f; // below it enlarged pictures do not look soft
     const FlStyleInstance *style = painted->style;
     for (const FlRegionPlan *p = plan->painted; p < painted; p++)
         if (p->style == style)
@@ -106,8 +106,8 @@ static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GErro
         return false;
     return style->ink->beyond < MUCH_BEYOND || painted->settings.tint != FL_TINT_FILL ||
            warn(plan, error,
-                "%s: most of the paint is darker than the paper, but %d %% is lighter, or the "
-                "other way round, and will be bare; use ‘tint’ keep for the recording's colours",
+                "%s: %d %% of the paint is lighter than the paper where most is darker (or the "
+                "reverse) and will show as bare paper; use ‘tint’ keep for the recording's colours",
                 style->path, style->ink->beyond);
 }
 
@@ -360,8 +360,7 @@ static bool choose_part(FlPlan *plan, GError **error)
     const bool of_film = is_of_film(part);
     if (of_film && !plan->movie)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "%s: no film of frames that are kept, as ‘part’ film makes; expected a name "
-                    "such as walk.mov",
+                    "%s: ‘part’ film needs a film as output; use a name such as walk.mov",
                     plan->output);
     else if (plan->format->film)
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
@@ -421,7 +420,7 @@ static bool check_merge(const FlRenderOptions *options, GError **error)
     else if (options->paint && !fl_output_is_pattern(options->paint))
         wrong = "‘paint’: one file for all frames; expected a number in the name, such as %04d";
     else if (options->part && !options->merge)
-        wrong = "‘part’ is of a merge; use ‘merge’ too, or ‘frames’ for some of the frames";
+        wrong = "‘part’ needs ‘merge’; to paint some of the frames use ‘frames’";
     if (wrong)
         g_set_error_literal(error, FL_ERROR, FL_ERROR_USAGE, wrong);
     return !wrong;
@@ -440,7 +439,7 @@ static void tell_linked(const FlPlan *plan)
 static bool look_at_paint(FlPlan *plan, GError **error)
 {
     for (int p = 0; p < plan->n_painted; p++)
-        fl_paint_find_place(plan->drawing, &plan->painted[p]);
+        fl_paint_file_find_place(plan->drawing, &plan->painted[p]);
     return fl_plan_find_hidden(plan, error);
 }
 

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel_error.h"
-#include "job/sight.h"
+#include "job/visible_regions.h"
 #include <stdatomic.h>
 
 /* How the regions of a frame meet. */
@@ -28,7 +28,7 @@ bool fl_plan_hides(const FlPlan *plan, int region)
     return plan->seen && !plan->seen[region];
 }
 
-static void begin_sight(FlPlan *plan)
+static void begin_visible_regions(FlPlan *plan)
 {
     const int n = fl_drawing_regions(plan->drawing);
     g_clear_pointer(&plan->seen, g_free);
@@ -40,15 +40,15 @@ static void begin_sight(FlPlan *plan)
 }
 
 /* Every style's rim, and a pixel where drafts are enlarged. */
-static bool note_sight(const FlPlan *plan, const FlDrawList *draws, GError **error)
+static bool note_visible_regions(const FlPlan *plan, const FlDrawList *draws, GError **error)
 {
     if (!plan->seen)
         return true;
-    FlSight sight = {plan->joins, fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing),
-                     1};
+    FlVisibleRegions visible = {plan->joins, fl_drawing_width(plan->drawing),
+                                fl_drawing_height(plan->drawing), 1};
     for (int p = 0; p < plan->n_painted; p++)
-        sight.rim_px = MAX(sight.rim_px, (int)(plan->painted[p].style->border_px + 0.5f) + 1);
-    return fl_sight_note(&sight, draws, plan->seen, error);
+        visible.rim_px = MAX(visible.rim_px, (int)(plan->painted[p].style->border_px + 0.5f) + 1);
+    return fl_visible_regions_note(&visible, draws, plan->seen, error);
 }
 
 static bool all_seen(const FlPlan *plan)
@@ -65,7 +65,7 @@ static bool look(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
     if (all_seen(plan))
         return true;
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
-    return draws && note_sight(plan, draws, error);
+    return draws && note_visible_regions(plan, draws, error);
 }
 
 /* Stores the masks of all painted regions in a frame. */
@@ -83,7 +83,7 @@ static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **
             return false;
         fl_rect_clear(mask, width, box);
     }
-    return note_sight(plan, draws, error) &&
+    return note_visible_regions(plan, draws, error) &&
            fl_surround_put(plan->surround, frame, draws, plan->joins, plan->painted_of, edges,
                            error);
 }
@@ -133,14 +133,14 @@ static bool each_frame(Pass *pass, GError **error)
             failed++;
         fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 bool fl_plan_rasterise(FlPlan *plan, GError **error)
 {
     g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(fl_drawing_regions(plan->drawing));
     const bool alone = fl_drawing_regions(plan->drawing) < 2;
-    begin_sight(plan);
+    begin_visible_regions(plan);
     const double share = alone ? 1 : .5;
     Pass note = {plan, edges, note_edges, 0, share, 0, g_thread_self()};
     Pass store = {plan, edges, store_masks, 1 - share, share, 0, g_thread_self()};
@@ -150,6 +150,6 @@ bool fl_plan_rasterise(FlPlan *plan, GError **error)
 bool fl_plan_find_hidden(FlPlan *plan, GError **error)
 {
     Pass pass = {plan, NULL, look, 0, 1, 0, g_thread_self()};
-    begin_sight(plan);
+    begin_visible_regions(plan);
     return !plan->seen || each_frame(&pass, error);
 }

@@ -62,10 +62,10 @@ static bool find_state(FlResume *resume, const FlPlan *plan, FlFingerprint *prin
     return false;
 }
 
-/* Frames that are there keep a film from being made, where nobody may have thought of them. */
+/* Frames that are there keep a film from being made, where they may have been forgotten. */
 static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
 {
-    if (fl_exists_not(file, plan->movie ? NULL : error))
+    if (fl_check_not_exists(file, plan->movie ? NULL : error))
         return true;
     if (plan->movie)
         g_set_error(error, FL_ERROR, FL_ERROR_EXISTS,
@@ -81,7 +81,7 @@ static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
     for (int p = 0; plan->options.layers && p < plan->n_painted; p++) {
         const char *region = plan->painted[p].name;
         g_autofree char *file = fl_output_name(plan->options.layers, number, region, error);
-        if (!file || !fl_exists_not(file, error))
+        if (!file || !fl_check_not_exists(file, error))
             return false;
     }
     return true;
@@ -92,8 +92,8 @@ static bool paints_are_free(const FlPlan *plan, int frame, GError **error)
     const FlRenderOptions *o = &plan->options;
     for (int p = 0; o->paint && !o->merge && p < plan->n_painted; p++) {
         const FlRegionPlan *painted = &plan->painted[p];
-        g_autofree char *file = fl_paint_file(o->paint, plan->drawing, painted, frame, error);
-        if (!file || (frame % painted->settings.hold == 0 && !fl_exists_not(file, error)))
+        g_autofree char *file = fl_paint_file_name(o->paint, plan->drawing, painted, frame, error);
+        if (!file || (frame % painted->settings.hold == 0 && !fl_check_not_exists(file, error)))
             return false;
     }
     return true;
@@ -127,7 +127,7 @@ static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, G
 static bool check_files(const FlResume *resume, const FlPlan *plan, GError **error)
 {
     const char *movie = resume->path ? plan->movie : plan->output;
-    if (movie && !may_overwrite(plan) && !fl_exists_not(movie, error))
+    if (movie && !may_overwrite(plan) && !fl_check_not_exists(movie, error))
         return false;
     for (int f = plan->first; f < plan->end; f++)
         if (!check_frame(resume, plan, f, error))
@@ -152,9 +152,10 @@ bool fl_resume_expect_free(const FlPlan *plan, const FlSequence *sequence, GErro
     const char *movie = one_file ? plan->output : plan->movie, *stats = plan->options.stats;
     if (may_overwrite(plan))
         return true;
-    if (stats && plan->options.overwrite == FL_OVERWRITE_REFUSE && !fl_exists_not(stats, error))
+    if (stats && plan->options.overwrite == FL_OVERWRITE_REFUSE &&
+        !fl_check_not_exists(stats, error))
         return false;
-    if (movie && !fl_exists_not(movie, error))
+    if (movie && !fl_check_not_exists(movie, error))
         return false;
     g_autofree char *state = hidden_file(plan, false, "state");
     if (plan->format->film || plan->finished == FL_FINISHED_FRAMES ||

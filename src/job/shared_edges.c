@@ -164,7 +164,7 @@ static void look(const FlDraw *a, const FlDraw *b, Meeting *meeting)
 /** Only opaque shapes have edges that can be hidden. */
 static bool counts(const FlDraw *draw, const FlJoin *joins)
 {
-    return draw->alpha == 255 && draw->mix == FL_BLEND_MODE_OVER &&
+    return draw->alpha == 255 && draw->blend_mode == FL_BLEND_MODE_OVER &&
            joins[draw->region] != FL_JOIN_ALONE;
 }
 

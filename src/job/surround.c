@@ -61,7 +61,7 @@ static void add_seen(const FlDraw *draw, const uint8_t *free_of, int width, uint
  * does not. */
 static int opacity_of(const FlDraw *draw)
 {
-    return draw->mix == FL_BLEND_MODE_OVER ? MAX(5 * draw->alpha - 4 * 255, 0) : 0;
+    return draw->blend_mode == FL_BLEND_MODE_OVER ? MAX(5 * draw->alpha - 4 * 255, 0) : 0;
 }
 
 /** What n coverages of an opaque layer leave free. */
@@ -324,7 +324,7 @@ static bool find_sharing(const FlDrawList *draws, int region, const FlJoin *join
     bool any = false;
     for (int r = 0; r < draws->n; r++) {
         const FlDraw *draw = &draws->draw[r];
-        const bool opaque = draw->alpha == 255 && draw->mix == FL_BLEND_MODE_OVER;
+        const bool opaque = draw->alpha == 255 && draw->blend_mode == FL_BLEND_MODE_OVER;
         sharing[r] =
             opaque ? fl_shared_edges_get(edges, region, draw->region, joins) : FL_SHARING_NONE;
         any |= sharing[r] != FL_SHARING_NONE;
@@ -332,7 +332,7 @@ static bool find_sharing(const FlDrawList *draws, int region, const FlJoin *join
     return any;
 }
 
-/** Whether somebody asks what is around a region. */
+/** Whether what is around a region is asked for. */
 static bool is_wanted(int region, const FlJoin *joins, const int *painted_of)
 {
     return joins[region] != FL_JOIN_UNPAINTED && (!painted_of || painted_of[region] >= 0);

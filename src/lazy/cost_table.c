@@ -4,7 +4,7 @@
 #include "base/rng.h"
 
 #define NEAREST 16 // a row is looked through once for so many
-#define NOBODY UINT32_MAX
+#define NO_TARGET UINT32_MAX
 
 bool fl_cost_table_init(FlCostTable *table, uint32_t n_rows, uint32_t n_columns, uint64_t key,
                         GError **error)
@@ -60,7 +60,7 @@ static void find_nearest(FlCostTable *table, uint32_t row, const uint64_t *is_fr
             n = insert(table, row, offer, list, n);
     }
     for (; n < NEAREST; n++)
-        list[n].target = NOBODY;
+        list[n].target = NO_TARGET;
     table->next[row] = 0;
 }
 
@@ -69,10 +69,10 @@ FlOffer fl_cost_table_nearest(FlCostTable *table, uint32_t row, const uint64_t *
     const FlOffer *list = table->nearest + (size_t)row * NEAREST;
     for (;;) {
         uint8_t *next = &table->next[row];
-        while (*next < NEAREST && list[*next].target != NOBODY &&
+        while (*next < NEAREST && list[*next].target != NO_TARGET &&
                !fl_bit(is_free, list[*next].target))
             (*next)++;
-        if (*next < NEAREST && list[*next].target != NOBODY)
+        if (*next < NEAREST && list[*next].target != NO_TARGET)
             return list[*next];
         find_nearest(table, row, is_free);
     }

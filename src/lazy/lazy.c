@@ -39,7 +39,7 @@ struct FlLazy {
     Level level[FL_MAX_LEVELS]; // likewise; after it, the planes of level 0 where they are shown
     FlNnf warm;                 // likewise: the carried field; empty in a first frame
     float *motion;              // likewise: 2 per pixel; NULL: there is none
-    bool shows;                 // somebody looks at the frame in hand when it is painted
+    bool shows;                 // the frame in hand is inspected when it is painted
 };
 
 static FlFluidWeights weights_of(const FlParams *params)

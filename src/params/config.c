@@ -178,7 +178,7 @@ static bool unknown_key(const char *section, const char *key, bool matches, GErr
     return usage(error, "[%s] has no key “%s”%s", section, key, hint);
 }
 
-static bool known_wish(const char *key)
+static bool is_region_key(const char *key)
 {
     return g_strv_contains(fl_region_settings_keys(), key);
 }
@@ -198,14 +198,14 @@ static bool set_region(FlRule *rule, const char *key, const char *value, GError 
                      "match-label and others",
                      value);
     }
-    if (!known_wish(key))
+    if (!is_region_key(key))
         return unknown_key("region", key, true, error);
     return fl_overrides_add(&rule->overrides, key, value, error);
 }
 
 static bool set_default(FlConfig *config, const char *key, const char *value, GError **error)
 {
-    if (!known_wish(key))
+    if (!is_region_key(key))
         return unknown_key("defaults", key, false, error);
     return fl_overrides_add(&config->defaults, key, value, error);
 }
@@ -290,9 +290,9 @@ static void complete(const FlConfig *config, const FlOption *option, FlRenderOpt
 {
     if (!fl_option_is_set(option, options))
         fl_option_copy(option, &config->project, options);
-    if (fl_option_is_set(option, options) || !*option->preset)
+    if (fl_option_is_set(option, options) || !*option->default_value)
         return;
-    if (!fl_option_set(option, option->preset, NULL, options, config->strings, NULL))
+    if (!fl_option_set(option, option->default_value, NULL, options, config->strings, NULL))
         g_error("options.def: %s: the default is not one of its values", option->name);
 }
 

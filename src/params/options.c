@@ -11,23 +11,22 @@
 #define OFFSET_PROGRAM(field) 0
 
 static const FlOption lines[] = {
-#define FL_OPTION(scope, type, field, name, letter, value, unit, min, max, preset, section, bytes, \
-                  group, help)                                                                     \
-    {                                                                                              \
-        name,                                                                                      \
-        letter,                                                                                    \
-        FL_SCOPE_##scope,                                                                          \
-        FL_OPTION_##type,                                                                          \
-        OFFSET_##scope(field),                                                                     \
-        value,                                                                                     \
-        unit,                                                                                      \
-        min,                                                                                       \
-        max,                                                                                       \
-        preset,                                                                                    \
-        FL_SECTION_##section,                                                                      \
-        FL_BYTES_##bytes,                                                                          \
-        FL_GROUP_##group,                                                                          \
-        help},
+#define FL_OPTION(scope, type, field, name, letter, value, unit, min, max, default_value, section, \
+                  bytes, group, help)                                                              \
+    {name,                                                                                         \
+     letter,                                                                                       \
+     FL_SCOPE_##scope,                                                                             \
+     FL_OPTION_##type,                                                                             \
+     OFFSET_##scope(field),                                                                        \
+     value,                                                                                        \
+     unit,                                                                                         \
+     min,                                                                                          \
+     max,                                                                                          \
+     default_value,                                                                                \
+     FL_SECTION_##section,                                                                         \
+     FL_BYTES_##bytes,                                                                             \
+     FL_GROUP_##group,                                                                             \
+     help},
 #include "params/options.def"
 #undef FL_OPTION
 };
@@ -49,7 +48,7 @@ static FlOption of_parameter(const FlParamInfo *info)
                       .unit = info->unit,
                       .min = info->min,
                       .max = info->max,
-                      .preset = info->preset[FL_PRESET_DEFAULT],
+                      .default_value = info->preset[FL_PRESET_DEFAULT],
                       .section = FL_SECTION_REGION,
                       .bytes = FL_BYTES_VALUE,
                       .group = FL_GROUP_PARAMETERS,
@@ -127,9 +126,9 @@ static char *alternatives(const FlOption *option)
 static char *parameter_help(const FlOption *option)
 {
     if (strcmp(option->value, "on|off") == 0)
-        return g_strdup_printf("%s (%s)", option->help, option->preset);
-    return g_strdup_printf("%s (%s; %g to %g%s%s)", option->help, option->preset, option->min,
-                           option->max, *option->unit ? " " : "", option->unit);
+        return g_strdup_printf("%s (%s)", option->help, option->default_value);
+    return g_strdup_printf("%s (%s; %g to %g%s%s)", option->help, option->default_value,
+                           option->min, option->max, *option->unit ? " " : "", option->unit);
 }
 
 char *fl_option_help(const FlOption *option)
@@ -144,8 +143,8 @@ char *fl_option_help(const FlOption *option)
         g_string_erase(help, at, 2);
         g_string_insert(help, at, words);
     }
-    if (*option->preset && fl_option_takes_value(option))
-        g_string_append_printf(help, " (%s)", option->preset);
+    if (*option->default_value && fl_option_takes_value(option))
+        g_string_append_printf(help, " (%s)", option->default_value);
     return g_string_free(help, FALSE);
 }
 
@@ -362,7 +361,7 @@ char *fl_option_get(const FlOption *option, const void *object)
     case FL_OPTION_PARAM:
         return fl_params_get(&((const FlRegionSettings *)object)->params, option->name);
     case FL_OPTION_PRESET:
-    case FL_OPTION_TASK:
+    case FL_OPTION_COMMAND:
     case FL_OPTION_READ:
         return NULL;
     }

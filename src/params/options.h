@@ -34,7 +34,7 @@ typedef enum FlOptionType {
     FL_OPTION_NAME,
     FL_OPTION_PRESET,
     FL_OPTION_PARAM,
-    FL_OPTION_TASK,
+    FL_OPTION_COMMAND,
     FL_OPTION_READ,
 } FlOptionType;
 
@@ -73,7 +73,7 @@ typedef struct FlOption {
     const char *value; // words with | between, or placeholders in capitals; "": it takes none
     const char *unit;
     double min, max; // inclusive, of numbers
-    const char *preset;
+    const char *default_value;
     FlOptionSection section;
     FlOptionBytes bytes;
     FlOptionGroup group;

@@ -179,7 +179,8 @@ void fl_region_settings_init(FlRegionSettings *settings)
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *option = fl_option_at(i);
         if (option->scope == FL_SCOPE_REGION && option->type != FL_OPTION_PARAM &&
-            option->type != FL_OPTION_PRESET && !store(settings, option, option->preset, NULL))
+            option->type != FL_OPTION_PRESET &&
+            !store(settings, option, option->default_value, NULL))
             g_error("options.def: %s: the default is not one of its values", option->name);
     }
 }

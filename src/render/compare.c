@@ -66,7 +66,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Comparison, comparison_clear)
 
 static bool may_write(const Comparison *c, const char *path, GError **error)
 {
-    return !path || c->options.overwrite == FL_OVERWRITE_YES || fl_exists_not(path, error);
+    return !path || c->options.overwrite == FL_OVERWRITE_YES || fl_check_not_exists(path, error);
 }
 
 /* The files of the sheet and the page beside it, free if they must be, before the drawing is read.
@@ -423,7 +423,8 @@ static bool show_recording(const FlContactSheet *contact, const FlStyleEntry *en
 bool fl_style_sheet(const char *path, bool overwrite, GError **error)
 {
     g_autoptr(GPtrArray) styles = fl_style_list();
-    if (!fl_png_named(path, "sheets are", error) || (!overwrite && !fl_exists_not(path, error)))
+    if (!fl_png_named(path, "sheets are", error) ||
+        (!overwrite && !fl_check_not_exists(path, error)))
         return false;
     for (guint k = styles->len; k > 0; k--)
         if (((FlStyleEntry *)styles->pdata[k - 1])->hidden)

@@ -34,7 +34,7 @@ static bool write_layers(const FlFrameWriter *writer, const FlComposite *composi
                          composite->names[k], frame, &failure))
             fl_parallel_error_keep(&first, failure);
     }
-    if (!fl_parallel_error_tell(error, first))
+    if (!fl_parallel_error_propagate(error, first))
         return false;
     return !composite->sheet || fl_paper_sheet_since(writer->paper, frame) != frame ||
            write_layer(writer, (FlPng){.rgba = composite->sheet}, SHEET, frame, error);
@@ -47,12 +47,12 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
     for (int p = 0; o->paint && !o->merge && p < writer->plan->n_painted; p++) {
         const FlRegionPlan *region = &writer->plan->painted[p];
         g_autofree char *path =
-            fl_paint_file(o->paint, writer->plan->drawing, region, frame, error);
+            fl_paint_file_name(o->paint, writer->plan->drawing, region, frame, error);
         if (!path)
             return false;
         if (frame % region->settings.hold == 0 && !fl_resume_keeps(writer->resume, path) &&
-            !fl_paint_save(painted[p], o->paint_area, path,
-                           fl_resume_replaces(writer->resume, frame), error))
+            !fl_paint_file_save(painted[p], o->paint_area, path,
+                                fl_resume_replaces(writer->resume, frame), error))
             return false;
     }
     return true;
@@ -144,7 +144,7 @@ bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlRes
         .opaque = opaque,
         .patience = {.stopped = plan->options.stopped, .data = plan->options.data},
         .taker = taker,
-        .fast = plan->half, // nobody keeps drafts
+        .fast = plan->half, // drafts are not kept
         .overwrite = plan->options.overwrite == FL_OVERWRITE_YES};
     writer->sink = fl_sink_open(taker.take ? &fl_sink_taken : plan->format, &params, error);
     if (!writer->sink || !plan->movie)

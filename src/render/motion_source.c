@@ -7,7 +7,7 @@
 
 #define KEPT 6 // in memory; regions that are worked on side by side are near each other
 
-/** A frame's outlines with their looks; counted by whoever uses it. */
+/** A frame's outlines with their looks; counted by its users. */
 typedef struct Frame {
     int references;
     int frame; // -1: free

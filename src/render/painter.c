@@ -128,9 +128,9 @@ static bool keep_picture(FlPainter *painter, GError **error)
     reuse->n_painted++;
     if (!reuse->cache)
         return true;
-    g_auto(FlPaintedLook) look = {0};
+    g_auto(FlPaintedReader) look = {0};
     g_autoptr(GBytes) state = painter->plan->engine->save(painter->paint, error);
-    if (!state || !fl_painted_look(&painter->result, &look, error))
+    if (!state || !fl_painted_read(&painter->result, &look, error))
         return false;
     fl_reuse_keep(reuse, look.region.painted, fl_painted_bytes(&look.region), state);
     return true;
@@ -203,9 +203,9 @@ bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **er
 /* Loads the paint of a frame that another run has painted. */
 static bool load_paint(FlPainter *painter, int frame, GError **error)
 {
-    g_autofree char *file =
-        fl_paint_file(painter->plan->paint_files, painter->drawing, painter->plan, frame, error);
-    return file && fl_paint_load(&painter->result, file, error);
+    g_autofree char *file = fl_paint_file_name(painter->plan->paint_files, painter->drawing,
+                                               painter->plan, frame, error);
+    return file && fl_paint_file_load(&painter->result, file, error);
 }
 
 bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error)
@@ -243,8 +243,8 @@ bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], 
         parts[0] = g_bytes_ref(painter->reuse->state);
     else if (!(parts[0] = painter->plan->engine->save(painter->paint, error)))
         return false;
-    g_auto(FlPaintedLook) look = {0};
-    if (holds && !fl_painted_look(&painter->result, &look, error))
+    g_auto(FlPaintedReader) look = {0};
+    if (holds && !fl_painted_read(&painter->result, &look, error))
         return false;
     parts[1] = g_bytes_new(look.region.painted, holds ? fl_painted_bytes(&look.region) : 0);
     return true;

@@ -14,7 +14,7 @@ typedef struct FlPainter {
     const FlMaskStore *masks;
     const FlSurround *surround;
     const FlDrawing *drawing;
-    FlMotionSource *motion;        // borrowed; NULL: nobody asks for the drawing's own motion
+    FlMotionSource *motion;        // borrowed; NULL: the drawing's own motion is not needed
     int frame_width, frame_height; // of the output, and of flow files
     FlPaintedRegion result;        // its picture is owned
     FlLoop loop;

@@ -291,7 +291,7 @@ static void stir_around(uint8_t *square, FlRect guided, FlRect px)
     for (int y = around.y / FL_REST_PX; y < fl_rest_squares(around.y + around.height); y++)
         for (int x = around.x / FL_REST_PX; x < fl_rest_squares(around.x + around.width); x++)
             if (square[y * columns + x])
-                square[y * columns + x] |= FL_REST_STIRS;
+                square[y * columns + x] |= FL_SQUARE_CHANGES;
 }
 
 static bool stir_joins(const FlPainter *painter, uint8_t *square, GError **error)
@@ -329,7 +329,7 @@ static bool find_resting(const FlPainter *painter, FlRestingParts *resting, FlRe
     g_autofree uint8_t *square = NULL;
     if (!keeps_parts(painter))
         return true;
-    if (!fl_guide_sequence_stirring(painter->guides, painter->picture, &square, error))
+    if (!fl_guide_sequence_changes(painter->guides, painter->picture, &square, error))
         return false;
     return !square ||
            ((!fl_knows_depth(&painter->plan->settings.params) ||

@@ -29,7 +29,7 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter);
 bool fl_painter_rests(FlPainter *painter, int last);
 
 /**
- * The guides of the painter's picture. guides: of all, if somebody looks at them; part: those from
+ * The guides of the painter's picture. guides: of all, if they are inspected; part: those from
  * which the engine paints, if some parts rest, else it stays empty, and they are `guides`.
  */
 bool fl_painter_make_guides(FlPainter *painter, FlGuides *guides, FlGuides *part, GError **error);

@@ -194,7 +194,7 @@ bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **er
         if (!fl_painter_save(&painters->painter[p], parts, &failure))
             fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 bool fl_painters_load(FlPainters *painters, const GPtrArray *states, const char *path,

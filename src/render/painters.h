@@ -8,7 +8,7 @@ typedef struct FlPainters {
     const FlPlan *plan; // borrowed
     int n;
     FlPainter *painter;        // one for each of plan->painted
-    FlMotionSource *motion[2]; // for guides of half the size second; NULL: nobody asks for it
+    FlMotionSource *motion[2]; // for guides of half the size second; NULL: not needed
     FlReuse *reuse;            // one for each painter; NULL: nothing is taken or kept
 } FlPainters;
 

@@ -234,7 +234,7 @@ static void trim(const FlPlan *plan)
 
 /* Paints and composes a frame, or where a missing one is held, the frame before again. Its shapes
  * are drawn beside the painting, those of frame `next` (-1: none) beside the composing. Where
- * nobody looks at the picture, nothing is drawn and *composite stays empty. */
+ * the picture is not needed, nothing is drawn and *composite stays empty. */
 static bool paint_frame(Pipeline *pipeline, int frame, int next, FlComposite *composite,
                         double *paint_s, GError **error)
 {
@@ -321,7 +321,7 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
         pipeline->stats.paint_s += paint_s, pipeline->stats.compose_s += compose_s;
     else if (!inspect_frame(pipeline, paint_s, compose_s, error))
         return false;
-    fl_paint_cache_tell(pipeline->plan->cache);
+    fl_paint_cache_warn(pipeline->plan->cache);
     return report_progress(pipeline, "paint", frame + 1, seconds_since(start), error);
 }
 

@@ -16,8 +16,8 @@
  * from last time, and neither masks nor guides are made.
  */
 typedef struct FlReuse {
-    FlPaintCache *cache;  // borrowed; NULL: nothing is taken or kept
-    bool takes;           // else everything is painted, since somebody looks at how it is done
+    FlPaintCache *cache; // borrowed; NULL: nothing is taken or kept
+    bool takes; // false while guides or statistics are inspected: then everything is painted
     FlFingerprint *facts; // of method and film
     FlDigest film, slot;  // of all facts; of where those of the last render are kept
     FlDigest last;        // of the picture painted or taken last

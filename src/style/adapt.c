@@ -90,7 +90,7 @@ static bool adapt_frames(const FlStyle *style, const FlStyleUse *use, FlStyle *o
                 adapt_frame(style, use, &sizes, out, t, all, third);
         fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 static bool find_sizes(const FlStyle *style, const FlStyleUse *use, FlStyle *out, GError **error)

@@ -291,7 +291,7 @@ FlStyleReport *fl_style_check(const char *name, const char *sheet, bool overwrit
     g_autofree char *folder = fl_headroom_check(error) ? fl_style_find(name, error) : NULL;
     if (!folder)
         return NULL;
-    if (sheet && !overwrite && !fl_exists_not(sheet, error))
+    if (sheet && !overwrite && !fl_check_not_exists(sheet, error))
         return NULL;
     g_autoptr(FlStyle) style = fl_style_load(folder, error);
     FlParams params;

@@ -14,30 +14,30 @@ static void basis(int x, int y, int width, int height, double term[TERMS])
     memcpy(term, (double[TERMS]){1, u, v, u * u, u * v, v * v}, TERMS * sizeof(double));
 }
 
-static double gain_at(const FlFlatField *plate, const double term[TERMS], int c)
+static double gain_at(const FlFlatField *field, const double term[TERMS], int c)
 {
     double gain = 0;
     for (int i = 0; i < TERMS; i++)
-        gain += plate->gain[c][i] * term[i];
-    return CLAMP(gain, plate->low[c], plate->high[c]);
+        gain += field->gain[c][i] * term[i];
+    return CLAMP(gain, field->low[c], field->high[c]);
 }
 
-float fl_flat_field_at(const FlFlatField *plate, int x, int y, int c)
+float fl_flat_field_at(const FlFlatField *field, int x, int y, int c)
 {
     double term[TERMS];
-    basis(x, y, plate->width, plate->height, term);
-    return (float)(plate->paper[c] * gain_at(plate, term, c));
+    basis(x, y, field->width, field->height, term);
+    return (float)(field->paper[c] * gain_at(field, term, c));
 }
 
-float fl_flat_field_range(const FlFlatField *plate)
+float fl_flat_field_range(const FlFlatField *field)
 {
     float range = 0;
     for (int c = 0; c < 3; c++) {
         float low = 255, high = 0;
         for (int i = 0; i <= 8; i++)
             for (int j = 0; j <= 8; j++) {
-                const float level = fl_flat_field_at(plate, i * (plate->width - 1) / 8,
-                                                     j * (plate->height - 1) / 8, c);
+                const float level = fl_flat_field_at(field, i * (field->width - 1) / 8,
+                                                     j * (field->height - 1) / 8, c);
                 low = MIN(low, level);
                 high = MAX(high, level);
             }
@@ -54,13 +54,13 @@ typedef struct Fit {
     uint32_t residual[256]; // histogram of the largest channel's, for the next round's limit
 } Fit;
 
-static void add_sample(Fit *fit, const FlFlatField *plate, const double term[TERMS],
+static void add_sample(Fit *fit, const FlFlatField *field, const double term[TERMS],
                        const uint8_t *rgb, double limit)
 {
     double most = 0, gain[3];
     for (int c = 0; c < 3; c++) {
-        gain[c] = gain_at(plate, term, c);
-        most = MAX(most, fabs(rgb[c] - plate->paper[c] * gain[c]));
+        gain[c] = gain_at(field, term, c);
+        most = MAX(most, fabs(rgb[c] - field->paper[c] * gain[c]));
     }
     if (most > limit)
         return;
@@ -74,11 +74,11 @@ static void add_sample(Fit *fit, const FlFlatField *plate, const double term[TER
         for (int j = 0; j < TERMS; j++)
             fit->matrix[i][j] += term[i] * term[j];
         for (int c = 0; c < 3; c++)
-            fit->right[c][i] += term[i] * rgb[c] / MAX(plate->paper[c], 1);
+            fit->right[c][i] += term[i] * rgb[c] / MAX(field->paper[c], 1);
     }
 }
 
-static void add_samples(Fit *fit, const FlFlatField *plate, const FlClip *clip, const uint8_t *mask,
+static void add_samples(Fit *fit, const FlFlatField *field, const FlClip *clip, const uint8_t *mask,
                         double limit)
 {
     const int width = clip->width, height = clip->height;
@@ -89,12 +89,12 @@ static void add_samples(Fit *fit, const FlFlatField *plate, const FlClip *clip, 
         if (mask && mask[i])
             continue;
         basis((int)(i % width), (int)(i % pixels / width), width, height, term);
-        add_sample(fit, plate, term, clip->rgb + 3 * i, limit);
+        add_sample(fit, field, term, clip->rgb + 3 * i, limit);
     }
 }
 
 /* Gaussian elimination without pivots: the matrix is positive definite by the ridge. */
-static void solve(Fit *fit, FlFlatField *plate)
+static void solve(Fit *fit, FlFlatField *field)
 {
     for (int i = 0; i < TERMS; i++) { // a prior of gain 1, with a hundredth of the weight
         fit->matrix[i][i] += 0.01 * (double)fit->n;
@@ -113,8 +113,8 @@ static void solve(Fit *fit, FlFlatField *plate)
         for (int i = TERMS - 1; i >= 0; i--) {
             double sum = fit->right[c][i];
             for (int j = i + 1; j < TERMS; j++)
-                sum -= fit->matrix[i][j] * plate->gain[c][j];
-            plate->gain[c][i] = sum / fit->matrix[i][i];
+                sum -= fit->matrix[i][j] * field->gain[c][j];
+            field->gain[c][i] = sum / fit->matrix[i][i];
         }
 }
 
@@ -128,55 +128,55 @@ static double next_limit(const Fit *fit)
     return CLAMP(3.0 * (median + 1), NARROWEST, WIDEST);
 }
 
-static void set_even(FlFlatField *plate)
+static void set_even(FlFlatField *field)
 {
-    memset(plate->gain, 0, sizeof plate->gain);
+    memset(field->gain, 0, sizeof field->gain);
     for (int c = 0; c < 3; c++) {
-        plate->gain[c][0] = 1;
-        plate->low[c] = 0.67; // a larger fall-off is not due to the light
-        plate->high[c] = 1.5;
+        field->gain[c][0] = 1;
+        field->low[c] = 0.67; // a larger fall-off is not due to the light
+        field->high[c] = 1.5;
     }
 }
 
-void fl_flat_field_fit(FlFlatField *plate, const FlClip *clip, const uint8_t *mask,
+void fl_flat_field_fit(FlFlatField *field, const FlClip *clip, const uint8_t *mask,
                        const uint8_t paper[3])
 {
     const size_t all = (size_t)clip->width * clip->height * clip->n_frames;
-    *plate = (FlFlatField){.width = clip->width, .height = clip->height};
-    memcpy(plate->paper, paper, 3);
-    set_even(plate);
+    *field = (FlFlatField){.width = clip->width, .height = clip->height};
+    memcpy(field->paper, paper, 3);
+    set_even(field);
     double limit = WIDEST;
     Fit last = {0}; // the last round only collects the range of gains at bare places
     for (int round = 0; round < ROUNDS; round++) {
         Fit fit = {0};
-        add_samples(&fit, plate, clip, mask, limit);
+        add_samples(&fit, field, clip, mask, limit);
         if (fit.n < 100 || fit.n * (1 + all / MOST_SAMPLES) * 20 < all) { // less than 5 % is bare
-            set_even(plate);
+            set_even(field);
             return;
         }
         if (round < ROUNDS - 1)
-            solve(&fit, plate);
+            solve(&fit, field);
         limit = next_limit(&fit);
         memcpy(last.low, fit.low, sizeof last.low);
         memcpy(last.high, fit.high, sizeof last.high);
     }
-    memcpy(plate->low, last.low, sizeof plate->low);
-    memcpy(plate->high, last.high, sizeof plate->high);
+    memcpy(field->low, last.low, sizeof field->low);
+    memcpy(field->high, last.high, sizeof field->high);
 }
 
-/* The median of paper over plate in the bare part of a frame, as a gain; 1 if too little is bare.
+/* The median of paper over field in the bare part of a frame, as a gain; 1 if too little is bare.
  */
-static double frame_gain(const FlFlatField *plate, const uint8_t *rgb, const uint8_t *mask, int c)
+static double frame_gain(const FlFlatField *field, const uint8_t *rgb, const uint8_t *mask, int c)
 {
     enum { STEPS = 512 }; // of 1/256
-    const int width = plate->width, height = plate->height;
+    const int width = field->width, height = field->height;
     uint32_t count[STEPS] = {0}, n = 0, sum = 0;
     for (int y = 0; y < height; y++)
         for (int x = 0; x < width; x++) {
             const size_t i = (size_t)y * width + x;
             if (mask[i])
                 continue;
-            const double ratio = rgb[3 * i + c] / MAX(1, fl_flat_field_at(plate, x, y, c));
+            const double ratio = rgb[3 * i + c] / MAX(1, fl_flat_field_at(field, x, y, c));
             count[CLAMP((int)(ratio * 256 + 0.5), 0, STEPS - 1)]++;
             n++;
         }
@@ -186,19 +186,19 @@ static double frame_gain(const FlFlatField *plate, const uint8_t *rgb, const uin
     return n * 50 > (uint32_t)width * height ? CLAMP(median / 256.0, 0.67, 1.5) : 1;
 }
 
-void fl_flat_field_flatten(const FlFlatField *plate, uint8_t *rgb, const uint8_t *mask,
+void fl_flat_field_flatten(const FlFlatField *field, uint8_t *rgb, const uint8_t *mask,
                            int n_frames)
 {
-    const int width = plate->width, height = plate->height;
+    const int width = field->width, height = field->height;
     for (int frame = 0; frame < n_frames; frame++) {
         const size_t first = (size_t)frame * width * height;
         for (int c = 0; c < 3; c++) {
-            const double gain = frame_gain(plate, rgb + 3 * first, mask + first, c);
+            const double gain = frame_gain(field, rgb + 3 * first, mask + first, c);
             uint8_t *level = rgb + 3 * first + c;
             for (int y = 0; y < height; y++)
                 for (int x = 0; x < width; x++, level += 3) {
-                    const double paper = gain * fl_flat_field_at(plate, x, y, c);
-                    const double flat = *level * plate->paper[c] / MAX(1, paper);
+                    const double paper = gain * fl_flat_field_at(field, x, y, c);
+                    const double flat = *level * field->paper[c] / MAX(1, paper);
                     *level = (uint8_t)(MIN(flat, 255) + 0.5);
                 }
         }

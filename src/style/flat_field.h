@@ -17,20 +17,20 @@ typedef struct FlFlatField {
  * Fits the light to the bare paper: to the pixels outside all masks, or, if mask is NULL, to those
  * that look like `paper`. With too little bare paper it assumes even light.
  */
-void fl_flat_field_fit(FlFlatField *plate, const FlClip *clip, const uint8_t *mask,
+void fl_flat_field_fit(FlFlatField *field, const FlClip *clip, const uint8_t *mask,
                        const uint8_t paper[3]);
 
 /** The level of bare paper, or of the paper under paint, at a pixel in channel c. */
-float fl_flat_field_at(const FlFlatField *plate, int x, int y, int c);
+float fl_flat_field_at(const FlFlatField *field, int x, int y, int c);
 
-/** The difference of the lightest and darkest point of the plate, in levels. */
-float fl_flat_field_range(const FlFlatField *plate);
+/** The difference of the lightest and darkest point of the field, in levels. */
+float fl_flat_field_range(const FlFlatField *field);
 
 /**
- * Makes the light even and constant: divides rgb (as the clip's) by the plate, and each frame by
+ * Makes the light even and constant: divides rgb (as the clip's) by the field, and each frame by
  * what is left of its bare paper's median, so that the paper has its colour everywhere.
  */
-void fl_flat_field_flatten(const FlFlatField *plate, uint8_t *rgb, const uint8_t *mask,
+void fl_flat_field_flatten(const FlFlatField *field, uint8_t *rgb, const uint8_t *mask,
                            int n_frames);
 
 #endif

@@ -99,7 +99,7 @@ static bool read_pictures(FlStyle *style, const FlSeries *series, int first, con
 #pragma omp ordered
         fl_parallel_error_keep(&failure, reason);
     }
-    return fl_parallel_error_tell(error, failure);
+    return fl_parallel_error_propagate(error, failure);
 }
 
 static FlSeries *read_frames(FlStyle *style, GError **error)

@@ -16,7 +16,7 @@ bool fl_style_may_write(const char *folder, bool overwrite, GError **error)
 {
     for (size_t i = 0; i < G_N_ELEMENTS(parts) && !overwrite; i++) {
         g_autofree char *path = g_build_filename(folder, parts[i], NULL);
-        if (!fl_exists_not(path, error))
+        if (!fl_check_not_exists(path, error))
             return false;
     }
     if (!g_file_test(folder, G_FILE_TEST_EXISTS) || g_file_test(folder, G_FILE_TEST_IS_DIR))

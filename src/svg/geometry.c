@@ -121,7 +121,7 @@ static void enter_viewport(const Reader *reader, const xmlNode *node, Surrounds 
         const FlAffine place = {1, 0, 0, 1, x, y};
         s->width = length_in(reader, node, "width", w, w, broken);
         s->height = length_in(reader, node, "height", h, h, broken);
-        s->ctm = fl_affine_after(&s->ctm, &place);
+        s->ctm = fl_affine_multiply(&s->ctm, &place);
         g_autofree char *overflow = fl_property(node, "overflow");
         const bool shown =
             overflow && (g_str_equal(overflow, "visible") || g_str_equal(overflow, "auto"));
@@ -129,7 +129,7 @@ static void enter_viewport(const Reader *reader, const xmlNode *node, Surrounds 
     }
     if (box[2] > 0 && box[3] > 0) {
         const FlAffine fit = fit_box(box, s->width, s->height, (const char *)ratio);
-        s->ctm = fl_affine_after(&s->ctm, &fit);
+        s->ctm = fl_affine_multiply(&s->ctm, &fit);
         s->width = box[2], s->height = box[3];
     }
 }
@@ -177,7 +177,7 @@ static Surrounds surrounds_of(Reader *reader, const xmlNode *node)
         return *known;
     Surrounds s = surrounds_of(reader, node->parent);
     const FlAffine m = transform_of(node);
-    s.ctm = fl_affine_after(&s.ctm, &m);
+    s.ctm = fl_affine_multiply(&s.ctm, &m);
     if (fl_is(node, "svg"))
         enter_viewport(reader, node, &s);
     enter_properties(reader, node, &s);
@@ -339,7 +339,7 @@ void fl_outlines_scale(FlOutlines *outlines, double factor)
 {
     const FlAffine scale = {factor, 0, 0, factor, 0, 0};
     for (int i = 0; i < outlines->n_leaves; i++)
-        outlines->leaf[i].ctm = fl_affine_after(&scale, &outlines->leaf[i].ctm);
+        outlines->leaf[i].ctm = fl_affine_multiply(&scale, &outlines->leaf[i].ctm);
 }
 
 void fl_outlines_free(FlOutlines *outlines)

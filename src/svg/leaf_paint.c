@@ -22,7 +22,7 @@ typedef struct Source {
 
 typedef struct Op {
     bool stroke;
-    FlBlendMode mix;
+    FlBlendMode blend_mode;
     double alpha; // of the groups around
     double width; // of a stroke, px; else 0
     Source source;
@@ -32,7 +32,7 @@ typedef struct Op {
 typedef struct Context {
     char surface[16];
     Source source;
-    FlBlendMode mix;
+    FlBlendMode blend_mode;
     double line_width, scale; // of the pen
 } Context;
 
@@ -191,14 +191,14 @@ static void set_source(Reader *r, const char *line)
 }
 
 /** A group's surface is drawn: its ops now belong to the current surface. */
-static void merge_surface(Reader *r, const char *surface, double alpha, FlBlendMode mix)
+static void merge_surface(Reader *r, const char *surface, double alpha, FlBlendMode blend_mode)
 {
     for (guint i = 0; i < r->ops->len; i++) {
         Op *op = &g_array_index(r->ops, Op, i);
         if (strcmp(op->surface, surface) != 0)
             continue;
         op->alpha *= alpha;
-        op->mix = mix == FL_BLEND_MODE_OVER ? op->mix : mix;
+        op->blend_mode = blend_mode == FL_BLEND_MODE_OVER ? op->blend_mode : blend_mode;
         g_strlcpy(op->surface, top(r)->surface, sizeof op->surface);
     }
 }
@@ -215,11 +215,11 @@ static void draw(Reader *r, bool stroke, double alpha)
     Context *context = top(r);
     const Source *source = &context->source;
     if (source->surface[0] && !source->repeats) {
-        merge_surface(r, source->surface, alpha, context->mix);
+        merge_surface(r, source->surface, alpha, context->blend_mode);
         return;
     }
     Op op = {.stroke = stroke,
-             .mix = context->mix,
+             .blend_mode = context->blend_mode,
              .alpha = alpha,
              .width = stroke ? context->line_width * context->scale : 0,
              .source = source_copy(source)};
@@ -260,17 +260,17 @@ static void exchange_contexts(Reader *r)
 }
 
 /** "//MULTIPLY set-operator"; what is no blend mode is librsvg's own business. */
-static FlBlendMode mix_of(const char *line)
+static FlBlendMode blend_mode_of(const char *line)
 {
-    static const char *const names[FL_N_MIXES] = {
+    static const char *const names[FL_N_BLEND_MODES] = {
         "OVER",    "MULTIPLY",       "SCREEN",     "OVERLAY",       "DARKEN",     "LIGHTEN",
         "DODGE",   "BURN",           "HARD_LIGHT", "SOFT_LIGHT",    "DIFFERENCE", "EXCLUSION",
         "HSL_HUE", "HSL_SATURATION", "HSL_COLOR",  "HSL_LUMINOSITY"};
     const char *name = g_str_has_prefix(line, "//") ? line + 2 : line;
     const size_t n = strcspn(name, " ");
-    for (int mix = 0; mix < FL_N_MIXES; mix++)
-        if (strlen(names[mix]) == n && strncmp(name, names[mix], n) == 0)
-            return (FlBlendMode)mix;
+    for (int blend_mode = 0; blend_mode < FL_N_BLEND_MODES; blend_mode++)
+        if (strlen(names[blend_mode]) == n && strncmp(name, names[blend_mode], n) == 0)
+            return (FlBlendMode)blend_mode;
     return FL_BLEND_MODE_OVER;
 }
 
@@ -307,7 +307,7 @@ static void read_line(Reader *r, const char *line)
     } else if (strcmp(op, "set-matrix") == 0 && line[0] != ' ') {
         set_matrix(r, line);
     } else if (strcmp(op, "set-operator") == 0) {
-        top(r)->mix = mix_of(line);
+        top(r)->blend_mode = blend_mode_of(line);
     } else if (strcmp(op, "mask") == 0) {
         draw(r, false, strstr(line, " a mask") ? g_ascii_strtod(line, NULL) : 1);
     } else if (strcmp(op, "stroke+") == 0 || strcmp(op, "stroke") == 0) {
@@ -323,14 +323,14 @@ static uint8_t to_byte(double v)
     return (uint8_t)CLAMP(lround(v * 255), 0, 255);
 }
 
-static FlPaint op_paint(const Op *op)
+static FlSvgPaint op_paint(const Op *op)
 {
     const double *v = op->source.rgba;
-    FlPaint paint = {op->source.kind,
-                     {to_byte(v[0]), to_byte(v[1]), to_byte(v[2])},
-                     to_byte(v[3] * op->alpha),
-                     to_byte(op->source.peak * op->alpha),
-                     NULL};
+    FlSvgPaint paint = {op->source.kind,
+                        {to_byte(v[0]), to_byte(v[1]), to_byte(v[2])},
+                        to_byte(v[3] * op->alpha),
+                        to_byte(op->source.peak * op->alpha),
+                        NULL};
     if (op->source.kind == FL_PAINT_FLAT)
         paint.key = g_strdup_printf("#%02x%02x%02x", paint.rgb[0], paint.rgb[1], paint.rgb[2]);
     else
@@ -338,7 +338,7 @@ static FlPaint op_paint(const Op *op)
     return paint;
 }
 
-static bool same_paint(const FlPaint *a, const FlPaint *b)
+static bool same_paint(const FlSvgPaint *a, const FlSvgPaint *b)
 {
     return a->kind == b->kind && a->alpha == b->alpha && strcmp(a->key, b->key) == 0;
 }
@@ -353,9 +353,10 @@ static FlPainted join(const GArray *ops, int which, FlPart part)
         if (which != 2 && op->stroke != (which == 1))
             continue;
         painted.stroke = painted.stroke && op->stroke;
-        painted.mix = first || op->mix == painted.mix ? op->mix : FL_BLEND_MODE_OVER;
+        painted.blend_mode =
+            first || op->blend_mode == painted.blend_mode ? op->blend_mode : FL_BLEND_MODE_OVER;
         painted.width = MAX(painted.width, (float)op->width);
-        FlPaint paint = op_paint(op);
+        FlSvgPaint paint = op_paint(op);
         if (first) {
             painted.paint = paint;
         } else {
@@ -366,7 +367,7 @@ static FlPainted join(const GArray *ops, int which, FlPart part)
                 g_free(painted.paint.key);
                 painted.paint.key = g_strdup("mixed");
             }
-            fl_paint_clear(&paint);
+            fl_svg_paint_clear(&paint);
         }
         first = false;
     }
@@ -381,19 +382,19 @@ static int take_apart(const GArray *ops, bool whole, FlPainted parts[FL_MOST_PAR
     if (ops->len == 0)
         return 0;
     parts[0] = join(ops, 2, FL_PART_WHOLE);
-    const FlPaint *paint = &parts[0].paint;
+    const FlSvgPaint *paint = &parts[0].paint;
     const bool uniform = paint->kind == FL_PAINT_FLAT && (paint->alpha == 255 || ops->len == 1);
-    if (whole || uniform || parts[0].mix != FL_BLEND_MODE_OVER || strokes == 0 ||
+    if (whole || uniform || parts[0].blend_mode != FL_BLEND_MODE_OVER || strokes == 0 ||
         strokes == ops->len)
         return 1;
-    fl_paint_clear(&parts[0].paint);
+    fl_svg_paint_clear(&parts[0].paint);
     const int first = g_array_index(ops, Op, 0).stroke;
     parts[0] = join(ops, first, first ? FL_PART_STROKE : FL_PART_FILL);
     parts[1] = join(ops, !first, first ? FL_PART_FILL : FL_PART_STROKE);
     return 2;
 }
 
-int fl_paint_read(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS])
+int fl_svg_paint_parse(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS])
 {
     Reader r = {.ops = g_array_new(FALSE, FALSE, sizeof(Op)),
                 .contexts = g_array_new(FALSE, FALSE, sizeof(Context))};
@@ -415,7 +416,7 @@ int fl_paint_read(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]
     return n;
 }
 
-void fl_paint_clear(FlPaint *paint)
+void fl_svg_paint_clear(FlSvgPaint *paint)
 {
     g_clear_pointer(&paint->key, g_free);
 }

@@ -25,21 +25,21 @@ typedef enum FlPart {
  * A computed paint. Two are the same paint if their keys are equal: "#rrggbb" for a flat one,
  * the kind and the stops for a gradient (neither its id nor its position).
  */
-typedef struct FlPaint {
+typedef struct FlSvgPaint {
     FlPaintKind kind;
     uint8_t rgb[3]; // the colour; of a gradient the mean over its stops
     uint8_t alpha;  // opacity, its groups included; of a gradient the mean
     uint8_t peak;   // the opacity where it is most opaque: of a gradient its most opaque stop
     char *key;      // owned
-} FlPaint;
+} FlSvgPaint;
 
 /** A part of a leaf and its paint. */
 typedef struct FlPainted {
     FlPart part;
-    bool stroke;     // the part consists of strokes only
-    FlBlendMode mix; // of all of it; OVER if it has several
-    float width;     // of its widest stroke, px of the page it was read on; 0: no stroke
-    FlPaint paint;
+    bool stroke;            // the part consists of strokes only
+    FlBlendMode blend_mode; // of all of it; OVER if it has several
+    float width;            // of its widest stroke, px of the page it was read on; 0: no stroke
+    FlSvgPaint paint;
 } FlPainted;
 
 #define FL_MOST_PARTS 2
@@ -51,8 +51,8 @@ typedef struct FlPainted {
  * is one part, and so is one with a blend mode. Returns: the number
  * of parts, bottom up; 0 if nothing is drawn.
  */
-int fl_paint_read(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]);
+int fl_svg_paint_parse(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]);
 
-void fl_paint_clear(FlPaint *paint);
+void fl_svg_paint_clear(FlSvgPaint *paint);
 
 #endif

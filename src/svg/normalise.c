@@ -191,7 +191,7 @@ static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
     return svg;
 }
 
-static bool is_circle(const xmlNode *use, const xmlNode *target, const Chain *chain)
+static bool is_cycle(const xmlNode *use, const xmlNode *target, const Chain *chain)
 {
     for (const Chain *c = chain; c; c = c->outer)
         if (c->shown == target)
@@ -211,7 +211,7 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
     xmlNode *target = href ? g_hash_table_lookup(work->ids, href + 1) : NULL;
     g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(use, "id");
     xmlNodeSetName(use, (const xmlChar *)"g");
-    if (target && is_circle(use, target, chain)) {
+    if (target && is_cycle(use, target, chain)) {
         const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);
         fl_warnings_add(work->warnings, work->path, work->number, made ? NULL : (const char *)id,
                         "<use> of “%s” shows itself and is left out", href);

@@ -106,7 +106,7 @@ static void arc_to(FlPen *pen, const double *v, FlPoint end)
             fl_pen_line(pen, between(from, end, (k + 1) / 4.0));
         return;
     }
-    fl_turn_of_degrees(v[2], &s, &c);
+    fl_sincos_degrees(v[2], &s, &c);
     FlPoint p = {(c * d.x + s * d.y) / rx, (-s * d.x + c * d.y) / ry};
     const double reach = p.x * p.x + p.y * p.y;
     if (reach > 1) {

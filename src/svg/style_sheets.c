@@ -63,7 +63,8 @@ static void warn(const Check *check, const char *what)
                     "the style sheet “%.60s” is a pipe or a device and is left out", what);
 }
 
-/** A <style> element: imports that cannot be read become another rule, which nobody knows. */
+/** A <style> element: imports that cannot be read become another rule, which is unknown everywhere.
+ */
 static void check_style(const Check *check, xmlNode *node)
 {
     g_autoptr(xmlChar) css = xmlNodeGetContent(node);

@@ -59,7 +59,8 @@ double fl_svg_dpi(const FlSvg *svg);
  * The computed paints of a leaf. FlPainted.width is a share of the page's longer side.
  * Returns: the number of parts, bottom up, 0 if nothing is drawn; -1 with FL_ERROR_INPUT.
  */
-int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error);
+int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
+                       GError **error);
 
 /**
  * Draws a part of a leaf at its place in the picture, with its clip, mask and groups. The page is

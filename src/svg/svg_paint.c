@@ -79,7 +79,8 @@ static bool find_far(FlSvg *svg, GError **error)
     return true;
 }
 
-int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS], GError **error)
+int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
+                       GError **error)
 {
     if (leaf->all) {
         parts[0] = (FlPainted){.part = FL_PART_WHOLE,
@@ -96,7 +97,7 @@ int fl_svg_paint(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
         // It also fails for some fills without an area; such a leaf is its stroke.
         if (!script)
             script = script_of(svg, leaf, FL_PART_STROKE, size, error);
-        const int n = script ? fl_paint_read(script, leaf->whole, parts) : -1;
+        const int n = script ? fl_svg_paint_parse(script, leaf->whole, parts) : -1;
         for (int i = 0; i < n; i++)
             parts[i].width /= (float)size;
         if (n != 0 || !is_small(fl_svg_extents(svg, leaf, size, size)))

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-FlAffine fl_affine_after(const FlAffine *outer, const FlAffine *inner)
+FlAffine fl_affine_multiply(const FlAffine *outer, const FlAffine *inner)
 {
     const FlPoint at = fl_affine_apply(outer, (FlPoint){inner->x0, inner->y0});
     return (FlAffine){outer->xx * inner->xx + outer->xy * inner->yx,
@@ -42,7 +42,7 @@ static double series(double x, bool odd)
     return sum;
 }
 
-void fl_turn_of_degrees(double degrees, double *sine, double *cosine)
+void fl_sincos_degrees(double degrees, double *sine, double *cosine)
 {
     const double within = fmod(degrees, 360); // exact
     const double quarter = floor(within / 90 + 0.5), rest = (within - 90 * quarter) * G_PI / 180;
@@ -113,22 +113,22 @@ static bool is_called(const Call *call, const char *name)
 static FlAffine rotation(double degrees)
 {
     double s, c;
-    fl_turn_of_degrees(degrees, &s, &c);
+    fl_sincos_degrees(degrees, &s, &c);
     return (FlAffine){c, s, -s, c, 0, 0};
 }
 
 static double tangent(double degrees)
 {
     double s, c;
-    fl_turn_of_degrees(degrees, &s, &c);
+    fl_sincos_degrees(degrees, &s, &c);
     return s / c;
 }
 
 static FlAffine rotation_about(double degrees, double x, double y)
 {
     const FlAffine there = {1, 0, 0, 1, x, y}, back = {1, 0, 0, 1, -x, -y};
-    const FlAffine turn = rotation(degrees), on = fl_affine_after(&there, &turn);
-    return fl_affine_after(&on, &back);
+    const FlAffine turn = rotation(degrees), on = fl_affine_multiply(&there, &turn);
+    return fl_affine_multiply(&on, &back);
 }
 
 /** The matrix of a function; false if it is unknown or has a wrong number of arguments. */
@@ -178,7 +178,7 @@ bool fl_affine_parse(const char *text, FlAffine *m)
         s = read_call(s, &call);
         if (!s || !map_of(&call, &one))
             return false;
-        all = fl_affine_after(&all, &one);
+        all = fl_affine_multiply(&all, &one);
         s += strspn(s, " \t\r\n\f,");
     }
     *m = all;

@@ -21,13 +21,13 @@ static inline FlPoint fl_affine_apply(const FlAffine *m, FlPoint p)
 }
 
 /** The composition that applies `inner` first. */
-FlAffine fl_affine_after(const FlAffine *outer, const FlAffine *inner);
+FlAffine fl_affine_multiply(const FlAffine *outer, const FlAffine *inner);
 
 /** Returns: false if m is singular. */
 bool fl_affine_invert(const FlAffine *m, FlAffine *inverse);
 
 /** Sine and cosine of an angle in degrees, the same on every CPU, to 1e-15. */
-void fl_turn_of_degrees(double degrees, double *sine, double *cosine);
+void fl_sincos_degrees(double degrees, double *sine, double *cosine);
 
 /**
  * Reads a list of functions, "translate(3 4) rotate(10deg)", of the attribute or of the CSS

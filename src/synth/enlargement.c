@@ -57,7 +57,7 @@ static bool pack_window(FlEnlargement *enlargement, const FlStyle *style, GError
                 pack_frame(enlargement, style->rgb + n * (size_t)t, t, planes);
         fl_parallel_error_keep(&first, failure);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 static bool spill_frames(FlEnlargement *enlargement, const FlStyle *style, GError **error)

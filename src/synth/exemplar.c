@@ -405,7 +405,7 @@ static bool measure_extents(FlExemplar *exemplar, const FlStyle *style, FlExempl
         exemplar->bare = (float)(BARE * (double)all.contrast.sum / (double)all.contrast.n / 255);
         exemplar->margin_px = margin_of(&all.contrast, exemplar->border_px);
     }
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 /* The margin of a style, without any other guides. */
@@ -430,7 +430,7 @@ static bool measure_margin(const FlStyle *style, float border_px, float *margin_
         fl_parallel_error_keep(&first, failure);
     }
     *margin_px = all.n > 0 ? margin_of(&all, border_px) : 0;
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 typedef size_t SegmentCounts[FL_MAX_LEVELS][FL_SEGMENTS]; // pixels of each level and segment
@@ -488,7 +488,7 @@ static bool pack_frames(FlExemplar *exemplar, const FlStyle *style, FlExemplarFr
     }
     if (window < style->n_frames)
         release_frames(exemplar, window, style->n_frames);
-    return fl_parallel_error_tell(error, first);
+    return fl_parallel_error_propagate(error, first);
 }
 
 /* Decides whether segments are matched separately, and the number of levels. */

@@ -34,9 +34,9 @@ typedef struct FlTexel {
 } FlTexel;
 
 /** A pixel of the target. */
-typedef struct FlCompressed {
+typedef struct FlTargetTexel {
     int16_t c[FL_CHANNELS];
-} FlCompressed;
+} FlTargetTexel;
 
 /**
  * Weighted squared distance of a rotated exemplar patch to a target patch.
@@ -51,7 +51,7 @@ typedef struct FlCompressed {
  * Returns: the distance; or, once it exceeds limit, any number above limit.
  */
 typedef uint32_t (*FlPatchDistance)(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                    const FlCompressed *target, const FlCompressed *rest,
+                                    const FlTargetTexel *target, const FlTargetTexel *rest,
                                     uint32_t limit);
 
 /**
@@ -60,31 +60,33 @@ typedef uint32_t (*FlPatchDistance)(const FlTexel *centre, const int16_t *offset
  * number above limit where it exceeds limit.
  */
 typedef void (*FlPatchPair)(const FlTexel *centre, const int16_t *offsets,
-                            const FlCompressed *target, const FlCompressed *rest, uint32_t limit,
+                            const FlTargetTexel *target, const FlTargetTexel *rest, uint32_t limit,
                             uint32_t distance[2]);
 
-#define FL_MAX_TRIES 64 // of the random search for one pixel
+#define FL_MAX_CANDIDATES 64 // of the random search for one pixel
 
-/** The windows that random tries are drawn from; frames count from the first that is searched. */
-typedef struct FlWindows {
-    _Alignas(64) uint16_t reach[3][FL_MAX_TRIES]; // from the centre, in x, y (pixels) and frames
+/** The windows that random candidates are drawn from; frames count from the first that is searched.
+ */
+typedef struct FlSearchWindows {
+    _Alignas(
+        64) uint16_t reach[3][FL_MAX_CANDIDATES]; // from the centre, in x, y (pixels) and frames
     uint16_t size[3];                             // of what is searched: x, y, frames
     uint32_t step[3]; // pixels from one column, row, frame to the next in memory
     int n;            // windows
-} FlWindows;
+} FlSearchWindows;
 
-/** Random tries; only the first n of the windows count. */
-typedef struct FlTries {
-    _Alignas(64) uint16_t at[3][FL_MAX_TRIES]; // x, y, frame
-    uint32_t pixel[FL_MAX_TRIES]; // where in memory, from the first frame's first pixel
-} FlTries;
+/** Random candidates; only the first n of the windows count. */
+typedef struct FlCandidates {
+    _Alignas(64) uint16_t at[3][FL_MAX_CANDIDATES]; // x, y, frame
+    uint32_t pixel[FL_MAX_CANDIDATES]; // where in memory, from the first frame's first pixel
+} FlCandidates;
 
 /** Draws a try from each window around a centre (x, y, frame); the key decides. */
-typedef void (*FlDrawTries)(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
-                            FlTries *tries);
+typedef void (*FlDrawCandidates)(const FlSearchWindows *windows, const uint16_t centre[3],
+                                 uint32_t key, FlCandidates *candidates);
 
 /** What a try must pass before its patch is compared. */
-typedef struct FlSieve {
+typedef struct FlCandidateFilter {
     const FlTexel *first; // the first frame's first pixel
     uint8_t segment;      // a try's centre must be of it
     const int32_t *use;   // the occurrence map of the segment
@@ -94,15 +96,16 @@ typedef struct FlSieve {
     float price, most;    // of one use, and of all
     uint32_t limit;       // a try must cost less,
     int16_t frames[4];    // unless it is in one of these frames
-} FlSieve;
+} FlCandidateFilter;
 
 /**
- * The first n tries that pass, a bit for each, and the uniformity term of those: the use of their
- * cell but for the pixel's own, which spreads over 27 cells as the tent does, times the price.
- * Places are below 32768. The tries must come from the same version, which draws a few more than n;
- * others of the FL_MAX_TRIES terms may be written.
+ * The first n candidates that pass, a bit for each, and the uniformity term of those: the use of
+ * their cell but for the pixel's own, which spreads over 27 cells as the tent does, times the
+ * price. Places are below 32768. The candidates must come from the same version, which draws a few
+ * more than n; others of the FL_MAX_CANDIDATES terms may be written.
  */
-typedef uint64_t (*FlSift)(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity);
+typedef uint64_t (*FlFilterCandidates)(const FlCandidates *candidates, int n,
+                                       const FlCandidateFilter *filter, uint32_t *uniformity);
 
 /**
  * The value of a spline between 4x4 coefficients, the first of which is given, with rows of `pitch`
@@ -117,22 +120,22 @@ typedef void (*FlSplineSample)(const FlSplinePixel *first, size_t pitch, const i
 #define FL_VOTES 32      // numbers that are read of 25
 
 /** The FL_PATCH_PIXELS matches around a pixel, column by column; FL_VOTES can be read of each. */
-typedef struct FlCovering {
+typedef struct FlVoteMatches {
     const uint16_t *x, *y;    // of the match, in 1/16 px, with FL_VOTE_BIAS
     const int16_t *frame;     // -1: no match
     const int16_t (*turn)[2]; // fl_turns of its rotation
-} FlCovering;
+} FlVoteMatches;
 
 /** What votes are sampled from. */
-typedef struct FlVoted {
+typedef struct FlVoteSource {
     const FlSplinePixel *colour;       // pixel (-1, -1) of frame 0
     size_t pitch, frame_pixels;        // pixels from one row, frame to the next
     int most[2];                       // the last column and row, 1/16 px
-    float weight[FL_PATCH_PIXELS + 1]; // of an opinion of so many votes
-} FlVoted;
+    float weight[FL_PATCH_PIXELS + 1]; // of a cluster of so many votes
+} FlVoteSource;
 
 /** What the cosine and sine of a match's turn are multiplied by, and added, for the x and y of its
- * vote: where the middle is from there. [axis], in the order of FlCovering, zeros at the end. */
+ * vote: where the middle is from there. [axis], in the order of FlVoteMatches, zeros at the end. */
 extern const int16_t fl_vote_steps[2][FL_VOTES][2];
 
 /** The places that the patches over a pixel point to, in 1/16 px, in that order; frame -1: none. */
@@ -152,32 +155,33 @@ static inline int fl_vote_leader(uint32_t left)
 }
 
 /** Votes that agree on a place: the first, and the sum of the others' differences from it. */
-typedef struct FlOpinion {
+typedef struct FlVoteCluster {
     int x, y, frame;
     int sum_x, sum_y;
     uint32_t votes; // a bit for each, the first included
-} FlOpinion;
+} FlVoteCluster;
 
 /**
- * Clusters votes into opinions: the first remaining vote, row by row, leads; all remaining ones in
- * its frame and near it join. opinions: FL_PATCH_PIXELS. Returns their number.
+ * Clusters votes: the first remaining vote, row by row, leads; all remaining ones in
+ * its frame and near it join. clusters: FL_PATCH_PIXELS. Returns their number.
  */
-typedef int (*FlFindOpinions)(const FlVotes *votes, FlOpinion *opinions);
+typedef int (*FlClusterVotes)(const FlVotes *votes, FlVoteCluster *clusters);
 
 /**
- * The colour of a pixel that patches cover: the mean of their opinions, weighted, each of which is
+ * The colour of a pixel that patches cover: the mean of their clusters, weighted, each of which is
  * sampled at the mean of its places, rounded away from the first. Every version rounds alike.
  *
  * Returns: false without any patch; colour is then undefined.
  */
-typedef bool (*FlVote)(const FlCovering *covering, const FlVoted *voted, float colour[4]);
+typedef bool (*FlVote)(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
 
 /**
  * The same for the four pixels, row by row, that a pixel is in twice the size, in which `voted` is:
  * what votes would say there if each match were four. Of the patches around a pixel the nine next
  * to it cover its four, some of them twice along a row or column.
  */
-typedef bool (*FlVoteDoubled)(const FlCovering *covering, const FlVoted *voted, float colour[4][4]);
+typedef bool (*FlVoteDoubled)(const FlVoteMatches *covering, const FlVoteSource *voted,
+                              float colour[4][4]);
 
 /** Of the FL_PATCH_PIXELS votes around a pixel those next to it, in either order; and of child 0 or
  * 1 along an axis those that count twice, by lines of FL_PATCH and by places in them. */
@@ -185,7 +189,7 @@ typedef bool (*FlVoteDoubled)(const FlCovering *covering, const FlVoted *voted, 
 #define FL_LINES_TWICE(child) (0x7fe0u << (FL_PATCH * (child)))
 #define FL_PLACES_TWICE(child) (0x6318c6u << (child))
 
-/** How many votes of twice the size those of an opinion are, for a child. */
+/** How many votes of twice the size those of a cluster are, for a child. */
 static inline int fl_votes_doubled(uint32_t votes, uint32_t lines_twice, uint32_t places_twice)
 {
     return __builtin_popcount(votes) + __builtin_popcount(votes & lines_twice) +
@@ -215,8 +219,8 @@ typedef void (*FlUpscaleRow)(const FlMatch *coarse, const FlOffset (*moves)[2],
 typedef struct FlKernels {
     FlPatchDistance patch_distance;
     FlPatchPair patch_pair;
-    FlDrawTries draw_tries;
-    FlSift sift;
+    FlDrawCandidates draw_candidates;
+    FlFilterCandidates filter_candidates;
     FlSplineSample spline_sample;
     FlVote vote;
     FlVoteDoubled vote_doubled;
@@ -229,32 +233,37 @@ typedef struct FlKernels {
 void fl_kernels_init(FlKernels *kernels, unsigned flags);
 
 uint32_t fl_patch_distance_c(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                             const FlCompressed *target, const FlCompressed *rest, uint32_t limit);
+                             const FlTargetTexel *target, const FlTargetTexel *rest,
+                             uint32_t limit);
 uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                const FlCompressed *target, const FlCompressed *rest,
+                                const FlTargetTexel *target, const FlTargetTexel *rest,
                                 uint32_t limit);
 uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                  const FlCompressed *target, const FlCompressed *rest,
+                                  const FlTargetTexel *target, const FlTargetTexel *rest,
                                   uint32_t limit);
 uint32_t fl_patch_distance_neon(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                const FlCompressed *target, const FlCompressed *rest,
+                                const FlTargetTexel *target, const FlTargetTexel *rest,
                                 uint32_t limit);
 
-void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
-                        const FlCompressed *rest, uint32_t limit, uint32_t distance[2]);
-void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
-                          const FlCompressed *rest, uint32_t limit, uint32_t distance[2]);
+void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlTargetTexel *target,
+                        const FlTargetTexel *rest, uint32_t limit, uint32_t distance[2]);
+void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets,
+                          const FlTargetTexel *target, const FlTargetTexel *rest, uint32_t limit,
+                          uint32_t distance[2]);
 
-void fl_draw_tries_c(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
-                     FlTries *tries);
-void fl_draw_tries_avx2(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
-                        FlTries *tries);
-void fl_draw_tries_avx512(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
-                          FlTries *tries);
+void fl_draw_candidates_c(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
+                          FlCandidates *candidates);
+void fl_draw_candidates_avx2(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
+                             FlCandidates *candidates);
+void fl_draw_candidates_avx512(const FlSearchWindows *windows, const uint16_t centre[3],
+                               uint32_t key, FlCandidates *candidates);
 
-uint64_t fl_sift_c(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity);
-uint64_t fl_sift_avx2(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity);
-uint64_t fl_sift_avx512(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity);
+uint64_t fl_filter_candidates_c(const FlCandidates *candidates, int n,
+                                const FlCandidateFilter *filter, uint32_t *uniformity);
+uint64_t fl_filter_candidates_avx2(const FlCandidates *candidates, int n,
+                                   const FlCandidateFilter *filter, uint32_t *uniformity);
+uint64_t fl_filter_candidates_avx512(const FlCandidates *candidates, int n,
+                                     const FlCandidateFilter *filter, uint32_t *uniformity);
 
 void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t *x, const float *y,
                         float value[4]);
@@ -262,18 +271,21 @@ void fl_spline_sample_avx2(const FlSplinePixel *first, size_t pitch, const int16
                            const float *y, float value[4]);
 
 /** The colour that votes give, by a version's own clustering and sampling. */
-bool fl_vote_of(const FlVotes *votes, FlFindOpinions find_opinions, FlSplineSample sample,
-                const FlVoted *voted, float colour[4]);
-bool fl_vote_c(const FlCovering *covering, const FlVoted *voted, float colour[4]);
-bool fl_vote_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4]);
-bool fl_vote_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4]);
+bool fl_vote_of(const FlVotes *votes, FlClusterVotes cluster_votes, FlSplineSample sample,
+                const FlVoteSource *voted, float colour[4]);
+bool fl_vote_c(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
+bool fl_vote_avx2(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
+bool fl_vote_avx512(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
 
 /** Likewise for FlVoteDoubled; votes, which are changed, and turn: those of its covering. */
-bool fl_vote_doubled_of(FlVotes *votes, const int16_t (*turn)[2], FlFindOpinions find_opinions,
-                        FlSplineSample sample, const FlVoted *voted, float colour[4][4]);
-bool fl_vote_doubled_c(const FlCovering *covering, const FlVoted *voted, float colour[4][4]);
-bool fl_vote_doubled_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4][4]);
-bool fl_vote_doubled_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4][4]);
+bool fl_vote_doubled_of(FlVotes *votes, const int16_t (*turn)[2], FlClusterVotes cluster_votes,
+                        FlSplineSample sample, const FlVoteSource *voted, float colour[4][4]);
+bool fl_vote_doubled_c(const FlVoteMatches *covering, const FlVoteSource *voted,
+                       float colour[4][4]);
+bool fl_vote_doubled_avx2(const FlVoteMatches *covering, const FlVoteSource *voted,
+                          float colour[4][4]);
+bool fl_vote_doubled_avx512(const FlVoteMatches *covering, const FlVoteSource *voted,
+                            float colour[4][4]);
 
 void fl_upscale_row_c(const FlMatch *coarse, const FlOffset (*moves)[2], const uint16_t most[2],
                       FlMatch *fine, int n);

@@ -50,8 +50,9 @@ static void find_squares(const FlGuides *guides, const FlRestRule *rule, const F
         const size_t p = fl_guides_at(guides, x, y);
         const uint8_t shape = last->mask[(size_t)y * (size_t)last->width + (size_t)x];
         if (guides->mask[p] || shape)
-            squares[x / FL_REST_PX] |=
-                stirs(guides, p, shape, rule) ? FL_REST_TAKEN | FL_REST_STIRS : FL_REST_TAKEN;
+            squares[x / FL_REST_PX] |= stirs(guides, p, shape, rule)
+                                           ? FL_SQUARE_TAKEN | FL_SQUARE_CHANGES
+                                           : FL_SQUARE_TAKEN;
     }
 }
 
@@ -72,7 +73,7 @@ static bool find_stirring(const FlGuides *guides, const FlRestRule *rule, const 
         }
     bool any = false;
     for (size_t s = 0; s < (size_t)columns * (size_t)fl_rest_squares(last->height); s++)
-        any |= square[s] & FL_REST_STIRS;
+        any |= square[s] & FL_SQUARE_CHANGES;
     return any;
 }
 

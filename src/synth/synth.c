@@ -255,7 +255,7 @@ static bool pack_last(FlSynth *synth, uint8_t *rgb, GError **error)
     return synth->packed != NULL;
 }
 
-/* That of the picture which is kept; only its field is, if nobody wanted a view of it. */
+/* That of the picture which is kept; only its field is, if no view of it is needed. */
 static FlSynthView view_at_rest(const FlSynth *synth)
 {
     const FlSynthState *last = &synth->last;
@@ -350,7 +350,7 @@ static bool show_all(FlSynth *synth, const FlGuides *guides, FlRect rect, GError
     return true;
 }
 
-/* Paints the frame; shows: somebody wants its view. */
+/* Paints the frame; shows: its view is needed. */
 static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *stats, bool shows,
                   GError **error)
 {

@@ -26,7 +26,7 @@ struct FlSynth {
     FlNnf nnf[FL_MAX_LEVELS];
     FlRestingParts resting; // of the frame in hand
     FlSynthState past;      // in a frame with such parts: the planes of the last one
-    FlSynthView view;       // of the last frame that was painted, where somebody wanted it
+    FlSynthView view;       // of the last frame that was painted, where it is needed
     FlNnf shown;            // its field in the size of the picture, where that is another
 };
 

@@ -33,7 +33,7 @@ static bool level_init(FlTargetLevel *level, int width, int height, GError **err
     const size_t tiles = (size_t)level->tile_columns * ((height + FL_TILE - 1) / FL_TILE);
     return (level->segment = fl_alloc(pixels, 1, "a target", error)) &&
            (level->angle = fl_alloc(pixels, 1, "a target", error)) &&
-           (level->guide = fl_alloc(pixels, sizeof(FlCompressed), "a target", error)) &&
+           (level->guide = fl_alloc(pixels, sizeof(FlTargetTexel), "a target", error)) &&
            (level->distance = fl_alloc(pixels, sizeof(float), "a target", error)) &&
            (level->tiles = fl_alloc(tiles, sizeof(uint32_t), "a target", error));
 }
@@ -51,7 +51,7 @@ static bool colours_init(FlTargetLevel *level, GError **error)
 static void fill_pixel(FlTargetLevel *level, size_t to, const FlPyramid *pyramid, size_t p,
                        const FlExemplar *exemplar)
 {
-    FlCompressed *guide = &level->guide[to];
+    FlTargetTexel *guide = &level->guide[to];
     const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
     level->distance[to] = pyramid->plane[FL_PLANE_DISTANCE][p];
     level->segment[to] =
@@ -274,7 +274,7 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
     for (size_t p = 0; p < pixels; p++) {
         const float w_temporal = params->w_temp * level->temporal_weight[p];
         const float w = w_texture + w_temporal;
-        FlCompressed *guide = &level->guide[p];
+        FlTargetTexel *guide = &level->guide[p];
         for (int c = 0; c < 3; c++) {
             const float mean = w > 0 ? (w_texture * level->colour[3 * p + c] +
                                         w_temporal * level->temporal[3 * p + c]) /
@@ -302,7 +302,7 @@ void fl_target_gather(const FlTargetLevel *level, int x, int y, FlTargetPatch *p
         gather_at_border(level, x, y, patch);
         return;
     }
-    const FlCompressed *centre = level->guide + (size_t)y * level->width + x;
+    const FlTargetTexel *centre = level->guide + (size_t)y * level->width + x;
     for (int k = 0; k < FL_PATCH_PIXELS; k++)
         patch->guide[k] = centre[level->around[k]];
 }

@@ -18,8 +18,8 @@ typedef struct FlTargetLevel {
     int width, height;
     uint8_t *segment; // FlSegment
     uint8_t *angle;   // direction of the flow, 256 steps
-    FlCompressed *guide;
-    FlCompressed rest;      // weights of the other channels, for every pixel
+    FlTargetTexel *guide;
+    FlTargetTexel rest;     // weights of the other channels, for every pixel
     float *colour;          // 3 per pixel, 0 … 1: the last vote
     float *temporal;        // 3 per pixel: T_temp
     float *temporal_weight; // m(q), 0 … 1; 0 where T_temp is undefined
@@ -68,7 +68,7 @@ void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostS
 
 /** The target around a pixel in the order of fl_patch_offsets, as the kernels read it. */
 typedef struct FlTargetPatch {
-    _Alignas(64) FlCompressed guide[FL_PATCH_PIXELS + 3];
+    _Alignas(64) FlTargetTexel guide[FL_PATCH_PIXELS + 3];
 } FlTargetPatch;
 
 /** Pixels beyond the rectangle repeat the nearest one in it. */

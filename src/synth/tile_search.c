@@ -8,21 +8,21 @@
  * the search, patch distances take a third, this file two fifths, the occurrence map a tenth. A
  * draft searches less: the search takes an eighth of the render, votes a fifteenth.
  *
- * Each texel of a random try is a cache miss. So pixels go through three stages, each a stage ahead
- * of the next pixel of its tile:
- *   draw    draws the tries and prefetches their centres,
- *   sift    keeps the tries that segment, occurrence map and neighbours do not rule out, a sixth,
- *           and prefetches the rest of their texels,
- *   settle  tests the neighbours' matches and the remaining tries, both rotations at once.
- * Only a pixel itself changes its match, so its tries may be drawn early.
+ * Each texel of a random candidate is a cache miss. So pixels go through three stages, each a stage
+ * ahead of the next pixel of its tile:
+ *   draw    draws the candidates and prefetches their centres,
+ *   filter  keeps those that segment, occurrence map and neighbours do not rule out, a sixth, and
+ *           prefetches the rest of their texels,
+ *   settle  tests the neighbours' matches and the kept candidates, both rotations at once.
+ * Only a pixel itself changes its match, so its candidates may be drawn early.
  */
 
-/* A random try that sift() kept. */
-typedef struct Candidate {
+/* A random candidate that filter_candidates() kept. */
+typedef struct KeptCandidate {
     const FlTexel *centre;
     FlMatch match;
     uint32_t uniformity;
-} Candidate;
+} KeptCandidate;
 
 typedef struct Place {
     uint16_t x, y;
@@ -30,10 +30,10 @@ typedef struct Place {
 
 /* The search for the match of one pixel. */
 typedef struct PixelSearch {
-    FlTries tries;
+    FlCandidates candidates;
     const FlTileSearch *tile_search;
     const FlSearch *search;
-    const FlWindows *windows; // that random tries are drawn from; NULL: none
+    const FlSearchWindows *windows; // that random candidates are drawn from; NULL: none
     int x, y, sweep;
     size_t pixel;
     FlSegment segment;
@@ -48,14 +48,14 @@ typedef struct PixelSearch {
     int n_expected;
     FlMatch carried;  // what the drawing has taken to the pixel
     uint32_t leaving; // what a match costs that does not continue it
-    int n_candidates;
-    Candidate candidate[FL_MAX_TRIES];
+    int n_kept;
+    KeptCandidate kept[FL_MAX_CANDIDATES];
 } PixelSearch;
 
 /* Those of the windows that reach no farther than `most` px. */
-static FlWindows windows_near(const FlWindows *windows, int most)
+static FlSearchWindows windows_near(const FlSearchWindows *windows, int most)
 {
-    FlWindows near = *windows;
+    FlSearchWindows near = *windows;
     near.n = 0;
     for (int k = 0; k < windows->n; k++) {
         if (MAX(windows->reach[0][k], windows->reach[1][k]) > most)
@@ -72,12 +72,12 @@ void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search)
     const FlExemplarLevel *level = search->level;
     const FlParams *params = search->params;
     const float side = (float)MAX(level->width, level->height);
-    FlWindows *w = &tile_search->windows;
+    FlSearchWindows *w = &tile_search->windows;
     tile_search->search = search;
-    *w = (FlWindows){
+    *w = (FlSearchWindows){
         .size = {(uint16_t)level->width, (uint16_t)level->height, (uint16_t)level->window},
         .step = {1, (uint32_t)level->pitch, (uint32_t)level->frame_pixels}};
-    for (float share = 1; share * side >= 1 && w->n < FL_MAX_TRIES;
+    for (float share = 1; share * side >= 1 && w->n < FL_MAX_CANDIDATES;
          share *= params->patchmatch_alpha, w->n++) {
         w->reach[0][w->n] = (uint16_t)(share * (float)level->width);
         w->reach[1][w->n] = (uint16_t)(share * (float)level->height);
@@ -130,8 +130,8 @@ static void find_expected(PixelSearch *ps)
     ps->n_expected = fl_matches_beside(ps->search, ps->x, ps->y, ps->expected);
 }
 
-/* Where tries for a pixel are drawn from. */
-static const FlWindows *windows_for(const FlTileSearch *tile_search, size_t pixel, int sweep)
+/* Where candidates for a pixel are drawn from. */
+static const FlSearchWindows *windows_for(const FlTileSearch *tile_search, size_t pixel, int sweep)
 {
     const FlSearch *search = tile_search->search;
     if (search->propagate_from > 0 && sweep >= search->propagate_from)
@@ -159,17 +159,18 @@ static void draw(PixelSearch *ps, const FlTileSearch *tile_search, Place place, 
     const uint64_t key = fl_key(search->key, (uint64_t)sweep);
     const uint16_t centre[3] = {(uint16_t)fl_match_x(ps->own), (uint16_t)fl_match_y(ps->own),
                                 (uint16_t)(ps->own.frame - search->level->first)};
-    search->kernels->draw_tries(ps->windows, centre, (uint32_t)fl_key(key, pixel), &ps->tries);
+    search->kernels->draw_candidates(ps->windows, centre, (uint32_t)fl_key(key, pixel),
+                                     &ps->candidates);
     for (int k = 0; k < ps->windows->n; k++)
-        __builtin_prefetch(first + ps->tries.pixel[k]);
+        __builtin_prefetch(first + ps->candidates.pixel[k]);
 }
 
-static FlSieve sieve_of(const PixelSearch *ps)
+static FlCandidateFilter filter_of(const PixelSearch *ps)
 {
     const FlSearch *search = ps->search;
     const FlOccurrence *map = search->map;
     const uint32_t apart = coherence_apart(ps);
-    FlSieve sieve = {
+    FlCandidateFilter filter = {
         .first = fl_exemplar_at(search->level, 0, 0, search->level->first),
         .segment = (uint8_t)ps->segment,
         .use = map->filtered[ps->segment],
@@ -180,22 +181,22 @@ static FlSieve sieve_of(const PixelSearch *ps)
         .most = FL_OCCURRENCE_MOST,
         .limit = ps->total > apart ? ps->total - apart : 0};
     for (int k = 0; k < 4; k++)
-        sieve.frames[k] = k < ps->n_expected
-                              ? (int16_t)(ps->expected[k].frame - search->level->first)
-                              : FL_NO_MATCH;
-    return sieve;
+        filter.frames[k] = k < ps->n_expected
+                               ? (int16_t)(ps->expected[k].frame - search->level->first)
+                               : FL_NO_MATCH;
+    return filter;
 }
 
-static void add_candidate(PixelSearch *ps, int k, uint32_t uniformity)
+static void keep_candidate(PixelSearch *ps, int k, uint32_t uniformity)
 {
     const FlExemplarLevel *level = ps->search->level;
-    const FlTries *tries = &ps->tries;
-    Candidate *c = &ps->candidate[ps->n_candidates++];
-    c->match = (FlMatch){.x_16 = (uint16_t)(16 * tries->at[0][k]),
-                         .y_16 = (uint16_t)(16 * tries->at[1][k]),
-                         .frame = (int16_t)(level->first + tries->at[2][k])};
+    const FlCandidates *candidates = &ps->candidates;
+    KeptCandidate *c = &ps->kept[ps->n_kept++];
+    c->match = (FlMatch){.x_16 = (uint16_t)(16 * candidates->at[0][k]),
+                         .y_16 = (uint16_t)(16 * candidates->at[1][k]),
+                         .frame = (int16_t)(level->first + candidates->at[2][k])};
     c->uniformity = uniformity;
-    c->centre = fl_exemplar_at(level, 0, 0, level->first) + tries->pixel[k];
+    c->centre = fl_exemplar_at(level, 0, 0, level->first) + candidates->pixel[k];
     if (ps->search->params->rotate)
         c->match.theta = (uint8_t)(ps->angle - c->centre->c[FL_CH_ANGLE]);
     const int16_t *offsets = level->offsets[c->match.theta];
@@ -203,7 +204,7 @@ static void add_candidate(PixelSearch *ps, int k, uint32_t uniformity)
         __builtin_prefetch(c->centre + offsets[p]);
 }
 
-/* What is known of a pixel before its tries, beside what its neighbours expect. */
+/* What is known of a pixel before its candidates, beside what its neighbours expect. */
 static void look_up(PixelSearch *ps)
 {
     const FlSearch *search = ps->search;
@@ -214,20 +215,21 @@ static void look_up(PixelSearch *ps)
     ps->own_uniformity = uniformity_cost(ps, ps->own);
     find_carried(ps);
     ps->total = ps->data + ps->own_uniformity + coherence_cost(ps, ps->own);
-    ps->n_candidates = 0;
+    ps->n_kept = 0;
 }
 
-static void sift(PixelSearch *ps)
+static void filter_candidates(PixelSearch *ps)
 {
     const FlSearch *search = ps->search;
     find_expected(ps);
     look_up(ps);
-    const FlSieve sieve = sieve_of(ps);
-    uint32_t uniformity[FL_MAX_TRIES];
-    for (uint64_t left = search->kernels->sift(&ps->tries, ps->windows->n, &sieve, uniformity);
+    const FlCandidateFilter filter = filter_of(ps);
+    uint32_t uniformity[FL_MAX_CANDIDATES];
+    for (uint64_t left = search->kernels->filter_candidates(&ps->candidates, ps->windows->n,
+                                                            &filter, uniformity);
          left; left &= left - 1) {
         const int k = __builtin_ctzll(left);
-        add_candidate(ps, k, uniformity[k]);
+        keep_candidate(ps, k, uniformity[k]);
     }
 }
 
@@ -263,7 +265,7 @@ static bool stands_apart(const PixelSearch *ps, FlMatch candidate)
 }
 
 /* Both rotations of a try [P21 §4.3]; their directions are the target's and cost nothing. */
-static int try_both(PixelSearch *ps, const FlTargetPatch *patch, const Candidate *c)
+static int try_both(PixelSearch *ps, const FlTargetPatch *patch, const KeptCandidate *c)
 {
     const FlSearch *search = ps->search;
     FlMatch turned = c->match;
@@ -322,7 +324,8 @@ static bool differs_from_neighbours(PixelSearch *ps)
     return false;
 }
 
-/* `stale`: a neighbour has changed its match since sift(). Returns: whether the pixel changes its.
+/* `stale`: a neighbour has changed its match since filter_candidates(). Returns: whether the pixel
+ * changes its.
  */
 static bool settle(PixelSearch *ps, bool stale, FlSearchCounts *counts)
 {
@@ -344,8 +347,8 @@ static bool settle(PixelSearch *ps, bool stale, FlSearchCounts *counts)
         counts->drawn += (uint64_t)ps->windows->n * (search->params->rotate ? 2 : 1);
     if (news)
         counts->tried += propagate(ps, &patch);
-    for (int k = 0; k < ps->n_candidates; k++) {
-        const Candidate *c = &ps->candidate[k];
+    for (int k = 0; k < ps->n_kept; k++) {
+        const KeptCandidate *c = &ps->kept[k];
         counts->tried += search->params->rotate
                              ? try_both(ps, &patch, c)
                              : try_match(ps, &patch, c->match, c->centre, c->uniformity);
@@ -391,7 +394,7 @@ void fl_tile_search_run(const FlTileSearch *tile_search, const uint32_t *tiles, 
         if (k < end)
             draw(&pixel[k % 3], tile_search, pixels[k], sweep);
         if (k >= 1 && k <= end && pixel[(k - 1) % 3].windows)
-            sift(&pixel[(k - 1) % 3]);
+            filter_candidates(&pixel[(k - 1) % 3]);
         if (k >= 2)
             changed = settle(&pixel[(k - 2) % 3], changed, counts);
     }

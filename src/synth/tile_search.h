@@ -7,8 +7,8 @@
 /** What is the same for all pixels of a search. */
 typedef struct FlTileSearch {
     const FlSearch *search;
-    FlWindows windows, near;  // near: for matches that have settled
-    uint32_t coherence[5][5]; // [neighbours][of which continue elsewhere]
+    FlSearchWindows windows, near; // near: for matches that have settled
+    uint32_t coherence[5][5];      // [neighbours][of which continue elsewhere]
 } FlTileSearch;
 
 void fl_tile_search_init(FlTileSearch *tile_search, const FlSearch *search);

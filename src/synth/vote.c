@@ -49,7 +49,7 @@ static void add_row(Strip *strip, const FlNnf *nnf, int y, size_t k)
 }
 
 /* n^sharpness for 1 … 25 patches. */
-static void opinion_weights(float sharpness, float weight[FL_PATCH_PIXELS + 1])
+static void cluster_weights(float sharpness, float weight[FL_PATCH_PIXELS + 1])
 {
     for (int n = 0; n <= FL_PATCH_PIXELS; n++) {
         const int whole = (int)sharpness;
@@ -60,29 +60,29 @@ static void opinion_weights(float sharpness, float weight[FL_PATCH_PIXELS + 1])
     }
 }
 
-static FlVoted voted_of(const FlExemplarLevel *level, float sharpness)
+static FlVoteSource voted_of(const FlExemplarLevel *level, float sharpness)
 {
-    FlVoted voted = {.colour = level->colour + (FL_PAD - 1) * (level->pitch + 1),
-                     .pitch = level->pitch,
-                     .frame_pixels = level->frame_pixels,
-                     .most = {16 * (level->width - 1), 16 * (level->height - 1)}};
-    opinion_weights(sharpness, voted.weight);
+    FlVoteSource voted = {.colour = level->colour + (FL_PAD - 1) * (level->pitch + 1),
+                          .pitch = level->pitch,
+                          .frame_pixels = level->frame_pixels,
+                          .most = {16 * (level->width - 1), 16 * (level->height - 1)}};
+    cluster_weights(sharpness, voted.weight);
     return voted;
 }
 
 /* The patches over column x of row k of a strip. */
-static FlCovering covering_at(const Strip *strip, size_t x, size_t k)
+static FlVoteMatches covering_at(const Strip *strip, size_t x, size_t k)
 {
     const size_t at = FL_PATCH * x + k;
-    return (FlCovering){strip->x + at, strip->y + at, strip->frame + at, strip->turn + at};
+    return (FlVoteMatches){strip->x + at, strip->y + at, strip->frame + at, strip->turn + at};
 }
 
 /* Row k of a strip. */
-static void vote_row(const Strip *strip, size_t k, const FlVoted *voted, FlVote vote, int channels,
-                     float *colour, uint8_t *any)
+static void vote_row(const Strip *strip, size_t k, const FlVoteSource *voted, FlVote vote,
+                     int channels, float *colour, uint8_t *any)
 {
     for (size_t x = 0; x + 2 * FL_PATCH_RADIUS < strip->columns; x++, colour += channels) {
-        const FlCovering covering = covering_at(strip, x, k);
+        const FlVoteMatches covering = covering_at(strip, x, k);
         float value[4];
         const bool covered = vote(&covering, voted, value);
         if (covered)
@@ -95,7 +95,7 @@ static void vote_row(const Strip *strip, size_t k, const FlVoted *voted, FlVote 
 /* What rows are voted with. */
 typedef struct Votes {
     const FlNnf *nnf;
-    FlVoted source;
+    FlVoteSource source;
     const FlKernels *kernels;
     int channels;
 } Votes;
@@ -158,7 +158,7 @@ static void vote_doubled(const Strip *strip, size_t k, const Votes *votes,
                          const FlDoubledRows *rows, int row)
 {
     for (int x = 0; 2 * x < rows->width; x++) {
-        const FlCovering covering = covering_at(strip, (size_t)x, k);
+        const FlVoteMatches covering = covering_at(strip, (size_t)x, k);
         float value[4][4];
         if (!votes->kernels->vote_doubled(&covering, &votes->source, value))
             continue;

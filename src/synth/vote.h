@@ -8,8 +8,8 @@
  * Votes for every pixel that a patch covers: the mask and a rim of 2 px around it.
  *
  * The patches over a pixel point to places in the exemplar. Those that agree on a place (the
- * same frame, within 3/4 px) are one opinion: their places are averaged, not their colours, so
- * a coherent field loses only one interpolation. Opinions are blended with weights
+ * same frame, within 3/4 px) are one cluster: their places are averaged, not their colours, so
+ * a coherent field loses only one interpolation. Clusters are blended with weights
  * n^sharpness, n the number of patches behind each; sharpness 1 is the papers' mean.
  *
  * colour: `channels` floats per pixel, 3 or with alpha 4, 0 … 1, untouched where nothing votes;
@@ -32,8 +32,9 @@ typedef struct FlDoubledRows {
     int width, n;  // of the picture; how many rows, at most 2 * FL_VOTE_ROWS
 } FlDoubledRows;
 
-/** fl_vote_rows() as if each match, from row y on, were four in `level`, which has the colours of
- * twice the size: those of a coherent field agree, so that each is heard once. */
+/** As fl_vote_rows(), at twice the size: each match of the field, from row y on, votes as four
+ * matches of `level`, whose colours have twice the resolution. In a coherent field the four agree
+ * and are sampled once. */
 void fl_vote_rows_doubled(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
                           float sharpness, int y, const FlDoubledRows *rows);
 

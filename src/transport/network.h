@@ -1,7 +1,7 @@
 /*
  * The feed-forward network of a style: from the shape of a region and noise on its material, the
- * potential that moves its ink [thesis on fast transport-based stylisation]. Everything is in
- * integers, so that every processor gives the same bytes.
+ * potential that moves its ink [Berlanga20 §3.2]. Everything is in integers, so that every
+ * processor gives the same bytes.
  */
 #ifndef FLUIDY_TRANSPORT_NETWORK_H
 #define FLUIDY_TRANSPORT_NETWORK_H

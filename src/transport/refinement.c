@@ -106,7 +106,7 @@ static void read_frame(const Frame *frame, const float *velocity)
 /* ---- carrying ----------------------------------------------------------------------------------
  */
 
-/* Cubic interpolation [Keys 1981], exact at pixels. */
+/* Cubic interpolation [Keys81], exact at pixels. */
 static void cubic_weights(float f, float w[4])
 {
     w[0] = ((-0.5f * f + 1) * f - 0.5f) * f, w[1] = (1.5f * f - 2.5f) * f * f + 1;

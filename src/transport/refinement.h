@@ -1,7 +1,7 @@
 /*
  * What is added to the way of a region's ink so that it looks more like the style where the region
- * lies: a potential that rides on the drawing and is brought up to date in every frame [thesis on
- * fast transport-based stylisation; KAGS19].
+ * lies: a potential that rides on the drawing and is brought up to date in every frame
+ * [Berlanga20, KAGS19].
  */
 #ifndef FLUIDY_TRANSPORT_REFINEMENT_H
 #define FLUIDY_TRANSPORT_REFINEMENT_H

@@ -175,7 +175,7 @@ static size_t fill_ring(const FlRevealed *revealed, const FlGuides *guides, size
         float mean[2];
         const size_t p = list[k];
         if (mean_around(revealed, guides, waits, shift, p, mean)) {
-            memcpy(shift + 2 * p, mean, sizeof mean); // nobody reads it while it waits
+            memcpy(shift + 2 * p, mean, sizeof mean); // not read while it waits
             list[n + filled++] = p;
         } else
             list[left++] = p;

@@ -49,7 +49,7 @@ static const Stage stir_stages[] = {
 
 static const Stage refine_stage = {0, LEVELS(0, 3), LEVELS(0, 3), 0.03f, true};
 
-/* Adam's moments of one grid [Kingma, Ba 2015]. */
+/* Adam's moments of one grid [Kingma15]. */
 typedef struct Moments {
     float *first, *second;
 } Moments;
@@ -244,7 +244,7 @@ static bool interrupted(GError **error)
 
 /* What a run tells, and how far it is. */
 typedef struct Report {
-    FlTransportProgress progress; // NULL: nobody wants to know
+    FlTransportProgress progress; // NULL: not called
     void *data;
     int done, total;
 } Report;

@@ -54,7 +54,7 @@ static bool tell(void *data)
     int step, steps;
     if (!training->progress || !training->child)
         return false;
-    g_autofree char *words = fl_child_words(training->child);
+    g_autofree char *words = fl_child_stderr_tail(training->child);
     const char *line = g_strrstr(words, "step ");
     if (!line || sscanf(line, "step %d of %d", &step, &steps) != 2 || step == training->told)
         return false;

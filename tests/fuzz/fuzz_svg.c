@@ -18,12 +18,12 @@ static void look_at(FlSvg *svg)
         const FlLeaf *leaf = &g_array_index(leaves->leaf, FlLeaf, l);
         FlPainted parts[FL_MOST_PARTS];
         g_autoptr(GError) error = NULL;
-        const int n = fl_svg_paint(svg, leaf, parts, &error);
+        const int n = fl_svg_leaf_paints(svg, leaf, parts, &error);
         g_assert_cmpint(n, <=, FL_MOST_PARTS);
         if (n > 0)
             fl_svg_draw(svg, leaf, parts[0].part, cr, SIDE, SIDE, NULL);
         for (int k = 0; k < n; k++)
-            fl_paint_clear(&parts[k].paint);
+            fl_svg_paint_clear(&parts[k].paint);
     }
     cairo_destroy(cr);
     cairo_surface_destroy(surface);

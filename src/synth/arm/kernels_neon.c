@@ -4,7 +4,7 @@
 #include <arm_neon.h>
 
 uint32_t fl_patch_distance_neon(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                const FlCompressed *target, const FlCompressed *rest,
+                                const FlTargetTexel *target, const FlTargetTexel *rest,
                                 uint32_t limit)
 {
     static const uint8_t orders[2][8] = {{0, 1, 2, 3, 4, 5, 6, 7}, {0, 1, 2, 3, 5, 4, 6, 7}};

@@ -34,7 +34,7 @@ static inline __m256i weights_of(__m256i target, __m256i rest)
 }
 
 /* The weights of the other channels, where those of the colours are 0. */
-static inline __m256i load_rest(const FlCompressed *rest)
+static inline __m256i load_rest(const FlTargetTexel *rest)
 {
     const __m128i others = _mm_setr_epi16(0, 0, 0, -1, -1, -1, 0, 0);
     return _mm256_broadcastsi128_si256(
@@ -48,19 +48,19 @@ static inline __m256i two_terms(__m128i texels, __m256i target, __m256i weight)
     return _mm256_madd_epi16(d, _mm256_mulhrs_epi16(d, weight));
 }
 
-static inline __m256i load_target(const FlCompressed *target)
+static inline __m256i load_target(const FlTargetTexel *target)
 {
     return _mm256_load_si256((const __m256i *)target);
 }
 
 /* The last pixel of 25, beside nothing. */
-static inline __m256i load_last(const FlCompressed *target)
+static inline __m256i load_last(const FlTargetTexel *target)
 {
     return _mm256_zextsi128_si256(_mm_load_si128((const __m128i *)(target + 24)));
 }
 
 /* Texels beyond the 25th count for nothing. */
-static inline __m256i last_term(__m128i texel, const FlCompressed *target, __m256i rest)
+static inline __m256i last_term(__m128i texel, const FlTargetTexel *target, __m256i rest)
 {
     const __m256i t = load_last(target);
     const __m256i terms = two_terms(texel, t, weights_of(t, rest));
@@ -76,7 +76,7 @@ static inline uint32_t sum_of(__m256i v)
 }
 
 uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                const FlCompressed *target, const FlCompressed *rest,
+                                const FlTargetTexel *target, const FlTargetTexel *rest,
                                 uint32_t limit)
 {
     const __m128i order = order_of(opposed);
@@ -93,8 +93,8 @@ uint32_t fl_patch_distance_avx2(const FlTexel *centre, const int16_t *offsets, b
     return sum_of(_mm256_add_epi32(sum, last_term(_mm_shuffle_epi8(texel, order), target, others)));
 }
 
-void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
-                        const FlCompressed *rest, uint32_t limit, uint32_t distance[2])
+void fl_patch_pair_avx2(const FlTexel *centre, const int16_t *offsets, const FlTargetTexel *target,
+                        const FlTargetTexel *rest, uint32_t limit, uint32_t distance[2])
 {
     const __m128i turned = order_of(2);
     const __m256i others = load_rest(rest);
@@ -127,11 +127,11 @@ static inline __m256i hash(__m256i v)
     return _mm256_xor_si256(v, _mm256_srli_epi32(v, 16));
 }
 
-/* Sixteen tries along one axis, from the k-th on. */
-static inline __m256i draw_along(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
-                                 int axis, int k)
+/* Sixteen candidates along one axis, from the k-th on. */
+static inline __m256i draw_along(const FlSearchWindows *windows, const uint16_t centre[3],
+                                 uint32_t key, int axis, int k)
 {
-    const uint32_t place = (uint32_t)(axis * FL_MAX_TRIES + k) / 2;
+    const uint32_t place = (uint32_t)(axis * FL_MAX_CANDIDATES + k) / 2;
     const __m256i lane = _mm256_mullo_epi32(_mm256_set1_epi32((int)FL_HASH32_STEP),
                                             _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
     const __m256i bits =
@@ -151,91 +151,95 @@ static inline __m256i steps(__m128i at, uint32_t step)
     return _mm256_mullo_epi32(_mm256_cvtepu16_epi32(at), _mm256_set1_epi32((int)step));
 }
 
-void fl_draw_tries_avx2(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
-                        FlTries *tries)
+void fl_draw_candidates_avx2(const FlSearchWindows *windows, const uint16_t centre[3], uint32_t key,
+                             FlCandidates *candidates)
 {
     for (int k = 0; k < windows->n; k += 16) {
         __m256i low = _mm256_setzero_si256(), high = low;
         for (int axis = 0; axis < 3; axis++) {
             const __m256i at = draw_along(windows, centre, key, axis, k);
-            _mm256_store_si256((__m256i *)(tries->at[axis] + k), at);
+            _mm256_store_si256((__m256i *)(candidates->at[axis] + k), at);
             low = _mm256_add_epi32(low, steps(_mm256_castsi256_si128(at), windows->step[axis]));
             high =
                 _mm256_add_epi32(high, steps(_mm256_extracti128_si256(at, 1), windows->step[axis]));
         }
-        _mm256_store_si256((__m256i *)(tries->pixel + k), low);
-        _mm256_store_si256((__m256i *)(tries->pixel + k + 8), high);
+        _mm256_store_si256((__m256i *)(candidates->pixel + k), low);
+        _mm256_store_si256((__m256i *)(candidates->pixel + k + 8), high);
     }
 }
 
-/* The cells of sixteen tries along an axis; takes their part of the pixel's own use into `own`. */
-static inline __m256i cells_along(const FlTries *tries, const FlSieve *sieve, int axis, int k,
-                                  __m256i *own)
+/* The cells of sixteen candidates along an axis; takes their part of the pixel's own use into
+ * `own`. */
+static inline __m256i cells_along(const FlCandidates *candidates, const FlCandidateFilter *filter,
+                                  int axis, int k, __m256i *own)
 {
-    const __m256i at = _mm256_load_si256((const __m256i *)(tries->at[axis] + k));
+    const __m256i at = _mm256_load_si256((const __m256i *)(candidates->at[axis] + k));
     const __m256i odd = _mm256_add_epi16(_mm256_add_epi16(at, at), _mm256_set1_epi16(1));
-    const __m256i cell = _mm256_mulhi_epu16(odd, _mm256_set1_epi16((int16_t)sieve->factor[axis]));
+    const __m256i cell = _mm256_mulhi_epu16(odd, _mm256_set1_epi16((int16_t)filter->factor[axis]));
     const __m256i apart =
-        _mm256_abs_epi16(_mm256_sub_epi16(cell, _mm256_set1_epi16((int16_t)sieve->own[axis])));
+        _mm256_abs_epi16(_mm256_sub_epi16(cell, _mm256_set1_epi16((int16_t)filter->own[axis])));
     *own = _mm256_mullo_epi16(*own, _mm256_subs_epu16(_mm256_set1_epi16(2), apart));
     return cell;
 }
 
 /* The uniformity term of eight cells. */
-static inline __m256i uniformity_at(const FlSieve *sieve, __m256i index, __m128i own)
+static inline __m256i uniformity_at(const FlCandidateFilter *filter, __m256i index, __m128i own)
 {
     const __m256i use =
-        _mm256_sub_epi32(_mm256_i32gather_epi32(sieve->use, index, 4), _mm256_cvtepu16_epi32(own));
+        _mm256_sub_epi32(_mm256_i32gather_epi32(filter->use, index, 4), _mm256_cvtepu16_epi32(own));
     const __m256 counted = _mm256_cvtepi32_ps(_mm256_max_epi32(use, _mm256_setzero_si256()));
-    return _mm256_cvttps_epi32(_mm256_min_ps(_mm256_mul_ps(counted, _mm256_set1_ps(sieve->price)),
-                                             _mm256_set1_ps(sieve->most)));
+    return _mm256_cvttps_epi32(_mm256_min_ps(_mm256_mul_ps(counted, _mm256_set1_ps(filter->price)),
+                                             _mm256_set1_ps(filter->most)));
 }
 
 /* Which of eight texels are of the segment, in lanes of all ones. */
-static inline __m256i of_segment(const FlSieve *sieve, const uint32_t *pixel)
+static inline __m256i of_segment(const FlCandidateFilter *filter, const uint32_t *pixel)
 {
     const __m256i last_bytes =
-        _mm256_i32gather_epi32((const int *)(const void *)&sieve->first->c[4],
+        _mm256_i32gather_epi32((const int *)(const void *)&filter->first->c[4],
                                _mm256_load_si256((const __m256i *)pixel), sizeof(FlTexel));
-    return _mm256_cmpeq_epi32(_mm256_srli_epi32(last_bytes, 24), _mm256_set1_epi32(sieve->segment));
+    return _mm256_cmpeq_epi32(_mm256_srli_epi32(last_bytes, 24),
+                              _mm256_set1_epi32(filter->segment));
 }
 
 /* Eight of the sixteen lanes that are in one of the frames, widened. */
-static inline __m256i in_frames(const FlSieve *sieve, const uint16_t *at)
+static inline __m256i in_frames(const FlCandidateFilter *filter, const uint16_t *at)
 {
     const __m128i frame = _mm_load_si128((const __m128i *)at);
-    __m128i in = _mm_cmpeq_epi16(frame, _mm_set1_epi16(sieve->frames[0]));
+    __m128i in = _mm_cmpeq_epi16(frame, _mm_set1_epi16(filter->frames[0]));
     for (int f = 1; f < 4; f++)
-        in = _mm_or_si128(in, _mm_cmpeq_epi16(frame, _mm_set1_epi16(sieve->frames[f])));
+        in = _mm_or_si128(in, _mm_cmpeq_epi16(frame, _mm_set1_epi16(filter->frames[f])));
     return _mm256_cvtepi16_epi32(in);
 }
 
-/* A bit for each of eight tries that pass. Terms are at most 2^29: signed comparison does. */
-static inline uint64_t passing(const FlTries *tries, const FlSieve *sieve, int k, __m256i term)
+/* A bit for each of eight candidates that pass. Terms are at most 2^29: signed comparison does. */
+static inline uint64_t passing(const FlCandidates *candidates, const FlCandidateFilter *filter,
+                               int k, __m256i term)
 {
-    const __m256i limit = _mm256_set1_epi32((int)MIN(sieve->limit, INT32_MAX));
+    const __m256i limit = _mm256_set1_epi32((int)MIN(filter->limit, INT32_MAX));
     const __m256i good =
-        _mm256_or_si256(_mm256_cmpgt_epi32(limit, term), in_frames(sieve, tries->at[2] + k));
-    const __m256i passed = _mm256_and_si256(good, of_segment(sieve, tries->pixel + k));
+        _mm256_or_si256(_mm256_cmpgt_epi32(limit, term), in_frames(filter, candidates->at[2] + k));
+    const __m256i passed = _mm256_and_si256(good, of_segment(filter, candidates->pixel + k));
     return (uint64_t)(uint32_t)_mm256_movemask_ps(_mm256_castsi256_ps(passed)) << k;
 }
 
-uint64_t fl_sift_avx2(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity)
+uint64_t fl_filter_candidates_avx2(const FlCandidates *candidates, int n,
+                                   const FlCandidateFilter *filter, uint32_t *uniformity)
 {
     uint64_t passed = 0;
     for (int k = 0; k < n; k += 16) {
         __m256i low = _mm256_setzero_si256(), high = low, own = _mm256_set1_epi16(1);
         for (int axis = 0; axis < 3; axis++) {
-            const __m256i cell = cells_along(tries, sieve, axis, k, &own);
-            low = _mm256_add_epi32(low, steps(_mm256_castsi256_si128(cell), sieve->step[axis]));
-            high =
-                _mm256_add_epi32(high, steps(_mm256_extracti128_si256(cell, 1), sieve->step[axis]));
+            const __m256i cell = cells_along(candidates, filter, axis, k, &own);
+            low = _mm256_add_epi32(low, steps(_mm256_castsi256_si128(cell), filter->step[axis]));
+            high = _mm256_add_epi32(high,
+                                    steps(_mm256_extracti128_si256(cell, 1), filter->step[axis]));
         }
-        low = uniformity_at(sieve, low, _mm256_castsi256_si128(own));
-        high = uniformity_at(sieve, high, _mm256_extracti128_si256(own, 1));
+        low = uniformity_at(filter, low, _mm256_castsi256_si128(own));
+        high = uniformity_at(filter, high, _mm256_extracti128_si256(own, 1));
         _mm256_storeu_si256((__m256i *)(uniformity + k), low);
         _mm256_storeu_si256((__m256i *)(uniformity + k + 8), high);
-        passed |= passing(tries, sieve, k, low) | passing(tries, sieve, k + 8, high);
+        passed |= passing(candidates, filter, k, low) | passing(candidates, filter, k + 8, high);
     }
     return n < 64 ? passed & ((1ull << n) - 1) : passed;
 }
@@ -300,7 +304,7 @@ static inline __m256i take(Half *h, __m256i x, __m256i y, __m256i frame, __m256i
     return same;
 }
 
-static int find_opinions(const FlVotes *votes, FlOpinion *opinions)
+static int cluster_votes(const FlVotes *votes, FlVoteCluster *clusters)
 {
     Half low = load_half(votes, 0), high = load_half(votes, 16);
     const __m256i first_nine = // of 25 votes
@@ -317,9 +321,9 @@ static int find_opinions(const FlVotes *votes, FlOpinion *opinions)
         const __m256i a = take(&low, x, y, frame, &sums), b = take(&high, x, y, frame, &sums);
         __m128i s = _mm_add_epi32(_mm256_castsi256_si128(sums), _mm256_extracti128_si256(sums, 1));
         s = _mm_hadd_epi32(s, s);
-        opinions[n++] =
-            (FlOpinion){votes->x[leader],     votes->y[leader],        votes->frame[leader],
-                        _mm_cvtsi128_si32(s), _mm_extract_epi32(s, 1), bits_of(a, b)};
+        clusters[n++] =
+            (FlVoteCluster){votes->x[leader],     votes->y[leader],        votes->frame[leader],
+                            _mm_cvtsi128_si32(s), _mm_extract_epi32(s, 1), bits_of(a, b)};
     }
     return n;
 }
@@ -343,7 +347,7 @@ static inline void add_offsets(const uint16_t *from, __m256i offsets, uint16_t *
     _mm256_store_si256((__m256i *)to, _mm256_add_epi16(places, offsets));
 }
 
-static void find_places(const FlCovering *covering, FlVotes *votes)
+static void find_places(const FlVoteMatches *covering, FlVotes *votes)
 {
     for (int k = 0; k < FL_VOTES; k += 16) {
         const int16_t(*turn)[2] = covering->turn + k;
@@ -354,18 +358,19 @@ static void find_places(const FlCovering *covering, FlVotes *votes)
     }
 }
 
-bool fl_vote_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4])
+bool fl_vote_avx2(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4])
 {
     FlVotes votes;
     find_places(covering, &votes);
-    return fl_vote_of(&votes, find_opinions, fl_spline_sample_avx2, voted, colour);
+    return fl_vote_of(&votes, cluster_votes, fl_spline_sample_avx2, voted, colour);
 }
 
-bool fl_vote_doubled_avx2(const FlCovering *covering, const FlVoted *voted, float colour[4][4])
+bool fl_vote_doubled_avx2(const FlVoteMatches *covering, const FlVoteSource *voted,
+                          float colour[4][4])
 {
     FlVotes votes;
     find_places(covering, &votes);
-    return fl_vote_doubled_of(&votes, covering->turn, find_opinions, fl_spline_sample_avx2, voted,
+    return fl_vote_doubled_of(&votes, covering->turn, cluster_votes, fl_spline_sample_avx2, voted,
                               colour);
 }
 

@@ -1,4 +1,4 @@
-/* Four pixels of a patch at a time, 32 tries or votes. */
+/* Four pixels of a patch at a time, 32 candidates or votes. */
 #include "base/rng.h"
 #include "synth/kernels.h"
 
@@ -26,7 +26,7 @@ static inline __m512i weights_of(__m512i target, __m512i rest)
 }
 
 /* The weights of the other channels of four pixels. */
-static inline __m512i load_rest(const FlCompressed *rest)
+static inline __m512i load_rest(const FlTargetTexel *rest)
 {
     const __m128i others = _mm_setr_epi16(0, 0, 0, -1, -1, -1, 0, 0);
     return _mm512_broadcast_i32x4(_mm_and_si128(others, _mm_loadu_si128((const __m128i *)rest)));
@@ -40,7 +40,7 @@ static inline __m512i four_terms(__m256i texels, __m512i target, __m512i weight)
 }
 
 /* The last pixel of 25; the texel stands alone. */
-static inline __m512i last_term(__m128i texel, const FlCompressed *target, __m512i rest)
+static inline __m512i last_term(__m128i texel, const FlTargetTexel *target, __m512i rest)
 {
     const __m512i t = _mm512_zextsi128_si512(_mm_load_si128((const __m128i *)(target + 24)));
     const __m512i terms = four_terms(_mm256_zextsi128_si256(texel), t, weights_of(t, rest));
@@ -65,7 +65,7 @@ static inline __m128i opposed_order(void)
 }
 
 uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets, bool opposed,
-                                  const FlCompressed *target, const FlCompressed *rest,
+                                  const FlTargetTexel *target, const FlTargetTexel *rest,
                                   uint32_t limit)
 {
     const __m128i straight = _mm_setr_epi8(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
@@ -84,8 +84,9 @@ uint32_t fl_patch_distance_avx512(const FlTexel *centre, const int16_t *offsets,
     return sum_of(_mm512_add_epi32(sum, last_term(_mm_shuffle_epi8(texel, one), target, others)));
 }
 
-void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets, const FlCompressed *target,
-                          const FlCompressed *rest, uint32_t limit, uint32_t distance[2])
+void fl_patch_pair_avx512(const FlTexel *centre, const int16_t *offsets,
+                          const FlTargetTexel *target, const FlTargetTexel *rest, uint32_t limit,
+                          uint32_t distance[2])
 {
     const __m256i turned = _mm256_broadcastsi128_si256( // two pixels change places, extents too
         _mm_setr_epi8(8, 9, 10, 11, 13, 12, 14, 15, 0, 1, 2, 3, 5, 4, 6, 7));
@@ -119,11 +120,11 @@ static inline __m512i hash(__m512i v)
     return _mm512_xor_si512(v, _mm512_srli_epi32(v, 16));
 }
 
-/* 32 tries along one axis, from the k-th on. */
-static inline __m512i draw_along(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
-                                 int axis, int k)
+/* 32 candidates along one axis, from the k-th on. */
+static inline __m512i draw_along(const FlSearchWindows *windows, const uint16_t centre[3],
+                                 uint32_t key, int axis, int k)
 {
-    const uint32_t place = (uint32_t)(axis * FL_MAX_TRIES + k) / 2;
+    const uint32_t place = (uint32_t)(axis * FL_MAX_CANDIDATES + k) / 2;
     const __m512i lane =
         _mm512_mullo_epi32(_mm512_set1_epi32((int)FL_HASH32_STEP),
                            _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
@@ -144,78 +145,79 @@ static inline __m512i steps(__m256i at, uint32_t step)
     return _mm512_mullo_epi32(_mm512_cvtepu16_epi32(at), _mm512_set1_epi32((int)step));
 }
 
-void fl_draw_tries_avx512(const FlWindows *windows, const uint16_t centre[3], uint32_t key,
-                          FlTries *tries)
+void fl_draw_candidates_avx512(const FlSearchWindows *windows, const uint16_t centre[3],
+                               uint32_t key, FlCandidates *candidates)
 {
     for (int k = 0; k < windows->n; k += 32) {
         __m512i low = _mm512_setzero_si512(), high = low;
         for (int axis = 0; axis < 3; axis++) {
             const __m512i at = draw_along(windows, centre, key, axis, k);
-            _mm512_store_si512(tries->at[axis] + k, at);
+            _mm512_store_si512(candidates->at[axis] + k, at);
             low = _mm512_add_epi32(low, steps(_mm512_castsi512_si256(at), windows->step[axis]));
             high = _mm512_add_epi32(high,
                                     steps(_mm512_extracti64x4_epi64(at, 1), windows->step[axis]));
         }
-        _mm512_store_si512(tries->pixel + k, low);
-        _mm512_store_si512(tries->pixel + k + 16, high);
+        _mm512_store_si512(candidates->pixel + k, low);
+        _mm512_store_si512(candidates->pixel + k + 16, high);
     }
 }
 
-/* The cells of 32 tries along an axis; takes their part of the pixel's own use into `own`. */
-static inline __m512i cells_along(const FlTries *tries, const FlSieve *sieve, int axis, int k,
-                                  __m512i *own)
+/* The cells of 32 candidates along an axis; takes their part of the pixel's own use into `own`. */
+static inline __m512i cells_along(const FlCandidates *candidates, const FlCandidateFilter *filter,
+                                  int axis, int k, __m512i *own)
 {
-    const __m512i at = _mm512_load_si512(tries->at[axis] + k), two = _mm512_set1_epi16(2);
+    const __m512i at = _mm512_load_si512(candidates->at[axis] + k), two = _mm512_set1_epi16(2);
     const __m512i odd = _mm512_add_epi16(_mm512_add_epi16(at, at), _mm512_set1_epi16(1));
-    const __m512i cell = _mm512_mulhi_epu16(odd, _mm512_set1_epi16((int16_t)sieve->factor[axis]));
+    const __m512i cell = _mm512_mulhi_epu16(odd, _mm512_set1_epi16((int16_t)filter->factor[axis]));
     const __m512i apart =
-        _mm512_abs_epi16(_mm512_sub_epi16(cell, _mm512_set1_epi16((int16_t)sieve->own[axis])));
+        _mm512_abs_epi16(_mm512_sub_epi16(cell, _mm512_set1_epi16((int16_t)filter->own[axis])));
     *own = _mm512_mullo_epi16(*own, _mm512_subs_epu16(two, apart));
     return cell;
 }
 
 /* The uniformity term of sixteen cells. */
-static inline __m512i uniformity_at(const FlSieve *sieve, __m512i index, __m256i own)
+static inline __m512i uniformity_at(const FlCandidateFilter *filter, __m512i index, __m256i own)
 {
     const __m512i use =
-        _mm512_sub_epi32(_mm512_i32gather_epi32(index, sieve->use, 4), _mm512_cvtepu16_epi32(own));
+        _mm512_sub_epi32(_mm512_i32gather_epi32(index, filter->use, 4), _mm512_cvtepu16_epi32(own));
     const __m512 counted = _mm512_cvtepi32_ps(_mm512_max_epi32(use, _mm512_setzero_si512()));
-    return _mm512_cvttps_epi32(_mm512_min_ps(_mm512_mul_ps(counted, _mm512_set1_ps(sieve->price)),
-                                             _mm512_set1_ps(sieve->most)));
+    return _mm512_cvttps_epi32(_mm512_min_ps(_mm512_mul_ps(counted, _mm512_set1_ps(filter->price)),
+                                             _mm512_set1_ps(filter->most)));
 }
 
 /* Which of sixteen texels are of the segment. */
-static inline __mmask16 of_segment(const FlSieve *sieve, const uint32_t *pixel)
+static inline __mmask16 of_segment(const FlCandidateFilter *filter, const uint32_t *pixel)
 {
     const __m512i last_bytes = _mm512_i32gather_epi32(
-        _mm512_load_si512(pixel), (const int *)(const void *)&sieve->first->c[4], sizeof(FlTexel));
+        _mm512_load_si512(pixel), (const int *)(const void *)&filter->first->c[4], sizeof(FlTexel));
     return _mm512_cmpeq_epi32_mask(_mm512_srli_epi32(last_bytes, 24),
-                                   _mm512_set1_epi32(sieve->segment));
+                                   _mm512_set1_epi32(filter->segment));
 }
 
-uint64_t fl_sift_avx512(const FlTries *tries, int n, const FlSieve *sieve, uint32_t *uniformity)
+uint64_t fl_filter_candidates_avx512(const FlCandidates *candidates, int n,
+                                     const FlCandidateFilter *filter, uint32_t *uniformity)
 {
     uint64_t passed = 0;
     for (int k = 0; k < n; k += 32) {
         __m512i low = _mm512_setzero_si512(), high = low, own = _mm512_set1_epi16(1);
         for (int axis = 0; axis < 3; axis++) {
-            const __m512i cell = cells_along(tries, sieve, axis, k, &own);
-            low = _mm512_add_epi32(low, steps(_mm512_castsi512_si256(cell), sieve->step[axis]));
+            const __m512i cell = cells_along(candidates, filter, axis, k, &own);
+            low = _mm512_add_epi32(low, steps(_mm512_castsi512_si256(cell), filter->step[axis]));
             high = _mm512_add_epi32(high,
-                                    steps(_mm512_extracti64x4_epi64(cell, 1), sieve->step[axis]));
+                                    steps(_mm512_extracti64x4_epi64(cell, 1), filter->step[axis]));
         }
-        low = uniformity_at(sieve, low, _mm512_castsi512_si256(own));
-        high = uniformity_at(sieve, high, _mm512_extracti64x4_epi64(own, 1));
+        low = uniformity_at(filter, low, _mm512_castsi512_si256(own));
+        high = uniformity_at(filter, high, _mm512_extracti64x4_epi64(own, 1));
         _mm512_storeu_si512(uniformity + k, low);
         _mm512_storeu_si512(uniformity + k + 16, high);
-        const __m512i limit = _mm512_set1_epi32((int)sieve->limit);
+        const __m512i limit = _mm512_set1_epi32((int)filter->limit);
         __mmask32 good = _mm512_kunpackw(_mm512_cmplt_epu32_mask(high, limit),
                                          _mm512_cmplt_epu32_mask(low, limit));
-        const __m512i frame = _mm512_load_si512(tries->at[2] + k);
+        const __m512i frame = _mm512_load_si512(candidates->at[2] + k);
         for (int f = 0; f < 4; f++)
-            good |= _mm512_cmpeq_epi16_mask(frame, _mm512_set1_epi16(sieve->frames[f]));
-        good &= _mm512_kunpackw(of_segment(sieve, tries->pixel + k + 16),
-                                of_segment(sieve, tries->pixel + k));
+            good |= _mm512_cmpeq_epi16_mask(frame, _mm512_set1_epi16(filter->frames[f]));
+        good &= _mm512_kunpackw(of_segment(filter, candidates->pixel + k + 16),
+                                of_segment(filter, candidates->pixel + k));
         passed |= (uint64_t)good << k;
     }
     return n < 64 ? passed & ((1ull << n) - 1) : passed;
@@ -320,7 +322,7 @@ typedef struct Places {
     __m512i x, y, frame;
 } Places;
 
-static inline Places places_of(const FlCovering *covering)
+static inline Places places_of(const FlVoteMatches *covering)
 {
     return (Places){
         _mm512_add_epi16(rows_of(_mm512_loadu_si512(covering->x)),
@@ -342,7 +344,7 @@ static inline __mmask32 agreeing(const Places *at, __mmask32 left, Places *first
            near_zero(_mm512_sub_epi16(at->y, first->y));
 }
 
-/* The place of an opinion of n votes, x and y in 64-bit lanes. */
+/* The place of a cluster of n votes, x and y in 64-bit lanes. */
 static inline __m128i place_of(const Places *at, __mmask32 votes, int n, const Places *first)
 {
     const __m128i sums =
@@ -353,9 +355,9 @@ static inline __m128i place_of(const Places *at, __mmask32 votes, int n, const P
     return mean_place(lead, sums, n);
 }
 
-/* What an opinion says, by the frame of its first vote and its place, which may lie beyond the
+/* What a cluster says, by the frame of its first vote and its place, which may lie beyond the
  * borders. */
-static inline __m128 opinion_of(const Places *first, __m128i place, const FlVoted *voted)
+static inline __m128 cluster_colour(const Places *first, __m128i place, const FlVoteSource *voted)
 {
     const __m128i end = _mm_cvtepi32_epi64(_mm_loadl_epi64((const __m128i *)voted->most));
     place = _mm_min_epi32(_mm_max_epi32(place, _mm_setzero_si128()), end);
@@ -378,7 +380,7 @@ static inline void store_colour(__m128 sum, float total, float colour[4])
     _mm_storeu_ps(colour, _mm_min_ps(_mm_max_ps(sum, _mm_setzero_ps()), _mm_set1_ps(1)));
 }
 
-bool fl_vote_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4])
+bool fl_vote_avx512(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4])
 {
     const __m512i frames = rows_of(_mm512_loadu_si512(covering->frame));
     __mmask32 left = ((1u << FL_PATCH_PIXELS) - 1) & ~_mm512_movepi16_mask(frames);
@@ -392,7 +394,7 @@ bool fl_vote_avx512(const FlCovering *covering, const FlVoted *voted, float colo
         const __mmask32 votes = agreeing(&at, left, &first);
         const int n = __builtin_popcount(votes);
         const __m128i place = place_of(&at, votes, n, &first);
-        sum = add_weighted(sum, voted->weight[n], opinion_of(&first, place, voted));
+        sum = add_weighted(sum, voted->weight[n], cluster_colour(&first, place, voted));
         total += voted->weight[n];
         left &= ~votes;
     }
@@ -407,7 +409,8 @@ static inline __m512i doubled(__m512i places)
 }
 
 /* Votes are row by row: child / 2 is along lines. */
-bool fl_vote_doubled_avx512(const FlCovering *covering, const FlVoted *voted, float colour[4][4])
+bool fl_vote_doubled_avx512(const FlVoteMatches *covering, const FlVoteSource *voted,
+                            float colour[4][4])
 {
     const __m512i frames = rows_of(_mm512_loadu_si512(covering->frame));
     __mmask32 left = FL_VOTES_BESIDE & ~_mm512_movepi16_mask(frames);
@@ -429,7 +432,7 @@ bool fl_vote_doubled_avx512(const FlCovering *covering, const FlVoted *voted, fl
                 fl_votes_doubled(votes, FL_LINES_TWICE(child / 2), FL_PLACES_TWICE(child % 2));
             const __m128i moved = _mm_add_epi32(place, _mm_set_epi64x(move.y, move.x));
             sum[child] =
-                add_weighted(sum[child], voted->weight[n], opinion_of(&first, moved, voted));
+                add_weighted(sum[child], voted->weight[n], cluster_colour(&first, moved, voted));
             total[child] += voted->weight[n];
         }
         left &= ~votes;

@@ -1,4 +1,4 @@
-#include "job/sight.h"
+#include "job/visible_regions.h"
 
 #include "base/alloc.h"
 #include <string.h>
@@ -37,19 +37,19 @@ static void find_full(const uint8_t *coverage, FlRect box, int width, int reach,
 }
 
 /* Marks where a shape hides all that is below it. run, full: scratch of its box's width. */
-static void add_cover(const FlSight *sight, const FlDraw *draw, int *run, uint8_t *full,
+static void add_cover(const FlVisibleRegions *visible, const FlDraw *draw, int *run, uint8_t *full,
                       uint8_t *cover)
 {
     const FlRect box = draw->area.box;
-    const int reach = sight->rim_px;
-    const int end = box.y + box.height == sight->height ? box.height + reach : box.height;
+    const int reach = visible->rim_px;
+    const int end = box.y + box.height == visible->height ? box.height + reach : box.height;
     for (int x = 0; x < box.width; x++)
         run[x] = box.y == 0 ? reach : 0;
     memset(full, 1, (size_t)box.width);
     for (int y = 0; y < end; y++) {
-        uint8_t *row = cover + (box.y + y - reach) * (ptrdiff_t)sight->width + box.x;
+        uint8_t *row = cover + (box.y + y - reach) * (ptrdiff_t)visible->width + box.x;
         if (y < box.height)
-            find_full(draw->coverage + (size_t)y * (size_t)box.width, box, sight->width, reach,
+            find_full(draw->coverage + (size_t)y * (size_t)box.width, box, visible->width, reach,
                       full);
         else
             memset(full, 1, (size_t)box.width);
@@ -61,10 +61,10 @@ static void add_cover(const FlSight *sight, const FlDraw *draw, int *run, uint8_
     }
 }
 
-static bool hides(const FlSight *sight, const FlDraw *draw)
+static bool hides(const FlVisibleRegions *visible, const FlDraw *draw)
 {
-    return draw->alpha == 255 && draw->mix == FL_BLEND_MODE_OVER &&
-           sight->joins[draw->region] == FL_JOIN_CLOSED;
+    return draw->alpha == 255 && draw->blend_mode == FL_BLEND_MODE_OVER &&
+           visible->joins[draw->region] == FL_JOIN_CLOSED;
 }
 
 /* How many draws, from the bottom, there are up to the last one that is not known to be seen. */
@@ -77,22 +77,23 @@ static int draws_in_question(const FlDrawList *draws, const bool *seen)
     return n;
 }
 
-bool fl_sight_note(const FlSight *sight, const FlDrawList *draws, bool *seen, GError **error)
+bool fl_visible_regions_note(const FlVisibleRegions *visible, const FlDrawList *draws, bool *seen,
+                             GError **error)
 {
     if (draws_in_question(draws, seen) == 0)
         return true;
-    const size_t width = (size_t)sight->width;
-    g_autofree uint8_t *cover = fl_alloc(width * (size_t)sight->height, 1, "a mask", error);
+    const size_t width = (size_t)visible->width;
+    g_autofree uint8_t *cover = fl_alloc(width * (size_t)visible->height, 1, "a mask", error);
     g_autofree int *run = cover ? fl_alloc(width, sizeof *run, "a row of a mask", error) : NULL;
     g_autofree uint8_t *full = run ? fl_alloc(width, 1, "a row of a mask", error) : NULL;
     if (!full)
         return false;
     for (int r = draws->n - 1; r >= 0; r--) {
         const FlDraw *draw = &draws->draw[r];
-        if (!is_seen(seen, draw->region) && shows(draw, cover, sight->width))
+        if (!is_seen(seen, draw->region) && shows(draw, cover, visible->width))
             __atomic_store_n(&seen[draw->region], true, __ATOMIC_RELAXED);
-        if (hides(sight, draw))
-            add_cover(sight, draw, run, full, cover);
+        if (hides(visible, draw))
+            add_cover(visible, draw, run, full, cover);
     }
     return true;
 }

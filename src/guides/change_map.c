@@ -1,4 +1,4 @@
-#include "guides/stirring.h"
+#include "guides/change_map.h"
 
 #include "base/alloc.h"
 #include "guides/extent.h"
@@ -6,28 +6,28 @@
 #include "guides/resting_parts.h"
 #include <string.h>
 
-bool fl_stirring_init(FlStirring *stirring, int width, int height, GError **error)
+bool fl_change_map_init(FlChangeMap *changes, int width, int height, GError **error)
 {
-    *stirring = (FlStirring){.columns = fl_rest_squares(width), .rows = fl_rest_squares(height)};
-    stirring->square = fl_alloc(fl_stirring_squares(stirring), 1, "what moves in a mask", error);
-    return stirring->square;
+    *changes = (FlChangeMap){.columns = fl_rest_squares(width), .rows = fl_rest_squares(height)};
+    changes->square = fl_alloc(fl_change_map_squares(changes), 1, "what moves in a mask", error);
+    return changes->square;
 }
 
-void fl_stirring_clear(FlStirring *stirring)
+void fl_change_map_clear(FlChangeMap *changes)
 {
-    g_clear_pointer(&stirring->square, free);
+    g_clear_pointer(&changes->square, free);
 }
 
-void fl_stirring_reset(FlStirring *stirring)
+void fl_change_map_reset(FlChangeMap *changes)
 {
-    memset(stirring->square, 0, fl_stirring_squares(stirring));
-    stirring->any = false;
+    memset(changes->square, 0, fl_change_map_squares(changes));
+    changes->any = false;
 }
 
 /** The square of a pixel of the frame. */
-static uint8_t *square_at(FlStirring *stirring, int x, int y)
+static uint8_t *square_at(FlChangeMap *changes, int x, int y)
 {
-    return stirring->square + y / FL_REST_PX * stirring->columns + x / FL_REST_PX;
+    return changes->square + y / FL_REST_PX * changes->columns + x / FL_REST_PX;
 }
 
 /** The end of the square that holds column x, or of the columns. */
@@ -36,10 +36,10 @@ static int square_end(int x, int end)
     return MIN((x / FL_REST_PX + 1) * FL_REST_PX, end);
 }
 
-static void stir(FlStirring *stirring, int x, int y)
+static void mark(FlChangeMap *changes, int x, int y)
 {
-    *square_at(stirring, x, y) |= FL_REST_STIRS;
-    stirring->any = true;
+    *square_at(changes, x, y) |= FL_SQUARE_CHANGES;
+    changes->any = true;
 }
 
 /** The coverages of a row of the frame, from the box's first column on; NULL beyond the box. */
@@ -57,7 +57,7 @@ static uint8_t coverage_in(const FlOutline *outline, const uint8_t *row, int x)
     return row && x >= 0 && x < outline->box.width ? row[x] : 0;
 }
 
-void fl_stirring_mark_change(FlStirring *stirring, const FlOutline *before, const FlOutline *now)
+void fl_change_map_mark_change(FlChangeMap *changes, const FlOutline *before, const FlOutline *now)
 {
     const FlRect both = fl_rect_or(before->box, now->box);
     const int end = both.x + both.width;
@@ -65,12 +65,12 @@ void fl_stirring_mark_change(FlStirring *stirring, const FlOutline *before, cons
         const uint8_t *old = row_of(before, y), *fresh = row_of(now, y);
         for (int x = both.x; x < end; x++)
             if (coverage_in(before, old, x) != coverage_in(now, fresh, x))
-                stir(stirring, x, y);
+                mark(changes, x, y);
     }
 }
 
-void fl_stirring_mark_flow(FlStirring *stirring, const FlOutline *now, const int32_t *flow,
-                           float still_px)
+void fl_change_map_mark_flow(FlChangeMap *changes, const FlOutline *now, const int32_t *flow,
+                             float still_px)
 {
     const FlRect box = now->box;
     const float scale = 1.0f / FL_FLOW_ONE, still = still_px * still_px;
@@ -79,11 +79,11 @@ void fl_stirring_mark_flow(FlStirring *stirring, const FlOutline *now, const int
         for (int x = box.x; x < box.x + box.width; x++, coverage++, flow += 2) {
             const float u = (float)flow[0] * scale, v = (float)flow[1] * scale;
             if (*coverage >= FL_INSIDE && u * u + v * v > still)
-                stir(stirring, x, y);
+                mark(changes, x, y);
         }
 }
 
-void fl_stirring_mark_motion(FlStirring *stirring, const FlOutline *now, const int32_t *motion)
+void fl_change_map_mark_motion(FlChangeMap *changes, const FlOutline *now, const int32_t *motion)
 {
     const FlRect box = now->box;
     const uint8_t *coverage = now->coverage;
@@ -91,10 +91,10 @@ void fl_stirring_mark_motion(FlStirring *stirring, const FlOutline *now, const i
         for (int x = box.x; x < box.x + box.width; x++, coverage++, motion += 2)
             if (*coverage >= FL_INSIDE && motion[0] != FL_MOTION_UNKNOWN &&
                 (motion[0] | motion[1]) != 0)
-                stir(stirring, x, y);
+                mark(changes, x, y);
 }
 
-void fl_stirring_mark_taken(FlStirring *stirring, const FlOutline *outline)
+void fl_change_map_mark_taken(FlChangeMap *changes, const FlOutline *outline)
 {
     const FlRect box = outline->box;
     for (int y = box.y; y < box.y + box.height; y++) {
@@ -105,7 +105,7 @@ void fl_stirring_mark_taken(FlStirring *stirring, const FlOutline *outline)
             for (int k = x; k < end; k++)
                 any |= row[k - box.x];
             if (any)
-                *square_at(stirring, x, y) |= FL_REST_TAKEN;
+                *square_at(changes, x, y) |= FL_SQUARE_TAKEN;
         }
     }
 }

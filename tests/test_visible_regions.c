@@ -1,5 +1,5 @@
 /* Which regions are seen: what lies below opaque shapes, inside their rims, is not. */
-#include "job/sight.h"
+#include "job/visible_regions.h"
 #include <string.h>
 
 enum { W = 40, H = 30, RIM = 3 };
@@ -20,8 +20,8 @@ static bool lower_is_seen(FlRect lower, FlDraw above, FlJoin join)
     FlDraw draw[] = {full(0, lower), above};
     const FlDrawList draws = {2, draw};
     bool seen[2] = {false, false};
-    const FlSight sight = {joins, W, H, RIM};
-    g_assert_true(fl_sight_note(&sight, &draws, seen, NULL));
+    const FlVisibleRegions visible = {joins, W, H, RIM};
+    g_assert_true(fl_visible_regions_note(&visible, &draws, seen, NULL));
     g_assert_true(seen[1]);
     fl_draw_clear(&draw[0]);
     fl_draw_clear(&draw[1]);
@@ -57,7 +57,7 @@ static void only_what_is_opaque_and_knocks_out_hides(void)
     above.alpha = 254;
     g_assert_true(lower_is_seen(hidden, above, FL_JOIN_CLOSED));
     above = full(1, upper);
-    above.mix = FL_BLEND_MODE_MULTIPLY;
+    above.blend_mode = FL_BLEND_MODE_MULTIPLY;
     g_assert_true(lower_is_seen(hidden, above, FL_JOIN_CLOSED));
     above = full(1, upper);
     above.coverage[7 * 20 + 10] = 254; // and all that is within reach of its rim
@@ -72,12 +72,12 @@ static void one_frame_in_which_it_shows_is_enough(void)
     FlDraw below[] = {full(0, hidden), full(1, upper)};
     FlDraw on_top[] = {full(1, upper), full(0, hidden)};
     const FlDrawList frames[] = {{2, below}, {2, on_top}, {2, below}};
-    const FlSight sight = {joins, W, H, RIM};
+    const FlVisibleRegions visible = {joins, W, H, RIM};
     bool seen[2] = {false, false};
-    g_assert_true(fl_sight_note(&sight, &frames[0], seen, NULL));
+    g_assert_true(fl_visible_regions_note(&visible, &frames[0], seen, NULL));
     g_assert_false(seen[0]);
     for (int f = 1; f < 3; f++) {
-        g_assert_true(fl_sight_note(&sight, &frames[f], seen, NULL));
+        g_assert_true(fl_visible_regions_note(&visible, &frames[f], seen, NULL));
         g_assert_true(seen[0]);
     }
     for (int r = 0; r < 2; r++)
@@ -87,7 +87,7 @@ static void one_frame_in_which_it_shows_is_enough(void)
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
-#define TEST(name) g_test_add_func("/sight/" #name, name)
+#define TEST(name) g_test_add_func("/visible/" #name, name)
     TEST(what_is_inside_the_rim_of_another_is_hidden);
     TEST(the_sides_of_the_frame_have_no_rim);
     TEST(only_what_is_opaque_and_knocks_out_hides);
