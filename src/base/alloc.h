@@ -9,6 +9,15 @@
 #include <stdlib.h>
 #include <sys/mman.h>
 
+/** Sets FL_ERROR_NO_MEMORY. Returns: NULL. */
+static inline void *fl_alloc_error(size_t count, size_t element_bytes, const char *what,
+                                   GError **error)
+{
+    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
+                "not enough memory for %s (%zu elements of %zu bytes)", what, count, element_bytes);
+    return NULL;
+}
+
 /**
  * count elements of element_bytes, aligned to 64 bytes, for what is written before it is read; to
  * be freed with free().
@@ -25,9 +34,7 @@ static inline void *fl_alloc_unset(size_t count, size_t element_bytes, const cha
     if (memory && fl_headroom_left())
         return memory;
     free(memory);
-    g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                "not enough memory for %s (%zu elements of %zu bytes)", what, count, element_bytes);
-    return NULL;
+    return fl_alloc_error(count, element_bytes, what, error);
 }
 
 /** The same, zeroed. */
@@ -46,9 +53,7 @@ static inline void *fl_alloc_scratch(size_t count, size_t element_bytes, const c
 {
     void *memory = fl_headroom_left() ? calloc(MAX(count, 1), element_bytes) : NULL;
     if (!memory)
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                    "not enough memory for %s (%zu elements of %zu bytes)", what, count,
-                    element_bytes);
+        fl_alloc_error(count, element_bytes, what, error);
     return memory;
 }
 
@@ -90,9 +95,7 @@ static inline void *fl_alloc_lazy(size_t count, size_t element_bytes, const char
     void *memory = NULL;
     if (__builtin_mul_overflow(count, element_bytes, &bytes) || bytes > SIZE_MAX - FL_HUGE_PAGE ||
         !(memory = aligned_alloc(FL_PAGE, (bytes + FL_PAGE) / FL_PAGE * FL_PAGE)))
-        g_set_error(error, FL_ERROR, FL_ERROR_NO_MEMORY,
-                    "not enough memory for %s (%zu elements of %zu bytes)", what, count,
-                    element_bytes);
+        fl_alloc_error(count, element_bytes, what, error);
     return memory;
 }
 

@@ -1,5 +1,6 @@
 #include "file_watch.h"
 
+#include "base/style_parts.h"
 #include "config_edit.h"
 #include "params/options.h"
 #include <gio/gio.h>
@@ -128,7 +129,7 @@ void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old)
 
 static void add_style(FlFileWatch *watch, const char *path)
 {
-    static const char *const parts[] = {"", "frames", "masks", "flow"};
+    static const char *const parts[] = {FL_STYLE_PARTS};
     for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
         g_autofree char *part = g_build_filename(path, parts[k], NULL);
         add_folder(watch, part, "*");

@@ -2,6 +2,7 @@
 
 #include "base/build_id.h"
 #include "base/file.h"
+#include "base/style_parts.h"
 #include "config.h"
 #include "io/pattern.h"
 #include "io/picture_file.h"
@@ -108,7 +109,7 @@ static bool mix_folder(GChecksum *sum, const char *folder, GError **error)
 
 static bool add_style(FlFingerprint *print, const char *path, GError **error)
 {
-    static const char *const parts[] = {"", "frames", "masks", "flow"};
+    static const char *const parts[] = {FL_STYLE_PARTS};
     g_autoptr(GChecksum) sum = g_checksum_new(G_CHECKSUM_SHA256);
     for (size_t i = 0; i < G_N_ELEMENTS(parts); i++) {
         g_autofree char *folder = g_build_filename(path, parts[i], NULL);

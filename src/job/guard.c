@@ -1,5 +1,6 @@
 #include "job/guard.h"
 
+#include "base/style_parts.h"
 #include "io/pattern.h"
 #include "job/paint_files.h"
 #include "params/options.h"
@@ -14,7 +15,7 @@ static char *key_of(const struct stat *status)
 
 static void add_style(GPtrArray *inputs, const char *folder)
 {
-    static const char *const parts[] = {"", "frames", "masks", "flow"};
+    static const char *const parts[] = {FL_STYLE_PARTS};
     for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
         char *part = g_build_filename(folder, parts[k], NULL);
         g_ptr_array_add(inputs, part);

@@ -140,7 +140,7 @@ bool fl_frame_writer_init(FlFrameWriter *writer, const FlPlan *plan, const FlRes
         .path = plan->output,
         .width = plan->width,
         .height = plan->height,
-        .fps = plan->options.fps > 0 ? plan->options.fps : 24,
+        .fps = plan->options.fps,
         .opaque = opaque,
         .patience = {.stopped = plan->options.stopped, .data = plan->options.data},
         .taker = taker,

@@ -170,7 +170,7 @@ static bool draw_shapes(void *data, GError **error)
     const FlPlan *plan = pipeline->plan;
     const float page = fl_page_scale(plan->width, plan->height);
     const FlHand hand = {.of_region = plan->hands,
-                         .seed = MAX(plan->options.seed, 1),
+                         .seed = plan->options.seed,
                          .page = plan->half ? page / 2 : page,
                          .tooth =
                              fl_paper_sheet_tooth(pipeline->sheet, pipeline->drawn, plan->half)};
@@ -216,7 +216,7 @@ static FlComposeInput compose_input(const Pipeline *pipeline, int frame)
                             .background = &pipeline->background,
                             .sheet = pipeline->sheet,
                             .tooth = fl_paper_sheet_tooth(pipeline->sheet, frame, plan->half),
-                            .seed = MAX(plan->options.seed, 1),
+                            .seed = plan->options.seed,
                             .width = plan->width,
                             .height = plan->height,
                             .paper_px = plan->paper_px,
@@ -366,7 +366,7 @@ static bool make_sheet(Pipeline *pipeline, GError **error)
                                   .scale =
                                       plan->paper_px * (o->paper_scale > 0 ? o->paper_scale : 1),
                                   .relief = o->paper_relief,
-                                  .seed = MAX(o->paper_seed, 1),
+                                  .seed = o->paper_seed,
                                   .boil = o->paper_boil};
     if (!fl_paper_sheet_make(&choice, !o->background, plan->width, plan->height, &pipeline->sheet,
                              error))

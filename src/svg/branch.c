@@ -88,9 +88,8 @@ static int drop_spaces(xmlNode *node)
 
 static void branch(xmlNode *node)
 {
-    static const char *const containers[] = {"g", "svg", "a", NULL};
     for (xmlNode *child = node->children; child; child = child->next)
-        if (fl_is_one_of(child, containers))
+        if (fl_is_container(child))
             branch(child);
     for (int n = drop_spaces(node); n > FEW;)
         n = group_children(node);

@@ -105,8 +105,8 @@ unsigned fl_css_look_up(const FlCss *css, const xmlNode *node)
 {
     if (g_hash_table_size(css->bits) == 0)
         return 0;
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
-    g_autoptr(xmlChar) classes = (xmlChar *)fl_attribute(node, "class");
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
+    g_autoptr(xmlChar) classes = fl_attribute(node, "class");
     unsigned bits = look_up(css, "", (const char *)node->name);
     if (id)
         bits |= look_up(css, "#", (const char *)id);

@@ -24,14 +24,39 @@ bool fl_is_one_of(const xmlNode *node, const char *const *names)
     return false;
 }
 
-char *fl_attribute(const xmlNode *node, const char *name)
+bool fl_is_container(const xmlNode *node)
 {
-    return (char *)xmlGetNoNsProp(node, (const xmlChar *)name);
+    static const char *const containers[] = {"g", "svg", "a", NULL};
+    return fl_is_one_of(node, containers);
+}
+
+bool fl_is_animation(const xmlNode *node)
+{
+    static const char *const animations[] = {
+        "animate", "animateTransform", "animateMotion", "animateColor", "set", NULL};
+    return fl_is_one_of(node, animations);
+}
+
+xmlChar *fl_attribute(const xmlNode *node, const char *name)
+{
+    return xmlGetNoNsProp(node, (const xmlChar *)name);
+}
+
+char *fl_foreign_attribute(const xmlNode *node, const char *name)
+{
+    for (const xmlAttr *a = node->properties; a; a = a->next) {
+        const char *colon = strchr((const char *)a->name, ':');
+        if ((!a->ns && !colon) || strcmp(colon ? colon + 1 : (const char *)a->name, name) != 0)
+            continue;
+        g_autoptr(xmlChar) value = xmlNodeListGetString(node->doc, a->children, 1);
+        return g_strstrip(g_strdup(value ? (const char *)value : ""));
+    }
+    return NULL;
 }
 
 char *fl_property(const xmlNode *node, const char *name)
 {
-    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    g_autoptr(xmlChar) style = fl_attribute(node, "style");
     char *value = NULL;
     if (style && strstr((const char *)style, name)) {
         g_auto(GStrv) parts = g_strsplit((const char *)style, ";", -1);
@@ -48,13 +73,13 @@ char *fl_property(const xmlNode *node, const char *name)
     }
     if (value)
         return value;
-    g_autoptr(xmlChar) attribute = (xmlChar *)fl_attribute(node, name);
+    g_autoptr(xmlChar) attribute = fl_attribute(node, name);
     return attribute ? g_strstrip(g_strdup((const char *)attribute)) : NULL;
 }
 
 bool fl_declare(xmlNode *node, const char *declarations)
 {
-    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    g_autoptr(xmlChar) style = fl_attribute(node, "style");
     if (style && g_str_has_suffix((const char *)style, declarations))
         return false;
     g_autofree char *all =
@@ -333,7 +358,7 @@ char *fl_document_text(xmlDoc *doc, size_t *bytes)
 
 static void collect_ids(xmlNode *node, GHashTable *ids)
 {
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
     if (id && !g_hash_table_contains(ids, id))
         g_hash_table_insert(ids, g_strdup((const char *)id), node);
     for (xmlNode *child = node->children; child; child = child->next)

@@ -36,8 +36,17 @@ bool fl_is(const xmlNode *node, const char *name);
 /** Whether node's name is one of a NULL-terminated list, and node an SVG element. */
 bool fl_is_one_of(const xmlNode *node, const char *const *names);
 
+/** Whether node holds other elements: <g>, <svg> or <a>. */
+bool fl_is_container(const xmlNode *node);
+
 /** An attribute without a namespace; NULL if absent. To be freed with xmlFree(). */
-char *fl_attribute(const xmlNode *node, const char *name);
+xmlChar *fl_attribute(const xmlNode *node, const char *name);
+
+/** An attribute with any prefix, be it declared or not, trimmed; NULL if absent. g_free(). */
+char *fl_foreign_attribute(const xmlNode *node, const char *name);
+
+/** Whether node is an element of SMIL that animates another. */
+bool fl_is_animation(const xmlNode *node);
 
 /**
  * A property from `style=""` or else from the attribute of that name, trimmed; NULL if neither sets

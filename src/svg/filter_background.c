@@ -25,7 +25,7 @@ static bool replace_inputs(xmlNode *node)
         if (node->type != XML_ELEMENT_NODE)
             continue;
         for (size_t i = 0; i < G_N_ELEMENTS(inputs); i++) {
-            g_autoptr(xmlChar) value = (xmlChar *)fl_attribute(node, inputs[i]);
+            g_autoptr(xmlChar) value = fl_attribute(node, inputs[i]);
             if (!is_background((const char *)value))
                 continue;
             found = true;
@@ -42,9 +42,9 @@ static char *blend_mode(xmlNode *filter)
     xmlNode *only = first_element(filter->children);
     if (!only || !fl_is(only, "feBlend") || first_element(only->next))
         return NULL;
-    g_autoptr(xmlChar) in = (xmlChar *)fl_attribute(only, "in");
-    g_autoptr(xmlChar) in2 = (xmlChar *)fl_attribute(only, "in2");
-    g_autoptr(xmlChar) mode = (xmlChar *)fl_attribute(only, "mode");
+    g_autoptr(xmlChar) in = fl_attribute(only, "in");
+    g_autoptr(xmlChar) in2 = fl_attribute(only, "in2");
+    g_autoptr(xmlChar) mode = fl_attribute(only, "mode");
     if (!is_background((const char *)in2) || (in && !xmlStrEqual(in, (xmlChar *)"SourceGraphic")))
         return NULL;
     return g_strdup(mode ? (const char *)mode : "normal");
@@ -73,7 +73,7 @@ static bool change_filters(xmlNode *node, GHashTable *modes)
         if (node->type != XML_ELEMENT_NODE)
             continue;
         g_autofree char *mode = fl_is(node, "filter") ? blend_mode(node) : NULL;
-        g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+        g_autoptr(xmlChar) id = fl_attribute(node, "id");
         if (mode && id)
             g_hash_table_replace(modes, g_strdup_printf("url(#%s)", (const char *)id),
                                  g_steal_pointer(&mode));
@@ -93,7 +93,7 @@ static void set_modes(xmlNode *node, GHashTable *modes)
         g_autofree char *filter = fl_property(node, "filter");
         const char *mode = filter ? g_hash_table_lookup(modes, filter) : NULL;
         if (mode) {
-            g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+            g_autoptr(xmlChar) style = fl_attribute(node, "style");
             g_autofree char *all = g_strdup_printf("%s;filter:none;mix-blend-mode:%s",
                                                    style ? (char *)style : "", mode);
             xmlSetProp(node, (const xmlChar *)"style", (const xmlChar *)all);

@@ -86,7 +86,7 @@ static FlAffine fit_box(const double box[4], double width, double height, const 
 
 static bool view_box(const xmlNode *node, double box[4])
 {
-    g_autoptr(xmlChar) text = (xmlChar *)fl_attribute(node, "viewBox");
+    g_autoptr(xmlChar) text = fl_attribute(node, "viewBox");
     const char *s = (const char *)text;
     for (int k = 0; k < 4; k++) {
         char *end = NULL;
@@ -109,7 +109,7 @@ static void enter_viewport(const Reader *reader, const xmlNode *node, Surrounds 
     bool *broken = &s->broken;
     double box[4] = {0, 0, 0, 0};
     const bool boxed = view_box(node, box);
-    g_autoptr(xmlChar) ratio = (xmlChar *)fl_attribute(node, "preserveAspectRatio");
+    g_autoptr(xmlChar) ratio = fl_attribute(node, "preserveAspectRatio");
     if (outermost) { // the page is its viewport; without a viewBox its size is one
         if (!boxed) {
             box[2] = length_in(reader, node, "width", 0, 0, broken);
@@ -139,7 +139,7 @@ static FlAffine transform_of(const xmlNode *node)
 {
     FlAffine m = FL_AFFINE_NONE;
     g_autofree char *property = fl_property(node, "transform");
-    g_autoptr(xmlChar) attribute = (xmlChar *)fl_attribute(node, "transform");
+    g_autoptr(xmlChar) attribute = fl_attribute(node, "transform");
     if (property && fl_affine_parse(property, &m))
         return m;
     if (attribute)
@@ -224,7 +224,7 @@ static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const
 #undef LENGTH
     const bool polygon = fl_is(node, "polygon");
     if (polygon || fl_is(node, "polyline")) {
-        g_autoptr(xmlChar) points = (xmlChar *)fl_attribute(node, "points");
+        g_autoptr(xmlChar) points = fl_attribute(node, "points");
         fl_pen_points(pen, points ? (const char *)points : "", polygon);
         return FL_OUTLINE_POLY;
     }
@@ -236,8 +236,8 @@ static FlOutlineKind draw_leaf(const Reader *reader, const xmlNode *node, const 
 {
     if (!fl_is(node, "path"))
         return draw_shape(reader, node, s, pen, broken);
-    g_autoptr(xmlChar) d = (xmlChar *)fl_attribute(node, "d");
-    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    g_autoptr(xmlChar) d = fl_attribute(node, "d");
+    g_autoptr(xmlChar) style = fl_attribute(node, "style");
     g_autofree char *css =
         style && strstr((const char *)style, "d:") ? fl_property(node, "d") : NULL;
     if (d)

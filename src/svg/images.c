@@ -18,7 +18,7 @@ typedef struct Check {
 
 static void warn(const Check *check, const xmlNode *node, const char *href, const char *text)
 {
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
     fl_warnings_add(check->warnings, check->path, check->number, (const char *)id,
                     "the image “%.60s” %s", href, text);
 }

@@ -75,21 +75,6 @@ static void cut_repeat(char *name)
         name[n - 1] = '\0';
 }
 
-/** An attribute by its local name, with any prefix, be it declared or not. */
-static char *foreign_attribute(const xmlNode *node, const char *name)
-{
-    for (xmlAttr *a = node->properties; a; a = a->next) {
-        const char *colon = strchr((const char *)a->name, ':');
-        if ((a->ns || colon) && strcmp(colon ? colon + 1 : (const char *)a->name, name) == 0) {
-            xmlChar *value = xmlNodeListGetString(node->doc, a->children, 1);
-            char *copy = g_strdup(value ? (const char *)value : "");
-            xmlFree(value);
-            return g_strstrip(copy);
-        }
-    }
-    return NULL;
-}
-
 /** Blender writes <!--Layer: Fills--> before the group of a layer. */
 static bool follows_layer_comment(const xmlNode *node)
 {
@@ -116,12 +101,12 @@ static char *name_of(const xmlNode *node, const char *id)
 {
     static const char *const foreign[] = {"label", "characterName", "layerName", NULL};
     for (int i = 0; foreign[i]; i++) {
-        g_autofree char *name = foreign_attribute(node, foreign[i]);
+        g_autofree char *name = fl_foreign_attribute(node, foreign[i]);
         if (name && name[0])
             return g_steal_pointer(&name);
     }
-    g_autofree char *affinity = foreign_attribute(node, "id");
-    g_autoptr(xmlChar) adobe = (xmlChar *)fl_attribute(node, "data-name");
+    g_autofree char *affinity = fl_foreign_attribute(node, "id");
+    g_autoptr(xmlChar) adobe = fl_attribute(node, "data-name");
     g_autofree char *title = id && !is_generic(id) ? NULL : title_of(node);
     const char *name = affinity && affinity[0] ? affinity
                        : adobe && adobe[0]     ? (const char *)adobe
@@ -133,12 +118,11 @@ static char *name_of(const xmlNode *node, const char *id)
 
 char *fl_label_of(const xmlNode *node, const char *id, bool *is_layer)
 {
-    static const char *const groups[] = {"g", "svg", "a", "use", NULL};
     *is_layer = false;
-    if (!g_strv_contains(groups, (const char *)node->name))
+    if (!fl_is_container(node) && !fl_is(node, "use"))
         return NULL;
-    g_autofree char *mode = foreign_attribute(node, "groupmode");
-    g_autofree char *label = foreign_attribute(node, "label");
+    g_autofree char *mode = fl_foreign_attribute(node, "groupmode");
+    g_autofree char *label = fl_foreign_attribute(node, "label");
     *is_layer = (mode && strcmp(mode, "layer") == 0) || follows_layer_comment(node);
     char *name = name_of(node, id);
     decode(name);

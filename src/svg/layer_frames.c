@@ -2,28 +2,15 @@
 
 #include <string.h>
 
-/** An attribute of Inkscape's, whose prefix may not be declared; to be freed with g_free(). */
-static char *inkscape_attribute(const xmlNode *node, const char *name)
-{
-    for (const xmlAttr *a = node->properties; a; a = a->next) {
-        const char *colon = strchr((const char *)a->name, ':');
-        if ((!a->ns && !colon) || strcmp(colon ? colon + 1 : (const char *)a->name, name) != 0)
-            continue;
-        g_autoptr(xmlChar) value = xmlNodeListGetString(node->doc, a->children, 1);
-        return g_strdup(value ? (const char *)value : "");
-    }
-    return NULL;
-}
-
 static bool is_marked(const xmlNode *node)
 {
-    g_autofree char *mode = inkscape_attribute(node, "groupmode");
+    g_autofree char *mode = fl_foreign_attribute(node, "groupmode");
     return mode && (strcmp(mode, "layer") == 0 || strcmp(mode, "frame") == 0);
 }
 
 static bool is_static(const xmlNode *node)
 {
-    g_autofree char *label = inkscape_attribute(node, "label");
+    g_autofree char *label = fl_foreign_attribute(node, "label");
     g_autofree char *lower = label ? g_ascii_strdown(label, -1) : NULL;
     return lower && strstr(lower, "(static)");
 }
@@ -66,7 +53,7 @@ int fl_layer_frames_count(const xmlDoc *doc)
 /** Shows a layer that was hidden when the document was saved. */
 static void show(xmlNode *layer)
 {
-    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(layer, "style");
+    g_autoptr(xmlChar) style = fl_attribute(layer, "style");
     g_autofree char *shown = g_strconcat(style ? (const char *)style : "", ";display:inline", NULL);
     xmlUnsetProp(layer, (const xmlChar *)"display");
     xmlSetProp(layer, (const xmlChar *)"style", (const xmlChar *)shown);
@@ -124,10 +111,8 @@ bool fl_layer_frames_select(xmlDoc *doc, int frame, const char *path, GError **e
 
 static int moves_at(const xmlNode *node)
 {
-    static const char *const animations[] = {
-        "animate", "animateTransform", "animateMotion", "animateColor", "set", NULL};
     const long line = MAX(xmlGetLineNo(node), 1);
-    if (fl_is_one_of(node, animations))
+    if (fl_is_animation(node))
         return (int)line;
     if (fl_is(node, "style")) {
         g_autoptr(xmlChar) css = xmlNodeGetContent(node);

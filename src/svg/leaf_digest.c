@@ -138,7 +138,7 @@ static void walk(Work *work, const xmlNode *node, FlDigest around, Reach reach)
         work->unknown |= child->type == XML_ENTITY_REF_NODE;
         if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
             continue;
-        g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(child, "id");
+        g_autoptr(xmlChar) id = fl_attribute(child, "id");
         const Place *place = id ? g_hash_table_lookup(work->place, id) : NULL;
         if (place)
             put_leaf(work, child, place, around, reach);

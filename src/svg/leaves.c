@@ -46,34 +46,28 @@ static void append(GString *list, const char *item)
     g_string_append(list, item);
 }
 
-static char *authored_id(const xmlNode *node)
+static xmlChar *authored_id(const xmlNode *node)
 {
-    char *id = fl_attribute(node, "id");
+    xmlChar *id = fl_attribute(node, "id");
     if (!id)
         id = fl_attribute(node, FL_COPIED_ID);
-    if (!id || !g_str_has_prefix(id, FL_GROUP_ID))
+    if (!id || !g_str_has_prefix((const char *)id, FL_GROUP_ID))
         return id;
     xmlFree(id);
     return NULL;
 }
 
-static bool is_container(const xmlNode *node)
-{
-    static const char *const containers[] = {"g", "svg", "a", NULL};
-    return fl_is_one_of(node, containers);
-}
-
 static void append_group(Walk *w, const xmlNode *node)
 {
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
-    if (id && is_container(node) && g_hash_table_lookup(w->by_id, id) == node)
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
+    if (id && fl_is_container(node) && g_hash_table_lookup(w->by_id, id) == node)
         append(w->groups, (const char *)id);
 }
 
 static void enter(Walk *w, const xmlNode *node, int index)
 {
-    g_autoptr(xmlChar) id = (xmlChar *)authored_id(node);
-    g_autoptr(xmlChar) classes = (xmlChar *)fl_attribute(node, "class");
+    g_autoptr(xmlChar) id = authored_id(node);
+    g_autoptr(xmlChar) classes = fl_attribute(node, "class");
     bool is_layer = false;
     g_autofree char *label = fl_label_of(node, (const char *)id, &is_layer);
     append(w->labels, label);
@@ -90,7 +84,7 @@ static void enter(Walk *w, const xmlNode *node, int index)
 /** The node's id if it is the first of that id, else a new one, which goes into the document. */
 static char *give_id(Walk *w, xmlNode *node)
 {
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
     if (id && id[0] && g_hash_table_lookup(w->by_id, id) == node)
         return g_strdup((const char *)id);
     char *made = NULL;
@@ -134,7 +128,7 @@ static const char *outermost_mask(const Walk *w)
 
 static FlLeaf make_leaf(Walk *w, xmlNode *node)
 {
-    g_autoptr(xmlChar) name = (xmlChar *)authored_id(node);
+    g_autoptr(xmlChar) name = authored_id(node);
     static const char *const unsplit[] = {"text", "image", "use", "g", "svg", "a", NULL};
     static const char *const markers[] = {"marker", "marker-start", "marker-mid", "marker-end",
                                           NULL};
@@ -291,9 +285,9 @@ static void walk(Walk *w, xmlNode *node)
         if (is_drawn(child) || fl_is_whole(child, w->whole)) {
             const FlLeaf leaf = make_leaf(w, child);
             g_array_append_val(w->leaves->leaf, leaf);
-        } else if (is_container(child) && w->unit < 0 && is_unit(w, child)) {
+        } else if (fl_is_container(child) && w->unit < 0 && is_unit(w, child)) {
             walk_unit(w, child);
-        } else if (is_container(child)) {
+        } else if (fl_is_container(child)) {
             walk_group(w, child);
         }
         cut_back(w, m);

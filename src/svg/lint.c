@@ -12,7 +12,7 @@ typedef struct Lint {
 
 static void warn(const Lint *lint, const xmlNode *node, const char *text)
 {
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
     fl_warnings_add(lint->warnings, lint->path, lint->number, (const char *)id, "%s", text);
 }
 
@@ -98,7 +98,7 @@ static void check_sheet(const Lint *lint, const xmlNode *node, const char *css)
 
 static void check_path(const Lint *lint, const xmlNode *node)
 {
-    g_autoptr(xmlChar) d = (xmlChar *)fl_attribute(node, "d");
+    g_autoptr(xmlChar) d = fl_attribute(node, "d");
     const char *rest = d ? fl_path_data_error((const char *)d) : NULL;
     if (!rest)
         return;
@@ -110,13 +110,11 @@ static void check_path(const Lint *lint, const xmlNode *node)
 
 static void lint_node(const Lint *lint, xmlNode *node)
 {
-    static const char *const animations[] = {
-        "animate", "animateTransform", "animateMotion", "animateColor", "set", NULL};
     check_references(lint, node);
-    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    g_autoptr(xmlChar) style = fl_attribute(node, "style");
     if (style)
         check_sheet(lint, node, (const char *)style);
-    if (fl_is_one_of(node, animations))
+    if (fl_is_animation(node))
         warn(lint, node->parent, "the animation in it is not played: the base value is drawn");
     if (lint->warnings && fl_is(node, "path"))
         check_path(lint, node);

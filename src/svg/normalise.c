@@ -29,12 +29,11 @@ bool fl_is_undrawn(const xmlNode *node)
 
 static void name_groups(xmlNode *node, GHashTable *ids, int *n_made)
 {
-    static const char *const groups[] = {"g", "svg", "a", "use", NULL};
     for (xmlNode *child = node->children; child; child = child->next) {
         if (child->type != XML_ELEMENT_NODE || fl_is_undrawn(child))
             continue;
-        g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(child, "id");
-        if (!id && fl_is_one_of(child, groups)) {
+        g_autoptr(xmlChar) id = fl_attribute(child, "id");
+        if (!id && (fl_is_container(child) || fl_is(child, "use"))) {
             g_autofree char *made = NULL;
             do {
                 g_free(made);
@@ -58,7 +57,7 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole)
 {
     if (!whole)
         return false;
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
     return id && g_strv_contains(whole, (const char *)id);
 }
 
@@ -102,11 +101,11 @@ static bool has_features(const char *features)
 
 static bool is_eligible(const xmlNode *node)
 {
-    g_autoptr(xmlChar) features = (xmlChar *)fl_attribute(node, "requiredFeatures");
+    g_autoptr(xmlChar) features = fl_attribute(node, "requiredFeatures");
     if (features && !has_features((const char *)features))
         return false;
-    g_autoptr(xmlChar) extensions = (xmlChar *)fl_attribute(node, "requiredExtensions");
-    g_autoptr(xmlChar) languages = (xmlChar *)fl_attribute(node, "systemLanguage");
+    g_autoptr(xmlChar) extensions = fl_attribute(node, "requiredExtensions");
+    g_autoptr(xmlChar) languages = fl_attribute(node, "systemLanguage");
     return (!extensions || !*g_strstrip((char *)extensions)) &&
            (!languages || speaks((const char *)languages));
 }
@@ -135,7 +134,7 @@ static void resolve_switch(xmlNode *node)
 static int put_ids_aside(xmlNode *node)
 {
     int n = 1;
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(node, "id");
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
     if (id) {
         xmlUnsetProp(node, (const xmlChar *)"id");
         xmlSetProp(node, (const xmlChar *)FL_COPIED_ID, id);
@@ -149,7 +148,7 @@ static int put_ids_aside(xmlNode *node)
 /** Removes an attribute. Returns: its value, to be freed with xmlFree(), or NULL. */
 static xmlChar *take(xmlNode *node, const char *name)
 {
-    xmlChar *value = (xmlChar *)fl_attribute(node, name);
+    xmlChar *value = fl_attribute(node, name);
     if (value)
         xmlUnsetProp(node, (const xmlChar *)name);
     return value;
@@ -209,7 +208,7 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
     g_autoptr(xmlChar) x = take(use, "x"), y = take(use, "y");
     g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
     xmlNode *target = href ? g_hash_table_lookup(work->ids, href + 1) : NULL;
-    g_autoptr(xmlChar) id = (xmlChar *)fl_attribute(use, "id");
+    g_autoptr(xmlChar) id = fl_attribute(use, "id");
     xmlNodeSetName(use, (const xmlChar *)"g");
     if (target && is_cycle(use, target, chain)) {
         const bool made = id && g_str_has_prefix((const char *)id, FL_GROUP_ID);

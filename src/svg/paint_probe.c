@@ -14,7 +14,7 @@ static bool is_apart(const xmlNode *node)
     static const char *const words[] = {"opacity", "mask", "filter", "mix-blend-mode", "isolation"};
     if (fl_is_one_of(node, elements))
         return true;
-    g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+    g_autoptr(xmlChar) style = fl_attribute(node, "style");
     bool apart = false;
     for (size_t i = 0; i < G_N_ELEMENTS(words) && !apart; i++)
         apart = xmlHasProp((xmlNode *)node, (const xmlChar *)words[i]) ||
@@ -56,7 +56,7 @@ static void shrink_images(xmlNode *node)
 /** Rotates the children of a node about its centre, if its viewBox has one. */
 static void turn_children(xmlNode *node)
 {
-    g_autoptr(xmlChar) view = (xmlChar *)fl_attribute(node, "viewBox");
+    g_autoptr(xmlChar) view = fl_attribute(node, "viewBox");
     double box[4] = {0};
     char *s = (char *)view;
     for (int i = 0; s && i < 4; i++) {
@@ -70,7 +70,7 @@ static void turn_children(xmlNode *node)
     for (xmlNode *child = node->children; child; child = child->next) {
         if (!fl_is_one_of(child, shapes))
             continue;
-        g_autoptr(xmlChar) own = (xmlChar *)fl_attribute(child, "transform");
+        g_autoptr(xmlChar) own = fl_attribute(child, "transform");
         g_autofree char *both = g_strconcat(turn, " ", own ? (const char *)own : "", NULL);
         xmlSetProp(child, (const xmlChar *)"transform", (const xmlChar *)both);
     }
@@ -91,7 +91,7 @@ static void drop_masks(xmlNode *node)
     for (; node; node = node->next) {
         if (node->type != XML_ELEMENT_NODE)
             continue;
-        g_autoptr(xmlChar) style = (xmlChar *)fl_attribute(node, "style");
+        g_autoptr(xmlChar) style = fl_attribute(node, "style");
         if (fl_is_one_of(node, shapes) && style && strstr((const char *)style, "mask"))
             fl_declare(node, "mask:none");
         xmlUnsetProp(node, (const xmlChar *)"mask");

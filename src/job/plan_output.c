@@ -1,0 +1,136 @@
+#include "job/plan_steps.h"
+
+#include "drawing/open_drawing.h"
+#include "io/pattern.h"
+#include "job/fingerprint.h"
+#include "job/finished.h"
+#include "job/resume.h"
+#include <string.h>
+
+static char *default_output(const FlPlan *plan)
+{
+    const char *suffix = plan->format->suffix ? plan->format->suffix : ".png";
+    return g_strdup_printf("fluidy/{name}%s%s", plan->format->film ? "" : "_%04d", suffix);
+}
+
+/* The frames of a film are beside it: walk_0001.png, … of walk.mov. */
+static char *frames_of_movie(const FlPlan *plan)
+{
+    const char *suffix = plan->movie_format->suffix;
+    const bool named = g_str_has_suffix(plan->movie, suffix);
+    g_autoptr(GString) stem =
+        g_string_new_len(plan->movie, (gssize)(strlen(plan->movie) - (named ? strlen(suffix) : 0)));
+    g_string_replace(stem, "%", "%%", 0);
+    return g_strdup_printf("%s_%%04d.png", stem->str);
+}
+
+static bool choose_frames(FlPlan *plan, GError **error)
+{
+    if (!plan->format->moving || plan->options.no_frames)
+        return true;
+    plan->movie = g_steal_pointer(&plan->output), plan->movie_format = plan->format;
+    plan->output = frames_of_movie(plan);
+    plan->format = fl_sink_format("png", plan->output, error);
+    return plan->format != NULL;
+}
+
+static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error)
+{
+    const char *format = plan->options.format, *requested = plan->options.output;
+    plan->format = fl_sink_format(format || requested ? format : "png", requested, error);
+    if (!plan->format)
+        return false;
+    g_autofree char *pattern = requested ? g_strdup(requested) : default_output(plan);
+    plan->output = fl_output_of_film(pattern, sequence->name);
+    if (!plan->format->film && !fl_output_is_pattern(plan->output) && sequence->n > 1) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: one file for %d frames; expected a number in the name, such as %%04d",
+                    plan->output, sequence->n);
+        return false;
+    }
+    return choose_frames(plan, error);
+}
+
+/* What stands for the regions of a run in the name of a file: they, or where they are many, a sum.
+ * To be freed. */
+static char *short_name(const char *regions)
+{
+    enum { LONGEST = 100, DIGITS = 16 };
+    if (strlen(regions) <= LONGEST)
+        return g_strdup(regions);
+    g_autofree char *sum = g_compute_checksum_for_string(G_CHECKSUM_SHA256, regions, -1);
+    return g_strndup(sum, DIGITS);
+}
+
+/* Layers and paint without frames: what an interrupted run leaves is named after one of them. */
+static bool name_parts(FlPlan *plan, const FlSequence *sequence, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    g_autofree char *whose = short_name(o->only_region ? o->only_region : "regions");
+    g_autoptr(GString) pattern = g_string_new(o->paint ? o->paint : o->layers);
+    g_string_replace(pattern, "{region}", whose, 0);
+    plan->output = fl_output_of_film(pattern->str, sequence->name);
+    plan->format = fl_sink_format("null", NULL, error);
+    return plan->format != NULL;
+}
+
+static bool is_of_film(const char *part)
+{
+    return part && strcmp(part, "film") == 0;
+}
+
+/* One of N parts; without one, or of the film alone, all of 1. */
+static bool parse_part(FlPlan *plan, GError **error)
+{
+    const char *part = plan->options.part;
+    int k = 1, length = 0;
+    plan->n_parts = 1;
+    if (part && !is_of_film(part) &&
+        (sscanf(part, "%5d/%5d%n", &k, &plan->n_parts, &length) != 2 || part[length] || k < 1 ||
+         k > plan->n_parts)) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "‘part’: “%s” is not understood; expected film, or K/N such as 2/4, K from 1 "
+                    "to N",
+                    part);
+        return false;
+    }
+    plan->part = k - 1;
+    return true;
+}
+
+/* A part of a merge makes no film, and who makes the film composes nothing. */
+static bool choose_part(FlPlan *plan, GError **error)
+{
+    const char *part = plan->options.part;
+    const bool of_film = is_of_film(part);
+    if (of_film && !plan->movie)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: ‘part’ film needs a film as output; use a name such as walk.mov",
+                    plan->output);
+    else if (plan->format->film)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: has no parts; leave out ‘part’ or ‘no-frames’", plan->output);
+    else if (!of_film)
+        g_clear_pointer(&plan->movie, g_free);
+    return of_film ? plan->movie != NULL : !plan->format->film;
+}
+
+void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end)
+{
+    *first = (int)((int64_t)n_frames * plan->part / plan->n_parts);
+    *end = (int)((int64_t)n_frames * (plan->part + 1) / plan->n_parts);
+}
+
+bool fl_plan_find_output(FlPlan *plan, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    g_autoptr(FlSequence) sequence = fl_sequence_from_options(o, error);
+    if (!sequence || !(plan->parts_only ? name_parts : name_output)(plan, sequence, error) ||
+        !parse_part(plan, error) || (o->part && !choose_part(plan, error)))
+        return false;
+    plan->request = fl_fingerprint_of_request(plan, sequence);
+    plan->finished = is_of_film(o->part) ? FL_FINISHED_FRAMES : fl_finished_look(plan, sequence);
+    plan->n_finished = plan->finished != FL_FINISHED_NOTHING ? sequence->n : 0;
+    return plan->finished == FL_FINISHED_ALL ||
+           (plan->options.dry_run || fl_resume_expect_free(plan, sequence, error));
+}

@@ -1,0 +1,136 @@
+#include "job/plan_steps.h"
+
+#include "base/limits.h"
+#include "base/suggest.h"
+#include <string.h>
+
+static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
+{
+    g_autoptr(GPtrArray) names = g_ptr_array_new();
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
+        g_ptr_array_add(names, fl_drawing_region(plan->drawing, r)->name);
+    g_ptr_array_add(names, NULL);
+    g_autofree char *list = g_strjoinv(", ", (char **)names->pdata);
+    g_autofree char *hint = fl_did_you_mean(name, (const char *const *)names->pdata);
+    if (*hint)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "no region “%s”%s", name, hint);
+    else
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "no region “%s”; the regions are: %s", name,
+                    list);
+    return false;
+}
+
+static bool check_region_names(const FlPlan *plan, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    g_auto(GStrv) only = g_strsplit(o->only_region ? o->only_region : "", ",", -1);
+    const size_t n = o->n_settings + g_strv_length(only);
+    for (size_t i = 0; i < n; i++) {
+        const char *name = i < o->n_settings ? o->settings[i].region : only[i - o->n_settings];
+        bool found = name == NULL;
+        for (int r = 0; !found && r < fl_drawing_regions(plan->drawing); r++)
+            found = g_str_equal(fl_drawing_region(plan->drawing, r)->name, name);
+        if (!found)
+            return no_such_region(plan, name, error);
+    }
+    return true;
+}
+
+/* Paper that is left around a region would be wider where it has no rim. */
+static FlJoin join_of(const FlRenderOptions *options, const FlRegionSettings *settings,
+                      bool painted)
+{
+    if (!painted)
+        return FL_JOIN_UNPAINTED;
+    if (settings->edges == FL_EDGES_SOFT)
+        return FL_JOIN_ALONE;
+    const bool apart = options->gap > 0 || settings->stacking == FL_STACKING_GLAZE;
+    return apart ? FL_JOIN_ALIKE : FL_JOIN_CLOSED;
+}
+
+/* Whether `region` does not name a region. */
+static bool is_left_out(const FlPlan *plan, const char *name)
+{
+    const char *only = plan->options.only_region;
+    g_auto(GStrv) names = only ? g_strsplit(only, ",", -1) : NULL;
+    return only && !g_strv_contains((const char *const *)names, name);
+}
+
+/* The settings of a region, and whether it is painted. */
+static bool plan_region(FlPlan *plan, int region, GError **error)
+{
+    const FlRegion *r = fl_drawing_region(plan->drawing, region);
+    FlRegionPlan *chosen = &plan->painted[plan->n_painted];
+    FlRegionSettings *settings = &chosen->settings;
+    const bool left_out = is_left_out(plan, r->name);
+    if (!fl_config_region_settings(plan->config, r->rule, r->name, &plan->options, settings, error))
+        return false;
+    const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
+    plan->half &= !painted || settings->params.half_size;
+    plan->joins[region] = join_of(&plan->options, settings, painted);
+    if (!painted)
+        plan->hands[region] = (FlRegionHand){settings->line, settings->line_boil};
+    plan->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;
+    if (!painted || left_out) {
+        fl_region_settings_clear(settings);
+        return true;
+    }
+    chosen->region = region;
+    plan->painted_of[region] = plan->n_painted++; // from here on, fl_plan_free() clears it
+    if (!settings->style)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "no style for region “%s”; use ‘style’ NAME, or style = NAME in a config",
+                    r->name);
+    return settings->style != NULL;
+}
+
+/* All regions have half the size or none, including those left out this time, since they are
+ * composed together. */
+static bool plan_regions(FlPlan *plan, GError **error)
+{
+    const int n = fl_drawing_regions(plan->drawing);
+    plan->painted = g_new0(FlRegionPlan, MAX(n, 1));
+    plan->painted_of = g_new0(int, MAX(n, 1));
+    plan->joins = g_new0(FlJoin, MAX(n, 1));
+    plan->hands = g_new0(FlRegionHand, MAX(n, 1));
+    plan->half = true;
+    for (int r = 0; r < n; r++)
+        if (!plan_region(plan, r, error))
+            return false;
+    plan->hold_of = g_new0(int, MAX(n, 1));
+    for (int r = 0; r < n; r++)
+        plan->hold_of[r] = plan->painted_of[r] >= 0
+                               ? plan->painted[plan->painted_of[r]].settings.hold
+                               : plan->hold;
+    plan->half &= plan->n_painted > 0;
+    plan->by_page = plan->n_painted == 0;
+    for (int p = 0; p < plan->n_painted; p++)
+        plan->by_page |= plan->painted[p].settings.params.style_by_page;
+    for (int p = 0; p < plan->n_painted; p++)
+        plan->painted[p].settings.params.half_size = plan->half;
+    return fl_limit_check(FL_LIMIT_REGIONS, plan->n_painted, fl_drawing_name(plan->drawing), error);
+}
+
+/* With one name for all regions, each layer would replace the last. */
+static bool check_regions_file(const FlPlan *plan, const char *pattern, GError **error)
+{
+    const char *brace = pattern ? strchr(pattern, '{') : NULL;
+    if (brace && strchr(brace, '}') && !strstr(pattern, "{region}")) {
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE, "%s: “%.*s” is not understood; expected %s",
+                    pattern, (int)(strchr(brace, '}') + 1 - brace), brace, "{region}");
+        return false;
+    }
+    if (!pattern || plan->n_painted < 2 || strstr(pattern, "{region}"))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "%s: one file for %d regions; expected {region} in the name", pattern,
+                plan->n_painted);
+    return false;
+}
+
+bool fl_plan_find_regions(FlPlan *plan, GError **error)
+{
+    return check_region_names(plan, error) && plan_regions(plan, error) &&
+           check_regions_file(plan, plan->options.layers, error) &&
+           check_regions_file(plan, plan->options.paint, error);
+}

@@ -1,0 +1,127 @@
+#include "job/plan_steps.h"
+
+#include "base/page.h"
+#include "job/moved_paint.h"
+#include <string.h>
+
+/* Sends a line to one of the options' callbacks. */
+G_GNUC_PRINTF(3, 4)
+static void send_line(const FlPlan *plan, void (*to)(const char *, void *), const char *format, ...)
+{
+    if (!to)
+        return;
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *line = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    to(line, plan->options.data);
+}
+
+/* A warning about a style; false with an error under strict. */
+G_GNUC_PRINTF(3, 4)
+static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    g_autofree char *line = g_strdup_vprintf(format, arguments);
+    va_end(arguments);
+    if (plan->options.strict)
+        g_set_error(error, FL_ERROR, FL_ERROR_STYLE, "%s (a warning under ‘strict’)", line);
+    else
+        send_line(plan, plan->options.warning, "%s", line);
+    return !plan->options.strict;
+}
+
+/* Warnings about a style, once, with the first region that uses it. */
+static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
+{
+    enum { MUCH_BEYOND = 10 };  // percent
+    const float coarse = 1.25f; // below it enlarged pictures do not look soft
+    const FlStyleInstance *style = painted->style;
+    for (const FlRegionPlan *p = plan->painted; p < painted; p++)
+        if (p->style == style)
+            return true;
+    if (painted->engine->plays && style->exemplar->level[0].n_frames == 1 &&
+        !warn(plan, error, "%s: one frame is used: its paint does not flow", style->path))
+        return false;
+    if (painted->engine->plays && style->enlarged > coarse &&
+        painted->settings.params.style_by_page &&
+        !warn(plan, error,
+              "%s: its pictures are enlarged %.2g times and look soft; a page as large as this one "
+              "wants a larger recording, with a scale below 1 in its style.ini",
+              style->path, style->enlarged))
+        return false;
+    return style->ink->beyond < MUCH_BEYOND || painted->settings.tint != FL_TINT_FILL ||
+           warn(plan, error,
+                "%s: %d %% of the paint is lighter than the paper where most is darker (or the "
+                "reverse) and will show as bare paper; use ‘tint’ keep for the recording's colours",
+                style->path, style->ink->beyond);
+}
+
+/* Px of the drawing, as it is drawn, per px in which a region's sizes are given. */
+static float texture_px(const FlPlan *plan, const FlParams *params)
+{
+    if (params->style_by_page)
+        return fl_page_scale(fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing));
+    return plan->half ? .5f : 1;
+}
+
+/* What goes to ebsynth are pairs of guides. */
+static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
+{
+    if (!plan->options.ebsynth || plan->options.merge || painted->engine->guide_pairs)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "region %s: the engine %s has no guides for ‘ebsynth’; use another, or ‘region’ to "
+                "leave it out",
+                painted->name, painted->engine->name);
+    return false;
+}
+
+static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
+{
+    const FlRegion *r = fl_drawing_region(plan->drawing, painted->region);
+    painted->name = r->name, painted->area_px = r->area_px;
+    painted->flow_files = plan->options.flow;
+    painted->paint_files = plan->options.merge ? plan->options.paint : NULL;
+    painted->keeps_flow = plan->options.dump != NULL;
+    painted->loops = plan->options.loop && !painted->paint_files;
+    const float px = texture_px(plan, &painted->settings.params);
+    fl_params_scale_lengths(&painted->settings.params, px);
+    painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
+    if (!painted->style)
+        return false;
+    if (painted->style->enlargement)
+        fl_params_scale_lengths(&painted->settings.params, .5f);
+    painted->engine = fl_engine_of_region(plan->styles, painted->style, &painted->settings, px,
+                                          &painted->tile, error);
+    if (!painted->engine) {
+        g_prefix_error(error, "region %s: ", r->name);
+        return false;
+    }
+    if (!check_export(plan, painted, error) || !warn_of_style(plan, painted, error))
+        return false;
+    if (plan->options.verbose)
+        send_line(plan, plan->options.note, "region %s: style %s, engine %s", r->name,
+                  painted->style->path, painted->engine->name);
+    return true;
+}
+
+bool fl_plan_choose_styles(FlPlan *plan, GError **error)
+{
+    plan->masks =
+        fl_mask_store_new(fl_drawing_regions(plan->drawing), fl_drawing_frames(plan->drawing),
+                          fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
+    plan->surround = plan->masks ? fl_surround_new(fl_drawing_regions(plan->drawing),
+                                                   fl_drawing_frames(plan->drawing),
+                                                   fl_drawing_width(plan->drawing),
+                                                   fl_drawing_height(plan->drawing), error)
+                                 : NULL;
+    for (int p = 0; plan->surround && p < plan->n_painted; p++)
+        if (!choose_style(plan, &plan->painted[p], error))
+            return false;
+    memset(plan->paper, 255, sizeof plan->paper);
+    if (plan->n_painted > 0 && plan->surround)
+        memcpy(plan->paper, plan->painted[0].style->paper, sizeof plan->paper);
+    return plan->surround != NULL;
+}
