@@ -119,10 +119,10 @@ static cairo_surface_t *draw(FlSvg *svg, bool original)
     cairo_t *cr = cairo_create(surface);
     const GArray *leaves = fl_svg_leaves(svg)->leaf;
     if (original)
-        g_assert_true(fl_svg_draw_group(svg, NULL, cr, 100, 100, NULL));
+        g_assert_true(fl_svg_draw_group(svg, NULL, cr, (FlPageSize){100, 100}, NULL));
     for (guint i = 0; i < leaves->len && !original; i++)
-        g_assert_true(
-            fl_svg_draw(svg, &g_array_index(leaves, FlLeaf, i), FL_PART_WHOLE, cr, 100, 100, NULL));
+        g_assert_true(fl_svg_draw(svg, &g_array_index(leaves, FlLeaf, i), FL_PART_WHOLE, cr,
+                                  (FlPageSize){100, 100}, NULL));
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     return surface;

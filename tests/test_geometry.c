@@ -6,7 +6,7 @@
 static FlOutlines *outlines_of(const char *content, double width, double height, FlSvg **opened)
 {
     g_autoptr(FlSvg) svg = open_svg_of(content);
-    FlOutlines *outlines = fl_outlines_new(svg, width, height);
+    FlOutlines *outlines = fl_outlines_new(svg, (FlPageSize){width, height});
     if (opened)
         *opened = g_steal_pointer(&svg);
     return outlines;
@@ -192,7 +192,7 @@ static RsvgRectangle drawn_box(FlSvg *svg, int width, int height)
     const FlRect all = {0, 0, width, height};
     g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_A8, width, height, NULL);
     g_autoptr(cairo_t) cr = cairo_create(surface);
-    g_assert_true(fl_svg_draw(svg, leaf, FL_PART_WHOLE, cr, width, height, NULL));
+    g_assert_true(fl_svg_draw(svg, leaf, FL_PART_WHOLE, cr, (FlPageSize){width, height}, NULL));
     const FlRect ink = fl_surface_bounds(surface, all);
     return (RsvgRectangle){ink.x, ink.y, ink.width, ink.height};
 }

@@ -166,8 +166,8 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
     cairo_t *cr = cairo_create(surface);
     cairo_rectangle(cr, box.x, box.y, box.width, box.height);
     cairo_clip(cr);
-    const bool drawn = fl_svg_draw(stage->svg, leaf, (FlPart)step->part, cr,
-                                   stage->frame->page_width, stage->frame->page_height, error);
+    const bool drawn =
+        fl_svg_draw(stage->svg, leaf, (FlPart)step->part, cr, stage->frame->page, error);
     cairo_destroy(cr);
     cairo_surface_flush(surface);
     return drawn;
@@ -215,8 +215,7 @@ static void find_paths(Stage *stage)
         if (!is_by_hand(step, stage->hand))
             continue;
         if (!outlines) {
-            outlines =
-                fl_outlines_new(stage->svg, stage->frame->page_width, stage->frame->page_height);
+            outlines = fl_outlines_new(stage->svg, stage->frame->page);
             stage->paths = g_new0(FlLinePaths *, stage->frame->n);
         }
         if (step->leaf < outlines->n_leaves)
@@ -480,8 +479,8 @@ static FlDigest digest_of_step(const Stage *stage, const FlStep *step)
 static FlDigest digest_of_draw(const Stage *stage, const Draw *draw)
 {
     const FlDrawing *drawing = stage->drawing;
-    const double page[] = {drawing->width, drawing->height, stage->frame->page_width,
-                           stage->frame->page_height};
+    const double page[] = {drawing->width, drawing->height, stage->frame->page.width,
+                           stage->frame->page.height};
     FlDigest digest = {0, 0};
     if (!stage->cache || has_hand(stage, draw))
         return digest;

@@ -30,7 +30,7 @@ void fl_drawing_halve(FlDrawing *drawing)
     drawing->width = fl_half_side(drawing->width), drawing->height = fl_half_side(drawing->height);
     for (int f = 0; f < drawing->sequence->n; f++) {
         FlDrawingFrame *frame = &drawing->frame[f];
-        frame->page_width /= 2, frame->page_height /= 2;
+        frame->page.width /= 2, frame->page.height /= 2;
         for (int i = 0; i < frame->n; i++) {
             frame->step[i].width /= 2;
             for (int side = 0; side < 4; side++)
@@ -245,8 +245,7 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
     for (int t = 0; t < survey->n_frames; t++) {
         const GArray *parts = survey->frame[t].parts;
         FlDrawingFrame *frame = &drawing->frame[t];
-        frame->page_width = survey->frame[t].page_width;
-        frame->page_height = survey->frame[t].page_height;
+        frame->page = survey->frame[t].page;
         frame->canvas = survey->frame[t].canvas;
         frame->origin = t;
         for (int i = 0; survey->frame[t].files && survey->frame[t].files[i]; i++)

@@ -13,7 +13,7 @@ FlOutlines *fl_outlines_make(const FlDrawing *drawing, int frame, GError **error
                                   .layer = drawing->sequence->layer[frame]};
     g_autoptr(FlSvg) svg = fl_svg_read(drawing->sequence->file[frame],
                                        drawing->sequence->number[frame], &options, NULL, error);
-    return svg ? fl_outlines_new(svg, f->page_width, f->page_height) : NULL;
+    return svg ? fl_outlines_new(svg, f->page) : NULL;
 }
 
 FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **error)

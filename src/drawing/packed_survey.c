@@ -7,12 +7,13 @@
 /* What is plain in a survey. */
 typedef struct Header {
     int width, height;
-    double page_width, page_height, scale;
+    FlPageSize page;
+    double scale;
 } Header;
 
 /* What is plain in a frame of it. */
 typedef struct FrameHeader {
-    double page_width, page_height;
+    FlPageSize page;
     FlCanvas canvas;
     int n_nameless;
 } FrameHeader;
@@ -44,8 +45,7 @@ static void put_texts(GByteArray *out, char **texts)
 
 static void put_frame(GByteArray *out, const FlSurveyFrame *frame)
 {
-    const FrameHeader header = {frame->page_width, frame->page_height, frame->canvas,
-                                frame->n_nameless};
+    const FrameHeader header = {frame->page, frame->canvas, frame->n_nameless};
     put(out, &header, sizeof header);
     put_texts(out, frame->whole);
     put_texts(out, frame->files);
@@ -55,8 +55,7 @@ static void put_frame(GByteArray *out, const FlSurveyFrame *frame)
 
 static void put_survey(GByteArray *out, const FlSurvey *survey)
 {
-    const Header header = {survey->width, survey->height, survey->page_width, survey->page_height,
-                           survey->scale};
+    const Header header = {survey->width, survey->height, survey->page, survey->scale};
     put(out, &header, sizeof header);
     put_int(out, (int)survey->strings.text->len);
     for (guint i = 0; i < survey->strings.text->len; i++)
@@ -151,6 +150,11 @@ static bool is_length(double px)
     return isfinite(px) && px > 0;
 }
 
+static bool is_page(FlPageSize page)
+{
+    return is_length(page.width) && is_length(page.height);
+}
+
 /* Whether the part is one that fl_survey_init() makes: nothing of it is out of range. */
 static bool is_sound(const FlSurveyPart *part, const FlStrings *strings)
 {
@@ -172,9 +176,8 @@ static void take_frame(Reader *r, const FlStrings *strings, FlSurveyFrame *frame
 {
     FrameHeader header;
     take(r, &header, sizeof header);
-    r->good = r->good && is_length(header.page_width) && is_length(header.page_height);
-    *frame = (FlSurveyFrame){.page_width = header.page_width,
-                             .page_height = header.page_height,
+    r->good = r->good && is_page(header.page);
+    *frame = (FlSurveyFrame){.page = header.page,
                              .canvas = header.canvas,
                              .n_nameless = header.n_nameless,
                              .whole = take_texts(r),
@@ -196,11 +199,10 @@ static void take_survey(Reader *r, FlSurvey *survey)
     Header header;
     take(r, &header, sizeof header);
     r->good = r->good && header.width >= 1 && header.width <= FL_SURVEY_MOST_SIDE &&
-              header.height >= 1 && header.height <= FL_SURVEY_MOST_SIDE &&
-              is_length(header.page_width) && is_length(header.page_height) &&
+              header.height >= 1 && header.height <= FL_SURVEY_MOST_SIDE && is_page(header.page) &&
               is_length(header.scale);
     survey->width = header.width, survey->height = header.height;
-    survey->page_width = header.page_width, survey->page_height = header.page_height;
+    survey->page = header.page;
     survey->scale = header.scale;
     fl_strings_add(&survey->strings, "");
     const int n = take_count(r);

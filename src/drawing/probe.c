@@ -38,7 +38,7 @@ static void add_probes(GArray *probes, const GArray *parts, guint first)
 /** Adds the size of the page to digests that are known. */
 static void add_page(const FlFrameProbe *f, FlDigest *digest, guint n)
 {
-    const double page[] = {f->width, f->height, f->factor, f->full_width, f->full_height};
+    const double page[] = {f->page.width, f->page.height, f->factor, f->full_width, f->full_height};
     for (guint i = 0; i < n; i++)
         if (fl_digest_is_known(digest[i]))
             fl_digest_add(&digest[i], page, sizeof page);
@@ -55,13 +55,13 @@ static void digest_leaves(FlFrameProbe *f)
     add_page(f, f->unit_digest, leaves->unit->len);
 }
 
-bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlFrameCache *cache, double page_width,
-                         double page_height, int width, int height, GError **error)
+bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlFrameCache *cache, FlPageSize page,
+                         int width, int height, GError **error)
 {
     *f = (FlFrameProbe){.svg = svg, .cache = cache, .full_width = width, .full_height = height};
     f->factor = MAX(1, (double)MAX(width, height) / PROBE_PX);
-    f->width = page_width / f->factor;
-    f->height = page_height / f->factor;
+    f->page.width = page.width / f->factor;
+    f->page.height = page.height / f->factor;
     f->all =
         (FlRect){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
     f->probes = new_probes();
@@ -91,7 +91,7 @@ static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect where
                   GError **error)
 {
     cairo_t *cr = cairo_create(f->coverage);
-    const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->width, f->height, error);
+    const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->page, error);
     cairo_destroy(cr);
     *box = fl_surface_bounds(f->coverage, where);
     return drawn;
@@ -160,6 +160,12 @@ static FlRect small_box(const FlFrameProbe *f, double x0, double y0, double x1, 
                            (int)ceil(x1 / f->factor), (int)ceil(y1 / f->factor));
 }
 
+/** The page in the picture. */
+static FlPageSize whole_page(const FlFrameProbe *f)
+{
+    return (FlPageSize){f->page.width * f->factor, f->page.height * f->factor};
+}
+
 /**
  * The box of a part that the small picture cannot show: text, whose shape depends on the scale, and
  * tiny parts. Drawn in full size; px of the small picture.
@@ -173,8 +179,7 @@ static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect
     if (!f->full)
         return false;
     cairo_t *cr = cairo_create(f->full);
-    const bool drawn =
-        fl_svg_draw(f->svg, leaf, part, cr, f->width * f->factor, f->height * f->factor, error);
+    const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, whole_page(f), error);
     cairo_destroy(cr);
     const FlRect ink = fl_surface_bounds(f->full, all);
     *area_px = sum_of(f->full, ink);
@@ -189,8 +194,7 @@ static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect
  */
 static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlRect *box)
 {
-    const RsvgRectangle r =
-        fl_svg_extents(f->svg, leaf, f->width * f->factor, f->height * f->factor);
+    const RsvgRectangle r = fl_svg_extents(f->svg, leaf, whole_page(f));
     const FlRect at = fl_rect_and(f->all, small_box(f, r.x, r.y, r.x + r.width, r.y + r.height));
     if (box->width > 0)
         *box = fl_rect_or(*box, at);
@@ -202,7 +206,7 @@ static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlRect *box)
  */
 static bool is_tiny(FlFrameProbe *f, const FlLeaf *leaf)
 {
-    const RsvgRectangle r = fl_svg_extents(f->svg, leaf, f->width, f->height);
+    const RsvgRectangle r = fl_svg_extents(f->svg, leaf, f->page);
     return r.width < TINY_PX || r.height < TINY_PX;
 }
 
@@ -227,7 +231,7 @@ static float width_of(const FlFrameProbe *f, const FlLeaf *leaf, const FlPainted
 {
     if (leaf->whole || leaf->text || (p->width > 0 && !p->stroke))
         return -1;
-    return p->stroke ? p->width * (float)(MAX(f->width, f->height) * f->factor) : 0;
+    return p->stroke ? p->width * (float)(MAX(f->page.width, f->page.height) * f->factor) : 0;
 }
 
 /** Adds the parts of a leaf that looks as one did in the frame before. */
@@ -320,7 +324,7 @@ static int is_separable(FlFrameProbe *f, const FlUnit *unit, guint first, GError
         const FlProbe *probe = &g_array_index(f->probes, FlProbe, first + i);
         piece[i] = (FlPiece){probe->leaf, probe->found.part, probe->found.blend_mode};
     }
-    return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->width, f->height, error);
+    return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->page, error);
 }
 
 static bool probe_leaves(FlFrameProbe *f, GError **error)
@@ -361,7 +365,7 @@ static bool probe_leaves(FlFrameProbe *f, GError **error)
 /** Stacks the parts once more: how much of each lies over others, and the self-check. */
 static bool stack(FlFrameProbe *f, GError **error)
 {
-    const float page = (float)(f->width * f->height * f->factor * f->factor);
+    const float page = (float)(f->page.width * f->page.height * f->factor * f->factor);
     g_autoptr(cairo_surface_t) below =
         fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
     if (!below)
@@ -388,7 +392,7 @@ static bool stack(FlFrameProbe *f, GError **error)
             }
         probe->found.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
         if (!fl_self_check_add(f->check, f->svg, probe->leaf, &probe->found, f->coverage, box,
-                               f->width, f->height, error))
+                               f->page, error))
             return false;
         fl_surface_wipe(f->coverage, box);
     }

@@ -20,8 +20,8 @@ typedef struct FlProbe {
 /** What one thread needs for one frame. */
 typedef struct FlFrameProbe {
     FlSvg *svg;
-    double width, height; // of the page in the small picture
-    double factor;        // px of the picture per px of the small one
+    FlPageSize page; // in the small picture
+    double factor;   // px of the picture per px of the small one
     cairo_surface_t *coverage;
     cairo_surface_t *full; // in the picture's own size; made when first needed
     int full_width, full_height;
@@ -34,11 +34,11 @@ typedef struct FlFrameProbe {
 } FlFrameProbe;
 
 /**
- * Opens what `svg` shows; the probe owns svg then. The page has page_width * page_height px in a
- * picture of width * height. Clear it with fl_frame_probe_clear(), also after an error.
+ * Opens what `svg` shows; the probe owns svg then. `page` is in px of a picture of width * height.
+ * Clear it with fl_frame_probe_clear(), also after an error.
  */
-bool fl_frame_probe_init(FlFrameProbe *probe, FlSvg *svg, FlFrameCache *cache, double page_width,
-                         double page_height, int width, int height, GError **error);
+bool fl_frame_probe_init(FlFrameProbe *probe, FlSvg *svg, FlFrameCache *cache, FlPageSize page,
+                         int width, int height, GError **error);
 
 /** Finds the parts, bottom up, and draws them over each other for the self-check. */
 bool fl_frame_probe_run(FlFrameProbe *probe, GError **error);

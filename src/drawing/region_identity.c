@@ -176,7 +176,7 @@ static void find_twins(Work *w)
 static void find_hairlines(Work *w)
 {
     const FlSurvey *survey = w->survey;
-    const double hair = HAIRLINE * MAX(survey->page_width, survey->page_height);
+    const double hair = HAIRLINE * MAX(survey->page.width, survey->page.height);
     for (guint k = 0; k < w->tracks->len; k++)
         w->is_hair[k] = true;
     for (int t = 0; t < survey->n_frames; t++)

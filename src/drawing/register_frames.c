@@ -34,7 +34,7 @@ static GArray *measure(const FlSequence *sequence, int t, double dpi, GError **e
         const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
         FlPainted parts[FL_MOST_PARTS];
         const int n = fl_svg_leaf_paints(svg, leaf, parts, error);
-        Shape shape = {.box = fl_svg_extents(svg, leaf, PAGE_PX, PAGE_PX)};
+        Shape shape = {.box = fl_svg_extents(svg, leaf, (FlPageSize){PAGE_PX, PAGE_PX})};
         for (int k = 0; k < n; k++) {
             shape.paint = shape.paint * 31 + g_str_hash(parts[k].paint.key);
             fl_svg_paint_clear(&parts[k].paint);

@@ -51,8 +51,8 @@ static void mix_pixel(uint32_t *below, uint32_t pixel, FlBlendMode blend_mode)
     *below = fl_blend(*below, rgb, pixel >> 24);
 }
 
-static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surface,
-                       double page_width, double page_height, GError **error)
+static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surface, FlPageSize page,
+                       GError **error)
 {
     const int width = cairo_image_surface_get_width(surface);
     const int height = cairo_image_surface_get_height(surface);
@@ -64,8 +64,7 @@ static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surfac
         return false;
     cairo_surface_mark_dirty(surface);
     cairo_t *cr = cairo_create(plain ? surface : apart);
-    const bool drawn =
-        fl_svg_draw(svg, piece->leaf, piece->part, cr, page_width, page_height, error);
+    const bool drawn = fl_svg_draw(svg, piece->leaf, piece->part, cr, page, error);
     cairo_destroy(cr);
     cairo_surface_flush(plain ? surface : apart);
     uint32_t *below = (uint32_t *)cairo_image_surface_get_data(surface);
@@ -77,8 +76,7 @@ static bool draw_piece(FlSvg *svg, const FlPiece *piece, cairo_surface_t *surfac
 }
 
 bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
-                       cairo_surface_t *coverage, FlRect box, double page_width, double page_height,
-                       GError **error)
+                       cairo_surface_t *coverage, FlRect box, FlPageSize page, GError **error)
 {
     const unsigned char *own = cairo_image_surface_get_data(coverage);
     const int stride = cairo_image_surface_get_stride(coverage);
@@ -96,7 +94,7 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
             if (cover)
                 check->top[p] = index;
         }
-    return flat || draw_piece(svg, &piece, check->sum, page_width, page_height, error);
+    return flat || draw_piece(svg, &piece, check->sum, page, error);
 }
 
 static int difference(uint32_t a, uint32_t b)
@@ -109,12 +107,12 @@ static int difference(uint32_t a, uint32_t b)
 
 /** Draws leaves over each other; NULL with an error. */
 static cairo_surface_t *draw_pieces(FlSvg *svg, const FlPiece *piece, int n, int width, int height,
-                                    double page_width, double page_height, GError **error)
+                                    FlPageSize page, GError **error)
 {
     g_autoptr(cairo_surface_t) surface = fl_surface_new(CAIRO_FORMAT_ARGB32, width, height, error);
     bool drawn = surface != NULL;
     for (int i = 0; i < n && drawn; i++)
-        drawn = draw_piece(svg, &piece[i], surface, page_width, page_height, error);
+        drawn = draw_piece(svg, &piece[i], surface, page, error);
     if (!drawn)
         return NULL;
     return g_steal_pointer(&surface);
@@ -126,14 +124,13 @@ static bool is_masked(const FlLeaf *leaf)
 }
 
 int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
-                   double page_width, double page_height, GError **error)
+                   FlPageSize page, GError **error)
 {
     const int width = check->width, height = check->height;
     const FlPiece whole = {group, FL_PART_WHOLE, FL_BLEND_MODE_OVER};
-    g_autoptr(cairo_surface_t) one =
-        draw_pieces(svg, &whole, 1, width, height, page_width, page_height, error);
+    g_autoptr(cairo_surface_t) one = draw_pieces(svg, &whole, 1, width, height, page, error);
     g_autoptr(cairo_surface_t) all =
-        one ? draw_pieces(svg, piece, n, width, height, page_width, page_height, error) : NULL;
+        one ? draw_pieces(svg, piece, n, width, height, page, error) : NULL;
     if (!all)
         return -1;
     const uint32_t *a = (const uint32_t *)cairo_image_surface_get_data(one);
@@ -165,22 +162,22 @@ static int compare(const uint32_t *a, const uint32_t *b, size_t n, size_t *where
 
 /** A group (NULL: everything) as the file has it; NULL with an error. */
 static cairo_surface_t *draw_truth(const FlSelfCheck *check, FlSvg *svg, const char *group,
-                                   double page_width, double page_height, GError **error)
+                                   FlPageSize page, GError **error)
 {
     g_autoptr(cairo_surface_t) truth =
         fl_surface_new(CAIRO_FORMAT_ARGB32, check->width, check->height, error);
     if (!truth)
         return NULL;
     cairo_t *cr = cairo_create(truth);
-    const bool drawn = fl_svg_draw_group(svg, group, cr, page_width, page_height, error);
+    const bool drawn = fl_svg_draw_group(svg, group, cr, page, error);
     cairo_destroy(cr);
     cairo_surface_flush(truth);
     return drawn ? g_steal_pointer(&truth) : NULL;
 }
 
 /** Whether a group looks as its leaves do. */
-static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, double page_width,
-                       double page_height, GError **error)
+static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, FlPageSize page,
+                       GError **error)
 {
     g_autoptr(GArray) inner = g_array_new(FALSE, FALSE, sizeof(FlPiece));
     for (guint i = 0; i < check->pieces->len; i++) {
@@ -189,11 +186,10 @@ static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, 
         if (g_strv_contains((const char *const *)groups, group))
             g_array_append_val(inner, *piece);
     }
-    g_autoptr(cairo_surface_t) truth =
-        draw_truth(check, svg, group, page_width, page_height, error);
+    g_autoptr(cairo_surface_t) truth = draw_truth(check, svg, group, page, error);
     g_autoptr(cairo_surface_t) sum =
         truth ? draw_pieces(svg, (const FlPiece *)inner->data, (int)inner->len, check->width,
-                            check->height, page_width, page_height, error)
+                            check->height, page, error)
               : NULL;
     if (!sum)
         return FL_VERDICT_ERROR;
@@ -208,8 +204,8 @@ static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, 
  * The smallest group around a leaf that does not look as its leaves do: *group, NULL if none.
  * Groups inside a group with a mask cannot be checked alone: librsvg draws them without the mask.
  */
-static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, double page_width,
-                       double page_height, char **group, GError **error)
+static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
+                       char **group, GError **error)
 {
     g_auto(GStrv) groups = g_strsplit(leaf->groups, "\n", -1);
     bool masked = is_masked(leaf);
@@ -217,7 +213,7 @@ static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf,
         masked = masked && strcmp(groups[i], leaf->layer) != 0;
         if (masked)
             continue;
-        const FlVerdict verdict = judge(check, svg, groups[i], page_width, page_height, error);
+        const FlVerdict verdict = judge(check, svg, groups[i], page, error);
         if (verdict == FL_VERDICT_ERROR)
             return false;
         if (verdict == FL_VERDICT_ALIKE)
@@ -242,14 +238,13 @@ static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n, int most
 
 /** Whether a leaf looks as its n parts, drawn one by one: 1 or 0; -1 with an error. */
 static int judge_leaf(const FlSelfCheck *check, FlSvg *svg, const FlPiece *piece, int n,
-                      double page_width, double page_height, GError **error)
+                      FlPageSize page, GError **error)
 {
     const FlPiece whole = {piece->leaf, FL_PART_WHOLE, FL_BLEND_MODE_OVER};
     g_autoptr(cairo_surface_t) one =
-        draw_pieces(svg, &whole, 1, check->width, check->height, page_width, page_height, error);
-    g_autoptr(cairo_surface_t) all = one ? draw_pieces(svg, piece, n, check->width, check->height,
-                                                       page_width, page_height, error)
-                                         : NULL;
+        draw_pieces(svg, &whole, 1, check->width, check->height, page, error);
+    g_autoptr(cairo_surface_t) all =
+        one ? draw_pieces(svg, piece, n, check->width, check->height, page, error) : NULL;
     size_t where = 0;
     return !all ? -1
                 : compare((const uint32_t *)cairo_image_surface_get_data(one),
@@ -271,8 +266,8 @@ static int parts_from(const FlSelfCheck *check, guint i)
  * If a leaf does not look as its parts do, such as a stroke over a fill below one opacity: it and
  * others like it, by fl_leaf_key(), one a line in *keys.
  */
-static bool find_leaves(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, double page_width,
-                        double page_height, char **keys, GError **error)
+static bool find_leaves(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, FlPageSize page,
+                        char **keys, GError **error)
 {
     g_autoptr(GString) list = g_string_new(NULL);
     bool found = false;
@@ -283,7 +278,7 @@ static bool find_leaves(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf
         if (n < 2)
             continue;
         judged++;
-        const int alike = judge_leaf(check, svg, piece, n, page_width, page_height, error);
+        const int alike = judge_leaf(check, svg, piece, n, page, error);
         if (alike < 0)
             return false;
         g_autofree char *key = fl_leaf_key(piece->leaf);
@@ -305,10 +300,10 @@ bool fl_self_check_is_gross(const FlSelfCheck *check)
     return check->gross;
 }
 
-FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
-                               double page_height, char **group, const char **leaf, GError **error)
+FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, FlPageSize page, char **group,
+                               const char **leaf, GError **error)
 {
-    g_autoptr(cairo_surface_t) truth = draw_truth(check, svg, NULL, page_width, page_height, error);
+    g_autoptr(cairo_surface_t) truth = draw_truth(check, svg, NULL, page, error);
     if (!truth)
         return FL_VERDICT_ERROR;
     size_t where = 0;
@@ -326,8 +321,7 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width
         return FL_VERDICT_DIFFERS;
     const FlLeaf *top = g_array_index(check->pieces, FlPiece, check->top[where] - 1).leaf;
     *leaf = top->name[0] ? top->name : NULL;
-    const bool judged =
-        find_leaves(check, svg, top, page_width, page_height, group, error) &&
-        (*group || find_group(check, svg, top, page_width, page_height, group, error));
+    const bool judged = find_leaves(check, svg, top, page, group, error) &&
+                        (*group || find_group(check, svg, top, page, group, error));
     return judged ? FL_VERDICT_DIFFERS : FL_VERDICT_ERROR;
 }

@@ -19,8 +19,7 @@ void fl_self_check_free(FlSelfCheck *check); // NULL is fine
 
 /** Draws the next part over; coverage is its A8 rendering, not 0 in `box` only. */
 bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const FlSurveyPart *part,
-                       cairo_surface_t *coverage, FlRect box, double page_width, double page_height,
-                       GError **error);
+                       cairo_surface_t *coverage, FlRect box, FlPageSize page, GError **error);
 
 /**
  * Compares with the file as it is, whether they differ visibly.
@@ -31,8 +30,8 @@ bool fl_self_check_add(FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf, const
  * by fl_leaf_key(), one a line. *leaf becomes that part's id in the file, which is the frame's;
  * NULL if it has none or nothing is drawn there.
  */
-FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, double page_width,
-                               double page_height, char **group, const char **leaf, GError **error);
+FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, FlPageSize page, char **group,
+                               const char **leaf, GError **error);
 
 /**
  * Whether edges of masks are visibly harder than in the file: each shape has the mask by itself,
@@ -57,6 +56,6 @@ typedef struct FlPiece {
  * Returns: 1 or 0; -1 with an error.
  */
 int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const FlPiece *piece, int n,
-                   double page_width, double page_height, GError **error);
+                   FlPageSize page, GError **error);
 
 #endif

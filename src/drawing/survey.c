@@ -99,14 +99,13 @@ static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings 
                                                    : open_svg(survey, t, warnings, error);
     if (!svg || !fl_svg_size(svg, &width, &height, error))
         return false;
-    frame->page_width = width * survey->scale;
-    frame->page_height = height * survey->scale;
+    frame->page.width = width * survey->scale;
+    frame->page.height = height * survey->scale;
     frame->n_nameless = fl_svg_nameless_groups(svg);
     g_strfreev(frame->files);
     frame->files = copy_of(fl_svg_files(svg));
     return fl_frame_probe_init(probe, g_steal_pointer(&svg), &survey->cache[thread_number()],
-                               frame->page_width, frame->page_height, survey->width, survey->height,
-                               error);
+                               frame->page, survey->width, survey->height, error);
 }
 
 /** Draws a frame leaf by leaf and compares it with the file; see fl_self_check_finish(). */
@@ -115,7 +114,7 @@ static FlVerdict try_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings 
 {
     if (!open_frame(survey, t, f, warnings, error) || !fl_frame_probe_run(f, error))
         return FL_VERDICT_ERROR;
-    return fl_self_check_finish(f->check, f->svg, f->width, f->height, group, leaf, error);
+    return fl_self_check_finish(f->check, f->svg, f->page, group, leaf, error);
 }
 
 static bool has_group(char **groups, const char *group)
@@ -183,8 +182,8 @@ static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *war
                             "shapes that overlap below a mask have a harder edge there");
         break;
     }
-    if (fabs(frame->page_width - survey->page_width) > 0.5 ||
-        fabs(frame->page_height - survey->page_height) > 0.5)
+    if (fabs(frame->page.width - survey->page.width) > 0.5 ||
+        fabs(frame->page.height - survey->page.height) > 0.5)
         fl_warnings_add(warnings, file, number, NULL,
                         "its page is not as large as the first frame's; it keeps its scale; if the "
                         "drawing slides, try ‘register’");
@@ -235,8 +234,8 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, FlWarnings *wa
     if (!fl_limit_check(FL_LIMIT_FRAME, w * h / 1e6, survey->sequence->file[0], error))
         return false;
     survey->scale = cover_scale(survey->scale, width, height, w, h);
-    survey->page_width = width * survey->scale;
-    survey->page_height = height * survey->scale;
+    survey->page.width = width * survey->scale;
+    survey->page.height = height * survey->scale;
     survey->width = (int)w;
     survey->height = (int)h;
     return true;

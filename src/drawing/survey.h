@@ -37,21 +37,21 @@ typedef struct FlSurveyPart {
 } FlSurveyPart;
 
 typedef struct FlSurveyFrame {
-    GArray *parts;                  // FlSurveyPart, bottom up
-    double page_width, page_height; // px of the picture
-    FlCanvas canvas;                // the frame's page
-    char **whole;                   // FlSvgOptions.whole; NULL: none
-    int n_nameless;                 // groups without an id
-    char **files;                   // that it refers to; NULL: none
+    GArray *parts;   // FlSurveyPart, bottom up
+    FlPageSize page; // px of the picture
+    FlCanvas canvas; // the frame's page
+    char **whole;    // FlSvgOptions.whole; NULL: none
+    int n_nameless;  // groups without an id
+    char **files;    // that it refers to; NULL: none
 } FlSurveyFrame;
 
 typedef struct FlSurvey {
     const FlSequence *sequence;
     FlSvgOptions svg;
     FlStrings strings;
-    int width, height;              // of the picture, px
-    double page_width, page_height; // of the first frame, px of the picture
-    double scale;                   // px of the picture per px of the drawing
+    int width, height; // of the picture, px
+    FlPageSize page;   // of the first frame, px of the picture
+    double scale;      // px of the picture per px of the drawing
     int n_frames;
     FlSurveyFrame *frame;
     struct FlFrameCache *cache; // of each thread

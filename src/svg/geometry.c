@@ -311,14 +311,14 @@ static FlOutlines *outlines_of(int n_leaves, int n_subpaths, int n_cubics)
     return outlines;
 }
 
-FlOutlines *fl_outlines_new(const FlSvg *svg, double width, double height)
+FlOutlines *fl_outlines_new(const FlSvg *svg, FlPageSize page)
 {
     const GArray *leaves = fl_svg_leaves(svg)->leaf;
     g_autoptr(GHashTable) ids = fl_document_ids(fl_svg_document(svg));
     g_autoptr(GHashTable) surrounds = g_hash_table_new_full(NULL, NULL, NULL, g_free);
     g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
     g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    Reader reader = {fl_svg_dpi(svg), width, height, surrounds, subpath, cubic};
+    Reader reader = {fl_svg_dpi(svg), page.width, page.height, surrounds, subpath, cubic};
     g_autofree FlGeometry *read = g_new0(FlGeometry, leaves->len + 1);
     for (guint i = 0; i < leaves->len; i++) {
         const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);

@@ -56,7 +56,7 @@ typedef struct FlOutlines {
  * An arc is always four cubics and a rectangle always eight, so that a shape keeps its structure
  * while its numbers change; a closing line of no length is dropped.
  */
-FlOutlines *fl_outlines_new(const FlSvg *svg, double width, double height);
+FlOutlines *fl_outlines_new(const FlSvg *svg, FlPageSize page);
 
 /** Makes the picture that they are in `factor` times as large. */
 void fl_outlines_scale(FlOutlines *outlines, double factor);

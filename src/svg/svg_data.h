@@ -14,7 +14,7 @@ typedef enum FlFar {
 /** What a group's mask and those around it let through on a page of that size. */
 typedef struct FlMaskCover {
     cairo_surface_t *surface; // A8; NULL: not drawn yet
-    double width, height;     // of the page, px
+    FlPageSize page;
 } FlMaskCover;
 
 struct FlSvg {
@@ -57,7 +57,7 @@ void fl_svg_set_error(const FlSvg *svg, const GError *reason, GError **error);
 
 /** Draws a part of a leaf with that handle: without the masks around it but for FL_TO_DRAW. */
 bool fl_svg_draw_leaf(FlSvg *svg, const FlLeaf *leaf, FlPart part, FlPurpose purpose, cairo_t *cr,
-                      double width, double height, GError **error);
+                      FlPageSize page, GError **error);
 
 /** Frees the surfaces of all covers. */
 void fl_svg_drop_covers(FlSvg *svg);

@@ -3,36 +3,35 @@
 #include <math.h>
 
 /** Renders a layer of one of the handles; NULL: everything. */
-static bool render(const FlSvg *svg, RsvgHandle *handle, const char *id, cairo_t *cr, double width,
-                   double height, GError **error)
+static bool render(const FlSvg *svg, RsvgHandle *handle, const char *id, cairo_t *cr,
+                   FlPageSize page, GError **error)
 {
     g_autoptr(GError) reason = NULL;
     g_autofree char *layer = id ? g_strconcat("#", id, NULL) : NULL;
-    const RsvgRectangle page = {0, 0, width, height};
-    if (rsvg_handle_render_layer(handle, cr, layer, &page, &reason))
+    const RsvgRectangle viewport = {0, 0, page.width, page.height};
+    if (rsvg_handle_render_layer(handle, cr, layer, &viewport, &reason))
         return true;
     fl_svg_set_error(svg, reason, error);
     return false;
 }
 
 bool fl_svg_draw_leaf(FlSvg *svg, const FlLeaf *leaf, FlPart part, FlPurpose purpose, cairo_t *cr,
-                      double width, double height, GError **error)
+                      FlPageSize page, GError **error)
 {
     RsvgHandle *handle = fl_svg_handle(svg, part, purpose, error);
     if (!handle)
         return false;
-    if (render(svg, handle, leaf->mask < 0 ? leaf->layer : leaf->id, cr, width, height, error))
+    if (render(svg, handle, leaf->mask < 0 ? leaf->layer : leaf->id, cr, page, error))
         return true;
     g_prefix_error(error, leaf->name[0] ? "#%s in " : "a shape without an id%s in ", leaf->name);
     return false;
 }
 
-bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
-                       GError **error)
+bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, FlPageSize page, GError **error)
 {
     if (!svg->before)
         svg->before = fl_svg_make_handle(svg, svg->original, svg->original_bytes, error);
-    return svg->before && render(svg, svg->before, id, cr, width, height, error);
+    return svg->before && render(svg, svg->before, id, cr, page, error);
 }
 
 /** How many pixels of a page's side there can be on a target of that many. */
@@ -45,16 +44,16 @@ static int side_on(double page_px, int most)
  * Draws everything on a colour surface of its own, which filters that read the backdrop need; cr is
  * of an image.
  */
-static bool draw_all(FlSvg *svg, cairo_t *cr, double width, double height, GError **error)
+static bool draw_all(FlSvg *svg, cairo_t *cr, FlPageSize page, GError **error)
 {
     cairo_surface_t *target = cairo_get_target(cr);
-    g_autoptr(cairo_surface_t) picture =
-        fl_surface_new(CAIRO_FORMAT_ARGB32, side_on(width, cairo_image_surface_get_width(target)),
-                       side_on(height, cairo_image_surface_get_height(target)), error);
+    g_autoptr(cairo_surface_t) picture = fl_surface_new(
+        CAIRO_FORMAT_ARGB32, side_on(page.width, cairo_image_surface_get_width(target)),
+        side_on(page.height, cairo_image_surface_get_height(target)), error);
     if (!picture)
         return false;
     cairo_t *inner = cairo_create(picture);
-    const bool drawn = fl_svg_draw_group(svg, NULL, inner, width, height, error);
+    const bool drawn = fl_svg_draw_group(svg, NULL, inner, page, error);
     cairo_destroy(inner);
     cairo_set_source_surface(cr, picture, 0, 0);
     cairo_paint(cr);
@@ -97,11 +96,11 @@ static void keep_cover(FlSvg *svg, int index, FlMaskCover cover)
 
 /** Draws what a mask and those around it, if any, let through. */
 static bool draw_cover(FlSvg *svg, const FlGroupMask *mask, cairo_surface_t *around,
-                       cairo_surface_t *surface, double width, double height, GError **error)
+                       cairo_surface_t *surface, FlPageSize page, GError **error)
 {
     RsvgHandle *handle = fl_svg_mask_handle(svg, mask->depth, error);
     cairo_t *cr = cairo_create(surface);
-    const bool drawn = handle && render(svg, handle, mask->group, cr, width, height, error);
+    const bool drawn = handle && render(svg, handle, mask->group, cr, page, error);
     if (around) {
         cairo_set_operator(cr, CAIRO_OPERATOR_DEST_IN);
         cairo_set_source_surface(cr, around, 0, 0);
@@ -113,57 +112,57 @@ static bool draw_cover(FlSvg *svg, const FlGroupMask *mask, cairo_surface_t *aro
 
 /** What a mask and those around it let through, on the page's pixels of a target; NULL with an
  * error. */
-static cairo_surface_t *cover_of(FlSvg *svg, int index, double width, double height, int columns,
-                                 int rows, GError **error)
+static cairo_surface_t *cover_of(FlSvg *svg, int index, FlPageSize page, int columns, int rows,
+                                 GError **error)
 {
     const FlMaskCover *known = &svg->cover[index];
-    if (known->surface && known->width == width && known->height == height)
+    if (known->surface && known->page.width == page.width && known->page.height == page.height)
         return cairo_surface_reference(known->surface);
     const FlGroupMask *mask = &g_array_index(svg->leaves->mask, FlGroupMask, index);
     g_autoptr(cairo_surface_t) around =
-        mask->around < 0 ? NULL : cover_of(svg, mask->around, width, height, columns, rows, error);
+        mask->around < 0 ? NULL : cover_of(svg, mask->around, page, columns, rows, error);
     g_autoptr(cairo_surface_t) surface =
         mask->around < 0 || around ? fl_surface_new(CAIRO_FORMAT_A8, columns, rows, error) : NULL;
-    if (!surface || !draw_cover(svg, mask, around, surface, width, height, error))
+    if (!surface || !draw_cover(svg, mask, around, surface, page, error))
         return NULL;
-    keep_cover(svg, index, (FlMaskCover){surface, width, height});
+    keep_cover(svg, index, (FlMaskCover){surface, page});
     return g_steal_pointer(&surface);
 }
 
 /** Draws a leaf by itself and masks it then; cr is of an image. */
-static bool draw_masked(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
-                        double height, GError **error)
+static bool draw_masked(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, FlPageSize page,
+                        GError **error)
 {
     cairo_surface_t *target = cairo_get_target(cr);
-    g_autoptr(cairo_surface_t) cover = cover_of(
-        svg, leaf->mask, width, height, side_on(width, cairo_image_surface_get_width(target)),
-        side_on(height, cairo_image_surface_get_height(target)), error);
+    g_autoptr(cairo_surface_t) cover =
+        cover_of(svg, leaf->mask, page, side_on(page.width, cairo_image_surface_get_width(target)),
+                 side_on(page.height, cairo_image_surface_get_height(target)), error);
     if (!cover)
         return false;
     cairo_push_group_with_content(cr, cairo_surface_get_content(target));
-    const bool drawn = fl_svg_draw_leaf(svg, leaf, part, FL_TO_DRAW_BARE, cr, width, height, error);
+    const bool drawn = fl_svg_draw_leaf(svg, leaf, part, FL_TO_DRAW_BARE, cr, page, error);
     cairo_pop_group_to_source(cr);
     cairo_mask_surface(cr, cover, 0, 0);
     return drawn;
 }
 
-bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
-                 double height, GError **error)
+bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, FlPageSize page,
+                 GError **error)
 {
     if (leaf->all)
-        return draw_all(svg, cr, width, height, error);
-    return leaf->mask < 0 ? fl_svg_draw_leaf(svg, leaf, part, FL_TO_DRAW, cr, width, height, error)
-                          : draw_masked(svg, leaf, part, cr, width, height, error);
+        return draw_all(svg, cr, page, error);
+    return leaf->mask < 0 ? fl_svg_draw_leaf(svg, leaf, part, FL_TO_DRAW, cr, page, error)
+                          : draw_masked(svg, leaf, part, cr, page, error);
 }
 
-RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, double height)
+RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, FlPageSize page)
 {
     g_autofree char *layer = g_strconcat("#", leaf->id, NULL);
-    const RsvgRectangle page = {0, 0, width, height};
+    const RsvgRectangle viewport = {0, 0, page.width, page.height};
     RsvgRectangle box = {0};
     if (leaf->all)
-        return page;
-    if (!rsvg_handle_get_geometry_for_layer(svg->handle, layer, &page, &box, NULL, NULL))
+        return viewport;
+    if (!rsvg_handle_get_geometry_for_layer(svg->handle, layer, &viewport, &box, NULL, NULL))
         return (RsvgRectangle){0};
     return box;
 }

@@ -14,6 +14,11 @@ typedef struct FlCanvas {
 /** Reads "WxH" or "WxH+X+Y" in px. FL_ERROR_USAGE. */
 bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error);
 
+/** How many px a page has when it is drawn; above 0. */
+typedef struct FlPageSize {
+    double width, height;
+} FlPageSize;
+
 typedef struct FlSvgOptions {
     FlCanvas canvas;
     double dpi;               // of mm, cm, in, pt; 0: 96
@@ -63,21 +68,19 @@ int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_P
                        GError **error);
 
 /**
- * Draws a part of a leaf at its place in the picture, with its clip, mask and groups. The page is
- * scaled to width x height px.
+ * Draws a part of a leaf at its place in the picture, with its clip, mask and groups. The drawing
+ * is scaled to the page.
  */
-bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, double width,
-                 double height, GError **error);
+bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, FlPageSize page,
+                 GError **error);
 
 /**
- * The box of a leaf, its strokes included and clips not, in px of a page of width x height; empty
- * if it has none.
+ * The box of a leaf, its strokes included and clips not, in px of the page; empty if it has none.
  */
-RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, double width, double height);
+RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, FlPageSize page);
 
 /** Draws a group of that id (NULL: everything) as it was before the file was normalised. */
-bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, double width, double height,
-                       GError **error);
+bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, FlPageSize page, GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSvg, fl_svg_free)
 

@@ -31,7 +31,8 @@ static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, double size,
         cairo_translate(cr, size / 4, 0);
         cairo_rotate(cr, FL_PAINT_PROBE_TURN);
     }
-    const bool drawn = fl_svg_draw_leaf(svg, leaf, part, FL_TO_READ, cr, size, size, error);
+    const bool drawn =
+        fl_svg_draw_leaf(svg, leaf, part, FL_TO_READ, cr, (FlPageSize){size, size}, error);
     cairo_destroy(cr);
     cairo_surface_finish(surface);
     cairo_device_finish(device);
@@ -91,7 +92,7 @@ int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_P
         return -1;
     for (double size = PROBE_PX; size <= LARGE_PROBE_PX; size *= LARGE_PROBE_PX / PROBE_PX) {
         if ((size > PROBE_PX || svg->far == FL_FAR_SOME) &&
-            is_far(fl_svg_extents(svg, leaf, size, size)))
+            is_far(fl_svg_extents(svg, leaf, (FlPageSize){size, size})))
             return 0;
         g_autofree char *script = script_of(svg, leaf, FL_PART_WHOLE, size, NULL);
         // It also fails for some fills without an area; such a leaf is its stroke.
@@ -100,7 +101,7 @@ int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_P
         const int n = script ? fl_svg_paint_parse(script, leaf->whole, parts) : -1;
         for (int i = 0; i < n; i++)
             parts[i].width /= (float)size;
-        if (n != 0 || !is_small(fl_svg_extents(svg, leaf, size, size)))
+        if (n != 0 || !is_small(fl_svg_extents(svg, leaf, (FlPageSize){size, size})))
             return n;
     }
     return 0;

@@ -21,7 +21,7 @@ static void look_at(FlSvg *svg)
         const int n = fl_svg_leaf_paints(svg, leaf, parts, &error);
         g_assert_cmpint(n, <=, FL_MOST_PARTS);
         if (n > 0)
-            fl_svg_draw(svg, leaf, parts[0].part, cr, SIDE, SIDE, NULL);
+            fl_svg_draw(svg, leaf, parts[0].part, cr, (FlPageSize){SIDE, SIDE}, NULL);
         for (int k = 0; k < n; k++)
             fl_svg_paint_clear(&parts[k].paint);
     }
