@@ -21,9 +21,9 @@
 /* ---- the child ----------------------------------------------------------------------------- */
 
 G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawingOptions *options,
-                                     FlWatch *watch, int fd, int words)
+                                     FlWatch *watch, int fd, int stderr_fd)
 {
-    fl_confined_enter(sequence, words);
+    fl_confined_enter(sequence, stderr_fd);
     GError *problem = NULL;
     FlSurvey survey = {0};
     FlWarnings *warnings = fl_warnings_new();
@@ -87,7 +87,7 @@ static int wait_for(pid_t child, int alive, const FlSequence *sequence,
 
 /** Forks. Returns: false if that failed; the caller then reads the drawing itself. */
 static bool start(const FlSequence *sequence, const FlDrawingOptions *options, FlWatch *watch,
-                  int fd, int words, bool one_thread, pid_t *child, int *alive)
+                  int fd, int stderr_fd, bool one_thread, pid_t *child, int *alive)
 {
     int ends[2];
     if (pipe(ends) != 0)
@@ -101,7 +101,7 @@ static bool start(const FlSequence *sequence, const FlDrawingOptions *options, F
         if (one_thread)
             omp_set_num_threads(1);
 #endif
-        be_child(sequence, options, watch, fd, words);
+        be_child(sequence, options, watch, fd, stderr_fd);
     }
     close(ends[1]);
     *alive = ends[0];
@@ -144,9 +144,10 @@ static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDraw
     pid_t child = -1;
     memset(watch, 0, sizeof *watch);
     *again = false;
-    const int fd = memfd_create("fluidy-survey", MFD_CLOEXEC), words = fl_confined_stderr_file();
+    const int fd = memfd_create("fluidy-survey", MFD_CLOEXEC),
+              stderr_fd = fl_confined_stderr_file();
     bool good = false;
-    if (fd < 0 || !start(sequence, options, watch, fd, words, *one_thread, &child, &alive)) {
+    if (fd < 0 || !start(sequence, options, watch, fd, stderr_fd, *one_thread, &child, &alive)) {
         good = fl_survey_init(survey, sequence, options, NULL, warnings, error);
     } else {
         const int status = wait_for(child, alive, sequence, options, watch, &late);
@@ -156,7 +157,7 @@ static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDraw
             if (good && options->reading)
                 (void)options->reading(options->data, sequence, sequence->n);
         } else {
-            const FlConfinedEnd end = {status, late >= 0, fl_confined_asked_too_much(words)};
+            const FlConfinedEnd end = {status, late >= 0, fl_confined_asked_too_much(stderr_fd)};
             *bad = late >= 0 ? late : only_frame(watch);
             *again = *bad < 0 && !*one_thread;
             *one_thread = true;
@@ -166,8 +167,8 @@ static bool try_apart(FlSurvey *survey, const FlSequence *sequence, const FlDraw
     }
     if (fd >= 0)
         close(fd);
-    if (words >= 0)
-        close(words);
+    if (stderr_fd >= 0)
+        close(stderr_fd);
     return good;
 }
 

@@ -22,7 +22,7 @@ bool fl_confined_may_fork(void)
 
 int fl_confined_stderr_file(void)
 {
-    return memfd_create("fluidy-words", MFD_CLOEXEC);
+    return memfd_create("fluidy-stderr", MFD_CLOEXEC);
 }
 
 void fl_confined_ends_with(pid_t parent)
@@ -51,7 +51,7 @@ static GPtrArray *paths_of(const FlSequence *sequence)
     return paths;
 }
 
-void fl_confined_enter(const FlSequence *sequence, int words)
+void fl_confined_enter(const FlSequence *sequence, int stderr_fd)
 {
     static const int signals[] = {SIGINT,  SIGTERM, SIGHUP, SIGPIPE, SIGCHLD,
                                   SIGALRM, SIGSEGV, SIGBUS, SIGABRT};
@@ -64,20 +64,21 @@ void fl_confined_enter(const FlSequence *sequence, int words)
     const int null = open("/dev/null", O_RDWR | O_CLOEXEC);
     dup2(null, STDIN_FILENO);
     dup2(null, STDOUT_FILENO);
-    dup2(words >= 0 ? words : null, STDERR_FILENO);
+    dup2(stderr_fd >= 0 ? stderr_fd : null, STDERR_FILENO);
     const int64_t mib = fl_limit(FL_LIMIT_MEMORY);
     g_autoptr(GPtrArray) paths = paths_of(sequence);
     fl_sandbox_enter((const char *const *)paths->pdata, mib);
 }
 
-bool fl_confined_asked_too_much(int words)
+bool fl_confined_asked_too_much(int stderr_fd)
 {
     // Rust's, GLib's and OpenMP's
     static const char *const said[] = {"memory allocation of", "failed to allocate",
                                        "Out of memory"};
     char text[4096] = "";
-    const off_t end = words >= 0 ? lseek(words, 0, SEEK_END) : 0;
-    if (end <= 0 || pread(words, text, sizeof text - 1, MAX(0, end - (off_t)sizeof text + 1)) <= 0)
+    const off_t end = stderr_fd >= 0 ? lseek(stderr_fd, 0, SEEK_END) : 0;
+    if (end <= 0 ||
+        pread(stderr_fd, text, sizeof text - 1, MAX(0, end - (off_t)sizeof text + 1)) <= 0)
         return false;
     for (size_t i = 0; i < G_N_ELEMENTS(said); i++)
         if (strstr(text, said[i]))

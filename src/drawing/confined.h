@@ -16,10 +16,10 @@ int fl_confined_stderr_file(void);
 void fl_confined_ends_with(pid_t parent);
 
 /**
- * For a new child: it leaves no core, has no standard streams but `words` as its errors, and may
- * read the sequence's folders and no other files; see fl_sandbox_enter().
+ * For a new child: it leaves no core, has no standard streams but `stderr_fd` for what libraries
+ * say, and may read the sequence's folders and no other files; see fl_sandbox_enter().
  */
-void fl_confined_enter(const FlSequence *sequence, int words);
+void fl_confined_enter(const FlSequence *sequence, int stderr_fd);
 
 /** How a child ended. */
 typedef struct FlConfinedEnd {
@@ -28,8 +28,8 @@ typedef struct FlConfinedEnd {
     bool too_much; // it asked for more memory than it may have
 } FlConfinedEnd;
 
-/** Whether `words` tell of memory that was refused. */
-bool fl_confined_asked_too_much(int words);
+/** Whether `stderr_fd` tells of memory that was refused. */
+bool fl_confined_asked_too_much(int stderr_fd);
 
 /**
  * Sets the error that names file and frame of what ended the child. `work` is "reading" or

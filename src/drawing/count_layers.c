@@ -32,16 +32,16 @@ static Answer count(const char *file)
     return answer;
 }
 
-G_GNUC_NORETURN static void be_child(const FlSequence *sequence, int fd, int words)
+G_GNUC_NORETURN static void be_child(const FlSequence *sequence, int fd, int stderr_fd)
 {
-    fl_confined_enter(sequence, words);
+    fl_confined_enter(sequence, stderr_fd);
     alarm((unsigned)fl_limit(FL_LIMIT_SECONDS));
     const Answer answer = count(sequence->file[0]);
     _exit(write(fd, &answer, sizeof answer) == sizeof answer ? 0 : 1);
 }
 
 /** Returns: whether a child could be asked; *end is how it ended. */
-static bool ask_child(const FlSequence *sequence, int words, Answer *answer, FlConfinedEnd *end)
+static bool ask_child(const FlSequence *sequence, int stderr_fd, Answer *answer, FlConfinedEnd *end)
 {
     int ends[2];
     const pid_t self = getpid();
@@ -51,7 +51,7 @@ static bool ask_child(const FlSequence *sequence, int words, Answer *answer, FlC
     if (child == 0) {
         fl_confined_ends_with(self);
         close(ends[0]);
-        be_child(sequence, ends[1], words);
+        be_child(sequence, ends[1], stderr_fd);
     }
     close(ends[1]);
     ssize_t n = 0;
@@ -72,14 +72,14 @@ int fl_count_layers(const char *file, GError **error)
     char *files[] = {(char *)file, NULL};
     int number = 1;
     const FlSequence sequence = {.n = 1, .file = files, .number = &number};
-    const int words = fl_confined_stderr_file();
+    const int stderr_fd = fl_confined_stderr_file();
     Answer answer = {0};
     FlConfinedEnd end = {0};
-    if (!ask_child(&sequence, words, &answer, &end))
+    if (!ask_child(&sequence, stderr_fd, &answer, &end))
         answer = count(file);
-    end.too_much = fl_confined_asked_too_much(words);
-    if (words >= 0)
-        close(words);
+    end.too_much = fl_confined_asked_too_much(stderr_fd);
+    if (stderr_fd >= 0)
+        close(stderr_fd);
     if (answer.count == 0 && answer.code)
         g_set_error(error, FL_ERROR, answer.code, "%s", answer.message);
     else if (answer.count == 0)

@@ -31,39 +31,39 @@ struct FlDrawPool {
 static void close_worker(FlDrawWorker *worker)
 {
     if (worker->pid > 0) {
-        shutdown(worker->line, SHUT_RDWR);
+        shutdown(worker->socket, SHUT_RDWR);
         while (waitpid(worker->pid, NULL, 0) < 0 && errno == EINTR)
             ;
     }
-    const int files[] = {worker->line, worker->pictures, worker->words};
+    const int files[] = {worker->socket, worker->pictures, worker->stderr_fd};
     for (size_t i = 0; i < G_N_ELEMENTS(files); i++)
         if (files[i] >= 0)
             close(files[i]);
     if (worker->draws)
         munmap(worker->draws, sizeof *worker->draws);
-    *worker = (FlDrawWorker){.line = -1, .pictures = -1, .words = -1};
+    *worker = (FlDrawWorker){.socket = -1, .pictures = -1, .stderr_fd = -1};
 }
 
 static bool start_worker(FlDrawPool *pool, FlDrawing *drawing, FlDrawWorker *worker)
 {
     int ends[2];
-    *worker = (FlDrawWorker){.line = -1,
+    *worker = (FlDrawWorker){.socket = -1,
                              .pictures = memfd_create("fluidy-pictures", MFD_CLOEXEC),
-                             .words = fl_confined_stderr_file()};
+                             .stderr_fd = fl_confined_stderr_file()};
     void *shared = mmap(NULL, sizeof *worker->draws, PROT_READ | PROT_WRITE,
                         MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     worker->draws = shared == MAP_FAILED ? NULL : shared;
-    if (worker->pictures < 0 || worker->words < 0 || !worker->draws ||
+    if (worker->pictures < 0 || worker->stderr_fd < 0 || !worker->draws ||
         socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
         return false;
-    worker->line = ends[0];
+    worker->socket = ends[0];
     const pid_t self = getpid();
     worker->pid = fork();
     if (worker->pid == 0) {
         fl_confined_ends_with(self);
         for (FlDrawWorker *other = pool->worker; other <= worker; other++)
-            close(other->line);
-        worker->line = ends[1];
+            close(other->socket);
+        worker->socket = ends[1];
         fl_draw_worker_attend(drawing, worker);
     }
     close(ends[1]);
@@ -264,11 +264,11 @@ static bool ask(const FlDrawWorker *worker, const FlDrawing *drawing, const Task
         if (!put_hand(drawing, hand, worker))
             return false;
     }
-    ssize_t got = send(worker->line, &request, sizeof request, MSG_NOSIGNAL);
+    ssize_t got = send(worker->socket, &request, sizeof request, MSG_NOSIGNAL);
     if (got != (ssize_t)sizeof request)
         return false;
     do
-        got = recv(worker->line, reply, sizeof *reply, MSG_WAITALL);
+        got = recv(worker->socket, reply, sizeof *reply, MSG_WAITALL);
     while (got < 0 && errno == EINTR);
     return got == (ssize_t)sizeof *reply;
 }

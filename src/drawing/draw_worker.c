@@ -96,7 +96,7 @@ static void ignore_terminal(void)
 static void confine(const FlDrawing *drawing, const FlDrawWorker *worker)
 {
     (void)fl_schedule_threads();
-    fl_confined_enter(drawing->sequence, worker->words);
+    fl_confined_enter(drawing->sequence, worker->stderr_fd);
     ignore_terminal();
 }
 
@@ -106,7 +106,7 @@ G_GNUC_NORETURN static void serve(FlDrawing *drawing, const FlDrawWorker *worker
     FlDrawRequest request;
     FlFrameCache cache = {0};
     confine(drawing, worker);
-    while (recv(worker->line, &request, sizeof request, MSG_WAITALL) == sizeof request) {
+    while (recv(worker->socket, &request, sizeof request, MSG_WAITALL) == sizeof request) {
         atomic_store(worker->draws, 1);
         while (drawing->n_halved < request.n_halved)
             fl_drawing_halve(drawing);
@@ -118,7 +118,7 @@ G_GNUC_NORETURN static void serve(FlDrawing *drawing, const FlDrawWorker *worker
         if (!reply.drawn)
             _exit(1);
         atomic_store(worker->draws, 0);
-        if (send(worker->line, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply)
+        if (send(worker->socket, &reply, sizeof reply, MSG_NOSIGNAL) != sizeof reply)
             break;
     }
     _exit(0);
@@ -129,8 +129,8 @@ void fl_draw_worker_attend(FlDrawing *drawing, const FlDrawWorker *worker)
     ignore_terminal();
     char next;
     int untaken = 0; // children in a row that ended before they took the request
-    while (recv(worker->line, &next, 1, MSG_PEEK) == 1) {
-        (void)!ftruncate(worker->words, 0);
+    while (recv(worker->socket, &next, 1, MSG_PEEK) == 1) {
+        (void)!ftruncate(worker->stderr_fd, 0);
         const pid_t self = getpid(), child = fork();
         if (child == 0) {
             fl_confined_ends_with(self);
@@ -142,16 +142,16 @@ void fl_draw_worker_attend(FlDrawing *drawing, const FlDrawWorker *worker)
         const FlDrawReply reply = {
             .end = {.status = status,
                     .late = WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM,
-                    .too_much = fl_confined_asked_too_much(worker->words)}};
+                    .too_much = fl_confined_asked_too_much(worker->stderr_fd)}};
         FlDrawRequest request;
         untaken = atomic_exchange(worker->draws, 0) ? 0 : untaken + 1;
         if (untaken == 1)
             continue; // it was killed while it waited: another one may live
         if (untaken > 1 &&
-            recv(worker->line, &request, sizeof request, MSG_WAITALL) != sizeof request)
+            recv(worker->socket, &request, sizeof request, MSG_WAITALL) != sizeof request)
             break;
         untaken = 0;
-        (void)!send(worker->line, &reply, sizeof reply, MSG_NOSIGNAL);
+        (void)!send(worker->socket, &reply, sizeof reply, MSG_NOSIGNAL);
     }
     _exit(0);
 }

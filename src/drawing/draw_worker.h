@@ -14,9 +14,9 @@
  */
 typedef struct FlDrawWorker {
     pid_t pid;
-    int line;            // requests and replies
-    int pictures, words; // memory files: what a request or a reply holds; what libraries said
-    atomic_int *draws;   // shared: whether a request was taken and has no reply yet
+    int socket;              // requests and replies
+    int pictures, stderr_fd; // memory files: what a request or a reply holds; what libraries said
+    atomic_int *draws;       // shared: whether a request was taken and has no reply yet
     bool busy, gone;
 } FlDrawWorker;
 

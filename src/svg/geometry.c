@@ -6,18 +6,18 @@
 #include <string.h>
 
 /** What the children of a node inherit. */
-typedef struct Surrounds {
+typedef struct Inherited {
     FlAffine ctm;
     double width, height; // of the viewport, for percentages
     bool clipped, evenodd, filled, stroked;
     double stroke; // width, local units
     bool broken;   // something could not be parsed
-} Surrounds;
+} Inherited;
 
 typedef struct Reader {
     double dpi;
     double width, height;    // px of the page
-    GHashTable *surrounds;   // xmlNode -> Surrounds
+    GHashTable *inherited;   // xmlNode -> Inherited
     GArray *subpath, *cubic; // FlSubpath, FlCubic
 } Reader;
 
@@ -102,7 +102,7 @@ static bool view_box(const xmlNode *node, double box[4])
 }
 
 /** An <svg>: its place, its viewport and its viewBox. */
-static void enter_viewport(const Reader *reader, const xmlNode *node, Surrounds *s)
+static void enter_viewport(const Reader *reader, const xmlNode *node, Inherited *s)
 {
     const bool outermost = !node->parent || node->parent->type != XML_ELEMENT_NODE;
     const double w = s->width, h = s->height;
@@ -147,7 +147,7 @@ static FlAffine transform_of(const xmlNode *node)
     return m;
 }
 
-static void enter_properties(const Reader *reader, const xmlNode *node, Surrounds *s)
+static void enter_properties(const Reader *reader, const xmlNode *node, Inherited *s)
 {
     s->clipped |= is_set(node, "clip-path") || is_set(node, "mask") || is_set(node, "filter");
     g_autofree char *rule = fl_property(node, "fill-rule"), *fill = fl_property(node, "fill");
@@ -163,28 +163,28 @@ static void enter_properties(const Reader *reader, const xmlNode *node, Surround
     s->stroke = length_in(reader, node, "stroke-width", mean, s->stroke, &ignored);
 }
 
-static Surrounds surrounds_of(Reader *reader, const xmlNode *node)
+static Inherited inherited_by(Reader *reader, const xmlNode *node)
 {
-    const Surrounds page = {.ctm = FL_AFFINE_NONE,
+    const Inherited page = {.ctm = FL_AFFINE_NONE,
                             .width = reader->width,
                             .height = reader->height,
                             .filled = true,
                             .stroke = 1};
     if (!node || node->type != XML_ELEMENT_NODE)
         return page;
-    const Surrounds *known = g_hash_table_lookup(reader->surrounds, node);
+    const Inherited *known = g_hash_table_lookup(reader->inherited, node);
     if (known)
         return *known;
-    Surrounds s = surrounds_of(reader, node->parent);
+    Inherited s = inherited_by(reader, node->parent);
     const FlAffine m = transform_of(node);
     s.ctm = fl_affine_multiply(&s.ctm, &m);
     if (fl_is(node, "svg"))
         enter_viewport(reader, node, &s);
     enter_properties(reader, node, &s);
     if (node->children) {
-        Surrounds *copy = g_new(Surrounds, 1);
+        Inherited *copy = g_new(Inherited, 1);
         *copy = s;
-        g_hash_table_insert(reader->surrounds, (gpointer)node, copy);
+        g_hash_table_insert(reader->inherited, (gpointer)node, copy);
     }
     return s;
 }
@@ -192,7 +192,7 @@ static Surrounds surrounds_of(Reader *reader, const xmlNode *node)
 /* ---- leaves ---- */
 
 /** Draws a basic shape. Returns: what it is. */
-static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const Surrounds *s,
+static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const Inherited *s,
                                 FlPen *pen, bool *broken)
 {
     const double w = s->width, h = s->height, mean = sqrt((w * w + h * h) / 2);
@@ -231,7 +231,7 @@ static FlOutlineKind draw_shape(const Reader *reader, const xmlNode *node, const
     return FL_OUTLINE_NONE;
 }
 
-static FlOutlineKind draw_leaf(const Reader *reader, const xmlNode *node, const Surrounds *s,
+static FlOutlineKind draw_leaf(const Reader *reader, const xmlNode *node, const Inherited *s,
                                FlPen *pen, bool *broken)
 {
     if (!fl_is(node, "path"))
@@ -282,7 +282,7 @@ static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *n
     FlGeometry g;
     memset(&g, 0, sizeof g); // padding too: it is stored as bytes
     FlPen pen = {.subpath = reader->subpath, .cubic = reader->cubic};
-    const Surrounds s = surrounds_of(reader, node);
+    const Inherited s = inherited_by(reader, node);
     bool broken = s.broken;
     const guint first = reader->cubic->len;
     g.first_subpath = (int32_t)reader->subpath->len;
@@ -315,10 +315,10 @@ FlOutlines *fl_outlines_new(const FlSvg *svg, FlPageSize page)
 {
     const GArray *leaves = fl_svg_leaves(svg)->leaf;
     g_autoptr(GHashTable) ids = fl_document_ids(fl_svg_document(svg));
-    g_autoptr(GHashTable) surrounds = g_hash_table_new_full(NULL, NULL, NULL, g_free);
+    g_autoptr(GHashTable) inherited = g_hash_table_new_full(NULL, NULL, NULL, g_free);
     g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
     g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
-    Reader reader = {fl_svg_dpi(svg), page.width, page.height, surrounds, subpath, cubic};
+    Reader reader = {fl_svg_dpi(svg), page.width, page.height, inherited, subpath, cubic};
     g_autofree FlGeometry *read = g_new0(FlGeometry, leaves->len + 1);
     for (guint i = 0; i < leaves->len; i++) {
         const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
