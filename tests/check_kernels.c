@@ -207,7 +207,7 @@ static void the_same_tries_are_drawn_inside_the_windows(const void *version)
 
 enum { CELLS = 8 }; // side of the occurrence map, in time too
 
-static void make_sieve(FlCandidateFilter *filter, const FlTexel *first, const int32_t *use,
+static void make_filter(FlCandidateFilter *filter, const FlTexel *first, const int32_t *use,
                        FlRng *rng)
 {
     *filter = (FlCandidateFilter){.first = first,
@@ -240,7 +240,7 @@ static void the_same_tries_pass_as_in_c(const void *version)
         for (int k = 0; k < CELLS * CELLS * CELLS; k++)
             use[k] = (int32_t)fl_rng_below(&rng, seed % 5 ? 3000 : INT32_MAX);
         kernels->draw_candidates(&w, (uint16_t[3]){0, 0, 0}, fl_rng_u32(&rng), &candidates);
-        make_sieve(&filter, texels, use, &rng);
+        make_filter(&filter, texels, use, &rng);
         const uint64_t passed = fl_filter_candidates_c(&candidates, w.n, &filter, want);
         g_assert_cmpuint(kernels->filter_candidates(&candidates, w.n, &filter, got), ==, passed);
         for (int k = 0; k < w.n; k++)
@@ -631,7 +631,7 @@ static void time_version(const FlKernels *kernels)
     make_case(&c, 1);
     make_windows(&w, 16, &rng);
     w.n = 20;
-    make_sieve(&filter, texels, use, &rng);
+    make_filter(&filter, texels, use, &rng);
     do
         make_votes(&votes, &rng);
     while (!fl_vote_c(&votes.covering, &votes.voted, value));
