@@ -10,7 +10,8 @@
 #include <string.h>
 
 #define NEAR_PX 8 // on the finest level; around a match that has settled, on coarser levels
-#define FINEST_RANDOM_SWEEPS 2 // later ones gain .5 % of the energy for a tenth of the time
+#define FINEST_RANDOM_SWEEPS 3 // on the finest level; a later one gains nothing that is seen
+#define FIRST_RANDOM_SWEEPS 2  // the same of a first frame, which ends better than those after it
 
 int fl_synth_finest_searched(const FlSynth *synth)
 {
@@ -209,12 +210,13 @@ static void end_statistics(FlSearch *search, FlTargetLevel *target, FlLevelStats
 
 /* Matches that are good as they are cost little time: random tries find next to nothing for them,
  * least of all where the field comes from the coarser level or the frame before. */
-static void settle(FlSearch *search, int level, bool from_nothing)
+static void settle(FlSearch *search, int level, bool first, bool coarsest)
 {
     const float settled = search->params->settled;
     search->settled = (uint32_t)MIN(settled * fl_mean_cost(search), UINT32_MAX);
-    search->near_px = from_nothing ? INT_MAX : level > 0 ? NEAR_PX << level : 0;
-    search->propagate_from = settled > 0 && level == 0 ? FINEST_RANDOM_SWEEPS : 0;
+    search->near_px = first && coarsest ? INT_MAX : level > 0 ? NEAR_PX << level : 0;
+    if (settled > 0 && level == 0)
+        search->propagate_from = first ? FIRST_RANDOM_SWEEPS : FINEST_RANDOM_SWEEPS;
 }
 
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
@@ -255,7 +257,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     *stats = (FlLevelStats){.width = target->width, .height = target->height, .rounds = rounds};
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
-    settle(&search, l, from_coarsest == 0 && !shifted);
+    settle(&search, l, !shifted, from_coarsest == 0);
     const int sweeps =
         finest ? params->finest_sweeps : fl_list_at(&params->patchmatch_iterations, from_coarsest);
     if (!optimise(synth, &search, target, rounds, sweeps, stats, error))
