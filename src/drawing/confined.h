@@ -1,5 +1,4 @@
-/* Sandboxed child processes that read or draw a sequence: set-up, and errors from how they ended.
- */
+/* Sandboxed child processes that read or draw a sequence: set-up, and errors from their ends. */
 #ifndef FLUIDY_DRAWING_CONFINED_H
 #define FLUIDY_DRAWING_CONFINED_H
 

@@ -97,7 +97,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
     plan->options = *options;
     plan->start = g_get_monotonic_time();
     plan->styles = fl_style_cache_new(&plan->options);
-    // before the defaults are filled in, of which "auto" is the program's: without a word, no cache
+    // before the defaults are filled in: fl_render() keeps no paint unless it is asked to
     plan->cache = options->dry_run || options->merge ? NULL : fl_paint_cache_open(&plan->options);
     plan->config = fl_config_load(options->config, options, error);
     if (!plan->config)

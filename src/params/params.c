@@ -235,7 +235,7 @@ void fl_params_detail(FlParams *params, FlDetail detail)
         "half-size",     "opt-iterations", "next-iterations", "patchmatch-iterations",
         "finest-rounds", "finest-sweeps",  "first-rounds",    "settled"};
     static const char *const values[][G_N_ELEMENTS(keys)] = {
-        // NULL: normal's
+        // NULL: as in normal
         [FL_DETAIL_DRAFT] = {"on", "2,1", "1", "2,1", "0", "1"},
         [FL_DETAIL_NORMAL] = {NULL},
         [FL_DETAIL_FINE] = {"off", "6,3,2", "6,3,2", "6,4", "2", "4", "2", "0"},

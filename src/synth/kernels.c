@@ -49,8 +49,7 @@ void fl_draw_candidates_c(const FlSearchWindows *windows, const uint16_t centre[
         for (int axis = 0; axis < 3; axis++) {
             const int reach = windows->reach[axis][k], last = windows->size[axis] - 1;
             const int low = MAX(centre[axis] - reach, 0), high = MIN(centre[axis] + reach, last);
-            const uint32_t place =
-                (uint32_t)(axis * FL_MAX_CANDIDATES + k) / 2; // 16 bits for each try
+            const uint32_t place = (uint32_t)(axis * FL_MAX_CANDIDATES + k) / 2; // 16 bits for each
             const uint32_t bits = fl_hash32(key + place * FL_HASH32_STEP) >> (k % 2 * 16) & 0xffff;
             const uint32_t at = (uint32_t)low + (bits * (uint32_t)(high - low + 1) >> 16);
             candidates->at[axis][k] = (uint16_t)at;
@@ -178,12 +177,12 @@ static int mean_of(int first, int sum, uint32_t votes)
     return first - FL_VOTE_BIAS + (sum + (sum < 0 ? -n : n) / 2) / n;
 }
 
-/* The weighted sum of what clusters say. */
+/* The weighted sum of the colours of clusters. */
 typedef struct Sum {
     float value[4], weight;
 } Sum;
 
-/* What a cluster of n votes says, whose place may lie beyond the borders. */
+/* Adds the colour of a cluster of n votes, whose place may lie beyond the borders. */
 static void add_cluster(Sum *sum, const FlVoteCluster *cluster, int n, int x, int y,
                         FlSplineSample sample, const FlVoteSource *voted)
 {

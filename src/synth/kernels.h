@@ -65,12 +65,10 @@ typedef void (*FlPatchPair)(const FlTexel *centre, const int16_t *offsets,
 
 #define FL_MAX_CANDIDATES 64 // of the random search for one pixel
 
-/** The windows that random candidates are drawn from; frames count from the first that is searched.
- */
+/** Where random candidates are drawn from; frames count from the first that is searched. */
 typedef struct FlSearchWindows {
-    _Alignas(
-        64) uint16_t reach[3][FL_MAX_CANDIDATES]; // from the centre, in x, y (pixels) and frames
-    uint16_t size[3];                             // of what is searched: x, y, frames
+    _Alignas(64) uint16_t reach[3][FL_MAX_CANDIDATES]; // from the centre: x, y (px), frames
+    uint16_t size[3];                                  // of what is searched: x, y, frames
     uint32_t step[3]; // pixels from one column, row, frame to the next in memory
     int n;            // windows
 } FlSearchWindows;
@@ -162,8 +160,8 @@ typedef struct FlVoteCluster {
 } FlVoteCluster;
 
 /**
- * Clusters votes: the first remaining vote, row by row, leads; all remaining ones in
- * its frame and near it join. clusters: FL_PATCH_PIXELS. Returns their number.
+ * Clusters votes: the first remaining vote, row by row, leads; all remaining ones in its frame and
+ * near it join. clusters: FL_PATCH_PIXELS. Returns their number.
  */
 typedef int (*FlClusterVotes)(const FlVotes *votes, FlVoteCluster *clusters);
 

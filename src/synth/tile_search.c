@@ -324,9 +324,8 @@ static bool differs_from_neighbours(PixelSearch *ps)
     return false;
 }
 
-/* `stale`: a neighbour has changed its match since filter_candidates(). Returns: whether the pixel
- * changes its.
- */
+/* `stale`: a neighbour's match has changed since filter_candidates(). Returns: whether the pixel's
+ * does. */
 static bool settle(PixelSearch *ps, bool stale, FlSearchCounts *counts)
 {
     const FlSearch *search = ps->search;
