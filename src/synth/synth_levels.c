@@ -219,6 +219,13 @@ static void settle(FlSearch *search, int level, bool first, bool coarsest)
         search->propagate_from = first ? FIRST_RANDOM_SWEEPS : FINEST_RANDOM_SWEEPS;
 }
 
+/* Half of them in a first frame, which with the rounds of its coarser levels still ends better than
+ * those after it; where every match is searched, as by the papers' presets, all. */
+static int finest_sweeps(const FlParams *params, bool first)
+{
+    return first && params->settled > 0 ? (params->finest_sweeps + 1) / 2 : params->finest_sweeps;
+}
+
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
                       GError **error)
 {
@@ -258,8 +265,8 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
     stats->pixels = target->n_inside[FL_SEGMENT_BORDER] + target->n_inside[FL_SEGMENT_INTERIOR];
     stats->energy_start = synth->wants_energies ? mean_energy(&search) : 0;
     settle(&search, l, !shifted, from_coarsest == 0);
-    const int sweeps =
-        finest ? params->finest_sweeps : fl_list_at(&params->patchmatch_iterations, from_coarsest);
+    const int sweeps = finest ? finest_sweeps(params, !shifted)
+                              : fl_list_at(&params->patchmatch_iterations, from_coarsest);
     if (!optimise(synth, &search, target, rounds, sweeps, stats, error))
         return false;
     if (rounds == 0 && finest) // the field has not been voted yet
