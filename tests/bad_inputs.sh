@@ -140,6 +140,8 @@ table() {
 2|x_%d_%d.png: *|good -o x_%d_%d.png
 2|x_{region}.png: {region} is allowed in the names of layers only|good -o x_{region}.png
 2|x_{rgion}.png: “{rgion}” is not understood; expected {region}|good --layers x_{rgion}.png
+2|x_{region}.exr: files of regions are PNG; expected a name that ends in .png|good --layers x_{region}.exr
+2|x_%d_{region}: files of regions are PNG; *|good --paint x_%d_{region}
 2|--paint: one file for all frames; expected a number in the name*|good --paint x_{region}.png
 2|--merge composes what --paint has written, or what ebsynth has painted *|good --merge
 1|eb/red-aa3311/out_0001.png: there is no such file; *|good --merge --ebsynth eb
@@ -158,7 +160,7 @@ table() {
 2|./good/a_1.svg: is read by this render; *|good/a_1.svg -y --format hash -o ./good/a_1.svg
 2|clear.png: is read by this render; *|good -y -b clear.png -o clear.png -f 1
 2|good/a_1.svg: is read by this render; *|good -y --stats good/a_1.svg -o y_%d.png
-2|good/a_1.svg: is read by this render; *|good -y --layers good/a_%d.svg -o y_%d.png -f 1
+2|shows/sub/p_1.png: is read by this render; *|shows -y --layers shows/sub/p_%d.png -o y_%d.png -f 1
 2|link.svg: is read by this render; *|link.svg -y --format png -o link.svg
 2|shows/sub/p_1.png: is read by this render; *|shows -y -o shows/sub/p_%d.png
 2|gap/a_4.svg: is read by this render; *|gap -y -f 1 --format png -o gap/a_4.svg

@@ -111,6 +111,17 @@ static bool plan_regions(FlPlan *plan, GError **error)
     return fl_limit_check(FL_LIMIT_REGIONS, plan->n_painted, fl_drawing_name(plan->drawing), error);
 }
 
+/* Layers and paint are PNG files, whatever the frames are. */
+static bool check_is_png(const char *pattern, GError **error)
+{
+    const FlSinkFormat *format = pattern ? fl_sink_format(NULL, pattern, NULL) : NULL;
+    if (!pattern || (format && strcmp(format->name, "png") == 0))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "%s: files of regions are PNG; expected a name that ends in .png", pattern);
+    return false;
+}
+
 /* With one name for all regions, each layer would replace the last. */
 static bool check_regions_file(const FlPlan *plan, const char *pattern, GError **error)
 {
@@ -132,5 +143,7 @@ bool fl_plan_find_regions(FlPlan *plan, GError **error)
 {
     return check_region_names(plan, error) && plan_regions(plan, error) &&
            check_regions_file(plan, plan->options.layers, error) &&
-           check_regions_file(plan, plan->options.paint, error);
+           check_is_png(plan->options.layers, error) &&
+           check_regions_file(plan, plan->options.paint, error) &&
+           (plan->options.merge || check_is_png(plan->options.paint, error));
 }
