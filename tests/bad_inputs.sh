@@ -140,8 +140,8 @@ table() {
 2|x_%d_%d.png: *|good -o x_%d_%d.png
 2|x_{region}.png: {region} is allowed in the names of layers only|good -o x_{region}.png
 2|x_{rgion}.png: “{rgion}” is not understood; expected {region}|good --layers x_{rgion}.png
-2|x_{region}.exr: files of regions are PNG; expected a name that ends in .png|good --layers x_{region}.exr
-2|x_%d_{region}: files of regions are PNG; *|good --paint x_%d_{region}
+2|x_{region}.exr: layers and paint are PNG files; expected .png|good --layers x_{region}.exr
+2|x_%d_{region}: layers and paint are PNG files; *|good --paint x_%d_{region}
 2|--paint: one file for all frames; expected a number in the name*|good --paint x_{region}.png
 2|--merge composes what --paint has written, or what ebsynth has painted *|good --merge
 1|eb/red-aa3311/out_0001.png: there is no such file; *|good --merge --ebsynth eb

@@ -338,8 +338,7 @@ static void drafts_have_the_same_tooth(void)
 static void load_moves_along_with_its_region(void)
 {
     g_autofree int16_t *here = g_new(int16_t, 200 * 150), *there = g_new(int16_t, 200 * 150);
-    const FlUneven a = {5, {16 * 100, 16 * 75, 20000}, 1};
-    const FlUneven b = {5, {16 * 137, 16 * 92, 20000}, 1};
+    const FlUneven a = {5, {100, 75, 1, 0}, 20000, 1}, b = {5, {137, 92, 1, 0}, 20000, 1};
     const FlArea area = {{0, 0, 200, 150}, NULL}, moved = {{37, 17, 200, 150}, NULL};
     double sum = 0;
     int least = FL_AMOUNTS, most = 0;
@@ -353,7 +352,7 @@ static void load_moves_along_with_its_region(void)
     g_assert_cmpint(least, <, 960);
     g_assert_cmpint(most, >, 1080);
     g_assert_cmpfloat_with_epsilon(sum / (200 * 150), 1024, 110);
-    const FlUneven dot = {5, {16 * 100, 16 * 75, 390}, 1}; // one touch of the brush
+    const FlUneven dot = {5, {100, 75, 1, 0}, 390, 1}; // one touch of the brush
     int16_t one[1] = {1024};
     fl_load_unevenly(&dot, 1, &(FlArea){{90, 70, 1, 1}, NULL}, one);
     g_assert_cmpint(one[0], ==, 1024);
@@ -393,7 +392,7 @@ static void noise_of_a_row_is_that_of_its_places(void)
 static void load_is_the_same_in_a_part_of_the_area(void)
 {
     enum { PART_PX = 90 };
-    const FlUneven where = {.key = 3, .anchor = {0, 0, 1e4}, .scale = 1};
+    const FlUneven where = {.key = 3, .anchor = {0, 0, 1, 0}, .area = 1e4, .scale = 1};
     FlColumns row[PART_PX];
     int16_t whole[PART_PX * PART_PX], part[PART_PX * PART_PX];
     const FlRect box = {40, 30, PART_PX, PART_PX};

@@ -35,8 +35,8 @@ typedef struct Stack {
     const FlComposeInput *input;
     const FlEdgeMap *edges;
     const int *exposures;
-    const FlAnchor *anchors; // by region
-    int *draw;               // the index in the draw list of each layer
+    const double *areas; // of each region, px
+    int *draw;           // the index in the draw list of each layer
 } Stack;
 
 static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegion *painted,
@@ -82,7 +82,8 @@ static FlUneven uneven_of(const Stack *stack, const FlPaintedRegion *painted)
 {
     const FlComposeInput *input = stack->input;
     return (FlUneven){.key = fl_key(input->seed, g_str_hash(painted->name)),
-                      .anchor = stack->anchors[painted->region],
+                      .anchor = painted->anchor,
+                      .area = stack->areas[painted->region],
                       .scale = input->paper_px * (input->half ? .5f : 1)};
 }
 
@@ -389,9 +390,9 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
             draw[composite->n_layers++] = r;
         }
     const int n_regions = fl_drawing_regions(input->drawing);
-    g_autofree FlAnchor *anchors = g_new(FlAnchor, MAX(n_regions, 1));
-    fl_anchors_find(draws, n_regions, anchors);
-    Stack stack = {composite, input, edges, exposures, anchors, draw};
+    g_autofree double *areas = g_new(double, MAX(n_regions, 1));
+    fl_region_areas_find(draws, n_regions, areas);
+    Stack stack = {composite, input, edges, exposures, areas, draw};
     return (needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error);
 }
 

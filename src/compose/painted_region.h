@@ -3,6 +3,7 @@
 #define FLUIDY_COMPOSE_PAINTED_REGION_H
 
 #include "compose/ink.h"
+#include "drawing/drawing.h"
 #include "params/region_settings.h"
 #include "synth/synth.h"
 #include <string.h>
@@ -33,6 +34,7 @@ typedef struct FlPaintedRegion {
     const FlRegionSettings *settings; // how it is painted
     const FlStyleInstance *style;     // with what
     int width, height;                // of the drawing as it is painted, px
+    FlAnchor anchor;                  // of the region in the frame that the picture is of
     int exposure;                     // of its amounts; 0: as the paint itself asks for
     FlRect rect;                      // the part of it in which the region ever is, with some room
     uint8_t *painted;   // of rect: 3 bytes of sRGB a pixel, the exemplar's colours; NULL: not open

@@ -5,32 +5,25 @@
 #include "base/rng.h"
 #include "compose/ink.h"
 #include <math.h>
+#include <string.h>
 
 enum { KEY_LOAD = 301, KEY_WARP_X, KEY_WARP_Y, KEY_PLAY };
 
 #define STEP 8 // px of the sheet, and of the frame at most, between points at which noise is known
 
-void fl_anchors_find(const FlDrawList *draws, int n_regions, FlAnchor *anchors)
+void fl_region_areas_find(const FlDrawList *draws, int n_regions, double *areas)
 {
-    g_autofree uint64_t *sums = g_new0(uint64_t, 3 * (size_t)MAX(n_regions, 1));
+    memset(areas, 0, (size_t)n_regions * sizeof *areas);
     for (int r = 0; r < draws->n; r++) {
         const FlDraw *draw = &draws->draw[r];
-        uint64_t *sum = sums + 3 * (size_t)draw->region;
+        uint64_t covered = 0;
         for (int y = 0; y < draw->area.box.height; y++) {
             const FlColumns span = fl_area_row(&draw->area, y);
             const uint8_t *row = draw->coverage + (size_t)y * (size_t)draw->area.box.width;
-            uint64_t covered = 0, across = 0;
             for (int x = span.first; x < span.last; x++)
-                covered += row[x], across += (uint64_t)row[x] * (uint64_t)x;
-            sum[0] += covered;
-            sum[1] += across + covered * (uint64_t)draw->area.box.x;
-            sum[2] += covered * (uint64_t)(draw->area.box.y + y);
+                covered += row[x];
         }
-    }
-    for (int k = 0; k < n_regions; k++) {
-        const uint64_t *sum = sums + 3 * (size_t)k, n = MAX(sum[0], 1);
-        anchors[k] = (FlAnchor){(int32_t)(16 * sum[1] / n), (int32_t)(16 * sum[2] / n),
-                                (double)sum[0] / 255};
+        areas[draw->region] += (double)covered / 255;
     }
 }
 
@@ -105,9 +98,10 @@ static void compute_batch(Batch *batch, uint64_t key, SlowNoise noise)
 static void add_point(Batch *batch, const FlUneven *where, int x, int y, int32_t *to)
 {
     const int n = batch->at.n++;
-    const float px = 1 / where->scale;
-    batch->at.x[n] = (float)(16 * x - where->anchor.x) / 16 * px;
-    batch->at.y[n] = (float)(16 * y - where->anchor.y) / 16 * px;
+    const FlAnchor *anchor = &where->anchor;
+    const float px = 1 / where->scale, dx = (float)x - anchor->x, dy = (float)y - anchor->y;
+    batch->at.x[n] = (anchor->cosine * dx + anchor->sine * dy) * px;
+    batch->at.y[n] = (anchor->cosine * dy - anchor->sine * dx) * px;
     batch->to[n] = to;
 }
 
@@ -165,7 +159,7 @@ static void fill_row(const Points *points, const FlArea *area, int y, const int1
 /* Of a region of 60 px a side and more all of it, at 20 px nothing. */
 static float share_of_size(const FlUneven *where)
 {
-    const float side = (float)sqrt(where->anchor.area) / where->scale;
+    const float side = (float)sqrt(where->area) / where->scale;
     return CLAMP((side - 20) / 40, 0, 1);
 }
 

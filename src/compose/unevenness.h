@@ -5,19 +5,14 @@
 
 #include "drawing/drawing.h"
 
-/** Where a region is in a frame: what is uneven in it moves along with its middle. */
-typedef struct FlAnchor {
-    int32_t x, y; // of the middle of its shapes, 1/16 px
-    double area;  // px
-} FlAnchor;
-
-/** The anchors of all regions, by region; of those that are not in the frame anything. */
-void fl_anchors_find(const FlDrawList *draws, int n_regions, FlAnchor *anchors);
+/** How much of a frame each region covers, px. */
+void fl_region_areas_find(const FlDrawList *draws, int n_regions, double *areas);
 
 /** A region of a frame that has something uneven. */
 typedef struct FlUneven {
     uint64_t key;    // of the film's seed and the region's name
-    FlAnchor anchor; // of the region
+    FlAnchor anchor; // of the region: what is uneven in it moves along
+    double area;     // of the region, px
     float scale;     // px of the frame per px of the sheet of paper, on which sizes are measured
 } FlUneven;
 

@@ -3,6 +3,7 @@
 #include "drawing/draw_pool.h"
 #include "drawing/drawing_data.h"
 #include "drawing/leave_out.h"
+#include "drawing/region_anchors.h"
 #include "drawing/region_identity.h"
 #include "drawing/region_names.h"
 #include <string.h>
@@ -36,6 +37,8 @@ void fl_drawing_halve(FlDrawing *drawing)
             for (int side = 0; side < 4; side++)
                 frame->step[i].box[side] /= 2;
         }
+        for (guint r = 0; r < drawing->regions->len; r++)
+            frame->anchor[r].x /= 2, frame->anchor[r].y /= 2;
     }
 }
 
@@ -47,6 +50,11 @@ int fl_drawing_regions(const FlDrawing *drawing)
 const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region)
 {
     return &g_array_index(drawing->regions, FlRegion, region);
+}
+
+FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame)
+{
+    return drawing->frame[frame].anchor[region];
 }
 
 GHashTable *fl_drawing_linked_files(const FlDrawing *drawing)
@@ -241,6 +249,7 @@ static void merge_regions(FlSurvey *survey, GArray *groups, const FlRegionRule *
 
 static void remember(FlDrawing *drawing, FlSurvey *survey)
 {
+    g_autofree FlAnchor **anchors = fl_region_anchors_find(survey, (int)drawing->regions->len);
     drawing->frame = g_new0(FlDrawingFrame, survey->n_frames);
     for (int t = 0; t < survey->n_frames; t++) {
         const GArray *parts = survey->frame[t].parts;
@@ -248,6 +257,7 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
         frame->page = survey->frame[t].page;
         frame->canvas = survey->frame[t].canvas;
         frame->origin = t;
+        frame->anchor = anchors[t];
         for (int i = 0; survey->frame[t].files && survey->frame[t].files[i]; i++)
             g_hash_table_add(drawing->files, g_strdup(survey->frame[t].files[i]));
         frame->whole = g_steal_pointer(&survey->frame[t].whole);
@@ -359,6 +369,7 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
 void fl_drawing_frame_clear(FlDrawingFrame *frame)
 {
     g_free(frame->step);
+    g_free(frame->anchor);
     g_strfreev(frame->whole);
     *frame = (FlDrawingFrame){0};
 }

@@ -87,6 +87,15 @@ typedef struct FlHand {
     FlTooth tooth; // of the frame's paper
 } FlHand;
 
+#define FL_ANCHOR_MOST 1e6f // of all numbers of an anchor
+
+/** A place that moves along with a region and turns with it, so that what is uneven in its paint
+ * can do the same. */
+typedef struct FlAnchor {
+    float x, y;         // px of the picture
+    float cosine, sine; // of its turn since the first frame
+} FlAnchor;
+
 /** A sequence and its regions. What it keeps of pictures does not grow with the film. */
 typedef struct FlDrawing FlDrawing;
 
@@ -132,6 +141,9 @@ int fl_drawing_shown(const FlDrawing *drawing, int frame);
 
 /** Whether any frame shows the picture of another one. */
 bool fl_drawing_stands_still(const FlDrawing *drawing);
+
+/** Where a region's anchor is in a frame; it depends on no other region. */
+FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
 
 /**
  * Halves width and height of the pictures from now on, rounding up; the regions stay the same. No

@@ -24,11 +24,12 @@ typedef struct FlStep {
 
 typedef struct FlDrawingFrame {
     int n;
-    FlStep *step;    // bottom up
-    FlPageSize page; // px of the picture
-    FlCanvas canvas; // as in FlSvgOptions
-    char **whole;    // likewise
-    int origin;      // its index when the drawing was opened
+    FlStep *step;     // bottom up
+    FlPageSize page;  // px of the picture
+    FlCanvas canvas;  // as in FlSvgOptions
+    char **whole;     // likewise
+    FlAnchor *anchor; // of each region
+    int origin;       // its index when the drawing was opened
 } FlDrawingFrame;
 
 void fl_drawing_frame_clear(FlDrawingFrame *frame);

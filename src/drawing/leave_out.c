@@ -33,6 +33,7 @@ static void leave_out(FlDrawing *drawing, int frame, int instead)
         *here = drawing->frame[instead];
         here->step = g_memdup2(here->step, ((size_t)here->n + 1) * sizeof *here->step);
         here->whole = g_strdupv(here->whole);
+        here->anchor = g_memdup2(here->anchor, (drawing->regions->len + 1) * sizeof *here->anchor);
     } else {
         const int after = drawing->sequence->n - frame - 1;
         memmove(here, here + 1, (size_t)after * sizeof *here);

@@ -75,6 +75,7 @@ void fl_frame_probe_clear(FlFrameProbe *f)
 {
     if (f->probes)
         g_array_unref(f->probes);
+    fl_outlines_free(f->outlines);
     g_free(f->leaf_digest);
     g_free(f->unit_digest);
     fl_svg_free(f->svg);
@@ -251,6 +252,18 @@ static bool add_known(FlFrameProbe *f, const FlLeaf *leaf, int index, FlDigest d
     return true;
 }
 
+/** The pose of a leaf or unit; of what has no outline the middle alone. */
+static FlPose pose_of(FlFrameProbe *f, const FlLeaf *leaf, int index)
+{
+    if (!f->outlines)
+        f->outlines = fl_outlines_new(f->svg, whole_page(f));
+    const FlPose pose = fl_outline_pose(f->outlines, index);
+    if (pose.n > 0)
+        return pose;
+    const RsvgRectangle r = fl_svg_extents(f->svg, leaf, whole_page(f));
+    return fl_point_pose((FlPoint){r.x + r.width / 2, r.y + r.height / 2});
+}
+
 static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
 {
     const guint first = f->probes->len;
@@ -260,6 +273,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
     FlPainted parts[FL_MOST_PARTS];
     const int n = fl_svg_leaf_paints(f->svg, leaf, parts, error);
     bool good = n >= 0;
+    const FlPose pose = n > 0 ? pose_of(f, leaf, index) : (FlPose){0};
     for (int i = 0; i < n; i++) {
         const FlPainted *p = &parts[i];
         FlProbe probe = {.leaf = leaf, .paint = p->paint.key};
@@ -272,6 +286,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
                                      .alpha = p->paint.alpha,
                                      .peak = p->paint.peak,
                                      .blend_mode = p->blend_mode,
+                                     .pose = pose,
                                      .unit = index < 0 ? -index : 0,
                                      .region = -1};
         memcpy(probe.found.rgb, p->paint.rgb, 3);

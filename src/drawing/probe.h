@@ -28,6 +28,7 @@ typedef struct FlFrameProbe {
     FlRect all;
     GArray *probes;
     FlFrameCache *cache;                 // borrowed; arrays of FlProbe
+    FlOutlines *outlines;                // of all leaves; made when first needed
     FlDigest *leaf_digest, *unit_digest; // of what the leaves and units look like
     size_t kept_bytes;                   // of the probes
     FlSelfCheck *check;

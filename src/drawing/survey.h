@@ -3,6 +3,7 @@
 #define FLUIDY_DRAWING_SURVEY_H
 
 #include "drawing/drawing.h"
+#include "svg/pose.h"
 
 #define FL_SURVEY_MOST_SIDE 32767 // px; cairo's limit
 
@@ -30,6 +31,7 @@ typedef struct FlSurveyPart {
     int name, labels, layers, ids, classes, tree;
     float box[4];  // x0, y0, x1, y1 of what is drawn, px of the picture; a pixel too wide
     float area_px; // sum of its coverage
+    FlPose pose;   // of the outline of the leaf or unit
     float covers;  // share of it that lies over other paint, page-filling ones not counted
     int unit;      // 1 + index of the unit it is, or is a leaf of, if that is to be drawn as one
     int region;    // set later; -1: not drawn

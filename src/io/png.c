@@ -301,34 +301,72 @@ FlPicture *fl_picture_read_png(const char *path, GError **error)
     return g_steal_pointer(&picture);
 }
 
-/** libpng jumps back here when it fails. */
-static bool get_place(png_structp png, png_infop info, FILE *file, FlRect *place)
+/** What is asked of the head of a file. */
+typedef struct Head {
+    FlRect place;        // where it says that it lies
+    bool placed;         // whether it says so
+    const char *keyword; // of a text; NULL: none is asked for
+    char *text;          // that is there; NULL: none
+} Head;
+
+static void take_place(png_structp png, png_infop info, Head *head)
 {
     png_int_32 x = 0, y = 0;
     int unit = PNG_OFFSET_LAST;
+    const png_uint_32 width = png_get_image_width(png, info);
+    const png_uint_32 height = png_get_image_height(png, info);
+    const bool says = png_get_oFFs(png, info, &x, &y, &unit) != 0 && unit == PNG_OFFSET_PIXEL;
+    head->place = (FlRect){x, y, (int)width, (int)height};
+    head->placed = says && x >= 0 && y >= 0 && width <= INT32_MAX && height <= INT32_MAX;
+}
+
+static void take_text(png_structp png, png_infop info, Head *head)
+{
+    png_textp text = NULL;
+    const int n = head->keyword ? png_get_text(png, info, &text, NULL) : 0;
+    for (int k = 0; k < n && !head->text; k++)
+        if (strcmp(text[k].key, head->keyword) == 0)
+            head->text = g_strdup(text[k].text);
+}
+
+/** libpng jumps back here when it fails. */
+static bool get_head(png_structp png, png_infop info, FILE *file, Head *head)
+{
     if (setjmp(png_jmpbuf(png)))
         return false;
     png_init_io(png, file);
     png_read_info(png, info);
-    const png_uint_32 width = png_get_image_width(png, info);
-    const png_uint_32 height = png_get_image_height(png, info);
-    const bool says = png_get_oFFs(png, info, &x, &y, &unit) != 0 && unit == PNG_OFFSET_PIXEL;
-    *place = (FlRect){x, y, (int)width, (int)height};
-    return says && x >= 0 && y >= 0 && width <= INT32_MAX && height <= INT32_MAX;
+    take_place(png, info, head);
+    take_text(png, info, head);
+    return true;
 }
 
-bool fl_png_place(const char *path, FlRect *place)
+static void read_head(const char *path, Head *head)
 {
     Trouble trouble = {""};
     FILE *file = fl_file_check(path, FL_ERROR_INPUT, NULL) ? fopen(path, "rb") : NULL;
     if (!file)
-        return false;
+        return;
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &trouble, on_error, on_warning);
     png_infop info = png ? png_create_info_struct(png) : NULL;
-    const bool says = info && get_place(png, info, file, place);
+    head->placed = info && get_head(png, info, file, head) && head->placed;
     png_destroy_read_struct(&png, &info, NULL);
     fclose(file);
-    return says;
+}
+
+bool fl_png_place(const char *path, FlRect *place)
+{
+    Head head = {.placed = false};
+    read_head(path, &head);
+    *place = head.place;
+    return head.placed;
+}
+
+char *fl_png_text(const char *path, const char *keyword)
+{
+    Head head = {.keyword = keyword};
+    read_head(path, &head);
+    return head.text;
 }
 
 bool fl_picture_is_opaque(const char *path)

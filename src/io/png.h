@@ -45,6 +45,10 @@ FlPicture *fl_picture_read_png(const char *path, GError **error);
  */
 bool fl_png_place(const char *path, FlRect *place);
 
+/** The text that a PNG file has before its pixels for a keyword, see FlPng.text; to be freed. NULL:
+ * none. */
+char *fl_png_text(const char *path, const char *keyword);
+
 /** Whether every pixel of a PNG file is opaque; true if it cannot be read. */
 bool fl_picture_is_opaque(const char *path);
 

@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "io/pattern.h"
 #include "io/png.h"
+#include <math.h>
 #include <string.h>
 
 char *fl_paint_file_name(const char *pattern, const FlDrawing *drawing, const FlRegionPlan *region,
@@ -26,6 +27,35 @@ static FlRect area_of(const FlPaintedRegion *painted, FlPaintArea area)
     return whole ? (FlRect){0, 0, painted->width, painted->height} : painted->rect;
 }
 
+#define ANCHOR "Anchor" // x, y, cosine and sine of the region's anchor
+
+static char *anchor_text(const FlAnchor *anchor)
+{
+    const float value[] = {anchor->x, anchor->y, anchor->cosine, anchor->sine};
+    GString *text = g_string_new(NULL);
+    for (size_t k = 0; k < G_N_ELEMENTS(value); k++) {
+        char number[G_ASCII_DTOSTR_BUF_SIZE];
+        g_ascii_formatd(number, sizeof number, "%.9g", (double)value[k]);
+        g_string_append_printf(text, k ? " %s" : "%s", number);
+    }
+    return g_string_free(text, FALSE);
+}
+
+/* Where the file does not tell, as one that another program has written, it stays as it is. */
+static void load_anchor(const char *path, FlAnchor *anchor)
+{
+    g_autofree char *text = fl_png_text(path, ANCHOR);
+    float value[4];
+    char *at = text, *end = NULL;
+    for (size_t k = 0; at && k < G_N_ELEMENTS(value); k++, at = end) {
+        value[k] = (float)g_ascii_strtod(at, &end);
+        if (end == at || !(fabsf(value[k]) <= FL_ANCHOR_MOST))
+            return;
+    }
+    if (at)
+        *anchor = (FlAnchor){value[0], value[1], value[2], value[3]};
+}
+
 bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
                         bool overwrite, GError **error)
 {
@@ -44,12 +74,15 @@ bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const 
             fl_painted_pixel(&look.region, (size_t)y * (size_t)rect.width + (size_t)x,
                              rgba + 4 * ((size_t)(rect.y - part.y + y) * (size_t)part.width +
                                          (size_t)(rect.x - part.x + x)));
+    g_autofree char *anchor = anchor_text(&painted->anchor);
+    const char *const text[] = {ANCHOR, anchor, NULL};
     const FlPng png = {.width = part.width,
                        .height = part.height,
                        .rgba = rgba,
                        .opaque = !look.region.alpha,
                        .fast = area == FL_PAINT_AREA_REGION, // the merge is its only reader
-                       .place = area == FL_PAINT_AREA_REGION ? &part : NULL};
+                       .place = area == FL_PAINT_AREA_REGION ? &part : NULL,
+                       .text = text};
     return fl_png_save(&png, path, overwrite, error);
 }
 
@@ -87,6 +120,7 @@ bool fl_paint_file_load(FlPaintedRegion *painted, const char *path, GError **err
     }
     if (!fl_painted_renew(painted, error))
         return false;
+    load_anchor(path, &painted->anchor);
     const int left = whole ? rect.x : 0, top = whole ? rect.y : 0;
     for (int y = 0; y < rect.height; y++)
         for (int x = 0; x < rect.width; x++) {

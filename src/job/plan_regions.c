@@ -2,6 +2,7 @@
 
 #include "base/limits.h"
 #include "base/suggest.h"
+#include "io/png.h"
 #include <string.h>
 
 static bool no_such_region(const FlPlan *plan, const char *name, GError **error)
@@ -114,12 +115,7 @@ static bool plan_regions(FlPlan *plan, GError **error)
 /* Layers and paint are PNG files, whatever the frames are. */
 static bool check_is_png(const char *pattern, GError **error)
 {
-    const FlSinkFormat *format = pattern ? fl_sink_format(NULL, pattern, NULL) : NULL;
-    if (!pattern || (format && strcmp(format->name, "png") == 0))
-        return true;
-    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                "%s: files of regions are PNG; expected a name that ends in .png", pattern);
-    return false;
+    return !pattern || fl_png_named(pattern, "layers and paint are", error);
 }
 
 /* With one name for all regions, each layer would replace the last. */

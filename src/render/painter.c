@@ -213,10 +213,12 @@ bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **
     const gint64 start = g_get_monotonic_time();
     if (painter->result.unseen)
         return true;
+    const int hold = painter->plan->settings.hold, index = frame / hold;
+    painter->result.anchor =
+        fl_drawing_anchor(painter->drawing, painter->plan->region, index * hold);
     if (painter->plan->paint_files)
         return load_paint(painter, frame, error);
-    const int index = frame / painter->plan->settings.hold;
-    if (frame % painter->plan->settings.hold != 0)
+    if (frame % hold != 0)
         return true;
     if (!paint_picture(painter, painter->loop.n + index, index, guides, error) ||
         !fl_loop_blend(&painter->loop, index, &painter->result, error) ||

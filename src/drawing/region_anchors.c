@@ -1,0 +1,258 @@
+#include "drawing/region_anchors.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Cosines of turns in a frame: beyond the first a turn counts less, beyond the second it does not;
+ * there an outline that begins at another node cannot be told from one that turns. */
+#define SURE_TURN 0.85
+#define MOST_TURN 0.6
+#define NO_TURN 1e-9 // a turn that is this share of what it could be is rounding
+
+#define STEADY 4 // in all but one of so many steps a leaf that keeps its nodes has as many
+
+/* A leaf of a region. */
+typedef struct Leaf {
+    const FlSurveyPart *part; // where it was seen last; NULL: not yet
+    int frame;                // of that
+    int steps, same;          // how often it is seen again, and how often with as many nodes
+    bool shared; // two leaves have its number, since regions were merged: it says nothing
+} Leaf;
+
+/* Where leaves are before and after a step; weights are areas. */
+typedef struct Means {
+    double weight;
+    FlPoint from, to; // sums
+} Means;
+
+/* The motion of a region's leaves into a frame. */
+typedef struct Fit {
+    Means all, steady; // steady: the leaves that tell of a turn
+    FlPoint turn; // of those the conjugates of `from` times `to`, with those of harmonics; x is
+                  // real
+    double most;  // that the turn could be
+} Fit;
+
+/* The follower of a film's regions. */
+typedef struct Follower {
+    int n_regions;
+    int *first; // index of each region's first leaf
+    Leaf *leaf;
+    Fit *fit;   // of each region
+    bool *here; // whether it was in a frame yet
+} Follower;
+
+/* The conjugate of a, times b. */
+static FlPoint conjugate_times(FlPoint a, FlPoint b)
+{
+    return (FlPoint){a.x * b.x + a.y * b.y, a.x * b.y - a.y * b.x};
+}
+
+static FlPoint times(FlPoint a, FlPoint b)
+{
+    return (FlPoint){a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x};
+}
+
+static void add(FlPoint *sum, double weight, FlPoint p)
+{
+    sum->x += weight * p.x, sum->y += weight * p.y;
+}
+
+static FlPoint middle_of(const FlSurveyPart *part, bool by_outline)
+{
+    if (by_outline)
+        return (FlPoint){(double)part->pose.middle_x, (double)part->pose.middle_y};
+    const float *box = part->box;
+    return (FlPoint){((double)box[0] + (double)box[2]) / 2, ((double)box[1] + (double)box[3]) / 2};
+}
+
+static void add_means(Means *means, double weight, FlPoint from, FlPoint to)
+{
+    means->weight += weight;
+    add(&means->from, weight, from);
+    add(&means->to, weight, to);
+}
+
+static FlPoint mean_of(const Means *means, FlPoint sum)
+{
+    return (FlPoint){sum.x / means->weight, sum.y / means->weight};
+}
+
+static void add_turn(Fit *fit, double weight, FlPoint from, FlPoint to)
+{
+    add(&fit->turn, weight, conjugate_times(from, to));
+    fit->most += weight * (from.x * from.x + from.y * from.y + to.x * to.x + to.y * to.y);
+}
+
+/* steady: its nodes are the same ones where they are as many. */
+static void add_leaf(Fit *fit, const FlSurveyPart *before, const FlSurveyPart *now, bool steady)
+{
+    const FlPose *a = &before->pose, *b = &now->pose;
+    const double weight = (double)MIN(before->area_px, now->area_px) + 1e-3;
+    if (!steady || a->n == 0 || a->n != b->n) {
+        const bool known = a->n > 0 && b->n > 0;
+        add_means(&fit->all, weight, middle_of(before, known), middle_of(now, known));
+        return;
+    }
+    const FlPoint from = {(double)a->x, (double)a->y}, to = {(double)b->x, (double)b->y};
+    add_means(&fit->all, weight, from, to);
+    add_means(&fit->steady, weight, from, to);
+    add_turn(fit, weight, from, to);
+    for (int h = 0; h < 2; h++)
+        add_turn(fit, weight, (FlPoint){(double)a->harmonic[h][0], (double)a->harmonic[h][1]},
+                 (FlPoint){(double)b->harmonic[h][0], (double)b->harmonic[h][1]});
+}
+
+/* A number of length one. */
+static FlPoint unit_of(FlPoint p)
+{
+    const double length = sqrt(p.x * p.x + p.y * p.y);
+    return length > 1e-6 ? (FlPoint){p.x / length, p.y / length} : (FlPoint){1, 0};
+}
+
+/* The turn of a motion, as a number of length one. */
+static FlPoint turn_of(const Fit *fit)
+{
+    const Means *steady = &fit->steady;
+    if (steady->weight <= 0)
+        return (FlPoint){1, 0};
+    FlPoint turn = fit->turn;
+    add(&turn, -steady->weight,
+        conjugate_times(mean_of(steady, steady->from), mean_of(steady, steady->to)));
+    if (fabs(turn.x) + fabs(turn.y) < NO_TURN * fit->most)
+        return (FlPoint){1, 0};
+    turn = unit_of(turn);
+    const double share = CLAMP((turn.x - MOST_TURN) / (SURE_TURN - MOST_TURN), 0, 1);
+    return unit_of((FlPoint){1 + share * (turn.x - 1), share * turn.y});
+}
+
+static float within(double px)
+{
+    return (float)CLAMP(px, (double)-FL_ANCHOR_MOST, (double)FL_ANCHOR_MOST);
+}
+
+static void move(FlAnchor *anchor, const Fit *fit)
+{
+    if (fit->all.weight <= 0)
+        return;
+    const FlPoint from = mean_of(&fit->all, fit->all.from), to = mean_of(&fit->all, fit->all.to);
+    const FlPoint turn = turn_of(fit);
+    const FlPoint arm = {(double)anchor->x - from.x, (double)anchor->y - from.y};
+    const FlPoint turned = times(turn, arm);
+    const FlPoint axis =
+        unit_of(times(turn, (FlPoint){(double)anchor->cosine, (double)anchor->sine}));
+    *anchor =
+        (FlAnchor){within(to.x + turned.x), within(to.y + turned.y), (float)axis.x, (float)axis.y};
+}
+
+static Leaf *leaf_of(const Follower *f, const FlSurveyPart *part)
+{
+    return &f->leaf[f->first[part->region] + part->nth];
+}
+
+/* Whether a leaf has the same nodes in nearly all frames. If it is traced anew in each, as many
+ * nodes are chance, and begin anywhere. */
+static bool keeps_nodes(const Leaf *leaf)
+{
+    return STEADY * leaf->same >= (STEADY - 1) * leaf->steps;
+}
+
+static void note_leaf(Follower *f, int t, const FlSurveyPart *part)
+{
+    Leaf *leaf = leaf_of(f, part);
+    if (!leaf->shared && leaf->part && leaf->frame == t - 1)
+        add_leaf(&f->fit[part->region], leaf->part, part, keeps_nodes(leaf));
+    leaf->part = part, leaf->frame = t;
+}
+
+/* Finds out beforehand how steady a leaf is. */
+static void count_leaf(Follower *f, int t, const FlSurveyPart *part)
+{
+    Leaf *leaf = leaf_of(f, part);
+    leaf->shared |= leaf->part && leaf->frame == t;
+    leaf->steps += leaf->part != NULL;
+    leaf->same += leaf->part && leaf->part->pose.n == part->pose.n;
+    leaf->part = part, leaf->frame = t;
+}
+
+static void count_leaves(Follower *f, const FlSurvey *survey, int n_leaves)
+{
+    for (int t = 0; t < survey->n_frames; t++)
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *part = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+            if (part->region >= 0)
+                count_leaf(f, t, part);
+        }
+    for (int k = 0; k < n_leaves; k++)
+        f->leaf[k].part = NULL;
+}
+
+/* Where a region begins. */
+static void place(FlAnchor *anchor, const GArray *parts, int region)
+{
+    Fit all = {0};
+    for (guint i = 0; i < parts->len; i++) {
+        const FlSurveyPart *part = &g_array_index(parts, FlSurveyPart, i);
+        if (part->region == region)
+            add_leaf(&all, part, part, true);
+    }
+    const FlPoint middle = mean_of(&all.all, all.all.to);
+    *anchor = (FlAnchor){within(middle.x), within(middle.y), 1, 0};
+}
+
+static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor)
+{
+    memset(f->fit, 0, (size_t)f->n_regions * sizeof *f->fit);
+    for (guint i = 0; i < parts->len; i++) {
+        const FlSurveyPart *part = &g_array_index(parts, FlSurveyPart, i);
+        if (part->region >= 0)
+            note_leaf(f, t, part);
+    }
+    for (guint i = 0; i < parts->len; i++) {
+        const int region = g_array_index(parts, FlSurveyPart, i).region;
+        if (region < 0)
+            continue;
+        if (!f->here[region])
+            place(&anchor[region], parts, region);
+        f->here[region] = true;
+    }
+    for (int r = 0; r < f->n_regions; r++)
+        move(&anchor[r], &f->fit[r]);
+}
+
+/* Numbers the leaves of all regions. Returns: how many there are. */
+static int number_leaves(const FlSurvey *survey, int n_regions, int *first)
+{
+    g_autofree int *n = g_new0(int, n_regions + 1);
+    for (int t = 0; t < survey->n_frames; t++)
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *part = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+            if (part->region >= 0)
+                n[part->region] = MAX(n[part->region], part->nth + 1);
+        }
+    int all = 0;
+    for (int r = 0; r < n_regions; r++) {
+        first[r] = all;
+        all += n[r];
+    }
+    return all;
+}
+
+FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions)
+{
+    g_autofree int *first = g_new0(int, n_regions + 1);
+    const int n_leaves = number_leaves(survey, n_regions, first);
+    g_autofree Leaf *leaf = g_new0(Leaf, n_leaves + 1);
+    g_autofree Fit *fit = g_new0(Fit, n_regions + 1);
+    g_autofree bool *here = g_new0(bool, n_regions + 1);
+    Follower f = {n_regions, first, leaf, fit, here};
+    count_leaves(&f, survey, n_leaves);
+    FlAnchor **anchors = g_new0(FlAnchor *, survey->n_frames + 1);
+    for (int t = 0; t < survey->n_frames; t++) {
+        anchors[t] = g_new0(FlAnchor, n_regions + 1);
+        if (t > 0)
+            memcpy(anchors[t], anchors[t - 1], (size_t)n_regions * sizeof **anchors);
+        follow(&f, t, survey->frame[t].parts, anchors[t]);
+    }
+    return anchors;
+}

@@ -1,0 +1,28 @@
+/* The pose of an outline: where it is and how it is turned, to be compared with that of another
+ * frame. */
+#ifndef FLUIDY_SVG_POSE_H
+#define FLUIDY_SVG_POSE_H
+
+#include "svg/geometry.h"
+
+#define FL_POSE_MOST_PX 1e6f // of all that a pose says
+
+/** Of the nodes of an outline, px of the picture, on the page or not. */
+typedef struct FlPose {
+    int32_t n;                // nodes; 0: nothing is known
+    float x, y;               // their mean
+    float middle_x, middle_y; // of the rectangle around them
+    float harmonic[2][2];     // the first and the last one of the nodes about their mean, in their
+                              // order, as real and imaginary part: both turn with the outline
+} FlPose;
+
+/** Of leaf `leaf`, or of all leaves of unit -1 - leaf. */
+FlPose fl_outline_pose(const FlOutlines *outlines, int leaf);
+
+/** Whether it is one that these give: all of it within FL_POSE_MOST_PX. */
+bool fl_pose_is_sound(const FlPose *pose);
+
+/** Of something that is known to be at a point. */
+FlPose fl_point_pose(FlPoint point);
+
+#endif

@@ -1,0 +1,166 @@
+#include "drawing/drawing.h"
+#include "scratch.h"
+#include <math.h>
+
+#define N 8      // frames of a film
+#define POINTS 5 // of a star
+
+static void add_frame(const char *folder, int t, const char *shapes)
+{
+    g_autofree char *name = g_strdup_printf("%d.svg", t + 1);
+    g_free(scratch_svg(folder, name, shapes));
+}
+
+static FlDrawing *open_film(const char *folder)
+{
+    const char *const inputs[] = {folder};
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1, .missing = FL_MISSING_ERROR};
+    g_autoptr(GError) error = NULL;
+    FlDrawing *drawing = fl_drawing_open(&options, NULL, &error);
+    g_assert_no_error(error);
+    return drawing;
+}
+
+static void assert_moves(const FlDrawing *drawing, int t, double x, double y)
+{
+    const FlAnchor before = fl_drawing_anchor(drawing, 0, t - 1),
+                   now = fl_drawing_anchor(drawing, 0, t);
+    g_assert_cmpfloat_with_epsilon(now.x - before.x, x, 1e-3);
+    g_assert_cmpfloat_with_epsilon(now.y - before.y, y, 1e-3);
+}
+
+static void assert_turned(const FlDrawing *drawing, int t, double degrees)
+{
+    const FlAnchor anchor = fl_drawing_anchor(drawing, 0, t);
+    g_assert_cmpfloat_with_epsilon(anchor.cosine, cos(degrees * G_PI / 180), 1e-3);
+    g_assert_cmpfloat_with_epsilon(anchor.sine, sin(degrees * G_PI / 180), 1e-3);
+}
+
+/* The star's corners in the page's px; `more`: with nodes amid its sides, begun at another one. */
+static char *star(double x, double y, double degrees, bool more)
+{
+    GString *path = g_string_new("<path fill=\"red\" d=\"");
+    const int step = more ? 1 : 2, first = more ? 3 : 0;
+    for (int k = 0; k < 4 * POINTS; k += step) {
+        const int i = (k + first) % (4 * POINTS);
+        const double a = (degrees + i / 2 * 180.0 / POINTS) * G_PI / 180, r = i / 2 % 2 ? 10 : 30;
+        const double b = a + G_PI / POINTS, s = i / 2 % 2 ? 30 : 10, half = i % 2 / 2.0;
+        g_string_append_printf(path, "%c%.6f,%.6f", k ? 'L' : 'M',
+                               x + (1 - half) * r * cos(a) + half * s * cos(b),
+                               y + (1 - half) * r * sin(a) + half * s * sin(b));
+    }
+    g_string_append(path, "z\"/>");
+    return g_string_free(path, FALSE);
+}
+
+static void a_shape_that_slides_past_the_page_moves_all_the_same(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *hill = g_strdup_printf("<g transform=\"translate(%d,%g)\"><path "
+                                                "fill=\"green\" d=\"M-50,60L120,40L400,55V90H-50z"
+                                                "\"/></g>",
+                                                -7 * t, .5 * t);
+        add_frame(folder, t, hill);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 1; t < N; t++) {
+        assert_moves(drawing, t, -7, .5);
+        assert_turned(drawing, t, 0);
+    }
+}
+
+static void an_outline_that_turns_turns_its_anchor(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *shape = star(40 + 2 * t, 40, 12 * t, false);
+        add_frame(folder, t, shape);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 1; t < N; t++) {
+        assert_moves(drawing, t, 2, 0);
+        assert_turned(drawing, t, 12 * t);
+    }
+}
+
+static void a_group_turns_about_its_centre(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *group = g_strdup_printf(
+            "<g transform=\"rotate(%d 50 40)\" fill=\"red\"><circle cx=\"30\" cy=\"40\" r=\"9\"/>"
+            "<circle cx=\"70\" cy=\"40\" r=\"9\"/></g>",
+            10 * t);
+        add_frame(folder, t, group);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 1; t < N; t++) {
+        assert_moves(drawing, t, 0, 0);
+        assert_turned(drawing, t, 10 * t);
+    }
+}
+
+static void other_nodes_are_no_turn(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *shape = star(40 + 2 * t, 40, 0, t % 2);
+        add_frame(folder, t, shape);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 1; t < N; t++) {
+        assert_moves(drawing, t, 2, 0);
+        assert_turned(drawing, t, 0);
+    }
+}
+
+static void a_leaf_that_goes_takes_nothing_along(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *two =
+            g_strdup_printf("<circle cx=\"%d\" cy=\"30\" r=\"12\" fill=\"red\"/>%s", 20 + 3 * t,
+                            t < N / 2 ? "<circle cx=\"80\" cy=\"60\" r=\"15\" fill=\"red\"/>" : "");
+        add_frame(folder, t, two);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    g_assert_cmpint(fl_drawing_regions(drawing), ==, 1);
+    for (int t = N / 2; t < N; t++)
+        assert_moves(drawing, t, 3, 0);
+}
+
+static void what_rests_has_an_anchor_that_rests(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        g_autofree char *shapes =
+            g_strdup_printf("<path fill=\"red\" d=\"M3,4L60,9L31,71z\"/>"
+                            "<circle cx=\"%d\" cy=\"40\" r=\"9\" fill=\"blue\"/>",
+                            9 * t);
+        add_frame(folder, t, shapes);
+    }
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    const FlAnchor first = fl_drawing_anchor(drawing, 0, 0);
+    for (int t = 1; t < N; t++) {
+        const FlAnchor now = fl_drawing_anchor(drawing, 0, t);
+        g_assert_cmpmem(&now, sizeof now, &first, sizeof first);
+    }
+    fl_drawing_halve(drawing);
+    g_assert_cmpfloat(fl_drawing_anchor(drawing, 0, 0).x, ==, first.x / 2);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(path, function) g_test_add_func("/anchors/" path, function)
+    TEST("a-shape-that-slides-past-the-page-moves-all-the-same",
+         a_shape_that_slides_past_the_page_moves_all_the_same);
+    TEST("an-outline-that-turns-turns-its-anchor", an_outline_that_turns_turns_its_anchor);
+    TEST("a-group-turns-about-its-centre", a_group_turns_about_its_centre);
+    TEST("other-nodes-are-no-turn", other_nodes_are_no_turn);
+    TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);
+    TEST("what-rests-has-an-anchor-that-rests", what_rests_has_an_anchor_that_rests);
+#undef TEST
+    return g_test_run();
+}
