@@ -3,37 +3,85 @@
 #include <math.h>
 #include <string.h>
 
-/* Sums over nodes. */
-typedef struct Sums {
-    int n;
-    FlPoint sum, least, most;
-} Sums;
+#define FLAT 0.02 // area of an outline, share of the square of its extent, that says where it is
 
-static void add_node(Sums *sums, FlPoint p)
+/* The nodes of an outline, and what it encloses. */
+typedef struct Outline {
+    GArray *nodes; // FlPoint
+    FlPoint least, most;
+    double area;    // twice that, with a sign
+    FlPoint moment; // six times the area's
+} Outline;
+
+/* Adds the triangle between a side and the first node of all, so that numbers stay small. */
+static void add_side(Outline *outline, FlPoint from, FlPoint to)
 {
-    sums->least = sums->n > 0 ? (FlPoint){fmin(sums->least.x, p.x), fmin(sums->least.y, p.y)} : p;
-    sums->most = sums->n > 0 ? (FlPoint){fmax(sums->most.x, p.x), fmax(sums->most.y, p.y)} : p;
-    sums->sum.x += p.x, sums->sum.y += p.y;
-    sums->n++;
+    const FlPoint origin = g_array_index(outline->nodes, FlPoint, 0);
+    const FlPoint a = {from.x - origin.x, from.y - origin.y},
+                  b = {to.x - origin.x, to.y - origin.y};
+    const double cross = a.x * b.y - a.y * b.x;
+    outline->area += cross;
+    outline->moment.x += cross * (a.x + b.x), outline->moment.y += cross * (a.y + b.y);
 }
 
-/* The nodes of the leaves that are meant; to be unref'd. */
-static GArray *nodes_of(const FlOutlines *outlines, int leaf)
+static void add_node(Outline *outline, FlPoint p)
 {
-    GArray *nodes = g_array_new(FALSE, FALSE, sizeof(FlPoint));
+    FlPoint *least = &outline->least, *most = &outline->most;
+    const bool first = outline->nodes->len == 0;
+    *least = first ? p : (FlPoint){fmin(least->x, p.x), fmin(least->y, p.y)};
+    *most = first ? p : (FlPoint){fmax(most->x, p.x), fmax(most->y, p.y)};
+    g_array_append_val(outline->nodes, p);
+}
+
+static void add_subpath(Outline *outline, const FlCubic *cubic, int n, const FlAffine *ctm)
+{
+    FlPoint start = {0, 0}, last = {0, 0};
+    for (int c = 0; c < n; c++) {
+        const FlPoint p = fl_affine_apply(ctm, cubic[c].p[0]);
+        add_node(outline, p);
+        start = c == 0 ? p : start;
+        last = c == 0 ? p : last;
+        add_side(outline, last, p);
+        const FlPoint third = fl_cubic_at(&cubic[c], ctm, 1 / 3.0);
+        last = fl_cubic_at(&cubic[c], ctm, 2 / 3.0);
+        add_side(outline, p, third);
+        add_side(outline, third, last);
+    }
+    if (n > 0) {
+        const FlPoint end = fl_affine_apply(ctm, cubic[n - 1].p[3]);
+        add_side(outline, last, end);
+        add_side(outline, end, start);
+    }
+}
+
+/* Of the leaves that are meant; its nodes are to be unref'd. */
+static Outline outline_of(const FlOutlines *outlines, int leaf)
+{
+    Outline outline = {.nodes = g_array_new(FALSE, FALSE, sizeof(FlPoint))};
     const int first = leaf >= 0 ? leaf : 0, end = leaf >= 0 ? leaf + 1 : outlines->n_leaves;
     for (int k = first; k < MIN(end, outlines->n_leaves); k++) {
         const FlGeometry *g = &outlines->leaf[k];
         if (!g->usable || (leaf < 0 && g->unit != -1 - leaf))
             continue;
         for (int s = g->first_subpath; s < g->first_subpath + g->n_subpaths; s++)
-            for (int c = 0; c < outlines->subpath[s].n; c++) {
-                const FlCubic *cubic = &outlines->cubic[outlines->subpath[s].first + c];
-                const FlPoint p = fl_affine_apply(&g->ctm, cubic->p[0]);
-                g_array_append_val(nodes, p);
-            }
+            add_subpath(&outline, outlines->cubic + outlines->subpath[s].first,
+                        outlines->subpath[s].n, &g->ctm);
     }
-    return nodes;
+    return outline;
+}
+
+/* The centre of what it encloses, wherever its nodes are; of a line that of its extent. */
+static FlPoint middle_of(const Outline *outline)
+{
+    const double width = outline->most.x - outline->least.x;
+    const double height = outline->most.y - outline->least.y;
+    const FlPoint origin = g_array_index(outline->nodes, FlPoint, 0);
+    if (fabs(outline->area) <= FLAT * (width * width + height * height))
+        return (FlPoint){outline->least.x + width / 2, outline->least.y + height / 2};
+    const double x = origin.x + outline->moment.x / (3 * outline->area);
+    const double y = origin.y + outline->moment.y / (3 * outline->area);
+    return (FlPoint){CLAMP(x, outline->least.x, outline->most.x), // an eight's may be elsewhere
+                     CLAMP(y, outline->least.y, outline->most.y)};
 }
 
 /* The sums of the nodes about their mean, times the powers of a root of one and of its inverse. */
@@ -80,18 +128,22 @@ FlPose fl_point_pose(FlPoint point)
 
 FlPose fl_outline_pose(const FlOutlines *outlines, int leaf)
 {
-    g_autoptr(GArray) nodes = nodes_of(outlines, leaf);
-    Sums sums = {0};
-    for (guint k = 0; k < nodes->len; k++)
-        add_node(&sums, g_array_index(nodes, FlPoint, k));
-    if (sums.n == 0)
+    const Outline outline = outline_of(outlines, leaf);
+    g_autoptr(GArray) nodes = outline.nodes;
+    const int n = (int)nodes->len;
+    FlPoint mean = {0, 0};
+    if (n == 0)
         return (FlPose){0};
-    const FlPoint mean = {sums.sum.x / sums.n, sums.sum.y / sums.n};
-    FlPose pose = {.n = sums.n,
+    for (int k = 0; k < n; k++) {
+        const FlPoint p = g_array_index(nodes, FlPoint, k);
+        mean.x += p.x / n, mean.y += p.y / n;
+    }
+    const FlPoint middle = middle_of(&outline);
+    FlPose pose = {.n = n,
                    .x = (float)mean.x,
                    .y = (float)mean.y,
-                   .middle_x = (float)((sums.least.x + sums.most.x) / 2),
-                   .middle_y = (float)((sums.least.y + sums.most.y) / 2)};
-    find_harmonics((const FlPoint *)(void *)nodes->data, sums.n, mean, pose.harmonic);
+                   .middle_x = (float)middle.x,
+                   .middle_y = (float)middle.y};
+    find_harmonics((const FlPoint *)(void *)nodes->data, n, mean, pose.harmonic);
     return sound(pose);
 }

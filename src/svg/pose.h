@@ -11,7 +11,7 @@
 typedef struct FlPose {
     int32_t n;                // nodes; 0: nothing is known
     float x, y;               // their mean
-    float middle_x, middle_y; // of the rectangle around them
+    float middle_x, middle_y; // of what the outline encloses, whatever its nodes are
     float harmonic[2][2];     // the first and the last one of the nodes about their mean, in their
                               // order, as real and imaginary part: both turn with the outline
 } FlPose;
