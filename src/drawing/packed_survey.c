@@ -164,8 +164,8 @@ static bool is_sound(const FlSurveyPart *part, const FlStrings *strings)
                  is_bool(&part->thick) && (unsigned)part->part <= FL_PART_STROKE &&
                  (unsigned)part->kind <= FL_PAINT_MIXED &&
                  (unsigned)part->blend_mode < FL_N_BLEND_MODES && part->unit >= 0 &&
-                 isfinite(part->width) && isfinite(part->area_px) && isfinite(part->covers) &&
-                 fl_pose_is_sound(&part->pose);
+                 isfinite(part->width) && isfinite(part->area_px) && part->area_px >= 0 &&
+                 isfinite(part->covers) && fl_pose_is_sound(&part->pose);
     for (size_t i = 0; i < G_N_ELEMENTS(text); i++)
         sound &= text[i] >= 0 && text[i] < (int)strings->text->len;
     for (int c = 0; c < 4; c++)

@@ -38,8 +38,9 @@ typedef struct Follower {
     int n_regions;
     int *first; // index of each region's first leaf
     Leaf *leaf;
-    Fit *fit;   // of each region
-    bool *here; // whether it was in a frame yet
+    Fit *fit;     // of each region
+    Means *begin; // of each region, in the first frame that has it
+    bool *begun;  // whether that was before
 } Follower;
 
 /* The conjugate of a, times b. */
@@ -66,6 +67,11 @@ static FlPoint middle_of(const FlSurveyPart *part, bool by_outline)
     return (FlPoint){((double)box[0] + (double)box[2]) / 2, ((double)box[1] + (double)box[3]) / 2};
 }
 
+static double weight_of(const FlSurveyPart *part)
+{
+    return (double)part->area_px + 1e-3; // something, of what is hidden as well
+}
+
 static void add_means(Means *means, double weight, FlPoint from, FlPoint to)
 {
     means->weight += weight;
@@ -88,7 +94,7 @@ static void add_turn(Fit *fit, double weight, FlPoint from, FlPoint to)
 static void add_leaf(Fit *fit, const FlSurveyPart *before, const FlSurveyPart *now, bool steady)
 {
     const FlPose *a = &before->pose, *b = &now->pose;
-    const double weight = (double)MIN(before->area_px, now->area_px) + 1e-3;
+    const double weight = MIN(weight_of(before), weight_of(now));
     if (!steady || a->n == 0 || a->n != b->n) {
         const bool known = a->n > 0 && b->n > 0;
         add_means(&fit->all, weight, middle_of(before, known), middle_of(now, known));
@@ -187,17 +193,21 @@ static void count_leaves(Follower *f, const FlSurvey *survey, int n_leaves)
         f->leaf[k].part = NULL;
 }
 
-/* Where a region begins. */
-static void place(FlAnchor *anchor, const GArray *parts, int region)
+static void add_beginning(Follower *f, const FlSurveyPart *part)
 {
-    Fit all = {0};
-    for (guint i = 0; i < parts->len; i++) {
-        const FlSurveyPart *part = &g_array_index(parts, FlSurveyPart, i);
-        if (part->region == region)
-            add_leaf(&all, part, part, true);
-    }
-    const FlPoint middle = mean_of(&all.all, all.all.to);
+    const FlPoint middle = middle_of(part, part->pose.n > 0);
+    if (!f->begun[part->region])
+        add_means(&f->begin[part->region], weight_of(part), middle, middle);
+}
+
+static void begin(Follower *f, int region, FlAnchor *anchor)
+{
+    const Means *means = &f->begin[region];
+    if (f->begun[region] || means->weight <= 0)
+        return;
+    const FlPoint middle = mean_of(means, means->to);
     *anchor = (FlAnchor){within(middle.x), within(middle.y), 1, 0};
+    f->begun[region] = true;
 }
 
 static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor)
@@ -205,19 +215,15 @@ static void follow(Follower *f, int t, const GArray *parts, FlAnchor *anchor)
     memset(f->fit, 0, (size_t)f->n_regions * sizeof *f->fit);
     for (guint i = 0; i < parts->len; i++) {
         const FlSurveyPart *part = &g_array_index(parts, FlSurveyPart, i);
-        if (part->region >= 0)
-            note_leaf(f, t, part);
-    }
-    for (guint i = 0; i < parts->len; i++) {
-        const int region = g_array_index(parts, FlSurveyPart, i).region;
-        if (region < 0)
+        if (part->region < 0)
             continue;
-        if (!f->here[region])
-            place(&anchor[region], parts, region);
-        f->here[region] = true;
+        note_leaf(f, t, part);
+        add_beginning(f, part);
     }
-    for (int r = 0; r < f->n_regions; r++)
+    for (int r = 0; r < f->n_regions; r++) {
+        begin(f, r, &anchor[r]);
         move(&anchor[r], &f->fit[r]);
+    }
 }
 
 /* Numbers the leaves of all regions. Returns: how many there are. */
@@ -244,8 +250,9 @@ FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions)
     const int n_leaves = number_leaves(survey, n_regions, first);
     g_autofree Leaf *leaf = g_new0(Leaf, n_leaves + 1);
     g_autofree Fit *fit = g_new0(Fit, n_regions + 1);
-    g_autofree bool *here = g_new0(bool, n_regions + 1);
-    Follower f = {n_regions, first, leaf, fit, here};
+    g_autofree Means *begin = g_new0(Means, n_regions + 1);
+    g_autofree bool *begun = g_new0(bool, n_regions + 1);
+    Follower f = {n_regions, first, leaf, fit, begin, begun};
     count_leaves(&f, survey, n_leaves);
     FlAnchor **anchors = g_new0(FlAnchor *, survey->n_frames + 1);
     for (int t = 0; t < survey->n_frames; t++) {
