@@ -87,7 +87,7 @@ typedef struct FlHand {
     FlTooth tooth; // of the frame's paper
 } FlHand;
 
-#define FL_ANCHOR_MOST 1e6f // of all numbers of an anchor
+#define FL_ANCHOR_MOST 1e6f // px from the page's corner, at most
 
 /** A place that moves along with a region and turns with it, so that what is uneven in its paint
  * can do the same. */

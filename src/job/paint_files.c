@@ -41,6 +41,13 @@ static char *anchor_text(const FlAnchor *anchor)
     return g_string_free(text, FALSE);
 }
 
+/* Whether the numbers are an anchor's; those of a file may be anything. */
+static bool is_anchor(const float value[4])
+{
+    const bool near = fabsf(value[0]) <= FL_ANCHOR_MOST && fabsf(value[1]) <= FL_ANCHOR_MOST;
+    return near && fabsf(value[2]) <= 1 && fabsf(value[3]) <= 1;
+}
+
 /* Where the file does not tell, as one that another program has written, it stays as it is. */
 static void load_anchor(const char *path, FlAnchor *anchor)
 {
@@ -49,10 +56,10 @@ static void load_anchor(const char *path, FlAnchor *anchor)
     char *at = text, *end = NULL;
     for (size_t k = 0; at && k < G_N_ELEMENTS(value); k++, at = end) {
         value[k] = (float)g_ascii_strtod(at, &end);
-        if (end == at || !(fabsf(value[k]) <= FL_ANCHOR_MOST))
+        if (end == at)
             return;
     }
-    if (at)
+    if (at && is_anchor(value))
         *anchor = (FlAnchor){value[0], value[1], value[2], value[3]};
 }
 
