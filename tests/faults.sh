@@ -47,7 +47,7 @@ else
 fi
 
 mkdir limited
-(ulimit -f 4 && trap '' XFSZ && paint limited)
+(ulimit -f 2 && trap '' XFSZ && paint limited)
 [ $? = 1 ] && says 'File too large' && no_litter limited
 result $? 'a limit on the size of files is one message'
 

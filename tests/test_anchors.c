@@ -36,6 +36,16 @@ static void assert_turned(const FlDrawing *drawing, int t, double degrees)
     g_assert_cmpfloat_with_epsilon(anchor.sine, sin(degrees * G_PI / 180), 1e-3);
 }
 
+/* In every frame the anchor of the film's first region moves and turns on. */
+static void assert_film(const char *folder, double x, double y, double degrees)
+{
+    g_autoptr(FlDrawing) drawing = open_film(folder);
+    for (int t = 1; t < N; t++) {
+        assert_moves(drawing, t, x, y);
+        assert_turned(drawing, t, degrees * t);
+    }
+}
+
 /* The star's corners in the page's px; `more`: with nodes amid its sides, begun at another one. */
 static char *star(double x, double y, double degrees, bool more)
 {
@@ -63,11 +73,7 @@ static void a_shape_that_slides_past_the_page_moves_all_the_same(void)
                                                 -7 * t, .5 * t);
         add_frame(folder, t, hill);
     }
-    g_autoptr(FlDrawing) drawing = open_film(folder);
-    for (int t = 1; t < N; t++) {
-        assert_moves(drawing, t, -7, .5);
-        assert_turned(drawing, t, 0);
-    }
+    assert_film(folder, -7, .5, 0);
 }
 
 static void an_outline_that_turns_turns_its_anchor(void)
@@ -77,11 +83,7 @@ static void an_outline_that_turns_turns_its_anchor(void)
         g_autofree char *shape = star(40 + 2 * t, 40, 12 * t, false);
         add_frame(folder, t, shape);
     }
-    g_autoptr(FlDrawing) drawing = open_film(folder);
-    for (int t = 1; t < N; t++) {
-        assert_moves(drawing, t, 2, 0);
-        assert_turned(drawing, t, 12 * t);
-    }
+    assert_film(folder, 2, 0, 12);
 }
 
 static void a_group_turns_about_its_centre(void)
@@ -94,11 +96,7 @@ static void a_group_turns_about_its_centre(void)
             10 * t);
         add_frame(folder, t, group);
     }
-    g_autoptr(FlDrawing) drawing = open_film(folder);
-    for (int t = 1; t < N; t++) {
-        assert_moves(drawing, t, 0, 0);
-        assert_turned(drawing, t, 10 * t);
-    }
+    assert_film(folder, 0, 0, 10);
 }
 
 static void other_nodes_are_no_turn(void)
@@ -108,11 +106,7 @@ static void other_nodes_are_no_turn(void)
         g_autofree char *shape = star(40 + 2 * t, 40, 0, t % 2);
         add_frame(folder, t, shape);
     }
-    g_autoptr(FlDrawing) drawing = open_film(folder);
-    for (int t = 1; t < N; t++) {
-        assert_moves(drawing, t, 2, 0);
-        assert_turned(drawing, t, 0);
-    }
+    assert_film(folder, 2, 0, 0);
 }
 
 static void a_leaf_that_goes_takes_nothing_along(void)

@@ -29,7 +29,7 @@ G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawing
     FlWarnings *warnings = fl_warnings_new();
     (void)fl_survey_init(&survey, sequence, options, watch, warnings, &problem);
     const GByteArray *out = fl_survey_pack(&survey, problem, warnings);
-    _exit(fl_write_all(fd, out->data, out->len) ? 0 : 1);
+    fl_confined_leave(fl_write_all(fd, out->data, out->len));
 }
 
 /* ---- the parent ---------------------------------------------------------------------------- */

@@ -2,6 +2,7 @@
 
 #include "base/limits.h"
 #include "base/sandbox.h"
+#include <errno.h>
 #include <fcntl.h>
 #include <glib/gstdio.h>
 #include <signal.h>
@@ -70,6 +71,19 @@ void fl_confined_enter(const FlSequence *sequence, int stderr_fd)
     fl_sandbox_enter((const char *const *)paths->pdata, mib);
 }
 
+#define UNWRITTEN 100 // a child's status beyond this is that and errno
+
+void fl_confined_leave(bool written)
+{
+    _exit(written ? 0 : UNWRITTEN + CLAMP(errno, 1, 255 - UNWRITTEN));
+}
+
+/** Why a child could not write what it found; 0: that was not why it ended. */
+static int unwritten_errno(int status)
+{
+    return WIFEXITED(status) ? MAX(WEXITSTATUS(status) - UNWRITTEN, 0) : 0;
+}
+
 bool fl_confined_asked_too_much(int stderr_fd)
 {
     // Rust's, GLib's and OpenMP's
@@ -99,6 +113,9 @@ bool fl_confined_set_error(const FlSequence *sequence, int frame, FlConfinedEnd 
         why = g_strdup_printf("%s it takes more than %" G_GINT64_FORMAT
                               " MiB of memory; use ‘limit’ memory=N to allow more",
                               work, fl_limit(FL_LIMIT_MEMORY));
+    else if (unwritten_errno(end.status) > 0)
+        why = g_strdup_printf("%s it, what was found could not be handed over: %s", work,
+                              g_strerror(unwritten_errno(end.status)));
     else
         why = g_strdup_printf("the SVG library crashed while %s it (%s)", work,
                               number ? g_strsignal(number) : "it ended");

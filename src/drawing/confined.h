@@ -20,6 +20,9 @@ void fl_confined_ends_with(pid_t parent);
  */
 void fl_confined_enter(const FlSequence *sequence, int stderr_fd);
 
+/** Ends a child that has written what it found, or with errno could not. */
+G_GNUC_NORETURN void fl_confined_leave(bool written);
+
 /** How a child ended. */
 typedef struct FlConfinedEnd {
     int status;    // as of waitpid()
