@@ -4,9 +4,7 @@
 #include <string.h>
 
 #define LEVEL 4
-#define SPARSE_LEVEL 4 // zlib's
-#define SAME 128       // the predictor's byte where a byte is as the one before
-#define LONG_RUN 4096  // from which on a run is worth a piece of its own
+#define SAME 128 // the predictor's byte where a byte is as the one before
 
 bool fl_exr_chunk_init(FlExrChunk *chunk, GError **error)
 {
@@ -34,8 +32,7 @@ void fl_exr_chunk_begin(FlExrChunk *chunk, size_t n, bool sparse)
     chunk->n = n, chunk->done = chunk->run = 0, chunk->last = 0;
     g_byte_array_set_size(chunk->predicted, 0);
     g_byte_array_set_size(chunk->packed, 0);
-    // beside runs, nothing in paint comes twice: looking for it would take twice as long, for 2 %
-    chunk->stream = sparse ? fl_sparse_stream_new(SPARSE_LEVEL, true, chunk->packed) : NULL;
+    chunk->stream = sparse ? fl_sparse_stream_new(chunk->packed) : NULL;
 }
 
 /* Room for n more bytes. */
@@ -56,7 +53,7 @@ static void drain(FlExrChunk *chunk)
 
 static void end_run(FlExrChunk *chunk)
 {
-    if (chunk->stream && chunk->run >= LONG_RUN) {
+    if (chunk->stream && chunk->run > 0) {
         drain(chunk);
         fl_sparse_stream_run(chunk->stream, SAME, chunk->run);
     } else if (chunk->run > 0)

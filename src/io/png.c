@@ -17,8 +17,6 @@
  */
 #define LEVEL_FINAL 4
 #define LEVEL_FAST 1
-#define SPARSE_FINAL 6 // zlib's
-#define SPARSE_FAST 1
 
 /** Receives libpng's message before it jumps. */
 typedef struct Trouble {
@@ -194,10 +192,7 @@ static uint8_t *compress_part(const FlPng *picture, Rows part, size_t *bytes, GE
     if (!rows)
         return NULL;
     g_autoptr(GByteArray) stream = g_byte_array_new();
-    FlSparseStream *sparse =
-        fl_sparse_stream_new(picture->fast ? SPARSE_FAST : SPARSE_FINAL, false, stream);
-    if (!sparse)
-        return NULL;
+    FlSparseStream *sparse = fl_sparse_stream_new(stream);
     fl_sparse_stream_run(sparse, 0, (size_t)part.first * row);
     fl_sparse_stream_put(sparse, rows, (size_t)(part.end - part.first) * row);
     fl_sparse_stream_run(sparse, 0, (size_t)(picture->height - part.end) * row);
@@ -205,11 +200,11 @@ static uint8_t *compress_part(const FlPng *picture, Rows part, size_t *bytes, GE
     return g_byte_array_steal(stream, bytes);
 }
 
-/** Libdeflate is faster where most rows have something in them. */
+/** Of a whole picture libdeflate makes a smaller stream, in the same time. */
 static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
 {
     const FlRect *filled = picture->filled;
-    if (!filled || 2 * filled->height > picture->height)
+    if (!filled)
         return compress_all(picture, bytes, error);
     // the row below is not clear: it is filtered by the last one
     const Rows part = {filled->y, MIN(filled->y + filled->height + 1, picture->height)};

@@ -1,109 +1,236 @@
 #include "io/sparse_stream.h"
 
+#include "io/prefix_code.h"
+#include <libdeflate.h>
+#include <stdbool.h>
 #include <string.h>
-#include <zlib.h>
 
-#define PIECE ((size_t)1 << 10) // bytes of the shortest piece; each other one is twice as long
-#define PIECES 7
-#define MOST_AT_ONCE ((size_t)1 << 30) // what avail_in holds
-#define ADLER_BASE 65521               // of the checksum, RFC 1950
-
-struct FlSparseStream {
-    z_stream zlib;
-    GByteArray *out;
-    uLong sum;
-    uint8_t value;             // of the pieces
-    GByteArray *piece[PIECES]; // compressed; NULL: not yet
+/* Deflate's numbers [RFC 1951 §3.2]. */
+enum {
+    DYNAMIC_CODES = 2, // the kind of a block
+    END_OF_BLOCK = 256,
+    FIRST_LENGTH = 257, // the symbol of a match of SHORTEST bytes
+    SHORTEST = 3,
+    LONGEST = 258,
+    LENGTH_OF_LENGTHS = 4, // bits: all lengths, 0 … 15, have codes of that many
 };
 
-/** Appends what zlib has made of its input. */
-static void drain(z_stream *zlib, int flush, GByteArray *out)
+#define TOKENS (1 << 15)    // of a block, which has a code of its own
+#define TOKEN_BITS 21       // at most: a symbol, the rest of a length, a distance
+#define HEADER_BYTES 256    // of a block, at most, and of what is in no byte yet
+#define ADLER_BASE 65521ULL // of the checksum, RFC 1950
+
+/* A byte, or END_OF_BLOCK + the length of a match with the byte before; END_OF_BLOCK is itself. */
+typedef uint16_t Token;
+#define TOKEN_KINDS (END_OF_BLOCK + LONGEST + 1)
+
+struct FlSparseStream {
+    GByteArray *out;
+    uint64_t bits; // that are not in `out`, the first one the lowest
+    int n_bits;    // less than 32
+    uint32_t sum;
+    int last;   // the last byte, -1: none
+    size_t run; // how many like `last` come after it that are no token yet
+    int n_tokens;
+    Token token[TOKENS];
+};
+
+/* ---- symbols --------------------------------------------------------------------------------- */
+
+/** A length in deflate's way. */
+typedef struct Length {
+    int symbol, n_extra;
+    unsigned extra;
+} Length;
+
+/* Four symbols for each size of the rest; the last symbol is the longest match. */
+static Length length_of(int length)
 {
-    uint8_t room[4096];
-    do {
-        zlib->next_out = room, zlib->avail_out = sizeof room;
-        (void)deflate(zlib, flush); // Z_BUF_ERROR: it had nothing left to say
-        g_byte_array_append(out, room, (guint)(sizeof room - zlib->avail_out));
-    } while (zlib->avail_out == 0);
+    const unsigned l = (unsigned)(length - SHORTEST);
+    if (length == LONGEST)
+        return (Length){FL_CODE_SYMBOLS - 1, 0, 0};
+    if (l < 8)
+        return (Length){FIRST_LENGTH + (int)l, 0, 0};
+    const int n_extra = (int)g_bit_storage(l) - 3;
+    return (Length){FIRST_LENGTH + 4 * n_extra + (int)(l >> n_extra), n_extra,
+                    l & ((1U << n_extra) - 1)};
 }
 
-FlSparseStream *fl_sparse_stream_new(int level, bool runs, GByteArray *out)
+/* ---- a block --------------------------------------------------------------------------------- */
+
+/* Bits that are written together, the first one the lowest. */
+typedef struct Bits {
+    uint32_t bits;
+    int n; // at most 32
+} Bits;
+
+/* There is room in `out`: end_block() makes it. */
+static inline void put_bits(FlSparseStream *stream, Bits put)
+{
+    stream->bits |= (uint64_t)put.bits << stream->n_bits;
+    stream->n_bits += put.n;
+    if (stream->n_bits < 32)
+        return;
+    const uint32_t full = GUINT32_TO_LE((uint32_t)stream->bits);
+    memcpy(stream->out->data + stream->out->len, &full, sizeof full);
+    stream->out->len += sizeof full;
+    stream->bits >>= 32, stream->n_bits -= 32;
+}
+
+/* The code of the block: of symbols, and of one distance, 1. */
+static void put_code(FlSparseStream *stream, const FlPrefixCode *code)
+{
+    static const uint8_t reversed[] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
+    put_bits(stream, (Bits){FL_CODE_SYMBOLS - 257, 5});
+    put_bits(stream, (Bits){0, 5});
+    put_bits(stream, (Bits){19 - 4, 4});
+    for (int k = 0; k < 19; k++) // the first three repeat lengths
+        put_bits(stream, (Bits){k < 3 ? 0 : LENGTH_OF_LENGTHS, 3});
+    for (int s = 0; s < FL_CODE_SYMBOLS; s++)
+        put_bits(stream, (Bits){reversed[code->length[s]], LENGTH_OF_LENGTHS});
+    put_bits(stream, (Bits){reversed[1], LENGTH_OF_LENGTHS});
+}
+
+/* What a token is written as: of a match its length, what its symbol leaves open of that, and the
+ * only code of a distance, 0. */
+static Bits bits_of(const FlPrefixCode *code, int token)
+{
+    if (token <= END_OF_BLOCK)
+        return (Bits){code->bits[token], code->length[token]};
+    const Length length = length_of(MAX(token - END_OF_BLOCK, SHORTEST));
+    const int n = code->length[length.symbol];
+    return (Bits){code->bits[length.symbol] | length.extra << n, n + length.n_extra + 1};
+}
+
+/* How often a symbol comes in a block. */
+static void count_symbols(const FlSparseStream *stream, uint32_t count[FL_CODE_SYMBOLS])
+{
+    uint32_t n[TOKEN_KINDS] = {0};
+    for (int k = 0; k < stream->n_tokens; k++)
+        n[stream->token[k]]++;
+    memcpy(count, n, END_OF_BLOCK * sizeof *count);
+    memset(count + END_OF_BLOCK, 0, (FL_CODE_SYMBOLS - END_OF_BLOCK) * sizeof *count);
+    for (int length = SHORTEST; length <= LONGEST; length++)
+        count[length_of(length).symbol] += n[END_OF_BLOCK + length];
+    count[END_OF_BLOCK] = 1;
+    count[FL_CODE_SYMBOLS - 1]++; // a code has two symbols at least
+}
+
+static void make_room(GByteArray *out, size_t bytes)
+{
+    const guint n = out->len;
+    g_byte_array_set_size(out, n + (guint)bytes);
+    out->len = n;
+}
+
+static void end_block(FlSparseStream *stream, bool last)
+{
+    uint32_t count[FL_CODE_SYMBOLS];
+    FlPrefixCode code;
+    Bits bits[TOKEN_KINDS];
+    count_symbols(stream, count);
+    fl_prefix_code_init(&code, count);
+    for (int t = 0; t < TOKEN_KINDS; t++)
+        bits[t] = bits_of(&code, t);
+    make_room(stream->out, HEADER_BYTES + (size_t)stream->n_tokens * TOKEN_BITS / 8);
+    put_bits(stream, (Bits){last, 1});
+    put_bits(stream, (Bits){DYNAMIC_CODES, 2});
+    put_code(stream, &code);
+    for (int k = 0; k < stream->n_tokens; k++)
+        put_bits(stream, bits[stream->token[k]]);
+    put_bits(stream, bits[END_OF_BLOCK]);
+    stream->n_tokens = 0;
+}
+
+/* ---- bytes ----------------------------------------------------------------------------------- */
+
+static void add_token(FlSparseStream *stream, int token)
+{
+    if (stream->n_tokens == TOKENS)
+        end_block(stream, false);
+    stream->token[stream->n_tokens++] = (Token)token;
+}
+
+/* The run at the end becomes matches; what is too short for one, bytes. */
+static void end_run(FlSparseStream *stream)
+{
+    for (; stream->run >= SHORTEST; stream->run -= MIN(stream->run, LONGEST))
+        add_token(stream, END_OF_BLOCK + (int)MIN(stream->run, LONGEST));
+    for (; stream->run > 0; stream->run--)
+        add_token(stream, stream->last);
+}
+
+static void add_byte(FlSparseStream *stream, uint8_t byte)
+{
+    if (stream->run > 0)
+        end_run(stream);
+    add_token(stream, byte);
+    stream->last = byte;
+}
+
+/* How many of n bytes from the first on are `value`. */
+static size_t run_of(const uint8_t *bytes, size_t n, uint8_t value)
+{
+    const uint64_t eight = value * UINT64_C(0x0101010101010101);
+    size_t k = 0;
+    for (; k + sizeof eight <= n && memcmp(bytes + k, &eight, sizeof eight) == 0;)
+        k += sizeof eight;
+    while (k < n && bytes[k] == value)
+        k++;
+    return k;
+}
+
+static void add_bytes(FlSparseStream *stream, const uint8_t *bytes, size_t n)
+{
+    for (size_t k = 0; k < n; k++) {
+        const size_t run = bytes[k] == stream->last ? run_of(bytes + k, n - k, bytes[k]) : 0;
+        stream->run += run, k += run;
+        if (k < n)
+            add_byte(stream, bytes[k]);
+    }
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+FlSparseStream *fl_sparse_stream_new(GByteArray *out)
 {
     static const uint8_t head[] = {0x78, 0x01}; // deflate, a window of 32 KiB
     FlSparseStream *stream = g_new0(FlSparseStream, 1);
-    *stream = (FlSparseStream){.out = out, .sum = 1};
-    if (deflateInit2(&stream->zlib, level, Z_DEFLATED, -MAX_WBITS, 8,
-                     runs ? Z_RLE : Z_DEFAULT_STRATEGY) != Z_OK) {
-        g_free(stream);
-        return NULL;
-    }
+    stream->out = out, stream->sum = 1, stream->last = -1;
     g_byte_array_append(out, head, sizeof head);
     return stream;
 }
 
-/** Compresses bytes, which are not counted; what follows needs none of them. */
-static void compress_apart(FlSparseStream *stream, const uint8_t *bytes, size_t n, GByteArray *out)
-{
-    for (size_t done = 0; done < n; done += MOST_AT_ONCE) {
-        stream->zlib.next_in = (z_const Bytef *)(bytes + done);
-        stream->zlib.avail_in = (uInt)MIN(n - done, MOST_AT_ONCE);
-        drain(&stream->zlib, Z_FULL_FLUSH, out);
-    }
-}
-
 void fl_sparse_stream_put(FlSparseStream *stream, const uint8_t *bytes, size_t n)
 {
-    compress_apart(stream, bytes, n, stream->out);
-    stream->sum = adler32_z(stream->sum, bytes, n);
+    add_bytes(stream, bytes, n);
+    stream->sum = libdeflate_adler32(stream->sum, bytes, n);
 }
 
-/** The checksum of a run. */
-static uLong sum_of_run(uint8_t value, size_t n)
+/* The checksum after a run. */
+static uint32_t sum_with_run(uint32_t sum, uint8_t value, size_t n)
 {
-    const uint64_t m = n % (2 * (uint64_t)ADLER_BASE); // it has that period
-    const uint64_t low = (1 + m * value) % ADLER_BASE;
-    const uint64_t high = (m + (m * (m + 1) / 2 % ADLER_BASE) * value) % ADLER_BASE;
-    return (uLong)(high << 16 | low);
-}
-
-static void clear_pieces(FlSparseStream *stream)
-{
-    for (int k = 0; k < PIECES; k++)
-        g_clear_pointer(&stream->piece[k], g_byte_array_unref);
-}
-
-static void put_piece(FlSparseStream *stream, int k)
-{
-    if (!stream->piece[k]) {
-        g_autofree uint8_t *bytes = g_malloc(PIECE << k);
-        memset(bytes, stream->value, PIECE << k);
-        stream->piece[k] = g_byte_array_new();
-        compress_apart(stream, bytes, PIECE << k, stream->piece[k]);
-    }
-    g_byte_array_append(stream->out, stream->piece[k]->data, stream->piece[k]->len);
+    const uint64_t m = n % (2 * ADLER_BASE); // a run of that many changes nothing
+    const uint64_t low = sum & 0xffff, high = sum >> 16;
+    const uint64_t rise = m * (m + 1) / 2 % ADLER_BASE * value;
+    return (uint32_t)((high + m * low + rise) % ADLER_BASE << 16 | (low + m * value) % ADLER_BASE);
 }
 
 void fl_sparse_stream_run(FlSparseStream *stream, uint8_t value, size_t n)
 {
-    uint8_t rest[PIECE];
-    size_t left = n;
-    if (value != stream->value)
-        clear_pieces(stream);
-    stream->value = value;
-    for (int k = PIECES - 1; k >= 0; k--)
-        for (; left >= PIECE << k; left -= PIECE << k)
-            put_piece(stream, k);
-    memset(rest, value, left);
-    compress_apart(stream, rest, left, stream->out);
-    stream->sum = adler32_combine(stream->sum, sum_of_run(value, n), (z_off_t)n);
+    const bool begins = n > 0 && value != stream->last;
+    if (begins)
+        add_byte(stream, value);
+    stream->run += n - begins;
+    stream->sum = sum_with_run(stream->sum, value, n);
 }
 
 void fl_sparse_stream_end(FlSparseStream *stream)
 {
-    drain(&stream->zlib, Z_FINISH, stream->out);
-    const uint32_t sum = GUINT32_TO_BE((uint32_t)stream->sum);
+    end_run(stream);
+    end_block(stream, true);
+    const uint32_t rest = GUINT32_TO_LE((uint32_t)stream->bits), sum = GUINT32_TO_BE(stream->sum);
+    g_byte_array_append(stream->out, (const uint8_t *)&rest, (guint)(stream->n_bits + 7) / 8);
     g_byte_array_append(stream->out, (const uint8_t *)&sum, sizeof sum);
-    deflateEnd(&stream->zlib);
-    clear_pieces(stream);
     g_free(stream);
 }
