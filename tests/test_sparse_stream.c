@@ -69,8 +69,9 @@ static void one_byte_is_a_stream(Fixture *fixture, gconstpointer data)
 static void runs_of_every_length_come_back(Fixture *fixture, gconstpointer data)
 {
     for (size_t n = 0; n < 700; n++) {
-        run(fixture, (uint8_t)(n % 3), n);
-        put(fixture, (const uint8_t *)"\0\0ab\0\0\0", n % 8); // some go on where the run ends
+        run(fixture, 1 + n % 2, n);
+        put(fixture, (const uint8_t *)"ab\0\0\0\0", n % 7);
+        run(fixture, 0, n % 5); // some go on where others end
     }
 }
 
