@@ -219,11 +219,11 @@ static void settle(FlSearch *search, int level, bool first, bool coarsest)
         search->propagate_from = first ? FIRST_RANDOM_SWEEPS : FINEST_RANDOM_SWEEPS;
 }
 
-/* Half of them in a first frame, which with the rounds of its coarser levels still ends better than
- * those after it; where every match is searched, as by the papers' presets, all. */
+/* A quarter of them in a first frame, which with the rounds of its coarser levels still ends better
+ * than those after it; where every match is searched, as by the papers' presets, all. */
 static int finest_sweeps(const FlParams *params, bool first)
 {
-    return first && params->settled > 0 ? (params->finest_sweeps + 1) / 2 : params->finest_sweeps;
+    return first && params->settled > 0 ? (params->finest_sweeps + 3) / 4 : params->finest_sweeps;
 }
 
 static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats *stats,
