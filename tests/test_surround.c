@@ -16,7 +16,8 @@ static FlDraw columns(int region, int x0, int x1, const uint8_t rgb[3])
 static const uint8_t red[3] = {200, 100, 50}, reddish[3] = {202, 101, 52}, blue[3] = {0, 0, 200};
 
 /** What of the first frame is around region 0, after a film of n frames was noted. */
-static void around_of(const FlDrawList *frames, int n, const FlJoin *joins, FlAround *around)
+static void around_of(const FlDrawList *frames, int n, const FlJoin *joins,
+                      FlSurroundPlanes *around)
 {
     g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(3);
     g_autoptr(FlSurround) surround = fl_surround_new(3, 1, W, H, NULL);
@@ -29,7 +30,7 @@ static void around_of(const FlDrawList *frames, int n, const FlJoin *joins, FlAr
 /** What is together with region 0 in column x; -1: nothing is like it. */
 static int together_at(const FlDrawList *draws, const FlJoin *joins, int x)
 {
-    g_auto(FlAround) around = {0};
+    g_auto(FlSurroundPlanes) around = {0};
     around_of(draws, 1, joins, &around);
     return around.joined ? around.together[5 * W + x] : -1;
 }
@@ -37,7 +38,7 @@ static int together_at(const FlDrawList *draws, const FlJoin *joins, int x)
 /** The same with what borders on it; -1: nothing does. */
 static int closed_at(const FlDrawList *draws, const FlJoin *joins, int x)
 {
-    g_auto(FlAround) around = {0};
+    g_auto(FlSurroundPlanes) around = {0};
     around_of(draws, 1, joins, &around);
     return around.bordered ? around.closed[5 * W + x] : -1;
 }
@@ -96,7 +97,7 @@ static void edges_are_shared_through_the_film_or_not_at_all(void)
     FlDraw unlike[] = {columns(0, 0, 15, red), columns(1, 10, 30, blue)};
     FlDraw away[] = {columns(0, 0, 15, red), columns(1, 20, 30, blue)};
     const FlDrawList mostly[] = {{2, like}, {2, like}, {2, unlike}, {2, away}, {2, away}};
-    g_auto(FlAround) with = {0}, without = {0};
+    g_auto(FlSurroundPlanes) with = {0}, without = {0};
     around_of(mostly, 5, joins, &with); // frames in which they do not meet say nothing
     g_assert_true(with.joined);
     const FlDrawList seldom[] = {{2, like}, {2, unlike}, {2, unlike}};
@@ -172,7 +173,7 @@ static void what_lies_over_any_part_of_a_region_hides_it(void)
     FlDraw draw[] = {columns(0, 2, 12, red), columns(0, 20, 30, red), columns(1, 0, 4, blue),
                      columns(1, 28, 40, blue), columns(2, 10, 22, blue)};
     const FlDrawList draws = {5, draw};
-    g_auto(FlAround) around = {0};
+    g_auto(FlSurroundPlanes) around = {0};
     around_of(&draws, 1, joins, &around);
     g_assert_true(around.hidden);
     for (int x = 0; x < W; x++) {

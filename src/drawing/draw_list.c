@@ -30,7 +30,7 @@ static bool boxes_meet(const float a[4], const float b[4])
     return a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3];
 }
 
-static bool meets(const Draw *draw, const FlDrawingFrame *frame, const FlStep *step)
+static bool meets(const Draw *draw, const FlDrawingFrame *frame, const FlDrawStep *step)
 {
     for (guint i = 0; i < draw->steps->len; i++)
         if (boxes_meet(frame->step[g_array_index(draw->steps, int, i)].box, step->box))
@@ -39,7 +39,7 @@ static bool meets(const Draw *draw, const FlDrawingFrame *frame, const FlStep *s
 }
 
 /** Whether step can join draw: translucent or blended ones only where they do not overlap. */
-static bool fits(const Draw *draw, const FlDrawingFrame *frame, const FlStep *step)
+static bool fits(const Draw *draw, const FlDrawingFrame *frame, const FlDrawStep *step)
 {
     if (draw->region != step->region || draw->flat != step->flat || draw->alpha != step->alpha ||
         draw->drawn != step->drawn || draw->blend_mode != step->blend_mode ||
@@ -54,7 +54,7 @@ static GArray *draws_of(const FlDrawingFrame *frame)
     GArray *draws = g_array_new(FALSE, FALSE, sizeof(Draw));
     g_array_set_clear_func(draws, draw_clear);
     for (int i = 0; i < frame->n; i++) {
-        const FlStep *step = &frame->step[i];
+        const FlDrawStep *step = &frame->step[i];
         Draw *found = NULL;
         for (guint r = draws->len; r-- > 0 && !found;) {
             Draw *draw = &g_array_index(draws, Draw, r);
@@ -132,7 +132,7 @@ static FlRect page_of(const FlDrawing *drawing)
 }
 
 /** The pixels a step can reach. */
-static FlRect step_box(const Stage *stage, const FlStep *step)
+static FlRect step_box(const Stage *stage, const FlDrawStep *step)
 {
     return fl_rect_and(page_of(stage->drawing),
                        fl_rect_between((int)floorf(step->box[0]), (int)floorf(step->box[1]),
@@ -149,7 +149,7 @@ static FlRect draw_box(const Stage *stage, const Draw *draw)
     return all;
 }
 
-static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *surface,
+static bool draw_step(const Stage *stage, const FlDrawStep *step, cairo_surface_t *surface,
                       GError **error)
 {
     const FlLeaves *leaves = fl_svg_leaves(stage->svg);
@@ -161,7 +161,7 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
         return false;
     }
     const FlLeaf *leaf = step->leaf >= 0 ? &g_array_index(list, FlLeaf, index)
-                                         : &g_array_index(list, FlUnit, index).leaf;
+                                         : &g_array_index(list, FlGroupUnit, index).leaf;
     const FlRect box = step_box(stage, step);
     cairo_t *cr = cairo_create(surface);
     cairo_rectangle(cr, box.x, box.y, box.width, box.height);
@@ -177,7 +177,7 @@ static bool draw_step(const Stage *stage, const FlStep *step, cairo_surface_t *s
 
 /** Whether a hand draws a step: a line, or a flat opaque shape, which is a detail if it is small.
  */
-static bool is_by_hand(const FlStep *step, const FlHand *hand)
+static bool is_by_hand(const FlDrawStep *step, const FlHand *hand)
 {
     const bool line = step->width > 0;
     const bool shape = step->width == 0 && step->part != FL_PART_STROKE && step->flat &&
@@ -211,7 +211,7 @@ static void find_paths(Stage *stage)
 {
     g_autoptr(FlOutlines) outlines = NULL;
     for (int i = 0; i < stage->frame->n; i++) {
-        const FlStep *step = &stage->frame->step[i];
+        const FlDrawStep *step = &stage->frame->step[i];
         if (!is_by_hand(step, stage->hand))
             continue;
         if (!outlines) {
@@ -226,7 +226,7 @@ static void find_paths(Stage *stage)
         join_ends(stage);
 }
 
-static FlHandLine hand_of(const Stage *stage, const FlStep *step, const FlLinePaths *paths)
+static FlHandLine hand_of(const Stage *stage, const FlDrawStep *step, const FlLinePaths *paths)
 {
     const FlHand *hand = stage->hand;
     const FlRegionHand *own = &hand->of_region[step->region];
@@ -268,7 +268,7 @@ static size_t target_pixel(const Target *target, int x, int y)
 static bool add_by_hand(const Stage *stage, int i, const uint8_t solid[256], const Target *target,
                         GError **error)
 {
-    const FlStep *step = &stage->frame->step[i];
+    const FlDrawStep *step = &stage->frame->step[i];
     const FlRect box = step_box(stage, step);
     const int stride = cairo_image_surface_get_stride(stage->coverage);
     const unsigned char *drawn = cairo_image_surface_get_data(stage->coverage);
@@ -295,7 +295,7 @@ static bool add_by_hand(const Stage *stage, int i, const uint8_t solid[256], con
 /** Adds one flat step to a coverage, dividing by its opacity. */
 static bool add_flat(const Stage *stage, int i, const Target *target, GError **error)
 {
-    const FlStep *step = &stage->frame->step[i];
+    const FlDrawStep *step = &stage->frame->step[i];
     if (!draw_step(stage, step, stage->coverage, error))
         return false;
     const FlRect box = step_box(stage, step);
@@ -331,7 +331,7 @@ static bool add_picture_by_hand(const Stage *stage, const Draw *draw, const Targ
     fill_solid(solid, draw->drawn);
     for (guint k = 0; k < draw->steps->len; k++) {
         const int i = g_array_index(draw->steps, int, k);
-        const FlStep *step = &stage->frame->step[i];
+        const FlDrawStep *step = &stage->frame->step[i];
         const bool added = draw_step(stage, step, stage->coverage, error) &&
                            add_by_hand(stage, i, solid, target, error);
         fl_surface_wipe(stage->coverage, step_box(stage, step));
@@ -458,7 +458,7 @@ static void cache_stage(Stage *stage, FlFrameCache *cache)
 }
 
 /** Of all that a step is drawn from; unknown with its leaf. */
-static FlDigest digest_of_step(const Stage *stage, const FlStep *step)
+static FlDigest digest_of_step(const Stage *stage, const FlDrawStep *step)
 {
     const FlLeaves *leaves = fl_svg_leaves(stage->svg);
     const GArray *list = step->leaf >= 0 ? leaves->leaf : leaves->unit;

@@ -261,22 +261,22 @@ static void remember(FlDrawing *drawing, FlSurvey *survey)
         for (int i = 0; survey->frame[t].files && survey->frame[t].files[i]; i++)
             g_hash_table_add(drawing->files, g_strdup(survey->frame[t].files[i]));
         frame->whole = g_steal_pointer(&survey->frame[t].whole);
-        frame->step = g_new0(FlStep, parts->len + 1);
+        frame->step = g_new0(FlDrawStep, parts->len + 1);
         for (guint i = 0; i < parts->len; i++) {
             const FlSurveyPart *s = &g_array_index(parts, FlSurveyPart, i);
             if (s->region < 0)
                 continue;
-            FlStep *step = &frame->step[frame->n++];
-            *step = (FlStep){.leaf = s->leaf,
-                             .region = (int16_t)s->region,
-                             .part = (uint8_t)s->part,
-                             .flat = s->kind == FL_PAINT_FLAT,
-                             .rgb = {s->rgb[0], s->rgb[1], s->rgb[2]},
-                             .alpha = s->peak,
-                             .drawn = s->peak,
-                             .blend_mode = (uint8_t)s->blend_mode,
-                             .nth = (uint16_t)s->nth,
-                             .width = s->width};
+            FlDrawStep *step = &frame->step[frame->n++];
+            *step = (FlDrawStep){.leaf = s->leaf,
+                                 .region = (int16_t)s->region,
+                                 .part = (uint8_t)s->part,
+                                 .flat = s->kind == FL_PAINT_FLAT,
+                                 .rgb = {s->rgb[0], s->rgb[1], s->rgb[2]},
+                                 .alpha = s->peak,
+                                 .drawn = s->peak,
+                                 .blend_mode = (uint8_t)s->blend_mode,
+                                 .nth = (uint16_t)s->nth,
+                                 .width = s->width};
             memcpy(step->box, s->box, sizeof step->box);
         }
     }

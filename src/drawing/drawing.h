@@ -87,12 +87,10 @@ typedef struct FlHand {
     FlTooth tooth; // of the frame's paper
 } FlHand;
 
-#define FL_ANCHOR_MOST 1e6f // px from the page's corner, at most
-
 /** A place that moves along with a region and turns with it, so that what is uneven in its paint
  * can do the same. */
 typedef struct FlAnchor {
-    float x, y;         // px of the picture
+    float x, y;         // px of the picture, within FL_POSE_MOST_PX
     float cosine, sine; // of its turn since the first frame
 } FlAnchor;
 

@@ -8,7 +8,7 @@
 
 /** How one part of a leaf is drawn in one frame. 36 bytes: this is what grows with the number of
  * frames. */
-typedef struct FlStep {
+typedef struct FlDrawStep {
     int32_t leaf;   // index of the leaf; of a unit -1 - its index
     int16_t region; // index into the drawing's regions
     uint8_t part;   // FlPart
@@ -20,11 +20,11 @@ typedef struct FlStep {
     uint16_t nth;       // FlSurveyPart.nth
     float width;        // FlSurveyPart.width
     float box[4];       // x0, y0, x1, y1 that it lies in, px
-} FlStep;
+} FlDrawStep;
 
 typedef struct FlDrawingFrame {
     int n;
-    FlStep *step;     // bottom up
+    FlDrawStep *step; // bottom up
     FlPageSize page;  // px of the picture
     FlCanvas canvas;  // as in FlSvgOptions
     char **whole;     // likewise

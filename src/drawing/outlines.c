@@ -23,7 +23,7 @@ FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **er
 }
 
 /** Calls for the leaf of a step, or for all that are drawn as one with it. */
-static void add_leaves(const FlStep *step, const FlOutlines *outlines, GArray *list)
+static void add_leaves(const FlDrawStep *step, const FlOutlines *outlines, GArray *list)
 {
     const int unit = -1 - step->leaf;
     FlRegionLeaf one = {.part = (FlPart)step->part, .flat = step->flat};

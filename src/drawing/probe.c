@@ -327,7 +327,7 @@ static bool overlap(const GArray *probes, guint first)
 }
 
 /** Whether the parts from `first` on, all of a unit, can be drawn one by one: 1, 0, -1 an error. */
-static int is_separable(FlFrameProbe *f, const FlUnit *unit, guint first, GError **error)
+static int is_separable(FlFrameProbe *f, const FlGroupUnit *unit, guint first, GError **error)
 {
     if (unit->inseparable)
         return 0;
@@ -348,8 +348,8 @@ static bool probe_leaves(FlFrameProbe *f, GError **error)
     guint unit = 0;
     for (guint i = 0; i < leaves->leaf->len; i++) {
         const guint before = f->probes->len;
-        const FlUnit *u =
-            unit < leaves->unit->len ? &g_array_index(leaves->unit, FlUnit, unit) : NULL;
+        const FlGroupUnit *u =
+            unit < leaves->unit->len ? &g_array_index(leaves->unit, FlGroupUnit, unit) : NULL;
         guint end = i + 1;
         if (u && (guint)u->first == i)
             end = i + (guint)u->n;

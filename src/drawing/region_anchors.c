@@ -1,5 +1,6 @@
 #include "drawing/region_anchors.h"
 
+#include "svg/pose.h"
 #include <math.h>
 #include <string.h>
 
@@ -134,7 +135,7 @@ static FlPoint turn_of(const Fit *fit)
 
 static float within(double px)
 {
-    return (float)CLAMP(px, (double)-FL_ANCHOR_MOST, (double)FL_ANCHOR_MOST);
+    return (float)CLAMP(px, (double)-FL_POSE_MOST_PX, (double)FL_POSE_MOST_PX);
 }
 
 static void move(FlAnchor *anchor, const Fit *fit)

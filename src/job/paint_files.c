@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "io/pattern.h"
 #include "io/png.h"
+#include "svg/pose.h"
 #include <math.h>
 #include <string.h>
 
@@ -44,7 +45,7 @@ static char *anchor_text(const FlAnchor *anchor)
 /* Whether the numbers are an anchor's; those of a file may be anything. */
 static bool is_anchor(const float value[4])
 {
-    const bool near = fabsf(value[0]) <= FL_ANCHOR_MOST && fabsf(value[1]) <= FL_ANCHOR_MOST;
+    const bool near = fabsf(value[0]) <= FL_POSE_MOST_PX && fabsf(value[1]) <= FL_POSE_MOST_PX;
     return near && fabsf(value[2]) <= 1 && fabsf(value[3]) <= 1;
 }
 

@@ -423,12 +423,12 @@ bool fl_surround_differs(const FlSurround *surround, int region, int a, int b, F
 }
 
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,
-                     FlAround *around, GError **error)
+                     FlSurroundPlanes *around, GError **error)
 {
     const size_t n = fl_rect_pixels(part);
-    *around = (FlAround){.joined = fl_mask_store_has(surround->together, region, frame),
-                         .bordered = fl_mask_store_has(surround->closed, region, frame),
-                         .hidden = fl_mask_store_has(surround->seen, region, frame)};
+    *around = (FlSurroundPlanes){.joined = fl_mask_store_has(surround->together, region, frame),
+                                 .bordered = fl_mask_store_has(surround->closed, region, frame),
+                                 .hidden = fl_mask_store_has(surround->seen, region, frame)};
     return (around->together = fl_alloc(n, 1, "a guide", error)) &&
            (around->closed = fl_alloc(n, 1, "a guide", error)) &&
            (around->seen = fl_alloc(n, 1, "a guide", error)) &&
@@ -439,11 +439,11 @@ bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect p
            fl_mask_store_get(surround->shown, 0, frame, part, around->shown, error);
 }
 
-void fl_around_clear(FlAround *around)
+void fl_surround_planes_clear(FlSurroundPlanes *around)
 {
     free(around->together);
     free(around->closed);
     free(around->seen);
     free(around->shown);
-    *around = (FlAround){0};
+    *around = (FlSurroundPlanes){0};
 }

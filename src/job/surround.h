@@ -21,7 +21,7 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
                      const int *painted_of, const FlSharedEdges *edges, GError **error);
 
 /** What is around a region, planes of a part of a frame. */
-typedef struct FlAround {
+typedef struct FlSurroundPlanes {
     bool joined;       // whether there are shapes of its colour: see fl_shared_edges_get()
     bool bordered;     // whether there are shapes beside it
     bool hidden;       // whether anything lies over it and those of its colour
@@ -29,7 +29,7 @@ typedef struct FlAround {
     uint8_t *closed;   // these and the ones beside it, hidden or not; if there are any
     uint8_t *seen;     // what is seen of those together; if anything lies over them
     uint8_t *shown;    // the coverage of all shapes
-} FlAround;
+} FlSurroundPlanes;
 
 /** Whether there are any with which a region shares edges. */
 bool fl_surround_joins(const FlSurround *surround, int region, int frame);
@@ -44,11 +44,11 @@ bool fl_surround_differs(const FlSurround *surround, int region, int a, int b, F
 
 /** Reads a part of a frame. Returns: true with `around` to be cleared. */
 bool fl_surround_get(const FlSurround *surround, int region, int frame, FlRect part,
-                     FlAround *around, GError **error);
+                     FlSurroundPlanes *around, GError **error);
 
-void fl_around_clear(FlAround *around);
+void fl_surround_planes_clear(FlSurroundPlanes *around);
 
-G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlAround, fl_around_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlSurroundPlanes, fl_surround_planes_clear)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlSurround, fl_surround_free)
 
 #endif

@@ -195,7 +195,7 @@ static bool close_depth(const FlRimShape *alone, const uint8_t *closed, float bo
 }
 
 /* In place: a pixel of the half lies before the four that it is made of. */
-static void halve_around(FlAround *around, int width, int height)
+static void halve_around(FlSurroundPlanes *around, int width, int height)
 {
     uint8_t *const planes[] = {around->together, around->closed, around->seen, around->shown};
     for (size_t k = 0; k < G_N_ELEMENTS(planes); k++)
@@ -217,7 +217,7 @@ static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides,
 {
     const FlPaintedRegion *result = &painter->result;
     const FlRect place = guided_place(painter, guides);
-    g_auto(FlAround) around = {0};
+    g_auto(FlSurroundPlanes) around = {0};
     if (!fl_surround_get(painter->surround, result->region, frame, place, &around, error))
         return false;
     if (halves(painter))

@@ -182,8 +182,8 @@ void fl_leaf_digests(FlSvg *svg, FlDigest *leaf, FlDigest *unit)
     FlDigest around = {0, 0};
     Reach reach = REACH_NONE;
     list_places(&work, leaves->leaf, sizeof(FlLeaf), leaf);
-    G_STATIC_ASSERT(offsetof(FlUnit, leaf) == 0);
-    list_places(&work, leaves->unit, sizeof(FlUnit), unit);
+    G_STATIC_ASSERT(offsetof(FlGroupUnit, leaf) == 0);
+    list_places(&work, leaves->unit, sizeof(FlGroupUnit), unit);
     add_files(&work, svg, doc);
     add_tree(&work, root, &work.all);
     digest_definitions(&work, root, &around, &reach);

@@ -267,7 +267,7 @@ static void walk_unit(Walk *w, xmlNode *node)
             g_array_index(leaves->leaf, FlLeaf, first + i).unit = -1;
         return;
     }
-    const FlUnit unit = {make_leaf(w, node), first, n, blends || is_inseparable(w, node)};
+    const FlGroupUnit unit = {make_leaf(w, node), first, n, blends || is_inseparable(w, node)};
     g_array_append_val(leaves->unit, unit);
 }
 
@@ -318,7 +318,7 @@ static void leaf_clear(void *data)
 
 static void unit_clear(void *data)
 {
-    leaf_clear(&((FlUnit *)data)->leaf);
+    leaf_clear(&((FlGroupUnit *)data)->leaf);
 }
 
 static void mask_clear(void *data)
@@ -330,7 +330,7 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
 {
     FlLeaves *leaves = g_new0(FlLeaves, 1);
     leaves->leaf = g_array_new(FALSE, FALSE, sizeof(FlLeaf));
-    leaves->unit = g_array_new(FALSE, FALSE, sizeof(FlUnit));
+    leaves->unit = g_array_new(FALSE, FALSE, sizeof(FlGroupUnit));
     leaves->mask = g_array_new(FALSE, FALSE, sizeof(FlGroupMask));
     g_array_set_clear_func(leaves->leaf, leaf_clear);
     g_array_set_clear_func(leaves->unit, unit_clear);

@@ -30,11 +30,11 @@ typedef struct FlLeaf {
  * A group with opacity, a mask, a filter, a blend mode or isolation: more than one shape in it
  * cannot be drawn one by one where they overlap.
  */
-typedef struct FlUnit {
+typedef struct FlGroupUnit {
     FlLeaf leaf;
     int first, n;     // its leaves
     bool inseparable; // a filter or blend mode, also of what is in it: even without overlap
-} FlUnit;
+} FlGroupUnit;
 
 /** A group with a mask, of two or more leaves, which are drawn without it and masked then. */
 typedef struct FlGroupMask {
@@ -45,7 +45,7 @@ typedef struct FlGroupMask {
 
 typedef struct FlLeaves {
     GArray *leaf; // FlLeaf
-    GArray *unit; // FlUnit
+    GArray *unit; // FlGroupUnit
     GArray *mask; // FlGroupMask
 } FlLeaves;
 
