@@ -194,7 +194,8 @@ static bool construct_motion(Builder *b, int frame, float **flow, GError **error
     if (!distance_of(b, frame - 1, &before, error) || !distance_of(b, frame, &now, error) ||
         !distance_of(b, frame + 1, &after, error))
         return false;
-    if (now.outline->empty || (!b->smooths && now.outline == before.outline))
+    const FlOutline *other = before.outline ? before.outline : after.outline; // as of a first frame
+    if (now.outline->empty || (!b->smooths && now.outline == other))
         return true;
     g_autofree float *fresh =
         fl_alloc_unset(2 * fl_rect_pixels(now.outline->box), sizeof *fresh, "a flow", error);
@@ -362,6 +363,15 @@ static bool put_motion(Builder *b, int frame, const FlOutline *outline, const fl
                                fixed, 2 * n, 2, error));
 }
 
+/** Whether a motion of the outline's box is known anywhere in the shape. */
+static bool any_known(const int32_t *motion, const FlOutline *outline)
+{
+    bool known = false;
+    for (size_t p = 0; p < fl_rect_pixels(outline->box) && !known; p++)
+        known = outline->coverage[p] >= FL_INSIDE && motion[2 * p] != FL_MOTION_UNKNOWN;
+    return known;
+}
+
 /** Stores the drawing's motion into this frame, if there is any. */
 static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError **error)
 {
@@ -384,6 +394,10 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError
     g_clear_pointer(&given, g_free); // it is large, and so is what storing takes
     if (fl_is_blank((const uint8_t *)fixed, n * sizeof *fixed))
         return true;
+    if (!any_known(fixed, outline)) { // as of a first frame
+        b->sequence->frames[frame].unknown = true;
+        return true;
+    }
     fl_change_map_mark_motion(&b->changes, outline, fixed);
     b->sequence->frames[frame].holder[FL_GUIDE_PLANE_MOTION] = frame;
     return fl_plane_store_put(
@@ -443,7 +457,7 @@ static bool finish_frame(Builder *b, int frame, GError **error)
     if (!outline_of(b, frame, &outline, error))
         return false;
     // NOLINTNEXTLINE(clang-analyzer-core.NullDereference): set where no error is
-    *record = (FlFrameRecord){outline->box, outline->empty, false, {-1, -1, -1, -1, -1, -1, -1}};
+    *record = (FlFrameRecord){outline->box, outline->empty, .holder = {-1, -1, -1, -1, -1, -1, -1}};
     fl_change_map_reset(&b->changes);
     if (outline->box.width == 0) {
         fl_extent_step(b->extent, &record->box, NULL, NULL, NULL, NULL);

@@ -23,6 +23,7 @@ typedef struct FlFrameRecord {
     FlRect box;
     bool empty;                        // no pixel inside
     bool rests;                        // nothing changes since the frame before
+    bool unknown;                      // the drawing's motion into it is known nowhere
     int32_t holder[FL_N_GUIDE_PLANES]; // the frame whose block holds the plane; -1: all 0
 } FlFrameRecord;
 

@@ -143,32 +143,22 @@ static void clear_plane(void *plane, size_t bytes)
         memset(plane, 0, bytes);
 }
 
-/** Whether a motion is known anywhere in a shape of so many coverages. */
-static bool any_known(const int32_t *motion, const uint8_t *coverage, size_t n)
-{
-    bool known = false;
-    for (size_t p = 0; p < n && !known; p++)
-        known = coverage[p] >= FL_INSIDE && motion[2 * p] != FL_MOTION_UNKNOWN;
-    return known;
-}
-
 /** What the drawing does; beside its shape nothing is known of it. */
-static bool get_motion(const FlGuideSequence *sequence, int frame, const uint8_t *coverage,
-                       FlGuides *guides, GError **error)
+static bool get_motion(const FlGuideSequence *sequence, int frame, FlGuides *guides, GError **error)
 {
     const FlFrameRecord *record = &sequence->frames[frame];
     const FlRect part = fl_guides_rect(guides);
     if (!sequence->source.motion)
         return true;
     clear_plane(guides->motion, 2 * fl_rect_pixels(part) * sizeof *guides->motion);
+    if (record->unknown)
+        return true;
     if (record->holder[FL_GUIDE_PLANE_MOTION] >= 0) {
         g_autofree int32_t *scratch =
             fl_alloc_scratch(2 * fl_rect_pixels(record->box), sizeof *scratch, "a motion", error);
         if (!scratch ||
             !fl_guide_sequence_plane(sequence, frame, FL_GUIDE_PLANE_MOTION, scratch, error))
             return false;
-        if (!any_known(scratch, coverage, fl_rect_pixels(record->box)))
-            return true;
         fl_rect_copy(scratch, record->box, guides->motion, part, 2 * sizeof *scratch);
     }
     guides->has_motion = !record->empty; // of the frame, whatever part this is
@@ -237,7 +227,7 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
             return false;
         fl_rect_copy(shape, record->box, guides->mask, part, 1);
         fl_rect_copy(shape + area, record->box, guides->angle, part, 1);
-        if (!get_motion(sequence, frame, shape, guides, error))
+        if (!get_motion(sequence, frame, guides, error))
             return false;
     }
     return true;
