@@ -11,7 +11,6 @@
 
 #define NEAR_PX 8 // on the finest level; around a match that has settled, on coarser levels
 #define FINEST_RANDOM_SWEEPS 3 // on the finest level; a later one gains nothing that is seen
-#define FIRST_RANDOM_SWEEPS 2  // the same of a first frame, which ends better than those after it
 
 int fl_synth_finest_searched(const FlSynth *synth)
 {
@@ -216,7 +215,7 @@ static void settle(FlSearch *search, int level, bool first, bool coarsest)
     search->settled = (uint32_t)MIN(settled * fl_mean_cost(search), UINT32_MAX);
     search->near_px = first && coarsest ? INT_MAX : level > 0 ? NEAR_PX << level : 0;
     if (settled > 0 && level == 0)
-        search->propagate_from = first ? FIRST_RANDOM_SWEEPS : FINEST_RANDOM_SWEEPS;
+        search->propagate_from = FINEST_RANDOM_SWEEPS;
 }
 
 /* A quarter of them in a first frame, which with the rounds of its coarser levels still ends better
