@@ -1,5 +1,6 @@
 #include "compose/ink.h"
 #include "base/density.h"
+#include "base/rect.h"
 #include "compose/interior.h"
 
 #include <string.h>
@@ -161,10 +162,14 @@ static void count_inner(const FlInk *ink, const uint8_t *painted, const uint8_t 
     memset(h, 0, sizeof *h);
     for (int y = 0; y < height; y++) {
         const uint8_t *row = painted + 3 * (size_t)y * width;
+        if (fl_is_blank(coverage + (size_t)y * width, (size_t)width)) // as most rows are
+            continue;
         fl_interior_row(coverage, width, height, y, margin, inner);
-        for (int x = 0; x < width; x++)
-            if (inner[x] == 255)
-                h->count[fl_ink_amount(ink, row + 3 * x)]++, h->total++;
+        for (FlColumns run = fl_next_run(inner, 0, width); run.first < run.last;
+             run = fl_next_run(inner, run.last, width))
+            for (int x = run.first; x < run.last; x++)
+                if (inner[x] == 255)
+                    h->count[fl_ink_amount(ink, row + 3 * x)]++, h->total++;
     }
 }
 
