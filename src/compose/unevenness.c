@@ -60,24 +60,48 @@ static void play_noise(uint64_t key, const Places *at, float *noise)
     fl_noise_octaves_row(fl_key(key, KEY_PLAY), wide.x, wide.y, at->n, 3, .6f, noise);
 }
 
-/* Points every so many px of a box, and one beyond its end: in 1 / 4096; 0 where no pixel of the
- * area is near. */
+/* Points every so many px of a box, and one beyond its end: in 1 / 4096; 0 where there is no paint
+ * near. */
 typedef struct Points {
     int step, width, height;
     int32_t *value;
 } Points;
 
-/* The points of row j between which pixels of an area lie. */
-static FlColumns points_of(const FlArea *area, int step, int j)
+/* Whether some of n amounts are of a pixel with paint: others are below 0. */
+static bool any_paint(const int16_t *amounts, int n)
 {
-    FlColumns span = {area->box.width, 0};
-    for (int y = MAX((j - 1) * step, 0); y < MIN((j + 1) * step, area->box.height); y++) {
-        const FlColumns row = fl_area_row(area, y);
-        if (row.first < row.last)
-            span = (FlColumns){MIN(span.first, row.first), MAX(span.last, row.last)};
+    int all = -1;
+    for (int k = 0; k < n; k++)
+        all &= amounts[k];
+    return all >= 0;
+}
+
+/* The pixels of the k-th square of a row of the area's box. */
+static int square_px(const Points *points, const FlArea *area, int k)
+{
+    return MIN(points->step, area->box.width - k * points->step);
+}
+
+/* Which points are corners of a square with paint; of width * height, to be freed. */
+static uint8_t *corners_of_paint(const Points *points, const FlArea *area, const int16_t *amounts)
+{
+    const int step = points->step;
+    uint8_t *corner = g_malloc0((size_t)points->width * (size_t)points->height);
+    for (int y = 0; y < area->box.height; y++) {
+        const FlColumns span = fl_area_row(area, y);
+        const int16_t *row = amounts + (size_t)y * (size_t)area->box.width;
+        uint8_t *upper = corner + (size_t)(y / step) * (size_t)points->width;
+        for (int k = span.first / step; k * step < span.last; k++)
+            upper[k] |= any_paint(row + k * step, square_px(points, area, k));
     }
-    return span.first < span.last ? (FlColumns){span.first / step, (span.last - 1) / step + 2}
-                                  : (FlColumns){0, 0};
+    // so far a square has marked its upper left corner
+    for (int j = points->height - 1; j >= 0; j--)
+        for (int i = points->width - 1; i >= 0; i--) {
+            uint8_t *here = corner + (size_t)j * (size_t)points->width + i;
+            const int left = i > 0, up = j > 0 ? points->width : 0;
+            *here |= here[-left] | here[-up] | here[-up - left];
+        }
+    return corner;
 }
 
 /* Some of the points, to be computed together: a row of noise is many more than most rows hold. */
@@ -105,33 +129,25 @@ static void add_point(Batch *batch, const FlUneven *where, int x, int y, int32_t
     batch->to[n] = to;
 }
 
-static Points make_points(const FlUneven *where, const FlArea *area, SlowNoise noise)
+static Points make_points(const FlUneven *where, const FlArea *area, const int16_t *amounts,
+                          SlowNoise noise)
 {
     const FlRect box = area->box;
     const int step = CLAMP((int)(STEP * where->scale), 1, STEP);
     Points points = {step, box.width / step + 2, box.height / step + 2, NULL};
     points.value = g_new0(int32_t, (size_t)points.width * (size_t)points.height);
+    g_autofree uint8_t *corner = corners_of_paint(&points, area, amounts);
     Batch batch = {.at = {.n = 0}};
-    for (int j = 0; j < points.height; j++) {
-        const FlColumns span = points_of(area, step, j);
-        for (int i = span.first; i < span.last; i++) {
-            add_point(&batch, where, box.x + i * step, box.y + j * step,
-                      &points.value[j * points.width + i]);
-            if (batch.at.n == FL_NOISE_ROW)
-                compute_batch(&batch, where->key, noise);
-        }
+    for (int p = 0; p < points.width * points.height; p++) {
+        if (!corner[p])
+            continue;
+        add_point(&batch, where, box.x + p % points.width * step, box.y + p / points.width * step,
+                  &points.value[p]);
+        if (batch.at.n == FL_NOISE_ROW)
+            compute_batch(&batch, where->key, noise);
     }
     compute_batch(&batch, where->key, noise);
     return points;
-}
-
-/* Whether some of n amounts are of a pixel with paint: others are below 0. */
-static bool any_paint(const int16_t *amounts, int n)
-{
-    int all = -1;
-    for (int k = 0; k < n; k++)
-        all &= amounts[k];
-    return all >= 0;
 }
 
 /* A row of a box between the points, where there is paint: FL_PLAY_ONE is one. */
@@ -146,7 +162,7 @@ static void fill_row(const Points *points, const FlArea *area, int y, const int1
     for (int i = span.first / step; i * step < span.last; i++) {
         const int32_t left = upper[i] * (step - ty) + lower[i] * ty;
         const int32_t right = upper[i + 1] * (step - ty) + lower[i + 1] * ty;
-        const int n = MIN(step, area->box.width - i * step);
+        const int n = square_px(points, area, i);
         if (!any_paint(amounts + i * step, n))
             continue;
         for (int k = 0; k < n; k++)
@@ -179,7 +195,7 @@ void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int
     const float strength = load * share_of_size(where) * 1.442695f;
     if (strength <= 0)
         return;
-    const Points points = make_points(where, area, load_noise);
+    const Points points = make_points(where, area, amounts, load_noise);
     uint16_t factor[4 * FL_PLAY_ONE]; // of a noise of -2 to below 2; 64 * 255 is one
     for (int i = 0; i < 4 * FL_PLAY_ONE; i++) {
         const float noise = (float)(i - 2 * FL_PLAY_ONE) / FL_PLAY_ONE;
@@ -203,7 +219,7 @@ void fl_play_of_pigments(const FlUneven *where, const FlArea *area, const int16_
                          int8_t *play)
 {
     const FlRect box = area->box;
-    const Points points = make_points(where, area, play_noise);
+    const Points points = make_points(where, area, amounts, play_noise);
 #pragma omp parallel
     {
         g_autofree int16_t *row = g_new0(int16_t, box.width);

@@ -123,6 +123,7 @@ static void make_room(GByteArray *out, size_t bytes)
     out->len = n;
 }
 
+/* last: of the stream. */
 static void end_block(FlSparseStream *stream, bool last)
 {
     uint32_t count[FL_CODE_SYMBOLS];
@@ -173,7 +174,7 @@ static size_t run_of(const uint8_t *bytes, size_t n, uint8_t value)
 {
     const uint64_t eight = value * UINT64_C(0x0101010101010101);
     size_t k = 0;
-    for (; k + sizeof eight <= n && memcmp(bytes + k, &eight, sizeof eight) == 0;)
+    while (k + sizeof eight <= n && memcmp(bytes + k, &eight, sizeof eight) == 0)
         k += sizeof eight;
     while (k < n && bytes[k] == value)
         k++;
