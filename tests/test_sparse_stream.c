@@ -31,7 +31,8 @@ static void run(Fixture *fixture, uint8_t value, size_t n)
     const guint before = fixture->bytes->len;
     fl_sparse_stream_run(fixture->stream, value, n);
     g_byte_array_set_size(fixture->bytes, before + (guint)n);
-    memset(fixture->bytes->data + before, value, n);
+    if (n > 0) // else there may be no bytes yet, not even an address
+        memset(fixture->bytes->data + before, value, n);
 }
 
 /* Ends the stream; both libraries read it, and its checksum. */
