@@ -24,10 +24,16 @@ enum {
 typedef uint16_t Token;
 #define TOKEN_KINDS (END_OF_BLOCK + LONGEST + 1)
 
+/* Bits that are no whole bytes yet, the first one the lowest, and where those go. */
+typedef struct Writer {
+    uint64_t bits;
+    int n_bits;  // less than 32
+    uint8_t *to; // with room for all that comes: end_block() makes it
+} Writer;
+
 struct FlSparseStream {
     GByteArray *out;
-    uint64_t bits; // that are not in `out`, the first one the lowest
-    int n_bits;    // less than 32
+    Writer writer; // its `to` is set while a block is written
     uint32_t sum;
     int last;   // the last byte, -1: none
     size_t run; // how many like `last` come after it that are no token yet
@@ -64,31 +70,30 @@ typedef struct Bits {
     int n; // at most 32
 } Bits;
 
-/* There is room in `out`: end_block() makes it. */
-static inline void put_bits(FlSparseStream *stream, Bits put)
+static inline void put_bits(Writer *writer, Bits put)
 {
-    stream->bits |= (uint64_t)put.bits << stream->n_bits;
-    stream->n_bits += put.n;
-    if (stream->n_bits < 32)
+    writer->bits |= (uint64_t)put.bits << writer->n_bits;
+    writer->n_bits += put.n;
+    if (writer->n_bits < 32)
         return;
-    const uint32_t full = GUINT32_TO_LE((uint32_t)stream->bits);
-    memcpy(stream->out->data + stream->out->len, &full, sizeof full);
-    stream->out->len += sizeof full;
-    stream->bits >>= 32, stream->n_bits -= 32;
+    const uint32_t full = GUINT32_TO_LE((uint32_t)writer->bits);
+    memcpy(writer->to, &full, sizeof full);
+    writer->to += sizeof full;
+    writer->bits >>= 32, writer->n_bits -= 32;
 }
 
 /* The code of the block: of symbols, and of one distance, 1. */
-static void put_code(FlSparseStream *stream, const FlPrefixCode *code)
+static void put_code(Writer *writer, const FlPrefixCode *code)
 {
     static const uint8_t reversed[] = {0, 8, 4, 12, 2, 10, 6, 14, 1, 9, 5, 13, 3, 11, 7, 15};
-    put_bits(stream, (Bits){FL_CODE_SYMBOLS - 257, 5});
-    put_bits(stream, (Bits){0, 5});
-    put_bits(stream, (Bits){19 - 4, 4});
+    put_bits(writer, (Bits){FL_CODE_SYMBOLS - 257, 5});
+    put_bits(writer, (Bits){0, 5});
+    put_bits(writer, (Bits){19 - 4, 4});
     for (int k = 0; k < 19; k++) // the first three repeat lengths
-        put_bits(stream, (Bits){k < 3 ? 0 : LENGTH_OF_LENGTHS, 3});
+        put_bits(writer, (Bits){k < 3 ? 0 : LENGTH_OF_LENGTHS, 3});
     for (int s = 0; s < FL_CODE_SYMBOLS; s++)
-        put_bits(stream, (Bits){reversed[code->length[s]], LENGTH_OF_LENGTHS});
-    put_bits(stream, (Bits){reversed[1], LENGTH_OF_LENGTHS});
+        put_bits(writer, (Bits){reversed[code->length[s]], LENGTH_OF_LENGTHS});
+    put_bits(writer, (Bits){reversed[1], LENGTH_OF_LENGTHS});
 }
 
 /* What a token is written as: of a match its length, what its symbol leaves open of that, and the
@@ -116,15 +121,8 @@ static void count_symbols(const FlSparseStream *stream, uint32_t count[FL_CODE_S
     count[FL_CODE_SYMBOLS - 1]++; // a code has two symbols at least
 }
 
-static void make_room(GByteArray *out, size_t bytes)
-{
-    const guint n = out->len;
-    g_byte_array_set_size(out, n + (guint)bytes);
-    out->len = n;
-}
-
-/* last: of the stream. */
-static void end_block(FlSparseStream *stream, bool last)
+/* Writes the block. Returns: where it ends. */
+static Writer put_block(const FlSparseStream *stream, bool last, Writer writer)
 {
     uint32_t count[FL_CODE_SYMBOLS];
     FlPrefixCode code;
@@ -133,13 +131,24 @@ static void end_block(FlSparseStream *stream, bool last)
     fl_prefix_code_init(&code, count);
     for (int t = 0; t < TOKEN_KINDS; t++)
         bits[t] = bits_of(&code, t);
-    make_room(stream->out, HEADER_BYTES + (size_t)stream->n_tokens * TOKEN_BITS / 8);
-    put_bits(stream, (Bits){last, 1});
-    put_bits(stream, (Bits){DYNAMIC_CODES, 2});
-    put_code(stream, &code);
+    put_bits(&writer, (Bits){last, 1});
+    put_bits(&writer, (Bits){DYNAMIC_CODES, 2});
+    put_code(&writer, &code);
     for (int k = 0; k < stream->n_tokens; k++)
-        put_bits(stream, bits[stream->token[k]]);
-    put_bits(stream, bits[END_OF_BLOCK]);
+        put_bits(&writer, bits[stream->token[k]]);
+    put_bits(&writer, bits[END_OF_BLOCK]);
+    return writer;
+}
+
+/* last: of the stream. */
+static void end_block(FlSparseStream *stream, bool last)
+{
+    GByteArray *out = stream->out;
+    const guint before = out->len;
+    g_byte_array_set_size(out, before + HEADER_BYTES + (guint)stream->n_tokens * TOKEN_BITS / 8);
+    stream->writer.to = out->data + before;
+    stream->writer = put_block(stream, last, stream->writer);
+    g_byte_array_set_size(out, (guint)(stream->writer.to - out->data));
     stream->n_tokens = 0;
 }
 
@@ -181,13 +190,29 @@ static size_t run_of(const uint8_t *bytes, size_t n, uint8_t value)
     return k;
 }
 
+/* Adds bytes as they are, up to one that is like the one before, or until the block is full.
+ * Returns: how many. */
+static size_t add_changing(FlSparseStream *stream, const uint8_t *bytes, size_t n)
+{
+    const size_t most = MIN(n, (size_t)(TOKENS - stream->n_tokens));
+    Token *to = stream->token + stream->n_tokens;
+    int last = stream->last;
+    size_t k = 0;
+    for (; k < most && bytes[k] != last; k++)
+        to[k] = bytes[k], last = bytes[k];
+    stream->n_tokens += (int)k, stream->last = last;
+    return k;
+}
+
 static void add_bytes(FlSparseStream *stream, const uint8_t *bytes, size_t n)
 {
-    for (size_t k = 0; k < n; k++) {
+    for (size_t k = 0; k < n;) {
         const size_t run = bytes[k] == stream->last ? run_of(bytes + k, n - k, bytes[k]) : 0;
         stream->run += run, k += run;
-        if (k < n)
-            add_byte(stream, bytes[k]);
+        if (k == n)
+            return;
+        add_byte(stream, bytes[k++]);
+        k += add_changing(stream, bytes + k, n - k);
     }
 }
 
@@ -230,8 +255,10 @@ void fl_sparse_stream_end(FlSparseStream *stream)
 {
     end_run(stream);
     end_block(stream, true);
-    const uint32_t rest = GUINT32_TO_LE((uint32_t)stream->bits), sum = GUINT32_TO_BE(stream->sum);
-    g_byte_array_append(stream->out, (const uint8_t *)&rest, (guint)(stream->n_bits + 7) / 8);
+    const uint32_t rest = GUINT32_TO_LE((uint32_t)stream->writer.bits);
+    const uint32_t sum = GUINT32_TO_BE(stream->sum);
+    g_byte_array_append(stream->out, (const uint8_t *)&rest,
+                        (guint)(stream->writer.n_bits + 7) / 8);
     g_byte_array_append(stream->out, (const uint8_t *)&sum, sizeof sum);
     g_free(stream);
 }
