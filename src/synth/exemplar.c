@@ -6,8 +6,8 @@
 #include "base/spill.h"
 #include "guides/distance.h"
 #include "style/adapt.h"
+#include "synth/exemplar_level.h"
 #include "synth/spline.h"
-#include <math.h>
 #include <string.h>
 
 #define MIN_SEGMENT 25 // pixels; with fewer on a level, border and interior are one segment
@@ -96,164 +96,6 @@ static bool fill_frame(FlExemplar *exemplar, const FlExemplarFrames *frames, con
     return true;
 }
 
-/* Whether a pixel of the interior has hardly any paint. Such are the ends of deep dents in a ragged
- * rim; amid a target's paint they would be holes, which spread where shapes merge. */
-static bool is_bare(const FlPyramid *pyramid, size_t p, const FlExemplar *exemplar)
-{
-    float apart = 0;
-    for (int c = 0; c < 3; c++)
-        apart += fabsf(pyramid->plane[FL_PLANE_R + c][p] - exemplar->paper[c] / 255.0f);
-    return apart < exemplar->bare;
-}
-
-static FlTexel pack(const FlPyramid *pyramid, size_t p, const FlExemplar *exemplar)
-{
-    FlTexel out;
-    const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
-    for (int c = 0; c < 3; c++)
-        out.c[FL_CH_R + c] = fl_texel_channel(pyramid->plane[FL_PLANE_R + c][p]);
-    out.c[FL_CH_SHAPE] = fl_texel_channel(pyramid->plane[FL_PLANE_SHAPE][p]);
-    out.c[FL_CH_EXT_PLUS] = fl_texel_channel(pyramid->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
-    out.c[FL_CH_EXT_MINUS] = fl_texel_channel(pyramid->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
-    out.c[FL_CH_ANGLE] = fl_pyramid_angle(pyramid, p);
-    out.c[FL_CH_SEGMENT] = (uint8_t)fl_segment_of(pyramid->plane[FL_PLANE_INSIDE][p] >= 0.5f,
-                                                  pyramid->plane[FL_PLANE_DISTANCE][p],
-                                                  exemplar->border_px, exemplar->separate);
-    return out;
-}
-
-/* Takes patches that have bare pixels out of the interior. */
-static void leave_bare(FlExemplarLevel *level, const FlPyramid *pyramid, const FlExemplar *exemplar,
-                       int t)
-{
-    const int r = FL_PATCH_RADIUS;
-    for (int y = 0; y < level->height && exemplar->bare > 0; y++)
-        for (int x = 0; x < level->width; x++) {
-            const size_t p = (size_t)y * level->width + x;
-            if (pyramid->plane[FL_PLANE_DISTANCE][p] < exemplar->border_px ||
-                !is_bare(pyramid, p, exemplar))
-                continue;
-            for (int ny = MAX(y - r, 0); ny <= MIN(y + r, level->height - 1); ny++)
-                for (int nx = MAX(x - r, 0); nx <= MIN(x + r, level->width - 1); nx++) {
-                    FlTexel *pixel = (FlTexel *)fl_exemplar_at(level, nx, ny, t);
-                    if (pixel->c[FL_CH_SEGMENT] == FL_SEGMENT_INTERIOR)
-                        pixel->c[FL_CH_SEGMENT] = FL_SEGMENT_BORDER;
-                }
-        }
-}
-
-/* Padding repeats the nearest pixel but belongs to no segment. */
-static void pack_frame(FlExemplarLevel *level, const FlPyramid *pyramid, const FlExemplar *exemplar,
-                       int t)
-{
-    FlTexel *frame = level->pixels + t * level->frame_pixels;
-    for (int y = -FL_PAD; y < level->height + FL_PAD; y++) {
-        for (int x = -FL_PAD; x < level->width + FL_PAD; x++) {
-            const int sx = CLAMP(x, 0, level->width - 1), sy = CLAMP(y, 0, level->height - 1);
-            FlTexel packed = pack(pyramid, (size_t)sy * level->width + sx, exemplar);
-            if (sx != x || sy != y)
-                packed.c[FL_CH_SEGMENT] = FL_SEGMENT_OUTSIDE;
-            frame[(size_t)(y + FL_PAD) * level->pitch + x + FL_PAD] = packed;
-        }
-    }
-}
-
-/* The colours' spline coefficients; planes: scratch for three. */
-static void pack_colour(FlExemplarLevel *level, const FlPyramid *pyramid, int t, float *planes)
-{
-    const size_t pixels = (size_t)level->width * level->height;
-    float *const plane[3] = {planes, planes + pixels, planes + 2 * pixels};
-    for (int c = 0; c < 3; c++)
-        memcpy(plane[c], pyramid->plane[FL_PLANE_R + c], pixels * sizeof(float));
-    fl_spline_prefilter(plane, 3, level->width, level->height,
-                        level->colour + t * level->frame_pixels + FL_PAD * level->pitch + FL_PAD,
-                        (int)level->pitch);
-}
-
-/* Rotated offsets to the nearest pixel; half a turn negates them. */
-static void rotate_offsets(FlExemplarLevel *level)
-{
-    for (int a = 0; a < FL_ANGLES / 2; a++)
-        for (int p = 0; p < FL_PATCH_PIXELS; p += 2) {
-            int x, y;
-            fl_unrotate((uint8_t)a, fl_patch_offsets[p][0], fl_patch_offsets[p][1], &x, &y);
-            const int offset = ((y + 8) >> 4) * (int)level->pitch + ((x + 8) >> 4);
-            level->offsets[a][p] = level->offsets[a + FL_ANGLES / 2][p + 1] = (int16_t)offset;
-            level->offsets[a][p + 1] = level->offsets[a + FL_ANGLES / 2][p] = (int16_t)-offset;
-        }
-}
-
-/* An array of all frames; with a shorter window only its frames take memory. */
-static void *alloc_frames(const FlExemplarLevel *level, size_t frame_elements, size_t element_bytes,
-                          GError **error)
-{
-    const size_t n = frame_elements * (size_t)level->n_frames;
-    return level->window < level->n_frames ? fl_alloc_lazy(n, element_bytes, "an exemplar", error)
-                                           : fl_alloc_huge(n, element_bytes, "an exemplar", error);
-}
-
-static bool level_init(FlExemplarLevel *level, int width, int height, int n_frames, int window,
-                       GError **error)
-{
-    level->width = width, level->height = height;
-    level->n_frames = n_frames, level->window = window;
-    level->pitch = (size_t)width + 2 * FL_PAD;
-    level->frame_pixels = level->pitch * ((size_t)height + 2 * FL_PAD);
-    if (!(level->pixels = alloc_frames(level, level->frame_pixels, sizeof(FlTexel), error)) ||
-        !(level->colour = alloc_frames(level, level->frame_pixels, sizeof(FlSplinePixel), error)) ||
-        !(level->offsets = fl_alloc(FL_ANGLES, sizeof *level->offsets, "an exemplar", error)))
-        return false;
-    rotate_offsets(level);
-    return true;
-}
-
-static FlSegment segment_at(const FlExemplarLevel *level, int x, int y, int t)
-{
-    return fl_exemplar_at(level, x, y, t)->c[FL_CH_SEGMENT];
-}
-
-static void count_segments(const FlExemplarLevel *level, int t, size_t count[FL_SEGMENTS])
-{
-    for (int y = 0; y < level->height; y++)
-        for (int x = 0; x < level->width; x++)
-            count[segment_at(level, x, y, t)]++;
-}
-
-/* Where segments are not separate, all of the mask is border. */
-static void merge_segments(FlExemplarLevel *level, int t)
-{
-    for (int y = 0; y < level->height; y++)
-        for (int x = 0; x < level->width; x++) {
-            FlTexel *pixel = (FlTexel *)fl_exemplar_at(level, x, y, t);
-            if (pixel->c[FL_CH_SEGMENT] == FL_SEGMENT_INTERIOR)
-                pixel->c[FL_CH_SEGMENT] = FL_SEGMENT_BORDER;
-        }
-}
-
-/* Lists the pixels of each segment in the window. */
-static bool list_valid(FlExemplarLevel *level, GError **error)
-{
-    const int end = level->first + level->window;
-    size_t count[FL_SEGMENTS] = {0};
-    for (int t = level->first; t < end; t++)
-        count_segments(level, t, count);
-    for (FlSegment s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++) {
-        free(level->valid[s]);
-        level->n_valid[s] = 0;
-        if (!(level->valid[s] = fl_alloc(count[s], sizeof(uint32_t), "an exemplar", error)))
-            return false;
-    }
-    for (int t = level->first; t < end; t++)
-        for (int y = 0; y < level->height; y++)
-            for (int x = 0; x < level->width; x++) {
-                const FlSegment s = segment_at(level, x, y, t);
-                if (s != FL_SEGMENT_OUTSIDE)
-                    level->valid[s][level->n_valid[s]++] =
-                        (uint32_t)(((size_t)t * level->height + y) * level->width + x);
-            }
-    return true;
-}
-
 /* Builds every level of one frame from its level 0. */
 static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **error)
 {
@@ -261,9 +103,7 @@ static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **
         fl_alloc(3 * (size_t)full->width * full->height, sizeof *planes, "an exemplar", error);
     if (!planes)
         return false;
-    pack_frame(&exemplar->level[0], full, exemplar, t);
-    leave_bare(&exemplar->level[0], full, exemplar, t);
-    pack_colour(&exemplar->level[0], full, t, planes);
+    fl_exemplar_level_pack(&exemplar->level[0], full, exemplar, t, planes);
     g_auto(FlPyramid) fine = {0};
     for (int l = 1; l < exemplar->n_levels; l++) {
         FlExemplarLevel *level = &exemplar->level[l];
@@ -273,9 +113,7 @@ static bool pack_pyramid(FlExemplar *exemplar, FlPyramid *full, int t, GError **
         fl_pyramid_halve(l == 1 ? full : &fine, &coarse);
         fl_pyramid_clear(&fine);
         fine = coarse;
-        pack_frame(level, &fine, exemplar, t);
-        leave_bare(level, &fine, exemplar, t);
-        pack_colour(level, &fine, t, planes);
+        fl_exemplar_level_pack(level, &fine, exemplar, t, planes);
     }
     return true;
 }
@@ -446,7 +284,7 @@ static bool pack_one(FlExemplar *exemplar, const FlStyle *style, const FlExempla
         (frames->rgb && !fl_spill_put(frames->rgb, (size_t)t, rgb, bytes, error)))
         return false;
     for (int l = 0; l < exemplar->n_levels; l++)
-        count_segments(&exemplar->level[l], t, own[l]);
+        fl_exemplar_level_count(&exemplar->level[l], t, own[l]);
     if (t >= exemplar->level[0].window)
         release_frames(exemplar, t, t + 1);
     return true;
@@ -501,7 +339,7 @@ static bool decide_levels(FlExemplar *exemplar, const FlStyle *style, SegmentCou
     for (int l = 0; l < exemplar->n_levels && !exemplar->separate; l++) {
         counts[l][FL_SEGMENT_BORDER] += counts[l][FL_SEGMENT_INTERIOR];
         for (int t = 0; t < exemplar->level[l].window; t++)
-            merge_segments(&exemplar->level[l], t);
+            fl_exemplar_level_merge(&exemplar->level[l], t);
     }
     while (exemplar->n_levels > 1 &&
            counts[exemplar->n_levels - 1][FL_SEGMENT_BORDER] < MIN_SEGMENT)
@@ -519,13 +357,13 @@ static bool init_levels(FlExemplar *exemplar, const FlStyle *style, int window, 
     int w = style->width, h = style->height;
     exemplar->n_levels = fl_levels_of(w, h);
     for (int l = 0; l < exemplar->n_levels; l++, w = (w + 1) / 2, h = (h + 1) / 2)
-        if (!level_init(&exemplar->level[l], w, h, style->n_frames, window, error))
+        if (!fl_exemplar_level_init(&exemplar->level[l], w, h, style->n_frames, window, error))
             return false;
     const FlExemplarLevel *full = &exemplar->level[0];
     const size_t pixels = (size_t)style->width * (size_t)style->height;
-    return (exemplar->distance = alloc_frames(full, pixels, sizeof(float), error)) &&
-           (exemplar->ext_plus = alloc_frames(full, pixels, sizeof(float), error)) &&
-           (exemplar->ext_minus = alloc_frames(full, pixels, sizeof(float), error)) &&
+    return (exemplar->distance = fl_exemplar_level_alloc(full, pixels, sizeof(float), error)) &&
+           (exemplar->ext_plus = fl_exemplar_level_alloc(full, pixels, sizeof(float), error)) &&
+           (exemplar->ext_minus = fl_exemplar_level_alloc(full, pixels, sizeof(float), error)) &&
            (exemplar->mask = fl_alloc(pixels * (size_t)style->n_frames, 1, "an exemplar", error));
 }
 
@@ -574,7 +412,7 @@ static FlExemplar *make_exemplar(const FlStyle *style, const FlStyle *full, cons
     if (!all)
         exemplar->frames = g_steal_pointer(&frames);
     for (int l = 0; l < exemplar->n_levels; l++)
-        if (!list_valid(&exemplar->level[l], error))
+        if (!fl_exemplar_level_list(&exemplar->level[l], error))
             return NULL;
     return fl_exemplar_seek(exemplar, 0, error) ? g_steal_pointer(&exemplar) : NULL;
 }
@@ -619,7 +457,7 @@ bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error)
             return false;
     for (int l = 0; l < exemplar->n_levels && first != old; l++) {
         exemplar->level[l].first = first;
-        if (!list_valid(&exemplar->level[l], error))
+        if (!fl_exemplar_level_list(&exemplar->level[l], error))
             return false;
     }
     return true;
@@ -629,14 +467,8 @@ void fl_exemplar_free(FlExemplar *exemplar)
 {
     if (!exemplar)
         return;
-    for (int l = 0; l < FL_MAX_LEVELS; l++) {
-        FlExemplarLevel *level = &exemplar->level[l];
-        free(level->pixels);
-        free(level->colour);
-        free(level->offsets);
-        for (int s = 0; s < FL_SEGMENTS; s++)
-            free(level->valid[s]);
-    }
+    for (int l = 0; l < FL_MAX_LEVELS; l++)
+        fl_exemplar_level_clear(&exemplar->level[l]);
     free(exemplar->distance);
     free(exemplar->ext_plus);
     free(exemplar->ext_minus);
