@@ -482,11 +482,14 @@ static void an_exr_chunk_that_does_not_get_smaller_is_stored_as_it_is(void)
     g_autoptr(GRand) random = g_rand_new_with_seed(1);
     for (int i = 0; i < 2 * N; i++)
         noise[i] = (uint8_t)g_rand_int(random);
-    fill_chunk(&chunk, noise, N, false);
-    const uint8_t *bytes = fl_exr_chunk_end(&chunk, &n_bytes);
-    g_assert_cmpuint(n_bytes, ==, 2 * N);
-    for (int i = 0; i < N; i++)
-        g_assert_true(bytes[2 * i] == noise[i] && bytes[2 * i + 1] == noise[N + i]);
+    for (int sparse = 0; sparse < 2; sparse++)
+        for (size_t n = 1; n <= N; n += 499) {
+            fill_chunk(&chunk, noise, n, sparse);
+            const uint8_t *bytes = fl_exr_chunk_end(&chunk, &n_bytes);
+            g_assert_cmpuint(n_bytes, ==, 2 * n);
+            for (size_t i = 0; i < n; i++)
+                g_assert_true(bytes[2 * i] == noise[i] && bytes[2 * i + 1] == noise[n + i]);
+        }
 }
 
 #endif

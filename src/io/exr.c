@@ -188,8 +188,7 @@ static bool rows_init(Rows *rows, const Writer *writer, GError **error)
     return fl_exr_chunk_init(&rows->chunk, error);
 }
 
-#define SPARSE_SHARE 4    // a chunk is sparse if this times what is filled is less than all
-#define SPARSE_LEAST 1024 // pixels of its channels: a smaller stream may be larger than they are
+#define SPARSE_SHARE 4 // a chunk is sparse if this times what is filled is less than all
 
 /** Returns: whether the rows are sparse. */
 static bool find_filled(Rows *rows, const Writer *writer)
@@ -202,7 +201,7 @@ static bool find_filled(Rows *rows, const Writer *writer)
             *columns = again ? columns[-1] : filled_columns(writer->layer[c], rows->y + r);
             filled += (size_t)(columns->last - columns->first);
         }
-    return all >= SPARSE_LEAST && SPARSE_SHARE * filled < all;
+    return SPARSE_SHARE * filled < all;
 }
 
 /** Adds the low or the high bytes of n pixels of a channel. */

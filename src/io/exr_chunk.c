@@ -4,7 +4,8 @@
 #include <string.h>
 
 #define LEVEL 4
-#define SAME 128 // the predictor's byte where a byte is as the one before
+#define SAME 128          // the predictor's byte where a byte is as the one before
+#define SPARSE_LEAST 1024 // halves; the stream of fewer may be larger than they are
 
 bool fl_exr_chunk_init(FlExrChunk *chunk, GError **error)
 {
@@ -32,7 +33,7 @@ void fl_exr_chunk_begin(FlExrChunk *chunk, size_t n, bool sparse)
     chunk->n = n, chunk->done = chunk->run = 0, chunk->last = 0;
     g_byte_array_set_size(chunk->predicted, 0);
     g_byte_array_set_size(chunk->packed, 0);
-    chunk->stream = sparse ? fl_sparse_stream_new(chunk->packed) : NULL;
+    chunk->stream = sparse && n >= SPARSE_LEAST ? fl_sparse_stream_new(chunk->packed) : NULL;
 }
 
 /* Room for n more bytes. */

@@ -25,7 +25,8 @@ typedef struct FlExrChunk {
 bool fl_exr_chunk_init(FlExrChunk *chunk, GError **error);
 void fl_exr_chunk_clear(FlExrChunk *chunk); // all 0 is fine
 
-/** Begins a chunk of n halves; sparse: most of them are blank, which takes next to no time. */
+/** Begins a chunk of n halves; sparse: most of them are blank, which takes next to no time where
+ * they are many. */
 void fl_exr_chunk_begin(FlExrChunk *chunk, size_t n, bool sparse);
 
 /** Adds n bytes of 0. */
