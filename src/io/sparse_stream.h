@@ -8,8 +8,7 @@
 
 /**
  * A stream that is being written: runs, and a prefix code for all else, since beside runs next to
- * nothing in paint comes twice. Zlib does the same with Z_RLE, in five times the time: it is not
- * told where runs are.
+ * nothing in paint comes twice. Zlib, which does that with Z_RLE, cannot be told where runs are.
  */
 typedef struct FlSparseStream FlSparseStream;
 
