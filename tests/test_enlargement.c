@@ -45,6 +45,7 @@ static uint8_t *frame_again(const Style *style, int t)
     const int width = style->half->width, height = style->half->height;
     FlKernels kernels;
     g_auto(FlNnf) nnf = {0};
+    g_auto(FlBlocks) blocks = {0};
     uint8_t *rgb = g_malloc0(3 * STYLE_W * STYLE_H);
     const FlEnlarged enlarged = {&kernels, 4, STYLE_W, STYLE_H, rgb};
     fl_kernels_init(&kernels, fl_cpu_flags());
@@ -53,7 +54,8 @@ static uint8_t *frame_again(const Style *style, int t)
         nnf.match[p] = (FlMatch){.x_16 = (uint16_t)(16 * (p % width)),
                                  .y_16 = (uint16_t)(16 * (p / width)),
                                  .frame = (int16_t)t};
-    fl_enlarge(style->enlargement, &nnf, (FlRect){0, 0, width, height}, &enlarged);
+    fl_blocks_init_full(&blocks, width, height);
+    fl_enlarge(style->enlargement, &nnf, &blocks, (FlRect){0, 0, width, height}, &enlarged);
     return rgb;
 }
 
@@ -83,6 +85,7 @@ static void an_enlarged_field_votes_as_one_of_twice_the_size(void)
     g_autoptr(FlExemplar) whole = fl_exemplar_new(style.full, style.params, NULL);
     FlKernels kernels;
     g_auto(FlNnf) nnf = {0}, large = {0};
+    g_auto(FlBlocks) blocks = {0}, all = {0};
     g_autofree uint8_t *rgb = g_malloc0(3 * STYLE_W * STYLE_H);
     g_autofree uint8_t *voted = g_malloc0(STYLE_W * STYLE_H);
     g_autofree float *colour = g_new0(float, 3 * STYLE_W * STYLE_H);
@@ -91,9 +94,11 @@ static void an_enlarged_field_votes_as_one_of_twice_the_size(void)
     g_assert_true(fl_nnf_init(&nnf, half->width, half->height, NULL) &&
                   fl_nnf_init(&large, STYLE_W, STYLE_H, NULL));
     make_pieces(&nnf, half);
-    fl_enlarge(style.enlargement, &nnf, (FlRect){0, 0, nnf.width, nnf.height}, &enlarged);
-    fl_nnf_upscale(&nnf, &whole->level[0], &kernels, &large);
-    fl_vote(&large, &whole->level[0], &kernels, 4, 3, colour, voted);
+    fl_blocks_init_full(&blocks, nnf.width, nnf.height);
+    fl_enlarge(style.enlargement, &nnf, &blocks, (FlRect){0, 0, nnf.width, nnf.height}, &enlarged);
+    fl_blocks_init_full(&all, STYLE_W, STYLE_H);
+    fl_nnf_upscale(&nnf, &whole->level[0], &kernels, &all, &large);
+    fl_vote(&large, NULL, &whole->level[0], &kernels, 4, 3, colour, voted);
     double sum = 0;
     int n = 0;
     for (int p = 0; p < STYLE_W * STYLE_H; p++) {

@@ -124,7 +124,7 @@ static void compare_after_rounds(Case *c, double *found, double *best)
 {
     searched(c, 0, 6);
     for (int round = 0; round < 3; round++) {
-        fl_vote(&c->nnf, c->search.level, c->search.kernels, c->params->vote_sharpness, 3,
+        fl_vote(&c->nnf, NULL, c->search.level, c->search.kernels, c->params->vote_sharpness, 3,
                 c->target.level[0].colour, NULL);
         searched(c, 1, 6);
     }
@@ -163,7 +163,7 @@ static FlSearchCounts counts_of_sweeps(int sweeps, int propagate_from, float set
     g_autofree uint8_t *changed = NULL;
     set_up(&c, true);
     searched(&c, 0, 4);
-    fl_vote(&c.nnf, c.search.level, c.search.kernels, c.params->vote_sharpness, 3,
+    fl_vote(&c.nnf, NULL, c.search.level, c.search.kernels, c.params->vote_sharpness, 3,
             c.target.level[0].colour, NULL);
     searched(&c, 1, 0);
     c.search.settled = (uint32_t)(settled * fl_mean_cost(&c.search));
@@ -259,7 +259,7 @@ static void the_terms_add_up_to_the_energy(void)
     Case c;
     set_up(&c, true);
     const double energy = searched(&c, 0, 2);
-    fl_vote(&c.nnf, c.search.level, c.search.kernels, 1, 3, c.target.level[0].colour, NULL);
+    fl_vote(&c.nnf, NULL, c.search.level, c.search.kernels, 1, 3, c.target.level[0].colour, NULL);
     const double all = searched(&c, 1, 0);
     g_autofree uint32_t *room = g_new(uint32_t, TARGET_SIDE * TARGET_SIDE);
     FlEnergy terms;

@@ -57,7 +57,7 @@ static void a_coherent_field_votes_back_the_exemplar(void)
     float colour[300];
     FlKernels kernels;
     fl_kernels_init(&kernels, fl_cpu_flags());
-    fl_vote(&nnf, &exemplar->level[0], &kernels, 1, 3, colour, NULL);
+    fl_vote(&nnf, NULL, &exemplar->level[0], &kernels, 1, 3, colour, NULL);
     for (int p = 0; p < 100; p++) {
         const uint8_t want =
             style->rgb[3 * ((size_t)(3 * STYLE_H + 19 + p / 10) * STYLE_W + 27 + p % 10)];
@@ -78,7 +78,9 @@ static void upscaling_keeps_a_rotated_field_coherent(void)
     const FlMatch first = {.x_16 = 16 * 14, .y_16 = 16 * 12, .frame = 2, .theta = 40};
     coarse.match[0] = first;
     coarse.match[1] = fl_match_moved(first, 1, 0, &exemplar->level[1]);
-    fl_nnf_upscale(&coarse, &exemplar->level[0], &kernels, &fine);
+    g_auto(FlBlocks) all = {0};
+    fl_blocks_init_full(&all, 4, 2);
+    fl_nnf_upscale(&coarse, &exemplar->level[0], &kernels, &all, &fine);
     for (int x = 0; x < 3; x++) {
         const FlMatch moved = fl_match_moved(fine.match[x], 1, 0, &exemplar->level[0]);
         g_assert_cmpint(abs(moved.x_16 - fine.match[x + 1].x_16), <=, 2);

@@ -61,8 +61,8 @@ static inline void *fl_alloc_scratch(size_t count, size_t element_bytes, const c
 #define FL_PAGE ((size_t)64 << 10) // a multiple of every machine's
 
 /**
- * The same for a table of many megabytes that is read at random: on huge pages where the system has
- * them, which spares the search a page walk for nearly every patch.
+ * As fl_alloc_unset(), for a table of many megabytes that is read at random: on huge pages where
+ * the system has them, which spares the search a page walk for nearly every patch.
  */
 static inline void *fl_alloc_huge(size_t count, size_t element_bytes, const char *what,
                                   GError **error)
@@ -70,23 +70,22 @@ static inline void *fl_alloc_huge(size_t count, size_t element_bytes, const char
     size_t bytes = 0;
     if (__builtin_mul_overflow(count, element_bytes, &bytes) || bytes < 2 * FL_HUGE_PAGE ||
         bytes > SIZE_MAX - FL_HUGE_PAGE)
-        return fl_alloc(count, element_bytes, what, error);
+        return fl_alloc_unset(count, element_bytes, what, error);
     bytes = (bytes + FL_HUGE_PAGE - 1) / FL_HUGE_PAGE * FL_HUGE_PAGE;
     void *memory = aligned_alloc(FL_HUGE_PAGE, bytes);
     if (!memory || !fl_headroom_left()) {
         free(memory);
-        return fl_alloc(count, element_bytes, what, error);
+        return fl_alloc_unset(count, element_bytes, what, error);
     }
 #ifdef MADV_HUGEPAGE
     (void)madvise(memory, bytes, MADV_HUGEPAGE); // before the pages are touched
 #endif
-    __builtin_memset(memory, 0, bytes);
     return memory;
 }
 
 /**
- * The same with undefined contents, for a table of which only a part is used at a time: pages take
- * memory when they are first written to, until fl_release().
+ * The same, for a table of which only a part is used at a time: pages take memory when they are
+ * first written to, until fl_release().
  */
 static inline void *fl_alloc_lazy(size_t count, size_t element_bytes, const char *what,
                                   GError **error)

@@ -132,24 +132,17 @@ bool fl_enlargement_seek(FlEnlargement *enlargement, const FlExemplar *exemplar,
 
 /* ---- votes ----------------------------------------------------------------------------------- */
 
-/* What becomes of FL_VOTE_ROWS rows of the field from row y on; full: the picture's part. */
-static void enlarge_rows(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect full, int y,
-                         const FlEnlarged *enlarged)
-{
-    const size_t stride = (size_t)enlarged->width;
-    const FlDoubledRows rows = {enlarged->rgb +
-                                    3 * ((size_t)(full.y + 2 * y) * stride + (size_t)full.x),
-                                stride, full.width, MIN(2 * FL_VOTE_ROWS, full.height - 2 * y)};
-    fl_vote_rows_doubled(nnf, &enlargement->level, enlarged->kernels, enlarged->sharpness, y,
-                         &rows);
-}
-
-void fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect,
-                const FlEnlarged *enlarged)
+void fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, const FlBlocks *blocks,
+                FlRect rect, const FlEnlarged *enlarged)
 {
     const FlRect page = {0, 0, enlarged->width, enlarged->height};
     const FlRect full = fl_rect_doubled(rect, page);
+    const size_t stride = (size_t)enlarged->width;
+    const FlDoubledPicture picture = {
+        enlarged->rgb + 3 * ((size_t)full.y * stride + (size_t)full.x), stride, full.width,
+        full.height};
 #pragma omp parallel for schedule(dynamic, 1)
-    for (int y = 0; y < rect.height; y += FL_VOTE_ROWS)
-        enlarge_rows(enlargement, nnf, full, y, enlarged);
+    for (int k = 0; k < blocks->n; k++)
+        fl_vote_block_doubled(nnf, blocks->block[k], &enlargement->level, enlarged->kernels,
+                              enlarged->sharpness, &picture);
 }

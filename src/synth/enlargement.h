@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SYNTH_ENLARGEMENT_H
 #define FLUIDY_SYNTH_ENLARGEMENT_H
 
+#include "base/blocks.h"
 #include "synth/exemplar.h"
 #include "synth/nnf.h"
 
@@ -31,9 +32,10 @@ typedef struct FlEnlarged {
     uint8_t *rgb;      // width * height * 3, sRGB
 } FlEnlarged;
 
-/** Paints the field of a part of a frame, `rect`, in twice its size: all that its patches cover. */
-void fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, FlRect rect,
-                const FlEnlarged *enlarged);
+/** Paints the field of a part of a frame, `rect`, in twice its size: all in its blocks that patches
+ * cover. */
+void fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, const FlBlocks *blocks,
+                FlRect rect, const FlEnlarged *enlarged);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlEnlargement, fl_enlargement_free)
 

@@ -6,11 +6,11 @@
 bool fl_nnf_init(FlNnf *nnf, int width, int height, GError **error)
 {
     *nnf = (FlNnf){.width = width, .height = height};
-    nnf->match = fl_alloc((size_t)width * height, sizeof(FlMatch), "a field", error);
+    nnf->match = fl_alloc_unset((size_t)width * height, sizeof(FlMatch), "a field", error);
     if (!nnf->match)
         return false;
     for (size_t p = 0; p < (size_t)width * height; p++)
-        nnf->match[p].frame = FL_NO_MATCH;
+        nnf->match[p] = (FlMatch){.frame = FL_NO_MATCH};
     return true;
 }
 
@@ -82,20 +82,30 @@ static bool nearest_valid(const FlExemplarLevel *level, FlMatch *m, FlSegment se
     return true;
 }
 
+/* Makes the match of pixel p valid; key decides where it is random. */
+static void repair(FlMatch *m, const FlExemplarLevel *level, const FlTargetLevel *target, size_t p,
+                   bool rotate, uint64_t key)
+{
+    const FlSegment segment = target->segment[p];
+    if (segment == FL_SEGMENT_OUTSIDE)
+        m->frame = FL_NO_MATCH;
+    else if (m->frame == FL_NO_MATCH ||
+             (!is_valid(level, fl_match_x(*m), fl_match_y(*m), m->frame, segment) &&
+              !nearest_valid(level, m, segment)))
+        *m = random_match(level, segment, target->angle[p], rotate, fl_key(key, p));
+}
+
 void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel *target,
                    bool rotate, uint64_t key)
 {
-    const size_t pixels = (size_t)nnf->width * nnf->height;
-#pragma omp parallel for schedule(dynamic, 4096)
-    for (size_t p = 0; p < pixels; p++) {
-        FlMatch *m = &nnf->match[p];
-        const FlSegment segment = target->segment[p];
-        if (segment == FL_SEGMENT_OUTSIDE)
-            m->frame = FL_NO_MATCH;
-        else if (m->frame == FL_NO_MATCH ||
-                 (!is_valid(level, fl_match_x(*m), fl_match_y(*m), m->frame, segment) &&
-                  !nearest_valid(level, m, segment)))
-            *m = random_match(level, segment, target->angle[p], rotate, fl_key(key, p));
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < target->blocks.n; k++) {
+        const FlRect block = target->blocks.block[k];
+        for (int y = block.y; y < block.y + block.height; y++)
+            for (int x = block.x; x < block.x + block.width; x++) {
+                const size_t p = (size_t)y * (size_t)nnf->width + (size_t)x;
+                repair(&nnf->match[p], level, target, p, rotate, key);
+            }
     }
 }
 
@@ -105,14 +115,19 @@ static uint16_t clamp_16(int v, int size)
 }
 
 void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level,
-                    const FlKernels *kernels, FlNnf *fine)
+                    const FlKernels *kernels, const FlBlocks *blocks, FlNnf *fine)
 {
     const uint16_t most[2] = {(uint16_t)(16 * (fine_level->width - 1)),
                               (uint16_t)(16 * (fine_level->height - 1))};
 #pragma omp parallel for schedule(static)
-    for (int y = 0; y < fine->height; y++)
-        kernels->upscale_row(coarse->match + (size_t)(y / 2) * coarse->width, fl_child_moves[y & 1],
-                             most, fine->match + (size_t)y * fine->width, fine->width);
+    for (int k = 0; k < blocks->n; k++) {
+        const FlRect block = blocks->block[k];
+        for (int y = block.y; y < block.y + block.height; y++)
+            kernels->upscale_row(
+                coarse->match + (size_t)(y / 2) * (size_t)coarse->width + (size_t)(block.x / 2),
+                fl_child_moves[y & 1], most,
+                fine->match + (size_t)y * (size_t)fine->width + (size_t)block.x, block.width);
+    }
 }
 
 /* The inverse of l upscalings for the match of full-size pixel (x, y). */

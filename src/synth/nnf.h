@@ -41,13 +41,15 @@ static inline FlMatch fl_match_moved(FlMatch m, int dx, int dy, const FlExemplar
 /**
  * Makes a field valid for a level: each match whose centre is outside its segment goes to the
  * nearest valid pixel of its frame (within 12 px), else, or where there is none, to a random one.
+ * Beside the target's blocks there must be none.
  */
 void fl_nnf_repair(FlNnf *nnf, const FlExemplarLevel *level, const FlTargetLevel *target,
                    bool rotate, uint64_t key);
 
-/** The field of the next finer level [F21 §3.6, fig. 6]; pixels without a parent get no match. */
+/** The field of the next finer level [F21 §3.6, fig. 6] in some blocks; pixels without a parent get
+ * no match. */
 void fl_nnf_upscale(const FlNnf *coarse, const FlExemplarLevel *fine_level,
-                    const FlKernels *kernels, FlNnf *fine);
+                    const FlKernels *kernels, const FlBlocks *blocks, FlNnf *fine);
 
 /** The match of a pixel of level l in level 0: its place there, as near as can be. */
 FlMatch fl_match_enlarged(FlMatch match, int l, const FlExemplarLevel *full);

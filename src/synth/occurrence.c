@@ -42,15 +42,26 @@ void fl_occurrence_clear(FlOccurrence *map)
     *map = (FlOccurrence){0};
 }
 
+static void count_block(FlOccurrence *map, const FlNnf *nnf, const FlTargetLevel *target,
+                        FlRect block)
+{
+    for (int y = block.y; y < block.y + block.height; y++)
+        for (int x = block.x; x < block.x + block.width; x++) {
+            const size_t p = (size_t)y * (size_t)nnf->width + (size_t)x;
+            const FlMatch m = nnf->match[p];
+            if (m.frame != FL_NO_MATCH)
+                map->count[target->segment[p]]
+                          [fl_occurrence_index(map, fl_occurrence_cell(map, m))]++;
+        }
+}
+
 void fl_occurrence_count(FlOccurrence *map, const FlNnf *nnf, const FlTargetLevel *target)
 {
     const size_t cells = (size_t)map->columns * map->rows * map->slices;
     for (int s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++)
         memset(map->count[s], 0, cells * sizeof(int32_t));
-    for (size_t p = 0; p < (size_t)nnf->width * nnf->height; p++)
-        if (nnf->match[p].frame != FL_NO_MATCH)
-            map->count[target->segment[p]]
-                      [fl_occurrence_index(map, fl_occurrence_cell(map, nnf->match[p]))]++;
+    for (int k = 0; k < target->blocks.n; k++)
+        count_block(map, nnf, target, target->blocks.block[k]);
     for (int s = FL_SEGMENT_BORDER; s < FL_SEGMENTS; s++)
         map->n_moves[s] = map->most_moves + 1;
     fl_occurrence_refresh(map);

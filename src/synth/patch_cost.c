@@ -69,13 +69,24 @@ int fl_matches_beside(const FlSearch *search, int x, int y, FlMatch expected[FL_
     return n;
 }
 
+/* Adds the costs of a block's matches. */
+static void add_costs(const FlSearch *search, FlRect block, uint64_t *sum, uint64_t *n)
+{
+    for (int y = block.y; y < block.y + block.height; y++)
+        for (int x = block.x; x < block.x + block.width; x++) {
+            const size_t p = (size_t)y * (size_t)search->nnf->width + (size_t)x;
+            if (search->nnf->match[p].frame != FL_NO_MATCH)
+                *sum += search->cost[p], ++*n;
+        }
+}
+
 double fl_mean_cost(const FlSearch *search)
 {
+    const FlBlocks *blocks = &search->target->blocks;
     uint64_t sum = 0, n = 0;
 #pragma omp parallel for schedule(static) reduction(+ : sum, n)
-    for (size_t p = 0; p < (size_t)search->nnf->width * search->nnf->height; p++)
-        if (search->nnf->match[p].frame != FL_NO_MATCH)
-            sum += search->cost[p], n++;
+    for (int k = 0; k < blocks->n; k++)
+        add_costs(search, blocks->block[k], &sum, &n);
     return n > 0 ? (double)sum / (double)n : 0;
 }
 
@@ -110,8 +121,12 @@ static void cost_pixel(FlSearch *search, const FlNnf *previous, int x, int y)
 
 void fl_search_costs(FlSearch *search, const FlNnf *previous)
 {
-#pragma omp parallel for schedule(dynamic, 8)
-    for (int y = 0; y < search->nnf->height; y++)
-        for (int x = 0; x < search->nnf->width; x++)
-            cost_pixel(search, previous, x, y);
+    const FlBlocks *blocks = &search->target->blocks;
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < blocks->n; k++) {
+        const FlRect block = blocks->block[k];
+        for (int y = block.y; y < block.y + block.height; y++)
+            for (int x = block.x; x < block.x + block.width; x++)
+                cost_pixel(search, previous, x, y);
+    }
 }

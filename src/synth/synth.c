@@ -112,18 +112,26 @@ static void enlarge(const FlSynth *synth, uint8_t *rgb)
 {
     const FlEnlarged enlarged = {&synth->kernels, synth->params->vote_sharpness,
                                  synth->last.painted_width, synth->last.painted_height, rgb};
-    fl_enlarge(synth->enlargement, &synth->nnf[0], synth->target.rect, &enlarged);
+    fl_enlarge(synth->enlargement, &synth->nnf[0], &synth->target.level[0].blocks,
+               synth->target.rect, &enlarged);
 }
 
+/* Beside the blocks there is paper. */
 static void write_rgb(const FlSynth *synth, uint8_t *rgb)
 {
     const FlTargetLevel *full = &synth->target.level[0];
     const FlRect rect = synth->target.rect;
-#pragma omp parallel for schedule(static)
-    for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < 3 * rect.width; x++)
-            rgb[3 * ((size_t)(rect.y + y) * synth->width + rect.x) + x] =
-                fl_vote_byte(full->colour[3 * (size_t)y * rect.width + x]);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < full->blocks.n; k++) {
+        const FlRect block = full->blocks.block[k];
+        for (int y = block.y; y < block.y + block.height; y++) {
+            const size_t from = 3 * ((size_t)y * (size_t)rect.width + (size_t)block.x);
+            const size_t to =
+                3 * ((size_t)(rect.y + y) * (size_t)synth->width + (size_t)(rect.x + block.x));
+            for (size_t v = 0; v < 3 * (size_t)block.width; v++)
+                rgb[to + v] = fl_vote_byte(full->colour[from + v]);
+        }
+    }
 }
 
 static void fill_paper(const FlSynth *synth, uint8_t *rgb)

@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
-#include "base/schedule.h"
 #include "synth/energy.h"
 #include "synth/shift.h"
 #include "synth/synth_data.h"
@@ -52,8 +51,8 @@ static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GEr
     g_autofree uint8_t *voted = fl_alloc(pixels, 1, "a temporal guide", error);
     if (!voted)
         return false;
-    fl_vote(shifted, &synth->exemplar->level[l], &synth->kernels, synth->params->vote_sharpness, 3,
-            target->temporal, voted);
+    fl_vote(shifted, NULL, &synth->exemplar->level[l], &synth->kernels,
+            synth->params->vote_sharpness, 3, target->temporal, voted);
     const FlTemporalTrust trust = trust_of(synth);
 #pragma omp parallel for schedule(dynamic, 4096)
     for (size_t p = 0; p < pixels; p++)
@@ -85,8 +84,8 @@ static double mean_energy(const FlSearch *search)
 static void vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *target)
 {
     gint64 time = g_get_monotonic_time();
-    fl_vote(search->nnf, search->level, search->kernels, search->params->vote_sharpness, 3,
-            target->colour, NULL);
+    fl_vote(search->nnf, &target->blocks, search->level, search->kernels,
+            search->params->vote_sharpness, 3, target->colour, NULL);
     synth->seconds_vote += fl_lap(&time);
 }
 
@@ -120,6 +119,17 @@ static FlSearchCounts timed_search(FlSynth *synth, FlSearch *search, int sweeps,
     return counts;
 }
 
+static void copy_blocks(const FlNnf *from, const FlBlocks *blocks, FlNnf *to)
+{
+    for (int k = 0; k < blocks->n; k++) {
+        const FlRect block = blocks->block[k];
+        for (int y = block.y; y < block.y + block.height; y++) {
+            const size_t p = (size_t)y * (size_t)to->width + (size_t)block.x;
+            memcpy(to->match + p, from->match + p, (size_t)block.width * sizeof *to->match);
+        }
+    }
+}
+
 /* The field to start a level with: from the coarser level, which then may go, from the previous
  * frame, or random. */
 static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int l, int rounds,
@@ -129,11 +139,11 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
     const bool coarsest = l == synth->n_levels - 1;
     const uint64_t key = fl_key(search->key, 1);
     if (!coarsest) {
-        fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->kernels, search->nnf);
+        fl_nnf_upscale(&synth->nnf[l + 1], search->level, search->kernels, &target->blocks,
+                       search->nnf);
         fl_nnf_clear(&synth->nnf[l + 1]);
     } else if (previous && previous->match)
-        memcpy(search->nnf->match, previous->match,
-               (size_t)previous->width * previous->height * sizeof *previous->match);
+        copy_blocks(previous, &target->blocks, search->nnf);
     fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);
     if (coarsest && !previous) { // guides alone decide the first guess [P21 §4.2]
         fl_target_blend(target, params, &synth->scale, 0);
@@ -149,10 +159,17 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
  * the largest, once the coarser levels have gone. */
 static void clear_colours(const FlSynth *synth, FlTargetLevel *level)
 {
-    const size_t values = 3 * (size_t)level->width * level->height;
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(values))
-    for (size_t p = 0; p < values; p++)
-        level->colour[p] = synth->exemplar->paper[p % 3] / 255.0f;
+    float paper[3];
+    for (int c = 0; c < 3; c++)
+        paper[c] = synth->exemplar->paper[c] / 255.0f;
+#pragma omp parallel for schedule(static)
+    for (int k = 0; k < level->blocks.n; k++) {
+        const FlRect block = level->blocks.block[k];
+        for (int y = block.y; y < block.y + block.height; y++)
+            for (int x = block.x; x < block.x + block.width; x++)
+                memcpy(level->colour + 3 * ((size_t)y * (size_t)level->width + (size_t)x), paper,
+                       sizeof paper);
+    }
 }
 
 /* Votes for the picture, or for energies. */

@@ -90,6 +90,11 @@ static void list_tiles(FlTargetLevel *level)
     level->n_tiles[FL_TILE_CLASSES] = n;
 }
 
+static void find_blocks(FlTargetLevel *level)
+{
+    fl_blocks_init(&level->blocks, level->segment, level->width, level->height, FL_PATCH_RADIUS);
+}
+
 /* The rows of a level from row y on; the planes are of these alone. */
 static void fill_rows(FlTargetLevel *level, int y, const FlPyramid *rows,
                       const FlExemplar *exemplar)
@@ -196,6 +201,7 @@ bool fl_target_init(FlTarget *target, const FlGuides *guides, const FlParams *pa
     for (int l = 0; l < n_levels; l++) {
         count_segments(&target->level[l]);
         list_tiles(&target->level[l]);
+        find_blocks(&target->level[l]);
         if (!colours_init(&target->level[l], error))
             return false;
     }
@@ -212,6 +218,7 @@ void fl_target_level_clear(FlTargetLevel *level)
     free(level->temporal_weight);
     free(level->distance);
     free(level->tiles);
+    fl_blocks_clear(&level->blocks);
     *level = (FlTargetLevel){0};
 }
 
@@ -263,26 +270,36 @@ static int16_t quantise_weight(float w, const FlCostScale *scale)
     return (int16_t)MIN(w / scale->w_max * 32767 + 0.5f, 32767);
 }
 
+/* Of pixel p. */
+static void blend_pixel(FlTargetLevel *level, size_t p, float w_temp, const FlCostScale *scale,
+                        float w_texture)
+{
+    const float w_temporal = w_temp * level->temporal_weight[p];
+    const float w = w_texture + w_temporal;
+    FlTargetTexel *guide = &level->guide[p];
+    for (int c = 0; c < 3; c++) {
+        const float mean = w > 0 ? (w_texture * level->colour[3 * p + c] +
+                                    w_temporal * level->temporal[3 * p + c]) /
+                                       w
+                                 : 0;
+        guide->c[FL_CH_R + c] = fl_pack_channel(mean);
+    }
+    guide->c[FL_CH_COLOUR_WEIGHT] = quantise_weight(w, scale);
+}
+
 void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostScale *scale,
                      float w_texture)
 {
-    const size_t pixels = (size_t)level->width * level->height;
     const int16_t w_ext = quantise_weight(params->w_ext / EXT_UNIT_SQUARED, scale);
     level->rest.c[FL_CH_SHAPE] = quantise_weight(params->w_bound, scale);
     level->rest.c[FL_CH_EXT_PLUS] = level->rest.c[FL_CH_EXT_MINUS] = w_ext;
-#pragma omp parallel for schedule(dynamic, 4096)
-    for (size_t p = 0; p < pixels; p++) {
-        const float w_temporal = params->w_temp * level->temporal_weight[p];
-        const float w = w_texture + w_temporal;
-        FlTargetTexel *guide = &level->guide[p];
-        for (int c = 0; c < 3; c++) {
-            const float mean = w > 0 ? (w_texture * level->colour[3 * p + c] +
-                                        w_temporal * level->temporal[3 * p + c]) /
-                                           w
-                                     : 0;
-            guide->c[FL_CH_R + c] = fl_pack_channel(mean);
-        }
-        guide->c[FL_CH_COLOUR_WEIGHT] = quantise_weight(w, scale);
+#pragma omp parallel for schedule(dynamic, 1)
+    for (int k = 0; k < level->blocks.n; k++) {
+        const FlRect block = level->blocks.block[k];
+        for (int y = block.y; y < block.y + block.height; y++)
+            for (int x = block.x; x < block.x + block.width; x++)
+                blend_pixel(level, (size_t)y * (size_t)level->width + (size_t)x, params->w_temp,
+                            scale, w_texture);
     }
 }
 

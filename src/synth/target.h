@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SYNTH_TARGET_H
 #define FLUIDY_SYNTH_TARGET_H
 
+#include "base/blocks.h"
 #include "synth/exemplar.h"
 
 #define FL_TILE 4          // side of a tile of the search, pixels
@@ -28,6 +29,7 @@ typedef struct FlTargetLevel {
     uint32_t *tiles; // row * columns + column of the tiles with paint, by class
     int n_tiles[FL_TILE_CLASSES + 1];
     int tile_columns;
+    FlBlocks blocks; // all that patches of the paint reach; colours are made in these alone
     int32_t around[FL_PATCH_PIXELS]; // fl_patch_offsets in pixels of this level
 } FlTargetLevel;
 

@@ -11,15 +11,15 @@ typedef struct Strip {
     uint16_t *x, *y; // FL_VOTE_BIAS more than the matches'
     int16_t *frame;
     int16_t (*turn)[2];
-    size_t columns; // FL_PATCH_RADIUS more on both sides
 } Strip;
 
+/* Room for blocks of up to `width` pixels; FL_PATCH_RADIUS more on both sides. */
 static Strip strip_new(int width)
 {
     const size_t columns = (size_t)width + 2 * FL_PATCH_RADIUS;
     const size_t n = FL_PATCH * columns + FL_VOTE_ROWS + FL_VOTES;
     Strip strip = {g_new0(uint16_t, n), g_new0(uint16_t, n), g_new0(int16_t, n),
-                   g_malloc0(n * sizeof *strip.turn), columns};
+                   g_malloc0(n * sizeof *strip.turn)};
     for (size_t k = 0; k < n; k++)
         strip.frame[k] = FL_NO_MATCH;
     return strip;
@@ -33,14 +33,16 @@ static void strip_free(Strip *strip)
     g_free(strip->turn);
 }
 
-/* Lays out row y of the field as row k of the strip. */
-static void add_row(Strip *strip, const FlNnf *nnf, int y, size_t k)
+/* Lays out a block's columns of row y of the field as row k of the strip. */
+static void add_row(Strip *strip, const FlNnf *nnf, FlRect block, int y, size_t k)
 {
     const bool in = y >= 0 && y < nnf->height;
-    for (size_t column = 0; column < strip->columns; column++) {
-        const size_t at = FL_PATCH * column + k, x = column - FL_PATCH_RADIUS;
-        const FlMatch m = in && x < (size_t)nnf->width ? nnf->match[(size_t)y * nnf->width + x]
-                                                       : (FlMatch){.frame = FL_NO_MATCH};
+    const int first = block.x - FL_PATCH_RADIUS, end = block.x + block.width + FL_PATCH_RADIUS;
+    size_t at = k;
+    for (int x = first; x < end; x++, at += FL_PATCH) {
+        const FlMatch m = in && x >= 0 && x < nnf->width
+                              ? nnf->match[(size_t)y * (size_t)nnf->width + (size_t)x]
+                              : (FlMatch){.frame = FL_NO_MATCH};
         strip->x[at] = (uint16_t)(m.x_16 + FL_VOTE_BIAS);
         strip->y[at] = (uint16_t)(m.y_16 + FL_VOTE_BIAS);
         strip->frame[at] = m.frame;
@@ -70,76 +72,73 @@ static FlVoteSource voted_of(const FlExemplarLevel *level, float sharpness)
     return voted;
 }
 
-/* The patches over column x of row k of a strip. */
-static FlVoteMatches covering_at(const Strip *strip, size_t x, size_t k)
+/* The patches over pixel x of row k of a strip. */
+static FlVoteMatches covering_at(const Strip *strip, int x, size_t k)
 {
-    const size_t at = FL_PATCH * x + k;
+    const size_t at = FL_PATCH * (size_t)x + k;
     return (FlVoteMatches){strip->x + at, strip->y + at, strip->frame + at, strip->turn + at};
 }
 
-/* Row k of a strip. */
-static void vote_row(const Strip *strip, size_t k, const FlVoteSource *voted, FlVote vote,
-                     int channels, float *colour, uint8_t *any)
-{
-    for (size_t x = 0; x + 2 * FL_PATCH_RADIUS < strip->columns; x++, colour += channels) {
-        const FlVoteMatches covering = covering_at(strip, x, k);
-        float value[4];
-        const bool covered = vote(&covering, voted, value);
-        if (covered)
-            memcpy(colour, value, (size_t)channels * sizeof *colour);
-        if (any)
-            any[x] = covered;
-    }
-}
-
-/* What rows are voted with. */
+/* What blocks are voted with, and where the votes go. */
 typedef struct Votes {
     const FlNnf *nnf;
     FlVoteSource source;
     const FlKernels *kernels;
     int channels;
+    int first;      // row of the field that the planes begin with
+    float *colour;
+    uint8_t *voted; // NULL: none
 } Votes;
 
-static Votes votes_of(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
-                      float sharpness, int channels)
+/* n pixels of row k of a strip, from pixel `to` of the planes on. */
+static void vote_row(const Votes *votes, const Strip *strip, size_t k, int n, size_t to)
 {
-    return (Votes){nnf, voted_of(level, sharpness), kernels, channels};
-}
-
-/* What lies above row y0 and its patches. Returns: the number of rows. */
-static size_t begin_strip(Strip *strip, const FlNnf *nnf, int y0)
-{
-    size_t rows = 0;
-    for (int y = y0 - FL_PATCH_RADIUS; y < y0 + FL_PATCH_RADIUS; y++)
-        add_row(strip, nnf, y, rows++);
-    return rows;
-}
-
-/* FL_VOTE_ROWS rows from y0 on, or what the picture has of them. */
-static void vote_rows(const Votes *votes, Strip *strip, int y0, float *colour, uint8_t *voted)
-{
-    const FlNnf *nnf = votes->nnf;
-    size_t rows = begin_strip(strip, nnf, y0);
-    for (int y = y0; y < MIN(y0 + FL_VOTE_ROWS, nnf->height); y++) {
-        const size_t p = (size_t)(y - y0) * (size_t)nnf->width;
-        add_row(strip, nnf, y + FL_PATCH_RADIUS, rows++);
-        vote_row(strip, rows - FL_PATCH, &votes->source, votes->kernels->vote, votes->channels,
-                 colour + (size_t)votes->channels * p, voted ? voted + p : NULL);
+    const size_t channels = (size_t)votes->channels;
+    float *colour = votes->colour + channels * to;
+    for (int x = 0; x < n; x++, colour += channels) {
+        const FlVoteMatches covering = covering_at(strip, x, k);
+        float value[4];
+        const bool covered = votes->kernels->vote(&covering, &votes->source, value);
+        if (covered)
+            memcpy(colour, value, channels * sizeof *colour);
+        if (votes->voted)
+            votes->voted[to + (size_t)x] = covered;
     }
 }
 
-void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
-             float sharpness, int channels, float *colour, uint8_t *voted)
+/* What lies above a block and its patches. Returns: the number of rows. */
+static size_t begin_strip(Strip *strip, const FlNnf *nnf, FlRect block)
 {
-    const Votes votes = votes_of(nnf, level, kernels, sharpness, channels);
+    size_t rows = 0;
+    for (int y = block.y - FL_PATCH_RADIUS; y < block.y + FL_PATCH_RADIUS; y++)
+        add_row(strip, nnf, block, y, rows++);
+    return rows;
+}
+
+static void vote_block(const Votes *votes, FlRect block, Strip *strip)
+{
+    const FlNnf *nnf = votes->nnf;
+    size_t rows = begin_strip(strip, nnf, block);
+    for (int y = block.y; y < block.y + block.height; y++) {
+        add_row(strip, nnf, block, y + FL_PATCH_RADIUS, rows++);
+        vote_row(votes, strip, rows - FL_PATCH, block.width,
+                 (size_t)(y - votes->first) * (size_t)nnf->width + (size_t)block.x);
+    }
+}
+
+void fl_vote(const FlNnf *nnf, const FlBlocks *blocks, const FlExemplarLevel *level,
+             const FlKernels *kernels, float sharpness, int channels, float *colour, uint8_t *voted)
+{
+    const Votes votes = {nnf, voted_of(level, sharpness), kernels, channels, 0, colour, voted};
+    g_auto(FlBlocks) all = {0};
+    if (!blocks)
+        fl_blocks_init_full(&all, nnf->width, nnf->height), blocks = &all;
 #pragma omp parallel
     {
         Strip strip = strip_new(nnf->width);
 #pragma omp for schedule(dynamic, 1)
-        for (int y = 0; y < nnf->height; y += FL_VOTE_ROWS) {
-            const size_t p = (size_t)y * (size_t)nnf->width;
-            vote_rows(&votes, &strip, y, colour + (size_t)channels * p, voted ? voted + p : NULL);
-        }
+        for (int k = 0; k < blocks->n; k++)
+            vote_block(&votes, blocks->block[k], &strip);
         strip_free(&strip);
     }
 }
@@ -147,39 +146,39 @@ void fl_vote(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *ke
 void fl_vote_rows(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
                   float sharpness, int channels, int y, float *colour)
 {
-    const Votes votes = votes_of(nnf, level, kernels, sharpness, channels);
+    const Votes votes = {nnf, voted_of(level, sharpness), kernels, channels, y, colour, NULL};
+    const FlRect block = {0, y, nnf->width, MIN(FL_VOTE_ROWS, nnf->height - y)};
     Strip strip = strip_new(nnf->width);
-    vote_rows(&votes, &strip, y, colour, NULL);
+    vote_block(&votes, block, &strip);
     strip_free(&strip);
 }
 
-/* Row k of a strip as two rows of a picture, in which pixels beyond its size have no place. */
-static void vote_doubled(const Strip *strip, size_t k, const Votes *votes,
-                         const FlDoubledRows *rows, int row)
+/* Pixel (x, y) of the field as four of a picture, in which those beyond its size have no place. */
+static void write_doubled(float (*value)[4], int x, int y, const FlDoubledPicture *picture)
 {
-    for (int x = 0; 2 * x < rows->width; x++) {
-        const FlVoteMatches covering = covering_at(strip, (size_t)x, k);
-        float value[4][4];
-        if (!votes->kernels->vote_doubled(&covering, &votes->source, value))
-            continue;
-        for (int child = 0; child < 4; child++) {
-            const int at_x = 2 * x + child % 2, at_y = row + child / 2;
-            for (int c = 0; at_x < rows->width && at_y < rows->n && c < 3; c++)
-                rows->rgb[3 * ((size_t)at_y * rows->stride + (size_t)at_x) + (size_t)c] =
-                    fl_vote_byte(value[child][c]);
-        }
+    for (int child = 0; child < 4; child++) {
+        const int at_x = 2 * x + child % 2, at_y = 2 * y + child / 2;
+        for (int c = 0; at_x < picture->width && at_y < picture->height && c < 3; c++)
+            picture->rgb[3 * ((size_t)at_y * picture->stride + (size_t)at_x) + (size_t)c] =
+                fl_vote_byte(value[child][c]);
     }
 }
 
-void fl_vote_rows_doubled(const FlNnf *nnf, const FlExemplarLevel *level, const FlKernels *kernels,
-                          float sharpness, int y0, const FlDoubledRows *rows)
+void fl_vote_block_doubled(const FlNnf *nnf, FlRect block, const FlExemplarLevel *level,
+                           const FlKernels *kernels, float sharpness,
+                           const FlDoubledPicture *picture)
 {
-    const Votes votes = votes_of(nnf, level, kernels, sharpness, 3);
-    Strip strip = strip_new(nnf->width);
-    size_t n = begin_strip(&strip, nnf, y0);
-    for (int y = y0; 2 * (y - y0) < rows->n; y++) {
-        add_row(&strip, nnf, y + FL_PATCH_RADIUS, n++);
-        vote_doubled(&strip, n - FL_PATCH, &votes, rows, 2 * (y - y0));
+    const FlVoteSource source = voted_of(level, sharpness);
+    Strip strip = strip_new(block.width);
+    size_t rows = begin_strip(&strip, nnf, block);
+    for (int y = block.y; y < block.y + block.height; y++) {
+        add_row(&strip, nnf, block, y + FL_PATCH_RADIUS, rows++);
+        for (int x = 0; x < block.width; x++) {
+            const FlVoteMatches covering = covering_at(&strip, x, rows - FL_PATCH);
+            float value[4][4];
+            if (kernels->vote_doubled(&covering, &source, value))
+                write_doubled(value, block.x + x, y, picture);
+        }
     }
     strip_free(&strip);
 }

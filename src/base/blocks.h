@@ -1,0 +1,26 @@
+/* Where there is anything in a plane that is mostly bare, as rectangles to loop over. */
+#ifndef FLUIDY_BASE_BLOCKS_H
+#define FLUIDY_BASE_BLOCKS_H
+
+#include "base/rect.h"
+
+#define FL_BLOCK_ROWS 16 // at most; as wide as what is there
+
+/** Rectangles that do not overlap, from the top down; x and y are even. */
+typedef struct FlBlocks {
+    FlRect *block;
+    int n;
+} FlBlocks;
+
+/** All pixels of a width * height plane that are not 0 and those within `reach` px of one, square;
+ * and what lies between, where that is little. */
+void fl_blocks_init(FlBlocks *blocks, const uint8_t *plane, int width, int height, int reach);
+
+/** A plane without anything that is bare. */
+void fl_blocks_init_full(FlBlocks *blocks, int width, int height);
+
+void fl_blocks_clear(FlBlocks *blocks);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlBlocks, fl_blocks_clear)
+
+#endif
