@@ -40,13 +40,13 @@ FlOutline *fl_outline_new(const uint8_t *mask, int frame_width, int frame_height
 FlOutline *fl_outline_ref(FlOutline *outline)
 {
     if (outline)
-        outline->references++;
+        g_atomic_int_inc(&outline->references);
     return outline;
 }
 
 void fl_outline_unref(FlOutline *outline)
 {
-    if (!outline || --outline->references > 0)
+    if (!outline || !g_atomic_int_dec_and_test(&outline->references))
         return;
     g_free(outline->coverage);
     g_free(outline->distance);

@@ -9,7 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/** A mask in a frame of frame_width * frame_height pixels. Reference-counted, for one thread. */
+/** A mask in a frame of frame_width * frame_height pixels. Reference-counted; any thread may. */
 typedef struct FlOutline {
     int references;
     int frame_width, frame_height;
