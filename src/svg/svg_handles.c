@@ -71,7 +71,8 @@ static RsvgHandle *add_variant(FlSvg *svg, gpointer key, xmlDoc *doc, GError **e
 
 RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, FlPurpose purpose, GError **error)
 {
-    if (part == FL_PART_WHOLE && purpose == FL_TO_DRAW)
+    const bool plain = !svg->has_probe && svg->leaves->mask->len == 0; // nothing would be changed
+    if (part == FL_PART_WHOLE && (purpose == FL_TO_DRAW || plain))
         return svg->handle;
     gpointer key = variant_key((int)part, (int)purpose);
     RsvgHandle *handle = g_hash_table_lookup(svg->variants, key);
