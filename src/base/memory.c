@@ -72,3 +72,12 @@ void fl_memory_map_planes(void)
     (void)mallopt(M_MMAP_THRESHOLD, PLANE_BYTES);
 #endif
 }
+
+void fl_memory_separate_heaps(void)
+{
+#ifdef __GLIBC__
+    enum { HEAPS = 64 };
+    if (!g_getenv("MALLOC_ARENA_MAX"))
+        (void)mallopt(M_ARENA_MAX, HEAPS);
+#endif
+}

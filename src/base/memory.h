@@ -20,4 +20,8 @@ void fl_memory_trim(void);
  * returned to the system as soon as it is freed, so that no holes are left. */
 void fl_memory_map_planes(void);
 
+/** For work with many small blocks: threads that begin from here on have heaps of their own, for
+ * one heap lets one thread in at a time. The environment's MALLOC_ARENA_MAX stays. */
+void fl_memory_separate_heaps(void);
+
 #endif

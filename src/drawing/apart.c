@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/limits.h"
+#include "base/memory.h"
 #include "drawing/confined.h"
 #include "drawing/packed_survey.h"
 #include "drawing/watch.h"
@@ -24,6 +25,7 @@ G_GNUC_NORETURN static void be_child(const FlSequence *sequence, const FlDrawing
                                      FlWatch *watch, int fd, int stderr_fd)
 {
     fl_confined_enter(sequence, stderr_fd);
+    fl_memory_separate_heaps();
     GError *problem = NULL;
     FlSurvey survey = {0};
     FlWarnings *warnings = fl_warnings_new();
