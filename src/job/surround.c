@@ -110,10 +110,18 @@ static bool lies_below(const FlDrawList *draws, int region, const FlSharing *sha
     return false;
 }
 
+/** What is asked of a draw. */
+typedef struct Wanted {
+    bool shares; // it is of the colour of another region
+    bool seen;   // it is all that is together with its region, and what is seen of it is stored
+} Wanted;
+
 /** A frame, and room for planes of it. */
 typedef struct Frame {
     const FlDrawList *draws;
-    uint8_t *const *near_seen; // by draw: its coverage near to where it is seen; NULL: not needed
+    int number;
+    Wanted *wanted;      // by draw
+    uint8_t **near_seen; // by draw: its coverage near to where it is seen; NULL: not needed
     uint8_t *free_of;
     uint8_t *coverage; // 0, but for what is made of it between two masks that are stored
 } Frame;
@@ -165,22 +173,6 @@ static uint8_t *near_seen(const FlDraw *draw, const uint8_t *free_of, int width,
 static int reach_of(const FlSurround *surround)
 {
     return MAX(MAX(surround->width, surround->height) / REACH, 1);
-}
-
-/** near_seen() of all draws that are of one colour with others. */
-static bool find_near_seen(const FlSurround *surround, const FlDrawList *draws, const bool *shares,
-                           uint8_t *free_of, uint8_t **near, GError **error)
-{
-    const FlRect page = {0, 0, surround->width, surround->height};
-    memset(free_of, 255, fl_rect_pixels(page));
-    for (int r = draws->n - 1; r >= 0; r--) {
-        const FlDraw *draw = &draws->draw[r];
-        if (shares[r] && fl_rect_pixels(draw->area.box) > 0 &&
-            !(near[r] = near_seen(draw, free_of, surround->width, reach_of(surround), error)))
-            return false;
-        hide_below(draw, page, surround->width, free_of);
-    }
-    return true;
 }
 
 /** Onto the coverage, the draws of the region's colour. Returns: the rectangle around them. */
@@ -264,7 +256,7 @@ static void find_seen(const FlSurround *surround, int region, const Frame *frame
 }
 
 /** The region with those that share its edges. */
-static bool put_shared(FlSurround *surround, int number, int region, const Frame *frame,
+static bool put_shared(FlSurround *surround, int region, const Frame *frame,
                        const FlSharing *sharing, GError **error)
 {
     uint8_t *coverage = frame->coverage;
@@ -273,23 +265,24 @@ static bool put_shared(FlSurround *surround, int number, int region, const Frame
     const FlRect near = near_region(surround, frame, own);
     const FlRect alike = add_alike(surround, frame, sharing), both = fl_rect_or(own, alike);
     if (alike.width > 0 &&
-        !fl_mask_store_put_part(surround->together, region, number, coverage, both, error))
+        !fl_mask_store_put_part(surround->together, region, frame->number, coverage, both, error))
         return false;
     const FlRect all = fl_rect_or(both, near);
     if (add_bordering(surround, frame, sharing, near) &&
-        !fl_mask_store_put_part(surround->closed, region, number, coverage, all, error))
+        !fl_mask_store_put_part(surround->closed, region, frame->number, coverage, all, error))
         return false;
     fl_rect_clear(coverage, surround->width, all);
     return true;
 }
 
-/** What is seen of it. */
-static bool put_seen(FlSurround *surround, int number, int region, const Frame *frame,
-                     const FlSharing *sharing, GError **error)
+/** What is seen of a region and those of its colour. */
+static bool put_seen(FlSurround *surround, int region, const Frame *frame, const FlSharing *sharing,
+                     GError **error)
 {
     const FlRect around = around_together(frame->draws, region, sharing);
     find_seen(surround, region, frame, around, sharing);
-    if (!fl_mask_store_put_part(surround->seen, region, number, frame->coverage, around, error))
+    if (!fl_mask_store_put_part(surround->seen, region, frame->number, frame->coverage, around,
+                                error))
         return false;
     fl_rect_clear(frame->coverage, surround->width, around);
     return true;
@@ -338,7 +331,47 @@ static bool is_wanted(int region, const FlJoin *joins, const int *painted_of)
     return joins[region] != FL_JOIN_UNPAINTED && (!painted_of || painted_of[region] >= 0);
 }
 
-static bool put_regions(FlSurround *surround, int number, const Frame *frame, const FlJoin *joins,
+/** What is seen of a draw, where others leave `free_of`. */
+static bool put_seen_alone(FlSurround *surround, const Frame *frame, const FlDraw *draw,
+                           GError **error)
+{
+    add_seen(draw, frame->free_of, surround->width, frame->coverage);
+    if (!fl_mask_store_put_part(surround->seen, draw->region, frame->number, frame->coverage,
+                                draw->area.box, error))
+        return false;
+    fl_rect_clear(frame->coverage, surround->width, draw->area.box);
+    return true;
+}
+
+/** From the top down, what is wanted of each draw. */
+static bool put_draws(FlSurround *surround, const Frame *frame, GError **error)
+{
+    const FlRect page = {0, 0, surround->width, surround->height};
+    memset(frame->free_of, 255, fl_rect_pixels(page));
+    for (int r = frame->draws->n - 1; r >= 0; r--) {
+        const FlDraw *draw = &frame->draws->draw[r];
+        const Wanted wanted = frame->wanted[r];
+        if (wanted.shares && fl_rect_pixels(draw->area.box) > 0 &&
+            !(frame->near_seen[r] =
+                  near_seen(draw, frame->free_of, surround->width, reach_of(surround), error)))
+            return false;
+        if (wanted.seen && !put_seen_alone(surround, frame, draw, error))
+            return false;
+        hide_below(draw, page, surround->width, frame->free_of);
+    }
+    return true;
+}
+
+/** Whether all that is together with a region is one draw, which is then wanted by itself. */
+static bool is_alone(const Frame *frame, int region, const FlSharing *sharing)
+{
+    int n = 0;
+    for (int r = 0; r < frame->draws->n; r++)
+        n += is_together(&frame->draws->draw[r], region, sharing[r]);
+    return n == 1;
+}
+
+static bool put_regions(FlSurround *surround, const Frame *frame, const FlJoin *joins,
                         const int *painted_of, const FlSharedEdges *edges, GError **error)
 {
     const FlDrawList *draws = frame->draws;
@@ -347,24 +380,33 @@ static bool put_regions(FlSurround *surround, int number, const Frame *frame, co
         if (!is_wanted(region, joins, painted_of))
             continue;
         const bool any = find_sharing(draws, region, joins, edges, sharing);
-        if ((any || lies_below(draws, region, sharing)) &&
-            !(put_shared(surround, number, region, frame, sharing, error) &&
-              put_seen(surround, number, region, frame, sharing, error)))
+        if (!any && !lies_below(draws, region, sharing))
+            continue;
+        if (!put_shared(surround, region, frame, sharing, error) ||
+            (!is_alone(frame, region, sharing) &&
+             !put_seen(surround, region, frame, sharing, error)))
             return false;
     }
     return true;
 }
 
-/** Marks the draws of the colour of any other region. */
-static void find_sharers(const FlSurround *surround, const FlDrawList *draws, const FlJoin *joins,
-                         const int *painted_of, const FlSharedEdges *edges, bool *shares)
+/** Marks what regions want of the draws. */
+static void find_wanted(const FlSurround *surround, const Frame *frame, const FlJoin *joins,
+                        const int *painted_of, const FlSharedEdges *edges)
 {
+    const FlDrawList *draws = frame->draws;
     g_autofree FlSharing *sharing = g_new0(FlSharing, MAX(draws->n, 1));
-    for (int region = 0; region < surround->n_regions; region++)
-        if (is_wanted(region, joins, painted_of) &&
-            find_sharing(draws, region, joins, edges, sharing))
-            for (int r = 0; r < draws->n; r++)
-                shares[r] |= sharing[r] == FL_SHARING_ALIKE;
+    for (int region = 0; region < surround->n_regions; region++) {
+        if (!is_wanted(region, joins, painted_of))
+            continue;
+        const bool any = find_sharing(draws, region, joins, edges, sharing);
+        const bool alone =
+            (any || lies_below(draws, region, sharing)) && is_alone(frame, region, sharing);
+        for (int r = 0; r < draws->n; r++) {
+            frame->wanted[r].shares |= sharing[r] == FL_SHARING_ALIKE;
+            frame->wanted[r].seen |= alone && draws->draw[r].region == region;
+        }
+    }
 }
 
 bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlJoin *joins,
@@ -372,13 +414,13 @@ bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, c
 {
     const size_t n = (size_t)surround->width * (size_t)surround->height;
     g_autofree uint8_t *planes = fl_alloc(2 * n, 1, "masks", error);
-    g_autofree bool *shares = g_new0(bool, MAX(draws->n, 1));
+    g_autofree Wanted *wanted = g_new0(Wanted, MAX(draws->n, 1));
     g_autofree uint8_t **near = g_new0(uint8_t *, MAX(draws->n, 1));
-    find_sharers(surround, draws, joins, painted_of, edges, shares);
-    const Frame all = {draws, near, planes, planes + n};
-    const bool done = planes && put_shown(surround, frame, draws, planes, error) &&
-                      find_near_seen(surround, draws, shares, planes, near, error) &&
-                      put_regions(surround, frame, &all, joins, painted_of, edges, error);
+    const Frame all = {draws, frame, wanted, near, planes, planes + n};
+    find_wanted(surround, &all, joins, painted_of, edges);
+    const bool done = planes && put_shown(surround, frame, draws, all.free_of, error) &&
+                      put_draws(surround, &all, error) &&
+                      put_regions(surround, &all, joins, painted_of, edges, error);
     for (int r = 0; r < draws->n; r++)
         free(near[r]);
     return done;
