@@ -1,5 +1,5 @@
 /* Rectangles of pixels: common parts, margins, grids, and where a plane has anything. */
-#include "base/rect.h"
+#include "base/blocks.h"
 
 static void assert_rect(FlRect rect, int x, int y, int width, int height)
 {
@@ -39,11 +39,71 @@ static void a_box_holds_what_is_not_blank(void)
     assert_rect(fl_rect_within(plane, 8, (FlRect){0, 3, 8, 3}), 6, 4, 1, 1);
 }
 
+/* How many blocks hold each pixel. */
+static void count_blocks(const FlBlocks *blocks, int width, uint8_t *times)
+{
+    for (int k = 0; k < blocks->n; k++) {
+        const FlRect block = blocks->block[k];
+        g_assert_cmpint(block.x % 2 + block.y % 2, ==, 0);
+        g_assert_cmpint(block.height, <=, FL_BLOCK_ROWS);
+        for (int y = block.y; y < block.y + block.height; y++)
+            for (int x = block.x; x < block.x + block.width; x++)
+                times[y * width + x]++;
+    }
+}
+
+static bool is_near(const uint8_t *plane, int width, int height, int p, int reach)
+{
+    bool near = false;
+    for (int y = MAX(p / width - reach, 0); y <= MIN(p / width + reach, height - 1); y++)
+        for (int x = MAX(p % width - reach, 0); x <= MIN(p % width + reach, width - 1); x++)
+            near = near || plane[y * width + x];
+    return near;
+}
+
+static void blocks_hold_what_is_near_anything_once(void)
+{
+    static const int sizes[][2] = {{1, 1}, {7, 40}, {61, 33}, {150, 16}, {8, 70}};
+    g_autoptr(GRand) rand = g_rand_new_with_seed(5);
+    for (int round = 0; round < 200; round++) {
+        const int *size = sizes[round % (int)G_N_ELEMENTS(sizes)], n = size[0] * size[1];
+        const int reach = round % 4;
+        g_autofree uint8_t *plane = g_malloc0((gsize)n), *times = g_malloc0((gsize)n);
+        for (int k = round % 9; k > 0; k--)
+            plane[g_rand_int_range(rand, 0, n)] = (uint8_t)k;
+        g_auto(FlBlocks) blocks = {0};
+        fl_blocks_init(&blocks, plane, size[0], size[1], reach);
+        count_blocks(&blocks, size[0], times);
+        for (int p = 0; p < n; p++) {
+            g_assert_cmpint(times[p], <=, 1);
+            g_assert_true(times[p] == 1 || !is_near(plane, size[0], size[1], p, reach));
+        }
+        g_assert_true(round % 9 > 0 || blocks.n == 0);
+    }
+}
+
+static void blocks_leave_out_what_is_bare(void)
+{
+    static uint8_t plane[100 * 100];
+    plane[50 * 100 + 20] = plane[50 * 100 + 80] = 1;
+    g_auto(FlBlocks) blocks = {0}, all = {0};
+    fl_blocks_init(&blocks, plane, 100, 100, 1);
+    g_assert_cmpint(blocks.n, ==, 2);
+    assert_rect(blocks.block[0], 16, 48, 6, 16);
+    assert_rect(blocks.block[1], 76, 48, 6, 16);
+    fl_blocks_init_full(&all, 100, 100);
+    g_assert_cmpint(all.n, ==, 7);
+    assert_rect(all.block[6], 0, 96, 100, 4);
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
     g_test_add_func("/rect/two-share-what-both-have", two_share_what_both_have);
     g_test_add_func("/rect/a-margin-ends-at-the-page", a_margin_ends_at_the_page);
     g_test_add_func("/rect/a-box-holds-what-is-not-blank", a_box_holds_what_is_not_blank);
+    g_test_add_func("/rect/blocks-hold-what-is-near-anything-once",
+                    blocks_hold_what_is_near_anything_once);
+    g_test_add_func("/rect/blocks-leave-out-what-is-bare", blocks_leave_out_what_is_bare);
     return g_test_run();
 }

@@ -274,15 +274,26 @@ bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *f
     return true;
 }
 
-bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
+static const char what[] = "the guides of a frame";
+
+bool fl_guides_init_distance(FlGuides *guides, int width, int height, GError **error)
 {
     const size_t n = (size_t)width * height;
     *guides = (FlGuides){.width = width, .height = height};
-    const char *what = "the guides of a frame";
-    if ((guides->mask = fl_alloc_scratch(n, 1, what, error)) &&
-        (guides->distance = fl_alloc_scratch(n, sizeof *guides->distance, what, error)) &&
-        (guides->depth = fl_alloc_scratch(n, sizeof *guides->depth, what, error)) &&
-        (guides->flow = fl_alloc_scratch(2 * n, sizeof *guides->flow, what, error)) &&
+    if ((guides->mask = fl_alloc_unset(n, 1, what, error)) &&
+        (guides->distance = fl_alloc_unset(n, sizeof *guides->distance, what, error)) &&
+        (guides->depth = fl_alloc_unset(n, sizeof *guides->depth, what, error)))
+        return true;
+    fl_guides_clear(guides);
+    return false;
+}
+
+bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
+{
+    const size_t n = (size_t)width * height;
+    if (!fl_guides_init_distance(guides, width, height, error))
+        return false;
+    if ((guides->flow = fl_alloc_scratch(2 * n, sizeof *guides->flow, what, error)) &&
         (guides->angle = fl_alloc_scratch(n, 1, what, error)) &&
         (guides->ext_plus = fl_alloc_scratch(n, sizeof *guides->ext_plus, what, error)) &&
         (guides->ext_minus = fl_alloc_scratch(n, sizeof *guides->ext_minus, what, error)) &&

@@ -121,6 +121,9 @@ bool fl_guide_sequence_flow(const FlGuideSequence *sequence, int frame, float *f
                             GError **error);
 
 bool fl_guides_init(FlGuides *guides, int width, int height, GError **error);
+
+/** Room for what fl_guide_sequence_distance() fills, and no more. */
+bool fl_guides_init_distance(FlGuides *guides, int width, int height, GError **error);
 void fl_guides_clear(FlGuides *guides);
 
 /** Frees the flow and the drawing's motion, from which no target is made. */

@@ -241,7 +241,7 @@ static bool measure_among_others(const FlPainter *painter, int frame, FlGuides *
 {
     const FlRect rect = fl_painter_guided(painter), frame_rect = {0, 0, rect.width, rect.height};
     g_auto(FlGuides) whole = {0};
-    if (!fl_guides_init(&whole, rect.width, rect.height, error) ||
+    if (!fl_guides_init_distance(&whole, rect.width, rect.height, error) ||
         !fl_guide_sequence_distance(painter->guides, painter->picture, &whole, error) ||
         !measure_depth(painter, frame, &whole, error))
         return false;

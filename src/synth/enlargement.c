@@ -138,9 +138,9 @@ void fl_enlarge(const FlEnlargement *enlargement, const FlNnf *nnf, const FlBloc
     const FlRect page = {0, 0, enlarged->width, enlarged->height};
     const FlRect full = fl_rect_doubled(rect, page);
     const size_t stride = (size_t)enlarged->width;
-    const FlDoubledPicture picture = {
-        enlarged->rgb + 3 * ((size_t)full.y * stride + (size_t)full.x), stride, full.width,
-        full.height};
+    const FlDoubledPicture picture = {enlarged->rgb +
+                                          3 * ((size_t)full.y * stride + (size_t)full.x),
+                                      stride, full.width, full.height};
 #pragma omp parallel for schedule(dynamic, 1)
     for (int k = 0; k < blocks->n; k++)
         fl_vote_block_doubled(nnf, blocks->block[k], &enlargement->level, enlarged->kernels,

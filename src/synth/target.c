@@ -31,11 +31,11 @@ static bool level_init(FlTargetLevel *level, int width, int height, GError **err
         level->around[k] = fl_patch_offsets[k][1] * width + fl_patch_offsets[k][0];
     level->tile_columns = (width + FL_TILE - 1) / FL_TILE;
     const size_t tiles = (size_t)level->tile_columns * ((height + FL_TILE - 1) / FL_TILE);
-    return (level->segment = fl_alloc(pixels, 1, "a target", error)) &&
-           (level->angle = fl_alloc(pixels, 1, "a target", error)) &&
-           (level->guide = fl_alloc(pixels, sizeof(FlTargetTexel), "a target", error)) &&
-           (level->distance = fl_alloc(pixels, sizeof(float), "a target", error)) &&
-           (level->tiles = fl_alloc(tiles, sizeof(uint32_t), "a target", error));
+    return (level->segment = fl_alloc_unset(pixels, 1, "a target", error)) &&
+           (level->angle = fl_alloc_unset(pixels, 1, "a target", error)) &&
+           (level->guide = fl_alloc_unset(pixels, sizeof(FlTargetTexel), "a target", error)) &&
+           (level->distance = fl_alloc_unset(pixels, sizeof(float), "a target", error)) &&
+           (level->tiles = fl_alloc_unset(tiles, sizeof(uint32_t), "a target", error));
 }
 
 /* Those of T_temp take memory when there is one. */
@@ -278,10 +278,11 @@ static void blend_pixel(FlTargetLevel *level, size_t p, float w_temp, const FlCo
     const float w = w_texture + w_temporal;
     FlTargetTexel *guide = &level->guide[p];
     for (int c = 0; c < 3; c++) {
-        const float mean = w > 0 ? (w_texture * level->colour[3 * p + c] +
-                                    w_temporal * level->temporal[3 * p + c]) /
-                                       w
-                                 : 0;
+        const float mean =
+            w > 0
+                ? (w_texture * level->colour[3 * p + c] + w_temporal * level->temporal[3 * p + c]) /
+                      w
+                : 0;
         guide->c[FL_CH_R + c] = fl_pack_channel(mean);
     }
     guide->c[FL_CH_COLOUR_WEIGHT] = quantise_weight(w, scale);

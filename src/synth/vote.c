@@ -85,7 +85,7 @@ typedef struct Votes {
     FlVoteSource source;
     const FlKernels *kernels;
     int channels;
-    int first;      // row of the field that the planes begin with
+    int first; // row of the field that the planes begin with
     float *colour;
     uint8_t *voted; // NULL: none
 } Votes;

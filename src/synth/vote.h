@@ -6,8 +6,8 @@
 #include "synth/nnf.h"
 
 /**
- * Votes for every pixel of the blocks, NULL: of all, that a patch covers: the mask and a rim of 2 px
- * around it.
+ * Votes for every pixel of the blocks, NULL: of all, that a patch covers: the mask and a rim of 2
+ * px around it.
  *
  * The patches over a pixel point to places in the exemplar. Those that agree on a place (the
  * same frame, within 3/4 px) are one cluster: their places are averaged, not their colours, so
