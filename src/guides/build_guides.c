@@ -380,12 +380,15 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError
     FlOutlinePair outlines = {.now = outline};
     if (!source->motion || outline->empty)
         return true;
+    if (!outline_of(b, frame - 1, &outlines.before, error))
+        return false;
+    if (source->rests && source->rests(source->data, frame, &outlines)) // as most regions mostly do
+        return true;
     g_autofree float *given = room_for_motion(source, error);
-    if (!given || !outline_of(b, frame - 1, &outlines.before, error) ||
-        !source->motion(source->data, frame, &outlines, given, error))
+    if (!given || !source->motion(source->data, frame, &outlines, given, error))
         return false;
     const size_t values = 2 * (size_t)source->width * (size_t)source->height;
-    if (fl_is_blank((const uint8_t *)given, values * sizeof *given)) // as most regions mostly are
+    if (fl_is_blank((const uint8_t *)given, values * sizeof *given))
         return true;
     g_autofree int32_t *fixed = fl_alloc_scratch(n, sizeof *fixed, "a drawing's motion", error);
     if (!fixed)

@@ -77,6 +77,9 @@ typedef struct FlGuideSource {
      */
     bool (*motion)(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                    GError **error);
+    /** Whether it is 0 all over, with the outlines likewise: then it is not asked for. NULL: that is
+     * not known before. */
+    bool (*rests)(void *data, int frame, const FlOutlinePair *outlines);
     bool keeps_flow; // unrounded, for fl_guide_sequence_flow()
 } FlGuideSource;
 

@@ -440,25 +440,21 @@ static bool work_init(Work *w, const FlMovingRegion *region, float *motion, GErr
     return w->near != NULL;
 }
 
-/** Whether neither the region's mask has changed nor any leaf has moved. */
-static bool is_still(const Work *w)
+bool fl_motion_rests(const FlMovingRegion *region)
 {
-    const FlOutlinePair known = w->region->outlines;
-    bool still = known.before && known.before == known.now;
-    for (guint i = 0; i < w->region->leaves->len && still; i++)
-        still = motion_of(w, (int)i)->kind == FL_MOTION_REGISTERED ||
-                (motion_of(w, (int)i)->kind == FL_MOTION_STILL && !is_unknown(w, (int)i));
-    return still;
+    const Work w = {.region = region};
+    const FlOutlinePair known = region->outlines;
+    bool rests = known.before && known.before == known.now;
+    for (guint i = 0; i < region->leaves->len && rests; i++)
+        rests = motion_of(&w, (int)i)->kind == FL_MOTION_REGISTERED ||
+                (motion_of(&w, (int)i)->kind == FL_MOTION_STILL && !is_unknown(&w, (int)i));
+    return rests;
 }
 
 bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionShares *shares,
                          GError **error)
 {
     g_auto(Work) w = {0};
-    if (!shares && is_still(&(Work){.region = region})) { // as most regions are most of the time
-        memset(motion, 0, 2 * fl_rect_pixels(region->rect) * sizeof *motion);
-        return true;
-    }
     if (!work_init(&w, region, motion, error))
         return false;
     const bool all = find_trusted(&w);

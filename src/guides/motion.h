@@ -36,4 +36,8 @@ typedef struct FlMotionShares {
 bool fl_motion_of_region(const FlMovingRegion *region, float *motion, FlMotionShares *shares,
                          GError **error);
 
+/** Whether neither the mask has changed, by its outlines, nor any leaf has moved: then all of it is
+ * 0. The masks themselves are not read. */
+bool fl_motion_rests(const FlMovingRegion *region);
+
 #endif

@@ -249,6 +249,19 @@ static bool is_there(const uint8_t *mask, size_t n)
     return found;
 }
 
+/** The region of a step, but for its masks. */
+static FlMovingRegion moving_of(const FlMotionSource *source, const FlRegionStep *step,
+                                const Use *use, GArray *leaves)
+{
+    return (FlMovingRegion){.rect = source->halved ? fl_rect_halved(step->rect) : step->rect,
+                            .side = side_of(source),
+                            .outlines = step->outlines,
+                            .before = use->before->outlines,
+                            .now = use->now->outlines,
+                            .motions = use->step->motions,
+                            .leaves = leaves};
+}
+
 bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, float *motion,
                           FlMotionShares *shares, GError **error)
 {
@@ -271,13 +284,26 @@ bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, floa
     bool good = acquire(source, before, now, &use, error);
     if (good) {
         g_autoptr(GArray) leaves = leaves_of(source, now, region, use.now->outlines);
-        const FlMovingRegion moving = {
-            rect,           side_of(source),      mask_before,       mask_now,
-            step->outlines, use.before->outlines, use.now->outlines, use.step->motions,
-            leaves,
-        };
+        FlMovingRegion moving = moving_of(source, step, &use, leaves);
+        moving.mask_before = mask_before, moving.mask_now = mask_now;
         good = fl_motion_of_region(&moving, motion, shares, error);
     }
     release(source, &use);
     return good;
+}
+
+bool fl_motion_source_rests(FlMotionSource *source, const FlRegionStep *step)
+{
+    const FlOutlinePair known = step->outlines;
+    if (fl_drawing_same_file(source->drawing, step->before, step->now))
+        return true;
+    Use use = {0};
+    bool rests = known.before && known.before == known.now && !known.now->empty;
+    if (rests && (rests = acquire(source, step->before, step->now, &use, NULL))) {
+        g_autoptr(GArray) leaves = leaves_of(source, step->now, step->region, use.now->outlines);
+        const FlMovingRegion moving = moving_of(source, step, &use, leaves);
+        rests = fl_motion_rests(&moving);
+    }
+    release(source, &use);
+    return rests;
 }

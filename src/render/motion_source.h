@@ -35,6 +35,9 @@ typedef struct FlRegionStep {
 bool fl_motion_source_get(FlMotionSource *source, const FlRegionStep *step, float *motion,
                           FlMotionShares *shares, GError **error);
 
+/** Whether the motion is 0 all over since nothing of the region has changed, by its outlines. */
+bool fl_motion_source_rests(FlMotionSource *source, const FlRegionStep *step);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMotionSource, fl_motion_source_free)
 
 #endif

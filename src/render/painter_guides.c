@@ -112,22 +112,40 @@ static bool painter_motion(void *data, int frame, const FlOutlinePair *outlines,
     return flow_in_file(data, frame, NAN, motion, error);
 }
 
-/* The drawing's own motion into a picture. Nothing comes before the first one, but in a loop. */
+/* Whether there is a picture before one; nothing comes before the first, but in a loop. */
+static bool has_past(const FlPainter *painter, int frame)
+{
+    return frame_of(painter, frame) > 0 || painter->plan->loops;
+}
+
+/* From the picture before into one. */
+static FlRegionStep step_into(const FlPainter *painter, int frame, const FlOutlinePair *outlines)
+{
+    const int n = painter->n_pictures, hold = painter->plan->settings.hold;
+    const int now = frame_of(painter, frame), last = (n - 1) * hold;
+    return (FlRegionStep){painter->plan->region, now > 0 ? now - hold : last, now,
+                          painter->result.rect, *outlines};
+}
+
+/* The drawing's own motion into a picture. */
 static bool exact_motion(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                          GError **error)
 {
     const FlPainter *painter = data;
-    const int n = painter->n_pictures, hold = painter->plan->settings.hold;
-    const int now = frame_of(painter, frame), last = (n - 1) * hold;
-    const int before = now > 0 ? now - hold : last;
     const size_t values = 2 * fl_rect_pixels(fl_painter_guided(painter));
-    if (now == 0 && !painter->plan->loops) {
-        for (size_t k = 0; k < values; k++)
-            motion[k] = NAN;
-        return true;
-    }
-    const FlRegionStep step = {painter->plan->region, before, now, painter->result.rect, *outlines};
-    return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
+    const FlRegionStep step = step_into(painter, frame, outlines);
+    if (has_past(painter, frame))
+        return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
+    for (size_t k = 0; k < values; k++)
+        motion[k] = NAN;
+    return true;
+}
+
+static bool exact_rests(void *data, int frame, const FlOutlinePair *outlines)
+{
+    const FlPainter *painter = data;
+    const FlRegionStep step = step_into(painter, frame, outlines);
+    return has_past(painter, frame) && fl_motion_source_rests(painter->motion, &step);
 }
 
 FlGuideSource fl_painter_guide_source(FlPainter *painter)
@@ -143,6 +161,7 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
                            .motion = masks   ? NULL
                                      : files ? painter_motion
                                              : exact_motion,
+                           .rests = masks || files ? NULL : exact_rests,
                            .data = painter,
                            .keeps_flow = painter->plan->keeps_flow};
 }
