@@ -382,7 +382,10 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError
         return true;
     if (!outline_of(b, frame - 1, &outlines.before, error))
         return false;
-    if (source->rests && source->rests(source->data, frame, &outlines)) // as most regions mostly do
+    const FlAllOver all_over =
+        source->all_over ? source->all_over(source->data, frame, &outlines) : FL_ALL_OVER_NOTHING;
+    b->sequence->frames[frame].unknown = all_over == FL_ALL_OVER_UNKNOWN; // as of a first frame
+    if (all_over != FL_ALL_OVER_NOTHING)                                  // as of most regions
         return true;
     g_autofree float *given = room_for_motion(source, error);
     if (!given || !source->motion(source->data, frame, &outlines, given, error))
@@ -397,7 +400,7 @@ static bool put_drawing_motion(Builder *b, int frame, FlOutline *outline, GError
     g_clear_pointer(&given, g_free); // it is large, and so is what storing takes
     if (fl_is_blank((const uint8_t *)fixed, n * sizeof *fixed))
         return true;
-    if (!any_known(fixed, outline)) { // as of a first frame
+    if (!any_known(fixed, outline)) {
         b->sequence->frames[frame].unknown = true;
         return true;
     }

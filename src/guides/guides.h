@@ -61,6 +61,9 @@ static inline FlRect fl_guides_rect(const FlGuides *guides)
 
 #define FL_INSIDE 128
 
+/** What is the same of the motion of all pixels. */
+typedef enum FlAllOver { FL_ALL_OVER_NOTHING, FL_ALL_OVER_REST, FL_ALL_OVER_UNKNOWN } FlAllOver;
+
 /** A mask sequence, with its flow and the drawing's motion if they are known. */
 typedef struct FlGuideSource {
     int width, height, n_frames;
@@ -77,9 +80,9 @@ typedef struct FlGuideSource {
      */
     bool (*motion)(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                    GError **error);
-    /** Whether it is 0 all over, with the outlines likewise: then it is not asked for. NULL: that is
-     * not known before. */
-    bool (*rests)(void *data, int frame, const FlOutlinePair *outlines);
+    /** What is the same of it all over: then it is not asked for. NULL: that is not known before.
+     */
+    FlAllOver (*all_over)(void *data, int frame, const FlOutlinePair *outlines);
     bool keeps_flow; // unrounded, for fl_guide_sequence_flow()
 } FlGuideSource;
 

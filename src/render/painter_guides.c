@@ -127,25 +127,22 @@ static FlRegionStep step_into(const FlPainter *painter, int frame, const FlOutli
                           painter->result.rect, *outlines};
 }
 
-/* The drawing's own motion into a picture. */
+/* The drawing's own motion into a picture that has_past(). */
 static bool exact_motion(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                          GError **error)
 {
     const FlPainter *painter = data;
-    const size_t values = 2 * fl_rect_pixels(fl_painter_guided(painter));
     const FlRegionStep step = step_into(painter, frame, outlines);
-    if (has_past(painter, frame))
-        return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
-    for (size_t k = 0; k < values; k++)
-        motion[k] = NAN;
-    return true;
+    return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
 }
 
-static bool exact_rests(void *data, int frame, const FlOutlinePair *outlines)
+static FlAllOver exact_all_over(void *data, int frame, const FlOutlinePair *outlines)
 {
     const FlPainter *painter = data;
     const FlRegionStep step = step_into(painter, frame, outlines);
-    return has_past(painter, frame) && fl_motion_source_rests(painter->motion, &step);
+    if (!has_past(painter, frame))
+        return FL_ALL_OVER_UNKNOWN;
+    return fl_motion_source_rests(painter->motion, &step) ? FL_ALL_OVER_REST : FL_ALL_OVER_NOTHING;
 }
 
 FlGuideSource fl_painter_guide_source(FlPainter *painter)
@@ -161,7 +158,7 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
                            .motion = masks   ? NULL
                                      : files ? painter_motion
                                              : exact_motion,
-                           .rests = masks || files ? NULL : exact_rests,
+                           .all_over = masks || files ? NULL : exact_all_over,
                            .data = painter,
                            .keeps_flow = painter->plan->keeps_flow};
 }
