@@ -128,6 +128,34 @@ bool fl_flow_construct(const FlFlowFrame *now, const FlFlowFrame *before, const 
     return !*moves || fl_laplace_solve(cell, box->width, box->height, 2, flow, error);
 }
 
+/** Fixes the normals of the contour in columns of row y of the box. Returns: whether any has one.
+ */
+static bool fix_normals(const FlOutline *outline, int y, FlColumns columns, uint8_t *cell,
+                        float *normal)
+{
+    const FlRect box = outline->box;
+    bool any = false;
+    for (int x = columns.first; x < columns.last; x++) {
+        const size_t p = (size_t)y * (size_t)box.width + (size_t)x;
+        float g[2];
+        if (outline->coverage[p] < FL_INSIDE)
+            continue;
+        cell[p] = FL_CELL_FREE;
+        if (!fl_outline_is_contour(outline, box.x + x, box.y + y))
+            continue;
+        fl_distance_gradient(outline->distance, outline->frame_width, outline->frame_height,
+                             box.x + x, box.y + y, g);
+        const float norm = length(g);
+        if (norm < least_gradient)
+            continue;
+        any = true;
+        cell[p] = FL_CELL_FIXED;
+        normal[2 * p] = -g[0] / norm;
+        normal[2 * p + 1] = -g[1] / norm;
+    }
+    return any;
+}
+
 bool fl_outline_normals(FlOutline *outline, GError **error)
 {
     const FlRect *box = &outline->box;
@@ -137,23 +165,13 @@ bool fl_outline_normals(FlOutline *outline, GError **error)
     bool any = false;
     if (!cell || !normal)
         return false;
-    for (int y = 0; y < box->height; y++)
-        for (int x = 0; x < box->width; x++) {
-            const size_t p = y * (size_t)box->width + x;
-            float g[2];
-            cell[p] = outline->coverage[p] >= FL_INSIDE ? FL_CELL_FREE : FL_CELL_OUTSIDE;
-            if (!fl_outline_is_contour(outline, box->x + x, box->y + y))
-                continue;
-            fl_distance_gradient(outline->distance, outline->frame_width, outline->frame_height,
-                                 box->x + x, box->y + y, g);
-            const float norm = length(g);
-            if (norm < least_gradient)
-                continue;
-            any = true;
-            cell[p] = FL_CELL_FIXED;
-            normal[2 * p] = -g[0] / norm;
-            normal[2 * p + 1] = -g[1] / norm;
-        }
+    memset(cell, FL_CELL_OUTSIDE, n * sizeof *cell);
+    for (int y = 0; y < box->height; y++) {
+        const uint8_t *row = outline->coverage + (size_t)y * (size_t)box->width;
+        for (FlColumns run = fl_next_run(row, 0, box->width); run.first < run.last;
+             run = fl_next_run(row, run.last, box->width))
+            any |= fix_normals(outline, y, run, cell, normal);
+    }
     if (any && !fl_laplace_solve(cell, box->width, box->height, 0, normal, error))
         return false;
     g_free(outline->normal);
