@@ -75,10 +75,16 @@ FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuid
     return g_steal_pointer(&sequence);
 }
 
+void fl_guide_sequence_drop_first(FlGuideSequence *sequence)
+{
+    g_clear_pointer(&sequence->first, fl_outline_unref);
+}
+
 void fl_guide_sequence_free(FlGuideSequence *sequence)
 {
     if (!sequence)
         return;
+    fl_guide_sequence_drop_first(sequence);
     fl_spill_free(sequence->spill);
     g_free(sequence->frames);
     g_free(sequence);
@@ -233,6 +239,14 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     return true;
 }
 
+/** Whether guides are of the whole first frame, and its distance is kept. */
+static bool is_kept(const FlGuideSequence *sequence, int frame, const FlGuides *guides)
+{
+    const FlGuideSource *source = &sequence->source;
+    return sequence->first && frame == 0 && guides->width == source->width &&
+           guides->height == source->height;
+}
+
 bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGuides *guides,
                                 GError **error)
 {
@@ -245,9 +259,12 @@ bool fl_guide_sequence_distance(const FlGuideSequence *sequence, int frame, FlGu
         return false;
     fl_rect_copy(shape, box, guides->mask, part, 1);
     g_clear_pointer(&shape, g_free);
-    if (!fl_distance(guides->mask, part.width, part.height, guides->distance, error))
+    const size_t bytes = fl_rect_pixels(part) * sizeof *guides->distance;
+    if (is_kept(sequence, frame, guides))
+        memcpy(guides->distance, sequence->first->distance, bytes);
+    else if (!fl_distance(guides->mask, part.width, part.height, guides->distance, error))
         return false;
-    memcpy(guides->depth, guides->distance, fl_rect_pixels(part) * sizeof *guides->depth);
+    memcpy(guides->depth, guides->distance, bytes);
     return true;
 }
 

@@ -83,7 +83,8 @@ typedef struct FlGuideSource {
     /** What is the same of it all over: then it is not asked for. NULL: that is not known before.
      */
     FlAllOver (*all_over)(void *data, int frame, const FlOutlinePair *outlines);
-    bool keeps_flow; // unrounded, for fl_guide_sequence_flow()
+    bool keeps_flow;  // unrounded, for fl_guide_sequence_flow()
+    bool keeps_first; // distances of the first frame, until fl_guide_sequence_drop_first()
 } FlGuideSource;
 
 /** The guides of a whole sequence. Its memory does not grow with the number of frames (FlSpill). */
@@ -92,6 +93,9 @@ typedef struct FlGuideSequence FlGuideSequence;
 /** Reads the whole sequence once. `source` is copied; its data must stay until _free. */
 FlGuideSequence *fl_guide_sequence_new(const FlGuideSource *source, const FlGuideParams *params,
                                        GError **error);
+
+/** What the source keeps of the first frame goes, and is made again if it is asked for. */
+void fl_guide_sequence_drop_first(FlGuideSequence *sequence);
 
 void fl_guide_sequence_free(FlGuideSequence *sequence); // NULL is fine
 

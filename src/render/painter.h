@@ -22,6 +22,7 @@ typedef struct FlPainter {
     int wrap;          // pictures of a loop's other end that extend its guides, before and after
     int picture;       // the last one painted
     bool follows;      // a picture was painted before, in this render or an earlier one
+    bool keeps_first;  // distances of the first picture, from where guides are made
     int asked, answer; // a picture, and the one around which its depth is measured
     double cost_s;     // of the last picture that was synthesised, by one thread; 0: none yet
     FlGuideSequence *guides;

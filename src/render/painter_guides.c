@@ -160,7 +160,8 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
                                              : exact_motion,
                            .all_over = masks || files ? NULL : exact_all_over,
                            .data = painter,
-                           .keeps_flow = painter->plan->keeps_flow};
+                           .keeps_flow = painter->plan->keeps_flow,
+                           .keeps_first = painter->keeps_first};
 }
 
 int fl_guided_grid(const FlStyleInstance *style, FlRect page)
@@ -382,6 +383,7 @@ bool fl_painter_make_guides(FlPainter *painter, FlGuides *guides, FlGuides *part
         return false;
     if ((!resting.keeps || painter->wants_guides) && !fill_guides(painter, whole, guides, error))
         return false;
+    fl_guide_sequence_drop_first(painter->guides);
     guides->disposable = !painter->wants_guides;
     if (!resting.keeps)
         return true;
