@@ -1,5 +1,6 @@
-/* Rectangles of pixels: common parts, margins, grids, and where a plane has anything. */
+/* Rectangles of pixels: common parts, margins, grids, where a plane has anything, and sums. */
 #include "base/blocks.h"
+#include "base/windows.h"
 
 static void assert_rect(FlRect rect, int x, int y, int width, int height)
 {
@@ -96,6 +97,27 @@ static void blocks_leave_out_what_is_bare(void)
     assert_rect(all.block[6], 0, 96, 100, 4);
 }
 
+static void windows_are_summed_within_their_box(void)
+{
+    static const int sizes[][2] = {{1, 1}, {3, 9}, {40, 30}, {130, 5}};
+    g_autoptr(GRand) rand = g_rand_new_with_seed(7);
+    for (int round = 0; round < 40; round++) {
+        const int width = sizes[round % 4][0], height = sizes[round % 4][1], r = round % 11;
+        g_autofree int16_t *plane = g_new(int16_t, width * height);
+        g_autofree uint32_t *sums = g_new(uint32_t, width * height);
+        for (int p = 0; p < width * height; p++)
+            plane[p] = (int16_t)g_rand_int_range(rand, 0, 32768);
+        fl_window_sums(plane, (FlRect){5, 6, width, height}, r, sums);
+        for (int p = 0; p < width * height; p++) {
+            uint32_t sum = 0;
+            for (int y = MAX(p / width - r, 0); y <= MIN(p / width + r, height - 1); y++)
+                for (int x = MAX(p % width - r, 0); x <= MIN(p % width + r, width - 1); x++)
+                    sum += (uint32_t)plane[y * width + x];
+            g_assert_cmpuint(sums[p], ==, sum);
+        }
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -105,5 +127,7 @@ int main(int argc, char **argv)
     g_test_add_func("/rect/blocks-hold-what-is-near-anything-once",
                     blocks_hold_what_is_near_anything_once);
     g_test_add_func("/rect/blocks-leave-out-what-is-bare", blocks_leave_out_what_is_bare);
+    g_test_add_func("/rect/windows-are-summed-within-their-box",
+                    windows_are_summed_within_their_box);
     return g_test_run();
 }

@@ -1,50 +1,52 @@
 #include "base/windows.h"
 
-#define BAND 128 // columns that are summed side by side, as they lie in memory
-
-/** The value of a column; 0 beyond the row. */
-static uint32_t value_at(const int16_t *plane, int n, int i)
+/** Takes n columns of a row into their sums, or out of them. */
+static void add_row(const int16_t *row, size_t n, uint32_t *restrict sums)
 {
-    return i >= 0 && i < n ? (uint32_t)plane[i] : 0;
+    for (size_t x = 0; x < n; x++)
+        sums[x] += (uint32_t)row[x];
 }
 
-/** Sums of a row over 2 r + 1 columns; both ends of most windows are within the row. */
-static void sum_columns(const int16_t *plane, uint32_t *restrict out, int n, int r)
+static void take_row(const int16_t *row, size_t n, uint32_t *restrict sums)
 {
-    const int whole = MIN(r + 1, n), end = MAX(n - r, whole);
+    for (size_t x = 0; x < n; x++)
+        sums[x] -= (uint32_t)row[x];
+}
+
+/** Both at once. */
+static void move_rows(const int16_t *enters, const int16_t *leaves, size_t n,
+                      uint32_t *restrict sums)
+{
+    for (size_t x = 0; x < n; x++)
+        sums[x] += (uint32_t)(enters[x] - leaves[x]);
+}
+
+/** Sums of 2 r + 1 columns around each of n; there are r more on both sides, and one before. */
+static void add_columns(const uint32_t *columns, size_t n, size_t r, uint32_t *restrict out)
+{
     uint32_t sum = 0;
-    for (int i = 0; i < MIN(r, n); i++)
-        sum += (uint32_t)plane[i];
-    for (int i = 0; i < whole; i++)
-        out[i] = sum += value_at(plane, n, i + r);
-    for (int i = whole; i < end; i++)
-        out[i] = sum += (uint32_t)(plane[i + r] - plane[i - r - 1]);
-    for (int i = end; i < n; i++)
-        out[i] = sum -= value_at(plane, n, i - r - 1);
+    for (size_t x = 0; x < 2 * r; x++)
+        sum += columns[1 + x];
+    for (size_t x = 0; x < n; x++)
+        out[x] = sum += columns[1 + x + 2 * r] - columns[x];
 }
 
-/** Sums of the sums over 2 r + 1 rows, of n <= BAND columns of a box. */
-static void sum_rows(const uint32_t *in, uint32_t *out, int n, FlRect box, int r)
+void fl_window_sums(const int16_t *plane, FlRect box, int r, uint32_t *sums)
 {
-    const size_t width = (size_t)box.width;
-    uint32_t sum[BAND] = {0};
-    for (int y = -r; y < box.height; y++) {
-        const uint32_t *enter = y + r < box.height ? in + (size_t)(y + r) * width : NULL;
-        const uint32_t *leave = y - r >= 0 ? in + (size_t)(y - r) * width : NULL;
-        for (int x = 0; x < n && enter; x++)
-            sum[x] += enter[x];
-        for (int x = 0; x < n && y >= 0; x++)
-            out[(size_t)y * width + (size_t)x] = sum[x];
-        for (int x = 0; x < n && leave; x++)
-            sum[x] -= leave[x];
+    const size_t width = (size_t)box.width, reach = (size_t)r;
+    g_autofree uint32_t *columns = g_new0(uint32_t, width + 2 * reach + 1);
+    uint32_t *own = columns + reach + 1;
+    for (int y = 0; y < MIN(r, box.height); y++)
+        add_row(plane + (size_t)y * width, width, own);
+    for (int y = 0; y < box.height; y++) {
+        const int16_t *enters = y + r < box.height ? plane + (size_t)(y + r) * width : NULL;
+        const int16_t *leaves = y > r ? plane + (size_t)(y - r - 1) * width : NULL;
+        if (enters && leaves)
+            move_rows(enters, leaves, width, own);
+        else if (enters)
+            add_row(enters, width, own);
+        else if (leaves)
+            take_row(leaves, width, own);
+        add_columns(columns, width, reach, sums + (size_t)y * width);
     }
-}
-
-void fl_window_sums(const int16_t *plane, FlRect box, int r, uint32_t *rows, uint32_t *sums)
-{
-    const size_t width = (size_t)box.width;
-    for (int y = 0; y < box.height; y++)
-        sum_columns(plane + (size_t)y * width, rows + (size_t)y * width, box.width, r);
-    for (int x = 0; x < box.width; x += BAND)
-        sum_rows(rows + x, sums + x, MIN(BAND, box.width - x), box, r);
 }

@@ -138,14 +138,12 @@ int fl_closing_reach(int radius_px)
 
 /** Room for what is made of the windows of each pixel. */
 typedef struct Windows {
-    uint32_t *rows;                  // scratch
     uint32_t *around, *wide, *paint; // sums: of what is inside the shape, and of its amounts
     int16_t *weighed;                // amounts, of what is inside the shape
 } Windows;
 
 static void windows_clear(Windows *windows)
 {
-    free(windows->rows);
     free(windows->around);
     free(windows->wide);
     free(windows->paint);
@@ -157,8 +155,7 @@ G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Windows, windows_clear)
 static bool windows_init(Windows *windows, size_t n, GError **error)
 {
     *windows = (Windows){0};
-    return (windows->rows = fl_alloc_unset(n, sizeof *windows->rows, "a matte", error)) &&
-           (windows->around = fl_alloc_unset(n, sizeof *windows->around, "a matte", error)) &&
+    return (windows->around = fl_alloc_unset(n, sizeof *windows->around, "a matte", error)) &&
            (windows->wide = fl_alloc_unset(n, sizeof *windows->wide, "a matte", error)) &&
            (windows->paint = fl_alloc_unset(n, sizeof *windows->paint, "a matte", error)) &&
            (windows->weighed = fl_alloc_unset(n, sizeof *windows->weighed, "a matte", error));
@@ -206,9 +203,9 @@ bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *sh
         return false;
     for (size_t i = 0; i < n; i++)
         windows.weighed[i] = (int16_t)(MAX(amounts[i], 0) * inside[i] / 255);
-    fl_window_sums(inside, box, radius_px, windows.rows, windows.wide);
-    fl_window_sums(inside, box, radius, windows.rows, windows.around);
-    fl_window_sums(windows.weighed, box, radius, windows.rows, windows.paint);
+    fl_window_sums(inside, box, radius_px, windows.wide);
+    fl_window_sums(inside, box, radius, windows.around);
+    fl_window_sums(windows.weighed, box, radius, windows.paint);
     even_shares(amounts, share, &windows, n, radius_px);
     return true;
 }

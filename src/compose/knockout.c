@@ -41,13 +41,12 @@ static int hidden(int amount, uint32_t share)
 typedef struct Tile {
     FlRect own, around; // around: with all that its windows hold; of the box, as own is
     int16_t *inside;    // of around
-    uint32_t *rows, *sums;
+    uint32_t *sums;
 } Tile;
 
 static void tile_clear(Tile *tile)
 {
     free(tile->inside);
-    free(tile->rows);
     free(tile->sums);
 }
 
@@ -59,7 +58,6 @@ static bool tile_init(Tile *tile, int radius_px, GError **error)
     const size_t side = (size_t)(TILE_PX + 2 * radius_px), n = side * side;
     *tile = (Tile){0};
     return (tile->inside = fl_alloc_unset(n, sizeof *tile->inside, "a matte", error)) &&
-           (tile->rows = fl_alloc_unset(n, sizeof *tile->rows, "a matte", error)) &&
            (tile->sums = fl_alloc_unset(n, sizeof *tile->sums, "a matte", error));
 }
 
@@ -69,7 +67,7 @@ static void sum_tile(Tile *tile, FlRect own, FlRect box, const uint8_t *coverage
     tile->own = own;
     tile->around = fl_rect_grown(own, radius_px, (FlRect){0, 0, box.width, box.height});
     fl_closing_inside(coverage, box.width, box.height, tile->around, tile->inside);
-    fl_window_sums(tile->inside, tile->around, radius_px, tile->rows, tile->sums);
+    fl_window_sums(tile->inside, tile->around, radius_px, tile->sums);
 }
 
 /** Where rows and columns are in a frame. */

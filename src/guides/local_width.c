@@ -345,14 +345,13 @@ static bool any_narrow(const uint16_t *plane, size_t n, uint16_t cap)
 typedef struct Means {
     uint16_t *before; // the whole plane
     int16_t *plane;   // of the tile and what is around it, as what follows
-    uint32_t *rows, *count, *sum;
+    uint32_t *count, *sum;
 } Means;
 
 static void means_clear(Means *means)
 {
     free(means->before);
     free(means->plane);
-    free(means->rows);
     free(means->count);
     free(means->sum);
 }
@@ -366,7 +365,6 @@ static bool means_init(Means *means, size_t n, int r, GError **error)
     *means = (Means){0};
     return (means->before = fl_alloc_unset(n, sizeof *means->before, "local widths", error)) &&
            (means->plane = fl_alloc_unset(tile, sizeof *means->plane, "local widths", error)) &&
-           (means->rows = fl_alloc_unset(tile, sizeof *means->rows, "local widths", error)) &&
            (means->count = fl_alloc_unset(tile, sizeof *means->count, "local widths", error)) &&
            (means->sum = fl_alloc_unset(tile, sizeof *means->sum, "local widths", error));
 }
@@ -387,10 +385,10 @@ static void sum_tile(Means *means, FlRect page, FlRect around, int r)
     const size_t n = fl_rect_pixels(box);
     uint16_t *values = (uint16_t *)means->plane;
     fl_rect_copy(means->before, page, values, around, sizeof *values);
-    fl_window_sums(means->plane, box, r, means->rows, means->sum);
+    fl_window_sums(means->plane, box, r, means->sum);
     for (size_t p = 0; p < n; p++)
         means->plane[p] = means->plane[p] > 0;
-    fl_window_sums(means->plane, box, r, means->rows, means->count);
+    fl_window_sums(means->plane, box, r, means->count);
 }
 
 /** The mean of what is inside in a square of 2 r + 1 px. */

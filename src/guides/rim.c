@@ -68,7 +68,7 @@ typedef struct Part {
     uint16_t *half_width; // of them
     uint8_t *coverage, *seen, *shown;
     int16_t *plane;
-    uint32_t *rows, *free, *taken; // sums: of what is not theirs, and what of it is others'
+    uint32_t *free, *taken; // sums: of what is not theirs, and what of it is others'
 } Part;
 
 static void part_clear(Part *part)
@@ -79,7 +79,6 @@ static void part_clear(Part *part)
     free(part->seen);
     free(part->shown);
     free(part->plane);
-    free(part->rows);
     free(part->free);
     free(part->taken);
 }
@@ -139,7 +138,6 @@ static bool measure_surround(Part *part, const FlRimShape *shape, float border_p
     const int radius = surround_radius(border_px);
     if (!(part->shown = fl_alloc_unset(n, 1, "a guide", error)) ||
         !(part->plane = fl_alloc_unset(n, sizeof *part->plane, "a guide", error)) ||
-        !(part->rows = fl_alloc_unset(n, sizeof *part->rows, "a guide", error)) ||
         !(part->free = fl_alloc_unset(n, sizeof *part->free, "a guide", error)) ||
         !(part->taken = fl_alloc_unset(n, sizeof *part->taken, "a guide", error)))
         return false;
@@ -147,10 +145,10 @@ static bool measure_surround(Part *part, const FlRimShape *shape, float border_p
                  1);
     for (size_t p = 0; p < n; p++)
         part->plane[p] = (int16_t)(255 - part->coverage[p]);
-    fl_window_sums(part->plane, own, radius, part->rows, part->free);
+    fl_window_sums(part->plane, own, radius, part->free);
     for (size_t p = 0; p < n; p++)
         part->plane[p] = (int16_t)((255 - part->coverage[p]) * part->shown[p] / 255);
-    fl_window_sums(part->plane, own, radius, part->rows, part->taken);
+    fl_window_sums(part->plane, own, radius, part->taken);
     return true;
 }
 

@@ -149,8 +149,7 @@ static uint8_t *near_seen(const FlDraw *draw, const uint8_t *free_of, int width,
     const FlRect box = draw->area.box;
     const size_t n = fl_rect_pixels(box);
     g_autofree int16_t *seen = fl_alloc_unset(n, sizeof *seen, "a mask", error);
-    g_autofree uint32_t *rows = seen ? fl_alloc_unset(n, sizeof *rows, "a mask", error) : NULL;
-    g_autofree uint32_t *sums = rows ? fl_alloc_unset(n, sizeof *sums, "a mask", error) : NULL;
+    g_autofree uint32_t *sums = seen ? fl_alloc_unset(n, sizeof *sums, "a mask", error) : NULL;
     uint8_t *near = sums ? fl_alloc_unset(n, 1, "a mask", error) : NULL;
     if (!near)
         return NULL;
@@ -161,7 +160,7 @@ static uint8_t *near_seen(const FlDraw *draw, const uint8_t *free_of, int width,
             seen[row + (size_t)x] =
                 (int16_t)((draw->coverage[row + (size_t)x] * free_there[x] + 127) / 255);
     }
-    fl_window_sums(seen, box, reach_px, rows, sums);
+    fl_window_sums(seen, box, reach_px, sums);
     const uint32_t side = (uint32_t)(2 * reach_px + 1);
     for (size_t p = 0; p < n; p++) { // a line of pixels that crosses the window is enough
         const uint32_t share = sums[p] < 255 * side ? sums[p] / side : 255;
