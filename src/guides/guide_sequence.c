@@ -143,9 +143,9 @@ static bool get_planes(const FlGuideSequence *sequence, int frame, FlRect part, 
 }
 
 /** A plane of zeros; where it has not been written to, it goes on taking no memory. */
-static void clear_plane(void *plane, size_t bytes)
+static void clear_plane(const FlGuides *guides, void *plane, size_t bytes)
 {
-    if (!fl_is_blank(plane, bytes))
+    if (!guides->blank && !fl_is_blank(plane, bytes))
         memset(plane, 0, bytes);
 }
 
@@ -156,7 +156,7 @@ static bool get_motion(const FlGuideSequence *sequence, int frame, FlGuides *gui
     const FlRect part = fl_guides_rect(guides);
     if (!sequence->source.motion)
         return true;
-    clear_plane(guides->motion, 2 * fl_rect_pixels(part) * sizeof *guides->motion);
+    clear_plane(guides, guides->motion, 2 * fl_rect_pixels(part) * sizeof *guides->motion);
     if (record->unknown)
         return true;
     if (record->holder[FL_GUIDE_PLANE_MOTION] >= 0) {
@@ -220,9 +220,9 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
     const size_t n = fl_rect_pixels(part);
     memset(guides->mask, 0, n);
     memset(guides->angle, 0, n);
-    clear_plane(guides->flow, 2 * n * sizeof *guides->flow);
-    clear_plane(guides->ext_plus, n * sizeof *guides->ext_plus);
-    clear_plane(guides->ext_minus, n * sizeof *guides->ext_minus);
+    clear_plane(guides, guides->flow, 2 * n * sizeof *guides->flow);
+    clear_plane(guides, guides->ext_plus, n * sizeof *guides->ext_plus);
+    clear_plane(guides, guides->ext_minus, n * sizeof *guides->ext_minus);
     const FlFrameRecord *record = &sequence->frames[frame];
     const size_t area = fl_rect_pixels(record->box);
     guides->has_motion = false;
@@ -236,6 +236,7 @@ bool fl_guide_sequence_planes(const FlGuideSequence *sequence, int frame, FlGuid
         if (!get_motion(sequence, frame, guides, error))
             return false;
     }
+    guides->blank = false;
     return true;
 }
 
@@ -316,9 +317,10 @@ bool fl_guides_init(FlGuides *guides, int width, int height, GError **error)
         (guides->ext_minus = fl_alloc_scratch(n, sizeof *guides->ext_minus, what, error)) &&
         (guides->motion = fl_alloc_scratch(2 * n, sizeof *guides->motion, what, error)) &&
         (guides->turn = fl_alloc_scratch(n, sizeof *guides->turn, what, error)))
-        return true;
-    fl_guides_clear(guides);
-    return false;
+        guides->blank = true;
+    else
+        fl_guides_clear(guides);
+    return guides->blank;
 }
 
 void fl_guides_drop_motion(FlGuides *guides)

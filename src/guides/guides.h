@@ -30,6 +30,7 @@ typedef struct FlGuides {
     int x, y; // where the part lies in the frame; 0, 0: as the frame does
     int width, height;
     bool disposable;  // not read after the engine, which may clear them before it paints
+    bool blank;       // flow, extents and motion are 0 all over, as fl_guides_init() leaves them
     uint8_t *mask;    // coverage 0..255; a pixel is inside from FL_INSIDE on
     float *distance;  // signed distance to the contour, px, positive inside, everywhere defined
     float *depth;     // as the paint takes it, fl_rim_depth(); the distance until that is made
