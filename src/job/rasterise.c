@@ -39,24 +39,25 @@ static void begin_visible_regions(FlPlan *plan)
         plan->seen[r] = plan->painted_of[r] < 0;
 }
 
+/* Whether something of every region has been seen, or nobody asks. */
+static bool all_seen(const FlPlan *plan)
+{
+    for (int p = 0; p < plan->n_painted && plan->seen; p++)
+        if (!__atomic_load_n(&plan->seen[plan->painted[p].region], __ATOMIC_RELAXED))
+            return false;
+    return true;
+}
+
 /* Every style's rim, and a pixel where drafts are enlarged. */
 static bool note_visible_regions(const FlPlan *plan, const FlDrawList *draws, GError **error)
 {
-    if (!plan->seen)
+    if (all_seen(plan))
         return true;
     FlVisibleRegions visible = {plan->joins, fl_drawing_width(plan->drawing),
                                 fl_drawing_height(plan->drawing), 1};
     for (int p = 0; p < plan->n_painted; p++)
         visible.rim_px = MAX(visible.rim_px, (int)(plan->painted[p].style->border_px + 0.5f) + 1);
     return fl_visible_regions_note(&visible, draws, plan->seen, error);
-}
-
-static bool all_seen(const FlPlan *plan)
-{
-    for (int p = 0; p < plan->n_painted; p++)
-        if (!__atomic_load_n(&plan->seen[plan->painted[p].region], __ATOMIC_RELAXED))
-            return false;
-    return true;
 }
 
 /* Looks what a frame shows, unless something of every region was seen before. */
