@@ -65,6 +65,8 @@ static bool add_temporal(const Sides *sides, float weight, FlGuidePairs *pairs, 
     const size_t n = (size_t)pairs->width * (size_t)pairs->height;
     g_autofree float *counts = fl_alloc(n, sizeof *counts, "a guide", error);
     FlGuidePair *pair = NULL;
+    if (!level->temporal)
+        return true;
     if (!counts || !fl_guide_pairs_add(pairs, "temporal", 3, weight, true, &pair, error))
         return false;
     if (!pair)

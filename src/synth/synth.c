@@ -346,7 +346,8 @@ static bool show_all(FlSynth *synth, const FlGuides *guides, FlRect rect, GError
     g_auto(FlTarget) moving = synth->target;
     synth->target = (FlTarget){0};
     if (!fl_target_init(&synth->target, guides->whole ? guides->whole : guides, synth->params, rect,
-                        synth->n_levels, synth->exemplar, error))
+                        synth->n_levels, synth->exemplar, error) ||
+        !fl_target_add_temporal(&synth->target, error))
         return false;
     const FlTargetLevel *from = &moving.level[0], *to = &synth->target.level[0];
     fl_rect_copy(from->temporal, moving.rect, to->temporal, rect, 3 * sizeof *to->temporal);

@@ -69,7 +69,8 @@ bool fl_synth_make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error
     const int l = fl_synth_finest_searched(synth);
     g_auto(FlNnf) down = {0};
     const FlNnf *previous;
-    if (!previous_of_level(synth, shifted, l, &down, &previous, error) ||
+    if (!fl_target_add_temporal(&synth->target, error) ||
+        !previous_of_level(synth, shifted, l, &down, &previous, error) ||
         !make_temporal_level(synth, previous, l, error))
         return false;
     fl_target_temporal_pyramid(&synth->target, l);

@@ -38,13 +38,24 @@ static bool level_init(FlTargetLevel *level, int width, int height, GError **err
            (level->tiles = fl_alloc_unset(tiles, sizeof(uint32_t), "a target", error));
 }
 
-/* Those of T_temp take memory when there is one. */
 static bool colours_init(FlTargetLevel *level, GError **error)
 {
     const size_t pixels = (size_t)level->width * level->height;
-    return (level->colour = fl_alloc_scratch(3 * pixels, sizeof(float), "a target", error)) &&
-           (level->temporal = fl_alloc_scratch(3 * pixels, sizeof(float), "a target", error)) &&
-           (level->temporal_weight = fl_alloc_scratch(pixels, sizeof(float), "a target", error));
+    return (level->colour = fl_alloc_scratch(3 * pixels, sizeof(float), "a target", error));
+}
+
+bool fl_target_add_temporal(FlTarget *target, GError **error)
+{
+    for (int l = 0; l < target->n_levels; l++) {
+        FlTargetLevel *level = &target->level[l];
+        const size_t pixels = (size_t)level->width * level->height;
+        level->temporal = fl_alloc_scratch(3 * pixels, sizeof(float), "a target", error);
+        level->temporal_weight =
+            level->temporal ? fl_alloc_scratch(pixels, sizeof(float), "a target", error) : NULL;
+        if (!level->temporal_weight)
+            return false;
+    }
+    return true;
 }
 
 /* Pixel `to` of a level from pixel p of its planes. */
@@ -274,15 +285,13 @@ static int16_t quantise_weight(float w, const FlCostScale *scale)
 static void blend_pixel(FlTargetLevel *level, size_t p, float w_temp, const FlCostScale *scale,
                         float w_texture)
 {
-    const float w_temporal = w_temp * level->temporal_weight[p];
+    const float w_temporal = level->temporal ? w_temp * level->temporal_weight[p] : 0;
     const float w = w_texture + w_temporal;
     FlTargetTexel *guide = &level->guide[p];
-    for (int c = 0; c < 3; c++) {
+    for (size_t c = 0; c < 3; c++) {
+        const float past = level->temporal ? level->temporal[3 * p + c] : 0;
         const float mean =
-            w > 0
-                ? (w_texture * level->colour[3 * p + c] + w_temporal * level->temporal[3 * p + c]) /
-                      w
-                : 0;
+            w > 0 ? (w_texture * level->colour[3 * p + c] + w_temporal * past) / w : 0;
         guide->c[FL_CH_R + c] = fl_pack_channel(mean);
     }
     guide->c[FL_CH_COLOUR_WEIGHT] = quantise_weight(w, scale);

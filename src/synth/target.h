@@ -22,8 +22,8 @@ typedef struct FlTargetLevel {
     FlTargetTexel *guide;
     FlTargetTexel rest;     // weights of the other channels, for every pixel
     float *colour;          // 3 per pixel, 0 … 1: the last vote
-    float *temporal;        // 3 per pixel: T_temp
-    float *temporal_weight; // m(q), 0 … 1; 0 where T_temp is undefined
+    float *temporal;        // 3 per pixel: T_temp; NULL: nothing was before
+    float *temporal_weight; // m(q), 0 … 1; 0 where T_temp is undefined; NULL likewise
     float *distance;        // px of level 0
     int n_inside[FL_SEGMENTS];
     uint32_t *tiles; // row * columns + column of the tiles with paint, by class
@@ -50,7 +50,7 @@ void fl_cost_scale_init(FlCostScale *scale, const FlParams *params);
 
 /**
  * Builds the levels of the rectangle from a frame's guides, of which the distance may be missing if
- * fl_knows_depth(). Colours and temporal guide are left empty.
+ * fl_knows_depth(). Colours are left empty, and there is no temporal guide.
  */
 bool fl_target_init(FlTarget *target, const FlGuides *guides, const FlParams *params, FlRect rect,
                     int n_levels, const FlExemplar *exemplar, GError **error);
@@ -59,6 +59,9 @@ void fl_target_level_clear(FlTargetLevel *level);
 
 /** Frees the distances, which T_temp alone is made with. */
 void fl_target_drop_distances(FlTarget *target);
+
+/** Makes room for T_temp and m in all levels, 0 all over. FL_ERROR_NO_MEMORY. */
+bool fl_target_add_temporal(FlTarget *target, GError **error);
 
 /** Averages T_temp and m of a level (set by the caller) down to the coarser ones. */
 void fl_target_temporal_pyramid(FlTarget *target, int from);
