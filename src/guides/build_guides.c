@@ -335,32 +335,49 @@ static bool put_shape(Builder *b, int frame, FlOutline *outline, const float *fl
                         error);
 }
 
-/** Stores the flow and the extent up to this frame; flow may be NULL. */
-static bool put_motion(Builder *b, int frame, const FlOutline *outline, const float *flow,
+/** Stores the flow, of integers. */
+static bool put_flow(Builder *b, int frame, const FlOutline *outline, const int32_t *flow,
+                     GError **error)
+{
+    fl_change_map_mark_flow(&b->changes, outline, flow, b->sequence->params.still_px);
+    b->sequence->frames[frame].holder[FL_GUIDE_PLANE_FLOW] = frame;
+    return fl_plane_store_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_FLOW),
+                              flow, 2 * fl_rect_pixels(outline->box), 2, error);
+}
+
+/** Stores the extent up to this frame, unless that is 0 all over; flow may be NULL. */
+static bool put_extent(Builder *b, int frame, const FlOutline *outline, const int32_t *flow,
                        GError **error)
 {
     FlFrameRecord *record = &b->sequence->frames[frame];
     const size_t n = fl_rect_pixels(outline->box);
-    g_autofree int32_t *fixed = fl_alloc_scratch(2 * n, sizeof *fixed, "a flow", error);
-    g_autofree int32_t *norm = fixed ? fl_alloc_unset(n, sizeof *norm, "an extent", error) : NULL;
-    if (!norm)
-        return false;
-    for (size_t k = 0; k < 2 * n && flow; k++)
-        fixed[k] = fl_flow_to_fixed(flow[k]);
-    if (flow)
-        fl_change_map_mark_flow(&b->changes, outline, fixed, b->sequence->params.still_px);
     // a frame without predecessor borrows its flow from the next interval: nothing has moved yet
     const bool counts = flow && frame > 0 && !record[-1].empty;
-    fl_extent_step(b->extent, &record->box, outline->coverage, &record->box, counts ? fixed : NULL,
+    if (!counts && !fl_extent_moved(b->extent))
+        return true;
+    g_autofree int32_t *norm = fl_alloc_unset(n, sizeof *norm, "an extent", error);
+    if (!norm)
+        return false;
+    fl_extent_step(b->extent, &record->box, outline->coverage, &record->box, counts ? flow : NULL,
                    norm);
     record->holder[FL_GUIDE_PLANE_PLUS] = frame;
-    if (flow)
-        record->holder[FL_GUIDE_PLANE_FLOW] = frame;
     return fl_plane_store_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_PLUS),
-                              norm, n, 1, error) &&
-           (!flow ||
-            fl_plane_store_put(b->sequence->spill, fl_guide_plane_block(frame, FL_GUIDE_PLANE_FLOW),
-                               fixed, 2 * n, 2, error));
+                              norm, n, 1, error);
+}
+
+/** Stores the flow and the extent; flow may be NULL. */
+static bool put_motion(Builder *b, int frame, const FlOutline *outline, const float *flow,
+                       GError **error)
+{
+    const size_t n = 2 * fl_rect_pixels(outline->box);
+    if (!flow)
+        return put_extent(b, frame, outline, NULL, error);
+    g_autofree int32_t *fixed = fl_alloc_unset(n, sizeof *fixed, "a flow", error);
+    if (!fixed)
+        return false;
+    for (size_t k = 0; k < n; k++)
+        fixed[k] = fl_flow_to_fixed(flow[k]);
+    return put_extent(b, frame, outline, fixed, error) && put_flow(b, frame, outline, fixed, error);
 }
 
 /** Whether a motion of the outline's box is known anywhere in the shape. */

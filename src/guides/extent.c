@@ -9,6 +9,7 @@ enum { SUM_LIMIT = 1 << 30 };
 struct FlExtent {
     int width;
     FlRect box;   // outside it the sum is 0
+    bool moved;   // a flow was added; until then the sum is 0 all over
     int32_t *sum; // interleaved, of the frame; takes memory where something moves
 };
 
@@ -73,6 +74,7 @@ static int32_t norm_of(const int32_t sum[2])
 void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *coverage,
                     const FlRect *flow_box, const int32_t *flow, int32_t *norm)
 {
+    extent->moved = extent->moved || flow;
     leave_box(extent, mask_box);
     for (int y = mask_box->y; y < mask_box->y + mask_box->height; y++)
         for (int x = mask_box->x; x < mask_box->x + mask_box->width; x++) {
@@ -88,4 +90,9 @@ void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *cov
                 clear(sum);
             *norm++ = inside ? norm_of(sum) : 0;
         }
+}
+
+bool fl_extent_moved(const FlExtent *extent)
+{
+    return extent->moved;
 }

@@ -27,6 +27,9 @@ void fl_extent_free(FlExtent *extent); // NULL is fine
 void fl_extent_step(FlExtent *extent, const FlRect *mask_box, const uint8_t *coverage,
                     const FlRect *flow_box, const int32_t *flow, int32_t *norm);
 
+/** Whether a flow was ever added: until then the norm is 0 all over, and steps may be left out. */
+bool fl_extent_moved(const FlExtent *extent);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlExtent, fl_extent_free)
 
 #endif

@@ -25,6 +25,8 @@ static bool step_back(FlGuideSequence *sequence, int frame, FlExtent *extent, ui
         record->holder[FL_GUIDE_PLANE_MINUS] = next->holder[FL_GUIDE_PLANE_MINUS];
         return true;
     }
+    if (!moves && !fl_extent_moved(extent)) // and so no plane is stored
+        return true;
     if (!fl_guide_sequence_shape(sequence, frame, shape, error) ||
         (moves && !fl_guide_sequence_plane(sequence, frame + 1, FL_GUIDE_PLANE_FLOW, flow, error)))
         return false;
