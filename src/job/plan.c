@@ -1,11 +1,13 @@
 #include "job/plan_steps.h"
 
+#include "base/memory.h"
 #include "base/page.h"
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
 #include "job/paint_files.h"
 
 #define LARGE_PX 3000000
+#define SMALL_PX 500000 // that are painted: up to here a heap for each thread takes little
 
 static bool open_drawing(FlPlan *plan, GError **error)
 {
@@ -23,6 +25,9 @@ static void choose_size(FlPlan *plan)
     plan->paper_px = plan->by_page ? fl_page_scale(plan->width, plan->height) : 1;
     if (plan->half)
         fl_drawing_halve(plan->drawing);
+    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
+    if ((size_t)width * (size_t)height <= SMALL_PX)
+        fl_memory_separate_heaps(); // before there are threads
 }
 
 /* Options that exclude or need each other. */
