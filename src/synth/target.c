@@ -62,16 +62,17 @@ bool fl_target_add_temporal(FlTarget *target, GError **error)
 static void fill_pixel(FlTargetLevel *level, size_t to, const FlPyramid *pyramid, size_t p,
                        const FlExemplar *exemplar)
 {
-    FlTargetTexel *guide = &level->guide[to];
+    FlTargetTexel guide = {0};
     const float ext_scale = exemplar->ext_scale * FL_EXT_UNIT;
     level->distance[to] = pyramid->plane[FL_PLANE_DISTANCE][p];
     level->segment[to] =
         (uint8_t)fl_segment_of(pyramid->plane[FL_PLANE_INSIDE][p] > 0, level->distance[to],
                                exemplar->border_px, exemplar->separate);
     level->angle[to] = fl_pyramid_angle(pyramid, p);
-    guide->c[FL_CH_SHAPE] = fl_pack_channel(pyramid->plane[FL_PLANE_SHAPE][p]);
-    guide->c[FL_CH_EXT_PLUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
-    guide->c[FL_CH_EXT_MINUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
+    guide.c[FL_CH_SHAPE] = fl_pack_channel(pyramid->plane[FL_PLANE_SHAPE][p]);
+    guide.c[FL_CH_EXT_PLUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_PLUS][p] * ext_scale);
+    guide.c[FL_CH_EXT_MINUS] = fl_pack_channel(pyramid->plane[FL_PLANE_EXT_MINUS][p] * ext_scale);
+    level->guide[to] = guide;
 }
 
 /* Bit-reversed order of a 4x4 pattern: tiles of consecutive classes are far from each other. */
