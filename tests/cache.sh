@@ -52,6 +52,9 @@ printf '[region %s]\nw-temp = 9\n' "$blue" >one.conf
 kept now -c one.conf && took 6 6 && like_anew -c one.conf &&
     grep -q "region $blue: painted 6 of 6 pictures, since w-temp was 5 and is 9" err
 result $? 'a setting of one region paints that region, and the summary says why'
+kept now --w-temp 7 && kept now --w-temp 8 && [ "$(grep -c ', since ' err)" = 1 ] &&
+    grep -q '2 regions: painted 12 of 12 pictures, since w-temp was 7 and is 8' err
+result $? 'regions that are painted for one reason share a line'
 kept now -c one.conf --stats now.json && [ "$(grep -c '"taken": true' now.json)" = 12 ] && rm now.json
 result $? '--stats has a line for each picture that was taken'
 for option in '--seed 3' '--boil 0.5' '--carry 1' '--detail draft' '--width 60'; do

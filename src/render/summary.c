@@ -2,6 +2,7 @@
 
 #include "inspect/report.h"
 #include "render/loop.h"
+#include <string.h>
 
 static void send_note(const FlPlan *plan, const char *line)
 {
@@ -55,25 +56,47 @@ void fl_summary_of_nothing(const FlPlan *plan)
     send_note(plan, line);
 }
 
-/* Of one region, if some of it was painted although the cache is not new. */
-static void tell_reason(const FlPlan *plan, int p, const FlReuse *reuse)
+/* Why some of each region was painted although the cache is not new; to be freed, as an array of
+ * strings, of which those that have no reason are "". */
+static char **reasons_of(const FlPlan *plan, const FlReuse *reuse)
 {
-    g_autofree char *reason = reuse->n_painted > 0 ? fl_reuse_reason(reuse) : NULL;
-    if (!reason)
-        return;
+    char **reasons = g_new0(char *, (gsize)plan->n_painted + 1);
+    for (int p = 0; p < plan->n_painted; p++) {
+        char *reason = reuse[p].n_painted > 0 ? fl_reuse_reason(&reuse[p]) : NULL;
+        reasons[p] = reason ? reason : g_strdup("");
+    }
+    return reasons;
+}
+
+/* A line for all regions that have the reason of region p, unless an earlier one has it. */
+static void tell_reason(const FlPlan *plan, int p, const FlReuse *reuse, char **reasons)
+{
+    int n = 0, painted = 0, all = 0;
+    for (int q = 0; q < plan->n_painted; q++) {
+        if (strcmp(reasons[q], reasons[p]) != 0)
+            continue;
+        if (q < p)
+            return;
+        n++, painted += reuse[q].n_painted, all += reuse[q].n_painted + reuse[q].n_taken;
+    }
+    g_autofree char *who = n == 1 ? g_strdup_printf("region %s", plan->painted[p].name)
+                                  : g_strdup_printf("%d regions", n);
     g_autofree char *line =
-        g_strdup_printf("region %s: painted %d of %d pictures, since %s", plan->painted[p].name,
-                        reuse->n_painted, reuse->n_painted + reuse->n_taken, reason);
+        g_strdup_printf("%s: painted %d of %d pictures, since %s", who, painted, all, reasons[p]);
     send_note(plan, line);
 }
 
 void fl_summary_of_reuse(const FlPlan *plan, const FlReuse *reuse)
 {
     int taken = 0, painted = 0;
-    for (int p = 0; reuse && p < plan->n_painted; p++)
+    if (!reuse)
+        return;
+    g_auto(GStrv) reasons = reasons_of(plan, reuse);
+    for (int p = 0; p < plan->n_painted; p++) {
         taken += reuse[p].n_taken, painted += reuse[p].n_painted;
-    for (int p = 0; reuse && p < plan->n_painted; p++)
-        tell_reason(plan, p, &reuse[p]);
+        if (reasons[p][0])
+            tell_reason(plan, p, reuse, reasons);
+    }
     if (taken == 0)
         return;
     g_autofree char *line =
