@@ -456,6 +456,42 @@ static void motion_is_into_the_frame(void)
     g_assert_cmpfloat(fabsf(motion[inside + 1]), <, 1e-4);
 }
 
+/** A square of bars with a mask that is the same whatever bar is where. */
+static void bars_that_change_places(GString *out, int t)
+{
+    for (int k = 0; k < 2; k++)
+        g_string_append_printf(out, "<path fill='" RED "' d='M%d 50h40v70h-40z'/>",
+                               (k + t) % 2 ? 40 : 80);
+}
+
+/** Whether region 0 rests from a frame to another, whose masks have one outline if they are alike.
+ */
+static bool rests(const Sequence *s, int before, int now)
+{
+    static uint8_t mask[2][SIZE * SIZE];
+    g_assert_true(fl_mask_store_get(s->masks, 0, before, page, mask[0], NULL));
+    g_assert_true(fl_mask_store_get(s->masks, 0, now, page, mask[1], NULL));
+    g_autoptr(FlOutline) one = fl_outline_new(mask[0], SIZE, SIZE, NULL);
+    g_autoptr(FlOutline) other = fl_outline_equal(one, mask[1])
+                                     ? fl_outline_ref(one)
+                                     : fl_outline_new(mask[1], SIZE, SIZE, NULL);
+    const FlRegionStep step = {0, before, now, page, {one, other}};
+    g_assert_false(fl_motion_source_rests(s->source, &(FlRegionStep){0, before, now, page, {0}}));
+    return fl_motion_source_rests(s->source, &step);
+}
+
+static void a_region_rests_if_neither_mask_nor_leaves_change(void)
+{
+    static float motion[2 * SIZE * SIZE];
+    g_auto(Sequence) once = sequence_of(moves_once, 4),
+                     bars = sequence_of(bars_that_change_places, 2);
+    g_assert_true(rests(&once, 0, 1));
+    g_assert_false(rests(&once, 1, 2));
+    g_assert_false(rests(&bars, 0, 1));
+    get(&bars, 0, 0, 1, motion, NULL);
+    g_assert_false(is_left_alone(motion));
+}
+
 static void held_frames_move_by_what_is_between_them(void)
 {
     static float motion[2 * SIZE * SIZE], again[2 * SIZE * SIZE];
@@ -677,6 +713,8 @@ int main(int argc, char **argv)
     TEST("a-disc-that-slides-does-not-turn", a_disc_that_slides_does_not_turn);
     TEST("a-part-leaps-only-if-it-looks-the-same", a_part_leaps_only_if_it_looks_the_same);
     TEST("motion-is-into-the-frame", motion_is_into_the_frame);
+    TEST("a-region-rests-if-neither-mask-nor-leaves-change",
+         a_region_rests_if_neither_mask_nor_leaves_change);
     TEST("held-frames-move-by-what-is-between-them", held_frames_move_by_what_is_between_them);
     TEST("regions-that-ask-later-get-the-same", regions_that_ask_later_get_the_same);
     TEST("leaves-are-recognised", leaves_are_recognised);

@@ -379,11 +379,9 @@ static void fill_standard_streams(void)
 }
 
 /* glibc gives every thread a heap of its own, and planes that one of them has freed are of no use
- * to the others: memory grew with the film. Where planes are small, and what threads wait for is
- * the heap, they get their own again: fl_memory_separate_heaps(). Of the one heap it would return
- * to the system what a frame has freed, while all threads wait for it, only to take it again for
- * the next.
- */
+ * to the others: memory grew with the film. So all share one, unless planes are small and threads
+ * would mostly wait for it: see fl_memory_separate_heaps(). Of the one heap glibc would return to
+ * the system what a frame has freed, only to take it again for the next. */
 static void share_one_heap(void)
 {
 #ifdef __GLIBC__

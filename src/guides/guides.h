@@ -62,8 +62,12 @@ static inline FlRect fl_guides_rect(const FlGuides *guides)
 
 #define FL_INSIDE 128
 
-/** What is the same of the motion of all pixels. */
-typedef enum FlAllOver { FL_ALL_OVER_NOTHING, FL_ALL_OVER_REST, FL_ALL_OVER_UNKNOWN } FlAllOver;
+/** Whether all pixels of a region have the same motion. */
+typedef enum FlUniformMotion {
+    FL_UNIFORM_NOT,
+    FL_UNIFORM_REST,   // none has moved
+    FL_UNIFORM_UNKNOWN // where any of them was is not known
+} FlUniformMotion;
 
 /** A mask sequence, with its flow and the drawing's motion if they are known. */
 typedef struct FlGuideSource {
@@ -81,9 +85,8 @@ typedef struct FlGuideSource {
      */
     bool (*motion)(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                    GError **error);
-    /** What is the same of it all over: then it is not asked for. NULL: that is not known before.
-     */
-    FlAllOver (*all_over)(void *data, int frame, const FlOutlinePair *outlines);
+    /** Whether that displacement is uniform: then it is not asked for. NULL: not known before. */
+    FlUniformMotion (*uniform)(void *data, int frame, const FlOutlinePair *outlines);
     bool keeps_flow;  // unrounded, for fl_guide_sequence_flow()
     bool keeps_first; // distances of the first frame, until fl_guide_sequence_drop_first()
 } FlGuideSource;

@@ -53,6 +53,7 @@ bool fl_guides_double(const FlGuides *half, int width, int height, FlGuides *ful
 {
     if (!fl_guides_init(full, width, height, error))
         return false;
+    full->blank = false;
     full->has_motion = half->has_motion;
     fl_plane_double(half->mask, width, height, 1, full->mask);
     fl_plane_double(half->angle, width, height, 1, full->angle);

@@ -136,13 +136,13 @@ static bool exact_motion(void *data, int frame, const FlOutlinePair *outlines, f
     return fl_motion_source_get(painter->motion, &step, motion, NULL, error);
 }
 
-static FlAllOver exact_all_over(void *data, int frame, const FlOutlinePair *outlines)
+static FlUniformMotion exact_uniform(void *data, int frame, const FlOutlinePair *outlines)
 {
     const FlPainter *painter = data;
     const FlRegionStep step = step_into(painter, frame, outlines);
     if (!has_past(painter, frame))
-        return FL_ALL_OVER_UNKNOWN;
-    return fl_motion_source_rests(painter->motion, &step) ? FL_ALL_OVER_REST : FL_ALL_OVER_NOTHING;
+        return FL_UNIFORM_UNKNOWN;
+    return fl_motion_source_rests(painter->motion, &step) ? FL_UNIFORM_REST : FL_UNIFORM_NOT;
 }
 
 FlGuideSource fl_painter_guide_source(FlPainter *painter)
@@ -158,7 +158,7 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter)
                            .motion = masks   ? NULL
                                      : files ? painter_motion
                                              : exact_motion,
-                           .all_over = masks || files ? NULL : exact_all_over,
+                           .uniform = masks || files ? NULL : exact_uniform,
                            .data = painter,
                            .keeps_flow = painter->plan->keeps_flow,
                            .keeps_first = painter->keeps_first};
