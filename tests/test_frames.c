@@ -157,6 +157,51 @@ static void leaves_add_up_to_the_document(void)
     }
 }
 
+/** A file as librsvg itself draws it. */
+static cairo_surface_t *draw_file(const char *path)
+{
+    cairo_surface_t *surface = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, 100, 100);
+    cairo_t *cr = cairo_create(surface);
+    g_autoptr(RsvgHandle) handle = rsvg_handle_new_from_file(path, NULL);
+    const RsvgRectangle page = {0, 0, 100, 100};
+    g_assert_true(rsvg_handle_render_document(handle, cr, &page, NULL));
+    cairo_destroy(cr);
+    cairo_surface_flush(surface);
+    return surface;
+}
+
+/** The self-check relies on it, whether the document had to be rewritten or not. */
+static void a_document_is_drawn_as_the_file_has_it(void)
+{
+    g_autoptr(GString) many = g_string_new("<g opacity=\".6\">");
+    for (int i = 0; i < 60; i++)
+        g_string_append_printf(many, "<rect x=\"%d\" " BOX " fill=\"#%02x8000\"/>", i, i * 4);
+    g_string_append(many, "</g>");
+    const char *const documents[] = {
+        many->str,
+        "<rect id=\"a\" " BOX "/><g transform=\"scale(2)\"><rect id=\"a\" y=\"9\" " BOX
+        " fill=\"red\"/></g><clipPath id=\"c\"><use href=\"#a\"/></clipPath>"
+        "<circle r=\"60\" clip-path=\"url(#c)\" fill=\"blue\"/>",
+        "<style>rect:not([id]){fill:red} g>rect{stroke:blue}</style><rect " BOX
+        "/><g><rect y=\"50\" " BOX "/></g>",
+        "<defs><style>#a{fill:red}</style></defs><rect id=\"a\" " BOX
+        "/><rect id=\"a\" y=\"50\" " BOX "/>",
+        "<rect id=\"a\" " BOX "/><use href=\"#a\" x=\"40\" fill=\"red\"/>",
+        "<switch><rect systemLanguage=\"xx\" " BOX "/><circle r=\"50\"/></switch>",
+        "<filter id=\"f\"><feOffset in=\"BackgroundImage\" dx=\"9\"/></filter>"
+        "<rect " BOX " fill=\"red\"/><rect y=\"30\" " BOX " fill=\"#0f0\" filter=\"url(#f)\"/>",
+    };
+    g_autoptr(Scratch) folder = scratch_make();
+    for (size_t i = 0; i < G_N_ELEMENTS(documents); i++) {
+        g_autofree char *path = scratch_svg(folder, "a.svg", documents[i]);
+        g_autoptr(FlSvg) svg = open_svg(path, NULL);
+        g_autoptr(cairo_surface_t) truth = draw(svg, true), file = draw_file(path);
+        g_test_message("document %zu", i);
+        g_assert_cmpmem(cairo_image_surface_get_data(truth), 40000,
+                        cairo_image_surface_get_data(file), 40000);
+    }
+}
+
 static void a_use_that_shows_itself_is_left_out_with_a_warning(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -392,6 +437,7 @@ int main(int argc, char **argv)
     TEST("hidden-and-undrawn-content-is-no-leaf", hidden_and_undrawn_content_is_no_leaf);
     TEST("use-and-switch-show-their-content", use_and_switch_show_their_content);
     TEST("leaves-add-up-to-the-document", leaves_add_up_to_the_document);
+    TEST("a-document-is-drawn-as-the-file-has-it", a_document_is_drawn_as_the_file_has_it);
     TEST("a-use-that-shows-itself-is-left-out-with-a-warning",
          a_use_that_shows_itself_is_left_out_with_a_warning);
     TEST("copies-of-copies-meet-a-limit", copies_of_copies_meet_a_limit);

@@ -16,21 +16,40 @@ static xmlNode *first_element(xmlNode *node)
     return node;
 }
 
+/** An attribute by which an element reads the background; NULL: none. */
+static const char *background_input(const xmlNode *node)
+{
+    static const char *const inputs[] = {"in", "in2"};
+    for (size_t i = 0; i < G_N_ELEMENTS(inputs); i++) {
+        g_autoptr(xmlChar) value = fl_attribute(node, inputs[i]);
+        if (is_background((const char *)value))
+            return inputs[i];
+    }
+    return NULL;
+}
+
+static bool reads_background(const xmlNode *node)
+{
+    bool found = background_input(node) != NULL;
+    for (const xmlNode *child = node->children; child && !found; child = child->next)
+        found = child->type == XML_ELEMENT_NODE && reads_background(child);
+    return found;
+}
+
+bool fl_document_reads_background(const xmlDoc *doc)
+{
+    return reads_background(xmlDocGetRootElement(doc));
+}
+
 /** Makes inputs that are the background EMPTY. Returns: whether there were any. */
 static bool replace_inputs(xmlNode *node)
 {
-    static const char *const inputs[] = {"in", "in2"};
     bool found = false;
     for (; node; node = node->next) {
         if (node->type != XML_ELEMENT_NODE)
             continue;
-        for (size_t i = 0; i < G_N_ELEMENTS(inputs); i++) {
-            g_autoptr(xmlChar) value = fl_attribute(node, inputs[i]);
-            if (!is_background((const char *)value))
-                continue;
-            found = true;
-            xmlSetProp(node, (const xmlChar *)inputs[i], (const xmlChar *)EMPTY);
-        }
+        for (const char *input; (input = background_input(node)); found = true)
+            xmlSetProp(node, (const xmlChar *)input, (const xmlChar *)EMPTY);
         found = replace_inputs(node->children) || found;
     }
     return found;

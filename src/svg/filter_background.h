@@ -11,4 +11,7 @@
  */
 void fl_document_drop_background(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
 
+/** Whether fl_document_drop_background() has something to remove. */
+bool fl_document_reads_background(const xmlDoc *doc);
+
 #endif

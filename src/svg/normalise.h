@@ -29,6 +29,9 @@ bool fl_is_whole(const xmlNode *node, const char *const *whole);
 bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
                            FlWarnings *warnings, GError **error);
 
+/** Whether fl_document_normalise() has something to rewrite: a <use> or <switch> that is drawn. */
+bool fl_document_is_rewritten(const xmlDoc *doc);
+
 /** Whether children of node are drawn only when something refers to them: <defs>, <mask>, … */
 bool fl_is_undrawn(const xmlNode *node);
 

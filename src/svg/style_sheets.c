@@ -78,37 +78,46 @@ static void check_style(const Check *check, xmlNode *node)
     }
 }
 
-static void check_node(const Check *check, xmlNode *node)
+/** Returns: how many <style> elements there are from node down. */
+static int check_node(const Check *check, xmlNode *node)
 {
-    if (fl_is(node, "style"))
+    const bool sheet = fl_is(node, "style");
+    int n = sheet;
+    if (sheet)
         check_style(check, node);
     for (xmlNode *child = node->children; child; child = child->next)
         if (child->type == XML_ELEMENT_NODE)
-            check_node(check, child);
+            n += check_node(check, child);
+    return n;
 }
 
-/** A <?xml-stylesheet href="…"?>; one that cannot be read leaves the document. */
-static void check_instruction(const Check *check, xmlNode *node)
+/**
+ * A <?xml-stylesheet href="…"?>; one that cannot be read leaves the document. Returns: whether the
+ * node is a sheet that stays.
+ */
+static bool check_instruction(const Check *check, xmlNode *node)
 {
     const char *href = node->content ? strstr((const char *)node->content, "href=") : NULL;
     if (!xmlStrEqual(node->name, (const xmlChar *)"xml-stylesheet") || !href)
-        return;
+        return false;
     g_autofree char *target = import_target(href + strlen("href="));
     if (check_file(check, check->path, target))
-        return;
+        return true;
     warn(check, target);
     xmlUnlinkNode(node);
     xmlFreeNode(node);
+    return false;
 }
 
-void fl_style_sheets_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
+bool fl_style_sheets_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
                            FlWarnings *warnings)
 {
     const Check check = {path, number, files, warnings};
+    int n = 0;
     for (xmlNode *node = doc->children, *next; node; node = next) {
         next = node->next;
         if (node->type == XML_PI_NODE)
-            check_instruction(&check, node);
+            n += check_instruction(&check, node);
     }
-    check_node(&check, xmlDocGetRootElement(doc));
+    return n + check_node(&check, xmlDocGetRootElement(doc)) > 0;
 }

@@ -21,7 +21,7 @@ struct FlSvg {
     char *path;
     double dpi;
     xmlDoc *doc;
-    char *original; // the text before it was normalised
+    char *original; // the text before it was normalised; NULL: the handle draws the same
     size_t original_bytes;
     RsvgHandle *handle; // of the normalised document
     RsvgHandle *before; // of the original, made when first needed

@@ -29,6 +29,8 @@ bool fl_svg_draw_leaf(FlSvg *svg, const FlLeaf *leaf, FlPart part, FlPurpose pur
 
 bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, FlPageSize page, GError **error)
 {
+    if (!svg->original)
+        return render(svg, svg->handle, id, cr, page, error);
     if (!svg->before)
         svg->before = fl_svg_make_handle(svg, svg->original, svg->original_bytes, error);
     return svg->before && render(svg, svg->before, id, cr, page, error);

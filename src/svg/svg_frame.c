@@ -60,9 +60,11 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     svg->files = g_ptr_array_new_with_free_func(g_free);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
-    fl_style_sheets_check(svg->doc, path, number, svg->files, warnings);
+    const bool styled = fl_style_sheets_check(svg->doc, path, number, svg->files, warnings);
     svg->n_nameless = fl_document_name_groups(svg->doc);
-    svg->original = fl_document_text(svg->doc, &svg->original_bytes);
+    // ids and groups that are added, of which only a style sheet could tell, change no picture
+    if (styled || fl_document_is_rewritten(svg->doc) || fl_document_reads_background(svg->doc))
+        svg->original = fl_document_text(svg->doc, &svg->original_bytes);
     fl_document_drop_background(svg->doc, path, number, warnings);
     if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
         return NULL;
