@@ -76,6 +76,18 @@ static void runs_of_every_length_come_back(Fixture *fixture, gconstpointer data)
     }
 }
 
+static void pieces_of_every_length_come_back(Fixture *fixture, gconstpointer data)
+{
+    uint8_t bytes[40];
+    for (size_t n = 0; n < sizeof bytes; n++)
+        for (size_t same = 0; same <= n; same++) { // at the end, as the run that follows
+            for (size_t i = 0; i < n; i++)
+                bytes[i] = i + same < n ? (uint8_t)(i % 3) : 9;
+            put(fixture, bytes, n);
+            run(fixture, same % 2 ? 9 : 0, same);
+        }
+}
+
 static void long_runs_take_next_to_no_room(Fixture *fixture, gconstpointer data)
 {
     run(fixture, 0, 5 << 20);
@@ -144,6 +156,7 @@ int main(int argc, char **argv)
     ADD("nothing-is-a-stream", nothing_is_a_stream);
     ADD("one-byte-is-a-stream", one_byte_is_a_stream);
     ADD("runs-of-every-length-come-back", runs_of_every_length_come_back);
+    ADD("pieces-of-every-length-come-back", pieces_of_every_length_come_back);
     ADD("long-runs-take-next-to-no-room", long_runs_take_next_to_no_room);
     ADD("noise-grows-by-little", noise_grows_by_little);
     ADD("rare-bytes-have-long-codes", rare_bytes_have_long_codes);

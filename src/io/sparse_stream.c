@@ -27,8 +27,8 @@ typedef uint16_t Token;
 /* Bits that are no whole bytes yet, the first one the lowest, and where those go. */
 typedef struct Writer {
     uint64_t bits;
-    int n_bits;  // less than 32
-    uint8_t *to; // with room for all that comes: end_block() makes it
+    unsigned n_bits; // less than 8 after flush(), at most 64 before it
+    uint8_t *to;     // with room for all that comes and eight bytes more: end_block() makes it
 } Writer;
 
 struct FlSparseStream {
@@ -67,19 +67,29 @@ static Length length_of(int length)
 /* Bits that are written together, the first one the lowest. */
 typedef struct Bits {
     uint32_t bits;
-    int n; // at most 32
+    unsigned n; // at most 32
 } Bits;
 
-static inline void put_bits(Writer *writer, Bits put)
+static inline void add_bits(Writer *writer, Bits put)
 {
     writer->bits |= (uint64_t)put.bits << writer->n_bits;
     writer->n_bits += put.n;
-    if (writer->n_bits < 32)
-        return;
-    const uint32_t full = GUINT32_TO_LE((uint32_t)writer->bits);
-    memcpy(writer->to, &full, sizeof full);
-    writer->to += sizeof full;
-    writer->bits >>= 32, writer->n_bits -= 32;
+}
+
+/* Writes what is whole bytes. */
+static inline void flush(Writer *writer)
+{
+    const uint64_t all = GUINT64_TO_LE(writer->bits);
+    memcpy(writer->to, &all, sizeof all);
+    writer->to += writer->n_bits / 8;
+    writer->bits >>= writer->n_bits & ~7U;
+    writer->n_bits &= 7;
+}
+
+static inline void put_bits(Writer *writer, Bits put)
+{
+    add_bits(writer, put);
+    flush(writer);
 }
 
 /* The code of the block: of symbols, and of one distance, 1. */
@@ -107,16 +117,25 @@ static Bits bits_of(const FlPrefixCode *code, int token)
     return (Bits){code->bits[length.symbol] | length.extra << n, n + length.n_extra + 1};
 }
 
+#define TURNS 4 // counts of their own: a token that comes again need not wait for its count
+
 /* How often a symbol comes in a block. */
 static void count_symbols(const FlSparseStream *stream, uint32_t count[FL_CODE_SYMBOLS])
 {
-    uint32_t n[TOKEN_KINDS] = {0};
-    for (int k = 0; k < stream->n_tokens; k++)
-        n[stream->token[k]]++;
-    memcpy(count, n, END_OF_BLOCK * sizeof *count);
+    uint32_t n[TURNS][TOKEN_KINDS] = {0};
+    int k = 0;
+    for (; k + TURNS <= stream->n_tokens; k += TURNS)
+        for (int turn = 0; turn < TURNS; turn++)
+            n[turn][stream->token[k + turn]]++;
+    for (; k < stream->n_tokens; k++)
+        n[0][stream->token[k]]++;
+    for (int turn = 1; turn < TURNS; turn++)
+        for (int token = 0; token < TOKEN_KINDS; token++)
+            n[0][token] += n[turn][token];
+    memcpy(count, n[0], END_OF_BLOCK * sizeof *count);
     memset(count + END_OF_BLOCK, 0, (FL_CODE_SYMBOLS - END_OF_BLOCK) * sizeof *count);
     for (int length = SHORTEST; length <= LONGEST; length++)
-        count[length_of(length).symbol] += n[END_OF_BLOCK + length];
+        count[length_of(length).symbol] += n[0][END_OF_BLOCK + length];
     count[END_OF_BLOCK] = 1;
     count[FL_CODE_SYMBOLS - 1]++; // a code has two symbols at least
 }
@@ -134,8 +153,12 @@ static Writer put_block(const FlSparseStream *stream, bool last, Writer writer)
     put_bits(&writer, (Bits){last, 1});
     put_bits(&writer, (Bits){DYNAMIC_CODES, 2});
     put_code(&writer, &code);
-    for (int k = 0; k < stream->n_tokens; k++)
-        put_bits(&writer, bits[stream->token[k]]);
+    for (int k = 0; k < stream->n_tokens; k += 2) {
+        add_bits(&writer, bits[stream->token[k]]);
+        if (k + 1 < stream->n_tokens)
+            add_bits(&writer, bits[stream->token[k + 1]]);
+        flush(&writer);
+    }
     put_bits(&writer, bits[END_OF_BLOCK]);
     return writer;
 }
@@ -178,42 +201,42 @@ static void add_byte(FlSparseStream *stream, uint8_t byte)
     stream->last = byte;
 }
 
-/* How many of n bytes from the first on are `value`. */
-static size_t run_of(const uint8_t *bytes, size_t n, uint8_t value)
-{
-    const uint64_t eight = value * UINT64_C(0x0101010101010101);
-    size_t k = 0;
-    while (k + sizeof eight <= n && memcmp(bytes + k, &eight, sizeof eight) == 0)
-        k += sizeof eight;
-    while (k < n && bytes[k] == value)
-        k++;
-    return k;
-}
+#define EIGHT 8 // bytes that are looked at together
 
-/* Adds bytes as they are, up to one that is like the one before, or until the block is full.
- * Returns: how many. */
-static size_t add_changing(FlSparseStream *stream, const uint8_t *bytes, size_t n)
+/* Adds bytes that are no run. */
+static void add_eight(FlSparseStream *stream, const uint8_t *bytes)
 {
-    const size_t most = MIN(n, (size_t)(TOKENS - stream->n_tokens));
+    if (stream->run > 0)
+        end_run(stream);
+    if (stream->n_tokens + EIGHT > TOKENS)
+        end_block(stream, false);
     Token *to = stream->token + stream->n_tokens;
-    int last = stream->last;
-    size_t k = 0;
-    for (; k < most && bytes[k] != last; k++)
-        to[k] = bytes[k], last = bytes[k];
-    stream->n_tokens += (int)k, stream->last = last;
-    return k;
+    for (int k = 0; k < EIGHT; k++)
+        to[k] = bytes[k];
+    stream->n_tokens += EIGHT;
+    stream->last = bytes[EIGHT - 1];
 }
 
+/* Eight bytes are a run, or none of them: shorter ones gain little where codes are short, and to
+ * look for them takes longer than all else. */
 static void add_bytes(FlSparseStream *stream, const uint8_t *bytes, size_t n)
 {
-    for (size_t k = 0; k < n;) {
-        const size_t run = bytes[k] == stream->last ? run_of(bytes + k, n - k, bytes[k]) : 0;
-        stream->run += run, k += run;
-        if (k == n)
-            return;
+    size_t k = 0;
+    if (n > 0 && stream->last < 0)
         add_byte(stream, bytes[k++]);
-        k += add_changing(stream, bytes + k, n - k);
+    for (; k + EIGHT <= n; k += EIGHT) {
+        uint64_t eight;
+        memcpy(&eight, bytes + k, sizeof eight);
+        if (eight == (uint8_t)stream->last * UINT64_C(0x0101010101010101))
+            stream->run += EIGHT;
+        else
+            add_eight(stream, bytes + k);
     }
+    for (; k < n; k++)
+        if (bytes[k] == stream->last)
+            stream->run++;
+        else
+            add_byte(stream, bytes[k]);
 }
 
 /* ---- the whole ------------------------------------------------------------------------------- */
