@@ -428,7 +428,7 @@ static void fill_chunk(FlExrChunk *chunk, const uint8_t *bytes, size_t n, bool s
         for (end = at; end < 2 * n && (bytes[end] == 0) == blank;)
             end++;
         if (blank)
-            fl_exr_chunk_blank(chunk, end - at);
+            fl_exr_chunk_run(chunk, 0, end - at);
         else
             fl_exr_chunk_put(chunk, bytes + at, end - at);
     }
@@ -476,7 +476,7 @@ static void an_exr_chunk_that_does_not_get_smaller_is_stored_as_it_is(void)
     size_t n_bytes;
     g_assert_true(fl_exr_chunk_init(&chunk, NULL));
     fl_exr_chunk_begin(&chunk, N, false);
-    fl_exr_chunk_blank(&chunk, 2 * N);
+    fl_exr_chunk_run(&chunk, 0, 2 * N);
     fl_exr_chunk_end(&chunk, &n_bytes);
     g_assert_cmpuint(n_bytes, <, N / 4);
     g_autoptr(GRand) random = g_rand_new_with_seed(1);

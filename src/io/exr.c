@@ -204,12 +204,23 @@ static bool find_filled(Rows *rows, const Writer *writer)
     return SPARSE_SHARE * filled < all;
 }
 
-/** Adds the low or the high bytes of n pixels of a channel. */
+/** Adds the low or the high bytes of n pixels of a channel, n > 0. */
 static void put_pixels(Rows *rows, const uint8_t *rgba, int n, int component, bool high)
 {
-    for (int x = 0; x < n; x++, rgba += 4)
-        rows->bytes[x] = bytes_of[high][rgba[3]][component == 3 ? 255 : rgba[component]];
-    fl_exr_chunk_put(&rows->chunk, rows->bytes, (size_t)n);
+    const uint8_t(*const of)[256] = bytes_of[high];
+    uint8_t *restrict bytes = rows->bytes;
+    if (memcmp(rgba, rgba + 4, 4 * ((size_t)n - 1)) == 0) {
+        fl_exr_chunk_run(&rows->chunk, of[rgba[3]][component == 3 ? 255 : rgba[component]],
+                         (size_t)n);
+        return;
+    }
+    if (component == 3)
+        for (int x = 0; x < n; x++)
+            bytes[x] = of[rgba[4 * x + 3]][255];
+    else
+        for (int x = 0; x < n; x++)
+            bytes[x] = of[rgba[4 * x + 3]][rgba[4 * x + component]];
+    fl_exr_chunk_put(&rows->chunk, bytes, (size_t)n);
 }
 
 /** Likewise those of a row of runs, up to the last one. */
@@ -219,7 +230,7 @@ static void put_runs(Rows *rows, const Layer *layer, int y, int component, bool 
     int at = 0;
     for (size_t k = runs->first[y]; k < runs->first[y + 1]; k++) {
         const FlColumns run = runs->run[k].columns;
-        fl_exr_chunk_blank(&rows->chunk, (size_t)(layer->x + run.first - at));
+        fl_exr_chunk_run(&rows->chunk, 0, (size_t)(layer->x + run.first - at));
         put_pixels(rows, runs->rgba + 4 * runs->run[k].at, run.last - run.first, component, high);
         at = layer->x + run.last;
     }
@@ -237,10 +248,10 @@ static void put_row(Rows *rows, const Writer *writer, int r, int c, bool high)
         const uint8_t *rgba =
             layer->rgba +
             ((size_t)y * (size_t)layer->width + (size_t)(filled.first - layer->x)) * 4;
-        fl_exr_chunk_blank(&rows->chunk, (size_t)filled.first);
+        fl_exr_chunk_run(&rows->chunk, 0, (size_t)filled.first);
         put_pixels(rows, rgba, n, writer->component[c], high);
     }
-    fl_exr_chunk_blank(&rows->chunk, (size_t)(writer->width - filled.last));
+    fl_exr_chunk_run(&rows->chunk, 0, (size_t)(writer->width - filled.last));
 }
 
 static void pack_rows(Rows *rows, const Writer *writer, int y)

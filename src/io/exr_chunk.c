@@ -74,8 +74,7 @@ static void predict(FlExrChunk *chunk, const uint8_t *bytes, size_t n)
     chunk->done += n;
 }
 
-/* Adds n bytes of one value. */
-static void put_run(FlExrChunk *chunk, uint8_t value, size_t n)
+void fl_exr_chunk_run(FlExrChunk *chunk, uint8_t value, size_t n)
 {
     size_t left = n;
     if (left > 0 && (chunk->done == 0 || chunk->last != value)) {
@@ -87,17 +86,12 @@ static void put_run(FlExrChunk *chunk, uint8_t value, size_t n)
     chunk->done += left;
 }
 
-void fl_exr_chunk_blank(FlExrChunk *chunk, size_t n)
-{
-    put_run(chunk, 0, n);
-}
-
 void fl_exr_chunk_put(FlExrChunk *chunk, const uint8_t *bytes, size_t n)
 {
     if (n == 0)
         return;
     if (memcmp(bytes, bytes + 1, n - 1) == 0) {
-        put_run(chunk, bytes[0], n);
+        fl_exr_chunk_run(chunk, bytes[0], n);
         return;
     }
     end_run(chunk);

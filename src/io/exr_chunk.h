@@ -29,8 +29,8 @@ void fl_exr_chunk_clear(FlExrChunk *chunk); // all 0 is fine
  * they are many. */
 void fl_exr_chunk_begin(FlExrChunk *chunk, size_t n, bool sparse);
 
-/** Adds n bytes of 0. */
-void fl_exr_chunk_blank(FlExrChunk *chunk, size_t n);
+/** Adds n bytes of one value, in next to no time. */
+void fl_exr_chunk_run(FlExrChunk *chunk, uint8_t value, size_t n);
 
 /** Adds n bytes of any value. */
 void fl_exr_chunk_put(FlExrChunk *chunk, const uint8_t *bytes, size_t n);
