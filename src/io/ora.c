@@ -62,13 +62,6 @@ static bool add_png(Archive *archive, const char *name, const FlPng *png)
     return bytes && archive_add(archive, name, bytes);
 }
 
-static bool add_picture(Archive *archive, const char *name, const uint8_t *rgba, int width,
-                        int height, bool fast)
-{
-    const FlPng png = {.width = width, .height = height, .rgba = rgba, .fast = fast};
-    return add_png(archive, name, &png);
-}
-
 /** The frame at most THUMBNAIL_PX wide and high: every n-th pixel will do. */
 static bool add_thumbnail(Archive *archive, const FlSinkParams *params, const uint8_t *rgba)
 {
@@ -80,7 +73,9 @@ static bool add_thumbnail(Archive *archive, const FlSinkParams *params, const ui
         for (int x = 0; x < width; x++)
             memcpy(small + 4 * ((size_t)y * width + x),
                    rgba + 4 * ((size_t)y * step * params->width + (size_t)x * step), 4);
-    return add_picture(archive, "Thumbnails/thumbnail.png", small, width, height, true);
+    const FlPng png = {
+        .width = width, .height = height, .rgba = small, .opaque = params->opaque, .fast = true};
+    return add_png(archive, "Thumbnails/thumbnail.png", &png);
 }
 
 /**
@@ -144,21 +139,22 @@ static bool add_part(Archive *archive, const char *name, const Part *part, bool 
 {
     static const uint8_t clear[4] = {0};
     const FlSinkLayer *layer = part->layer;
+    FlPng png = {.width = layer->width,
+                 .height = layer->height,
+                 .rgba = layer->rgba,
+                 .runs = layer->runs,
+                 .opaque = layer->multiply,
+                 .fast = fast};
     if (layer->width == 0 || layer->height == 0)
-        return add_picture(archive, name, clear, 1, 1, fast);
-    if (!layer->multiply) {
-        const FlPng png = {.width = layer->width,
-                           .height = layer->height,
-                           .rgba = layer->rgba,
-                           .runs = layer->runs,
-                           .fast = fast};
+        png = (FlPng){.width = 1, .height = 1, .rgba = clear, .fast = fast};
+    if (!layer->multiply)
         return add_png(archive, name, &png);
-    }
     const size_t values = 4 * (size_t)layer->width * (size_t)layer->height;
     g_autofree uint8_t *rgba = g_malloc(values);
     for (size_t i = 0; i < values; i++)
-        rgba[i] = i % 4 == 3 ? 255 : part->level[layer->rgba[i]];
-    return add_picture(archive, name, rgba, layer->width, layer->height, fast);
+        rgba[i] = part->level[layer->rgba[i]]; // alpha is not stored
+    png.rgba = rgba;
+    return add_png(archive, name, &png);
 }
 
 /** mimetype must be the first part, and stored. Layers without pixels hold one clear pixel. */
@@ -172,9 +168,13 @@ static bool add_parts(Archive *archive, const FlSinkParams *params, const FlSink
         g_autofree char *name = g_strdup_printf("data/layer%03u.png", k);
         ok = add_part(archive, name, &g_array_index(parts, Part, k), params->fast);
     }
+    const FlPng merged = {.width = params->width,
+                          .height = params->height,
+                          .rgba = frame->rgba,
+                          .opaque = params->opaque,
+                          .fast = params->fast};
     return ok && add_thumbnail(archive, params, frame->rgba) &&
-           add_picture(archive, "mergedimage.png", frame->rgba, params->width, params->height,
-                       params->fast);
+           add_png(archive, "mergedimage.png", &merged);
 }
 
 /** Completes the archive and writes it to the stream. */

@@ -200,14 +200,14 @@ static uint8_t *compress_part(const FlPng *picture, Rows part, size_t *bytes, GE
     return g_byte_array_steal(stream, bytes);
 }
 
-/** Of a whole picture libdeflate makes a smaller stream, in the same time. */
+/** Of a picture that is all paint libdeflate makes a smaller stream. */
 static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
 {
-    const FlRect *filled = picture->filled;
-    if (!filled)
+    const FlRect filled = filled_of(picture);
+    if (!picture->filled && !picture->runs)
         return compress_all(picture, bytes, error);
     // the row below is not clear: it is filtered by the last one
-    const Rows part = {filled->y, MIN(filled->y + filled->height + 1, picture->height)};
+    const Rows part = {filled.y, MIN(filled.y + filled.height + 1, picture->height)};
     return compress_part(picture, part, bytes, error);
 }
 
