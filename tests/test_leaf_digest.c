@@ -63,6 +63,10 @@ static void what_it_refers_to_counts(void)
         "<g mask='url(#m)'><circle r='9'/></g>",
         "<style>.m{mask:url(#m)}</style><mask id='m'><circle r='8' fill='COLOUR'/></mask>"
         "<g class='m'><circle r='9'/></g>",
+        "<defs><circle id='k' r='8' fill='COLOUR'/></defs><mask id='m'><use href='#k'/></mask>"
+        "<g mask='url(#m)'><circle r='9'/></g>",
+        "<g fill='COLOUR'><mask id='m'><circle r='8'/></mask></g>"
+        "<g mask='url(#m)'><circle r='9'/></g>",
         "<path id='p' d='M1 9h90' stroke='COLOUR'/><text><textPath href='#p'>a</textPath></text>",
     };
     for (gsize k = 0; k < G_N_ELEMENTS(formats); k++) {
@@ -71,6 +75,24 @@ static void what_it_refers_to_counts(void)
         if (alike(white, grey))
             g_error("%s counts for nothing", formats[k]);
     }
+}
+
+/* As Illustrator clips: the shape lies in <defs>, and <use> shows it. */
+static void shapes_beside_it_do_not_count_where_what_is_used_is_a_definition(void)
+{
+    const char *clip = "<title>frame 1</title><clipPath id='c'><use href='#k'/></clipPath>"
+                       "<circle clip-path='url(#c)' r='9'/>";
+    const char *other = "<title>frame 2</title><clipPath id='c'><use href='#k'/></clipPath>"
+                        "<circle clip-path='url(#c)' r='9'/>";
+    g_autofree char *defined = g_strconcat(
+        "<rect width='9' height='9'/><g><defs><circle id='k' r='8'/></defs></g>", clip, NULL);
+    g_autofree char *moved = g_strconcat(
+        "<rect width='8' height='9'/><g><defs><circle id='k' r='8'/></defs></g>", other, NULL);
+    g_assert_true(alike(defined, moved));
+    g_autofree char *drawn = g_strconcat("<rect id='k' width='9' height='9'/>", clip, NULL);
+    g_autofree char *wider = g_strconcat("<rect id='k' width='8' height='9'/>", clip, NULL);
+    g_assert_true(alike(drawn, drawn));
+    g_assert_false(alike(drawn, wider));
 }
 
 /* A mask may lie in the box of its group. */
@@ -124,6 +146,7 @@ int main(int argc, char **argv)
     TEST(a_shape_is_itself_whatever_is_beside_it);
     TEST(what_is_said_of_it_and_around_it_counts);
     TEST(what_it_refers_to_counts);
+    TEST(shapes_beside_it_do_not_count_where_what_is_used_is_a_definition);
     TEST(shapes_beside_it_count_below_a_mask);
     TEST(files_of_one_name_in_two_folders_are_two);
     TEST(sheets_that_look_around_or_are_files_leave_all_unknown);

@@ -21,6 +21,8 @@ typedef struct Work {
     FlDigest definitions; // of REACH_DEFINITIONS
     FlDigest all;         // of REACH_ALL
     bool unknown;         // the document has something that is not looked at
+    xmlDoc *doc;
+    GHashTable *ids; // of the document, made when first needed
 } Work;
 
 /** Where the digest of an element goes. */
@@ -29,13 +31,26 @@ typedef struct Place {
     const FlLeaf *leaf;
 } Place;
 
+/** Whether what has an id is drawn only when it is referred to. */
+static bool is_definition(Work *work, const char *id)
+{
+    if (!work->ids)
+        work->ids = fl_document_ids(work->doc);
+    const xmlNode *node = g_hash_table_lookup(work->ids, id);
+    while (node && !fl_is_undrawn(node))
+        node = node->parent;
+    return node != NULL;
+}
+
 /** Whether an attribute names something elsewhere in the document. */
-static Reach reach_of(const xmlNode *node, const xmlAttr *attribute, const char *value)
+static Reach reach_of(Work *work, const xmlNode *node, const xmlAttr *attribute, const char *value)
 {
     static const char *const definitions[] = {"linearGradient", "radialGradient", "pattern",
                                               "filter", NULL};
     if (xmlStrEqual(attribute->name, (const xmlChar *)"href") && !g_str_has_prefix(value, "data:"))
-        return value[0] != '#' || fl_is_one_of(node, definitions) ? REACH_DEFINITIONS : REACH_ALL;
+        return value[0] != '#' || fl_is_one_of(node, definitions) || is_definition(work, value + 1)
+                   ? REACH_DEFINITIONS
+                   : REACH_ALL;
     return strstr(value, "url(") ? REACH_DEFINITIONS : REACH_NONE;
 }
 
@@ -65,7 +80,7 @@ static Reach add_element(Work *work, const xmlNode *node, FlDigest *digest)
             continue;
         fl_digest_add_text(digest, (const char *)a->name);
         fl_digest_add_text(digest, value);
-        reach = farther(reach, reach_of(node, a, value));
+        reach = farther(reach, reach_of(work, node, a, value));
     }
     return reach;
 }
@@ -97,6 +112,31 @@ static Reach add_sheet(Work *work, const xmlNode *node, FlDigest *digest)
     return text && strstr((const char *)text, "url(") ? REACH_DEFINITIONS : REACH_NONE;
 }
 
+/** Adds what an element may inherit from one around it. */
+static void add_inherited(Work *work, const xmlNode *around, FlDigest *digest)
+{
+    for (const xmlAttr *a = around->properties; a; a = a->next) {
+        const char *value = value_of(work, a);
+        if (is_made_id(a, value) || xmlStrEqual(a->name, (const xmlChar *)"transform"))
+            continue;
+        fl_digest_add_text(digest, (const char *)a->name);
+        fl_digest_add_text(digest, value);
+    }
+}
+
+/** Adds something that is drawn only when it is referred to, with what it inherits. */
+static void add_definition(Work *work, const xmlNode *node)
+{
+    static const char *const words[] = {"title", "desc", "metadata", NULL};
+    if (fl_is_one_of(node, words))
+        return; // nothing draws them
+    for (const xmlNode *around = node->parent; around->type == XML_ELEMENT_NODE;
+         around = around->parent)
+        add_inherited(work, around, &work->definitions);
+    if (add_tree(work, node, &work->definitions) == REACH_ALL)
+        work->definitions = work->all;
+}
+
 /** Digests what is drawn only when it is referred to, and style sheets. */
 static void digest_definitions(Work *work, const xmlNode *node, FlDigest *sheets, Reach *reach)
 {
@@ -105,8 +145,8 @@ static void digest_definitions(Work *work, const xmlNode *node, FlDigest *sheets
             continue;
         if (fl_is(child, "style"))
             *reach = farther(*reach, add_sheet(work, child, sheets));
-        else if (fl_is_undrawn(child) && add_tree(work, child, &work->definitions) == REACH_ALL)
-            work->definitions = work->all;
+        else if (fl_is_undrawn(child))
+            add_definition(work, child);
         digest_definitions(work, child, sheets, reach);
     }
 }
@@ -176,9 +216,9 @@ static void add_files(Work *work, const FlSvg *svg, const xmlDoc *doc)
 void fl_leaf_digests(FlSvg *svg, FlDigest *leaf, FlDigest *unit)
 {
     const FlLeaves *leaves = fl_svg_leaves(svg);
-    const xmlDoc *doc = fl_svg_document(svg);
+    xmlDoc *doc = fl_svg_document(svg);
     const xmlNode *root = xmlDocGetRootElement(doc);
-    Work work = {.place = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free)};
+    Work work = {.place = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free), .doc = doc};
     FlDigest around = {0, 0};
     Reach reach = REACH_NONE;
     list_places(&work, leaves->leaf, sizeof(FlLeaf), leaf);
@@ -194,4 +234,5 @@ void fl_leaf_digests(FlSvg *svg, FlDigest *leaf, FlDigest *unit)
         memset(unit, 0, leaves->unit->len * sizeof *unit);
     }
     g_hash_table_unref(work.place);
+    g_clear_pointer(&work.ids, g_hash_table_unref);
 }
