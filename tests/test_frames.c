@@ -1,4 +1,5 @@
 #include "open_svg.h"
+#include "svg/paint_probe.h"
 #include "svg/path_data.h"
 #include <string.h>
 
@@ -157,6 +158,39 @@ static void leaves_add_up_to_the_document(void)
     }
 }
 
+static bool reads_from_a_copy(const char *content)
+{
+    g_autoptr(FlSvg) svg = open_svg_of(content);
+    return fl_paint_probe_is_needed(fl_svg_document(svg));
+}
+
+/* A copy is one more document to parse, and most programs write what has no effect. */
+static void paints_are_read_from_a_copy_only_where_something_has_an_effect(void)
+{
+    static const char *const without[] = {
+        "<g opacity='1'><rect opacity='100%' style='fill-opacity:.5' " BOX "/></g>",
+        "<g mask='none' filter='none' style='mix-blend-mode:normal;isolation:auto'><rect " BOX
+        "/></g>",
+        "<clipPath id='c'><circle r='9'/></clipPath><rect clip-path='url(#c)' " BOX "/>",
+    };
+    static const char *const with[] = {
+        "<g opacity='.9'><rect " BOX "/></g>",
+        "<rect style='opacity:50%' " BOX "/>",
+        "<g mask='url(#m)'><rect " BOX "/></g>",
+        "<g filter='url(#f)'><rect " BOX "/></g>",
+        "<rect style='mix-blend-mode:multiply' " BOX "/>",
+        "<g style='isolation:isolate'><rect " BOX "/></g>",
+        "<clipPath id='c' clipPathUnits='objectBoundingBox'/><rect clip-path='url(#c)' " BOX "/>",
+        "<pattern id='p'/><rect " BOX "/>",
+        "<image width='9' height='9'/>",
+        "<style>.a{opacity:.5}</style><rect " BOX "/>",
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(without); i++)
+        g_assert_false(reads_from_a_copy(without[i]));
+    for (size_t i = 0; i < G_N_ELEMENTS(with); i++)
+        g_assert_true(reads_from_a_copy(with[i]));
+}
+
 /** A file as librsvg itself draws it. */
 static cairo_surface_t *draw_file(const char *path)
 {
@@ -184,6 +218,8 @@ static void a_document_is_drawn_as_the_file_has_it(void)
         "<circle r=\"60\" clip-path=\"url(#c)\" fill=\"blue\"/>",
         "<style>rect:not([id]){fill:red} g>rect{stroke:blue}</style><rect " BOX
         "/><g><rect y=\"50\" " BOX "/></g>",
+        "<style>.b{fill:red}</style><rect class=\"b\" " BOX "/><g class=\"b\"><rect y=\"50\" " BOX
+        "/></g>",
         "<defs><style>#a{fill:red}</style></defs><rect id=\"a\" " BOX
         "/><rect id=\"a\" y=\"50\" " BOX "/>",
         "<rect id=\"a\" " BOX "/><use href=\"#a\" x=\"40\" fill=\"red\"/>",
@@ -437,6 +473,8 @@ int main(int argc, char **argv)
     TEST("hidden-and-undrawn-content-is-no-leaf", hidden_and_undrawn_content_is_no_leaf);
     TEST("use-and-switch-show-their-content", use_and_switch_show_their_content);
     TEST("leaves-add-up-to-the-document", leaves_add_up_to_the_document);
+    TEST("paints-are-read-from-a-copy-only-where-something-has-an-effect",
+         paints_are_read_from_a_copy_only_where_something_has_an_effect);
     TEST("a-document-is-drawn-as-the-file-has-it", a_document_is_drawn_as_the_file_has_it);
     TEST("a-use-that-shows-itself-is-left-out-with-a-warning",
          a_use_that_shows_itself_is_left_out_with_a_warning);

@@ -1,5 +1,6 @@
 #include "svg/geometry.h"
 
+#include "svg/effects.h"
 #include "svg/path_data.h"
 #include "svg/pen.h"
 #include <math.h>
@@ -57,12 +58,6 @@ static double length_in(const Reader *reader, const xmlNode *node, const char *n
     if (text && strcmp(text, "auto") != 0 && !length_of(reader, text, whole, &px))
         *broken = true;
     return px;
-}
-
-static bool is_set(const xmlNode *node, const char *name)
-{
-    g_autofree char *value = fl_property(node, name);
-    return value && strcmp(value, "none") != 0 && value[0];
 }
 
 /** Maps a viewBox into a viewport of width x height, as preserveAspectRatio says. */
@@ -149,7 +144,8 @@ static FlAffine transform_of(const xmlNode *node)
 
 static void enter_properties(const Reader *reader, const xmlNode *node, Inherited *s)
 {
-    s->clipped |= is_set(node, "clip-path") || is_set(node, "mask") || is_set(node, "filter");
+    s->clipped |=
+        fl_is_set(node, "clip-path") || fl_is_set(node, "mask") || fl_is_set(node, "filter");
     g_autofree char *rule = fl_property(node, "fill-rule"), *fill = fl_property(node, "fill");
     g_autofree char *stroke = fl_property(node, "stroke");
     if (rule)

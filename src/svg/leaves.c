@@ -1,6 +1,7 @@
 #include "svg/leaves.h"
 
 #include "svg/css.h"
+#include "svg/effects.h"
 #include "svg/labels.h"
 #include "svg/normalise.h"
 #include <string.h>
@@ -158,12 +159,6 @@ static FlLeaf make_leaf(Walk *w, xmlNode *node)
     return leaf;
 }
 
-static bool is_set(const xmlNode *node, const char *name)
-{
-    g_autofree char *value = fl_property(node, name);
-    return value && strcmp(value, "none") != 0 && strcmp(value, "normal") != 0 && value[0];
-}
-
 static bool is_hidden(const xmlNode *node)
 {
     g_autofree char *display = fl_property(node, "display");
@@ -177,36 +172,23 @@ static bool is_drawn(const xmlNode *node)
     return fl_is_one_of(node, drawn);
 }
 
-static bool is_translucent(const xmlNode *node)
-{
-    g_autofree char *opacity = fl_property(node, "opacity");
-    const double value = opacity ? g_ascii_strtod(opacity, NULL) : 1;
-    return opacity && (strchr(opacity, '%') ? value / 100 : value) < 1;
-}
-
 static bool has_mask(const Walk *w, const xmlNode *node)
 {
-    return is_set(node, "mask") || fl_css_look_up(w->css, node) & FL_CSS_MASK;
+    return fl_is_set(node, "mask") || fl_css_look_up(w->css, node) & FL_CSS_MASK;
 }
 
 /** Whether a group is drawn as one also where its shapes do not overlap. */
 static bool is_inseparable(const Walk *w, const xmlNode *node)
 {
-    return is_set(node, "filter") || is_set(node, "mix-blend-mode") ||
+    return fl_is_set(node, "filter") || fl_is_set(node, "mix-blend-mode") ||
            fl_css_look_up(w->css, node) & (FL_CSS_FILTER | FL_CSS_BLEND);
-}
-
-static bool is_isolated(const xmlNode *node)
-{
-    g_autofree char *isolation = fl_property(node, "isolation");
-    return isolation && strcmp(isolation, "isolate") == 0;
 }
 
 /** Whether a group may have to be drawn as one. */
 static bool is_unit(const Walk *w, const xmlNode *node)
 {
-    return is_inseparable(w, node) || has_mask(w, node) || is_translucent(node) ||
-           is_isolated(node) || fl_css_look_up(w->css, node) & FL_CSS_OPACITY;
+    return fl_has_effects(node) || is_inseparable(w, node) || has_mask(w, node) ||
+           fl_css_look_up(w->css, node) & FL_CSS_OPACITY;
 }
 
 /** Whether something in a node blends with what is below it. */
@@ -215,8 +197,8 @@ static bool has_blend(const Walk *w, const xmlNode *node)
     bool found = false;
     for (const xmlNode *child = node->children; child && !found; child = child->next)
         found = child->type == XML_ELEMENT_NODE &&
-                (is_set(child, "mix-blend-mode") || fl_css_look_up(w->css, child) & FL_CSS_BLEND ||
-                 has_blend(w, child));
+                (fl_is_set(child, "mix-blend-mode") ||
+                 fl_css_look_up(w->css, child) & FL_CSS_BLEND || has_blend(w, child));
     return found;
 }
 

@@ -1,6 +1,7 @@
 #include "svg/paint_probe.h"
 
-#include <stdio.h>
+#include "svg/effects.h"
+
 #include <string.h>
 
 static const char *const shapes[] = {"g",      "svg",     "a",    "path",     "rect",
@@ -11,15 +12,10 @@ static const char *const shapes[] = {"g",      "svg",     "a",    "path",     "r
 static bool is_apart(const xmlNode *node)
 {
     static const char *const elements[] = {"image", "pattern", "style", NULL};
-    static const char *const words[] = {"opacity", "mask", "filter", "mix-blend-mode", "isolation"};
-    if (fl_is_one_of(node, elements))
+    if (fl_is_one_of(node, elements) || fl_has_effects(node))
         return true;
-    g_autoptr(xmlChar) style = fl_attribute(node, "style");
-    bool apart = false;
-    for (size_t i = 0; i < G_N_ELEMENTS(words) && !apart; i++)
-        apart = xmlHasProp((xmlNode *)node, (const xmlChar *)words[i]) ||
-                (style && strstr((const char *)style, words[i]));
-    return apart;
+    g_autoptr(xmlChar) units = fl_attribute(node, "clipPathUnits");
+    return units && strcmp((const char *)units, "objectBoundingBox") == 0;
 }
 
 static bool has_apart(const xmlNode *node)

@@ -78,46 +78,37 @@ static void check_style(const Check *check, xmlNode *node)
     }
 }
 
-/** Returns: how many <style> elements there are from node down. */
-static int check_node(const Check *check, xmlNode *node)
+static void check_node(const Check *check, xmlNode *node)
 {
-    const bool sheet = fl_is(node, "style");
-    int n = sheet;
-    if (sheet)
+    if (fl_is(node, "style"))
         check_style(check, node);
     for (xmlNode *child = node->children; child; child = child->next)
         if (child->type == XML_ELEMENT_NODE)
-            n += check_node(check, child);
-    return n;
+            check_node(check, child);
 }
 
-/**
- * A <?xml-stylesheet href="…"?>; one that cannot be read leaves the document. Returns: whether the
- * node is a sheet that stays.
- */
-static bool check_instruction(const Check *check, xmlNode *node)
+/** A <?xml-stylesheet href="…"?>; one that cannot be read leaves the document. */
+static void check_instruction(const Check *check, xmlNode *node)
 {
     const char *href = node->content ? strstr((const char *)node->content, "href=") : NULL;
     if (!xmlStrEqual(node->name, (const xmlChar *)"xml-stylesheet") || !href)
-        return false;
+        return;
     g_autofree char *target = import_target(href + strlen("href="));
     if (check_file(check, check->path, target))
-        return true;
+        return;
     warn(check, target);
     xmlUnlinkNode(node);
     xmlFreeNode(node);
-    return false;
 }
 
-bool fl_style_sheets_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
+void fl_style_sheets_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
                            FlWarnings *warnings)
 {
     const Check check = {path, number, files, warnings};
-    int n = 0;
     for (xmlNode *node = doc->children, *next; node; node = next) {
         next = node->next;
         if (node->type == XML_PI_NODE)
-            n += check_instruction(&check, node);
+            check_instruction(&check, node);
     }
-    return n + check_node(&check, xmlDocGetRootElement(doc)) > 0;
+    check_node(&check, xmlDocGetRootElement(doc));
 }

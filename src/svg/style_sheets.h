@@ -8,9 +8,9 @@
 /**
  * Adds the real paths of the sheets that <?xml-stylesheet?> and @import name, those that these
  * import included, to `files`. A pipe or a device, for which librsvg would wait, is left out of the
- * document with a warning. Returns: whether the document has any sheet, its own <style> included.
+ * document with a warning.
  */
-bool fl_style_sheets_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
+void fl_style_sheets_check(xmlDoc *doc, const char *path, int number, GPtrArray *files,
                            FlWarnings *warnings);
 
 #endif

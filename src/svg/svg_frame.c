@@ -7,6 +7,7 @@
 #include "svg/lint.h"
 #include "svg/normalise.h"
 #include "svg/paint_probe.h"
+#include "svg/selectors.h"
 #include "svg/style_sheets.h"
 #include "svg/svg_data.h"
 
@@ -60,10 +61,11 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     svg->files = g_ptr_array_new_with_free_func(g_free);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
-    const bool styled = fl_style_sheets_check(svg->doc, path, number, svg->files, warnings);
+    fl_style_sheets_check(svg->doc, path, number, svg->files, warnings);
     svg->n_nameless = fl_document_name_groups(svg->doc);
-    // ids and groups that are added, of which only a style sheet could tell, change no picture
-    if (styled || fl_document_is_rewritten(svg->doc) || fl_document_reads_background(svg->doc))
+    // ids and groups are always added, which changes no picture but by selectors that see them
+    if (fl_document_selectors(svg->doc) != FL_SELECTORS_PLAIN ||
+        fl_document_is_rewritten(svg->doc) || fl_document_reads_background(svg->doc))
         svg->original = fl_document_text(svg->doc, &svg->original_bytes);
     fl_document_drop_background(svg->doc, path, number, warnings);
     if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))
