@@ -158,10 +158,13 @@ static void leaves_add_up_to_the_document(void)
     }
 }
 
+/** Whether the paints of the last leaf are. */
 static bool reads_from_a_copy(const char *content)
 {
     g_autoptr(FlSvg) svg = open_svg_of(content);
-    return fl_paint_probe_is_needed(fl_svg_document(svg));
+    const GArray *leaves = fl_svg_leaves(svg)->leaf;
+    return fl_paint_probe_is_needed(fl_svg_document(svg)) ||
+           g_array_index(leaves, FlLeaf, leaves->len - 1).effects;
 }
 
 /* A copy is one more document to parse, and most programs write what has no effect. */
@@ -172,6 +175,8 @@ static void paints_are_read_from_a_copy_only_where_something_has_an_effect(void)
         "<g mask='none' filter='none' style='mix-blend-mode:normal;isolation:auto'><rect " BOX
         "/></g>",
         "<clipPath id='c'><circle r='9'/></clipPath><rect clip-path='url(#c)' " BOX "/>",
+        "<mask id='m'><g filter='url(#f)'><image/></g></mask><g mask='url(#m)'><circle r='9'/></g>"
+        "<image width='9' height='9'/><rect opacity='.5' " BOX "/><rect " BOX "/>",
     };
     static const char *const with[] = {
         "<g opacity='.9'><rect " BOX "/></g>",
@@ -183,6 +188,7 @@ static void paints_are_read_from_a_copy_only_where_something_has_an_effect(void)
         "<clipPath id='c' clipPathUnits='objectBoundingBox'/><rect clip-path='url(#c)' " BOX "/>",
         "<pattern id='p'/><rect " BOX "/>",
         "<image width='9' height='9'/>",
+        "<marker id='k'><circle r='1' opacity='.5'/></marker><line x2='9' marker-end='url(#k)'/>",
         "<style>.a{opacity:.5}</style><rect " BOX "/>",
     };
     for (size_t i = 0; i < G_N_ELEMENTS(without); i++)

@@ -1,6 +1,7 @@
 #include "svg/paint_probe.h"
 
 #include "svg/effects.h"
+#include "svg/normalise.h"
 
 #include <string.h>
 
@@ -8,27 +9,32 @@ static const char *const shapes[] = {"g",      "svg",     "a",    "path",     "r
                                      "circle", "ellipse", "line", "polyline", "polygon",
                                      "text",   "image",   "use",  NULL};
 
-/** Whether librsvg may draw a node, or its fill, on a separate surface. */
-static bool is_apart(const xmlNode *node)
+/** Whether anything may be drawn on a surface of its own because of a definition. */
+static bool is_apart(const xmlNode *node, bool defined)
 {
-    static const char *const elements[] = {"image", "pattern", "style", NULL};
-    if (fl_is_one_of(node, elements) || fl_has_effects(node))
-        return true;
+    static const char *const anywhere[] = {"pattern", "style", NULL};
     g_autoptr(xmlChar) units = fl_attribute(node, "clipPathUnits");
-    return units && strcmp((const char *)units, "objectBoundingBox") == 0;
+    return fl_is_one_of(node, anywhere) ||
+           (units && strcmp((const char *)units, "objectBoundingBox") == 0) ||
+           (defined && (fl_is(node, "image") || fl_has_effects(node)));
 }
 
-static bool has_apart(const xmlNode *node)
+/** What is in a mask is drawn with leaves that have one, FlLeaf.effects. */
+static bool has_apart(const xmlNode *node, bool defined)
 {
-    for (; node; node = node->next)
-        if (node->type == XML_ELEMENT_NODE && (is_apart(node) || has_apart(node->children)))
+    for (; node; node = node->next) {
+        if (node->type != XML_ELEMENT_NODE)
+            continue;
+        const bool within = (defined || fl_is_undrawn(node)) && !fl_is(node, "mask");
+        if (is_apart(node, within) || has_apart(node->children, within))
             return true;
+    }
     return false;
 }
 
 bool fl_paint_probe_is_needed(xmlDoc *doc)
 {
-    return has_apart(xmlDocGetRootElement(doc));
+    return has_apart(xmlDocGetRootElement(doc), false);
 }
 
 /** Makes every image one grey pixel. */

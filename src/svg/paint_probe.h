@@ -7,7 +7,8 @@
 /** The rotation at which paints are read, rad; see fl_paint_probe_prepare(). */
 #define FL_PAINT_PROBE_TURN 0.3
 
-/** Whether the document has images, patterns, or groups with surfaces of their own in librsvg. */
+/** Whether paints of all leaves are read so, not of those with FlLeaf.effects alone: patterns, or
+ * definitions with effects, may be those of any, and style sheets may give any an effect. */
 bool fl_paint_probe_is_needed(xmlDoc *doc);
 
 /**

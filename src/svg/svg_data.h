@@ -25,7 +25,7 @@ struct FlSvg {
     size_t original_bytes;
     RsvgHandle *handle; // of the normalised document
     RsvgHandle *before; // of the original, made when first needed
-    bool has_probe;     // paints are read from a separate document
+    bool reads_copies;  // paints of all leaves are read from a copy; else of those with effects
     FlFar far;
     int n_nameless;       // groups without an id
     GHashTable *variants; // handles of the document without some parts or masks

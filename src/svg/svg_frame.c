@@ -80,7 +80,7 @@ FlSvg *fl_svg_open(const char *path, int number, const FlSvgOptions *options, Fl
     g_autoptr(FlSvg) svg = fl_svg_read(path, number, options, warnings, error);
     if (!svg)
         return NULL;
-    svg->has_probe = fl_paint_probe_is_needed(svg->doc);
+    svg->reads_copies = fl_paint_probe_is_needed(svg->doc);
     fl_document_branch(svg->doc);
     svg->variants = g_hash_table_new_full(NULL, NULL, NULL, g_object_unref);
     svg->cover = g_new0(FlMaskCover, svg->leaves->mask->len + 1);

@@ -71,9 +71,7 @@ static RsvgHandle *add_variant(FlSvg *svg, gpointer key, xmlDoc *doc, GError **e
 
 RsvgHandle *fl_svg_handle(FlSvg *svg, FlPart part, FlPurpose purpose, GError **error)
 {
-    // a copy to read from would only be turned then, as the surface is that it is drawn on
-    const bool plain = !svg->has_probe && svg->leaves->mask->len == 0;
-    if (part == FL_PART_WHOLE && (purpose == FL_TO_DRAW || plain))
+    if (part == FL_PART_WHOLE && purpose == FL_TO_DRAW)
         return svg->handle;
     gpointer key = variant_key((int)part, (int)purpose);
     RsvgHandle *handle = g_hash_table_lookup(svg->variants, key);

@@ -27,12 +27,13 @@ static char *script_of(FlSvg *svg, const FlLeaf *leaf, FlPart part, double size,
     g_autoptr(cairo_surface_t) surface =
         cairo_script_surface_create(device, CAIRO_CONTENT_COLOR_ALPHA, size, size);
     cairo_t *cr = cairo_create(surface);
-    if (!svg->has_probe) {
+    const bool copied = svg->reads_copies || leaf->effects;
+    if (!copied) { // a copy would only be turned, as the page is here
         cairo_translate(cr, size / 4, 0);
         cairo_rotate(cr, FL_PAINT_PROBE_TURN);
     }
-    const bool drawn =
-        fl_svg_draw_leaf(svg, leaf, part, FL_TO_READ, cr, (FlPageSize){size, size}, error);
+    const bool drawn = fl_svg_draw_leaf(svg, leaf, part, copied ? FL_TO_READ : FL_TO_DRAW, cr,
+                                        (FlPageSize){size, size}, error);
     cairo_destroy(cr);
     cairo_surface_finish(surface);
     cairo_device_finish(device);
