@@ -82,6 +82,12 @@ static size_t pixel_bytes(const FlPng *picture)
     return (picture->opaque ? 3 : 4) * (picture->rgba16 ? sizeof(uint16_t) : 1);
 }
 
+/** The bytes of a whole row, with its filter byte. */
+static size_t row_bytes(const FlPng *picture)
+{
+    return picture->width * pixel_bytes(picture) + 1;
+}
+
 static void pack_row8(const uint8_t *rgba, int width, int channels, uint8_t *restrict out)
 {
     for (int x = 0; x < width; x++)
@@ -110,26 +116,28 @@ static bool is_blank(const FlPng *picture, int y)
            (picture->runs && fl_pixel_runs_filled(picture->runs, y - filled.y).last == 0);
 }
 
-/** Row y as it is stored. */
+/** Row y of a picture that is all paint, as it is stored. */
 static void pack_row(const FlPng *picture, int y, uint8_t *out)
 {
     const size_t first = (size_t)y * picture->width * 4;
+    const int channels = picture->opaque ? 3 : 4;
+    if (picture->rgba16)
+        pack_row16(picture->rgba16 + first, picture->width, channels, out);
+    else
+        pack_row8(picture->rgba + first, picture->width, channels, out);
+}
+
+/** Row y of what is filled of a picture; out: clear. */
+static void pack_filled(const FlPng *picture, int y, uint8_t *out)
+{
     const FlRect filled = filled_of(picture);
-    if (picture->filled || picture->runs)
-        memset(out, 0, picture->width * pixel_bytes(picture));
     if (is_blank(picture, y))
         return;
     if (picture->runs)
-        fl_pixel_runs_copy(picture->runs, y - filled.y, out + (size_t)filled.x * 4);
-    else if (picture->filled)
-        pack_row8(picture->rgba + (size_t)(y - filled.y) * filled.width * 4, filled.width, 4,
-                  out + (size_t)filled.x * 4);
-    else if (picture->rgba16)
-        pack_row16(picture->rgba16 + first, picture->width, picture->opaque ? 3 : 4, out);
-    else if (picture->opaque)
-        pack_row8(picture->rgba + first, picture->width, 3, out);
+        fl_pixel_runs_copy(picture->runs, y - filled.y, out);
     else
-        pack_row8(picture->rgba + first, picture->width, 4, out);
+        memcpy(out, picture->rgba + (size_t)(y - filled.y) * filled.width * 4,
+               (size_t)filled.width * 4);
 }
 
 /** PNG's filter "average": n bytes of a row minus the mean of the pixels to the left and above. */
@@ -142,24 +150,16 @@ static void filter_row(const uint8_t *row, const uint8_t *above, size_t n, size_
         out[i] = (uint8_t)(row[i] - (row[i - pixel] + above[i]) / 2);
 }
 
-/** Rows of a picture, from `first` to the one before `end`. */
-typedef struct Rows {
-    int first, end;
-} Rows;
-
-/** Rows that have something in them, each preceded by its filter byte; those around are clear. */
-static uint8_t *filter_rows(const FlPng *picture, Rows part, GError **error)
+/** All rows, each preceded by its filter byte. */
+static uint8_t *filter_rows(const FlPng *picture, GError **error)
 {
     const size_t pixel = pixel_bytes(picture), n = picture->width * pixel;
     g_autofree uint8_t *rows = fl_alloc(2, n, "a PNG picture", error);
     uint8_t *out =
-        rows ? fl_alloc_scratch((size_t)(part.end - part.first), n + 1, "a PNG picture", error)
-             : NULL;
-    for (int y = part.first; out && y < part.end; y++) {
-        uint8_t *row = rows + (y % 2) * n, *to = out + (size_t)(y - part.first) * (n + 1);
+        rows ? fl_alloc_unset((size_t)picture->height, n + 1, "a PNG picture", error) : NULL;
+    for (int y = 0; out && y < picture->height; y++) {
+        uint8_t *row = rows + (y % 2) * n, *to = out + (size_t)y * (n + 1);
         pack_row(picture, y, row);
-        if (is_blank(picture, y) && (y == 0 || is_blank(picture, y - 1)))
-            continue; // as it is, without a filter
         to[0] = picture->rgba16 ? PNG_FILTER_VALUE_NONE : PNG_FILTER_VALUE_AVG;
         if (picture->rgba16)
             memcpy(to + 1, row, n);
@@ -172,8 +172,8 @@ static uint8_t *filter_rows(const FlPng *picture, Rows part, GError **error)
 /** All rows as a zlib stream of *bytes; NULL, maybe with an error, if memory is short. */
 static uint8_t *compress_all(const FlPng *picture, size_t *bytes, GError **error)
 {
-    const size_t n = (picture->width * pixel_bytes(picture) + 1) * (size_t)picture->height;
-    g_autofree uint8_t *rows = filter_rows(picture, (Rows){0, picture->height}, error);
+    const size_t n = row_bytes(picture) * (size_t)picture->height;
+    g_autofree uint8_t *rows = filter_rows(picture, error);
     struct libdeflate_compressor *compressor =
         libdeflate_alloc_compressor(picture->fast ? LEVEL_FAST : LEVEL_FINAL);
     const size_t room = compressor ? libdeflate_zlib_compress_bound(compressor, n) : 0;
@@ -184,31 +184,54 @@ static uint8_t *compress_all(const FlPng *picture, size_t *bytes, GError **error
     return stream;
 }
 
-/** The same of a picture that is clear but for some rows. */
-static uint8_t *compress_part(const FlPng *picture, Rows part, size_t *bytes, GError **error)
+/** Puts rows `first` to the one before `end`, of which n bytes from column x on are not clear. */
+static void put_rows(const FlPng *picture, int first, int end, size_t n, uint8_t *rows,
+                     FlSparseStream *stream)
 {
-    const size_t row = picture->width * pixel_bytes(picture) + 1;
-    g_autofree uint8_t *rows = filter_rows(picture, part, error);
+    static const uint8_t filter = PNG_FILTER_VALUE_AVG;
+    const size_t before = (size_t)filled_of(picture).x * pixel_bytes(picture);
+    uint8_t *filtered = rows + 2 * n;
+    for (int y = first; y < end; y++) {
+        uint8_t *row = rows + (y % 2) * n;
+        memset(row, 0, n);
+        if (is_blank(picture, y) && (y == 0 || is_blank(picture, y - 1))) {
+            fl_sparse_stream_run(stream, 0, row_bytes(picture)); // as it is, without a filter
+            continue;
+        }
+        pack_filled(picture, y, row);
+        filter_row(row, rows + (y + 1) % 2 * n, n, pixel_bytes(picture), filtered);
+        fl_sparse_stream_put(stream, &filter, 1);
+        fl_sparse_stream_run(stream, 0, before);
+        fl_sparse_stream_put(stream, filtered, n);
+        fl_sparse_stream_run(stream, 0, row_bytes(picture) - 1 - before - n);
+    }
+}
+
+/** The same of a picture that is clear but for a part. */
+static uint8_t *compress_part(const FlPng *picture, size_t *bytes, GError **error)
+{
+    const FlRect filled = filled_of(picture);
+    // what is clear below it and on its right is filtered by its last pixels
+    const int end = MIN(filled.y + filled.height + 1, picture->height);
+    const int columns = MIN(filled.width + 1, picture->width - filled.x);
+    const size_t n = (size_t)columns * pixel_bytes(picture);
+    g_autofree uint8_t *rows = fl_alloc(3, n, "a PNG picture", error);
     if (!rows)
         return NULL;
-    g_autoptr(GByteArray) stream = g_byte_array_new();
-    FlSparseStream *sparse = fl_sparse_stream_new(stream);
-    fl_sparse_stream_run(sparse, 0, (size_t)part.first * row);
-    fl_sparse_stream_put(sparse, rows, (size_t)(part.end - part.first) * row);
-    fl_sparse_stream_run(sparse, 0, (size_t)(picture->height - part.end) * row);
-    fl_sparse_stream_end(sparse);
-    return g_byte_array_steal(stream, bytes);
+    g_autoptr(GByteArray) packed = g_byte_array_new();
+    FlSparseStream *stream = fl_sparse_stream_new(packed);
+    fl_sparse_stream_run(stream, 0, (size_t)filled.y * row_bytes(picture));
+    put_rows(picture, filled.y, end, n, rows, stream);
+    fl_sparse_stream_run(stream, 0, (size_t)(picture->height - end) * row_bytes(picture));
+    fl_sparse_stream_end(stream);
+    return g_byte_array_steal(packed, bytes);
 }
 
 /** Of a picture that is all paint libdeflate makes a smaller stream. */
 static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
 {
-    const FlRect filled = filled_of(picture);
-    if (!picture->filled && !picture->runs)
-        return compress_all(picture, bytes, error);
-    // the row below is not clear: it is filtered by the last one
-    const Rows part = {filled.y, MIN(filled.y + filled.height + 1, picture->height)};
-    return compress_part(picture, part, bytes, error);
+    return picture->filled || picture->runs ? compress_part(picture, bytes, error)
+                                            : compress_all(picture, bytes, error);
 }
 
 #define CHUNK_BYTES ((size_t)1 << 30) // of a file's parts, at most
