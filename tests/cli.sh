@@ -418,7 +418,8 @@ result $? 'the presets of the papers have even paint'
 if "$program" whole -s 01 -q -f 1 -o 'open/w%d.ora' >out 2>err; then
     "$program" whole -s 01 -q -f 1 -b '#336699' --paper rough -o 'open/b%d.ora' >out 2>err &&
         "$program" whole -s 01 -q -f 1 -b none --paper cold -o 'open/n%d.ora' >out 2>err &&
-        off=$(python3 "$tests/ora.py" open/w1.ora open/b1.ora open/n1.ora 2>err) && echo "$off" >>err &&
+        "$program" whole -s 01 -q -f 1-3 --paper-boil 2 -o 'open/p%d.ora' >out 2>err &&
+        off=$(python3 "$tests/ora.py" open/[wbn]1.ora open/p[23].ora 2>err) && echo "$off" >>err &&
         [ "${off%.*}" -le 1 ]
     result $? 'the layers of an OpenRaster file, paper and ground among them, make its picture'
 fi

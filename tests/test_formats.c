@@ -534,6 +534,39 @@ static void an_openraster_file_has_its_layers_in_order(void)
     zip_close(zip);
 }
 
+/** Writes a frame whose only layer is `whole`; the layer's file. */
+static GBytes *layer_of_frame(FlSink *sink, int number, int since)
+{
+    g_autoptr(GError) error = NULL;
+    const FlSinkLayer layer = {
+        .name = "paper", .width = W, .height = H, .rgba = whole, .since = since, .multiply = true};
+    const FlSinkFrame frame = {.number = number, .rgba = whole, .layers = &layer, .n_layers = 1};
+    fl_sink_frame(sink, &frame, &error);
+    g_assert_no_error(error);
+    g_autofree char *path = fl_sink_file(&sink->params, number, NULL);
+    zip_t *zip = zip_open(path, ZIP_RDONLY, NULL);
+    size_t bytes;
+    char *png = read_part(zip, "data/layer000.png", &bytes);
+    zip_close(zip);
+    return g_bytes_new_take(png, bytes);
+}
+
+static void a_layer_that_stays_is_encoded_once(void)
+{
+    g_auto(Scratch) scratch = scratch_new();
+    g_autofree char *pattern = g_build_filename(scratch.folder, "a_%02d.ora", NULL);
+    const FlSinkParams params = {.path = pattern, .width = W, .height = H};
+    g_autoptr(FlSink) sink = fl_sink_open(fl_sink_format(NULL, pattern, NULL), &params, NULL);
+    fill(whole, 1);
+    g_autoptr(GBytes) first = layer_of_frame(sink, 1, 1);
+    fill(whole, 2);
+    g_autoptr(GBytes) stays = layer_of_frame(sink, 2, 1), other = layer_of_frame(sink, 3, 3);
+    g_autoptr(GBytes) unknown = layer_of_frame(sink, 4, 0);
+    g_assert_true(g_bytes_equal(first, stays));
+    g_assert_false(g_bytes_equal(first, other));
+    g_assert_true(g_bytes_equal(other, unknown));
+}
+
 #endif
 
 int main(int argc, char **argv)
@@ -565,6 +598,8 @@ int main(int argc, char **argv)
 #if HAVE_ORA
     g_test_add_func("/formats/an-openraster-file-has-its-layers-in-order",
                     an_openraster_file_has_its_layers_in_order);
+    g_test_add_func("/formats/a-layer-that-stays-is-encoded-once",
+                    a_layer_that_stays_is_encoded_once);
 #endif
     return g_test_run();
 }

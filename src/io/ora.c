@@ -135,7 +135,8 @@ static char *stack_xml(const FlSinkParams *params, const GArray *parts)
     return g_string_free(g_steal_pointer(&xml), FALSE);
 }
 
-static bool add_part(Archive *archive, const char *name, const Part *part, bool fast)
+/** The file of a part; NULL: no memory. Layers without pixels hold one clear pixel. */
+static GBytes *encode_part(const Part *part, bool fast)
 {
     static const uint8_t clear[4] = {0};
     const FlSinkLayer *layer = part->layer;
@@ -148,17 +149,47 @@ static bool add_part(Archive *archive, const char *name, const Part *part, bool 
     if (layer->width == 0 || layer->height == 0)
         png = (FlPng){.width = 1, .height = 1, .rgba = clear, .fast = fast};
     if (!layer->multiply)
-        return add_png(archive, name, &png);
+        return fl_png_encode(&png);
     const size_t values = 4 * (size_t)layer->width * (size_t)layer->height;
     g_autofree uint8_t *rgba = g_malloc(values);
     for (size_t i = 0; i < values; i++)
         rgba[i] = part->level[layer->rgba[i]]; // alpha is not stored
     png.rgba = rgba;
-    return add_png(archive, name, &png);
+    return fl_png_encode(&png);
 }
 
-/** mimetype must be the first part, and stored. Layers without pixels hold one clear pixel. */
-static bool add_parts(Archive *archive, const FlSinkParams *params, const FlSinkFrame *frame)
+/** The file of a part that will be the same in later frames, as the paper is. */
+typedef struct Kept {
+    int since; // FlSinkLayer.since
+    GBytes *bytes;
+} Kept;
+
+static void kept_free(void *data)
+{
+    Kept *kept = data;
+    g_bytes_unref(kept->bytes);
+    g_free(kept);
+}
+
+/** The same, made once as long as it stays; kept: by the parts' names. */
+static GBytes *bytes_of(const Part *part, GHashTable *kept, bool fast)
+{
+    g_autofree char *name = g_strconcat(part->layer->name, part->suffix, NULL);
+    const Kept *known = part->layer->since > 0 ? g_hash_table_lookup(kept, name) : NULL;
+    if (known && known->since == part->layer->since)
+        return g_bytes_ref(known->bytes);
+    GBytes *bytes = encode_part(part, fast);
+    if (!bytes || part->layer->since == 0)
+        return bytes;
+    Kept *fresh = g_new(Kept, 1);
+    *fresh = (Kept){part->layer->since, g_bytes_ref(bytes)};
+    g_hash_table_replace(kept, g_steal_pointer(&name), fresh);
+    return bytes;
+}
+
+/** mimetype must be the first part, and stored. */
+static bool add_parts(Archive *archive, const FlSinkParams *params, GHashTable *kept,
+                      const FlSinkFrame *frame)
 {
     g_autoptr(GArray) parts = parts_of(frame);
     g_autofree char *xml = stack_xml(params, parts);
@@ -166,7 +197,8 @@ static bool add_parts(Archive *archive, const FlSinkParams *params, const FlSink
         add_text(archive, "mimetype", "image/openraster") && add_text(archive, "stack.xml", xml);
     for (guint k = 0; ok && k < parts->len; k++) {
         g_autofree char *name = g_strdup_printf("data/layer%03u.png", k);
-        ok = add_part(archive, name, &g_array_index(parts, Part, k), params->fast);
+        GBytes *bytes = bytes_of(&g_array_index(parts, Part, k), kept, params->fast);
+        ok = bytes && archive_add(archive, name, bytes);
     }
     const FlPng merged = {.width = params->width,
                           .height = params->height,
@@ -194,6 +226,17 @@ static bool archive_store(Archive *archive, FILE *stream)
     return n == 0;
 }
 
+static bool ora_open(FlSink *sink, GError **error)
+{
+    sink->state = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, kept_free);
+    return true;
+}
+
+static void ora_clear(FlSink *sink)
+{
+    g_clear_pointer(&sink->state, g_hash_table_unref);
+}
+
 static bool ora_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
 {
     g_autofree char *path = fl_sink_file(&sink->params, frame->number, error);
@@ -201,7 +244,8 @@ static bool ora_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     Archive archive = {0};
     if (!path || !fl_atomic_open(&file, path, sink->params.overwrite, error))
         return false;
-    const bool put = archive_open(&archive) && add_parts(&archive, &sink->params, frame) &&
+    const bool put = archive_open(&archive) &&
+                     add_parts(&archive, &sink->params, sink->state, frame) &&
                      archive_store(&archive, file.stream);
     archive_clear(&archive);
     if (put)
@@ -216,5 +260,7 @@ const FlSinkFormat fl_sink_ora = {
     .suffix = ".ora",
     .help = "an OpenRaster file per frame, with all layers",
     .takes_layers = true,
+    .open = ora_open,
     .frame = ora_frame,
+    .clear = ora_clear,
 };

@@ -16,6 +16,7 @@ typedef struct FlSinkLayer {
     int x, y, width, height; // its place in the frame
     const uint8_t *rgba;     // width * height * 4; NULL: it is `runs`
     const FlPixelRuns *runs; // of its rows; NULL: it is `rgba`
+    int since;               // which frame, from 1, was the first with the same pixels; 0: unknown
     bool multiply;           // what is below is multiplied by it, where FL_SINK_ONE stands for one
 } FlSinkLayer;
 

@@ -59,7 +59,7 @@ bool fl_frame_writer_paint(const FlFrameWriter *writer, const FlPaintedRegion *c
 }
 
 /* Background, layers and paper, bottom first. Returns: how many. */
-static int stack_layers(const FlFrameWriter *writer, const FlComposite *composite,
+static int stack_layers(const FlFrameWriter *writer, const FlComposite *composite, int frame,
                         FlSinkLayer *layers)
 {
     const int width = writer->plan->width, height = writer->plan->height;
@@ -82,6 +82,7 @@ static int stack_layers(const FlFrameWriter *writer, const FlComposite *composit
                                     .width = width,
                                     .height = height,
                                     .rgba = composite->sheet,
+                                    .since = 1 + fl_paper_sheet_since(writer->paper, frame),
                                     .multiply = true};
     return n;
 }
@@ -90,7 +91,7 @@ bool fl_frame_writer_frame(FlFrameWriter *writer, const FlComposite *composite, 
                            GError **error)
 {
     g_autofree FlSinkLayer *layers = g_new0(FlSinkLayer, composite->n_layers + 2);
-    const int n_layers = stack_layers(writer, composite, layers);
+    const int n_layers = stack_layers(writer, composite, frame, layers);
     const FlSinkFrame out = {.number = fl_drawing_number(writer->plan->drawing, frame),
                              .rgba = composite->rgba,
                              .rgba16 = composite->rgba16,
