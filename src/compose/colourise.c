@@ -114,18 +114,37 @@ static void turn_hue(const Fill *fill, int amount, int play, uint8_t colour[3])
     }
 }
 
-static void colour_amount(Fill *fill, const FlColouring *colouring, const FlTransfer *scale,
-                          int amount, int play, uint8_t rgba[4])
-{
+/** What an amount of paint looks like on the paper, before pigments play. */
+typedef struct Look {
     uint8_t colour[3];
-    fl_colour_law_at(&fill->law, amount, colour);
-    if (colouring->play)
-        turn_hue(fill, amount, play, colour);
+    uint8_t opacity; // alpha, at least
+} Look;
+
+static Look look_of(Fill *fill, const FlColouring *colouring, const FlTransfer *scale, int amount)
+{
+    Look look;
+    fl_colour_law_at(&fill->law, amount, look.colour);
     int opacity = MAX(opacity_of(colouring->medium, amount),
                       least_up_to(fill, colouring, scale, amount / LEAST_STEP));
     if (amount > fill->turn_at)
         opacity = MAX(opacity, fill->least_there);
-    fl_unblend(scale, colour, colouring->paper, opacity, rgba);
+    look.opacity = (uint8_t)opacity;
+    return look;
+}
+
+static void colour_look(const Fill *fill, const FlColouring *colouring, const FlTransfer *scale,
+                        Look look, int amount, int play, uint8_t rgba[4])
+{
+    if (colouring->play)
+        turn_hue(fill, amount, play, look.colour);
+    fl_unblend(scale, look.colour, colouring->paper, look.opacity, rgba);
+}
+
+static void colour_amount(Fill *fill, const FlColouring *colouring, const FlTransfer *scale,
+                          int amount, int play, uint8_t rgba[4])
+{
+    colour_look(fill, colouring, scale, look_of(fill, colouring, scale, amount), amount, play,
+                rgba);
 }
 
 /** One fill for the whole region: each amount that it has is looked up. */
@@ -183,6 +202,8 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
     const size_t n = n_amounts * PLAYS;
     g_autofree uint32_t *colours = g_new(uint32_t, n); // where it was met
     g_autofree bool *met = g_new0(bool, n);
+    g_autofree Look *looks = g_new(Look, n_amounts);
+    g_autofree bool *seen = g_new0(bool, n_amounts); // which looks are known
     Fill fill;
     fill_init(&fill, ink, colouring, scale, colouring->fill);
     for (int y = 0; y < area->box.height; y++) {
@@ -195,7 +216,12 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
             const size_t at = (size_t)play * n_amounts + (size_t)amounts[i];
             if (!met[at]) {
                 uint8_t of[4];
-                colour_amount(&fill, colouring, scale, amounts[i], play * 256 / PLAYS - 126, of);
+                Look *look = &looks[amounts[i]];
+                if (!seen[amounts[i]])
+                    *look = look_of(&fill, colouring, scale, amounts[i]);
+                seen[amounts[i]] = true;
+                colour_look(&fill, colouring, scale, *look, amounts[i], play * 256 / PLAYS - 126,
+                            of);
                 memcpy(&colours[at], of, 4);
                 met[at] = true;
             }
