@@ -59,8 +59,9 @@ one() {
     case $target in
     svg | film | geometry | path) options+=(-dict=tests/fuzz/svg.dict) ;;
     esac
-    # These fork, and look at the memory of what they fork. A thread that looks at ours might hold the
-    # allocator's lock then, for which the child would wait for ever. A replay looks for leaks.
+    # These two fork, and limit their children's memory. LibFuzzer's thread that watches their own could
+    # hold the allocator's lock during a fork, and the child would wait for it for ever.
+    # A replay looks for leaks.
     case $target in svg | film) options+=(-detect_leaks=0 -rss_limit_mb=0) ;; esac
     mkdir -p "$CORPUS/$target"
     if "$build/tests/fuzz/fuzz_$target" "${options[@]}" "$CORPUS/$target" "${seeds[@]}" \

@@ -189,6 +189,10 @@ static void paints_are_read_from_a_copy_only_where_something_has_an_effect(void)
         "<pattern id='p'/><rect " BOX "/>",
         "<image width='9' height='9'/>",
         "<marker id='k'><circle r='1' opacity='.5'/></marker><line x2='9' marker-end='url(#k)'/>",
+        "<circle id='c' r='9' opacity='.5'/><marker id='k'><use href='#c'/></marker>"
+        "<line x2='9' marker-end='url(#k)'/>",
+        "<image href='other.svg' width='9' height='9'/>",
+        "<use href='other.svg#a'/>",
         "<style>.a{opacity:.5}</style><rect " BOX "/>",
     };
     for (size_t i = 0; i < G_N_ELEMENTS(without); i++)

@@ -204,7 +204,8 @@ static bool find_filled(Rows *rows, const Writer *writer)
     return SPARSE_SHARE * filled < all;
 }
 
-/** Adds the low or the high bytes of n pixels of a channel, n > 0. */
+/** Adds the low or the high bytes of n pixels of a channel, n > 0; those of one colour, as a ground
+ * mostly has, are a run. */
 static void put_pixels(Rows *rows, const uint8_t *rgba, int n, int component, bool high)
 {
     const uint8_t(*const of)[256] = bytes_of[high];

@@ -184,7 +184,8 @@ static uint8_t *compress_all(const FlPng *picture, size_t *bytes, GError **error
     return stream;
 }
 
-/** Puts rows `first` to the one before `end`, of which n bytes from column x on are not clear. */
+/** Puts rows `first` to the one before `end`, of which only n bytes, from the filled columns on,
+ * are not clear; rows: room for three times that. */
 static void put_rows(const FlPng *picture, int first, int end, size_t n, uint8_t *rows,
                      FlSparseStream *stream)
 {
@@ -215,6 +216,7 @@ static uint8_t *compress_part(const FlPng *picture, size_t *bytes, GError **erro
     const int end = MIN(filled.y + filled.height + 1, picture->height);
     const int columns = MIN(filled.width + 1, picture->width - filled.x);
     const size_t n = (size_t)columns * pixel_bytes(picture);
+    g_assert(pixel_bytes(picture) == 4);
     g_autofree uint8_t *rows = fl_alloc(3, n, "a PNG picture", error);
     if (!rows)
         return NULL;

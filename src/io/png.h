@@ -13,7 +13,7 @@ typedef struct FlPng {
     const FlPixelRuns *runs; // the same as runs
     const FlRect *filled;    // the part that rgba or runs are of; the rest is clear; NULL: all
     const uint16_t *rgba16;  // the same, 16 bits, native byte order
-    bool opaque;             // store no alpha
+    bool opaque;             // store no alpha; not with runs or filled
     bool fast;               // deflate at level 1 instead of 4
     const FlRect *place;     // where it lies in a larger picture, from 0; NULL: nowhere
     const char *const *text; // keyword, text, …, NULL; or NULL

@@ -4,13 +4,11 @@
 
 #include "svg/document.h"
 
-/* Style sheets are ignored. */
-
-/** Whether a property is set, and not to none or normal. */
+/** Whether a property is set, and not to none or normal. Style sheets are ignored. */
 bool fl_is_set(const xmlNode *node, const char *property);
 
-/** Whether an element blends, or its opacity is below 1, or it has a mask or a filter or is
- * isolated. */
+/** Whether an element has a mask, a filter, a blend mode or an opacity below 1, or is isolated.
+ * Style sheets are ignored. */
 bool fl_has_effects(const xmlNode *node);
 
 #endif

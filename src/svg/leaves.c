@@ -107,10 +107,11 @@ static bool has_text(const xmlNode *node)
     return found;
 }
 
-/** Whether librsvg may draw a node, or something in it, on a surface of its own. */
+/** Whether librsvg may draw a node, or something in it, on a surface of its own: what a <use> that
+ * is left shows may have effects, too. */
 static bool has_effects(const xmlNode *node)
 {
-    bool found = fl_is(node, "image") || fl_has_effects(node);
+    bool found = fl_is(node, "image") || fl_is(node, "use") || fl_has_effects(node);
     for (const xmlNode *child = node->children; child && !found; child = child->next)
         found = child->type == XML_ELEMENT_NODE && has_effects(child);
     return found;
@@ -198,8 +199,7 @@ static bool is_inseparable(const Walk *w, const xmlNode *node)
 /** Whether a group may have to be drawn as one. */
 static bool is_unit(const Walk *w, const xmlNode *node)
 {
-    return fl_has_effects(node) || is_inseparable(w, node) || has_mask(w, node) ||
-           fl_css_look_up(w->css, node) & FL_CSS_OPACITY;
+    return fl_has_effects(node) || fl_css_look_up(w->css, node);
 }
 
 /** Whether something in a node blends with what is below it. */

@@ -22,7 +22,7 @@ typedef struct FlLeaf {
     char *tree;    // child indices from the root, "0/3/1"
     int unit;      // index of the group it may be drawn as one with, -1: none
     bool text;     // has text, whose shape depends on the scale
-    bool effects;  // fl_has_effects() is true of it, of something in it or around it; or an image
+    bool effects;  // it, something in it or a group around it has some, or it may show an image
     bool all;      // the whole document, drawn as it was before it was normalised
     bool whole; // has markers, text or images, or is in `whole`: fill and stroke are not separated
 } FlLeaf;

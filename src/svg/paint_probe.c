@@ -9,17 +9,27 @@ static const char *const shapes[] = {"g",      "svg",     "a",    "path",     "r
                                      "circle", "ellipse", "line", "polyline", "polygon",
                                      "text",   "image",   "use",  NULL};
 
-/** Whether anything may be drawn on a surface of its own because of a definition. */
+static bool is_in_marker(const xmlNode *node)
+{
+    while (node && !fl_is(node, "marker"))
+        node = node->parent;
+    return node != NULL;
+}
+
+/** Whether a node may be why librsvg draws any leaf on a surface of its own; defined: it is part of
+ * a definition. */
 static bool is_apart(const xmlNode *node, bool defined)
 {
     static const char *const anywhere[] = {"pattern", "style", NULL};
     g_autoptr(xmlChar) units = fl_attribute(node, "clipPathUnits");
     return fl_is_one_of(node, anywhere) ||
            (units && strcmp((const char *)units, "objectBoundingBox") == 0) ||
-           (defined && (fl_is(node, "image") || fl_has_effects(node)));
+           (defined && (fl_is(node, "image") || fl_has_effects(node) ||
+                        (fl_is(node, "use") && is_in_marker(node))));
 }
 
-/** What is in a mask is drawn with leaves that have one, FlLeaf.effects. */
+/** The same of the nodes from one on. What is in a mask is drawn for leaves that have one, which
+ * FlLeaf.effects tells. */
 static bool has_apart(const xmlNode *node, bool defined)
 {
     for (; node; node = node->next) {

@@ -7,8 +7,9 @@
 /** The rotation at which paints are read, rad; see fl_paint_probe_prepare(). */
 #define FL_PAINT_PROBE_TURN 0.3
 
-/** Whether paints of all leaves are read so, not of those with FlLeaf.effects alone: patterns, or
- * definitions with effects, may be those of any, and style sheets may give any an effect. */
+/** Whether the paints of all leaves have to be read from such a copy, not only those of leaves with
+ * FlLeaf.effects: any leaf may show a pattern or another definition with effects, and a style sheet
+ * may give it some. */
 bool fl_paint_probe_is_needed(xmlDoc *doc);
 
 /**
