@@ -2,231 +2,24 @@
 
 #include "base/alloc.h"
 #include "base/parallel_error.h"
-#include "base/rng.h"
 #include "base/schedule.h"
-#include "compose/colourise.h"
 #include "compose/edge_map.h"
 #include "compose/enlarge.h"
 #include "compose/exposure.h"
-#include "compose/granulation.h"
-#include "compose/knockout.h"
+#include "compose/paint_layer.h"
 #include "compose/underlay.h"
 #include "compose/unevenness.h"
-#include "compose/visibility.h"
-#include <math.h>
 #include <string.h>
 
 #define BLEED_PX 8 // how far colours reach into transparency, for frames that are scaled later
 
-/* The default: opaque where the output is not the style's paper. */
-static FlMedium medium_of(const FlComposeInput *input, const FlPaintedRegion *painted)
-{
-    const FlMedium said = painted->settings->medium, of_style = painted->style->medium;
-    if (said != FL_MEDIUM_AUTO || of_style != FL_MEDIUM_AUTO)
-        return said != FL_MEDIUM_AUTO ? said : of_style;
-    const FlBackground *background = input->background;
-    return background->none || background->pattern || input->layers_apart ? FL_MEDIUM_OPAQUE
-                                                                          : FL_MEDIUM_TRANSPARENT;
-}
-
-/* What the layers of a frame are made from. */
+/* The layers of a frame. */
 typedef struct Stack {
     FlComposite *composite;
     const FlComposeInput *input;
-    const FlEdgeMap *edges;
-    const int *exposures;
-    const double *areas; // of each region, px
-    int *draw;           // the index in the draw list of each layer
+    FlLayerSources sources;
+    int *draw; // the index in the draw list of each layer
 } Stack;
-
-static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegion *painted,
-                                const FlDraw *draw)
-{
-    const FlRegionSettings *t = painted->settings;
-    FlColouring colouring = {.tint = t->tint,
-                             .picture = t->has_colour ? NULL : draw->picture,
-                             .medium = medium_of(input, painted),
-                             .pigments = (float)t->pigments,
-                             .linear = input->linear};
-    memcpy(colouring.fill, t->has_colour ? t->colour : draw->rgb, 3);
-    memcpy(colouring.paper, input->background->paper, 3);
-    return colouring;
-}
-
-static FlPaintedPart part_of(const FlPaintedRegion *painted)
-{
-    return (FlPaintedPart){painted->painted, painted->rect, painted->alpha};
-}
-
-/* How much paint each pixel of a draw's box has; to be freed with free(). */
-static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion *painted,
-                           int exposure, GError **error)
-{
-    const bool keep = painted->settings->tint == FL_TINT_KEEP;
-    const FlDraw *draw = &edges->draws->draw[r];
-    const FlPaintedPart part = part_of(painted);
-    g_autofree int16_t *amounts =
-        fl_alloc_unset(fl_rect_pixels(draw->area.box), sizeof *amounts, "a layer", error);
-    if (!amounts)
-        return NULL;
-    fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
-                         draw->coverage, &draw->area, amounts);
-    if (!fl_edges_close(edges, r, painted, amounts, error) ||
-        (!keep && !fl_edges_level(edges, r, amounts, error)))
-        return NULL;
-    return g_steal_pointer(&amounts);
-}
-
-/* What is uneven in a region is its own, whatever else is drawn. */
-static FlUneven uneven_of(const Stack *stack, const FlPaintedRegion *painted)
-{
-    const FlComposeInput *input = stack->input;
-    return (FlUneven){.key = fl_key(input->seed, g_str_hash(painted->name)),
-                      .anchor = painted->anchor,
-                      .area = stack->areas[painted->region],
-                      .scale = input->paper_px * (input->half ? .5f : 1)};
-}
-
-/* The grain of the paper and of the hand; not in paint that keeps the exemplar's own colours. */
-static void roughen(const Stack *stack, const FlPaintedRegion *painted, const FlArea *area,
-                    int16_t *amounts)
-{
-    const FlRegionSettings *t = painted->settings;
-    const FlUneven uneven = uneven_of(stack, painted);
-    if (t->tint == FL_TINT_KEEP)
-        return;
-    fl_load_unevenly(&uneven, (float)t->load, area, amounts);
-    fl_granulate(isnan(t->granulation) ? painted->style->granulation : (float)t->granulation,
-                 stack->input->tooth, area, amounts);
-}
-
-/* Colours a layer by its amounts of paint, once the grain of paper and hand is in them. */
-static bool colour_layer(FlLayer *layer, const Stack *stack, const FlPaintedRegion *painted,
-                         FlColouring *colouring, int16_t *amounts, GError **error)
-{
-    const FlPaintedPart part = part_of(painted);
-    const FlUneven uneven = uneven_of(stack, painted);
-    g_autofree int8_t *play = NULL;
-    if (colouring->pigments > 0) {
-        if (!(play = fl_alloc_unset(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
-            return false;
-        fl_play_of_pigments(&uneven, &layer->area, amounts, play);
-    }
-    colouring->play = play;
-    roughen(stack, painted, &layer->area, amounts);
-    fl_colourise(painted->style->ink, colouring, &part, amounts, &layer->area, layer->rgba);
-    colouring->play = NULL;
-    return true;
-}
-
-/* Knockout is of the amounts before the paper's grain, which else would punch holes into it. */
-static bool paint_layer(FlLayer *layer, const Stack *stack, int r, const FlPaintedRegion *painted,
-                        int exposure, GError **error)
-{
-    const FlDraw *draw = &stack->edges->draws->draw[r];
-    FlColouring colouring = colouring_of(stack->input, painted, draw);
-    const FlRect box = layer->area.box;
-    g_autofree int16_t *amounts = amounts_of(stack->edges, r, painted, exposure, error);
-    uint8_t *knockout = amounts ? fl_alloc_scratch(fl_rect_pixels(box), 1, "a layer", error) : NULL;
-    layer->knockout = knockout;
-    layer->stacking = painted->settings->stacking;
-    if (!knockout)
-        return false;
-    const FlDrawing *drawing = stack->input->drawing;
-    const int border_px = (int)(painted->style->border_px + 0.5f);
-    return fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
-                       fl_drawing_height(drawing), MAX(border_px, 1), knockout, error) &&
-           colour_layer(layer, stack, painted, &colouring, amounts, error);
-}
-
-/* Paint with alpha of its own fades out by that, beyond its shape: the layer of a grown one,
- * through which what lies below is seen. */
-static bool reach_out(FlLayer *layer, const Stack *stack, const FlDraw *draw,
-                      const FlPaintedRegion *painted, GError **error)
-{
-    const int width = fl_drawing_width(stack->input->drawing);
-    const int height = fl_drawing_height(stack->input->drawing);
-    const FlVisibleShape shape = {&draw->area, draw->coverage};
-    g_autofree uint8_t *grown = fl_alloc((size_t)width * (size_t)height, 1, "a layer", error);
-    if (!grown)
-        return false;
-    fl_visibility_spread(&shape, width, height, painted->reach_px, grown);
-    fl_area_clear(&layer->area);
-    fl_area_init(&layer->area, grown, width, height);
-    const FlRect box = layer->area.box;
-    uint8_t *coverage = fl_alloc(fl_rect_pixels(box), 1, "a layer", error);
-    layer->coverage = coverage, layer->owns_coverage = true;
-    if (coverage)
-        fl_rect_copy(grown, (FlRect){0, 0, width, height}, coverage, box, 1);
-    return coverage != NULL;
-}
-
-/* It has the alpha of the paint, whatever the amounts. */
-static bool paint_cut_out(FlLayer *layer, const Stack *stack, int r, const FlPaintedRegion *painted,
-                          int exposure, GError **error)
-{
-    const FlDraw *draw = &stack->edges->draws->draw[r];
-    FlColouring colouring = colouring_of(stack->input, painted, draw);
-    const FlPaintedPart part = part_of(painted);
-    const FlRect box = layer->area.box;
-    g_autofree int16_t *amounts = fl_alloc(fl_rect_pixels(box), sizeof *amounts, "a layer", error);
-    g_autofree uint8_t *picture = NULL;
-    if (!amounts)
-        return false;
-    if (colouring.picture) {
-        if (!(picture = fl_alloc(4 * fl_rect_pixels(box), 1, "a layer", error)))
-            return false;
-        fl_rect_copy(colouring.picture, draw->area.box, picture, box, 4);
-        if (!fl_layers_bleed(picture, box.width, box.height, (int)painted->reach_px + 2, error))
-            return false;
-        colouring.picture = picture;
-    }
-    const bool glaze = painted->settings->stacking == FL_STACKING_GLAZE;
-    layer->stacking = glaze ? FL_STACKING_GLAZE : FL_STACKING_OVER;
-    colouring.medium = FL_MEDIUM_SOLID;
-    const bool keep = colouring.tint == FL_TINT_KEEP;
-    fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
-                         layer->coverage, &layer->area, amounts);
-    return colour_layer(layer, stack, painted, &colouring, amounts, error);
-}
-
-static void clear_layer(FlLayer *layer)
-{
-    fl_area_clear(&layer->area);
-    free(layer->rgba);
-    free(layer->knockout);
-    fl_pixel_runs_clear(&layer->runs);
-    if (layer->owns_coverage)
-        free((uint8_t *)layer->coverage);
-    *layer = (FlLayer){0};
-}
-
-/* In the size of the film. */
-static bool fill_film_layer(FlLayer *layer, const Stack *stack, int r, GError **error)
-{
-    const FlDraw *draw = &stack->edges->draws->draw[r];
-    const int p = stack->input->painted_of[draw->region];
-    const FlRect box = draw->area.box;
-    *layer = (FlLayer){.area = {box, g_memdup2(draw->area.row, box.height * sizeof(FlColumns))},
-                       .coverage = p < 0 && draw->by_hand ? draw->by_hand : draw->coverage,
-                       .sheer = p < 0 && draw->by_hand,
-                       .alpha = draw->alpha,
-                       .stacking = FL_STACKING_KNOCKOUT,
-                       .blend_mode = draw->blend_mode};
-    g_auto(FlPaintedReader) look = {0};
-    const FlPaintedRegion *painted = p >= 0 ? &look.region : NULL;
-    if (painted && !fl_painted_read(stack->input->painted[p], &look, error))
-        return false;
-    const bool cut_out = painted && painted->alpha;
-    if ((cut_out && !reach_out(layer, stack, draw, painted, error)) ||
-        !(layer->rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
-        return false;
-    if (painted)
-        return (cut_out ? paint_cut_out : paint_layer)(layer, stack, r, painted,
-                                                       stack->exposures[p], error);
-    fl_colourise_plain(draw->picture, draw->rgb, draw->coverage, &layer->area, layer->rgba);
-    return true;
-}
 
 /* The region's name, with a number from its second layer on. */
 static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, int draw)
@@ -241,7 +34,9 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
 static bool fill_one(void *data, int k, int thread, GError **error)
 {
     const Stack *stack = data;
-    return fill_film_layer(&stack->composite->layers[k], stack, stack->draw[k], error);
+    FlLayer *layer = &stack->composite->layers[k];
+    fl_layer_begin(layer, &stack->sources, stack->draw[k]);
+    return fl_layer_paint(layer, &stack->sources, stack->draw[k], error);
 }
 
 /* Brings a layer into the size of the frame. */
@@ -251,7 +46,7 @@ static bool double_one(void *data, int k, int thread, GError **error)
     FlLayer *layer = &stack->composite->layers[k], half = *layer;
     const bool done =
         fl_layer_double(&half, stack->input->width, stack->input->height, layer, error);
-    clear_layer(&half);
+    fl_layer_clear(&half);
     return done;
 }
 
@@ -392,7 +187,7 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     const int n_regions = fl_drawing_regions(input->drawing);
     g_autofree double *areas = g_new(double, MAX(n_regions, 1));
     fl_region_areas_find(draws, n_regions, areas);
-    Stack stack = {composite, input, edges, exposures, areas, draw};
+    Stack stack = {composite, input, {input, edges, exposures, areas}, draw};
     return (needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error);
 }
 
@@ -449,7 +244,7 @@ static bool compose(FlComposite *composite, const FlComposeInput *input, int fra
 static void drop_layers(FlComposite *composite)
 {
     for (int k = 0; k < composite->n_layers; k++) {
-        clear_layer(&composite->layers[k]);
+        fl_layer_clear(&composite->layers[k]);
         g_free(composite->names[k]);
     }
     g_clear_pointer(&composite->layers, g_free);

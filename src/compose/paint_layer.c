@@ -1,0 +1,229 @@
+#include "compose/paint_layer.h"
+
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "compose/colourise.h"
+#include "compose/granulation.h"
+#include "compose/knockout.h"
+#include "compose/unevenness.h"
+#include "compose/visibility.h"
+#include <math.h>
+#include <string.h>
+
+/* The default: opaque where the output is not the style's paper. */
+static FlMedium medium_of(const FlComposeInput *input, const FlPaintedRegion *painted)
+{
+    const FlMedium said = painted->settings->medium, of_style = painted->style->medium;
+    if (said != FL_MEDIUM_AUTO || of_style != FL_MEDIUM_AUTO)
+        return said != FL_MEDIUM_AUTO ? said : of_style;
+    const FlBackground *background = input->background;
+    return background->none || background->pattern || input->layers_apart ? FL_MEDIUM_OPAQUE
+                                                                          : FL_MEDIUM_TRANSPARENT;
+}
+
+/* Its paint has alpha of its own. */
+static bool is_cut_out(const FlPaintedRegion *painted)
+{
+    return painted->reach_px > 0;
+}
+
+/* Cut out paint hides as far as its alpha does, and so knocks nothing out. */
+static FlStacking stacking_of(const FlPaintedRegion *painted)
+{
+    const FlStacking stacking = painted->settings->stacking;
+    return is_cut_out(painted) && stacking != FL_STACKING_GLAZE ? FL_STACKING_OVER : stacking;
+}
+
+static FlColouring colouring_of(const FlComposeInput *input, const FlPaintedRegion *painted,
+                                const FlDraw *draw)
+{
+    const FlRegionSettings *t = painted->settings;
+    FlColouring colouring = {.tint = t->tint,
+                             .picture = t->has_colour ? NULL : draw->picture,
+                             .medium = medium_of(input, painted),
+                             .pigments = (float)t->pigments,
+                             .linear = input->linear};
+    memcpy(colouring.fill, t->has_colour ? t->colour : draw->rgb, 3);
+    memcpy(colouring.paper, input->background->paper, 3);
+    return colouring;
+}
+
+static FlPaintedPart part_of(const FlPaintedRegion *painted)
+{
+    return (FlPaintedPart){painted->painted, painted->rect, painted->alpha};
+}
+
+/* How much paint each pixel of a draw's box has; to be freed with free(). */
+static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion *painted,
+                           int exposure, GError **error)
+{
+    const bool keep = painted->settings->tint == FL_TINT_KEEP;
+    const FlDraw *draw = &edges->draws->draw[r];
+    const FlPaintedPart part = part_of(painted);
+    g_autofree int16_t *amounts =
+        fl_alloc_unset(fl_rect_pixels(draw->area.box), sizeof *amounts, "a layer", error);
+    if (!amounts)
+        return NULL;
+    fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
+                         draw->coverage, &draw->area, amounts);
+    if (!fl_edges_close(edges, r, painted, amounts, error) ||
+        (!keep && !fl_edges_level(edges, r, amounts, error)))
+        return NULL;
+    return g_steal_pointer(&amounts);
+}
+
+/* What is uneven in a region is its own, whatever else is drawn. */
+static FlUneven uneven_of(const FlLayerSources *sources, const FlPaintedRegion *painted)
+{
+    const FlComposeInput *input = sources->input;
+    return (FlUneven){.key = fl_key(input->seed, g_str_hash(painted->name)),
+                      .anchor = painted->anchor,
+                      .area = sources->areas[painted->region],
+                      .scale = input->paper_px * (input->half ? .5f : 1)};
+}
+
+/* The grain of the paper and of the hand; not in paint that keeps the exemplar's own colours. */
+static void roughen(const FlLayerSources *sources, const FlPaintedRegion *painted,
+                    const FlArea *area, int16_t *amounts)
+{
+    const FlRegionSettings *t = painted->settings;
+    const FlUneven uneven = uneven_of(sources, painted);
+    if (t->tint == FL_TINT_KEEP)
+        return;
+    fl_load_unevenly(&uneven, (float)t->load, area, amounts);
+    fl_granulate(isnan(t->granulation) ? painted->style->granulation : (float)t->granulation,
+                 sources->input->tooth, area, amounts);
+}
+
+/* Colours a layer by its amounts of paint, once the grain of paper and hand is in them. */
+static bool colour_layer(FlLayer *layer, const FlLayerSources *sources,
+                         const FlPaintedRegion *painted, FlColouring *colouring, int16_t *amounts,
+                         GError **error)
+{
+    const FlPaintedPart part = part_of(painted);
+    const FlUneven uneven = uneven_of(sources, painted);
+    g_autofree int8_t *play = NULL;
+    if (colouring->pigments > 0) {
+        if (!(play = fl_alloc_unset(fl_rect_pixels(layer->area.box), 1, "a layer", error)))
+            return false;
+        fl_play_of_pigments(&uneven, &layer->area, amounts, play);
+    }
+    colouring->play = play;
+    roughen(sources, painted, &layer->area, amounts);
+    fl_colourise(painted->style->ink, colouring, &part, amounts, &layer->area, layer->rgba);
+    colouring->play = NULL;
+    return true;
+}
+
+/* Knockout is of the amounts before the paper's grain, which else would punch holes into it. */
+static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
+                        const FlPaintedRegion *painted, int exposure, GError **error)
+{
+    const FlDraw *draw = &sources->edges->draws->draw[r];
+    FlColouring colouring = colouring_of(sources->input, painted, draw);
+    const FlRect box = layer->area.box;
+    g_autofree int16_t *amounts = amounts_of(sources->edges, r, painted, exposure, error);
+    uint8_t *knockout = amounts ? fl_alloc_scratch(fl_rect_pixels(box), 1, "a layer", error) : NULL;
+    layer->knockout = knockout;
+    if (!knockout)
+        return false;
+    const FlDrawing *drawing = sources->input->drawing;
+    const int border_px = (int)(painted->style->border_px + 0.5f);
+    return fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
+                       fl_drawing_height(drawing), MAX(border_px, 1), knockout, error) &&
+           colour_layer(layer, sources, painted, &colouring, amounts, error);
+}
+
+/* Paint with alpha of its own fades out by that, beyond its shape: the layer of a grown one,
+ * through which what lies below is seen. */
+static bool reach_out(FlLayer *layer, const FlLayerSources *sources, const FlDraw *draw,
+                      const FlPaintedRegion *painted, GError **error)
+{
+    const int width = fl_drawing_width(sources->input->drawing);
+    const int height = fl_drawing_height(sources->input->drawing);
+    const FlVisibleShape shape = {&draw->area, draw->coverage};
+    g_autofree uint8_t *grown = fl_alloc((size_t)width * (size_t)height, 1, "a layer", error);
+    if (!grown)
+        return false;
+    fl_visibility_spread(&shape, width, height, painted->reach_px, grown);
+    fl_area_clear(&layer->area);
+    fl_area_init(&layer->area, grown, width, height);
+    const FlRect box = layer->area.box;
+    uint8_t *coverage = fl_alloc(fl_rect_pixels(box), 1, "a layer", error);
+    layer->coverage = coverage, layer->owns_coverage = true;
+    if (coverage)
+        fl_rect_copy(grown, (FlRect){0, 0, width, height}, coverage, box, 1);
+    return coverage != NULL;
+}
+
+/* It has the alpha of the paint, whatever the amounts. */
+static bool paint_cut_out(FlLayer *layer, const FlLayerSources *sources, int r,
+                          const FlPaintedRegion *painted, int exposure, GError **error)
+{
+    const FlDraw *draw = &sources->edges->draws->draw[r];
+    FlColouring colouring = colouring_of(sources->input, painted, draw);
+    const FlPaintedPart part = part_of(painted);
+    const FlRect box = layer->area.box;
+    g_autofree int16_t *amounts = fl_alloc(fl_rect_pixels(box), sizeof *amounts, "a layer", error);
+    g_autofree uint8_t *picture = NULL;
+    if (!amounts)
+        return false;
+    if (colouring.picture) {
+        if (!(picture = fl_alloc(4 * fl_rect_pixels(box), 1, "a layer", error)))
+            return false;
+        fl_rect_copy(colouring.picture, draw->area.box, picture, box, 4);
+        if (!fl_layers_bleed(picture, box.width, box.height, (int)painted->reach_px + 2, error))
+            return false;
+        colouring.picture = picture;
+    }
+    colouring.medium = FL_MEDIUM_SOLID;
+    const bool keep = colouring.tint == FL_TINT_KEEP;
+    fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
+                         layer->coverage, &layer->area, amounts);
+    return colour_layer(layer, sources, painted, &colouring, amounts, error);
+}
+
+void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int r)
+{
+    const FlDraw *draw = &sources->edges->draws->draw[r];
+    const int p = sources->input->painted_of[draw->region];
+    const FlPaintedRegion *painted = p >= 0 ? sources->input->painted[p] : NULL;
+    const FlRect box = draw->area.box;
+    const bool by_hand = !painted && draw->by_hand;
+    *layer = (FlLayer){.area = {box, g_memdup2(draw->area.row, box.height * sizeof(FlColumns))},
+                       .coverage = by_hand ? draw->by_hand : draw->coverage,
+                       .sheer = by_hand,
+                       .alpha = draw->alpha,
+                       .stacking = painted ? stacking_of(painted) : FL_STACKING_KNOCKOUT,
+                       .blend_mode = draw->blend_mode};
+}
+
+bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError **error)
+{
+    const FlDraw *draw = &sources->edges->draws->draw[r];
+    const int p = sources->input->painted_of[draw->region];
+    g_auto(FlPaintedReader) look = {0};
+    const FlPaintedRegion *painted = p >= 0 ? &look.region : NULL;
+    if (painted && !fl_painted_read(sources->input->painted[p], &look, error))
+        return false;
+    const bool cut_out = painted && is_cut_out(painted);
+    if ((cut_out && !reach_out(layer, sources, draw, painted, error)) ||
+        !(layer->rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
+        return false;
+    if (painted)
+        return (cut_out ? paint_cut_out : paint_layer)(layer, sources, r, painted,
+                                                       sources->exposures[p], error);
+    fl_colourise_plain(draw->picture, draw->rgb, draw->coverage, &layer->area, layer->rgba);
+    return true;
+}
+
+void fl_layer_clear(FlLayer *layer)
+{
+    fl_area_clear(&layer->area);
+    free(layer->rgba);
+    free(layer->knockout);
+    fl_pixel_runs_clear(&layer->runs);
+    if (layer->owns_coverage)
+        free((uint8_t *)layer->coverage);
+    *layer = (FlLayer){0};
+}

@@ -1,0 +1,27 @@
+/* One layer of a frame, in the size of the film: the paint of a region, or a plain fill. */
+#ifndef FLUIDY_COMPOSE_PAINT_LAYER_H
+#define FLUIDY_COMPOSE_PAINT_LAYER_H
+
+#include "compose/compose_input.h"
+#include "compose/edge_map.h"
+#include "compose/layers.h"
+
+/** What the layers of a frame are made from; borrowed. */
+typedef struct FlLayerSources {
+    const FlComposeInput *input;
+    const FlEdgeMap *edges; // of the frame's draws
+    const int *exposures;   // of each painted region
+    const double *areas;    // of each region, px
+} FlLayerSources;
+
+/** The layer of a draw, before it is painted: where it is, and how it lies over others. It borrows
+ * from the draw. */
+void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int draw);
+
+/** Paints it: rgba and knockout as fl_layers_resolve() takes them. FL_ERROR_NO_MEMORY. */
+bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int draw, GError **error);
+
+/** Frees all that a layer owns. */
+void fl_layer_clear(FlLayer *layer);
+
+#endif
