@@ -28,8 +28,12 @@ static void fade_in_size(FlLayer *layers, bool half)
 {
     g_autoptr(GError) error = NULL;
     g_auto(FlUnderlay) above = {0};
-    g_assert_true(fl_underlay_init(&above, W, H, half, &error) &&
-                  fl_underlay_fade_next(&above, layers, 2, &error));
+    g_assert_true(fl_underlay_init(&above, W, H, half, &error));
+    for (int k = 1; k >= 0; k--) {
+        g_auto(FlFading) fading = {0};
+        g_assert_true(fl_underlay_next(&above, &layers[k], true, &fading, &error) &&
+                      fl_fading_apply(&fading, &layers[k], &error));
+    }
     g_assert_no_error(error);
 }
 

@@ -18,7 +18,8 @@ typedef struct Stack {
     FlComposite *composite;
     const FlComposeInput *input;
     FlLayerSources sources;
-    int *draw; // the index in the draw list of each layer
+    int *draw;        // the index in the draw list of each layer
+    FlFading *fading; // of each layer
 } Stack;
 
 /* The region's name, with a number from its second layer on. */
@@ -31,23 +32,24 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
-static bool fill_one(void *data, int k, int thread, GError **error)
-{
-    const Stack *stack = data;
-    FlLayer *layer = &stack->composite->layers[k];
-    fl_layer_begin(layer, &stack->sources, stack->draw[k]);
-    return fl_layer_paint(layer, &stack->sources, stack->draw[k], error);
-}
-
 /* Brings a layer into the size of the frame. */
-static bool double_one(void *data, int k, int thread, GError **error)
+static bool double_layer(const Stack *stack, FlLayer *layer, GError **error)
 {
-    const Stack *stack = data;
-    FlLayer *layer = &stack->composite->layers[k], half = *layer;
+    FlLayer half = *layer;
     const bool done =
         fl_layer_double(&half, stack->input->width, stack->input->height, layer, error);
     fl_layer_clear(&half);
     return done;
+}
+
+/* Paints a layer, fades it below those above, and brings it into the size of the frame. */
+static bool paint_one(void *data, int k, int thread, GError **error)
+{
+    const Stack *stack = data;
+    FlLayer *layer = &stack->composite->layers[k];
+    return fl_layer_paint(layer, &stack->sources, stack->draw[k], error) &&
+           fl_fading_apply(&stack->fading[k], layer, error) &&
+           (!stack->input->half || double_layer(stack, layer, error));
 }
 
 static size_t layer_pixels(const Stack *stack, int k)
@@ -55,8 +57,15 @@ static size_t layer_pixels(const Stack *stack, int k)
     return fl_rect_pixels(stack->composite->draws->draw[stack->draw[k]].area.box);
 }
 
-/* Layers first … end - 1: small ones side by side, large ones by all threads together. */
-static bool do_some(Stack *stack, int first, int end, FlItemWork work, GError **error)
+/* Whether a layer's paint is a region's. */
+static bool is_painted(const Stack *stack, int k)
+{
+    const int region = stack->composite->draws->draw[stack->draw[k]].region;
+    return stack->input->painted_of[region] >= 0;
+}
+
+/* Paints layers first … end - 1: small ones side by side, large ones by all threads together. */
+static bool paint_some(Stack *stack, int first, int end, GError **error)
 {
     const size_t frame = (size_t)stack->input->width * (size_t)stack->input->height;
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(end - first, 1));
@@ -64,17 +73,22 @@ static bool do_some(Stack *stack, int first, int end, FlItemWork work, GError **
         const size_t pixels = layer_pixels(stack, k);
         items[k - first] = (FlWorkItem){k, (double)pixels, !fl_schedule_fits_beside(pixels, frame)};
     }
-    return fl_schedule_run(items, end - first, work, stack, error);
+    return fl_schedule_run(items, end - first, paint_one, stack, error);
 }
 
-/* Makes layers first … end - 1 and fades them below those above, in the size of the film, then
- * brings them into that of the frame. */
+/* Makes layers first … end - 1, below those that came before. */
 static bool make_some(Stack *stack, int first, int end, FlUnderlay *above, GError **error)
 {
-    FlLayer *layers = stack->composite->layers + first;
-    return do_some(stack, first, end, fill_one, error) &&
-           fl_underlay_fade_next(above, layers, end - first, error) &&
-           (!stack->input->half || do_some(stack, first, end, double_one, error));
+    bool done = true;
+    for (int k = end - 1; k >= first && done; k--) {
+        FlLayer *layer = &stack->composite->layers[k];
+        fl_layer_begin(layer, &stack->sources, stack->draw[k]);
+        done = fl_underlay_next(above, layer, is_painted(stack, k), &stack->fading[k], error);
+    }
+    done = done && paint_some(stack, first, end, error);
+    for (int k = first; k < end; k++)
+        fl_fading_clear(&stack->fading[k]);
+    return done;
 }
 
 /* The shapes above the layers of a film. */
@@ -184,10 +198,11 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
             composite->names[composite->n_layers] = layer_name(input, draws, r);
             draw[composite->n_layers++] = r;
         }
+    g_autofree FlFading *fading = g_new0(FlFading, MAX(composite->n_layers, 1));
     const int n_regions = fl_drawing_regions(input->drawing);
     g_autofree double *areas = g_new(double, MAX(n_regions, 1));
     fl_region_areas_find(draws, n_regions, areas);
-    Stack stack = {composite, input, {input, edges, exposures, areas}, draw};
+    Stack stack = {composite, input, {input, edges, exposures, areas}, draw, fading};
     return (needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error);
 }
 

@@ -1,7 +1,7 @@
 #include "compose/underlay.h"
 
 #include "base/alloc.h"
-#include "base/parallel_error.h"
+#include "base/schedule.h"
 #include <string.h>
 
 #define SHOWN 128 // coverage from which on a shape is there
@@ -12,34 +12,25 @@
 #define BESIDE_PX 3 // a sliver farther from what lies above is a shape of its own
 #define BESIDE_HALF_PX 2
 
-/** A layer that fades, with some room around its box. */
-typedef struct Part {
-    FlLayer *layer;
-    FlRect box;
-    bool half;
-    uint8_t *over; // how far what covers the pixel from above hides, 0..255; 0: nothing does
-    uint8_t *seen; // 1: the layer is seen
-} Part;
-
-static void part_clear(Part *part)
+void fl_fading_clear(FlFading *fading)
 {
-    free(part->over);
-    free(part->seen);
-    *part = (Part){0};
+    free(fading->over);
+    free(fading->seen);
+    *fading = (FlFading){0};
 }
 
-static bool part_init(Part *part, FlLayer *layer, const FlUnderlay *above, GError **error)
+static bool fading_init(FlFading *fading, const FlLayer *layer, const FlUnderlay *above,
+                        GError **error)
 {
     const FlRect page = {0, 0, above->width, above->height};
-    *part = (Part){.layer = layer,
-                   .box = fl_rect_grown(layer->area.box, MARGIN_PX, page),
-                   .half = above->half};
-    const size_t n = fl_rect_pixels(part->box);
-    return (part->over = fl_alloc_unset(n, 1, "a matte", error)) &&
-           (part->seen = fl_alloc_unset(n, 1, "a matte", error));
+    fading->box = fl_rect_grown(layer->area.box, MARGIN_PX, page);
+    fading->half = above->half;
+    const size_t n = fl_rect_pixels(fading->box);
+    return (fading->over = fl_alloc_unset(n, 1, "a matte", error)) &&
+           (fading->seen = fl_alloc_unset(n, 1, "a matte", error));
 }
 
-/** Distances of a part's pixels, fifths of a px. */
+/** Distances of the pixels of a fading's box, fifths of a px. */
 typedef struct Ways {
     int16_t *to_open; // to what nothing above covers
     int16_t *to_seen; // to where the layer is seen
@@ -136,12 +127,12 @@ static bool is_below(const FlLayer *layer, const FlUnderlay *above)
 }
 
 /** Fills over and seen. */
-static void mark_pixels(Part *part, const FlLayer *layer, const FlUnderlay *above)
+static void mark_pixels(FlFading *fading, const FlLayer *layer, const FlUnderlay *above)
 {
-    const FlRect own = layer->area.box, box = part->box;
-    memset(part->seen, 0, fl_rect_pixels(box));
+    const FlRect own = layer->area.box, box = fading->box;
+    memset(fading->seen, 0, fl_rect_pixels(box));
     for (int y = 0; y < box.height; y++) {
-        uint8_t *restrict over = part->over + (size_t)y * (size_t)box.width;
+        uint8_t *restrict over = fading->over + (size_t)y * (size_t)box.width;
         const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)box.x;
         const uint8_t *coverage = above->coverage + i, *hides = above->hides + i;
         for (int x = 0; x < box.width; x++)
@@ -151,12 +142,12 @@ static void mark_pixels(Part *part, const FlLayer *layer, const FlUnderlay *abov
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)own.width;
         const size_t p = (size_t)(own.y + y - box.y) * (size_t)box.width + (size_t)(own.x - box.x);
         const FlColumns span = fl_area_row(&layer->area, y);
-        const uint8_t *over = part->over + p;
+        const uint8_t *over = fading->over + p;
         const uint8_t *covered =
             above->coverage + (size_t)(own.y + y) * (size_t)above->width + (size_t)own.x;
-        uint8_t *restrict seen = part->seen + p;
+        uint8_t *restrict seen = fading->seen + p;
         for (int x = span.first; x < span.last; x++) {
-            const int most = part->half ? coverage[x] - covered[x] : coverage[x];
+            const int most = fading->half ? coverage[x] - covered[x] : coverage[x];
             seen[x] = (most >= SHOWN) & (over[x] == 0);
         }
     }
@@ -179,31 +170,36 @@ static void clear_blocks(const uint8_t *block, int width, int16_t *restrict row)
 }
 
 /** Clears the distances of the pixels of blocks of 2x2 in which the layer is seen. */
-static void clear_seen(const Part *part, int16_t *to_seen)
+static void clear_seen(const FlFading *fading, int16_t *to_seen)
 {
-    const int w = part->box.width, h = part->box.height;
+    const int w = fading->box.width, h = fading->box.height;
     g_autofree uint8_t *block = g_malloc((size_t)w);
     for (int y = 0; y + 1 < h; y++) {
         const size_t p = (size_t)y * (size_t)w, q = p + (size_t)w;
-        mark_blocks(part->seen + p, part->seen + q, w, block);
+        mark_blocks(fading->seen + p, fading->seen + q, w, block);
         clear_blocks(block, w, to_seen + p);
         clear_blocks(block, w, to_seen + q);
     }
 }
 
-/** Distances out, and to where more of the layer is seen than a sliver. */
-static void find_ways(const Part *part, const Ways *ways)
+static void find_ways_out(const FlFading *fading, int16_t *to_open)
 {
-    const int w = part->box.width, h = part->box.height;
-    const uint8_t is_block = part->half; // will be one of 2x2
-    for (size_t p = 0; p < (size_t)w * (size_t)h; p++) {
-        ways->to_open[p] = part->over[p] ? FAR : 0;
-        ways->to_seen[p] = is_block & part->seen[p] ? 0 : FAR;
-    }
+    const int w = fading->box.width, h = fading->box.height;
+    for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
+        to_open[p] = fading->over[p] ? FAR : 0;
+    measure(to_open, w, h);
+}
+
+/** Distances to where more of the layer is seen than a sliver. */
+static void find_ways_to_seen(const FlFading *fading, int16_t *to_seen)
+{
+    const int w = fading->box.width, h = fading->box.height;
+    const uint8_t is_block = fading->half; // will be one of 2x2
+    for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
+        to_seen[p] = is_block & fading->seen[p] ? 0 : FAR;
     if (!is_block)
-        clear_seen(part, ways->to_seen);
-    measure(ways->to_open, w, h);
-    measure(ways->to_seen, w, h);
+        clear_seen(fading, to_seen);
+    measure(to_seen, w, h);
 }
 
 /** Raises each of n values to the one that comes `reach` later, if that is more. */
@@ -213,23 +209,23 @@ static void raise_by(uint8_t *value, int n, int reach)
         value[x] = MAX(value[x], value[x + reach]);
 }
 
-static int beside_px(const Part *part)
+static int beside_px(const FlFading *fading)
 {
-    return part->half ? BESIDE_HALF_PX : BESIDE_PX;
+    return fading->half ? BESIDE_HALF_PX : BESIDE_PX;
 }
 
 /**
  * How far what is above hides each pixel of a row, or where nothing is, at most within beside_px().
  * hides has twice that more than the row.
  */
-static void find_hides(const Part *part, int y, uint8_t *hides)
+static void find_hides(const FlFading *fading, int y, uint8_t *hides)
 {
-    const int beside = beside_px(part), window = 2 * beside + 1;
-    const int width = part->box.width, padded = width + 2 * beside;
-    const int last = MIN(y + beside, part->box.height - 1);
+    const int beside = beside_px(fading), window = 2 * beside + 1;
+    const int width = fading->box.width, padded = width + 2 * beside;
+    const int last = MIN(y + beside, fading->box.height - 1);
     memset(hides, 0, (size_t)padded);
     for (int ny = MAX(y - beside, 0); ny <= last; ny++) {
-        const uint8_t *over = part->over + (size_t)ny * (size_t)width;
+        const uint8_t *over = fading->over + (size_t)ny * (size_t)width;
         uint8_t *restrict own = hides + beside;
         for (int x = 0; x < width; x++)
             own[x] = MAX(own[x], over[x]);
@@ -238,16 +234,16 @@ static void find_hides(const Part *part, int y, uint8_t *hides)
     for (int left = padded; 2 * size <= window; size *= 2)
         raise_by(hides, left -= size, size);
     raise_by(hides, width, window - size);
-    const uint8_t *over = part->over + (size_t)y * (size_t)width;
+    const uint8_t *over = fading->over + (size_t)y * (size_t)width;
     for (int x = 0; x < width; x++)
         hides[x] = over[x] ? over[x] : hides[x];
 }
 
 /** How much of the layer stays, 0..255: (2.5 out + 6 - to) / (out + 4), in pixels, where what is
  * above hides all. */
-static int kept_at(const Part *part, const Ways *ways, size_t p, int hides)
+static int kept_at(const FlFading *fading, const Ways *ways, size_t p, int hides)
 {
-    const int px = part->half ? 2 : 1;
+    const int px = fading->half ? 2 : 1;
     const int out = px * ways->to_open[p], to = px * ways->to_seen[p];
     const int share = 5 * out + 12 * SIDE - 2 * to, whole = 2 * (out + 4 * SIDE);
     if (share >= whole) // nearly everywhere: without the division
@@ -257,40 +253,24 @@ static int kept_at(const Part *part, const Ways *ways, size_t p, int hides)
 }
 
 /** Row y of the layer; hides is of the pixels of its box. */
-static void fade_row(const Part *part, const Ways *ways, int y, const uint8_t *hides)
+static void fade_row(const FlFading *fading, const Ways *ways, FlLayer *layer, int y,
+                     const uint8_t *hides)
 {
-    FlLayer *layer = part->layer;
     const FlRect own = layer->area.box;
     const FlColumns span = fl_area_row(&layer->area, y);
     const size_t row = (size_t)y * (size_t)own.width;
-    const size_t of_part =
-        (size_t)(own.y + y - part->box.y) * (size_t)part->box.width + (size_t)(own.x - part->box.x);
+    const size_t in_box = (size_t)(own.y + y - fading->box.y) * (size_t)fading->box.width +
+                          (size_t)(own.x - fading->box.x);
     for (FlColumns run = fl_next_run(hides, span.first, span.last); run.first < run.last;
          run = fl_next_run(hides, run.last, span.last))
         for (int x = run.first; x < run.last; x++) {
             const size_t p = row + (size_t)x;
-            const int keep = kept_at(part, ways, of_part + (size_t)x, hides[x]);
+            const int keep = kept_at(fading, ways, in_box + (size_t)x, hides[x]);
             if (keep == 255)
                 continue;
             layer->rgba[4 * p + 3] = (uint8_t)((layer->rgba[4 * p + 3] * keep + 127) / 255);
             layer->knockout[p] = (uint8_t)((layer->knockout[p] * keep + 127) / 255);
         }
-}
-
-/** Fades the layer where it has been marked. */
-static bool fade(const Part *part, GError **error)
-{
-    g_auto(Ways) ways = {0};
-    if (!ways_init(&ways, fl_rect_pixels(part->box), error))
-        return false;
-    find_ways(part, &ways);
-    const FlRect own = part->layer->area.box;
-    g_autofree uint8_t *hides = g_malloc((size_t)(part->box.width + 2 * beside_px(part)));
-    for (int y = 0; y < own.height; y++) {
-        find_hides(part, own.y + y - part->box.y, hides);
-        fade_row(part, &ways, y, hides + (own.x - part->box.x));
-    }
-    return true;
 }
 
 /*
@@ -333,44 +313,45 @@ void fl_underlay_clear(FlUnderlay *above)
     free(above->hides);
 }
 
-/** Marks what of the next layer fades, if anything does: a part more. */
-static bool mark_next(FlUnderlay *above, FlLayer *layer, Part *parts, int *n, GError **error)
+bool fl_underlay_next(FlUnderlay *above, const FlLayer *layer, bool painted, FlFading *fading,
+                      GError **error)
 {
     const bool knocks =
         layer->stacking == FL_STACKING_KNOCKOUT && layer->blend_mode == FL_BLEND_MODE_OVER;
-    if (layer->knockout && knocks && is_below(layer, above)) {
-        Part *part = &parts[(*n)++];
-        if (!part_init(part, layer, above, error))
+    *fading = (FlFading){0};
+    if (painted && knocks && is_below(layer, above)) {
+        if (!fading_init(fading, layer, above, error))
             return false;
-        mark_pixels(part, layer, above);
+        mark_pixels(fading, layer, above);
     }
     if (knocks && !layer->sheer)
         add_above(layer, above);
     return true;
 }
 
-/** Fades parts side by side. */
-static bool fade_all(const Part *parts, int n, GError **error)
+bool fl_fading_apply(const FlFading *fading, FlLayer *layer, GError **error)
 {
-    GError *first = NULL;
-#pragma omp parallel for schedule(dynamic, 1)
-    for (int k = 0; k < n; k++) {
-        GError *failure = NULL;
-        if (!fade(&parts[k], &failure))
-            fl_parallel_error_keep(&first, failure);
+    g_auto(Ways) ways = {0};
+    if (!fading->over)
+        return true;
+    if (!ways_init(&ways, fl_rect_pixels(fading->box), error))
+        return false;
+    const FlRect own = layer->area.box;
+    const bool many = fl_schedule_worth_threads(fl_rect_pixels(own));
+#pragma omp parallel sections if (many)
+    {
+        find_ways_out(fading, ways.to_open);
+#pragma omp section
+        find_ways_to_seen(fading, ways.to_seen);
     }
-    return fl_parallel_error_propagate(error, first);
-}
-
-bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layers, int n, GError **error)
-{
-    g_autofree Part *parts = g_new0(Part, MAX(n, 1));
-    int n_parts = 0;
-    bool done = true;
-    for (int k = n - 1; k >= 0 && done; k--)
-        done = mark_next(above, &layers[k], parts, &n_parts, error);
-    done = done && fade_all(parts, n_parts, error);
-    for (int k = 0; k < n_parts; k++)
-        part_clear(&parts[k]);
-    return done;
+#pragma omp parallel if (many)
+    {
+        g_autofree uint8_t *hides = g_malloc((size_t)(fading->box.width + 2 * beside_px(fading)));
+#pragma omp for schedule(static)
+        for (int y = 0; y < own.height; y++) {
+            find_hides(fading, own.y + y - fading->box.y, hides);
+            fade_row(fading, &ways, layer, y, hides + (own.x - fading->box.x));
+        }
+    }
+    return true;
 }

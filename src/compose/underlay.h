@@ -15,17 +15,34 @@ typedef struct FlUnderlay {
 bool fl_underlay_init(FlUnderlay *above, int width, int height, bool half, GError **error);
 void fl_underlay_clear(FlUnderlay *above);
 
+/** Where a layer fades: its box and some pixels around it. */
+typedef struct FlFading {
+    FlRect box;
+    bool half;
+    uint8_t *over; // how far what covers the pixel from above hides, 0..255; 0: nothing does; NULL:
+                   // the layer does not fade
+    uint8_t *seen; // 1: the layer is seen
+} FlFading;
+
 /**
- * Fades each painted layer out where others that knock out lie over it and the nearest way out from
- * under them does not lead to it: dashes of a lower colour along an outline that both share, and
- * slivers of a pixel beside what lies above. Elsewhere, rims of what lies above are as they were.
+ * Finds where the next layer fades, and adds it to those above; the top one comes first. It has an
+ * area, coverage and how it is stacked; painted: as far as its paint covers, it knocks out.
  *
- * The n layers, bottom first, lie below those that came before. They are those that
- * fl_layers_resolve() takes, and come here before it; alpha of rgba and knockout change. Returns:
- * false with FL_ERROR_NO_MEMORY set.
+ * A painted layer fades where others that knock out lie over it and the nearest way out from under
+ * them does not lead to it: dashes of a lower colour along an outline that both share, and slivers
+ * of a pixel beside what lies above. Elsewhere, rims of what lies above are as they were.
+ * FL_ERROR_NO_MEMORY.
  */
-bool fl_underlay_fade_next(FlUnderlay *above, FlLayer *layers, int n, GError **error);
+bool fl_underlay_next(FlUnderlay *above, const FlLayer *layer, bool painted, FlFading *fading,
+                      GError **error);
+
+/** Lowers a layer's knockout and the alpha of its rgba by that, before fl_layers_resolve().
+ * FL_ERROR_NO_MEMORY. */
+bool fl_fading_apply(const FlFading *fading, FlLayer *layer, GError **error);
+
+void fl_fading_clear(FlFading *fading);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlUnderlay, fl_underlay_clear)
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlFading, fl_fading_clear)
 
 #endif
