@@ -208,7 +208,7 @@ static void the_same_tries_are_drawn_inside_the_windows(const void *version)
 enum { CELLS = 8 }; // side of the occurrence map, in time too
 
 static void make_filter(FlCandidateFilter *filter, const FlTexel *first, const int32_t *use,
-                       FlRng *rng)
+                        FlRng *rng)
 {
     *filter = (FlCandidateFilter){.first = first,
                                   .segment = (uint8_t)fl_rng_below(rng, 3),
@@ -411,6 +411,7 @@ typedef struct Noise {
     float any[5][2 * ROW + 16]; // of any sign
     int16_t s[3][ROW + 16];
     int32_t seed[ROW + 16];
+    uint32_t pixel[ROW + 16];
     uint8_t rgba[4 * ROW + 16];
     uint32_t look[LOOKS], sum[4][ROW + 16];
     uint16_t above[ROW + 16];
@@ -511,14 +512,18 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     rows->relax(&cells, n);
     rows->refine(z->any[1], parents, z->f[6] + at, z->any[0] + at, n);
     rows->add_residual(&cells, z->any[3] + ROW + at, z->any[4] + ROW + at, n / 2);
-    rows->over(z->rgba + at, &sums, n);
-    rows->level_opaque(&sums, z->rgba + at, n);
+    rows->over(z->pixel + at, &sums, n);
+    rows->level_opaque(&sums, z->pixel + at, n);
     rows->look_up(z->s[0] + at, z->look, z->sum[3] + at, n);
-    rows->straighten(rgb, z->f[2] + at, z->f[1], z->rgba + at, n / 2);
+    float *const planes[6] = {z->f[0], z->f[1] + at, z->f[2], z->f[3], z->f[4], z->f[5] + at};
+    rows->weigh(z->area + at, z->pixel + at, planes, n);
+    rows->widen(z->f[0], z->f[2] + at, z->f[7] + at, n - 1);
+    rows->straighten(rgb, z->f[2] + at, z->f[1], z->pixel + at, n);
     rows->share(z->f[2] + at, z->f[1], z->rgba + 2 * ROW + at, n / 2);
     const FlOcclusion layer = {z->rgba + at, z->rgba + ROW, n % 2 ? z->rgba + 3 : NULL, n,
                                n % 5 > 0};
     rows->occlude(&layer, z->sum[2] + at, z->above + at, z->area + at, n);
+    z->seed[0] += rows->keep_hidden(z->area + at, z->above + at, z->rgba + 3 * ROW, n);
     rows->multiply(z->above + at, z->rgba + at, n);
     const int16_t *const taken[3] = {z->s[0] + at, z->s[1] + at, z->s[0] + 2 * at};
     static const int16_t taps[9] = {1, -2, 3, 400, -5000, 6000, -7, 8000, 7000};
@@ -547,22 +552,22 @@ static void opaque_rows_stay_opaque(const void *version)
 {
     const FlRowKernels *rows = version;
     uint32_t sum[4][256];
-    uint8_t rgba[4 * 256], out[4 * 256];
+    uint32_t rgba[256], out[256];
     const FlSums sums = {{sum[0], sum[1], sum[2]}, sum[3]};
     for (int below = 0; below < 256; below += 5)
         for (int alpha = 0; alpha < 256; alpha++) {
             for (int s = 0; s < 256; s++) {
                 sum[0][s] = sum[1][s] = sum[2][s] = 65535u * (uint32_t)below;
                 sum[3][s] = 65535 * 255;
-                memcpy(rgba + 4 * s,
-                       (uint8_t[]){(uint8_t)s, (uint8_t)s, (uint8_t)s, (uint8_t)alpha}, 4);
+                memcpy(&rgba[s], (uint8_t[]){(uint8_t)s, (uint8_t)s, (uint8_t)s, (uint8_t)alpha},
+                       4);
             }
             rows->over(rgba, &sums, 256);
             rows->level_opaque(&sums, out, 256);
             for (int s = 0; s < 256; s++) {
                 const double exact = (s * alpha + below * (255 - alpha)) / 255.0;
                 g_assert_cmpuint(sum[3][s], ==, 65535 * 255);
-                g_assert_cmpfloat(ABS(out[4 * s] - exact), <=, 0.51);
+                g_assert_cmpfloat(ABS(((const uint8_t *)&out[s])[0] - exact), <=, 0.51);
             }
         }
 }
@@ -670,13 +675,17 @@ static void time_rows(const FlRowKernels *rows)
     TIME("add_residual", rows->add_residual(&cells, z.f[0], z.f[7], ROW));
     TIME("refine", rows->refine(z.any[1], parents, z.f[1], z.any[0], ROW));
     TIME("look_up", rows->look_up(z.s[0], z.look, z.sum[3], ROW));
-    TIME("over", rows->over(z.rgba, &sums, ROW));
-    TIME("level_opaque", rows->level_opaque(&sums, z.rgba, ROW));
+    TIME("over", rows->over(z.pixel, &sums, ROW));
+    TIME("level_opaque", rows->level_opaque(&sums, z.pixel, ROW));
     TIME("share", rows->share(z.f[2], z.f[1], z.rgba, ROW));
     const FlOcclusion layer = {z.rgba, z.rgba + ROW, z.rgba + 2 * ROW, 200, true};
     TIME("occlude", rows->occlude(&layer, z.sum[2], z.above, z.area, ROW));
+    TIME("keep_hidden", (void)rows->keep_hidden(z.area, z.above, z.rgba, ROW));
     TIME("multiply", rows->multiply(z.above, z.rgba, ROW));
-    TIME("straighten", rows->straighten(rgb, z.f[2], z.f[1], z.rgba, ROW));
+    float *const planes[6] = {z.f[0], z.f[1], z.f[2], z.f[3], z.f[4], z.f[5]};
+    TIME("weigh", rows->weigh(z.area, z.pixel, planes, ROW));
+    TIME("widen", rows->widen(z.f[0], z.f[1], z.f[7], ROW - 1));
+    TIME("straighten", rows->straighten(rgb, z.f[2], z.f[1], z.pixel, ROW));
 }
 
 /** A check of one version; the argument is its FlKernels. */

@@ -9,6 +9,11 @@ for threads in 2 3 5; do
     paint many -y -j $threads --layers "many/$layers" && same many one
     result $? "$threads threads paint what one does, layers included"
 done
+for detail in normal draft; do
+    paint single -y -j 1 --detail $detail && paint several -y -j 2 --detail $detail &&
+        paint crowd -y -j 5 --detail $detail && same several single && same crowd single
+    result $? "and the same frames where no layers are stored, detail $detail"
+done
 for mask in 0 1 3; do
     FLUIDY_CPU_MASK=$mask paint masked -y --layers "masked/$layers" && same masked one
     result $? "FLUIDY_CPU_MASK=$mask paints what the whole instruction set does"

@@ -127,12 +127,13 @@ static bool pack_some(FlLayer *layers, int n, GError **error)
     return fl_parallel_error_propagate(error, first);
 }
 
-#define PAGES_AT_ONCE 2 // pages of layers that are made together
+#define PAGES_AT_ONCE .25 // pages of layers that are made together
 
 /* The first of the layers that are made together with layer end - 1. */
 static int first_of_batch(const Stack *stack, int end)
 {
-    const size_t most = PAGES_AT_ONCE * (size_t)stack->input->width * (size_t)stack->input->height;
+    const size_t most =
+        (size_t)(PAGES_AT_ONCE * (double)stack->input->width * stack->input->height);
     int first = end - 1;
     for (size_t pixels = layer_pixels(stack, first);
          first > 0 && (pixels += layer_pixels(stack, first - 1)) <= most;)
@@ -166,6 +167,7 @@ static bool resolve_in_turn(Stack *stack, GError **error)
     if (!init_underlay(&underlay, stack, error) ||
         !fl_layers_above_init(&above, width, height, stack->input->gap_px, error))
         return false;
+    stack->sources.culling.above = stack->input->layers_apart ? NULL : &above;
     for (int end = stack->composite->n_layers, first; end > 0; end = first) {
         first = first_of_batch(stack, end);
         FlLayer *layers = stack->composite->layers + first;
@@ -202,7 +204,8 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     const int n_regions = fl_drawing_regions(input->drawing);
     g_autofree double *areas = g_new(double, MAX(n_regions, 1));
     fl_region_areas_find(draws, n_regions, areas);
-    Stack stack = {composite, input, {input, edges, exposures, areas}, draw, fading};
+    Stack stack = {
+        composite, input, {input, edges, exposures, areas, {NULL, input->half}}, draw, fading};
     return (needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error);
 }
 

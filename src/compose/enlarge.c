@@ -11,9 +11,10 @@ enum { COVERAGE, COVERED, ALPHA, RED, GREEN, BLUE, BODY, N_PLANES };
 
 /** A row of half the size: the box's columns and one on either side. */
 typedef struct HalfRow {
-    int y;           // in the frame
-    int first, last; // columns that are covered, last exclusive; none: first > last
-    float *plane[N_PLANES];
+    int y;                  // in the frame
+    FlColumns span;         // all that is covered lies in it
+    uint8_t *covered;       // 0: the pixel is not
+    float *plane[N_PLANES]; // 0 where it is not covered
 } HalfRow;
 
 /** What a thread works with. */
@@ -22,8 +23,9 @@ typedef struct Rows {
     int half_width, half_height; // of the frame
     float *memory;
     HalfRow read[3];       // the last ones that were read, by y % 3
-    float *mixed;          // a plane of two rows in one
+    uint8_t *covered;      // where one of two rows is
     float *wide[N_PLANES]; // a row of the full size, from column 2 * (box.x - 1) on
+    float *sixteen;        // as long, each 16: what coverage is to be divided by
 } Rows;
 
 static size_t padded(const FlLayer *half)
@@ -33,9 +35,10 @@ static size_t padded(const FlLayer *half)
 
 static bool rows_init(Rows *rows, const FlLayer *half, int width, int height, GError **error)
 {
-    const size_t n = padded(half);
+    const size_t n = padded(half), bytes = (n + 3) / 4; // as many floats are n bytes
     *rows = (Rows){half, fl_half_side(width), fl_half_side(height)};
-    rows->memory = fl_alloc(n * (3 * N_PLANES + 1 + 2 * N_PLANES), sizeof(float), "a layer", error);
+    rows->memory = fl_alloc(n * (3 * N_PLANES + 2 * N_PLANES + 2) + 4 * bytes, sizeof(float),
+                            "a layer", error);
     float *next = rows->memory;
     for (int r = 0; next && r < 3; r++) {
         rows->read[r].y = -1;
@@ -44,87 +47,145 @@ static bool rows_init(Rows *rows, const FlLayer *half, int width, int height, GE
     }
     for (int k = 0; next && k < N_PLANES; k++, next += 2 * n)
         rows->wide[k] = next;
-    rows->mixed = next;
+    rows->sixteen = next;
+    for (size_t x = 0; next && x < 2 * n; x++)
+        *next++ = 16;
+    for (int r = 0; next && r < 3; r++, next += bytes)
+        rows->read[r].covered = (uint8_t *)next;
+    rows->covered = (uint8_t *)next;
     return next != NULL;
 }
 
-/** Pixel (column, row) of the box, if it is covered, into column x of the planes. */
-static bool read_pixel(const FlLayer *half, int column, int row, float *const plane[N_PLANES],
-                       int x)
+/** Clears what a row holds. */
+static void clear_row(HalfRow *row)
 {
-    const size_t j = (size_t)row * half->area.box.width + column;
-    const uint8_t coverage = half->coverage[j];
-    const uint8_t *rgba = half->rgba + 4 * j;
-    const float alpha = rgba[3];
-    if (!coverage)
-        return false;
-    plane[COVERAGE][x] = coverage;
-    plane[COVERED][x] = 1;
-    plane[ALPHA][x] = alpha;
-    for (int c = 0; c < 3; c++)
-        plane[RED + c][x] = alpha * rgba[c];
-    plane[BODY][x] = half->knockout ? half->knockout[j] : 0;
-    return true;
+    const FlColumns span = row->span;
+    const size_t n = (size_t)(span.last - span.first);
+    for (int k = 0; k < N_PLANES && n > 0; k++)
+        memset(row->plane[k] + span.first, 0, n * sizeof(float));
+    memset(row->covered + span.first, 0, n);
+    row->span = (FlColumns){0, 0};
+}
+
+/** Puts a run of the layer's row that begins with pixel `at` of the box into columns from x on. */
+static void read_run(const FlLayer *half, size_t at, int n, HalfRow *row, int x)
+{
+    float *plane[N_PLANES];
+    for (int k = 0; k < N_PLANES; k++)
+        plane[k] = row->plane[k] + x;
+    fl_row_kernels()->weigh(half->coverage + at, (const uint32_t *)(const void *)half->rgba + at,
+                            plane, n);
+    for (int i = 0; i < n && half->knockout; i++)
+        plane[BODY][i] = half->coverage[at + (size_t)i] ? half->knockout[at + (size_t)i] : 0;
+    memcpy(row->covered + x, half->coverage + at, (size_t)n);
+}
+
+/** Column `to` becomes as column `from` is. */
+static void copy_column(HalfRow *row, int from, int to)
+{
+    for (int k = 0; k < N_PLANES; k++)
+        row->plane[k][to] = row->plane[k][from];
+    row->covered[to] = row->covered[from];
+    row->span = (FlColumns){MIN(row->span.first, to), MAX(row->span.last, to + 1)};
 }
 
 /** Beyond the frame its last pixels go on; beyond the box there is nothing. */
 static const HalfRow *row_at(Rows *rows, int y)
 {
-    const FlRect box = rows->half->area.box;
+    const FlLayer *half = rows->half;
+    const FlRect box = half->area.box;
     y = CLAMP(y, 0, rows->half_height - 1);
     HalfRow *row = &rows->read[y % 3];
     if (row->y == y)
         return row;
-    for (int k = 0; k < N_PLANES && row->first < row->last; k++)
-        memset(row->plane[k] + row->first, 0, (size_t)(row->last - row->first) * sizeof(float));
-    row->y = y, row->first = box.width + 2, row->last = 0;
+    clear_row(row);
+    row->y = y;
     if (y < box.y || y >= box.y + box.height)
         return row;
-    const FlColumns span = fl_area_row(&rows->half->area, y - box.y);
-    for (int x = span.first; x < span.last + 2; x++) {
-        const int column = CLAMP(box.x + x - 1, 0, rows->half_width - 1) - box.x;
-        if (column >= span.first && column < span.last &&
-            read_pixel(rows->half, column, y - box.y, row->plane, x))
-            row->first = MIN(row->first, x), row->last = x + 1;
-    }
+    const FlColumns span = fl_area_row(&half->area, y - box.y);
+    const size_t first = (size_t)(y - box.y) * (size_t)box.width;
+    const uint8_t *coverage = half->coverage + first;
+    for (FlColumns run = fl_next_run(coverage, span.first, span.last); run.first < run.last;
+         run = fl_next_run(coverage, run.last, span.last))
+        read_run(half, first + (size_t)run.first, run.last - run.first, row, run.first + 1);
+    if (span.first < span.last)
+        row->span = (FlColumns){span.first + 1, span.last + 1};
+    if (box.x == 0 && row->covered[1])
+        copy_column(row, 1, 0);
+    if (box.x + box.width == rows->half_width && row->covered[box.width])
+        copy_column(row, box.width, box.width + 1);
     return row;
 }
 
-/**
- * Row y of the full size, sixteenfold: its pixels' centres are a quarter of a small pixel from the
- * nearest small centres. Returns: the columns of it that have anything, last exclusive.
- */
-static void widen(Rows *rows, int y, int *first, int *last)
+/** A row of the full size between two of the half. */
+typedef struct Mix {
+    const HalfRow *near, *far;
+    FlColumns span; // of both, where one of them is covered
+} Mix;
+
+/** Its pixels' centres are a quarter of a small pixel from the nearest small centres. */
+static Mix mix_at(Rows *rows, int y)
 {
     const HalfRow *near = row_at(rows, y / 2), *far = row_at(rows, y / 2 + (y % 2 ? 1 : -1));
-    const int n = (int)padded(rows->half);
-    const int x0 = MAX(MIN(near->first, far->first) - 1, 0);
-    const int x1 = MIN(MAX(near->last, far->last) + 1, n);
-    for (int k = 0; k < N_PLANES && x0 < x1; k++) {
-        float *mixed = rows->mixed, *wide = rows->wide[k];
-        for (int x = x0; x < x1; x++)
-            mixed[x] = 3 * near->plane[k][x] + far->plane[k][x];
-        for (int x = x0 + 1; x < x1; x++) {
-            wide[2 * x - 1] = 3 * mixed[x - 1] + mixed[x];
-            wide[2 * x] = 3 * mixed[x] + mixed[x - 1];
-        }
-    }
-    *first = 2 * x0 + 1, *last = 2 * x1 - 1;
+    const FlColumns a = near->span, b = far->span;
+    Mix mix = {near, far, {MIN(a.first, b.first), MAX(a.last, b.last)}};
+    if (a.first == a.last || b.first == b.last)
+        mix.span = a.first == a.last ? b : a;
+    for (int x = mix.span.first; x < mix.span.last; x++)
+        rows->covered[x] = near->covered[x] | far->covered[x];
+    return mix;
 }
 
-/** A part of a row of the full size, whose column 0 is `from` of the wide row. */
-static void store(const Rows *rows, int from, FlColumns span, uint8_t *coverage, uint8_t *rgba,
-                  uint8_t *knockout)
+/** The columns of the wide row that mix some of the small one's. */
+static FlColumns widened(FlColumns run, int n)
 {
-    const int at = from + span.first, n = span.last - span.first;
-    const float *const rgb[3] = {rows->wide[RED] + at, rows->wide[GREEN] + at,
-                                 rows->wide[BLUE] + at};
-    const float *weight = rows->wide[COVERED] + at; // 0: all else is 0 as well
-    for (int x = 0; x < n; x++)
-        coverage[span.first + x] = (uint8_t)(rows->wide[COVERAGE][at + x] / 16 + 0.5f);
-    fl_row_kernels()->straighten(rgb, rows->wide[ALPHA] + at, weight, rgba + 4 * span.first, n);
-    if (knockout)
-        fl_row_kernels()->share(rows->wide[BODY] + at, weight, knockout + span.first, n);
+    const int x0 = MAX(run.first - 1, 0), x1 = MIN(run.last + 1, n);
+    return (FlColumns){2 * x0 + 1, 2 * x1 - 1};
+}
+
+/** Fills these columns of the wide row, sixteenfold. */
+static void widen(const Rows *rows, const Mix *mix, FlColumns wide)
+{
+    const int x = wide.first / 2, n = (wide.last - wide.first) / 2;
+    for (int k = 0; k < N_PLANES; k++)
+        fl_row_kernels()->widen(mix->near->plane[k] + x, mix->far->plane[k] + x,
+                                rows->wide[k] + wide.first, n);
+}
+
+/** Stores columns of the wide row as pixels of the layer, the first of which is the at-th. */
+static void store(const Rows *rows, FlColumns wide, size_t at, const FlLayer *full)
+{
+    const int x = wide.first, n = wide.last - wide.first;
+    float *const *plane = rows->wide;
+    const float *const rgb[3] = {plane[RED] + x, plane[GREEN] + x, plane[BLUE] + x};
+    const float *weight = plane[COVERED] + x; // 0: all else is 0 as well
+    fl_row_kernels()->share(plane[COVERAGE] + x, rows->sixteen + x, (uint8_t *)full->coverage + at,
+                            n);
+    fl_row_kernels()->straighten(rgb, plane[ALPHA] + x, weight, (uint32_t *)(void *)full->rgba + at,
+                                 n);
+    if (full->knockout)
+        fl_row_kernels()->share(plane[BODY] + x, weight, full->knockout + at, n);
+}
+
+/** Fills row y of the layer, whose column 0 is `left` of the wide row. */
+static void fill_row(Rows *rows, int y, int left, const FlLayer *full)
+{
+    const FlRect box = full->area.box;
+    const size_t row = (size_t)y * (size_t)box.width;
+    const Mix mix = mix_at(rows, box.y + y);
+    FlColumns filled = {0, 0};
+    for (FlColumns run = fl_next_run(rows->covered, mix.span.first, mix.span.last);
+         run.first < run.last; run = fl_next_run(rows->covered, run.last, mix.span.last)) {
+        const FlColumns wide = widened(run, (int)padded(rows->half));
+        const FlColumns own = {MAX(wide.first - left, 0), MIN(wide.last - left, box.width)};
+        widen(rows, &mix, wide);
+        store(rows, (FlColumns){own.first + left, own.last + left}, row + (size_t)own.first, full);
+        if (filled.last > 0) // nothing shows between runs
+            memset(full->rgba + 4 * (row + (size_t)filled.last), 0,
+                   4 * (size_t)(own.first - filled.last));
+        filled = (FlColumns){filled.last > 0 ? filled.first : own.first, own.last};
+    }
+    full->area.row[y] = filled;
 }
 
 /** The box at full size, with the pixels that mix with what is inside. */
@@ -140,8 +201,8 @@ static bool make_planes(FlLayer *full, bool with_knockout, GError **error)
     const size_t n = fl_rect_pixels(full->area.box);
     full->area.row = g_new0(FlColumns, full->area.box.height);
     return (full->coverage = fl_alloc(n, 1, "a layer", error)) &&
-           (full->rgba = fl_alloc(4 * n, 1, "a layer", error)) &&
-           (!with_knockout || (full->knockout = fl_alloc(n, 1, "a layer", error)));
+           (full->rgba = fl_alloc_unset(4 * n, 1, "a layer", error)) &&
+           (!with_knockout || (full->knockout = fl_alloc_unset(n, 1, "a layer", error)));
 }
 
 bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, GError **error)
@@ -162,18 +223,9 @@ bool fl_layer_double(const FlLayer *half, int width, int height, FlLayer *full, 
         GError *failure = NULL;
         const bool ready = rows_init(&rows, half, width, height, &failure);
 #pragma omp for schedule(static)
-        for (int y = 0; y < box.height; y++) {
-            const size_t row = (size_t)y * box.width;
-            if (!ready)
-                continue;
-            int from = 0, to = 0;
-            widen(&rows, box.y + y, &from, &to);
-            const FlColumns wide = {MAX(from - left, 0), MIN(to - left, box.width)};
-            const FlColumns span = wide.first < wide.last ? wide : (FlColumns){0, 0};
-            full->area.row[y] = span;
-            store(&rows, left, span, (uint8_t *)full->coverage + row, full->rgba + 4 * row,
-                  full->knockout ? (uint8_t *)full->knockout + row : NULL);
-        }
+        for (int y = 0; y < box.height; y++)
+            if (ready)
+                fill_row(&rows, y, left, full);
         free(rows.memory);
         fl_parallel_error_keep(&first, failure);
     }

@@ -105,7 +105,7 @@ static FlSums sums_from(const FlSums *sums, int first)
 static void sum_over(const FlSums *sums, const FlTransfer *scale, const uint8_t *rgba, int n)
 {
     if (!scale->linear)
-        fl_row_kernels()->over(rgba, sums, n);
+        fl_row_kernels()->over((const uint32_t *)(const void *)rgba, sums, n);
     for (int i = 0; scale->linear && i < n; i++) {
         const uint32_t alpha = rgba[4 * i + 3];
         for (int c = 0; c < 3; c++)
@@ -274,7 +274,7 @@ static bool is_opaque(const FlSums *sums, int width)
 static void store_row(const FlSums *sums, const FlTransfer *scale, int width, uint8_t *out)
 {
     if (!scale->linear && is_opaque(sums, width)) {
-        fl_row_kernels()->level_opaque(sums, out, width);
+        fl_row_kernels()->level_opaque(sums, (uint32_t *)(void *)out, width);
         return;
     }
     for (int x = 0; x < width; x++) {

@@ -115,6 +115,20 @@ static bool colour_layer(FlLayer *layer, const FlLayerSources *sources,
     return true;
 }
 
+/* Where a layer has been culled, it has no paint. */
+static void take_culled(const FlLayer *layer, int16_t *amounts)
+{
+    if (!layer->owns_coverage)
+        return;
+    for (int y = 0; y < layer->area.box.height; y++) {
+        const FlColumns span = fl_area_row(&layer->area, y);
+        const size_t row = (size_t)y * (size_t)layer->area.box.width;
+        const uint8_t *coverage = layer->coverage + row;
+        for (int x = span.first; x < span.last; x++)
+            amounts[row + (size_t)x] = coverage[x] ? amounts[row + (size_t)x] : -1;
+    }
+}
+
 /* Knockout is of the amounts before the paper's grain, which else would punch holes into it. */
 static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                         const FlPaintedRegion *painted, int exposure, GError **error)
@@ -129,9 +143,11 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
         return false;
     const FlDrawing *drawing = sources->input->drawing;
     const int border_px = (int)(painted->style->border_px + 0.5f);
-    return fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
-                       fl_drawing_height(drawing), MAX(border_px, 1), knockout, error) &&
-           colour_layer(layer, sources, painted, &colouring, amounts, error);
+    if (!fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
+                     fl_drawing_height(drawing), MAX(border_px, 1), knockout, error))
+        return false;
+    take_culled(layer, amounts);
+    return colour_layer(layer, sources, painted, &colouring, amounts, error);
 }
 
 /* Paint with alpha of its own fades out by that, beyond its shape: the layer of a grown one,
@@ -208,6 +224,7 @@ bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError
         return false;
     const bool cut_out = painted && is_cut_out(painted);
     if ((cut_out && !reach_out(layer, sources, draw, painted, error)) ||
+        !fl_layer_cull(layer, &sources->culling, error) ||
         !(layer->rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
         return false;
     if (painted)

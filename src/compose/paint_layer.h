@@ -3,6 +3,7 @@
 #define FLUIDY_COMPOSE_PAINT_LAYER_H
 
 #include "compose/compose_input.h"
+#include "compose/culling.h"
 #include "compose/edge_map.h"
 #include "compose/layers.h"
 
@@ -12,6 +13,7 @@ typedef struct FlLayerSources {
     const FlEdgeMap *edges; // of the frame's draws
     const int *exposures;   // of each painted region
     const double *areas;    // of each region, px
+    FlCulling culling;      // by the layers above
 } FlLayerSources;
 
 /** The layer of a draw, before it is painted: where it is, and how it lies over others. It borrows
