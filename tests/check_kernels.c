@@ -518,7 +518,7 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     float *const planes[6] = {z->f[0], z->f[1] + at, z->f[2], z->f[3], z->f[4], z->f[5] + at};
     rows->weigh(z->area + at, z->pixel + at, planes, n);
     rows->widen(z->f[0], z->f[2] + at, z->f[7] + at, n - 1);
-    rows->straighten(rgb, z->f[2] + at, z->f[1], z->pixel + at, n);
+    rows->straighten(rgb, z->f[2] + at, z->f[1], z->area, z->pixel + at, n);
     rows->share(z->f[2] + at, z->f[1], z->rgba + 2 * ROW + at, n / 2);
     const FlOcclusion layer = {z->rgba + at, z->rgba + ROW, n % 2 ? z->rgba + 3 : NULL, n,
                                n % 5 > 0};
@@ -685,7 +685,7 @@ static void time_rows(const FlRowKernels *rows)
     float *const planes[6] = {z.f[0], z.f[1], z.f[2], z.f[3], z.f[4], z.f[5]};
     TIME("weigh", rows->weigh(z.area, z.pixel, planes, ROW));
     TIME("widen", rows->widen(z.f[0], z.f[1], z.f[7], ROW - 1));
-    TIME("straighten", rows->straighten(rgb, z.f[2], z.f[1], z.pixel, ROW));
+    TIME("straighten", rows->straighten(rgb, z.f[2], z.f[1], z.area, z.pixel, ROW));
 }
 
 /** A check of one version; the argument is its FlKernels. */

@@ -5,16 +5,45 @@
 
 #define GAP_PX 16 // pixels without alpha that end a run
 
+/** Whether two pixels have no alpha. */
+static bool two_clear(const uint8_t *rgba)
+{
+    static const uint8_t alpha[8] = {0, 0, 0, 255, 0, 0, 0, 255};
+    uint64_t two, mask;
+    memcpy(&two, rgba, sizeof two);
+    memcpy(&mask, alpha, sizeof mask);
+    return (two & mask) == 0;
+}
+
+/** The first column from x on whose pixel has alpha. */
+static int next_seen(const uint8_t *rgba, int x, int end)
+{
+    while (x + 2 <= end && two_clear(rgba + 4 * x))
+        x += 2;
+    while (x < end && rgba[4 * x + 3] == 0)
+        x++;
+    return x;
+}
+
+/** The first column from x on whose pixel has none. */
+static int next_clear(const uint8_t *rgba, int x, int end)
+{
+    while (x < end && rgba[4 * x + 3])
+        x++;
+    return x;
+}
+
 /** The next run of a row's pixels from column x on; no pixels: there is none. */
 static FlColumns next_run(const uint8_t *rgba, int x, int end)
 {
-    while (x < end && rgba[4 * x + 3] == 0)
-        x++;
-    int last = x;
-    for (int at = x; at < end && at < last + GAP_PX; at++)
-        if (rgba[4 * at + 3] > 0)
-            last = at + 1;
-    return (FlColumns){x, last};
+    FlColumns run = {next_seen(rgba, x, end), 0};
+    for (int next = run.first; next < end; next = next_seen(rgba, run.last, end)) {
+        if (next > run.first && next - run.last >= GAP_PX)
+            break;
+        run.last = next_clear(rgba, next, end);
+    }
+    run.last = MAX(run.last, run.first);
+    return run;
 }
 
 /** Counts the runs of all rows and their pixels; keeps them where there is room. */

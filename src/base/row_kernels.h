@@ -126,9 +126,10 @@ typedef struct FlRowKernels {
      * from the rows near and far, sixteenfold. All sums are whole and below 2^24. */
     void (*widen)(const float *near, const float *far, float *to, int n);
 
-    /** Enlarge: straight RGBA from sums of colour times alpha and of alpha, and alpha's weight. */
+    /** Enlarge: straight RGBA from sums of colour times alpha and of alpha, and alpha's weight; 0
+     * where coverage is. */
     void (*straighten)(const float *const rgb[3], const float *alpha, const float *weight,
-                       uint32_t *rgba, int n);
+                       const uint8_t *coverage, uint32_t *rgba, int n);
 
     /** Composite, from the top down: sets the stored alpha of a layer; adds its paint and its
      * knock-out to those of the layers above it. */

@@ -370,17 +370,20 @@ void fl_colourise_amounts(const FlInk *ink, int exposure, const FlPaintedPart *p
                           const uint8_t *coverage, const FlArea *area, int16_t *amounts)
 {
     const FlRect box = area->box;
-    g_autofree int16_t *exposed = g_new(int16_t, FL_AMOUNTS);
-    for (int i = 0; i < FL_AMOUNTS; i++)
-        exposed[i] = (int16_t)fl_ink_exposed(ink, i, exposure);
+    g_autofree int16_t *exposed = g_new(int16_t, FL_AMOUNTS); // -1: not met yet
+    memset(exposed, 0xff, FL_AMOUNTS * sizeof *exposed);
     memset(amounts, 0xff, fl_rect_pixels(box) * sizeof *amounts); // -1
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const uint8_t *rgb = painted_row(painted, box, y);
         const size_t row = (size_t)y * (size_t)box.width;
         for (int x = span.first; x < span.last; x++)
-            if (coverage[row + x])
-                amounts[row + x] = exposed[fl_ink_amount(ink, rgb + 3 * (size_t)x)];
+            if (coverage[row + x]) {
+                const int amount = fl_ink_amount(ink, rgb + 3 * (size_t)x);
+                if (exposed[amount] < 0)
+                    exposed[amount] = (int16_t)fl_ink_exposed(ink, amount, exposure);
+                amounts[row + x] = exposed[amount];
+            }
     }
 }
 

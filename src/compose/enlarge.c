@@ -161,8 +161,8 @@ static void store(const Rows *rows, FlColumns wide, size_t at, const FlLayer *fu
     const float *weight = plane[COVERED] + x; // 0: all else is 0 as well
     fl_row_kernels()->share(plane[COVERAGE] + x, rows->sixteen + x, (uint8_t *)full->coverage + at,
                             n);
-    fl_row_kernels()->straighten(rgb, plane[ALPHA] + x, weight, (uint32_t *)(void *)full->rgba + at,
-                                 n);
+    fl_row_kernels()->straighten(rgb, plane[ALPHA] + x, weight, full->coverage + at,
+                                 (uint32_t *)(void *)full->rgba + at, n);
     if (full->knockout)
         fl_row_kernels()->share(plane[BODY] + x, weight, full->knockout + at, n);
 }

@@ -35,23 +35,43 @@ static bool knocks_out(const FlLayer *layer)
     return layer->stacking == FL_STACKING_KNOCKOUT && layer->blend_mode == FL_BLEND_MODE_OVER;
 }
 
-static void resolve_rows(const FlLayer *layer, FlLayersAbove *above)
+typedef void (*OnColumns)(const FlLayer *layer, const FlLayersAbove *above, int y,
+                          FlColumns columns);
+
+/* Does that for all rows of a layer, where there is any coverage. */
+static void each_run(const FlLayer *layer, const FlLayersAbove *above, OnColumns work)
 {
     const FlRect box = layer->area.box;
-    const bool knocks = knocks_out(layer);
 #pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(box)))
     for (int y = 0; y < box.height; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
-        const size_t i = (size_t)(box.y + y) * above->width + box.x + span.first;
-        const size_t j = (size_t)y * box.width + span.first;
-        const FlOcclusion row = {.coverage = layer->coverage + j,
-                                 .seen = above->seen + j,
-                                 .knockout = layer->knockout ? layer->knockout + j : NULL,
-                                 .alpha = layer->alpha,
-                                 .knocks = knocks};
-        fl_row_kernels()->occlude(&row, (uint32_t *)(void *)layer->rgba + j, above->paint + i,
-                                  above->area + i, span.last - span.first);
+        const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)box.width;
+        for (FlColumns run = fl_next_run(coverage, span.first, span.last); run.first < run.last;
+             run = fl_next_run(coverage, run.last, span.last))
+            work(layer, above, y, run);
     }
+}
+
+static void see_columns(const FlLayer *layer, const FlLayersAbove *above, int y, FlColumns columns)
+{
+    const FlVisibleShape shape = {&layer->area, layer->coverage};
+    fl_visibility_row(&shape, above->area, above->width, above->height, y, columns,
+                      above->seen + (size_t)y * (size_t)layer->area.box.width);
+}
+
+static void resolve_columns(const FlLayer *layer, const FlLayersAbove *above, int y,
+                            FlColumns columns)
+{
+    const FlRect box = layer->area.box;
+    const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)(box.x + columns.first);
+    const size_t j = (size_t)y * (size_t)box.width + (size_t)columns.first;
+    const FlOcclusion some = {.coverage = layer->coverage + j,
+                              .seen = above->seen + j,
+                              .knockout = layer->knockout ? layer->knockout + j : NULL,
+                              .alpha = layer->alpha,
+                              .knocks = knocks_out(layer)};
+    fl_row_kernels()->occlude(&some, (uint32_t *)(void *)layer->rgba + j, above->paint + i,
+                              above->area + i, columns.last - columns.first);
 }
 
 static void grow_area(const FlLayer *layer, FlLayersAbove *above)
@@ -65,9 +85,8 @@ static void grow_area(const FlLayer *layer, FlLayersAbove *above)
 
 void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above)
 {
-    const FlVisibleShape shape = {&layer->area, layer->coverage};
-    fl_visibility_visible(&shape, above->area, above->width, above->height, above->seen);
-    resolve_rows(layer, above);
+    each_run(layer, above, see_columns); // which looks at rows around its own
+    each_run(layer, above, resolve_columns);
     if (above->spread && knocks_out(layer))
         grow_area(layer, above);
 }

@@ -230,7 +230,7 @@ bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError
     if (painted)
         return (cut_out ? paint_cut_out : paint_layer)(layer, sources, r, painted,
                                                        sources->exposures[p], error);
-    fl_colourise_plain(draw->picture, draw->rgb, draw->coverage, &layer->area, layer->rgba);
+    fl_colourise_plain(draw->picture, draw->rgb, layer->coverage, &layer->area, layer->rgba);
     return true;
 }
 

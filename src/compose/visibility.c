@@ -1,6 +1,5 @@
 #include "compose/visibility.h"
 
-#include "base/schedule.h"
 #include <math.h>
 #include <string.h>
 
@@ -57,41 +56,40 @@ static bool is_partial(uint8_t value)
     return (uint8_t)(value - 1) < 254;
 }
 
-/** A row but for the pixels through which both edges run. Returns: whether there are any. */
-static bool visible_row(const uint8_t *coverage, const uint8_t *above, FlColumns span,
-                        uint8_t *restrict visible)
+/** Pixels but for those through which both edges run, which are marked. */
+static void see_plain(const uint8_t *coverage, const uint8_t *above, int n,
+                      uint8_t *restrict visible, uint8_t *restrict mixed)
 {
-    uint8_t any = 0;
-    for (int x = span.first; x < span.last; x++) {
+    for (int x = 0; x < n; x++) {
         const uint8_t c = coverage[x], u = above[x];
         const uint8_t of_full = c == 255 ? 255 - u : 0;
         visible[x] = u == 0 ? c : of_full;
-        any |= is_partial(c) && is_partial(u);
+        mixed[x] = is_partial(c) & is_partial(u);
     }
-    return any;
 }
 
-void fl_visibility_visible(const FlVisibleShape *shape, const uint8_t *above, int width, int height,
-                           uint8_t *visible)
+void fl_visibility_row(const FlVisibleShape *shape, const uint8_t *above, int width, int height,
+                       int row, FlColumns columns, uint8_t *visible)
 {
+    enum { SOME = 256 }; // pixels at a time
     const FlRect box = shape->area->box;
     const Plane lower = {shape->coverage, box, width, height};
     const Plane upper = {above, {0, 0, width, height}, width, height};
-#pragma omp parallel for schedule(static) if (fl_schedule_worth_threads(fl_rect_pixels(box)))
-    for (int row = 0; row < box.height; row++) {
-        const FlColumns span = fl_area_row(shape->area, row);
-        const int y = box.y + row;
-        const uint8_t *coverage = shape->coverage + (size_t)row * box.width;
-        const uint8_t *hidden = above + (size_t)y * width + box.x;
-        uint8_t *seen = visible + (size_t)row * box.width;
-        if (!visible_row(coverage, hidden, span, seen))
-            continue;
-        for (int column = span.first; column < span.last; column++)
-            if (is_partial(coverage[column]) && is_partial(hidden[column])) {
-                const int x = box.x + column;
-                const int angle = cosine(gradient(&lower, x, y), gradient(&upper, x, y));
-                seen[column] = (uint8_t)mixed_edge(coverage[column], hidden[column], angle);
-            }
+    const int y = box.y + row;
+    const uint8_t *coverage = shape->coverage + (size_t)row * (size_t)box.width;
+    const uint8_t *hidden = above + (size_t)y * (size_t)width + box.x;
+    for (int from = columns.first; from < columns.last; from += SOME) {
+        uint8_t mixed[SOME];
+        const int n = MIN(SOME, columns.last - from);
+        see_plain(coverage + from, hidden + from, n, visible + from, mixed);
+        for (FlColumns run = fl_next_run(mixed, 0, n); run.first < run.last;
+             run = fl_next_run(mixed, run.last, n))
+            for (int column = from + run.first; column < from + run.last; column++)
+                if (mixed[column - from]) {
+                    const int x = box.x + column;
+                    const int angle = cosine(gradient(&lower, x, y), gradient(&upper, x, y));
+                    visible[column] = (uint8_t)mixed_edge(coverage[column], hidden[column], angle);
+                }
     }
 }
 
