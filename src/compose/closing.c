@@ -9,39 +9,35 @@ typedef struct Around {
     uint32_t free, taken;
 } Around;
 
-static Around around_of(uint8_t coverage, uint8_t others)
+/** The same of each column of some rows. */
+typedef struct Columns {
+    uint32_t *free, *taken;
+} Columns;
+
+/** What others cover of a pixel's free part: free * others / 255. */
+static uint32_t taken_of(uint32_t free, uint8_t others)
 {
-    const uint32_t free = 255u - coverage;
-    return (Around){free, free * others / 255};
+    const uint32_t product = free * others;
+    return (product + 1 + (product >> 8)) >> 8;
 }
 
-static void add(Around *sum, Around one)
+static void add_row(const uint8_t *coverage, const uint8_t *others, int n, uint32_t *restrict free,
+                    uint32_t *restrict taken)
 {
-    sum->free += one.free, sum->taken += one.taken;
+    for (int x = 0; x < n; x++) {
+        const uint32_t here = 255u - coverage[x];
+        free[x] += here;
+        taken[x] += taken_of(here, others[x]);
+    }
 }
 
-static void take(Around *sum, Around one)
+static void take_row(const uint8_t *coverage, const uint8_t *others, int n, uint32_t *restrict free,
+                     uint32_t *restrict taken)
 {
-    sum->free -= one.free, sum->taken -= one.taken;
-}
-
-/**
- * Sums over 2 r + 1 columns, one for each column of the box. one: room for each pixel of these,
- * 2 r more than the box has; what is beyond the row stays as it is.
- */
-static void sum_row(const uint8_t *coverage, const uint8_t *others, int width, FlRect box, int r,
-                    Around *restrict one, Around *restrict out)
-{
-    const int first = box.x - r;
-    for (int x = MAX(first, 0); x < MIN(box.x + box.width + r, width); x++)
-        one[x - first] = around_of(coverage[x], others[x]);
-    Around sum = {0};
-    for (int x = 0; x < 2 * r; x++)
-        add(&sum, one[x]);
-    for (int x = 0; x < box.width; x++) {
-        add(&sum, one[x + 2 * r]);
-        out[x] = sum;
-        take(&sum, one[x]);
+    for (int x = 0; x < n; x++) {
+        const uint32_t here = 255u - coverage[x];
+        free[x] -= here;
+        taken[x] -= taken_of(here, others[x]);
     }
 }
 
@@ -58,37 +54,45 @@ static uint8_t share_of(Around sum, uint32_t window)
     return (uint8_t)(others * near / window);
 }
 
-static void add_row(Around *sums, const Around *row, size_t n)
+/** Shares of a row's n pixels, of which coverage is; columns: from r before the first one on. */
+static void share_row(const Columns *columns, const uint8_t *coverage, int n, int r, uint8_t *share)
 {
-    for (size_t x = 0; x < n; x++)
-        add(&sums[x], row[x]);
+    const uint32_t window = 255u * (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
+    Around sum = {0};
+    for (int x = 0; x < 2 * r; x++)
+        sum.free += columns->free[x], sum.taken += columns->taken[x];
+    for (int x = 0; x < n; x++) {
+        sum.free += columns->free[x + 2 * r], sum.taken += columns->taken[x + 2 * r];
+        share[x] = coverage[x] ? share_of(sum, window) : 0;
+        sum.free -= columns->free[x], sum.taken -= columns->taken[x];
+    }
 }
 
 bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width, int height,
                       FlRect box, int radius_px, uint8_t *share, GError **error)
 {
     const int r = radius_px, y0 = MAX(box.y - r, 0), y1 = MIN(box.y + box.height + r, height);
+    const int x0 = MAX(box.x - r, 0), n = MIN(box.x + box.width + r, width) - x0;
     g_assert(r >= 1 && r <= FL_CLOSING_MAX_PX);
-    const size_t n = (size_t)box.width;
-    g_autofree Around *rows = fl_alloc_unset((size_t)(y1 - y0) * n, sizeof *rows, "a matte", error);
-    g_autofree Around *sums = rows ? fl_alloc(n, sizeof *sums, "a row of a matte", error) : NULL;
-    g_autofree Around *one =
-        sums ? fl_alloc(n + 2 * (size_t)r, sizeof *one, "a row of a matte", error) : NULL;
-    if (!one)
+    const size_t most = (size_t)box.width + 2 * (size_t)r;
+    g_autofree uint32_t *sums = fl_alloc(2 * most, sizeof *sums, "a row of a matte", error);
+    if (!sums)
         return false;
-    for (int y = y0; y < y1; y++)
-        sum_row(coverage + (size_t)y * width, others + (size_t)y * width, width, box, r, one,
-                rows + (size_t)(y - y0) * n);
-    const uint32_t window = 255u * (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
-    for (int y = y0; y < MIN(box.y + r, y1); y++)
-        add_row(sums, rows + (size_t)(y - y0) * n, n);
-    for (int y = box.y; y < box.y + box.height; y++) {
-        if (y + r < y1)
-            add_row(sums, rows + (size_t)(y + r - y0) * n, n);
-        for (size_t x = 0; x < n; x++)
-            share[(size_t)(y - box.y) * n + x] = share_of(sums[x], window);
-        for (size_t x = 0; x < n && y - r >= y0; x++)
-            take(&sums[x], rows[(size_t)(y - r - y0) * n + x]);
+    const Columns columns = {sums, sums + most};
+    const int margin = x0 - (box.x - r); // columns beyond the plane
+    for (int y = y0; y < y1 + r; y++) {
+        const size_t enters = (size_t)y * (size_t)width + (size_t)x0, row = (size_t)(y - r - box.y);
+        if (y < y1)
+            add_row(coverage + enters, others + enters, n, columns.free + margin,
+                    columns.taken + margin);
+        if (y - r < box.y || y - r >= box.y + box.height)
+            continue;
+        share_row(&columns, coverage + (size_t)(y - r) * (size_t)width + (size_t)box.x, box.width,
+                  r, share + row * (size_t)box.width);
+        const size_t leaves = (size_t)(y - 2 * r) * (size_t)width + (size_t)x0;
+        if (y - 2 * r >= y0)
+            take_row(coverage + leaves, others + leaves, n, columns.free + margin,
+                     columns.taken + margin);
     }
     return true;
 }
@@ -136,29 +140,47 @@ int fl_closing_reach(int radius_px)
     return radius_px;
 }
 
-/** Room for what is made of the windows of each pixel. */
+/** A part of a box, and what is made of the windows of its pixels. */
 typedef struct Windows {
+    FlRect part;
+    int16_t *inside, *weighed;       // weighed: amounts, of what is inside the shape
     uint32_t *around, *wide, *paint; // sums: of what is inside the shape, and of its amounts
-    int16_t *weighed;                // amounts, of what is inside the shape
 } Windows;
 
 static void windows_clear(Windows *windows)
 {
+    free(windows->inside);
+    free(windows->weighed);
     free(windows->around);
     free(windows->wide);
     free(windows->paint);
-    free(windows->weighed);
 }
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Windows, windows_clear)
 
-static bool windows_init(Windows *windows, size_t n, GError **error)
+static bool windows_init(Windows *windows, FlRect part, GError **error)
 {
-    *windows = (Windows){0};
-    return (windows->around = fl_alloc_unset(n, sizeof *windows->around, "a matte", error)) &&
+    const size_t n = fl_rect_pixels(part);
+    *windows = (Windows){.part = part};
+    return (windows->inside = fl_alloc_unset(n, sizeof *windows->inside, "a matte", error)) &&
+           (windows->weighed = fl_alloc_unset(n, sizeof *windows->weighed, "a matte", error)) &&
+           (windows->around = fl_alloc_unset(n, sizeof *windows->around, "a matte", error)) &&
            (windows->wide = fl_alloc_unset(n, sizeof *windows->wide, "a matte", error)) &&
-           (windows->paint = fl_alloc_unset(n, sizeof *windows->paint, "a matte", error)) &&
-           (windows->weighed = fl_alloc_unset(n, sizeof *windows->weighed, "a matte", error));
+           (windows->paint = fl_alloc_unset(n, sizeof *windows->paint, "a matte", error));
+}
+
+static void sum_windows(Windows *windows, const int16_t *amounts, const int16_t *inside, FlRect box,
+                        int radius_px)
+{
+    const FlRect part = windows->part;
+    const int radius = mean_radius(radius_px);
+    fl_rect_copy(inside, box, windows->inside, part, sizeof *inside);
+    fl_rect_copy(amounts, box, windows->weighed, part, sizeof *amounts);
+    for (size_t i = 0; i < fl_rect_pixels(part); i++)
+        windows->weighed[i] = (int16_t)(MAX(windows->weighed[i], 0) * windows->inside[i] / 255);
+    fl_window_sums(windows->inside, part, radius_px, windows->wide);
+    fl_window_sums(windows->inside, part, radius, windows->around);
+    fl_window_sums(windows->weighed, part, radius, windows->paint);
 }
 
 /** What is left of the contrast, of FL_AMOUNT_ONE: less the less of the window is the shape's. */
@@ -177,35 +199,36 @@ static int evened(int amount, int mean, int contrast)
     return FL_AMOUNT_ONE + (even - FL_AMOUNT_ONE) * contrast / FL_AMOUNT_ONE;
 }
 
-/** Evens the amounts by their shares. */
-static void even_shares(int16_t *amounts, const uint8_t *share, const Windows *windows, size_t n,
-                        int radius_px)
+/** Evens n amounts by their shares; the first is the i-th of the windows. */
+static void even_shares(int16_t *amounts, const uint8_t *share, const Windows *windows, size_t i,
+                        int n, int radius_px)
 {
-    for (size_t i = 0; i < n; i++) {
-        if (amounts[i] < 0 || share[i] == 0 || windows->around[i] == 0)
+    for (int x = 0; x < n; x++, i++) {
+        if (amounts[x] < 0 || share[x] == 0 || windows->around[i] == 0)
             continue;
         const int contrast = contrast_of(windows->wide[i], radius_px);
         const int mean = (int)(windows->paint[i] * UINT64_C(255) / windows->around[i]);
-        const int even = evened(amounts[i], mean, contrast);
-        amounts[i] = (int16_t)(amounts[i] + (even - amounts[i]) * share[i] / 255);
+        const int even = evened(amounts[x], mean, contrast);
+        amounts[x] = (int16_t)(amounts[x] + (even - amounts[x]) * share[x] / 255);
     }
 }
 
 bool fl_closing_apply(int16_t *amounts, const int16_t *inside, const uint8_t *share, FlRect box,
                       int radius_px, GError **error)
 {
-    const size_t n = fl_rect_pixels(box);
-    const int radius = mean_radius(radius_px);
+    const FlRect whole = {0, 0, box.width, box.height};
+    const FlRect shared = fl_rect_within(share, box.width, whole);
     g_auto(Windows) windows = {0};
-    if (fl_is_blank(share, n)) // as in most tiles of most shapes
+    if (shared.width == 0) // as in most tiles of most shapes
         return true;
-    if (!windows_init(&windows, n, error))
+    const FlRect part = fl_rect_grown(shared, radius_px, whole);
+    if (!windows_init(&windows, part, error))
         return false;
-    for (size_t i = 0; i < n; i++)
-        windows.weighed[i] = (int16_t)(MAX(amounts[i], 0) * inside[i] / 255);
-    fl_window_sums(inside, box, radius_px, windows.wide);
-    fl_window_sums(inside, box, radius, windows.around);
-    fl_window_sums(windows.weighed, box, radius, windows.paint);
-    even_shares(amounts, share, &windows, n, radius_px);
+    sum_windows(&windows, amounts, inside, whole, radius_px);
+    for (int y = shared.y; y < shared.y + shared.height; y++) {
+        const size_t row = (size_t)y * (size_t)box.width + (size_t)shared.x;
+        const size_t i = (size_t)(y - part.y) * (size_t)part.width + (size_t)(shared.x - part.x);
+        even_shares(amounts + row, share + row, &windows, i, shared.width, radius_px);
+    }
     return true;
 }

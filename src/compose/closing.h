@@ -17,7 +17,7 @@
  * of what is around, as those have that only come near.
  *
  * coverage, of the shape, and others, of all other shapes, are width * height; what others have
- * below the shape does not count. share is box.width * box.height.
+ * below the shape does not count. share is box.width * box.height; beyond the shape it is 0.
  */
 bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width, int height,
                       FlRect box, int radius_px, uint8_t *share, GError **error);
