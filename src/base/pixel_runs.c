@@ -28,6 +28,8 @@ static int next_seen(const uint8_t *rgba, int x, int end)
 /** The first column from x on whose pixel has none. */
 static int next_clear(const uint8_t *rgba, int x, int end)
 {
+    while (x + 2 <= end && rgba[4 * x + 3] && rgba[4 * x + 7])
+        x += 2;
     while (x < end && rgba[4 * x + 3])
         x++;
     return x;
@@ -46,40 +48,59 @@ static FlColumns next_run(const uint8_t *rgba, int x, int end)
     return run;
 }
 
-/** Counts the runs of all rows and their pixels; keeps them where there is room. */
-static void find_runs(FlPixelRuns *runs, const FlArea *area, const uint8_t *rgba, size_t *n,
-                      size_t *pixels)
+/** Adds one to a row's runs, for whose number there is room. */
+static bool add_run(FlPixelRuns *runs, FlPixelRun run, size_t n, size_t *room, GError **error)
 {
-    *n = *pixels = 0;
+    if (n == *room) {
+        const size_t more = MAX(2 * *room, 64);
+        FlPixelRun *moved = fl_alloc_unset(more, sizeof *moved, "a layer", error);
+        if (!moved)
+            return false;
+        if (n > 0)
+            memcpy(moved, runs->run, n * sizeof *moved);
+        free(runs->run);
+        runs->run = moved, *room = more;
+    }
+    runs->run[n] = run;
+    return true;
+}
+
+/** Finds the runs of all rows, and how many pixels they have. */
+static bool find_runs(FlPixelRuns *runs, const FlArea *area, const uint8_t *rgba, size_t *pixels,
+                      GError **error)
+{
+    size_t n = 0, room = 0;
     for (int y = 0; y < area->box.height; y++) {
         const FlColumns span = fl_area_row(area, y);
         const uint8_t *row = rgba + 4 * (size_t)y * (size_t)area->box.width;
         FlColumns run = next_run(row, span.first, span.last);
-        runs->first[y] = *n;
+        runs->first[y] = n;
         for (; run.first < run.last; run = next_run(row, run.last, span.last)) {
-            const size_t length = (size_t)(run.last - run.first);
-            if (runs->run) {
-                runs->run[*n] = (FlPixelRun){run, *pixels};
-                memcpy(runs->rgba + 4 * *pixels, row + 4 * (size_t)run.first, 4 * length);
-            }
-            ++*n, *pixels += length;
+            if (!add_run(runs, (FlPixelRun){run, *pixels}, n, &room, error))
+                return false;
+            n++, *pixels += (size_t)(run.last - run.first);
         }
     }
-    runs->first[area->box.height] = *n;
+    runs->first[area->box.height] = n;
+    return true;
 }
 
 bool fl_pixel_runs_init(FlPixelRuns *runs, const FlArea *area, const uint8_t *rgba, GError **error)
 {
-    size_t n, pixels;
+    size_t pixels = 0;
     *runs = (FlPixelRuns){0};
     if (!(runs->first =
-              fl_alloc((size_t)area->box.height + 1, sizeof *runs->first, "a layer", error)))
+              fl_alloc((size_t)area->box.height + 1, sizeof *runs->first, "a layer", error)) ||
+        !find_runs(runs, area, rgba, &pixels, error) ||
+        !(runs->rgba = fl_alloc_unset(pixels, 4, "a layer", error)))
         return false;
-    find_runs(runs, area, rgba, &n, &pixels);
-    if (!(runs->rgba = fl_alloc_unset(pixels, 4, "a layer", error)) ||
-        !(runs->run = fl_alloc_unset(n, sizeof *runs->run, "a layer", error)))
-        return false;
-    find_runs(runs, area, rgba, &n, &pixels);
+    for (int y = 0; y < area->box.height; y++)
+        for (size_t r = runs->first[y]; r < runs->first[y + 1]; r++) {
+            const FlPixelRun *run = &runs->run[r];
+            const size_t from = (size_t)y * (size_t)area->box.width + (size_t)run->columns.first;
+            memcpy(runs->rgba + 4 * run->at, rgba + 4 * from,
+                   4 * (size_t)(run->columns.last - run->columns.first));
+        }
     return true;
 }
 

@@ -38,7 +38,7 @@ int fl_least_alpha(const FlTransfer *scale, const uint8_t colour[3], const uint8
         if (v == p)
             continue;
         const int32_t span = v < p ? p : 65535 - p;
-        alpha = MAX(alpha, (int)(((int64_t)abs(v - p) * 255 + span - 1) / span));
+        alpha = MAX(alpha, (abs(v - p) * 255 + span - 1) / span);
     }
     return alpha;
 }
@@ -49,8 +49,8 @@ void fl_unblend(const FlTransfer *scale, const uint8_t colour[3], const uint8_t 
     const int alpha = MAX(fl_least_alpha(scale, colour, paper), opacity);
     for (int c = 0; c < 3; c++) {
         const int32_t p = scale->value[paper[c]];
-        const int64_t excess = (int64_t)(scale->value[colour[c]] - p) * 255;
-        const int64_t half = excess >= 0 ? alpha / 2 : -alpha / 2;
+        const int32_t excess = (scale->value[colour[c]] - p) * 255;
+        const int32_t half = excess >= 0 ? alpha / 2 : -alpha / 2;
         rgba[c] = alpha > 0 && alpha < 255 ? fl_transfer_level(scale, p + (excess + half) / alpha)
                                            : colour[c];
     }

@@ -150,12 +150,20 @@ static Points make_points(const FlUneven *where, const FlArea *area, const int16
     return points;
 }
 
+/* n pixels of a row between two points, of which left and right are what the row has there. */
+static inline void fill_square(int32_t left, int32_t right, int step, int n, int16_t *row)
+{
+    const int one = 4096 / FL_PLAY_ONE * step * step;
+    for (int k = 0; k < n; k++)
+        row[k] = (int16_t)((left * (step - k) + right * k) / one);
+}
+
 /* A row of a box between the points, where there is paint: FL_PLAY_ONE is one. */
 static void fill_row(const Points *points, const FlArea *area, int y, const int16_t *amounts,
                      int16_t *row)
 {
     const FlColumns span = fl_area_row(area, y);
-    const int step = points->step, one = 4096 / FL_PLAY_ONE * step * step;
+    const int step = points->step;
     const int32_t *upper = points->value + (y / step) * points->width;
     const int32_t *lower = upper + points->width;
     const int ty = y % step;
@@ -165,8 +173,12 @@ static void fill_row(const Points *points, const FlArea *area, int y, const int1
         const int n = square_px(points, area, i);
         if (!any_paint(amounts + i * step, n))
             continue;
-        for (int k = 0; k < n; k++)
-            row[i * step + k] = (int16_t)((left * (step - k) + right * k) / one);
+        if (step == STEP) // a constant, and so no division; drafts have half of it
+            fill_square(left, right, STEP, n, row + i * step);
+        else if (step == STEP / 2)
+            fill_square(left, right, STEP / 2, n, row + i * step);
+        else
+            fill_square(left, right, step, n, row + i * step);
     }
 }
 
