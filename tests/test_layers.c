@@ -186,7 +186,7 @@ static void thin_paint_hides_what_is_below_amid_its_shape_not_in_its_rim(void)
     for (int p = 0; p < SIDE * SIDE; p++)
         amounts[p] = p / SIDE == 18 ? FL_AMOUNT_ONE : FL_AMOUNT_ONE / 5;
     g_assert_true(
-        fl_knockout(amounts, coverage, &(FlArea){box}, FRAME, FRAME, RADIUS, knockout, NULL));
+        fl_knockout(amounts, coverage, coverage, box, FRAME, FRAME, RADIUS, knockout, NULL));
     const uint8_t *row = knockout + 20 * SIDE;
     g_assert_cmpint(row[0], ==, 255);
     g_assert_cmpint(row[SIDE - 1], ==, 84); // a third, rounded down

@@ -127,13 +127,19 @@ static bool pack_some(FlLayer *layers, int n, GError **error)
     return fl_parallel_error_propagate(error, first);
 }
 
-#define PAGES_AT_ONCE .25 // pages of layers that are made together
+/* How many pixels of layers are made together: each is culled by those that came before, but too
+ * few leave threads without work. */
+static size_t pixels_at_once(const Stack *stack)
+{
+    const size_t page = (size_t)stack->input->width * (size_t)stack->input->height;
+    const size_t threads = (size_t)fl_schedule_threads();
+    return threads == 1 ? page / 4 : MIN(threads, 4) * page / 2;
+}
 
 /* The first of the layers that are made together with layer end - 1. */
 static int first_of_batch(const Stack *stack, int end)
 {
-    const size_t most =
-        (size_t)(PAGES_AT_ONCE * (double)stack->input->width * stack->input->height);
+    const size_t most = pixels_at_once(stack);
     int first = end - 1;
     for (size_t pixels = layer_pixels(stack, first);
          first > 0 && (pixels += layer_pixels(stack, first - 1)) <= most;)

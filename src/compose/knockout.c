@@ -95,10 +95,9 @@ static void hide_tile(const Tile *tile, const Windows *w, const int16_t *amounts
     }
 }
 
-bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const FlArea *area, int width,
-                 int height, int radius_px, uint8_t *knockout, GError **error)
+bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const uint8_t *shown, FlRect box,
+                 int width, int height, int radius_px, uint8_t *knockout, GError **error)
 {
-    const FlRect box = area->box;
     const Windows windows = {box, width, height, radius_px};
     g_auto(Tile) tile = {0};
     if (!tile_init(&tile, radius_px, error))
@@ -106,7 +105,7 @@ bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const FlArea *
     for (int y = 0; y < box.height; y += TILE_PX)
         for (int x = 0; x < box.width; x += TILE_PX) {
             const FlRect whole = {x, y, MIN(TILE_PX, box.width - x), MIN(TILE_PX, box.height - y)};
-            const FlRect own = fl_rect_within(coverage, box.width, whole);
+            const FlRect own = fl_rect_within(shown, box.width, whole);
             if (own.width == 0) // many shapes are far smaller than their box
                 continue;
             sum_tile(&tile, own, box, coverage, radius_px);

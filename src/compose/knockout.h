@@ -15,10 +15,11 @@
  * below went around the shape. One becomes the other within radius_px (>= 1) of the contour, as the
  * share of the shape in a square around the pixel rises.
  *
- * amounts and coverage are of the area's box, in a frame of width * height; sides of the frame are
- * no contour. Returns: false with FL_ERROR_NO_MEMORY set.
+ * amounts, coverage and shown are of a box in a frame of width * height, whose sides are no
+ * contour. shown: coverage, or 0 where knockout does not matter and may stay as it is.
+ * FL_ERROR_NO_MEMORY.
  */
-bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const FlArea *area, int width,
-                 int height, int radius_px, uint8_t *knockout, GError **error);
+bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const uint8_t *shown, FlRect box,
+                 int width, int height, int radius_px, uint8_t *knockout, GError **error);
 
 #endif

@@ -143,7 +143,7 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
         return false;
     const FlDrawing *drawing = sources->input->drawing;
     const int border_px = (int)(painted->style->border_px + 0.5f);
-    if (!fl_knockout(amounts, draw->coverage, &layer->area, fl_drawing_width(drawing),
+    if (!fl_knockout(amounts, draw->coverage, layer->coverage, box, fl_drawing_width(drawing),
                      fl_drawing_height(drawing), MAX(border_px, 1), knockout, error))
         return false;
     take_culled(layer, amounts);

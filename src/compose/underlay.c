@@ -95,18 +95,24 @@ static void lower_from(const int16_t *beside, int16_t *restrict row, int width)
     }
 }
 
+/** Rows of a plane, last exclusive. */
+typedef struct Lines {
+    int first, last;
+} Lines;
+
 /**
- * Distances from the pixels that are 0; others come in as FAR. The steps of a shortest way may come
- * in any order: those along a row first, so that from row to row no pixel waits for its neighbour.
+ * Distances of some rows from the pixels that are 0; others come in as FAR. The steps of a shortest
+ * way may come in any order: those along a row first, so that from row to row no pixel waits for
+ * its neighbour.
  */
-static void measure(int16_t *plane, int width, int height)
+static void measure(int16_t *plane, int width, int height, Lines wanted)
 {
     for (int y = 0; y < height; y++)
         measure_row(plane + (size_t)y * (size_t)width, width);
-    for (int y = 1; y < height; y++)
+    for (int y = 1; y < wanted.last; y++)
         lower_from(plane + (size_t)(y - 1) * (size_t)width, plane + (size_t)y * (size_t)width,
                    width);
-    for (int y = height - 2; y >= 0; y--)
+    for (int y = height - 2; y >= wanted.first; y--)
         lower_from(plane + (size_t)(y + 1) * (size_t)width, plane + (size_t)y * (size_t)width,
                    width);
 }
@@ -182,16 +188,16 @@ static void clear_seen(const FlFading *fading, int16_t *to_seen)
     }
 }
 
-static void find_ways_out(const FlFading *fading, int16_t *to_open)
+static void find_ways_out(const FlFading *fading, Lines wanted, int16_t *to_open)
 {
     const int w = fading->box.width, h = fading->box.height;
     for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
         to_open[p] = fading->over[p] ? FAR : 0;
-    measure(to_open, w, h);
+    measure(to_open, w, h, wanted);
 }
 
 /** Distances to where more of the layer is seen than a sliver. */
-static void find_ways_to_seen(const FlFading *fading, int16_t *to_seen)
+static void find_ways_to_seen(const FlFading *fading, Lines wanted, int16_t *to_seen)
 {
     const int w = fading->box.width, h = fading->box.height;
     const uint8_t is_block = fading->half; // will be one of 2x2
@@ -199,7 +205,7 @@ static void find_ways_to_seen(const FlFading *fading, int16_t *to_seen)
         to_seen[p] = is_block & fading->seen[p] ? 0 : FAR;
     if (!is_block)
         clear_seen(fading, to_seen);
-    measure(to_seen, w, h);
+    measure(to_seen, w, h, wanted);
 }
 
 /** Raises each of n values to the one that comes `reach` later, if that is more. */
@@ -329,6 +335,19 @@ bool fl_underlay_next(FlUnderlay *above, const FlLayer *layer, bool painted, FlF
     return true;
 }
 
+/** The rows of a fading in which there is some of the layer. */
+static Lines lines_of(const FlFading *fading, const FlLayer *layer)
+{
+    const int above = layer->area.box.y - fading->box.y;
+    Lines lines = {fading->box.height, 0};
+    for (int y = 0; y < layer->area.box.height; y++) {
+        const FlColumns span = fl_area_row(&layer->area, y);
+        if (span.first < span.last)
+            lines = (Lines){MIN(lines.first, above + y), above + y + 1};
+    }
+    return lines;
+}
+
 bool fl_fading_apply(const FlFading *fading, FlLayer *layer, GError **error)
 {
     g_auto(Ways) ways = {0};
@@ -337,18 +356,22 @@ bool fl_fading_apply(const FlFading *fading, FlLayer *layer, GError **error)
     if (!ways_init(&ways, fl_rect_pixels(fading->box), error))
         return false;
     const FlRect own = layer->area.box;
+    const Lines wanted = lines_of(fading, layer);
     const bool many = fl_schedule_worth_threads(fl_rect_pixels(own));
 #pragma omp parallel sections if (many)
     {
-        find_ways_out(fading, ways.to_open);
+        find_ways_out(fading, wanted, ways.to_open);
 #pragma omp section
-        find_ways_to_seen(fading, ways.to_seen);
+        find_ways_to_seen(fading, wanted, ways.to_seen);
     }
 #pragma omp parallel if (many)
     {
         g_autofree uint8_t *hides = g_malloc((size_t)(fading->box.width + 2 * beside_px(fading)));
 #pragma omp for schedule(static)
         for (int y = 0; y < own.height; y++) {
+            const FlColumns span = fl_area_row(&layer->area, y);
+            if (span.first == span.last)
+                continue;
             find_hides(fading, own.y + y - fading->box.y, hides);
             fade_row(fading, &ways, layer, y, hides + (own.x - fading->box.x));
         }
