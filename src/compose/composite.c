@@ -16,7 +16,6 @@
 /* The layers of a frame. */
 typedef struct Stack {
     FlComposite *composite;
-    const FlComposeInput *input;
     FlLayerSources sources;
     int *draw;        // the index in the draw list of each layer
     FlFading *fading; // of each layer
@@ -36,8 +35,8 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
 static bool double_layer(const Stack *stack, FlLayer *layer, GError **error)
 {
     FlLayer half = *layer;
-    const bool done =
-        fl_layer_double(&half, stack->input->width, stack->input->height, layer, error);
+    const bool done = fl_layer_double(&half, stack->sources.input->width,
+                                      stack->sources.input->height, layer, error);
     fl_layer_clear(&half);
     return done;
 }
@@ -49,7 +48,7 @@ static bool paint_one(void *data, int k, int thread, GError **error)
     FlLayer *layer = &stack->composite->layers[k];
     return fl_layer_paint(layer, &stack->sources, stack->draw[k], error) &&
            fl_fading_apply(&stack->fading[k], layer, error) &&
-           (!stack->input->half || double_layer(stack, layer, error));
+           (!stack->sources.input->half || double_layer(stack, layer, error));
 }
 
 static size_t layer_pixels(const Stack *stack, int k)
@@ -61,13 +60,13 @@ static size_t layer_pixels(const Stack *stack, int k)
 static bool is_painted(const Stack *stack, int k)
 {
     const int region = stack->composite->draws->draw[stack->draw[k]].region;
-    return stack->input->painted_of[region] >= 0;
+    return stack->sources.input->painted_of[region] >= 0;
 }
 
 /* Paints layers first … end - 1: small ones side by side, large ones by all threads together. */
 static bool paint_some(Stack *stack, int first, int end, GError **error)
 {
-    const size_t frame = (size_t)stack->input->width * (size_t)stack->input->height;
+    const size_t frame = (size_t)stack->sources.input->width * (size_t)stack->sources.input->height;
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(end - first, 1));
     for (int k = first; k < end; k++) {
         const size_t pixels = layer_pixels(stack, k);
@@ -94,15 +93,15 @@ static bool make_some(Stack *stack, int first, int end, FlUnderlay *above, GErro
 /* The shapes above the layers of a film. */
 static bool init_underlay(FlUnderlay *above, const Stack *stack, GError **error)
 {
-    const FlDrawing *drawing = stack->input->drawing;
+    const FlDrawing *drawing = stack->sources.input->drawing;
     return fl_underlay_init(above, fl_drawing_width(drawing), fl_drawing_height(drawing),
-                            stack->input->half, error);
+                            stack->sources.input->half, error);
 }
 
 /* Whether all layers are needed at once, since some get their colours from what lies below them. */
 static bool needs_all(const Stack *stack)
 {
-    const FlComposeInput *input = stack->input;
+    const FlComposeInput *input = stack->sources.input;
     bool all = false;
     for (int k = 0; k < stack->composite->n_layers && !all; k++) {
         const FlDraw *draw = &stack->composite->draws->draw[stack->draw[k]];
@@ -131,7 +130,7 @@ static bool pack_some(FlLayer *layers, int n, GError **error)
  * few leave threads without work. */
 static size_t pixels_at_once(const Stack *stack)
 {
-    const size_t page = (size_t)stack->input->width * (size_t)stack->input->height;
+    const size_t page = (size_t)stack->sources.input->width * (size_t)stack->sources.input->height;
     const size_t threads = (size_t)fl_schedule_threads();
     return threads == 1 ? page / 4 : MIN(threads, 4) * page / 2;
 }
@@ -149,7 +148,7 @@ static int first_of_batch(const Stack *stack, int end)
 
 static bool resolve_all(Stack *stack, GError **error)
 {
-    const FlComposeInput *input = stack->input;
+    const FlComposeInput *input = stack->sources.input;
     FlLayer *layers = stack->composite->layers;
     const int n = stack->composite->n_layers;
     FlStackParams params = {.linear = input->linear, .gap_px = input->gap_px};
@@ -167,13 +166,13 @@ static bool resolve_all(Stack *stack, GError **error)
 /* The same some layers at a time, top first. */
 static bool resolve_in_turn(Stack *stack, GError **error)
 {
-    const int width = stack->input->width, height = stack->input->height;
+    const int width = stack->sources.input->width, height = stack->sources.input->height;
     g_auto(FlUnderlay) underlay = {0};
     g_auto(FlLayersAbove) above = {0};
     if (!init_underlay(&underlay, stack, error) ||
-        !fl_layers_above_init(&above, width, height, stack->input->gap_px, error))
+        !fl_layers_above_init(&above, width, height, stack->sources.input->gap_px, error))
         return false;
-    stack->sources.culling.above = stack->input->layers_apart ? NULL : &above;
+    stack->sources.culling.above = stack->sources.input->layers_apart ? NULL : &above;
     for (int end = stack->composite->n_layers, first; end > 0; end = first) {
         first = first_of_batch(stack, end);
         FlLayer *layers = stack->composite->layers + first;
@@ -210,8 +209,7 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     const int n_regions = fl_drawing_regions(input->drawing);
     g_autofree double *areas = g_new(double, MAX(n_regions, 1));
     fl_region_areas_find(draws, n_regions, areas);
-    Stack stack = {
-        composite, input, {input, edges, exposures, areas, {NULL, input->half}}, draw, fading};
+    Stack stack = {composite, {input, edges, exposures, areas, {NULL, input->half}}, draw, fading};
     return (needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error);
 }
 

@@ -17,13 +17,13 @@ typedef struct FlLayer {
     bool owns_coverage;      // else it is borrowed
     uint8_t *knockout;       // box.width * box.height of fl_knockout(), borrowed: it knocks out as
                              // far as its paint covers; NULL: wherever its shape is
-    uint8_t *rgba;    // box.width * box.height * 4 straight RGBA, 0 in the area where coverage is,
-                      // undefined beyond it; owned by the caller; NULL if it is packed
-    FlPixelRuns runs; // of a packed one, owned by the caller as well
-    bool sheer;       // drawn by hand: what lies below is seen through its grain
-    uint8_t alpha;    // opacity of the layer, 255 opaque
-    FlStacking stacking;    // a layer with a blend mode hides nothing, whatever this says
-    FlBlendMode blend_mode; // with what is below it
+    uint8_t *rgba;           // box.width * box.height * 4 straight RGBA, owned by the caller: clear
+                             // where the area has no coverage, undefined beyond it; NULL if packed
+    FlPixelRuns runs;        // of a packed one, owned by the caller as well
+    bool sheer;              // drawn by hand: what lies below is seen through its grain
+    uint8_t alpha;           // opacity of the layer, 255 opaque
+    FlStacking stacking;     // a layer with a blend mode hides nothing, whatever this says
+    FlBlendMode blend_mode;  // with what is below it
 } FlLayer;
 
 typedef struct FlStackParams {
