@@ -183,15 +183,20 @@ static bool find_share(Tile *tile, const FlEdgeMap *edges, int draw, int radius_
 {
     const bool *overlap = edges->overlap + (size_t)(draw + 1) * (size_t)edges->n;
     const FlRect around = tile->around;
-    uint8_t *others = tile->others, any = 0, counts[256];
+    uint8_t any = 0, counts[256];
     count_hidden(edges->draws->draw[draw].alpha, counts);
     for (int y = 0; y < around.height; y++) {
         const size_t first = in_frame(edges, around, y);
         const uint16_t *row = edges->top + first;
         const uint8_t *hidden = edges->hidden + first;
-        for (int x = 0; x < around.width; x++) {
+        uint8_t *others = tile->others + (size_t)y * (size_t)around.width;
+        for (int x = 0, end; x < around.width; x = end) {
+            end = fl_end_of_same(row, x, around.width);
             const bool other = row[x] && row[x] != draw + 1 && !overlap[row[x]];
-            any |= *others++ = other ? counts[hidden[x]] : 0;
+            if (!other)
+                memset(others + x, 0, (size_t)(end - x));
+            for (int k = x; k < end && other; k++)
+                any |= others[k] = counts[hidden[k]];
         }
     }
     return !any || fl_closing_share(tile->coverage, tile->others, around.width, around.height,

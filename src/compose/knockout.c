@@ -31,10 +31,15 @@ static uint32_t side_around(int at, int side, int radius)
     return (uint32_t)(MIN(at + radius, side - 1) - MAX(at - radius, 0) + 1);
 }
 
-static int hidden(int amount, uint32_t share)
+/** share and all: of the window that is the shape's, of ONE. */
+static int hidden(int amount, uint64_t share, uint64_t all)
 {
     const int body = CLAMP(amount, 0, HIDES_AMOUNT) * 255 / HIDES_AMOUNT;
-    return body + (255 - body) * amid(share) / ONE;
+    if (share < (RIM_SHARE + 1) * all) // without a division, as nearly everywhere
+        return body;
+    if (share >= INNER_SHARE * all)
+        return 255;
+    return body + (255 - body) * amid((uint32_t)(share / all)) / ONE;
 }
 
 /** A part of the box in which there is some of the shape, and room for what is around it. */
@@ -90,7 +95,7 @@ static void hide_tile(const Tile *tile, const Windows *w, const int16_t *amounts
                 continue;
             }
             const uint64_t all = 255ull * down * side_around(w->box.x + x, w->width, w->radius_px);
-            knockout[p] = (uint8_t)hidden(amounts[p], (uint32_t)((uint64_t)sums[x] * ONE / all));
+            knockout[p] = (uint8_t)hidden(amounts[p], (uint64_t)sums[x] * ONE, all);
         }
     }
 }

@@ -50,22 +50,11 @@ static bool ways_init(Ways *ways, size_t n, GError **error)
            (ways->to_seen = fl_alloc_unset(n, sizeof *ways->to_seen, "a matte", error));
 }
 
-/** The first column from x on with another value than that of x. */
-static int end_of_run(const int16_t *row, int x, int width)
-{
-    const int16_t value[4] = {row[x], row[x], row[x], row[x]};
-    while (x + 4 <= width && memcmp(row + x, value, sizeof value) == 0)
-        x += 4;
-    while (x < width && row[x] == value[0])
-        x++;
-    return x;
-}
-
 /** Distances along a row from its pixels that are 0; others come in as FAR. */
 static void measure_row(int16_t *row, int width)
 {
     for (int x = 0, end; x < width; x = end) {
-        end = end_of_run(row, x, width);
+        end = fl_end_of_same((const uint16_t *)row, x, width);
         if (row[x] == 0)
             continue;
         const int from_left = x > 0 ? SIDE : FAR, from_right = end < width ? SIDE : FAR;
