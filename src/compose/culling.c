@@ -12,7 +12,7 @@ typedef struct Window {
     FlRect box;      // of the layer in the frame, with all that its pixels reach
     int scale;       // px of the frame per px of the layer
     int reach;       // px of the frame that a pixel of the layer reaches beyond its own
-    uint8_t *hidden; // room for a row of the box: 255 where it is hidden, down to where it reaches
+    uint8_t *hidden; // 255 or 0, of the box's columns: hidden in all rows that the layer's reaches
 } Window;
 
 static bool window_init(Window *window, const FlLayer *layer, const FlCulling *culling,
@@ -77,7 +77,7 @@ static FlColumns clear_hidden(const Window *window, FlColumns span, uint8_t *res
     return span;
 }
 
-/** Makes coverage and rows of an area the layer's own. */
+/** Makes the coverage the layer's own. */
 static uint8_t *own_coverage(FlLayer *layer, GError **error)
 {
     const size_t n = fl_rect_pixels(layer->area.box);

@@ -1,4 +1,4 @@
-/* Occlusion culling: what of a layer is below opaque paint in any case is not painted. */
+/* Occlusion culling: the part of a layer that those above hide is not painted. */
 #ifndef FLUIDY_COMPOSE_CULLING_H
 #define FLUIDY_COMPOSE_CULLING_H
 
