@@ -164,19 +164,20 @@ static bool resolve_all(Stack *stack, GError **error)
 }
 
 /* The same some layers at a time, top first. */
-static bool resolve_in_turn(Stack *stack, GError **error)
+static bool resolve_in_turn(Stack *whole, GError **error)
 {
-    const int width = stack->sources.input->width, height = stack->sources.input->height;
+    const FlComposeInput *input = whole->sources.input;
     g_auto(FlUnderlay) underlay = {0};
     g_auto(FlLayersAbove) above = {0};
-    if (!init_underlay(&underlay, stack, error) ||
-        !fl_layers_above_init(&above, width, height, stack->sources.input->gap_px, error))
+    Stack stack = *whole;
+    if (!init_underlay(&underlay, whole, error) ||
+        !fl_layers_above_init(&above, input->width, input->height, input->gap_px, error))
         return false;
-    stack->sources.culling.above = stack->sources.input->layers_apart ? NULL : &above;
-    for (int end = stack->composite->n_layers, first; end > 0; end = first) {
-        first = first_of_batch(stack, end);
-        FlLayer *layers = stack->composite->layers + first;
-        if (!make_some(stack, first, end, &underlay, error))
+    stack.sources.culling.above = input->layers_apart ? NULL : &above;
+    for (int end = stack.composite->n_layers, first; end > 0; end = first) {
+        first = first_of_batch(&stack, end);
+        FlLayer *layers = stack.composite->layers + first;
+        if (!make_some(&stack, first, end, &underlay, error))
             return false;
         for (int k = end - first - 1; k >= 0; k--)
             fl_layer_occlude(&layers[k], &above);

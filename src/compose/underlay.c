@@ -346,14 +346,13 @@ bool fl_fading_apply(const FlFading *fading, FlLayer *layer, GError **error)
         return false;
     const FlRect own = layer->area.box;
     const Lines wanted = lines_of(fading, layer);
-    const bool many = fl_schedule_worth_threads(fl_rect_pixels(own));
-#pragma omp parallel sections if (many)
+#pragma omp parallel sections if (fl_schedule_worth_threads(fl_rect_pixels(own)))
     {
         find_ways_out(fading, wanted, ways.to_open);
 #pragma omp section
         find_ways_to_seen(fading, wanted, ways.to_seen);
     }
-#pragma omp parallel if (many)
+#pragma omp parallel if (fl_schedule_worth_threads(fl_rect_pixels(own)))
     {
         g_autofree uint8_t *hides = g_malloc((size_t)(fading->box.width + 2 * beside_px(fading)));
 #pragma omp for schedule(static)

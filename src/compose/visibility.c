@@ -64,7 +64,7 @@ static void see_plain(const uint8_t *coverage, const uint8_t *above, int n,
         const uint8_t c = coverage[x], u = above[x];
         const uint8_t of_full = c == 255 ? 255 - u : 0;
         visible[x] = u == 0 ? c : of_full;
-        mixed[x] = is_partial(c) & is_partial(u);
+        mixed[x] = (uint8_t)is_partial(c) & (uint8_t)is_partial(u);
     }
 }
 
