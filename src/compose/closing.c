@@ -4,96 +4,80 @@
 #include "base/windows.h"
 #include <glib.h>
 
-/** Outside the shape in a window: all of it, and the part that others cover. */
-typedef struct Around {
-    uint32_t free, taken;
-} Around;
-
-/** The same of each column of some rows. */
-typedef struct Columns {
-    uint32_t *free, *taken;
-} Columns;
-
-/** What others cover of a pixel's free part: free * others / 255. */
-static uint32_t taken_of(uint32_t free, uint8_t others)
-{
-    const uint32_t product = free * others;
-    return (product + 1 + (product >> 8)) >> 8;
-}
-
-static void add_row(const uint8_t *coverage, const uint8_t *others, int n, uint32_t *restrict free,
-                    uint32_t *restrict taken)
-{
-    for (int x = 0; x < n; x++) {
-        const uint32_t here = 255u - coverage[x];
-        free[x] += here;
-        taken[x] += taken_of(here, others[x]);
-    }
-}
-
-static void take_row(const uint8_t *coverage, const uint8_t *others, int n, uint32_t *restrict free,
-                     uint32_t *restrict taken)
-{
-    for (int x = 0; x < n; x++) {
-        const uint32_t here = 255u - coverage[x];
-        free[x] -= here;
-        taken[x] -= taken_of(here, others[x]);
-    }
-}
-
 /**
  * Full within a third of the way from the contour to the radius, and then falling to 0; nothing
  * where others have less than half of what is around, as those have that only come near.
  */
-static uint8_t share_of(Around sum, uint32_t window)
+static uint8_t share_of(uint32_t free, uint32_t taken, uint32_t window)
 {
-    if (sum.taken <= sum.free / 2)
+    if (taken <= free / 2)
         return 0;
-    const uint64_t near = MIN((uint64_t)sum.free * 3, (uint64_t)window);
-    const uint64_t others = MIN(((uint64_t)sum.taken * 2 - sum.free) * 255 * 5 / 4 / sum.free, 255);
+    const uint64_t near = MIN((uint64_t)free * 3, (uint64_t)window);
+    const uint64_t others = MIN(((uint64_t)taken * 2 - free) * 255 * 5 / 4 / free, 255);
     return (uint8_t)(others * near / window);
 }
 
-/** Shares of a row's n pixels, of which coverage is; columns: from r before the first one on. */
-static void share_row(const Columns *columns, const uint8_t *coverage, int n, int r, uint8_t *share)
+/** What is free of a part of a plane, and what others have of that; and the sums of windows. */
+typedef struct Free {
+    FlRect part;
+    int16_t *free, *taken;
+    uint32_t *sums, *taken_sums;
+} Free;
+
+static void free_clear(Free *around)
 {
-    const uint32_t window = 255u * (uint32_t)(2 * r + 1) * (uint32_t)(2 * r + 1);
-    Around sum = {0};
-    for (int x = 0; x < 2 * r; x++)
-        sum.free += columns->free[x], sum.taken += columns->taken[x];
-    for (int x = 0; x < n; x++) {
-        sum.free += columns->free[x + 2 * r], sum.taken += columns->taken[x + 2 * r];
-        share[x] = coverage[x] ? share_of(sum, window) : 0;
-        sum.free -= columns->free[x], sum.taken -= columns->taken[x];
+    free(around->free);
+    free(around->taken);
+    free(around->sums);
+    free(around->taken_sums);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Free, free_clear)
+
+static bool free_init(Free *around, FlRect part, GError **error)
+{
+    const size_t n = fl_rect_pixels(part);
+    *around = (Free){.part = part};
+    return (around->free = fl_alloc_unset(n, sizeof *around->free, "a matte", error)) &&
+           (around->taken = fl_alloc_unset(n, sizeof *around->taken, "a matte", error)) &&
+           (around->sums = fl_alloc_unset(n, sizeof *around->sums, "a matte", error)) &&
+           (around->taken_sums = fl_alloc_unset(n, sizeof *around->sums, "a matte", error));
+}
+
+static void sum_free(Free *around, const uint8_t *coverage, const uint8_t *others, int width,
+                     int radius_px)
+{
+    const FlRect part = around->part;
+    for (int y = 0; y < part.height; y++) {
+        const size_t i = (size_t)(part.y + y) * (size_t)width + (size_t)part.x;
+        const size_t j = (size_t)y * (size_t)part.width;
+        for (int x = 0; x < part.width; x++) {
+            const int here = 255 - coverage[i + (size_t)x];
+            around->free[j + (size_t)x] = (int16_t)here;
+            around->taken[j + (size_t)x] = (int16_t)(here * others[i + (size_t)x] / 255);
+        }
     }
+    fl_window_sums(around->free, part, radius_px, around->sums);
+    fl_window_sums(around->taken, part, radius_px, around->taken_sums);
 }
 
 bool fl_closing_share(const uint8_t *coverage, const uint8_t *others, int width, int height,
                       FlRect box, int radius_px, uint8_t *share, GError **error)
 {
-    const int r = radius_px, y0 = MAX(box.y - r, 0), y1 = MIN(box.y + box.height + r, height);
-    const int x0 = MAX(box.x - r, 0), n = MIN(box.x + box.width + r, width) - x0;
-    g_assert(r >= 1 && r <= FL_CLOSING_MAX_PX);
-    const size_t most = (size_t)box.width + 2 * (size_t)r;
-    g_autofree uint32_t *sums = fl_alloc(2 * most, sizeof *sums, "a row of a matte", error);
-    if (!sums)
+    const uint32_t side = 2 * (uint32_t)radius_px + 1, window = 255 * side * side;
+    g_assert(radius_px >= 1 && radius_px <= FL_CLOSING_MAX_PX);
+    g_auto(Free) around = {0};
+    const FlRect part = fl_rect_grown(box, radius_px, (FlRect){0, 0, width, height});
+    if (!free_init(&around, part, error))
         return false;
-    const Columns columns = {sums, sums + most};
-    const int margin = x0 - (box.x - r); // columns beyond the plane
-    for (int y = y0; y < y1 + r; y++) {
-        const size_t enters = (size_t)y * (size_t)width + (size_t)x0, row = (size_t)(y - r - box.y);
-        if (y < y1)
-            add_row(coverage + enters, others + enters, n, columns.free + margin,
-                    columns.taken + margin);
-        if (y - r < box.y || y - r >= box.y + box.height)
-            continue;
-        share_row(&columns, coverage + (size_t)(y - r) * (size_t)width + (size_t)box.x, box.width,
-                  r, share + row * (size_t)box.width);
-        const size_t leaves = (size_t)(y - 2 * r) * (size_t)width + (size_t)x0;
-        if (y - 2 * r >= y0)
-            take_row(coverage + leaves, others + leaves, n, columns.free + margin,
-                     columns.taken + margin);
-    }
+    sum_free(&around, coverage, others, width, radius_px);
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++) {
+            const size_t i = (size_t)(y - part.y) * (size_t)part.width + (size_t)(x - part.x);
+            const size_t own = (size_t)(y - box.y) * (size_t)box.width + (size_t)(x - box.x);
+            const bool inside = coverage[(size_t)y * (size_t)width + (size_t)x] > 0;
+            share[own] = inside ? share_of(around.sums[i], around.taken_sums[i], window) : 0;
+        }
     return true;
 }
 
