@@ -48,7 +48,7 @@ static FlColumns next_run(const uint8_t *rgba, int x, int end)
     return run;
 }
 
-/** Adds one to a row's runs, for whose number there is room. */
+/** Adds run n; *room, the number of runs that fit, grows where it has to. */
 static bool add_run(FlPixelRuns *runs, FlPixelRun run, size_t n, size_t *room, GError **error)
 {
     if (n == *room) {

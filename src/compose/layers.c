@@ -30,15 +30,10 @@ static int scaled(int a, int b)
     return (a * b + 127) / 255;
 }
 
-static bool knocks_out(const FlLayer *layer)
-{
-    return layer->stacking == FL_STACKING_KNOCKOUT && layer->blend_mode == FL_BLEND_MODE_OVER;
-}
-
 typedef void (*OnColumns)(const FlLayer *layer, const FlLayersAbove *above, int y,
                           FlColumns columns);
 
-/* Does that for all rows of a layer, where there is any coverage. */
+/* Does `work` for the columns of each row of a layer in which there is coverage. */
 static void each_run(const FlLayer *layer, const FlLayersAbove *above, OnColumns work)
 {
     const FlRect box = layer->area.box;
@@ -69,7 +64,7 @@ static void resolve_columns(const FlLayer *layer, const FlLayersAbove *above, in
                               .seen = above->seen + j,
                               .knockout = layer->knockout ? layer->knockout + j : NULL,
                               .alpha = layer->alpha,
-                              .knocks = knocks_out(layer)};
+                              .knocks = fl_layer_knocks_out(layer)};
     fl_row_kernels()->occlude(&some, (uint32_t *)(void *)layer->rgba + j, above->paint + i,
                               above->area + i, columns.last - columns.first);
 }
@@ -87,7 +82,7 @@ void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above)
 {
     each_run(layer, above, see_columns); // which looks at rows around its own
     each_run(layer, above, resolve_columns);
-    if (above->spread && knocks_out(layer))
+    if (above->spread && fl_layer_knocks_out(layer))
         grow_area(layer, above);
 }
 

@@ -15,8 +15,8 @@ typedef struct FlLayer {
     const uint8_t *coverage; // of the box, 0..255: the whole shape, times the opacity of its fill
                              // where that varies; 0 beyond the area
     bool owns_coverage;      // else it is borrowed
-    uint8_t *knockout;       // box.width * box.height of fl_knockout(), borrowed: it knocks out as
-                             // far as its paint covers; NULL: wherever its shape is
+    uint8_t *knockout;       // box.width * box.height of fl_knockout(), owned as rgba is: it knocks
+                             // out as far as its paint covers; NULL: wherever its shape is
     uint8_t *rgba;           // box.width * box.height * 4 straight RGBA, owned by the caller: clear
                              // where the area has no coverage, undefined beyond it; NULL if packed
     FlPixelRuns runs;        // of a packed one, owned by the caller as well
@@ -25,6 +25,12 @@ typedef struct FlLayer {
     FlStacking stacking;     // a layer with a blend mode hides nothing, whatever this says
     FlBlendMode blend_mode;  // with what is below it
 } FlLayer;
+
+/** Whether a layer knocks out what lies below it. */
+static inline bool fl_layer_knocks_out(const FlLayer *layer)
+{
+    return layer->stacking == FL_STACKING_KNOCKOUT && layer->blend_mode == FL_BLEND_MODE_OVER;
+}
 
 typedef struct FlStackParams {
     uint8_t paper[3]; // the output's paper, on which the paint was made

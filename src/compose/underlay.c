@@ -311,8 +311,7 @@ void fl_underlay_clear(FlUnderlay *above)
 bool fl_underlay_next(FlUnderlay *above, const FlLayer *layer, bool painted, FlFading *fading,
                       GError **error)
 {
-    const bool knocks =
-        layer->stacking == FL_STACKING_KNOCKOUT && layer->blend_mode == FL_BLEND_MODE_OVER;
+    const bool knocks = fl_layer_knocks_out(layer);
     *fading = (FlFading){0};
     if (painted && knocks && is_below(layer, above)) {
         if (!fading_init(fading, layer, above, error))

@@ -25,8 +25,8 @@ typedef struct FlFading {
 } FlFading;
 
 /**
- * Finds where the next layer fades, and adds it to those above; the top one comes first. It has an
- * area, coverage and how it is stacked; painted: as far as its paint covers, it knocks out.
+ * Finds where the next layer fades, and adds it to those above; the top one comes first. Its area,
+ * its coverage and its stacking are enough; painted: it will get a knockout.
  *
  * A painted layer fades where others that knock out lie over it and the nearest way out from under
  * them does not lead to it: dashes of a lower colour along an outline that both share, and slivers
@@ -36,7 +36,7 @@ typedef struct FlFading {
 bool fl_underlay_next(FlUnderlay *above, const FlLayer *layer, bool painted, FlFading *fading,
                       GError **error);
 
-/** Lowers a layer's knockout and the alpha of its rgba by that, before fl_layers_resolve().
+/** Fades a painted layer: lowers its knockout and the alpha of its rgba, before it is resolved.
  * FL_ERROR_NO_MEMORY. */
 bool fl_fading_apply(const FlFading *fading, FlLayer *layer, GError **error);
 

@@ -173,7 +173,7 @@ static void fill_row(const Points *points, const FlArea *area, int y, const int1
         const int n = square_px(points, area, i);
         if (!any_paint(amounts + i * step, n))
             continue;
-        if (step == STEP) // a constant, and so no division; drafts have half of it
+        if (step == STEP) // a constant step needs no division; that of drafts is half of it
             fill_square(left, right, STEP, n, row + i * step);
         else if (step == STEP / 2)
             fill_square(left, right, STEP / 2, n, row + i * step);
