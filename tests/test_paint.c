@@ -3,6 +3,7 @@
 #include "scratch.h"
 #include "threads.h"
 #include <fluidy/fluidy.h>
+#include <glib/gstdio.h>
 #include <math.h>
 #include <string.h>
 
@@ -116,13 +117,13 @@ static void render(const Film *film, const char *folder, const char *pattern, bo
     g_assert_no_error(error);
 }
 
-static void assert_as_rendered(const Film *film)
+static void assert_as_rendered(const Film *film, int hold)
 {
     g_autoptr(Scratch) folder = scratch_make();
     g_autofree char *pattern = g_build_filename(folder, "p_{region}_%d.png", NULL);
     render(film, folder, pattern, false);
     for (int f = 0; f < FRAMES; f++) {
-        g_autofree char *name = g_strdup_printf("p_%s_%d.png", film->region.name, f);
+        g_autofree char *name = g_strdup_printf("p_%s_%d.png", film->region.name, f - f % hold);
         g_autofree char *file = g_build_filename(folder, name, NULL);
         g_autoptr(GError) error = NULL;
         g_autoptr(FlPicture) picture = fl_picture_read_png(file, &error);
@@ -136,7 +137,7 @@ static void paints_what_a_drawing_is_painted(void)
 {
     g_autoptr(Film) film = film_new();
     paint(film);
-    assert_as_rendered(film);
+    assert_as_rendered(film, 1);
 }
 
 static void is_carried_as_a_drawing_is(void)
@@ -146,7 +147,7 @@ static void is_carried_as_a_drawing_is(void)
     film->region.flow = flow;
     paint(film);
     paint(still); // by its masks
-    assert_as_rendered(film);
+    assert_as_rendered(film, 1);
     g_assert_true(memcmp(film->paint[FRAMES - 1], still->paint[FRAMES - 1], 3 * PIXELS) != 0);
 }
 
@@ -209,7 +210,7 @@ static void a_cut_out_brings_its_own_alpha(void)
     film->setting[3] = (FlSetting){.name = "engine", .value = "lazyfluids"};
     film->region.n_settings = 4;
     paint(film);
-    assert_as_rendered(film);
+    assert_as_rendered(film, 1);
     for (int merge = 0; merge < 2; merge++) {
         render(film, folder, pattern, merge);
         for (int f = 0; f < FRAMES; f++) {
@@ -264,8 +265,8 @@ static void mistakes_are_told_in_one_line(void)
     film->region.width = WIDTH, film->region.n_settings = 0;
     assert_refused(film, FL_ERROR_USAGE, "\"style\"");
     film->region.n_settings = 3;
-    film->setting[1] = (FlSetting){.name = "hold", .value = "2"};
-    assert_refused(film, FL_ERROR_USAGE, "‘hold’");
+    film->setting[1] = (FlSetting){.name = "hold", .value = "0"};
+    assert_refused(film, FL_ERROR_USAGE, "hold");
     film->setting[1] = (FlSetting){.name = "w-tmp", .value = "2"};
     assert_refused(film, FL_ERROR_USAGE, "w-tmp");
     film->setting[1] = (FlSetting){.name = "carry", .value = "1"};
@@ -274,6 +275,69 @@ static void mistakes_are_told_in_one_line(void)
     film->bad = 0, film->stop_at = 2;
     assert_refused(film, FL_ERROR_INTERRUPTED, "take() stopped the painting at frame 2");
     g_assert_cmpint(film->n_taken, ==, 3);
+}
+
+static void held_frames_show_one_picture(void)
+{
+    g_autoptr(Film) film = film_new();
+    film->setting[3] = (FlSetting){.name = "hold", .value = "2"};
+    film->region.n_settings = 4;
+    paint(film);
+    for (int f = 1; f < FRAMES; f++) {
+        const int differs = memcmp(film->layer[f], film->layer[f - 1], sizeof film->layer[0]);
+        g_assert_true((f % 2 == 0) == (differs != 0));
+    }
+    assert_as_rendered(film, 2);
+}
+
+static bool still_mask(void *data, int frame, uint8_t *coverage)
+{
+    return mask(data, 0, coverage);
+}
+
+static void what_rests_keeps_its_paint(void)
+{
+    g_autoptr(Film) film = film_new();
+    film->region.mask = still_mask;
+    paint(film);
+    for (int f = 1; f < FRAMES; f++)
+        g_assert_cmpmem(film->paint[f], sizeof film->paint[f], film->paint[0],
+                        sizeof film->paint[0]);
+}
+
+/* A file that is written again is another one. */
+static guint64 sum_of_files(const char *path)
+{
+    GStatBuf about = {0};
+    guint64 sum = 0;
+    g_autoptr(GDir) dir = g_dir_open(path, 0, NULL);
+    if (!dir)
+        return g_stat(path, &about) == 0 ? about.st_ino : 0;
+    for (const char *name; (name = g_dir_read_name(dir));) {
+        g_autofree char *child = g_build_filename(path, name, NULL);
+        sum += sum_of_files(child);
+    }
+    return sum;
+}
+
+static void a_painting_that_was_stopped_resumes(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(Film) whole = film_new(), film = film_new();
+    g_autoptr(GError) error = NULL;
+    paint(whole);
+    film->region.cache = folder;
+    film->stop_at = 2;
+    g_assert_false(fl_paint_region(&film->region, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_INTERRUPTED);
+    film->stop_at = -1, film->n_taken = 0;
+    paint(film);
+    g_assert_cmpmem(film->layer, sizeof film->layer, whole->layer, sizeof whole->layer);
+    const guint64 files = sum_of_files(folder);
+    film->n_taken = 0;
+    paint(film);
+    g_assert_cmpuint(sum_of_files(folder), ==, files);
+    g_assert_cmpmem(film->paint, sizeof film->paint, whole->paint, sizeof whole->paint);
 }
 
 static bool no_mask(void *data, int frame, uint8_t *coverage)
@@ -325,6 +389,9 @@ int main(int argc, char **argv)
     TEST(a_cut_out_brings_its_own_alpha);
     TEST(threads_of_one_are_not_those_of_another);
     TEST(mistakes_are_told_in_one_line);
+    TEST(held_frames_show_one_picture);
+    TEST(what_rests_keeps_its_paint);
+    TEST(a_painting_that_was_stopped_resumes);
     TEST(a_region_that_never_comes_is_paper);
     TEST(the_regions_of_a_drawing_are_data);
     return g_test_run();

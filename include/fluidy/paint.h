@@ -31,8 +31,8 @@ typedef struct FlRegionPaint {
     int n_frames;      /**< 1 or more; required */
     /**
      * Fills width * height bytes with the coverage of the region in a frame: 0 outside, 255 inside.
-     * Frames are asked for several times, all of them before the first one is painted, since paint
-     * depends on where the region will be; the same frame must get the same bytes. Required.
+     * Called once for each frame, in order, before the first one is painted, since paint depends on
+     * where the region will be. Required.
      */
     bool (*mask)(void *data, int frame, uint8_t *coverage);
     /**
@@ -48,11 +48,16 @@ typedef struct FlRegionPaint {
     const char *name;          /**< decides the random numbers with the seed; NULL: "region" */
     const FlSetting *settings; /**< "style" is required; "tint" is "keep" unless a "#rrggbb"; keys
                                   as in fluidy-svg.conf(5), of which those about other regions,
-                                  lines or the paper do nothing, and hold must be 1 */
+                                  lines or the paper do nothing */
     size_t n_settings;
     uint64_t seed; /**< same input, settings and seed: same bytes; 0: 1 */
     int threads;   /**< of this call alone; 0: as many as the calling thread has. The bytes do not
                         depend on it */
+    /** A folder in which pictures are kept and from which they are taken while all that decides
+     *  them is the same, so that a painting that was stopped resumes there; "auto": the user's, as
+     *  of ‘cache’; NULL: none. */
+    const char *cache;
+    int cache_size; /**< MiB, beyond which the cache drops pictures used longest ago; 0: 8192 */
 } FlRegionPaint;
 
 /**

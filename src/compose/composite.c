@@ -190,7 +190,7 @@ static bool resolve_in_turn(Stack *whole, GError **error)
 static bool is_layer(const FlComposeInput *input, const FlDraw *draw)
 {
     const int p = input->painted_of[draw->region];
-    return p != FL_LEFT_OUT && (p < 0 || !input->painted[p]->unseen);
+    return p != FL_LEFT_OUT && (p < 0 || input->painted[p]->from != FL_FROM_NOWHERE);
 }
 
 /* A layer for each draw that is neither left out nor hidden in all frames. */

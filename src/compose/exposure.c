@@ -54,7 +54,7 @@ static bool find_exposure(const FlComposeInput *input, const FlDrawList *draws, 
 {
     const FlPaintedRegion *painted = input->painted[p];
     const FlRect rect = painted->rect;
-    if ((*exposure = painted->exposure) > 0 || painted->unseen)
+    if ((*exposure = painted->exposure) > 0 || painted->from == FL_FROM_NOWHERE)
         return true;
     g_autofree uint8_t *mask = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
     if (!mask)

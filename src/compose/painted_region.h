@@ -27,6 +27,15 @@ typedef struct FlStyleInstance {
     uint8_t paper[3];
 } FlStyleInstance;
 
+/** Where a picture of a region comes from. */
+typedef enum FlPaintOrigin {
+    FL_FROM_NOWHERE, // others lie over the region in every frame: it has no picture and no layer
+    FL_FROM_FILE,    // that another run has painted
+    FL_FROM_CACHE,   // of earlier renders
+    FL_FROM_REST,    // it is the one before
+    FL_FROM_ENGINE,
+} FlPaintOrigin;
+
 /** The picture of a region, and how it came about. */
 typedef struct FlPaintedRegion {
     int region;                       // index into the drawing's regions
@@ -44,8 +53,7 @@ typedef struct FlPaintedRegion {
     FlFrameStats stats; // of the last frame that was painted, as is what follows
     FlSynthView view;   // nnf NULL: not needed
     double seconds;
-    bool unseen; // in every frame others lie over it: it is not painted, and is no layer
-    bool taken;  // from the cache: nothing was painted, stats and view are empty
+    FlPaintOrigin from; // unless it is an engine, stats and view are empty
 } FlPaintedRegion;
 
 /** The bytes of its colours and alpha. */

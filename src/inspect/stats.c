@@ -61,7 +61,7 @@ void fl_stats_frame(FlStats *stats, const FlPaintedRegion *const *painted, int n
         return;
     FILE *out = stats->file.stream;
     for (int p = 0; p < n; p++) {
-        if (painted[p]->taken)
+        if (painted[p]->from == FL_FROM_CACHE)
             fprintf(out, "{\"frame\": %d, \"region\": \"%s\", \"taken\": true}\n", frame_number,
                     painted[p]->name);
         for (int l = painted[p]->stats.n_levels - 1; l >= 0; l--)

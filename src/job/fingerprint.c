@@ -294,16 +294,16 @@ FlFingerprint *fl_fingerprint_new(const FlPlan *plan, GError **error)
  */
 
 /* The build stands for the method and for all that it is made from. */
-static void add_method(FlFingerprint *print, const FlPlan *plan, const FlRegionPlan *painted)
+static void add_method(FlFingerprint *print, const FlShapes *shapes, const FlRegionPlan *painted)
 {
     fl_fingerprint_add(print, "the build of fluidy-svg", fl_build_id());
     add_versions(print);
     fl_fingerprint_add(print, "the engine", painted->engine->name);
-    add_number(print, "the seed", (double)plan->options.seed);
+    add_number(print, "the seed", (double)shapes->seed);
     fl_fingerprint_add(print, "the region's name", painted->name);
-    add_number(print, "the number of frames", fl_drawing_frames(plan->drawing));
-    add_number(print, "the width of the paint", fl_drawing_width(plan->drawing));
-    add_number(print, "the height of the paint", fl_drawing_height(plan->drawing));
+    add_number(print, "the number of frames", shapes->n_frames);
+    add_number(print, "the width of the paint", shapes->width);
+    add_number(print, "the height of the paint", shapes->height);
     add_number(print, "whether it is a loop", painted->loops);
 }
 
@@ -339,12 +339,11 @@ GHashTable *fl_style_sums_new(void)
                                  (GDestroyNotify)fl_fingerprint_free);
 }
 
-FlFingerprint *fl_fingerprint_of_method(const FlPlan *plan, int p, GHashTable *styles,
-                                        GError **error)
+FlFingerprint *fl_fingerprint_of_method(const FlShapes *shapes, const FlRegionPlan *painted,
+                                        GHashTable *styles, GError **error)
 {
-    const FlRegionPlan *painted = &plan->painted[p];
     g_autoptr(FlFingerprint) print = fl_fingerprint_new_empty();
-    add_method(print, plan, painted);
+    add_method(print, shapes, painted);
     add_values(print, FL_SCOPE_REGION, &painted->settings, NULL, false);
     if (!add_style_once(print, painted->style->path, styles, error) ||
         (painted->tile && !add_style_once(print, painted->tile->path, styles, error)))

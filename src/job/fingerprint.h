@@ -48,13 +48,13 @@ void fl_fingerprint_add_options(FlFingerprint *print, FlOptionScope scope, const
 GHashTable *fl_style_sums_new(void);
 
 /**
- * What decides the paint of plan->painted[p] besides the frames themselves: engine, settings,
- * style, seed, sizes and this build of the program.
+ * What decides the paint of a region besides the shapes themselves: engine, settings, style, seed,
+ * sizes and this build of the program.
  *
  * Returns: to be freed; NULL with an error about the style's files.
  */
-FlFingerprint *fl_fingerprint_of_method(const FlPlan *plan, int p, GHashTable *styles,
-                                        GError **error);
+FlFingerprint *fl_fingerprint_of_method(const FlShapes *shapes, const FlRegionPlan *region,
+                                        GHashTable *styles, GError **error);
 
 /**
  * Adds what decides the guides of that region in the whole film, known before anything is drawn:

@@ -2,14 +2,10 @@
 #ifndef FLUIDY_JOB_PLAN_H
 #define FLUIDY_JOB_PLAN_H
 
-#include "base/rect.h"
-#include "drawing/drawing.h"
 #include "io/sink.h"
-#include "job/engine.h"
-#include "job/mask_store.h"
 #include "job/paint_cache.h"
+#include "job/region_plan.h"
 #include "job/style_cache.h"
-#include "job/surround.h"
 #include "params/config.h"
 
 /** How much of a render an earlier one has finished. */
@@ -18,22 +14,6 @@ typedef enum FlFinished {
     FL_FINISHED_FRAMES, // the film is missing
     FL_FINISHED_ALL,
 } FlFinished;
-
-/** How one region is painted. */
-typedef struct FlRegionPlan {
-    int region;       // index into the drawing's regions
-    const char *name; // borrowed
-    double area_px;   // mean, to balance the work
-    FlRegionSettings settings;
-    const FlStyleInstance *style; // borrowed
-    const FlStyleInstance *tile;  // borrowed: whose tile moves its paint; NULL: none does
-    const FlEngine *engine;
-    const char *paint_files; // borrowed: pattern of files of its paint; NULL: it is painted
-    FlRect place;            // of the paint in those files; nothing: they do not say it
-    const char *flow_files;  // borrowed: pattern of flow files; NULL: flow from the masks
-    bool keeps_flow;         // for a dump
-    bool loops;              // the film's end leads into its beginning
-} FlRegionPlan;
 
 typedef struct FlPlan {
     FlRenderOptions options; // completed from the config

@@ -10,7 +10,9 @@
 #define NONE (-1) // before the first picture, and after those of an earlier render
 #define WRAP 24   // pictures of a loop that guides use beyond each end
 
-FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style)
+/* The part of the page that is painted of a region with this extent in all frames: with a margin of
+ * the coarsest patches, on the grid of the coarsest level, so that it has the page's pyramid. */
+static FlRect crop(FlRect extent, FlRect page, const FlStyleInstance *style)
 {
     const int scale = style->enlargement ? 2 : 1;
     const FlRect grown = fl_rect_grown(extent, scale * fl_guided_patches(style, page), page);
@@ -19,10 +21,10 @@ FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style)
 
 static FlRect cropped(const FlPainter *painter)
 {
-    const FlRect extent = fl_mask_store_extent(painter->masks, painter->plan->region);
+    const FlRect extent = fl_mask_store_extent(painter->shapes->masks, painter->plan->region);
     const FlRect page = fl_painter_page(painter);
-    return fl_painter_crop(fl_rect_grown(extent, (int)ceilf(painter->result.reach_px), page), page,
-                           painter->plan->style);
+    return crop(fl_rect_grown(extent, (int)ceilf(painter->result.reach_px), page), page,
+                painter->plan->style);
 }
 
 /* Measured: the packed state, and what packing leaves of a picture; bare paper takes little. */
@@ -32,59 +34,53 @@ double fl_painter_bytes(const FlPainter *painter, bool packed)
     return 10 * MIN(painter->plan->area_px, rect) + (packed ? 0 : 3 * rect);
 }
 
-static bool is_known(const FlPainter *painter)
+/* A region that no frame shows has no paint, no guides and no room. */
+static FlPaintOrigin origin_of(const FlPainter *painter, bool hidden)
 {
-    return painter->reuse && painter->reuse->known;
+    const GArray *known = painter->reuse.known;
+    if (known ? known->len == 0 : hidden)
+        return FL_FROM_NOWHERE;
+    if (painter->plan->paint_files)
+        return FL_FROM_FILE;
+    return known ? FL_FROM_CACHE : FL_FROM_ENGINE;
 }
 
-/* Whether no frame shows anything of the region: then it has no paint, no guides and no room. */
-static bool is_hidden(const FlPainter *painter, const FlPlan *plan)
-{
-    return is_known(painter) ? painter->reuse->known->len == 0
-                             : fl_plan_hides(plan, painter->plan->region);
-}
-
-void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region,
-                     FlReuse *reuse)
+void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionPlan *region,
+                     bool hidden, FlReuse reuse)
 {
     *painter = (FlPainter){.plan = region,
+                           .shapes = shapes,
                            .picture = NONE,
-                           .masks = plan->masks,
-                           .surround = plan->surround,
-                           .drawing = plan->drawing,
-                           .frame_width = plan->width,
-                           .frame_height = plan->height,
+                           .reuse = reuse,
                            .result = {.region = region->region,
                                       .name = region->name,
                                       .settings = &region->settings,
                                       .style = region->style,
-                                      .width = fl_drawing_width(plan->drawing),
-                                      .height = fl_drawing_height(plan->drawing)}};
+                                      .width = shapes->width,
+                                      .height = shapes->height}};
     if (region->engine->exposure)
         painter->result.exposure = region->engine->exposure(region->style);
     if (region->engine->reach)
         painter->result.reach_px = region->engine->reach(region->style, &region->settings.params);
-    painter->n_pictures = (fl_drawing_frames(plan->drawing) - 1) / region->settings.hold + 1;
+    painter->n_pictures = (shapes->n_frames - 1) / region->settings.hold + 1;
     painter->wrap = region->loops ? MIN(painter->n_pictures, WRAP) : 0;
-    painter->reuse = reuse;
-    painter->result.unseen = is_hidden(painter, plan);
-    if (!painter->result.unseen)
-        painter->result.rect = is_known(painter)         ? reuse->rect
-                               : region->place.width > 0 ? region->place
-                                                         : cropped(painter);
+    painter->origin = painter->result.from = origin_of(painter, hidden);
+    if (painter->origin == FL_FROM_CACHE)
+        painter->result.rect = reuse.rect;
+    else if (painter->origin != FL_FROM_NOWHERE)
+        painter->result.rect = region->place.width > 0 ? region->place : cropped(painter);
 }
 
-bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
+bool fl_painter_prepare(FlPainter *painter, GError **error)
 {
     const FlRegionPlan *plan = painter->plan;
-    if (painter->result.unseen)
+    if (painter->origin == FL_FROM_NOWHERE)
         return true;
     if (plan->loops && !fl_loop_init(&painter->loop, painter->n_pictures, error))
         return false;
-    if (plan->paint_files || is_known(painter))
+    if (painter->origin != FL_FROM_ENGINE)
         return true;
-    if (painter->reuse && painter->reuse->cache)
-        fl_reuse_begin(painter->reuse, painter->result.rect);
+    fl_reuse_begin(&painter->reuse, painter->result.rect);
     const FlRect rect = fl_painter_guided(painter),
                  page = fl_guided_part(plan->style, fl_painter_page(painter));
     const FlGuideSource source = fl_painter_guide_source(painter);
@@ -95,36 +91,35 @@ bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error)
                                  {rect.width, rect.height, page.width, page.height},
                                  painter->result.rect.width,
                                  painter->result.rect.height,
-                                 fl_key(seed, g_str_hash(plan->name))};
-    return (painter->guides = fl_guide_sequence_new(&source, &params, error)) &&
+                                 fl_key(painter->shapes->seed, g_str_hash(plan->name))};
+    return (painter->sequence = fl_guide_sequence_new(&source, &params, error)) &&
            (painter->paint = plan->engine->open(&input, error));
 }
 
 void fl_painter_clear(FlPainter *painter)
 {
-    fl_guide_sequence_free(painter->guides);
+    fl_painter_drop_guides(painter);
+    fl_guide_sequence_free(painter->sequence);
     if (painter->paint)
         painter->plan->engine->close(painter->paint);
     fl_loop_clear(&painter->loop);
+    fl_reuse_clear(&painter->reuse);
     fl_painted_clear(&painter->result);
     *painter = (FlPainter){0};
 }
 
-/* Where the picture before was taken, the engine still is at an older one. */
+/* ---- a picture ------------------------------------------------------------------------------- */
+
+/* Brings the engine to the picture before, if that was taken from the cache. */
 static bool catch_up(FlPainter *painter, GError **error)
 {
-    FlReuse *reuse = painter->reuse;
-    if (!reuse || !reuse->state)
-        return true;
-    g_autoptr(GBytes) state = g_steal_pointer(&reuse->state);
-    return painter->plan->engine->load(painter->paint, state, error);
+    g_autoptr(GBytes) state = g_steal_pointer(&painter->reuse.state);
+    return !state || painter->plan->engine->load(painter->paint, state, error);
 }
 
 static bool keep_picture(FlPainter *painter, GError **error)
 {
-    FlReuse *reuse = painter->reuse;
-    if (!reuse)
-        return true;
+    FlReuse *reuse = &painter->reuse;
     reuse->n_painted++;
     if (!reuse->cache)
         return true;
@@ -136,143 +131,160 @@ static bool keep_picture(FlPainter *painter, GError **error)
     return true;
 }
 
-/* The engine's guides of the picture: see fl_painter_make_guides(). */
-static FlGuides *engine_guides(FlGuides *guides, FlGuides *part)
-{
-    return part->mask ? part : guides;
-}
-
-/* guided: the picture's guides are there; else it may need none. */
-static bool run_engine(FlPainter *painter, bool guided, FlGuides *guides, FlGuides *part,
-                       GError **error)
+static bool run_engine(FlPainter *painter, GError **error)
 {
     const FlEngine *engine = painter->plan->engine;
     FlPaintedRegion *result = &painter->result;
+    const bool rests = result->from == FL_FROM_REST && !painter->wants_guides;
     if (!catch_up(painter, error))
         return false;
-    if (!guided && engine->rest(painter->paint))
+    if (rests && engine->rest(painter->paint))
         return keep_picture(painter, error);
-    if ((!guided && !fl_painter_make_guides(painter, guides, part, error)) ||
-        !fl_painted_renew(result, error))
+    if ((rests && !fl_painter_make_guides(painter, error)) || !fl_painted_renew(result, error))
         return false;
+    result->from = FL_FROM_ENGINE;
     const FlEnginePaint paint = {result->painted, result->alpha, &result->stats,
                                  painter->wants_view ? &result->view : NULL};
-    return engine->frame(painter->paint, engine_guides(guides, part), &paint, error) &&
+    return engine->frame(painter->paint, &painter->guides, &paint, error) &&
            keep_picture(painter, error);
+}
+
+/* Chooses where the picture after picture `last` comes from, with its guides if it needs any. */
+static bool choose_origin(FlPainter *painter, int last, GError **error)
+{
+    FlPaintedRegion *result = &painter->result;
+    result->from = painter->origin;
+    if (result->from == FL_FROM_ENGINE && fl_painter_rests(painter, last))
+        result->from = FL_FROM_REST;
+    const bool guided =
+        result->from == FL_FROM_ENGINE || (result->from == FL_FROM_REST && painter->wants_guides);
+    return !guided || fl_painter_make_guides(painter, error);
+}
+
+/* Takes the picture from the cache if it is there; k: pictures painted before it. */
+static bool take_picture(FlPainter *painter, int k, GError **error)
+{
+    FlPaintedRegion *result = &painter->result;
+    FlReuse *reuse = &painter->reuse;
+    const FlGuides *guides = result->from == FL_FROM_ENGINE ? &painter->guides : NULL;
+    fl_reuse_next(reuse, k, guides, painter->plan->style->exemplar->level[0].first);
+    if (!reuse->cache)
+        return true;
+    if (!fl_painted_open(result, error))
+        return false;
+    if (fl_reuse_take(reuse, result->painted, fl_painted_bytes(result)))
+        result->from = FL_FROM_CACHE;
+    else if (painter->origin == FL_FROM_CACHE) {
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "region %s: its paint is gone from the cache", painter->plan->name);
+        return false;
+    }
+    return true;
 }
 
 /* The region's picture `index`, held ones counted once, into painter->result.painted; k: how many
  * were painted before it. */
-static bool paint_picture(FlPainter *painter, int k, int index, FlGuides *guides, GError **error)
+static bool paint_picture(FlPainter *painter, int k, int index, GError **error)
 {
-    FlReuse *reuse = painter->reuse;
     const int last = painter->picture;
     painter->picture = painter->wrap + index;
     painter->result.stats = (FlFrameStats){0};
     painter->result.view = (FlSynthView){0};
-    const bool known = is_known(painter), still = !known && fl_painter_rests(painter, last);
-    const bool guided = !known && (!still || painter->wants_guides);
-    g_auto(FlGuides) part = {0};
-    if (guided && !fl_painter_make_guides(painter, guides, &part, error))
-        return false;
-    if (reuse)
-        fl_reuse_next(reuse, k, still ? NULL : engine_guides(guides, &part),
-                      painter->plan->style->exemplar->level[0].first);
-    if (reuse && reuse->cache && !fl_painted_open(&painter->result, error))
-        return false;
+    fl_painter_drop_guides(painter);
+    const bool ready = choose_origin(painter, last, error) && take_picture(painter, k, error);
     painter->follows = true;
-    painter->result.taken =
-        reuse && fl_reuse_take(reuse, painter->result.painted, fl_painted_bytes(&painter->result));
-    if (painter->result.taken)
-        return true;
-    if (!known)
-        return run_engine(painter, guided, guides, &part, error);
-    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "region %s: its paint is gone from the cache",
-                painter->plan->name);
-    return false;
+    return ready && (painter->result.from == FL_FROM_CACHE || run_engine(painter, error));
 }
 
-bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error)
+bool fl_painter_lead_in(FlPainter *painter, int k, GError **error)
 {
     const FlLoop *loop = &painter->loop;
-    return painter->result.unseen || k >= loop->n ||
-           (paint_picture(painter, k, loop->first + k, guides, error) &&
+    return painter->origin == FL_FROM_NOWHERE || k >= loop->n ||
+           (paint_picture(painter, k, loop->first + k, error) &&
             fl_loop_keep(&painter->loop, k, &painter->result, error));
 }
 
 /* Loads the paint of a frame that another run has painted. */
 static bool load_paint(FlPainter *painter, int frame, GError **error)
 {
-    g_autofree char *file = fl_paint_file_name(painter->plan->paint_files, painter->drawing,
+    g_autofree char *file = fl_paint_file_name(painter->plan->paint_files, painter->shapes->drawing,
                                                painter->plan, frame, error);
     return file && fl_paint_file_load(&painter->result, file, error);
 }
 
-bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error)
+bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
-    if (painter->result.unseen)
-        return true;
+    const FlDrawing *drawing = painter->shapes->drawing;
     const int hold = painter->plan->settings.hold, index = frame / hold;
-    painter->result.anchor =
-        fl_drawing_anchor(painter->drawing, painter->plan->region, index * hold);
-    if (painter->plan->paint_files)
+    if (painter->origin == FL_FROM_NOWHERE)
+        return true;
+    if (drawing)
+        painter->result.anchor = fl_drawing_anchor(drawing, painter->plan->region, index * hold);
+    if (painter->origin == FL_FROM_FILE)
         return load_paint(painter, frame, error);
     if (frame % hold != 0)
         return true;
-    if (!paint_picture(painter, painter->loop.n + index, index, guides, error) ||
+    if (!paint_picture(painter, painter->loop.n + index, index, error) ||
         !fl_loop_blend(&painter->loop, index, &painter->result, error) ||
-        !fl_painter_show_guides(painter, guides, error))
+        !fl_painter_show_guides(painter, error))
         return false;
     painter->result.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
     return true;
 }
 
-/* Whether a frame may show the picture of one before it, so that a resumed render needs it. */
-static bool keeps_picture(const FlPainter *painter)
+/* ---- states ---------------------------------------------------------------------------------- */
+
+/* Whether its pictures have states: those of others come from files, or there are none. */
+static bool has_state(const FlPainter *painter)
 {
-    return painter->plan->settings.hold > 1 || fl_drawing_stands_still(painter->drawing);
+    return painter->origin == FL_FROM_ENGINE || painter->origin == FL_FROM_CACHE;
+}
+
+/* The bytes of the picture in a state: a later frame may show it again. */
+static size_t kept_bytes(const FlPainter *painter)
+{
+    const FlDrawing *drawing = painter->shapes->drawing;
+    const bool again =
+        painter->plan->settings.hold > 1 || (drawing && fl_drawing_stands_still(drawing));
+    return again && has_state(painter) ? fl_painted_bytes(&painter->result) : 0;
 }
 
 bool fl_painter_save(const FlPainter *painter, GBytes *parts[FL_PAINTER_PARTS], GError **error)
 {
-    const bool none = painter->plan->paint_files || painter->result.unseen;
-    const bool holds = keeps_picture(painter) && !none;
-    parts[2] = painter->reuse ? fl_reuse_save(painter->reuse) : g_bytes_new(NULL, 0);
-    if (none || is_known(painter))
+    const FlReuse *reuse = &painter->reuse;
+    const size_t bytes = kept_bytes(painter);
+    parts[2] = fl_reuse_save(reuse);
+    if (painter->origin != FL_FROM_ENGINE)
         parts[0] = g_bytes_new(NULL, 0);
-    else if (painter->reuse && painter->reuse->state)
-        parts[0] = g_bytes_ref(painter->reuse->state);
+    else if (reuse->state)
+        parts[0] = g_bytes_ref(reuse->state);
     else if (!(parts[0] = painter->plan->engine->save(painter->paint, error)))
         return false;
     g_auto(FlPaintedReader) look = {0};
-    if (holds && !fl_painted_read(&painter->result, &look, error))
+    if (bytes > 0 && !fl_painted_read(&painter->result, &look, error))
         return false;
-    parts[1] = g_bytes_new(look.region.painted, holds ? fl_painted_bytes(&look.region) : 0);
+    parts[1] = g_bytes_new(look.region.painted, bytes);
     return true;
 }
 
 /* The state of the engine, or what the cache has in its place. */
 static bool load_state(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
 {
-    FlReuse none = {0}, *reuse = painter->reuse ? painter->reuse : &none;
-    if (!fl_reuse_load(reuse, parts[2], parts[0])) {
+    if (!fl_reuse_load(&painter->reuse, parts[2], parts[0])) {
         g_set_error(
             error, FL_ERROR, FL_ERROR_CHANGED,
             "its paint was taken from the cache, and is gone; use ‘overwrite’ to start anew");
         return false;
     }
-    if (is_known(painter))
-        return true;
-    g_autoptr(GBytes) state = g_steal_pointer(&reuse->state);
-    return painter->plan->engine->load(painter->paint, state, error);
+    return painter->origin == FL_FROM_CACHE || catch_up(painter, error);
 }
 
 bool fl_painter_load(FlPainter *painter, GBytes *const parts[FL_PAINTER_PARTS], GError **error)
 {
-    if (painter->plan->paint_files || painter->result.unseen)
+    const size_t bytes = kept_bytes(painter);
+    if (!has_state(painter))
         return true;
-    const size_t bytes = keeps_picture(painter) ? fl_painted_bytes(&painter->result) : 0;
     if (g_bytes_get_size(parts[1]) != bytes) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "region %s: the picture of an earlier render has another size",

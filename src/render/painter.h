@@ -3,20 +3,18 @@
 #define FLUIDY_RENDER_PAINTER_H
 
 #include "guides/guides.h"
-#include "job/plan.h"
+#include "job/region_plan.h"
 #include "render/loop.h"
 #include "render/motion_source.h"
 #include "render/reuse.h"
 
 /** Paints one region, frame by frame. */
 typedef struct FlPainter {
-    const FlRegionPlan *plan; // borrowed, as masks and drawing are
-    const FlMaskStore *masks;
-    const FlSurround *surround;
-    const FlDrawing *drawing;
-    FlMotionSource *motion;        // borrowed; NULL: the drawing's own motion is not needed
-    int frame_width, frame_height; // of the output, and of flow files
-    FlPaintedRegion result;        // its picture is owned
+    const FlRegionPlan *plan; // borrowed
+    const FlShapes *shapes;   // borrowed
+    FlMotionSource *motion;   // borrowed; NULL: the drawing's own motion is not needed
+    FlPaintOrigin origin;     // of all pictures; FL_FROM_ENGINE: it is chosen for each
+    FlPaintedRegion result;   // its picture is owned
     FlLoop loop;
     int n_pictures;    // held frames counted once
     int wrap;          // pictures of a loop's other end that extend its guides, before and after
@@ -25,39 +23,39 @@ typedef struct FlPainter {
     bool keeps_first;  // distances of the first picture, from where guides are made
     int asked, answer; // a picture, and the one around which its depth is measured
     double cost_s;     // of the last picture that was synthesised, by one thread; 0: none yet
-    FlGuideSequence *guides;
-    void *paint;       // the state of plan->engine; NULL: all pictures are known
-    FlReuse *reuse;    // borrowed; NULL: nothing is taken or kept
-    bool wants_view;   // whether to fill result.view, which takes the memory of a frame
-    bool wants_guides; // of every frame; else a region at rest has none made
+    FlGuideSequence *sequence;
+    FlGuides guides; // of the picture, for the engine; empty: it was not painted
+    FlGuides shown;  // of the picture, for inspection: the whole region in px of the picture
+    void *paint;     // the state of plan->engine; NULL: all pictures are known
+    FlReuse reuse;
+    bool wants_view;   // result.view is filled, which takes the memory of a frame
+    bool wants_guides; // fl_painter_guides() has those of every picture
 } FlPainter;
 
-/** Sets sizes only; needs plan->masks, unless the pictures are known. reuse may be NULL. */
-void fl_painter_init(FlPainter *painter, const FlPlan *plan, const FlRegionPlan *region,
-                     FlReuse *reuse);
+/** Sets sizes only; needs shapes->masks, unless the pictures are known. hidden: no frame shows the
+ * region. The painter takes `reuse` over. */
+void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionPlan *region,
+                     bool hidden, FlReuse reuse);
 void fl_painter_clear(FlPainter *painter);
-
-/** The part of the page that is painted of a region with this extent in all frames: with a margin
- * of the coarsest patches, on the grid of the coarsest level, so that it has the page's pyramid. */
-FlRect fl_painter_crop(FlRect extent, FlRect page, const FlStyleInstance *style);
 
 /** An estimate of the bytes that the painter keeps between frames. packed: its picture waits so. */
 double fl_painter_bytes(const FlPainter *painter, bool packed);
 
-/** Makes guides for the whole film. The random numbers depend on seed and the region's name. */
-bool fl_painter_prepare(FlPainter *painter, uint64_t seed, GError **error);
+/** Makes guides for the whole film. The random numbers depend on the seed and the region's name. */
+bool fl_painter_prepare(FlPainter *painter, GError **error);
 
-/**
- * Paints the k-th picture of the lead-in of a loop, in order; beyond painter->loop.n it does
- * nothing. After the last one comes frame 0. `guides` are empty.
- */
-bool fl_painter_lead_in(FlPainter *painter, int k, FlGuides *guides, GError **error);
+/** Paints the k-th picture of the lead-in of a loop, in order; beyond painter->loop.n it does
+ * nothing. After the last one comes frame 0. */
+bool fl_painter_lead_in(FlPainter *painter, int k, GError **error);
 
-/**
- * Paints the next frame of the film, in order; a held frame keeps the last picture. `guides` are
- * empty, and become the frame's in the size of result.rect where it needs any.
- */
-bool fl_painter_frame(FlPainter *painter, int frame, FlGuides *guides, GError **error);
+/** Paints the next frame of the film, in order; a held frame keeps the last picture. */
+bool fl_painter_frame(FlPainter *painter, int frame, GError **error);
+
+/** The guides of the last picture, if painter->wants_guides: of all of result.rect. */
+const FlGuides *fl_painter_guides(const FlPainter *painter);
+
+/** Frees the guides of the last picture. */
+void fl_painter_drop_guides(FlPainter *painter);
 
 /** The number of parts of a painter's state: see fl_painter_save(). */
 #define FL_PAINTER_PARTS 3

@@ -4,7 +4,6 @@
 #include "guides/flow_file.h"
 #include "guides/half_guides.h"
 #include "guides/rim.h"
-#include "io/pattern.h"
 #include <math.h>
 
 /* ---- where they come from ------------------------------------------------------------------ */
@@ -42,74 +41,44 @@ static bool painter_mask(void *data, int frame, uint8_t *coverage, GError **erro
     const FlPainter *painter = data;
     const FlRect rect = painter->result.rect;
     const int region = painter->plan->region, shown = frame_of(painter, frame);
-    return halves(painter)
-               ? fl_mask_store_get_half(painter->masks, region, shown, rect, coverage, error)
-               : fl_mask_store_get(painter->masks, region, shown, rect, coverage, error);
+    return (halves(painter) ? fl_mask_store_get_half : fl_mask_store_get)(
+        painter->shapes->masks, region, shown, rect, coverage, error);
 }
 
-/* The flow of the whole frame; files have the size of the output, which drafts halve. */
-static bool load_flow(const FlPainter *painter, const char *file, float unknown, float *flow,
-                      GError **error)
+/* The flow into a picture, cropped to the painter's rectangle. */
+static bool given_flow(const FlPainter *painter, int frame, float unknown, float *flow,
+                       GError **error)
 {
-    const int width = painter->frame_width, height = painter->frame_height;
-    if (width == painter->result.width && height == painter->result.height)
-        return fl_flow_load(file, width, height, unknown, flow, error);
-    g_autofree float *full =
-        fl_alloc(2 * (size_t)width * height, sizeof(float), "a flow field", error);
-    if (!full || !fl_flow_load(file, width, height, unknown, full, error))
-        return false;
-    fl_flow_halve(full, width, height, flow);
-    return true;
-}
-
-/* Of nothing into the first frame: who writes a flow between frames has no file for it. */
-static bool may_lack_flow(const FlPainter *painter, int frame, const char *file)
-{
-    return frame_of(painter, frame) == 0 && !painter->plan->loops &&
-           !g_file_test(file, G_FILE_TEST_EXISTS);
-}
-
-/* The flow of a picture from its file, cropped to the painter's rectangle. */
-static bool flow_in_file(const FlPainter *painter, int frame, float unknown, float *flow,
-                         GError **error)
-{
-    const int number = fl_drawing_number(painter->drawing, frame_of(painter, frame));
-    const size_t pixels = (size_t)painter->result.width * painter->result.height;
-    g_autofree float *whole = fl_alloc(2 * pixels, sizeof(float), "a flow field", error);
-    g_autofree char *file =
-        whole ? fl_output_name(painter->plan->flow_files, number, painter->plan->name, error)
-              : NULL;
-    if (!file)
-        return false;
-    if (may_lack_flow(painter, frame, file))
-        for (size_t k = 0; k < 2 * pixels; k++)
-            whole[k] = unknown;
-    else if (!load_flow(painter, file, unknown, whole, error))
-        return false;
+    const FlShapes *shapes = painter->shapes;
     const FlRect page = fl_painter_page(painter);
+    g_autofree float *whole =
+        fl_alloc(2 * fl_rect_pixels(page), sizeof *whole, "a flow field", error);
+    if (!whole ||
+        !shapes->flow(shapes->data, painter->plan, frame_of(painter, frame), unknown, whole, error))
+        return false;
     if (!halves(painter)) {
-        fl_rect_copy(whole, page, flow, painter->result.rect, 2 * sizeof(float));
+        fl_rect_copy(whole, page, flow, painter->result.rect, 2 * sizeof *whole);
         return true;
     }
     const FlRect half_page = fl_rect_halved(page);
     g_autofree float *half =
-        fl_alloc(2 * fl_rect_pixels(half_page), sizeof(float), "a flow field", error);
+        fl_alloc(2 * fl_rect_pixels(half_page), sizeof *half, "a flow field", error);
     if (!half)
         return false;
     fl_flow_halve(whole, page.width, page.height, half);
-    fl_rect_copy(half, half_page, flow, fl_painter_guided(painter), 2 * sizeof(float));
+    fl_rect_copy(half, half_page, flow, fl_painter_guided(painter), 2 * sizeof *half);
     return true;
 }
 
 static bool painter_flow(void *data, int frame, float *flow, GError **error)
 {
-    return flow_in_file(data, frame, 0, flow, error);
+    return given_flow(data, frame, 0, flow, error);
 }
 
 static bool painter_motion(void *data, int frame, const FlOutlinePair *outlines, float *motion,
                            GError **error)
 {
-    return flow_in_file(data, frame, NAN, motion, error);
+    return given_flow(data, frame, NAN, motion, error);
 }
 
 /* Whether there is a picture before one; nothing comes before the first, but in a loop. */
@@ -148,17 +117,17 @@ static FlUniformMotion exact_uniform(void *data, int frame, const FlOutlinePair 
 FlGuideSource fl_painter_guide_source(FlPainter *painter)
 {
     const bool masks = painter->plan->settings.motion == FL_MOTION_MASKS;
-    const bool files = painter->plan->flow_files != NULL;
+    const bool given = painter->shapes->flow != NULL, exact = !masks && !given && painter->motion;
     const FlRect rect = fl_painter_guided(painter);
     return (FlGuideSource){.width = rect.width,
                            .height = rect.height,
                            .n_frames = painter->n_pictures + 2 * painter->wrap,
                            .mask = painter_mask,
-                           .flow = files && masks ? painter_flow : NULL,
-                           .motion = masks   ? NULL
-                                     : files ? painter_motion
-                                             : exact_motion,
-                           .uniform = masks || files ? NULL : exact_uniform,
+                           .flow = given && masks ? painter_flow : NULL,
+                           .motion = exact             ? exact_motion
+                                     : given && !masks ? painter_motion
+                                                       : NULL,
+                           .uniform = exact ? exact_uniform : NULL,
                            .data = painter,
                            .keeps_flow = painter->plan->keeps_flow,
                            .keeps_first = painter->keeps_first};
@@ -177,6 +146,13 @@ int fl_guided_patches(const FlStyleInstance *style, FlRect page)
 
 /* ---- depth --------------------------------------------------------------------------------- */
 
+/* Whether the shapes that share edges with the region are the same in two frames. */
+static bool joins_same(const FlPainter *painter, int a, int b)
+{
+    const FlSurround *surround = painter->shapes->surround;
+    return !surround || fl_surround_joins_as_in(surround, painter->plan->region, a, b);
+}
+
 /* The picture around which the depth of another one is measured. A shape at rest keeps the depth
  * with which it came to rest, whatever crosses it, as its paint is kept; only where those that it
  * shares edges with move, come or go is it measured anew. */
@@ -185,8 +161,8 @@ static int depth_picture(FlPainter *painter, int picture)
     const int region = painter->plan->region, asked = picture;
     for (; picture > 0 && picture != painter->asked; picture--) {
         const int now = frame_of(painter, picture), before = frame_of(painter, picture - 1);
-        if (!fl_mask_store_same(painter->masks, region, now, before) ||
-            !fl_surround_joins_as_in(painter->surround, region, now, before))
+        if (!fl_mask_store_same(painter->shapes->masks, region, now, before) ||
+            !joins_same(painter, now, before))
             break;
     }
     if (picture > 0 && picture == painter->asked)
@@ -235,7 +211,8 @@ static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides,
     const FlPaintedRegion *result = &painter->result;
     const FlRect place = guided_place(painter, guides);
     g_auto(FlSurroundPlanes) around = {0};
-    if (!fl_surround_get(painter->surround, result->region, frame, place, &around, error))
+    const FlSurround *surround = painter->shapes->surround;
+    if (surround && !fl_surround_get(surround, result->region, frame, place, &around, error))
         return false;
     if (halves(painter))
         halve_around(&around, place.width, place.height);
@@ -259,7 +236,7 @@ static bool measure_among_others(const FlPainter *painter, int frame, FlGuides *
     const FlRect rect = fl_painter_guided(painter), frame_rect = {0, 0, rect.width, rect.height};
     g_auto(FlGuides) whole = {0};
     if (!fl_guides_init_distance(&whole, rect.width, rect.height, error) ||
-        !fl_guide_sequence_distance(painter->guides, painter->picture, &whole, error) ||
+        !fl_guide_sequence_distance(painter->sequence, painter->picture, &whole, error) ||
         !measure_depth(painter, frame, &whole, error))
         return false;
     fl_rect_copy(whole.depth, frame_rect, guides->depth, fl_guides_rect(guides),
@@ -270,12 +247,13 @@ static bool measure_among_others(const FlPainter *painter, int frame, FlGuides *
 /* The depth that the paint takes the region to have, unless a preset's guides know none. */
 static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
 {
+    const FlSurround *surround = painter->shapes->surround;
     if (!fl_knows_depth(&painter->plan->settings.params))
         return true;
     const int frame = frame_of(painter, depth_picture(painter, painter->picture));
     const FlRect rect = fl_painter_guided(painter);
     const bool part = guides->width < rect.width || guides->height < rect.height;
-    return part && fl_surround_joins(painter->surround, painter->plan->region, frame)
+    return part && surround && fl_surround_joins(surround, painter->plan->region, frame)
                ? measure_among_others(painter, frame, guides, error)
                : measure_depth(painter, frame, guides, error);
 }
@@ -287,7 +265,7 @@ bool fl_painter_rests(FlPainter *painter, int last)
     const int now = painter->picture;
     const bool blended = painter->loop.n > 0 && last - painter->wrap >= painter->loop.first;
     return now == last + 1 && !blended && painter->plan->engine->rest &&
-           fl_guide_sequence_rests(painter->guides, now) &&
+           fl_guide_sequence_rests(painter->sequence, now) &&
            (!fl_knows_depth(&painter->plan->settings.params) ||
             depth_picture(painter, last) == depth_picture(painter, now));
 }
@@ -318,11 +296,11 @@ static bool stir_joins(const FlPainter *painter, uint8_t *square, GError **error
     const int before = frame_of(painter, painter->picture - 1);
     const FlRect rect = painter->result.rect, guided = fl_painter_guided(painter);
     const int reach = fl_rim_reach(painter->plan->style->exemplar->border_px) + FL_REST_PX;
-    if (fl_surround_joins_as_in(painter->surround, region, now, before))
+    if (joins_same(painter, now, before))
         return true;
     g_autofree uint8_t *differs = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
     if (!differs ||
-        !fl_surround_differs(painter->surround, region, now, before, rect, differs, error))
+        !fl_surround_differs(painter->shapes->surround, region, now, before, rect, differs, error))
         return false;
     for (int y = 0; y < guided.height; y += FL_REST_PX)
         for (int x = 0; x < guided.width; x += FL_REST_PX) {
@@ -346,7 +324,7 @@ static bool find_resting(const FlPainter *painter, FlRestingParts *resting, FlRe
     g_autofree uint8_t *square = NULL;
     if (!keeps_parts(painter))
         return true;
-    if (!fl_guide_sequence_changes(painter->guides, painter->picture, &square, error))
+    if (!fl_guide_sequence_changes(painter->sequence, painter->picture, &square, error))
         return false;
     return !square ||
            ((!fl_knows_depth(&painter->plan->settings.params) ||
@@ -369,53 +347,62 @@ static bool fill_guides(FlPainter *painter, FlRect part, FlGuides *guides, GErro
     if (!fl_guides_init(guides, part.width, part.height, error))
         return false;
     guides->x = part.x, guides->y = part.y;
-    return fl_guide_sequence_distance(painter->guides, painter->picture, guides, error) &&
+    return fl_guide_sequence_distance(painter->sequence, painter->picture, guides, error) &&
            make_depth(painter, guides, error) &&
-           fl_guide_sequence_planes(painter->guides, painter->picture, guides, error);
+           fl_guide_sequence_planes(painter->sequence, painter->picture, guides, error);
 }
 
-bool fl_painter_make_guides(FlPainter *painter, FlGuides *guides, FlGuides *part, GError **error)
+bool fl_painter_make_guides(FlPainter *painter, GError **error)
 {
     g_auto(FlRestingParts) resting = {0};
+    FlGuides *guides = &painter->guides, *shown = &painter->shown;
     const FlRect rect = fl_painter_guided(painter), whole = {0, 0, rect.width, rect.height};
     FlRect moving;
-    if (!find_resting(painter, &resting, &moving, error))
+    if (!find_resting(painter, &resting, &moving, error) ||
+        (resting.keeps && painter->wants_guides && !fill_guides(painter, whole, shown, error)))
         return false;
-    if ((!resting.keeps || painter->wants_guides) && !fill_guides(painter, whole, guides, error))
-        return false;
-    fl_guide_sequence_drop_first(painter->guides);
-    guides->disposable = !painter->wants_guides;
-    if (!resting.keeps)
-        return true;
-    if (!fill_guides(painter, needed_part(painter, moving), part, error))
-        return false;
-    part->resting = resting, resting = (FlRestingParts){0};
-    part->disposable = true;
-    part->whole = painter->wants_guides ? guides : NULL;
-    return true;
+    const FlRect part = resting.keeps ? needed_part(painter, moving) : whole;
+    const bool filled = fill_guides(painter, part, guides, error);
+    fl_guide_sequence_drop_first(painter->sequence);
+    guides->disposable = resting.keeps || !painter->wants_guides;
+    guides->whole = shown->mask ? shown : NULL;
+    guides->resting = resting, resting = (FlRestingParts){0};
+    return filled;
 }
 
-/* ---- for who looks at them ---------------------------------------------------------------- */
+/* ---- inspection ------------------------------------------------------------------------------ */
+
+const FlGuides *fl_painter_guides(const FlPainter *painter)
+{
+    return painter->shown.mask ? &painter->shown : &painter->guides;
+}
+
+void fl_painter_drop_guides(FlPainter *painter)
+{
+    fl_guides_clear(&painter->guides);
+    fl_guides_clear(&painter->shown);
+}
 
 bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error)
 {
     const FlRect rect = painter->result.rect;
     if (!halves(painter))
-        return fl_guide_sequence_flow(painter->guides, painter->picture, flow, error);
+        return fl_guide_sequence_flow(painter->sequence, painter->picture, flow, error);
     g_autofree float *half = fl_alloc_unset(2 * fl_rect_pixels(fl_painter_guided(painter)),
                                             sizeof(float), "a flow field", error);
-    if (!half || !fl_guide_sequence_flow(painter->guides, painter->picture, half, error))
+    if (!half || !fl_guide_sequence_flow(painter->sequence, painter->picture, half, error))
         return false;
     fl_flow_double(half, rect.width, rect.height, flow);
     return true;
 }
 
-bool fl_painter_show_guides(const FlPainter *painter, FlGuides *guides, GError **error)
+bool fl_painter_show_guides(FlPainter *painter, GError **error)
 {
     const FlRect rect = painter->result.rect;
-    if (!halves(painter) || !painter->wants_guides || !guides->mask)
+    FlGuides *all = painter->shown.mask ? &painter->shown : &painter->guides;
+    if (!halves(painter) || !painter->wants_guides || !all->mask)
         return true;
-    g_auto(FlGuides) half = *guides;
-    *guides = (FlGuides){0};
-    return fl_guides_double(&half, rect.width, rect.height, guides, error);
+    g_auto(FlGuides) half = *all;
+    *all = (FlGuides){0};
+    return fl_guides_double(&half, rect.width, rect.height, &painter->shown, error);
 }

@@ -29,13 +29,13 @@ FlGuideSource fl_painter_guide_source(FlPainter *painter);
 bool fl_painter_rests(FlPainter *painter, int last);
 
 /**
- * The guides of the painter's picture. guides: of all, if they are inspected; part: those from
- * which the engine paints, if some parts rest, else it stays empty, and they are `guides`.
+ * Makes the guides of the painter's picture: painter->guides, of all or, where some parts rest, of
+ * the part from which the engine paints. Then painter->shown has those of all, if they are wanted.
  */
-bool fl_painter_make_guides(FlPainter *painter, FlGuides *guides, FlGuides *part, GError **error);
+bool fl_painter_make_guides(FlPainter *painter, GError **error);
 
-/** Who looks at guides beside the picture wants them in its size. */
-bool fl_painter_show_guides(const FlPainter *painter, FlGuides *guides, GError **error);
+/** Brings the guides that are wanted to the size of the picture. */
+bool fl_painter_show_guides(FlPainter *painter, GError **error);
 
 /** The flow of the last painted picture, as in its file: 2 floats per pixel of rect. */
 bool fl_painter_flow(const FlPainter *painter, float *flow, GError **error);

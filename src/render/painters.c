@@ -1,9 +1,12 @@
 #include "render/painters.h"
 
+#include "base/alloc.h"
 #include "base/limits.h"
 #include "base/parallel_error.h"
 #include "base/schedule.h"
+#include "guides/flow_file.h"
 #include "inspect/report.h"
+#include "io/pattern.h"
 #include "render/painter_guides.h"
 #include <math.h>
 
@@ -29,7 +32,7 @@ static bool check_memory(const FlPainters *painters, GError **error)
 static bool make_guides_of(void *data, int p, int thread, GError **error)
 {
     FlPainters *painters = data;
-    return fl_painter_prepare(&painters->painter[p], painters->plan->options.seed, error);
+    return fl_painter_prepare(&painters->painter[p], error);
 }
 
 /* While it is painted, a region takes 80 bytes a pixel of its rectangle, and about as many while
@@ -66,92 +69,146 @@ static bool make_guides(FlPainters *painters, GError **error)
     return fl_schedule_run(items, painters->n, make_guides_of, painters, error);
 }
 
-/* Whether a region is carried along the drawing's own motion. */
-static bool wants_motion(const FlRegionPlan *region)
+/* ---- what a film gives ----------------------------------------------------------------------- */
+
+/* Flow files have the size of the output, which drafts halve. */
+static bool load_flow(const FlPlan *plan, const FlShapes *shapes, const char *file, float unknown,
+                      float *flow, GError **error)
 {
-    return region->settings.motion == FL_MOTION_AUTO && !region->flow_files && !region->paint_files;
+    const int width = plan->width, height = plan->height;
+    if (width == shapes->width && height == shapes->height)
+        return fl_flow_load(file, width, height, unknown, flow, error);
+    g_autofree float *full =
+        fl_alloc(2 * (size_t)width * (size_t)height, sizeof *full, "a flow field", error);
+    if (!full || !fl_flow_load(file, width, height, unknown, full, error))
+        return false;
+    fl_flow_halve(full, width, height, flow);
+    return true;
 }
 
+/* FlShapes.flow of the painters in data. The first frame may lack a file, since no frame comes
+ * before it. */
+static bool flow_from_file(void *data, const FlRegionPlan *region, int frame, float unknown,
+                           float *flow, GError **error)
+{
+    const FlPainters *painters = data;
+    const FlPlan *plan = painters->plan;
+    const FlShapes *shapes = &painters->shapes;
+    g_autofree char *file = fl_output_name(
+        region->flow_files, fl_drawing_number(plan->drawing, frame), region->name, error);
+    if (!file)
+        return false;
+    if (frame > 0 || region->loops || g_file_test(file, G_FILE_TEST_EXISTS))
+        return load_flow(plan, shapes, file, unknown, flow, error);
+    for (size_t k = 0; k < 2 * (size_t)shapes->width * (size_t)shapes->height; k++)
+        flow[k] = unknown;
+    return true;
+}
+
+static FlShapes shapes_of(FlPainters *painters)
+{
+    const FlPlan *plan = painters->plan;
+    return (FlShapes){.n_frames = fl_drawing_frames(plan->drawing),
+                      .width = fl_drawing_width(plan->drawing),
+                      .height = fl_drawing_height(plan->drawing),
+                      .seed = plan->options.seed,
+                      .masks = plan->masks,
+                      .surround = plan->surround,
+                      .drawing = plan->drawing,
+                      .flow = plan->options.flow ? flow_from_file : NULL,
+                      .data = painters};
+}
+
+/* Opens the drawing's own motion for regions that are carried along it. */
 static bool open_motion(FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
-    for (int p = 0; p < plan->n_painted; p++) {
-        const bool halved = plan->painted[p].style->enlargement;
-        if (!wants_motion(&plan->painted[p]) || (painters->reuse && painters->reuse[p].known))
-            continue;
+    for (int p = 0; p < painters->n; p++) {
+        FlPainter *painter = &painters->painter[p];
+        const bool halved = painter->plan->style->enlargement;
         FlMotionSource **motion = &painters->motion[halved];
+        if (painter->plan->settings.motion != FL_MOTION_AUTO || painters->shapes.flow ||
+            painter->origin != FL_FROM_ENGINE)
+            continue;
         if (!*motion &&
             !(*motion = fl_motion_source_new(plan->drawing, plan->masks, halved, error)))
             return false;
-        painters->painter[p].motion = *motion;
+        painter->motion = *motion;
     }
     return true;
 }
 
-bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, FlPaintCache *cache,
-                        const FlFingerprint *whole, GError **error)
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, const FlFingerprint *whole,
+                        GError **error)
 {
     g_autoptr(GHashTable) styles = fl_style_sums_new();
-    painters->n = plan->n_painted;
-    painters->reuse = g_new0(FlReuse, MAX(plan->n_painted, 1));
-    for (int p = 0; p < plan->n_painted; p++)
-        if (!fl_reuse_init(&painters->reuse[p], cache, plan, p, styles, whole, error))
+    painters->plan = plan, painters->n = plan->n_painted;
+    painters->painter = g_new0(FlPainter, MAX(plan->n_painted, 1));
+    painters->shapes = shapes_of(painters);
+    for (int p = 0; p < plan->n_painted; p++) {
+        FlReuse *reuse = &painters->painter[p].reuse;
+        if (!fl_reuse_init(reuse, plan->cache, &painters->shapes, &plan->painted[p], styles,
+                           error) ||
+            !fl_reuse_recall(reuse, plan, p, whole, error))
             return false;
+    }
     return true;
 }
 
-bool fl_painters_need_masks(const FlPainters *painters, const FlPlan *plan)
+bool fl_painters_need_masks(const FlPainters *painters)
 {
+    const FlPlan *plan = painters->plan;
     bool needed = false;
-    for (int p = 0; p < plan->n_painted && !needed; p++)
-        needed = painters->reuse ? !painters->reuse[p].known
-                                 : plan->painted[p].place.width == 0 &&
-                                       !fl_plan_hides(plan, plan->painted[p].region);
+    for (int p = 0; p < painters->n && !needed; p++) {
+        const FlRegionPlan *region = &plan->painted[p];
+        const bool placed =
+            region->paint_files && (region->place.width > 0 || fl_plan_hides(plan, region->region));
+        needed = !placed && !painters->painter[p].reuse.known;
+    }
     return needed;
 }
 
 bool fl_painters_stale(const FlPainters *painters)
 {
     bool stale = false;
-    for (int p = 0; painters->reuse && p < painters->n; p++)
-        stale = stale || painters->reuse[p].stale;
+    for (int p = 0; p < painters->n; p++)
+        stale = stale || painters->painter[p].reuse.stale;
     return stale;
 }
 
 void fl_painters_finish(FlPainters *painters)
 {
-    for (int p = 0; painters->reuse && p < painters->n; p++)
-        fl_reuse_finish(&painters->reuse[p]);
+    for (int p = 0; p < painters->n; p++)
+        fl_reuse_finish(&painters->painter[p].reuse);
 }
 
-bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error)
+bool fl_painters_init(FlPainters *painters, GError **error)
 {
-    painters->plan = plan, painters->n = plan->n_painted;
-    painters->painter = g_new0(FlPainter, MAX(painters->n, 1));
-    for (int p = 0; p < painters->n; p++)
-        fl_painter_init(&painters->painter[p], plan, &plan->painted[p],
-                        painters->reuse ? &painters->reuse[p] : NULL);
+    const FlPlan *plan = painters->plan;
+    const bool energies = plan->options.stats || fl_report_measures(&plan->options);
+    for (int p = 0; p < painters->n; p++) {
+        const FlRegionPlan *region = &plan->painted[p];
+        fl_painter_init(&painters->painter[p], &painters->shapes, region,
+                        fl_plan_hides(plan, region->region), painters->painter[p].reuse);
+    }
     if (!check_memory(painters, error) || !open_motion(painters, error) ||
         !make_guides(painters, error))
         return false;
     for (int p = 0; p < painters->n; p++)
         if (painters->painter[p].paint && plan->painted[p].engine->measure)
-            plan->painted[p].engine->measure(painters->painter[p].paint,
-                                             plan->options.stats ||
-                                                 fl_report_measures(&plan->options));
+            plan->painted[p].engine->measure(painters->painter[p].paint, energies);
     return true;
 }
 
 void fl_painters_clear(FlPainters *painters)
 {
-    for (int p = 0; painters->painter && p < painters->n; p++)
+    for (int p = 0; p < painters->n; p++)
         fl_painter_clear(&painters->painter[p]);
-    for (int p = 0; painters->reuse && p < painters->n; p++)
-        fl_reuse_clear(&painters->reuse[p]);
     fl_motion_source_free(painters->motion[0]);
     fl_motion_source_free(painters->motion[1]);
     g_free(painters->painter);
-    g_free(painters->reuse);
     *painters = (FlPainters){0};
 }
 
@@ -165,8 +222,7 @@ typedef struct Step {
 static bool do_one(void *data, int p, int thread, GError **error)
 {
     const Step *step = data;
-    g_auto(FlGuides) guides = {0};
-    return step->work(step->data, p, step->step, &guides, error);
+    return step->work(step->data, p, step->step, error);
 }
 
 /* How long a thread takes, in seconds: what it took the last time, or what is usual for the area.

@@ -6,26 +6,26 @@
 
 typedef struct FlPainters {
     const FlPlan *plan; // borrowed
+    FlShapes shapes;    // of the plan
     int n;
     FlPainter *painter;        // one for each of plan->painted
     FlMotionSource *motion[2]; // for guides of half the size second; NULL: not needed
-    FlReuse *reuse;            // one for each painter; NULL: nothing is taken or kept
 } FlPainters;
 
-/** Work for painter p; step is a frame, or a picture of the lead-in. guides are empty. */
-typedef bool (*FlPainterWork)(void *data, int p, int step, FlGuides *guides, GError **error);
+/** Work for painter p; step is a frame, or a picture of the lead-in. */
+typedef bool (*FlPainterWork)(void *data, int p, int step, GError **error);
 
 /**
- * Looks which pictures of the plan's regions are known; call it first, if paint is kept at all.
- * whole: fl_fingerprint_new() of the plan. Returns: false with an error about a style's file.
+ * Looks up which pictures of the plan's regions its cache has; call it first. whole:
+ * fl_fingerprint_new() of the plan. Returns: false with an error about a style's file.
  */
-bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, FlPaintCache *cache,
-                        const FlFingerprint *whole, GError **error);
+bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, const FlFingerprint *whole,
+                        GError **error);
 
-/** Whether any region's masks are needed for its guides. */
-bool fl_painters_need_masks(const FlPainters *painters, const FlPlan *plan);
+/** True if any region's masks are needed for its guides. */
+bool fl_painters_need_masks(const FlPainters *painters);
 
-/** Whether a picture that was known could not be taken: another try would paint it. */
+/** True if a picture that was known could not be taken: another try would paint it. */
 bool fl_painters_stale(const FlPainters *painters);
 
 /** Keeps what the next render of the film needs to know all pictures. */
@@ -35,7 +35,7 @@ void fl_painters_finish(FlPainters *painters);
  * Checks the memory limit, then makes the guides of every region that is painted; the plan's masks
  * are rasterised, if they are needed. FL_ERROR_LIMIT, FL_ERROR_NO_MEMORY, or an error about a file.
  */
-bool fl_painters_init(FlPainters *painters, const FlPlan *plan, GError **error);
+bool fl_painters_init(FlPainters *painters, GError **error);
 void fl_painters_clear(FlPainters *painters);
 
 /** Does the work for every painter: fl_schedule_run(). */

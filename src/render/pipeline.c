@@ -76,18 +76,15 @@ static bool report_progress(const Pipeline *pipeline, const char *stage, int don
 
 /* ---- painting -------------------------------------------------------------------------------- */
 
-/* The guides and matches of a painter's picture, if the frame has a new one. */
-static bool dump_frame(const FlPlan *plan, const FlPainter *painter, int frame,
-                       const FlGuides *guides, GError **error)
+/* The guides and matches of a painter's new picture. */
+static bool dump_picture(const FlPlan *plan, const FlPainter *painter, int number, GError **error)
 {
-    if (frame % painter->plan->settings.hold != 0)
-        return true;
     const FlPaintedRegion *painted = &painter->result;
     g_autofree float *flow =
         fl_alloc(2 * fl_rect_pixels(painted->rect), sizeof(float), "a flow field", error);
     return flow && fl_painter_flow(painter, flow, error) &&
-           fl_dump_frame(plan->options.dump, painted, guides, flow,
-                         fl_drawing_number(plan->drawing, frame), error);
+           fl_dump_frame(plan->options.dump, painted, fl_painter_guides(painter), flow, number,
+                         error);
 }
 
 static bool is_empty(const FlGuides *guides)
@@ -98,48 +95,64 @@ static bool is_empty(const FlGuides *guides)
     return true;
 }
 
-/* The pairs of guides of a painter's picture, if it was synthesised. */
-static bool export_frame(const FlPlan *plan, const FlPainter *painter, int frame,
-                         const FlGuides *guides, GError **error)
+/* The pairs of guides of a painter's new picture, if it was synthesised. */
+static bool export_picture(const FlPlan *plan, const FlPainter *painter, int frame, GError **error)
 {
-    const int hold = painter->plan->settings.hold;
-    const bool rests = frame > 0 && painter->result.stats.n_levels == 0 && !is_empty(guides);
-    const FlEngine *engine = painter->plan->engine;
+    const FlPaintedRegion *painted = &painter->result;
+    const bool rests =
+        frame > 0 && painted->stats.n_levels == 0 && !is_empty(fl_painter_guides(painter));
+    const int before = frame - painter->plan->settings.hold;
     g_auto(FlGuidePairs) pairs = {0};
-    if (frame % hold != 0)
-        return true;
-    if (painter->result.stats.n_levels > 0 && !engine->guide_pairs(painter->paint, &pairs, error))
+    if (painted->stats.n_levels > 0 &&
+        !painter->plan->engine->guide_pairs(painter->paint, &pairs, error))
         return false;
-    return fl_ebsynth_frame(plan->options.ebsynth, &painter->result, pairs.style ? &pairs : NULL,
+    return fl_ebsynth_frame(plan->options.ebsynth, painted, pairs.style ? &pairs : NULL,
                             fl_drawing_number(plan->drawing, frame),
-                            rests ? fl_drawing_number(plan->drawing, frame - hold) : -1, error);
+                            rests ? fl_drawing_number(plan->drawing, before) : -1, error);
 }
 
-static bool paint_one(void *data, int p, int frame, FlGuides *guides, GError **error)
+static bool exports(const FlPlan *plan)
+{
+    return plan->options.ebsynth && !plan->options.merge;
+}
+
+/* Gives a painter's picture to whatever inspects it. */
+static bool inspect_picture(const Pipeline *pipeline, int p, int frame, GError **error)
+{
+    const FlPlan *plan = pipeline->plan;
+    const FlPainter *painter = &pipeline->painters.painter[p];
+    const bool is_new = frame % painter->plan->settings.hold == 0;
+    return fl_report_guides(pipeline->report, p, &painter->result, frame,
+                            fl_painter_guides(painter), error) &&
+           (!plan->options.dump || !is_new ||
+            dump_picture(plan, painter, fl_drawing_number(plan->drawing, frame), error)) &&
+           (!exports(plan) || !is_new || export_picture(plan, painter, frame, error));
+}
+
+static bool paint_one(void *data, int p, int frame, GError **error)
 {
     Pipeline *pipeline = data;
     const FlPlan *plan = pipeline->plan;
     FlPainter *painter = &pipeline->painters.painter[p];
-    const char *dump = plan->options.dump;
-    const bool exports = plan->options.ebsynth && !plan->options.merge;
-    painter->wants_guides = dump || exports || pipeline->report;
-    painter->wants_view = dump || exports || fl_report_wants_view(pipeline->report, frame);
-    if (!fl_painter_frame(painter, frame, guides, error) ||
-        !fl_report_guides(pipeline->report, p, &painter->result, frame, guides, error))
-        return false;
-    if ((dump && !dump_frame(plan, painter, frame, guides, error)) ||
-        (exports && !export_frame(plan, painter, frame, guides, error)))
-        return false;
-    if (painter->wants_guides || !fl_plan_is_large(plan))
-        return true;
+    const bool taken_apart = plan->options.dump || exports(plan);
+    painter->wants_guides = taken_apart || pipeline->report;
+    painter->wants_view = taken_apart || fl_report_wants_view(pipeline->report, frame);
+    const bool painted = fl_painter_frame(painter, frame, error) &&
+                         (!painter->wants_guides || inspect_picture(pipeline, p, frame, error));
+    fl_painter_drop_guides(painter);
+    if (!painted || painter->wants_guides || !fl_plan_is_large(plan))
+        return painted;
     fl_memory_trim();
     return fl_painted_pack(&painter->result, error);
 }
 
-static bool lead_in_one(void *data, int p, int k, FlGuides *guides, GError **error)
+static bool lead_in_one(void *data, int p, int k, GError **error)
 {
     Pipeline *pipeline = data;
-    return fl_painter_lead_in(&pipeline->painters.painter[p], k, guides, error);
+    FlPainter *painter = &pipeline->painters.painter[p];
+    const bool painted = fl_painter_lead_in(painter, k, error);
+    fl_painter_drop_guides(painter);
+    return painted;
 }
 
 /* If the film is a loop, paints its last pictures before its first ones. */
@@ -330,13 +343,11 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
 static bool make_painters(Pipeline *pipeline, GError **error)
 {
     const FlPlan *plan = pipeline->plan;
-    if (plan->cache && !fl_painters_recall(&pipeline->painters, plan, plan->cache,
-                                           pipeline->resume.state->print, error))
-        return false;
-    if ((fl_painters_need_masks(&pipeline->painters, plan) &&
-         !fl_plan_rasterise(pipeline->plan, error)) ||
-        !report_progress(pipeline, "guides", 0, 0, error) ||
-        !fl_painters_init(&pipeline->painters, plan, error))
+    FlPainters *painters = &pipeline->painters;
+    const FlCheckpoint *state = pipeline->resume.state; // NULL in a dry run
+    if (!fl_painters_recall(painters, plan, state ? state->print : NULL, error) ||
+        (fl_painters_need_masks(painters) && !fl_plan_rasterise(pipeline->plan, error)) ||
+        !report_progress(pipeline, "guides", 0, 0, error) || !fl_painters_init(painters, error))
         return false;
     pipeline->painted = g_new0(const FlPaintedRegion *, MAX(plan->n_painted, 1));
     for (int p = 0; p < plan->n_painted; p++)
@@ -452,7 +463,7 @@ static bool run(Pipeline *pipeline, GError **error)
         return false;
     fl_resume_finish(&pipeline->resume);
     fl_summary_of_render(pipeline->plan, &pipeline->stats);
-    fl_summary_of_reuse(pipeline->plan, pipeline->painters.reuse);
+    fl_summary_of_reuse(&pipeline->painters);
     fl_painters_finish(&pipeline->painters);
     fl_finished_note(pipeline->plan);
     return true;

@@ -40,18 +40,27 @@ static void recall(FlReuse *reuse, bool frames_alone)
     reuse->known = g_steal_pointer(&known);
 }
 
-bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlPlan *plan, int p,
-                   GHashTable *styles, const FlFingerprint *whole, GError **error)
+bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlShapes *shapes,
+                   const FlRegionPlan *region, GHashTable *styles, GError **error)
 {
-    const FlRenderOptions *o = &plan->options;
-    *reuse = (FlReuse){.cache = cache, .takes = !fl_report_measures(o) && !o->dump && !o->ebsynth};
+    *reuse = (FlReuse){.cache = cache, .takes = true};
     reuse->made = g_array_new(FALSE, FALSE, sizeof(FlDigest));
     if (!cache)
         return true;
-    reuse->facts = fl_fingerprint_of_method(plan, p, styles, error);
+    reuse->facts = fl_fingerprint_of_method(shapes, region, styles, error);
     if (!reuse->facts)
         return false;
     reuse->last = fl_fingerprint_digest(reuse->facts);
+    return true;
+}
+
+bool fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p, const FlFingerprint *whole,
+                     GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    reuse->takes = !fl_report_measures(o) && !o->dump && !o->ebsynth;
+    if (!reuse->cache)
+        return true;
     reuse->slot = slot_of(plan, p);
     if (!fl_fingerprint_add_film(reuse->facts, plan, p, whole, error))
         return false;

@@ -30,10 +30,14 @@ typedef struct FlReuse {
     int n_taken, n_painted;
 } FlReuse;
 
-/** Looks what the cache has of plan->painted[p]. whole: fl_fingerprint_new() of the plan. */
-bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlPlan *plan, int p,
-                   GHashTable *styles, const FlFingerprint *whole, GError **error);
+/** Begins with the method by which a region of `shapes` is painted; cache NULL: keeps nothing. */
+bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlShapes *shapes,
+                   const FlRegionPlan *region, GHashTable *styles, GError **error);
 void fl_reuse_clear(FlReuse *reuse);
+
+/** Looks up the pictures of plan->painted[p]. whole: fl_fingerprint_new() of the plan. */
+bool fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p, const FlFingerprint *whole,
+                     GError **error);
 
 /** Begins the chain of a region whose pictures are not known and have this place in the frame. */
 void fl_reuse_begin(FlReuse *reuse, FlRect rect);

@@ -58,50 +58,51 @@ void fl_summary_of_nothing(const FlPlan *plan)
 
 /* Why some of each region was painted although the cache is not new; to be freed, as an array of
  * strings, of which those that have no reason are "". */
-static char **reasons_of(const FlPlan *plan, const FlReuse *reuse)
+static char **reasons_of(const FlPainters *painters)
 {
-    char **reasons = g_new0(char *, (gsize)plan->n_painted + 1);
-    for (int p = 0; p < plan->n_painted; p++) {
-        char *reason = reuse[p].n_painted > 0 ? fl_reuse_reason(&reuse[p]) : NULL;
+    char **reasons = g_new0(char *, (gsize)painters->n + 1);
+    for (int p = 0; p < painters->n; p++) {
+        const FlReuse *reuse = &painters->painter[p].reuse;
+        char *reason = reuse->n_painted > 0 ? fl_reuse_reason(reuse) : NULL;
         reasons[p] = reason ? reason : g_strdup("");
     }
     return reasons;
 }
 
 /* A line for all regions that have the reason of region p, unless an earlier one has it. */
-static void tell_reason(const FlPlan *plan, int p, const FlReuse *reuse, char **reasons)
+static void tell_reason(const FlPainters *painters, int p, char **reasons)
 {
     int n = 0, painted = 0, all = 0;
-    for (int q = 0; q < plan->n_painted; q++) {
+    for (int q = 0; q < painters->n; q++) {
+        const FlReuse *reuse = &painters->painter[q].reuse;
         if (strcmp(reasons[q], reasons[p]) != 0)
             continue;
         if (q < p)
             return;
-        n++, painted += reuse[q].n_painted, all += reuse[q].n_painted + reuse[q].n_taken;
+        n++, painted += reuse->n_painted, all += reuse->n_painted + reuse->n_taken;
     }
-    g_autofree char *who = n == 1 ? g_strdup_printf("region %s", plan->painted[p].name)
+    g_autofree char *who = n == 1 ? g_strdup_printf("region %s", painters->plan->painted[p].name)
                                   : g_strdup_printf("%d regions", n);
     g_autofree char *line =
         g_strdup_printf("%s: painted %d of %d pictures, since %s", who, painted, all, reasons[p]);
-    send_note(plan, line);
+    send_note(painters->plan, line);
 }
 
-void fl_summary_of_reuse(const FlPlan *plan, const FlReuse *reuse)
+void fl_summary_of_reuse(const FlPainters *painters)
 {
     int taken = 0, painted = 0;
-    if (!reuse)
-        return;
-    g_auto(GStrv) reasons = reasons_of(plan, reuse);
-    for (int p = 0; p < plan->n_painted; p++) {
-        taken += reuse[p].n_taken, painted += reuse[p].n_painted;
+    g_auto(GStrv) reasons = reasons_of(painters);
+    for (int p = 0; p < painters->n; p++) {
+        const FlReuse *reuse = &painters->painter[p].reuse;
+        taken += reuse->n_taken, painted += reuse->n_painted;
         if (reasons[p][0])
-            tell_reason(plan, p, reuse, reasons);
+            tell_reason(painters, p, reasons);
     }
     if (taken == 0)
         return;
     g_autofree char *line =
         g_strdup_printf("paint of regions: %d pictures from the cache, %d painted", taken, painted);
-    send_note(plan, line);
+    send_note(painters->plan, line);
 }
 
 /* An estimate of the time; held frames take none. */

@@ -3,8 +3,7 @@
 #define FLUIDY_RENDER_SUMMARY_H
 
 #include "inspect/stats.h"
-#include "job/plan.h"
-#include "render/reuse.h"
+#include "render/painters.h"
 
 /** Notes what was painted, the time by stage, and the report's path. */
 void fl_summary_of_render(const FlPlan *plan, const FlStats *stats);
@@ -12,9 +11,8 @@ void fl_summary_of_render(const FlPlan *plan, const FlStats *stats);
 /** Notes that all is as the plan would make it: plan->finished. */
 void fl_summary_of_nothing(const FlPlan *plan);
 
-/** Notes how much paint was taken from the cache, and why the rest was not. reuse: of each painted
- * region, NULL: none. */
-void fl_summary_of_reuse(const FlPlan *plan, const FlReuse *reuse);
+/** Notes how much paint was taken from the cache, and why the rest was not. */
+void fl_summary_of_reuse(const FlPainters *painters);
 
 /** Notes what would be painted, and an estimate of the time at frame_s seconds a frame. */
 void fl_summary_of_dry_run(const FlPlan *plan, double frame_s);

@@ -1,0 +1,43 @@
+/* One region: its shapes through time, and how they are painted. */
+#ifndef FLUIDY_JOB_REGION_PLAN_H
+#define FLUIDY_JOB_REGION_PLAN_H
+
+#include "base/rect.h"
+#include "drawing/drawing.h"
+#include "job/engine.h"
+#include "job/mask_store.h"
+#include "job/surround.h"
+
+/** How one region is painted. */
+typedef struct FlRegionPlan {
+    int region;       // index into the drawing's regions
+    const char *name; // borrowed
+    double area_px;   // mean, to balance the work
+    FlRegionSettings settings;
+    const FlStyleInstance *style; // borrowed
+    const FlStyleInstance *tile;  // borrowed: its tile moves the paint; NULL: none does
+    const FlEngine *engine;
+    const char *paint_files; // borrowed: pattern of files of its paint; NULL: it is painted
+    FlRect place;            // of the paint in those files; width 0: they do not say it
+    const char *flow_files;  // borrowed: pattern of flow files; NULL: flow from the masks
+    bool keeps_flow;         // for a dump
+    bool loops;              // the film's end leads into its beginning
+} FlRegionPlan;
+
+/** The shapes that are painted: a film's, or those that the library's caller gives. Borrowed. */
+typedef struct FlShapes {
+    int n_frames, width, height; // of the drawing as it is painted, px
+    uint64_t seed;
+    const FlMaskStore *masks;
+    const FlSurround *surround; // NULL: nothing else is in the picture
+    const FlDrawing *drawing;   // NULL: masks alone, which have no motion of their own
+    /**
+     * The flow into a frame from the one before, 2 * width * height floats, interleaved; values
+     * that are not known become `unknown`. Any thread. NULL: flow comes from the masks.
+     */
+    bool (*flow)(void *data, const FlRegionPlan *region, int frame, float unknown, float *flow,
+                 GError **error);
+    void *data;
+} FlShapes;
+
+#endif
