@@ -88,12 +88,11 @@ static void coherent_field(FlNnf *nnf)
                                   .y_16 = (uint16_t)(16 * (p / SIDE + CENTRE))};
 }
 
-/* The field after some frames of the same motion; what leaves the frame is known no more. */
-static void carried_on(const FlGuides *guides, float carry, int frames, FlNnf *nnf)
+/* Some frames of the same motion; what leaves the frame is known no more. */
+static void carry_on(const FlGuides *guides, float carry, int frames, FlNnf *nnf)
 {
     g_autoptr(GError) error = NULL;
     float speed[SIDE * SIDE];
-    coherent_field(nnf);
     for (int f = 1; f <= frames; f++) {
         FlNnf next;
         const FlCarry how = {guides, carry, true, f};
@@ -102,6 +101,12 @@ static void carried_on(const FlGuides *guides, float carry, int frames, FlNnf *n
         fl_nnf_clear(nnf);
         *nnf = next;
     }
+}
+
+static void carried_on(const FlGuides *guides, float carry, int frames, FlNnf *nnf)
+{
+    coherent_field(nnf);
+    carry_on(guides, carry, frames, nnf);
 }
 
 #define assert_near(value, expected, tolerance)                                                    \
@@ -144,6 +149,34 @@ static void a_slow_spin_carries_and_turns_as_far_in_the_end(void)
             g_assert_cmpint(ABS(m.theta - 64), <=, 1); // 1.4 degrees
             assert_near(place[0], y, 1);
             assert_near(place[1], -x, 1);
+        }
+}
+
+static void half_a_pixel(double x, double y, double u[2])
+{
+    u[0] = 0.48, u[1] = -0.49;
+}
+
+/* Squares of other frames of the exemplar go as far as what they show. */
+static void pieces_travel_as_fast_as_what_they_show(void)
+{
+    enum { SQUARE = 8, FRAMES = 30 };
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlNnf) nnf = {0};
+    moving_guides(half_a_pixel, 0, &guides);
+    coherent_field(&nnf);
+    for (int p = 0; p < SIDE * SIDE; p++)
+        nnf.match[p].frame = (int16_t)((p % SIDE / SQUARE + p / SIDE / SQUARE) % 2);
+    carry_on(&guides, 1, FRAMES, &nnf);
+    for (int y = 0; y < SIDE - 16; y++)
+        for (int x = 16; x < SIDE; x++) {
+            const double from_x = x - 0.48 * FRAMES, from_y = y + 0.49 * FRAMES;
+            const double in_x = from_x + 0.5 - SQUARE * floor((from_x + 0.5) / SQUARE);
+            const double in_y = from_y + 0.5 - SQUARE * floor((from_y + 0.5) / SQUARE);
+            const int square =
+                (int)floor((from_x + 0.5) / SQUARE) + (int)floor((from_y + 0.5) / SQUARE);
+            if (in_x > 1.5 && in_x < SQUARE - 1.5 && in_y > 1.5 && in_y < SQUARE - 1.5)
+                g_assert_cmpint(nnf.match[y * SIDE + x].frame, ==, square % 2);
         }
 }
 
@@ -250,6 +283,7 @@ int main(int argc, char **argv)
 #define TEST(name) g_test_add_func("/carry/" #name, name)
     TEST(slow_motion_carries_as_far_in_the_end);
     TEST(a_slow_spin_carries_and_turns_as_far_in_the_end);
+    TEST(pieces_travel_as_fast_as_what_they_show);
     TEST(what_goes_across_is_carried_and_what_goes_along_is_left);
     TEST(what_fills_new_room_spreads);
     TEST(what_is_uncovered_has_no_match);

@@ -4,6 +4,7 @@
 #include "synth/rotation.h"
 #include <assert.h>
 #include <math.h>
+#include <stdlib.h>
 
 /* A vector or a place in FL_MOTION_ONE a px. */
 typedef struct Vector {
@@ -105,6 +106,56 @@ static float length_of_flow(const FlGuides *guides, size_t pixel)
     return sqrtf(u * u + v * v);
 }
 
+/* Where the paint of a match is from its pixel, in FL_MOTION_ONE a px. */
+static Vector off_of(FlMatch m)
+{
+    const int x = ((m.off & 15) ^ 8) - 8, y = ((m.off >> 4) ^ 8) - 8;
+    return (Vector){x * (FL_MOTION_ONE / FL_OFF_ONE), y * (FL_MOTION_ONE / FL_OFF_ONE)};
+}
+
+static uint8_t off_from(const Plan *plan, Vector off)
+{
+    const int x = (off.x * FL_OFF_ONE + (plan->x_off >> (ROUND_BITS - 14))) >> 14;
+    const int y = (off.y * FL_OFF_ONE + (plan->y_off >> (ROUND_BITS - 14))) >> 14;
+    return (uint8_t)((CLAMP(x, -8, 7) & 15) | (CLAMP(y, -8, 7) & 15) << 4);
+}
+
+static int32_t longer_side(Vector v)
+{
+    return MAX(abs(v.x), abs(v.y));
+}
+
+/* The match whose paint is nearest to where a pixel comes from; `back` goes there from the pixel,
+ * which is one of the field before. Were it the match of the pixel that is nearest, the borders
+ * between pieces of the exemplar would move by whole pixels, and not with what they enclose. */
+static FlMatch nearest_paint(const Plan *plan, const FlNnf *before, int x, int y, Vector back,
+                             int16_t turn)
+{
+    static const int8_t around[9][2] = {{0, 0},   {0, -1}, {-1, 0}, {1, 0}, {0, 1},
+                                        {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
+    Vector rest, best_rest = {0}, best_off = {0};
+    FlMatch best = {.frame = FL_NO_MATCH};
+    int64_t least = (int64_t)FL_MOTION_ONE * FL_MOTION_ONE;
+    bool beside = false; // its paint covers the pixel
+    x += nearest(back.x, &rest.x), y += nearest(back.y, &rest.y);
+    for (int i = 0; i < 9 && !beside; i++) {
+        const FlMatch m = match_at(before, x + around[i][0], y + around[i][1]);
+        const Vector from = {rest.x - around[i][0] * FL_MOTION_ONE,
+                             rest.y - around[i][1] * FL_MOTION_ONE};
+        const Vector paint = off_of(m), off = {paint.x - from.x, paint.y - from.y};
+        const int64_t apart = (int64_t)off.x * off.x + (int64_t)off.y * off.y;
+        if (m.frame == FL_NO_MATCH || apart >= least)
+            continue;
+        least = apart, best = m, best_rest = from, best_off = off;
+        beside = longer_side(off) <= FL_MOTION_ONE / 2;
+    }
+    if (best.frame == FL_NO_MATCH)
+        return best;
+    best = carried(plan, best, best_rest, turn);
+    best.off = off_from(plan, best_off);
+    return best;
+}
+
 /* x and y are of the frame, dx and dy from there to the field before. */
 static FlMatch arriving(const Plan *plan, const FlNnf *before, int x, int y, int dx, int dy,
                         float *speed)
@@ -117,11 +168,8 @@ static FlMatch arriving(const Plan *plan, const FlNnf *before, int x, int y, int
         return match_at(before, x + dx, y + dy);
     if (!inside) // what was left behind must not vote beside what has moved on
         return (FlMatch){.frame = FL_NO_MATCH};
-    Vector rest;
     const Vector k = split(plan, pixel, left_of(plan, x, y), speed);
-    const int column = x + dx + nearest(-k.x, &rest.x), row = y + dy + nearest(-k.y, &rest.y);
-    const FlMatch m = match_at(before, column, row);
-    return m.frame == FL_NO_MATCH ? m : carried(plan, m, rest, guides->turn[pixel]);
+    return nearest_paint(plan, before, x + dx, y + dy, (Vector){-k.x, -k.y}, guides->turn[pixel]);
 }
 
 void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *input, FlRect rect,

@@ -16,8 +16,10 @@ typedef struct FlCarry {
  * The matches of `before`, which lies at `from` in its frame, for the pixels of rect. The motion
  * falls into two parts: along the direction guide, which the exemplar's own time can show, and
  * across it, which it cannot. The latter is carried whole, the former by the share `carry`, less
- * where a shape grows, for paint that gets more room must spread; a match moves by what its pixel
- * was off the middle of the one it was taken from, and turns.
+ * where a shape grows, for paint that gets more room must spread. A pixel takes the match whose
+ * paint comes nearest to it: FlMatch.off says where that is to a fraction of a pixel, so that
+ * pieces of the exemplar travel as fast as what they show. The match moves by what its pixel was
+ * off the one it was taken from, and turns.
  *
  * speed: px that are left for the exemplar's time to show, one per pixel of rect. Where no motion
  * is known nothing is carried, and the speed is that of the flow. A pixel without a match in the

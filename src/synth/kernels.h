@@ -195,12 +195,14 @@ static inline int fl_votes_doubled(uint32_t votes, uint32_t lines_twice, uint32_
            __builtin_popcount(votes & lines_twice & places_twice);
 }
 
+#define FL_OFF_ONE 8
+
 /** NNF(q): the centre of the source patch in 1/16 px of its level, its frame, its rotation. */
 typedef struct FlMatch {
     uint16_t x_16, y_16;
     int16_t frame; // FL_NO_MATCH: none
     uint8_t theta; // target offset o is source offset R(-theta) o
-    uint8_t unused;
+    uint8_t off;   // where its paint is from the pixel: x + 16 y, each -8 … 7 of FL_OFF_ONE a px
 } FlMatch;
 
 #define FL_NO_MATCH -1

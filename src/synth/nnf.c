@@ -138,7 +138,7 @@ static FlMatch scaled_down(FlMatch m, int x, int y, int l, const FlExemplarLevel
     fl_unrotate(m.theta, 2 * (x & half) - half, 2 * (y & half) - half, &dx, &dy);
     // full = 2^l coarse + (2^l - 1)/2 + R(-theta) offset, all in 1/16
     const int cx = (m.x_16 - 8 * half - dx / 2) >> l, cy = (m.y_16 - 8 * half - dy / 2) >> l;
-    m.x_16 = clamp_16(cx, level->width), m.y_16 = clamp_16(cy, level->height);
+    m.x_16 = clamp_16(cx, level->width), m.y_16 = clamp_16(cy, level->height), m.off = 0;
     return m;
 }
 

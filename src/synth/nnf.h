@@ -34,7 +34,7 @@ static inline FlMatch fl_match_moved(FlMatch m, int dx, int dy, const FlExemplar
     const int x = m.x_16 + sx, y = m.y_16 + sy;
     if (x < 0 || y < 0 || x > 16 * (level->width - 1) || y > 16 * (level->height - 1))
         return (FlMatch){.frame = FL_NO_MATCH};
-    m.x_16 = (uint16_t)x, m.y_16 = (uint16_t)y;
+    m.x_16 = (uint16_t)x, m.y_16 = (uint16_t)y, m.off = 0;
     return m;
 }
 

@@ -29,7 +29,8 @@ static FlMatch minus(FlMatch a, FlMatch b)
     return (FlMatch){.x_16 = (uint16_t)(a.x_16 - b.x_16),
                      .y_16 = (uint16_t)(a.y_16 - b.y_16),
                      .frame = (int16_t)(a.frame - b.frame),
-                     .theta = (uint8_t)(a.theta - b.theta)};
+                     .theta = (uint8_t)(a.theta - b.theta),
+                     .off = (uint8_t)(a.off - b.off)};
 }
 
 static FlMatch plus(FlMatch a, FlMatch b)
@@ -37,7 +38,8 @@ static FlMatch plus(FlMatch a, FlMatch b)
     return (FlMatch){.x_16 = (uint16_t)(a.x_16 + b.x_16),
                      .y_16 = (uint16_t)(a.y_16 + b.y_16),
                      .frame = (int16_t)(a.frame + b.frame),
-                     .theta = (uint8_t)(a.theta + b.theta)};
+                     .theta = (uint8_t)(a.theta + b.theta),
+                     .off = (uint8_t)(a.off + b.off)};
 }
 
 /* Each match of a row but the first minus the one before; to be freed with free(). */
