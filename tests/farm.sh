@@ -80,7 +80,7 @@ render --plan slurm -o 'farmed/s_%04d.png' >plan.sh 2>err && bash -n plan.sh
 result $? '--plan slurm prints a script'
 [ ! -e farmed ] && [ ! -e fluidy ]
 result $? 'and writes nothing'
-all=$(sed -n '/^all=($/,/^)$/p' plan.sh | sed '1d;$d')
+all=$(sed -n '/^all=($/,/^)$/p' plan.sh | sed '1d;/^)$/,$d')
 [ "$(wc -l <<<"$all")" = 3 ] && [ "$(tail -1 <<<"$all" | tr ',' '\n' | wc -l)" = 5 ] &&
     [ "$(tr ',' '\n' <<<"$all" | sort -u | wc -l)" = 7 ] && [ "$(head -1 <<<"$all")" = blue-2255aa ]
 result $? 'small regions share a task, after the large ones, and one that is never seen has none'
@@ -119,6 +119,7 @@ assert merge["dependencies"] == [{"dependsOn": "Paint"}]
 assert len(paint["parameterSpace"]["taskParameterDefinitions"][0]["range"]) == 3
 args = paint["script"]["actions"]["onRun"]["args"]
 assert args[args.index("--region") + 1] == "{{Task.Param.Regions}}"
+assert [(each["name"], each["type"]) for each in job["parameterDefinitions"]] == [("Folder", "PATH")]
 assert "--merge" in merge["script"]["actions"]["onRun"]["args"]'
     result $? '--plan openjd is a template of two steps'
 else

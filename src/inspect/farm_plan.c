@@ -180,108 +180,36 @@ static GPtrArray *words_of(const Farm *farm, Step step, const char *variable)
     return words;
 }
 
-/* ---- Slurm ---------------------------------------------------------------------------------- */
-
-static const struct {
-    const char *variable, *label, *end;
-} slurm_steps[] = {[STEP_PAINT] = {"tasks", "", "TASKS"},
-                   [STEP_MERGE] = {"merge", "merge ", "MERGE"},
-                   [STEP_FILM] = {"film", "", "FILM"}};
-
-/* Sets $what, in which the commands of a step differ. */
-static void add_slurm_variable(GString *text, const Farm *farm, Step step)
-{
-    const int n = n_commands(farm, step);
-    if (step == STEP_MERGE && n > 1) {
-        g_string_append_printf(text, "what=$((SLURM_ARRAY_TASK_ID + 1))/%d\n", n);
-    } else if (step == STEP_PAINT) {
-        g_string_append(text, "all=(\n");
-        for (int k = 0; k < n; k++) {
-            g_autofree char *word = word_of(farm, step, k);
-            g_string_append_printf(text, "%s\n", word);
-        }
-        g_string_append(text, ")\nwhat=${all[$SLURM_ARRAY_TASK_ID]}\n");
-    } else {
-        g_string_append_printf(text, "what=%s\n", step == STEP_FILM ? "film" : "1/1");
-    }
-}
-
-static void add_shell_words(GString *text, const Farm *farm, Step step)
-{
-    g_autoptr(GPtrArray) words = words_of(farm, step, "");
-    const bool varies = step != STEP_MERGE || farm->n_parts > 1;
-    for (guint k = 0; k < words->len; k++) {
-        g_autofree char *quoted =
-            varies && k == VARIABLE ? g_strdup("\"$what\"") : g_shell_quote(words->pdata[k]);
-        g_string_append_printf(text, "%s%s", k > 0 ? " " : "", quoted);
-    }
-}
-
-/**
- * Log lines say shot and region; a task that is told to stop ends with 75 and is queued again,
- * unless it is no more "RUNNING": who cancelled it does not want it back, and what Slurm requeues
- * waits already.
- */
-static void add_slurm_body(GString *text, const Farm *farm, Step step)
-{
-    add_slurm_variable(text, farm, step);
-    g_string_append_printf(text, "exec > >(sed -u \"s|^|$shot %s$what: |\") 2>&1\n",
-                           slurm_steps[step].label);
-    add_shell_words(text, farm, step);
-    g_string_append(text, " --progress plain &\n"
-                          "job=$! stopped=\n"
-                          "trap 'stopped=yes; kill -TERM $job' TERM INT\n"
-                          "wait $job; status=$?\n"
-                          "[ -z \"$stopped\" ] || { wait $job; status=$?; }\n"
-                          "if [ $status = 75 ]; then\n"
-                          "    case $(squeue -h -j \"$SLURM_JOB_ID\" -o %T) in\n"
-                          "    RUNNING | '') scontrol requeue \"$SLURM_JOB_ID\" ;;\n"
-                          "    esac\n"
-                          "fi\n"
-                          "exit $status\n");
-}
-
-/* Submits a step, after the one before it. */
-static void add_slurm_step(GString *text, const Farm *farm, Step step, const char *shot)
-{
-    const char *name = slurm_steps[step].variable, *end = slurm_steps[step].end;
-    const int n = n_commands(farm, step);
-    g_string_append_printf(text,
-                           "%s=$(sbatch --parsable --requeue --open-mode=append "
-                           "--signal=B:TERM@60 --job-name=%s",
-                           name, shot);
-    if (step == STEP_PAINT || n > 1)
-        g_string_append_printf(text, " --array=0-%d", n - 1);
-    if (step > STEP_PAINT)
-        g_string_append_printf(text, " --dependency=afterok:\"${%s%%%%;*}\"",
-                               slurm_steps[step - 1].variable);
-    g_string_append_printf(text, " \"$@\" <<'%s'\n#!/bin/bash\nshot=%s\n", end, shot);
-    add_slurm_body(text, farm, step);
-    g_string_append_printf(text, "%s\n)\n", end);
-}
-
-static char *print_slurm(const Farm *farm)
-{
-    const char *name = fl_drawing_name(farm->plan->drawing);
-    g_autofree char *shot = g_shell_quote(name), *folder = g_shell_quote(farm->folder);
-    GString *text = g_string_new("#!/bin/bash\n");
-    g_string_append_printf(text,
-                           "# %s: %d regions in %u tasks, largest first, and then a merge of %d "
-                           "part%s%s.\n"
-                           "# Run it with bash; its arguments are handed on to sbatch.\n"
-                           "set -eu\ncd %s\n",
-                           name, count_painted(farm->plan), farm->tasks->len, farm->n_parts,
-                           farm->n_parts > 1 ? "s" : "", farm->film ? ", and the film" : "",
-                           folder);
-    Step last = STEP_PAINT;
-    for (Step step = STEP_PAINT; step <= STEP_FILM; step++)
-        if (n_commands(farm, step) > 0)
-            add_slurm_step(text, farm, step, shot), last = step;
-    g_string_append_printf(text, "echo \"$%s\"\n", slurm_steps[last].variable);
-    return g_string_free(text, FALSE);
-}
-
 /* ---- JSON ----------------------------------------------------------------------------------- */
+
+static bool is_text(const char *word)
+{
+    return g_utf8_validate(word, -1, NULL);
+}
+
+static bool refuse_word(const char *word, const char *dialect, GError **error)
+{
+    g_autofree char *shown = g_strescape(word, NULL);
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "“%s”: %s cannot hold this name; rename it, or plan for another scheduler", shown,
+                dialect);
+    return false;
+}
+
+/* Names that a dialect cannot hold as they are would be other names in it. */
+static bool words_fit(const Farm *farm, const char *dialect, bool (*fits)(const char *),
+                      GError **error)
+{
+    if (!is_text(farm->folder))
+        return refuse_word(farm->folder, dialect, error);
+    for (Step step = STEP_PAINT; step <= STEP_FILM; step++) {
+        g_autoptr(GPtrArray) words = words_of(farm, step, "");
+        for (guint k = 0; k < words->len; k++)
+            if (!fits(words->pdata[k]))
+                return refuse_word(words->pdata[k], dialect, error);
+    }
+    return true;
+}
 
 static void add_json_command(GString *text, const Farm *farm, Step step, const char *variable)
 {
@@ -307,8 +235,10 @@ static void add_json_step(GString *text, const Farm *farm, Step step)
     }
 }
 
-static char *print_json(const Farm *farm)
+static char *print_json(const Farm *farm, GError **error)
 {
+    if (!words_fit(farm, "JSON", is_text, error))
+        return NULL;
     GString *text = g_string_new("{");
     fl_json_text(text, "shot", fl_drawing_name(farm->plan->drawing));
     fl_json_text(text, "folder", farm->folder);
@@ -324,6 +254,131 @@ static char *print_json(const Farm *farm)
     return g_string_free(text, FALSE);
 }
 
+/* ---- Slurm ---------------------------------------------------------------------------------- */
+
+/**
+ * Adds a word of bash that stands for exactly these bytes. All but harmless ASCII is an octal
+ * escape, so that no name ends a line, a here-document or a quotation.
+ */
+static void add_bash_word(GString *text, const char *word)
+{
+    static const char *const harmless = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                        "0123456789_./,:@%+-";
+    if (*word && word[strspn(word, harmless)] == '\0') {
+        g_string_append(text, word);
+        return;
+    }
+    g_string_append(text, "$'");
+    for (; *word; word++)
+        if (strchr(harmless, *word) || strchr(" ={}()[]", *word))
+            g_string_append_c(text, *word);
+        else
+            g_string_append_printf(text, "\\%03o", (unsigned char)*word);
+    g_string_append_c(text, '\'');
+}
+
+static const struct {
+    const char *variable, *label, *end;
+} slurm_steps[] = {[STEP_PAINT] = {"tasks", "", "TASKS"},
+                   [STEP_MERGE] = {"merge", "merge ", "MERGE"},
+                   [STEP_FILM] = {"film", "", "FILM"}};
+
+/* Sets $what, in which the commands of a step differ. */
+static void add_slurm_variable(GString *text, const Farm *farm, Step step)
+{
+    g_string_append(text, "all=(\n");
+    for (int k = 0; k < n_commands(farm, step); k++) {
+        g_autofree char *word = word_of(farm, step, k);
+        add_bash_word(text, word);
+        g_string_append_c(text, '\n');
+    }
+    g_string_append(text, ")\nwhat=${all[${SLURM_ARRAY_TASK_ID:-0}]}\n");
+}
+
+static void add_slurm_words(GString *text, const Farm *farm, Step step)
+{
+    g_autoptr(GPtrArray) words = words_of(farm, step, "");
+    const bool varies = step != STEP_MERGE || farm->n_parts > 1;
+    for (guint k = 0; k < words->len; k++) {
+        g_string_append(text, k > 0 ? " " : "");
+        if (varies && k == VARIABLE)
+            g_string_append(text, "\"$what\"");
+        else
+            add_bash_word(text, words->pdata[k]);
+    }
+}
+
+/**
+ * The script of a step. Its log lines begin with shot and regions. A task that is told to stop ends
+ * with 75 and is queued again while Slurm calls it "RUNNING": a cancelled task is not, and one that
+ * Slurm requeues by itself waits already.
+ */
+static void add_slurm_body(GString *text, const Farm *farm, Step step)
+{
+    g_string_append(text, "shot=");
+    add_bash_word(text, fl_drawing_name(farm->plan->drawing));
+    g_string_append_c(text, '\n');
+    add_slurm_variable(text, farm, step);
+    g_string_append_printf(text,
+                           "label=\"$(printf %%q \"$shot\") %s$what\"\n"
+                           "exec > >(while IFS= read -r line || [ -n \"$line\" ]; do\n"
+                           "    printf '%%s: %%s\\n' \"$label\" \"$line\"\n"
+                           "done) 2>&1\n",
+                           slurm_steps[step].label);
+    add_slurm_words(text, farm, step);
+    g_string_append(text, " --progress plain &\n"
+                          "job=$! stopped=\n"
+                          "trap 'stopped=yes; kill -TERM $job' TERM INT\n"
+                          "wait $job; status=$?\n"
+                          "[ -z \"$stopped\" ] || { wait $job; status=$?; }\n"
+                          "if [ $status = 75 ]; then\n"
+                          "    case $(squeue -h -j \"$SLURM_JOB_ID\" -o %T) in\n"
+                          "    RUNNING | '') scontrol requeue \"$SLURM_JOB_ID\" ;;\n"
+                          "    esac\n"
+                          "fi\n"
+                          "exit $status\n");
+}
+
+/* Submits a step, after the one before it. */
+static void add_slurm_step(GString *text, const Farm *farm, Step step)
+{
+    const int n = n_commands(farm, step);
+    g_string_append_printf(text,
+                           "%s=$(sbatch --parsable --requeue --open-mode=append "
+                           "--signal=B:TERM@60 --job-name=",
+                           slurm_steps[step].variable);
+    add_bash_word(text, fl_drawing_name(farm->plan->drawing));
+    if (step == STEP_PAINT || n > 1)
+        g_string_append_printf(text, " --array=0-%d", n - 1);
+    if (step > STEP_PAINT)
+        g_string_append_printf(text, " --dependency=afterok:\"${%s%%%%;*}\"",
+                               slurm_steps[step - 1].variable);
+    g_string_append_printf(text, " \"$@\" <<'%s'\n#!/bin/bash\n", slurm_steps[step].end);
+    add_slurm_body(text, farm, step);
+    g_string_append_printf(text, "%s\n)\n", slurm_steps[step].end);
+}
+
+static char *print_slurm(const Farm *farm, GError **error)
+{
+    (void)error; // bash holds every name
+    GString *text = g_string_new("#!/bin/bash\n");
+    g_string_append_printf(text,
+                           "# %d regions in %u tasks, largest first, and then a merge of %d "
+                           "part%s%s.\n"
+                           "# Run it with bash; its arguments are handed on to sbatch.\n"
+                           "set -eu\ncd ",
+                           count_painted(farm->plan), farm->tasks->len, farm->n_parts,
+                           farm->n_parts > 1 ? "s" : "", farm->film ? ", and the film" : "");
+    add_bash_word(text, farm->folder);
+    g_string_append_c(text, '\n');
+    Step last = STEP_PAINT;
+    for (Step step = STEP_PAINT; step <= STEP_FILM; step++)
+        if (n_commands(farm, step) > 0)
+            add_slurm_step(text, farm, step), last = step;
+    g_string_append_printf(text, "echo \"$%s\"\n", slurm_steps[last].variable);
+    return g_string_free(text, FALSE);
+}
+
 /* ---- Open Job Description ------------------------------------------------------------------- */
 
 static const struct {
@@ -332,15 +387,28 @@ static const struct {
                     [STEP_MERGE] = {"Merge", "Part"},
                     [STEP_FILM] = {"Film", "Part"}};
 
+/* The schema takes double braces as references, allows no control characters in an argument, and
+ * knows no escapes. */
+static bool is_argument(const char *word)
+{
+    if (!is_text(word) || strstr(word, "{{") || strstr(word, "}}"))
+        return false;
+    for (; *word; word = g_utf8_next_char(word))
+        if (g_unichar_iscntrl(g_utf8_get_char(word)))
+            return false;
+    return true;
+}
+
+/* A task runs in the folder of the plan, a parameter that the scheduler may map to another path. */
 static void add_action(GString *text, const Farm *farm, Step step)
 {
     g_autofree char *variable = g_strdup_printf("{{Task.Param.%s}}", openjd_steps[step].parameter);
     g_autoptr(GPtrArray) words = words_of(farm, step, variable);
     g_string_append(text, "\"script\": {\"actions\": {\"onRun\": {");
-    fl_json_text(text, "command", words->pdata[0]);
-    g_string_append(text, ", \"args\": [");
-    for (guint k = 1; k < words->len; k++) {
-        g_string_append(text, k > 1 ? ", " : "");
+    g_string_append(text, "\"command\": \"bash\", \"args\": [\"-c\", "
+                          "\"cd -- \\\"$0\\\" && exec \\\"$@\\\"\", \"{{Param.Folder}}\"");
+    for (guint k = 0; k < words->len; k++) {
+        g_string_append(text, ", ");
         fl_json_string(text, words->pdata[k]);
     }
     g_string_append(text, "]}}}");
@@ -366,14 +434,22 @@ static void add_openjd_step(GString *text, const Farm *farm, Step step)
     g_string_append(text, "}");
 }
 
-/* Tasks start in the folder in which the template was made, which Open Job Description knows not
- * how to say: relative names want a session that starts there. */
-static char *print_openjd(const Farm *farm)
+/* The name of a job has 128 characters at most. */
+static char *print_openjd(const Farm *farm, GError **error)
 {
+    if (!words_fit(farm, "Open Job Description", is_argument, error))
+        return NULL;
+    g_autofree char *name =
+        g_utf8_substring(fl_drawing_name(farm->plan->drawing), 0,
+                         MIN(128, g_utf8_strlen(fl_drawing_name(farm->plan->drawing), -1)));
     GString *text = g_string_new("{");
     fl_json_text(text, "specificationVersion", "jobtemplate-2023-09");
-    fl_json_text(text, "name", fl_drawing_name(farm->plan->drawing));
-    g_string_append(text, ",\n \"steps\": [");
+    fl_json_text(text, "name", name);
+    g_string_append(text,
+                    ",\n \"parameterDefinitions\": [\n  {\"name\": \"Folder\", \"type\": \"PATH\", "
+                    "\"objectType\": \"DIRECTORY\", \"dataFlow\": \"INOUT\"");
+    fl_json_text(text, "default", farm->folder);
+    g_string_append(text, "}\n ],\n \"steps\": [");
     for (Step step = STEP_PAINT; step <= STEP_FILM; step++)
         if (n_commands(farm, step) > 0)
             add_openjd_step(text, farm, step);
@@ -383,7 +459,7 @@ static char *print_openjd(const Farm *farm)
 
 /* ---- the plan ------------------------------------------------------------------------------- */
 
-static char *(*const printers[])(const Farm *) = {
+static char *(*const printers[])(const Farm *, GError **) = {
     [FL_FARM_SLURM] = print_slurm, [FL_FARM_OPENJD] = print_openjd, [FL_FARM_JSON] = print_json};
 
 /* A pattern for the files between tasks and merge: `paint`, or beside the usual frames. */
@@ -430,7 +506,7 @@ char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *cons
     g_array_set_clear_func(all.tasks, (GDestroyNotify)clear_task);
     all.film = all.n_parts > 1 && plan->movie;
     make_tasks(&all);
-    char *text = printers[farm](&all);
+    char *text = printers[farm](&all, error);
     g_array_unref(all.tasks);
     g_free(all.paint);
     g_free(all.folder);

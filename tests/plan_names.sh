@@ -1,0 +1,128 @@
+#!/bin/bash
+# Plans for farms whose files have hostile names: stand-ins for the schedulers record what is executed.
+# usage: plan_names.sh PROGRAM FIXTURES; speaks TAP.
+# shellcheck source-path=SCRIPTDIR source=film.sh
+. "${0%/*}/film.sh"
+
+# Each of these would run `pwn` if a name became a part of a program.
+endings=(
+    $'\npwn\n' ';pwn;' '|pwn|' '&pwn&' '$(pwn)' '`pwn`' "'\$(pwn)'" '"$(pwn)"' "';pwn;'" '";pwn;"' "\\';pwn;\\'"
+    '|;e pwn #' '|e pwn' $'\nTASKS\npwn\n' $'\nTASKS\n)\npwn\n' $'\nMERGE\npwn\n' $'\nMERGE\n)\npwn\n' '${x:=$(pwn)}'
+    '{{Param.Folder}}' '{{Task.Param.Regions}}' '}}{{Session.WorkingDirectory}}' $')\npwn\n(' '<(pwn)' $'\r\npwn\r\n'
+    ' -e pwn' '%x%(pwn)%%n' '#!pwn' $'\e]0;pwn\a' $'\xff;pwn' ' --wrap=pwn ' '*?[a-z]{pwn,pwn}' '~pwn!pwn' $'\\\npwn\n'
+    '$IFS$(pwn)' $'\t;pwn\n#SBATCH --wrap=pwn\n')
+heads=("a" "it's" '-"')
+
+mkdir bin hostile
+cat >bin/fluidy-svg <<'END'
+#!/bin/bash
+printf '%s\0' "$PWD" "$@" end >>"$RECORD"
+echo painted
+END
+cat >bin/sbatch <<'END'
+#!/bin/bash
+set -o pipefail
+cat >script
+last=0
+for word; do
+    case $word in --array=0-*) last=${word#--array=0-} ;; esac
+done
+for ((task = 0; task <= last; task++)); do
+    SLURM_ARRAY_TASK_ID=$task SLURM_JOB_ID=7 bash script 2>&1 | cat >>log || exit 1
+done
+echo 7
+END
+printf '#!/bin/sh\ntouch "$PWNED"\n' >bin/pwn
+chmod +x bin/*
+export PWNED=$PWD/pwned RECORD=
+drawing 1.svg 24 1
+drawing 2.svg 24 2
+
+# plan DIALECT: the folders, the drawings and the pictures have the hostile name.
+plan() {
+    (cd "$place" && PATH=$OLDPWD/bin:$PATH && exec -a fluidy-svg "$program" "./$name" -s "$style" -q --plan "$1" \
+        -o "./${name//%/%%}/%d.png")
+}
+
+# What a library for Open Job Description does: double braces are references, all else stands for itself.
+cat >run.py <<'END'
+import json, os, re, subprocess, sys
+
+def run(words, folder, record):
+    subprocess.run(words, cwd=folder, env=dict(os.environ, RECORD=os.path.abspath(record)), check=True, stdout=subprocess.DEVNULL)
+
+def resolve(text, known):
+    assert not re.search("[\0-\x1f\x7f-\x9f]", text)
+    text = re.sub(r"\{\{ *([\w.]+) *\}\}", lambda reference: known[reference[1]].replace("{", "\0").replace("}", "\1"), text)
+    assert "{{" not in text and "}}" not in text
+    return text.replace("\0", "{").replace("\1", "}")
+
+def run_openjd(job, record):
+    known = {"Param." + each["name"]: each["default"] for each in job["parameterDefinitions"]}
+    assert [each["type"] for each in job["parameterDefinitions"]] == ["PATH"]
+    resolve(job["name"], known)
+    for step in job["steps"]:
+        [parameter] = step["parameterSpace"]["taskParameterDefinitions"]
+        for value in parameter["range"]:
+            known["Task.Param." + parameter["name"]] = resolve(value, known)
+            action = step["script"]["actions"]["onRun"]
+            run([resolve(word, known) for word in [action["command"], *action["args"]]], "/", record)
+
+def calls(record):
+    words = open(record, "rb").read().decode(errors="surrogateescape").split("\0")[:-1]
+    found = []
+    while words:
+        end = words.index("end")
+        call, words = words[:end], words[end + 1:]
+        found.append(call[:-2] if call[-2:] == ["--progress", "plain"] else call)
+    return found
+
+dialect, plan, name = sys.argv[1:]
+plan = json.load(open(plan))
+if dialect == "openjd":
+    run_openjd(plan, "openjd.record")
+else:
+    for task in plan["tasks"] + plan["merge"] + plan["film"]:
+        run(task["command"], plan["folder"], "json.record")
+got, wanted = calls(dialect + ".record"), calls("slurm.record")
+assert got == wanted, (got, wanted)
+assert len(got) == 3 and all("./" + name in call and call[0].endswith("/" + name) for call in got)
+END
+
+is_wrong() { # is_wrong DIALECT
+    wrong=$((wrong + 1))
+    echo "# wrong in $1: $(printf %q "$name"): $(tail -1 err)"
+}
+
+executed=0 wrong=0 refused=0 names=0
+for head in "${heads[@]}"; do
+    for ending in "${endings[@]}"; do
+        name=$head$ending place=hostile/$head$ending names=$((names + 1))
+        mkdir -p "$place/$name"
+        cp 1.svg "$place/$name/${name}_1.svg" && cp 2.svg "$place/$name/${name}_2.svg"
+        RECORD=$PWD/slurm.record
+        rm -f ./*.record log
+        plan slurm >plan.sh 2>err && PATH=$PWD/bin:$PATH bash plan.sh >out 2>>err </dev/null &&
+            [ "$(tr '\0' '\n' <slurm.record | grep -c '^end$')" = 3 ] &&
+            [ "$(wc -l <"$place/log")" = 3 ] || is_wrong slurm
+        for dialect in json openjd; do
+            if ! plan $dialect >plan.json 2>err; then
+                says 'cannot hold this name' && refused=$((refused + 1)) || is_wrong $dialect
+            elif command -v python3 >/dev/null; then
+                RECORD='' PATH=$PWD/bin:$PATH python3 run.py $dialect plan.json "$name" >out 2>err ||
+                    is_wrong $dialect
+            fi
+        done
+        if [ -e pwned ]; then
+            executed=$((executed + 1))
+            echo "# executed: $(printf %q "$name")"
+            rm pwned
+        fi
+    done
+done
+[ $names -ge 100 ] && [ $executed = 0 ]
+result $? "none of $names hostile names is executed by a plan, $executed are"
+[ $wrong = 0 ]
+result $? "each command gets the names as they are, or the plan is refused ($refused), $wrong are wrong"
+
+echo "1..$n"
