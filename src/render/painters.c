@@ -17,7 +17,7 @@ static bool check_memory(const FlPainters *painters, GError **error)
     const double pixels = (double)plan->width * plan->height;
     double bytes = 50e6 + 30 * pixels, largest = 0; // measured: the libraries, paper, a frame
     for (int p = 0; p < painters->n; p++) {
-        const FlPainter *painter = &painters->painter[p];
+        const FlPainter *painter = painters->painter[p];
         bytes += fl_painter_bytes(painter, fl_plan_is_large(plan));
         largest = MAX(largest, (double)fl_rect_pixels(painter->result.rect));
     }
@@ -32,7 +32,7 @@ static bool check_memory(const FlPainters *painters, GError **error)
 static bool make_guides_of(void *data, int p, int thread, GError **error)
 {
     FlPainters *painters = data;
-    return fl_painter_prepare(&painters->painter[p], error);
+    return fl_painter_prepare(painters->painter[p], error);
 }
 
 /* While it is painted, a region takes 80 bytes a pixel of its rectangle, and about as many while
@@ -42,7 +42,7 @@ static bool make_guides_of(void *data, int p, int thread, GError **error)
 
 static FlWorkItem item_of(const FlPainters *painters, int p, double cost)
 {
-    const size_t pixels = fl_rect_pixels(painters->painter[p].result.rect);
+    const size_t pixels = fl_rect_pixels(painters->painter[p]->result.rect);
     return (FlWorkItem){p, cost, .alone = pixels > BESIDE_PX};
 }
 
@@ -53,7 +53,7 @@ static void choose_kept(FlPainters *painters)
 {
     size_t bytes = 0;
     for (int p = 0; p < painters->n; p++) {
-        FlPainter *painter = &painters->painter[p];
+        FlPainter *painter = painters->painter[p];
         const size_t own = fl_rect_pixels(fl_painter_guided(painter)) * sizeof(float);
         painter->keeps_first = bytes + own <= FIRST_BYTES;
         bytes += painter->keeps_first ? own : 0;
@@ -65,7 +65,7 @@ static bool make_guides(FlPainters *painters, GError **error)
     choose_kept(painters);
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
     for (int p = 0; p < painters->n; p++)
-        items[p] = item_of(painters, p, (double)fl_rect_pixels(painters->painter[p].result.rect));
+        items[p] = item_of(painters, p, (double)fl_rect_pixels(painters->painter[p]->result.rect));
     return fl_schedule_run(items, painters->n, make_guides_of, painters, error);
 }
 
@@ -124,7 +124,7 @@ static bool open_motion(FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
     for (int p = 0; p < painters->n; p++) {
-        FlPainter *painter = &painters->painter[p];
+        FlPainter *painter = painters->painter[p];
         const bool halved = painter->plan->style->enlargement;
         FlMotionSource **motion = &painters->motion[halved];
         if (painter->plan->settings.motion != FL_MOTION_AUTO || painters->shapes.flow ||
@@ -145,10 +145,13 @@ bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, const FlFinger
 {
     g_autoptr(GHashTable) styles = fl_style_sums_new();
     painters->plan = plan, painters->n = plan->n_painted;
-    painters->painter = g_new0(FlPainter, MAX(plan->n_painted, 1));
+    painters->painter = g_new0(FlPainter *, MAX(plan->n_painted, 1));
+    painters->painted = g_new0(const FlPaintedRegion *, MAX(plan->n_painted, 1));
     painters->shapes = shapes_of(painters);
     for (int p = 0; p < plan->n_painted; p++) {
-        FlReuse *reuse = &painters->painter[p].reuse;
+        painters->painter[p] = g_new0(FlPainter, 1);
+        painters->painted[p] = &painters->painter[p]->result;
+        FlReuse *reuse = &painters->painter[p]->reuse;
         if (!fl_reuse_init(reuse, plan->cache, &painters->shapes, &plan->painted[p], styles,
                            error) ||
             !fl_reuse_recall(reuse, plan, p, whole, error))
@@ -165,7 +168,7 @@ bool fl_painters_need_masks(const FlPainters *painters)
         const FlRegionPlan *region = &plan->painted[p];
         const bool placed =
             region->paint_files && (region->place.width > 0 || fl_plan_hides(plan, region->region));
-        needed = !placed && !painters->painter[p].reuse.known;
+        needed = !placed && !painters->painter[p]->reuse.known;
     }
     return needed;
 }
@@ -173,15 +176,15 @@ bool fl_painters_need_masks(const FlPainters *painters)
 bool fl_painters_stale(const FlPainters *painters)
 {
     bool stale = false;
-    for (int p = 0; p < painters->n; p++)
-        stale = stale || painters->painter[p].reuse.stale;
+    for (int p = 0; p < painters->n && painters->painter[p]; p++)
+        stale = stale || painters->painter[p]->reuse.stale;
     return stale;
 }
 
 void fl_painters_finish(FlPainters *painters)
 {
     for (int p = 0; p < painters->n; p++)
-        fl_reuse_finish(&painters->painter[p].reuse);
+        fl_reuse_finish(&painters->painter[p]->reuse);
 }
 
 bool fl_painters_init(FlPainters *painters, GError **error)
@@ -190,25 +193,28 @@ bool fl_painters_init(FlPainters *painters, GError **error)
     const bool energies = plan->options.stats || fl_report_measures(&plan->options);
     for (int p = 0; p < painters->n; p++) {
         const FlRegionPlan *region = &plan->painted[p];
-        fl_painter_init(&painters->painter[p], &painters->shapes, region,
-                        fl_plan_hides(plan, region->region), painters->painter[p].reuse);
+        fl_painter_init(painters->painter[p], &painters->shapes, region,
+                        fl_plan_hides(plan, region->region), painters->painter[p]->reuse);
     }
     if (!check_memory(painters, error) || !open_motion(painters, error) ||
         !make_guides(painters, error))
         return false;
     for (int p = 0; p < painters->n; p++)
-        if (painters->painter[p].paint && plan->painted[p].engine->measure)
-            plan->painted[p].engine->measure(painters->painter[p].paint, energies);
+        if (painters->painter[p]->paint && plan->painted[p].engine->measure)
+            plan->painted[p].engine->measure(painters->painter[p]->paint, energies);
     return true;
 }
 
 void fl_painters_clear(FlPainters *painters)
 {
-    for (int p = 0; p < painters->n; p++)
-        fl_painter_clear(&painters->painter[p]);
+    for (int p = 0; p < painters->n && painters->painter[p]; p++) {
+        fl_painter_clear(painters->painter[p]);
+        g_free(painters->painter[p]);
+    }
     fl_motion_source_free(painters->motion[0]);
     fl_motion_source_free(painters->motion[1]);
     g_free(painters->painter);
+    g_free(painters->painted);
     *painters = (FlPainters){0};
 }
 
@@ -245,12 +251,12 @@ bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *
 {
     g_autofree FlWorkItem *items = g_new(FlWorkItem, MAX(painters->n, 1));
     for (int p = 0; p < painters->n; p++)
-        items[p] = item_of(painters, p, cost_of(&painters->painter[p]));
+        items[p] = item_of(painters, p, cost_of(painters->painter[p]));
     Step all = {step, work, data};
     if (!fl_schedule_run(items, painters->n, do_one, &all, error))
         return false;
     for (int k = 0; k < painters->n; k++)
-        note_cost(&painters->painter[items[k].index], step, items[k].together);
+        note_cost(painters->painter[items[k].index], step, items[k].together);
     return true;
 }
 
@@ -263,7 +269,7 @@ bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **er
     for (int p = 0; p < painters->n; p++) {
         GError *failure = NULL;
         GBytes **parts = (GBytes **)states->pdata + FL_PAINTER_PARTS * p;
-        if (!fl_painter_save(&painters->painter[p], parts, &failure))
+        if (!fl_painter_save(painters->painter[p], parts, &failure))
             fl_parallel_error_keep(&first, failure);
     }
     return fl_parallel_error_propagate(error, first);
@@ -280,7 +286,7 @@ bool fl_painters_load(FlPainters *painters, const GPtrArray *states, const char 
         return false;
     }
     for (int p = 0; p < painters->n; p++)
-        if (!fl_painter_load(&painters->painter[p], parts + FL_PAINTER_PARTS * p, error))
+        if (!fl_painter_load(painters->painter[p], parts + FL_PAINTER_PARTS * p, error))
             return false;
     return true;
 }

@@ -8,8 +8,9 @@ typedef struct FlPainters {
     const FlPlan *plan; // borrowed
     FlShapes shapes;    // of the plan
     int n;
-    FlPainter *painter;        // one for each of plan->painted
-    FlMotionSource *motion[2]; // for guides of half the size second; NULL: not needed
+    FlPainter **painter;             // one for each of plan->painted
+    const FlPaintedRegion **painted; // their results
+    FlMotionSource *motion[2];       // for guides of half the size second; NULL: not needed
 } FlPainters;
 
 /** Work for painter p; step is a frame, or a picture of the lead-in. */

@@ -62,7 +62,7 @@ static char **reasons_of(const FlPainters *painters)
 {
     char **reasons = g_new0(char *, (gsize)painters->n + 1);
     for (int p = 0; p < painters->n; p++) {
-        const FlReuse *reuse = &painters->painter[p].reuse;
+        const FlReuse *reuse = &painters->painter[p]->reuse;
         char *reason = reuse->n_painted > 0 ? fl_reuse_reason(reuse) : NULL;
         reasons[p] = reason ? reason : g_strdup("");
     }
@@ -74,7 +74,7 @@ static void tell_reason(const FlPainters *painters, int p, char **reasons)
 {
     int n = 0, painted = 0, all = 0;
     for (int q = 0; q < painters->n; q++) {
-        const FlReuse *reuse = &painters->painter[q].reuse;
+        const FlReuse *reuse = &painters->painter[q]->reuse;
         if (strcmp(reasons[q], reasons[p]) != 0)
             continue;
         if (q < p)
@@ -93,7 +93,7 @@ void fl_summary_of_reuse(const FlPainters *painters)
     int taken = 0, painted = 0;
     g_auto(GStrv) reasons = reasons_of(painters);
     for (int p = 0; p < painters->n; p++) {
-        const FlReuse *reuse = &painters->painter[p].reuse;
+        const FlReuse *reuse = &painters->painter[p]->reuse;
         taken += reuse->n_taken, painted += reuse->n_painted;
         if (reasons[p][0])
             tell_reason(painters, p, reasons);

@@ -1,0 +1,276 @@
+#include "render/frames.h"
+
+#include "base/alloc.h"
+#include "base/memory.h"
+#include "base/page.h"
+#include "base/schedule.h"
+#include "drawing/hold.h"
+#include "drawing/packed_draws.h"
+#include "inspect/dump.h"
+#include "inspect/ebsynth.h"
+#include "render/painter_guides.h"
+
+static double seconds_since(gint64 start)
+{
+    return (double)(g_get_monotonic_time() - start) * 1e-6;
+}
+
+bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double frame_s,
+                    GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    const FlRenderOptions *o = &plan->options;
+    const int total = plan->end - plan->first, made = MAX(done - plan->first, 0);
+    FlProgress progress = {.stage = stage,
+                           .region_index = -1,
+                           .n_regions = plan->n_painted,
+                           .frame = fl_drawing_number(plan->drawing, MAX(done - 1, 0)),
+                           .done = made,
+                           .total = total,
+                           .share = (double)made / MAX(total, 1),
+                           .elapsed_s = seconds_since(frames->start),
+                           .frame_s = frame_s,
+                           .remaining_s = -1};
+    const int painted = done - frames->before;
+    if (painted > 0)
+        progress.remaining_s = seconds_since(frames->first_frame) / painted * (total - made);
+    if (!o->progress || o->progress(&progress, o->data))
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_INTERRUPTED, "interrupted after %d of %d frames; %s",
+                made, total, frames->advice);
+    return false;
+}
+
+/* ---- painting -------------------------------------------------------------------------------- */
+
+/* The guides and matches of a painter's new picture. */
+static bool dump_picture(const FlPlan *plan, const FlPainter *painter, int number, GError **error)
+{
+    const FlPaintedRegion *painted = &painter->result;
+    g_autofree float *flow =
+        fl_alloc(2 * fl_rect_pixels(painted->rect), sizeof(float), "a flow field", error);
+    return flow && fl_painter_flow(painter, flow, error) &&
+           fl_dump_frame(plan->options.dump, painted, fl_painter_guides(painter), flow, number,
+                         error);
+}
+
+static bool is_empty(const FlGuides *guides)
+{
+    for (size_t p = 0; p < (size_t)guides->width * (size_t)guides->height; p++)
+        if (guides->mask[p] >= FL_INSIDE)
+            return false;
+    return true;
+}
+
+/* The pairs of guides of a painter's new picture, if it was synthesised. */
+static bool export_picture(const FlPlan *plan, const FlPainter *painter, int frame, GError **error)
+{
+    const FlPaintedRegion *painted = &painter->result;
+    const bool rests =
+        frame > 0 && painted->stats.n_levels == 0 && !is_empty(fl_painter_guides(painter));
+    const int before = frame - painter->plan->settings.hold;
+    g_auto(FlGuidePairs) pairs = {0};
+    if (painted->stats.n_levels > 0 &&
+        !painter->plan->engine->guide_pairs(painter->paint, &pairs, error))
+        return false;
+    return fl_ebsynth_frame(plan->options.ebsynth, painted, pairs.style ? &pairs : NULL,
+                            fl_drawing_number(plan->drawing, frame),
+                            rests ? fl_drawing_number(plan->drawing, before) : -1, error);
+}
+
+static bool exports(const FlPlan *plan)
+{
+    return plan->options.ebsynth && !plan->options.merge;
+}
+
+/* Gives a painter's picture to whatever inspects it. */
+static bool inspect_picture(const FlFrames *frames, int p, int frame, GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    const FlPainter *painter = frames->painters.painter[p];
+    const bool is_new = frame % painter->plan->settings.hold == 0;
+    return fl_report_guides(frames->report, p, &painter->result, frame, fl_painter_guides(painter),
+                            error) &&
+           (!plan->options.dump || !is_new ||
+            dump_picture(plan, painter, fl_drawing_number(plan->drawing, frame), error)) &&
+           (!exports(plan) || !is_new || export_picture(plan, painter, frame, error));
+}
+
+static bool paint_one(void *data, int p, int frame, GError **error)
+{
+    FlFrames *frames = data;
+    const FlPlan *plan = frames->plan;
+    FlPainter *painter = frames->painters.painter[p];
+    const bool taken_apart = plan->options.dump || exports(plan);
+    painter->wants_guides = taken_apart || frames->report;
+    painter->wants_view = taken_apart || fl_report_wants_view(frames->report, frame);
+    const bool painted = fl_painter_frame(painter, frame, error) &&
+                         (!painter->wants_guides || inspect_picture(frames, p, frame, error));
+    fl_painter_drop_guides(painter);
+    if (!painted || painter->wants_guides || !fl_plan_is_large(plan))
+        return painted;
+    fl_memory_trim();
+    return fl_painted_pack(&painter->result, error);
+}
+
+static bool lead_in_one(void *data, int p, int k, GError **error)
+{
+    FlFrames *frames = data;
+    FlPainter *painter = frames->painters.painter[p];
+    const bool painted = fl_painter_lead_in(painter, k, error);
+    fl_painter_drop_guides(painter);
+    return painted;
+}
+
+bool fl_frames_lead_in(FlFrames *frames, GError **error)
+{
+    for (int k = 0; frames->plan->options.loop && k < FL_LOOP_LONGEST; k++)
+        if (!fl_painters_each(&frames->painters, k, lead_in_one, frames, error) ||
+            !fl_frames_tell(frames, "lead-in", 0, 0, error))
+            return false;
+    return true;
+}
+
+/* ---- a frame --------------------------------------------------------------------------------- */
+
+/* The task `drawing`. */
+static bool draw_shapes(void *data, GError **error)
+{
+    FlFrames *frames = data;
+    const FlPlan *plan = frames->plan;
+    const float page = fl_page_scale(plan->width, plan->height);
+    const FlHand hand = {.of_region = plan->hands,
+                         .seed = plan->options.seed,
+                         .page = plan->half ? page / 2 : page,
+                         .tooth = fl_paper_sheet_tooth(frames->sheet, frames->drawn, plan->half)};
+    g_autoptr(FlDrawList) draws =
+        fl_hold_draw_list(plan->drawing, &hand, plan->hold, plan->hold_of, frames->drawn, error);
+    return draws && (frames->draws = fl_draws_pack(draws, error));
+}
+
+static void start_drawing(FlFrames *frames, int frame)
+{
+    frames->drawn = frame;
+    fl_task_start(&frames->drawing, draw_shapes, frames, frames->beside);
+}
+
+static FlComposeInput compose_input(const FlFrames *frames, int frame)
+{
+    const FlPlan *plan = frames->plan;
+    return (FlComposeInput){.drawing = plan->drawing,
+                            .painted_of = plan->painted_of,
+                            .n_painted = plan->n_painted,
+                            .painted = frames->painters.painted,
+                            .background = &frames->background,
+                            .sheet = frames->sheet,
+                            .tooth = fl_paper_sheet_tooth(frames->sheet, frame, plan->half),
+                            .seed = plan->options.seed,
+                            .width = plan->width,
+                            .height = plan->height,
+                            .paper_px = plan->paper_px,
+                            .half = plan->half,
+                            .layers_apart = plan->options.layers || plan->format->takes_layers,
+                            .linear = plan->options.blend == FL_BLEND_LINEAR,
+                            .gap_px = (float)MAX(plan->options.gap, 0)};
+}
+
+static void trim(const FlPlan *plan)
+{
+    if (fl_plan_is_large(plan))
+        fl_memory_trim();
+}
+
+/* Where a missing frame is held, it is the one before again. Shapes are drawn beside the painting,
+ * those of the next frame beside the composing. */
+bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
+                    GError **error)
+{
+    const gint64 start = g_get_monotonic_time();
+    const FlPlan *plan = frames->plan;
+    if (!fl_style_cache_seek(plan->styles, frame, fl_drawing_frames(plan->drawing),
+                             plan->options.loop, error))
+        return false;
+    const int shown = fl_drawing_shown(plan->drawing, frame);
+    const bool composed = !fl_plan_is_of_paint(plan);
+    if (composed && frames->drawn != shown)
+        start_drawing(frames, shown);
+    // a merge that starts at a held frame still has to read what is held
+    const bool held =
+        shown != frame && !(plan->options.merge && frame == MAX(frames->before, plan->first));
+    const bool painted =
+        held || fl_painters_each(&frames->painters, shown, paint_one, frames, error);
+    *paint_s = seconds_since(start);
+    trim(plan); // what painting has left over is of no use to composing, nor the reverse
+    if (!fl_task_wait(&frames->drawing, painted ? error : NULL) || !painted)
+        return false;
+    if (!composed)
+        return true;
+    FlDrawList *draws = fl_draws_unpack(frames->draws, plan->drawing, INT_MAX, error);
+    g_clear_pointer(&frames->draws, g_bytes_unref);
+    frames->drawn = -1;
+    if (!draws)
+        return false;
+    if (next >= 0 && frames->beside)
+        start_drawing(frames, fl_drawing_shown(plan->drawing, next));
+    const FlComposeInput input = compose_input(frames, shown);
+    const bool made =
+        fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error);
+    trim(plan);
+    return made;
+}
+
+/* ---- before the first frame ------------------------------------------------------------------ */
+
+static bool make_sheet(FlFrames *frames, GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    const FlRenderOptions *o = &plan->options;
+    const FlPaperChoice choice = {.paper = o->paper,
+                                  .scale =
+                                      plan->paper_px * (o->paper_scale > 0 ? o->paper_scale : 1),
+                                  .relief = o->paper_relief,
+                                  .seed = o->paper_seed,
+                                  .boil = o->paper_boil};
+    if (!fl_paper_sheet_make(&choice, !o->background, plan->width, plan->height, &frames->sheet,
+                             error))
+        return false;
+    return !frames->sheet || !fl_plan_is_large(plan) ||
+           fl_paper_sheet_put_away(frames->sheet, error);
+}
+
+bool fl_frames_check(FlFrames *frames, GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    const uint8_t *ground = fl_paper_ground(plan->options.paper);
+    return fl_background_init(&frames->background, plan->options.background,
+                              ground ? ground : plan->paper, plan->drawing, error) &&
+           (fl_plan_is_of_paint(plan) ? fl_paper_check(plan->options.paper, error)
+                                      : make_sheet(frames, error));
+}
+
+bool fl_frames_prepare(FlFrames *frames, const FlFingerprint *print, GError **error)
+{
+    FlPainters *painters = &frames->painters;
+    return fl_painters_recall(painters, frames->plan, print, error) &&
+           (!fl_painters_need_masks(painters) || fl_plan_rasterise(frames->plan, error)) &&
+           fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error);
+}
+
+void fl_frames_init(FlFrames *frames, FlPlan *plan)
+{
+    *frames = (FlFrames){.plan = plan,
+                         .drawn = -1,
+                         .beside = fl_schedule_threads() > 1,
+                         .advice = "run again to resume",
+                         .start = plan ? plan->start : 0};
+}
+
+void fl_frames_clear(FlFrames *frames)
+{
+    fl_task_clear(&frames->drawing);
+    g_clear_pointer(&frames->draws, g_bytes_unref);
+    fl_painters_clear(&frames->painters);
+    fl_paper_sheet_free(frames->sheet);
+    fl_plan_free(frames->plan);
+    *frames = (FlFrames){0};
+}

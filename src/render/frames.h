@@ -1,0 +1,51 @@
+/* The frames of a film: its regions are painted and composed, one frame after the other. */
+#ifndef FLUIDY_RENDER_FRAMES_H
+#define FLUIDY_RENDER_FRAMES_H
+
+#include "base/task.h"
+#include "compose/composite.h"
+#include "inspect/report.h"
+#include "render/painters.h"
+
+typedef struct FlFrames {
+    FlPlan *plan;
+    FlBackground background;
+    FlPaperSheet *sheet; // NULL: none
+    FlPainters painters;
+    FlReport *report;          // borrowed: looks at each picture; NULL: none
+    bool beside;               // drawing and writing, which wait for the disk, run beside painting
+    FlTask drawing;            // runs beside the painting
+    int drawn;                 // the frame of `draws`, which `drawing` makes; -1: none
+    GBytes *draws;             // its shapes, packed
+    const char *advice;        // what to do after an interruption; static
+    int before;                // frames that earlier runs have painted
+    gint64 start, first_frame; // microseconds, as g_get_monotonic_time()
+} FlFrames;
+
+/** Takes the plan over; NULL: it could not be made. */
+void fl_frames_init(FlFrames *frames, FlPlan *plan);
+void fl_frames_clear(FlFrames *frames);
+
+/** Makes background and paper, which could stop the render; call it first. */
+bool fl_frames_check(FlFrames *frames, GError **error);
+
+/** Makes masks and guides. print: fl_fingerprint_new() of the plan; NULL: the plan has no cache. */
+bool fl_frames_prepare(FlFrames *frames, const FlFingerprint *print, GError **error);
+
+/** Paints the last pictures of a loop before its first ones; does nothing if it is no loop. */
+bool fl_frames_lead_in(FlFrames *frames, GError **error);
+
+/**
+ * Paints and composes a frame. Frames come in order; next is the one that follows, -1: none.
+ *
+ * composite: empty; stays so if the plan is of paint alone. paint_s: seconds of the painting.
+ */
+bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
+                    GError **error);
+
+/** Tells the options' progress of a stage. done: frames; frame_s: seconds of the last one, 0: none
+ * yet. FL_ERROR_INTERRUPTED. */
+bool fl_frames_tell(const FlFrames *frames, const char *stage, int done, double frame_s,
+                    GError **error);
+
+#endif
