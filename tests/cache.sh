@@ -123,6 +123,62 @@ find kept -name '*.picture' | sort | sed -n '3p;5p' | xargs rm
 kept now && same now whole && ! grep -q damaged err
 result $? 'files that are gone are missed by nobody'
 
+rm -rf kept && kept now
+for file in $(find kept -name '*.picture' | sort | sed -n '2p;6p') $(find kept -name '*.film' | head -n 1); do
+    rm "$file"
+    mkfifo "$file"
+done
+kept now && same now whole && [ -z "$(find kept -name '*.film' -type p)" ]
+result $? 'a pipe in the place of a file does not hang the render'
+ln -sf "$PWD/whole/w_0001.png" "$(find kept -name '*.picture' | sort | head -n 1)"
+kept now && same now whole
+result $? 'nor is a link followed'
+
+# forge SUFFIX OFFSET BYTES: writes into the cache's files, and makes their checksums right again.
+forge() {
+    python3 -c '
+import pathlib, struct, sys, zlib
+suffix, offset, new = sys.argv[1], int(sys.argv[2]), bytes.fromhex(sys.argv[3])
+for path in pathlib.Path("kept").rglob("*." + suffix):
+    data = bytearray(path.read_bytes())
+    data[16 + offset:16 + offset + len(new)] = new
+    path.write_bytes(data[:8] + struct.pack("<I", zlib.crc32(data[16:])) + data[12:])
+' "$@"
+}
+forged() { # forged SENTENCE SUFFIX OFFSET BYTES
+    rm -rf kept && kept now
+    forge "${@:2}"
+    kept now && same now whole
+    result $? "$1"
+}
+forged 'a forged number of pictures does no harm' film 0 ffffffffffffff7f
+forged 'nor does one that is a little too small' film 0 0500000000000000
+forged 'nor a forged place beyond the page' film 8 f0ffff7ff0ffff7f
+forged 'nor a forged size' film 16 ffffff7fffffff7f
+forged 'nor forged digests' film 30 aaaaaaaaaa
+forged 'nor a forged size of a state' picture 0 ffffffffffffffff
+forged 'nor a forged state' picture 12 ffffff7fffffff7fffffff7fffffff7f
+rm -rf kept && kept now
+find kept -name '*.film' -delete
+find kept -name '*.picture' -printf '%T@ %p\n' | sort -n | tail -n 2 | cut -d ' ' -f 2 | xargs rm
+forge picture 12 ffffff7fffffff7fffffff7fffffff7f
+kept now && same now whole
+result $? 'also where painting would go on from it'
+
+# With a key, what somebody else has written is not taken.
+head -c 40 /dev/urandom >key
+head -c 40 /dev/urandom >other
+rm -rf kept
+FLUIDY_CACHE_KEY=key kept now && FLUIDY_CACHE_KEY=key kept now && took 12 0 && same now whole
+result $? 'a cache with a key is taken with that key'
+FLUIDY_CACHE_KEY=other kept now && ! grep -q 'from the cache' err && same now whole
+result $? 'not with another one'
+kept now && ! grep -q 'from the cache' err && FLUIDY_CACHE_KEY=key kept now && ! grep -q 'from the cache' err
+result $? 'nor without one, nor is what has none'
+FLUIDY_CACHE_KEY=missing kept now
+[ $? = 2 ] && says 'FLUIDY_CACHE_KEY: missing'
+result $? 'a key that is not there is one message'
+
 again() { # again ARGUMENT...: the same command, where its frames are
     paint now "$@" --cache kept
 }

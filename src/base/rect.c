@@ -67,6 +67,14 @@ FlRect fl_rect_grown(FlRect rect, int px, FlRect limit)
     return fl_rect_and(grown, limit);
 }
 
+bool fl_rect_is_inside(FlRect rect, FlRect page)
+{
+    return rect.width > 0 && rect.height > 0 && rect.x >= page.x && rect.y >= page.y &&
+           rect.width <= page.width && rect.height <= page.height &&
+           rect.x - page.x <= page.width - rect.width &&
+           rect.y - page.y <= page.height - rect.height;
+}
+
 FlRect fl_rect_on_grid(FlRect rect, int grid)
 {
     const int left = rect.x % grid, above = rect.y % grid;

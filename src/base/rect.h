@@ -26,6 +26,9 @@ FlRect fl_rect_and(FlRect a, FlRect b); // what both have; {0, 0, 0, 0}: nothing
 FlRect fl_rect_or(FlRect a, FlRect b); // the smallest that holds both; empty ones count for nothing
 bool fl_rect_meet(FlRect a, FlRect b); // whether they share a pixel
 
+/** True if a rectangle, whose numbers may be anything, has a pixel and all are in `page`. */
+bool fl_rect_is_inside(FlRect rect, FlRect page);
+
 /** A rectangle with a margin of px on each side, as far as it lies within `limit`. */
 FlRect fl_rect_grown(FlRect rect, int px, FlRect limit);
 

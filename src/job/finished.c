@@ -10,7 +10,7 @@
 // request, sum of the inputs, inputs, styles by name, frames and film with size and time
 #define RECORD "((tt)(tt)asa(ss)a(sxx)a(sxx))"
 
-static FlPaintCache *cache_for(const FlPlan *plan)
+static FlStore *cache_for(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     const bool more =
@@ -165,9 +165,8 @@ static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
 
 static GVariant *record_of(const FlPlan *plan)
 {
-    FlPaintCache *cache = cache_for(plan);
-    g_autoptr(GBytes) bytes =
-        cache ? fl_paint_cache_get(cache, FL_CACHE_RENDER, place_of(plan)) : NULL;
+    FlStore *cache = cache_for(plan);
+    g_autoptr(GBytes) bytes = cache ? fl_store_get(cache, FL_KEPT_RENDER, place_of(plan)) : NULL;
     if (!bytes)
         return NULL;
     g_autoptr(GVariant) record =
@@ -227,7 +226,7 @@ static void add_inputs(GVariantBuilder *list, const FlPlan *plan, FlDigest *sum)
 
 void fl_finished_note(const FlPlan *plan)
 {
-    FlPaintCache *cache = cache_for(plan);
+    FlStore *cache = cache_for(plan);
     if (!cache || plan->options.overwrite == FL_OVERWRITE_KEEP)
         return; // what was kept may be anything
     FlDigest sum = {0};
@@ -247,6 +246,6 @@ void fl_finished_note(const FlPlan *plan)
     gsize size;
     const void *data = g_bytes_get_data(bytes, &size);
     if (whole)
-        fl_paint_cache_put(cache, FL_CACHE_RENDER, place_of(plan),
-                           &(FlSpan){(void *)(uintptr_t)data, size}, 1);
+        fl_store_put(cache, FL_KEPT_RENDER, place_of(plan),
+                     &(FlSpan){(void *)(uintptr_t)data, size}, 1);
 }

@@ -99,11 +99,8 @@ void fl_paint_file_find_place(const FlDrawing *drawing, FlRegionPlan *region)
     const FlRect page = {0, 0, fl_drawing_width(drawing), fl_drawing_height(drawing)};
     g_autofree char *file = fl_paint_file_name(region->paint_files, drawing, region, 0, NULL);
     FlRect place;
-    if (!file || !fl_png_place(file, &place) || place.width > page.width ||
-        place.height > page.height || place.x > page.width - place.width ||
-        place.y > page.height - place.height)
-        return;
-    region->place = place;
+    if (file && fl_png_place(file, &place) && fl_rect_is_inside(place, page))
+        region->place = place;
 }
 
 bool fl_paint_file_load(FlPaintedRegion *painted, const char *path, GError **error)

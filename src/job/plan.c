@@ -5,6 +5,7 @@
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
 #include "job/paint_files.h"
+#include "keep/sealed.h"
 
 #define LARGE_PX 3000000
 #define SMALL_PX 500000 // that are painted: up to here a heap for each thread takes little
@@ -102,8 +103,10 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
     plan->options = *options;
     plan->start = g_get_monotonic_time();
     plan->styles = fl_style_cache_new(&plan->options);
+    if (!fl_sealed_read_key(error))
+        return NULL;
     // before the defaults are filled in: fl_render() keeps no paint unless it is asked to
-    plan->cache = options->dry_run || options->merge ? NULL : fl_paint_cache_open(&plan->options);
+    plan->cache = options->dry_run || options->merge ? NULL : fl_store_open(&plan->options);
     plan->config = fl_config_load(options->config, options, error);
     if (!plan->config)
         return NULL;
@@ -135,7 +138,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->painted_by_ebsynth);
     g_free(plan->output);
     g_free(plan->movie);
-    fl_paint_cache_close(plan->cache);
+    fl_store_close(plan->cache);
     fl_style_cache_free(plan->styles);
     fl_mask_store_free(plan->masks);
     fl_surround_free(plan->surround);

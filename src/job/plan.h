@@ -3,9 +3,9 @@
 #define FLUIDY_JOB_PLAN_H
 
 #include "io/sink.h"
-#include "job/paint_cache.h"
 #include "job/region_plan.h"
 #include "job/style_cache.h"
+#include "keep/store.h"
 #include "params/config.h"
 
 /** How much of a render an earlier one has finished. */
@@ -39,7 +39,7 @@ typedef struct FlPlan {
     char *painted_by_ebsynth; // pattern: options.paint where that is what is merged; or NULL
     char *output;             // pattern or file; of what an interrupted run leaves if parts_only
     bool parts_only;          // layers or paint are written, but no frames
-    FlPaintCache *cache;      // NULL: no paint is kept
+    FlStore *cache;           // NULL: no paint is kept
     FlDigest request;         // of what was asked for, before anything of it is read
     FlFinished finished;      // ALL: the rest of the plan is not made
     int n_finished;           // frames of what is finished

@@ -8,7 +8,7 @@
 
 bool fl_loop_init(FlLoop *loop, int n_pictures, GError **error)
 {
-    *loop = (FlLoop){.n = MIN(n_pictures / 3, FL_LOOP_LONGEST)};
+    *loop = (FlLoop){.n = fl_loop_length(n_pictures)};
     loop->first = n_pictures - loop->n;
     return loop->n == 0 || (loop->pictures = fl_spill_new((size_t)loop->n, error));
 }

@@ -19,6 +19,12 @@ typedef struct FlLoop {
     FlSpill *pictures; // fl_painted_bytes() each
 } FlLoop;
 
+/** How many pictures the lead-in of a region with so many pictures has. */
+static inline int fl_loop_length(int n_pictures)
+{
+    return MIN(n_pictures / 3, FL_LOOP_LONGEST);
+}
+
 /** n_pictures: of the region in the film, held ones counted once. FL_ERROR_OUTPUT. */
 bool fl_loop_init(FlLoop *loop, int n_pictures, GError **error);
 void fl_loop_clear(FlLoop *loop);

@@ -5,6 +5,7 @@
 #include "compose/colourise.h"
 #include "job/moved_paint.h"
 #include "job/style_cache.h"
+#include "keep/sealed.h"
 #include "params/config.h"
 #include "render/painter.h"
 #include <fluidy/paint.h>
@@ -18,7 +19,7 @@ typedef struct GivenRegion {
     FlRegionPlan plan;
     bool configured; // plan.settings are to be cleared
     FlStyleCache *styles;
-    FlPaintCache *cache; // NULL: none
+    FlStore *cache; // NULL: none
     FlMaskStore *masks;
     FlShapes shapes;
     FlPainter painter;
@@ -144,7 +145,9 @@ static bool make_painter(GivenRegion *given, GError **error)
     g_autoptr(GHashTable) sums = fl_style_sums_new();
     FlPainter *painter = &given->painter;
     const bool hidden = fl_mask_store_extent(given->masks, 0).width == 0;
-    given->cache = fl_paint_cache_open(&options);
+    if (!fl_sealed_read_key(error))
+        return false;
+    given->cache = fl_store_open(&options);
     given->shapes = (FlShapes){.n_frames = region->n_frames,
                                .width = region->width,
                                .height = region->height,
@@ -241,7 +244,7 @@ static bool do_frame(GivenRegion *given, int frame, GError **error)
 static void clear(GivenRegion *given)
 {
     fl_painter_clear(&given->painter);
-    fl_paint_cache_close(given->cache);
+    fl_store_close(given->cache);
     fl_mask_store_free(given->masks);
     fl_style_cache_free(given->styles);
     if (given->configured)

@@ -113,8 +113,13 @@ void fl_painter_clear(FlPainter *painter)
 /* Brings the engine to the picture before, if that was taken from the cache. */
 static bool catch_up(FlPainter *painter, GError **error)
 {
-    g_autoptr(GBytes) state = g_steal_pointer(&painter->reuse.state);
-    return !state || painter->plan->engine->load(painter->paint, state, error);
+    FlReuse *reuse = &painter->reuse;
+    g_autoptr(GBytes) state = g_steal_pointer(&reuse->state);
+    if (!state || painter->plan->engine->load(painter->paint, state, error))
+        return true;
+    if (reuse->cache)
+        fl_reuse_refuse_state(reuse);
+    return false;
 }
 
 static bool keep_picture(FlPainter *painter, GError **error)

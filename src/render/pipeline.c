@@ -107,7 +107,7 @@ static bool render_frame(Pipeline *pipeline, int frame, GError **error)
         pipeline->stats.paint_s += paint_s, pipeline->stats.compose_s += compose_s;
     else if (!inspect_frame(pipeline, paint_s, compose_s, error))
         return false;
-    fl_paint_cache_warn(pipeline->frames.plan->cache);
+    fl_store_warn(pipeline->frames.plan->cache);
     return fl_frames_tell(&pipeline->frames, "paint", frame + 1, seconds_since(start), error);
 }
 
@@ -253,7 +253,7 @@ static void clear(Pipeline *pipeline)
     fl_frames_clear(&pipeline->frames);
 }
 
-/* *stale: it failed since paint that was known is gone, and goes on when it is tried again. */
+/* *stale: it failed since paint that was known is gone or damaged, and may be tried again. */
 static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool *stale,
                        GError **error)
 {
@@ -266,6 +266,8 @@ static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool 
     const bool done = plan && (!whole || fl_guard_inputs(plan, error)) &&
                       (options->dry_run ? dry_run(&pipeline, error) : run(&pipeline, error));
     *stale = !done && fl_painters_stale(&pipeline.frames.painters);
+    if (*stale && options->overwrite == FL_OVERWRITE_KEEP)
+        fl_resume_finish(&pipeline.resume); // its frames are kept, its state is of no use
     clear(&pipeline);
     return done;
 }
@@ -278,7 +280,9 @@ static bool render(const FlRenderOptions *options, FlFrameTaker taker, GError **
     if (options->threads > 0)
         (void)fl_schedule_set_threads(options->threads);
     bool done = try_render(options, taker, &stale, error);
-    again.resume = !options->no_frames; // of what was painted before the gap
+    again.resume = false; // the state may be what is damaged; other paint is in the cache
+    if (options->overwrite == FL_OVERWRITE_REFUSE)
+        again.overwrite = FL_OVERWRITE_YES; // of frames that the first try has found free
     while (!done && stale) {
         g_clear_error(error);
         done = try_render(&again, taker, &stale, error);

@@ -1,13 +1,10 @@
 #include "render/reuse.h"
 
 #include "base/alloc.h"
+#include "base/reader.h"
 #include "inspect/report.h"
+#include "render/loop.h"
 #include <string.h>
-
-/* The start of a kept film; the digests follow. */
-typedef struct FilmHeader {
-    FlRect rect;
-} FilmHeader;
 
 /* A slot that every render of the same drawing and region uses: what it was painted by last. */
 static FlDigest slot_of(const FlPlan *plan, int p)
@@ -19,28 +16,37 @@ static FlDigest slot_of(const FlPlan *plan, int p)
     return slot;
 }
 
-/* The digests of all pictures, if they are kept and so is every picture; of what is hidden in all
- * frames none, which does for frames alone. */
-static void recall(FlReuse *reuse, bool frames_alone)
+/* Held ones counted once, those of a lead-in twice. */
+static guint pictures_of(const FlPlan *plan, int p)
 {
-    g_autoptr(GBytes) film = fl_paint_cache_get(reuse->cache, FL_CACHE_FILM, reuse->film);
-    gsize bytes = 0;
-    const uint8_t *data = film ? g_bytes_get_data(film, &bytes) : NULL;
-    if (bytes < sizeof(FilmHeader) || (bytes - sizeof(FilmHeader)) % sizeof(FlDigest) != 0)
-        return;
-    const guint n = (guint)((bytes - sizeof(FilmHeader)) / sizeof(FlDigest));
-    if (n == 0 && !frames_alone)
+    const FlRegionPlan *region = &plan->painted[p];
+    const int n = (fl_drawing_frames(plan->drawing) - 1) / region->settings.hold + 1;
+    return (guint)(n + (region->loops ? fl_loop_length(n) : 0));
+}
+
+/* The digests of all pictures, if they and every picture are kept; none of a region that is hidden
+ * in all frames, which counts if nothing but frames is made. */
+static void recall(FlReuse *reuse, const FlPlan *plan, int p)
+{
+    const FlRect page = {0, 0, fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing)};
+    g_autoptr(GBytes) film = fl_store_get(reuse->cache, FL_KEPT_FILM, reuse->film);
+    FlReader reader = fl_reader_of(film);
+    const guint n = (guint)fl_reader_count(&reader, pictures_of(plan, p));
+    const FlRect rect = n > 0 ? fl_reader_rect(&reader, page) : (FlRect){0};
+    const uint8_t *digests = fl_reader_take(&reader, n, sizeof(FlDigest));
+    if (!fl_reader_ends(&reader) ||
+        (n == 0 ? !fl_plan_frames_alone(plan) : n != pictures_of(plan, p)))
         return;
     g_autoptr(GArray) known = g_array_new(FALSE, FALSE, sizeof(FlDigest));
-    memcpy(&reuse->rect, data, sizeof reuse->rect);
-    g_array_append_vals(known, data + sizeof(FilmHeader), n);
+    g_array_append_vals(known, digests, n);
     for (guint k = 0; k < n; k++)
-        if (!fl_paint_cache_has(reuse->cache, FL_CACHE_PICTURE, g_array_index(known, FlDigest, k)))
+        if (!fl_store_has(reuse->cache, FL_KEPT_PICTURE, g_array_index(known, FlDigest, k)))
             return;
+    reuse->rect = rect;
     reuse->known = g_steal_pointer(&known);
 }
 
-bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlShapes *shapes,
+bool fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
                    const FlRegionPlan *region, GHashTable *styles, GError **error)
 {
     *reuse = (FlReuse){.cache = cache, .takes = true};
@@ -66,7 +72,7 @@ bool fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p, const FlFingerpr
         return false;
     reuse->film = fl_fingerprint_digest(reuse->facts);
     if (reuse->takes)
-        recall(reuse, fl_plan_frames_alone(plan));
+        recall(reuse, plan, p);
     return true;
 }
 
@@ -129,37 +135,40 @@ void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window)
 /* A kept picture: the packed state's size, the state, the packed picture. */
 static GBytes *take_state(GBytes *kept, FlSpan *packed)
 {
-    uint64_t state_bytes;
-    gsize bytes;
-    const uint8_t *data = g_bytes_get_data(kept, &bytes);
-    if (bytes < sizeof state_bytes)
+    FlReader reader = fl_reader_of(kept);
+    const size_t state_bytes = fl_reader_count(&reader, reader.left);
+    const size_t from = sizeof(uint64_t);
+    if (!fl_reader_take(&reader, state_bytes, 1))
         return NULL;
-    memcpy(&state_bytes, data, sizeof state_bytes);
-    if (state_bytes > bytes - sizeof state_bytes)
-        return NULL;
-    *packed = (FlSpan){(void *)(uintptr_t)(data + sizeof state_bytes + state_bytes), // only read
-                       bytes - sizeof state_bytes - state_bytes};
-    return g_bytes_new_from_bytes(kept, sizeof state_bytes, state_bytes);
+    *packed = (FlSpan){(void *)(uintptr_t)reader.at, reader.left}; // which is only read
+    return g_bytes_new_from_bytes(kept, from, state_bytes);
 }
 
 bool fl_reuse_take(FlReuse *reuse, uint8_t *rgb, size_t bytes)
 {
     if (!reuse->cache || !reuse->takes)
         return false;
-    g_autoptr(GBytes) kept = fl_paint_cache_get(reuse->cache, FL_CACHE_PICTURE, reuse->last);
+    g_autoptr(GBytes) kept = fl_store_get(reuse->cache, FL_KEPT_PICTURE, reuse->last);
     FlSpan packed = {0};
     g_autoptr(GBytes) state = kept ? take_state(kept, &packed) : NULL;
     if (state && fl_decompress(packed.data, packed.bytes, &(FlSpan){rgb, bytes}, 1)) {
         g_clear_pointer(&reuse->state, g_bytes_unref);
         reuse->state = g_steal_pointer(&state);
+        reuse->state_of = reuse->last;
         reuse->n_taken++;
         return true;
     }
     if (!reuse->known)
         return false;
-    fl_paint_cache_drop(reuse->cache, FL_CACHE_FILM, reuse->film);
+    fl_store_drop(reuse->cache, FL_KEPT_FILM, reuse->film);
     reuse->stale = true;
     return false;
+}
+
+void fl_reuse_refuse_state(FlReuse *reuse)
+{
+    fl_store_drop(reuse->cache, FL_KEPT_PICTURE, reuse->state_of);
+    reuse->stale = true;
 }
 
 void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *state)
@@ -175,7 +184,7 @@ void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *sta
         return; // without memory for it, it is painted again next time
     const FlSpan parts[] = {
         {&first, sizeof first}, {(void *)(uintptr_t)data, state_bytes}, {packed, packed_bytes}};
-    fl_paint_cache_put(reuse->cache, FL_CACHE_PICTURE, reuse->last, parts, G_N_ELEMENTS(parts));
+    fl_store_put(reuse->cache, FL_KEPT_PICTURE, reuse->last, parts, G_N_ELEMENTS(parts));
 }
 
 /* ---- renders that are resumed --------------------------------------------------------------- */
@@ -191,7 +200,7 @@ GBytes *fl_reuse_save(const FlReuse *reuse)
 static GBytes *state_in_cache(const FlReuse *reuse)
 {
     FlSpan packed;
-    g_autoptr(GBytes) kept = fl_paint_cache_get(reuse->cache, FL_CACHE_PICTURE, reuse->last);
+    g_autoptr(GBytes) kept = fl_store_get(reuse->cache, FL_KEPT_PICTURE, reuse->last);
     return kept ? take_state(kept, &packed) : NULL;
 }
 
@@ -224,22 +233,22 @@ void fl_reuse_finish(FlReuse *reuse)
 {
     if (!reuse->cache || reuse->known || reuse->made->len != reuse->n_done)
         return;
-    FilmHeader header = {reuse->rect};
-    const FlSpan film[] = {{&header, sizeof header},
-                           {reuse->made->data, reuse->n_done * sizeof(FlDigest)}};
-    const int n_spans = reuse->n_done > 0 ? G_N_ELEMENTS(film) : 1; // empty arrays have no data
-    fl_paint_cache_put(reuse->cache, FL_CACHE_FILM, reuse->film, film, n_spans);
+    uint64_t n = reuse->n_done;
+    const FlSpan film[] = {{&n, sizeof n},
+                           {&reuse->rect, sizeof reuse->rect},
+                           {reuse->made->data, n * sizeof(FlDigest)}};
+    fl_store_put(reuse->cache, FL_KEPT_FILM, reuse->film, film, n > 0 ? G_N_ELEMENTS(film) : 1);
     g_autoptr(GBytes) facts = fl_fingerprint_pack(reuse->facts);
     gsize bytes;
     const void *data = g_bytes_get_data(facts, &bytes);
-    fl_paint_cache_put(reuse->cache, FL_CACHE_FACTS, reuse->slot,
-                       &(FlSpan){(void *)(uintptr_t)data, bytes}, 1);
+    fl_store_put(reuse->cache, FL_KEPT_FACTS, reuse->slot,
+                 &(FlSpan){(void *)(uintptr_t)data, bytes}, 1);
 }
 
 char *fl_reuse_reason(const FlReuse *reuse)
 {
     g_autoptr(GBytes) bytes =
-        reuse->cache ? fl_paint_cache_get(reuse->cache, FL_CACHE_FACTS, reuse->slot) : NULL;
+        reuse->cache ? fl_store_get(reuse->cache, FL_KEPT_FACTS, reuse->slot) : NULL;
     g_autoptr(FlFingerprint) before = bytes ? fl_fingerprint_unpack(bytes) : NULL;
     return before ? fl_fingerprint_difference(before, reuse->facts) : NULL;
 }

@@ -4,7 +4,7 @@
 
 #include "guides/guides.h"
 #include "job/fingerprint.h"
-#include "job/paint_cache.h"
+#include "keep/store.h"
 
 /**
  * The pictures of a region form a chain: the digest of each is made from that of the one before and
@@ -16,8 +16,8 @@
  * from last time, and neither masks nor guides are made.
  */
 typedef struct FlReuse {
-    FlPaintCache *cache; // borrowed; NULL: nothing is taken or kept
-    bool takes; // false while guides or statistics are inspected: then everything is painted
+    FlStore *cache; // borrowed; NULL: nothing is taken or kept
+    bool takes;     // false while guides or statistics are inspected: then everything is painted
     FlFingerprint *facts; // of method and film
     FlDigest film, slot;  // of all facts; of where those of the last render are kept
     FlDigest last;        // of the picture painted or taken last
@@ -27,11 +27,12 @@ typedef struct FlReuse {
     FlRect rect;          // where known: the painter's
     bool stale;           // a known picture is gone, so that this render cannot go on
     GBytes *state;        // after the last picture, which was taken; NULL: the engine has its own
+    FlDigest state_of;    // the picture with that state
     int n_taken, n_painted;
 } FlReuse;
 
 /** Begins with the method by which a region of `shapes` is painted; cache NULL: keeps nothing. */
-bool fl_reuse_init(FlReuse *reuse, FlPaintCache *cache, const FlShapes *shapes,
+bool fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
                    const FlRegionPlan *region, GHashTable *styles, GError **error);
 void fl_reuse_clear(FlReuse *reuse);
 
@@ -48,6 +49,9 @@ void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window);
 
 /** Takes the picture, colours and alpha, and the state after it. Returns: whether it was there. */
 bool fl_reuse_take(FlReuse *reuse, uint8_t *rgb, size_t bytes);
+
+/** Drops the picture whose state the engine has refused; another try of the render paints it. */
+void fl_reuse_refuse_state(FlReuse *reuse);
 
 /** Keeps the picture that was painted in its place, and the state after it. */
 void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *state);

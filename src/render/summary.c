@@ -109,7 +109,7 @@ void fl_summary_of_reuse(const FlPainters *painters)
 static char *forecast(const FlPlan *plan, double frame_s)
 {
     const int n = (fl_drawing_frames(plan->drawing) - 1) / plan->hold + 1;
-    const int lead_in = plan->options.loop ? MIN(n / 3, FL_LOOP_LONGEST) : 0;
+    const int lead_in = plan->options.loop ? fl_loop_length(n) : 0;
     const int seconds = (int)(frame_s * (n + lead_in) + 0.5);
     return g_strdup_printf("that would take about %d:%02d:%02d, %.2f seconds a frame",
                            seconds / 3600, seconds / 60 % 60, seconds % 60, frame_s);

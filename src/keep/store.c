@@ -1,10 +1,9 @@
-#include "job/paint_cache.h"
+#include "keep/store.h"
 
-#include "base/file.h"
+#include "keep/sealed.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <glib/gstdio.h>
-#include <libdeflate.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,18 +11,11 @@
 
 #define MIB (1024.0 * 1024)
 #define DEFAULT_MIB 8192
-#define MAGIC "fluidyp1"
 #define LEFT_S 3600 // an unfinished file so old is that of a process that was killed
 
 static const char *const suffix[] = {"picture", "film", "render", "facts"};
 
-/* The bytes before the parts. */
-typedef struct Header {
-    char magic[8];
-    uint32_t sum, zero; // CRC-32 of the parts
-} Header;
-
-struct FlPaintCache {
+struct FlStore {
     const FlRenderOptions *options;
     char *folder;
     double limit;  // bytes
@@ -31,93 +23,81 @@ struct FlPaintCache {
     char *problem; // to be told; NULL: none
     bool told;     // one was
     bool full;     // nothing can be written any more
-    double added;  // bytes since the cache was last trimmed
+    double added;  // bytes since the store was last trimmed
 };
 
-FlPaintCache *fl_paint_cache_open(const FlRenderOptions *options)
+FlStore *fl_store_open(const FlRenderOptions *options)
 {
     const char *folder = options->cache;
     if (!folder || g_str_equal(folder, "off"))
         return NULL;
-    FlPaintCache *cache = g_new0(FlPaintCache, 1);
-    cache->options = options;
-    cache->folder = g_str_equal(folder, "auto")
+    FlStore *store = g_new0(FlStore, 1);
+    store->options = options;
+    store->folder = g_str_equal(folder, "auto")
                         ? g_build_filename(g_get_user_cache_dir(), "fluidy-svg", "paint", NULL)
                         : g_strdup(folder);
-    cache->limit = MIB * (options->cache_size > 0 ? options->cache_size : DEFAULT_MIB);
-    g_mutex_init(&cache->lock);
-    return cache;
+    store->limit = MIB * (options->cache_size > 0 ? options->cache_size : DEFAULT_MIB);
+    g_mutex_init(&store->lock);
+    return store;
 }
 
 /* FOLDER/ab/cdef….picture: folders stay small. To be freed. */
-static char *path_of(const FlPaintCache *cache, FlCacheKind kind, FlDigest name)
+static char *path_of(const FlStore *store, FlKept kind, FlDigest name)
 {
     g_autofree char *hex =
         g_strdup_printf("%016" G_GINT64_MODIFIER "x%016" G_GINT64_MODIFIER "x", name.a, name.b);
-    return g_strdup_printf("%s/%.2s/%s.%s", cache->folder, hex, hex + 2, suffix[kind]);
+    return g_strdup_printf("%s/%.2s/%s.%s", store->folder, hex, hex + 2, suffix[kind]);
 }
 
 /* Keeps the first problem; the caller has the lock. Takes the text. */
-static void keep_problem(FlPaintCache *cache, char *text)
+static void keep_problem(FlStore *store, char *text)
 {
-    if (cache->problem || cache->told)
+    if (store->problem || store->told)
         g_free(text);
     else
-        cache->problem = text;
+        store->problem = text;
 }
 
-void fl_paint_cache_warn(FlPaintCache *cache)
+void fl_store_warn(FlStore *store)
 {
-    if (!cache)
+    if (!store)
         return;
-    g_mutex_lock(&cache->lock);
-    g_autofree char *text = g_steal_pointer(&cache->problem);
-    cache->told = cache->told || text;
-    g_mutex_unlock(&cache->lock);
-    if (text && cache->options->warning)
-        cache->options->warning(text, cache->options->data);
+    g_mutex_lock(&store->lock);
+    g_autofree char *text = g_steal_pointer(&store->problem);
+    store->told = store->told || text;
+    g_mutex_unlock(&store->lock);
+    if (text && store->options->warning)
+        store->options->warning(text, store->options->data);
 }
 
 /* ---- files ---------------------------------------------------------------------------------- */
 
-bool fl_paint_cache_has(const FlPaintCache *cache, FlCacheKind kind, FlDigest name)
+bool fl_store_has(const FlStore *store, FlKept kind, FlDigest name)
 {
-    g_autofree char *path = path_of(cache, kind, name);
-    return g_file_test(path, G_FILE_TEST_IS_REGULAR);
+    g_autofree char *path = path_of(store, kind, name);
+    struct stat status;
+    return lstat(path, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-static bool is_whole(const char *data, gsize bytes)
+GBytes *fl_store_get(FlStore *store, FlKept kind, FlDigest name)
 {
-    Header header;
-    if (bytes < sizeof header)
-        return false;
-    memcpy(&header, data, sizeof header);
-    return memcmp(header.magic, MAGIC, sizeof header.magic) == 0 &&
-           header.sum == libdeflate_crc32(0, data + sizeof header, bytes - sizeof header);
-}
-
-GBytes *fl_paint_cache_get(FlPaintCache *cache, FlCacheKind kind, FlDigest name)
-{
-    g_autofree char *path = path_of(cache, kind, name);
-    char *data = NULL;
-    gsize bytes = 0;
-    if (!g_file_get_contents(path, &data, &bytes, NULL))
-        return NULL;
-    g_autoptr(GBytes) whole = g_bytes_new_take(data, bytes);
-    if (is_whole(data, bytes)) {
-        (void)utime(path, NULL); // what is used last goes last
-        return g_bytes_new_from_bytes(whole, sizeof(Header), bytes - sizeof(Header));
+    g_autofree char *path = path_of(store, kind, name);
+    bool damaged;
+    GBytes *bytes = fl_sealed_read(path, &damaged);
+    if (bytes)
+        (void)utime(path, NULL); // the least recently used go first
+    if (damaged) {
+        g_unlink(path);
+        g_mutex_lock(&store->lock);
+        keep_problem(store, g_strdup_printf("%s: is damaged; its paint is made again", path));
+        g_mutex_unlock(&store->lock);
     }
-    g_unlink(path);
-    g_mutex_lock(&cache->lock);
-    keep_problem(cache, g_strdup_printf("%s: was damaged; its paint is made again", path));
-    g_mutex_unlock(&cache->lock);
-    return NULL;
+    return bytes;
 }
 
-void fl_paint_cache_drop(FlPaintCache *cache, FlCacheKind kind, FlDigest name)
+void fl_store_drop(FlStore *store, FlKept kind, FlDigest name)
 {
-    g_autofree char *path = path_of(cache, kind, name);
+    g_autofree char *path = path_of(store, kind, name);
     g_unlink(path);
 }
 
@@ -126,17 +106,12 @@ static bool write_file(const char *path, const FlSpan *parts, int n)
 {
     g_autofree char *folder = g_path_get_dirname(path);
     g_autofree char *temporary = g_build_filename(folder, "new-XXXXXX", NULL);
-    Header header = {MAGIC, 0, 0};
-    for (int k = 0; k < n; k++)
-        header.sum = libdeflate_crc32(header.sum, parts[k].data, parts[k].bytes);
     if (g_mkdir_with_parents(folder, 0777) != 0)
         return false;
     const int fd = g_mkstemp_full(temporary, O_WRONLY | O_CLOEXEC, 0666);
     if (fd < 0)
         return false;
-    bool written = fl_write_all(fd, &header, sizeof header);
-    for (int k = 0; k < n && written; k++)
-        written = fl_write_all(fd, parts[k].data, parts[k].bytes);
+    const bool written = fl_sealed_write(fd, parts, n);
     if (close(fd) == 0 && written && g_rename(temporary, path) == 0)
         return true;
     const int problem = errno;
@@ -145,32 +120,30 @@ static bool write_file(const char *path, const FlSpan *parts, int n)
     return false;
 }
 
-static void trim(FlPaintCache *cache);
+static void trim(FlStore *store);
 
-void fl_paint_cache_put(FlPaintCache *cache, FlCacheKind kind, FlDigest name, const FlSpan *parts,
-                        int n)
+void fl_store_put(FlStore *store, FlKept kind, FlDigest name, const FlSpan *parts, int n)
 {
-    g_autofree char *path = path_of(cache, kind, name);
-    g_mutex_lock(&cache->lock);
-    const bool full = cache->full;
-    g_mutex_unlock(&cache->lock);
+    g_autofree char *path = path_of(store, kind, name);
+    g_mutex_lock(&store->lock);
+    const bool full = store->full;
+    g_mutex_unlock(&store->lock);
     if (full)
         return;
     const bool written = write_file(path, parts, n);
     const int problem = errno;
-    g_mutex_lock(&cache->lock);
+    g_mutex_lock(&store->lock);
     for (int k = 0; k < n; k++)
-        cache->added += (double)parts[k].bytes;
+        store->added += (double)parts[k].bytes;
     if (!written) {
-        cache->full = true;
-        keep_problem(cache,
-                     g_strdup_printf("%s: cannot be written: %s; this render goes on without "
-                                     "keeping its paint",
+        store->full = true;
+        keep_problem(store,
+                     g_strdup_printf("%s: cannot be written: %s; this render keeps no more paint",
                                      path, g_strerror(problem)));
     }
-    if (cache->added > cache->limit / 8)
-        trim(cache);
-    g_mutex_unlock(&cache->lock);
+    if (store->added > store->limit / 8)
+        trim(store);
+    g_mutex_unlock(&store->lock);
 }
 
 /* ---- the limit ------------------------------------------------------------------------------ */
@@ -215,36 +188,36 @@ static int by_use(const void *a, const void *b)
 }
 
 /* A tenth below the limit, so that it is not met again at once. The caller has the lock. */
-static void trim(FlPaintCache *cache)
+static void trim(FlStore *store)
 {
     g_autoptr(GArray) files = g_array_new(FALSE, FALSE, sizeof(KeptFile));
     g_array_set_clear_func(files, (GDestroyNotify)clear_kept);
     double bytes = 0;
     for (int k = 0; k < 256; k++) {
-        g_autofree char *folder = g_strdup_printf("%s/%02x", cache->folder, k);
+        g_autofree char *folder = g_strdup_printf("%s/%02x", store->folder, k);
         list_folder(folder, files);
     }
     for (guint k = 0; k < files->len; k++)
         bytes += g_array_index(files, KeptFile, k).bytes;
-    cache->added = 0;
-    if (bytes <= cache->limit)
+    store->added = 0;
+    if (bytes <= store->limit)
         return;
     g_array_sort(files, by_use);
-    for (guint k = 0; k < files->len && bytes > .9 * cache->limit; k++) {
+    for (guint k = 0; k < files->len && bytes > .9 * store->limit; k++) {
         const KeptFile *file = &g_array_index(files, KeptFile, k);
         if (g_unlink(file->path) == 0)
             bytes -= file->bytes;
     }
 }
 
-void fl_paint_cache_close(FlPaintCache *cache)
+void fl_store_close(FlStore *store)
 {
-    if (!cache)
+    if (!store)
         return;
-    if (cache->added > 0)
-        trim(cache);
-    fl_paint_cache_warn(cache);
-    g_mutex_clear(&cache->lock);
-    g_free(cache->folder);
-    g_free(cache);
+    if (store->added > 0)
+        trim(store);
+    fl_store_warn(store);
+    g_mutex_clear(&store->lock);
+    g_free(store->folder);
+    g_free(store);
 }

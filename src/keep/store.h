@@ -1,0 +1,47 @@
+/* The store: things that a render keeps for later ones, named by the digest of all that they are
+ * made from. A folder of sealed files. */
+#ifndef FLUIDY_KEEP_STORE_H
+#define FLUIDY_KEEP_STORE_H
+
+#include "base/compress.h"
+#include "base/digest.h"
+#include <fluidy/render.h>
+
+/**
+ * A store in use, by any thread, and by several processes with one folder: files appear whole or
+ * not at all, and what another process removes is made again. Nothing of it is an error: the first
+ * problem is a warning of the options, when fl_store_warn() is called.
+ */
+typedef struct FlStore FlStore;
+
+/** A digest names one thing of each kind. */
+typedef enum FlKept {
+    FL_KEPT_PICTURE, // a region's paint in one frame, and the state of its engine after it
+    FL_KEPT_FILM,    // the digests of all pictures of a region
+    FL_KEPT_RENDER,  // the files that a render has read and written
+    FL_KEPT_FACTS,   // the facts that decided the paint of a region when it was painted last
+} FlKept;
+
+/** The store in the folder options->cache; options must outlive it. NULL: there is none. */
+FlStore *fl_store_open(const FlRenderOptions *options);
+
+/** Removes the least recently used files until the limit is met. NULL is fine. */
+void fl_store_close(FlStore *store);
+
+/** True if there is a file, which may still be damaged. */
+bool fl_store_has(const FlStore *store, FlKept kind, FlDigest name);
+
+/** Returns: to be freed with g_bytes_unref(); NULL: it is missing, or was damaged and is gone. */
+GBytes *fl_store_get(FlStore *store, FlKept kind, FlDigest name);
+
+/** Keeps the parts in a row. After a failure to write, this render keeps nothing more. */
+void fl_store_put(FlStore *store, FlKept kind, FlDigest name, const FlSpan *parts, int n);
+
+void fl_store_drop(FlStore *store, FlKept kind, FlDigest name);
+
+/** Warns of the first problem, once; call it in the thread that the options want. NULL is fine. */
+void fl_store_warn(FlStore *store);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStore, fl_store_close)
+
+#endif
