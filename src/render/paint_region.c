@@ -3,6 +3,7 @@
 #include "base/page.h"
 #include "base/schedule.h"
 #include "compose/colourise.h"
+#include "guides/contour_speed.h"
 #include "job/moved_paint.h"
 #include "job/style_cache.h"
 #include "keep/sealed.h"

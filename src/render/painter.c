@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "guides/contour_speed.h"
 #include "job/paint_files.h"
 #include "render/painter_guides.h"
 #include <math.h>
@@ -84,7 +85,9 @@ bool fl_painter_prepare(FlPainter *painter, GError **error)
     const FlRect rect = fl_painter_guided(painter),
                  page = fl_guided_part(plan->style, fl_painter_page(painter));
     const FlGuideSource source = fl_painter_guide_source(painter);
-    const FlGuideParams params = fl_guide_params(&plan->settings.params);
+    FlGuideParams params = fl_guide_params(&plan->settings.params);
+    if (plan->settings.motion == FL_MOTION_AUTO)
+        params.contour_px = fl_contour_px(page.width, page.height);
     const FlEngineInput input = {plan->style,
                                  plan->tile,
                                  &plan->settings,
