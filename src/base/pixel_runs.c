@@ -112,14 +112,6 @@ void fl_pixel_runs_clear(FlPixelRuns *runs)
     *runs = (FlPixelRuns){0};
 }
 
-FlColumns fl_pixel_runs_filled(const FlPixelRuns *runs, int y)
-{
-    const size_t first = runs->first[y], end = runs->first[y + 1];
-    return first < end
-               ? (FlColumns){runs->run[first].columns.first, runs->run[end - 1].columns.last}
-               : (FlColumns){0, 0};
-}
-
 void fl_pixel_runs_copy(const FlPixelRuns *runs, int y, uint8_t *row)
 {
     for (size_t r = runs->first[y]; r < runs->first[y + 1]; r++) {

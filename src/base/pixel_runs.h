@@ -24,9 +24,6 @@ typedef struct FlPixelRuns {
 bool fl_pixel_runs_init(FlPixelRuns *runs, const FlArea *area, const uint8_t *rgba, GError **error);
 void fl_pixel_runs_clear(FlPixelRuns *runs);
 
-/** The columns of row y from the first pixel that is seen to the last; 0, 0: none. */
-FlColumns fl_pixel_runs_filled(const FlPixelRuns *runs, int y);
-
 /** Copies the runs of row y into a row of RGBA, which is clear. */
 void fl_pixel_runs_copy(const FlPixelRuns *runs, int y, uint8_t *row);
 

@@ -2,7 +2,6 @@
 #include "base/alloc.h"
 #include "base/file.h"
 #include "io/atomic_file.h"
-#include "io/sparse_stream.h"
 
 #include <errno.h>
 #include <libdeflate.h>
@@ -82,12 +81,6 @@ static size_t pixel_bytes(const FlPng *picture)
     return (picture->opaque ? 3 : 4) * (picture->rgba16 ? sizeof(uint16_t) : 1);
 }
 
-/** The bytes of a whole row, with its filter byte. */
-static size_t row_bytes(const FlPng *picture)
-{
-    return picture->width * pixel_bytes(picture) + 1;
-}
-
 static void pack_row8(const uint8_t *rgba, int width, int channels, uint8_t *restrict out)
 {
     for (int x = 0; x < width; x++)
@@ -103,41 +96,38 @@ static void pack_row16(const uint16_t *rgba, int width, int channels, uint8_t *r
             out[0] = (uint8_t)(rgba[4 * x + c] >> 8), out[1] = (uint8_t)(rgba[4 * x + c] & 0xff);
 }
 
-/** What the pixels are of. */
+/** The part that has pixels. */
 static FlRect filled_of(const FlPng *picture)
 {
     return picture->filled ? *picture->filled : (FlRect){0, 0, picture->width, picture->height};
 }
 
-static bool is_blank(const FlPng *picture, int y)
+/** Row y of a picture of which only a part is filled. */
+static void pack_filled(const FlPng *picture, int y, uint8_t *out)
 {
     const FlRect filled = filled_of(picture);
-    return y < filled.y || y >= filled.y + filled.height ||
-           (picture->runs && fl_pixel_runs_filled(picture->runs, y - filled.y).last == 0);
+    const int row = y - filled.y;
+    memset(out, 0, (size_t)picture->width * 4);
+    if (row < 0 || row >= filled.height)
+        return;
+    if (picture->runs)
+        fl_pixel_runs_copy(picture->runs, row, out + 4 * (size_t)filled.x);
+    else
+        memcpy(out + 4 * (size_t)filled.x, picture->rgba + (size_t)row * (size_t)filled.width * 4,
+               (size_t)filled.width * 4);
 }
 
-/** Row y of a picture that is all paint, as it is stored. */
+/** Row y as it is stored, without its filter. */
 static void pack_row(const FlPng *picture, int y, uint8_t *out)
 {
     const size_t first = (size_t)y * picture->width * 4;
     const int channels = picture->opaque ? 3 : 4;
     if (picture->rgba16)
         pack_row16(picture->rgba16 + first, picture->width, channels, out);
+    else if (picture->runs || picture->filled)
+        pack_filled(picture, y, out);
     else
         pack_row8(picture->rgba + first, picture->width, channels, out);
-}
-
-/** Row y of what is filled of a picture; out: clear. */
-static void pack_filled(const FlPng *picture, int y, uint8_t *out)
-{
-    const FlRect filled = filled_of(picture);
-    if (is_blank(picture, y))
-        return;
-    if (picture->runs)
-        fl_pixel_runs_copy(picture->runs, y - filled.y, out);
-    else
-        memcpy(out, picture->rgba + (size_t)(y - filled.y) * filled.width * 4,
-               (size_t)filled.width * 4);
 }
 
 /** PNG's filter "average": n bytes of a row minus the mean of the pixels to the left and above. */
@@ -170,9 +160,9 @@ static uint8_t *filter_rows(const FlPng *picture, GError **error)
 }
 
 /** All rows as a zlib stream of *bytes; NULL, maybe with an error, if memory is short. */
-static uint8_t *compress_all(const FlPng *picture, size_t *bytes, GError **error)
+static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
 {
-    const size_t n = row_bytes(picture) * (size_t)picture->height;
+    const size_t n = (picture->width * pixel_bytes(picture) + 1) * (size_t)picture->height;
     g_autofree uint8_t *rows = filter_rows(picture, error);
     struct libdeflate_compressor *compressor =
         libdeflate_alloc_compressor(picture->fast ? LEVEL_FAST : LEVEL_FINAL);
@@ -182,58 +172,6 @@ static uint8_t *compress_all(const FlPng *picture, size_t *bytes, GError **error
     if (compressor)
         libdeflate_free_compressor(compressor);
     return stream;
-}
-
-/** Puts rows `first` to the one before `end`, of which only n bytes, from the filled columns on,
- * are not clear; rows: room for three times that. */
-static void put_rows(const FlPng *picture, int first, int end, size_t n, uint8_t *rows,
-                     FlSparseStream *stream)
-{
-    static const uint8_t filter = PNG_FILTER_VALUE_AVG;
-    const size_t before = (size_t)filled_of(picture).x * pixel_bytes(picture);
-    uint8_t *filtered = rows + 2 * n;
-    for (int y = first; y < end; y++) {
-        uint8_t *row = rows + (y % 2) * n;
-        memset(row, 0, n);
-        if (is_blank(picture, y) && (y == 0 || is_blank(picture, y - 1))) {
-            fl_sparse_stream_run(stream, 0, row_bytes(picture)); // as it is, without a filter
-            continue;
-        }
-        pack_filled(picture, y, row);
-        filter_row(row, rows + (y + 1) % 2 * n, n, pixel_bytes(picture), filtered);
-        fl_sparse_stream_put(stream, &filter, 1);
-        fl_sparse_stream_run(stream, 0, before);
-        fl_sparse_stream_put(stream, filtered, n);
-        fl_sparse_stream_run(stream, 0, row_bytes(picture) - 1 - before - n);
-    }
-}
-
-/** The same of a picture that is clear but for a part. */
-static uint8_t *compress_part(const FlPng *picture, size_t *bytes, GError **error)
-{
-    const FlRect filled = filled_of(picture);
-    // what is clear below it and on its right is filtered by its last pixels
-    const int end = MIN(filled.y + filled.height + 1, picture->height);
-    const int columns = MIN(filled.width + 1, picture->width - filled.x);
-    const size_t n = (size_t)columns * pixel_bytes(picture);
-    g_assert(pixel_bytes(picture) == 4);
-    g_autofree uint8_t *rows = fl_alloc(3, n, "a PNG picture", error);
-    if (!rows)
-        return NULL;
-    g_autoptr(GByteArray) packed = g_byte_array_new();
-    FlSparseStream *stream = fl_sparse_stream_new(packed);
-    fl_sparse_stream_run(stream, 0, (size_t)filled.y * row_bytes(picture));
-    put_rows(picture, filled.y, end, n, rows, stream);
-    fl_sparse_stream_run(stream, 0, (size_t)(picture->height - end) * row_bytes(picture));
-    fl_sparse_stream_end(stream);
-    return g_byte_array_steal(packed, bytes);
-}
-
-/** Of a picture that is all paint libdeflate makes a smaller stream. */
-static uint8_t *compress(const FlPng *picture, size_t *bytes, GError **error)
-{
-    return picture->filled || picture->runs ? compress_part(picture, bytes, error)
-                                            : compress_all(picture, bytes, error);
 }
 
 #define CHUNK_BYTES ((size_t)1 << 30) // of a file's parts, at most
