@@ -191,9 +191,13 @@ paint now -y --cache off && grep -q 'painted 6 frames' err && same now whole
 result $? 'but paints all without a cache'
 kept now
 touch now/w_0003.png
+again && grep -q 'nothing to do' err
+result $? 'nor if a frame was only touched: its digest counts'
+printf x | dd of=now/w_0003.png bs=1 seek=50 conv=notrunc status=none
+touch -r now/w_0002.png now/w_0003.png
 again
 [ $? = 1 ] && grep -q 'already exists' err && again -y && took 12 0 && same now whole
-result $? 'a frame that was touched is made again'
+result $? 'a frame that was changed is made again, whatever its size and time'
 drawing film/w_0005.svg 56 4
 again -y && grep -q 'painted 6 frames' err && ! same now whole
 result $? 'so is one whose drawing has changed'

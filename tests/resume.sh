@@ -186,6 +186,10 @@ mv changed/w_0001.png .
 paint changed
 [ $? = 1 ] && says 'w_0001.png: an earlier run painted it, but it is gone'
 result $? 'a finished frame that is gone is told'
+cp changed/w_0002.png changed/w_0001.png
+paint changed
+[ $? = 1 ] && says 'w_0001.png: an earlier run painted it, but it has changed since'
+result $? 'so is one that has changed'
 mv w_0001.png changed/
 later=changed/w_000$(($(ls changed/w_*.png | wc -l) + 2)).png # the next one was in hand
 drawing "$later" 56 1

@@ -1,7 +1,7 @@
-/* The table of options: every line is read, told, and in the fingerprint if it decides bytes. */
+/* The table of options: every line is read, told, and a fact if it decides bytes. */
 #include "params/options.h"
 
-#include "job/fingerprint.h"
+#include "job/plan_facts.h"
 #include "params/config.h"
 #include "scratch.h"
 #include <string.h>
@@ -48,11 +48,11 @@ static void set_of_region(const FlOption *o, const char *value, FlRegionSettings
     g_assert_no_error(error);
 }
 
-static FlFingerprint *print_of(FlOptionScope scope, const void *object)
+static FlFacts *facts_of(FlOptionScope scope, const void *object)
 {
-    FlFingerprint *print = fl_fingerprint_new_empty();
-    fl_fingerprint_add_options(print, scope, object, scope == FL_SCOPE_REGION ? "sky" : NULL);
-    return print;
+    FlFacts *facts = fl_facts_new();
+    fl_facts_add_options(facts, scope, object, scope == FL_SCOPE_REGION ? "sky" : NULL);
+    return facts;
 }
 
 static void names_and_letters_are_unique(void)
@@ -115,7 +115,7 @@ static void a_key_of_a_project_is_what_the_option_is(void)
 }
 
 /* Else a render would go on with pictures of another one. */
-static void the_fingerprint_has_every_option_that_decides_bytes(void)
+static void the_facts_have_every_option_that_decides_bytes(void)
 {
     g_autoptr(FlConfig) config = fl_config_load(NULL, NULL, NULL);
     for (int i = 0; i < fl_option_count(); i++) {
@@ -129,28 +129,27 @@ static void the_fingerprint_has_every_option_that_decides_bytes(void)
         fl_config_complete(config, &options);
         const void *object =
             o->scope == FL_SCOPE_REGION ? (const void *)&settings : (const void *)&options;
-        g_autoptr(FlFingerprint) before = print_of(o->scope, object);
+        g_autoptr(FlFacts) before = facts_of(o->scope, object);
         if (o->scope == FL_SCOPE_REGION)
             set_of_region(o, value, &settings);
         else
             set(o, value, &options);
-        g_autoptr(FlFingerprint) now = print_of(o->scope, object);
-        difference = fl_fingerprint_difference(before, now);
+        g_autoptr(FlFacts) now = facts_of(o->scope, object);
+        difference = fl_facts_difference(before, now);
         if (!difference)
-            g_error("the fingerprint is the same with %s = %s", o->name, value);
+            g_error("the facts are the same with %s = %s", o->name, value);
     }
 }
 
 /* ---- what follows from an option ------------------------------------------------------------- */
 
-static FlFingerprint *print_of_render(const FlRenderOptions *options)
+static FlFacts *facts_of_render(const FlRenderOptions *options)
 {
     GError *error = NULL;
     g_autoptr(FlPlan) plan = fl_plan_new(options, &error);
     g_assert_no_error(error);
-    FlFingerprint *print = fl_fingerprint_new(plan, &error);
-    g_assert_no_error(error);
-    return print;
+    FlFacts *facts = fl_plan_facts(plan);
+    return facts;
 }
 
 static void write_drawings(const char *folder)
@@ -163,7 +162,7 @@ static void write_drawings(const char *folder)
     g_free(scratch_write(folder, "tint.conf", "[defaults]\ntint = #123456\n"));
 }
 
-static void the_fingerprint_has_what_follows_from_an_option(void)
+static void the_facts_have_what_follows_from_an_option(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
     g_autofree char *drawings = g_build_filename(folder, "w_%d.svg", NULL);
@@ -173,7 +172,7 @@ static void the_fingerprint_has_what_follows_from_an_option(void)
     const FlRenderOptions plain = {
         .inputs = inputs, .settings = &setting, .n_settings = 1, .missing = FL_MISSING_HOLD};
     write_drawings(folder);
-    g_autoptr(FlFingerprint) before = print_of_render(&plain);
+    g_autoptr(FlFacts) before = facts_of_render(&plain);
     for (int i = 0; i < fl_option_count(); i++) {
         const FlOption *o = fl_option_at(i);
         if (o->scope != FL_SCOPE_RENDER || o->bytes != FL_BYTES_RESULT)
@@ -181,10 +180,10 @@ static void the_fingerprint_has_what_follows_from_an_option(void)
         FlRenderOptions options = plain;
         g_autofree char *value = another(o);
         fl_option_set(o, value, folder, &options, strings, NULL);
-        g_autoptr(FlFingerprint) now = print_of_render(&options);
-        g_autofree char *difference = fl_fingerprint_difference(before, now);
+        g_autoptr(FlFacts) now = facts_of_render(&options);
+        g_autofree char *difference = fl_facts_difference(before, now);
         if (!difference)
-            g_error("the fingerprint is the same with %s = %s", o->name, value);
+            g_error("the facts are the same with %s = %s", o->name, value);
     }
 }
 
@@ -207,10 +206,10 @@ int main(int argc, char **argv)
     g_test_add_func("/options/a-value-out-of-range-is-refused", a_value_out_of_range_is_refused);
     g_test_add_func("/options/a-key-of-a-project-is-what-the-option-is",
                     a_key_of_a_project_is_what_the_option_is);
-    g_test_add_func("/options/the-fingerprint-has-every-option-that-decides-bytes",
-                    the_fingerprint_has_every_option_that_decides_bytes);
-    g_test_add_func("/options/the-fingerprint-has-what-follows-from-an-option",
-                    the_fingerprint_has_what_follows_from_an_option);
+    g_test_add_func("/options/the-facts-have-every-option-that-decides-bytes",
+                    the_facts_have_every_option_that_decides_bytes);
+    g_test_add_func("/options/the-facts-have-what-follows-from-an-option",
+                    the_facts_have_what_follows_from_an_option);
     const int status = g_test_run();
     g_ptr_array_unref(strings);
     return status;

@@ -49,13 +49,12 @@ static bool check_merge(const FlRenderOptions *options, GError **error)
     return !wrong;
 }
 
-static void tell_linked(const FlPlan *plan)
+static void list_inputs(FlPlan *plan)
 {
-    GHashTableIter at;
-    gpointer file;
-    g_hash_table_iter_init(&at, fl_drawing_linked_files(plan->drawing));
-    while (plan->options.linked && g_hash_table_iter_next(&at, &file, NULL))
-        plan->options.linked(file, plan->options.data);
+    g_autofree const char **regions = g_new0(const char *, plan->n_painted + 1);
+    for (int p = 0; p < plan->n_painted; p++)
+        regions[p] = plan->painted[p].name;
+    fl_inputs_add_options(plan->inputs, &plan->options, plan->drawing, regions);
 }
 
 /* What a merge needs to know of the paint before it reads any. */
@@ -80,12 +79,14 @@ static bool make_plan(FlPlan *plan, GError **error)
     if (!open_drawing(plan, error))
         return false;
     fl_plan_part(plan, fl_drawing_frames(plan->drawing), &plan->first, &plan->end);
-    tell_linked(plan);
+    fl_inputs_add_drawing(plan->inputs, plan->drawing);
     if (!fl_plan_find_regions(plan, error))
         return false;
     choose_size(plan);
-    return fl_plan_choose_styles(plan, error) &&
-           (!plan->options.merge || plan->finished == FL_FINISHED_FRAMES ||
+    if (!fl_plan_choose_styles(plan, error))
+        return false;
+    list_inputs(plan);
+    return (!plan->options.merge || plan->finished == FL_FINISHED_FRAMES ||
             look_at_paint(plan, error));
 }
 
@@ -103,6 +104,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
     plan->options = *options;
     plan->start = g_get_monotonic_time();
     plan->styles = fl_style_cache_new(&plan->options);
+    plan->inputs = fl_inputs_new(options->linked, options->data);
     if (!fl_sealed_read_key(error))
         return NULL;
     // before the defaults are filled in: fl_render() keeps no paint unless it is asked to
@@ -139,6 +141,7 @@ void fl_plan_free(FlPlan *plan)
     g_free(plan->output);
     g_free(plan->movie);
     fl_store_close(plan->cache);
+    fl_inputs_free(plan->inputs);
     fl_style_cache_free(plan->styles);
     fl_mask_store_free(plan->masks);
     fl_surround_free(plan->surround);

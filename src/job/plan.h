@@ -5,6 +5,7 @@
 #include "io/sink.h"
 #include "job/region_plan.h"
 #include "job/style_cache.h"
+#include "keep/inputs.h"
 #include "keep/store.h"
 #include "params/config.h"
 
@@ -18,6 +19,7 @@ typedef enum FlFinished {
 typedef struct FlPlan {
     FlRenderOptions options; // completed from the config
     FlConfig *config;
+    FlInputs *inputs; // all files that the render reads
     FlDrawing *drawing;
     FlMaskStore *masks;
     FlSurround *surround;

@@ -2,8 +2,7 @@
 
 #include "drawing/open_drawing.h"
 #include "io/pattern.h"
-#include "job/fingerprint.h"
-#include "job/finished.h"
+#include "job/plan_facts.h"
 #include "job/resume.h"
 #include <string.h>
 
@@ -128,8 +127,8 @@ bool fl_plan_find_output(FlPlan *plan, GError **error)
     if (!sequence || !(plan->parts_only ? name_parts : name_output)(plan, sequence, error) ||
         !parse_part(plan, error) || (o->part && !choose_part(plan, error)))
         return false;
-    plan->request = fl_fingerprint_of_request(plan, sequence);
-    plan->finished = is_of_film(o->part) ? FL_FINISHED_FRAMES : fl_finished_look(plan, sequence);
+    plan->request = fl_request_digest(plan, sequence);
+    plan->finished = is_of_film(o->part) ? FL_FINISHED_FRAMES : fl_resume_look(plan, sequence);
     plan->n_finished = plan->finished != FL_FINISHED_NOTHING ? sequence->n : 0;
     return plan->finished == FL_FINISHED_ALL ||
            (plan->options.dry_run || fl_resume_expect_free(plan, sequence, error));

@@ -2,6 +2,7 @@
 
 #include "base/page.h"
 #include "job/moved_paint.h"
+#include "style/style_folder.h"
 #include <string.h>
 
 /* Sends a line to one of the options' callbacks. */
@@ -78,6 +79,15 @@ static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError
     return false;
 }
 
+/* Lists the files of a region's style before they are read, so that a broken style can be watched.
+ */
+static void list_style(FlPlan *plan, const char *name)
+{
+    g_autofree char *path = name ? fl_style_find(name, NULL) : NULL;
+    if (path)
+        fl_inputs_add_style(plan->inputs, path);
+}
+
 static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
 {
     const FlRegion *r = fl_drawing_region(plan->drawing, painted->region);
@@ -88,6 +98,8 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->loops = plan->options.loop && !painted->paint_files;
     const float px = texture_px(plan, &painted->settings.params);
     fl_params_scale_lengths(&painted->settings.params, px);
+    list_style(plan, painted->settings.style);
+    list_style(plan, painted->settings.tile);
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style)
         return false;

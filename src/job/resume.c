@@ -3,16 +3,11 @@
 #include "base/exists.h"
 #include "io/lock.h"
 #include "io/pattern.h"
-#include "io/sink.h"
-#include "job/paint_files.h"
+#include "job/outputs.h"
+#include "job/plan_facts.h"
+#include "style/style_folder.h"
 #include <glib/gstdio.h>
 #include <unistd.h>
-
-static char *frame_file(const FlPlan *plan, int frame, GError **error)
-{
-    const FlSinkParams params = {.path = plan->output};
-    return fl_sink_file(&params, fl_drawing_number(plan->drawing, frame), error);
-}
 
 /* A hidden file beside the frames, one for each pattern and part, however it is spelt; with
  * any_digits one for all patterns that name the same files sooner or later, as %03d and %04d do
@@ -37,30 +32,32 @@ static bool may_overwrite(const FlPlan *plan)
     return plan->options.overwrite == FL_OVERWRITE_YES;
 }
 
-/* Loads the state of an earlier run into resume->state, if this one resumes it. */
-static bool find_state(FlResume *resume, const FlPlan *plan, FlFingerprint *print, GError **error)
+/* Loads the record of an earlier run into resume->record, if this one resumes it. */
+static bool find_record(FlResume *resume, const FlPlan *plan, const FlFacts *facts, GError **error)
 {
     if ((may_overwrite(plan) && !plan->options.resume) ||
         !g_file_test(resume->path, G_FILE_TEST_EXISTS))
         return true;
     g_autoptr(GError) problem = NULL;
-    g_autoptr(FlCheckpoint) state = fl_checkpoint_load(resume->path, &problem);
+    g_autoptr(FlRecord) record = fl_record_load(resume->path, &problem);
     g_autofree char *difference =
-        state ? fl_fingerprint_difference(state->print, print) : g_strdup(problem->message);
+        record ? fl_facts_difference(record->facts, facts) : g_strdup(problem->message);
     if (!difference) {
-        resume->state = g_steal_pointer(&state);
+        resume->record = g_steal_pointer(&record);
         return true;
     }
     if (may_overwrite(plan))
         return true;
-    if (!state)
+    if (!record)
         g_propagate_error(error, g_steal_pointer(&problem));
     else
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "%s: an earlier run painted %d frames, but %s; use ‘overwrite’ to start anew",
-                    plan->output, state->done, difference);
+                    plan->output, record->done, difference);
     return false;
 }
+
+/* ---- files that exist ------------------------------------------------------------------------ */
 
 /* Frames that are there keep a film from being made, where they may have been forgotten. */
 static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
@@ -75,53 +72,67 @@ static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
     return false;
 }
 
-static bool layers_are_free(const FlPlan *plan, int frame, GError **error)
+/* The digest of a frame's files; none if one is missing. */
+static FlDigest digest_of(const GPtrArray *files)
 {
-    const int number = fl_drawing_number(plan->drawing, frame);
-    for (int p = 0; plan->options.layers && p < plan->n_painted; p++) {
-        const char *region = plan->painted[p].name;
-        g_autofree char *file = fl_output_name(plan->options.layers, number, region, error);
-        if (!file || !fl_check_not_exists(file, error))
-            return false;
+    FlDigest digest = {0};
+    for (guint k = 0; k < files->len; k++) {
+        const FlDigest file = fl_file_digest(files->pdata[k]);
+        if (!g_file_test(files->pdata[k], G_FILE_TEST_IS_REGULAR))
+            return (FlDigest){0};
+        fl_digest_add(&digest, &file, sizeof file);
     }
-    return true;
+    return digest;
 }
 
-static bool paints_are_free(const FlPlan *plan, int frame, GError **error)
+static bool is_recorded(const GArray *frames, int frame, FlDigest digest)
 {
-    const FlRenderOptions *o = &plan->options;
-    for (int p = 0; o->paint && !o->merge && p < plan->n_painted; p++) {
-        const FlRegionPlan *painted = &plan->painted[p];
-        g_autofree char *file = fl_paint_file_name(o->paint, plan->drawing, painted, frame, error);
-        if (!file || (frame % painted->settings.hold == 0 && !fl_check_not_exists(file, error)))
-            return false;
-    }
-    return true;
+    const FlDigest none = {0};
+    const FlDigest *known =
+        (guint)frame < frames->len ? &g_array_index(frames, FlDigest, frame) : &none;
+    return known->a == digest.a && known->b == digest.b;
 }
 
-/* The file of a finished frame must exist, that of another must not, unless it is ours. */
+static bool refuse_frame(const FlPlan *plan, const char *file, const char *but, GError **error)
+{
+    if (plan->options.part)
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: there is no such frame; ‘merge’ its ‘part’ first", file);
+    else
+        g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
+                    "%s: an earlier run painted it, but %s; use ‘overwrite’ to start anew", file,
+                    but);
+    return false;
+}
+
+/* The files of a finished frame are as they were written, if that is known; else they exist. */
+static bool is_finished(const FlResume *resume, const FlPlan *plan, int frame,
+                        const GPtrArray *files, GError **error)
+{
+    const bool unknown = is_recorded(resume->record->frames, frame, (FlDigest){0});
+    const guint n = unknown ? fl_frame_has_picture(plan) : files->len;
+    for (guint k = 0; k < n; k++)
+        if (!g_file_test(files->pdata[k], G_FILE_TEST_EXISTS))
+            return refuse_frame(plan, files->pdata[k], "it is gone", error);
+    return unknown || is_recorded(resume->record->frames, frame, digest_of(files)) ||
+           refuse_frame(plan, files->pdata[0], "it has changed since", error);
+}
+
+/* The files of a finished frame must be there, those of others must not, unless they are ours. */
 static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, GError **error)
 {
-    const bool has_file = resume->path && !plan->parts_only;
-    g_autofree char *file = has_file ? frame_file(plan, frame, error) : NULL;
-    if (has_file && !file)
+    g_autoptr(GPtrArray) files = fl_frame_files(plan, frame, error);
+    if (!files)
         return false;
-    if (frame < resume->first) {
-        if (!file || g_file_test(file, G_FILE_TEST_EXISTS))
-            return true;
-        if (plan->options.part)
-            g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                        "%s: there is no such frame; ‘merge’ its ‘part’ first", file);
-        else
-            g_set_error(
-                error, FL_ERROR, FL_ERROR_CHANGED,
-                "%s: an earlier run painted it, but it is gone; use ‘overwrite’ to start anew",
-                file);
-        return false;
-    }
-    return resume->keep_files || fl_resume_replaces(resume, frame) ||
-           ((!file || frame_is_free(plan, file, error)) && layers_are_free(plan, frame, error) &&
-            paints_are_free(plan, frame, error));
+    if (frame < resume->first)
+        return is_finished(resume, plan, frame, files, error);
+    if (resume->keep_files || fl_resume_replaces(resume, frame))
+        return true;
+    for (guint k = 0; k < files->len; k++)
+        if (!(k == 0 && fl_frame_has_picture(plan) ? frame_is_free(plan, files->pdata[k], error)
+                                                   : fl_check_not_exists(files->pdata[k], error)))
+            return false;
+    return true;
 }
 
 static bool check_files(const FlResume *resume, const FlPlan *plan, GError **error)
@@ -188,19 +199,20 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
                          .forgets = plan->options.watch};
     if (one_file && !check_film(plan, error))
         return false;
-    g_autoptr(FlFingerprint) print = fl_fingerprint_new(plan, error);
+    g_autoptr(FlFacts) facts = fl_plan_facts(plan);
     resume->path = one_file ? NULL : hidden_file(plan, false, "state");
-    if (!print || (resume->path && !find_state(resume, plan, print, error)))
+    if (resume->path && !find_record(resume, plan, facts, error))
         return false;
-    resume->found = resume->written = resume->state != NULL;
+    resume->found = resume->written = resume->record != NULL;
     if (!resume->found) {
-        resume->state = fl_checkpoint_new();
-        resume->state->overwrite = may_overwrite(plan);
+        resume->record = fl_record_new();
+        resume->record->overwrite = may_overwrite(plan);
+        fl_facts_free(resume->record->facts);
+        resume->record->facts = g_steal_pointer(&facts);
     }
-    fl_fingerprint_free(resume->state->print); // equal to print
-    resume->state->print = g_steal_pointer(&print);
-    resume->first =
-        plan->finished == FL_FINISHED_FRAMES ? plan->end : MAX(resume->state->done, plan->first);
+    resume->first = plan->finished == FL_FINISHED_FRAMES
+                        ? plan->end
+                        : CLAMP(resume->record->done, plan->first, plan->end);
     if (!check_files(resume, plan, error))
         return false;
     if (resume->found)
@@ -208,13 +220,15 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error)
     return true;
 }
 
+/* ---- while it paints ------------------------------------------------------------------------- */
+
 /* Excludes other runs with the same output, which would mix their frames. */
 static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
 {
     g_autofree char *folder = g_path_get_dirname(plan->output);
     g_autofree char *path = hidden_file(plan, true, "lock");
     GError *lock_error = NULL;
-    (void)g_mkdir_with_parents(folder, 0777); // saving the state reports an error
+    (void)g_mkdir_with_parents(folder, 0777); // an error is told when the record is saved
     resume->lock = fl_lock_take(path, plan->output, &lock_error);
     if (lock_error) {
         g_propagate_error(error, lock_error);
@@ -224,7 +238,7 @@ static bool take_lock(FlResume *resume, const FlPlan *plan, GError **error)
     return true;
 }
 
-/* The lock goes before the state: a run killed in between is known to be complete. */
+/* The lock goes before the record: a run killed in between is known to be complete. */
 static void release_lock(FlResume *resume)
 {
     if (resume->lock_path && resume->lock >= 0) {
@@ -239,11 +253,22 @@ bool fl_resume_start(FlResume *resume, const FlPlan *plan, GError **error)
     return !resume->found || take_lock(resume, plan, error);
 }
 
+/* Checks that a frame's drawing is as it was when the render began. */
+static bool check_drawing(const FlPlan *plan, int frame, GError **error)
+{
+    const char *path = fl_drawing_file(plan->drawing, frame);
+    const FlDigest before = fl_inputs_digest(plan->inputs, path), now = fl_file_digest(path);
+    if (before.a == now.a && before.b == now.b)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_CHANGED, "%s: has changed since the render began", path);
+    return false;
+}
+
 bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error)
 {
-    if (!fl_fingerprint_check_drawing(resume->state->print, plan->drawing, frame, error))
+    if (!check_drawing(plan, frame, error))
         return false;
-    // The first state is saved before the first frame, which is not known as ours without it; no
+    // The first record is saved before the first frame, which is not known as ours without it; no
     // sooner, so that an error in the first frame leaves nothing behind.
     if (!resume->path)
         return true;
@@ -251,18 +276,25 @@ bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GEr
         return false;
     if (resume->written)
         return true;
-    return resume->written = fl_checkpoint_save(resume->state, resume->path, error);
+    return resume->written = fl_record_save(resume->record, resume->path, error);
 }
 
-bool fl_resume_save(FlResume *resume, GError **error)
+bool fl_resume_save(FlResume *resume, const FlPlan *plan, int frame, GError **error)
 {
-    return !resume->path || fl_checkpoint_save(resume->state, resume->path, error);
+    GArray *frames = resume->record->frames;
+    g_autoptr(GPtrArray) files = fl_frame_files(plan, frame, error);
+    if (!files)
+        return false;
+    g_array_set_size(frames, MAX(frames->len, (guint)frame + 1));
+    if (!resume->keep_files) // a file that was kept may be anything
+        g_array_index(frames, FlDigest, frame) = digest_of(files);
+    return !resume->path || fl_record_save(resume->record, resume->path, error);
 }
 
 bool fl_resume_replaces(const FlResume *resume, int frame)
 {
     const bool interrupted = resume->found && frame == resume->first;
-    return !resume->keep_files && (interrupted || (resume->state && resume->state->overwrite));
+    return !resume->keep_files && (interrupted || (resume->record && resume->record->overwrite));
 }
 
 bool fl_resume_keeps(const FlResume *resume, const char *file)
@@ -277,7 +309,7 @@ const char *fl_resume_advice(const FlResume *resume)
     return resume->path ? "run again to resume" : "a film without its frames starts anew";
 }
 
-void fl_resume_finish(FlResume *resume)
+static void remove_record(FlResume *resume)
 {
     release_lock(resume);
     if (resume->path)
@@ -287,9 +319,179 @@ void fl_resume_finish(FlResume *resume)
 void fl_resume_clear(FlResume *resume)
 {
     if (resume->forgets && resume->lock_path)
-        fl_resume_finish(resume); // the lock says that the state is ours
+        remove_record(resume); // the lock says that it is ours
     release_lock(resume);
     g_free(resume->path);
-    fl_checkpoint_free(resume->state);
+    fl_record_free(resume->record);
     *resume = (FlResume){0};
+}
+
+/* ---- what is finished ------------------------------------------------------------------------ */
+
+/* The store of the plan, if its render can be known as finished. */
+static FlStore *store_for(const FlPlan *plan)
+{
+    const FlRenderOptions *o = &plan->options;
+    const bool more =
+        o->layers || o->paint || o->stats || o->report || o->dump || o->ebsynth || o->dry_run;
+    const bool piped = o->config && !g_file_test(o->config, G_FILE_TEST_IS_REGULAR);
+    return more || piped ? NULL : plan->cache; // a pipe cannot be read again
+}
+
+/* The name of the record: all renders of these frames, or this film, have the same. */
+static FlDigest name_of(const FlPlan *plan)
+{
+    FlDigest name = {0};
+    g_autofree char *path = g_canonicalize_filename(plan->output, NULL);
+    fl_digest_add_text(&name, path);
+    return name;
+}
+
+/* The one file beside the frames, or instead of them; NULL: none. */
+static const char *film_of(const FlPlan *plan)
+{
+    return plan->format->film ? plan->output : plan->movie;
+}
+
+/* What decides the film besides its frames is part of its name. */
+static char *film_key(const FlPlan *plan)
+{
+    char rate[G_ASCII_DTOSTR_BUF_SIZE];
+    const FlSinkFormat *format = plan->movie ? plan->movie_format : plan->format;
+    return g_strdup_printf("%s %s %s", film_of(plan), format->name,
+                           g_ascii_dtostr(rate, sizeof rate, plan->options.fps));
+}
+
+static FlFacts *film_facts(const FlPlan *plan)
+{
+    FlFacts *facts = fl_facts_new();
+    g_autofree char *key = film_of(plan) ? film_key(plan) : NULL;
+    if (key)
+        fl_facts_add_digest(facts, key, fl_file_digest(film_of(plan)));
+    return facts;
+}
+
+static bool same_facts(const FlFacts *before, FlFacts *now)
+{
+    g_autofree char *difference = fl_facts_difference(before, now);
+    fl_facts_free(now);
+    return !difference;
+}
+
+/* The digests of the same files, read now. */
+static FlFacts *inputs_now(const FlFacts *before)
+{
+    FlFacts *now = fl_facts_new();
+    for (guint k = 0; k < before->list->len; k++) {
+        const char *path = g_array_index(before->list, FlFact, k).name;
+        fl_facts_add_digest(now, path, fl_file_digest(path));
+    }
+    return now;
+}
+
+/* Where the same styles are found now. */
+static FlFacts *found_now(const FlFacts *before)
+{
+    FlFacts *now = fl_facts_new();
+    for (guint k = 0; k < before->list->len; k++) {
+        const char *name = g_array_index(before->list, FlFact, k).name;
+        g_autofree char *path = fl_style_find(name, NULL);
+        fl_facts_add(now, name, path);
+    }
+    return now;
+}
+
+static bool frames_are_there(const FlPlan *plan, const FlSequence *sequence, const FlRecord *record)
+{
+    bool there = true;
+    for (int f = 0; f < sequence->n && !plan->format->film && there; f++) {
+        g_autoptr(GPtrArray) files = g_ptr_array_new_with_free_func(g_free);
+        char *file = fl_output_name(plan->output, sequence->number[f], NULL, NULL);
+        g_ptr_array_add(files, file);
+        there = file && g_file_test(file, G_FILE_TEST_EXISTS) &&
+                is_recorded(record->frames, f, digest_of(files));
+    }
+    return there;
+}
+
+/* Frames that exist and are to be kept. */
+static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
+{
+    const FlRenderOptions *o = &plan->options;
+    if (o->overwrite != FL_OVERWRITE_KEEP || film_of(plan) || plan->parts_only || o->layers ||
+        o->paint || o->stats || o->report || o->dump || o->ebsynth)
+        return false;
+    // frames that are found to be left out would move the bounds of parts
+    if (plan->n_parts > 1 && o->missing > FL_MISSING_ERROR)
+        return false;
+    int first, end;
+    fl_plan_part(plan, sequence->n, &first, &end);
+    for (int f = first; f < end; f++) {
+        g_autofree char *file = fl_output_name(plan->output, sequence->number[f], NULL, NULL);
+        if (!file || !g_file_test(file, G_FILE_TEST_EXISTS))
+            return false;
+    }
+    return true;
+}
+
+FlFinished fl_resume_look(const FlPlan *plan, const FlSequence *sequence)
+{
+    if (keeps_all(plan, sequence))
+        return FL_FINISHED_ALL;
+    FlStore *store = store_for(plan);
+    g_autoptr(GBytes) bytes = store ? fl_store_get(store, FL_KEPT_RECORD, name_of(plan)) : NULL;
+    g_autoptr(FlRecord) record = bytes ? fl_record_parse(bytes) : NULL;
+    if (!record || record->request.a != plan->request.a || record->request.b != plan->request.b ||
+        !same_facts(record->found, found_now(record->found)) ||
+        !same_facts(record->inputs, inputs_now(record->inputs)) ||
+        !frames_are_there(plan, sequence, record))
+        return FL_FINISHED_NOTHING;
+    if (!film_of(plan) || same_facts(record->films, film_facts(plan)))
+        return FL_FINISHED_ALL;
+    return plan->format->film ? FL_FINISHED_NOTHING : FL_FINISHED_FRAMES;
+}
+
+/* Adds the digests of all that was read, and of the film. */
+static void complete_record(FlRecord *record, const FlPlan *plan)
+{
+    record->request = plan->request;
+    for (int k = 0; k < fl_inputs_count(plan->inputs); k++) {
+        const char *path = fl_inputs_path(plan->inputs, k);
+        fl_facts_add_digest(record->inputs, path, fl_inputs_digest(plan->inputs, path));
+    }
+    for (int p = 0; p < plan->n_painted; p++) {
+        const FlRegionPlan *region = &plan->painted[p];
+        fl_facts_add(record->found, region->settings.style, region->style->path);
+        if (region->tile)
+            fl_facts_add(record->found, region->settings.tile, region->tile->path);
+    }
+    fl_facts_free(record->films);
+    record->films = film_facts(plan);
+}
+
+/* Frames that an earlier run has finished, of which only the film was made now. */
+static bool record_frames(FlRecord *record, const FlPlan *plan)
+{
+    const int n = plan->format->film ? 0 : fl_drawing_frames(plan->drawing);
+    g_array_set_size(record->frames, (guint)n);
+    for (int f = 0; f < n; f++) {
+        FlDigest *known = &g_array_index(record->frames, FlDigest, f);
+        g_autoptr(GPtrArray) files = fl_frame_files(plan, f, NULL);
+        if (files && !fl_digest_is_known(*known))
+            *known = digest_of(files);
+        if (!fl_digest_is_known(*known))
+            return false;
+    }
+    return true;
+}
+
+void fl_resume_finish(FlResume *resume, const FlPlan *plan)
+{
+    FlStore *store = store_for(plan);
+    remove_record(resume);
+    if (!store || resume->keep_files || !record_frames(resume->record, plan) ||
+        (film_of(plan) && !g_file_test(film_of(plan), G_FILE_TEST_IS_REGULAR)))
+        return;
+    complete_record(resume->record, plan);
+    fl_record_keep(resume->record, store, name_of(plan));
 }

@@ -1,24 +1,33 @@
-/* Resuming an interrupted render, its lock, and the policy for files that exist. */
+/* What an earlier run has done: where a render resumes or that it has nothing to do; its lock, and
+ * the policy for files that exist. */
 #ifndef FLUIDY_JOB_RESUME_H
 #define FLUIDY_JOB_RESUME_H
 
-#include "job/checkpoint.h"
 #include "job/plan.h"
+#include "keep/record.h"
 
 typedef struct FlResume {
-    char *path;          // of the saved state; NULL: a film without its frames, which cannot resume
-    FlCheckpoint *state; // the latest
-    bool written;        // the file has a state
-    bool found;          // an earlier run wrote it
-    bool forgets;        // an interrupted run leaves no state
-    int first;           // the frame to start with
-    bool keep_files;     // existing files stay
-    char *lock_path;     // beside the state; NULL: not locked
-    int lock;            // its descriptor, where files can be locked
+    char *path;       // of the record file; NULL: a film without its frames, which cannot resume
+    FlRecord *record; // the latest
+    bool written;     // the file has a record
+    bool found;       // an earlier run wrote it
+    bool forgets;     // an interrupted run leaves no record
+    int first;        // the frame to start with
+    bool keep_files;  // existing files stay
+    char *lock_path;  // beside the record; NULL: not locked
+    int lock;         // its descriptor, where files can be locked
 } FlResume;
 
 /**
- * Looks for the state of an earlier run and decides where to start. Writes nothing.
+ * Asks the record in plan->cache of the render that wrote the plan's frames last: the same request,
+ * and the digests of all files that it read and wrote, mean that they are finished. For renders of
+ * frames and films alone, without layers, paint, statistics or a report. Frames that exist and are
+ * to be kept are finished in any case. Reads no drawing.
+ */
+FlFinished fl_resume_look(const FlPlan *plan, const FlSequence *sequence);
+
+/**
+ * Looks for the record of an interrupted run and decides where to start. Writes nothing.
  *
  * Returns: false with FL_ERROR_CHANGED, which names what has changed, FL_ERROR_EXISTS if a file
  * must not be overwritten, or FL_ERROR_USAGE.
@@ -27,7 +36,7 @@ bool fl_resume_init(FlResume *resume, const FlPlan *plan, GError **error);
 
 /**
  * Looks by names alone, before anything is read, whether the frames and the film exist that a run
- * may not replace. Where an interrupted run has left its state, fl_resume_init() decides.
+ * may not replace. Where an interrupted run has left its record, fl_resume_init() decides.
  *
  * Returns: false with FL_ERROR_EXISTS or FL_ERROR_USAGE.
  */
@@ -43,8 +52,8 @@ bool fl_resume_start(FlResume *resume, const FlPlan *plan, GError **error);
  */
 bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error);
 
-/** Saves the state, after the frame's files. FL_ERROR_OUTPUT. */
-bool fl_resume_save(FlResume *resume, GError **error);
+/** Adds the frame's files, which are written, to the record and saves it. FL_ERROR_OUTPUT. */
+bool fl_resume_save(FlResume *resume, const FlPlan *plan, int frame, GError **error);
 
 /** Whether files of a frame may be replaced: on request, or if the interrupted run was at it. */
 bool fl_resume_replaces(const FlResume *resume, int frame);
@@ -55,8 +64,8 @@ bool fl_resume_keeps(const FlResume *resume, const char *file);
 /** What to do after an interruption; static. */
 const char *fl_resume_advice(const FlResume *resume);
 
-/** Removes the saved state of a complete render. */
-void fl_resume_finish(FlResume *resume);
+/** Removes the record file of a complete render, and keeps the record in plan->cache. */
+void fl_resume_finish(FlResume *resume, const FlPlan *plan);
 
 void fl_resume_clear(FlResume *resume);
 

@@ -13,7 +13,7 @@
 #define DEFAULT_MIB 8192
 #define LEFT_S 3600 // an unfinished file so old is that of a process that was killed
 
-static const char *const suffix[] = {"picture", "film", "render", "facts"};
+static const char *const suffix[] = {"picture", "film", "record", "facts"};
 
 struct FlStore {
     const FlRenderOptions *options;

@@ -18,7 +18,7 @@ typedef struct FlStore FlStore;
 typedef enum FlKept {
     FL_KEPT_PICTURE, // a region's paint in one frame, and the state of its engine after it
     FL_KEPT_FILM,    // the digests of all pictures of a region
-    FL_KEPT_RENDER,  // the files that a render has read and written
+    FL_KEPT_RECORD,  // of a finished render: FlRecord
     FL_KEPT_FACTS,   // the facts that decided the paint of a region when it was painted last
 } FlKept;
 

@@ -47,9 +47,9 @@ typedef enum FlOptionSection {
 /** Whether an option decides the painted bytes, and so whether a render can be resumed. */
 typedef enum FlOptionBytes {
     FL_BYTES_NEVER,
-    FL_BYTES_VALUE,  // the fingerprint has its value
+    FL_BYTES_VALUE,  // its value is a fact of the render
     FL_BYTES_FRAME,  // likewise, but paint does not depend on it
-    FL_BYTES_RESULT, // the fingerprint has what follows from it
+    FL_BYTES_RESULT, // what follows from it is
 } FlOptionBytes;
 
 typedef enum FlOptionGroup {

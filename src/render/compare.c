@@ -10,7 +10,7 @@
 #include "io/contact_sheet.h"
 #include "io/pattern.h"
 #include "io/png.h"
-#include "job/guard.h"
+#include "job/outputs.h"
 #include "render/render_frames.h"
 #include "style/style_folder.h"
 #include <string.h>

@@ -248,11 +248,11 @@ bool fl_frames_check(FlFrames *frames, GError **error)
                                       : make_sheet(frames, error));
 }
 
-bool fl_frames_prepare(FlFrames *frames, const FlFingerprint *print, GError **error)
+bool fl_frames_prepare(FlFrames *frames, GError **error)
 {
     FlPainters *painters = &frames->painters;
-    return fl_painters_recall(painters, frames->plan, print, error) &&
-           (!fl_painters_need_masks(painters) || fl_plan_rasterise(frames->plan, error)) &&
+    fl_painters_recall(painters, frames->plan);
+    return (!fl_painters_need_masks(painters) || fl_plan_rasterise(frames->plan, error)) &&
            fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error);
 }
 

@@ -29,8 +29,8 @@ void fl_frames_clear(FlFrames *frames);
 /** Makes background and paper, which could stop the render; call it first. */
 bool fl_frames_check(FlFrames *frames, GError **error);
 
-/** Makes masks and guides. print: fl_fingerprint_new() of the plan; NULL: the plan has no cache. */
-bool fl_frames_prepare(FlFrames *frames, const FlFingerprint *print, GError **error);
+/** Makes masks and guides. */
+bool fl_frames_prepare(FlFrames *frames, GError **error);
 
 /** Paints the last pictures of a loop before its first ones; does nothing if it is no loop. */
 bool fl_frames_lead_in(FlFrames *frames, GError **error);

@@ -145,7 +145,7 @@ static bool make_painter(GivenRegion *given, GError **error)
 {
     const FlRegionPaint *region = given->region;
     const FlRenderOptions options = {.cache = region->cache, .cache_size = region->cache_size};
-    g_autoptr(GHashTable) sums = fl_style_sums_new();
+    g_autoptr(FlInputs) inputs = fl_inputs_new(NULL, NULL);
     FlPainter *painter = &given->painter;
     const bool hidden = fl_mask_store_extent(given->masks, 0).width == 0;
     if (!fl_sealed_read_key(error))
@@ -158,8 +158,7 @@ static bool make_painter(GivenRegion *given, GError **error)
                                .masks = given->masks,
                                .flow = region->flow ? flow_of : NULL,
                                .data = given};
-    if (!fl_reuse_init(&painter->reuse, given->cache, &given->shapes, &given->plan, sums, error))
-        return false;
+    fl_reuse_init(&painter->reuse, given->cache, &given->shapes, &given->plan, inputs);
     fl_painter_init(painter, &given->shapes, &given->plan, hidden, painter->reuse);
     if (painter->result.reach_px > 0)
         given->alpha = fl_alloc(fl_rect_pixels(given->page), 1, "a layer", error);

@@ -140,10 +140,8 @@ static bool open_motion(FlPainters *painters, GError **error)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
-bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, const FlFingerprint *whole,
-                        GError **error)
+void fl_painters_recall(FlPainters *painters, const FlPlan *plan)
 {
-    g_autoptr(GHashTable) styles = fl_style_sums_new();
     painters->plan = plan, painters->n = plan->n_painted;
     painters->painter = g_new0(FlPainter *, MAX(plan->n_painted, 1));
     painters->painted = g_new0(const FlPaintedRegion *, MAX(plan->n_painted, 1));
@@ -152,12 +150,9 @@ bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, const FlFinger
         painters->painter[p] = g_new0(FlPainter, 1);
         painters->painted[p] = &painters->painter[p]->result;
         FlReuse *reuse = &painters->painter[p]->reuse;
-        if (!fl_reuse_init(reuse, plan->cache, &painters->shapes, &plan->painted[p], styles,
-                           error) ||
-            !fl_reuse_recall(reuse, plan, p, whole, error))
-            return false;
+        fl_reuse_init(reuse, plan->cache, &painters->shapes, &plan->painted[p], plan->inputs);
+        fl_reuse_recall(reuse, plan, p);
     }
-    return true;
 }
 
 bool fl_painters_need_masks(const FlPainters *painters)

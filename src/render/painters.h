@@ -16,12 +16,8 @@ typedef struct FlPainters {
 /** Work for painter p; step is a frame, or a picture of the lead-in. */
 typedef bool (*FlPainterWork)(void *data, int p, int step, GError **error);
 
-/**
- * Looks up which pictures of the plan's regions its cache has; call it first. whole:
- * fl_fingerprint_new() of the plan. Returns: false with an error about a style's file.
- */
-bool fl_painters_recall(FlPainters *painters, const FlPlan *plan, const FlFingerprint *whole,
-                        GError **error);
+/** Looks up which pictures of the plan's regions its cache has; call it first. */
+void fl_painters_recall(FlPainters *painters, const FlPlan *plan);
 
 /** True if any region's masks are needed for its guides. */
 bool fl_painters_need_masks(const FlPainters *painters);

@@ -3,8 +3,7 @@
 #include "base/schedule.h"
 #include "inspect/ebsynth.h"
 #include "inspect/stats.h"
-#include "job/finished.h"
-#include "job/guard.h"
+#include "job/outputs.h"
 #include "job/resume.h"
 #include "render/frame_writer.h"
 #include "render/frames.h"
@@ -38,9 +37,10 @@ static bool write_finished(void *data, GError **error)
 {
     Pipeline *pipeline = data;
     const gint64 start = g_get_monotonic_time();
-    const bool done = fl_frame_writer_frame(&pipeline->writer, &pipeline->finished,
-                                            pipeline->finished_frame, error) &&
-                      fl_resume_save(&pipeline->resume, error);
+    const bool done =
+        fl_frame_writer_frame(&pipeline->writer, &pipeline->finished, pipeline->finished_frame,
+                              error) &&
+        fl_resume_save(&pipeline->resume, pipeline->frames.plan, pipeline->finished_frame, error);
     pipeline->write_s = seconds_since(start);
     return done;
 }
@@ -80,9 +80,9 @@ static bool take_state(Pipeline *pipeline, int frame, GError **error)
         !fl_frame_writer_paint(&pipeline->writer, pipeline->frames.painters.painted, frame, error))
         return false;
     if (pipeline->resume.path &&
-        !fl_painters_save(&pipeline->frames.painters, pipeline->resume.state->painter, error))
+        !fl_painters_save(&pipeline->frames.painters, pipeline->resume.record->states, error))
         return false;
-    pipeline->resume.state->done = frame + 1;
+    pipeline->resume.record->done = frame + 1;
     return true;
 }
 
@@ -152,17 +152,17 @@ static bool restore_state(Pipeline *pipeline, GError **error)
     if (!fl_resume_start(resume, pipeline->frames.plan, error))
         return false;
     if (resume->found)
-        return fl_painters_load(&pipeline->frames.painters, resume->state->painter, resume->path,
+        return fl_painters_load(&pipeline->frames.painters, resume->record->states, resume->path,
                                 error);
     return !resume->path ||
-           fl_painters_save(&pipeline->frames.painters, resume->state->painter, error);
+           fl_painters_save(&pipeline->frames.painters, resume->record->states, error);
 }
 
 /* Masks, guides, and the state before the first frame. */
 static bool paint_before(Pipeline *pipeline, GError **error)
 {
     FlFrames *frames = &pipeline->frames;
-    if (!fl_frames_prepare(frames, pipeline->resume.state->print, error))
+    if (!fl_frames_prepare(frames, error))
         return false;
     const gint64 start = g_get_monotonic_time();
     if (!fl_frames_lead_in(frames, error))
@@ -212,11 +212,10 @@ static bool run(Pipeline *pipeline, GError **error)
     if (!finish_writing(pipeline, error) || !fl_frame_writer_finish(&pipeline->writer, error) ||
         !fl_stats_finish(&pipeline->stats, error) || !fl_report_finish(pipeline->report, error))
         return false;
-    fl_resume_finish(&pipeline->resume);
+    fl_resume_finish(&pipeline->resume, pipeline->frames.plan);
     fl_summary_of_render(pipeline->frames.plan, &pipeline->stats);
     fl_summary_of_reuse(&pipeline->frames.painters);
     fl_painters_finish(&pipeline->frames.painters);
-    fl_finished_note(pipeline->frames.plan);
     return true;
 }
 
@@ -228,7 +227,7 @@ static bool dry_run(Pipeline *pipeline, GError **error)
     double frame_s = 0;
     plan->options.dump = plan->options.ebsynth = NULL; // they would write files
     if (!fl_frames_check(&pipeline->frames, error) || !note_obstacles(pipeline, error) ||
-        !fl_frames_prepare(&pipeline->frames, NULL, error))
+        !fl_frames_prepare(&pipeline->frames, error))
         return false;
     for (int k = 0; k < 2 && k * plan->hold < fl_drawing_frames(plan->drawing); k++) {
         const gint64 start = g_get_monotonic_time();
@@ -267,7 +266,7 @@ static bool try_render(const FlRenderOptions *options, FlFrameTaker taker, bool 
                       (options->dry_run ? dry_run(&pipeline, error) : run(&pipeline, error));
     *stale = !done && fl_painters_stale(&pipeline.frames.painters);
     if (*stale && options->overwrite == FL_OVERWRITE_KEEP)
-        fl_resume_finish(&pipeline.resume); // its frames are kept, its state is of no use
+        pipeline.resume.forgets = true; // its frames are kept, its state is of no use
     clear(&pipeline);
     return done;
 }

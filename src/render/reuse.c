@@ -46,39 +46,33 @@ static void recall(FlReuse *reuse, const FlPlan *plan, int p)
     reuse->known = g_steal_pointer(&known);
 }
 
-bool fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
-                   const FlRegionPlan *region, GHashTable *styles, GError **error)
+void fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
+                   const FlRegionPlan *region, FlInputs *inputs)
 {
     *reuse = (FlReuse){.cache = cache, .takes = true};
     reuse->made = g_array_new(FALSE, FALSE, sizeof(FlDigest));
     if (!cache)
-        return true;
-    reuse->facts = fl_fingerprint_of_method(shapes, region, styles, error);
-    if (!reuse->facts)
-        return false;
-    reuse->last = fl_fingerprint_digest(reuse->facts);
-    return true;
+        return;
+    reuse->facts = fl_region_facts(shapes, region, inputs);
+    reuse->last = fl_facts_digest(reuse->facts);
 }
 
-bool fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p, const FlFingerprint *whole,
-                     GError **error)
+void fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p)
 {
     const FlRenderOptions *o = &plan->options;
     reuse->takes = !fl_report_measures(o) && !o->dump && !o->ebsynth;
     if (!reuse->cache)
-        return true;
+        return;
     reuse->slot = slot_of(plan, p);
-    if (!fl_fingerprint_add_film(reuse->facts, plan, p, whole, error))
-        return false;
-    reuse->film = fl_fingerprint_digest(reuse->facts);
+    fl_region_facts_add_film(reuse->facts, plan, p);
+    reuse->film = fl_facts_digest(reuse->facts);
     if (reuse->takes)
         recall(reuse, plan, p);
-    return true;
 }
 
 void fl_reuse_clear(FlReuse *reuse)
 {
-    fl_fingerprint_free(reuse->facts);
+    fl_facts_free(reuse->facts);
     g_clear_pointer(&reuse->made, g_array_unref);
     g_clear_pointer(&reuse->known, g_array_unref);
     g_clear_pointer(&reuse->state, g_bytes_unref);
@@ -239,17 +233,19 @@ void fl_reuse_finish(FlReuse *reuse)
                            {&reuse->rect, sizeof reuse->rect},
                            {reuse->made->data, n * sizeof(FlDigest)}};
     fl_store_put(reuse->cache, FL_KEPT_FILM, reuse->film, film, n > 0 ? G_N_ELEMENTS(film) : 1);
-    g_autoptr(GBytes) facts = fl_fingerprint_pack(reuse->facts);
-    gsize bytes;
-    const void *data = g_bytes_get_data(facts, &bytes);
-    fl_store_put(reuse->cache, FL_KEPT_FACTS, reuse->slot,
-                 &(FlSpan){(void *)(uintptr_t)data, bytes}, 1);
+    g_autoptr(GVariant) facts = g_variant_ref_sink(fl_facts_pack(reuse->facts));
+    const FlSpan packed = {(void *)(uintptr_t)g_variant_get_data(facts), g_variant_get_size(facts)};
+    fl_store_put(reuse->cache, FL_KEPT_FACTS, reuse->slot, &packed, 1);
 }
 
 char *fl_reuse_reason(const FlReuse *reuse)
 {
     g_autoptr(GBytes) bytes =
         reuse->cache ? fl_store_get(reuse->cache, FL_KEPT_FACTS, reuse->slot) : NULL;
-    g_autoptr(FlFingerprint) before = bytes ? fl_fingerprint_unpack(bytes) : NULL;
-    return before ? fl_fingerprint_difference(before, reuse->facts) : NULL;
+    if (!bytes)
+        return NULL;
+    g_autoptr(GVariant) packed =
+        g_variant_ref_sink(g_variant_new_from_bytes(G_VARIANT_TYPE(FL_FACTS_TYPE), bytes, FALSE));
+    g_autoptr(FlFacts) before = fl_facts_unpack(packed);
+    return fl_facts_difference(before, reuse->facts);
 }

@@ -3,8 +3,7 @@
 #define FLUIDY_RENDER_REUSE_H
 
 #include "guides/guides.h"
-#include "job/fingerprint.h"
-#include "keep/store.h"
+#include "job/plan_facts.h"
 
 /**
  * The pictures of a region form a chain: the digest of each is made from that of the one before and
@@ -18,27 +17,27 @@
 typedef struct FlReuse {
     FlStore *cache; // borrowed; NULL: nothing is taken or kept
     bool takes;     // false while guides or statistics are inspected: then everything is painted
-    FlFingerprint *facts; // of method and film
-    FlDigest film, slot;  // of all facts; of where those of the last render are kept
-    FlDigest last;        // of the picture painted or taken last
-    GArray *made;         // of FlDigest: the pictures so far, where they follow from the guides
-    GArray *known;        // of FlDigest: all pictures of the film; NULL: not known
-    guint n_done;         // pictures painted or taken, in earlier runs too
-    FlRect rect;          // where known: the painter's
-    bool stale;           // a known picture is gone, so that this render cannot go on
-    GBytes *state;        // after the last picture, which was taken; NULL: the engine has its own
-    FlDigest state_of;    // the picture with that state
+    FlFacts *facts; // of method and film
+    FlDigest film, slot; // of all facts; of where those of the last render are kept
+    FlDigest last;       // of the picture painted or taken last
+    GArray *made;        // of FlDigest: the pictures so far, where they follow from the guides
+    GArray *known;       // of FlDigest: all pictures of the film; NULL: not known
+    guint n_done;        // pictures painted or taken, in earlier runs too
+    FlRect rect;         // where known: the painter's
+    bool stale;          // a known picture is gone, so that this render cannot go on
+    GBytes *state;       // after the last picture, which was taken; NULL: the engine has its own
+    FlDigest state_of;   // the picture with that state
     int n_taken, n_painted;
 } FlReuse;
 
-/** Begins with the method by which a region of `shapes` is painted; cache NULL: keeps nothing. */
-bool fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
-                   const FlRegionPlan *region, GHashTable *styles, GError **error);
+/** Begins with the method by which a region of `shapes` is painted. cache: NULL: keeps nothing;
+ * inputs: knows the digests of styles. */
+void fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
+                   const FlRegionPlan *region, FlInputs *inputs);
 void fl_reuse_clear(FlReuse *reuse);
 
-/** Looks up the pictures of plan->painted[p]. whole: fl_fingerprint_new() of the plan. */
-bool fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p, const FlFingerprint *whole,
-                     GError **error);
+/** Looks up the pictures of plan->painted[p]. */
+void fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p);
 
 /** Begins the chain of a region whose pictures are not known and have this place in the frame. */
 void fl_reuse_begin(FlReuse *reuse, FlRect rect);

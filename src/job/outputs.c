@@ -1,0 +1,99 @@
+#include "job/outputs.h"
+
+#include "io/pattern.h"
+#include "job/paint_files.h"
+#include "params/options.h"
+
+bool fl_frame_has_picture(const FlPlan *plan)
+{
+    return !plan->format->film && !plan->parts_only;
+}
+
+/* Takes the name. Returns: false if it is NULL. */
+static bool add(GPtrArray *files, char *name)
+{
+    if (name)
+        g_ptr_array_add(files, name);
+    return name != NULL;
+}
+
+GPtrArray *fl_frame_files(const FlPlan *plan, int frame, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    const int number = fl_drawing_number(plan->drawing, frame);
+    g_autoptr(GPtrArray) files = g_ptr_array_new_with_free_func(g_free);
+    if (fl_frame_has_picture(plan) &&
+        !add(files, fl_output_name(plan->output, number, NULL, error)))
+        return NULL;
+    for (int p = 0; p < plan->n_painted; p++) {
+        const FlRegionPlan *region = &plan->painted[p];
+        if (o->layers && !add(files, fl_output_name(o->layers, number, region->name, error)))
+            return NULL;
+        if (o->paint && !o->merge && frame % region->settings.hold == 0 &&
+            !add(files, fl_paint_file_name(o->paint, plan->drawing, region, frame, error)))
+            return NULL;
+    }
+    return g_steal_pointer(&files);
+}
+
+/* ---- the guard ------------------------------------------------------------------------------- */
+
+static bool may_write(const FlPlan *plan, char *name, GError **error)
+{
+    return fl_inputs_may_write(plan->inputs, plan->drawing, name, error);
+}
+
+/* Checks the files that are in a folder of each region, below `in`; NULL: nothing is written. */
+static bool may_fill_folders(const FlPlan *plan, const char *in, GError **error)
+{
+    for (int p = 0; in && p < plan->n_painted; p++) {
+        g_autofree char *folder = g_build_filename(in, plan->painted[p].name, NULL);
+        g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
+        for (const char *name; dir && (name = g_dir_read_name(dir));)
+            if (!may_write(plan, g_build_filename(folder, name, NULL), error))
+                return false;
+    }
+    return true;
+}
+
+static bool may_write_frame(const FlPlan *plan, int frame, GError **error)
+{
+    g_autoptr(GPtrArray) files = fl_frame_files(plan, frame, NULL); // its mistakes are told later
+    for (guint k = 0; files && k < files->len; k++)
+        if (!may_write(plan, g_strdup(files->pdata[k]), error))
+            return false;
+    return true;
+}
+
+bool fl_guard_inputs(const FlPlan *plan, GError **error)
+{
+    const FlRenderOptions *o = &plan->options;
+    char *report = o->report ? g_build_filename(o->report, "index.html", NULL) : NULL;
+    if (!may_write(plan, report, error) ||
+        !may_write(plan, g_strdup(plan->format->film ? plan->output : NULL), error) ||
+        !may_write(plan, g_strdup(plan->movie), error) ||
+        !may_write(plan, g_strdup(o->stats), error) || !may_fill_folders(plan, o->dump, error) ||
+        !may_fill_folders(plan, o->merge ? NULL : o->ebsynth, error))
+        return false;
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++)
+        if (!may_write_frame(plan, f, error))
+            return false;
+    return true;
+}
+
+bool fl_guard_pictures(const FlDrawing *drawing, const FlRenderOptions *options,
+                       const char *pattern, GError **error)
+{
+    g_autoptr(FlInputs) inputs = fl_inputs_new(NULL, NULL);
+    fl_inputs_add_drawing(inputs, drawing);
+    fl_inputs_add_options(inputs, options, drawing, NULL);
+    for (size_t k = 0; k < options->n_settings; k++)
+        if (fl_option_names_style(options->settings[k].name))
+            fl_inputs_add_style(inputs, options->settings[k].value);
+    for (int f = 0; f < fl_drawing_frames(drawing); f++) {
+        char *path = fl_output_name(pattern, fl_drawing_number(drawing, f), NULL, NULL);
+        if (!fl_inputs_may_write(inputs, drawing, path, error))
+            return false;
+    }
+    return true;
+}

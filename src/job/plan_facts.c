@@ -1,0 +1,249 @@
+#include "job/plan_facts.h"
+
+#include "base/build_id.h"
+#include "io/pattern.h"
+#include "io/picture_file.h"
+#include <string.h>
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+/* The folder of a film may move; the names in it may not. */
+static void add_file(FlFacts *facts, FlInputs *inputs, const char *path)
+{
+    g_autofree char *name = g_path_get_basename(path);
+    fl_facts_add_digest(facts, name, fl_inputs_digest(inputs, path));
+}
+
+static void add_style(FlFacts *facts, FlInputs *inputs, const char *path)
+{
+    g_autofree char *base = g_path_get_basename(path);
+    g_autofree char *name = g_strconcat("style ", base, NULL);
+    fl_facts_add_digest(facts, name, fl_inputs_digest_of_style(inputs, path));
+}
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(char *const *)a, *(char *const *)b);
+}
+
+/* The files of the frames, and those that they refer to. */
+static void add_drawings(FlFacts *facts, const FlPlan *plan)
+{
+    const FlDrawing *drawing = plan->drawing;
+    guint n;
+    g_autofree const char **linked =
+        (const char **)g_hash_table_get_keys_as_array(fl_drawing_linked_files(drawing), &n);
+    fl_facts_add_number(facts, "the number of frames", fl_drawing_frames(drawing));
+    for (int f = 0; f < fl_drawing_frames(drawing); f++)
+        add_file(facts, plan->inputs, fl_drawing_file(drawing, f));
+    qsort(linked, n, sizeof *linked, by_name);
+    for (guint k = 0; k < n; k++)
+        add_file(facts, plan->inputs, linked[k]);
+}
+
+/* The files of an option that may name one for each frame; what is missing is told when it is
+ * opened. */
+static void add_pattern(FlFacts *facts, const FlPlan *plan, const char *pattern, const char *region)
+{
+    const bool each = fl_input_is_pattern(pattern);
+    FlDigest sum = {0};
+    for (int f = each ? plan->first : 0; f < (each ? plan->end : 1); f++) {
+        g_autofree char *file =
+            each ? fl_output_name(pattern, fl_drawing_number(plan->drawing, f), region, NULL)
+                 : g_strdup(pattern);
+        const FlDigest digest = file ? fl_inputs_digest(plan->inputs, file) : (FlDigest){0};
+        fl_digest_add(&sum, &digest, sizeof digest);
+    }
+    fl_facts_add_digest(facts, pattern, sum);
+}
+
+/* ---- the whole plan -------------------------------------------------------------------------- */
+
+/* Those that decide frames, or those that decide paint. */
+static void add_values(FlFacts *facts, FlOptionScope scope, const void *object, const char *region,
+                       bool of_frames)
+{
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->scope != scope ||
+            (option->bytes != FL_BYTES_VALUE && !(of_frames && option->bytes == FL_BYTES_FRAME)))
+            continue;
+        g_autofree char *value = fl_option_get(option, object);
+        // the folder of a style may move; its contents may not change
+        g_autofree char *base =
+            value && option->type == FL_OPTION_STYLE ? g_path_get_basename(value) : NULL;
+        g_autofree char *name =
+            region ? g_strdup_printf("%s of region %s", option->name, region) : NULL;
+        fl_facts_add(facts, name ? name : option->name, base ? base : value);
+    }
+}
+
+void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *object,
+                          const char *region)
+{
+    add_values(facts, scope, object, region, true);
+}
+
+/* What an option's value leads to, and then the values. */
+static void add_options(FlFacts *facts, const FlPlan *plan)
+{
+    fl_facts_add(facts, "the format", plan->format->name);
+    fl_facts_add_number(facts, "the first frame's number", fl_drawing_number(plan->drawing, 0));
+    fl_facts_add_number(facts, "the width", plan->width);
+    fl_facts_add_number(facts, "the height", plan->height);
+    fl_facts_add_number(facts, "the hold", plan->hold);
+    fl_facts_add_options(facts, FL_SCOPE_RENDER, &plan->options, NULL);
+}
+
+static void add_painted(FlFacts *facts, const FlPlan *plan)
+{
+    for (int p = 0; p < plan->n_painted; p++) {
+        const FlRegionPlan *painted = &plan->painted[p];
+        fl_facts_add_options(facts, FL_SCOPE_REGION, &painted->settings, painted->name);
+        if (painted->flow_files)
+            add_pattern(facts, plan, painted->flow_files, painted->name);
+        if (painted->paint_files)
+            add_pattern(facts, plan, painted->paint_files, painted->name);
+        bool known = false;
+        for (int q = 0; q < p; q++)
+            known = known || g_str_equal(plan->painted[q].style->path, painted->style->path);
+        if (!known)
+            add_style(facts, plan->inputs, painted->style->path);
+        if (painted->tile)
+            add_style(facts, plan->inputs, painted->tile->path);
+    }
+}
+
+/* The figures of a region show of which leaves it is made. */
+static void add_leaves(FlFacts *facts, const FlRegion *region)
+{
+    char area[G_ASCII_DTOSTR_BUF_SIZE];
+    g_autofree char *name = g_strdup_printf("what region %s is made of", region->name);
+    g_autofree char *value =
+        g_strdup_printf("%s, %s, %d leaves in %d frames from %d on, %s px", region->label,
+                        region->paint, region->n_leaves, region->n_present, region->first_frame,
+                        g_ascii_dtostr(area, sizeof area, region->area_px));
+    fl_facts_add(facts, name, value);
+}
+
+static void add_regions(FlFacts *facts, const FlPlan *plan)
+{
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++) {
+        const FlRegion *region = fl_drawing_region(plan->drawing, r);
+        g_autofree char *name = g_strdup_printf("what becomes of region %s", region->name);
+        add_leaves(facts, region);
+        fl_facts_add(facts, name,
+                     plan->painted_of[r] >= 0                   ? "painted"
+                     : plan->painted_of[r] == FL_DRAWN_AS_IT_IS ? "drawn"
+                                                                : "left out");
+        const FlRegionHand hand = plan->hands[r];
+        g_autofree char *line = g_strdup_printf("line and line-boil of region %s", region->name);
+        g_autofree char *drawn = g_strdup_printf("%d, %d", hand.line, hand.boil);
+        if (hand.line != FL_LINE_PLAIN)
+            fl_facts_add(facts, line, drawn);
+    }
+}
+
+FlFacts *fl_plan_facts(const FlPlan *plan)
+{
+    FlFacts *facts = fl_facts_new();
+    const char *background = plan->options.background, *paper = plan->options.paper;
+    fl_facts_add_versions(facts);
+    add_options(facts, plan);
+    add_drawings(facts, plan);
+    add_regions(facts, plan); // last of the drawing, so that a changed file is named as the cause
+    if (paper && g_file_test(paper, G_FILE_TEST_IS_REGULAR))
+        add_file(facts, plan->inputs, paper);
+    add_painted(facts, plan);
+    if (background && fl_picture_named(background))
+        add_pattern(facts, plan, background, NULL);
+    return facts;
+}
+
+/* ---- the paint of one region ---------------------------------------------------------------- */
+
+/* The build stands for the method and for all that it is made from. */
+static void add_method(FlFacts *facts, const FlShapes *shapes, const FlRegionPlan *painted)
+{
+    fl_facts_add(facts, "the build of fluidy-svg", fl_build_id());
+    fl_facts_add_versions(facts);
+    fl_facts_add(facts, "the engine", painted->engine->name);
+    fl_facts_add_number(facts, "the seed", (double)shapes->seed);
+    fl_facts_add(facts, "the region's name", painted->name);
+    fl_facts_add_number(facts, "the number of frames", shapes->n_frames);
+    fl_facts_add_number(facts, "the width of the paint", shapes->width);
+    fl_facts_add_number(facts, "the height of the paint", shapes->height);
+    fl_facts_add_number(facts, "whether it is a loop", painted->loops);
+}
+
+/* The edges that paint crosses: a guide of depth may reach into all these shapes. */
+static void add_joins(FlFacts *facts, const FlPlan *plan)
+{
+    g_autoptr(GString) joins = g_string_new(NULL);
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
+        g_string_append_c(joins, (char)('0' + plan->joins[r]));
+    fl_facts_add(facts, "which edges are shared", joins->str);
+}
+
+FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlInputs *inputs)
+{
+    FlFacts *facts = fl_facts_new();
+    add_method(facts, shapes, region);
+    add_values(facts, FL_SCOPE_REGION, &region->settings, NULL, false);
+    add_style(facts, inputs, region->style->path);
+    if (region->tile)
+        add_style(facts, inputs, region->tile->path);
+    return facts;
+}
+
+void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
+{
+    const FlRegionPlan *painted = &plan->painted[p];
+    add_drawings(facts, plan);
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) // layers of one file differ in it
+        fl_facts_add_number(facts, "the number of a frame", fl_drawing_number(plan->drawing, f));
+    add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
+    fl_facts_add_number(facts, "the hold", plan->hold);
+    add_joins(facts, plan);
+    for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
+        add_leaves(facts, fl_drawing_region(plan->drawing, r));
+    if (painted->flow_files)
+        add_pattern(facts, plan, painted->flow_files, painted->name);
+}
+
+/* ---- what was asked for ---------------------------------------------------------------------- */
+
+/* Those that decide bytes in whatever way; not how frames become a film. */
+static void add_requested(FlFacts *facts, const FlRenderOptions *options)
+{
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->scope != FL_SCOPE_RENDER || option->bytes == FL_BYTES_NEVER ||
+            g_str_equal(option->name, "format") || g_str_equal(option->name, "fps"))
+            continue;
+        g_autofree char *value = fl_option_get(option, options);
+        fl_facts_add(facts, option->name, value);
+    }
+    for (size_t i = 0; i < options->n_settings; i++) {
+        const FlSetting *setting = &options->settings[i];
+        fl_facts_add(facts, "region", setting->region);
+        fl_facts_add(facts, setting->name, setting->value);
+    }
+}
+
+FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence)
+{
+    g_autoptr(FlFacts) facts = fl_facts_new();
+    g_autofree char *folder = g_get_current_dir(); // where relative names begin
+    fl_facts_add(facts, "the build of fluidy-svg", fl_build_id());
+    fl_facts_add_versions(facts);
+    fl_facts_add(facts, "the working directory", folder);
+    fl_facts_add(facts, "the format", plan->format->name);
+    add_requested(facts, &plan->options);
+    for (int f = 0; f < sequence->n; f++) {
+        fl_facts_add_number(facts, sequence->file[f], sequence->number[f]);
+        fl_facts_add_number(facts, "whether it stands in", sequence->stand_in[f]);
+        fl_facts_add_number(facts, "the layer", sequence->layer[f]);
+    }
+    return fl_facts_digest(facts);
+}

@@ -1,0 +1,37 @@
+/* The facts that decide a render's bytes: of all its frames, of one region's paint, of a request.
+ */
+#ifndef FLUIDY_JOB_PLAN_FACTS_H
+#define FLUIDY_JOB_PLAN_FACTS_H
+
+#include "job/plan.h"
+#include "keep/facts.h"
+#include "params/options.h"
+
+/** Everything that decides the frames: versions, drawings, fonts, styles, config, options. To be
+ * freed. */
+FlFacts *fl_plan_facts(const FlPlan *plan);
+
+/**
+ * Adds every option of the table that decides frames, by its value. object: FlRenderOptions with
+ * the config's filled in, or the FlRegionSettings of `region`.
+ */
+void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *object,
+                          const char *region);
+
+/**
+ * All that decides a region's paint but its guides: engine, settings, style, seed, sizes and this
+ * build of the program. inputs: knows the digests of styles. To be freed.
+ */
+FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlInputs *inputs);
+
+/** Adds all that decides the guides of plan->painted[p] in the whole film, before anything is
+ * drawn: the drawings, how they are read, and which edges paint crosses. */
+void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p);
+
+/**
+ * The digest of what was asked for, as far as it is known before a file is read: versions, options,
+ * settings, the names of drawings and frames. How frames become a film is left out.
+ */
+FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence);
+
+#endif

@@ -1,0 +1,119 @@
+#include "keep/facts.h"
+
+#include "config.h"
+#include <cairo.h>
+#include <librsvg/rsvg.h>
+#include <stdbool.h>
+#include <string.h>
+
+#define DIGEST "digest " // begins the value of a fact that means nothing to a reader
+
+static void clear_fact(FlFact *fact)
+{
+    g_free(fact->name);
+    g_free(fact->value);
+}
+
+FlFacts *fl_facts_new(void)
+{
+    FlFacts *facts = g_new0(FlFacts, 1);
+    facts->list = g_array_new(FALSE, TRUE, sizeof(FlFact));
+    g_array_set_clear_func(facts->list, (GDestroyNotify)clear_fact);
+    return facts;
+}
+
+void fl_facts_free(FlFacts *facts)
+{
+    if (!facts)
+        return;
+    g_array_unref(facts->list);
+    g_free(facts);
+}
+
+void fl_facts_add(FlFacts *facts, const char *name, const char *value)
+{
+    const FlFact fact = {g_utf8_make_valid(name, -1),
+                         g_utf8_make_valid(value ? value : "not set", -1)};
+    g_array_append_val(facts->list, fact);
+}
+
+void fl_facts_add_number(FlFacts *facts, const char *name, double value)
+{
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    fl_facts_add(facts, name, g_ascii_dtostr(text, sizeof text, value));
+}
+
+void fl_facts_add_digest(FlFacts *facts, const char *name, FlDigest digest)
+{
+    g_autofree char *value = g_strdup_printf(
+        DIGEST "%016" G_GINT64_MODIFIER "x%016" G_GINT64_MODIFIER "x", digest.a, digest.b);
+    fl_facts_add(facts, name, value);
+}
+
+void fl_facts_add_versions(FlFacts *facts)
+{
+    g_autofree char *rsvg =
+        g_strdup_printf("%u.%u.%u", rsvg_major_version, rsvg_minor_version, rsvg_micro_version);
+    fl_facts_add(facts, "the version of fluidy-svg", FL_VERSION);
+    fl_facts_add(facts, "the version of librsvg", rsvg);
+    fl_facts_add(facts, "the version of cairo", cairo_version_string());
+    fl_facts_add_number(facts, "the byte order", G_BYTE_ORDER);
+}
+
+FlDigest fl_facts_digest(const FlFacts *facts)
+{
+    FlDigest digest = {0};
+    for (guint k = 0; k < facts->list->len; k++) {
+        const FlFact *fact = &g_array_index(facts->list, FlFact, k);
+        fl_digest_add_text(&digest, fact->name);
+        fl_digest_add_text(&digest, fact->value);
+    }
+    return digest;
+}
+
+static const FlFact *fact_at(const FlFacts *facts, guint k)
+{
+    return k < facts->list->len ? &g_array_index(facts->list, FlFact, k) : NULL;
+}
+
+char *fl_facts_difference(const FlFacts *before, const FlFacts *now)
+{
+    const guint n = MAX(before->list->len, now->list->len);
+    for (guint k = 0; k < n; k++) {
+        const FlFact *old = fact_at(before, k), *new = fact_at(now, k);
+        if (!old)
+            return g_strdup_printf("%s is new", new->name);
+        if (!new)
+            return g_strdup_printf("%s is gone", old->name);
+        if (!g_str_equal(old->name, new->name))
+            return g_strdup_printf("%s has taken the place of %s", new->name, old->name);
+        if (g_str_equal(old->value, new->value))
+            continue;
+        return g_str_has_prefix(new->value, DIGEST)
+                   ? g_strdup_printf("%s has other contents", new->name)
+                   : g_strdup_printf("%s was %s and is %s", new->name, old->value, new->value);
+    }
+    return NULL;
+}
+
+GVariant *fl_facts_pack(const FlFacts *facts)
+{
+    GVariantBuilder list;
+    g_variant_builder_init(&list, G_VARIANT_TYPE(FL_FACTS_TYPE));
+    for (guint k = 0; k < facts->list->len; k++) {
+        const FlFact *fact = &g_array_index(facts->list, FlFact, k);
+        g_variant_builder_add(&list, "(ss)", fact->name, fact->value);
+    }
+    return g_variant_builder_end(&list);
+}
+
+FlFacts *fl_facts_unpack(GVariant *variant)
+{
+    FlFacts *facts = fl_facts_new();
+    const char *name, *value;
+    GVariantIter at;
+    g_variant_iter_init(&at, variant);
+    while (g_variant_iter_next(&at, "(&s&s)", &name, &value))
+        fl_facts_add(facts, name, value);
+    return facts;
+}

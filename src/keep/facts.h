@@ -1,0 +1,48 @@
+/* Facts that decide bytes, in words, so that a later run can say what has changed. */
+#ifndef FLUIDY_KEEP_FACTS_H
+#define FLUIDY_KEEP_FACTS_H
+
+#include "base/digest.h"
+#include <glib.h>
+
+/** One fact, such as "w-temp of region hair" and "50"; UTF-8. */
+typedef struct FlFact {
+    char *name, *value;
+} FlFact;
+
+/** Facts in a fixed order. */
+typedef struct FlFacts {
+    GArray *list; // of FlFact
+} FlFacts;
+
+FlFacts *fl_facts_new(void);
+void fl_facts_free(FlFacts *facts); // NULL is fine
+
+/** Adds copies of both; value NULL: it is not set. */
+void fl_facts_add(FlFacts *facts, const char *name, const char *value);
+void fl_facts_add_number(FlFacts *facts, const char *name, double value);
+
+/** Adds the digest of a file's contents, under its name. */
+void fl_facts_add_digest(FlFacts *facts, const char *name, FlDigest digest);
+
+/** Adds versions of this program, librsvg and cairo, and the byte order. */
+void fl_facts_add_versions(FlFacts *facts);
+
+/** The digest of all facts in their order. */
+FlDigest fl_facts_digest(const FlFacts *facts);
+
+/** The first difference, as a clause, to be freed; NULL: there is none. */
+char *fl_facts_difference(const FlFacts *before, const FlFacts *now);
+
+/** GVariant's type of packed facts. */
+#define FL_FACTS_TYPE "a(ss)"
+
+/** Packs the facts; to be freed as any new GVariant. */
+GVariant *fl_facts_pack(const FlFacts *facts);
+
+/** The reverse of a variant of FL_FACTS_TYPE. */
+FlFacts *fl_facts_unpack(GVariant *variant);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFacts, fl_facts_free)
+
+#endif

@@ -1,0 +1,38 @@
+/* The record of a render: what it was made from and what it has written. Beside unfinished frames
+ * it is a file, from which the render resumes; in the store it says that all is done. */
+#ifndef FLUIDY_KEEP_RECORD_H
+#define FLUIDY_KEEP_RECORD_H
+
+#include "keep/facts.h"
+#include "keep/store.h"
+
+typedef struct FlRecord {
+    FlDigest request;  // of what was asked for, before any file was read
+    FlFacts *facts;    // all that decides the frames
+    FlFacts *inputs;   // the digests of the files that were read, by path
+    FlFacts *found;    // the folders of styles, by the names under which they were found
+    FlFacts *films;    // the digest of the film, by its path, format and speed
+    int done;          // frames that are painted
+    bool overwrite;    // the render may replace files that it has not written
+    GArray *frames;    // FlDigest of the files of each frame; not known: it was there before
+    GPtrArray *states; // GBytes: of the painters, see fl_painters_save()
+} FlRecord;
+
+FlRecord *fl_record_new(void);
+void fl_record_free(FlRecord *record); // NULL is fine
+
+/** Writes the record as a file, completely or not at all. FL_ERROR_OUTPUT. */
+bool fl_record_save(const FlRecord *record, const char *path, GError **error);
+
+/** Reads the file. Returns: NULL with FL_ERROR_CHANGED if it is missing or damaged. */
+FlRecord *fl_record_load(const char *path, GError **error);
+
+/** Keeps the record, without states, in the store. */
+void fl_record_keep(const FlRecord *record, FlStore *store, FlDigest name);
+
+/** Reads a record's bytes, which need not be trusted. Returns: NULL if they are damaged. */
+FlRecord *fl_record_parse(GBytes *bytes);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlRecord, fl_record_free)
+
+#endif
