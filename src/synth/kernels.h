@@ -160,12 +160,6 @@ typedef struct FlVoteCluster {
 } FlVoteCluster;
 
 /**
- * Clusters votes: the first remaining vote, row by row, leads; all remaining ones in its frame and
- * near it join. clusters: FL_PATCH_PIXELS. Returns their number.
- */
-typedef int (*FlClusterVotes)(const FlVotes *votes, FlVoteCluster *clusters);
-
-/**
  * The colour of a pixel that patches cover: the mean of their clusters, weighted, each of which is
  * sampled at the mean of its places, rounded away from the first. Every version rounds alike.
  *
@@ -270,16 +264,10 @@ void fl_spline_sample_c(const FlSplinePixel *first, size_t pitch, const int16_t 
 void fl_spline_sample_avx2(const FlSplinePixel *first, size_t pitch, const int16_t *x,
                            const float *y, float value[4]);
 
-/** The colour that votes give, by a version's own clustering and sampling. */
-bool fl_vote_of(const FlVotes *votes, FlClusterVotes cluster_votes, FlSplineSample sample,
-                const FlVoteSource *voted, float colour[4]);
 bool fl_vote_c(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
 bool fl_vote_avx2(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
 bool fl_vote_avx512(const FlVoteMatches *covering, const FlVoteSource *voted, float colour[4]);
 
-/** Likewise for FlVoteDoubled; votes, which are changed, and turn: those of its covering. */
-bool fl_vote_doubled_of(FlVotes *votes, const int16_t (*turn)[2], FlClusterVotes cluster_votes,
-                        FlSplineSample sample, const FlVoteSource *voted, float colour[4][4]);
 bool fl_vote_doubled_c(const FlVoteMatches *covering, const FlVoteSource *voted,
                        float colour[4][4]);
 bool fl_vote_doubled_avx2(const FlVoteMatches *covering, const FlVoteSource *voted,

@@ -1,6 +1,6 @@
 /* Two pixels at a time. */
 #include "base/rng.h"
-#include "synth/kernels.h"
+#include "synth/vote_kernel.h"
 
 #include <glib.h>
 #include <immintrin.h>
