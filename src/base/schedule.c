@@ -21,6 +21,12 @@ int fl_schedule_threads_up_to(int most)
     return MIN(fl_schedule_threads(), most);
 }
 
+int fl_schedule_threads_for(size_t pixels)
+{
+    const size_t each = 1024; // a search takes 4 tiles of 16 px at a time, of a 16th of all
+    return (int)MIN((size_t)fl_schedule_threads(), pixels / each + 1);
+}
+
 int fl_schedule_set_threads(int n)
 {
     const int before = fl_schedule_threads();

@@ -12,6 +12,10 @@ int fl_schedule_threads(void);
 /** The same, but no more than `most`: for threads that take much memory each. */
 int fl_schedule_threads_up_to(int most);
 
+/** The same, but no more than find work in an area of so many pixels that is searched: the others
+ * would wait. */
+int fl_schedule_threads_for(size_t pixels);
+
 /** Sets that number for the calling thread. Returns: the number before. */
 int fl_schedule_set_threads(int n);
 

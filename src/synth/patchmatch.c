@@ -5,15 +5,13 @@
 #include "synth/tile_search.h"
 #include <sched.h>
 
-#define FEW_TILES (4 * FL_TILE_CLASSES) // with fewer, threads mostly wait
-#define PATIENCE 200000                 // spins, 0.1 ms, before a thread yields
+#define PATIENCE 1000 // spins before a thread yields
 
 /*
  * The steps of a search are the classes of each sweep in turn. Threads take the tiles of a step
  * from a counter; the last thread to finish a step refreshes the map and opens the next step. One
- * parallel region does it all, with a barrier of its own that yields the processor after a while:
- * OpenMP's barriers spin, and sixteen of them per sweep cost ten times the search on a loaded
- * machine. A thread that yields comes back milliseconds later, so it spins for a tile's time first.
+ * parallel region does it all, with a barrier of its own that soon yields the processor: OpenMP's
+ * barriers spin, and sixteen of them per sweep cost ten times the search on a loaded machine.
  */
 typedef struct Team {
     const FlTileSearch *tile_search;
@@ -77,7 +75,7 @@ FlSearchCounts fl_search_run(FlSearch *search, int sweeps)
     fl_tile_search_init(&tile_search, search);
     Team team = {.tile_search = &tile_search, .sweeps = sweeps};
     open_step(&team, 0);
-#pragma omp parallel if (search->target->n_tiles[FL_TILE_CLASSES] >= FEW_TILES)
+#pragma omp parallel
     {
 #pragma omp single
         team.n_threads = fl_schedule_team_size();

@@ -275,8 +275,11 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
                        FlFrameStats *stats, GError **error)
 {
     g_auto(FlNnf) shifted = {0};
-    if (!prepare(synth, guides, rect, &shifted, stats, error) ||
-        !fl_synth_run_levels(synth, &shifted, stats, error))
+    const int threads = fl_schedule_set_threads(fl_schedule_threads_for(fl_rect_pixels(rect)));
+    const bool done = prepare(synth, guides, rect, &shifted, stats, error) &&
+                      fl_synth_run_levels(synth, &shifted, stats, error);
+    (void)fl_schedule_set_threads(threads);
+    if (!done)
         return false;
     fill_paper(synth, rgb); // not before: until it is written to, it takes no memory
     (synth->exemplar->enlargement ? enlarge : write_rgb)(synth, rgb);

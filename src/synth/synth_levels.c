@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "base/schedule.h"
 #include "synth/energy.h"
 #include "synth/shift.h"
 #include "synth/synth_data.h"
@@ -299,7 +300,13 @@ bool fl_synth_run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *sta
     stats->n_levels = synth->n_levels;
     for (int l = synth->n_levels - 1; l >= 0; l--) {
         gint64 time = g_get_monotonic_time();
-        if (!run_level(synth, l, synth->last.valid ? shifted : NULL, &stats->level[l], error))
+        const FlTargetLevel *target = &synth->target.level[l];
+        const size_t pixels = (size_t)target->n_tiles[FL_TILE_CLASSES] * FL_TILE * FL_TILE;
+        const int threads = fl_schedule_set_threads(fl_schedule_threads_for(pixels));
+        const bool done =
+            run_level(synth, l, synth->last.valid ? shifted : NULL, &stats->level[l], error);
+        (void)fl_schedule_set_threads(threads);
+        if (!done)
             return false;
         if (l > 0) // the next one needs its field only
             fl_target_level_clear(&synth->target.level[l]);
