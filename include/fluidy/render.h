@@ -143,6 +143,11 @@ typedef struct FlRenderOptions {
      *  film of the frames that such merges have composed; NULL: all */
     const char *part;
     const char *background; /**< "#rrggbb", "none", an image or a pattern; NULL: the paper */
+    double stain_time;      /**< frames at 24 per second in which stains fade to a third; 0: 7 */
+    double overrun; /**< px on a page of 480 px that fronts go beyond shapes, ..40; 0: 5, below 0:
+                       none */
+    const char *camera; /**< the region that the paper moves with; "none"; "auto", NULL: the largest
+                           that covers two fifths of the page or more */
     /** "cold", "hot", "rough", "laid", "kraft", a PNG or JPEG file or "none"; "auto", NULL: cold
      * where there is no background, else its tooth alone */
     const char *paper;

@@ -3,9 +3,17 @@
 #define FLUIDY_COMPOSE_COMPOSE_INPUT_H
 
 #include "compose/background.h"
+#include "compose/laid.h"
 #include "compose/painted_region.h"
 #include "compose/paper_sheet.h"
 #include "drawing/drawing.h"
+
+/** What wet paint has left on the paper: a layer below all paint but that of the ground. */
+typedef struct FlStainLayer {
+    FlRect box;
+    uint8_t *rgba;      // of the box, straight, over the paper; NULL: nothing
+    const bool *ground; // by region: whether the stain lies over it
+} FlStainLayer;
 
 /** The painted regions of a frame and how they are stacked. Everything is borrowed. */
 typedef struct FlComposeInput {
@@ -23,6 +31,8 @@ typedef struct FlComposeInput {
     bool layers_apart;         // layers are stored as well, to be put on something else
     bool linear;               // blend in linear light
     float gap_px;              // as in FlStackParams
+    const FlStainLayer *stain; // NULL: none
+    FlLaid *laid;              // takes the frame's paint as it is laid; NULL: not needed
 } FlComposeInput;
 
 #endif

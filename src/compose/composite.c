@@ -11,13 +11,15 @@
 #include "compose/unevenness.h"
 #include <string.h>
 
+#define NO_DRAW (-1)
+#define STAIN "paper_stain" // no region's name has such a line in it
 #define BLEED_PX 8 // how far colours reach into transparency, for frames that are scaled later
 
 /* The layers of a frame. */
 typedef struct Stack {
     FlComposite *composite;
     FlLayerSources sources;
-    int *draw;        // the index in the draw list of each layer
+    int *draw;        // the index in the draw list of each layer; NO_DRAW: it is the stain
     FlFading *fading; // of each layer
 } Stack;
 
@@ -41,11 +43,33 @@ static bool double_layer(const Stack *stack, FlLayer *layer, GError **error)
     return done;
 }
 
+/* The stain, in the size of the frame; as a glaze if the ground lies below it. */
+static bool stain_layer(const Stack *stack, int k, GError **error)
+{
+    const FlStainLayer *stain = stack->sources.input->stain;
+    const size_t n = fl_rect_pixels(stain->box);
+    uint8_t *coverage = fl_alloc_unset(n, 1, "a stain", error);
+    FlLayer *layer = &stack->composite->layers[k];
+    *layer = (FlLayer){.area = {.box = stain->box},
+                       .coverage = coverage,
+                       .owns_coverage = true,
+                       .alpha = 255,
+                       .stacking = k > 0 ? FL_STACKING_GLAZE : FL_STACKING_OVER,
+                       .blend_mode = FL_BLEND_MODE_OVER};
+    if (!coverage || !(layer->rgba = fl_alloc_unset(4 * n, 1, "a stain", error)))
+        return false;
+    memset(coverage, 255, n);
+    memcpy(layer->rgba, stain->rgba, 4 * n);
+    return true;
+}
+
 /* Paints a layer, fades it below those above, and brings it into the size of the frame. */
 static bool paint_one(void *data, int k, int thread, GError **error)
 {
     const Stack *stack = data;
     FlLayer *layer = &stack->composite->layers[k];
+    if (stack->draw[k] == NO_DRAW)
+        return stain_layer(stack, k, error);
     return fl_layer_paint(layer, &stack->sources, stack->draw[k], error) &&
            fl_fading_apply(&stack->fading[k], layer, error) &&
            (!stack->sources.input->half || double_layer(stack, layer, error));
@@ -53,7 +77,9 @@ static bool paint_one(void *data, int k, int thread, GError **error)
 
 static size_t layer_pixels(const Stack *stack, int k)
 {
-    return fl_rect_pixels(stack->composite->draws->draw[stack->draw[k]].area.box);
+    return fl_rect_pixels(stack->draw[k] == NO_DRAW
+                              ? stack->sources.input->stain->box
+                              : stack->composite->draws->draw[stack->draw[k]].area.box);
 }
 
 /* Whether a layer's paint is a region's. */
@@ -81,6 +107,8 @@ static bool make_some(Stack *stack, int first, int end, FlUnderlay *above, GErro
     bool done = true;
     for (int k = end - 1; k >= first && done; k--) {
         FlLayer *layer = &stack->composite->layers[k];
+        if (stack->draw[k] == NO_DRAW)
+            continue;
         fl_layer_begin(layer, &stack->sources, stack->draw[k]);
         done = fl_underlay_next(above, layer, is_painted(stack, k), &stack->fading[k], error);
     }
@@ -104,6 +132,10 @@ static bool needs_all(const Stack *stack)
     const FlComposeInput *input = stack->sources.input;
     bool all = false;
     for (int k = 0; k < stack->composite->n_layers && !all; k++) {
+        if (stack->draw[k] == NO_DRAW) {
+            all = k > 0;
+            continue;
+        }
         const FlDraw *draw = &stack->composite->draws->draw[stack->draw[k]];
         const int p = input->painted_of[draw->region];
         all = draw->blend_mode != FL_BLEND_MODE_OVER ||
@@ -193,25 +225,61 @@ static bool is_layer(const FlComposeInput *input, const FlDraw *draw)
     return p != FL_LEFT_OUT && (p < 0 || input->painted[p]->from != FL_FROM_NOWHERE);
 }
 
+/* Puts the stain in its place among the layers: over the ground alone. */
+static void insert_stain(FlComposite *composite, const FlComposeInput *input, int *draw)
+{
+    const FlStainLayer *stain = input->stain;
+    int ground = 0;
+    if (!stain || !stain->rgba)
+        return;
+    while (ground < composite->n_layers &&
+           stain->ground[composite->draws->draw[draw[ground]].region])
+        ground++;
+    const size_t above = (size_t)(composite->n_layers - ground);
+    memmove(draw + ground + 1, draw + ground, above * sizeof *draw);
+    memmove(composite->names + ground + 1, composite->names + ground,
+            above * sizeof *composite->names);
+    draw[ground] = NO_DRAW;
+    composite->names[ground] = g_strdup(STAIN);
+    composite->n_layers++;
+}
+
+/* Notes the paint of a frame for the stains of the next one. */
+static void note_laid(const FlComposite *composite, const FlComposeInput *input, const int *draw)
+{
+    if (!input->laid)
+        return;
+    fl_laid_begin(input->laid);
+    for (int k = 0; k < composite->n_layers; k++) {
+        const int region = draw[k] == NO_DRAW ? -1 : composite->draws->draw[draw[k]].region;
+        if (region >= 0 && input->painted_of[region] >= 0)
+            fl_laid_add(input->laid, &composite->layers[k], region, input->background->paper);
+    }
+}
+
 /* A layer for each draw that is neither left out nor hidden in all frames. */
 static bool fill_layers(FlComposite *composite, const FlComposeInput *input, const FlEdgeMap *edges,
                         const int *exposures, GError **error)
 {
     const FlDrawList *draws = composite->draws;
-    composite->layers = g_new0(FlLayer, MAX(draws->n, 1));
-    composite->names = g_new0(char *, draws->n + 1);
-    g_autofree int *draw = g_new0(int, MAX(draws->n, 1));
+    composite->layers = g_new0(FlLayer, draws->n + 1);
+    composite->names = g_new0(char *, draws->n + 2);
+    g_autofree int *draw = g_new0(int, draws->n + 1);
     for (int r = 0; r < draws->n; r++)
         if (is_layer(input, &draws->draw[r])) {
             composite->names[composite->n_layers] = layer_name(input, draws, r);
             draw[composite->n_layers++] = r;
         }
+    insert_stain(composite, input, draw);
     g_autofree FlFading *fading = g_new0(FlFading, MAX(composite->n_layers, 1));
     const int n_regions = fl_drawing_regions(input->drawing);
     g_autofree double *areas = g_new(double, MAX(n_regions, 1));
     fl_region_areas_find(draws, n_regions, areas);
     Stack stack = {composite, {input, edges, exposures, areas, {NULL, input->half}}, draw, fading};
-    return (needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error);
+    if (!(needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error))
+        return false;
+    note_laid(composite, input, draw);
+    return true;
 }
 
 static bool make_layers(FlComposite *composite, const FlComposeInput *input, GError **error)

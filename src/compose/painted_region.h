@@ -5,6 +5,7 @@
 #include "compose/ink.h"
 #include "drawing/drawing.h"
 #include "params/region_settings.h"
+#include "style/style_folder.h"
 #include "synth/synth.h"
 #include <string.h>
 
@@ -17,12 +18,14 @@ typedef struct FlStyleInstance {
     FlParams params; // that it was packed for
     bool reverse;
     FlExemplar *exemplar;
+    FlEnlargement *enlargement; // drafts: exemplar and guides have half the size; else NULL
     FlInk *ink;
     struct FlSliced *patches; // of its ink, which transport refines by; NULL: not needed
     FlMedium medium;
     float granulation; // as of fl_granulate()
-    float enlarged;    // px of the drawing per px of its pictures
-    float border_px;   // of its rim, px of the drawing as it is painted
+    FlFrontStyle front;
+    float enlarged;  // px of the drawing per px of its pictures
+    float border_px; // of its rim, px of the drawing as it is painted
     uint8_t paper[3];
 } FlStyleInstance;
 

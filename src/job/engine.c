@@ -9,7 +9,12 @@
 
 static void *patch_open(const FlEngineInput *input, GError **error)
 {
-    return fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed);
+    FlSynth *synth =
+        fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed);
+    if (input->style->enlargement)
+        fl_synth_enlarge(synth, input->style->enlargement, input->painted_width,
+                         input->painted_height);
+    return synth;
 }
 
 static void patch_close(void *state)

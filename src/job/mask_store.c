@@ -91,6 +91,11 @@ bool fl_mask_store_get_half(const FlMaskStore *masks, int region, int frame, FlR
     return true;
 }
 
+FlRect fl_mask_store_box(const FlMaskStore *masks, int region, int frame)
+{
+    return masks->boxes[(size_t)region * masks->n_frames + frame];
+}
+
 bool fl_mask_store_has(const FlMaskStore *masks, int region, int frame)
 {
     return masks->boxes[(size_t)region * masks->n_frames + frame].width > 0;

@@ -29,6 +29,9 @@ bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect p
 bool fl_mask_store_get_half(const FlMaskStore *masks, int region, int frame, FlRect part,
                             uint8_t *coverage, GError **error);
 
+/** The rectangle around a mask; {0, 0, 0, 0} if it is blank. */
+FlRect fl_mask_store_box(const FlMaskStore *masks, int region, int frame);
+
 /** Whether a mask that is not blank was put. */
 bool fl_mask_store_has(const FlMaskStore *masks, int region, int frame);
 

@@ -77,6 +77,8 @@ typedef struct FlRegionSettings {
     double granulation; // as of fl_granulate(); NAN: the style's
     double load;        // unevenness of the amounts, 0..1
     double pigments;    // play of the hue, 0..1
+    double front;       // fronts on the paper ahead of what moves, 0..2
+    double stain;       // stains behind it, 0..1
     FlEdges edges;
     FlLine line;   // of a region that is not painted
     int line_boil; // frames until it is drawn anew; 0: never

@@ -171,7 +171,9 @@ static FlComposeInput compose_input(const FlFrames *frames, int frame)
                             .half = plan->half,
                             .layers_apart = plan->options.layers || plan->format->takes_layers,
                             .linear = plan->options.blend == FL_BLEND_LINEAR,
-                            .gap_px = (float)MAX(plan->options.gap, 0)};
+                            .gap_px = (float)MAX(plan->options.gap, 0),
+                            .stain = frames->wet ? fl_wet_layer(frames->wet) : NULL,
+                            .laid = frames->wet ? fl_wet_laid(frames->wet) : NULL};
 }
 
 static void trim(const FlPlan *plan)
@@ -212,6 +214,10 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
         return false;
     if (next >= 0 && frames->beside)
         start_drawing(frames, fl_drawing_shown(plan->drawing, next));
+    if (frames->wet && !fl_wet_frame(frames->wet, shown, error)) {
+        fl_draw_list_free(draws);
+        return false;
+    }
     const FlComposeInput input = compose_input(frames, shown);
     const bool made =
         fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error);
@@ -248,12 +254,33 @@ bool fl_frames_check(FlFrames *frames, GError **error)
                                       : make_sheet(frames, error));
 }
 
+/* An FlWetMotion. */
+static bool wet_motion(void *data, int region, int before, int now, FlRect part, float *motion,
+                       GError **error)
+{
+    const FlFrames *frames = data;
+    const FlRegionStep step = {region, before, now, part, {NULL, NULL}};
+    FlMotionSource *source =
+        frames->painters.motion[0] ? frames->painters.motion[0] : frames->motion;
+    return fl_motion_source_get(source, &step, motion, NULL, error);
+}
+
+static bool open_wet(FlFrames *frames, GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    return (frames->painters.motion[0] ||
+            (frames->motion = fl_motion_source_new(plan->drawing, plan->masks, false, error))) &&
+           (frames->wet = fl_wet_new(plan, frames->background.paper, wet_motion, frames, error));
+}
+
 bool fl_frames_prepare(FlFrames *frames, GError **error)
 {
     FlPainters *painters = &frames->painters;
+    const bool wet = fl_wet_wanted(frames->plan);
     fl_painters_recall(painters, frames->plan);
-    return (!fl_painters_need_masks(painters) || fl_plan_rasterise(frames->plan, error)) &&
-           fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error);
+    return (!(wet || fl_painters_need_masks(painters)) || fl_plan_rasterise(frames->plan, error)) &&
+           fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error) &&
+           (!wet || open_wet(frames, error));
 }
 
 void fl_frames_init(FlFrames *frames, FlPlan *plan)
@@ -270,6 +297,8 @@ void fl_frames_clear(FlFrames *frames)
     fl_task_clear(&frames->drawing);
     g_clear_pointer(&frames->draws, g_bytes_unref);
     fl_painters_clear(&frames->painters);
+    fl_wet_free(frames->wet);
+    fl_motion_source_free(frames->motion);
     fl_paper_sheet_free(frames->sheet);
     fl_plan_free(frames->plan);
     *frames = (FlFrames){0};

@@ -6,12 +6,15 @@
 #include "compose/composite.h"
 #include "inspect/report.h"
 #include "render/painters.h"
+#include "wet/wet.h"
 
 typedef struct FlFrames {
     FlPlan *plan;
     FlBackground background;
     FlPaperSheet *sheet; // NULL: none
     FlPainters painters;
+    FlWet *wet;                // what paint leaves on the paper; NULL: nothing
+    FlMotionSource *motion;    // of that, where the painters have none
     FlReport *report;          // borrowed: looks at each picture; NULL: none
     bool beside;               // drawing and writing, which wait for the disk, run beside painting
     FlTask drawing;            // runs beside the painting

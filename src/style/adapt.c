@@ -170,6 +170,7 @@ static FlStyle *new_like(const FlStyle *style)
                      .cut_out = style->cut_out,
                      .medium = style->medium,
                      .granulation = style->granulation,
+                     .front = style->front,
                      .smoothness = style->smoothness};
     memcpy(out->paper, style->paper, sizeof out->paper);
     return out;

@@ -76,6 +76,7 @@ static void set_facts(Import *import, const FlRecording *source)
     style->guessed = rate > 0 ? 0 : FL_GUESS_FPS; // all else is known in the end
     style->scale = 1;
     style->granulation = FL_GRANULATION;
+    style->front = (FlFrontStyle)FL_FRONT_DEFAULTS;
 }
 
 static bool store_frames(FlStyle *style, GPtrArray *pictures, GError **error)

@@ -6,6 +6,9 @@
 
 #include <string.h>
 
+/* Sections of style.ini. */
+typedef enum Section { NOWHERE, STYLE, FRONT, OTHER } Section;
+
 typedef enum KeyType { TEXT, NUMBER, COLOUR, MEDIUM } KeyType;
 
 /* The keys: where the value goes in FlStyle, its range, and the guess that it replaces. */
@@ -15,6 +18,7 @@ static const struct Key {
     size_t offset;
     double min, max;
     FlGuess replaces;
+    Section section; // NOWHERE: STYLE
 } keys[] = {
     {"name", TEXT, offsetof(FlStyle, name)},
     {"character", TEXT, offsetof(FlStyle, character)},
@@ -28,13 +32,21 @@ static const struct Key {
     {"made-by", TEXT, offsetof(FlStyle, made_by)},
     {"missing-orientations", TEXT, offsetof(FlStyle, missing_orientations)},
     {"paper", COLOUR, offsetof(FlStyle, paper), 0, 0, FL_GUESS_PAPER},
+    {"width", NUMBER, offsetof(FlStyle, front.width), 0, 1, 0, FRONT},
+    {"stain", NUMBER, offsetof(FlStyle, front.stain), 0, 1, 0, FRONT},
+    {"film", NUMBER, offsetof(FlStyle, front.film), 0, 1, 0, FRONT},
+    {"soft", NUMBER, offsetof(FlStyle, front.soft), 0, 1, 0, FRONT},
+    {"base", NUMBER, offsetof(FlStyle, front.base), 0, 1, 0, FRONT},
+    {"line", NUMBER, offsetof(FlStyle, front.line), 0, 1, 0, FRONT},
+    {"fingers", NUMBER, offsetof(FlStyle, front.fingers), 0, 1, 0, FRONT},
+    {"granulation", NUMBER, offsetof(FlStyle, front.granulation), 0, 1, 0, FRONT},
 };
 
 /* Where the reader is. */
 typedef struct Reader {
     FlStyle *style;
-    enum { NOWHERE, STYLE, OTHER } place;
-    unsigned seen; // keys of [style], a bit each
+    Section place;
+    unsigned seen; // of `keys`, a bit each
 } Reader;
 
 G_GNUC_PRINTF(2, 3)
@@ -92,21 +104,24 @@ static bool read_value(FlStyle *style, const struct Key *key, const char *value,
 /* A section of another name is a tool's own, such as a recipe's. */
 static bool read_section(void *data, const char *name, int line, GError **error)
 {
-    static const char *const sections[] = {"style", NULL};
+    static const char *const sections[] = {"style", "front", NULL};
     Reader *reader = data;
-    reader->place = strcmp(name, "style") == 0 ? STYLE : OTHER;
-    return reader->place == STYLE || !fl_suggest(name, sections) ||
-           wrong(error, "[%s]: expected [style]", name);
+    reader->place = strcmp(name, "style") == 0 ? STYLE : strcmp(name, "front") == 0 ? FRONT : OTHER;
+    const char *meant = reader->place == OTHER ? fl_suggest(name, sections) : NULL;
+    return !meant || wrong(error, "[%s]: expected [%s]", name, meant);
 }
 
 static bool read_key(void *data, const char *name, const char *value, int line, GError **error)
 {
     Reader *reader = data;
     const char *names[G_N_ELEMENTS(keys) + 1] = {NULL};
+    int n = 0;
     if (reader->place == NOWHERE)
         return wrong(error, "“%s” stands above the first section: expected [style]", name);
-    for (size_t i = 0; i < G_N_ELEMENTS(keys) && reader->place == STYLE; i++) {
-        names[i] = keys[i].name;
+    for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
+        if ((keys[i].section == FRONT ? FRONT : STYLE) != reader->place)
+            continue;
+        names[n++] = keys[i].name;
         if (strcmp(name, keys[i].name) != 0)
             continue;
         if (reader->seen & 1u << i)
@@ -127,6 +142,22 @@ bool fl_manifest_read(FlStyle *style, const char *path, GError **error)
     Reader reader = {.style = style};
     const FlKeyReader calls = {read_section, read_key, &reader, FL_ERROR_STYLE, NULL};
     return fl_key_file_read(path, &calls, error);
+}
+
+/* The section of fronts, unless it is as in styles without one. */
+static void append_front(const FlStyle *style, GString *text)
+{
+    const FlFrontStyle plain = FL_FRONT_DEFAULTS;
+    char number[G_ASCII_DTOSTR_BUF_SIZE];
+    if (memcmp(&plain, &style->front, sizeof plain) == 0)
+        return;
+    g_string_append(text, "\n[front]\n");
+    for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
+        const float *field = (const void *)((const char *)style + keys[i].offset);
+        if (keys[i].section == FRONT)
+            g_string_append_printf(text, "%s = %s\n", keys[i].name,
+                                   g_ascii_formatd(number, sizeof number, "%.4g", *field));
+    }
 }
 
 char *fl_manifest_text(const FlStyle *style)
@@ -160,5 +191,6 @@ char *fl_manifest_text(const FlStyle *style)
     if (!(style->guessed & FL_GUESS_PAPER))
         g_string_append_printf(text, "paper = #%02x%02x%02x\n", style->paper[0], style->paper[1],
                                style->paper[2]);
+    append_front(style, text);
     return g_string_free(text, FALSE);
 }

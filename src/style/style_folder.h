@@ -7,6 +7,25 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/** How the paint of a style wets paper ahead of it and what it leaves behind; see fluidy-style(5).
+ */
+typedef struct FlFrontStyle {
+    float width;       // of its fronts, 0..1; 0: dry paint has none
+    float stain;       // what paper keeps of its paint, 0..1
+    float film;        // of water that stays wet for some frames, 0..1
+    float soft;        // edge of a front, a share of its width
+    float base;        // how dense the front is at its tip, 0..1
+    float line;        // of pigment that gathers there, 0..1
+    float fingers;     // how unevenly it runs, 0..1
+    float granulation; // how far pigment settles in hollows, 0..1
+} FlFrontStyle;
+
+#define FL_FRONT_DEFAULTS                                                                          \
+    {                                                                                              \
+        .width = 1, .stain = 0.42f, .film = 0.4f, .soft = 0.2f, .base = 0.5f, .line = 0.15f,       \
+        .fingers = 0.55f, .granulation = 0.45f                                                     \
+    }
+
 /** A style in memory. Frames follow each other without padding, rows from the top. */
 typedef struct FlStyle {
     char *name;      // the folder's name, or style.ini's
@@ -14,12 +33,13 @@ typedef struct FlStyle {
     char *character; // what it looks like and is for, a line; may be NULL
     char *author, *licence;
     int width, height, n_frames;
-    float fps;                  // frames per second, > 0
-    float border_px;            // width of the boundary region b [F21 §3.1], px of the style, > 0
-    float scale;                // suggested px of the target per px of the style, > 0
-    uint8_t paper[3];           // sRGB of the bare paper
-    FlMedium medium;            // FL_MEDIUM_AUTO: not given
-    float granulation;          // of its paint on paper: see fl_granulate()
+    float fps;         // frames per second, > 0
+    float border_px;   // width of the boundary region b [F21 §3.1], px of the style, > 0
+    float scale;       // suggested px of the target per px of the style, > 0
+    uint8_t paper[3];  // sRGB of the bare paper
+    FlMedium medium;   // FL_MEDIUM_AUTO: not given
+    float granulation; // of its paint on paper: see fl_granulate()
+    FlFrontStyle front;
     float smoothness;           // of its recording: see fl_style_smoothness()
     uint8_t *rgb;               // n_frames * height * width * 3, sRGB
     uint8_t *mask;              // n_frames * height * width, coverage 0..255

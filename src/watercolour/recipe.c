@@ -22,6 +22,7 @@ static FlRecipe *defaults(void)
         .border = 15,
         .scale = 1,
         .granulation = FL_GRANULATION,
+        .front = FL_FRONT_DEFAULTS,
         .steps = {60, 60},
         .warm_up = 1,
         .seed = 1,
@@ -116,6 +117,19 @@ static void read_recipe(FlKeyLines *lines, FlRecipe *recipe)
     fl_keylines_float(lines, "mask-threshold", 1e-4f, 10, &recipe->mask_threshold);
     fl_keylines_float(lines, "mask-blur", 0, 50, &recipe->mask_blur);
     fl_keylines_float(lines, "mask-margin", 0, 50, &recipe->mask_margin);
+}
+
+static void read_front(FlKeyLines *lines, FlRecipe *recipe)
+{
+    FlFrontStyle *front = &recipe->front;
+    fl_keylines_float(lines, "width", 0, 1, &front->width);
+    fl_keylines_float(lines, "stain", 0, 1, &front->stain);
+    fl_keylines_float(lines, "film", 0, 1, &front->film);
+    fl_keylines_float(lines, "soft", 0, 1, &front->soft);
+    fl_keylines_float(lines, "base", 0, 1, &front->base);
+    fl_keylines_float(lines, "line", 0, 1, &front->line);
+    fl_keylines_float(lines, "fingers", 0, 1, &front->fingers);
+    fl_keylines_float(lines, "granulation", 0, 1, &front->granulation);
 }
 
 static void read_paper(FlKeyLines *lines, FlRecipe *recipe)
@@ -249,6 +263,8 @@ static bool read_group(FlKeyLines *lines, int group, FlRecipe *recipe, GError **
     fl_keylines_begin(lines, group);
     if (strcmp(name, "recipe") == 0)
         read_recipe(lines, recipe);
+    else if (strcmp(name, "front") == 0)
+        read_front(lines, recipe);
     else if (strcmp(name, "paper") == 0)
         read_paper(lines, recipe);
     else if (strcmp(name, "flow") == 0)
@@ -261,8 +277,8 @@ static bool read_group(FlKeyLines *lines, int group, FlRecipe *recipe, GError **
         read_event(lines, recipe);
     else
         fl_keylines_complain(lines, "",
-                             "is not a group of a recipe: expected recipe, paper, flow, "
-                             "dust, pigment NAME or event NAME");
+                             "is not a group of a recipe: expected recipe, front, paper, "
+                             "flow, dust, pigment NAME or event NAME");
     return fl_keylines_end(lines, error);
 }
 

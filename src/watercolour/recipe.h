@@ -2,6 +2,7 @@
 #ifndef FLUIDY_WATERCOLOUR_RECIPE_H
 #define FLUIDY_WATERCOLOUR_RECIPE_H
 
+#include "style/style_folder.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -98,6 +99,7 @@ typedef struct FlRecipe {
     uint64_t seed;
     float mask_threshold, mask_margin; // least thickness of paint; bare margin, px
     float mask_blur;                   // radius over which the thickness is averaged, px
+    FlFrontStyle front;
     FlPaper paper;
     FlFlow flow;
     FlDust dust;

@@ -71,6 +71,7 @@ static FlStyle *new_style(const FlRecipe *recipe, int size, const char *recipe_p
         .border_px = recipe->border * (float)size,
         .scale = recipe->scale / (float)size,
         .granulation = recipe->granulation,
+        .front = recipe->front,
         .medium = fl_medium_of_word(recipe->medium),
     };
     memcpy(style->paper, recipe->paper.colour, sizeof style->paper);

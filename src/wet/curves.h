@@ -1,0 +1,43 @@
+/* Curves that the wet paper is made of, from + - * / alone: the same bits on every processor. */
+#ifndef FLUIDY_WET_CURVES_H
+#define FLUIDY_WET_CURVES_H
+
+#include <glib.h>
+#include <stdint.h>
+#include <string.h>
+
+/** A smooth step: 0 up to `from`, 1 from `to` on. */
+static inline float fl_ease(float from, float to, float x)
+{
+    const float t = CLAMP((x - from) / (to - from + 1e-6f), 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+}
+
+/** exp(-x) to 1e-4 of its value for x >= 0; 0 where that is below 1e-9. */
+static inline float fl_fall(float x)
+{
+    const float octaves = x * 1.44269504f;
+    if (!(octaves < 30))
+        return 0;
+    const int whole = (int)octaves;
+    const float t = (octaves - (float)whole) * 0.693147181f;
+    const uint32_t bits = (uint32_t)(127 - whole) << 23; // 2 to the power of -whole
+    float power;
+    memcpy(&power, &bits, sizeof power);
+    return power * (1 - t * (1 - t * (0.5f - t * (0.166667f - t * (0.0416667f - t * 0.0083333f)))));
+}
+
+/** exp(-x²). */
+static inline float fl_bell(float x)
+{
+    return fl_fall(x * x);
+}
+
+/** A normal variable as a uniform one, 0..1. */
+static inline float fl_even(float normal)
+{
+    const float fall = fl_fall(1.7f * (normal < 0 ? -normal : normal));
+    return (normal < 0 ? fall : 1) / (1 + fall);
+}
+
+#endif

@@ -1,0 +1,26 @@
+/* The paper that water runs along: fibres in all directions, hollows, and spots that dry late. */
+#ifndef FLUIDY_WET_FIBRES_H
+#define FLUIDY_WET_FIBRES_H
+
+#include <stdint.h>
+
+/** A sheet; places on it are px of a page of FL_WET_PAGE_PX. */
+typedef struct FlFibres {
+    uint64_t seed;
+    float x, y; // cells that the paper has moved since the first frame
+} FlFibres;
+
+/** Lengths of the front and the stain are px of a page that is so wide. */
+#define FL_WET_PAGE_PX 480
+
+/** How far water runs at a place in a direction, a unit vector: 0..1, evenly distributed. It
+ * changes fast across the direction and slowly along it. */
+float fl_fibres_run(const FlFibres *fibres, float x, float y, float dx, float dy);
+
+/** How deep the paper is at a place, evenly distributed in 0..1. */
+float fl_fibres_hollow(const FlFibres *fibres, float x, float y);
+
+/** The same of spots, which are a few times as large. */
+float fl_fibres_spot(const FlFibres *fibres, float x, float y);
+
+#endif

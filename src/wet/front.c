@@ -1,0 +1,122 @@
+#include "wet/marks.h"
+
+#include "base/alloc.h"
+#include "guides/blur.h"
+#include "wet/curves.h"
+#include <math.h>
+
+/** The front of one region, planes of its rect. */
+typedef struct Front {
+    const FlWetShape *shape;
+    const FlMovingEdge *edge;
+    const FlWetDials *dials;
+    bool any;        // whether there is any
+    float *width;    // cells that the front reaches ahead
+    float *strength; // 0..1: below 1 where a shape outruns its front
+} Front;
+
+/** The share of its full width that a front has by the speed of its edge. */
+static float lead_of(const FlWetShape *shape, const FlEdgePoint *point)
+{
+    const float unit = 3.6f * shape->px, lead = 1 - fl_fall(MAX(point->speed, 0) / unit);
+    return lead * fl_ease(0.06f, 0.5f, lead);
+}
+
+/** Faster than it is wide, a shape outruns what paper can drink. */
+static float calm_of(const FlWetShape *shape, const FlEdgePoint *point)
+{
+    const float moved = sqrtf(point->u * point->u + point->v * point->v) / shape->frames;
+    const float width = MAX(point->half_width, 2 * shape->px);
+    return fl_bell(MAX(fabsf(point->speed), moved) / (1.8f * width));
+}
+
+static bool make_planes(Front *front, GError **error)
+{
+    const FlWetShape *shape = front->shape;
+    const FlMovingEdge *edge = front->edge;
+    const size_t n = fl_rect_pixels(shape->rect);
+    g_autofree float *widths = g_new(float, edge->n), *strengths = g_new(float, edge->n);
+    if (!(front->width = fl_alloc_unset(n, sizeof(float), "a front", error)) ||
+        !(front->strength = fl_alloc_unset(n, sizeof(float), "a front", error)))
+        return false;
+    for (int i = 0; i < edge->n; i++) {
+        const FlEdgePoint *point = &edge->point[i];
+        const float calm = calm_of(shape, point);
+        const float most = MIN(14.4f * shape->px, 0.38f * point->half_width);
+        widths[i] =
+            front->dials->front * front->dials->style->width * lead_of(shape, point) * calm * most;
+        strengths[i] = fl_ease(0.1f, 0.6f, calm);
+        front->any = front->any || widths[i] > 0.5f * shape->px;
+    }
+    if (!front->any)
+        return true;
+    for (size_t p = 0; p < n; p++) {
+        const int32_t nearest = edge->nearest[p];
+        front->width[p] = nearest >= 0 ? widths[nearest] : 0;
+        front->strength[p] = nearest >= 0 ? strengths[nearest] : 0;
+    }
+    return fl_blur(front->width, shape->rect.width, shape->rect.height, 2 * shape->px, error) &&
+           fl_blur(front->strength, shape->rect.width, shape->rect.height, 2 * shape->px, error);
+}
+
+/** The front at a pixel that lies `beyond` the masks of the frames to come. */
+static float density_at(const Front *front, const FlWetSheet *sheet, size_t p, int32_t at,
+                        float beyond)
+{
+    const FlFrontStyle *style = front->dials->style;
+    const FlEdgePoint *point = &front->edge->point[front->edge->nearest[p]];
+    const float px = front->shape->px, f = front->width[p], depth = front->shape->distance[p];
+    const float inset = MIN(2.5f * px, 0.45f * point->half_width), ahead = inset - depth;
+    if (f <= 0.5f * px || depth >= 14 * px || ahead > 4.2f * f + 4 * px)
+        return 0;
+    const float x = (float)(at % sheet->page.width) - sheet->fibres.x;
+    const float y = (float)(at / sheet->page.width) - sheet->fibres.y;
+    const float run = fl_fibres_run(&sheet->fibres, x / px, y / px, point->nx, point->ny);
+    const FlPaperGrains grains = fl_wet_sheet_grain(sheet, at);
+    const float hollow = (float)grains.hollow / 255, spot = (float)grains.spot / 255;
+    const float fingers = style->fingers * fl_ease(1.5f * px, 7 * px, f);
+    const float reach =
+        1.25f * f * (1 - fingers + 2.2f * fingers * run * sqrtf(sqrtf(run))) - ahead + 2 * px;
+    const float soft = MAX(style->soft * f, 1.1f * px);
+    const float dense = style->base + (1 - style->base) * fl_fall(MAX(ahead, 0) / (0.45f * f));
+    const float tip =
+        style->line * fl_bell((reach - 0.6f * soft) / (1.3f * px)) * fl_ease(0.3f, 2, f / px);
+    const float wash = fl_ease(0, soft, reach);
+    const float grain = 0.86f + 0.5f * style->granulation * (hollow - 0.5f) + 0.2f * spot;
+    float density = MIN(wash * dense * grain + tip * wash * (1 - dense), 1);
+    const float over = front->dials->overrun * px * (0.4f + 1.2f * run) *
+                       MIN(1, point->half_width / (10 * px)) * fl_ease(1.5f * px, 9 * px, f);
+    density *= fl_ease(0.5f * px, 2.5f * px, f) * front->strength[p];
+    density *= 1 - fl_ease(0.35f * over, over + 0.8f * px, beyond - inset);
+    return density * (1 - fl_ease(7 * px, 14 * px, depth));
+}
+
+static void add_marks(const Front *front, const FlWetAround *around, const FlWetSheet *sheet,
+                      GArray *marks)
+{
+    const FlRect rect = front->shape->rect, page = front->shape->page;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
+            if (!(around->touches[p] & 1) || front->edge->nearest[p] < 0)
+                continue;
+            const int32_t at = (rect.y + y) * page.width + rect.x + x;
+            FlFrontMark mark = {at, density_at(front, sheet, p, at, around->beyond[p]), {0}};
+            memcpy(mark.ink, front->edge->point[front->edge->nearest[p]].ink, sizeof mark.ink);
+            if (mark.density > 0.004f)
+                g_array_append_val(marks, mark);
+        }
+}
+
+bool fl_marks_add_front(const FlWetShape *shape, const FlMovingEdge *edge,
+                        const FlWetAround *around, const FlWetDials *dials, const FlWetSheet *sheet,
+                        GArray *marks, GError **error)
+{
+    Front front = {.shape = shape, .edge = edge, .dials = dials};
+    const bool made = edge->n == 0 || make_planes(&front, error);
+    if (made && front.any)
+        add_marks(&front, around, sheet, marks);
+    free(front.width);
+    free(front.strength);
+    return made;
+}

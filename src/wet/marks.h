@@ -1,0 +1,33 @@
+/* The marks of a moving region on the paper: a front where it advances, a stain where it recedes.
+ */
+#ifndef FLUIDY_WET_MARKS_H
+#define FLUIDY_WET_MARKS_H
+
+#include "style/style_folder.h"
+#include "wet/moving_edge.h"
+#include "wet/wet_sheet.h"
+
+/** How far a region marks the paper. */
+typedef struct FlWetDials {
+    const FlFrontStyle *style;
+    float front, stain;
+    float overrun; // px of the page
+} FlWetDials;
+
+/** What is around a region; planes of its rect. */
+typedef struct FlWetAround {
+    const float *beyond;    // distance to its masks now and in some frames to come, cells; 0 inside
+    const uint8_t *touches; // whether no other paint lies between the region and the paper: bit 0
+                            // now, bit 1 in the frame before
+} FlWetAround;
+
+/** Adds the front of a frame to an array of FlFrontMark. FL_ERROR_NO_MEMORY. */
+bool fl_marks_add_front(const FlWetShape *shape, const FlMovingEdge *edge,
+                        const FlWetAround *around, const FlWetDials *dials, const FlWetSheet *sheet,
+                        GArray *marks, GError **error);
+
+/** Adds what a frame has uncovered to an array of FlStainMark. */
+void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
+                        const FlWetAround *around, const FlWetDials *dials, GArray *marks);
+
+#endif

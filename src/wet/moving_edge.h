@@ -1,0 +1,82 @@
+/* The contour of a region in a frame, and how it advances over the paper and recedes from it. */
+#ifndef FLUIDY_WET_MOVING_EDGE_H
+#define FLUIDY_WET_MOVING_EDGE_H
+
+#include "base/rect.h"
+#include "compose/laid.h"
+#include <fluidy/error.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+/** A region in a frame and in the one painted before, planes of `rect`. Lengths are cells: pixels
+ * of the grid in which the paper is kept. */
+typedef struct FlWetShape {
+    FlRect rect, page;
+    float px;              // cells per px of a page of FL_WET_PAGE_PX
+    float frames;          // since the frame before
+    const uint8_t *before; // coverage 0..255
+    const uint8_t *now;
+    const float *distance, *distance_before; // fl_distance() of both, the latter near the shape
+    const float *motion;      // of the drawing since the frame before, interleaved; NAN: unknown
+    float ground_x, ground_y; // the motion of the paper, likewise
+    float overlap;            // share of the smaller of both masks that lies in the other
+    const FlLaid *laid;       // of the frame before; NULL: not known
+    int region;
+    uint8_t paper[3];
+    float fill[3]; // absorbance of its paint, where that is not known
+} FlWetShape;
+
+/** A point of the contour; its values change slowly along it. */
+typedef struct FlEdgePoint {
+    float x, y;         // in rect, cells
+    float nx, ny;       // outward normal
+    float u, v;         // motion since the frame before against the paper, cells
+    float speed;        // of the contour along its normal against the paper, cells a frame
+    float speed_before; // a frame earlier
+    float half_width;   // of the shape there, cells
+    float ink[3];       // absorbance of the paint inside it
+} FlEdgePoint;
+
+/** Deeper inside than this no pixel has a nearest point; px of the page. */
+#define FL_WET_DEEP_PX 16
+
+typedef struct FlMovingEdge {
+    int n;
+    FlEdgePoint *point;
+    int32_t *nearest; // of rect: the point nearest to each pixel; -1: none
+    float fastest;    // of all points, cells a frame
+} FlMovingEdge;
+
+/** A plane between its pixels; beyond it as at its edge. */
+float fl_wet_plane_at(const float *plane, FlRect rect, float x, float y);
+
+/** The absorbance of paint that is seen on paper, of one channel. */
+float fl_wet_absorbance(uint8_t paint, uint8_t paper);
+
+/** The absorbance of the region's paint as it was laid at a place in rect in the frame before.
+ * Returns: false if it was not seen there; then it is that of its fill. */
+bool fl_wet_ink_at(const FlWetShape *shape, float x, float y, float ink[3]);
+
+/** A region's contour in the frame before: planes of `rect`. */
+typedef struct FlEdgeBefore {
+    FlRect rect;
+    float *distance; // NULL: it was not there
+    float *speed;    // of the contour nearest to each pixel, cells a frame; NULL: at rest
+} FlEdgeBefore;
+
+/**
+ * Finds the contour and its motion, into which that of the frame before is smoothed. edge->n is 0
+ * where there is no contour. FL_ERROR_NO_MEMORY.
+ */
+bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlEdgeBefore *before,
+                         GError **error);
+
+/** Makes this frame the one before. FL_ERROR_NO_MEMORY. */
+bool fl_edge_before_take(FlEdgeBefore *before, const FlWetShape *shape, const FlMovingEdge *edge,
+                         GError **error);
+void fl_moving_edge_clear(FlMovingEdge *edge);
+void fl_edge_before_clear(FlEdgeBefore *before);
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlMovingEdge, fl_moving_edge_clear)
+
+#endif

@@ -1,0 +1,78 @@
+/* The paper below a film, from frame to frame: wet fronts, and stains of paint that has moved on.
+ */
+#ifndef FLUIDY_WET_WET_SHEET_H
+#define FLUIDY_WET_WET_SHEET_H
+
+#include "compose/compose_input.h"
+#include "wet/fibres.h"
+
+/** A cell that a front wets. */
+typedef struct FlFrontMark {
+    int32_t at;    // cell of the page
+    float density; // 0..1, as dense as the paint
+    float ink[3];  // its absorbance
+} FlFrontMark;
+
+/** A cell that paint has left. */
+typedef struct FlStainMark {
+    int32_t at;
+    float lost;   // share of the cell, 0..1
+    float charge; // of paint on the paper
+    float age;    // frames since it was uncovered
+    float ink[3];
+} FlStainMark;
+
+/** What a cell holds. Inks are absorbances. */
+typedef struct FlWetCell {
+    float front; // density of a front, 0..1
+    float front_ink[3];
+    float stain, film; // of the paint when it was uncovered: pigment, and water
+    float age;         // frames since then
+    float granulation;
+    float ink[3];
+} FlWetCell;
+
+/** The paper at a place, each 0..255. */
+typedef struct FlPaperGrains {
+    uint8_t hollow, spot;
+} FlPaperGrains;
+
+typedef struct FlWetSheet {
+    FlRect page;       // cells
+    int width, height; // of the pictures, px
+    float px;          // cells per px of a page of FL_WET_PAGE_PX
+    float stain_time;
+    FlFibres fibres;
+    FlWetCell *cell;
+    FlPaperGrains *grain; // of each px of the pictures
+    int moved_x, moved_y; // px that the paper has moved, less than their size
+    FlRect wet;           // beyond it all cells are dry
+} FlWetSheet;
+
+/** The sizes, px, the time and the seed are set. FL_ERROR_NO_MEMORY. */
+bool fl_wet_sheet_init(FlWetSheet *sheet, GError **error);
+
+void fl_wet_sheet_clear(FlWetSheet *sheet);
+
+FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t cell);
+
+/** Moves all that is on the paper along with it, by whole cells. */
+bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error);
+
+/** The sheet after some frames in which it only dries. */
+void fl_wet_sheet_dry(FlWetSheet *sheet, float frames);
+
+/** Leaves a share of all marks; 0: a new sheet. */
+void fl_wet_sheet_fade(FlWetSheet *sheet, float share);
+
+void fl_wet_sheet_stain(FlWetSheet *sheet, const FlFrontStyle *style, const GArray *stains);
+void fl_wet_sheet_wet(FlWetSheet *sheet, float frames, const GArray *fronts);
+
+/**
+ * The marks as a layer of the frame: over the paper, it multiplies that by what they let through.
+ * layer->rgba is owned by the caller; NULL: there are none.
+ */
+bool fl_wet_sheet_layer(const FlWetSheet *sheet, const uint8_t paper[3], FlStainLayer *layer,
+                        GError **error);
+
+#endif

@@ -1,0 +1,214 @@
+/* Wet paper: a disk that moves over it wets what lies ahead and stains what it leaves. */
+#include "base/alloc.h"
+#include "guides/distance.h"
+#include "wet/marks.h"
+#include <math.h>
+
+enum { SIDE = 200, PIXELS = SIDE * SIDE, RADIUS = 40 };
+
+static const FlFrontStyle plain = FL_FRONT_DEFAULTS;
+
+/* A disk in two frames, on a page of 480 px of which this is a part. */
+typedef struct Scene {
+    FlWetSheet sheet;
+    uint8_t before[PIXELS], now[PIXELS], ahead[PIXELS], touches[PIXELS];
+    float distance[PIXELS], distance_before[PIXELS], beyond[PIXELS], motion[2 * PIXELS];
+    FlWetShape shape;
+    FlWetDials dials;
+    GArray *fronts, *stains;
+} Scene;
+
+static void draw_disk(float x0, float radius, uint8_t *mask)
+{
+    for (int p = 0; p < PIXELS; p++) {
+        const float inside = radius - hypotf((float)(p % SIDE) - x0, (float)(p / SIDE) - 100);
+        mask[p] = (uint8_t)(255 * CLAMP(inside + 0.5f, 0, 1));
+    }
+}
+
+static Scene *scene_new(void)
+{
+    const FlRect page = {0, 0, SIDE, SIDE};
+    Scene *scene = g_new0(Scene, 1);
+    scene->sheet = (FlWetSheet){.page = page,
+                                .width = SIDE,
+                                .height = SIDE,
+                                .px = 1,
+                                .stain_time = 7,
+                                .fibres = {.seed = 5}};
+    g_assert_true(fl_wet_sheet_init(&scene->sheet, NULL));
+    scene->shape = (FlWetShape){.rect = page,
+                                .page = page,
+                                .px = 1,
+                                .frames = 1,
+                                .before = scene->before,
+                                .now = scene->now,
+                                .distance = scene->distance,
+                                .distance_before = scene->distance_before,
+                                .motion = scene->motion,
+                                .overlap = 1,
+                                .fill = {1, 0.5f, 0.2f}};
+    scene->dials = (FlWetDials){&plain, 1, 1, 5};
+    memset(scene->touches, 3, PIXELS);
+    scene->fronts = g_array_new(FALSE, FALSE, sizeof(FlFrontMark));
+    scene->stains = g_array_new(FALSE, FALSE, sizeof(FlStainMark));
+    return scene;
+}
+
+static void scene_free(Scene *scene)
+{
+    fl_wet_sheet_clear(&scene->sheet);
+    g_array_unref(scene->fronts);
+    g_array_unref(scene->stains);
+    g_free(scene);
+}
+
+/* The marks of a disk that goes from x0 to x1 and grows by `grown`, with the same still to come. */
+static void mark(Scene *scene, float x0, float x1, float grown)
+{
+    g_auto(FlMovingEdge) edge = {0};
+    const FlEdgeBefore none = {0};
+    draw_disk(x0, RADIUS, scene->before);
+    draw_disk(x1, RADIUS + grown, scene->now);
+    draw_disk(x1 + 4 * (x1 - x0), RADIUS + grown, scene->ahead);
+    for (int p = 0; p < PIXELS; p++)
+        scene->motion[2 * p] = x1 - x0;
+    g_assert_true(fl_distance(scene->now, SIDE, SIDE, scene->distance, NULL));
+    g_assert_true(fl_distance(scene->before, SIDE, SIDE, scene->distance_before, NULL));
+    g_assert_true(fl_distance(scene->ahead, SIDE, SIDE, scene->beyond, NULL));
+    for (int p = 0; p < PIXELS; p++)
+        scene->beyond[p] = fmaxf(-fmaxf(scene->beyond[p], scene->distance[p]), 0);
+    g_array_set_size(scene->fronts, 0);
+    g_array_set_size(scene->stains, 0);
+    const FlWetAround around = {scene->beyond, scene->touches};
+    g_assert_true(fl_moving_edge_init(&edge, &scene->shape, &none, NULL));
+    g_assert_true(fl_marks_add_front(&scene->shape, &edge, &around, &scene->dials, &scene->sheet,
+                                     scene->fronts, NULL));
+    fl_marks_add_stain(&scene->shape, &edge, &around, &scene->dials, scene->stains);
+}
+
+/* The sum of the fronts outside the disk, right of it less left of it, and of both. */
+static float front_outside(const Scene *scene, float x1, float *both)
+{
+    float right = 0;
+    *both = 0;
+    for (guint i = 0; i < scene->fronts->len; i++) {
+        const FlFrontMark *front = &g_array_index(scene->fronts, FlFrontMark, i);
+        if (scene->distance[front->at] >= -1)
+            continue;
+        *both += front->density;
+        right += (float)(front->at % SIDE) > x1 ? front->density : -front->density;
+    }
+    return right;
+}
+
+static void test_ahead(void)
+{
+    Scene *scene = scene_new();
+    float both;
+    mark(scene, 80, 86, 0);
+    const float right = front_outside(scene, 86, &both);
+    g_assert_cmpfloat(both, >, 120);
+    g_assert_cmpfloat(right, >, 0.98f * both);
+    g_assert_cmpuint(scene->stains->len, >, 200);
+    for (guint i = 0; i < scene->stains->len; i++)
+        g_assert_cmpint(g_array_index(scene->stains, FlStainMark, i).at % SIDE, <, 87);
+    scene_free(scene);
+}
+
+static void test_rest(void)
+{
+    Scene *scene = scene_new();
+    mark(scene, 80, 80, 0);
+    g_assert_cmpuint(scene->fronts->len, ==, 0);
+    g_assert_cmpuint(scene->stains->len, ==, 0);
+    scene_free(scene);
+}
+
+static float charge_of(const Scene *scene)
+{
+    float sum = 0;
+    for (guint i = 0; i < scene->stains->len; i++)
+        sum += g_array_index(scene->stains, FlStainMark, i).charge;
+    return sum;
+}
+
+static void test_vanish(void)
+{
+    Scene *scene = scene_new();
+    mark(scene, 80, 80, -3);
+    const float shrunk = charge_of(scene);
+    mark(scene, 80, 80, -38);
+    g_assert_cmpfloat(shrunk, >, 300);
+    g_assert_cmpfloat(charge_of(scene), <, 0.5f * shrunk);
+    scene_free(scene);
+}
+
+static void test_other_paint(void)
+{
+    Scene *scene = scene_new();
+    memset(scene->touches, 0, PIXELS);
+    mark(scene, 80, 86, 0);
+    g_assert_cmpuint(scene->fronts->len, ==, 0);
+    g_assert_cmpuint(scene->stains->len, ==, 0);
+    scene_free(scene);
+}
+
+/* The darkness of the green of a layer, summed. */
+static double darkness(const Scene *scene)
+{
+    static const uint8_t paper[3] = {250, 240, 230};
+    FlStainLayer layer;
+    double sum = 0;
+    g_assert_true(fl_wet_sheet_layer(&scene->sheet, paper, &layer, NULL));
+    for (size_t p = 0; layer.rgba && p < fl_rect_pixels(layer.box); p++) {
+        const uint8_t *rgba = layer.rgba + 4 * p;
+        sum += (paper[1] - rgba[1]) * rgba[3] / 255.0;
+    }
+    free(layer.rgba);
+    return sum;
+}
+
+static void test_dries(void)
+{
+    Scene *scene = scene_new();
+    mark(scene, 80, 86, 0);
+    fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
+    fl_wet_sheet_wet(&scene->sheet, 1, scene->fronts);
+    double last = darkness(scene);
+    g_assert_cmpfloat(last, >, 1000);
+    for (int k = 0; k < 40; k++) {
+        fl_wet_sheet_dry(&scene->sheet, 1);
+        const double now = darkness(scene);
+        g_assert_cmpfloat(now, <=, last);
+        last = now;
+    }
+    g_assert_cmpfloat(last, ==, 0);
+    scene_free(scene);
+}
+
+static void test_moved(void)
+{
+    Scene *scene = scene_new();
+    mark(scene, 80, 86, 0);
+    fl_wet_sheet_stain(&scene->sheet, &plain, scene->stains);
+    const double before = darkness(scene);
+    const FlRect wet = scene->sheet.wet;
+    g_assert_true(fl_wet_sheet_move(&scene->sheet, 7, -3, NULL));
+    g_assert_cmpint(scene->sheet.wet.x, ==, wet.x + 7);
+    g_assert_cmpint(scene->sheet.wet.y, ==, wet.y - 3);
+    g_assert_cmpfloat(darkness(scene), ==, before);
+    scene_free(scene);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    g_test_add_func("/wet/a-front-runs-ahead-and-a-stain-stays-behind", test_ahead);
+    g_test_add_func("/wet/what-rests-marks-nothing", test_rest);
+    g_test_add_func("/wet/what-vanishes-leaves-less-than-what-recedes", test_vanish);
+    g_test_add_func("/wet/paint-on-other-paint-marks-nothing", test_other_paint);
+    g_test_add_func("/wet/marks-fade-until-none-is-left", test_dries);
+    g_test_add_func("/wet/marks-and-grain-move-with-the-paper", test_moved);
+    return g_test_run();
+}
