@@ -124,6 +124,19 @@ static void a_leaf_that_goes_takes_nothing_along(void)
         assert_moves(drawing, t, 3, 0);
 }
 
+/* A band that is drawn from left to right, and taken away again. */
+static void a_shape_that_is_built_holds_its_anchor(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < N; t++) {
+        const int end = 30 + 6 * (t < N / 2 ? t : N - t);
+        g_autofree char *band = g_strdup_printf(
+            "<path fill=\"red\" d=\"M10,20Q%d,10 %d,25V60H10z\"/>", (10 + end) / 2, end);
+        add_frame(folder, t, band);
+    }
+    assert_film(folder, 0, 0, 0);
+}
+
 static void what_rests_has_an_anchor_that_rests(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -154,6 +167,7 @@ int main(int argc, char **argv)
     TEST("a-group-turns-about-its-centre", a_group_turns_about_its_centre);
     TEST("other-nodes-are-no-turn", other_nodes_are_no_turn);
     TEST("a-leaf-that-goes-takes-nothing-along", a_leaf_that_goes_takes_nothing_along);
+    TEST("a-shape-that-is-built-holds-its-anchor", a_shape_that_is_built_holds_its_anchor);
     TEST("what-rests-has-an-anchor-that-rests", what_rests_has_an_anchor_that_rests);
 #undef TEST
     return g_test_run();

@@ -644,6 +644,19 @@ static void strokes_that_come(GString *out, int t)
         square(out, "", 20 + 40 * k, 30 + 35 * k, 30);
 }
 
+/* With as many nodes in every frame, which lie elsewhere on its edges. */
+static void band_that_gets_longer(GString *out, int t)
+{
+    const double end = 80 + 15 * t;
+    g_string_append(out, "<path fill='" RED "' d='");
+    for (int k = 0; k < 60; k++) {
+        const double x = 20 + (end - 20) * (k < 30 ? k : 59 - k) / 29.0;
+        g_string_append_printf(out, "%c%.4f %.4f", k ? 'L' : 'M', x,
+                               (k < 30 ? 60 : 140) + 15 * sin(x / 40));
+    }
+    g_string_append(out, "z'/>");
+}
+
 static void fill_that_a_clip_opens(GString *out, int t)
 {
     g_string_append_printf(out,
@@ -656,8 +669,9 @@ static void fill_that_a_clip_opens(GString *out, int t)
 static void what_is_laid_stays(void)
 {
     static float motion[2 * SIZE * SIZE];
-    static Draw *const draws[] = {line_that_draws_itself, line_that_gets_longer, line_with_a_dash,
-                                  strokes_that_come, fill_that_a_clip_opens};
+    static Draw *const draws[] = {line_that_draws_itself, line_that_gets_longer,
+                                  line_with_a_dash,       strokes_that_come,
+                                  band_that_gets_longer,  fill_that_a_clip_opens};
     for (size_t i = 0; i < G_N_ELEMENTS(draws); i++) {
         g_auto(Sequence) s = sequence_of(draws[i], 3);
         for (int t = 1; t < 3; t++) {

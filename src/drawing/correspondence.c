@@ -221,7 +221,7 @@ static bool grows(const Pair *p, bool same)
 {
     enum { MOST = 4000, LOOKED_AT = 200 }; // cubics; points
     const bool open = !p->now->subpath[p->b->first_subpath].closed;
-    if (same && (!open || !is_held(p))) // a limb that is foreshortened moves at both ends
+    if (same && !is_held(p)) // a limb that is foreshortened moves at both ends
         return false;
     g_autoptr(GArray) before = flattened(p->before, p->a), now = flattened(p->now, p->b);
     const double a = length_of(before), b = length_of(now);
@@ -231,7 +231,8 @@ static bool grows(const Pair *p, bool same)
     const GArray *small = a < b ? before : now, *large = a < b ? now : before;
     const double tolerance = MIN(LIES_ON_PX, LIES_ON * fabs(a - b)); // limbs also turn aside
     const guint step = MAX(3, small->len / LOOKED_AT), n = (small->len + step - 1) / step;
-    guint may_be_off = n - (guint)ceil((open ? 0.95 : 0.7) * n); // of a closed one the tip moves on
+    const double on = open ? 0.95 : same ? 0.9 : 0.7; // of a closed one the tip moves on
+    guint may_be_off = n - (guint)ceil(on * n);
     for (guint i = 0; i < small->len; i += step)
         if (!lies_on(g_array_index(small, FlPoint, i), large, tolerance) && may_be_off-- == 0)
             return false;

@@ -37,7 +37,8 @@ typedef struct Fit {
 /* The follower of a film's regions. */
 typedef struct Follower {
     int n_regions;
-    int *first; // index of each region's first leaf
+    float page[2]; // width and height
+    int *first;    // index of each region's first leaf
     Leaf *leaf;
     Fit *fit;     // of each region
     Means *begin; // of each region, in the first frame that has it
@@ -91,11 +92,40 @@ static void add_turn(Fit *fit, double weight, FlPoint from, FlPoint to)
     fit->most += weight * (from.x * from.x + from.y * from.y + to.x * to.x + to.y * to.y);
 }
 
+#define HELD_PX 0.1 // of a side of a box that stays where it is
+#define GROWN_PX 1  // of one that moves on
+
+/* Whether a leaf has grown on one side, held the other, and shrunk on none; page: its width and
+ * height, at whose edges nothing can be told. */
+static bool has_grown(const float before[4], const float now[4], const float page[2])
+{
+    bool grown = false, shrunk = false;
+    for (int axis = 0; axis < 2; axis++) {
+        const float low = before[axis] - now[axis], high = now[axis + 2] - before[axis + 2];
+        const bool in_page = now[axis] > 1 && now[axis + 2] < page[axis] - 1;
+        shrunk |= low < -HELD_PX || high < -HELD_PX || !in_page;
+        grown |= fabsf(low) < HELD_PX && high > GROWN_PX;
+        grown |= fabsf(high) < HELD_PX && low > GROWN_PX;
+    }
+    return grown && !shrunk;
+}
+
+/* Paint stays where it is in a leaf that is being built, or the reverse. */
+static bool stays(const FlSurveyPart *before, const FlSurveyPart *now, const float page[2])
+{
+    return has_grown(before->box, now->box, page) || has_grown(now->box, before->box, page);
+}
+
 /* steady: its nodes are the same ones where they are as many. */
-static void add_leaf(Fit *fit, const FlSurveyPart *before, const FlSurveyPart *now, bool steady)
+static void add_leaf(Fit *fit, const FlSurveyPart *before, const FlSurveyPart *now, bool steady,
+                     const float page[2])
 {
     const FlPose *a = &before->pose, *b = &now->pose;
     const double weight = MIN(weight_of(before), weight_of(now));
+    if (stays(before, now, page)) {
+        add_means(&fit->all, weight, middle_of(before, false), middle_of(before, false));
+        return;
+    }
     if (!steady || a->n == 0 || a->n != b->n) {
         const bool known = a->n > 0 && b->n > 0;
         add_means(&fit->all, weight, middle_of(before, known), middle_of(now, known));
@@ -168,7 +198,7 @@ static void note_leaf(Follower *f, int t, const FlSurveyPart *part)
 {
     Leaf *leaf = leaf_of(f, part);
     if (!leaf->shared && leaf->part && leaf->frame == t - 1)
-        add_leaf(&f->fit[part->region], leaf->part, part, keeps_nodes(leaf));
+        add_leaf(&f->fit[part->region], leaf->part, part, keeps_nodes(leaf), f->page);
     leaf->part = part, leaf->frame = t;
 }
 
@@ -253,7 +283,8 @@ FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions)
     g_autofree Fit *fit = g_new0(Fit, n_regions + 1);
     g_autofree Means *begin = g_new0(Means, n_regions + 1);
     g_autofree bool *begun = g_new0(bool, n_regions + 1);
-    Follower f = {n_regions, first, leaf, fit, begin, begun};
+    Follower f = {n_regions, {(float)survey->width, (float)survey->height}, first, leaf, fit, begin,
+                  begun};
     count_leaves(&f, survey, n_leaves);
     FlAnchor **anchors = g_new0(FlAnchor *, survey->n_frames + 1);
     for (int t = 0; t < survey->n_frames; t++) {
