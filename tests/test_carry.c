@@ -2,6 +2,7 @@
 #include "guides/displacement.h"
 #include "synth/carry.h"
 #include "synth/patch_cost.h"
+#include "synth/rest.h"
 #include "synth/rotation.h"
 #include <math.h>
 #include <string.h>
@@ -37,11 +38,6 @@ static void half_spins(double x, double y, double u[2])
         u[0] = u[1] = 0;
     else
         spin(x + 100, y, u); // the seam slips
-}
-
-static void growth(double x, double y, double u[2])
-{
-    u[0] = x / 2, u[1] = 0; // twice as wide as it was
 }
 
 static void unknown(double x, double y, double u[2])
@@ -88,18 +84,32 @@ static void coherent_field(FlNnf *nnf)
                                   .y_16 = (uint16_t)(16 * (p / SIDE + CENTRE))};
 }
 
+/* The shape of a frame in which each pixel was as deep as it is far right. */
+static const uint8_t *shape_of_columns(void)
+{
+    static uint8_t shape[SIDE * SIDE];
+    for (int p = 0; p < SIDE * SIDE; p++)
+        shape[p] = (uint8_t)(255 ^ p % SIDE);
+    return shape;
+}
+
+static void carry_once(const FlGuides *guides, float carry, int frame, const FlNnf *nnf,
+                       FlCarried *out)
+{
+    g_autoptr(GError) error = NULL;
+    const FlCarry how = {guides, carry, true, frame, SIDE, shape_of_columns(), NULL};
+    g_assert_true(fl_carried_init(out, SIDE, SIDE, &error));
+    fl_nnf_carry(nnf, whole, &how, whole, &level, out);
+}
+
 /* Some frames of the same motion; what leaves the frame is known no more. */
 static void carry_on(const FlGuides *guides, float carry, int frames, FlNnf *nnf)
 {
-    g_autoptr(GError) error = NULL;
-    float speed[SIDE * SIDE];
     for (int f = 1; f <= frames; f++) {
-        FlNnf next;
-        const FlCarry how = {guides, carry, true, f};
-        g_assert_true(fl_nnf_init(&next, SIDE, SIDE, &error));
-        fl_nnf_carry(nnf, whole, &how, whole, &level, &next, speed);
+        g_auto(FlCarried) next = {0};
+        carry_once(guides, carry, f, nnf, &next);
         fl_nnf_clear(nnf);
-        *nnf = next;
+        *nnf = next.nnf, next.nnf = (FlNnf){0};
     }
 }
 
@@ -185,42 +195,20 @@ static void what_goes_across_is_carried_and_what_goes_along_is_left(void)
     g_auto(FlGuides) guides = {0};
     for (int along = 0; along < 2; along++)
         for (int c = 0; c <= 4; c += 2) {
-            g_auto(FlNnf) before = {0}, after = {0};
-            g_autoptr(GError) error = NULL;
-            float speed[SIDE * SIDE];
+            g_auto(FlNnf) before = {0};
+            g_auto(FlCarried) after = {0};
             const float carry = 0.25f * (float)c;
             const double left = 1 - (double)carry;
             fl_guides_clear(&guides);
             moving_guides(leap, along ? 0 : 64, &guides);
             coherent_field(&before);
-            g_assert_true(fl_nnf_init(&after, SIDE, SIDE, &error));
-            const FlCarry how = {&guides, carry, true, 1};
-            fl_nnf_carry(&before, whole, &how, whole, &level, &after, speed);
+            carry_once(&guides, carry, 1, &before, &after);
             double place[2];
-            match_of(&after, 3, 4, place);
+            match_of(&after.nnf, 3, 4, place);
             assert_near(place[0], 3 - 5.25 * (along ? (double)carry : 1), 1.0 / 16);
             assert_near(place[1], 4 - 2 * (along ? 1 : (double)carry), 1.0 / 16);
-            assert_near(speed[CENTRE * SIDE + CENTRE], (along ? 5.25 : 2) * left, 0.001);
+            assert_near(after.speed[CENTRE * SIDE + CENTRE], (along ? 5.25 : 2) * left, 0.001);
         }
-}
-
-/* Of paint that gets twice the room a quarter is carried. */
-static void what_fills_new_room_spreads(void)
-{
-    g_auto(FlGuides) guides = {0};
-    g_auto(FlNnf) before = {0}, after = {0};
-    g_autoptr(GError) error = NULL;
-    float speed[SIDE * SIDE];
-    double place[2];
-    moving_guides(growth, 0, &guides);
-    coherent_field(&before);
-    g_assert_true(fl_nnf_init(&after, SIDE, SIDE, &error));
-    const FlCarry how = {&guides, 1, true, 1};
-    fl_nnf_carry(&before, whole, &how, whole, &level, &after, speed);
-    g_assert_cmpint(fl_motion_room(&guides, CENTRE + 10, CENTRE), ==, FL_ROOM_ONE / 2);
-    match_of(&after, 10, 0, place);
-    assert_near(place[0], 10 - 5 * 0.25, 1.0 / 16);
-    assert_near(speed[CENTRE * SIDE + CENTRE + 10], 5 * 0.75, 0.01);
 }
 
 static void what_is_uncovered_has_no_match(void)
@@ -232,6 +220,19 @@ static void what_is_uncovered_has_no_match(void)
     for (int y = 0; y < SIDE; y++)
         for (int x = 0; x < SIDE; x++)
             g_assert_true((nnf.match[y * SIDE + x].frame == FL_NO_MATCH) == (x < 5 || y < 2));
+}
+
+static void how_deep_paint_was_comes_along(void)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlNnf) before = {0};
+    g_auto(FlCarried) after = {0};
+    moving_guides(leap, 0, &guides);
+    coherent_field(&before);
+    carry_once(&guides, 1, 1, &before, &after);
+    for (int x = 5; x < SIDE; x++)
+        g_assert_cmpint(fl_rest_depth(after.shape[CENTRE * SIDE + x]), ==, x - 5);
+    g_assert_cmpint(after.shape[CENTRE * SIDE + 3], ==, 0);
 }
 
 static void where_motion_is_unknown_nothing_is_carried(void)
@@ -285,8 +286,8 @@ int main(int argc, char **argv)
     TEST(a_slow_spin_carries_and_turns_as_far_in_the_end);
     TEST(pieces_travel_as_fast_as_what_they_show);
     TEST(what_goes_across_is_carried_and_what_goes_along_is_left);
-    TEST(what_fills_new_room_spreads);
     TEST(what_is_uncovered_has_no_match);
+    TEST(how_deep_paint_was_comes_along);
     TEST(where_motion_is_unknown_nothing_is_carried);
     TEST(parts_that_move_apart_turn_by_themselves);
     TEST(paint_that_was_carried_is_left_at_a_price);

@@ -75,15 +75,6 @@ static int16_t turn_at(const FlGuides *guides, int x, int y)
                                         : 0;
 }
 
-int fl_motion_room(const FlGuides *guides, int x, int y)
-{
-    Undoing m;
-    if (!undoing_at(guides, x, y, &m))
-        return FL_ROOM_ONE;
-    const int64_t unit = 4 * (int64_t)FL_MOTION_ONE * FL_MOTION_ONE / FL_ROOM_ONE;
-    return (int)CLAMP((m.xx * m.yy - m.xy * m.yx) / unit, 0, FL_ROOM_ONE);
-}
-
 void fl_motion_confine(FlGuides *guides)
 {
     const size_t n = (size_t)guides->width * guides->height;

@@ -21,12 +21,4 @@ void fl_motion_confine(FlGuides *guides);
  */
 void fl_motion_turns(FlGuides *guides);
 
-#define FL_ROOM_ONE 1024
-
-/**
- * Which share of its present room the paint around a pixel had in the frame before, FL_ROOM_ONE is
- * all: less where a shape grows, never more. All where motion is unknown. x, y: of the planes.
- */
-int fl_motion_room(const FlGuides *guides, int x, int y);
-
 #endif

@@ -1,6 +1,7 @@
 #include "synth/carry.h"
 
-#include "guides/displacement.h"
+#include "base/alloc.h"
+#include "guides/guides.h"
 #include "synth/rotation.h"
 #include <assert.h>
 #include <math.h>
@@ -71,23 +72,14 @@ static FlMatch carried(const Plan *plan, FlMatch m, Vector rest, int16_t turn)
     return m;
 }
 
-/* Paint that has to fill more room than it had spreads, though it should be carried: matches do not
- * grow with a shape. */
-static int left_of(const Plan *plan, int x, int y)
-{
-    const FlGuides *guides = plan->input->guides;
-    const int room = fl_motion_room(guides, x - guides->x, y - guides->y);
-    return CARRY_ONE - plan->carry * room / FL_ROOM_ONE * room / FL_ROOM_ONE;
-}
-
 /* Splits the motion of a pixel of the frame: what is carried, and in px what is left. */
-static Vector split(const Plan *plan, size_t pixel, int share, float *left_px)
+static Vector split(const Plan *plan, size_t pixel, float *left_px)
 {
     const FlGuides *guides = plan->input->guides;
     const int32_t *u = guides->motion + 2 * pixel;
     const int16_t *d = fl_turns[guides->angle[pixel]];
     const int64_t along = ((int64_t)u[0] * d[0] + (int64_t)u[1] * d[1]) >> 14;
-    const int64_t left = along * share / CARRY_ONE;
+    const int64_t left = along * (CARRY_ONE - plan->carry) / CARRY_ONE;
     *left_px = fabsf((float)left) / FL_MOTION_ONE;
     return (Vector){(int32_t)(u[0] - ((left * d[0] + (1 << 13)) >> 14)),
                     (int32_t)(u[1] - ((left * d[1] + (1 << 13)) >> 14))};
@@ -125,62 +117,106 @@ static int32_t longer_side(Vector v)
     return MAX(abs(v.x), abs(v.y));
 }
 
-/* The match whose paint is nearest to where a pixel comes from; `back` goes there from the pixel,
- * which is one of the field before. Were it the match of the pixel that is nearest, the borders
- * between pieces of the exemplar would move by whole pixels, and not with what they enclose. */
-static FlMatch nearest_paint(const Plan *plan, const FlNnf *before, int x, int y, Vector back,
-                             int16_t turn)
+/* A pixel of the field before, relative to where another one comes from. */
+typedef struct Origin {
+    int x, y;      // of the field
+    Vector rest;   // from it to that place
+    Vector off;    // from that place to its paint
+    FlMatch match; // none: there is no paint near
+} Origin;
+
+/* The paint that is nearest to where a pixel comes from; `back` goes there from the pixel, which is
+ * one of the field before. Were it always that of the nearest pixel, the borders between pieces of
+ * the exemplar would move by whole pixels, and not with what they enclose. */
+static Origin nearest_paint(const FlNnf *before, int x, int y, Vector back)
 {
     static const int8_t around[9][2] = {{0, 0},   {0, -1}, {-1, 0}, {1, 0}, {0, 1},
                                         {-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
-    Vector rest, best_rest = {0}, best_off = {0};
-    FlMatch best = {.frame = FL_NO_MATCH};
+    Vector rest;
+    Origin best = {.match = {.frame = FL_NO_MATCH}};
     int64_t least = (int64_t)FL_MOTION_ONE * FL_MOTION_ONE;
     bool beside = false; // its paint covers the pixel
     x += nearest(back.x, &rest.x), y += nearest(back.y, &rest.y);
     for (int i = 0; i < 9 && !beside; i++) {
-        const FlMatch m = match_at(before, x + around[i][0], y + around[i][1]);
-        const Vector from = {rest.x - around[i][0] * FL_MOTION_ONE,
-                             rest.y - around[i][1] * FL_MOTION_ONE};
+        const int dx = around[i][0], dy = around[i][1];
+        const FlMatch m = match_at(before, x + dx, y + dy);
+        const Vector from = {rest.x - dx * FL_MOTION_ONE, rest.y - dy * FL_MOTION_ONE};
         const Vector paint = off_of(m), off = {paint.x - from.x, paint.y - from.y};
         const int64_t apart = (int64_t)off.x * off.x + (int64_t)off.y * off.y;
         if (m.frame == FL_NO_MATCH || apart >= least)
             continue;
-        least = apart, best = m, best_rest = from, best_off = off;
+        least = apart, best = (Origin){x + dx, y + dy, from, off, m};
         beside = longer_side(off) <= FL_MOTION_ONE / 2;
     }
-    if (best.frame == FL_NO_MATCH)
-        return best;
-    best = carried(plan, best, best_rest, turn);
-    best.off = off_from(plan, best_off);
     return best;
 }
 
-/* x and y are of the frame, dx and dy from there to the field before. */
-static FlMatch arriving(const Plan *plan, const FlNnf *before, int x, int y, int dx, int dy,
-                        float *speed)
+/* A pixel that is where it was. */
+static Origin same_place(const FlNnf *before, int x, int y)
 {
-    const FlGuides *guides = plan->input->guides;
+    const FlMatch m = match_at(before, x, y);
+    return (Origin){.x = x, .y = y, .match = m, .off = off_of(m)};
+}
+
+/* The pixel at (x, y) of the frame, p of out. */
+static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, int y, size_t p,
+                   FlCarried *out)
+{
+    const FlCarry *input = plan->input;
+    const FlGuides *guides = input->guides;
     const size_t pixel = fl_guides_at(guides, x, y);
     const bool inside = guides->mask[pixel] >= FL_INSIDE;
-    *speed = inside ? length_of_flow(guides, pixel) : 0;
-    if (!guides->has_motion || (inside && guides->motion[2 * pixel] == FL_MOTION_UNKNOWN))
-        return match_at(before, x + dx, y + dy);
-    if (!inside) // what was left behind must not vote beside what has moved on
-        return (FlMatch){.frame = FL_NO_MATCH};
-    const Vector k = split(plan, pixel, left_of(plan, x, y), speed);
-    return nearest_paint(plan, before, x + dx, y + dy, (Vector){-k.x, -k.y}, guides->turn[pixel]);
+    const bool known = guides->has_motion && guides->motion[2 * pixel] != FL_MOTION_UNKNOWN;
+    Origin origin = {.match = {.frame = FL_NO_MATCH}};
+    out->speed[p] = inside ? (1 - input->carry) * length_of_flow(guides, pixel) : 0;
+    if (inside && known) {
+        const Vector k = split(plan, pixel, &out->speed[p]);
+        origin = nearest_paint(before, x - from.x, y - from.y, (Vector){-k.x, -k.y});
+    } else if (inside ||
+               !guides->has_motion) { // what was left behind must not vote beside the rest
+        origin = same_place(before, x - from.x, y - from.y);
+    }
+    FlMatch m = origin.match;
+    if (m.frame != FL_NO_MATCH && inside && known) {
+        m = carried(plan, m, origin.rest, guides->turn[pixel]);
+        m.off = off_from(plan, origin.off);
+    }
+    const size_t was =
+        (size_t)(from.y + origin.y) * (size_t)input->width + (size_t)(from.x + origin.x);
+    out->nnf.match[p] = m;
+    out->shape[p] = m.frame != FL_NO_MATCH ? input->shape[was] : 0;
+    out->wet[p] = m.frame != FL_NO_MATCH && input->wet ? input->wet[was] : 0;
+}
+
+bool fl_carried_init(FlCarried *carried, int width, int height, GError **error)
+{
+    const size_t pixels = (size_t)width * (size_t)height;
+    *carried = (FlCarried){0};
+    if (fl_nnf_init(&carried->nnf, width, height, error) &&
+        (carried->speed = fl_alloc_unset(pixels, sizeof *carried->speed, "a field", error)) &&
+        (carried->shape = fl_alloc_unset(pixels, 1, "a field", error)) &&
+        (carried->wet = fl_alloc_unset(pixels, 1, "a field", error)))
+        return true;
+    fl_carried_clear(carried);
+    return false;
+}
+
+void fl_carried_clear(FlCarried *carried)
+{
+    fl_nnf_clear(&carried->nnf);
+    free(carried->speed);
+    free(carried->shape);
+    free(carried->wet);
+    *carried = (FlCarried){0};
 }
 
 void fl_nnf_carry(const FlNnf *before, FlRect from, const FlCarry *input, FlRect rect,
-                  const FlExemplarLevel *level, FlNnf *out, float *speed)
+                  const FlExemplarLevel *level, FlCarried *out)
 {
     const Plan plan = plan_of(input, level);
 #pragma omp parallel for schedule(dynamic, 8)
     for (int y = 0; y < rect.height; y++)
-        for (int x = 0; x < rect.width; x++) {
-            const size_t p = (size_t)y * rect.width + x;
-            out->match[p] =
-                arriving(&plan, before, rect.x + x, rect.y + y, -from.x, -from.y, &speed[p]);
-        }
+        for (int x = 0; x < rect.width; x++)
+            arrive(&plan, before, from, rect.x + x, rect.y + y,
+                   (size_t)y * (size_t)rect.width + (size_t)x, out);
 }

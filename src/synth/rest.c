@@ -5,10 +5,9 @@
 
 static uint8_t shape_at(const FlGuides *guides, size_t p, float border_px)
 {
-    enum { STEPS = 127 }; // of a border
     const uint8_t mask = guides->mask[p];
-    const float share = CLAMP(guides->depth[p] / MAX(border_px, 1e-3f), 0, 1);
-    return mask < FL_INSIDE ? mask : mask ^ (uint8_t)(int)(share * STEPS);
+    const float share = CLAMP(guides->depth[p] / MAX(FL_REST_DEEP * border_px, 1e-3f), 0, 1);
+    return mask < FL_INSIDE ? mask : mask ^ (uint8_t)(int)(share * FL_REST_STEPS);
 }
 
 void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shape, int width)

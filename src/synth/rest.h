@@ -5,10 +5,13 @@
 #include "guides/guides.h"
 #include "synth/synth_state.h"
 
+#define FL_REST_DEEP 2.5f // borders up to which the depth counts
+#define FL_REST_STEPS 127 // of that depth
+
 /** What rest is. */
 typedef struct FlRestRule {
-    float border_px; // up to it the depth counts
-    float still;     // the fastest flow, px a frame
+    float border_px;
+    float still; // the fastest flow, px a frame
 } FlRestRule;
 
 /**
@@ -16,6 +19,13 @@ typedef struct FlRestRule {
  * of it: its mask, and inside it the depth, which also depends on what moves beside it.
  */
 void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shape, int width);
+
+/** How deep a pixel inside was, FL_REST_STEPS are FL_REST_DEEP borders; at the very edge anything.
+ */
+static inline int fl_rest_depth(uint8_t shape)
+{
+    return shape ^ 255;
+}
 
 /**
  * Whether a region rests: its shape is that of the last frame, which fl_rest_shape() filled in, and

@@ -86,24 +86,22 @@ static FlRect working_rect(const FlSynth *synth, FlRect box)
     return fl_rect_on_grid(fl_rect_grown(box, FL_PATCH_RADIUS * grid, page), grid);
 }
 
-/* The previous field in the new rectangle, carried along the drawing's motion and shifted in the
+/* The last field in the new rectangle, carried along the drawing's motion and shifted in the
  * exemplar's time. */
-static bool shifted_previous(const FlSynth *synth, const FlGuides *guides, FlRect rect, FlNnf *out,
-                             GError **error)
+static bool carry_last(const FlSynth *synth, const FlGuides *guides, FlRect rect, FlCarried *out,
+                       GError **error)
 {
-    const size_t pixels = (size_t)rect.width * rect.height;
-    g_autofree float *speed = fl_alloc_unset(pixels, sizeof(float), "a field", error);
-    g_autofree uint8_t *angle = fl_alloc_unset(pixels, 1, "a field", error);
-    if (!speed || !angle || !fl_nnf_init(out, rect.width, rect.height, error))
+    const FlSynthState *last = &synth->last;
+    const FlParams *params = synth->params;
+    g_autofree uint8_t *angle = fl_alloc_unset(fl_rect_pixels(rect), 1, "a field", error);
+    if (!angle || !fl_carried_init(out, rect.width, rect.height, error))
         return false;
-    const FlCarry carry = {guides, synth->params->carry, synth->params->rotate, synth->last.frame};
-    fl_nnf_carry(&synth->last.nnf, synth->last.rect, &carry, rect, &synth->exemplar->level[0], out,
-                 speed);
-    for (int y = 0; y < rect.height; y++)
-        memcpy(angle + (size_t)y * rect.width,
-               guides->angle + fl_guides_at(guides, rect.x, rect.y + y), (size_t)rect.width);
-    const FlTargetMotion motion = {speed, angle, synth->params->flow_still, synth->boil};
-    fl_nnf_shift(out, synth->exemplar, &motion);
+    const FlCarry carry = {guides,     params->carry, params->rotate, last->frame, synth->width,
+                           last->mask, NULL};
+    fl_nnf_carry(&last->nnf, last->rect, &carry, rect, &synth->exemplar->level[0], out);
+    fl_rect_copy(guides->angle, fl_guides_rect(guides), angle, rect, 1);
+    const FlTargetMotion motion = {out->speed, angle, params->flow_still, synth->boil};
+    fl_nnf_shift(&out->nnf, synth->exemplar, &motion);
     return true;
 }
 
@@ -186,19 +184,19 @@ static void forget_last(FlSynth *synth)
 }
 
 /* The last frame is large, and all that is needed of it is shifted: so that comes first. */
-static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlNnf *shifted,
+static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlCarried *carried,
                     FlFrameStats *stats, GError **error)
 {
     gint64 time = g_get_monotonic_time();
     const bool continues = synth->last.valid;
-    if (continues && !shifted_previous(synth, guides, rect, shifted, error))
+    if (continues && !carry_last(synth, guides, rect, carried, error))
         return false;
     forget_last(synth);
     stats->seconds_temporal = fl_lap(&time);
     if (!take_guides(synth, guides, rect, error))
         return false;
     stats->seconds_target = fl_lap(&time);
-    if (continues && !fl_synth_make_temporal(synth, shifted, error))
+    if (continues && !fl_synth_make_temporal(synth, carried, error))
         return false;
     fl_target_drop_distances(&synth->target);
     stats->seconds_temporal += fl_lap(&time);
@@ -274,10 +272,10 @@ static FlSynthView view_at_rest(const FlSynth *synth)
 static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *rgb,
                        FlFrameStats *stats, GError **error)
 {
-    g_auto(FlNnf) shifted = {0};
+    g_auto(FlCarried) carried = {0};
     const int threads = fl_schedule_set_threads(fl_schedule_threads_for(fl_rect_pixels(rect)));
-    const bool done = prepare(synth, guides, rect, &shifted, stats, error) &&
-                      fl_synth_run_levels(synth, &shifted, stats, error);
+    const bool done = prepare(synth, guides, rect, &carried, stats, error) &&
+                      fl_synth_run_levels(synth, &carried.nnf, stats, error);
     (void)fl_schedule_set_threads(threads);
     if (!done)
         return false;

@@ -4,6 +4,7 @@
 #include "base/rng.h"
 #include "base/schedule.h"
 #include "synth/energy.h"
+#include "synth/keep.h"
 #include "synth/shift.h"
 #include "synth/synth_data.h"
 #include "synth/vote.h"
@@ -65,17 +66,23 @@ static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GEr
     return true;
 }
 
-bool fl_synth_make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error)
+/* Whether paint that fits is kept: where it is carried whole, and every match is not searched. */
+static bool keeps(const FlParams *params)
+{
+    return params->carry >= 1 && params->settled > 0;
+}
+
+bool fl_synth_make_temporal(FlSynth *synth, const FlCarried *carried, GError **error)
 {
     const int l = fl_synth_finest_searched(synth);
     g_auto(FlNnf) down = {0};
     const FlNnf *previous;
     if (!fl_target_add_temporal(&synth->target, error) ||
-        !previous_of_level(synth, shifted, l, &down, &previous, error) ||
+        !previous_of_level(synth, &carried->nnf, l, &down, &previous, error) ||
         !make_temporal_level(synth, previous, l, error))
         return false;
     fl_target_temporal_pyramid(&synth->target, l);
-    return true;
+    return !keeps(synth->params) || fl_target_keep(&synth->target, carried, synth->exemplar, error);
 }
 
 static double mean_energy(const FlSearch *search)
@@ -146,6 +153,8 @@ static void initialise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, 
         fl_nnf_clear(&synth->nnf[l + 1]);
     } else if (previous && previous->match)
         copy_blocks(previous, &target->blocks, search->nnf);
+    if (target->kept)
+        fl_keep_matches(target, previous, search->nnf);
     fl_nnf_repair(search->nnf, search->level, target, params->rotate, key);
     if (coarsest && !previous) { // guides alone decide the first guess [P21 §4.2]
         fl_target_blend(target, params, &synth->scale, 0);

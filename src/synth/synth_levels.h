@@ -2,6 +2,7 @@
 #ifndef FLUIDY_SYNTH_SYNTH_LEVELS_H
 #define FLUIDY_SYNTH_SYNTH_LEVELS_H
 
+#include "synth/carry.h"
 #include "synth/synth.h"
 
 /** The finest level that is searched. Where it is not the finest of all, that one is the coarser
@@ -9,14 +10,14 @@
 int fl_synth_finest_searched(const FlSynth *synth);
 
 /**
- * Makes T_temp and m(q) [F21 §3.4] on every level that is searched. shifted: the last frame's field
- * in the size of the target, carried and shifted in time. FL_ERROR_NO_MEMORY.
+ * Makes T_temp and m(q) [F21 §3.4] on every level that is searched, and finds what is kept.
+ * carried: the last frame's field in the size of the target, shifted in time. FL_ERROR_NO_MEMORY.
  */
-bool fl_synth_make_temporal(FlSynth *synth, const FlNnf *shifted, GError **error);
+bool fl_synth_make_temporal(FlSynth *synth, const FlCarried *carried, GError **error);
 
 /**
  * Searches and votes on all levels: the finest one's field, and its colours unless they are
- * enlarged, are then those of the frame. shifted: as above, if the frame continues another.
+ * enlarged, are then those of the frame. shifted: that field, if the frame continues another.
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_synth_run_levels(FlSynth *synth, const FlNnf *shifted, FlFrameStats *stats, GError **error);

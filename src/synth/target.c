@@ -79,11 +79,11 @@ static void fill_pixel(FlTargetLevel *level, size_t to, const FlPyramid *pyramid
 static const uint8_t class_of[4][4] = {
     {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
 
-static bool tile_has_paint(const FlTargetLevel *level, int column, int row)
+static bool tile_is_searched(const FlTargetLevel *level, int column, int row)
 {
     for (int y = row * FL_TILE; y < MIN((row + 1) * FL_TILE, level->height); y++)
         for (int x = column * FL_TILE; x < MIN((column + 1) * FL_TILE, level->width); x++)
-            if (level->segment[(size_t)y * level->width + x] != FL_SEGMENT_OUTSIDE)
+            if (fl_target_searches(level, (size_t)y * (size_t)level->width + (size_t)x))
                 return true;
     return false;
 }
@@ -96,7 +96,7 @@ static void list_tiles(FlTargetLevel *level)
         level->n_tiles[c] = n; // first of the class; the last entry is the end
         for (int row = 0; row < rows; row++)
             for (int column = 0; column < level->tile_columns; column++)
-                if (class_of[row & 3][column & 3] == c && tile_has_paint(level, column, row))
+                if (class_of[row & 3][column & 3] == c && tile_is_searched(level, column, row))
                     level->tiles[n++] = (uint32_t)(row * level->tile_columns + column);
     }
     level->n_tiles[FL_TILE_CLASSES] = n;
@@ -105,6 +105,22 @@ static void list_tiles(FlTargetLevel *level)
 static void find_blocks(FlTargetLevel *level)
 {
     fl_blocks_init(&level->blocks, level->segment, level->width, level->height, FL_PATCH_RADIUS);
+}
+
+bool fl_target_level_search(FlTargetLevel *level, bool all, GError **error)
+{
+    const size_t pixels = (size_t)level->width * (size_t)level->height;
+    list_tiles(level);
+    if (all)
+        return true;
+    g_autofree uint8_t *searched = fl_alloc_unset(pixels, 1, "a target", error);
+    if (!searched)
+        return false;
+    for (size_t p = 0; p < pixels; p++)
+        searched[p] = fl_target_searches(level, p);
+    fl_blocks_clear(&level->blocks);
+    fl_blocks_init(&level->blocks, searched, level->width, level->height, FL_PATCH_RADIUS);
+    return true;
 }
 
 /* The rows of a level from row y on; the planes are of these alone. */
@@ -228,6 +244,7 @@ void fl_target_level_clear(FlTargetLevel *level)
     free(level->colour);
     free(level->temporal);
     free(level->temporal_weight);
+    free(level->kept);
     free(level->distance);
     free(level->tiles);
     fl_blocks_clear(&level->blocks);

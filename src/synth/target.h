@@ -23,6 +23,7 @@ typedef struct FlTargetLevel {
     FlTargetTexel rest;     // weights of the other channels, for every pixel
     float *colour;          // 3 per pixel, 0 … 1: the last vote
     float *temporal;        // 3 per pixel: T_temp; NULL: nothing was before
+    uint8_t *kept;          // whose matches stay as they were carried; NULL: none does
     float *temporal_weight; // m(q), 0 … 1; 0 where T_temp is undefined; NULL likewise
     float *distance;        // px of level 0
     int n_inside[FL_SEGMENTS];
@@ -32,6 +33,12 @@ typedef struct FlTargetLevel {
     FlBlocks blocks; // all that patches of the paint reach; colours are made in these alone
     int32_t around[FL_PATCH_PIXELS]; // fl_patch_offsets in pixels of this level
 } FlTargetLevel;
+
+/** Whether the match of a pixel is searched for. */
+static inline bool fl_target_searches(const FlTargetLevel *level, size_t pixel)
+{
+    return level->segment[pixel] != FL_SEGMENT_OUTSIDE && !(level->kept && level->kept[pixel]);
+}
 
 /** How terms become integer costs: a squared colour difference of 1 costs FL_ONE² / w_max. */
 typedef struct FlCostScale {
@@ -56,6 +63,10 @@ bool fl_target_init(FlTarget *target, const FlGuides *guides, const FlParams *pa
                     int n_levels, const FlExemplar *exemplar, GError **error);
 void fl_target_clear(FlTarget *target);
 void fl_target_level_clear(FlTargetLevel *level);
+
+/** Takes the pixels that are kept out of what a level searches, and of what is made of it unless
+ * `all` of that is needed. FL_ERROR_NO_MEMORY. */
+bool fl_target_level_search(FlTargetLevel *level, bool all, GError **error);
 
 /** Frees the distances, which T_temp alone is made with. */
 void fl_target_drop_distances(FlTarget *target);

@@ -373,7 +373,7 @@ static int list_pixels(const FlTargetLevel *target, uint32_t tile, bool backward
         const int at = backwards ? FL_TILE * FL_TILE - 1 - k : k;
         const int x = x0 + at % FL_TILE, y = y0 + at / FL_TILE;
         const size_t p = (size_t)y * target->width + x;
-        if (x < target->width && y < target->height && target->segment[p] != FL_SEGMENT_OUTSIDE)
+        if (x < target->width && y < target->height && fl_target_searches(target, p))
             pixels[n++] = (Place){(uint16_t)x, (uint16_t)y};
     }
     return n;
