@@ -1,7 +1,7 @@
 #include "drawing/drawing.h"
-#include "drawing/raster.h"
 #include "flat.h"
 #include "scratch.h"
+#include "worker/raster.h"
 #include <math.h>
 #include <string.h>
 #include <zlib.h>

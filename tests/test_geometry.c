@@ -1,6 +1,6 @@
-#include "drawing/raster.h"
 #include "open_svg.h"
 #include "svg/geometry.h"
+#include "worker/raster.h"
 #include <math.h>
 
 static FlOutlines *outlines_of(const char *content, double width, double height, FlSvg **opened)

@@ -33,6 +33,7 @@ typedef enum FlError {
     FL_ERROR_NO_MEMORY,   /**< out of memory */
     FL_ERROR_CHANGED,     /**< the saved state of an earlier run does not match this one */
     FL_ERROR_INTERRUPTED, /**< stopped on request; run again to resume: exit status 75 */
+    FL_ERROR_TIME,        /**< a drawing takes longer than it may, on this machine */
 } FlError;
 
 /**

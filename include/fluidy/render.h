@@ -55,6 +55,14 @@ typedef enum FlRegistration {
                            does: each is moved back so that most of it stands still */
 } FlRegistration;
 
+/** Whether the processes that read and draw strangers' files are confined. */
+typedef enum FlSandboxing {
+    FL_SANDBOXING_UNSET, /**< FL_SANDBOXING_AUTO */
+    FL_SANDBOXING_AUTO,  /**< as far as the system lets them, with a warning if a part is missing */
+    FL_SANDBOXING_REQUIRE, /**< FL_ERROR_USAGE or FL_ERROR_INPUT if a part is missing */
+    FL_SANDBOXING_OFF,     /**< processes of their own, but not confined */
+} FlSandboxing;
+
 /** The colour space in which layers are blended. */
 typedef enum FlBlendSpace {
     FL_BLEND_UNSET, /**< the config's, else FL_BLEND_SRGB */
@@ -119,6 +127,7 @@ typedef struct FlRenderOptions {
     FlRegionKey key;
     FlStrokes stroke;
     bool strict; /**< a warning is an error: FL_ERROR_INPUT, of a style FL_ERROR_STYLE */
+    FlSandboxing sandbox;
 
     /* How it is painted. */
     const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: none */

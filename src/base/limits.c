@@ -23,6 +23,11 @@ int64_t fl_limit(FlLimit limit)
     return limits[limit].default_value > 0 ? limits[limit].default_value : fl_memory_mib("/");
 }
 
+void fl_limits_set_all(const int64_t limit[FL_N_LIMITS])
+{
+    memcpy(chosen, limit, sizeof chosen);
+}
+
 static bool no_such_limit(const char *name, GError **error)
 {
     const char *names[FL_N_LIMITS + 1] = {NULL};

@@ -14,6 +14,9 @@ typedef enum FlLimit {
 /** The current limit, in the unit of limits.def. */
 int64_t fl_limit(FlLimit limit);
 
+/** Sets all limits, to what fl_limit() gave in another process. */
+void fl_limits_set_all(const int64_t limit[FL_N_LIMITS]);
+
 /**
  * Whether `wanted`, in the unit of limits.def, is within the limit. `where`, usually a file's name,
  * starts the message.

@@ -5,10 +5,13 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <glib.h>
+#include <linux/capability.h>
 #include <linux/landlock.h>
+#include <sched.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -41,11 +44,15 @@ static const char *const system_paths[] = {"/usr",
                                            "/dev/urandom",
                                            NULL};
 
-/** What the kernel's version of Landlock can refuse; 0: it has none. */
-static uint64_t known_accesses(void)
+/**
+ * The accesses that the kernel's version of Landlock can refuse, or version `most` if that is
+ * lower; 0: it has none. The list of system calls refuses what older versions leave open.
+ */
+static uint64_t known_accesses(int most)
 {
-    const long version =
+    const long known =
         syscall(SYS_landlock_create_ruleset, NULL, 0, LANDLOCK_CREATE_RULESET_VERSION);
+    const long version = MIN(known, most);
     return version < 1 ? 0
                        : FIRST_VERSION | (version >= 2 ? LANDLOCK_ACCESS_FS_REFER : 0) |
                              (version >= 3 ? LANDLOCK_ACCESS_FS_TRUNCATE : 0);
@@ -91,9 +98,9 @@ static void allow_of_user(int rules)
     allow_in(rules, folder, "..");
 }
 
-static bool give_up_files(const char *const *paths)
+static bool give_up_files(const char *const *paths, int most)
 {
-    const struct landlock_ruleset_attr refused = {.handled_access_fs = known_accesses()};
+    const struct landlock_ruleset_attr refused = {.handled_access_fs = known_accesses(most)};
     const int rules = refused.handled_access_fs
                           ? (int)syscall(SYS_landlock_create_ruleset, &refused, sizeof refused, 0)
                           : -1;
@@ -102,7 +109,7 @@ static bool give_up_files(const char *const *paths)
     for (const char *const *path = system_paths; *path; path++)
         allow(rules, *path);
     allow_of_user(rules);
-    for (; *paths; paths++)
+    for (; paths && *paths; paths++)
         allow(rules, *paths);
     const bool good = syscall(SYS_landlock_restrict_self, rules, 0) == 0;
     close(rules);
@@ -112,42 +119,153 @@ static bool give_up_files(const char *const *paths)
 /* ---- system calls ---------------------------------------------------------------------------- */
 
 #if HAVE_SECCOMP
+#ifndef PR_SET_VMA
+#define PR_SET_VMA 0x53564d41
+#endif
+#define CALL(name) SCMP_SYS(name)
+
+/* What reading files, drawing, threads and memory take. All else is refused. */
+static const int allowed[] = {
+    // what is open, and its descriptor
+    CALL(read),
+    CALL(readv),
+    CALL(pread64),
+    CALL(preadv),
+    CALL(write),
+    CALL(writev),
+    CALL(pwrite64),
+    CALL(lseek),
+    CALL(_llseek),
+    CALL(close),
+    CALL(close_range),
+    CALL(dup),
+    CALL(ftruncate),
+    CALL(ftruncate64),
+    CALL(poll),
+    CALL(ppoll),
+    CALL(pipe2),
+    CALL(eventfd2),
+    CALL(fadvise64),
+    CALL(recv),
+    CALL(recvfrom),
+    // files, to be read
+    CALL(fstat),
+    CALL(fstat64),
+    CALL(stat),
+    CALL(stat64),
+    CALL(lstat),
+    CALL(lstat64),
+    CALL(newfstatat),
+    CALL(fstatat64),
+    CALL(statx),
+    CALL(fstatfs),
+    CALL(fstatfs64),
+    CALL(statfs),
+    CALL(statfs64),
+    CALL(access),
+    CALL(faccessat),
+    CALL(faccessat2),
+    CALL(readlink),
+    CALL(readlinkat),
+    CALL(getdents64),
+    CALL(getcwd),
+    // memory
+    CALL(brk),
+    CALL(mmap),
+    CALL(mmap2),
+    CALL(munmap),
+    CALL(mremap),
+    CALL(mprotect),
+    CALL(madvise),
+    CALL(mincore),
+    CALL(membarrier),
+    // threads of its own
+    CALL(futex),
+    CALL(set_robust_list),
+    CALL(set_tid_address),
+    CALL(rseq),
+    CALL(sched_yield),
+    CALL(sched_getaffinity),
+    CALL(exit),
+    CALL(exit_group),
+    CALL(restart_syscall),
+    // its own signals and times
+    CALL(rt_sigaction),
+    CALL(rt_sigprocmask),
+    CALL(rt_sigreturn),
+    CALL(sigreturn),
+    CALL(sigaltstack),
+    CALL(setitimer),
+    CALL(clock_gettime),
+    CALL(clock_gettime64),
+    CALL(clock_getres),
+    CALL(clock_nanosleep),
+    CALL(nanosleep),
+    CALL(gettimeofday),
+    CALL(time),
+    CALL(times),
+    // facts
+    CALL(getpid),
+    CALL(gettid),
+    CALL(getppid),
+    CALL(getuid),
+    CALL(geteuid),
+    CALL(getgid),
+    CALL(getegid),
+    CALL(getrandom),
+    CALL(getrusage),
+    CALL(sysinfo),
+    CALL(uname),
+};
+
+/** Allows a call if the bits `mask` of argument `nth` are `value`. */
+static bool allow_if(scmp_filter_ctx filter, int call, unsigned nth, uint64_t mask, uint64_t value)
+{
+    return seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 1,
+                            SCMP_CMP(nth, SCMP_CMP_MASKED_EQ, mask, value)) == 0;
+}
+
+#define ALL_BITS 0xffffffffU
+
+/** Allows calls whose arguments decide what they are. */
+static bool allow_some(scmp_filter_ctx filter)
+{
+    static const int commands[] = {F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD,
+                                   F_GETFL, F_GETLK,         F_SETLK, F_SETLKW};
+    static const int names[] = {PR_SET_NAME, PR_GET_NAME, PR_SET_VMA};
+    const uint64_t writes = O_ACCMODE | O_CREAT | O_TRUNC | O_APPEND | (O_TMPFILE & ~O_DIRECTORY);
+    const uint64_t process = CLONE_THREAD | CLONE_VM | CLONE_NEWUSER | CLONE_NEWPID | CLONE_NEWNS |
+                             CLONE_NEWNET | CLONE_NEWIPC | CLONE_NEWUTS | CLONE_NEWCGROUP;
+    bool good = allow_if(filter, CALL(open), 1, writes, O_RDONLY) &&
+                allow_if(filter, CALL(openat), 2, writes, O_RDONLY) &&
+                allow_if(filter, CALL(clone), 0, process, CLONE_THREAD | CLONE_VM) &&
+                allow_if(filter, CALL(tgkill), 0, ALL_BITS, (uint64_t)getpid()) &&
+                allow_if(filter, CALL(ioctl), 1, ALL_BITS, TCGETS) &&
+                allow_if(filter, CALL(sendto), 4, ALL_BITS, 0) &&
+                allow_if(filter, CALL(send), 3, 0, 0) &&
+                seccomp_rule_add(filter, SCMP_ACT_ALLOW, CALL(prlimit64), 2,
+                                 SCMP_CMP(0, SCMP_CMP_EQ, 0), SCMP_CMP(2, SCMP_CMP_EQ, 0)) == 0 &&
+                seccomp_rule_add(filter, SCMP_ACT_ALLOW, CALL(getrlimit), 0) == 0;
+    for (size_t i = 0; good && i < G_N_ELEMENTS(commands); i++)
+        good = allow_if(filter, CALL(fcntl), 1, ALL_BITS, (uint64_t)commands[i]) &&
+               allow_if(filter, CALL(fcntl64), 1, ALL_BITS, (uint64_t)commands[i]);
+    for (size_t i = 0; good && i < G_N_ELEMENTS(names); i++)
+        good = allow_if(filter, CALL(prctl), 0, ALL_BITS, (uint64_t)names[i]);
+    return good;
+}
+
+/* A refused call is one that the kernel does not have: libraries then use another one. */
 static bool give_up_calls(void)
 {
-    // io_uring opens and connects without a call of its own
-    static const int calls[] = {SCMP_SYS(socket),
-                                SCMP_SYS(connect),
-                                SCMP_SYS(bind),
-                                SCMP_SYS(listen),
-                                SCMP_SYS(accept),
-                                SCMP_SYS(accept4),
-                                SCMP_SYS(execve),
-                                SCMP_SYS(execveat),
-                                SCMP_SYS(ptrace),
-                                SCMP_SYS(process_vm_readv),
-                                SCMP_SYS(process_vm_writev),
-                                SCMP_SYS(pidfd_getfd),
-                                SCMP_SYS(kill),
-                                SCMP_SYS(tkill),
-                                SCMP_SYS(pidfd_send_signal),
-                                SCMP_SYS(io_uring_setup),
-                                SCMP_SYS(bpf),
-                                SCMP_SYS(perf_event_open),
-                                SCMP_SYS(userfaultfd),
-                                SCMP_SYS(unshare),
-                                SCMP_SYS(setns),
-                                SCMP_SYS(mount),
-                                SCMP_SYS(open_by_handle_at),
-                                SCMP_SYS(keyctl),
-                                SCMP_SYS(add_key),
-                                SCMP_SYS(request_key)};
-    scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ALLOW);
+    scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(ENOSYS));
     bool good = filter != NULL;
-    for (size_t i = 0; good && i < G_N_ELEMENTS(calls); i++)
-        good = seccomp_rule_add(filter, SCMP_ACT_ERRNO(EACCES), calls[i], 0) == 0;
+    for (size_t i = 0; good && i < G_N_ELEMENTS(allowed); i++)
+        good = seccomp_rule_add(filter, SCMP_ACT_ALLOW, allowed[i], 0) == 0;
+    good = good && allow_some(filter);
 #if SCMP_VER_MAJOR > 2 || (SCMP_VER_MAJOR == 2 && SCMP_VER_MINOR >= 5)
     // older kernels would slow down every load after a store
-    good = good && seccomp_attr_set(filter, SCMP_FLTATR_CTL_SSB, 1) == 0;
+    good = good && seccomp_attr_set(filter, SCMP_FLTATR_CTL_SSB, 1) == 0 &&
+           seccomp_attr_set(filter, SCMP_FLTATR_CTL_OPTIMIZE, 2) == 0; // a search, not a list
 #endif
     good = good && seccomp_load(filter) == 0;
     if (filter)
@@ -161,37 +279,65 @@ static bool give_up_calls(void)
 }
 #endif
 
-/* ---- memory ---------------------------------------------------------------------------------- */
+/* ---- memory and privileges ------------------------------------------------------------------- */
 
-/** Bytes of private memory that can be written to, which RLIMIT_DATA counts. */
-static uint64_t data_bytes(void)
+/** Bytes of address space in use, which RLIMIT_AS counts. */
+static uint64_t space_bytes(void)
 {
-    unsigned long pages[6] = {0};
+    unsigned long pages = 0;
     g_autofree char *text = NULL;
     if (!g_file_get_contents("/proc/self/statm", &text, NULL, NULL) ||
-        sscanf(text, "%lu %lu %lu %lu %lu %lu", &pages[0], &pages[1], &pages[2], &pages[3],
-               &pages[4], &pages[5]) != 6)
+        sscanf(text, "%lu", &pages) != 1)
         return 0;
-    return (uint64_t)pages[5] * (uint64_t)sysconf(_SC_PAGESIZE);
+    return (uint64_t)pages * (uint64_t)sysconf(_SC_PAGESIZE);
+}
+
+/** Lowers a limit for good. */
+static bool give_up_beyond(int resource, uint64_t most)
+{
+    struct rlimit limit;
+    if (getrlimit((__rlimit_resource_t)resource, &limit) != 0)
+        return false;
+    limit.rlim_max = MIN(limit.rlim_max, most);
+    limit.rlim_cur = MIN(limit.rlim_cur, limit.rlim_max);
+    return setrlimit((__rlimit_resource_t)resource, &limit) == 0;
 }
 
 static bool give_up_memory(int64_t mib)
 {
-    const uint64_t now = data_bytes();
-    struct rlimit limit;
-    if (now == 0 || getrlimit(RLIMIT_DATA, &limit) != 0)
-        return false;
-    limit.rlim_max = MIN(limit.rlim_max, now + ((uint64_t)mib << 20));
-    limit.rlim_cur = MIN(limit.rlim_cur, limit.rlim_max);
-    return setrlimit(RLIMIT_DATA, &limit) == 0;
+    const uint64_t now = space_bytes(), more = (uint64_t)mib << 20;
+    return now > 0 && give_up_beyond(RLIMIT_AS, now + more) && give_up_beyond(RLIMIT_FSIZE, more);
 }
 
-unsigned fl_sandbox_enter(const char *const *paths, int64_t mib)
+/** Keeps no privilege but that of root to read any user's files. */
+static void give_up_privileges(void)
+{
+    struct __user_cap_header_struct header = {.version = _LINUX_CAPABILITY_VERSION_3};
+    struct __user_cap_data_struct has[2] = {0};
+    const uint32_t reads = 1U << CAP_DAC_READ_SEARCH;
+    if (syscall(SYS_capget, &header, has) != 0)
+        return;
+    const struct __user_cap_data_struct keeps[2] = {
+        {.effective = has[0].effective & reads, .permitted = has[0].permitted & reads}};
+    (void)syscall(SYS_capset, &header, keeps);
+}
+
+unsigned fl_sandbox_enter(const char *const *paths, int64_t mib, int most)
 {
     unsigned given_up = give_up_memory(mib) ? FL_SANDBOX_MEMORY : 0;
+    give_up_privileges();
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0)
         return given_up;
-    given_up |= give_up_files(paths) ? FL_SANDBOX_FILES : 0;
+    given_up |= give_up_files(paths, most) ? FL_SANDBOX_FILES : 0;
     given_up |= give_up_calls() ? FL_SANDBOX_CALLS : 0;
     return given_up;
+}
+
+const char *fl_sandbox_lacks(unsigned given_up)
+{
+    if (!(given_up & FL_SANDBOX_FILES))
+        return "this kernel has no Landlock: it may read all files of the user";
+    if (!(given_up & FL_SANDBOX_CALLS))
+        return "this kernel or build has no seccomp: it may reach the network and other processes";
+    return given_up & FL_SANDBOX_MEMORY ? NULL : "its memory is not limited";
 }

@@ -1,6 +1,6 @@
 /* Masks of regions, from draws. */
 #include "drawing/drawing.h"
-#include "drawing/raster.h"
+#include "worker/raster.h"
 #include <string.h>
 
 #define HALF 128     // coverage from which on a pixel is inside, FL_INSIDE

@@ -1,12 +1,11 @@
 #include "base/rect.h"
-#include "drawing/apart.h"
-#include "drawing/draw_pool.h"
 #include "drawing/drawing_data.h"
-#include "drawing/leave_out.h"
 #include "drawing/region_anchors.h"
 #include "drawing/region_identity.h"
 #include "drawing/region_names.h"
 #include <string.h>
+
+#define MOST_ROUNDS 8 // in which frames are left out
 
 int fl_drawing_frames(const FlDrawing *drawing)
 {
@@ -26,8 +25,7 @@ int fl_drawing_height(const FlDrawing *drawing)
 /* The files are drawn to the page's size, and steps within their boxes. */
 void fl_drawing_halve(FlDrawing *drawing)
 {
-    fl_draw_pool_forget(drawing->pool);
-    drawing->n_halved++;
+    fl_drawing_forget(drawing);
     drawing->width = fl_half_side(drawing->width), drawing->height = fl_half_side(drawing->height);
     for (int f = 0; f < drawing->sequence->n; f++) {
         FlDrawingFrame *frame = &drawing->frame[f];
@@ -62,29 +60,14 @@ GHashTable *fl_drawing_linked_files(const FlDrawing *drawing)
     return drawing->files;
 }
 
-/** Adds a part of a sentence. */
-static void add_part(GString *text, const char *format, int n)
-{
-    g_string_append(text, text->len > 0 ? "; " : "");
-    g_string_append_printf(text, format, n, n == 1 ? "" : "s", n == 1 ? "was" : "were");
-}
-
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing)
 {
-    const int n = drawing->sequence->n_left_out, plain = fl_draw_pool_plain(drawing->pool);
-    const int lost = fl_draw_pool_lost(drawing->pool);
-    GString *text = g_string_new(NULL);
-    if (n > 0)
-        add_part(text,
-                 missing == FL_MISSING_HOLD
-                     ? "%d frame%s could not be read or drawn and %s replaced by the one before"
-                     : "%d frame%s could not be read or drawn and %s skipped",
-                 n);
-    if (plain > 0)
-        add_part(text, "lines of %d drawn frame%s could not be drawn by hand", plain);
-    if (lost > 0)
-        add_part(text, "%d frame%s that came to fail %s replaced by the one before", lost);
-    return g_string_free(text, text->len == 0);
+    const int n = drawing->sequence->n_left_out;
+    if (n == 0)
+        return NULL;
+    return g_strdup_printf("%d frame%s could not be read or drawn and %s %s", n, n == 1 ? "" : "s",
+                           n == 1 ? "was" : "were",
+                           missing == FL_MISSING_HOLD ? "replaced by the one before" : "skipped");
 }
 
 const char *fl_drawing_name(const FlDrawing *drawing)
@@ -312,7 +295,10 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
                            .width = survey->width,
                            .height = survey->height,
                            .regions = g_array_new(FALSE, TRUE, sizeof(FlRegion)),
-                           .files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL)};
+                           .files = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL),
+                           .kept = g_new0(GBytes *, sequence->n),
+                           .n_kept = sequence->n};
+    g_mutex_init(&drawing->mutex);
     g_array_set_clear_func(drawing->regions, region_clear);
     describe(drawing, survey, groups, options->rules);
     measure(drawing, survey);
@@ -320,29 +306,27 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     return drawing;
 }
 
-/** Reads all frames; `missing` decides about those that crash, hang or exceed a limit. */
+/** Reads all frames; `missing` decides about those that cannot be read. */
 static bool read_frames(FlSurvey *survey, FlSequence *sequence, const FlDrawingOptions *options,
-                        FlWarnings *warnings, GError **error)
+                        FlWorkers *workers, FlWarnings *warnings, GError **error)
 {
-    if (!options->apart)
-        return fl_survey_init(survey, sequence, options, NULL, warnings, error);
-    const int n = sequence->n;
-    for (int n_bad = 1;; n_bad++) { // one of them has to be good
-        int bad = -1;
+    for (int round = 1;; round++) { // a frame may turn out to be bad once others are known
         GError *reason = NULL;
         g_autoptr(FlWarnings) remarks = fl_warnings_new();
-        const bool good = fl_survey_init_apart(survey, sequence, options, remarks, &bad, &reason);
-        if (good || bad < 0 || options->missing <= FL_MISSING_ERROR || n_bad == n) {
+        const bool good = fl_survey_init(survey, sequence, options, workers, remarks, &reason);
+        int n_failed = 0;
+        for (int t = 0; t < sequence->n; t++)
+            n_failed += survey->failed[t] != NULL;
+        if (good || n_failed == 0 || options->missing <= FL_MISSING_ERROR || round > MOST_ROUNDS) {
             fl_warnings_append(warnings, remarks);
             if (reason)
                 g_propagate_error(error, reason);
             return good;
         }
-        fl_warnings_add(warnings, sequence->file[bad], sequence->number[bad], NULL,
-                        "left out (‘missing’): %s", reason->message);
         g_error_free(reason);
-        fl_sequence_leave_out(
-            sequence, bad, options->missing == FL_MISSING_HOLD ? MAX(bad - 1, 0) + (bad == 0) : -1);
+        if (!fl_may_leave_out(survey->failed, sequence->n, error))
+            return false;
+        fl_sequence_leave_out(sequence, options->missing, survey->failed, warnings);
         fl_survey_clear(survey);
     }
 }
@@ -353,15 +337,26 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
         return NULL;
     g_autoptr(FlSequence) sequence =
         fl_sequence_open(options->inputs, options->n_inputs, options->range, options->missing,
-                         options->frames_from, warnings, error);
+                         options->frames_from, options->sandbox, warnings, error);
     if (!sequence)
+        return NULL;
+    g_auto(GStrv) paths = fl_paths_of((const char *const *)sequence->found);
+    g_autoptr(FlWorkers) workers =
+        fl_workers_new((const char *const *)paths, options->sandbox, options->apart, error);
+    if (!workers)
         return NULL;
     FlSurvey survey;
     FlDrawing *drawing = NULL;
-    if (read_frames(&survey, sequence, options, warnings, error))
+    if (read_frames(&survey, sequence, options, workers, warnings, error))
         drawing = make_film(options, sequence, &survey, error);
-    if (drawing)
+    if (drawing) {
+        drawing->workers = g_steal_pointer(&workers);
+        const char *lack = options->apart ? fl_workers_lack(drawing->workers) : NULL;
+        if (lack)
+            fl_warnings_add(warnings, sequence->file[0], -1, NULL,
+                            "is read without a whole sandbox: %s", lack);
         g_steal_pointer(&sequence);
+    }
     fl_survey_clear(&survey);
     return drawing;
 }
@@ -378,7 +373,10 @@ void fl_drawing_free(FlDrawing *drawing)
 {
     if (!drawing)
         return;
-    fl_draw_pool_free(drawing->pool);
+    fl_workers_free(drawing->workers);
+    fl_drawing_forget(drawing);
+    g_free(drawing->kept);
+    g_mutex_clear(&drawing->mutex);
     for (int t = 0; t < drawing->sequence->n; t++)
         fl_drawing_frame_clear(&drawing->frame[t]);
     g_free(drawing->frame);

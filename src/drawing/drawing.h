@@ -2,13 +2,10 @@
 #ifndef FLUIDY_DRAWING_DRAWING_H
 #define FLUIDY_DRAWING_DRAWING_H
 
-#include "base/rect.h"
-#include "base/tooth.h"
 #include "base/warnings.h"
 #include "drawing/region_rules.h"
 #include "drawing/sequence.h"
-#include "params/region_settings.h"
-#include "svg/svg_frame.h"
+#include "worker/draw_frame.h"
 #include <fluidy/error.h>
 #include <fluidy/render.h>
 #include <stdbool.h>
@@ -21,12 +18,13 @@ typedef struct FlDrawingOptions {
     const char *range; // NULL: all frames
     FlMissing missing;
     FlFramesFrom frames_from;
-    FlCanvas canvas;   // of drawings without a size
-    double dpi;        // 0: 96
-    bool apart;        // read in a child process, see drawing/apart.h
-    bool registered;   // move frames that begin at 0,0 back, see drawing/register_frames.h
-    int width, height; // of the picture, px; 0: the drawing's; both: fitted and padded
-    double scale;      // px per px of the drawing; 0: 1; not together with width or height
+    FlCanvas canvas;      // of drawings without a size
+    double dpi;           // 0: 96
+    bool apart;           // read and drawn by other processes, see worker/workers.h
+    FlSandboxing sandbox; // with apart
+    bool registered;      // move frames that begin at 0,0 back, see drawing/register_frames.h
+    int width, height;    // of the picture, px; 0: the drawing's; both: fitted and padded
+    double scale;         // px per px of the drawing; 0: 1; not together with width or height
     FlStrokes strokes;
     FlRegionKey key;
     /** Tells now and then, from the calling thread, how many frames were read; false interrupts.
@@ -49,43 +47,6 @@ typedef struct FlRegion {
     bool paintable;  // false: drawn unpainted over the paint (strokes, shading overlays)
     int rule;        // index of the rule that made it, -1: none
 } FlRegion;
-
-/**
- * One entry of a frame's draw list, from the bottom up: leaves of one region that can be drawn
- * together. A region that lies both below and above another has several draws in a frame, and so
- * has one whose leaves differ in colour. A draw composites colour `rgb`, or that of `picture`, with
- * opacity coverage * alpha / 255; regions that are not paintable are drawn just so.
- */
-typedef struct FlDraw {
-    int region;        // index into the drawing's regions
-    FlArea area;       // where it is in the frame
-    uint8_t *coverage; // of the area's box, 0..255: the whole shape, hidden parts included
-    uint8_t *by_hand;  // of the box: what a hand leaves of the coverage; NULL: all of it
-    uint8_t *picture;  // of the box, 4 bytes a pixel, straight sRGBA as the SVG draws it; NULL:
-                       // flat `rgb`. A is coverage again, colours are defined where A > 0
-    uint8_t rgb[3];    // the fill; of a picture its mean
-    uint8_t alpha;     // opacity of the draw, 255 opaque; not part of coverage
-    FlBlendMode blend_mode; // with what is below it
-} FlDraw;
-
-typedef struct FlDrawList {
-    int n;
-    FlDraw *draw;
-} FlDrawList;
-
-/** The hand that draws what is not painted of a region. */
-typedef struct FlRegionHand {
-    FlLine line;
-    int boil; // frames until it draws anew; 0: never
-} FlRegionHand;
-
-/** How what is not painted is drawn; see drawing/hand_line.h. */
-typedef struct FlHand {
-    const FlRegionHand *of_region; // of each; borrowed
-    uint64_t seed;
-    float page;    // px of the picture per px of the page, see base/page.h
-    FlTooth tooth; // of the frame's paper
-} FlHand;
 
 /** A place that moves along with a region and turns with it, so that what is uneven in its paint
  * can do the same. */
@@ -114,11 +75,8 @@ const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region);
 /** The real paths, as keys, of pictures and drawings that the files refer to. */
 GHashTable *fl_drawing_linked_files(const FlDrawing *drawing);
 
-/**
- * How many frames are held or skipped since their files cannot be read or drawn, how many have
- * plain lines since a hand's failed, and how many failed later, as a sentence; to be freed. NULL:
- * none.
- */
+/** How many frames are held or skipped since their files cannot be read or drawn, as a sentence; to
+ * be freed. NULL: none. */
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing);
 
 /** What the files' names share, such as "walk"; for naming the output. */
@@ -150,14 +108,13 @@ FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
 void fl_drawing_halve(FlDrawing *drawing);
 
 /**
- * From now on frames are drawn in child processes, as many as there are threads; see
- * drawing/draw_pool.h. Unless `missing` is an error, every frame is drawn once to find those that
- * crash, hang or ask for too much; they are left out, each with a warning.
+ * Draws every frame once to find those that cannot be drawn; they are left out as `missing` says,
+ * hold or skip, each with a warning.
  *
- * Returns: false if no frame can be drawn, with the error of the first.
+ * Returns: false if no frame can be drawn, with the error of the first; or if one ran out of time.
  */
-bool fl_drawing_draw_apart(FlDrawing *drawing, FlMissing missing, FlWarnings *warnings,
-                           GError **error);
+bool fl_drawing_leave_out_bad(FlDrawing *drawing, FlMissing missing, FlWarnings *warnings,
+                              GError **error);
 
 /** Rasterises a frame. Any thread may call it. Returns: to be freed with fl_draw_list_free(). */
 FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error);
@@ -165,6 +122,9 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
 /** The same by a hand; NULL: plain. */
 FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
                                     GError **error);
+
+/** What fl_draws_pack() made of a draw list, opened. */
+FlDrawList *fl_drawing_unpack_draws(const FlDrawing *drawing, GBytes *packed, GError **error);
 
 /**
  * The region's whole-shape mask in a frame: the union of its draws' coverage. A shape that fades,
@@ -189,11 +149,8 @@ void fl_draw_list_map(const FlDrawing *drawing, const FlDrawList *draws, uint8_t
 /** The colour of a region in such a picture, for a legend. */
 void fl_region_colour(const FlDrawing *drawing, int region, uint8_t rgb[3]);
 
-void fl_draw_clear(FlDraw *draw);
-void fl_draw_list_free(FlDrawList *draws); // NULL is fine
-void fl_drawing_free(FlDrawing *drawing);  // NULL is fine
+void fl_drawing_free(FlDrawing *drawing); // NULL is fine
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDrawList, fl_draw_list_free)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDrawing, fl_drawing_free)
 
 #endif

@@ -1,5 +1,5 @@
 #include "drawing/drawing_data.h"
-#include "drawing/raster.h"
+#include "worker/raster.h"
 #include <string.h>
 
 /** Composites n pixels of a draw, from p on, over straight RGBA. */

@@ -1,44 +1,66 @@
-#include "drawing/leave_out.h"
-
-#include "base/schedule.h"
-#include "drawing/draw_pool.h"
+/* Frames that a film goes on without, since their drawings cannot be read or drawn. */
 #include "drawing/drawing_data.h"
-#include <string.h>
 
-void fl_sequence_leave_out(FlSequence *sequence, int frame, int instead)
+int fl_sequence_instead(GError *const *failed, int n, int t)
 {
-    sequence->n_left_out++;
-    g_free(sequence->file[frame]);
-    if (instead >= 0) {
-        sequence->file[frame] = g_strdup(sequence->file[instead]);
-        sequence->stand_in[frame] = true;
-        sequence->layer[frame] = sequence->layer[instead];
-        return;
-    }
-    for (int t = frame; t + 1 < sequence->n; t++) {
-        sequence->file[t] = sequence->file[t + 1];
-        sequence->number[t] = sequence->number[t + 1];
-        sequence->stand_in[t] = sequence->stand_in[t + 1];
-        sequence->layer[t] = sequence->layer[t + 1];
-    }
-    sequence->file[--sequence->n] = NULL;
+    int instead = t;
+    while (instead >= 0 && failed[instead])
+        instead--;
+    for (instead = instead < 0 ? 0 : instead; instead < n - 1 && failed[instead];)
+        instead++;
+    return instead;
 }
 
-/** Leaves out a frame of a drawing in the same way. */
-static void leave_out(FlDrawing *drawing, int frame, int instead)
+void fl_sequence_leave_out(FlSequence *s, FlMissing missing, GError *const *failed,
+                           FlWarnings *warnings)
 {
-    FlDrawingFrame *here = &drawing->frame[frame];
-    fl_drawing_frame_clear(here);
-    if (instead >= 0) {
-        *here = drawing->frame[instead];
-        here->step = g_memdup2(here->step, ((size_t)here->n + 1) * sizeof *here->step);
-        here->whole = g_strdupv(here->whole);
-        here->anchor = g_memdup2(here->anchor, (drawing->regions->len + 1) * sizeof *here->anchor);
-    } else {
-        const int after = drawing->sequence->n - frame - 1;
-        memmove(here, here + 1, (size_t)after * sizeof *here);
+    const int n = s->n;
+    g_auto(GStrv) file = g_steal_pointer(&s->file);
+    s->file = g_new0(char *, n + 1);
+    s->n = 0;
+    for (int t = 0; t < n; t++) {
+        if (failed[t]) {
+            fl_warnings_add(warnings, file[t], s->number[t], NULL, "left out (‘missing’): %s",
+                            failed[t]->message);
+            s->n_left_out++;
+        }
+        const int from = missing == FL_MISSING_HOLD ? fl_sequence_instead(failed, n, t) : t;
+        if (failed[from])
+            continue;
+        s->file[s->n] = g_strdup(file[from]);
+        s->number[s->n] = s->number[t];
+        s->stand_in[s->n] = s->stand_in[t] || from != t;
+        s->layer[s->n] = s->layer[from];
+        s->n++;
     }
-    fl_sequence_leave_out(drawing->sequence, frame, instead);
+}
+
+static FlDrawingFrame copy_of(const FlDrawing *drawing, const FlDrawingFrame *frame)
+{
+    FlDrawingFrame copy = *frame;
+    copy.step = g_memdup2(frame->step, ((size_t)frame->n + 1) * sizeof *frame->step);
+    copy.whole = g_strdupv(frame->whole);
+    copy.anchor = g_memdup2(frame->anchor, (drawing->regions->len + 1) * sizeof *frame->anchor);
+    return copy;
+}
+
+/** Leaves out frames of a drawing as fl_sequence_leave_out() does. */
+static void leave_out(FlDrawing *drawing, FlMissing missing, GError *const *failed,
+                      FlWarnings *warnings)
+{
+    const int n = drawing->sequence->n;
+    int kept = 0;
+    for (int t = 0; t < n; t++)
+        if (failed[t])
+            fl_drawing_frame_clear(&drawing->frame[t]);
+    for (int t = 0; t < n; t++) {
+        const int from = missing == FL_MISSING_HOLD ? fl_sequence_instead(failed, n, t) : t;
+        if (from != t)
+            drawing->frame[kept++] = copy_of(drawing, &drawing->frame[from]);
+        else if (!failed[t])
+            drawing->frame[kept++] = drawing->frame[t];
+    }
+    fl_sequence_leave_out(drawing->sequence, missing, failed, warnings);
 }
 
 /** Counts anew in how many frames each region is drawn. */
@@ -58,66 +80,40 @@ static void count_present(FlDrawing *drawing)
         }
 }
 
-/** The first frame without an error; n if there is none. */
-static int first_good(GError **failed, int n)
+/** The error with which the film ends: one by chance, else the first if all frames have one. */
+static const GError *reason_to_stop(GError *const *failed, int n)
 {
-    int t = 0;
-    while (t < n && failed[t])
-        t++;
-    return t;
+    int n_failed = 0;
+    for (int t = 0; t < n; t++) {
+        n_failed += failed[t] != NULL;
+        if (failed[t] && fl_is_by_chance(failed[t]))
+            return failed[t];
+    }
+    return n_failed == n ? failed[0] : NULL;
 }
 
-/** Frames before the first good one show that, later ones the last good one before them. */
-static void hold(FlDrawing *drawing, GError **failed)
+bool fl_may_leave_out(GError *const *failed, int n, GError **error)
 {
-    const int n = drawing->sequence->n, good = first_good(failed, n);
-    for (int t = good - 1; t >= 0; t--)
-        leave_out(drawing, t, t + 1);
-    for (int t = good + 1; t < n; t++)
-        if (failed[t])
-            leave_out(drawing, t, t - 1);
+    const GError *reason = reason_to_stop(failed, n);
+    if (reason)
+        g_propagate_error(error, g_error_copy(reason));
+    return !reason;
 }
 
-static void skip(FlDrawing *drawing, GError **failed)
-{
-    for (int t = drawing->sequence->n - 1; t >= 0; t--)
-        if (failed[t])
-            leave_out(drawing, t, -1);
-}
-
-static void leave_out_failed(FlDrawing *drawing, FlMissing missing, GError **failed,
-                             FlWarnings *warnings)
-{
-    const FlSequence *sequence = drawing->sequence;
-    for (int t = 0; t < sequence->n; t++)
-        if (failed[t])
-            fl_warnings_add(warnings, sequence->file[t], sequence->number[t], NULL,
-                            "left out (‘missing’): %s", failed[t]->message);
-    if (missing == FL_MISSING_HOLD)
-        hold(drawing, failed);
-    else
-        skip(drawing, failed);
-    count_present(drawing);
-}
-
-bool fl_drawing_draw_apart(FlDrawing *drawing, FlMissing missing, FlWarnings *warnings,
-                           GError **error)
+bool fl_drawing_leave_out_bad(FlDrawing *drawing, FlMissing missing, FlWarnings *warnings,
+                              GError **error)
 {
     const int n = drawing->sequence->n;
-    drawing->pool = fl_draw_pool_new(drawing, fl_schedule_threads());
-    if (!drawing->pool || missing <= FL_MISSING_ERROR)
-        return true;
     g_autofree GError **failed = g_new0(GError *, n);
 #pragma omp parallel for schedule(dynamic, 1)
     for (int t = 0; t < n; t++)
         fl_draw_list_free(fl_drawing_draw_list(drawing, t, &failed[t]));
-    const int good = first_good(failed, n);
-    if (good < n)
-        leave_out_failed(drawing, missing, failed, warnings);
-    else
-        g_propagate_error(error, g_steal_pointer(&failed[0]));
+    const bool may = fl_may_leave_out(failed, n, error);
+    if (may) {
+        leave_out(drawing, missing, failed, warnings);
+        count_present(drawing);
+    }
     for (int t = 0; t < n; t++)
         g_clear_error(&failed[t]);
-    fl_draw_pool_enable_fallbacks(drawing->pool);
-    return good < n;
+    return may;
 }

@@ -188,6 +188,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                .frames_from = options->frames_from,
                                .dpi = options->dpi,
                                .apart = true,
+                               .sandbox = options->sandbox,
                                .registered = options->registration == FL_REGISTRATION_ON,
                                .width = options->width,
                                .height = options->height,
@@ -207,7 +208,8 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
     offer_config(drawing, options);
     warn_of_nothing(drawing, warnings);
     warn_of_unused(drawing, config, &wanted, warnings);
-    if (!fl_drawing_draw_apart(drawing, options->missing, warnings, error))
+    if (options->missing > FL_MISSING_ERROR &&
+        !fl_drawing_leave_out_bad(drawing, options->missing, warnings, error))
         return NULL;
     return report(warnings, options, error) ? g_steal_pointer(&drawing) : NULL;
 }
@@ -215,5 +217,6 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
 FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error)
 {
     return fl_sequence_open(options->inputs, (int)g_strv_length((char **)options->inputs),
-                            options->frames, options->missing, options->frames_from, NULL, error);
+                            options->frames, options->missing, options->frames_from,
+                            options->sandbox, NULL, error);
 }

@@ -1,25 +1,18 @@
 #include "drawing/outlines.h"
 
-#include "drawing/draw_pool.h"
 #include "drawing/drawing_data.h"
 #include <string.h>
 
-FlOutlines *fl_outlines_make(const FlDrawing *drawing, int frame, GError **error)
-{
-    const FlDrawingFrame *f = &drawing->frame[frame];
-    const FlSvgOptions options = {.canvas = f->canvas,
-                                  .dpi = drawing->dpi,
-                                  .whole = (const char *const *)f->whole,
-                                  .layer = drawing->sequence->layer[frame]};
-    g_autoptr(FlSvg) svg = fl_svg_read(drawing->sequence->file[frame],
-                                       drawing->sequence->number[frame], &options, NULL, error);
-    return svg ? fl_outlines_new(svg, f->page) : NULL;
-}
-
 FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **error)
 {
-    return drawing->pool ? fl_draw_pool_outlines(drawing->pool, frame, error)
-                         : fl_outlines_make(drawing, frame, error);
+    const FlRequest request = fl_drawing_request(drawing, frame, FL_VERB_OUTLINES);
+    g_auto(FlAnswer) answer = {0};
+    if (!fl_workers_ask(drawing->workers, &request, NULL, &answer, error))
+        return NULL;
+    FlOutlines *outlines = fl_outlines_unpack(answer.reader.at, answer.reader.left);
+    if (!outlines)
+        fl_answer_set_damaged(request.file, error);
+    return outlines;
 }
 
 /** Calls for the leaf of a step, or for all that are drawn as one with it. */

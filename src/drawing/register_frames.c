@@ -1,7 +1,5 @@
 #include "drawing/register_frames.h"
 
-#include "drawing/watch.h"
-
 #include <math.h>
 #include <string.h>
 
@@ -9,55 +7,22 @@
 #define SIZE_PX 0.35   // by how much the size of a shape may differ; files have one decimal
 #define MOVE_PX 0.6    // by how much two moves may differ to be one
 
-/** A shape: its paint and where it is, in user units. */
-typedef struct Shape {
-    guint paint; // hash of the key
-    RsvgRectangle box;
-} Shape;
-
 /** What a pair of shapes votes for. */
 typedef struct Vote {
     double x, y, weight;
 } Vote;
-
-static GArray *measure(const FlSequence *sequence, int t, double dpi, GError **error)
-{
-    const FlSvgOptions options = {
-        .canvas = {0, 0, PAGE_PX, PAGE_PX}, .dpi = dpi, .layer = sequence->layer[t]};
-    g_autoptr(FlSvg) svg =
-        fl_svg_open(sequence->file[t], sequence->number[t], &options, NULL, error);
-    if (!svg)
-        return NULL;
-    g_autoptr(GArray) shapes = g_array_new(FALSE, FALSE, sizeof(Shape));
-    const GArray *leaves = fl_svg_leaves(svg)->leaf;
-    for (guint i = 0; i < leaves->len; i++) {
-        const FlLeaf *leaf = &g_array_index(leaves, FlLeaf, i);
-        FlPainted parts[FL_MOST_PARTS];
-        const int n = fl_svg_leaf_paints(svg, leaf, parts, error);
-        Shape shape = {.box = fl_svg_extents(svg, leaf, (FlPageSize){PAGE_PX, PAGE_PX})};
-        for (int k = 0; k < n; k++) {
-            shape.paint = shape.paint * 31 + g_str_hash(parts[k].paint.key);
-            fl_svg_paint_clear(&parts[k].paint);
-        }
-        if (n < 0)
-            return NULL;
-        if (n > 0 && shape.box.width > 0 && shape.box.height > 0)
-            g_array_append_val(shapes, shape);
-    }
-    return g_steal_pointer(&shapes);
-}
 
 static GArray *votes_of(const GArray *before, const GArray *now)
 {
     GArray *votes = g_array_new(FALSE, FALSE, sizeof(Vote));
     for (guint i = 0; i < before->len; i++)
         for (guint j = 0; j < now->len; j++) {
-            const Shape *a = &g_array_index(before, Shape, i), *b = &g_array_index(now, Shape, j);
-            if (a->paint != b->paint || fabs(a->box.width - b->box.width) > SIZE_PX ||
-                fabs(a->box.height - b->box.height) > SIZE_PX)
+            const FlShape *a = &g_array_index(before, FlShape, i),
+                          *b = &g_array_index(now, FlShape, j);
+            if (a->paint != b->paint || fabs(a->width - b->width) > SIZE_PX ||
+                fabs(a->height - b->height) > SIZE_PX)
                 continue;
-            const Vote vote = {a->box.x - b->box.x, a->box.y - b->box.y,
-                               (a->box.width + 1) * (a->box.height + 1)};
+            const Vote vote = {a->x - b->x, a->y - b->y, (a->width + 1) * (a->height + 1)};
             g_array_append_val(votes, vote);
         }
     return votes;
@@ -103,7 +68,7 @@ static Vote decide(GArray *votes)
 static void widen(FlCanvas *page, const GArray *shapes, double x, double y, bool *any)
 {
     for (guint i = 0; i < shapes->len; i++) {
-        const RsvgRectangle *box = &g_array_index(shapes, Shape, i).box;
+        const FlShape *box = &g_array_index(shapes, FlShape, i);
         const double x0 = floor(box->x + x), x1 = ceil(box->x + x + box->width);
         const double y0 = floor(box->y + y), y1 = ceil(box->y + y + box->height);
         if (!*any)
@@ -117,21 +82,23 @@ static void widen(FlCanvas *page, const GArray *shapes, double x, double y, bool
 }
 
 /** Where each frame lies, as pairs x, y; the page that they need goes to *page. */
-static double *places_of(const FlSurvey *survey, FlCanvas *page, FlWarnings *warnings,
-                         GError **error)
+static double *places_of(FlSurvey *survey, FlCanvas *page, FlWarnings *warnings, GError **error)
 {
     g_autofree double *place = g_new0(double, 2 * (gsize)survey->n_frames);
     g_autoptr(GArray) before = NULL;
-    bool any = false;
+    bool any = false, good = true;
     for (int t = 0; t < survey->n_frames; t++) {
         const char *file = survey->sequence->file[t];
         const int number = survey->sequence->number[t];
-        fl_watch_begin(survey->watch, 0, t);
-        g_autoptr(GArray) now = measure(survey->sequence, t, survey->svg.dpi, error);
-        if (!now) {
-            fl_watch_fail(survey->watch, t);
+        FlPageMeasures measures;
+        if (!fl_survey_measure(survey, t, &(FlCanvas){0, 0, PAGE_PX, PAGE_PX}, true, &measures,
+                               good ? error : NULL)) {
+            good = false;
+            if (survey->options->missing > FL_MISSING_ERROR)
+                continue; // all bad frames are left out together
             return NULL;
         }
+        g_autoptr(GArray) now = measures.shapes;
         g_autoptr(GArray) votes = before ? votes_of(before, now) : NULL;
         const Vote move = votes ? decide(votes) : (Vote){0};
         if (votes && before->len > 0 && now->len > 0 && move.weight <= 0)
@@ -145,7 +112,7 @@ static double *places_of(const FlSurvey *survey, FlCanvas *page, FlWarnings *war
             before = g_steal_pointer(&now);
         }
     }
-    return g_steal_pointer(&place);
+    return good ? g_steal_pointer(&place) : NULL;
 }
 
 bool fl_register(FlSurvey *survey, FlWarnings *warnings, GError **error)
@@ -154,8 +121,8 @@ bool fl_register(FlSurvey *survey, FlWarnings *warnings, GError **error)
     g_autofree double *place = places_of(survey, &page, warnings, error);
     if (!place)
         return false;
-    if (survey->svg.canvas.width > 0)
-        page = survey->svg.canvas;
+    if (survey->options->canvas.width > 0)
+        page = survey->options->canvas;
     for (int t = 0; t < survey->n_frames; t++)
         survey->frame[t].canvas =
             (FlCanvas){page.x - place[2 * t], page.y - place[2 * t + 1], page.width, page.height};

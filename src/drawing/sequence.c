@@ -1,11 +1,13 @@
 #include "drawing/sequence.h"
 
 #include "base/suggest.h"
-#include "drawing/count_layers.h"
 #include "io/frame_range.h"
 #include "io/pattern.h"
+#include "worker/workers.h"
 #include <fnmatch.h>
 #include <string.h>
+
+#define MOST_LAYERS 1000000 // of a file that are frames
 
 typedef struct Found {
     int number;
@@ -260,8 +262,43 @@ static bool add_input(GArray *found, const char *input, FlWarnings *warnings, GE
     return true;
 }
 
+/** Adds the folders of a file, and itself if it is a link: it leads to another folder. */
+static void add_paths(GPtrArray *paths, GHashTable *known, const char *file)
+{
+    g_autofree char *folder = g_path_get_dirname(file);
+    if (!g_hash_table_contains(known, folder)) { // adding it again would replace the key
+        g_hash_table_add(known, folder);
+        g_ptr_array_add(paths, g_steal_pointer(&folder));
+    }
+    if (g_file_test(file, G_FILE_TEST_IS_SYMLINK))
+        g_ptr_array_add(paths, g_strdup(file));
+}
+
+char **fl_paths_of(const char *const *files)
+{
+    GPtrArray *paths = g_ptr_array_new();
+    g_autoptr(GHashTable) known = g_hash_table_new(g_str_hash, g_str_equal);
+    for (; *files; files++)
+        add_paths(paths, known, *files);
+    g_ptr_array_add(paths, NULL);
+    return (char **)g_ptr_array_free(paths, FALSE);
+}
+
+/** How many layers of a file are frames. Returns: 2 or more; 0 with an error. */
+static int count_layers(const char *file, FlSandboxing sandbox, GError **error)
+{
+    const FlRequest request = {.verb = FL_VERB_COUNT, .file = file, .number = 1};
+    g_auto(GStrv) paths = fl_paths_of((const char *const[]){file, NULL});
+    g_autoptr(FlWorkers) workers = fl_workers_new((const char *const *)paths, sandbox, true, error);
+    g_auto(FlAnswer) answer = {0};
+    if (!workers || !fl_workers_ask(workers, &request, NULL, &answer, error))
+        return 0;
+    const int n = fl_take_in(&answer.reader, 2, MOST_LAYERS);
+    return answer.reader.good ? n : fl_answer_set_damaged(file, error);
+}
+
 /** The layers of the only file, in its place. */
-static bool split_layers(GArray *found, GError **error)
+static bool split_layers(GArray *found, FlSandboxing sandbox, GError **error)
 {
     if (found->len != 1) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
@@ -270,7 +307,7 @@ static bool split_layers(GArray *found, GError **error)
         return false;
     }
     g_autofree char *path = g_strdup(g_array_index(found, Found, 0).path);
-    const int n = fl_count_layers(path, error);
+    const int n = count_layers(path, sandbox, error);
     g_array_set_size(found, 0);
     for (int layer = 1; layer <= n; layer++) {
         const Found f = {layer, g_strdup(path), layer};
@@ -438,8 +475,8 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
 }
 
 FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char *range,
-                             FlMissing missing, FlFramesFrom from, FlWarnings *warnings,
-                             GError **error)
+                             FlMissing missing, FlFramesFrom from, FlSandboxing sandbox,
+                             FlWarnings *warnings, GError **error)
 {
     g_assert(n_inputs >= 1);
     g_autoptr(GArray) found = found_new();
@@ -452,7 +489,7 @@ FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char
                 return NULL;
         number_files(found);
     }
-    if (from == FL_FRAMES_LAYERS && !split_layers(found, error))
+    if (from == FL_FRAMES_LAYERS && !split_layers(found, sandbox, error))
         return NULL;
     g_array_sort(found, compare_found);
     if (!no_number_twice(found, error))

@@ -30,13 +30,28 @@ typedef struct FlSequence {
  *
  * range: "1001-1096", "1-96x2", "10-", "1,5,9" and lists of these; NULL: all.
  *
- * from: FL_FRAMES_LAYERS takes the layers of one file as frames 1 … n, the lowest first.
+ * from: FL_FRAMES_LAYERS takes the layers of one file as frames 1 … n, the lowest first; a worker
+ * counts them.
  *
  * Returns: NULL with FL_ERROR_USAGE (bad range or pattern) or FL_ERROR_INPUT (nothing found, gaps).
  */
 FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char *range,
-                             FlMissing missing, FlFramesFrom from, FlWarnings *warnings,
-                             GError **error);
+                             FlMissing missing, FlFramesFrom from, FlSandboxing sandbox,
+                             FlWarnings *warnings, GError **error);
+
+/** The folders of the files, and files that are links; to be freed with g_strfreev(). */
+char **fl_paths_of(const char *const *files);
+
+/**
+ * Leaves out the frames that have an error, of which there are not n: with hold, frames before the
+ * first good one get its file, and later ones that of the last good one before them; else they are
+ * skipped. Each is a warning.
+ */
+void fl_sequence_leave_out(FlSequence *sequence, FlMissing missing, GError *const *failed,
+                           FlWarnings *warnings);
+
+/** With hold, the frame whose file frame t gets: itself, if it is good. */
+int fl_sequence_instead(GError *const *failed, int n, int t);
 
 /** Whether two frames, by index, are the same file, or the same layer of one. */
 bool fl_sequence_same(const FlSequence *sequence, int a, int b);

@@ -1,194 +1,80 @@
 #include "drawing/survey.h"
 
 #include "base/limits.h"
-#include "base/schedule.h"
-#include "drawing/probe.h"
 #include "drawing/register_frames.h"
-#include "drawing/watch.h"
 #include "svg/normalise.h"
+#include "worker/survey_frame.h"
 #include <math.h>
-#include <stdlib.h>
+#include <stdatomic.h>
 #include <string.h>
-#ifdef _OPENMP
-#include <omp.h>
-#endif
 
-#define MOST_WHOLE 8  // groups of a frame that become one leaf, each after another probe
-#define MOST_ROUNDS 3 // in which that spreads to other frames
+#define MOST_ROUNDS 3 // in which a group that is one leaf becomes so in other frames
+#define TELL_US (G_USEC_PER_SEC / 10)
 
-int fl_strings_add(FlStrings *strings, const char *text)
+/* ---- asking ---------------------------------------------------------------------------------- */
+
+/** How far the reading is, for who waits. */
+typedef struct Reading {
+    const FlSurvey *survey;
+    GThread *caller; // the only one that tells
+    atomic_int done; // frames
+    atomic_bool stopped;
+    int told;
+    gint64 told_us;
+} Reading;
+
+/** Tells now and then how far the reading is. Returns: whether it is to stop. */
+static bool tell(void *data)
 {
-    if (!strings->text) {
-        strings->text = g_ptr_array_new_with_free_func(g_free);
-        strings->number = g_hash_table_new(g_str_hash, g_str_equal);
-        fl_strings_add(strings, "");
+    Reading *reading = data;
+    const FlSurvey *survey = reading->survey;
+    const FlDrawingOptions *options = survey->options;
+    const int done = MIN(atomic_load(&reading->done), survey->n_frames);
+    const gint64 now = g_get_monotonic_time();
+    if (options->reading && g_thread_self() == reading->caller && done > 0 &&
+        done != reading->told && now - reading->told_us >= TELL_US) {
+        reading->told = done, reading->told_us = now;
+        if (!options->reading(options->data, survey->sequence, done))
+            atomic_store(&reading->stopped, true);
     }
-    gpointer known = NULL;
-    if (g_hash_table_lookup_extended(strings->number, text, NULL, &known))
-        return GPOINTER_TO_INT(known);
-    const int number = (int)strings->text->len;
-    char *copy = g_strdup(text);
-    g_ptr_array_add(strings->text, copy);
-    g_hash_table_insert(strings->number, copy, GINT_TO_POINTER(number));
-    return number;
+    return atomic_load(&reading->stopped);
 }
 
-const char *fl_strings_get(const FlStrings *strings, int number)
-{
-    return g_ptr_array_index(strings->text, number);
-}
-
-static void keep(FlSurvey *survey, int t, const FlFrameProbe *f)
-{
-    FlStrings *s = &survey->strings;
-    GArray *parts = g_array_sized_new(FALSE, FALSE, sizeof(FlSurveyPart), f->probes->len);
-    for (guint i = 0; i < f->probes->len; i++) {
-        const FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
-        FlSurveyPart one = probe->found;
-        one.paint = fl_strings_add(s, probe->paint);
-        one.name = fl_strings_add(s, probe->leaf->name);
-        one.labels = fl_strings_add(s, probe->leaf->labels);
-        one.layers = fl_strings_add(s, probe->leaf->layers);
-        one.ids = fl_strings_add(s, probe->leaf->ids);
-        one.classes = fl_strings_add(s, probe->leaf->classes);
-        one.tree = fl_strings_add(s, probe->leaf->tree);
-        const FlRect box = probe->box;
-        const int corner[4] = {box.x - 1, box.y - 1, box.x + box.width + 1, box.y + box.height + 1};
-        for (int c = 0; c < 4; c++)
-            one.box[c] = (float)(corner[c] * f->factor);
-        g_array_append_val(parts, one);
-    }
-    survey->frame[t].parts = parts;
-}
-
-static char **copy_of(const GPtrArray *texts)
-{
-    char **copy = g_new0(char *, texts->len + 1);
-    for (guint i = 0; i < texts->len; i++)
-        copy[i] = g_strdup(g_ptr_array_index(texts, i));
-    return copy;
-}
-
-static FlSvg *open_svg(const FlSurvey *survey, int t, FlWarnings *warnings, GError **error)
+static FlRequest request_of(const FlSurvey *survey, int t, FlVerb verb)
 {
     const FlSequence *sequence = survey->sequence;
-    const FlSvgOptions options = {.canvas = survey->frame[t].canvas,
-                                  .dpi = survey->svg.dpi,
-                                  .whole = (const char *const *)survey->frame[t].whole,
-                                  .layer = sequence->layer[t],
-                                  .alone = sequence->alone};
-    return fl_svg_open(sequence->file[t], sequence->number[t], &options, warnings, error);
+    return (FlRequest){.verb = verb,
+                       .file = sequence->file[t],
+                       .number = sequence->number[t],
+                       .frame = t,
+                       .svg = {.canvas = survey->frame[t].canvas,
+                               .dpi = survey->options->dpi,
+                               .whole = (const char *const *)survey->frame[t].whole,
+                               .layer = sequence->layer[t],
+                               .alone = sequence->alone},
+                       .scale = survey->scale,
+                       .width = survey->width,
+                       .height = survey->height};
 }
 
-static int thread_number(void)
+bool fl_survey_measure(FlSurvey *survey, int t, const FlCanvas *canvas, bool shapes,
+                       FlPageMeasures *measures, GError **error)
 {
-#ifdef _OPENMP
-    return omp_get_thread_num();
-#else
-    return 0;
-#endif
+    FlRequest request = request_of(survey, t, FL_VERB_MEASURE);
+    g_auto(FlAnswer) answer = {0};
+    request.svg.canvas = *canvas, request.shapes = shapes;
+    *measures = (FlPageMeasures){0};
+    if (!fl_workers_ask(survey->workers, &request, NULL, &answer, &survey->failed[t]))
+        g_propagate_error(error, g_error_copy(survey->failed[t]));
+    else if (fl_measures_unpack(&answer.reader, measures))
+        return true;
+    else
+        fl_answer_set_damaged(request.file, error);
+    g_clear_pointer(&measures->shapes, g_array_unref);
+    return false;
 }
 
-/** Opens a frame and sets its page in the picture. */
-static bool open_frame(FlSurvey *survey, int t, FlFrameProbe *probe, FlWarnings *warnings,
-                       GError **error)
-{
-    double width, height;
-    FlSurveyFrame *frame = &survey->frame[t];
-    g_autoptr(FlSvg) svg = t == 0 && survey->first ? g_steal_pointer(&survey->first)
-                                                   : open_svg(survey, t, warnings, error);
-    if (!svg || !fl_svg_size(svg, &width, &height, error))
-        return false;
-    frame->page.width = width * survey->scale;
-    frame->page.height = height * survey->scale;
-    frame->n_nameless = fl_svg_nameless_groups(svg);
-    g_strfreev(frame->files);
-    frame->files = copy_of(fl_svg_files(svg));
-    return fl_frame_probe_init(probe, g_steal_pointer(&svg), &survey->cache[thread_number()],
-                               frame->page, survey->width, survey->height, error);
-}
-
-/** Draws a frame leaf by leaf and compares it with the file; see fl_self_check_finish(). */
-static FlVerdict try_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *warnings,
-                           char **group, const char **leaf, GError **error)
-{
-    if (!open_frame(survey, t, f, warnings, error) || !fl_frame_probe_run(f, error))
-        return FL_VERDICT_ERROR;
-    return fl_self_check_finish(f->check, f->svg, f->page, group, leaf, error);
-}
-
-static bool has_group(char **groups, const char *group)
-{
-    return groups && g_strv_contains((const char *const *)groups, group);
-}
-
-/** Makes one more group or shape of a frame one leaf. */
-static void keep_whole(FlSurveyFrame *frame, const char *group)
-{
-    const guint n = frame->whole ? g_strv_length(frame->whole) : 0;
-    frame->whole = g_renew(char *, frame->whole, n + 2);
-    frame->whole[n] = g_strdup(group);
-    frame->whole[n + 1] = NULL;
-}
-
-static void warn_of_whole(FlWarnings *warnings, const char *file, int number, const char *group)
-{
-    const bool made = g_str_has_prefix(group, FL_GROUP_ID);
-    const bool shape = g_str_has_prefix(group, FL_SHAPE_AT);
-    const int nth = made ? atoi(group + strlen(FL_GROUP_ID)) + 1 : 0;
-    g_autofree char *which = made ? g_strdup_printf("no. %d of the groups without an id ", nth)
-                                  : g_strdup(shape ? "a shape without an id " : "");
-    const bool all = strcmp(group, FL_WHOLE_ALL) == 0;
-    fl_warnings_add(warnings, file, number, made || all || shape ? NULL : group,
-                    "%slooks different when it is drawn shape by shape: drawn as one in "
-                    "every frame",
-                    which);
-}
-
-/** Probes a frame, again for each group that becomes one leaf. */
-static bool scan_frame(FlSurvey *survey, int t, FlFrameProbe *f, FlWarnings *warnings,
-                       GError **error)
-{
-    const char *file = survey->sequence->file[t];
-    const int number = survey->sequence->number[t];
-    FlSurveyFrame *frame = &survey->frame[t];
-    for (int tries = 0;; tries++) {
-        g_autofree char *group = NULL;
-        const char *leaf = NULL;
-        const FlVerdict verdict = try_frame(survey, t, f, warnings, &group, &leaf, error);
-        if (verdict == FL_VERDICT_ERROR)
-            return false;
-        if (verdict == FL_VERDICT_DIFFERS && (!group || tries >= MOST_WHOLE) &&
-            fl_self_check_is_gross(f->check) && !has_group(frame->whole, FL_WHOLE_ALL)) {
-            g_free(group);
-            group = g_strdup(FL_WHOLE_ALL);
-            tries = 0;
-        }
-        if (verdict == FL_VERDICT_DIFFERS && group && tries < MOST_WHOLE) {
-            g_auto(GStrv) groups = g_strsplit(group, "\n", -1);
-            for (int i = 0; groups[i]; i++) {
-                warn_of_whole(warnings, file, number, groups[i]);
-                keep_whole(frame, groups[i]);
-            }
-            fl_frame_probe_clear(f);
-            *f = (FlFrameProbe){0};
-            continue;
-        }
-        if (verdict == FL_VERDICT_DIFFERS)
-            fl_warnings_add(warnings, file, number, leaf,
-                            "the frame looks slightly different when it is drawn shape by shape");
-        else if (fl_self_check_has_hard_masks(f->check))
-            fl_warnings_add(warnings, file, number, NULL,
-                            "shapes that overlap below a mask have a harder edge there");
-        break;
-    }
-    if (fabs(frame->page.width - survey->page.width) > 0.5 ||
-        fabs(frame->page.height - survey->page.height) > 0.5)
-        fl_warnings_add(warnings, file, number, NULL,
-                        "its page is not as large as the first frame's; it keeps its scale; if the "
-                        "drawing slides, try ‘register’");
-    return true;
-}
+/* ---- the size -------------------------------------------------------------------------------- */
 
 /**
  * The scale with which the page leaves no column or row of the picture partly bare: one that is
@@ -202,17 +88,27 @@ static double cover_scale(double scale, double width, double height, double w, d
                : MAX(w / width, h / height);
 }
 
-/** Decides the size of the picture from the first frame, which stays open. */
-static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, FlWarnings *warnings,
-                     GError **error)
+/** Measures the first frame; if it is to be left out, so are those before the first good one. */
+static bool measure_first(FlSurvey *survey, FlPageMeasures *first, GError **error)
 {
-    double width, height;
-    fl_watch_begin(survey->watch, 0, 0);
-    survey->first = open_svg(survey, 0, warnings, error);
-    if (!survey->first || !fl_svg_size(survey->first, &width, &height, error)) {
-        fl_watch_fail(survey->watch, 0);
+    if (fl_survey_measure(survey, 0, &survey->frame[0].canvas, false, first, error))
+        return true;
+    int t = survey->options->missing > FL_MISSING_ERROR ? 1 : survey->n_frames;
+    while (t < survey->n_frames &&
+           !fl_survey_measure(survey, t, &survey->frame[t].canvas, false, first, NULL))
+        t++;
+    g_clear_pointer(&first->shapes, g_array_unref);
+    return false;
+}
+
+/** Decides the size of the picture from the first frame. */
+static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, GError **error)
+{
+    FlPageMeasures first;
+    if (!measure_first(survey, &first, error))
         return false;
-    }
+    g_array_unref(first.shapes);
+    const double width = first.width, height = first.height;
     if (o->scale < 0 || o->width < 0 || o->height < 0 ||
         (o->scale > 0 && (o->width > 0 || o->height > 0))) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
@@ -241,48 +137,55 @@ static bool set_size(FlSurvey *survey, const FlDrawingOptions *o, FlWarnings *wa
     return true;
 }
 
-/** Probes the frames that are left; false with the error of the first that fails. */
-static bool scan_each(FlSurvey *survey, FlWarnings *warnings, GError **error)
+/* ---- the frames ------------------------------------------------------------------------------ */
+
+/** Asks for a frame. Returns: false with an error. */
+static bool read_frame(FlSurvey *survey, int t, const FlFileWait *wait, FlAnswer *answer,
+                       GError **error)
 {
+    const FlRequest request = request_of(survey, t, FL_VERB_SURVEY);
+    return fl_workers_ask(survey->workers, &request, wait, answer, error);
+}
+
+static bool keep(FlSurvey *survey, int t, FlAnswer *answer, FlWarnings *warnings, GError **error)
+{
+    const FlCanvas canvas = survey->frame[t].canvas;
+    const char *file = survey->sequence->file[t];
+    fl_survey_frame_clear(&survey->frame[t]);
+    if (!fl_survey_unpack(&answer->reader, &survey->frame[t], &survey->strings, warnings))
+        return fl_answer_set_damaged(file, error);
+    survey->frame[t].canvas = canvas;
+    if (fabs(survey->frame[t].page.width - survey->page.width) > 0.5 ||
+        fabs(survey->frame[t].page.height - survey->page.height) > 0.5)
+        fl_warnings_add(warnings, file, survey->sequence->number[t], NULL,
+                        "its page is not as large as the first frame's; it keeps its scale; if the "
+                        "drawing slides, try ‘register’");
+    return true;
+}
+
+/** Reads the frames that are left; false with the error of the first that fails. */
+static bool read_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
+{
+    Reading reading = {.survey = survey, .caller = g_thread_self()};
+    const FlFileWait wait = {tell, &reading};
     bool good = true;
 #pragma omp parallel for ordered schedule(static, 1)
     for (int t = 0; t < survey->n_frames; t++) {
-        g_auto(FlFrameProbe) probe = {0};
-        g_autoptr(FlWarnings) remarks = fl_warnings_new();
-        GError *reason = NULL;
-        const bool known = survey->frame[t].parts != NULL;
-        const int thread = thread_number();
-        fl_watch_begin(survey->watch, thread, t);
-        const bool scanned = known || scan_frame(survey, t, &probe, remarks, &reason);
-        fl_frame_cache_next_frame(&survey->cache[thread]);
-        fl_watch_begin(survey->watch, thread, -1);
-        if (survey->watch && scanned && !known)
-            atomic_fetch_add(&survey->watch->done, 1);
+        g_auto(FlAnswer) answer = {0};
+        const bool due = !survey->frame[t].parts && !survey->failed[t];
+        if (due && read_frame(survey, t, &wait, &answer, &survey->failed[t]))
+            atomic_fetch_add(&reading.done, 1);
 #pragma omp ordered
         {
-            if (scanned && !known)
-                keep(survey, t, &probe);
-            if (good)
-                fl_warnings_append(warnings, remarks);
-            if (!scanned && good) {
-                fl_watch_fail(survey->watch, t);
-                g_propagate_error(error, reason);
-            } else
-                g_clear_error(&reason);
-            good = good && scanned;
+            if (due && good && !survey->failed[t])
+                good = keep(survey, t, &answer, warnings, error);
+            else if (good && survey->failed[t])
+                g_propagate_error(error, g_error_copy(survey->failed[t]));
+            good = good && !survey->failed[t];
         }
     }
-    return good;
-}
-
-static bool scan_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
-{
-    const int n = fl_schedule_threads();
-    survey->cache = g_new0(FlFrameCache, n);
-    const bool good = scan_each(survey, warnings, error);
-    for (int k = 0; k < n; k++)
-        fl_frame_cache_clear(&survey->cache[k]);
-    g_clear_pointer(&survey->cache, g_free);
+    if (good && survey->options->reading)
+        (void)survey->options->reading(survey->options->data, survey->sequence, survey->n_frames);
     return good;
 }
 
@@ -303,10 +206,10 @@ static int spread_whole(FlSurvey *survey)
         for (int i = 0; from->whole && from->whole[i]; i++)
             for (int to = 0; to < survey->n_frames; to++) {
                 FlSurveyFrame *frame = &survey->frame[to];
-                if (has_group(frame->whole, from->whole[i]) ||
+                if (fl_has_group(frame->whole, from->whole[i]) ||
                     !means_the_same(from, frame, from->whole[i]))
                     continue;
-                keep_whole(frame, from->whole[i]);
+                fl_keep_whole(frame, from->whole[i]);
                 n += frame->parts != NULL;
                 g_clear_pointer(&frame->parts, g_array_unref);
             }
@@ -315,42 +218,38 @@ static int spread_whole(FlSurvey *survey)
 }
 
 bool fl_survey_init(FlSurvey *survey, const FlSequence *sequence, const FlDrawingOptions *options,
-                    FlWatch *watch, FlWarnings *warnings, GError **error)
+                    FlWorkers *workers, FlWarnings *warnings, GError **error)
 {
     *survey = (FlSurvey){.sequence = sequence,
-                         .svg = {.canvas = options->canvas, .dpi = options->dpi},
+                         .options = options,
+                         .workers = workers,
                          .n_frames = sequence->n,
                          .frame = g_new0(FlSurveyFrame, sequence->n),
-                         .watch = watch};
+                         .failed = g_new0(GError *, sequence->n)};
     fl_strings_add(&survey->strings, "");
     for (int t = 0; t < survey->n_frames; t++)
         survey->frame[t].canvas = options->canvas;
     if ((options->registered && !fl_register(survey, warnings, error)) ||
-        !set_size(survey, options, warnings, error))
+        !set_size(survey, options, error))
         return false;
     // a region that is one shape in one frame and several in the next would change its paint
     for (int round = 0; round < MOST_ROUNDS; round++) {
-        if (!scan_frames(survey, warnings, error))
+        if (!read_frames(survey, warnings, error))
             return false;
         if (spread_whole(survey) == 0)
             return true;
     }
-    return scan_frames(survey, warnings, error);
+    return read_frames(survey, warnings, error);
 }
 
 void fl_survey_clear(FlSurvey *survey)
 {
-    fl_svg_free(survey->first);
-    for (int t = 0; t < survey->n_frames && survey->frame; t++) {
-        if (survey->frame[t].parts)
-            g_array_unref(survey->frame[t].parts);
-        g_strfreev(survey->frame[t].whole);
-        g_strfreev(survey->frame[t].files);
+    for (int t = 0; t < survey->n_frames; t++) {
+        fl_survey_frame_clear(&survey->frame[t]);
+        g_clear_error(&survey->failed[t]);
     }
     g_free(survey->frame);
-    if (survey->strings.text) {
-        g_hash_table_unref(survey->strings.number);
-        g_ptr_array_unref(survey->strings.text);
-    }
+    g_free(survey->failed);
+    fl_strings_clear(&survey->strings);
     *survey = (FlSurvey){0};
 }

@@ -2,7 +2,7 @@
 
 #include "base/alloc.h"
 #include "base/windows.h"
-#include "drawing/raster.h"
+#include "worker/raster.h"
 #include <string.h>
 
 #define REACH 24 // a shape counts this share of the larger side around what is seen of it

@@ -5,10 +5,10 @@
 #include "base/page.h"
 #include "base/schedule.h"
 #include "drawing/hold.h"
-#include "drawing/packed_draws.h"
 #include "inspect/dump.h"
 #include "inspect/ebsynth.h"
 #include "render/painter_guides.h"
+#include "worker/messages.h"
 
 static double seconds_since(gint64 start)
 {
@@ -207,7 +207,7 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
         return false;
     if (!composed)
         return true;
-    FlDrawList *draws = fl_draws_unpack(frames->draws, plan->drawing, INT_MAX, error);
+    FlDrawList *draws = fl_drawing_unpack_draws(plan->drawing, frames->draws, error);
     g_clear_pointer(&frames->draws, g_bytes_unref);
     frames->drawn = -1;
     if (!draws)

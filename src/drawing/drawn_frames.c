@@ -1,0 +1,111 @@
+/* Frames as pictures, which workers draw; those that no hand draws are kept packed. */
+#include "base/rng.h"
+#include "drawing/drawing_data.h"
+
+#define MOST_KEPT ((size_t)32 << 20) // bytes
+
+FlRequest fl_drawing_request(const FlDrawing *drawing, int frame, FlVerb verb)
+{
+    const FlDrawingFrame *f = &drawing->frame[frame];
+    const FlSequence *sequence = drawing->sequence;
+    return (FlRequest){.verb = verb,
+                       .file = sequence->file[frame],
+                       .number = sequence->number[frame],
+                       .frame = f->origin,
+                       .svg = {.canvas = f->canvas,
+                               .dpi = drawing->dpi,
+                               .whole = (const char *const *)f->whole,
+                               .layer = sequence->layer[frame]},
+                       .page = f->page,
+                       .width = drawing->width,
+                       .height = drawing->height,
+                       .n_regions = (int)drawing->regions->len};
+}
+
+void fl_drawing_forget(FlDrawing *drawing)
+{
+    for (int i = 0; i < drawing->n_kept; i++)
+        g_clear_pointer(&drawing->kept[i], g_bytes_unref);
+    drawing->kept_bytes = 0;
+}
+
+/** Keeps a frame, if there is room. */
+static void keep(FlDrawing *drawing, int frame, const FlWireReader *packed)
+{
+    GBytes **kept = &drawing->kept[drawing->frame[frame].origin];
+    g_mutex_lock(&drawing->mutex);
+    if (!*kept && packed->left <= MOST_KEPT - drawing->kept_bytes) {
+        *kept = g_bytes_new(packed->at, packed->left);
+        drawing->kept_bytes += packed->left;
+    }
+    g_mutex_unlock(&drawing->mutex);
+}
+
+/** A frame, to be unreferenced; NULL: it is not kept. */
+static GBytes *find_kept(FlDrawing *drawing, int frame)
+{
+    g_mutex_lock(&drawing->mutex);
+    GBytes *kept = drawing->kept[drawing->frame[frame].origin];
+    GBytes *found = kept ? g_bytes_ref(kept) : NULL;
+    g_mutex_unlock(&drawing->mutex);
+    return found;
+}
+
+FlDrawList *fl_drawing_unpack_draws(const FlDrawing *drawing, GBytes *packed, GError **error)
+{
+    const FlDrawBounds bounds = {drawing->width, drawing->height, (int)drawing->regions->len,
+                                 INT_MAX};
+    return fl_draws_unpack(g_bytes_get_data(packed, NULL), g_bytes_get_size(packed), &bounds,
+                           error);
+}
+
+static FlDrawList *unpack(const FlDrawing *drawing, int frame, const void *data, size_t bytes,
+                          GError **error)
+{
+    const FlDrawBounds bounds = {drawing->width, drawing->height, (int)drawing->regions->len,
+                                 drawing->frame[frame].n};
+    g_autoptr(GError) problem = NULL;
+    FlDrawList *draws = fl_draws_unpack(data, bytes, &bounds, &problem);
+    if (g_error_matches(problem, FL_ERROR, FL_ERROR_INPUT))
+        fl_answer_set_damaged(drawing->sequence->file[frame], error);
+    else if (problem)
+        g_propagate_error(error, g_steal_pointer(&problem));
+    return draws;
+}
+
+/** The keys of the regions' hands: a name is the same in every render. */
+static uint64_t *keys_of(const FlDrawing *drawing, uint64_t seed)
+{
+    const int n = (int)drawing->regions->len;
+    uint64_t *key = g_new(uint64_t, n + 1);
+    for (int r = 0; r < n; r++)
+        key[r] = fl_key(seed, g_str_hash(fl_drawing_region(drawing, r)->name));
+    return key;
+}
+
+FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
+                                    GError **error)
+{
+    g_assert(frame >= 0 && frame < drawing->sequence->n);
+    const FlDrawingFrame *f = &drawing->frame[frame];
+    const bool by_hand = fl_steps_need_hand(f->step, f->n, hand);
+    g_autoptr(GBytes) kept = by_hand ? NULL : find_kept((FlDrawing *)drawing, frame);
+    if (kept)
+        return unpack(drawing, frame, g_bytes_get_data(kept, NULL), g_bytes_get_size(kept), error);
+    g_autofree uint64_t *key = by_hand ? keys_of(drawing, hand->seed) : NULL;
+    FlRequest request = fl_drawing_request(drawing, frame, FL_VERB_DRAW);
+    request.step = f->step, request.n_steps = f->n;
+    request.hand = by_hand ? hand : NULL, request.key = key;
+    g_auto(FlAnswer) answer = {0};
+    if (!fl_workers_ask(drawing->workers, &request, NULL, &answer, error))
+        return NULL;
+    FlDrawList *draws = unpack(drawing, frame, answer.reader.at, answer.reader.left, error);
+    if (draws && !by_hand)
+        keep((FlDrawing *)drawing, frame, &answer.reader);
+    return draws;
+}
+
+FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **error)
+{
+    return fl_drawing_draw_by_hand(drawing, frame, NULL, error);
+}

@@ -1,0 +1,420 @@
+#include "worker/probe.h"
+
+#include "svg/leaf_digest.h"
+#include <math.h>
+#include <string.h>
+
+#define THICK 0.03f  // width of a stroke, share of the page's longer side, that is no line any more
+#define PROBE_PX 256 // longest side of the small pictures on which a frame is probed
+#define TINY_PX 4.0  // side of a shape that may be there without being drawn on them
+#define MOST_KEPT (16 << 20) // bytes of coverage that a frame's probes keep
+
+static void probe_clear(void *data)
+{
+    FlProbe *probe = data;
+    g_free(probe->paint);
+    g_clear_pointer(&probe->kept, g_bytes_unref);
+}
+
+static GArray *new_probes(void)
+{
+    GArray *probes = g_array_new(FALSE, FALSE, sizeof(FlProbe));
+    g_array_set_clear_func(probes, probe_clear);
+    return probes;
+}
+
+/** Adds copies of parts, from `first` on. */
+static void add_probes(GArray *probes, const GArray *parts, guint first)
+{
+    for (guint i = first; i < parts->len; i++) {
+        FlProbe copy = g_array_index(parts, FlProbe, i);
+        copy.paint = g_strdup(copy.paint);
+        if (copy.kept)
+            g_bytes_ref(copy.kept);
+        g_array_append_val(probes, copy);
+    }
+}
+
+/** Adds the size of the page to digests that are known. */
+static void add_page(const FlFrameProbe *f, FlDigest *digest, guint n)
+{
+    const double page[] = {f->page.width, f->page.height, f->factor, f->full_width, f->full_height};
+    for (guint i = 0; i < n; i++)
+        if (fl_digest_is_known(digest[i]))
+            fl_digest_add(&digest[i], page, sizeof page);
+}
+
+/** Digests what the leaves and units look like on the page. */
+static void digest_leaves(FlFrameProbe *f)
+{
+    const FlLeaves *leaves = fl_svg_leaves(f->svg);
+    f->leaf_digest = g_new(FlDigest, leaves->leaf->len + 1);
+    f->unit_digest = g_new(FlDigest, leaves->unit->len + 1);
+    fl_leaf_digests(f->svg, f->leaf_digest, f->unit_digest);
+    add_page(f, f->leaf_digest, leaves->leaf->len);
+    add_page(f, f->unit_digest, leaves->unit->len);
+}
+
+bool fl_frame_probe_init(FlFrameProbe *f, FlSvg *svg, FlFrameCache *cache, FlPageSize page,
+                         int width, int height, GError **error)
+{
+    *f = (FlFrameProbe){.svg = svg, .cache = cache, .full_width = width, .full_height = height};
+    f->factor = MAX(1, (double)MAX(width, height) / PROBE_PX);
+    f->page.width = page.width / f->factor;
+    f->page.height = page.height / f->factor;
+    f->all =
+        (FlRect){0, 0, MAX(1, (int)ceil(width / f->factor)), MAX(1, (int)ceil(height / f->factor))};
+    f->probes = new_probes();
+    digest_leaves(f);
+    f->coverage = fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
+    f->check = f->coverage ? fl_self_check_new(f->all.width, f->all.height, error) : NULL;
+    return f->check != NULL;
+}
+
+void fl_frame_probe_clear(FlFrameProbe *f)
+{
+    if (f->probes)
+        g_array_unref(f->probes);
+    fl_outlines_free(f->outlines);
+    g_free(f->leaf_digest);
+    g_free(f->unit_digest);
+    fl_svg_free(f->svg);
+    if (f->coverage)
+        cairo_surface_destroy(f->coverage);
+    if (f->full)
+        cairo_surface_destroy(f->full);
+    fl_self_check_free(f->check);
+}
+
+/** Draws a part, which lies within `where`, into the frame's coverage; *box gets its box, which the
+ * caller wipes. */
+static bool cover(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect where, FlRect *box,
+                  GError **error)
+{
+    cairo_t *cr = cairo_create(f->coverage);
+    const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, f->page, error);
+    cairo_destroy(cr);
+    *box = fl_surface_bounds(f->coverage, where);
+    return drawn;
+}
+
+/** Keeps what a part covers, if there is room: it is needed again in stack(). */
+static void keep_cover(FlFrameProbe *f, FlProbe *probe)
+{
+    const FlRect box = probe->box;
+    const size_t bytes = fl_rect_pixels(box);
+    const size_t stride = (size_t)cairo_image_surface_get_stride(f->coverage);
+    const unsigned char *data = cairo_image_surface_get_data(f->coverage);
+    probe->is_kept = f->kept_bytes + bytes <= MOST_KEPT;
+    if (!probe->is_kept)
+        return;
+    f->kept_bytes += bytes;
+    probe->kept_box = box;
+    uint8_t *kept = g_malloc(bytes);
+    for (int y = 0; y < box.height; y++)
+        memcpy(kept + (size_t)y * (size_t)box.width, data + (size_t)(box.y + y) * stride + box.x,
+               (size_t)box.width);
+    probe->kept = g_bytes_new_take(kept, bytes);
+}
+
+/** Puts what was kept of a part back into the frame's coverage. */
+static void put_kept(FlFrameProbe *f, const FlProbe *probe)
+{
+    const FlRect box = probe->kept_box;
+    const size_t stride = (size_t)cairo_image_surface_get_stride(f->coverage);
+    const uint8_t *kept = probe->kept ? g_bytes_get_data(probe->kept, NULL) : NULL;
+    cairo_surface_flush(f->coverage);
+    unsigned char *data = cairo_image_surface_get_data(f->coverage);
+    for (int y = 0; kept && y < box.height; y++)
+        memcpy(data + (size_t)(box.y + y) * stride + box.x, kept + (size_t)y * (size_t)box.width,
+               (size_t)box.width);
+    cairo_surface_mark_dirty(f->coverage);
+}
+
+/** As cover(), of a part that was covered before. */
+static bool cover_again(FlFrameProbe *f, const FlProbe *probe, FlRect *box, GError **error)
+{
+    // text and tiny parts have a box_in_full(), but are drawn in the small picture
+    const FlRect where = probe->leaf->text ? f->all : probe->box;
+    if (!probe->is_kept)
+        return cover(f, probe->leaf, probe->found.part, where, box, error);
+    put_kept(f, probe);
+    *box = probe->kept_box;
+    return true;
+}
+
+static float sum_of(cairo_surface_t *coverage, FlRect box)
+{
+    const unsigned char *data = cairo_image_surface_get_data(coverage);
+    const int stride = cairo_image_surface_get_stride(coverage);
+    int64_t sum = 0;
+    for (int y = box.y; y < box.y + box.height; y++)
+        for (int x = box.x; x < box.x + box.width; x++)
+            sum += data[(size_t)y * stride + x];
+    return (float)sum / 255.0f;
+}
+
+/** The pixels of the small picture that a rectangle of the picture touches. */
+static FlRect small_box(const FlFrameProbe *f, double x0, double y0, double x1, double y1)
+{
+    return fl_rect_between((int)floor(x0 / f->factor), (int)floor(y0 / f->factor),
+                           (int)ceil(x1 / f->factor), (int)ceil(y1 / f->factor));
+}
+
+/** The page in the picture. */
+static FlPageSize whole_page(const FlFrameProbe *f)
+{
+    return (FlPageSize){f->page.width * f->factor, f->page.height * f->factor};
+}
+
+/**
+ * The box of a part that the small picture cannot show: text, whose shape depends on the scale, and
+ * tiny parts. Drawn in full size; px of the small picture.
+ */
+static bool box_in_full(FlFrameProbe *f, const FlLeaf *leaf, FlPart part, FlRect *box,
+                        float *area_px, GError **error)
+{
+    const FlRect all = {0, 0, f->full_width, f->full_height};
+    if (!f->full)
+        f->full = fl_surface_new(CAIRO_FORMAT_A8, all.width, all.height, error);
+    if (!f->full)
+        return false;
+    cairo_t *cr = cairo_create(f->full);
+    const bool drawn = fl_svg_draw(f->svg, leaf, part, cr, whole_page(f), error);
+    cairo_destroy(cr);
+    const FlRect ink = fl_surface_bounds(f->full, all);
+    *area_px = sum_of(f->full, ink);
+    fl_surface_wipe(f->full, ink);
+    *box = small_box(f, ink.x, ink.y, ink.x + ink.width, ink.y + ink.height);
+    return drawn;
+}
+
+/**
+ * Widens the box of a stroke by where it is in full size: the pen that cairo draws thick lines of
+ * next to no length with has so few corners on a small picture that their caps are cut off.
+ */
+static void widen(FlFrameProbe *f, const FlLeaf *leaf, FlRect *box)
+{
+    const RsvgRectangle r = fl_svg_extents(f->svg, leaf, whole_page(f));
+    const FlRect at = fl_rect_and(f->all, small_box(f, r.x, r.y, r.x + r.width, r.y + r.height));
+    if (box->width > 0)
+        *box = fl_rect_or(*box, at);
+}
+
+/**
+ * Whether the small picture may not show a leaf. What is larger and leaves nothing there is hidden:
+ * by a mask or a clip, or beside the page.
+ */
+static bool is_tiny(FlFrameProbe *f, const FlLeaf *leaf)
+{
+    const RsvgRectangle r = fl_svg_extents(f->svg, leaf, f->page);
+    return r.width < TINY_PX || r.height < TINY_PX;
+}
+
+/** Completes the parts of one leaf, from `first` on, with what they have in common. */
+static void relate_parts(GArray *probes, guint first)
+{
+    bool fill = false, stroke = false;
+    for (guint i = first; i < probes->len; i++) {
+        const FlProbe *probe = &g_array_index(probes, FlProbe, i);
+        *(probe->found.stroke ? &stroke : &fill) = true;
+    }
+    for (guint i = first; i < probes->len; i++) {
+        FlSurveyPart *found = &g_array_index(probes, FlProbe, i).found;
+        found->has_fill = fill;
+        found->has_stroke = stroke;
+        found->thick = found->thick && !fill;
+    }
+}
+
+/** See FlSurveyPart.width. The page that a paint was read on fits into a square. */
+static float width_of(const FlFrameProbe *f, const FlLeaf *leaf, const FlPainted *p)
+{
+    if (leaf->whole || leaf->text || (p->width > 0 && !p->stroke))
+        return -1;
+    return p->stroke ? p->width * (float)(MAX(f->page.width, f->page.height) * f->factor) : 0;
+}
+
+/** Adds the parts of a leaf that looks as one did in the frame before. */
+static bool add_known(FlFrameProbe *f, const FlLeaf *leaf, int index, FlDigest digest)
+{
+    const guint first = f->probes->len;
+    const GArray *parts = fl_frame_cache_find(f->cache, digest);
+    if (!parts)
+        return false;
+    add_probes(f->probes, parts, 0);
+    for (guint i = first; i < f->probes->len; i++) {
+        FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
+        probe->leaf = leaf;
+        probe->found.leaf = index;
+        probe->found.unit = index < 0 ? -index : 0;
+    }
+    return true;
+}
+
+/** The pose of a leaf or unit; of what has no outline the middle alone. */
+static FlPose pose_of(FlFrameProbe *f, const FlLeaf *leaf, int index)
+{
+    if (!f->outlines)
+        f->outlines = fl_outlines_new(f->svg, whole_page(f));
+    const FlPose pose = fl_outline_pose(f->outlines, index);
+    if (pose.n > 0)
+        return pose;
+    const RsvgRectangle r = fl_svg_extents(f->svg, leaf, whole_page(f));
+    return fl_point_pose((FlPoint){r.x + r.width / 2, r.y + r.height / 2});
+}
+
+static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **error)
+{
+    const guint first = f->probes->len;
+    const FlDigest digest = index < 0 ? f->unit_digest[-1 - index] : f->leaf_digest[index];
+    if (add_known(f, leaf, index, digest))
+        return true;
+    FlPainted parts[FL_MOST_PARTS];
+    const int n = fl_svg_leaf_paints(f->svg, leaf, parts, error);
+    bool good = n >= 0;
+    const FlPose pose = n > 0 ? pose_of(f, leaf, index) : (FlPose){0};
+    for (int i = 0; i < n; i++) {
+        const FlPainted *p = &parts[i];
+        FlProbe probe = {.leaf = leaf, .paint = p->paint.key};
+        probe.found = (FlSurveyPart){.leaf = index,
+                                     .part = p->part,
+                                     .stroke = p->stroke,
+                                     .width = width_of(f, leaf, p),
+                                     .thick = p->stroke && p->width >= THICK,
+                                     .kind = p->paint.kind,
+                                     .alpha = p->paint.alpha,
+                                     .peak = p->paint.peak,
+                                     .blend_mode = p->blend_mode,
+                                     .pose = pose,
+                                     .unit = index < 0 ? -index : 0,
+                                     .region = -1};
+        memcpy(probe.found.rgb, p->paint.rgb, 3);
+        good = good && cover(f, leaf, p->part, f->all, &probe.box, error);
+        const float opacity = MAX(p->paint.peak, 1) / 255.0f;
+        probe.found.area_px =
+            (float)(sum_of(f->coverage, probe.box) / opacity * f->factor * f->factor);
+        keep_cover(f, &probe);
+        fl_surface_wipe(f->coverage, probe.box);
+        if (good && (leaf->text || (probe.box.width == 0 && is_tiny(f, leaf)))) {
+            good = box_in_full(f, leaf, p->part, &probe.box, &probe.found.area_px, error);
+            probe.found.area_px /= opacity;
+        }
+        if (p->width > 0)
+            widen(f, leaf, &probe.box);
+        g_array_append_val(f->probes, probe);
+        if (!good || probe.box.width == 0 || p->paint.alpha == 0)
+            g_array_set_size(f->probes, f->probes->len - 1);
+    }
+    relate_parts(f->probes, first);
+    if (good && fl_digest_is_known(digest)) {
+        GArray *kept = new_probes();
+        add_probes(kept, f->probes, first);
+        fl_frame_cache_keep(f->cache, digest, kept);
+    }
+    return good;
+}
+
+/** Whether any two of the parts from `first` on overlap. */
+static bool overlap(const GArray *probes, guint first)
+{
+    for (guint i = first; i < probes->len; i++)
+        for (guint j = i + 1; j < probes->len; j++)
+            if (fl_rect_meet(g_array_index(probes, FlProbe, i).box,
+                             g_array_index(probes, FlProbe, j).box))
+                return true;
+    return false;
+}
+
+/** Whether the parts from `first` on, all of a unit, can be drawn one by one: 1, 0, -1 an error. */
+static int is_separable(FlFrameProbe *f, const FlGroupUnit *unit, guint first, GError **error)
+{
+    if (unit->inseparable)
+        return 0;
+    if (!overlap(f->probes, first))
+        return 1;
+    const guint n = f->probes->len - first;
+    g_autofree FlPiece *piece = g_new(FlPiece, n);
+    for (guint i = 0; i < n; i++) {
+        const FlProbe *probe = &g_array_index(f->probes, FlProbe, first + i);
+        piece[i] = (FlPiece){probe->leaf, probe->found.part, probe->found.blend_mode};
+    }
+    return fl_looks_alike(f->check, f->svg, &unit->leaf, piece, (int)n, f->page, error);
+}
+
+static bool probe_leaves(FlFrameProbe *f, GError **error)
+{
+    const FlLeaves *leaves = fl_svg_leaves(f->svg);
+    guint unit = 0;
+    for (guint i = 0; i < leaves->leaf->len; i++) {
+        const guint before = f->probes->len;
+        const FlGroupUnit *u =
+            unit < leaves->unit->len ? &g_array_index(leaves->unit, FlGroupUnit, unit) : NULL;
+        guint end = i + 1;
+        if (u && (guint)u->first == i)
+            end = i + (guint)u->n;
+        else
+            u = NULL;
+        for (; i < end; i++)
+            if (!probe_leaf(f, &g_array_index(leaves->leaf, FlLeaf, i), (int)i, error))
+                return false;
+        i--;
+        if (!u)
+            continue;
+        const int separable = is_separable(f, u, before, error);
+        if (separable < 0)
+            return false;
+        if (!separable) {
+            if (u->inseparable)
+                g_array_set_size(f->probes, before);
+            for (guint k = before; k < f->probes->len; k++)
+                g_array_index(f->probes, FlProbe, k).found.unit = 1 + (int)unit;
+            if (!probe_leaf(f, &u->leaf, -1 - (int)unit, error))
+                return false;
+        }
+        unit++;
+    }
+    return true;
+}
+
+/** Stacks the parts once more: how much of each lies over others, and the self-check. */
+static bool stack(FlFrameProbe *f, GError **error)
+{
+    const float page = (float)(f->page.width * f->page.height * f->factor * f->factor);
+    g_autoptr(cairo_surface_t) below =
+        fl_surface_new(CAIRO_FORMAT_A8, f->all.width, f->all.height, error);
+    if (!below)
+        return false;
+    unsigned char *under = cairo_image_surface_get_data(below);
+    const unsigned char *own = cairo_image_surface_get_data(f->coverage);
+    const int stride = cairo_image_surface_get_stride(below);
+    for (guint i = 0; i < f->probes->len; i++) {
+        FlProbe *probe = &g_array_index(f->probes, FlProbe, i);
+        FlRect box;
+        if (probe->found.unit > 0 && probe->found.leaf >= 0)
+            continue; // the unit comes after its leaves
+        if (!cover_again(f, probe, &box, error))
+            return false;
+        const bool fills_page = probe->found.area_px > 0.95f * page;
+        int64_t sum = 0, covered = 0;
+        for (int y = box.y; y < box.y + box.height; y++)
+            for (int x = box.x; x < box.x + box.width; x++) {
+                const size_t p = (size_t)y * stride + x;
+                sum += own[p];
+                covered += own[p] * under[p];
+                if (!fills_page)
+                    under[p] = fl_over(own[p], under[p]);
+            }
+        probe->found.covers = sum ? (float)covered / (255.0f * (float)sum) : 0;
+        if (!fl_self_check_add(f->check, f->svg, probe->leaf, &probe->found, f->coverage, box,
+                               f->page, error))
+            return false;
+        fl_surface_wipe(f->coverage, box);
+    }
+    return true;
+}
+
+bool fl_frame_probe_run(FlFrameProbe *f, GError **error)
+{
+    return probe_leaves(f, error) && stack(f, error);
+}
