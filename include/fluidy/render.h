@@ -201,11 +201,11 @@ typedef struct FlRenderOptions {
     void (*warning)(const char *message, void *data);
     /** Called with one line about what was done, such as where the frames are. */
     void (*note)(const char *message, void *data);
-    /** Called with the real path of each picture, drawing and style sheet that drawings refer to,
-     *  once they are read. */
-    void (*linked)(const char *file, void *data);
+    /** Called with the path of each file and folder that the render reads, but for the config and
+     *  the drawings' own files: what they refer to, folders of styles, papers, flow. */
+    void (*reads)(const char *path, void *data);
     bool verbose; /**< notes about decisions too, such as the style of a region */
-    void *data;   /**< handed to progress, stopped, warning, note and linked */
+    void *data;   /**< handed to progress, stopped, warning, note and reads */
 } FlRenderOptions;
 
 /**

@@ -1,8 +1,5 @@
 #include "file_watch.h"
 
-#include "base/style_parts.h"
-#include "config_edit.h"
-#include "params/options.h"
 #include <gio/gio.h>
 #include <stdatomic.h>
 #include <string.h>
@@ -10,27 +7,38 @@
 enum { TICK_MS = 50, SETTLE_MS = 200, ABANDONED_MS = 3000 };
 
 struct FlFileWatch {
-    GPtrArray *folders; // Folder
-    GHashTable *added;  // files that were added, a set
-    GHashTable *open;   // path of a file that is being written -> gint64 *: the last event
-    gint64 last_us;     // of the last event; 0: none
-    char *last;         // the name of its file
+    GHashTable *folders; // char * -> Folder *
+    GHashTable *added;   // files that were added, a set
+    GHashTable *open;    // path of a file that is being written -> gint64 *: the last event
+    gint64 last_us;      // of the last event; 0: none
+    char *last;          // the name of its file
     atomic_bool changed;
 };
 
 typedef struct Folder {
     FlFileWatch *watch;
-    GFileMonitor *monitor;
-    GPatternSpec *names; // of files that are read
+    GFileMonitor *monitor; // NULL: there is no such folder
+    GHashTable *names;     // of files that are read, a set
+    GPtrArray *patterns;   // GPatternSpec: of more of them
 } Folder;
 
 static void folder_free(void *data)
 {
     Folder *folder = data;
-    g_file_monitor_cancel(folder->monitor);
-    g_object_unref(folder->monitor);
-    g_pattern_spec_free(folder->names);
+    if (folder->monitor)
+        g_file_monitor_cancel(folder->monitor);
+    g_clear_object(&folder->monitor);
+    g_hash_table_unref(folder->names);
+    g_ptr_array_unref(folder->patterns);
     g_free(folder);
+}
+
+static bool is_read(const Folder *folder, const char *name)
+{
+    bool found = g_hash_table_contains(folder->names, name);
+    for (guint k = 0; k < folder->patterns->len && !found; k++)
+        found = g_pattern_spec_match_string(folder->patterns->pdata[k], name);
+    return found;
 }
 
 static gint64 *new_time(void)
@@ -44,7 +52,7 @@ static gint64 *new_time(void)
 static void take_event(const Folder *folder, GFile *file, bool opens)
 {
     g_autofree char *name = file ? g_file_get_basename(file) : NULL;
-    if (!name || !g_pattern_spec_match_string(folder->names, name))
+    if (!name || !is_read(folder, name))
         return;
     FlFileWatch *watch = folder->watch;
     char *path = g_file_get_path(file);
@@ -72,33 +80,30 @@ static void on_event(GFileMonitor *monitor, GFile *file, GFile *other, GFileMoni
         take_event(data, other, false);
 }
 
-/* A folder that is not there is left out; the render says if it is missing. */
-static void add_folder(FlFileWatch *watch, const char *path, const char *names)
+/* The folder of that path, which is watched from now on. */
+static Folder *folder_at(FlFileWatch *watch, const char *path)
 {
+    Folder *folder = g_hash_table_lookup(watch->folders, path);
+    if (folder)
+        return folder;
     g_autoptr(GFile) file = g_file_new_for_path(path);
-    GFileMonitor *monitor =
-        g_file_test(path, G_FILE_TEST_IS_DIR)
-            ? g_file_monitor_directory(file, G_FILE_MONITOR_WATCH_MOVES, NULL, NULL)
-            : NULL;
-    if (!monitor)
-        return;
-    Folder *folder = g_new(Folder, 1);
-    *folder = (Folder){watch, monitor, g_pattern_spec_new(names)};
-    g_file_monitor_set_rate_limit(monitor, TICK_MS);
-    g_signal_connect(monitor, "changed", G_CALLBACK(on_event), folder);
-    g_ptr_array_add(watch->folders, folder);
+    folder = g_new0(Folder, 1);
+    folder->watch = watch;
+    folder->names = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    folder->patterns = g_ptr_array_new_with_free_func((GDestroyNotify)g_pattern_spec_free);
+    g_hash_table_insert(watch->folders, g_strdup(path), folder);
+    if (g_file_test(path, G_FILE_TEST_IS_DIR))
+        folder->monitor = g_file_monitor_directory(file, G_FILE_MONITOR_WATCH_MOVES, NULL, NULL);
+    if (!folder->monitor)
+        return folder;
+    g_file_monitor_set_rate_limit(folder->monitor, TICK_MS);
+    g_signal_connect(folder->monitor, "changed", G_CALLBACK(on_event), folder);
+    return folder;
 }
 
-/* A file, or all that a pattern of a frame's number and {region} may name; NULL: none. */
-static void add_files(FlFileWatch *watch, const char *pattern)
+static void add_pattern(FlFileWatch *watch, const char *folder, const char *names)
 {
-    if (!pattern)
-        return;
-    g_autofree char *folder = g_path_get_dirname(pattern);
-    g_autofree char *name = g_path_get_basename(pattern);
-    g_autoptr(GRegex) parts = g_regex_new("%[0-9]*d|#+|\\{region\\}", 0, 0, NULL);
-    g_autofree char *names = g_regex_replace_literal(parts, name, -1, 0, "*", 0, NULL);
-    add_folder(watch, folder, names ? names : "*");
+    g_ptr_array_add(folder_at(watch, folder)->patterns, g_pattern_spec_new(names));
 }
 
 /* Drawings and style sheets beside them; new frames appear in the same folder. */
@@ -108,14 +113,18 @@ static void add_input(FlFileWatch *watch, const char *input)
     g_autofree char *folder =
         g_file_test(input, G_FILE_TEST_IS_DIR) ? g_strdup(input) : g_path_get_dirname(input);
     for (size_t k = 0; k < G_N_ELEMENTS(drawings); k++)
-        add_folder(watch, folder, drawings[k]);
+        add_pattern(watch, folder, drawings[k]);
 }
 
-void fl_file_watch_add(FlFileWatch *watch, const char *file)
+void fl_file_watch_add(FlFileWatch *watch, const char *path)
 {
-    g_autofree char *folder = g_path_get_dirname(file), *name = g_path_get_basename(file);
-    if (g_hash_table_add(watch->added, g_strdup(file)))
-        add_folder(watch, folder, name);
+    if (!g_hash_table_add(watch->added, g_strdup(path)))
+        return;
+    g_autofree char *folder = g_path_get_dirname(path);
+    if (g_file_test(path, G_FILE_TEST_IS_DIR))
+        add_pattern(watch, path, "*");
+    else
+        g_hash_table_add(folder_at(watch, folder)->names, g_path_get_basename(path));
 }
 
 void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old)
@@ -127,66 +136,17 @@ void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old)
         fl_file_watch_add(watch, file);
 }
 
-static void add_style(FlFileWatch *watch, const char *path)
-{
-    static const char *const parts[] = {FL_STYLE_PARTS};
-    for (size_t k = 0; k < G_N_ELEMENTS(parts); k++) {
-        g_autofree char *part = g_build_filename(path, parts[k], NULL);
-        add_folder(watch, part, "*");
-    }
-}
-
-/* What a config is read for: the files that it names, relative to its own folder. */
-typedef struct ConfigFiles {
-    FlFileWatch *watch;
-    const char *folder;
-} ConfigFiles;
-
-static char *add_entry(const char *section, const char *key, const char *value, void *data)
-{
-    const ConfigFiles *files = data;
-    const FlOption *option = fl_option_find(FL_SCOPE_RENDER, key);
-    g_autofree char *path = g_canonicalize_filename(value, files->folder);
-    (void)section;
-    if (fl_option_names_style(key))
-        add_style(files->watch, path);
-    else if (option && option->type == FL_OPTION_GROUND)
-        add_files(files->watch, path);
-    return NULL;
-}
-
-static void add_config_files(FlFileWatch *watch, const char *config)
-{
-    g_autofree char *text = NULL;
-    if (!config || !g_file_get_contents(config, &text, NULL, NULL))
-        return;
-    g_autofree char *named_folder = g_path_get_dirname(config);
-    g_autofree char *folder = g_canonicalize_filename(named_folder, NULL);
-    ConfigFiles files = {watch, folder};
-    g_free(fl_config_edit_map(text, add_entry, &files));
-}
-
 FlFileWatch *fl_file_watch_new(const FlRenderOptions *options)
 {
     FlFileWatch *watch = g_new0(FlFileWatch, 1);
-    watch->folders = g_ptr_array_new_with_free_func(folder_free);
+    watch->folders = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, folder_free);
     watch->open = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
     watch->added = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     watch->last = g_strdup("");
     for (const char *const *input = options->inputs; *input; input++)
         add_input(watch, *input);
-    add_files(watch, options->config);
-    add_files(watch, options->background);
-    add_files(watch, options->paper);
-    add_files(watch, options->flow);
-    add_files(watch, options->merge ? options->paint : NULL);
-    add_config_files(watch, options->config);
-    for (size_t k = 0; k < options->n_settings; k++)
-        if (fl_option_names_style(options->settings[k].name))
-            add_style(watch, options->settings[k].value);
-    g_autoptr(GPtrArray) styles = fl_style_list();
-    for (guint k = 0; k < styles->len; k++)
-        add_style(watch, ((const FlStyleEntry *)styles->pdata[k])->path);
+    if (options->config)
+        fl_file_watch_add(watch, options->config);
     return watch;
 }
 
@@ -238,7 +198,7 @@ void fl_file_watch_free(FlFileWatch *watch)
 {
     if (!watch)
         return;
-    g_ptr_array_unref(watch->folders);
+    g_hash_table_unref(watch->folders);
     g_hash_table_unref(watch->added);
     g_hash_table_unref(watch->open);
     g_free(watch->last);

@@ -1,4 +1,4 @@
-/* Which files a render reads, and whether they have changed. */
+/* Watches the files that a render reads. */
 #ifndef FLUIDY_CLI_FILE_WATCH_H
 #define FLUIDY_CLI_FILE_WATCH_H
 
@@ -8,16 +8,16 @@
 typedef struct FlFileWatch FlFileWatch;
 
 /**
- * Watches drawings, config, flow, background, paper and styles from now on. Of folders only those
- * that exist; what a drawing links to is for fl_file_watch_add(). To be used by the thread that
- * makes it, which must own GLib's default main context.
+ * Watches the config and the folders of drawings from now on, in which frames may appear. All else
+ * that a render reads is told by its options' call `reads`, for fl_file_watch_add(). To be used by
+ * the thread that makes it, which must own GLib's default main context.
  *
  * Returns: to be freed with fl_file_watch_free().
  */
 FlFileWatch *fl_file_watch_new(const FlRenderOptions *options);
 
-/** Watches a file too, from now on, until the watch is freed; known ones stay as they are. */
-void fl_file_watch_add(FlFileWatch *watch, const char *file);
+/** Watches a file, which need not exist, or all files of a folder, until the watch is freed. */
+void fl_file_watch_add(FlFileWatch *watch, const char *path);
 
 /** Watches what `old` was told to add. */
 void fl_file_watch_add_all(FlFileWatch *watch, const FlFileWatch *old);

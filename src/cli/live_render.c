@@ -12,7 +12,7 @@ enum { DRAFT_SIDE = 480, PATIENCE_MS = 300 }; // the pictures of the page are no
 
 struct FlLiveRender {
     const FlArgs *args;
-    FlTakeLinked linked;
+    FlTakeInput reads;
     void *data;
     int width, draft_width; // px
     char *folder, *config;  // temporary
@@ -165,21 +165,21 @@ static char *name_config(const FlLiveRender *render, const char *line)
     return g_string_free(g_steal_pointer(&text), FALSE);
 }
 
-/* {"linked":"FILE"}: quotes and backslashes have a backslash before them. */
-static void take_linked(const FlLiveRender *render, const char *line)
+/* {"reads":"PATH"}: quotes and backslashes have a backslash before them. */
+static void take_input(const FlLiveRender *render, const char *line)
 {
-    const size_t before = strlen("{\"linked\":\""), after = strlen("\"}"), all = strlen(line);
+    const size_t before = strlen("{\"reads\":\""), after = strlen("\"}"), all = strlen(line);
     if (all < before + after)
         return;
     g_autofree char *text = g_strndup(line + before, all - before - after);
     g_autofree char *file = g_strcompress(text);
-    render->linked(file, render->data);
+    render->reads(file, render->data);
 }
 
 static void take_message(FlLiveRender *render, const char *line)
 {
-    if (g_str_has_prefix(line, "{\"linked\"")) {
-        take_linked(render, line);
+    if (g_str_has_prefix(line, "{\"reads\"")) {
+        take_input(render, line);
         return;
     }
     if (g_str_has_prefix(line, "{\"stage\"")) {
@@ -290,12 +290,12 @@ static void end_process(FlLiveRender *render)
 
 /* ---- the whole ------------------------------------------------------------------------------ */
 
-FlLiveRender *fl_live_render_new(const FlArgs *args, int width, int larger, FlTakeLinked linked,
+FlLiveRender *fl_live_render_new(const FlArgs *args, int width, int larger, FlTakeInput reads,
                                  void *data, GError **error)
 {
     g_autoptr(FlLiveRender) render = g_new0(FlLiveRender, 1);
     render->args = args;
-    render->linked = linked, render->data = data;
+    render->reads = reads, render->data = data;
     render->width = width;
     render->draft_width = MAX((int)(width * MIN(DRAFT_SIDE / (double)larger, 1) + 0.5), 1);
     render->state.step = FL_LIVE_DONE;

@@ -27,16 +27,16 @@ typedef struct FlLiveState {
 
 typedef struct FlLiveRender FlLiveRender;
 
-/** Told of each file that the drawings refer to. */
-typedef void (*FlTakeLinked)(const char *file, void *data);
+/** Gets the path of each file and folder that the render reads. */
+typedef void (*FlTakeInput)(const char *path, void *data);
 
 /**
  * args must outlive it; larger is the longer side of the frames, px, and width their width. data is
- * handed to linked.
+ * handed to reads.
  *
  * Returns: to be freed with fl_live_render_free(); NULL if no temporary folder can be made.
  */
-FlLiveRender *fl_live_render_new(const FlArgs *args, int width, int larger, FlTakeLinked linked,
+FlLiveRender *fl_live_render_new(const FlArgs *args, int width, int larger, FlTakeInput reads,
                                  void *data, GError **error);
 
 /**

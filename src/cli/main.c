@@ -82,13 +82,13 @@ static void show_note(const char *message, void *data)
 }
 
 /* Who shows the film live reads it among the lines of JSON. */
-static void take_linked(const char *file, void *data)
+static void take_input(const char *path, void *data)
 {
     Reporter *reporter = data;
     if (reporter->files)
-        fl_file_watch_add(reporter->files, file);
+        fl_file_watch_add(reporter->files, path);
     else if (reporter->meter.mode == FL_PROGRESS_JSON)
-        fl_meter_say(&reporter->meter, "linked", file);
+        fl_meter_say(&reporter->meter, "reads", path);
 }
 
 static int status_of(const GError *error)
@@ -313,7 +313,7 @@ static int work(FlArgs *args)
     args->render.stopped = was_stopped;
     args->render.warning = show_warning;
     args->render.note = show_note;
-    args->render.linked = take_linked;
+    args->render.reads = take_input;
     args->render.data = &reporter;
     signal(SIGINT, on_signal);
     signal(SIGTERM, on_signal);

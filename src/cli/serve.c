@@ -345,10 +345,10 @@ static bool open_server(Live *live, GError **error)
     return true;
 }
 
-static void watch_linked(const char *file, void *data)
+static void watch_input(const char *path, void *data)
 {
     const Live *live = data;
-    fl_file_watch_add(live->files, file);
+    fl_file_watch_add(live->files, path);
 }
 
 /* Reads a few frames, which shows what is wrong with the command line, and how large they are. */
@@ -362,7 +362,7 @@ static bool prepare(Live *live, GError **error)
         return false;
     live->preview = live->args->render.frames ? NULL : g_strdup("~1");
     live->render = fl_live_render_new(live->args, list->width, MAX(list->width, list->height),
-                                      watch_linked, live, error);
+                                      watch_input, live, error);
     return live->render && open_server(live, error);
 }
 

@@ -104,7 +104,7 @@ FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
     plan->options = *options;
     plan->start = g_get_monotonic_time();
     plan->styles = fl_style_cache_new(&plan->options);
-    plan->inputs = fl_inputs_new(options->linked, options->data);
+    plan->inputs = fl_inputs_new(options->reads, options->data);
     if (!fl_sealed_read_key(error))
         return NULL;
     // before the defaults are filled in: fl_render() keeps no paint unless it is asked to

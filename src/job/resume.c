@@ -434,6 +434,16 @@ static bool keeps_all(const FlPlan *plan, const FlSequence *sequence)
     return true;
 }
 
+/* The same files are to be watched as if they had been read. */
+static void tell_inputs(const FlPlan *plan, const FlRecord *record)
+{
+    for (guint k = 0; k < record->inputs->list->len; k++) {
+        const char *path = g_array_index(record->inputs->list, FlFact, k).name;
+        if (g_strcmp0(path, plan->options.config) != 0)
+            fl_inputs_add(plan->inputs, path);
+    }
+}
+
 FlFinished fl_resume_look(const FlPlan *plan, const FlSequence *sequence)
 {
     if (keeps_all(plan, sequence))
@@ -446,6 +456,7 @@ FlFinished fl_resume_look(const FlPlan *plan, const FlSequence *sequence)
         !same_facts(record->inputs, inputs_now(record->inputs)) ||
         !frames_are_there(plan, sequence, record))
         return FL_FINISHED_NOTHING;
+    tell_inputs(plan, record);
     if (!film_of(plan) || same_facts(record->films, film_facts(plan)))
         return FL_FINISHED_ALL;
     return plan->format->film ? FL_FINISHED_NOTHING : FL_FINISHED_FRAMES;

@@ -121,7 +121,7 @@ void fl_inputs_add_drawing(FlInputs *inputs, const FlDrawing *drawing)
     g_autofree const char **linked =
         (const char **)g_hash_table_get_keys_as_array(fl_drawing_linked_files(drawing), &n);
     for (int f = 0; f < fl_drawing_frames(drawing); f++)
-        (void)list(inputs, fl_drawing_file(drawing, f)); // whoever tells of files knows the inputs
+        (void)list(inputs, fl_drawing_file(drawing, f));
     qsort(linked, n, sizeof *linked, by_name);
     for (guint k = 0; k < n; k++)
         fl_inputs_add(inputs, linked[k]);
@@ -144,7 +144,8 @@ void fl_inputs_add_options(FlInputs *inputs, const FlRenderOptions *options,
 {
     const char *const patterns[] = {options->background, options->flow,
                                     options->merge ? options->paint : NULL};
-    fl_inputs_add(inputs, options->config);
+    if (options->config)
+        (void)list(inputs, options->config);
     fl_inputs_add(inputs, options->paper);
     for (size_t k = 0; k < G_N_ELEMENTS(patterns); k++) {
         fl_inputs_add_frames(inputs, drawing, patterns[k], NULL);

@@ -9,7 +9,8 @@
 /** For one thread. Paths are listed once, in the order in which they are added. */
 typedef struct FlInputs FlInputs;
 
-/** tell: gets each file and folder that is added, but not the files of a style; may be NULL. */
+/** tell: gets each path that is added, but for the config, the drawings and single files of a
+ * style: FlRenderOptions.reads. May be NULL. */
 FlInputs *fl_inputs_new(void (*tell)(const char *path, void *data), void *data);
 void fl_inputs_free(FlInputs *inputs); // NULL is fine
 
