@@ -146,9 +146,7 @@ table() {
 2|--merge composes what --paint has written, or what ebsynth has painted *|good --merge
 1|eb/red-aa3311/out_0001.png: there is no such file; *|good --merge --ebsynth eb
 1|region red-aa3311: ./still: has no tile; expected a style of transport*|good --tile ./still
-1|*11/transport.net: no such file; expected a style for which fluidy-style network*|good -s 11 --solver network
 2|region red-aa3311: the engine transport moves ink by its own style; *|good --engine transport --tile ./still
-2|region red-aa3311: --tile moves existing paint, but --solver network needs flat ink; *|good --tile ./still --solver network
 2|region red-aa3311: --tile moves existing paint, but --refine needs flat ink; *|good --tile ./still --refine 8
 2|refine: “x” is not an integer from 0 to 1000|good -s 11 --refine x
 2|region red-aa3311: the engine transport has no guides for --ebsynth; *|good --engine transport --ebsynth eb

@@ -4,7 +4,7 @@
 
 #include <glib.h>
 
-#define BATIK "12" // its ink has a network
+#define BATIK "12"
 
 /** To be freed with g_free(). */
 static inline char *bundled_style(const char *number)

@@ -525,9 +525,6 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     rows->occlude(&layer, z->sum[2] + at, z->above + at, z->area + at, n);
     z->seed[0] += rows->keep_hidden(z->area + at, z->above + at, z->rgba + 3 * ROW, n);
     rows->multiply(z->above + at, z->rgba + at, n);
-    const int16_t *const taken[3] = {z->s[0] + at, z->s[1] + at, z->s[0] + 2 * at};
-    static const int16_t taps[9] = {1, -2, 3, 400, -5000, 6000, -7, 8000, 7000};
-    rows->convolve((int32_t *)z->sum[1] + at, 5 - n, taken, taps, 3 - n % 2, n);
 }
 
 static void rows_are_those_of_c(const void *version)

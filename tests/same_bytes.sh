@@ -50,14 +50,11 @@ ink=(--style "$(dirname "$style")/styles/13")
 paint ink -j 1 "${ink[@]}" && paint ink_many -j 4 "${ink[@]}" && same ink_many ink &&
     FLUIDY_CPU_MASK=0 paint ink_plain "${ink[@]}" && same ink_plain ink && ! same ink one
 result $? 'ink is moved alike by four threads and without the larger instruction sets'
-net=(--style "$(dirname "$style")/styles/12" --solver network)
-paint net -j 1 "${net[@]}" && paint net_many -j 4 "${net[@]}" && same net_many net &&
-    FLUIDY_CPU_MASK=0 paint net_plain "${net[@]}" && same net_plain net &&
-    paint net_tile "${net[@]}" --solver tile && ! same net_tile net
-result $? 'and so does a network'
-fine=("${net[@]}" --refine 2)
+batik=(--style "$(dirname "$style")/styles/12")
+paint batik "${batik[@]}"
+fine=("${batik[@]}" --refine 2)
 paint fine -j 1 "${fine[@]}" && paint fine_many -j 4 "${fine[@]}" && same fine_many fine &&
-    FLUIDY_CPU_MASK=0 paint fine_plain "${fine[@]}" && same fine_plain fine && ! same fine net
+    FLUIDY_CPU_MASK=0 paint fine_plain "${fine[@]}" && same fine_plain fine && ! same fine batik
 result $? 'and so does what is refined'
 paint flat "${ink[@]}" --strength 0 && ! same flat ink
 result $? 'without strength it stays where it is'

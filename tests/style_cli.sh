@@ -91,28 +91,6 @@ does 'a style that moves ink has none of a recording' check --strict --no-sheet 
 cp -r own/ink tiled && cp "$styles/11/transport.png" tiled && "$program" check --no-sheet ./tiled >out
 grep -q '^problem    paint fills [0-9]* % of the frame: expected 95 % or more' out
 result $? 'but for paint that does not fill its picture'
-mkdir -p trained/styles trained/bin && cp -r "$styles/12" trained/styles/12 && rm trained/styles/12/transport.net &&
-    touch trained/train_network.py
-cat >trained/bin/python3 <<'end'
-#!/bin/sh
-cat >/dev/null
-echo 'step 1 of 2049: loss 0.5000 0.1 -' >&2
-sleep .5
-echo 'step 51 of 2049: loss 0.2500 0.1 -' >&2
-sleep .5
-[ ! -e "$5.fails" ] && echo network >"$5" || { echo 'no torch' >&2; exit 1; }
-end
-chmod +x trained/bin/python3
-train() { PATH=$PWD/trained/bin:$PATH FLUIDY_STYLES=$PWD/trained/styles "$program" network "$@" 12 >out 2>err; }
-train && [ "$(cat trained/styles/12/transport.net)" = network ] && [ ! -s out ] &&
-    [ "$(cat err)" = 'fluidy-style: step 1 of 2049, loss 0.5000
-fluidy-style: step 51 of 2049, loss 0.2500' ]
-result $? 'training a network tells how far it is'
-train -y -q && [ ! -s err ]
-result $? 'unless it shall be quiet'
-touch trained/styles/12/transport.net.fails
-! train -y -q && [ "$(cat err)" = 'fluidy-style: python3 stopped: no torch' ]
-result $? 'and why it failed'
 "$program" list >/dev/full 2>err
 [ $? = 1 ]
 result $? 'a full disk is a failure'

@@ -1,4 +1,4 @@
-/* Ink from frame to frame by the tile, by the network, and refined: it neither flickers nor fades.
+/* Ink from frame to frame by the tile and refined: it neither flickers nor fades.
  */
 #include "bundled_style.h"
 #include "moving_disk.h"
@@ -41,8 +41,8 @@ static double flicker_of(Disk *disk, const Motion *m, int frames)
     return change / n / deviation;
 }
 
-/* A disk with the tile and, if wanted, the network and the patches of the batik. */
-static Disk *batik_new(FlNetwork *network, FlSliced *patches)
+/* A disk with the tile and, if wanted, the patches of the batik. */
+static Disk *batik_new(FlSliced *patches)
 {
     g_autofree char *folder = bundled_style(BATIK);
     Disk *disk = disk_new(1);
@@ -50,7 +50,6 @@ static Disk *batik_new(FlNetwork *network, FlSliced *patches)
     disk->tile = fl_tile_load(folder, 1, NULL);
     g_assert_nonnull(disk->tile);
     FlCarriedInkInput input = {.tile = disk->tile,
-                               .network = network,
                                .patches = patches,
                                .refine = 8,
                                .width = SIDE,
@@ -67,20 +66,19 @@ static Disk *batik_new(FlNetwork *network, FlSliced *patches)
 static void ink_does_not_flicker(void)
 {
     static const Motion motions[] = {
-        {"moving", 3, 0, 1, 0.08f, 0.08f, 0.15f},
-        {"growing", 2.8f, 0, 1.012f, 0.08f, 0.08f, 0.15f},
-        {"turning", 0, 0.0654498f, 1, 0.08f, 0.08f, 0.15f},
-        {"at rest", 0, 0, 1, 0, 0, 0},
+        {"moving", 3, 0, 1, 0.08f, 0.15f},
+        {"growing", 2.8f, 0, 1.012f, 0.08f, 0.15f},
+        {"turning", 0, 0.0654498f, 1, 0.08f, 0.15f},
+        {"at rest", 0, 0, 1, 0, 0},
     };
     g_autofree char *folder = bundled_style(BATIK);
-    g_autoptr(FlNetwork) network = fl_network_load(folder, NULL);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     for (size_t k = 0; k < G_N_ELEMENTS(motions); k++)
-        for (int with = 0; with < 3; with++) {
-            static const char *const names[] = {"tile", "network", "refined"};
+        for (int with = 0; with < 2; with++) {
+            static const char *const names[] = {"tile", "refined"};
             const Motion *m = &motions[k];
-            const float bounds[] = {m->tile, m->network, m->refined};
-            Disk *disk = batik_new(with == 1 ? network : NULL, with == 2 ? patches : NULL);
+            const float bounds[] = {m->tile, m->refined};
+            Disk *disk = batik_new(with == 1 ? patches : NULL);
             const double flicker = flicker_of(disk, m, m->turn > 0 ? 24 : 10);
             g_test_message("%s, %s: flicker %.4f", m->name, names[with], flicker);
             g_assert_cmpfloat(flicker, <=, (double)bounds[with]);
@@ -113,7 +111,7 @@ static void refined_ink_looks_like_its_style(void)
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
     double loss[2];
     for (int refined = 0; refined < 2; refined++) {
-        Disk *disk = batik_new(NULL, refined ? patches : NULL);
+        Disk *disk = batik_new(refined ? patches : NULL);
         (void)flicker_of(disk, &growing, 10);
         loss[refined] = loss_of(disk, patches);
         disk_free(disk);
@@ -129,7 +127,7 @@ static void refined_ink_does_not_decay(void)
     const Motion motions[] = {{.shift = 2, .growth = 1}, {.shift = -2, .growth = 1}};
     g_autofree char *folder = bundled_style(BATIK);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
-    Disk *disk = batik_new(NULL, patches);
+    Disk *disk = batik_new(patches);
     double x = 50, early = 0, late = 0;
     for (int frame = 0; frame < FRAMES; frame++) {
         const Motion *m = &motions[frame / 10 % 2];
@@ -150,7 +148,7 @@ static void a_refined_state_continues(void)
     const Motion growing = {.shift = 2.3f, .growth = 1.01f}, rest = {.growth = 1};
     g_autofree char *folder = bundled_style(BATIK);
     g_autoptr(FlSliced) patches = fl_style_patches(folder, NULL);
-    Disk *disk = batik_new(NULL, patches), *other = batik_new(NULL, patches);
+    Disk *disk = batik_new(patches), *other = batik_new(patches);
     draw_moved(&disk->guides, &rest, 50, 40);
     g_assert_true(fl_carried_ink_amounts(disk->ink, &disk->guides, disk->amount, NULL));
     g_autoptr(GBytes) state = fl_carried_ink_save(disk->ink, NULL);

@@ -409,35 +409,6 @@ static void what_is_revealed_belongs_to_its_shape(void)
     g_assert_cmpfloat(row[80], ==, 1);
 }
 
-/* What is kept of a network's velocity turns with the shape on which it lies. */
-static void a_kept_velocity_turns_with_its_shape(void)
-{
-    const Motion turning = {.turn = 0.0654498f, .growth = 1}, rest = {.growth = 1};
-    const FlRect page = {0, 0, SIDE, SIDE};
-    g_auto(FlMaterialLayers) layers = {0};
-    g_auto(FlGuides) guides = {0};
-    g_assert_true(fl_guides_init(&guides, SIDE, SIDE, NULL));
-    for (int frame = 0; frame <= 24; frame++) {
-        draw_moved(&guides, frame ? &turning : &rest, 60, 40);
-        g_assert_true(fl_material_layers_advance(&layers, &guides, page, 5, NULL));
-        if (frame == 0) {
-            layers.velocity = (FlMaterial){page, fl_alloc(2 * PIXELS, sizeof(float), "", NULL)};
-            for (size_t p = 0; p < PIXELS; p++)
-                layers.velocity.shift[2 * p] = 3;
-        }
-    }
-    float most[2] = {0, 0}; // px, near the contour and within
-    for (size_t p = 0; p < PIXELS; p++) {
-        const float *v = layers.velocity.shift + 2 * p; // to the right became downwards
-        float *of = &most[guides.distance[p] > 8];
-        if (guides.distance[p] > 2)
-            *of = fmaxf(*of, hypotf(v[0], v[1] - 3));
-    }
-    g_test_message("off by %.3f px of 3 at most near the contour, %.3f within", (double)most[0],
-                   (double)most[1]);
-    g_assert_cmpfloat(most[1], <, 0.05); // 4.2 if it does not turn
-}
-
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -457,6 +428,5 @@ int main(int argc, char **argv)
     TEST(what_is_squeezed_at_once_keeps_its_contrast);
     TEST(a_state_in_a_fade_continues);
     TEST(what_is_revealed_belongs_to_its_shape);
-    TEST(a_kept_velocity_turns_with_its_shape);
     return g_test_run();
 }

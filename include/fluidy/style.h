@@ -95,16 +95,6 @@ typedef bool (*FlTransportProgress)(void *data, int done, int total, float loss)
 FL_API bool fl_style_transport(const char *style, bool overwrite, FlTransportProgress progress,
                                void *data, GError **error);
 
-/**
- * Trains a network for the engine `transport` from the style's first frame, with python3 and
- * PyTorch, in some minutes, and writes transport.net into its folder. progress, now and then, in
- * steps of the training; NULL: none.
- *
- * Returns: false with FL_ERROR_STYLE, _EXISTS, _NO_MEMORY, _INTERRUPTED or _OUTPUT set.
- */
-FL_API bool fl_style_network(const char *style, bool overwrite, FlTransportProgress progress,
-                             void *data, GError **error);
-
 G_END_DECLS
 
 #endif

@@ -143,13 +143,6 @@ typedef struct FlRowKernels {
     /** Paper: values[i] *= factor[i] / 32768, rounded, at most 255. */
     void (*multiply)(const uint16_t *factor, uint8_t *values, int n);
 
-    /**
-     * Network: sum[i] is bias and the products of three taps with rows[r][i … i + 2], for each of
-     * `count` rows, which have n + 2 values. No partial sum may leave 32 bits.
-     */
-    void (*convolve)(int32_t *sum, int32_t bias, const int16_t *const *rows, const int16_t *taps,
-                     int count, int n);
-
     const char *name; // "c", "avx2", …
 } FlRowKernels;
 

@@ -233,26 +233,6 @@ static bool run_transport(char **words, GError **error)
     return fl_style_transport(words[0], options.overwrite, show_loss, NULL, error);
 }
 
-static const GOptionEntry network_entries[] = {
-    {"overwrite", 'y', 0, G_OPTION_ARG_NONE, &options.overwrite, "replace its transport.net", NULL},
-    {"quiet", 'q', 0, G_OPTION_ARG_NONE, &options.quiet, "print errors only", NULL},
-    {NULL},
-};
-
-static bool show_training(void *data, int done, int total, float loss)
-{
-    if (!options.quiet)
-        fprintf(stderr, "fluidy-style: step %d of %d, loss %.4f\n", done, total, loss);
-    return true;
-}
-
-static bool run_network(char **words, GError **error)
-{
-    if (!words[0] || words[1])
-        return usage(error, "network takes one %s, by name or folder", "style");
-    return fl_style_network(words[0], options.overwrite, show_training, NULL, error);
-}
-
 static const GOptionEntry list_entries[] = {
     {"paths", 'p', 0, G_OPTION_ARG_NONE, &options.paths, "print the folders searched as well",
      NULL},
@@ -296,10 +276,6 @@ const FlStyleCommand fl_style_commands[] = {
      "STYLE is a name that fluidy-style list shows, or a folder; its first frame is what ink shall "
      "look\nlike, the section [transport] of its style.ini says how it may move.\n",
      transport_entries, run_transport},
-    {"network", "STYLE", "train the network by which a style moves ink",
-     "STYLE is a name that fluidy-style list shows, or a folder that fluidy-style transport has "
-     "solved.\nNeeds PyTorch, Debian's python3-torch, and some minutes.\n",
-     network_entries, run_network},
     {"list", "[-o FILE]", "list styles, and draw them on a sheet",
      "Prints one style a line, with tabs between: number or folder's name, name, character, "
      "folder.\n",

@@ -96,7 +96,6 @@ static bool lazy_load(void *state, GBytes *bytes, GError **error)
 
 typedef struct Transport {
     FlTile *tile;
-    FlNetwork *network; // NULL: the tile moves the ink
     FlCarriedInk *ink;
 } Transport;
 
@@ -111,7 +110,6 @@ static void transport_close(void *state)
     Transport *transport = state;
     fl_carried_ink_free(transport->ink);
     fl_tile_free(transport->tile);
-    fl_network_free(transport->network);
     g_free(transport);
 }
 
@@ -132,11 +130,7 @@ static void *transport_open(const FlEngineInput *input, GError **error)
         carried.colour.density[c] = (int32_t)((int64_t)ink->density[c] * ink->mean / FL_AMOUNT_ONE);
     carried.tile = transport->tile =
         fl_tile_load(input->style->path, input->style->enlarged, error);
-    const bool network = transport->tile && input->settings->solver == FL_SOLVER_NETWORK;
-    if (network)
-        carried.network = transport->network = fl_network_load(input->style->path, error);
-    if (transport->tile && (!network || transport->network) &&
-        (transport->ink = fl_carried_ink_new(&carried, error)))
+    if (transport->tile && (transport->ink = fl_carried_ink_new(&carried, error)))
         return transport;
     transport_close(transport);
     return NULL;

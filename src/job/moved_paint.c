@@ -119,10 +119,10 @@ const FlEngine *fl_engine_of_region(FlStyleCache *styles, const FlStyleInstance 
                     engine->name);
         return NULL;
     }
-    if (settings->solver == FL_SOLVER_NETWORK || settings->refine > 0) {
+    if (settings->refine > 0) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "‘tile’ moves existing paint, but %s needs flat ink; use only one of them",
-                    settings->refine > 0 ? "‘refine’" : "‘solver’ network");
+                    "‘tile’ moves existing paint, but ‘refine’ needs flat ink; use only one of "
+                    "them");
         return NULL;
     }
     of_tile.style = settings->tile;

@@ -54,17 +54,10 @@ typedef enum FlPassthrough {
     FL_PASSTHROUGH_YES,  // it is drawn as it is
 } FlPassthrough;
 
-/** What says where transport moves ink. */
-typedef enum FlSolver {
-    FL_SOLVER_TILE,    // the style's tile, which lies on the material
-    FL_SOLVER_NETWORK, // its network, which sees the region's shape: transport/network.h
-} FlSolver;
-
 /** How one region is painted, completely resolved. */
 typedef struct FlRegionSettings {
     char *style; // a name or a path; NULL: not set
     FlEngineChoice engine;
-    FlSolver solver;
     double strength; // of transport: factor on the way of the ink
     int refine;      // of transport: iterations by frame
     char *tile;      // a transport style that moves the paint; NULL: none

@@ -50,9 +50,8 @@ typedef struct FlStyle {
     unsigned guessed;           // FlGuess bits (manifest.h): values that are estimated
 } FlStyle;
 
-#define FL_STYLE_TILE "transport.png"    // a file of styles that move ink: transport/tile.h
-#define FL_STYLE_NETWORK "transport.net" // the same of a network: transport/network.h
-#define FL_GRANULATION 0.08f             // where none is given: wet, barely visible as such
+#define FL_STYLE_TILE "transport.png" // a file of styles that move ink: transport/tile.h
+#define FL_GRANULATION 0.08f          // where none is given: wet, barely visible as such
 
 /**
  * Reads a folder. Estimates what it lacks from its frames: the paper's colour, the masks, the

@@ -6,7 +6,6 @@
 #include "base/schedule.h"
 #include "base/state_bytes.h"
 #include "transport/material_layers.h"
-#include "transport/network_velocity.h"
 #include "transport/refinement.h"
 #include <assert.h>
 #include <math.h>
@@ -16,7 +15,6 @@
 #define LEAST_REACH 5     // px of the drawing
 #define FARTHEST 18.0f    // px of the tile that ink moves at most: what the squarings are good for
 #define TEAR_TAPERS 1.5f  // within which ink moves less where two shapes meet
-#define NEW 0.4f          // of a network's velocity in that of a frame; the rest is carried
 #define AMOUNT_STEPS 1024 // in the table of colours, of an amount of 1
 #define MOST_AMOUNT 8
 
@@ -107,7 +105,7 @@ static float taper_at(const FlCarriedInk *ink, const FlGuides *guides, size_t p)
     return guides->mask[p] ? t * t * (3 - 2 * t) : 0;
 }
 
-/* Adds `share` of what the two layers do, each as far as it is whole, in its shape. */
+/* Adds share * (velocity of both layers, each weighted by how intact it is here). */
 static void add_layers(const FlCarriedInk *ink, const float *whole, int x, int y, float share,
                        float velocity[2])
 {
@@ -115,13 +113,6 @@ static void add_layers(const FlCarriedInk *ink, const float *whole, int x, int y
     const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
     float old, fresh;
     fl_material_layers_weights(&ink->layers, p, &old, &fresh);
-    if (ink->input.network) {
-        const float *of_both = ink->layers.velocity.shift + 2 * p;
-        const float w = old * old * whole[p] +
-                        (fresh > 0 ? fresh * fresh * whole[fl_rect_pixels(rect) + p] : 0);
-        velocity[0] += share * w * of_both[0], velocity[1] += share * w * of_both[1];
-        return;
-    }
     if (old > 0)
         add_velocity(ink, &ink->layers.old, x, y, share * old * whole[p], velocity);
     if (fresh > 0)
@@ -172,25 +163,6 @@ static bool refine(FlCarriedInk *ink, const FlGuides *guides, float *velocity, G
         v[0] *= ink->input.strength, v[1] *= ink->input.strength;
         hold(v, FARTHEST * ink->input.scale);
     }
-    return true;
-}
-
-/* The network sees each frame alone; what it says is a mean along the motion, so that the pattern
- * rides and does not flicker. Part of the state, as the layers are. */
-static bool ask_network(FlCarriedInk *ink, const FlGuides *guides, GError **error)
-{
-    const FlRect rect = ink->layers.old.rect;
-    const size_t n = 2 * fl_rect_pixels(rect);
-    FlMaterial *kept = &ink->layers.velocity;
-    const FlNetworkPlace place = {
-        ink->input.scale, {ink->origin[0], ink->origin[1]}, fl_hash64(ink->input.seed)};
-    g_autofree float *now = fl_alloc(n, sizeof *now, "a velocity", error);
-    if (!now || !fl_network_velocity(ink->input.network, &place, &ink->layers, guides, now, error))
-        return false;
-    for (size_t i = 0; kept->shift && i < n; i++)
-        now[i] = kept->shift[i] + NEW * (now[i] - kept->shift[i]);
-    fl_material_clear(kept);
-    *kept = (FlMaterial){rect, g_steal_pointer(&now)};
     return true;
 }
 
@@ -319,8 +291,7 @@ static bool advance(FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GErr
 {
     const int reach = MAX((int)(REACH * ink->input.scale + 0.5f), LEAST_REACH);
     if (rect.width > 0)
-        return fl_material_layers_advance(&ink->layers, guides, rect, reach, error) &&
-               (!ink->input.network || ask_network(ink, guides, error));
+        return fl_material_layers_advance(&ink->layers, guides, rect, reach, error);
     fl_material_layers_clear(&ink->layers);
     fl_refinement_clear(&ink->refinement);
     return true;
@@ -372,25 +343,22 @@ bool fl_carried_ink_frame(FlCarriedInk *ink, const FlGuides *guides, uint8_t *rg
 /* ---- the state ---------------------------------------------------------------------------------
  */
 
-/* The bytes start with this; the shifts of the old layer and the motion follow, with a network the
- * velocity, if there are two layers, the shifts of the fresh one and the shares, and where frames
- * are refined, the refinement. */
+/* The bytes start with this; the shifts of the old layer and the motion follow, if there are two
+ * layers, the shifts of the fresh one and the shares, and where frames are refined, the
+ * refinement. */
 typedef struct Header {
     int32_t planes, x, y, width, height;
 } Header;
 
 static_assert(sizeof(Header) == 20, "the header has no padding");
 
-#define MOST_PLANES 5
+#define MOST_PLANES 4
 
 /* What is kept, in the order of the bytes. Returns: how many. */
-static int kept_planes(FlMaterialLayers *layers, bool network, bool two,
-                       FlMaterial *kept[MOST_PLANES])
+static int kept_planes(FlMaterialLayers *layers, bool two, FlMaterial *kept[MOST_PLANES])
 {
     int n = 0;
     kept[n++] = &layers->old, kept[n++] = &layers->motion;
-    if (network)
-        kept[n++] = &layers->velocity;
     if (two)
         kept[n++] = &layers->fresh, kept[n++] = &layers->share;
     return n;
@@ -402,7 +370,7 @@ GBytes *fl_carried_ink_save(const FlCarriedInk *ink, GError **error)
     const FlRect r = layers.old.rect;
     const size_t plane = 2 * fl_rect_pixels(r) * sizeof(float);
     FlMaterial *kept[MOST_PLANES];
-    const int planes = kept_planes(&layers, ink->input.network, layers.share.shift, kept);
+    const int planes = kept_planes(&layers, layers.share.shift, kept);
     const Header header = {planes, r.x, r.y, r.width, r.height};
     const size_t end = sizeof header + (size_t)planes * plane;
     const size_t size = end + (ink->input.patches ? fl_refinement_bytes(&ink->refinement) : 0);
@@ -437,8 +405,7 @@ static bool load_planes(FlCarriedInk *ink, const Header *h, const uint8_t *bytes
     const FlRect rect = {h->x, h->y, h->width, h->height};
     const size_t plane = 2 * fl_rect_pixels(rect) * sizeof(float);
     FlMaterial *kept[MOST_PLANES];
-    const bool network = ink->input.network;
-    kept_planes(&ink->layers, network, h->planes > 2 + network, kept);
+    kept_planes(&ink->layers, h->planes > 2, kept);
     for (int k = 0; k < h->planes; k++)
         if (!load_plane(kept[k], rect, bytes + (size_t)k * plane,
                         kept[k] == &ink->layers.share ? 1 : 1e7f, error))
@@ -466,8 +433,7 @@ bool fl_carried_ink_load(FlCarriedInk *ink, GBytes *state, GError **error)
     const bool fits = h.x >= 0 && h.y >= 0 && h.width >= 0 && h.height >= 0 &&
                       h.width <= ink->input.width && h.height <= ink->input.height &&
                       h.x <= ink->input.width - h.width && h.y <= ink->input.height - h.height;
-    const int least = ink->input.network ? 3 : 2; // two more are of a second layer
-    if (!fits || (h.planes != least && h.planes != least + 2))
+    if (!fits || (h.planes != 2 && h.planes != MOST_PLANES)) // two more are of a second layer
         return fl_state_bytes_damaged("its material lies outside the frame", error);
     const size_t plane = 2 * fl_rect_pixels((FlRect){h.x, h.y, h.width, h.height}) * sizeof(float);
     const size_t end = sizeof h + (size_t)h.planes * plane;

@@ -3,7 +3,6 @@
 #define FLUIDY_TRANSPORT_CARRIED_INK_H
 
 #include "guides/guides.h"
-#include "transport/network.h"
 #include "transport/sliced.h"
 #include "transport/tile.h"
 
@@ -14,14 +13,13 @@ typedef struct FlInkColour {
 } FlInkColour;
 
 typedef struct FlCarriedInkInput {
-    const FlTile *tile;       // borrowed
-    const FlNetwork *network; // moves the ink in place of the tile; NULL: the tile does; borrowed
-    int width, height;        // of what is painted
-    const FlSliced *patches;  // of the style, by which each frame is refined; NULL: none is
-    int refine;               // iterations a frame
-    float scale;              // px of the drawing per px of the tile
-    float strength;           // factor on the motion of ink; 0: flat
-    uint64_t seed;            // decides where on the tile the region lies
+    const FlTile *tile;      // borrowed
+    int width, height;       // of what is painted
+    const FlSliced *patches; // of the style, by which each frame is refined; NULL: none is
+    int refine;              // iterations a frame
+    float scale;             // px of the drawing per px of the tile
+    float strength;          // factor on the motion of ink; 0: flat
+    uint64_t seed;           // decides where on the tile the region lies
     FlInkColour colour;
 } FlCarriedInkInput;
 

@@ -211,22 +211,6 @@ void fl_material_inverse(const FlMaterial *material, int x, int y, float inverse
     inverse[0][1] = t * b - m * d, inverse[1][0] = -t * b - m * d;
 }
 
-void fl_material_turn(const FlMaterial *material, bool back, FlMaterial *pairs)
-{
-    const FlRect r = material->rect;
-    for (int y = 0; y < r.height; y++)
-        for (int x = 0; x < r.width; x++) {
-            float f[2][2], *v = pairs->shift + 2 * ((size_t)y * (size_t)r.width + (size_t)x);
-            fl_material_gradient(material, x, y, f);
-            const float a = f[0][0] + f[1][1], b = back ? f[0][1] - f[1][0] : f[1][0] - f[0][1];
-            const float length = sqrtf(a * a + b * b);
-            if (length < LEAST_LENGTH)
-                continue;
-            const float along = (a * v[0] - b * v[1]) / length;
-            v[1] = (b * v[0] + a * v[1]) / length, v[0] = along;
-        }
-}
-
 bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y)
 {
     const FlRect r = material->rect;

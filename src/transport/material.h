@@ -45,12 +45,6 @@ void fl_material_gradient(const FlMaterial *material, int x, int y, float f[2][2
  */
 void fl_material_inverse(const FlMaterial *material, int x, int y, float inverse[2][2]);
 
-/**
- * Turns pairs of numbers, which have the rectangle of the material, as it is turned at their
- * pixels: from directions of the frame to those of the material, or back.
- */
-void fl_material_turn(const FlMaterial *material, bool back, FlMaterial *pairs);
-
 /** Whether a pixel of the rectangle is in the region. */
 bool fl_material_is_inside(const FlMaterial *material, const FlGuides *guides, int x, int y);
 

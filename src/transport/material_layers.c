@@ -14,7 +14,6 @@ void fl_material_layers_clear(FlMaterialLayers *layers)
     fl_material_clear(&layers->fresh);
     fl_material_clear(&layers->share);
     fl_material_clear(&layers->motion);
-    fl_material_clear(&layers->velocity);
 }
 
 void fl_material_layers_weights(const FlMaterialLayers *layers, size_t p, float *old, float *fresh)
@@ -112,17 +111,11 @@ static bool advance_all(FlMaterialLayers *layers, const FlGuides *guides, FlRect
 {
     g_auto(FlRevealed) revealed = {0};
     const bool two = layers->share.shift;
-    if (layers->velocity.shift) // it turns with the material on which it is carried
-        fl_material_turn(&layers->old, false, &layers->velocity);
     if (!fl_revealed_find(&layers->motion, guides, rect, &revealed, error) ||
         !advance(fl_material_advance, &layers->old, guides, &revealed, error) ||
-        (layers->velocity.shift &&
-         !advance(fl_material_carry, &layers->velocity, guides, &revealed, error)) ||
         (two && !(advance(fl_material_advance, &layers->fresh, guides, &revealed, error) &&
                   advance(fl_material_carry, &layers->share, guides, &revealed, error))))
         return false;
-    if (layers->velocity.shift)
-        fl_material_turn(&layers->old, true, &layers->velocity);
     fl_material_clear(&layers->motion);
     layers->motion = revealed.motion, revealed.motion = (FlMaterial){0};
     return true;

@@ -9,8 +9,6 @@ typedef struct FlMaterialLayers {
     FlMaterial old, fresh;
     FlMaterial share;  // in place of shifts: how much of each layer is seen, 0..1; their sum is 1
     FlMaterial motion; // in place of shifts: how what is seen got there, px
-    FlMaterial
-        velocity; // in place of shifts: how ink moves, px; nothing unless the caller keeps it
 } FlMaterialLayers;
 
 /**
