@@ -35,19 +35,19 @@
 typedef struct Case {
     const char *name, *style;
     int width, height, painted_px;
-    bool half; // as drafts are painted
+    int px; // of the page per px of this
 } Case;
 
 static const Case cases[] = {
-    {"genie", "01", 900, 900, 123000, false},    {"horse", "02", 1000, 800, 111000, false},
-    {"sunflower", "03", 500, 600, 60000, false}, {"waving", "05", 640, 740, 80000, false},
-    {"jump", "06", 700, 300, 12000, false},
+    {"genie", "01", 900, 900, 123000, 1},    {"horse", "02", 1000, 800, 111000, 1},
+    {"sunflower", "03", 500, 600, 60000, 1}, {"waving", "05", 640, 740, 80000, 1},
+    {"jump", "06", 700, 300, 12000, 1},
 };
 
 static Case half_of(const Case *c)
 {
     return (Case){c->name,           c->style, fl_half_side(c->width), fl_half_side(c->height),
-                  c->painted_px / 4, true};
+                  c->painted_px / 4, 2 * c->px};
 }
 
 /* What one run of a case says; the words are the JSON's. */
@@ -84,7 +84,7 @@ static char **settings = NULL; // NAME=VALUE
 static const GOptionEntry options[] = {
     {"frames", 0, 0, G_OPTION_ARG_INT, &frames, "timed frames of each case", "N"},
     {"threads", 0, 0, G_OPTION_ARG_INT, &threads, "threads", "N"},
-    {"detail", 0, 0, G_OPTION_ARG_STRING, &detail, "draft, normal or fine", "WORD"},
+    {"detail", 0, 0, G_OPTION_ARG_STRING, &detail, "draft, normal, fine or finest", "WORD"},
     {"case", 0, 0, G_OPTION_ARG_STRING, &only, "this case only", "NAME"},
     {"json", 0, 0, G_OPTION_ARG_FILENAME, &json, "write the figures", "FILE"},
     {"rounds", 0, 0, G_OPTION_ARG_INT, &rounds, "medians of N runs", "N"},
@@ -100,7 +100,7 @@ static bool blob(void *data, int frame, uint8_t *coverage, GError **error)
 {
     const Case *c = data;
     const double radius = sqrt(c->painted_px / (G_PI * 1.02)), phase = frame * 0.12;
-    const double way = c->half ? 4 : 8;
+    const double way = 8.0 / c->px;
     const double cx = c->width * 0.5 + way * sin(phase);
     const double cy = c->height * 0.5 + way * cos(0.7 * phase);
     memset(coverage, 0, (size_t)c->width * c->height);
@@ -160,13 +160,13 @@ static bool timed_frames(Bench *b, Figures *f, GError **error)
     return true;
 }
 
-/* Of the frame in hand, at full size also in a draft. */
+/* Of the frame in hand, in px of the page. */
 static double painted_pixels(const Bench *b)
 {
     double n = 0;
     for (size_t p = 0; p < (size_t)b->guides.width * b->guides.height; p++)
         n += b->guides.mask[p] >= FL_INSIDE;
-    return b->c->half ? 4 * n : n;
+    return n * b->c->px * b->c->px;
 }
 
 static double total_energy(const FlLevelStats *level)
@@ -222,6 +222,8 @@ static FlDetail detail_of_word(void)
 {
     if (detail && g_str_equal(detail, "draft"))
         return FL_DETAIL_DRAFT;
+    if (detail && g_str_equal(detail, "finest"))
+        return FL_DETAIL_FINEST;
     return detail && g_str_equal(detail, "fine") ? FL_DETAIL_FINE : FL_DETAIL_NORMAL;
 }
 
@@ -243,14 +245,19 @@ static bool run_case(const Case *c, Figures *f, GError **error)
     if (!set_params(params, error))
         return false;
     g_autoptr(FlStyle) style = fl_style_load(folder, error);
-    g_autoptr(FlExemplar) exemplar = style ? fl_exemplar_new(style, params, error) : NULL;
+    g_autoptr(FlExemplar) exemplar =
+        style ? (params->half_field ? fl_exemplar_new_half : fl_exemplar_new)(style, params, error)
+              : NULL;
     if (!exemplar)
         return false;
+    const Case field = params->half_field ? half_of(c) : *c;
+    if (params->half_field)
+        fl_params_scale_lengths(params, .5f);
     const FlGuideParams how = fl_guide_params(params);
     const int n = frames + 1 + FRAMES_MEASURED;
-    const FlGuideSource source = {c->width, c->height, n, blob, NULL, (void *)c};
+    const FlGuideSource source = {field.width, field.height, n, blob, NULL, (void *)&field};
     const FlSynthSize size = {c->width, c->height, c->width, c->height};
-    Bench b = {.c = c};
+    Bench b = {.c = &field};
     const double start = seconds(CLOCK_MONOTONIC);
     b.sequence = fl_guide_sequence_new(&source, &how, error);
     f->guides_s = (seconds(CLOCK_MONOTONIC) - start) / source.n_frames;

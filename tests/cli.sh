@@ -181,11 +181,11 @@ result $? '--no-clobber paints what is missing, and gives the same bytes'
 
 # Layers as frames: one file, as Inkscape keeps it, and the same frames as files.
 mkdir layered
-group='<g inkscape:groupmode="layer" inkscape:label'
+group='<g xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" inkscape:groupmode="layer" inkscape:label'
 ground="$group='land (static)'><path fill='#88aacc' d='M0 30h64v18H0z'/></g>"
 echo "$drawing$ground" >film.svg
 for i in 1 2 3; do
-    shapes="<g inkscape:label='hat'><circle id='c$i' cx='$((20 + 4 * i))' cy='24' r='12' fill='#aa3311'/></g>
+    shapes="<g xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' inkscape:label='hat'><circle id='c$i' cx='$((20 + 4 * i))' cy='24' r='12' fill='#aa3311'/></g>
 <path d='M5 5L50 4$i' stroke='#000' fill='none'/>"
     echo "$group='Frame $i (200)' style='display:none' id='layer$i'>$shapes</g>" >>film.svg
     echo "$drawing$ground<g>$shapes</g></svg>" >layered/film_$i.svg
@@ -357,7 +357,7 @@ match = *
 END
 mkdir all.d
 for i in 1 2; do
-    echo "$drawing<g inkscape:groupmode='layer' inkscape:label='Character'>" \
+    echo "$drawing<g xmlns:inkscape='http://www.inkscape.org/namespaces/inkscape' inkscape:groupmode='layer' inkscape:label='Character'>" \
         "<circle id='c1' class='x b2' cx='$((20 + 4 * i))' cy='24' r='12' fill='#a93311'/>" \
         "<path d='M40,8v30' stroke='#000' stroke-width='3' fill='none'/></g>" \
         "<path d='M50,10h8v8h-8z' fill='#228833'/></svg>" >all.d/w_000$i.svg

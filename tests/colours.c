@@ -163,7 +163,7 @@ static void judge_frame(const FlPlan *plan, int frame, const FlPicture *picture,
             continue;
         const FlRegionPlan *painted = &plan->painted[plan->painted_of[draws->draw[r].region]];
         const Look look = look_at(picture, top, (uint16_t)(r + 1), plan->paper,
-                                  painted->style->exemplar->border_px);
+                                  painted->style->border_px);
         if (look.total < ENOUGH)
             continue;
         for (int c = 0; c < 3; c++)

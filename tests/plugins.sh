@@ -12,7 +12,7 @@ export PATH="$folder/bin:$PATH" HOME=$folder
 export FLUIDY_STYLES=$fixtures/styles PYTHONDONTWRITEBYTECODE=1
 
 # Two frames as layers of a file, as Inkscape saves it.
-layer='<g inkscape:groupmode="layer" inkscape:label'
+layer='<g xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" inkscape:groupmode="layer" inkscape:label'
 cat >film.svg <<END
 <svg xmlns="http://www.w3.org/2000/svg" width="64mm" height="48mm" viewBox="0 0 64 48"
     xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"><!-- kept -->

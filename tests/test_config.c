@@ -143,7 +143,7 @@ static void later_words_win_and_a_preset_goes_first(void)
 static void detail_is_between_preset_and_parameters(void)
 {
     g_autoptr(FlConfig) config = load("[region a]\nfinest-rounds = 5\ndetail = draft\n"
-                                      "[region b]\ndetail = fine\npreset = thesis\n");
+                                      "[region b]\ndetail = finest\npreset = thesis\n");
     const FlRenderOptions options = {0};
     const FlSetting normal = {NULL, "detail", "normal"};
     const FlRenderOptions again = {.settings = &normal, .n_settings = 1};

@@ -1,7 +1,8 @@
-/* Pictures of drafts, which have twice the size of guides and field. */
+/* Pictures of twice the size of guides and field. */
 #include "guides/half_guides.h"
 #include "small_style.h"
 #include "style/adapt.h"
+#include "synth/enlargement.h"
 #include "synth/synth.h"
 #include "synth/vote.h"
 #include "threads.h"
@@ -10,16 +11,13 @@ enum { SIDE = 48, LONG = 160, FRAMES = 3, SMALL = SIDE * LONG, LARGE = 4 * SMALL
 
 typedef struct Style {
     FlParams *params;
-    FlStyle *full, *half;
+    FlStyle *full;
     FlExemplar *exemplar;
-    FlEnlargement *enlargement;
 } Style;
 
 static void style_clear(Style *style)
 {
-    fl_enlargement_free(style->enlargement);
     fl_exemplar_free(style->exemplar);
-    fl_style_free(style->half);
     fl_style_free(style->full);
     fl_params_free(style->params);
 }
@@ -31,18 +29,15 @@ static void style_init(Style *style, int window)
 {
     g_autoptr(GError) error = NULL;
     *style = (Style){.params = fl_params_new(), .full = small_style()};
-    fl_params_detail(style->params, FL_DETAIL_DRAFT);
     style->params->style_window = window;
-    style->half = fl_style_halve(style->full, &error);
-    style->exemplar = fl_exemplar_new_half(style->half, style->full, style->params, &error);
-    style->enlargement = fl_enlargement_new(style->full, style->exemplar, &error);
+    style->exemplar = fl_exemplar_new_half(style->full, style->params, &error);
     g_assert_no_error(error);
 }
 
 /* The picture of a field in which every pixel matches its own place in frame t. */
 static uint8_t *frame_again(const Style *style, int t)
 {
-    const int width = style->half->width, height = style->half->height;
+    const int width = style->exemplar->level[0].width, height = style->exemplar->level[0].height;
     FlKernels kernels;
     g_auto(FlNnf) nnf = {0};
     g_auto(FlBlocks) blocks = {0};
@@ -55,7 +50,8 @@ static uint8_t *frame_again(const Style *style, int t)
                                  .y_16 = (uint16_t)(16 * (p / width)),
                                  .frame = (int16_t)t};
     fl_blocks_init_full(&blocks, width, height);
-    fl_enlarge(style->enlargement, &nnf, &blocks, (FlRect){0, 0, width, height}, &enlarged);
+    fl_enlarge(style->exemplar->enlargement, &nnf, &blocks, (FlRect){0, 0, width, height},
+               &enlarged);
     return rgb;
 }
 
@@ -95,7 +91,8 @@ static void an_enlarged_field_votes_as_one_of_twice_the_size(void)
                   fl_nnf_init(&large, STYLE_W, STYLE_H, NULL));
     make_pieces(&nnf, half);
     fl_blocks_init_full(&blocks, nnf.width, nnf.height);
-    fl_enlarge(style.enlargement, &nnf, &blocks, (FlRect){0, 0, nnf.width, nnf.height}, &enlarged);
+    fl_enlarge(style.exemplar->enlargement, &nnf, &blocks, (FlRect){0, 0, nnf.width, nnf.height},
+               &enlarged);
     fl_blocks_init_full(&all, STYLE_W, STYLE_H);
     fl_nnf_upscale(&nnf, &whole->level[0], &kernels, &all, &large);
     fl_vote(&large, NULL, &whole->level[0], &kernels, 4, 3, colour, voted);
@@ -156,9 +153,8 @@ static void a_half_has_the_margin_of_the_whole(void)
         for (int p = 0; p < STYLE_W * STYLE_H; p++) // the paint ends before the mask does
             if (is_near_contour(style->mask + t * STYLE_W * STYLE_H, p % STYLE_W, p / STYLE_W))
                 memset(style->rgb + 3 * (t * STYLE_W * STYLE_H + p), 250, 3);
-    g_autoptr(FlStyle) half = fl_style_halve(style, NULL);
     g_autoptr(FlExemplar) whole = fl_exemplar_new(style, params, NULL);
-    g_autoptr(FlExemplar) exemplar = fl_exemplar_new_half(half, style, params, NULL);
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new_half(style, params, NULL);
     g_assert_cmpfloat(whole->margin_px, >, 0.5f);
     g_assert_cmpfloat(exemplar->margin_px, ==, whole->margin_px / 2);
 }
@@ -180,8 +176,7 @@ static void a_window_follows_that_of_the_exemplar(void)
     style_init(&part, 2);
     static const int places[] = {0, 1, 4, 2};
     for (size_t k = 0; k < G_N_ELEMENTS(places); k++) {
-        g_assert_true(fl_exemplar_seek(part.exemplar, places[k], NULL) &&
-                      fl_enlargement_seek(part.enlargement, part.exemplar, NULL));
+        g_assert_true(fl_exemplar_seek(part.exemplar, places[k], NULL));
         for (int t = places[k]; t < places[k] + 2; t++) {
             g_autofree uint8_t *one = frame_again(&whole, t), *other = frame_again(&part, t);
             g_assert_cmpmem(one, 3 * STYLE_W * STYLE_H, other, 3 * STYLE_W * STYLE_H);
@@ -215,10 +210,8 @@ typedef struct Film {
 
 static FlSynth *synth_of(const Film *film)
 {
-    FlSynth *synth = fl_synth_new(film->style.exemplar, film->style.params,
-                                  (FlSynthSize){LONG, SIDE, LONG, SIDE}, 7);
-    fl_synth_enlarge(synth, film->style.enlargement, 2 * LONG, 2 * SIDE);
-    return synth;
+    return fl_synth_new(film->style.exemplar, film->style.params,
+                        (FlSynthSize){2 * LONG, 2 * SIDE, 2 * LONG, 2 * SIDE}, 7);
 }
 
 static void film_free(Film *film)
@@ -292,7 +285,8 @@ static void a_view_has_the_size_of_the_picture(void)
     g_assert_cmpint(view->rect.width, >, LONG);
     g_assert_cmpint(view->nnf->width, ==, view->rect.width);
     g_assert_cmpint(view->nnf->match[y * view->rect.width + x].frame, !=, FL_NO_MATCH);
-    g_assert_null(view->temporal);
+    g_assert_cmpfloat(view->temporal_weight[y * view->rect.width + x], >, 0);
+    g_assert_cmpfloat(view->temporal[3 * (y * view->rect.width + x)], <, .9f);
 }
 
 static void any_number_of_threads_paints_the_same(void)

@@ -18,7 +18,6 @@ typedef struct FlStyleInstance {
     FlParams params; // that it was packed for
     bool reverse;
     FlExemplar *exemplar;
-    FlEnlargement *enlargement; // drafts: exemplar and guides have half the size; else NULL
     FlInk *ink;
     struct FlSliced *patches; // of its ink, which transport refines by; NULL: not needed
     FlMedium medium;

@@ -108,7 +108,7 @@ static bool dump_guides(const Dump *dump, const FlGuides *guides, float *flow, G
         return false;
     for (size_t p = 0; p < pixels; p++)
         mask[p] = guides->mask[p] / 255.0f;
-    const float b = dump->painted->style->exemplar->border_px;
+    const float b = dump->painted->style->border_px;
     const Plane planes[] = {
         {"mask", mask, 1, 0, 1},
         {"distance", guides->distance, 1, -b, 2 * b},
@@ -143,7 +143,9 @@ static bool dump_motion(const Dump *dump, const FlGuides *guides, GError **error
 static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error)
 {
     const int width = dump->painted->width, height = dump->painted->height;
-    const FlExemplarLevel *full = &dump->painted->style->exemplar->level[0];
+    const FlExemplar *exemplar = dump->painted->style->exemplar;
+    const FlExemplarLevel *full = &exemplar->level[0];
+    const float px = (float)fl_field_px(exemplar);
     const FlRect part = dump->painted->rect;
     const size_t pixels = (size_t)width * height;
     g_autofree float *field = fl_alloc(4 * pixels, sizeof(float), "a picture", error);
@@ -163,8 +165,8 @@ static bool dump_field(const Dump *dump, const FlSynthView *view, GError **error
             field[4 * p] = m.frame;
             field[4 * p + 1] = m.x_16 / 16.0f, field[4 * p + 2] = m.y_16 / 16.0f;
             field[4 * p + 3] = m.theta * (float)(2 * G_PI / FL_ANGLES);
-            shown[3 * p] = field[4 * p + 1] / (float)full->width;
-            shown[3 * p + 1] = field[4 * p + 2] / (float)full->height;
+            shown[3 * p] = field[4 * p + 1] / (px * (float)full->width);
+            shown[3 * p + 1] = field[4 * p + 2] / (px * (float)full->height);
             shown[3 * p + 2] = field[4 * p] / (float)full->n_frames;
         }
     const Plane raw = {"field", field, 4, 0, 1}, picture = {"field", shown, 3, 0, 1};

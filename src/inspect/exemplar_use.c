@@ -26,13 +26,14 @@ void fl_exemplar_use_add(FlExemplarUse *use, const FlPaintedRegion *painted)
 {
     const FlNnf *nnf = painted->view.nnf;
     const FlExemplarLevel *full = &use->style->exemplar->level[0];
+    const int px = fl_field_px(use->style->exemplar);
     if (!nnf)
         return;
     for (size_t p = 0; p < (size_t)nnf->width * nnf->height; p++) {
         const FlMatch m = nnf->match[p];
         if (m.frame == FL_NO_MATCH)
             continue;
-        use->place[(size_t)fl_match_y(m) * full->width + fl_match_x(m)]++;
+        use->place[(size_t)(fl_match_y(m) / px) * full->width + fl_match_x(m) / px]++;
         use->frame[m.frame]++;
         use->total++;
     }

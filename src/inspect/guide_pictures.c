@@ -58,13 +58,14 @@ static void put_match(const FlGuideView *view, const FlPaintedRegion *painted, s
                       FlMatch match)
 {
     const FlExemplarLevel *full = &painted->style->exemplar->level[0];
+    const int px = fl_field_px(painted->style->exemplar);
     uint8_t rgb[3];
     if (match.frame == FL_NO_MATCH)
         return;
     fl_colour_map((float)match.frame / (float)MAX(full->n_frames - 1, 1), rgb);
     put(view, FL_GUIDE_TIME, to, rgb);
-    const uint8_t place[3] = {(uint8_t)(255 * fl_match_x(match) / full->width),
-                              (uint8_t)(255 * fl_match_y(match) / full->height), 128};
+    const uint8_t place[3] = {(uint8_t)(255 * fl_match_x(match) / (px * full->width)),
+                              (uint8_t)(255 * fl_match_y(match) / (px * full->height)), 128};
     put(view, FL_GUIDE_PLACE, to, place);
 }
 
@@ -73,15 +74,16 @@ static void put_pixel(FlGuideView *view, const FlPaintedRegion *painted, const F
                       int x, int y, size_t to)
 {
     const FlExemplar *exemplar = painted->style->exemplar;
+    const float ext_scale = exemplar->ext_scale / (float)fl_field_px(exemplar);
     const size_t from = (size_t)y * guides->width + x;
     const float u = guides->flow[2 * from], v = guides->flow[2 * from + 1];
     const float scale = (float)view->picture[0]->width / (float)painted->width;
     uint8_t rgb[3];
-    fl_colour_map(guides->distance[from] / (3 * exemplar->border_px), rgb);
+    fl_colour_map(guides->distance[from] / (3 * painted->style->border_px), rgb);
     put(view, FL_GUIDE_DISTANCE, to, rgb);
-    fl_colour_map(guides->ext_plus[from] * exemplar->ext_scale, rgb);
+    fl_colour_map(guides->ext_plus[from] * ext_scale, rgb);
     put(view, FL_GUIDE_EXT_PLUS, to, rgb);
-    fl_colour_map(guides->ext_minus[from] * exemplar->ext_scale, rgb);
+    fl_colour_map(guides->ext_minus[from] * ext_scale, rgb);
     put(view, FL_GUIDE_EXT_MINUS, to, rgb);
     put_match(view, painted, to, match_at(&painted->view, x, y));
     view->flow[2 * to] = u * scale, view->flow[2 * to + 1] = v * scale;

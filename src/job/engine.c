@@ -9,12 +9,7 @@
 
 static void *patch_open(const FlEngineInput *input, GError **error)
 {
-    FlSynth *synth =
-        fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed);
-    if (input->style->enlargement)
-        fl_synth_enlarge(synth, input->style->enlargement, input->painted_width,
-                         input->painted_height);
-    return synth;
+    return fl_synth_new(input->style->exemplar, &input->settings->params, input->size, input->seed);
 }
 
 static void patch_close(void *state)

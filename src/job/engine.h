@@ -9,9 +9,8 @@ typedef struct FlEngineInput {
     const FlStyleInstance *style;
     const FlStyleInstance *tile; // whose tile moves the paint; NULL: none does
     const FlRegionSettings *settings;
-    FlSynthSize size;                  // of the guides, and of the frames
-    int painted_width, painted_height; // of the picture: the same, or twice that
-    uint64_t seed;                     // of the render and the region
+    FlSynthSize size; // of the picture, and of the frames
+    uint64_t seed;    // of the render and the region
 } FlEngineInput;
 
 /** What an engine gives back for a frame. */
@@ -37,7 +36,7 @@ typedef struct FlEngine {
      */
     float (*reach)(const FlStyleInstance *style, const FlParams *params);
     bool refines;  // by the patches of its style, if ‘refine’ asks for it
-    bool enlarges; // may paint at half the size, and enlarge that: see FlStyleInstance
+    bool enlarges; // takes an exemplar of half the size of its picture
     bool plays;    // shows the recording: whether it flows and is large enough matters
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);

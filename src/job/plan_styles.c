@@ -103,7 +103,7 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
     painted->style = fl_style_cache_get(plan->styles, &painted->settings, px, error);
     if (!painted->style)
         return false;
-    if (painted->style->enlargement)
+    if (fl_field_px(painted->style->exemplar) == 2)
         fl_params_scale_lengths(&painted->settings.params, .5f);
     painted->engine = fl_engine_of_region(plan->styles, painted->style, &painted->settings, px,
                                           &painted->tile, error);

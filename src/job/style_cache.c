@@ -3,6 +3,7 @@
 #include "job/engine.h"
 #include "job/style_size.h"
 #include "style/adapt.h"
+#include "synth/enlargement.h"
 #include "transport/style_ink.h"
 #include <string.h>
 
@@ -19,7 +20,6 @@ static void style_instance_free(FlStyleInstance *instance)
 {
     g_free(instance->path);
     fl_exemplar_free(instance->exemplar);
-    fl_enlargement_free(instance->enlargement);
     fl_ink_free(instance->ink);
     fl_sliced_free(instance->patches);
     g_free(instance);
@@ -62,31 +62,13 @@ static int window_of(const FlParams *params, const FlStyle *style)
     return params->style_window > 0 ? MIN(params->style_window, most) : 0;
 }
 
-/* Whether a region is painted at half the size of its picture. It looks the same as long as the
- * finest level is not searched; the papers' presets and what goes to ebsynth are as they say. */
+/* Whether a region's field has half the size of its picture. The papers' presets and what goes to
+ * ebsynth are as they say. */
 static bool enlarges(const FlStyleCache *cache, const FlRegionSettings *settings, const char *path)
 {
     const FlParams *params = &settings->params;
-    return params->half_size && params->finest_rounds == 0 && fl_knows_depth(params) &&
-           !settings->tile && !cache->options->ebsynth &&
-           fl_engine_choose(settings->engine, path)->enlarges;
-}
-
-/* Makes what is searched, and what pictures are made of. */
-static bool pack(FlStyleInstance *instance, const FlStyle *style, FlParams *params, bool enlarges,
-                 GError **error)
-{
-    g_autoptr(FlStyle) half = NULL;
-    if (enlarges && !(half = fl_style_halve(style, error)))
-        return false;
-    if (enlarges)
-        fl_params_scale_lengths(params, .5f);
-    if (!(instance->exemplar = half ? fl_exemplar_new_half(half, style, params, error)
-                                    : fl_exemplar_new(style, params, error)))
-        return false;
-    instance->border_px = instance->exemplar->border_px * (enlarges ? 2 : 1);
-    return !enlarges ||
-           (instance->enlargement = fl_enlargement_new(style, instance->exemplar, error));
+    return params->half_field && fl_knows_depth(params) && !settings->tile &&
+           !cache->options->ebsynth && fl_engine_choose(settings->engine, path)->enlarges;
 }
 
 static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
@@ -114,8 +96,11 @@ static FlStyleInstance *load(const FlStyleCache *cache, const char *path,
     FlParams packed = *params;
     packed.style_window = window_of(params, style);
     if (!(instance->ink = fl_ink_of_style(style, error)) ||
-        !pack(instance, style, &packed, enlarges(cache, settings, path), error))
+        !(instance->exemplar = enlarges(cache, settings, path)
+                                   ? fl_exemplar_new_half(style, &packed, error)
+                                   : fl_exemplar_new(style, &packed, error)))
         return NULL;
+    instance->border_px = instance->exemplar->border_px * (float)fl_field_px(instance->exemplar);
     return g_steal_pointer(&instance);
 }
 
@@ -128,7 +113,7 @@ const FlStyleInstance *fl_style_cache_get(FlStyleCache *cache, const FlRegionSet
     for (guint i = 0; i < cache->instances->len; i++) {
         const FlStyleInstance *instance = cache->instances->pdata[i];
         if (g_str_equal(instance->path, path) && instance->reverse == settings->reverse &&
-            (instance->enlargement != NULL) == enlarges(cache, settings, path) &&
+            (fl_field_px(instance->exemplar) == 2) == enlarges(cache, settings, path) &&
             same_params(&instance->params, &settings->params))
             return instance;
     }
@@ -155,8 +140,8 @@ double fl_style_cache_bytes(const FlStyleCache *cache)
         const FlExemplarLevel *full = &instance->exemplar->level[0];
         bytes += (double)full->width * full->height *
                  (BYTES_OF_WINDOW * full->window + BYTES_OF_REST * (full->n_frames - full->window));
-        if (instance->enlargement)
-            bytes += fl_enlargement_bytes(instance->enlargement);
+        if (instance->exemplar->enlargement)
+            bytes += fl_enlargement_bytes(instance->exemplar->enlargement);
     }
     return bytes;
 }
@@ -181,8 +166,7 @@ bool fl_style_cache_seek(FlStyleCache *cache, int frame, int n_frames, bool loop
         FlExemplar *exemplar = instance->exemplar;
         const FlExemplarLevel *full = &exemplar->level[0];
         const int first = window_at(full->n_frames - full->window, frame, n_frames, loops);
-        if (!fl_exemplar_seek(exemplar, first, error) ||
-            (instance->enlargement && !fl_enlargement_seek(instance->enlargement, exemplar, error)))
+        if (!fl_exemplar_seek(exemplar, first, error))
             return false;
     }
     return true;

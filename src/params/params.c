@@ -231,14 +231,21 @@ void fl_params_defaults(FlParams *params)
 
 void fl_params_detail(FlParams *params, FlDetail detail)
 {
-    static const char *const keys[] = {
-        "half-size",     "opt-iterations", "next-iterations", "patchmatch-iterations",
-        "finest-rounds", "finest-sweeps",  "first-rounds",    "settled"};
+    static const char *const keys[] = {"half-field",
+                                       "half-size",
+                                       "opt-iterations",
+                                       "next-iterations",
+                                       "patchmatch-iterations",
+                                       "finest-rounds",
+                                       "finest-sweeps",
+                                       "first-rounds",
+                                       "settled"};
     static const char *const values[][G_N_ELEMENTS(keys)] = {
         // NULL: as in normal
-        [FL_DETAIL_DRAFT] = {"on", "2,1", "1", "2,1", "0", "1"},
+        [FL_DETAIL_DRAFT] = {NULL, "on", "2,1", "1", "2,1", NULL, "1"},
         [FL_DETAIL_NORMAL] = {NULL},
-        [FL_DETAIL_FINE] = {"off", "6,3,2", "6,3,2", "6,4", "2", "4", "2", "0"},
+        [FL_DETAIL_FINE] = {"off"},
+        [FL_DETAIL_FINEST] = {"off", NULL, "6,3,2", "6,3,2", "6,4", "2", "4", "2", "0"},
     };
     for (size_t i = 0; i < G_N_ELEMENTS(keys); i++) {
         const char *normal = fl_param_info(fl_param_find(keys[i]))->preset[FL_PRESET_DEFAULT];

@@ -27,10 +27,15 @@ struct FlParams {
 void fl_params_defaults(FlParams *params);
 
 /** The trade of quality for time. */
-typedef enum FlDetail { FL_DETAIL_DRAFT, FL_DETAIL_NORMAL, FL_DETAIL_FINE } FlDetail;
+typedef enum FlDetail {
+    FL_DETAIL_DRAFT,
+    FL_DETAIL_NORMAL,
+    FL_DETAIL_FINE,
+    FL_DETAIL_FINEST
+} FlDetail;
 
 /**
- * Sets the most expensive parameters: rounds and sweeps of the search, and half size for drafts.
+ * Sets the most expensive parameters: rounds and sweeps of the search, and half sizes.
  * FL_DETAIL_NORMAL sets their defaults.
  */
 void fl_params_detail(FlParams *params, FlDetail detail);

@@ -124,6 +124,8 @@ static bool choose_style(GivenRegion *given, GError **error)
     fl_params_scale_lengths(&settings->params, px);
     given->styles = fl_style_cache_new(&silent);
     plan->style = fl_style_cache_get(given->styles, settings, px, error);
+    if (plan->style && fl_field_px(plan->style->exemplar) == 2)
+        fl_params_scale_lengths(&settings->params, .5f);
     plan->engine = plan->style ? fl_engine_of_region(given->styles, plan->style, settings, px,
                                                      &plan->tile, error)
                                : NULL;

@@ -15,7 +15,7 @@
  * the coarsest patches, on the grid of the coarsest level, so that it has the page's pyramid. */
 static FlRect crop(FlRect extent, FlRect page, const FlStyleInstance *style)
 {
-    const int scale = style->enlargement ? 2 : 1;
+    const int scale = fl_field_px(style->exemplar);
     const FlRect grown = fl_rect_grown(extent, scale * fl_guided_patches(style, page), page);
     return fl_rect_on_grid(grown, scale * fl_guided_grid(style, page));
 }
@@ -82,8 +82,7 @@ bool fl_painter_prepare(FlPainter *painter, GError **error)
     if (painter->origin != FL_FROM_ENGINE)
         return true;
     fl_reuse_begin(&painter->reuse, painter->result.rect);
-    const FlRect rect = fl_painter_guided(painter),
-                 page = fl_guided_part(plan->style, fl_painter_page(painter));
+    const FlRect rect = painter->result.rect, page = fl_painter_page(painter);
     const FlGuideSource source = fl_painter_guide_source(painter);
     FlGuideParams params = fl_guide_params(&plan->settings.params);
     if (plan->settings.motion == FL_MOTION_AUTO)
@@ -92,8 +91,6 @@ bool fl_painter_prepare(FlPainter *painter, GError **error)
                                  plan->tile,
                                  &plan->settings,
                                  {rect.width, rect.height, page.width, page.height},
-                                 painter->result.rect.width,
-                                 painter->result.rect.height,
                                  fl_key(painter->shapes->seed, g_str_hash(plan->name))};
     return (painter->sequence = fl_guide_sequence_new(&source, &params, error)) &&
            (painter->paint = plan->engine->open(&input, error));

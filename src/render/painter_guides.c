@@ -18,12 +18,12 @@ static int frame_of(const FlPainter *painter, int picture)
 /* Whether guides have half the size of the picture. */
 static bool halves(const FlPainter *painter)
 {
-    return painter->plan->style->enlargement != NULL;
+    return fl_field_px(painter->plan->style->exemplar) == 2;
 }
 
 FlRect fl_guided_part(const FlStyleInstance *style, FlRect part)
 {
-    return style->enlargement ? fl_rect_halved(part) : part;
+    return fl_field_px(style->exemplar) == 2 ? fl_rect_halved(part) : part;
 }
 
 FlRect fl_painter_guided(const FlPainter *painter)
@@ -291,7 +291,7 @@ static void stir_around(uint8_t *square, FlRect guided, FlRect px)
 
 static bool stir_joins(const FlPainter *painter, uint8_t *square, GError **error)
 {
-    const int region = painter->plan->region, scale = halves(painter) ? 2 : 1;
+    const int region = painter->plan->region, scale = fl_field_px(painter->plan->style->exemplar);
     const int now = frame_of(painter, painter->picture);
     const int before = frame_of(painter, painter->picture - 1);
     const FlRect rect = painter->result.rect, guided = fl_painter_guided(painter);

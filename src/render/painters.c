@@ -125,7 +125,7 @@ static bool open_motion(FlPainters *painters, GError **error)
     const FlPlan *plan = painters->plan;
     for (int p = 0; p < painters->n; p++) {
         FlPainter *painter = painters->painter[p];
-        const bool halved = painter->plan->style->enlargement;
+        const bool halved = fl_field_px(painter->plan->style->exemplar) == 2;
         FlMotionSource **motion = &painters->motion[halved];
         if (painter->plan->settings.motion != FL_MOTION_AUTO || painters->shapes.flow ||
             painter->origin != FL_FROM_ENGINE)

@@ -1,7 +1,5 @@
 #include "svg/branch.h"
 
-#include "svg/selectors.h"
-
 #define FEW 24 // children that a group may have; 12 to 48 take the same time with 8000 shapes
 
 /** Puts the node's children into groups of a few. Returns: how many groups it has then. */
@@ -53,6 +51,5 @@ static void branch(xmlNode *node)
 
 void fl_document_branch(xmlDoc *doc)
 {
-    if (!(fl_document_selectors(doc) & FL_SELECTORS_PLACES))
-        branch(xmlDocGetRootElement(doc));
+    branch(xmlDocGetRootElement(doc));
 }

@@ -9,8 +9,7 @@
  * librsvg visits all siblings of it and of the groups around it: n shapes in a row took n * n
  * visits, and take n log n in a tree.
  *
- * The picture is the same. The document stays unchanged if its style sheets could match the added
- * groups: by a selector for <g>, for children or for siblings.
+ * The picture is the same, since the document has no style sheets, which could match the groups.
  */
 void fl_document_branch(xmlDoc *doc);
 

@@ -199,16 +199,63 @@ static xmlDoc *parse_leniently(const char *data, gsize bytes, const char *path, 
     return doc;
 }
 
-/** A prefix without a declaration stops librsvg; libxml2 leaves it in the name. */
-static void declare_prefix(xmlNode *root, const xmlChar *name)
+/* The state of the walk through a document. */
+typedef struct Visit {
+    const char *path;
+    int number; // of the frame
+    FlWarnings *warnings;
+    xmlNode *root;
+    int n;                // elements so far
+    double bytes;         // that entities stand for so far
+    GHashTable *entities; // xmlEntity -> bytes it stands for
+} Visit;
+
+/** The address of a namespace that drawings use by its usual prefix. */
+static const char *known_namespace(const char *prefix)
 {
+    static const char *const known[][2] = {
+        {"xlink", "http://www.w3.org/1999/xlink"},
+        {"svg", svg_namespace},
+        {"inkscape", "http://www.inkscape.org/namespaces/inkscape"},
+        {"sodipodi", "http://sodipodi.sourceforge.net/DTD/sodipodi-0.dtd"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        if (strcmp(known[i][0], prefix) == 0)
+            return known[i][1];
+    return NULL;
+}
+
+/**
+ * Declares a prefix that lacks its declaration, which would stop librsvg; libxml2 leaves it in the
+ * name. Returns: its namespace; NULL if the name has no prefix or is declared.
+ */
+static xmlNs *declare_prefix(Visit *visit, const xmlChar *name)
+{
+    xmlNode *root = visit->root;
     const char *colon = strchr((const char *)name, ':');
     if (!colon)
-        return;
+        return NULL;
     g_autofree char *prefix = g_strndup((const char *)name, (gsize)(colon - (const char *)name));
-    g_autofree char *href = g_strdup_printf("urn:undeclared:%s", prefix);
-    if (!xmlSearchNs(root->doc, root, (const xmlChar *)prefix))
-        xmlNewNs(root, (const xmlChar *)href, (const xmlChar *)prefix);
+    const char *known = known_namespace(prefix);
+    g_autofree char *href = known ? g_strdup(known) : g_strdup_printf("urn:undeclared:%s", prefix);
+    xmlNs *ns = xmlSearchNs(root->doc, root, (const xmlChar *)prefix);
+    if (ns)
+        return ns;
+    fl_warnings_add(visit->warnings, visit->path, visit->number, NULL,
+                    "the prefix “%s:” is not declared; %s", prefix,
+                    known ? "read as usual" : "what has it is ignored");
+    return xmlNewNs(root, (const xmlChar *)href, (const xmlChar *)prefix);
+}
+
+/** Declares the prefix of an attribute and cuts it off the name. */
+static void declare_attribute(Visit *visit, xmlAttr *a)
+{
+    xmlNs *ns = a->ns ? NULL : declare_prefix(visit, a->name);
+    if (!ns)
+        return;
+    g_autofree char *name = g_strdup(strchr((const char *)a->name, ':') + 1);
+    xmlNodeSetName((xmlNode *)a, (const xmlChar *)name);
+    a->ns = ns;
 }
 
 /**
@@ -242,15 +289,6 @@ static void set_namespace(xmlNode *node, xmlNs *ns)
         set_namespace(node->children, ns);
     }
 }
-
-/* The state of the walk through a document. */
-typedef struct Visit {
-    const char *path;
-    xmlNode *root;
-    int n;                // elements so far
-    double bytes;         // that entities stand for so far
-    GHashTable *entities; // xmlEntity -> bytes it stands for
-} Visit;
 
 static bool check_length(const Visit *visit, const xmlAttr *a, GError **error)
 {
@@ -300,11 +338,10 @@ static bool visit_node(Visit *visit, xmlNode *node, int depth, GError **error)
     if (!fl_limit_check(FL_LIMIT_ELEMENTS, visit->n, visit->path, error) ||
         !fl_limit_check(FL_LIMIT_DEPTH, depth, visit->path, error))
         return false;
-    declare_prefix(visit->root, node->name);
+    declare_prefix(visit, node->name);
     expand_namespaces(node->doc, node->nsDef);
     for (xmlAttr *a = node->properties; a; a = a->next) {
-        if (!a->ns)
-            declare_prefix(visit->root, a->name);
+        declare_attribute(visit, a);
         if (!check_length(visit, a, error) || !count_entities(visit, a->children, error))
             return false;
     }
@@ -339,7 +376,7 @@ xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GEr
         return NULL;
     }
     g_autoptr(GHashTable) entities = g_hash_table_new_full(NULL, NULL, NULL, g_free);
-    Visit visit = {path, root, 0, 0, entities};
+    Visit visit = {path, number, warnings, root, 0, 0, entities};
     return visit_node(&visit, root, 1, error) ? g_steal_pointer(&doc) : NULL;
 }
 

@@ -129,16 +129,13 @@ static void enter_viewport(const Reader *reader, const xmlNode *node, Inherited 
     }
 }
 
-/** The transform, of the property or else of the attribute; identity where librsvg rejects it. */
+/** The transform; the identity where librsvg rejects it. */
 static FlAffine transform_of(const xmlNode *node)
 {
     FlAffine m = FL_AFFINE_NONE;
-    g_autofree char *property = fl_property(node, "transform");
-    g_autoptr(xmlChar) attribute = fl_attribute(node, "transform");
-    if (property && fl_affine_parse(property, &m))
-        return m;
-    if (attribute)
-        fl_affine_parse((const char *)attribute, &m);
+    g_autoptr(xmlChar) text = fl_attribute(node, "transform");
+    if (text)
+        fl_affine_parse((const char *)text, &m);
     return m;
 }
 
@@ -233,12 +230,8 @@ static FlOutlineKind draw_leaf(const Reader *reader, const xmlNode *node, const 
     if (!fl_is(node, "path"))
         return draw_shape(reader, node, s, pen, broken);
     g_autoptr(xmlChar) d = fl_attribute(node, "d");
-    g_autoptr(xmlChar) style = fl_attribute(node, "style");
-    g_autofree char *css =
-        style && strstr((const char *)style, "d:") ? fl_property(node, "d") : NULL;
     if (d)
         fl_path_data_walk((const char *)d, fl_pen_step, pen);
-    *broken |= css && strcmp(css, (const char *)(d ? d : (xmlChar *)"")) != 0;
     return FL_OUTLINE_PATH;
 }
 
@@ -307,6 +300,30 @@ static FlOutlines *outlines_of(int n_leaves, int n_subpaths, int n_cubics)
     return outlines;
 }
 
+static void take_curves(FlOutlines *outlines, const GArray *subpath, const GArray *cubic)
+{
+    if (subpath->len > 0)
+        memcpy(outlines->subpath, subpath->data, subpath->len * sizeof(FlSubpath));
+    if (cubic->len > 0)
+        memcpy(outlines->cubic, cubic->data, cubic->len * sizeof(FlCubic));
+}
+
+FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize viewport)
+{
+    g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
+    g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
+    const Reader reader = {.dpi = dpi};
+    const Inherited inherited = {.width = viewport.width, .height = viewport.height};
+    FlPen pen = {.subpath = subpath, .cubic = cubic};
+    bool broken = false;
+    draw_leaf(&reader, node, &inherited, &pen, &broken);
+    FlOutlines *outlines =
+        outlines_of(0, broken ? 0 : (int)subpath->len, broken ? 0 : (int)cubic->len);
+    if (!broken)
+        take_curves(outlines, subpath, cubic);
+    return outlines;
+}
+
 FlOutlines *fl_outlines_new(const FlSvg *svg, FlPageSize page)
 {
     const GArray *leaves = fl_svg_leaves(svg)->leaf;
@@ -324,10 +341,7 @@ FlOutlines *fl_outlines_new(const FlSvg *svg, FlPageSize page)
     }
     FlOutlines *outlines = outlines_of((int)leaves->len, (int)subpath->len, (int)cubic->len);
     memcpy(outlines->leaf, read, leaves->len * sizeof *read);
-    if (subpath->len > 0)
-        memcpy(outlines->subpath, subpath->data, subpath->len * sizeof(FlSubpath));
-    if (cubic->len > 0)
-        memcpy(outlines->cubic, cubic->data, cubic->len * sizeof(FlCubic));
+    take_curves(outlines, subpath, cubic);
     return outlines;
 }
 

@@ -58,6 +58,12 @@ typedef struct FlOutlines {
  */
 FlOutlines *fl_outlines_new(const FlSvg *svg, FlPageSize page);
 
+/**
+ * The outline of a path or basic shape alone, in local coordinates; percentages are of `viewport`,
+ * in user units. Returns: no subpaths if it is another element or cannot be read.
+ */
+FlOutlines *fl_outlines_of_shape(const xmlNode *node, double dpi, FlPageSize viewport);
+
 /** Makes the picture that they are in `factor` times as large. */
 void fl_outlines_scale(FlOutlines *outlines, double factor);
 

@@ -23,15 +23,6 @@ static void warn(const Check *check, const xmlNode *node, const char *href, cons
                     "the image “%.60s” %s", href, text);
 }
 
-/* Whether `file` is in the folder of the drawing or below it, links followed. */
-static bool is_inside(const char *drawing, const char *file)
-{
-    g_autofree char *real = realpath(drawing, NULL),
-                    *folder = real ? g_path_get_dirname(real) : NULL;
-    const size_t n = folder ? strlen(folder) : 0;
-    return folder && strncmp(file, folder, n) == 0 && (file[n] == '/' || folder[n - 1] == '/');
-}
-
 static bool check_pixels(const Check *check, double width, double height, GError **error)
 {
     return fl_limit_check(FL_LIMIT_IMAGE, width * height / 1e6, check->path, error);
@@ -54,7 +45,25 @@ static void size_of_data(const guint8 *data, gsize bytes, int size[2])
     gdk_pixbuf_loader_close(loader, NULL);
 }
 
-static bool check_data(const Check *check, const char *href, GError **error)
+/** The kind of an image by its first bytes; NULL: unknown. */
+static const char *kind_of(const guint8 *data, gsize bytes)
+{
+    static const struct {
+        const char *start, *kind;
+        gsize n;
+    } known[] = {{"\x89PNG", "image/png", 4},
+                 {"\xff\xd8\xff", "image/jpeg", 3},
+                 {"GIF8", "image/gif", 4},
+                 {"RIFF", "image/webp", 4}};
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        if (bytes > known[i].n && memcmp(data, known[i].start, known[i].n) == 0)
+            return known[i].kind;
+    return NULL;
+}
+
+/** An image in the drawing itself: a wrong label, which librsvg would believe, is put right. */
+static bool check_data(const Check *check, xmlNode *node, xmlAttr *a, const char *href,
+                       GError **error)
 {
     const char *comma = strchr(href, ',');
     int size[2] = {0};
@@ -62,7 +71,14 @@ static bool check_data(const Check *check, const char *href, GError **error)
         return true; // librsvg shows it as text or not at all
     gsize bytes = 0;
     g_autofree guint8 *data = g_base64_decode(comma + 1, &bytes);
+    const char *kind = kind_of(data, bytes);
     size_of_data(data, bytes, size);
+    if (size[0] == 0 && !g_str_has_prefix(href, "data:image/svg"))
+        warn(check, node, href, "cannot be read and is left out");
+    else if (kind && !g_str_has_prefix(href + 5, kind)) {
+        g_autofree char *mended = g_strdup_printf("data:%s;base64%s", kind, comma);
+        xmlSetNsProp(node, a->ns, a->name, (const xmlChar *)mended);
+    }
     return check_pixels(check, size[0], size[1], error);
 }
 
@@ -85,7 +101,7 @@ static bool check_reference(const Check *check, xmlNode *node, xmlAttr *a, const
         warn(check, node, href, "is not in a file and is left out: nothing is fetched");
     else if (!is_there)
         warn(check, node, href, "does not exist and is left out");
-    else if (!is_inside(check->path, file))
+    else if (!fl_reference_is_inside(check->path, file))
         warn(check, node, href, "is outside the drawing's folder and is left out");
     else if (gdk_pixbuf_get_file_info(file, &width, &height))
         return check_pixels(check, width, height, error);
@@ -103,7 +119,7 @@ static bool check_node(const Check *check, xmlNode *node, GError **error)
         href += strspn(href, " \t\r\n");
         const bool good =
             g_ascii_strncasecmp(href, "data:", 5) == 0
-                ? check_data(check, href, error)
+                ? check_data(check, node, a, href, error)
                 : *href == '#' || !*href || check_reference(check, node, a, href, error);
         if (!good)
             return false;

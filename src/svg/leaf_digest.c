@@ -100,18 +100,6 @@ static Reach add_tree(Work *work, const xmlNode *node, FlDigest *digest)
     return reach;
 }
 
-/** Adds a style sheet. One whose rules look at what is beside an element is not looked at. */
-static Reach add_sheet(Work *work, const xmlNode *node, FlDigest *digest)
-{
-    static const char *const beside[] = {"+",     "~",      ":nth", ":first", ":last",
-                                         ":only", ":empty", ":not", "@import"};
-    g_autoptr(xmlChar) text = xmlNodeGetContent(node);
-    for (size_t k = 0; text && k < G_N_ELEMENTS(beside); k++)
-        work->unknown |= strstr((const char *)text, beside[k]) != NULL;
-    add_tree(work, node, digest);
-    return text && strstr((const char *)text, "url(") ? REACH_DEFINITIONS : REACH_NONE;
-}
-
 /** Adds what an element may inherit from one around it. */
 static void add_inherited(Work *work, const xmlNode *around, FlDigest *digest)
 {
@@ -137,17 +125,15 @@ static void add_definition(Work *work, const xmlNode *node)
         work->definitions = work->all;
 }
 
-/** Digests what is drawn only when it is referred to, and style sheets. */
-static void digest_definitions(Work *work, const xmlNode *node, FlDigest *sheets, Reach *reach)
+/** Digests what is drawn only when it is referred to. */
+static void digest_definitions(Work *work, const xmlNode *node)
 {
     for (const xmlNode *child = node->children; child; child = child->next) {
         if (child->type != XML_ELEMENT_NODE)
             continue;
-        if (fl_is(child, "style"))
-            *reach = farther(*reach, add_sheet(work, child, sheets));
-        else if (fl_is_undrawn(child))
+        if (fl_is_undrawn(child))
             add_definition(work, child);
-        digest_definitions(work, child, sheets, reach);
+        digest_definitions(work, child);
     }
 }
 
@@ -202,15 +188,13 @@ static void list_places(Work *work, const GArray *leaves, size_t bytes, FlDigest
     }
 }
 
-/** Adds the files that anything refers to; a sheet in one is not looked at. */
-static void add_files(Work *work, const FlSvg *svg, const xmlDoc *doc)
+/** Adds the files that anything refers to. */
+static void add_files(Work *work, const FlSvg *svg)
 {
     const GPtrArray *files = fl_svg_files(svg);
     for (guint i = 0; i < files->len; i++)
         fl_digest_add_text(&work->definitions, g_ptr_array_index(files, i));
     work->all = work->definitions;
-    for (const xmlNode *node = doc->children; node; node = node->next)
-        work->unknown |= node->type == XML_PI_NODE;
 }
 
 void fl_leaf_digests(FlSvg *svg, FlDigest *leaf, FlDigest *unit)
@@ -220,14 +204,13 @@ void fl_leaf_digests(FlSvg *svg, FlDigest *leaf, FlDigest *unit)
     const xmlNode *root = xmlDocGetRootElement(doc);
     Work work = {.place = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free), .doc = doc};
     FlDigest around = {0, 0};
-    Reach reach = REACH_NONE;
     list_places(&work, leaves->leaf, sizeof(FlLeaf), leaf);
     G_STATIC_ASSERT(offsetof(FlGroupUnit, leaf) == 0);
     list_places(&work, leaves->unit, sizeof(FlGroupUnit), unit);
-    add_files(&work, svg, doc);
+    add_files(&work, svg);
     add_tree(&work, root, &work.all);
-    digest_definitions(&work, root, &around, &reach);
-    reach = farther(reach, add_element(&work, root, &around));
+    digest_definitions(&work, root);
+    const Reach reach = add_element(&work, root, &around);
     walk(&work, root, around, reach);
     if (work.unknown) {
         memset(leaf, 0, leaves->leaf->len * sizeof *leaf);

@@ -1,6 +1,5 @@
 #include "svg/leaves.h"
 
-#include "svg/css.h"
 #include "svg/effects.h"
 #include "svg/labels.h"
 #include "svg/normalise.h"
@@ -11,7 +10,6 @@ typedef struct Walk {
     GString *labels, *layers, *ids, *groups, *classes, *tree;
     const char *const *whole;
     FlLeaves *leaves;
-    FlCss *css;
     GHashTable *by_id; // id -> xmlNode, the first of that id
     int unit;          // outermost unit around, -1: none
     int mask;          // innermost group around with a mask, -1: none
@@ -184,32 +182,19 @@ static bool is_drawn(const xmlNode *node)
     return fl_is_one_of(node, drawn);
 }
 
-static bool has_mask(const Walk *w, const xmlNode *node)
-{
-    return fl_is_set(node, "mask") || fl_css_look_up(w->css, node) & FL_CSS_MASK;
-}
-
 /** Whether a group is drawn as one also where its shapes do not overlap. */
-static bool is_inseparable(const Walk *w, const xmlNode *node)
+static bool is_inseparable(const xmlNode *node)
 {
-    return fl_is_set(node, "filter") || fl_is_set(node, "mix-blend-mode") ||
-           fl_css_look_up(w->css, node) & (FL_CSS_FILTER | FL_CSS_BLEND);
-}
-
-/** Whether a group may have to be drawn as one. */
-static bool is_unit(const Walk *w, const xmlNode *node)
-{
-    return fl_has_effects(node) || fl_css_look_up(w->css, node);
+    return fl_is_set(node, "filter") || fl_is_set(node, "mix-blend-mode");
 }
 
 /** Whether something in a node blends with what is below it. */
-static bool has_blend(const Walk *w, const xmlNode *node)
+static bool has_blend(const xmlNode *node)
 {
     bool found = false;
     for (const xmlNode *child = node->children; child && !found; child = child->next)
         found = child->type == XML_ELEMENT_NODE &&
-                (fl_is_set(child, "mix-blend-mode") ||
-                 fl_css_look_up(w->css, child) & FL_CSS_BLEND || has_blend(w, child));
+                (fl_is_set(child, "mix-blend-mode") || has_blend(child));
     return found;
 }
 
@@ -236,7 +221,7 @@ static void walk_masked(Walk *w, xmlNode *node)
 
 static void walk_group(Walk *w, xmlNode *node)
 {
-    if (has_mask(w, node))
+    if (fl_is_set(node, "mask"))
         walk_masked(w, node);
     else
         walk(w, node);
@@ -254,13 +239,13 @@ static void walk_unit(Walk *w, xmlNode *node)
     walk_group(w, node);
     w->unit = -1;
     const int n = (int)leaves->leaf->len - first;
-    const bool blends = n > 0 && has_blend(w, node);
+    const bool blends = n > 0 && has_blend(node);
     if (n < 2 && !blends) {
         for (int i = 0; i < n; i++)
             g_array_index(leaves->leaf, FlLeaf, first + i).unit = -1;
         return;
     }
-    const FlGroupUnit unit = {make_leaf(w, node), first, n, blends || is_inseparable(w, node)};
+    const FlGroupUnit unit = {make_leaf(w, node), first, n, blends || is_inseparable(node)};
     g_array_append_val(leaves->unit, unit);
 }
 
@@ -280,7 +265,7 @@ static void walk(Walk *w, xmlNode *node)
         if (is_drawn(child) || fl_is_whole(child, w->whole)) {
             const FlLeaf leaf = make_leaf(w, child);
             g_array_append_val(w->leaves->leaf, leaf);
-        } else if (fl_is_container(child) && w->unit < 0 && is_unit(w, child)) {
+        } else if (fl_is_container(child) && w->unit < 0 && fl_has_effects(child)) {
             walk_unit(w, child);
         } else if (fl_is_container(child)) {
             walk_group(w, child);
@@ -339,7 +324,6 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
               .classes = g_string_new(NULL),
               .tree = g_string_new(NULL),
               .leaves = leaves,
-              .css = fl_css_new(doc),
               .unit = -1,
               .mask = -1};
     w.by_id = fl_document_ids(doc);
@@ -349,7 +333,6 @@ FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole)
     else
         walk(&w, xmlDocGetRootElement(doc));
     g_hash_table_unref(w.by_id);
-    fl_css_free(w.css);
     g_string_free(w.labels, TRUE);
     g_string_free(w.layers, TRUE);
     g_string_free(w.ids, TRUE);

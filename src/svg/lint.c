@@ -1,6 +1,9 @@
 #include "svg/lint.h"
 
+#include "svg/css_colour.h"
 #include "svg/path_data.h"
+#include "svg/reference.h"
+#include <stdio.h>
 #include <string.h>
 
 typedef struct Lint {
@@ -16,48 +19,71 @@ static void warn(const Lint *lint, const xmlNode *node, const char *text)
     fl_warnings_add(lint->warnings, lint->path, lint->number, (const char *)id, "%s", text);
 }
 
-/** A copy of `text` without page addresses in references, NULL if it has none. */
+/**
+ * The id that a reference names: what is behind its #, with %-escapes resolved if the document has
+ * it only so. NULL: it names none; to be freed.
+ */
+static char *target_of(const Lint *lint, const char *reference)
+{
+    const char *hash = strchr(reference, '#');
+    g_autofree char *plain = hash ? g_uri_unescape_string(hash + 1, NULL) : NULL;
+    if (!hash || !plain || g_hash_table_contains(lint->ids, hash + 1))
+        return g_strdup(hash ? hash + 1 : NULL);
+    return g_steal_pointer(&plain);
+}
+
+/** A copy of `text` whose references are url(#id) where the document has the id; NULL: no change.
+ */
 static char *mend(const Lint *lint, const char *text)
 {
     GString *out = g_string_new(NULL);
     bool mended = false;
-    for (const char *s = text, *url; *s; s = url) {
-        url = strstr(s, "url(");
-        if (!url) {
-            g_string_append(out, s);
-            break;
-        }
-        url += 4;
-        g_string_append_len(out, s, url - s);
-        const size_t n = strcspn(url, ")");
-        const char *hash = memchr(url, '#', n);
-        g_autofree char *id = hash ? g_strndup(hash + 1, n - (size_t)(hash + 1 - url)) : NULL;
-        if (id)
-            g_strdelimit(id, "\"'", '\0');
-        if (hash && hash != url + strspn(url, " \"'") && g_hash_table_contains(lint->ids, id)) {
-            g_string_append_printf(out, "#%s", id);
-            url += n;
+    for (const char *url; (url = strstr(text, "url(")); text = url) {
+        g_string_append_len(out, text, url - text);
+        const char *end = fl_css_find(url + 4, ")");
+        g_autofree char *call = g_strdup_printf("%.*s)", (int)(end - url), url);
+        g_autofree char *reference = fl_css_string_or_url(call);
+        g_autofree char *id = reference ? target_of(lint, reference) : NULL;
+        const bool known = id && g_hash_table_contains(lint->ids, id);
+        if (known && strcmp(reference + (*reference == '#'), id) != 0) {
+            g_string_append_printf(out, "url(\"#%s\")", id);
             mended = true;
+        } else {
+            g_string_append(out, call);
         }
+        url = *end ? end + 1 : end;
     }
+    g_string_append(out, text);
     return g_string_free(out, !mended);
+}
+
+/** Returns: true if a reference names another file that the drawing may use. */
+static bool is_in_file(const Lint *lint, const char *reference)
+{
+    bool is_there = false;
+    if (!reference || *reference == '#')
+        return false;
+    g_autofree char *file = fl_reference_file(lint->path, reference, &is_there);
+    return file && is_there && fl_reference_is_inside(lint->path, file);
 }
 
 /** Warns if `value` refers to an id that is not in the document. */
 static void check_target(const Lint *lint, const xmlNode *node, const char *name, const char *value)
 {
-    const char *hash = strstr(value, "url(");
-    if (!hash)
+    const char *url = strstr(value, "url(");
+    if (!url)
         return;
-    hash += 4 + strspn(hash + 4, " \"'");
-    const size_t n = strcspn(hash, ")\"' ");
-    g_autofree char *id = n > 0 ? g_strndup(hash + 1, n - 1) : NULL;
-    if (id && hash[0] == '#' && g_hash_table_contains(lint->ids, id))
+    const char *end = fl_css_find(url + 4, ")");
+    g_autofree char *call = g_strdup_printf("%.*s)", (int)(end - url), url);
+    g_autofree char *reference = fl_css_string_or_url(call);
+    if (reference && *reference == '#' && g_hash_table_contains(lint->ids, reference + 1))
+        return;
+    if (is_in_file(lint, reference))
         return;
     const bool paint = strcmp(name, "fill") == 0 || strcmp(name, "stroke") == 0;
-    const bool fallback = paint && strchr(hash, ')') && strchr(hash, ')')[1];
-    g_autofree char *text = g_strdup_printf("%s refers to “%.*s”, which is not in the file: %s",
-                                            name, (int)strcspn(hash, ")"), hash,
+    const bool fallback = paint && *end && end[1];
+    g_autofree char *text = g_strdup_printf("%s refers to “%s”, which is not in the file: %s", name,
+                                            reference ? reference : "",
                                             fallback ? "the colour after it is drawn"
                                             : paint  ? "nothing is drawn"
                                                      : "drawn without it");
@@ -81,21 +107,6 @@ static void check_references(const Lint *lint, xmlNode *node)
     }
 }
 
-static void check_sheet(const Lint *lint, const xmlNode *node, const char *css)
-{
-    static const struct {
-        const char *trap, *text;
-    } traps[] = {
-        {"var(", "var() is not known: black is drawn"},
-        {"@keyframes", "the CSS animation is not played: the frame's own values are drawn"},
-        {"@media", "@media rules are left out"},
-        {"transform-origin", "transform-origin is not known: transforms turn round the origin"},
-    };
-    for (size_t i = 0; i < G_N_ELEMENTS(traps); i++)
-        if (strstr(css, traps[i].trap))
-            warn(lint, node, traps[i].text);
-}
-
 static void check_path(const Lint *lint, const xmlNode *node)
 {
     g_autoptr(xmlChar) d = fl_attribute(node, "d");
@@ -108,20 +119,65 @@ static void check_path(const Lint *lint, const xmlNode *node)
     warn(lint, node, text);
 }
 
+/** The mean of the colours in a gradient's arguments; NULL: there are none. To be freed. */
+static char *mean_colour(const char *arguments)
+{
+    g_auto(GStrv) stop = fl_css_split(arguments, ',');
+    int sum[3] = {0}, n = 0;
+    for (int i = 0; stop[i]; i++) {
+        g_auto(GStrv) word = fl_css_split(stop[i], ' ');
+        g_autofree char *colour = word[0] ? fl_css_colour(word[0]) : NULL;
+        int v[3];
+        if (!colour)
+            continue;
+        const bool read = sscanf(colour, "rgb(%d, %d, %d", &v[0], &v[1], &v[2]) == 3 ||
+                          sscanf(colour, "rgba(%d, %d, %d", &v[0], &v[1], &v[2]) == 3 ||
+                          sscanf(colour, "#%2x%2x%2x", (unsigned *)&v[0], (unsigned *)&v[1],
+                                 (unsigned *)&v[2]) == 3;
+        for (int k = 0; k < 3 && read; k++)
+            sum[k] += v[k];
+        n += read;
+    }
+    return n ? g_strdup_printf("#%02x%02x%02x", sum[0] / n, sum[1] / n, sum[2] / n) : NULL;
+}
+
+/**
+ * HTML in a drawing is left out, but for Figma's gradients round a centre, which it writes as the
+ * background of a box: they become a rectangle of their mean colour.
+ */
+static void check_foreign(const Lint *lint, xmlNode *node)
+{
+    if (fl_is(node->parent, "switch"))
+        return; // it has something else to draw
+    const xmlNode *box = node->children;
+    while (box && box->type != XML_ELEMENT_NODE)
+        box = box->next;
+    g_autofree char *background = box ? fl_property(box, "background") : NULL;
+    g_autofree char *name = NULL, *arguments = NULL;
+    g_autofree char *colour =
+        background && fl_css_call(background, &name, &arguments) && strstr(name, "gradient")
+            ? mean_colour(arguments)
+            : NULL;
+    if (!colour) {
+        warn(lint, node, "the HTML in <foreignObject> is left out");
+        return;
+    }
+    g_autofree char *text = g_strdup_printf("%s() is drawn as its mean colour, %s", name, colour);
+    warn(lint, node, text);
+    xmlNodeSetName(node, (const xmlChar *)"rect");
+    xmlNodeSetContent(node, NULL);
+    xmlSetProp(node, (const xmlChar *)"fill", (const xmlChar *)colour);
+}
+
 static void lint_node(const Lint *lint, xmlNode *node)
 {
+    if (fl_is(node, "foreignObject"))
+        check_foreign(lint, node);
     check_references(lint, node);
-    g_autoptr(xmlChar) style = fl_attribute(node, "style");
-    if (style)
-        check_sheet(lint, node, (const char *)style);
     if (fl_is_animation(node))
         warn(lint, node->parent, "the animation in it is not played: the base value is drawn");
     if (lint->warnings && fl_is(node, "path"))
         check_path(lint, node);
-    if (fl_is(node, "style")) {
-        g_autoptr(xmlChar) css = xmlNodeGetContent(node);
-        check_sheet(lint, node, css ? (const char *)css : "");
-    }
     for (xmlNode *child = node->children; child; child = child->next)
         if (child->type == XML_ELEMENT_NODE)
             lint_node(lint, child);

@@ -5,8 +5,9 @@
 #include "svg/document.h"
 
 /**
- * Adds a warning for each trap in the document, and mends one: a reference with a page address,
- * url(page.html#a), becomes url(#a) if the document has that id.
+ * Adds a warning for each trap in the document, and mends two: a reference with a page address or
+ * escapes, url(page.html#a), becomes url(#a) if the document has that id, and a gradient in HTML a
+ * rectangle of its mean colour.
  */
 void fl_lint(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
 

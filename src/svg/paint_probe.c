@@ -20,7 +20,7 @@ static bool is_in_marker(const xmlNode *node)
  * a definition. */
 static bool is_apart(const xmlNode *node, bool defined)
 {
-    static const char *const anywhere[] = {"pattern", "style", NULL};
+    static const char *const anywhere[] = {"pattern", NULL};
     g_autoptr(xmlChar) units = fl_attribute(node, "clipPathUnits");
     return fl_is_one_of(node, anywhere) ||
            (units && strcmp((const char *)units, "objectBoundingBox") == 0) ||

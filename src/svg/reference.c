@@ -17,3 +17,11 @@ char *fl_reference_file(const char *from, const char *href, bool *is_there)
     *is_there = real != NULL;
     return !path || real ? real : g_canonicalize_filename(path, NULL);
 }
+
+bool fl_reference_is_inside(const char *drawing, const char *file)
+{
+    g_autofree char *real = realpath(drawing, NULL);
+    g_autofree char *folder = real ? g_path_get_dirname(real) : NULL;
+    const size_t n = folder ? strlen(folder) : 0;
+    return n > 0 && strncmp(file, folder, n) == 0 && (file[n] == '/' || folder[n - 1] == '/');
+}

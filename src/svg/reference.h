@@ -10,4 +10,7 @@
  */
 char *fl_reference_file(const char *from, const char *href, bool *is_there);
 
+/** Returns: true if a real path is in the folder of the drawing or below it. */
+bool fl_reference_is_inside(const char *drawing, const char *file);
+
 #endif

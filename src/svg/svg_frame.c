@@ -1,14 +1,13 @@
 #include "svg/svg_frame.h"
 
 #include "svg/branch.h"
+#include "svg/cascade.h"
 #include "svg/filter_background.h"
 #include "svg/images.h"
 #include "svg/layer_frames.h"
 #include "svg/lint.h"
 #include "svg/normalise.h"
 #include "svg/paint_probe.h"
-#include "svg/selectors.h"
-#include "svg/style_sheets.h"
 #include "svg/svg_data.h"
 
 static void set_number(xmlNode *node, const char *name, double value)
@@ -57,15 +56,13 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
         return NULL;
     if (options->canvas.width > 0)
         set_canvas(xmlDocGetRootElement(svg->doc), &options->canvas);
-    fl_lint(svg->doc, path, number, warnings);
     svg->files = g_ptr_array_new_with_free_func(g_free);
+    fl_cascade(svg->doc, path, number, svg->files, warnings);
+    fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
-    fl_style_sheets_check(svg->doc, path, number, svg->files, warnings);
     svg->n_nameless = fl_document_name_groups(svg->doc);
-    // ids and groups are always added, which changes no picture but by selectors that see them
-    if (fl_document_selectors(svg->doc) != FL_SELECTORS_PLAIN ||
-        fl_document_is_rewritten(svg->doc) || fl_document_reads_background(svg->doc))
+    if (fl_document_is_rewritten(svg->doc) || fl_document_reads_background(svg->doc))
         svg->original = fl_document_text(svg->doc, &svg->original_bytes);
     fl_document_drop_background(svg->doc, path, number, warnings);
     if (!fl_document_normalise(svg->doc, options->whole, path, number, warnings, error))

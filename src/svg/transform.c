@@ -52,7 +52,7 @@ void fl_sincos_degrees(double degrees, double *sine, double *cosine)
     *sine = turned[q][0], *cosine = turned[q][1];
 }
 
-#define MOST_ARGUMENTS 6
+#define MOST_ARGUMENTS 16
 
 /** A function as it is read: its name, and arguments in px, degrees or plain numbers. */
 typedef struct Call {
@@ -110,7 +110,7 @@ static bool is_called(const Call *call, const char *name)
     return strlen(name) == call->length && strncmp(name, call->name, call->length) == 0;
 }
 
-static FlAffine rotation(double degrees)
+FlAffine fl_affine_rotation(double degrees)
 {
     double s, c;
     fl_sincos_degrees(degrees, &s, &c);
@@ -127,7 +127,7 @@ static double tangent(double degrees)
 static FlAffine rotation_about(double degrees, double x, double y)
 {
     const FlAffine there = {1, 0, 0, 1, x, y}, back = {1, 0, 0, 1, -x, -y};
-    const FlAffine turn = rotation(degrees), on = fl_affine_multiply(&there, &turn);
+    const FlAffine turn = fl_affine_rotation(degrees), on = fl_affine_multiply(&there, &turn);
     return fl_affine_multiply(&on, &back);
 }
 
@@ -151,7 +151,7 @@ static bool map_of(const Call *call, FlAffine *m)
     else if (is_called(call, "scaleY") && n == 1)
         *m = (FlAffine){1, 0, 0, v[0], 0, 0};
     else if (is_called(call, "rotate") && n == 1)
-        *m = rotation(v[0]);
+        *m = fl_affine_rotation(v[0]);
     else if (is_called(call, "rotate") && n == 3)
         *m = rotation_about(v[0], v[1], v[2]);
     else if (is_called(call, "skewX") && n == 1)
@@ -180,6 +180,102 @@ bool fl_affine_parse(const char *text, FlAffine *m)
             return false;
         all = fl_affine_multiply(&all, &one);
         s += strspn(s, " \t\r\n\f,");
+    }
+    *m = all;
+    return true;
+}
+
+/* ---- CSS ------------------------------------------------------------------------------------- */
+
+/** The part in the plane of a rotation about an axis in space; false for an axis of no length. */
+static bool rotation_in_space(double x, double y, double z, double degrees, FlAffine *m)
+{
+    double s, c;
+    const double length = sqrt(x * x + y * y + z * z);
+    if (!(length > 0))
+        return false;
+    x /= length, y /= length, z /= length;
+    fl_sincos_degrees(degrees, &s, &c);
+    *m = (FlAffine){x * x * (1 - c) + c,
+                    x * y * (1 - c) + z * s,
+                    x * y * (1 - c) - z * s,
+                    y * y * (1 - c) + c,
+                    0,
+                    0};
+    return true;
+}
+
+/** The matrix of a function in space; false if it is unknown. */
+static bool map_of_space(const char *name, const double *v, int n, FlAffine *m)
+{
+#define IS(word, count) (strcmp(name, word) == 0 && n == (count))
+    if (IS("translate3d", 3))
+        *m = (FlAffine){1, 0, 0, 1, v[0], v[1]};
+    else if (IS("scale3d", 3))
+        *m = (FlAffine){v[0], 0, 0, v[1], 0, 0};
+    else if (IS("translatez", 1) || IS("scalez", 1) || IS("perspective", 1))
+        *m = FL_AFFINE_NONE;
+    else if (IS("rotatez", 1))
+        *m = fl_affine_rotation(v[0]);
+    else if (IS("rotatex", 1))
+        return rotation_in_space(1, 0, 0, v[0], m);
+    else if (IS("rotatey", 1))
+        return rotation_in_space(0, 1, 0, v[0], m);
+    else if (IS("rotate3d", 4))
+        return rotation_in_space(v[0], v[1], v[2], v[3], m);
+    else if (IS("matrix3d", 16))
+        *m = (FlAffine){v[0], v[1], v[4], v[5], v[12], v[13]};
+    else
+        return false;
+    return true;
+#undef IS
+}
+
+/** Reads the arguments of one function and its matrix. */
+static bool map_of_css(const char *name, const char *arguments, const FlCssUnits *units,
+                       FlAffine *m)
+{
+    g_auto(GStrv) part = fl_css_split(arguments, ',');
+    g_autofree char *lower = g_ascii_strdown(name, -1);
+    const bool vertical = g_str_has_suffix(lower, "y");
+    double v[MOST_ARGUMENTS];
+    const int n = (int)g_strv_length(part);
+    if (n > MOST_ARGUMENTS)
+        return false;
+    for (int i = 0; i < n; i++) {
+        const bool length = g_str_has_prefix(lower, "translate");
+        const double whole = !length ? 1 : i == 1 || vertical ? units->height : units->width;
+        if (strcmp(part[i], "none") == 0) // perspective(none)
+            v[i] = 0;
+        else if (!fl_css_number(part[i], units, whole, &v[i]))
+            return false;
+    }
+    if (map_of_space(lower, v, n, m))
+        return true;
+    Call call = {.name = name, .length = strlen(name), .n = n};
+    memcpy(call.v, v, sizeof v);
+    return map_of(&call, m);
+}
+
+bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m)
+{
+    *m = FL_AFFINE_NONE;
+    FlAffine all = FL_AFFINE_NONE;
+    const char *s = fl_css_space(text);
+    if (strcmp(s, "none") == 0)
+        return true;
+    while (*s) {
+        const char *open = s + fl_css_identifier(s);
+        const char *close = *open == '(' ? fl_css_find(open + 1, ")") : open;
+        g_autofree char *name = g_strndup(s, (gsize)(open - s));
+        if (*open != '(' || *close != ')')
+            return false;
+        g_autofree char *arguments = g_strndup(open + 1, (gsize)(close - open) - 1);
+        FlAffine one;
+        if (!map_of_css(name, arguments, units, &one))
+            return false;
+        all = fl_affine_multiply(&all, &one);
+        s = fl_css_space(close + 1);
     }
     *m = all;
     return true;

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_SVG_TRANSFORM_H
 #define FLUIDY_SVG_TRANSFORM_H
 
-#include <stdbool.h>
+#include "svg/css_value.h"
 
 typedef struct FlPoint {
     double x, y;
@@ -35,5 +35,13 @@ void fl_sincos_degrees(double degrees, double *sine, double *cosine);
  * Returns: false if it cannot be parsed; *m is the identity then.
  */
 bool fl_affine_parse(const char *text, FlAffine *m);
+
+/**
+ * Likewise the CSS property: with calc() and all units, percentages of units->width and height, and
+ * functions in space, of which the part in the plane counts (there is no perspective).
+ */
+bool fl_affine_parse_css(const char *text, const FlCssUnits *units, FlAffine *m);
+
+FlAffine fl_affine_rotation(double degrees);
 
 #endif

@@ -92,6 +92,11 @@ FlEnlargement *fl_enlargement_new(const FlStyle *style, const FlExemplar *exempl
     return g_steal_pointer(&enlargement);
 }
 
+const FlExemplarLevel *fl_enlargement_level(const FlEnlargement *enlargement)
+{
+    return &enlargement->level;
+}
+
 double fl_enlargement_bytes(const FlEnlargement *enlargement)
 {
     const FlExemplarLevel *level = &enlargement->level;

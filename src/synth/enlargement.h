@@ -1,4 +1,4 @@
-/* Pictures of twice the size of their field, by votes: what drafts show. */
+/* Pictures of twice the size of their field, by votes. */
 #ifndef FLUIDY_SYNTH_ENLARGEMENT_H
 #define FLUIDY_SYNTH_ENLARGEMENT_H
 
@@ -6,16 +6,17 @@
 #include "synth/exemplar.h"
 #include "synth/nnf.h"
 
-/** The colours of a style in twice the size of an exemplar's level 0, in the window of that. */
-typedef struct FlEnlargement FlEnlargement;
-
 /**
- * style: the one whose half, fl_style_halve(), the exemplar was made of.
+ * The colours of a style in twice the size of an exemplar's level 0, in the window of that. style:
+ * the one whose half, fl_style_halve(), the exemplar was made of.
  *
  * Returns: to be freed with fl_enlargement_free(); NULL with FL_ERROR_NO_MEMORY or FL_ERROR_OUTPUT.
  */
 FlEnlargement *fl_enlargement_new(const FlStyle *style, const FlExemplar *exemplar, GError **error);
 void fl_enlargement_free(FlEnlargement *enlargement); // NULL is fine
+
+/** Its frames: their size, window and colours. */
+const FlExemplarLevel *fl_enlargement_level(const FlEnlargement *enlargement);
 
 /** An estimate of its bytes. */
 double fl_enlargement_bytes(const FlEnlargement *enlargement);

@@ -6,6 +6,7 @@
 #include "base/spill.h"
 #include "guides/distance.h"
 #include "style/adapt.h"
+#include "synth/enlargement.h"
 #include "synth/exemplar_level.h"
 #include "synth/spline.h"
 #include <string.h>
@@ -422,10 +423,15 @@ FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError
     return make_exemplar(style, NULL, params, error);
 }
 
-FlExemplar *fl_exemplar_new_half(const FlStyle *half, const FlStyle *full, const FlParams *params,
-                                 GError **error)
+FlExemplar *fl_exemplar_new_half(const FlStyle *style, const FlParams *params, GError **error)
 {
-    return make_exemplar(half, full, params, error);
+    FlParams halved = *params;
+    fl_params_scale_lengths(&halved, .5f);
+    g_autoptr(FlStyle) half = fl_style_halve(style, error);
+    g_autoptr(FlExemplar) exemplar = half ? make_exemplar(half, style, &halved, error) : NULL;
+    if (!exemplar || !(exemplar->enlargement = fl_enlargement_new(style, exemplar, error)))
+        return NULL;
+    return g_steal_pointer(&exemplar);
 }
 
 /* Packs a frame that enters the window. */
@@ -460,7 +466,7 @@ bool fl_exemplar_seek(FlExemplar *exemplar, int first, GError **error)
         if (!fl_exemplar_level_list(&exemplar->level[l], error))
             return false;
     }
-    return true;
+    return !exemplar->enlargement || fl_enlargement_seek(exemplar->enlargement, exemplar, error);
 }
 
 void fl_exemplar_free(FlExemplar *exemplar)
@@ -474,5 +480,6 @@ void fl_exemplar_free(FlExemplar *exemplar)
     free(exemplar->ext_minus);
     free(exemplar->mask);
     frames_free(exemplar->frames);
+    fl_enlargement_free(exemplar->enlargement);
     g_free(exemplar);
 }

@@ -33,6 +33,9 @@ typedef struct FlExemplarLevel {
 /** The source of a long exemplar's frames, as its window moves. */
 typedef struct FlExemplarFrames FlExemplarFrames;
 
+/** Colours in twice the size, see enlargement.h. */
+typedef struct FlEnlargement FlEnlargement;
+
 typedef struct FlExemplar {
     int n_levels;
     FlExemplarLevel level[FL_MAX_LEVELS];
@@ -47,7 +50,8 @@ typedef struct FlExemplar {
     // Level 0, n_frames * height * width:
     float *distance, *ext_plus, *ext_minus; // px; like the levels, in memory in the window only
     uint8_t *mask;
-    FlExemplarFrames *frames; // NULL: all frames are in the window
+    FlExemplarFrames *frames;   // NULL: all frames are in the window
+    FlEnlargement *enlargement; // from which pictures are voted; NULL: from level 0
 } FlExemplar;
 
 /**
@@ -59,10 +63,9 @@ typedef struct FlExemplar {
  */
 FlExemplar *fl_exemplar_new(const FlStyle *style, const FlParams *params, GError **error);
 
-/** The same of a style made by fl_style_halve(): what it takes finer pixels to measure is that of
- * the `full` one. */
-FlExemplar *fl_exemplar_new_half(const FlStyle *half, const FlStyle *full, const FlParams *params,
-                                 GError **error);
+/** The same for fields and guides of half the size of the picture, which is voted from the style in
+ * its full size. Lengths in params are px of the picture. */
+FlExemplar *fl_exemplar_new_half(const FlStyle *style, const FlParams *params, GError **error);
 
 void fl_exemplar_free(FlExemplar *exemplar); // NULL is fine
 
@@ -86,6 +89,18 @@ bool fl_shape_guide(const FlGuides *guides, const FlParams *params, float border
 static inline bool fl_knows_depth(const FlParams *params)
 {
     return !params->shape_ramp && params->shape_edge > 0;
+}
+
+/** Px of the picture per px of guides and field: 1 or 2. */
+static inline int fl_field_px(const FlExemplar *exemplar)
+{
+    return exemplar->enlargement ? 2 : 1;
+}
+
+/** A side of the field for one of the picture, px. */
+static inline int fl_field_side(const FlExemplar *exemplar, int side)
+{
+    return exemplar->enlargement ? fl_half_side(side) : side;
 }
 
 /** floor(log2(smallest side / n)), at least 1. */

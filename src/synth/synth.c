@@ -5,6 +5,7 @@
 #include "base/schedule.h"
 #include "guides/half_guides.h"
 #include "synth/carry.h"
+#include "synth/enlargement.h"
 #include "synth/patch_pairs.h"
 #include "synth/shift.h"
 #include "synth/synth_data.h"
@@ -18,20 +19,17 @@ FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynt
     FlSynth *synth = g_new0(FlSynth, 1);
     synth->exemplar = exemplar;
     synth->params = params;
-    synth->width = synth->last.width = synth->last.painted_width = size.width;
-    synth->height = synth->last.height = synth->last.painted_height = size.height;
-    synth->side = (float)MAX(size.frame_width, size.frame_height);
-    synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(size.frame_width, size.frame_height));
+    synth->last.painted_width = size.width, synth->last.painted_height = size.height;
+    synth->width = synth->last.width = fl_field_side(exemplar, size.width);
+    synth->height = synth->last.height = fl_field_side(exemplar, size.height);
+    const int frame_width = fl_field_side(exemplar, size.frame_width);
+    const int frame_height = fl_field_side(exemplar, size.frame_height);
+    synth->side = (float)MAX(frame_width, frame_height);
+    synth->n_levels = MIN(exemplar->n_levels, fl_levels_of(frame_width, frame_height));
     synth->key = fl_hash64(seed);
     fl_cost_scale_init(&synth->scale, params);
     fl_kernels_init(&synth->kernels, fl_cpu_flags());
     return synth;
-}
-
-void fl_synth_enlarge(FlSynth *synth, const FlEnlargement *enlargement, int width, int height)
-{
-    synth->enlargement = enlargement;
-    synth->last.painted_width = width, synth->last.painted_height = height;
 }
 
 static void forget_packed(FlSynth *synth)
@@ -47,6 +45,8 @@ static void clear_frame(FlSynth *synth)
     fl_resting_parts_clear(&synth->resting);
     fl_synth_state_clear(&synth->past);
     fl_nnf_clear(&synth->shown);
+    g_clear_pointer(&synth->shown_temporal, g_free);
+    g_clear_pointer(&synth->shown_weight, g_free);
     synth->view = (FlSynthView){0};
 }
 
@@ -110,7 +110,7 @@ static void enlarge(const FlSynth *synth, uint8_t *rgb)
 {
     const FlEnlarged enlarged = {&synth->kernels, synth->params->vote_sharpness,
                                  synth->last.painted_width, synth->last.painted_height, rgb};
-    fl_enlarge(synth->enlargement, &synth->nnf[0], &synth->target.level[0].blocks,
+    fl_enlarge(synth->exemplar->enlargement, &synth->nnf[0], &synth->target.level[0].blocks,
                synth->target.rect, &enlarged);
 }
 
@@ -280,10 +280,9 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
     if (!done)
         return false;
     fill_paper(synth, rgb); // not before: until it is written to, it takes no memory
-    (synth->enlargement ? enlarge : write_rgb)(synth, rgb);
+    (synth->exemplar->enlargement ? enlarge : write_rgb)(synth, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
-    const bool has_temporal =
-        synth->last.valid && fl_synth_finest_searched(synth) == 0 && !synth->enlargement;
+    const bool has_temporal = synth->last.valid && fl_synth_finest_searched(synth) == 0;
     remember(synth);
     synth->view = (FlSynthView){rect, &synth->last.nnf, has_temporal ? full->temporal : NULL,
                                 has_temporal ? full->temporal_weight : NULL};
@@ -398,18 +397,36 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     return !shows || !synth->resting.keeps || show_all(synth, guides, all, error);
 }
 
+/* A plane of a view of `channels` in the size of the picture, with room in *shown. */
+static bool double_plane(const float **plane, FlRect rect, size_t channels, float **shown,
+                         GError **error)
+{
+    if (!*plane)
+        return true;
+    *shown = fl_alloc_unset(channels * fl_rect_pixels(rect), sizeof **shown, "a view", error);
+    if (!*shown)
+        return false;
+    fl_plane_double(*plane, rect.width, rect.height, channels * sizeof **shown, *shown);
+    *plane = *shown;
+    return true;
+}
+
 /* The view in the size of the picture. */
 static bool double_view(FlSynth *synth, GError **error)
 {
     FlSynthView *view = &synth->view;
     const FlRect page = {0, 0, synth->last.painted_width, synth->last.painted_height};
-    if (!synth->enlargement || !view->nnf || synth->shown.match)
+    if (!synth->exemplar->enlargement || !view->nnf || synth->shown.match)
         return true;
-    view->rect = fl_rect_doubled(view->rect, page);
-    if (!fl_nnf_init(&synth->shown, view->rect.width, view->rect.height, error))
+    g_auto(FlBlocks) all = {0};
+    const FlRect rect = view->rect = fl_rect_doubled(view->rect, page);
+    if (!fl_nnf_init(&synth->shown, rect.width, rect.height, error) ||
+        !double_plane(&view->temporal, rect, 3, &synth->shown_temporal, error) ||
+        !double_plane(&view->temporal_weight, rect, 1, &synth->shown_weight, error))
         return false;
-    fl_plane_double(view->nnf->match, view->rect.width, view->rect.height, sizeof(FlMatch),
-                    synth->shown.match);
+    fl_blocks_init_full(&all, rect.width, rect.height);
+    fl_nnf_upscale(view->nnf, fl_enlargement_level(synth->exemplar->enlargement), &synth->kernels,
+                   &all, &synth->shown);
     view->nnf = &synth->shown;
     return true;
 }

@@ -2,7 +2,6 @@
 #ifndef FLUIDY_SYNTH_SYNTH_H
 #define FLUIDY_SYNTH_SYNTH_H
 
-#include "synth/enlargement.h"
 #include "synth/guide_pairs.h"
 #include "synth/patchmatch.h"
 
@@ -25,19 +24,20 @@ typedef struct FlFrameStats {
 } FlFrameStats;
 
 /** How a frame was synthesised, for inspection: valid until the next frame. All of level 0 and
- * `rect`, in the size of the picture. */
+ * `rect`, in the size of the picture; matches point into frames of that size. */
 typedef struct FlSynthView {
     FlRect rect;
     const FlNnf *nnf;
-    const float *temporal, *temporal_weight; // T_temp and m; NULL in a first frame, and in drafts
+    const float *temporal, *temporal_weight; // T_temp and m; NULL in a first frame
 } FlSynthView;
 
 /** The synthesis of one region: it keeps the state of the last frame. */
 typedef struct FlSynth FlSynth;
 
 /**
- * A caller may hand over a part of its frames only, whose corner is a multiple of 2^(levels - 1);
- * the pyramid and the lengths that are shares of a side are the whole frame's all the same.
+ * Sizes of pictures; guides have fl_field_side() of them. A caller may hand over a part of its
+ * frames only, whose corner is a multiple of 2^(levels - 1) of the field; the pyramid and the
+ * lengths that are shares of a side are the whole frame's all the same.
  */
 typedef struct FlSynthSize {
     int width, height;             // of what is painted
@@ -48,13 +48,6 @@ typedef struct FlSynthSize {
 FlSynth *fl_synth_new(const FlExemplar *exemplar, const FlParams *params, FlSynthSize size,
                       uint64_t seed);
 void fl_synth_free(FlSynth *synth); // NULL is fine
-
-/**
- * Before the first frame: pictures shall have this size, twice that of guides and field. The finest
- * level is then searched as coarser ones are, and views have no T_temp. The enlargement must
- * outlive the synthesis.
- */
-void fl_synth_enlarge(FlSynth *synth, const FlEnlargement *enlargement, int width, int height);
 
 /** Whether statistics hold energies, which take a fifth of a frame's time (no); else they are 0. */
 void fl_synth_measure(FlSynth *synth, bool energies);

@@ -8,7 +8,6 @@
 
 struct FlSynth {
     const FlExemplar *exemplar;
-    const FlEnlargement *enlargement; // by which pictures are made; NULL: in the size of the field
     const FlParams *params;
     FlCostScale scale;
     FlKernels kernels;
@@ -27,7 +26,8 @@ struct FlSynth {
     FlRestingParts resting; // of the frame in hand
     FlSynthState past;      // in a frame with such parts: the planes of the last one
     FlSynthView view;       // of the last frame that was painted, where it is needed
-    FlNnf shown;            // its field in the size of the picture, where that is another
+    FlNnf shown; // its field, T_temp and m in the size of the picture, where that is another
+    float *shown_temporal, *shown_weight;
 };
 
 /** Seconds since a monotonic time, which moves on to now. */

@@ -15,7 +15,7 @@
 
 int fl_synth_finest_searched(const FlSynth *synth)
 {
-    return synth->params->finest_rounds == 0 && !synth->enlargement && synth->n_levels > 1 ? 1 : 0;
+    return synth->params->finest_rounds == 0 && synth->n_levels > 1 ? 1 : 0;
 }
 
 /* The previous field in a level's size: `shifted`, or `down`, which is made. *previous stays NULL
@@ -202,7 +202,7 @@ static bool last_vote(FlSynth *synth, const FlSearch *search, FlTargetLevel *tar
 static bool optimise(FlSynth *synth, FlSearch *search, FlTargetLevel *target, int rounds,
                      int sweeps, FlLevelStats *stats, GError **error)
 {
-    const bool shown = target == &synth->target.level[0] && !synth->enlargement;
+    const bool shown = target == &synth->target.level[0] && !synth->exemplar->enlargement;
     const bool last_counts = shown || synth->wants_energies;
     const uint64_t key = search->key;
     for (int round = 0; round < rounds; round++) {
@@ -281,7 +281,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                        .changed = params->settled > 0 ? changed : NULL,
                        .key = fl_key(fl_key(synth->key, (uint64_t)synth->last.frame), (uint64_t)l)};
     const int from_coarsest = synth->n_levels - 1 - l;
-    const bool finest = l == 0 && !synth->enlargement;
+    const bool finest = l == 0;
     const int rounds =
         finest    ? params->finest_rounds
         : shifted ? fl_list_at(&params->next_iterations, from_coarsest)
@@ -296,7 +296,7 @@ static bool run_level(FlSynth *synth, int l, const FlNnf *shifted, FlLevelStats 
                               : fl_list_at(&params->patchmatch_iterations, from_coarsest);
     if (!optimise(synth, &search, target, rounds, sweeps, stats, error))
         return false;
-    if (rounds == 0 && finest) // the field has not been voted yet
+    if (rounds == 0 && finest && !synth->exemplar->enlargement) // the field has not been voted yet
         vote(synth, &search, target);
     if (synth->wants_energies)
         end_statistics(&search, target, stats);

@@ -247,7 +247,7 @@ LOADERS = {'PLANE': add_plane, 'COMPOSITOR': add_node, 'FILES': lambda context, 
 class FluidySettings(bpy.types.PropertyGroup):
     style: EnumProperty(name='Style', items=[(s, s.replace('-', ' ').capitalize(), '') for s in STYLES])
     other_style: StringProperty(name='Another style', description='By name or folder')
-    detail: EnumProperty(name='Quality', items=[(d, d.capitalize(), '') for d in ('draft', 'normal', 'fine')])
+    detail: EnumProperty(name='Quality', items=[(d, d.capitalize(), '') for d in ('draft', 'normal', 'fine', 'finest')])
     result: EnumProperty(name='Result', items=[
         ('PLANE', 'Image plane', 'A plane before the camera'),
         ('COMPOSITOR', 'Compositor', 'An image node'),

@@ -28,7 +28,7 @@ def arguments(words):
     parser.add_argument('--other_style', default='', help='a name or folder, if style is "other"')
     parser.add_argument('--frames', choices=['drawing', 'layers'], default='drawing')
     parser.add_argument('--range', default='', help='frames to paint, as for --frames')
-    parser.add_argument('--detail', choices=['draft', 'normal', 'fine'], default='draft')
+    parser.add_argument('--detail', choices=['draft', 'normal', 'fine', 'finest'], default='draft')
     parser.add_argument('--result', choices=['layer', 'folder'], default='layer')
     parser.add_argument('--folder', default='', help='for the frames')
     parser.add_argument('--options', default='', help='more options of fluidy-svg')

@@ -1,0 +1,488 @@
+#include "svg/cascade.h"
+
+#include "svg/css_colour.h"
+#include "svg/css_effects.h"
+#include "svg/css_properties.h"
+#include "svg/css_sheet.h"
+#include <math.h>
+#include <string.h>
+
+/** The values of an element, what its children inherit included. */
+typedef struct Style {
+    const struct Style *around;
+    GHashTable *variables; // custom properties that are set here, name -> value; NULL: none
+    FlCssUnits units;
+} Style;
+
+typedef struct Cascade {
+    xmlDoc *doc;
+    const char *path;
+    int number;
+    FlWarnings *warnings;
+    FlCssSheet *sheet;
+    GHashTable *rules; // FlSelector key -> GArray of indices into the sheet's rules
+    FlSelectorWork work;
+    GHashTable *said; // what was warned about
+    int n_clips;
+} Cascade;
+
+/** A declared value that won. */
+typedef struct Value {
+    const char *name;              // interned
+    const FlCssProperty *property; // NULL: a custom property
+    const char *text;              // borrowed
+    bool important;
+} Value;
+
+/** Warns once a document about a property, with the first value that was left out. */
+static void warn(Cascade *c, const char *name, const char *value, const char *why)
+{
+    if (c->warnings && g_hash_table_add(c->said, g_strdup(name)))
+        fl_warnings_add(c->warnings, c->path, c->number, NULL, "“%s: %.60s” %s and is left out",
+                        name, value, why);
+}
+
+/* ---- declared values ------------------------------------------------------------------------- */
+
+/** The property that a name of WebKit stands for. */
+static const char *without_vendor(const char *name)
+{
+    static const char *const same[] = {
+        "transform", "transform-origin", "transform-box", "clip-path", "mask", "filter", NULL};
+    const char *plain = g_str_has_prefix(name, "-webkit-") ? name + 8 : name;
+    return plain != name && g_strv_contains(same, plain) ? g_intern_string(plain) : name;
+}
+
+/** Warns if a value of `animation` names keyframes. */
+static void warn_of_animation(Cascade *c, const char *value)
+{
+    g_auto(GStrv) word = g_strsplit_set(value, " \t\r\n,", -1);
+    for (int i = 0; word[i]; i++)
+        if (fl_css_sheet_keyframes(c->sheet, word[i]) && g_hash_table_add(c->said, g_strdup("@")))
+            fl_warnings_add(c->warnings, c->path, c->number, NULL,
+                            "the CSS animation is not played: the frame's own values are drawn");
+}
+
+/** Takes a declaration over one of lower priority. */
+static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
+{
+    const char *name = without_vendor(d->name);
+    const bool custom = g_str_has_prefix(name, "--");
+    const FlCssProperty *property = custom ? NULL : fl_css_property(name);
+    if (!custom && !property) {
+        warn(c, name, d->value, "is not known");
+        return;
+    }
+    if (property && property->kind == FL_CSS_IGNORED) {
+        if (strcmp(name, "animation") == 0 || strcmp(name, "animation-name") == 0)
+            warn_of_animation(c, d->value);
+        return;
+    }
+    if (property && !fl_css_is_valid(property, d->value)) {
+        warn(c, name, d->value, "is not a value of that property");
+        return;
+    }
+    const Value value = {name, property, d->value, d->important};
+    for (guint i = 0; i < values->len; i++)
+        if (g_array_index(values, Value, i).name == name) {
+            g_array_index(values, Value, i) = value;
+            return;
+        }
+    g_array_append_val(values, value);
+}
+
+static void declare_all(Cascade *c, GArray *values, const GArray *declarations, bool important)
+{
+    for (guint i = 0; i < declarations->len; i++) {
+        const FlCssDeclaration *d = &g_array_index(declarations, FlCssDeclaration, i);
+        if (d->important == important)
+            declare(c, values, d);
+    }
+}
+
+static void add_matches(Cascade *c, const xmlNode *node, const char *sigil, const char *name,
+                        GArray *matched)
+{
+    g_autofree char *key = g_strconcat(sigil, name, NULL);
+    const GArray *indices = g_hash_table_lookup(c->rules, key);
+    const GArray *rules = fl_css_sheet_rules(c->sheet);
+    for (guint i = 0; indices && i < indices->len; i++) {
+        const FlCssRule *rule = &g_array_index(rules, FlCssRule, g_array_index(indices, guint, i));
+        if (fl_selector_matches(rule->selector, node, &c->work))
+            g_array_append_val(matched, rule);
+    }
+}
+
+static int compare_in_layer(const FlCssRule *p, const FlCssRule *q)
+{
+    const unsigned a = fl_selector_specificity(p->selector),
+                   b = fl_selector_specificity(q->selector);
+    return a != b ? (a > b) - (a < b) : (p->order > q->order) - (p->order < q->order);
+}
+
+static int compare_normal(const void *a, const void *b)
+{
+    const FlCssRule *p = *(const FlCssRule *const *)a, *q = *(const FlCssRule *const *)b;
+    return p->layer != q->layer ? p->layer - q->layer : compare_in_layer(p, q);
+}
+
+/** Of important declarations those of earlier layers win. */
+static int compare_important(const void *a, const void *b)
+{
+    const FlCssRule *p = *(const FlCssRule *const *)a, *q = *(const FlCssRule *const *)b;
+    return p->layer != q->layer ? q->layer - p->layer : compare_in_layer(p, q);
+}
+
+/** The rules that match an element, FlCssRule *. */
+static GArray *match(Cascade *c, const xmlNode *node)
+{
+    GArray *matched = g_array_new(FALSE, FALSE, sizeof(const FlCssRule *));
+    if (fl_css_sheet_rules(c->sheet)->len == 0)
+        return matched;
+    g_autoptr(xmlChar) id = fl_attribute(node, "id");
+    g_autoptr(xmlChar) class = fl_attribute(node, "class");
+    g_auto(GStrv) word = fl_css_split(class ? (const char *)class : "", ' ');
+    add_matches(c, node, "", "*", matched);
+    add_matches(c, node, "", (const char *)node->name, matched);
+    for (int i = 0; word[i]; i++)
+        if (!g_strv_contains((const char *const *)word + i + 1, word[i]))
+            add_matches(c, node, ".", word[i], matched);
+    if (id)
+        add_matches(c, node, "#", (const char *)id, matched);
+    return matched;
+}
+
+/** The values that sheets and the style attribute declare; `own` keeps those of the attribute. */
+static GArray *declared_values(Cascade *c, const xmlNode *node, GArray *own)
+{
+    GArray *values = g_array_new(FALSE, FALSE, sizeof(Value));
+    g_autoptr(GArray) matched = match(c, node);
+    for (int important = 0; important < 2; important++) {
+        g_array_sort(matched, important ? compare_important : compare_normal);
+        for (guint i = 0; i < matched->len; i++)
+            declare_all(c, values, g_array_index(matched, const FlCssRule *, i)->declarations,
+                        important);
+        declare_all(c, values, own, important);
+    }
+    return values;
+}
+
+/* ---- computed values ------------------------------------------------------------------------- */
+
+static const char *find_variable(const void *data, const char *name)
+{
+    for (const Style *s = data; s; s = s->around) {
+        const char *value = s->variables ? g_hash_table_lookup(s->variables, name) : NULL;
+        if (value)
+            return *value ? value : NULL;
+    }
+    return NULL;
+}
+
+/** Sets the custom properties of an element; "" stands for one that is not set. */
+static void set_variables(Style *style, const GArray *values)
+{
+    for (guint i = 0; i < values->len; i++) {
+        const Value *v = &g_array_index(values, Value, i);
+        if (v->property || strcmp(v->text, "inherit") == 0 || strcmp(v->text, "unset") == 0)
+            continue;
+        if (!style->variables)
+            style->variables = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
+        g_hash_table_insert(style->variables, (gpointer)v->name,
+                            g_strdup(strcmp(v->text, "initial") == 0 ? "" : v->text));
+    }
+    for (guint i = 0; i < values->len && style->variables; i++) {
+        const Value *v = &g_array_index(values, Value, i);
+        const char *own = v->property ? NULL : g_hash_table_lookup(style->variables, v->name);
+        if (own && (strstr(own, "var(") || strstr(own, "env("))) {
+            char *text = fl_css_substitute(own, find_variable, style);
+            g_hash_table_insert(style->variables, (gpointer)v->name, text ? text : g_strdup(""));
+        }
+    }
+}
+
+/** What stands for inherit, initial, unset and revert in SVG 1.1; NULL: it is another value. */
+static const char *resolve_keyword(const FlCssProperty *property, const char *text)
+{
+    const bool undone = strcmp(text, "unset") == 0 || g_str_has_prefix(text, "revert");
+    const bool inherits = strcmp(text, "inherit") == 0 || (undone && property->inherited);
+    const bool initial = strcmp(text, "initial") == 0 || (undone && !property->inherited);
+    return inherits ? "inherit" : initial ? (property->initial ? property->initial : "") : NULL;
+}
+
+/** Lengths in units that librsvg knows stay as they are, which keeps percentages exact. */
+static bool is_plain_length(const char *text)
+{
+    static const char *const units[] = {"",   "px", "%",  "em", "ex", "in",
+                                        "cm", "mm", "pt", "pc", NULL};
+    char *end;
+    g_ascii_strtod(text, &end);
+    return end != text && g_strv_contains(units, end);
+}
+
+static double whole_of(const char *name, const FlCssUnits *units)
+{
+    static const char *const across[] = {"x", "width", "cx", "rx", "x1", "x2", NULL};
+    static const char *const down[] = {"y", "height", "cy", "ry", "y1", "y2", NULL};
+    return g_strv_contains(across, name)    ? units->width
+           : g_strv_contains(down, name)    ? units->height
+           : strcmp(name, "font-size") == 0 ? units->font_size
+                                            : hypot(units->width, units->height) / G_SQRT2;
+}
+
+static char *compute_length(const char *name, const char *text, const FlCssUnits *units)
+{
+    double value;
+    if (is_plain_length(text) || !fl_css_number(text, units, whole_of(name, units), &value))
+        return g_strdup(text);
+    return fl_css_number_text(value);
+}
+
+static char *compute_lengths(const char *name, const char *text, const FlCssUnits *units)
+{
+    GString *out = g_string_new(NULL);
+    g_auto(GStrv) comma = fl_css_split(text, ',');
+    for (int i = 0; comma[i]; i++) {
+        g_auto(GStrv) part = fl_css_split(comma[i], ' ');
+        for (int k = 0; part[k]; k++) {
+            g_autofree char *one = compute_length(name, part[k], units);
+            g_string_append_printf(out, "%s%s", out->len ? "," : "", one);
+        }
+    }
+    return g_string_free(out, FALSE);
+}
+
+static char *compute_number(const char *text, const FlCssUnits *units)
+{
+    double value;
+    if (!strchr(text, '('))
+        return g_strdup(text);
+    return fl_css_number(text, units, 1, &value) ? fl_css_number_text(value) : g_strdup(text);
+}
+
+/** The value as SVG 1.1 has it, to be freed; "": the element has none, its attribute included. */
+static char *compute(Cascade *c, const char *name, const FlCssProperty *property, const char *text,
+                     const Style *style)
+{
+    const bool variable = strstr(text, "var(") || strstr(text, "env(");
+    g_autofree char *substituted = variable ? fl_css_substitute(text, find_variable, style) : NULL;
+    const char *value = !variable ? text : substituted ? g_strstrip(substituted) : "unset";
+    if (variable && substituted && !fl_css_is_valid(property, value)) {
+        warn(c, name, value, "is not a value of that property");
+        value = "unset";
+    }
+    const char *keyword = resolve_keyword(property, value);
+    if (keyword)
+        return g_strdup(keyword);
+    char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour(value) : NULL;
+    switch (property->kind) {
+    case FL_CSS_PAINT:
+        return colour ? colour : g_strdup(value);
+    case FL_CSS_LENGTH:
+    case FL_CSS_GEOMETRY:
+        return compute_length(name, value, &style->units);
+    case FL_CSS_LENGTHS:
+        return compute_lengths(name, value, &style->units);
+    case FL_CSS_NUMBER:
+        return compute_number(value, &style->units);
+    default:
+        return g_strdup(value);
+    }
+}
+
+static void set_font_size(Style *style, const char *text, bool root)
+{
+    static const struct {
+        const char *word;
+        double factor; // of 16 px; negative: of the size around
+    } words[] = {{"xx-small", .5625}, {"x-small", .625}, {"small", .8125},
+                 {"medium", 1},       {"large", 1.125},  {"x-large", 1.5},
+                 {"xx-large", 2},     {"larger", -1.2},  {"smaller", -1 / 1.2}};
+    double value = 0;
+    if (fl_css_number(text, &style->units, style->units.font_size, &value) && value > 0)
+        style->units.font_size = value;
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+        if (strcmp(words[i].word, text) == 0)
+            style->units.font_size = words[i].factor > 0
+                                         ? 16 * words[i].factor
+                                         : -words[i].factor * style->units.font_size;
+    if (root)
+        style->units.root_font_size = style->units.font_size;
+}
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+static void set_attribute(xmlNode *node, const char *name, const char *value)
+{
+    if (*value)
+        xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
+    else
+        xmlUnsetProp(node, (const xmlChar *)name);
+}
+
+/** Converts attributes that are properties as well, where librsvg would not understand them. */
+static void compute_attributes(Cascade *c, xmlNode *node, const Style *style)
+{
+    for (xmlAttr *a = node->properties, *next; a; a = next) {
+        next = a->next;
+        const xmlNode *content = a->children;
+        const char *text = content && !content->next && content->type == XML_TEXT_NODE
+                               ? (const char *)content->content
+                               : NULL;
+        const size_t n = text ? strlen(text) : 0;
+        if (n == 0 || a->ns || (!strchr(text, '(') && !g_ascii_isalpha(text[n - 1])))
+            continue;
+        const char *name = (const char *)a->name;
+        const FlCssProperty *property = fl_css_property(name);
+        if (!property || property->kind > FL_CSS_GEOMETRY || property->kind == FL_CSS_TEXT ||
+            (property->kind == FL_CSS_PAINT && !strchr(text, '(')))
+            continue;
+        g_autofree char *trimmed = g_strstrip(g_strdup(text));
+        if (!fl_css_is_valid(property, trimmed))
+            continue; // librsvg decides
+        g_autofree char *value = compute(c, name, property, trimmed, style);
+        if (strcmp(value, trimmed) != 0)
+            set_attribute(node, name, value);
+    }
+}
+
+/** Puts one value into effect: as a declaration, an attribute, or for css_effects to do. */
+static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style, GString *text,
+                  FlCssEffects *effects)
+{
+    g_autofree char *value = compute(c, v->name, v->property, v->text, style);
+    switch (v->property->kind) {
+    case FL_CSS_TRANSFORM:
+    case FL_CSS_RESOLVED:
+        fl_css_effects_set(effects, v->name, g_steal_pointer(&value));
+        break;
+    case FL_CSS_GEOMETRY:
+        if (strcmp(value, "inherit") != 0)
+            set_attribute(node, v->name, strcmp(value, "auto") == 0 ? "" : value);
+        break;
+    default:
+        if (!*value)
+            xmlUnsetProp(node, (const xmlChar *)v->name);
+        else
+            g_string_append_printf(text, "%s%s:%s", text->len ? ";" : "", v->name, value);
+        break;
+    }
+}
+
+static void enter_viewport(Style *style, const xmlNode *node)
+{
+    g_autoptr(xmlChar) box = fl_attribute(node, "viewBox");
+    g_autoptr(xmlChar) width = fl_attribute(node, "width"), height = fl_attribute(node, "height");
+    double v[4];
+    if (box && sscanf((const char *)box, "%lf%*[ ,\t\r\n]%lf%*[ ,\t\r\n]%lf%*[ ,\t\r\n]%lf", &v[0],
+                      &v[1], &v[2], &v[3]) == 4) {
+        style->units.width = v[2], style->units.height = v[3];
+        return;
+    }
+    FlCssUnits *u = &style->units;
+    if (width)
+        fl_css_number((const char *)width, u, u->width, &u->width);
+    if (height)
+        fl_css_number((const char *)height, u, u->height, &u->height);
+}
+
+static void visit(Cascade *c, xmlNode *node, const Style *around)
+{
+    const bool root = !node->parent || node->parent->type != XML_ELEMENT_NODE;
+    g_autoptr(xmlChar) written = fl_attribute(node, "style");
+    g_autoptr(GArray) own = fl_css_declarations(written ? (const char *)written : "");
+    g_autoptr(GArray) values = declared_values(c, node, own);
+    g_auto(FlCssEffects) effects = {0};
+    Style style = {.around = around, .units = around->units};
+    set_variables(&style, values);
+    if (fl_is(node, "svg"))
+        enter_viewport(&style, node);
+    g_autofree char *font_size = fl_property(node, "font-size");
+    for (guint i = 0; i < values->len; i++) {
+        const Value *v = &g_array_index(values, Value, i);
+        if (v->property && strcmp(v->name, "font-size") == 0) {
+            g_free(font_size);
+            font_size = compute(c, v->name, v->property, v->text, &style);
+        }
+    }
+    if (font_size)
+        set_font_size(&style, font_size, root);
+    GString *text = g_string_new(NULL);
+    compute_attributes(c, node, &style);
+    for (guint i = 0; i < values->len; i++)
+        if (g_array_index(values, Value, i).property)
+            apply(c, node, &g_array_index(values, Value, i), &style, text, &effects);
+    if (values->len > 0 || own->len > 0)
+        set_attribute(node, "style", text->str);
+    g_string_free(text, TRUE);
+    for (xmlNode *child = node->children; child && !fl_is(node, "foreignObject");
+         child = child->next)
+        if (child->type == XML_ELEMENT_NODE)
+            visit(c, child, &style);
+    const char *left_out = fl_css_effects_apply(&effects, node, &style.units, &c->n_clips);
+    if (left_out)
+        warn(c, left_out, fl_css_effects_get(&effects, left_out), "cannot be drawn");
+    g_clear_pointer(&style.variables, g_hash_table_unref);
+}
+
+/* ---- the document ---------------------------------------------------------------------------- */
+
+static void index_free(void *data)
+{
+    g_array_unref(data);
+}
+
+/** Sorts rules by what an element must have to match them. */
+static GHashTable *index_rules(const GArray *rules)
+{
+    GHashTable *index = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, index_free);
+    for (guint i = 0; i < rules->len; i++) {
+        const char *key = fl_selector_key(g_array_index(rules, FlCssRule, i).selector);
+        GArray *list = g_hash_table_lookup(index, key);
+        if (!list) {
+            list = g_array_new(FALSE, FALSE, sizeof(guint));
+            g_hash_table_insert(index, (gpointer)key, list);
+        }
+        g_array_append_val(list, i);
+    }
+    return index;
+}
+
+/** The page in px: the size of the file, else that of its viewBox, else a browser's 300 x 150. */
+static FlCssUnits page_units(const xmlNode *root)
+{
+    Style style = {.units = {300, 150, 16, 16, 300, 150}};
+    g_autoptr(xmlChar) width = fl_attribute(root, "width"), height = fl_attribute(root, "height");
+    FlCssUnits *u = &style.units;
+    enter_viewport(&style, root);
+    u->page_width = u->width, u->page_height = u->height;
+    if (width && !strchr((char *)width, '%'))
+        fl_css_number((char *)width, u, 0, &u->page_width);
+    if (height && !strchr((char *)height, '%'))
+        fl_css_number((char *)height, u, 0, &u->page_height);
+    return style.units;
+}
+
+void fl_cascade(xmlDoc *doc, const char *path, int number, GPtrArray *files, FlWarnings *warnings)
+{
+    xmlNode *root = xmlDocGetRootElement(doc);
+    Style page = {.units = page_units(root)};
+    const FlCssPage size = {page.units.page_width, page.units.page_height};
+    g_autoptr(FlCssSheet) sheet = fl_css_sheet_take(doc, path, number, size, files, warnings);
+    g_autoptr(GHashTable) rules = index_rules(fl_css_sheet_rules(sheet));
+    g_autoptr(GHashTable) said = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    Cascade c = {doc, path, number, warnings, sheet, rules, {0}, said, 0};
+    const GArray *initial = fl_css_sheet_initial(sheet);
+    for (guint i = 0; i < initial->len; i++) {
+        const FlCssDeclaration *d = &g_array_index(initial, FlCssDeclaration, i);
+        if (!page.variables)
+            page.variables = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
+        g_hash_table_insert(page.variables, (gpointer)d->name, g_strdup(d->value));
+    }
+    visit(&c, root, &page);
+    fl_css_keep_strokes(root, &page.units);
+    if (c.work.steps > FL_SELECTOR_STEPS)
+        fl_warnings_add(warnings, path, number, NULL,
+                        "its selectors take too long to match; the rest of the styles is left out");
+    g_clear_pointer(&page.variables, g_hash_table_unref);
+}

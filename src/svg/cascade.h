@@ -1,0 +1,17 @@
+/* The cascade [CSS Cascade 5]: style sheets, properties and units become plain SVG 1.1. */
+#ifndef FLUIDY_SVG_CASCADE_H
+#define FLUIDY_SVG_CASCADE_H
+
+#include "svg/document.h"
+
+/**
+ * Computes the style of every element as a browser does and writes it into the document, so that
+ * librsvg and all other readers see the same values: declarations in `style`, transforms,
+ * geometry and path data as attributes, clip shapes as <clipPath>. No style sheet remains.
+ *
+ * The real paths of imported sheets are added to `files`. Each kind of declaration that is left
+ * out causes one warning.
+ */
+void fl_cascade(xmlDoc *doc, const char *path, int number, GPtrArray *files, FlWarnings *warnings);
+
+#endif

@@ -1,0 +1,379 @@
+#include "svg/css_colour.h"
+
+#include "svg/css_value.h"
+#include "svg/transform.h"
+#include <math.h>
+#include <string.h>
+
+#define MOST_NESTED 8 // color-mix() in color-mix()
+
+/** sRGB, not cut, and opacity; 0 … 1. */
+typedef struct Rgba {
+    double c[3], alpha;
+} Rgba;
+
+typedef double Matrix[3][3];
+
+static void multiply(const Matrix m, const double in[3], double out[3])
+{
+    for (int i = 0; i < 3; i++)
+        out[i] = m[i][0] * in[0] + m[i][1] * in[1] + m[i][2] * in[2];
+}
+
+static double encode(double linear)
+{
+    const double x = fabs(linear);
+    return copysign(x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055, linear);
+}
+
+static double decode(double encoded)
+{
+    const double x = fabs(encoded);
+    return copysign(x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4), encoded);
+}
+
+/* ---- spaces [CSS Color 4 §18] ---------------------------------------------------------------- */
+
+/** CIE XYZ of D65 to linear sRGB. */
+static const Matrix xyz_to_rgb = {{3.2409699419045213, -1.5373831775700935, -0.4986107602930033},
+                                  {-0.9692436362808798, 1.8759675015077206, 0.0415550574071756},
+                                  {0.0556300796969937, -0.2039769588889765, 1.0569715142428786}};
+
+static const Matrix d50_to_d65 = {{0.9554734527042182, -0.0230985368742614, 0.0632593086610217},
+                                  {-0.0283697069632081, 1.0099954580058226, 0.0210413989669430},
+                                  {0.0123140016883199, -0.0205076964334771, 1.3303659366080753}};
+
+static void from_xyz(const double xyz[3], double rgb[3])
+{
+    multiply(xyz_to_rgb, xyz, rgb);
+    for (int i = 0; i < 3; i++)
+        rgb[i] = encode(rgb[i]);
+}
+
+static void from_oklab(const double lab[3], double rgb[3])
+{
+    static const Matrix to_lms = {{1, 0.3963377773761749, 0.2158037573099136},
+                                  {1, -0.1055613458156586, -0.0638541728258133},
+                                  {1, -0.0894841775298119, -1.2914855480194092}};
+    static const Matrix to_rgb = {{4.0767416613479942, -3.3077115904081933, 0.2309699287294279},
+                                  {-1.2684380040921763, 2.6097574006633715, -0.3413193963102197},
+                                  {-0.0041960865418371, -0.7034186144594493, 1.7076147009309444}};
+    double lms[3], linear[3];
+    multiply(to_lms, lab, lms);
+    for (int i = 0; i < 3; i++)
+        lms[i] = lms[i] * lms[i] * lms[i];
+    multiply(to_rgb, lms, linear);
+    for (int i = 0; i < 3; i++)
+        rgb[i] = encode(linear[i]);
+}
+
+static void to_oklab(const double rgb[3], double lab[3])
+{
+    static const Matrix to_lms = {{0.4122214694707629, 0.5363325372617349, 0.0514459932675022},
+                                  {0.2119034958178251, 0.6806995506452344, 0.1073969535369405},
+                                  {0.0883024591900564, 0.2817188391361215, 0.6299787016738222}};
+    static const Matrix to_lab = {{0.2104542683093140, 0.7936177747023054, -0.0040720430116193},
+                                  {1.9779985324311684, -2.4285922420485799, 0.4505937096174110},
+                                  {0.0259040424655478, 0.7827717124575296, -0.8086757549230774}};
+    double linear[3], lms[3];
+    for (int i = 0; i < 3; i++)
+        linear[i] = decode(rgb[i]);
+    multiply(to_lms, linear, lms);
+    for (int i = 0; i < 3; i++)
+        lms[i] = cbrt(lms[i]);
+    multiply(to_lab, lms, lab);
+}
+
+static void from_lab(const double lab[3], double rgb[3])
+{
+    static const double white[3] = {0.9642956764295677, 1, 0.8251046025104602};
+    const double fy = (lab[0] + 16) / 116, f[3] = {fy + lab[1] / 500, fy, fy - lab[2] / 200};
+    double d50[3], d65[3];
+    for (int i = 0; i < 3; i++) {
+        const double cube = f[i] * f[i] * f[i];
+        d50[i] = white[i] * (cube > 216.0 / 24389 ? cube : (116 * f[i] - 16) * 27 / 24389);
+    }
+    multiply(d50_to_d65, d50, d65);
+    from_xyz(d65, rgb);
+}
+
+/** Lightness, chroma, hue in degrees to lightness and two opposing axes. */
+static void from_polar(const double lch[3], double lab[3])
+{
+    double s, c;
+    fl_sincos_degrees(lch[2], &s, &c);
+    lab[0] = lch[0], lab[1] = lch[1] * c, lab[2] = lch[1] * s;
+}
+
+/** Hue in degrees, saturation and lightness 0 … 1. */
+static void from_hsl(const double hsl[3], double rgb[3])
+{
+    const double a = hsl[1] * MIN(hsl[2], 1 - hsl[2]);
+    for (int i = 0; i < 3; i++) {
+        const double k = fmod(fmod((i == 0 ? 0 : i == 1 ? 8 : 4) + hsl[0] / 30, 12) + 12, 12);
+        rgb[i] = hsl[2] - a * MAX(-1, MIN(MIN(k - 3, 9 - k), 1));
+    }
+}
+
+static void from_hwb(const double hwb[3], double rgb[3])
+{
+    const double sum = hwb[1] + hwb[2], pure[3] = {hwb[0], 1, 0.5};
+    from_hsl(pure, rgb);
+    for (int i = 0; i < 3; i++)
+        rgb[i] = sum >= 1 ? hwb[1] / sum : rgb[i] * (1 - sum) + hwb[1];
+}
+
+/** A space of color(); false if it is unknown. */
+static bool from_space(const char *name, const double v[3], double rgb[3])
+{
+    static const Matrix p3 = {{0.4865709486482162, 0.2656676931690931, 0.1982172852343625},
+                              {0.2289745640697488, 0.6917385218365064, 0.0792869140937450},
+                              {0, 0.0451133818589026, 1.0439443689009760}};
+    static const Matrix adobe = {{0.5766690429101305, 0.1855582379065463, 0.1882286462349947},
+                                 {0.2973449752505360, 0.6273635662554661, 0.0752914584939978},
+                                 {0.0270313613864123, 0.0706888525358272, 0.9913375368376388}};
+    static const Matrix rec2020 = {{0.6369580483012914, 0.1446169035862083, 0.1688809751641721},
+                                   {0.2627002120112671, 0.6779980715188708, 0.0593017164698620},
+                                   {0, 0.0280726930490874, 1.0609850577107910}};
+    static const Matrix prophoto = {{0.7977666449006423, 0.1351812974005331, 0.0313477341283922},
+                                    {0.2880748288194013, 0.7118352342418731, 0.0000899369387256},
+                                    {0, 0, 0.8251046025104602}};
+    double linear[3], xyz[3], d65[3];
+    for (int i = 0; i < 3; i++)
+        linear[i] = decode(v[i]);
+    if (strcmp(name, "srgb") == 0) {
+        memcpy(rgb, v, 3 * sizeof *v);
+        return true;
+    }
+    if (strcmp(name, "srgb-linear") == 0) {
+        for (int i = 0; i < 3; i++)
+            rgb[i] = encode(v[i]);
+        return true;
+    }
+    const double gamma = strcmp(name, "a98-rgb") == 0        ? 563.0 / 256
+                         : strcmp(name, "prophoto-rgb") == 0 ? 1.8
+                                                             : 0;
+    for (int i = 0; i < 3 && gamma > 0; i++)
+        linear[i] = copysign(pow(fabs(v[i]), gamma), v[i]);
+    if (strcmp(name, "display-p3") == 0)
+        multiply(p3, linear, xyz);
+    else if (strcmp(name, "a98-rgb") == 0)
+        multiply(adobe, linear, xyz);
+    else if (strcmp(name, "rec2020") == 0)
+        multiply(rec2020, linear, xyz);
+    else if (strcmp(name, "prophoto-rgb") == 0) {
+        multiply(prophoto, linear, d65);
+        multiply(d50_to_d65, d65, xyz);
+    } else if (strcmp(name, "xyz-d50") == 0)
+        multiply(d50_to_d65, v, xyz);
+    else if (strcmp(name, "xyz") == 0 || strcmp(name, "xyz-d65") == 0)
+        memcpy(xyz, v, sizeof xyz);
+    else
+        return false;
+    from_xyz(xyz, rgb);
+    return true;
+}
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+static bool read_colour(const char *text, Rgba *colour, int depth);
+
+/** Reads a component: a number, a percentage of `whole`, an angle, or none. */
+static bool read_component(const char *text, double whole, double *value)
+{
+    const FlCssUnits none = {0};
+    *value = 0;
+    return g_ascii_strcasecmp(text, "none") == 0 || fl_css_number(text, &none, whole, value);
+}
+
+/** Splits "a b c / alpha" or "a, b, c, alpha". Returns: the components; *alpha is 1 without one. */
+static char **components(const char *arguments, double *alpha)
+{
+    const char *slash = fl_css_find(arguments, "/");
+    g_autofree char *before = g_strndup(arguments, (gsize)(slash - arguments));
+    const bool commas = *fl_css_find(before, ",") == ',';
+    char **part = fl_css_split(before, commas ? ',' : ' ');
+    g_autofree char *after = *slash ? g_strstrip(g_strdup(slash + 1)) : NULL;
+    const char *text = after ? after : commas && g_strv_length(part) == 4 ? part[3] : NULL;
+    *alpha = 1;
+    if (text && !read_component(text, 1, alpha)) {
+        g_strfreev(part);
+        return NULL;
+    }
+    *alpha = CLAMP(*alpha, 0, 1);
+    return part;
+}
+
+/** One of the functions whose components are three numbers; false if it is another one. */
+static bool from_function(const char *name, char **part, Rgba *colour)
+{
+    static const struct {
+        const char *name;
+        double whole[3];
+    } known[] = {{"rgb", {255, 255, 255}},  {"rgba", {255, 255, 255}}, {"hsl", {360, 100, 100}},
+                 {"hsla", {360, 100, 100}}, {"hwb", {360, 100, 100}},  {"lab", {100, 125, 125}},
+                 {"lch", {100, 150, 360}},  {"oklab", {1, 0.4, 0.4}},  {"oklch", {1, 0.4, 360}}};
+    double v[3], lab[3];
+    size_t k = 0;
+    while (k < G_N_ELEMENTS(known) && strcmp(known[k].name, name) != 0)
+        k++;
+    if (k == G_N_ELEMENTS(known) || g_strv_length(part) < 3)
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (!read_component(part[i], known[k].whole[i], &v[i]))
+            return false;
+    if (name[0] == 'r')
+        for (int i = 0; i < 3; i++)
+            colour->c[i] = v[i] / 255;
+    else if (name[0] == 'h') {
+        const double h[3] = {v[0], CLAMP(v[1] / 100, 0, 1), CLAMP(v[2] / 100, 0, 1)};
+        (name[1] == 's' ? from_hsl : from_hwb)(h, colour->c);
+    } else {
+        const bool polar = g_str_has_suffix(name, "ch");
+        if (polar)
+            from_polar(v, lab);
+        (name[0] == 'o' ? from_oklab : from_lab)(polar ? lab : v, colour->c);
+    }
+    return true;
+}
+
+static bool from_color(char **part, Rgba *colour)
+{
+    double v[3] = {0};
+    if (g_strv_length(part) != 4)
+        return false;
+    for (int i = 0; i < 3; i++)
+        if (!read_component(part[i + 1], 1, &v[i]))
+            return false;
+    g_autofree char *space = g_ascii_strdown(part[0], -1);
+    return from_space(space, v, colour->c);
+}
+
+/** Reads "red 30%" of color-mix(); *share stays as it is without a percentage. */
+static bool read_share(const char *text, Rgba *colour, double *share, int depth)
+{
+    g_auto(GStrv) part = fl_css_split(text, ' ');
+    const guint n = g_strv_length(part);
+    if (n < 1 || n > 2)
+        return false;
+    const bool leads = n == 2 && g_str_has_suffix(part[0], "%");
+    if (n == 2 && !read_component(part[leads ? 0 : 1], 1, share))
+        return false;
+    return read_colour(part[leads ? 1 : 0], colour, depth + 1);
+}
+
+/** Mixes in sRGB, linear sRGB or Oklab, which stands for all other spaces. */
+static bool from_mix(const char *arguments, Rgba *colour, int depth)
+{
+    g_auto(GStrv) part = fl_css_split(arguments, ',');
+    Rgba one, two;
+    double a = -1, b = -1, p[3], q[3];
+    if (g_strv_length(part) != 3 || !g_str_has_prefix(part[0], "in ") ||
+        !read_share(part[1], &one, &a, depth) || !read_share(part[2], &two, &b, depth))
+        return false;
+    a = a < 0 ? (b < 0 ? 0.5 : 1 - b) : a, b = b < 0 ? 1 - a : b;
+    if (!(a + b > 0))
+        return false;
+    const bool plain = g_str_has_prefix(part[0], "in srgb") ||
+                       g_str_has_prefix(part[0], "in hsl") || g_str_has_prefix(part[0], "in hwb");
+    const bool linear = g_str_has_prefix(part[0], "in srgb-linear");
+    const double total = a + b, wa = a / total * one.alpha, wb = b / total * two.alpha;
+    const double alpha = wa + wb;
+    for (int i = 0; i < 3; i++)
+        p[i] = linear ? decode(one.c[i]) : one.c[i], q[i] = linear ? decode(two.c[i]) : two.c[i];
+    if (!plain)
+        to_oklab(one.c, p), to_oklab(two.c, q);
+    for (int i = 0; i < 3; i++)
+        p[i] = alpha > 0 ? (p[i] * wa + q[i] * wb) / alpha : 0;
+    if (!plain)
+        from_oklab(p, colour->c);
+    else
+        for (int i = 0; i < 3; i++)
+            colour->c[i] = linear ? encode(p[i]) : p[i];
+    colour->alpha = alpha * MIN(total, 1);
+    return true;
+}
+
+static bool from_hex(const char *text, Rgba *colour)
+{
+    const size_t n = strlen(text);
+    if ((n != 3 && n != 4 && n != 6 && n != 8) || strspn(text, "0123456789abcdefABCDEF") != n)
+        return false;
+    const size_t digits = n > 4 ? 2 : 1;
+    double v[4] = {0, 0, 0, 1};
+    for (size_t i = 0; i < n / digits; i++) {
+        const int high = g_ascii_xdigit_value(text[i * digits]);
+        const int low = g_ascii_xdigit_value(text[i * digits + digits - 1]);
+        v[i] = (high * 16 + low) / 255.0;
+    }
+    *colour = (Rgba){{v[0], v[1], v[2]}, v[3]};
+    return true;
+}
+
+static bool from_name(const char *text, Rgba *colour)
+{
+    static const struct {
+        const char *name, *hex;
+    } known[] = {
+#define NAMED(name, hex) {#name, hex},
+#include "svg/css_colour_names.def"
+#undef NAMED
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        if (g_ascii_strcasecmp(text, known[i].name) == 0)
+            return from_hex(known[i].hex, colour);
+    return false;
+}
+
+static bool read_colour(const char *text, Rgba *colour, int depth)
+{
+    g_autofree char *name = NULL, *arguments = NULL;
+    colour->alpha = 1;
+    if (depth > MOST_NESTED)
+        return false;
+    if (*text == '#')
+        return from_hex(text + 1, colour);
+    if (!fl_css_call(text, &name, &arguments))
+        return from_name(text, colour);
+    if (strcmp(name, "color-mix") == 0)
+        return from_mix(arguments, colour, depth);
+    g_auto(GStrv) schemes = strcmp(name, "light-dark") == 0 ? fl_css_split(arguments, ',') : NULL;
+    if (schemes)
+        return schemes[0] && read_colour(schemes[0], colour, depth + 1);
+    g_auto(GStrv) part = components(arguments, &colour->alpha);
+    return part && (strcmp(name, "color") == 0 ? from_color(part, colour)
+                                               : from_function(name, part, colour));
+}
+
+static char *text_of(const Rgba *colour)
+{
+    int v[3];
+    for (int i = 0; i < 3; i++)
+        v[i] = (int)floor(255 * CLAMP(colour->c[i], 0, 1) + 0.5);
+    if (colour->alpha >= 1)
+        return g_strdup_printf("rgb(%d, %d, %d)", v[0], v[1], v[2]);
+    g_autofree char *alpha = fl_css_number_text(colour->alpha);
+    return g_strdup_printf("rgba(%d, %d, %d, %s)", v[0], v[1], v[2], alpha);
+}
+
+char *fl_css_colour(const char *text)
+{
+    static const char *const words[] = {"none",         "currentcolor",   "transparent",
+                                        "context-fill", "context-stroke", NULL};
+    g_autofree char *bare = g_strstrip(g_strdup(text));
+    g_autofree char *lower = g_ascii_strdown(bare, -1);
+    Rgba colour;
+    if (g_strv_contains(words, lower))
+        return g_strdup(strcmp(lower, "currentcolor") == 0 ? bare : lower);
+    if (g_str_has_prefix(lower, "url(")) {
+        const char *end = fl_css_find(bare + 4, ")");
+        const char *rest = *end ? fl_css_space(end + 1) : end;
+        g_autofree char *fallback = *rest ? fl_css_colour(rest) : NULL;
+        return *rest && !fallback ? NULL
+                                  : g_strdup_printf("%.*s)%s%s", (int)(end - bare), bare,
+                                                    fallback ? " " : "", fallback ? fallback : "");
+    }
+    if (!read_colour(bare, &colour, 0))
+        return NULL;
+    return *bare == '#' ? g_steal_pointer(&bare) : text_of(&colour);
+}

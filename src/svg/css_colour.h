@@ -1,0 +1,16 @@
+/* Colours of CSS [CSS Color 4 and 5], as sRGB. */
+#ifndef FLUIDY_SVG_CSS_COLOUR_H
+#define FLUIDY_SVG_CSS_COLOUR_H
+
+#include "svg/css_scan.h"
+
+/**
+ * A colour that librsvg draws as a browser does: #rrggbb and its like as they are, all others as
+ * "rgb(r, g, b)" or "rgba(…)", cut to what sRGB can show. "none", "currentColor" and url(…) with a
+ * colour after it are paints as well.
+ *
+ * Returns: the text, to be freed; NULL if it is no colour or paint.
+ */
+char *fl_css_colour(const char *text);
+
+#endif

@@ -1,0 +1,191 @@
+#include "svg/css_condition.h"
+
+#include "svg/css_properties.h"
+#include "svg/css_scan.h"
+#include "svg/css_selector.h"
+#include "svg/css_value.h"
+#include <string.h>
+
+/** Tests what stands between a pair of parentheses, or a word. */
+typedef bool Test(const void *data, const char *text);
+
+/** Evaluates "a and b", "a or b", "not a" and parentheses; `test` decides the innermost ones. */
+static bool evaluate(const char *text, Test *test, const void *data, int depth)
+{
+    g_auto(GStrv) word = fl_css_split(text, ' ');
+    bool value = true, negated = false, or = false, any = false;
+    if (depth > 32)
+        return false;
+    for (int i = 0; word[i]; i++) {
+        const bool first = i == 0;
+        if (g_ascii_strcasecmp(word[i], "not") == 0) {
+            negated = !negated;
+            continue;
+        }
+        if (g_ascii_strcasecmp(word[i], "and") == 0 || g_ascii_strcasecmp(word[i], "only") == 0)
+            continue;
+        if (g_ascii_strcasecmp(word[i], "or") == 0) {
+            or = true;
+            continue;
+        }
+        const size_t n = strlen(word[i]);
+        g_autofree char *inside = word[i][0] == '(' && word[i][n - 1] == ')'
+                                      ? g_strstrip(g_strndup(word[i] + 1, n - 2))
+                                      : NULL;
+        const bool nested =
+            inside && (*inside == '(' || g_ascii_strncasecmp(inside, "not ", 4) == 0);
+        bool one = nested ? evaluate(inside, test, data, depth + 1)
+                          : test(data, inside ? inside : word[i]);
+        one = one != negated, negated = false;
+        value = first || !any ? one : or ? value || one : value && one;
+        any = true, or = false;
+    }
+    return value;
+}
+
+/* ---- @media ---------------------------------------------------------------------------------- */
+
+/** Compares a length or ratio of the page: "width: 500px", "min-width: 500px", "width >= 500px". */
+static bool compares(double have, const char *relation, double wanted)
+{
+    if (strcmp(relation, "min") == 0 || strcmp(relation, ">=") == 0)
+        return have >= wanted;
+    if (strcmp(relation, "max") == 0 || strcmp(relation, "<=") == 0)
+        return have <= wanted;
+    if (strcmp(relation, ">") == 0)
+        return have > wanted;
+    if (strcmp(relation, "<") == 0)
+        return have < wanted;
+    return have == wanted;
+}
+
+static bool is_size(const FlCssPage *page, const char *name, const char *relation,
+                    const char *value)
+{
+    const FlCssUnits units = {.width = page->width,
+                              .height = page->height,
+                              .font_size = 16,
+                              .root_font_size = 16,
+                              .page_width = page->width,
+                              .page_height = page->height};
+    double wanted = 0;
+    const bool width = strcmp(name, "width") == 0 || strcmp(name, "device-width") == 0;
+    const bool height = strcmp(name, "height") == 0 || strcmp(name, "device-height") == 0;
+    if (width || height)
+        return fl_css_number(value, &units, 0, &wanted) &&
+               compares(width ? page->width : page->height, relation, wanted);
+    if (strcmp(name, "aspect-ratio") == 0 && page->height > 0) {
+        char *end;
+        wanted = g_ascii_strtod(value, &end);
+        end = (char *)fl_css_space(end);
+        wanted = *end == '/' ? wanted / g_ascii_strtod(end + 1, NULL) : wanted;
+        return compares(page->width / page->height, relation, wanted);
+    }
+    return false;
+}
+
+/** A feature without a size: a colour screen in a light scheme, with a mouse. */
+static bool is_word(const FlCssPage *page, const char *name, const char *value)
+{
+    static const char *const have[] = {"prefers-color-scheme:light",
+                                       "prefers-reduced-motion:no-preference",
+                                       "prefers-contrast:no-preference",
+                                       "prefers-reduced-transparency:no-preference",
+                                       "hover:hover",
+                                       "any-hover:hover",
+                                       "pointer:fine",
+                                       "any-pointer:fine",
+                                       "scripting:none",
+                                       "color-gamut:srgb",
+                                       "dynamic-range:standard",
+                                       "forced-colors:none",
+                                       "update:fast",
+                                       "grid:0",
+                                       "display-mode:browser",
+                                       "inverted-colors:none",
+                                       "resolution:1dppx",
+                                       "min-resolution:1dppx",
+                                       "max-resolution:1dppx",
+                                       "scan:progressive",
+                                       NULL};
+    g_autofree char *pair = g_strdup_printf("%s:%s", name, value);
+    if (strcmp(name, "orientation") == 0)
+        return strcmp(value, page->width > page->height ? "landscape" : "portrait") == 0;
+    return g_strv_contains(have, pair);
+}
+
+static bool has_feature(const FlCssPage *page, const char *text)
+{
+    static const char *const flags[] = {"color", "hover",  "any-hover",   "pointer", "any-pointer",
+                                        "width", "height", "color-gamut", "update",  NULL};
+    const char *colon = strchr(text, ':');
+    const char *sign = strpbrk(text, "<>=");
+    if (!colon && !sign)
+        return g_strv_contains(flags, text);
+    const char *at = colon ? colon : sign;
+    g_autofree char *name = g_strstrip(g_strndup(text, (gsize)(at - text)));
+    if (colon) {
+        g_autofree char *value = g_strstrip(g_strdup(colon + 1));
+        const char *bare =
+            g_str_has_prefix(name, "min-") || g_str_has_prefix(name, "max-") ? name + 4 : name;
+        g_autofree char *relation = g_strndup(name, bare == name ? 0 : 3);
+        return is_size(page, bare, relation, value) || is_word(page, name, value);
+    }
+    const size_t n = strspn(sign, "<>=");
+    g_autofree char *relation = g_strndup(sign, n);
+    g_autofree char *value = g_strstrip(g_strdup(sign + n));
+    if (g_ascii_isalpha(*name))
+        return is_size(page, name, relation, value);
+    // "400px <= width <= 700px"
+    static const char *const turned[][2] = {
+        {"<", ">"}, {"<=", ">="}, {">", "<"}, {">=", "<="}, {"=", "="}};
+    const char *rest = strpbrk(value, "<>=");
+    g_autofree char *middle =
+        g_strstrip(g_strndup(value, rest ? (gsize)(rest - value) : strlen(value)));
+    g_autofree char *second = rest ? g_strconcat(middle, rest, NULL) : NULL;
+    for (size_t i = 0; i < G_N_ELEMENTS(turned); i++)
+        if (strcmp(relation, turned[i][0]) == 0)
+            return is_size(page, middle, turned[i][1], name) &&
+                   (!second || has_feature(page, second));
+    return false;
+}
+
+static bool test_media(const void *data, const char *text)
+{
+    g_autofree char *lower = g_ascii_strdown(text, -1);
+    return strcmp(lower, "all") == 0 || strcmp(lower, "screen") == 0 || has_feature(data, lower);
+}
+
+bool fl_css_media_matches(const char *query, const FlCssPage *page)
+{
+    g_auto(GStrv) alternative = fl_css_split(query, ',');
+    bool matches = !alternative[0]; // without a condition
+    for (int i = 0; alternative[i] && !matches; i++)
+        matches = evaluate(alternative[i], test_media, page, 0);
+    return matches;
+}
+
+/* ---- @supports ------------------------------------------------------------------------------- */
+
+static bool test_support(const void *data, const char *text)
+{
+    (void)data;
+    g_autofree char *name = NULL, *arguments = NULL;
+    if (fl_css_call(text, &name, &arguments)) {
+        g_autoptr(GPtrArray) list =
+            strcmp(name, "selector") == 0 ? fl_selectors_parse(arguments) : NULL;
+        return list != NULL;
+    }
+    const char *colon = strchr(text, ':');
+    g_autofree char *property =
+        colon ? g_ascii_strdown(text, (gssize)(colon - text)) : g_strdup("");
+    const FlCssProperty *known = fl_css_property(g_strstrip(property));
+    return colon &&
+           (g_str_has_prefix(property, "--") || (known && known->kind != FL_CSS_IGNORED &&
+                                                 fl_css_is_valid(known, fl_css_space(colon + 1))));
+}
+
+bool fl_css_supports(const char *condition)
+{
+    return evaluate(condition, test_support, NULL, 0);
+}

@@ -1,0 +1,13 @@
+/* The conditions of @media [Media Queries 4] and @supports [CSS Conditional 4]. */
+#ifndef FLUIDY_SVG_CSS_CONDITION_H
+#define FLUIDY_SVG_CSS_CONDITION_H
+
+#include "svg/css_sheet.h"
+
+/** Returns: true if a light colour screen that shows the page matches a list of queries. */
+bool fl_css_media_matches(const char *query, const FlCssPage *page);
+
+/** Returns: true if the condition of an @supports holds for this program. */
+bool fl_css_supports(const char *condition);
+
+#endif

@@ -1,0 +1,394 @@
+#include "svg/css_effects.h"
+
+#include "svg/css_colour.h"
+#include "svg/path_data.h"
+#include <math.h>
+#include <string.h>
+
+void fl_css_effects_set(FlCssEffects *effects, const char *name, char *value)
+{
+    if (!effects->value)
+        effects->value = g_hash_table_new_full(g_str_hash, g_str_equal, NULL, g_free);
+    g_hash_table_insert(effects->value, (gpointer)name, value);
+}
+
+const char *fl_css_effects_get(const FlCssEffects *effects, const char *name)
+{
+    return effects->value ? g_hash_table_lookup(effects->value, name) : NULL;
+}
+
+void fl_css_effects_clear(FlCssEffects *effects)
+{
+    g_clear_pointer(&effects->value, g_hash_table_unref);
+}
+
+/** A value that is neither missing nor "none". */
+static const char *value_of(const FlCssEffects *effects, const char *name)
+{
+    const char *value = fl_css_effects_get(effects, name);
+    return value && *value && strcmp(value, "none") != 0 ? value : NULL;
+}
+
+/** A property, or else the attribute of that name; to be freed. */
+static char *value_or_attribute(const FlCssEffects *effects, const xmlNode *node, const char *name)
+{
+    const char *value = fl_css_effects_get(effects, name);
+    g_autoptr(xmlChar) attribute = value ? NULL : fl_attribute(node, name);
+    return value && *value ? g_strdup(value) : attribute ? g_strdup((char *)attribute) : NULL;
+}
+
+static void set_attribute(xmlNode *node, const char *name, const char *value)
+{
+    xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)value);
+}
+
+static void set_matrix(xmlNode *node, const FlAffine *m)
+{
+    const double v[] = {m->xx, m->yx, m->xy, m->yy, m->x0, m->y0};
+    GString *text = g_string_new("matrix(");
+    for (int i = 0; i < 6; i++) {
+        g_autofree char *number = fl_css_number_text(v[i]);
+        g_string_append_printf(text, "%s%s", i ? " " : "", number);
+    }
+    g_string_append_c(text, ')');
+    set_attribute(node, "transform", text->str);
+    g_string_free(text, TRUE);
+}
+
+/* ---- transforms ------------------------------------------------------------------------------ */
+
+/** The box that percentages and the origin refer to [CSS Transforms 1 §5]. */
+static FlCssBox reference_box(const FlCssEffects *effects, const xmlNode *node,
+                              const FlCssUnits *units)
+{
+    static const char *const own[] = {"fill-box", "content-box", "stroke-box", "border-box", NULL};
+    g_autofree char *kind = value_or_attribute(effects, node, "transform-box");
+    FlCssBox box = {0, 0, units->width, units->height};
+    if (kind && g_strv_contains(own, kind))
+        fl_css_fill_box(node, units, &box);
+    return box;
+}
+
+static void multiply(FlAffine *all, const FlAffine *inner)
+{
+    *all = fl_affine_multiply(all, inner);
+}
+
+/** Multiplies by one of the properties translate, rotate and scale; false if it cannot be read. */
+static bool multiply_property(FlAffine *all, const char *function, const char *value,
+                              const FlCssUnits *units)
+{
+    if (!value)
+        return true;
+    g_auto(GStrv) part = fl_css_split(value, ' ');
+    const guint n = g_strv_length(part);
+    FlAffine one;
+    g_autofree char *text = NULL;
+    if (strcmp(function, "rotate") == 0) {
+        const bool axis = n == 2 && strchr("xyXY", *part[0]) && !part[0][1];
+        text = n == 4 ? g_strdup_printf("rotate3d(%s,%s,%s,%s)", part[0], part[1], part[2], part[3])
+               : axis ? g_strdup_printf("rotate%c(%s)", *part[0], part[1])
+                      : g_strdup_printf("rotate(%s)", part[n - 1]);
+    } else {
+        text = g_strdup_printf("%s(%s%s%s)", function, part[0], n > 1 ? "," : "",
+                               n > 1 ? part[1] : "");
+    }
+    if (!fl_affine_parse_css(text, units, &one))
+        return false;
+    multiply(all, &one);
+    return true;
+}
+
+/** Multiplies by the place on offset-path [Motion Path 1]; false if it cannot be read. */
+static bool multiply_offset(FlAffine *all, const FlCssEffects *effects, const FlCssUnits *units,
+                            FlPoint origin)
+{
+    const char *path = value_of(effects, "offset-path");
+    const char *distance = fl_css_effects_get(effects, "offset-distance");
+    const char *rotate = fl_css_effects_get(effects, "offset-rotate");
+    const FlCssBox page = {0, 0, units->width, units->height};
+    double direction = 0, angle = 0;
+    bool evenodd;
+    FlPoint at;
+    if (!path)
+        return true;
+    g_autofree char *d = fl_css_basic_shape(path, units, page, &evenodd);
+    if (!d || !fl_css_place_on_path(d, distance ? distance : "0", units, &at, &direction))
+        return false;
+    g_auto(GStrv) part = fl_css_split(rotate ? rotate : "auto", ' ');
+    bool follows = false;
+    for (int i = 0; part[i]; i++) {
+        const bool reverse = strcmp(part[i], "reverse") == 0;
+        double extra = reverse ? 180 : 0;
+        if (reverse || strcmp(part[i], "auto") == 0)
+            follows = true;
+        else if (!fl_css_number(part[i], units, 360, &extra))
+            return false;
+        angle += extra;
+    }
+    const FlAffine move = {1, 0, 0, 1, at.x - origin.x, at.y - origin.y};
+    const FlAffine turn = fl_affine_rotation(angle + (follows ? direction : 0));
+    multiply(all, &move);
+    multiply(all, &turn);
+    return true;
+}
+
+/**
+ * Makes one attribute of all that moves an element [CSS Transforms 2 §6]. Returns: NULL, or the
+ * name of what cannot be read.
+ */
+static const char *apply_transform(const FlCssEffects *effects, xmlNode *node,
+                                   const FlCssUnits *units)
+{
+    const char *css = fl_css_effects_get(effects, "transform");
+    g_autofree char *origin_text = value_or_attribute(effects, node, "transform-origin");
+    g_autoptr(xmlChar) attribute = css ? NULL : fl_attribute(node, "transform");
+    const char *translate = value_of(effects, "translate"), *rotate = value_of(effects, "rotate");
+    const char *scale = value_of(effects, "scale");
+    const bool moves = css || translate || rotate || scale || value_of(effects, "offset-path") ||
+                       (attribute && origin_text);
+    if (!moves)
+        return NULL;
+    const FlCssBox box = reference_box(effects, node, units);
+    FlCssUnits in_box = *units;
+    in_box.width = box.width, in_box.height = box.height;
+    FlPoint origin = {box.x, box.y};
+    if (origin_text && !fl_css_position(origin_text, &in_box, box, &origin))
+        return "transform-origin";
+    FlAffine all = {1, 0, 0, 1, origin.x, origin.y}, own = FL_AFFINE_NONE;
+    const FlAffine back = {1, 0, 0, 1, -origin.x, -origin.y};
+    if (attribute && !fl_affine_parse((const char *)attribute, &own))
+        return NULL; // librsvg decides
+    if (css && *css && !fl_affine_parse_css(css, &in_box, &own))
+        return "transform";
+    if (!multiply_property(&all, "translate", translate, &in_box))
+        return "translate";
+    if (!multiply_property(&all, "rotate", rotate, &in_box))
+        return "rotate";
+    if (!multiply_property(&all, "scale", scale, &in_box))
+        return "scale";
+    if (!multiply_offset(&all, effects, units, origin))
+        return "offset-path";
+    multiply(&all, &own);
+    multiply(&all, &back);
+    set_matrix(node, &all);
+    return NULL;
+}
+
+/* ---- clips, backgrounds, dashes -------------------------------------------------------------- */
+
+static xmlNode *add_child(xmlNode *parent, const char *name)
+{
+    return xmlNewChild(parent, parent->ns, (const xmlChar *)name, NULL);
+}
+
+/** Makes a <clipPath> at the end of the document, where it moves no other element's place. */
+static void add_clip(xmlNode *node, const char *d, bool evenodd, int *n_clips)
+{
+    g_autofree char *id = g_strdup_printf("fl-clip-%d", (*n_clips)++);
+    g_autofree char *declaration = g_strdup_printf("clip-path:url(#%s)", id);
+    xmlNode *clip = add_child(xmlDocGetRootElement(node->doc), "clipPath");
+    xmlNode *path = add_child(clip, "path");
+    set_attribute(clip, "id", id);
+    set_attribute(path, "d", d);
+    if (evenodd)
+        set_attribute(path, "clip-rule", "evenodd");
+    fl_declare(node, declaration);
+}
+
+static const char *apply_clip(const FlCssEffects *effects, xmlNode *node, const FlCssUnits *units,
+                              int *n_clips)
+{
+    static const char *const boxes[] = {"fill-box",    "stroke-box", "border-box", "padding-box",
+                                        "content-box", "margin-box", NULL};
+    const char *value = fl_css_effects_get(effects, "clip-path");
+    if (!value)
+        return NULL;
+    g_autofree char *as_it_is = g_strconcat("clip-path:", *value ? value : "none", NULL);
+    if (!*value || strcmp(value, "none") == 0 || strcmp(value, "inherit") == 0 ||
+        g_ascii_strncasecmp(value, "url(", 4) == 0) {
+        fl_declare(node, as_it_is);
+        return NULL;
+    }
+    g_auto(GStrv) part = fl_css_split(value, ' ');
+    FlCssBox box = {0, 0, units->width, units->height};
+    bool page = false, evenodd = false;
+    const char *shape = NULL;
+    for (int i = 0; part[i]; i++) {
+        page |= strcmp(part[i], "view-box") == 0;
+        if (strchr(part[i], '('))
+            shape = part[i];
+        else if (!g_strv_contains(boxes, part[i]) && strcmp(part[i], "view-box") != 0)
+            return "clip-path";
+    }
+    if (!page && !fl_css_fill_box(node, units, &box))
+        return "clip-path";
+    g_autofree char *d = fl_css_basic_shape(shape ? shape : "inset(0)", units, box, &evenodd);
+    if (!d)
+        return "clip-path";
+    add_clip(node, d, evenodd, n_clips);
+    return NULL;
+}
+
+/** The background of the whole page becomes a rectangle below everything. */
+static const char *apply_background(const FlCssEffects *effects, xmlNode *node,
+                                    const FlCssUnits *units)
+{
+    const char *name = value_of(effects, "background-color") ? "background-color" : "background";
+    const char *value = value_of(effects, name);
+    const bool root = !node->parent || node->parent->type != XML_ELEMENT_NODE;
+    g_autofree char *colour = value && root ? fl_css_colour(value) : NULL;
+    if (!value || !root || (colour && strcmp(colour, "transparent") == 0))
+        return NULL;
+    if (!colour)
+        return name;
+    g_autoptr(xmlChar) view = fl_attribute(node, "viewBox");
+    g_auto(GStrv) box =
+        g_regex_split_simple("[ ,\t\r\n]+", view ? (char *)view : "0 0 100% 100%", 0, 0);
+    static const char *const names[] = {"x", "y", "width", "height"};
+    xmlNode *rect = xmlNewDocNode(node->doc, node->ns, (const xmlChar *)"rect", NULL);
+    set_attribute(rect, "id", "background");
+    set_attribute(rect, "fill", colour);
+    for (guint i = 0; i < 4 && i < g_strv_length(box); i++)
+        set_attribute(rect, names[i], box[i]);
+    if (node->children)
+        xmlAddPrevSibling(node->children, rect);
+    else
+        xmlAddChild(node, rect);
+    return NULL;
+}
+
+static const char *apply_path(const FlCssEffects *effects, xmlNode *node)
+{
+    const char *value = fl_css_effects_get(effects, "d");
+    g_autofree char *name = NULL, *arguments = NULL;
+    if (!value || !*value || !fl_is(node, "path"))
+        return NULL;
+    if (strcmp(value, "none") == 0) {
+        set_attribute(node, "d", "");
+        return NULL;
+    }
+    const bool is_path = fl_css_call(value, &name, &arguments) && strcmp(name, "path") == 0;
+    g_autofree char *d = is_path ? fl_css_string_or_url(arguments) : NULL;
+    if (!d)
+        return "d";
+    set_attribute(node, "d", d);
+    return NULL;
+}
+
+/** Multiplies each number of a list such as "4, 2". */
+static char *scaled(const char *list, double factor, const FlCssUnits *units)
+{
+    const double diagonal = hypot(units->width, units->height) / G_SQRT2;
+    g_auto(GStrv) part = g_regex_split_simple("[ ,\t\r\n]+", list, 0, 0);
+    GString *out = g_string_new(NULL);
+    for (int i = 0; part[i]; i++) {
+        double value;
+        if (!*part[i])
+            continue;
+        if (!fl_css_number(part[i], units, diagonal, &value)) {
+            g_string_free(out, TRUE);
+            return NULL;
+        }
+        g_autofree char *text = fl_css_number_text(value * factor);
+        g_string_append_printf(out, "%s%s", out->len ? "," : "", text);
+    }
+    return g_string_free(out, FALSE);
+}
+
+/** Scales the properties of a stroke that are lengths. */
+static void scale_stroke(xmlNode *node, const char *const *names, double factor,
+                         const FlCssUnits *units)
+{
+    for (int i = 0; names[i]; i++) {
+        g_autofree char *value = NULL;
+        for (const xmlNode *at = node; at && at->type == XML_ELEMENT_NODE && !value;
+             at = at->parent)
+            value = fl_property(at, names[i]);
+        if (!value && strcmp(names[i], "stroke-width") == 0)
+            value = g_strdup("1");
+        g_autofree char *text =
+            value && strcmp(value, "none") != 0 ? scaled(value, factor, units) : NULL;
+        g_autofree char *declaration = text ? g_strdup_printf("%s:%s", names[i], text) : NULL;
+        if (declaration)
+            fl_declare(node, declaration);
+    }
+}
+
+/** The author's length of a path counts for its dashes. */
+static void apply_path_length(xmlNode *node, const FlCssUnits *units)
+{
+    static const char *const dashes[] = {"stroke-dasharray", "stroke-dashoffset", NULL};
+    g_autoptr(xmlChar) text = fl_attribute(node, "pathLength");
+    double wanted = 0;
+    if (!text || !fl_css_number((const char *)text, units, 0, &wanted) || !(wanted > 0))
+        return;
+    const double length = fl_css_outline_length(node, units);
+    xmlUnsetProp(node, (const xmlChar *)"pathLength");
+    if (length > 0)
+        scale_stroke(node, dashes, length / wanted, units);
+}
+
+const char *fl_css_effects_apply(const FlCssEffects *effects, xmlNode *node,
+                                 const FlCssUnits *units, int *n_clips)
+{
+    const char *vector = fl_css_effects_get(effects, "vector-effect");
+    const char *problem = apply_path(effects, node);
+    if (vector)
+        set_attribute(node, "vector-effect", vector);
+    const char *clip = apply_clip(effects, node, units, n_clips);
+    const char *transform = apply_transform(effects, node, units);
+    const char *background = apply_background(effects, node, units);
+    apply_path_length(node, units);
+    xmlUnsetProp(node, (const xmlChar *)"transform-origin");
+    return problem ? problem : clip ? clip : transform ? transform : background;
+}
+
+/* ---- strokes that do not scale --------------------------------------------------------------- */
+
+static void keep_stroke(xmlNode *node, const FlAffine *around, const FlAffine *all,
+                        const FlCssUnits *units)
+{
+    static const char *const widths[] = {"stroke-width", "stroke-dasharray", "stroke-dashoffset",
+                                         NULL};
+    const double size = sqrt(fabs(all->xx * all->yy - all->xy * all->yx));
+    const double a = all->xx * all->xx + all->yx * all->yx,
+                 b = all->xy * all->xy + all->yy * all->yy;
+    const double skew = all->xx * all->xy + all->yx * all->yy;
+    const bool even = fabs(a - b) < 1e-3 * (a + b) && fabs(skew) < 1e-3 * (a + b);
+    FlAffine back;
+    xmlUnsetProp(node, (const xmlChar *)"vector-effect");
+    if (!(size > 0))
+        return;
+    g_autofree char *d = even ? NULL : fl_css_outline_text(node, units, all);
+    if (!d || !fl_affine_invert(around, &back)) {
+        scale_stroke(node, widths, 1 / size, units);
+        return;
+    }
+    xmlNodeSetName(node, (const xmlChar *)"path");
+    set_attribute(node, "d", d);
+    set_matrix(node, &back);
+}
+
+static void visit_strokes(xmlNode *node, const FlAffine *around, const FlCssUnits *units)
+{
+    FlAffine own = FL_AFFINE_NONE;
+    g_autoptr(xmlChar) transform = fl_attribute(node, "transform");
+    g_autofree char *vector = fl_property(node, "vector-effect");
+    if (transform)
+        fl_affine_parse((const char *)transform, &own);
+    const FlAffine all = fl_affine_multiply(around, &own);
+    if (vector && strcmp(vector, "non-scaling-stroke") == 0)
+        keep_stroke(node, around, &all, units);
+    for (xmlNode *child = node->children; child; child = child->next)
+        if (child->type == XML_ELEMENT_NODE)
+            visit_strokes(child, &all, units);
+}
+
+void fl_css_keep_strokes(xmlNode *root, const FlCssUnits *units)
+{
+    const double fit = MIN(units->page_width / units->width, units->page_height / units->height);
+    const FlAffine page = {fit, 0, 0, fit, 0, 0};
+    if (isfinite(fit) && fit > 0)
+        visit_strokes(root, &page, units);
+}

@@ -1,0 +1,172 @@
+#include "svg/css_properties.h"
+
+#include "svg/css_colour.h"
+#include "svg/css_value.h"
+#include <stdlib.h>
+#include <string.h>
+
+static const FlCssProperty known[] = {
+#define P(name, kind, inherited, initial) {name, FL_CSS_##kind, inherited, initial},
+#include "svg/css_properties.def"
+#undef P
+};
+
+/** Properties of pages and programs, which change no still picture of a drawing. */
+static const char *const ignored[] = {
+    "-",
+    "accent-",
+    "align-",
+    "all",
+    "animation-",
+    "appearance",
+    "aspect-",
+    "block-",
+    "bottom",
+    "box-sizing",
+    "break-",
+    "caret-",
+    "color-adjust",
+    "color-rendering",
+    "color-scheme",
+    "column",
+    "contain",
+    "content-visibility",
+    "cursor",
+    "flex",
+    "float",
+    "font-feature-",
+    "font-kerning",
+    "font-optical-",
+    "font-smooth",
+    "font-synthesis",
+    "font-variant-",
+    "font-variation-",
+    "gap",
+    "grid",
+    "hyphens",
+    "inline-size",
+    "inset",
+    "justify-",
+    "kerning",
+    "left",
+    "list-",
+    "margin",
+    "max-",
+    "min-",
+    "object-",
+    "offset-position",
+    "order",
+    "orphans",
+    "outline",
+    "overscroll-",
+    "padding",
+    "perspective-origin",
+    "place-",
+    "pointer-events",
+    "position",
+    "print-color-adjust",
+    "quotes",
+    "resize",
+    "right",
+    "row-",
+    "scroll",
+    "solid-",
+    "speak",
+    "tab-size",
+    "table-",
+    "text-align",
+    "text-indent",
+    "text-overflow",
+    "text-size-adjust",
+    "text-wrap",
+    "top",
+    "touch-",
+    "transform-style",
+    "transition",
+    "user-select",
+    "vertical-align",
+    "white-space",
+    "widows",
+    "will-change",
+    "word-break",
+    "word-wrap",
+    "zoom",
+    "border-collapse",
+    "border-spacing",
+    "shape-",
+    "text-underline-",
+    "text-decoration-",
+    "text-emphasis",
+    "isolate",
+    "view-transition-",
+    "counter-",
+    "interpolate-",
+    "overflow-",
+    "font-palette",
+    "font-language-",
+    "font-display",
+    "src",
+    "line-break",
+    "hanging-",
+    "ruby-",
+    "math-",
+};
+
+static const FlCssProperty harmless = {"", FL_CSS_IGNORED, false, NULL};
+
+static int compare(const void *name, const void *property)
+{
+    return strcmp(name, ((const FlCssProperty *)property)->name);
+}
+
+const FlCssProperty *fl_css_property(const char *name)
+{
+    const FlCssProperty *found = bsearch(name, known, G_N_ELEMENTS(known), sizeof *known, compare);
+    for (size_t i = 0; i < G_N_ELEMENTS(ignored) && !found; i++)
+        if (g_str_has_prefix(name, ignored[i]))
+            found = &harmless;
+    return found;
+}
+
+static bool is_number(const char *value)
+{
+    const FlCssUnits any = {1, 1, 1, 1, 1, 1};
+    double number;
+    return fl_css_number(value, &any, 1, &number);
+}
+
+static bool is_numbers(const char *value)
+{
+    g_auto(GStrv) comma = fl_css_split(value, ',');
+    bool good = comma[0] != NULL;
+    for (int i = 0; comma[i] && good; i++) {
+        g_auto(GStrv) part = fl_css_split(comma[i], ' ');
+        for (int k = 0; part[k] && good; k++)
+            good = is_number(part[k]);
+    }
+    return good;
+}
+
+bool fl_css_is_valid(const FlCssProperty *property, const char *value)
+{
+    static const char *const keywords[] = {"inherit", "initial", "unset",  "revert", "revert-layer",
+                                           "auto",    "none",    "normal", NULL};
+    if (!*value)
+        return false;
+    if (strstr(value, "var(") || strstr(value, "env(") || g_strv_contains(keywords, value))
+        return true;
+    g_autofree char *colour = property->kind == FL_CSS_PAINT ? fl_css_colour(value) : NULL;
+    switch (property->kind) {
+    case FL_CSS_PAINT:
+        return colour != NULL;
+    case FL_CSS_NUMBER:
+    case FL_CSS_GEOMETRY:
+        return is_number(value);
+    case FL_CSS_LENGTHS:
+        return is_numbers(value);
+    case FL_CSS_LENGTH:
+        return is_number(value) || (g_ascii_isalpha(*value) && !strchr(value, '(')); // larger
+    default:
+        return true;
+    }
+}

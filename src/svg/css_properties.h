@@ -1,0 +1,32 @@
+/* The properties that drawings are painted by: their kinds, initial values and inheritance. */
+#ifndef FLUIDY_SVG_CSS_PROPERTIES_H
+#define FLUIDY_SVG_CSS_PROPERTIES_H
+
+#include <stdbool.h>
+
+typedef enum FlCssKind {
+    FL_CSS_PAINT,     // a colour, none, url()
+    FL_CSS_LENGTH,    // a length or percentage
+    FL_CSS_LENGTHS,   // a list of such
+    FL_CSS_NUMBER,    // a number or percentage
+    FL_CSS_TEXT,      // librsvg reads it as a browser does
+    FL_CSS_GEOMETRY,  // a length that librsvg knows as an attribute only
+    FL_CSS_TRANSFORM, // becomes the attribute `transform`
+    FL_CSS_RESOLVED,  // is put into effect by the cascade in another way
+    FL_CSS_IGNORED,   // changes no still picture of a drawing
+} FlCssKind;
+
+typedef struct FlCssProperty {
+    const char *name;
+    FlCssKind kind;
+    bool inherited;
+    const char *initial; // NULL: it may be left out instead
+} FlCssProperty;
+
+/** A property by its name in lower case; NULL if it is unknown. */
+const FlCssProperty *fl_css_property(const char *name);
+
+/** Returns: true if `value` can be one of the property, or is one for all properties. */
+bool fl_css_is_valid(const FlCssProperty *property, const char *value);
+
+#endif

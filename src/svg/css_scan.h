@@ -1,0 +1,48 @@
+/* Scans the text of style sheets and values [CSS Syntax 3] without building tokens. */
+#ifndef FLUIDY_SVG_CSS_SCAN_H
+#define FLUIDY_SVG_CSS_SCAN_H
+
+#include <glib.h>
+#include <stdbool.h>
+
+#define FL_CSS_SPACE " \t\r\n\f"
+
+/** Skips white space. */
+const char *fl_css_space(const char *s);
+
+/**
+ * Finds the first character of `stops` outside strings, escapes and brackets. A closing bracket
+ * that was not opened ends the search as well.
+ *
+ * Returns: a pointer to it, or to the terminating NUL.
+ */
+const char *fl_css_find(const char *s, const char *stops);
+
+/** Likewise, but passes closing brackets that were not opened. */
+const char *fl_css_find_past(const char *s, const char *stops);
+
+/** The length in bytes of the identifier that `s` begins with, escapes included; 0: none. */
+size_t fl_css_identifier(const char *s);
+
+/** A copy of n bytes with escapes resolved: "a\3a b" is "a:b". To be freed with g_free(). */
+char *fl_css_unescape(const char *s, size_t n);
+
+/** A copy without comments, <!-- and -->; each becomes a space. To be freed with g_free(). */
+char *fl_css_without_comments(const char *css);
+
+/**
+ * Splits at a separator outside strings and brackets: ',' or ' ', which stands for any white space.
+ * Parts are trimmed and never empty. To be freed with g_strfreev().
+ */
+char **fl_css_split(const char *text, char separator);
+
+/**
+ * Reads a function call that is all of `text`: "calc( 1px + 2px )" gives the name "calc", in lower
+ * case, and the arguments "1px + 2px". Returns: false if it is none; both are to be freed.
+ */
+bool fl_css_call(const char *text, char **name, char **arguments);
+
+/** The text of a string, url("…") or url(…); NULL if `text` is neither. To be freed. */
+char *fl_css_string_or_url(const char *text);
+
+#endif

@@ -1,0 +1,42 @@
+/* Selectors [Selectors 4, without :has], and whether an element matches one. */
+#ifndef FLUIDY_SVG_CSS_SELECTOR_H
+#define FLUIDY_SVG_CSS_SELECTOR_H
+
+#include "svg/document.h"
+
+/** One complex selector, such as "g.arm > path:not(.line)". */
+typedef struct FlSelector FlSelector;
+
+/**
+ * Reads a list of selectors separated by commas.
+ *
+ * Returns: an array of FlSelector that owns them; NULL if any part is unknown or wrong, as a
+ * browser then ignores the whole rule.
+ */
+GPtrArray *fl_selectors_parse(const char *text);
+
+void fl_selector_free(FlSelector *selector); // NULL is fine
+
+/** Ids count 0x10000, classes, attributes and pseudo-classes 0x100, names of elements 1. */
+unsigned fl_selector_specificity(const FlSelector *selector);
+
+/**
+ * What an element must have to match: "#id", ".class" or the name of an element; "*": anything. It
+ * belongs to the selector.
+ */
+const char *fl_selector_key(const FlSelector *selector);
+
+/** The work of matching, over a whole document. */
+typedef struct FlSelectorWork {
+    const xmlNode *sibling; // the last element that was counted
+    int index;              // its place among its siblings, from 1
+    int steps;              // comparisons so far
+} FlSelectorWork;
+
+/** The most comparisons for a document: about ten seconds. Nothing matches after that. */
+#define FL_SELECTOR_STEPS 200000000
+
+/** Returns: true if `node`, an element, matches. */
+bool fl_selector_matches(const FlSelector *selector, const xmlNode *node, FlSelectorWork *work);
+
+#endif

@@ -1,0 +1,429 @@
+#include "svg/css_shapes.h"
+
+#include "svg/geometry.h"
+#include "svg/normalise.h"
+#include "svg/path_data.h"
+#include "svg/pen.h"
+#include <math.h>
+#include <string.h>
+
+#define MOST_DEPTH 64 // of <use> in <use> and of groups, when boxes are measured
+
+/* ---- boxes ----------------------------------------------------------------------------------- */
+
+typedef struct Bounds {
+    double left, top, right, bottom;
+} Bounds;
+
+static void add_point(Bounds *b, FlPoint p)
+{
+    b->left = MIN(b->left, p.x), b->right = MAX(b->right, p.x);
+    b->top = MIN(b->top, p.y), b->bottom = MAX(b->bottom, p.y);
+}
+
+/** Where one coordinate of a cubic turns; at most two places inside 0 … 1. */
+static int turns(double a, double b, double c, double d, double t[2])
+{
+    const double q = a - 2 * b + c, r = b - a, p = d - 3 * c + 3 * b - a;
+    int n = 0;
+    double root[2] = {-1, -1};
+    if (fabs(p) < 1e-12)
+        root[0] = fabs(q) > 1e-12 ? -r / (2 * q) : -1;
+    else if (q * q - p * r >= 0) {
+        root[0] = (-q + sqrt(q * q - p * r)) / p;
+        root[1] = (-q - sqrt(q * q - p * r)) / p;
+    }
+    for (int k = 0; k < 2; k++)
+        if (root[k] > 0 && root[k] < 1)
+            t[n++] = root[k];
+    return n;
+}
+
+static void add_cubic(Bounds *bounds, const FlCubic *cubic, const FlAffine *map)
+{
+    FlCubic c;
+    double t[2];
+    for (int k = 0; k < 4; k++)
+        c.p[k] = fl_affine_apply(map, cubic->p[k]);
+    add_point(bounds, c.p[0]);
+    add_point(bounds, c.p[3]);
+    const FlAffine none = FL_AFFINE_NONE;
+    for (int axis = 0; axis < 2; axis++) {
+        const int n = axis ? turns(c.p[0].y, c.p[1].y, c.p[2].y, c.p[3].y, t)
+                           : turns(c.p[0].x, c.p[1].x, c.p[2].x, c.p[3].x, t);
+        for (int k = 0; k < n; k++)
+            add_point(bounds, fl_cubic_at(&c, &none, t[k]));
+    }
+}
+
+static FlOutlines *outlines_of(const xmlNode *node, const FlCssUnits *units)
+{
+    return fl_outlines_of_shape(node, 96, (FlPageSize){units->width, units->height});
+}
+
+static double attribute_length(const xmlNode *node, const char *name, const FlCssUnits *units,
+                               double whole)
+{
+    g_autofree char *text = fl_property(node, name);
+    double value = 0;
+    return text && fl_css_number(text, units, whole, &value) ? value : 0;
+}
+
+/** The element that a <use> shows; NULL: none. */
+static const xmlNode *shown_by(const xmlNode *use)
+{
+    g_autoptr(xmlChar) plain = fl_attribute(use, "href");
+    g_autofree char *foreign = fl_foreign_attribute(use, "href");
+    const char *href = plain ? (const char *)plain : foreign;
+    if (!href || *href != '#')
+        return NULL;
+    g_autoptr(GHashTable) ids = fl_document_ids(use->doc);
+    return g_hash_table_lookup(ids, href + 1);
+}
+
+static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
+                        const FlAffine *map, int depth);
+
+static FlAffine transform_of(const xmlNode *node)
+{
+    FlAffine m = FL_AFFINE_NONE;
+    g_autoptr(xmlChar) text = fl_attribute(node, "transform");
+    if (text)
+        fl_affine_parse((const char *)text, &m);
+    return m;
+}
+
+/** Adds what a group or <use> shows. */
+static void add_children(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
+                         const FlAffine *map, int depth)
+{
+    const xmlNode *shown = fl_is(node, "use") ? shown_by(node) : NULL;
+    const FlAffine place = {1,
+                            0,
+                            0,
+                            1,
+                            attribute_length(node, "x", units, units->width),
+                            attribute_length(node, "y", units, units->height)};
+    const bool moved = fl_is(node, "use") || fl_is(node, "svg");
+    const FlAffine inner = moved ? fl_affine_multiply(map, &place) : *map;
+    for (const xmlNode *child = shown ? shown : node->children; child;
+         child = shown ? NULL : child->next) {
+        if (child->type != XML_ELEMENT_NODE || (!shown && fl_is_undrawn(child)))
+            continue;
+        const FlAffine own = transform_of(child), all = fl_affine_multiply(&inner, &own);
+        add_element(bounds, child, units, &all, depth + 1);
+    }
+}
+
+static void add_element(Bounds *bounds, const xmlNode *node, const FlCssUnits *units,
+                        const FlAffine *map, int depth)
+{
+    if (depth > MOST_DEPTH)
+        return;
+    g_autoptr(FlOutlines) outlines = outlines_of(node, units);
+    for (int i = 0; i < outlines->n_cubics; i++)
+        add_cubic(bounds, &outlines->cubic[i], map);
+    if (fl_is(node, "image") || fl_is(node, "foreignObject"))
+        for (int k = 0; k < 4; k++) {
+            const double x = attribute_length(node, "x", units, units->width);
+            const double y = attribute_length(node, "y", units, units->height);
+            const FlPoint corner = {
+                x + (k & 1 ? attribute_length(node, "width", units, units->width) : 0),
+                y + (k & 2 ? attribute_length(node, "height", units, units->height) : 0)};
+            add_point(bounds, fl_affine_apply(map, corner));
+        }
+    add_children(bounds, node, units, map, depth);
+}
+
+bool fl_css_fill_box(const xmlNode *node, const FlCssUnits *units, FlCssBox *box)
+{
+    Bounds b = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    const FlAffine none = FL_AFFINE_NONE;
+    add_element(&b, node, units, &none, 0);
+    const bool found = b.right >= b.left && b.bottom >= b.top;
+    *box = found ? (FlCssBox){b.left, b.top, b.right - b.left, b.bottom - b.top} : (FlCssBox){0};
+    return found;
+}
+
+/* ---- lengths and places ---------------------------------------------------------------------- */
+
+/** Walks along outlines. Returns: the length up to `target`, where it stops with *place set. */
+static double walk_along(const FlOutlines *outlines, double target, FlPoint *place,
+                         double *direction)
+{
+    const FlAffine none = FL_AFFINE_NONE;
+    double length = 0;
+    for (int i = 0; i < outlines->n_cubics; i++) {
+        const FlCubic *cubic = &outlines->cubic[i];
+        const int n = 64;
+        FlPoint from = cubic->p[0];
+        for (int k = 1; k <= n; k++) {
+            const FlPoint to = fl_cubic_at(cubic, &none, (double)k / n);
+            const double step = hypot(to.x - from.x, to.y - from.y);
+            if (step > 0) {
+                const double t = CLAMP((target - length) / step, 0, 1);
+                *place = (FlPoint){from.x + t * (to.x - from.x), from.y + t * (to.y - from.y)};
+                *direction = atan2(to.y - from.y, to.x - from.x) * 180 / G_PI;
+            }
+            length += step;
+            if (length >= target)
+                return target;
+            from = to;
+        }
+    }
+    return length;
+}
+
+double fl_css_outline_length(const xmlNode *node, const FlCssUnits *units)
+{
+    g_autoptr(FlOutlines) outlines = outlines_of(node, units);
+    FlPoint place;
+    double direction;
+    return walk_along(outlines, INFINITY, &place, &direction);
+}
+
+bool fl_css_place_on_path(const char *d, const char *distance, const FlCssUnits *units,
+                          FlPoint *place, double *direction)
+{
+    g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
+    g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
+    FlPen pen = {.subpath = subpath, .cubic = cubic};
+    double along = 0;
+    if (fl_path_data_walk(d, fl_pen_step, &pen) || cubic->len == 0)
+        return false;
+    const FlOutlines outlines = {.n_cubics = (int)cubic->len,
+                                 .cubic = &g_array_index(cubic, FlCubic, 0)};
+    const double whole = walk_along(&outlines, INFINITY, place, direction);
+    if (!fl_css_number(distance, units, whole, &along))
+        return false;
+    const bool closed = g_array_index(subpath, FlSubpath, 0).closed;
+    along = closed && whole > 0 ? along - whole * floor(along / whole) : CLAMP(along, 0, whole);
+    walk_along(&outlines, along, place, direction);
+    return true;
+}
+
+/* ---- path data ------------------------------------------------------------------------------- */
+
+static void append_point(GString *d, const char *command, FlPoint p)
+{
+    g_autofree char *x = fl_css_number_text(p.x), *y = fl_css_number_text(p.y);
+    g_string_append_printf(d, "%s%s %s", command, x, y);
+}
+
+char *fl_css_outline_text(const xmlNode *node, const FlCssUnits *units, const FlAffine *map)
+{
+    g_autoptr(FlOutlines) outlines = outlines_of(node, units);
+    GString *d = g_string_new(NULL);
+    for (int s = 0; s < outlines->n_subpaths; s++) {
+        const FlSubpath *sub = &outlines->subpath[s];
+        for (int k = 0; k < sub->n; k++) {
+            const FlPoint *p = outlines->cubic[sub->first + k].p;
+            if (k == 0)
+                append_point(d, "M", fl_affine_apply(map, p[0]));
+            append_point(d, "C", fl_affine_apply(map, p[1]));
+            append_point(d, " ", fl_affine_apply(map, p[2]));
+            append_point(d, " ", fl_affine_apply(map, p[3]));
+        }
+        g_string_append(d, sub->closed ? "Z" : "");
+    }
+    return g_string_free(d, d->len == 0);
+}
+
+bool fl_css_position(const char *text, const FlCssUnits *units, FlCssBox box, FlPoint *place)
+{
+    static const char *const words[][2] = {
+        {"left", "0%"}, {"top", "0%"}, {"center", "50%"}, {"right", "100%"}, {"bottom", "100%"}};
+    g_auto(GStrv) part = fl_css_split(text, ' ');
+    const char *axis[2] = {part[0], part[0] && part[1] ? part[1] : "50%"};
+    double v[2];
+    if (!part[0])
+        return false;
+    if (strcmp(axis[0], "top") == 0 || strcmp(axis[0], "bottom") == 0 ||
+        strcmp(axis[1], "left") == 0 || strcmp(axis[1], "right") == 0) {
+        const char *first = axis[0];
+        axis[0] = axis[1], axis[1] = first;
+    }
+    for (int k = 0; k < 2; k++) {
+        for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+            if (strcmp(words[i][0], axis[k]) == 0)
+                axis[k] = words[i][1];
+        if (!fl_css_number(axis[k], units, k ? box.height : box.width, &v[k]))
+            return false;
+    }
+    *place = (FlPoint){box.x + v[0], box.y + v[1]};
+    return true;
+}
+
+/** A radius: a length, closest-side or farthest-side. */
+static bool read_radius(const char *text, const FlCssUnits *units, double whole, double low,
+                        double high, double *radius)
+{
+    if (strcmp(text, "closest-side") == 0)
+        *radius = MIN(fabs(low), fabs(high));
+    else if (strcmp(text, "farthest-side") == 0)
+        *radius = MAX(fabs(low), fabs(high));
+    else
+        return fl_css_number(text, units, whole, radius);
+    return true;
+}
+
+static char *ellipse_text(FlPoint c, double rx, double ry)
+{
+    g_autofree char *x = fl_css_number_text(rx), *y = fl_css_number_text(ry);
+    GString *d = g_string_new(NULL);
+    append_point(d, "M", (FlPoint){c.x + rx, c.y});
+    for (int k = 0; k < 2; k++) {
+        g_string_append_printf(d, "A%s %s 0 0 1 ", x, y);
+        append_point(d, "", (FlPoint){k ? c.x + rx : c.x - rx, c.y});
+    }
+    g_string_append_c(d, 'Z');
+    return g_string_free(d, FALSE);
+}
+
+/** circle() and ellipse(). */
+static char *round_shape(const char *arguments, bool circle, const FlCssUnits *units, FlCssBox box)
+{
+    g_auto(GStrv) word = fl_css_split(arguments, ' ');
+    g_autofree char *place = NULL;
+    const char *radius[2] = {"closest-side", "closest-side"};
+    int n = 0;
+    for (int i = 0; word[i]; i++) {
+        if (strcmp(word[i], "at") == 0) {
+            place = g_strjoinv(" ", word + i + 1);
+            break;
+        }
+        if (n < 2)
+            radius[n++] = word[i];
+    }
+    FlPoint c;
+    double r[2];
+    if (!fl_css_position(place ? place : "center", units, box, &c))
+        return NULL;
+    const double left = c.x - box.x, right = box.x + box.width - c.x;
+    const double top = c.y - box.y, bottom = box.y + box.height - c.y;
+    if (circle) {
+        const bool far = strcmp(radius[0], "farthest-side") == 0;
+        const double low = far ? MAX(left, right) : MIN(left, right);
+        const double high = far ? MAX(top, bottom) : MIN(top, bottom);
+        const double whole = hypot(box.width, box.height) / G_SQRT2;
+        if (!read_radius(radius[0], units, whole, low, high, &r[0]))
+            return NULL;
+        return ellipse_text(c, r[0], r[0]);
+    }
+    if (!read_radius(radius[0], units, box.width, left, right, &r[0]) ||
+        !read_radius(radius[1], units, box.height, top, bottom, &r[1]))
+        return NULL;
+    return ellipse_text(c, r[0], r[1]);
+}
+
+static char *rounded_text(double x, double y, double w, double h, double rx, double ry)
+{
+    g_autoptr(GArray) subpath = g_array_new(FALSE, TRUE, sizeof(FlSubpath));
+    g_autoptr(GArray) cubic = g_array_new(FALSE, TRUE, sizeof(FlCubic));
+    FlPen pen = {.subpath = subpath, .cubic = cubic};
+    fl_pen_rect(&pen, x, y, w, h, CLAMP(rx, 0, w / 2), CLAMP(ry, 0, h / 2));
+    GString *d = g_string_new(NULL);
+    for (guint i = 0; i < cubic->len; i++) {
+        const FlPoint *p = g_array_index(cubic, FlCubic, i).p;
+        if (i == 0)
+            append_point(d, "M", p[0]);
+        append_point(d, "C", p[1]);
+        append_point(d, " ", p[2]);
+        append_point(d, " ", p[3]);
+    }
+    g_string_append_c(d, 'Z');
+    return g_string_free(d, FALSE);
+}
+
+/** inset(), rect() and xywh(), with one radius for all corners. */
+static char *rect_shape(const char *name, const char *arguments, const FlCssUnits *units,
+                        FlCssBox box)
+{
+    const char *round = strstr(arguments, "round");
+    g_autofree char *sides =
+        g_strndup(arguments, round ? (gsize)(round - arguments) : strlen(arguments));
+    g_auto(GStrv) part = fl_css_split(sides, ' ');
+    g_auto(GStrv) corner = fl_css_split(round ? round + 5 : "", ' ');
+    const int n = (int)g_strv_length(part);
+    const bool xywh = strcmp(name, "xywh") == 0;
+    double v[4], radius = 0;
+    if (n < 1 || n > 4 || (strcmp(name, "inset") != 0 && n != 4))
+        return NULL;
+    for (int i = 0; i < 4; i++) {
+        static const int from[5][4] = {{0}, {0, 0, 0, 0}, {0, 1, 0, 1}, {0, 1, 2, 1}, {0, 1, 2, 3}};
+        const bool across = xywh ? i % 2 == 0 : i % 2 == 1;
+        const char *text = part[from[n][i]];
+        const double whole = across ? box.width : box.height;
+        if (strcmp(text, "auto") == 0)
+            v[i] = i == 1 || i == 2 ? whole : 0;
+        else if (!fl_css_number(text, units, whole, &v[i]))
+            return NULL;
+    }
+    if (corner[0] && !fl_css_number(corner[0], units, MIN(box.width, box.height), &radius))
+        return NULL;
+    if (xywh)
+        return rounded_text(box.x + v[0], box.y + v[1], MAX(v[2], 0), MAX(v[3], 0), radius, radius);
+    const bool inset = strcmp(name, "inset") == 0;
+    const double right = inset ? box.width - v[1] : v[1], bottom = inset ? box.height - v[2] : v[2];
+    return rounded_text(box.x + v[3], box.y + v[0], MAX(right - v[3], 0), MAX(bottom - v[0], 0),
+                        radius, radius);
+}
+
+static bool take_fill_rule(char **list, bool *evenodd)
+{
+    *evenodd = list[0] && strcmp(list[0], "evenodd") == 0;
+    return *evenodd || (list[0] && strcmp(list[0], "nonzero") == 0);
+}
+
+static char *polygon_shape(const char *arguments, const FlCssUnits *units, FlCssBox box,
+                           bool *evenodd)
+{
+    g_auto(GStrv) pair = fl_css_split(arguments, ',');
+    const int first = take_fill_rule(pair, evenodd);
+    GString *d = g_string_new(NULL);
+    for (int i = first; pair[i]; i++) {
+        FlPoint p;
+        if (!fl_css_position(pair[i], units, box, &p)) {
+            g_string_free(d, TRUE);
+            return NULL;
+        }
+        append_point(d, i == first ? "M" : "L", p);
+    }
+    g_string_append(d, d->len ? "Z" : "");
+    return g_string_free(d, d->len == 0);
+}
+
+/** path(), whose coordinates are relative to the box. */
+static char *path_shape(const char *arguments, FlCssBox box, bool *evenodd)
+{
+    g_auto(GStrv) part = fl_css_split(arguments, ',');
+    const int first = take_fill_rule(part, evenodd);
+    g_autofree char *d = part[first] ? fl_css_string_or_url(part[first]) : NULL;
+    if (!d || fl_path_data_error(d))
+        return NULL;
+    if (box.x == 0 && box.y == 0)
+        return g_steal_pointer(&d);
+    g_autoptr(xmlDoc) doc = xmlNewDoc((const xmlChar *)"1.0");
+    xmlNode *path = xmlNewDocNode(doc, NULL, (const xmlChar *)"path", NULL);
+    xmlDocSetRootElement(doc, path);
+    xmlSetNs(path, xmlNewNs(path, (const xmlChar *)"http://www.w3.org/2000/svg", NULL));
+    xmlSetProp(path, (const xmlChar *)"d", (const xmlChar *)d);
+    const FlAffine move = {1, 0, 0, 1, box.x, box.y};
+    const FlCssUnits units = {0};
+    return fl_css_outline_text(path, &units, &move);
+}
+
+char *fl_css_basic_shape(const char *text, const FlCssUnits *units, FlCssBox box, bool *evenodd)
+{
+    g_autofree char *name = NULL, *arguments = NULL;
+    *evenodd = false;
+    if (!fl_css_call(text, &name, &arguments))
+        return NULL;
+    if (strcmp(name, "circle") == 0 || strcmp(name, "ellipse") == 0)
+        return round_shape(arguments, name[0] == 'c', units, box);
+    if (strcmp(name, "inset") == 0 || strcmp(name, "rect") == 0 || strcmp(name, "xywh") == 0)
+        return rect_shape(name, arguments, units, box);
+    if (strcmp(name, "polygon") == 0)
+        return polygon_shape(arguments, units, box, evenodd);
+    return strcmp(name, "path") == 0 ? path_shape(arguments, box, evenodd) : NULL;
+}

@@ -1,0 +1,280 @@
+#include "svg/css_value.h"
+
+#include "svg/transform.h"
+#include <math.h>
+#include <string.h>
+
+#define LARGEST_BYTES 65536
+#define MOST_NESTED 32
+
+/* ---- variables ------------------------------------------------------------------------------- */
+
+static bool substitute(GString *out, const char *value, FlCssVariable *variable, const void *data,
+                       int depth);
+
+/** Appends the value of var(--name, fallback) from its arguments. */
+static bool append_variable(GString *out, const char *arguments, FlCssVariable *variable,
+                            const void *data, int depth)
+{
+    const char *comma = fl_css_find(arguments, ",");
+    g_autofree char *written = g_strndup(arguments, (gsize)(comma - arguments));
+    g_autofree char *name = fl_css_unescape(g_strstrip(written), strlen(written));
+    const char *known = variable(data, name);
+    if (known) {
+        const gsize before = out->len;
+        if (substitute(out, known, variable, data, depth + 1))
+            return true;
+        g_string_truncate(out, before);
+    }
+    return *comma && substitute(out, fl_css_space(comma + 1), variable, data, depth + 1);
+}
+
+/** The first call of var() or env() outside strings; NULL: none. */
+static const char *find_variable(const char *s)
+{
+    for (; *s; s++) {
+        if (*s == '"' || *s == '\'') {
+            const char *end = strchr(s + 1, *s);
+            s = end ? end : s + strlen(s) - 1;
+        } else if (g_ascii_strncasecmp(s, "var(", 4) == 0 || g_ascii_strncasecmp(s, "env(", 4) == 0)
+            return s;
+    }
+    return NULL;
+}
+
+static bool substitute(GString *out, const char *value, FlCssVariable *variable, const void *data,
+                       int depth)
+{
+    if (depth > MOST_NESTED)
+        return false;
+    for (const char *call; (call = find_variable(value));) {
+        const char *end = fl_css_find(call + 4, ")");
+        g_autofree char *arguments = g_strndup(call + 4, (gsize)(end - call) - 4);
+        g_string_append_len(out, value, call - value);
+        if (*end != ')' || !append_variable(out, arguments, variable, data, depth))
+            return false;
+        value = end + 1;
+    }
+    g_string_append(out, value);
+    return out->len <= LARGEST_BYTES;
+}
+
+char *fl_css_substitute(const char *value, FlCssVariable *variable, const void *data)
+{
+    GString *out = g_string_new(NULL);
+    const bool good = substitute(out, value, variable, data, 0);
+    return g_string_free(out, !good);
+}
+
+/* ---- numbers --------------------------------------------------------------------------------- */
+
+typedef struct Calc {
+    const FlCssUnits *units;
+    double whole;
+    int depth;
+} Calc;
+
+static bool read_sum(const Calc *calc, const char **s, double *value);
+
+/** The factor of a unit of n bytes; 0 if it is unknown. */
+static double unit_factor(const Calc *calc, const char *unit, size_t n)
+{
+    const FlCssUnits *u = calc->units;
+    const struct {
+        const char *name;
+        double factor;
+    } known[] = {
+        {"px", 1},
+        {"%", calc->whole / 100},
+        {"em", u->font_size},
+        {"rem", u->root_font_size},
+        {"ex", u->font_size / 2},
+        {"ch", u->font_size / 2},
+        {"lh", u->font_size * 1.2},
+        {"vw", u->page_width / 100},
+        {"vh", u->page_height / 100},
+        {"vi", u->page_width / 100},
+        {"vb", u->page_height / 100},
+        {"vmin", MIN(u->page_width, u->page_height) / 100},
+        {"vmax", MAX(u->page_width, u->page_height) / 100},
+        {"in", 96},
+        {"cm", 96 / 2.54},
+        {"mm", 96 / 25.4},
+        {"q", 96 / 101.6},
+        {"pt", 96.0 / 72},
+        {"pc", 16},
+        {"deg", 1},
+        {"rad", 180 / G_PI},
+        {"grad", 0.9},
+        {"turn", 360},
+        {"s", 1},
+        {"ms", 0.001},
+        {"dppx", 1},
+        {"x", 1},
+        {"fr", 1},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        if (strlen(known[i].name) == n && g_ascii_strncasecmp(known[i].name, unit, n) == 0)
+            return known[i].factor;
+    // svw, lvh, dvmin … are the same on a page without bars
+    return n > 2 && strchr("sldSLD", *unit) && unit[1] == 'v' ? unit_factor(calc, unit + 1, n - 1)
+                                                              : 0;
+}
+
+/** Reads comma-separated arguments up to the bracket; their number, -1 if they are wrong. */
+static int read_arguments(const Calc *calc, const char **s, double *values, int most)
+{
+    int n = 0;
+    for (*s = fl_css_space(*s); **s && **s != ')'; *s = fl_css_space(*s)) {
+        if (n == most || !read_sum(calc, s, &values[n++]))
+            return -1;
+        *s = fl_css_space(*s);
+        if (**s == ',')
+            (*s)++;
+        else if (**s != ')')
+            return -1;
+    }
+    if (**s != ')')
+        return -1;
+    (*s)++;
+    return n;
+}
+
+static double least(const double *v, int n, bool largest)
+{
+    double found = v[0];
+    for (int i = 1; i < n; i++)
+        found = largest ? MAX(found, v[i]) : MIN(found, v[i]);
+    return found;
+}
+
+static double sine(double degrees, bool cosine)
+{
+    double s, c;
+    fl_sincos_degrees(degrees, &s, &c);
+    return cosine ? c : s;
+}
+
+/** A mathematical function; false if it is unknown or has a wrong number of arguments. */
+static bool apply(const char *name, const double *v, int n, double *value)
+{
+    const bool one = n == 1, two = n == 2;
+#define IS(word, count) (strcmp(name, word) == 0 && (count))
+    if (IS("calc", one) || IS("-webkit-calc", one))
+        *value = v[0];
+    else if (IS("min", n > 0) || IS("max", n > 0))
+        *value = least(v, n, name[1] == 'a');
+    else if (IS("clamp", n == 3))
+        *value = MAX(v[0], MIN(v[1], v[2]));
+    else if (IS("abs", one))
+        *value = fabs(v[0]);
+    else if (IS("sign", one))
+        *value = (v[0] > 0) - (v[0] < 0);
+    else if (IS("round", one || two))
+        *value = floor(v[0] / (two ? v[1] : 1) + 0.5) * (two ? v[1] : 1);
+    else if (IS("mod", two))
+        *value = v[0] - v[1] * floor(v[0] / v[1]);
+    else if (IS("rem", two))
+        *value = fmod(v[0], v[1]);
+    else if (IS("sin", one) || IS("cos", one))
+        *value = sine(v[0], name[0] == 'c');
+    else if (IS("tan", one))
+        *value = sine(v[0], false) / sine(v[0], true);
+    else if (IS("sqrt", one))
+        *value = sqrt(v[0]);
+    else if (IS("pow", two))
+        *value = pow(v[0], v[1]);
+    else if (IS("exp", one))
+        *value = exp(v[0]);
+    else if (IS("hypot", n > 0)) {
+        double sum = 0;
+        for (int i = 0; i < n; i++)
+            sum += v[i] * v[i];
+        *value = sqrt(sum);
+    } else
+        return false;
+#undef IS
+    return true;
+}
+
+/** Reads "name(…)", "(…)" or a constant. */
+static bool read_call(const Calc *calc, const char **s, double *value)
+{
+    double v[8];
+    const size_t n = fl_css_identifier(*s);
+    g_autofree char *name = n ? g_ascii_strdown(*s, (gssize)n) : g_strdup("calc");
+    const Calc inner = {calc->units, calc->whole, calc->depth + 1};
+    *s += n;
+    if (**s != '(') {
+        *value = strcmp(name, "pi") == 0 ? G_PI : strcmp(name, "e") == 0 ? G_E : NAN;
+        return isfinite(*value);
+    }
+    (*s)++;
+    const int count = calc->depth < MOST_NESTED ? read_arguments(&inner, s, v, 8) : -1;
+    return count >= 0 && apply(name, v, count, value);
+}
+
+/** Reads a number with its unit, or a call. */
+static bool read_term(const Calc *calc, const char **s, double *value)
+{
+    *s = fl_css_space(*s);
+    const char *digits = *s + (**s == '-' || **s == '+');
+    if (!g_ascii_isdigit(*digits) && *digits != '.')
+        return read_call(calc, s, value);
+    char *end;
+    *value = g_ascii_strtod(*s, &end);
+    if (end == *s)
+        return false;
+    const size_t n =
+        *end == '%' ? 1 : strspn(end, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ");
+    const double factor = n ? unit_factor(calc, end, n) : 1;
+    *s = end + n;
+    *value *= factor;
+    return n == 0 || factor != 0 || calc->whole == 0;
+}
+
+static bool read_product(const Calc *calc, const char **s, double *value)
+{
+    if (!read_term(calc, s, value))
+        return false;
+    for (;;) {
+        const char *at = fl_css_space(*s);
+        double next;
+        if (*at != '*' && *at != '/')
+            return true;
+        *s = at + 1;
+        if (!read_term(calc, s, &next))
+            return false;
+        *value = *at == '*' ? *value * next : *value / next;
+    }
+}
+
+/** A sum needs space around its sign. */
+static bool read_sum(const Calc *calc, const char **s, double *value)
+{
+    if (!read_product(calc, s, value))
+        return false;
+    for (;;) {
+        const char *at = fl_css_space(*s);
+        double next;
+        if (at == *s || (*at != '+' && *at != '-') || !strchr(FL_CSS_SPACE, at[1]))
+            return true;
+        *s = at + 1;
+        if (!read_product(calc, s, &next))
+            return false;
+        *value += *at == '+' ? next : -next;
+    }
+}
+
+bool fl_css_number(const char *text, const FlCssUnits *units, double whole, double *value)
+{
+    const Calc calc = {units, whole, 0};
+    const char *s = text;
+    return read_term(&calc, &s, value) && !*fl_css_space(s) && isfinite(*value);
+}
+
+char *fl_css_number_text(double value)
+{
+    char text[G_ASCII_DTOSTR_BUF_SIZE];
+    return g_strdup(g_ascii_formatd(text, sizeof text, "%.9g", value));
+}

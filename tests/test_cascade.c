@@ -1,0 +1,310 @@
+/* The cascade: what librsvg gets of style sheets, properties and units. */
+#include "open_svg.h"
+#include "svg/cascade.h"
+#include "svg/css_colour.h"
+#include "svg/css_condition.h"
+#include "svg/css_selector.h"
+#include "svg/css_value.h"
+#include <math.h>
+#include <string.h>
+
+/** The value of an element's property or attribute after the cascade; "" if it has none. */
+static char *computed(const char *content, const char *id, const char *name, FlWarnings *warnings)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_free(scratch_write(folder, "a.css", "@import 'b.css'; #a { stroke: #00ff00 }"));
+    g_free(scratch_write(folder, "b.css", "#a { stroke: #0000ff; stroke-width: 3 }"));
+    g_autofree char *path = scratch_svg(folder, "a.svg", content);
+    g_autoptr(FlSvg) svg = open_svg(path, warnings);
+    g_autoptr(GHashTable) ids = fl_document_ids(fl_svg_document(svg));
+    const xmlNode *node = g_hash_table_lookup(ids, id);
+    g_assert_nonnull(node);
+    char *value = fl_property(node, name);
+    return value ? value : g_strdup("");
+}
+
+#define SHAPE "<g id='g' class='outer'><rect id='b'/><path class='k  l' id='a' d='M0 0h9'/></g>"
+
+static void assert_value(const char *content, const char *name, const char *expected)
+{
+    g_autofree char *value = computed(content, "a", name, NULL);
+    g_test_message("%.120s", content);
+    g_assert_cmpstr(value, ==, expected);
+}
+
+/** Asserts that a rule for the selector reaches the path of SHAPE or does not. */
+static void assert_selected(const char *selector, bool expected)
+{
+    g_autofree char *content = g_strdup_printf("<style>%s{fill:#123456}</style>" SHAPE, selector);
+    assert_value(content, "fill", expected ? "#123456" : "");
+}
+
+static void selectors_choose_elements(void)
+{
+    static const char *const chosen[] = {"path",
+                                         "*",
+                                         "#a",
+                                         ".k",
+                                         ".l.k",
+                                         "path#a.k",
+                                         "g path",
+                                         "g>path",
+                                         "svg > g > *",
+                                         "rect + path",
+                                         "rect ~ #a",
+                                         ".outer :nth-child(2)",
+                                         "path:last-child",
+                                         ":not(rect)",
+                                         ":is(rect, path)",
+                                         ":where(.k)",
+                                         "[d]",
+                                         "[class~=l]",
+                                         "[id=a]",
+                                         "[d^='M0']",
+                                         "[d$=h9]",
+                                         "[d*=' ']",
+                                         "[id=A i]",
+                                         "path:nth-child(2n)",
+                                         ":nth-last-child(1)",
+                                         "path:only-of-type",
+                                         "path:first-of-type",
+                                         "svg|path",
+                                         "*|path",
+                                         ":nth-child(1 of path)",
+                                         ":is(:nonsense, path)",
+                                         "g:not(.x) > .k",
+                                         "g { &amp; > path",
+                                         "g { .k",
+                                         "rect, path"};
+    static const char *const left[] = {"rect",
+                                       "#b",
+                                       ".K",
+                                       ".k .l",
+                                       "svg > path",
+                                       "path + rect",
+                                       "path ~ rect",
+                                       "path:first-child",
+                                       "path:hover",
+                                       "path::before",
+                                       ":not(path)",
+                                       "[d=x]",
+                                       "[class=k]",
+                                       "[href]",
+                                       ":only-child",
+                                       "path:nth-child(odd)",
+                                       "g g path",
+                                       ":root",
+                                       "path:empty > *",
+                                       "path, :nonsense",
+                                       "a:link"};
+    for (size_t i = 0; i < G_N_ELEMENTS(chosen); i++)
+        assert_selected(chosen[i], true);
+    for (size_t i = 0; i < G_N_ELEMENTS(left); i++)
+        assert_selected(left[i], false);
+}
+
+static void siblings_are_told_from_other_relations(void)
+{
+    assert_selected("rect + path", true);
+    assert_selected("rect path", false);
+    assert_selected("g + path", false);
+    assert_selected("path + path", false);
+}
+
+static void the_strongest_declaration_wins(void)
+{
+    static const char *const sheets[][2] = {
+        {"path{fill:#111111}.k{fill:#222222}", "#222222"},
+        {".k{fill:#111111}path{fill:#222222}", "#111111"},
+        {"#a{fill:#111111}.k.l.k{fill:#222222}", "#111111"},
+        {".k{fill:#111111}.l{fill:#222222}", "#222222"},
+        {".k{fill:#111111!important}#a{fill:#222222}", "#111111"},
+        {":where(#a){fill:#111111}path{fill:#222222}", "#222222"},
+        {":is(#a, rect){fill:#111111}.k{fill:#222222}", "#111111"},
+        {"@layer p, q;@layer q{.k{fill:#111111}}@layer p{#a{fill:#222222}}", "#111111"},
+        {"@layer p{#a{fill:#111111}}path{fill:#222222}", "#222222"},
+        {"@layer p{path{fill:#111111!important}}#a{fill:#222222!important}", "#111111"},
+        {"@layer p{@layer q{#a{fill:#111111}}path{fill:#222222}}", "#222222"},
+        {"path{fill:#111111;fill:nonsense}", "#111111"},
+        {"@media print{path{fill:#111111}}path{stroke:red}", ""},
+        {"@media screen and (min-width: 50px){path{fill:#111111}}", "#111111"},
+        {"@supports (fill: oklch(0 0 0)){path{fill:#111111}}", "#111111"},
+        {"@supports not (fill: red){path{fill:#111111}}", ""},
+        {"/* path{fill:red} */path{fill:#111111}", "#111111"},
+        {".x}path{fill:#111111}", ""},
+        {"path{fill:#111111}}rect{}", "#111111"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(sheets); i++) {
+        g_autofree char *content = g_strdup_printf("<style>%s</style>" SHAPE, sheets[i][0]);
+        assert_value(content, "fill", sheets[i][1]);
+    }
+    assert_value("<style>#a{fill:#111111}</style><path id='a' style='fill:#222222'/>", "fill",
+                 "#222222");
+    assert_value("<style>#a{fill:#111111!important}</style><path id='a' style='fill:#222222'/>",
+                 "fill", "#111111");
+    assert_value("<style>*{fill:#111111}</style><path id='a' fill='#222222'/>", "fill", "#111111");
+}
+
+static void sheets_beside_the_drawing_are_read(void)
+{
+    assert_value("<style>@import url(a.css);</style><path id='a'/>", "stroke", "#00ff00");
+    assert_value("<style>@import 'a.css' print;</style><path id='a'/>", "stroke", "");
+    assert_value("<style>@import 'a.css';</style><path id='a'/>", "stroke-width", "3");
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_free(computed("<style>@import '/etc/passwd'; @import 'gone.css';</style><path id='a'/>", "a",
+                    "fill", warnings));
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 2);
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, "outside the drawing's folder"));
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 1)->text, "does not exist"));
+}
+
+static void values_become_those_of_svg_1(void)
+{
+    static const char *const values[][3] = {
+        {"style='--c:#123456;fill:var(--c)'", "fill", "#123456"},
+        {"fill='var(--none, #123456)'", "fill", "#123456"},
+        {"style='--a:var(--b);--b:var(--a);fill:var(--a)'", "fill", "inherit"},
+        {"style='fill:initial'", "fill", "black"},
+        {"style='stroke:unset'", "stroke", "inherit"},
+        {"style='opacity:unset'", "opacity", "1"},
+        {"style='stroke-width:calc(1px + 2 * (3px - 1px))'", "stroke-width", "5"},
+        {"style='stroke-width:clamp(1px, 10px, 4px)'", "stroke-width", "4"},
+        {"style='stroke-width:1rem'", "stroke-width", "16"},
+        {"style='stroke-width:10vw'", "stroke-width", "10"},
+        {"style='stroke-width:5mm'", "stroke-width", "5mm"},
+        {"stroke-width='calc(2 * 3px)'", "stroke-width", "6"},
+        {"style='stroke-dasharray:calc(1px * 2) 3'", "stroke-dasharray", "2,3"},
+        {"style='opacity:calc(1 / 4)'", "opacity", "0.25"},
+        {"style='fill:color-mix(in srgb, #ff0000 25%, #0000ff)'", "fill", "rgb(64, 0, 191)"},
+        {"style='cx:5px'", "cx", "5px"},
+        {"style='d:path(\"M1 2h3\")'", "d", "M1 2h3"},
+        {"style='transform:translate(50%, 10px)'", "transform", "matrix(1 0 0 1 50 10)"},
+        {"style='rotate:90deg;transform-origin:center'", "transform", "matrix(0 1 -1 0 100 0)"},
+        {"style='scale:2;translate:3px 4px'", "transform", "matrix(2 0 0 2 3 4)"},
+        {"style='transform:rotateX(60deg)'", "transform", "matrix(1 0 0 0.5 0 0)"},
+        {"transform='scale(2)' transform-origin='10 20'", "transform", "matrix(2 0 0 2 -10 -20)"},
+        {"transform='rotate(5)'", "transform", "rotate(5)"},
+        {"transform='scale(2)' style='transform:none'", "transform", "matrix(1 0 0 1 0 0)"},
+        {"d='M10 10h20v40z' style='transform:scale(2);transform-box:fill-box;transform-origin:50% "
+         "50%'",
+         "transform", "matrix(2 0 0 2 -20 -30)"},
+        {"style='offset-path:path(\"M0 0h100\");offset-distance:25%'", "transform",
+         "matrix(1 0 0 1 25 0)"},
+        {"d='M0 0h50' pathLength='1' stroke-dasharray='.5'", "stroke-dasharray", "25"},
+        {"transform='scale(4)' stroke-width='2' vector-effect='non-scaling-stroke'", "stroke-width",
+         "0.5"},
+        {"d='M0 0h9v9z' style='clip-path:circle(2px)'", "clip-path", "url(#fl-clip-0)"},
+    };
+    for (size_t i = 0; i < G_N_ELEMENTS(values); i++) {
+        g_autofree char *content = g_strdup_printf("<path id='a' %s/>", values[i][0]);
+        assert_value(content, values[i][1], values[i][2]);
+    }
+    assert_value("<g style='--c:#123456'><path id='a' style='fill:var(--c)'/></g>", "fill",
+                 "#123456");
+    assert_value("<g style='font-size:20px'><path id='a' style='stroke-width:calc(.5em)'/></g>",
+                 "stroke-width", "10");
+}
+
+/* References: the conversions of CSS Color 4, which Chromium rounds as here. */
+static void colours_are_those_of_a_browser(void)
+{
+    static const char *const colours[][2] = {
+        {"oklch(0.628 0.2577 29.23)", "rgb(255, 0, 0)"},
+        {"oklab(1 0 0)", "rgb(255, 255, 255)"},
+        {"lab(50% 0 0)", "rgb(119, 119, 119)"},
+        {"lch(54.29 106.84 40.86)", "rgb(255, 0, 0)"},
+        {"hwb(120 0% 50%)", "rgb(0, 128, 0)"},
+        {"color(display-p3 1 0 0)", "rgb(255, 0, 0)"},
+        {"color(srgb .5 .5 .5 / 50%)", "rgba(128, 128, 128, 0.5)"},
+        {"rgb(10 20 30 / none)", "rgba(10, 20, 30, 0)"},
+        {"hsl(120deg 100% 25%)", "rgb(0, 128, 0)"},
+        {"color-mix(in oklab, white, black)", "rgb(99, 99, 99)"},
+        {"light-dark(red, blue)", "rgb(255, 0, 0)"},
+        {"CanvasText", "rgb(0, 0, 0)"},
+        {"#12345678", "#12345678"},
+        {"url(#a) RED", "url(#a) rgb(255, 0, 0)"},
+    };
+    static const char *const wrong[] = {"nonsense", "#12345", "rgb(1, 2)", "color(foo 1 1 1)", ""};
+    for (size_t i = 0; i < G_N_ELEMENTS(colours); i++) {
+        g_autofree char *got = fl_css_colour(colours[i][0]);
+        g_assert_cmpstr(got, ==, colours[i][1]);
+    }
+    for (size_t i = 0; i < G_N_ELEMENTS(wrong); i++)
+        g_assert_null(fl_css_colour(wrong[i]));
+}
+
+static void media_ask_about_a_screen(void)
+{
+    static const struct {
+        const char *query;
+        bool matches;
+    } queries[] = {{"", true},
+                   {"all", true},
+                   {"print", false},
+                   {"not print", true},
+                   {"print, screen", true},
+                   {"(min-width: 400px)", true},
+                   {"(max-width: 399px)", false},
+                   {"(300px <= width < 500px)", true},
+                   {"(width > 400px)", false},
+                   {"screen and (orientation: landscape)", true},
+                   {"(prefers-color-scheme: dark)", false},
+                   {"(prefers-color-scheme: light)", true},
+                   {"not (prefers-color-scheme: dark)", true},
+                   {"(color) and (hover: hover)", true},
+                   {"(print) or (color)", true},
+                   {"(unheard-of)", false}};
+    const FlCssPage page = {400, 300};
+    for (size_t i = 0; i < G_N_ELEMENTS(queries); i++) {
+        g_test_message("%s", queries[i].query);
+        g_assert_true(fl_css_media_matches(queries[i].query, &page) == queries[i].matches);
+    }
+}
+
+static void each_kind_that_is_left_out_is_told_once(void)
+{
+    g_autoptr(FlWarnings) warnings = fl_warnings_new();
+    g_free(computed(
+        "<style>path{backdrop-filter:blur(1px);fill:nonsense;-webkit-foo:1;cursor:help}"
+        ":has(a){fill:red}</style><path style='backdrop-filter:none'/><path id='a' d='M0 0h1'/>",
+        "a", "fill", warnings));
+    g_assert_cmpint(fl_warnings_count(warnings), ==, 3);
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 0)->text, ":has(a)"));
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 1)->text, "backdrop-filter"));
+    g_assert_nonnull(strstr(fl_warnings_get(warnings, 2)->text, "nonsense"));
+}
+
+/* Variables that grow, selectors without end and brackets in brackets end in time. */
+static void hostile_sheets_come_to_an_end(void)
+{
+    GString *css = g_string_new("<style>#a{--v0:xxxxxxxxxx");
+    for (int i = 1; i < 60; i++)
+        g_string_append_printf(css, ";--v%d:var(--v%d)var(--v%d)", i, i - 1, i - 1);
+    g_string_append(css, ";fill:var(--v59, #123456)}");
+    for (int i = 0; i < 200; i++)
+        g_string_append(css, "a{&amp; &amp; &amp;{");
+    g_string_append(css, "</style><path id='a' d='M0 0'/>");
+    assert_value(css->str, "fill", "#123456");
+    g_string_assign(css, "<path id='a' style='stroke-width:calc(");
+    for (int i = 0; i < 5000; i++)
+        g_string_append_c(css, '(');
+    g_string_append(css, "'/>");
+    assert_value(css->str, "stroke-width", "");
+    g_string_free(css, TRUE);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name) g_test_add_func("/cascade/" #name, name)
+    TEST(selectors_choose_elements);
+    TEST(siblings_are_told_from_other_relations);
+    TEST(the_strongest_declaration_wins);
+    TEST(sheets_beside_the_drawing_are_read);
+    TEST(values_become_those_of_svg_1);
+    TEST(colours_are_those_of_a_browser);
+    TEST(media_ask_about_a_screen);
+    TEST(each_kind_that_is_left_out_is_told_once);
+    TEST(hostile_sheets_come_to_an_end);
+    return g_test_run();
+}
