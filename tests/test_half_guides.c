@@ -1,4 +1,5 @@
 /* Guides of half the size, and back. */
+#include "cover/mask_store.h"
 #include "guides/half_guides.h"
 
 static void a_coverage_is_the_mean_of_four(void)

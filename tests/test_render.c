@@ -1,7 +1,10 @@
-/* What a render leaves in the process that asked for it. */
+/* What a render leaves in the process that asked for it, and films in which one thing changes. */
+#include "base/picture.h"
+#include "io/png.h"
 #include "scratch.h"
 #include "threads.h"
 #include <fluidy/fluidy.h>
+#include <math.h>
 
 /* A drawing painted with the small style, to a list of sums unless `output` is set. */
 static void paint(FlRenderOptions options)
@@ -29,11 +32,92 @@ static void the_number_of_threads_is_the_render_s_own(void)
     g_assert_cmpint(omp_get_max_threads(), ==, before);
 }
 
+enum { STEPS = 64, SIDE = 60, CELL = 20 };
+
+/* A film in which a shape fades in, over two others and under a third. */
+static void draw_fading(const char *folder)
+{
+    for (int k = 0; k <= STEPS; k++) {
+        g_autofree char *name = g_strdup_printf("%02d.svg", k);
+        g_autofree char *svg = g_strdup_printf(
+            "<g id='low'><circle cx='30' cy='50' r='24' fill='#d04030'/></g>"
+            "<g id='lower'><path d='M50 10h40v50h-40z' fill='#2f7f4f'/></g>"
+            "<g id='fading' opacity='%g'><path d='M20 26h54v50h-54z' fill='#3050b0'/></g>"
+            "<g id='up'><circle cx='70' cy='66' r='16' fill='#e0b030'/></g>",
+            (double)k / STEPS);
+        g_free(scratch_svg(folder, name, svg));
+    }
+}
+
+/* How much two frames differ, a channel of a pixel, in each square of CELL px and in all of it. */
+static void differences(const FlPicture *a, const FlPicture *b, double cell[], double *all)
+{
+    const int cells = SIDE / CELL;
+    memset(cell, 0, (size_t)(cells * cells) * sizeof *cell);
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++)
+            for (int c = 0; c < 3; c++) {
+                const size_t i = 4 * ((size_t)y * SIDE + (size_t)x) + (size_t)c;
+                cell[y / CELL * cells + x / CELL] += abs(a->rgba[i] - b->rgba[i]);
+            }
+    *all = 0;
+    for (int k = 0; k < cells * cells; k++)
+        *all += cell[k], cell[k] /= 3.0 * CELL * CELL;
+    *all /= 3.0 * SIDE * SIDE;
+}
+
+/* The picture of a frame of the fading film, in a style. */
+static FlPicture *frame_of(const char *folder, int k)
+{
+    g_autofree char *file = g_strdup_printf("%s/%04d.png", folder, k);
+    g_autoptr(GError) error = NULL;
+    FlPicture *picture = fl_picture_read_png(file, &error);
+    g_assert_no_error(error);
+    return picture;
+}
+
+/* No step of the whole picture is larger than twice the mean one, and none of a part of it jumps.
+ */
+static void assert_fades_evenly(const char *style_name)
+{
+    enum { CELLS = (SIDE / CELL) * (SIDE / CELL) };
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autofree char *output = g_build_filename(folder, "%04d.png", NULL);
+    g_autofree char *style = g_test_build_filename(G_TEST_DIST, "styles", style_name, NULL);
+    const FlSetting settings[] = {{.name = "style", .value = style}};
+    const char *const inputs[] = {folder, NULL};
+    const FlRenderOptions options = {
+        .inputs = inputs, .output = output, .width = SIDE, .settings = settings, .n_settings = 1};
+    g_autoptr(GError) error = NULL;
+    draw_fading(folder);
+    fl_render(&options, &error);
+    g_assert_no_error(error);
+    double most = 0, sum = 0, cell[CELLS], most_of_cell[CELLS] = {0}, sum_of_cell[CELLS] = {0};
+    for (int k = 1; k <= STEPS; k++) {
+        g_autoptr(FlPicture) before = frame_of(folder, k - 1), now = frame_of(folder, k);
+        double step;
+        differences(before, now, cell, &step);
+        most = fmax(most, step), sum += step;
+        for (int c = 0; c < CELLS; c++)
+            most_of_cell[c] = fmax(most_of_cell[c], cell[c]), sum_of_cell[c] += cell[c];
+    }
+    g_test_message("%s: mean step %.3f, largest %.3f", style_name, sum / STEPS, most);
+    g_assert_cmpfloat(most, <=, 2 * sum / STEPS);
+    for (int c = 0; c < CELLS; c++)
+        g_assert_cmpfloat(most_of_cell[c], <=, 2 * sum_of_cell[c] / STEPS + 2);
+}
+
+static void nothing_jumps_while_a_shape_fades(void)
+{
+    assert_fades_evenly("08");
+}
+
 int main(int argc, char **argv)
 {
     g_setenv("G_TEST_SRCDIR", g_getenv("FLUIDY_FIXTURES"), true);
     g_test_init(&argc, &argv, NULL);
 #define TEST(name) g_test_add_func("/render/" #name, name)
     TEST(the_number_of_threads_is_the_render_s_own);
+    TEST(nothing_jumps_while_a_shape_fades);
     return g_test_run();
 }

@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "base/parallel_error.h"
 #include "base/schedule.h"
-#include "compose/edge_map.h"
 #include "compose/enlarge.h"
 #include "compose/exposure.h"
 #include "compose/paint_layer.h"
@@ -19,8 +18,7 @@
 typedef struct Stack {
     FlComposite *composite;
     FlLayerSources sources;
-    int *draw;        // the index in the draw list of each layer; NO_DRAW: it is the stain
-    FlFading *fading; // of each layer
+    int *draw; // the index in the draw list of each layer; NO_DRAW: it is the stain
 } Stack;
 
 /* The region's name, with a number from its second layer on. */
@@ -39,6 +37,7 @@ static bool double_layer(const Stack *stack, FlLayer *layer, GError **error)
     FlLayer half = *layer;
     const bool done = fl_layer_double(&half, stack->sources.input->width,
                                       stack->sources.input->height, layer, error);
+    half.fade = (FlFade){0}; // it is the full one's
     fl_layer_clear(&half);
     return done;
 }
@@ -71,7 +70,7 @@ static bool paint_one(void *data, int k, int thread, GError **error)
     if (stack->draw[k] == NO_DRAW)
         return stain_layer(stack, k, error);
     return fl_layer_paint(layer, &stack->sources, stack->draw[k], error) &&
-           fl_fading_apply(&stack->fading[k], layer, error) &&
+           fl_fade_find(layer, error) &&
            (!stack->sources.input->half || double_layer(stack, layer, error));
 }
 
@@ -110,12 +109,9 @@ static bool make_some(Stack *stack, int first, int end, FlUnderlay *above, GErro
         if (stack->draw[k] == NO_DRAW)
             continue;
         fl_layer_begin(layer, &stack->sources, stack->draw[k]);
-        done = fl_underlay_next(above, layer, is_painted(stack, k), &stack->fading[k], error);
+        done = fl_underlay_next(above, layer, is_painted(stack, k), error);
     }
-    done = done && paint_some(stack, first, end, error);
-    for (int k = first; k < end; k++)
-        fl_fading_clear(&stack->fading[k]);
-    return done;
+    return done && paint_some(stack, first, end, error);
 }
 
 /* The shapes above the layers of a film. */
@@ -154,6 +150,7 @@ static bool pack_some(FlLayer *layers, int n, GError **error)
         if (!fl_layer_pack(&layers[k], &failure))
             fl_parallel_error_keep(&first, failure);
         g_clear_pointer(&layers[k].knockout, free);
+        fl_fade_clear(&layers[k].fade);
     }
     return fl_parallel_error_propagate(error, first);
 }
@@ -258,7 +255,7 @@ static void note_laid(const FlComposite *composite, const FlComposeInput *input,
 }
 
 /* A layer for each draw that is neither left out nor hidden in all frames. */
-static bool fill_layers(FlComposite *composite, const FlComposeInput *input, const FlEdgeMap *edges,
+static bool fill_layers(FlComposite *composite, const FlComposeInput *input, const FlCover *cover,
                         const int *exposures, GError **error)
 {
     const FlDrawList *draws = composite->draws;
@@ -271,24 +268,38 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
             draw[composite->n_layers++] = r;
         }
     insert_stain(composite, input, draw);
-    g_autofree FlFading *fading = g_new0(FlFading, MAX(composite->n_layers, 1));
     const int n_regions = fl_drawing_regions(input->drawing);
     g_autofree double *areas = g_new(double, MAX(n_regions, 1));
     fl_region_areas_find(draws, n_regions, areas);
-    Stack stack = {composite, {input, edges, exposures, areas, {NULL, input->half}}, draw, fading};
+    Stack stack = {composite, {input, cover, exposures, areas, {NULL, input->half}}, draw};
     if (!(needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error))
         return false;
     note_laid(composite, input, draw);
     return true;
 }
 
+/* Which regions hide nothing of what lies below them; n_regions values. */
+static bool *find_sheer(const FlComposeInput *input, const FlDrawList *draws)
+{
+    bool *sheer = g_new0(bool, MAX(fl_drawing_regions(input->drawing), 1));
+    for (int r = 0; r < draws->n; r++) {
+        const int region = draws->draw[r].region, p = input->painted_of[region];
+        sheer[region] |= p >= 0 ? fl_stacking_of(input->painted[p]) != FL_STACKING_KNOCKOUT
+                                : draws->draw[r].by_hand != NULL;
+    }
+    return sheer;
+}
+
 static bool make_layers(FlComposite *composite, const FlComposeInput *input, GError **error)
 {
+    const FlDrawList *draws = composite->draws;
     g_autofree int *exposures = g_new0(int, MAX(input->n_painted, 1));
-    g_auto(FlEdgeMap) edges = {0};
-    return fl_exposures_find(input, composite->draws, exposures, error) &&
-           fl_edges_init(&edges, input, composite->draws, error) &&
-           fill_layers(composite, input, &edges, exposures, error);
+    g_autofree bool *sheer = find_sheer(input, draws);
+    g_auto(FlCover) cover = {0};
+    return fl_cover_init(&cover, draws, fl_drawing_width(input->drawing),
+                         fl_drawing_height(input->drawing), (FlHiding){.sheer = sheer}, error) &&
+           fl_exposures_find(input, &cover, exposures, error) &&
+           fill_layers(composite, input, &cover, exposures, error);
 }
 
 static bool compose(FlComposite *composite, const FlComposeInput *input, int frame, bool with_16,

@@ -3,15 +3,16 @@
 #define FLUIDY_COMPOSE_EXPOSURE_H
 
 #include "compose/compose_input.h"
+#include "cover/cover_map.h"
 
 /**
- * The exposure (of fl_ink_exposure()) of each painted region: by what is seen of it, if that is
- * enough, else by the whole shape. Paint is not the same near a contour as inside, and a hidden
- * part should have no say in the colour.
+ * The exposure (of fl_ink_exposure()) of each painted region. Its pixels count by how much of them
+ * is seen: paint is not the same near a contour as inside, and a hidden part should have no say in
+ * the colour.
  *
  * exposures gets input->n_painted values. FL_ERROR_NO_MEMORY.
  */
-bool fl_exposures_find(const FlComposeInput *input, const FlDrawList *draws, int *exposures,
+bool fl_exposures_find(const FlComposeInput *input, const FlCover *cover, int *exposures,
                        GError **error);
 
 #endif

@@ -69,7 +69,7 @@ static void count_amounts(const FlInk *ink, const uint8_t *rgb, const uint8_t *m
     memset(h, 0, sizeof *h);
     for (size_t i = 0; i < n; i++)
         if (mask[i] >= INSIDE)
-            h->count[fl_ink_amount(ink, rgb + 3 * i)]++, h->total++;
+            fl_count_amount(h, fl_ink_amount(ink, rgb + 3 * i), 1, 255);
 }
 
 static int mean_amount(const FlAmountCounts *h)
@@ -155,33 +155,32 @@ void fl_ink_free(FlInk *ink)
     g_free(ink);
 }
 
-static void count_inner(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage,
-                        int width, int height, int margin, FlAmountCounts *h)
+/** Counts a row of n pixels: most, where `inner` says so; less, where `near` does. */
+static void count_row(const FlInk *ink, const uint8_t *rgb, const uint8_t *coverage,
+                      const uint8_t *near, const uint8_t *inner, int n, FlAmountCounts *h)
 {
-    g_autofree uint8_t *inner = g_malloc((size_t)width);
-    memset(h, 0, sizeof *h);
-    for (int y = 0; y < height; y++) {
-        const uint8_t *row = painted + 3 * (size_t)y * width;
-        if (fl_is_blank(coverage + (size_t)y * width, (size_t)width)) // as most rows are
-            continue;
-        fl_interior_row(coverage, width, height, y, margin, inner);
-        for (FlColumns run = fl_next_run(inner, 0, width); run.first < run.last;
-             run = fl_next_run(inner, run.last, width))
-            for (int x = run.first; x < run.last; x++)
-                if (inner[x] == 255)
-                    h->count[fl_ink_amount(ink, row + 3 * x)]++, h->total++;
-    }
+    for (FlColumns run = fl_next_run(coverage, 0, n); run.first < run.last;
+         run = fl_next_run(coverage, run.last, n))
+        for (int x = run.first; x < run.last; x++)
+            if (coverage[x])
+                fl_count_amount(h, fl_ink_amount(ink, rgb + 3 * x),
+                                256u * inner[x] + 16u * near[x] + coverage[x], coverage[x]);
 }
 
 int fl_ink_exposure(const FlInk *ink, const uint8_t *painted, const uint8_t *coverage, int width,
                     int height)
 {
-    enum { MARGIN_PX = 2 };
     g_autofree FlAmountCounts *h = g_new0(FlAmountCounts, 1);
-    for (int margin = MARGIN_PX; margin > 0 && h->total < FL_COUNTS_ENOUGH; margin--)
-        count_inner(ink, painted, coverage, width, height, margin, h);
-    if (h->total < FL_COUNTS_ENOUGH)
-        count_amounts(ink, painted, coverage, (size_t)width * height, h);
+    g_autofree uint8_t *near = g_malloc(2 * (size_t)width);
+    uint8_t *inner = near + width;
+    for (int y = 0; y < height; y++) {
+        const size_t row = (size_t)y * (size_t)width;
+        if (fl_is_blank(coverage + row, (size_t)width)) // as most rows are
+            continue;
+        fl_interior_row(coverage, width, height, y, 1, near);
+        fl_interior_row(coverage, width, height, y, 2, inner);
+        count_row(ink, painted + 3 * row, coverage + row, near, inner, width, h);
+    }
     return fl_counts_exposure(h);
 }
 
@@ -189,11 +188,12 @@ int fl_counts_exposure(const FlAmountCounts *h)
 {
     if (h->total == 0)
         return FL_EXPOSURE_ONE;
-    const int exposure = FL_EXPOSURE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
-    const int sure = (int)MIN(h->total, FL_COUNTS_ENOUGH);
-    return (CLAMP(exposure, FL_EXPOSURE_MIN, FL_EXPOSURE_MAX) * sure +
-            FL_EXPOSURE_ONE * (FL_COUNTS_ENOUGH - sure)) /
-           FL_COUNTS_ENOUGH;
+    const int64_t exposure = FL_EXPOSURE_ONE * FL_AMOUNT_ONE / percentile(h, 50);
+    const int64_t enough = 255 * FL_COUNTS_ENOUGH,
+                  sure = (int64_t)MIN(h->seen, 255u * FL_COUNTS_ENOUGH);
+    return (int)((CLAMP(exposure, FL_EXPOSURE_MIN, FL_EXPOSURE_MAX) * sure +
+                  FL_EXPOSURE_ONE * (enough - sure)) /
+                 enough);
 }
 
 /** The cubic that is 0 at toe_end with slope 0 and meets the identity at toe, slope included. */

@@ -16,11 +16,19 @@
 #define FL_EXPOSURE_MIN (FL_EXPOSURE_ONE / 4)
 #define FL_EXPOSURE_MAX (FL_EXPOSURE_ONE * 8)
 
-/** Amounts, and the number of pixels that have each. */
+/** A histogram of amounts. */
 typedef struct FlAmountCounts {
-    uint32_t count[FL_AMOUNTS];
-    uint64_t total;
+    uint64_t count[FL_AMOUNTS]; // weights
+    uint64_t total;             // of the weights
+    uint64_t seen;              // of the pixels, 255 each
 } FlAmountCounts;
+
+/** Counts a pixel, of which 0..255 is seen, with a weight. */
+static inline void fl_count_amount(FlAmountCounts *counts, int amount, uint32_t weight,
+                                   uint8_t seen)
+{
+    counts->count[amount] += weight, counts->total += weight, counts->seen += seen;
+}
 
 #define FL_COUNTS_ENOUGH 64 // pixels that are trusted with an exposure
 
@@ -76,11 +84,11 @@ static inline int fl_ink_amount(const FlInk *ink, const uint8_t *rgb)
 /**
  * The exposure that brings a painted region's own median amount to one.
  *
- * painted is width * height * 3, coverage width * height: what counts of the shape. A region takes
- * other parts of the exemplar than its median (a thin limb is all rim, an early frame all fresh
- * paint), and without it its colour would not be the drawing's. The median is over pixels 2
- * px inside the contour; where they are fewer than FL_COUNTS_ENOUGH, as in thin lines, over pixels
- * nearer to it. It is a function of this frame alone.
+ * painted is width * height * 3, coverage width * height: how much each pixel counts. A region
+ * takes other parts of the exemplar than its median (a thin limb is all rim, an early frame all
+ * fresh paint), and without it its colour would not be the drawing's. Pixels count 16 times as much
+ * 1 px inside the contour and 256 times 2 px inside: those at the contour matter in thin lines
+ * only. It is a function of this frame alone.
  *
  * Returns: FL_EXPOSURE_MIN … FL_EXPOSURE_MAX.
  */

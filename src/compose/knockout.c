@@ -2,7 +2,6 @@
 
 #include "base/alloc.h"
 #include "base/windows.h"
-#include "compose/closing.h"
 #include "compose/ink.h"
 
 /*
@@ -42,6 +41,38 @@ static int hidden(int amount, uint64_t share, uint64_t all)
     return body + (255 - body) * amid((uint32_t)(share / all)) / ONE;
 }
 
+/** Three rows of coverage. */
+typedef struct Rows {
+    const uint8_t *own, *above, *below;
+} Rows;
+
+static int16_t inside_at(const Rows *rows, int x, int left, int right)
+{
+    const uint8_t beside = MIN(rows->own[left], rows->own[right]);
+    const uint8_t least = MIN(MIN(rows->own[x], beside), MIN(rows->above[x], rows->below[x]));
+    return least > 0 ? 255 : rows->own[x];
+}
+
+/**
+ * How much of each pixel of a box is inside a shape, 0..255: of those at its contour, next to one
+ * without coverage, what they are covered; all of those within, however faint their fill.
+ */
+static void find_inside(const uint8_t *coverage, int width, int height, FlRect box, int16_t *inside)
+{
+    const int end = box.x + box.width;
+    for (int y = box.y; y < box.y + box.height; y++) {
+        const uint8_t *own = coverage + (size_t)y * (size_t)width;
+        const Rows rows = {own, y > 0 ? own - width : own, y + 1 < height ? own + width : own};
+        int16_t *restrict row = inside + (size_t)(y - box.y) * (size_t)box.width;
+        for (int x = MAX(box.x, 1); x < MIN(end, width - 1); x++)
+            row[x - box.x] = inside_at(&rows, x, x - 1, x + 1);
+        if (box.x == 0)
+            row[0] = inside_at(&rows, 0, 0, MIN(1, width - 1));
+        if (end == width)
+            row[width - 1 - box.x] = inside_at(&rows, width - 1, MAX(width - 2, 0), width - 1);
+    }
+}
+
 /** A part of the box in which there is some of the shape, and room for what is around it. */
 typedef struct Tile {
     FlRect own, around; // around: with all that its windows hold; of the box, as own is
@@ -71,7 +102,7 @@ static void sum_tile(Tile *tile, FlRect own, FlRect box, const uint8_t *coverage
 {
     tile->own = own;
     tile->around = fl_rect_grown(own, radius_px, (FlRect){0, 0, box.width, box.height});
-    fl_closing_inside(coverage, box.width, box.height, tile->around, tile->inside);
+    find_inside(coverage, box.width, box.height, tile->around, tile->inside);
     fl_window_sums(tile->inside, tile->around, radius_px, tile->sums);
 }
 

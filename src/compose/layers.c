@@ -54,9 +54,39 @@ static void see_columns(const FlLayer *layer, const FlLayersAbove *above, int y,
                       above->seen + (size_t)y * (size_t)layer->area.box.width);
 }
 
+/**
+ * How much of a layer's pixel stays, 0..255, of which the layers above leave `rest` in sight: what
+ * is seen through translucent shapes does; what is seen since their paint is thin does by keep.
+ */
+static int faded(int rest, int open, int keep)
+{
+    return rest > open ? (open * 255 + (rest - open) * keep) / rest : 255;
+}
+
+/** Fades columns of row y of the layer. */
+static void fade_columns(const FlLayer *layer, const FlLayersAbove *above, int y, FlColumns columns)
+{
+    const FlFade *fade = &layer->fade;
+    const FlRect own = layer->area.box, box = fade->box;
+    const size_t row = (size_t)((own.y + y) / fade->scale - box.y) * (size_t)box.width;
+    const uint8_t *area = above->area + (size_t)(own.y + y) * (size_t)above->width + own.x;
+    for (int x = columns.first; x < columns.last; x++) {
+        const size_t at = row + (size_t)((own.x + x) / fade->scale - box.x);
+        const size_t p = (size_t)y * (size_t)own.width + (size_t)x;
+        if (fade->keep[at] == 255)
+            continue;
+        const int left = faded(255 - area[x], fade->open[at], fade->keep[at]);
+        layer->rgba[4 * p + 3] = (uint8_t)((layer->rgba[4 * p + 3] * left + 127) / 255);
+        if (layer->knockout)
+            layer->knockout[p] = (uint8_t)((layer->knockout[p] * left + 127) / 255);
+    }
+}
+
 static void resolve_columns(const FlLayer *layer, const FlLayersAbove *above, int y,
                             FlColumns columns)
 {
+    if (layer->fade.keep)
+        fade_columns(layer, above, y, columns);
     const FlRect box = layer->area.box;
     const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)(box.x + columns.first);
     const size_t j = (size_t)y * (size_t)box.width + (size_t)columns.first;

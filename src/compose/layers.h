@@ -9,6 +9,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/** Where a layer shows less below others, in the size in which it is painted. */
+typedef struct FlFade {
+    FlRect box;    // the layer's, and some pixels around it
+    int scale;     // px of the frame per px of it
+    uint8_t *keep; // what of the layer stays where no paint is above it, 0..255; NULL: all of it
+    uint8_t *open; // what the shapes above and beside a pixel leave open however thick their paint
+                   // is, as translucent ones do, 0..255
+} FlFade;
+
+void fl_fade_clear(FlFade *fade);
+
 /** One layer; in arrays the bottom one comes first. */
 typedef struct FlLayer {
     FlArea area;             // where it may be seen
@@ -20,6 +31,7 @@ typedef struct FlLayer {
     uint8_t *rgba;           // box.width * box.height * 4 straight RGBA, owned by the caller: clear
                              // where the area has no coverage, undefined beyond it; NULL if packed
     FlPixelRuns runs;        // of a packed one, owned by the caller as well
+    FlFade fade;             // owned by the caller
     bool sheer;              // drawn by hand: what lies below is seen through its grain
     uint8_t alpha;           // opacity of the layer, 255 opaque
     FlStacking stacking;     // a layer with a blend mode hides nothing, whatever this says

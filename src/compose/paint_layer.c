@@ -27,8 +27,7 @@ static bool is_cut_out(const FlPaintedRegion *painted)
     return painted->reach_px > 0;
 }
 
-/* Cut out paint hides as far as its alpha does, and so knocks nothing out. */
-static FlStacking stacking_of(const FlPaintedRegion *painted)
+FlStacking fl_stacking_of(const FlPaintedRegion *painted)
 {
     const FlStacking stacking = painted->settings->stacking;
     return is_cut_out(painted) && stacking != FL_STACKING_GLAZE ? FL_STACKING_OVER : stacking;
@@ -54,11 +53,11 @@ static FlPaintedPart part_of(const FlPaintedRegion *painted)
 }
 
 /* How much paint each pixel of a draw's box has; to be freed with free(). */
-static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion *painted,
+static int16_t *amounts_of(const FlLayerSources *sources, int r, const FlPaintedRegion *painted,
                            int exposure, GError **error)
 {
     const bool keep = painted->settings->tint == FL_TINT_KEEP;
-    const FlDraw *draw = &edges->draws->draw[r];
+    const FlDraw *draw = &sources->cover->draws->draw[r];
     const FlPaintedPart part = part_of(painted);
     g_autofree int16_t *amounts =
         fl_alloc_unset(fl_rect_pixels(draw->area.box), sizeof *amounts, "a layer", error);
@@ -66,9 +65,6 @@ static int16_t *amounts_of(const FlEdgeMap *edges, int r, const FlPaintedRegion 
         return NULL;
     fl_colourise_amounts(painted->style->ink, keep ? FL_EXPOSURE_ONE : exposure, &part,
                          draw->coverage, &draw->area, amounts);
-    if (!fl_edges_close(edges, r, painted, amounts, error) ||
-        (!keep && !fl_edges_level(edges, r, amounts, error)))
-        return NULL;
     return g_steal_pointer(&amounts);
 }
 
@@ -133,10 +129,10 @@ static void take_culled(const FlLayer *layer, int16_t *amounts)
 static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                         const FlPaintedRegion *painted, int exposure, GError **error)
 {
-    const FlDraw *draw = &sources->edges->draws->draw[r];
+    const FlDraw *draw = &sources->cover->draws->draw[r];
     FlColouring colouring = colouring_of(sources->input, painted, draw);
     const FlRect box = layer->area.box;
-    g_autofree int16_t *amounts = amounts_of(sources->edges, r, painted, exposure, error);
+    g_autofree int16_t *amounts = amounts_of(sources, r, painted, exposure, error);
     uint8_t *knockout = amounts ? fl_alloc_scratch(fl_rect_pixels(box), 1, "a layer", error) : NULL;
     layer->knockout = knockout;
     if (!knockout)
@@ -176,7 +172,7 @@ static bool reach_out(FlLayer *layer, const FlLayerSources *sources, const FlDra
 static bool paint_cut_out(FlLayer *layer, const FlLayerSources *sources, int r,
                           const FlPaintedRegion *painted, int exposure, GError **error)
 {
-    const FlDraw *draw = &sources->edges->draws->draw[r];
+    const FlDraw *draw = &sources->cover->draws->draw[r];
     FlColouring colouring = colouring_of(sources->input, painted, draw);
     const FlPaintedPart part = part_of(painted);
     const FlRect box = layer->area.box;
@@ -201,7 +197,7 @@ static bool paint_cut_out(FlLayer *layer, const FlLayerSources *sources, int r,
 
 void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int r)
 {
-    const FlDraw *draw = &sources->edges->draws->draw[r];
+    const FlDraw *draw = &sources->cover->draws->draw[r];
     const int p = sources->input->painted_of[draw->region];
     const FlPaintedRegion *painted = p >= 0 ? sources->input->painted[p] : NULL;
     const FlRect box = draw->area.box;
@@ -210,13 +206,13 @@ void fl_layer_begin(FlLayer *layer, const FlLayerSources *sources, int r)
                        .coverage = by_hand ? draw->by_hand : draw->coverage,
                        .sheer = by_hand,
                        .alpha = draw->alpha,
-                       .stacking = painted ? stacking_of(painted) : FL_STACKING_KNOCKOUT,
+                       .stacking = painted ? fl_stacking_of(painted) : FL_STACKING_KNOCKOUT,
                        .blend_mode = draw->blend_mode};
 }
 
 bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError **error)
 {
-    const FlDraw *draw = &sources->edges->draws->draw[r];
+    const FlDraw *draw = &sources->cover->draws->draw[r];
     const int p = sources->input->painted_of[draw->region];
     g_auto(FlPaintedReader) look = {0};
     const FlPaintedRegion *painted = p >= 0 ? &look.region : NULL;
@@ -239,6 +235,7 @@ void fl_layer_clear(FlLayer *layer)
     fl_area_clear(&layer->area);
     free(layer->rgba);
     free(layer->knockout);
+    fl_fade_clear(&layer->fade);
     fl_pixel_runs_clear(&layer->runs);
     if (layer->owns_coverage)
         free((uint8_t *)layer->coverage);

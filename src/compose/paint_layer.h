@@ -4,17 +4,21 @@
 
 #include "compose/compose_input.h"
 #include "compose/culling.h"
-#include "compose/edge_map.h"
 #include "compose/layers.h"
+#include "cover/cover_map.h"
 
 /** What the layers of a frame are made from; borrowed. */
 typedef struct FlLayerSources {
     const FlComposeInput *input;
-    const FlEdgeMap *edges; // of the frame's draws
-    const int *exposures;   // of each painted region
-    const double *areas;    // of each region, px
-    FlCulling culling;      // by the layers above
+    const FlCover *cover; // of the frame
+    const int *exposures; // of each painted region
+    const double *areas;  // of each region, px
+    FlCulling culling;    // by the layers above
 } FlLayerSources;
+
+/** How a region lies over others. Cut out paint hides as far as its alpha does, and so knocks
+ * nothing out. */
+FlStacking fl_stacking_of(const FlPaintedRegion *painted);
 
 /** The layer of a draw, before it is painted: where it is, and how it lies over others. It borrows
  * from the draw. */

@@ -2,35 +2,34 @@
 
 #include "base/alloc.h"
 #include "base/schedule.h"
+#include "cover/cover_map.h"
+#include <math.h>
 #include <string.h>
 
-#define SHOWN 128 // coverage from which on a shape is there
 #define MARGIN_PX 4
 #define SIDE 5 // a step of the distances, and one to a corner
 #define CORNER 7
 #define FAR 30000
 #define BESIDE_PX 3 // a sliver farther from what lies above is a shape of its own
-#define BESIDE_HALF_PX 2
 
-void fl_fading_clear(FlFading *fading)
+void fl_fade_clear(FlFade *fade)
 {
-    free(fading->over);
-    free(fading->seen);
-    *fading = (FlFading){0};
+    free(fade->open);
+    free(fade->keep);
+    *fade = (FlFade){0};
 }
 
-static bool fading_init(FlFading *fading, const FlLayer *layer, const FlUnderlay *above,
-                        GError **error)
+static bool fade_init(FlFade *fade, const FlLayer *layer, const FlUnderlay *above, GError **error)
 {
     const FlRect page = {0, 0, above->width, above->height};
-    fading->box = fl_rect_grown(layer->area.box, MARGIN_PX, page);
-    fading->half = above->half;
-    const size_t n = fl_rect_pixels(fading->box);
-    return (fading->over = fl_alloc_unset(n, 1, "a matte", error)) &&
-           (fading->seen = fl_alloc_unset(n, 1, "a matte", error));
+    fade->box = fl_rect_grown(layer->area.box, MARGIN_PX, page);
+    fade->scale = above->half ? 2 : 1;
+    const size_t n = fl_rect_pixels(fade->box);
+    return (fade->open = fl_alloc_unset(n, 1, "a matte", error)) &&
+           (fade->keep = fl_alloc_unset(n, 1, "a matte", error));
 }
 
-/** Distances of the pixels of a fading's box, fifths of a px. */
+/** Distances of the pixels of a fade's box, fifths of a px. */
 typedef struct Ways {
     int16_t *to_open; // to what nothing above covers
     int16_t *to_seen; // to where the layer is seen
@@ -50,28 +49,21 @@ static bool ways_init(Ways *ways, size_t n, GError **error)
            (ways->to_seen = fl_alloc_unset(n, sizeof *ways->to_seen, "a matte", error));
 }
 
-/** Distances along a row from its pixels that are 0; others come in as FAR. */
-static void measure_row(int16_t *row, int width)
-{
-    for (int x = 0, end; x < width; x = end) {
-        end = fl_end_of_same((const uint16_t *)row, x, width);
-        if (row[x] == 0)
-            continue;
-        const int from_left = x > 0 ? SIDE : FAR, from_right = end < width ? SIDE : FAR;
-        const int n = end - x;
-        for (int k = 0; k < n; k++) {
-            const int near = MIN(from_left + k * SIDE, from_right + (n - 1 - k) * SIDE);
-            row[x + k] = (int16_t)MIN(near, FAR);
-        }
-    }
-}
-
 static int16_t least(int16_t a, int16_t b)
 {
     return MIN(a, b);
 }
 
-/** Lowers a row's distances to what those of the row before or after it tell. */
+/** Lowers a row's distances to what those beside it in the row tell. */
+static void lower_row(int16_t *row, int width)
+{
+    for (int x = 1; x < width; x++)
+        row[x] = least(row[x], (int16_t)(row[x - 1] + SIDE));
+    for (int x = width - 2; x >= 0; x--)
+        row[x] = least(row[x], (int16_t)(row[x + 1] + SIDE));
+}
+
+/** The same of the row before or after it. */
 static void lower_from(const int16_t *beside, int16_t *restrict row, int width)
 {
     for (int x = 0; x < width; x++)
@@ -90,20 +82,29 @@ typedef struct Lines {
 } Lines;
 
 /**
- * Distances of some rows from the pixels that are 0; others come in as FAR. The steps of a shortest
- * way may come in any order: those along a row first, so that from row to row no pixel waits for
- * its neighbour.
+ * The least, over all pixels, of what a pixel has and the way to it; of some rows. The steps of a
+ * shortest way may come in any order: those along a row first, so that from row to row no pixel
+ * waits for its neighbour.
  */
 static void measure(int16_t *plane, int width, int height, Lines wanted)
 {
     for (int y = 0; y < height; y++)
-        measure_row(plane + (size_t)y * (size_t)width, width);
+        lower_row(plane + (size_t)y * (size_t)width, width);
     for (int y = 1; y < wanted.last; y++)
         lower_from(plane + (size_t)(y - 1) * (size_t)width, plane + (size_t)y * (size_t)width,
                    width);
     for (int y = height - 2; y >= wanted.first; y--)
         lower_from(plane + (size_t)(y + 1) * (size_t)width, plane + (size_t)y * (size_t)width,
                    width);
+}
+
+/** How far off a pixel counts as that is open, or seen, by a share 0..255: not at all in full, and
+ * ever farther as the share falls, so that what lies below a shape fades as that grows opaque. */
+static void find_costs(int16_t cost[256])
+{
+    cost[0] = FAR;
+    for (int share = 1; share < 256; share++)
+        cost[share] = (int16_t)(5 * SIDE * (255 - share) / sqrt(255.0 * share));
 }
 
 /** Whether anything lies over the layer's shape. */
@@ -114,220 +115,149 @@ static bool is_below(const FlLayer *layer, const FlUnderlay *above)
     for (int y = 0; y < own.height && !any; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)own.width;
-        const uint8_t *over = above->coverage + (size_t)(own.y + y) * (size_t)above->width + own.x;
+        const uint8_t *open = above->free + (size_t)(own.y + y) * (size_t)above->width + own.x;
         for (int x = span.first; x < span.last; x++)
-            any |= MIN(coverage[x], over[x]);
+            any |= coverage[x] & (uint8_t)~open[x];
     }
     return any;
 }
 
-/** Fills over and seen. */
-static void mark_pixels(FlFading *fading, const FlLayer *layer, const FlUnderlay *above)
+/** Notes what is open around the layer, and in keep what is seen of it. */
+static void mark_pixels(FlFade *fade, const FlLayer *layer, const FlUnderlay *above)
 {
-    const FlRect own = layer->area.box, box = fading->box;
-    memset(fading->seen, 0, fl_rect_pixels(box));
-    for (int y = 0; y < box.height; y++) {
-        uint8_t *restrict over = fading->over + (size_t)y * (size_t)box.width;
-        const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)box.x;
-        const uint8_t *coverage = above->coverage + i, *hides = above->hides + i;
-        for (int x = 0; x < box.width; x++)
-            over[x] = hides[x] & (coverage[x] >= SHOWN ? 255 : 0);
-    }
+    const FlRect own = layer->area.box, box = fade->box;
+    fl_rect_copy(above->free, (FlRect){0, 0, above->width, above->height}, fade->open, box, 1);
+    memset(fade->keep, 0, fl_rect_pixels(box));
     for (int y = 0; y < own.height; y++) {
         const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)own.width;
         const size_t p = (size_t)(own.y + y - box.y) * (size_t)box.width + (size_t)(own.x - box.x);
         const FlColumns span = fl_area_row(&layer->area, y);
-        const uint8_t *over = fading->over + p;
-        const uint8_t *covered =
-            above->coverage + (size_t)(own.y + y) * (size_t)above->width + (size_t)own.x;
-        uint8_t *restrict seen = fading->seen + p;
-        for (int x = span.first; x < span.last; x++) {
-            const int most = fading->half ? coverage[x] - covered[x] : coverage[x];
-            seen[x] = (most >= SHOWN) & (over[x] == 0);
-        }
+        const uint8_t *open = fade->open + p;
+        uint8_t *restrict seen = fade->keep + p;
+        for (int x = span.first; x < span.last; x++)
+            seen[x] = (uint8_t)MAX(coverage[x] + open[x] - 255, 0); // where both end, neither
     }
 }
 
-/** Marks blocks of 2x2 pixels, of two rows, in which the layer is seen: by their left columns. */
-static void mark_blocks(const uint8_t *seen, const uint8_t *below, int width, uint8_t *block)
+/** The least of each block of 2x2 pixels of two rows, by their left columns. */
+static void find_blocks(const uint8_t *seen, const uint8_t *below, int width, uint8_t *block)
 {
     for (int x = 0; x + 1 < width; x++)
-        block[x] = seen[x] & seen[x + 1] & below[x] & below[x + 1];
+        block[x] = MIN(MIN(seen[x], seen[x + 1]), MIN(below[x], below[x + 1]));
 }
 
-/** Clears the distances of the pixels of a row that blocks hold. */
-static void clear_blocks(const uint8_t *block, int width, int16_t *restrict row)
+/** Raises the pixels of a row to the blocks that hold them. */
+static void raise_to_blocks(const uint8_t *block, int width, uint8_t *restrict row)
 {
     for (int x = 0; x + 1 < width; x++)
-        row[x] = block[x] ? 0 : row[x];
+        row[x] = MAX(row[x], block[x]);
     for (int x = 1; x < width; x++)
-        row[x] = block[x - 1] ? 0 : row[x];
+        row[x] = MAX(row[x], block[x - 1]);
 }
 
-/** Clears the distances of the pixels of blocks of 2x2 in which the layer is seen. */
-static void clear_seen(const FlFading *fading, int16_t *to_seen)
+/** Takes out of a plane of shares what is no part of a block of 2x2 pixels: slivers. */
+static bool take_slivers(uint8_t *seen, int width, int height, GError **error)
 {
-    const int w = fading->box.width, h = fading->box.height;
-    g_autofree uint8_t *block = g_malloc((size_t)w);
-    for (int y = 0; y + 1 < h; y++) {
-        const size_t p = (size_t)y * (size_t)w, q = p + (size_t)w;
-        mark_blocks(fading->seen + p, fading->seen + q, w, block);
-        clear_blocks(block, w, to_seen + p);
-        clear_blocks(block, w, to_seen + q);
+    const size_t w = (size_t)width;
+    g_autofree uint8_t *block = fl_alloc(2 * w, 1, "a row of a matte", error);
+    for (int y = 0; block && y < height; y++) { // the blocks of this row and of the one before
+        uint8_t *row = seen + (size_t)y * w, *blocks = block + (size_t)(y % 2) * w;
+        if (y + 1 < height)
+            find_blocks(row, row + w, width, blocks);
+        else
+            memset(blocks, 0, w);
+        memset(row, 0, w);
+        raise_to_blocks(block, width, row);
+        raise_to_blocks(block + w, width, row);
     }
+    return block;
 }
 
-static void find_ways_out(const FlFading *fading, Lines wanted, int16_t *to_open)
+/** Distances to where a plane of shares of the fade's box is full. */
+static void find_ways(const FlFade *fade, const uint8_t *share, Lines wanted, int16_t *ways)
 {
-    const int w = fading->box.width, h = fading->box.height;
-    for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
-        to_open[p] = fading->over[p] ? FAR : 0;
-    measure(to_open, w, h, wanted);
+    int16_t cost[256];
+    find_costs(cost);
+    for (size_t p = 0; p < fl_rect_pixels(fade->box); p++)
+        ways[p] = cost[share[p]];
+    measure(ways, fade->box.width, fade->box.height, wanted);
 }
 
-/** Distances to where more of the layer is seen than a sliver. */
-static void find_ways_to_seen(const FlFading *fading, Lines wanted, int16_t *to_seen)
+/** How much of a layer stays, 0..255, where what lies above it is bare of paint: (2.5 out + 6 - to)
+ * / (out + 4), in px of the frame. */
+static uint8_t kept(int out, int to)
 {
-    const int w = fading->box.width, h = fading->box.height;
-    const uint8_t is_block = fading->half; // will be one of 2x2
-    for (size_t p = 0; p < (size_t)w * (size_t)h; p++)
-        to_seen[p] = is_block & fading->seen[p] ? 0 : FAR;
-    if (!is_block)
-        clear_seen(fading, to_seen);
-    measure(to_seen, w, h, wanted);
+    const int share = 5 * out + 12 * SIDE - 2 * to, whole = 2 * (out + 4 * SIDE);
+    return share >= whole ? 255 : (uint8_t)(255 * MAX(share, 0) / whole);
 }
 
-/** Raises each of n values to the one that comes `reach` later, if that is more. */
-static void raise_by(uint8_t *value, int n, int reach)
+/** Lowers each of n values to the one that comes `reach` later, if that is less. */
+static void lower_by(uint8_t *value, int n, int reach)
 {
     for (int x = 0; x < n; x++)
-        value[x] = MAX(value[x], value[x + reach]);
+        value[x] = MIN(value[x], value[x + reach]);
 }
 
-static int beside_px(const FlFading *fading)
+/** Lowers what is open to the least within BESIDE_PX: what is as near to a shape above as that
+ * belongs to its edge. */
+static bool open_less(FlFade *fade, GError **error)
 {
-    return fading->half ? BESIDE_HALF_PX : BESIDE_PX;
-}
-
-/**
- * How far what is above hides each pixel of a row, or where nothing is, at most within beside_px().
- * hides has twice that more than the row.
- */
-static void find_hides(const FlFading *fading, int y, uint8_t *hides)
-{
-    const int beside = beside_px(fading), window = 2 * beside + 1;
-    const int width = fading->box.width, padded = width + 2 * beside;
-    const int last = MIN(y + beside, fading->box.height - 1);
-    memset(hides, 0, (size_t)padded);
-    for (int ny = MAX(y - beside, 0); ny <= last; ny++) {
-        const uint8_t *over = fading->over + (size_t)ny * (size_t)width;
-        uint8_t *restrict own = hides + beside;
-        for (int x = 0; x < width; x++)
-            own[x] = MAX(own[x], over[x]);
+    const int beside = BESIDE_PX / fade->scale, window = 2 * beside + 1;
+    const int width = fade->box.width, height = fade->box.height, padded = width + 2 * beside;
+    g_autofree uint8_t *rows = fl_alloc(fl_rect_pixels(fade->box), 1, "a matte", error);
+    g_autofree uint8_t *least_of = rows ? fl_alloc((size_t)padded, 1, "a row", error) : NULL;
+    if (!least_of)
+        return false;
+    memcpy(rows, fade->open, fl_rect_pixels(fade->box));
+    for (int y = 0; y < height; y++) {
+        uint8_t *own = least_of + beside;
+        memset(least_of, 255, (size_t)padded);
+        for (int ny = MAX(y - beside, 0); ny <= MIN(y + beside, height - 1); ny++)
+            for (int x = 0; x < width; x++)
+                own[x] = MIN(own[x], rows[(size_t)ny * (size_t)width + (size_t)x]);
+        int size = 1; // of the windows that least_of is of
+        for (int left = padded; 2 * size <= window; size *= 2)
+            lower_by(least_of, left -= size, size);
+        lower_by(least_of, width, window - size);
+        memcpy(fade->open + (size_t)y * (size_t)width, least_of, (size_t)width);
     }
-    int size = 1; // of the windows that hides are of
-    for (int left = padded; 2 * size <= window; size *= 2)
-        raise_by(hides, left -= size, size);
-    raise_by(hides, width, window - size);
-    const uint8_t *over = fading->over + (size_t)y * (size_t)width;
-    for (int x = 0; x < width; x++)
-        hides[x] = over[x] ? over[x] : hides[x];
-}
-
-/** How much of the layer stays, 0..255: (2.5 out + 6 - to) / (out + 4), in pixels, where what is
- * above hides all. */
-static int kept_at(const FlFading *fading, const Ways *ways, size_t p, int hides)
-{
-    const int px = fading->half ? 2 : 1;
-    const int out = px * ways->to_open[p], to = px * ways->to_seen[p];
-    const int share = 5 * out + 12 * SIDE - 2 * to, whole = 2 * (out + 4 * SIDE);
-    if (share >= whole) // nearly everywhere: without the division
-        return 255;
-    const int keep = 255 * share / whole;
-    return 255 - ((255 - MAX(keep, 0)) * hides + 127) / 255;
-}
-
-/** Row y of the layer; hides is of the pixels of its box. */
-static void fade_row(const FlFading *fading, const Ways *ways, FlLayer *layer, int y,
-                     const uint8_t *hides)
-{
-    const FlRect own = layer->area.box;
-    const FlColumns span = fl_area_row(&layer->area, y);
-    const size_t row = (size_t)y * (size_t)own.width;
-    const size_t in_box = (size_t)(own.y + y - fading->box.y) * (size_t)fading->box.width +
-                          (size_t)(own.x - fading->box.x);
-    for (FlColumns run = fl_next_run(hides, span.first, span.last); run.first < run.last;
-         run = fl_next_run(hides, run.last, span.last))
-        for (int x = run.first; x < run.last; x++) {
-            const size_t p = row + (size_t)x;
-            const int keep = kept_at(fading, ways, in_box + (size_t)x, hides[x]);
-            if (keep == 255)
-                continue;
-            layer->rgba[4 * p + 3] = (uint8_t)((layer->rgba[4 * p + 3] * keep + 127) / 255);
-            layer->knockout[p] = (uint8_t)((layer->knockout[p] * keep + 127) / 255);
-        }
-}
-
-/*
- * What is translucent shows what lies below it, which must not fade then; what nearly hides it may
- * take a little. From seven eighths of opacity on, so that at most 1/32 of a pixel's colour goes.
- */
-static int hiding(int alpha)
-{
-    return MAX(8 * alpha - 7 * 255, 0);
-}
-
-static void add_above(const FlLayer *layer, const FlUnderlay *above)
-{
-    const FlRect box = layer->area.box;
-    const int hiding_here = hiding(layer->alpha);
-    for (int y = 0; y < box.height && hiding_here > 0; y++) {
-        const FlColumns span = fl_area_row(&layer->area, y);
-        const uint8_t *coverage = layer->coverage + (size_t)y * (size_t)box.width;
-        const size_t i = (size_t)(box.y + y) * (size_t)above->width + (size_t)box.x;
-        uint8_t *restrict most = above->coverage + i, *restrict hides = above->hides + i;
-        for (int x = span.first; x < span.last; x++) {
-            const uint8_t here = (uint8_t)(coverage[x] >= SHOWN ? hiding_here : 0);
-            most[x] = MAX(most[x], coverage[x]);
-            hides[x] = MAX(hides[x], here);
-        }
-    }
+    return true;
 }
 
 bool fl_underlay_init(FlUnderlay *above, int width, int height, bool half, GError **error)
 {
     const size_t pixels = (size_t)width * (size_t)height;
     *above = (FlUnderlay){.width = width, .height = height, .half = half};
-    return (above->coverage = fl_alloc(pixels, 1, "a matte", error)) &&
-           (above->hides = fl_alloc(pixels, 1, "a matte", error));
+    if (!(above->free = fl_alloc_unset(pixels, 1, "a matte", error)))
+        return false;
+    memset(above->free, 255, pixels);
+    return true;
 }
 
 void fl_underlay_clear(FlUnderlay *above)
 {
-    free(above->coverage);
-    free(above->hides);
+    free(above->free);
 }
 
-bool fl_underlay_next(FlUnderlay *above, const FlLayer *layer, bool painted, FlFading *fading,
-                      GError **error)
+bool fl_underlay_next(FlUnderlay *above, FlLayer *layer, bool painted, GError **error)
 {
+    const FlRect page = {0, 0, above->width, above->height};
     const bool knocks = fl_layer_knocks_out(layer);
-    *fading = (FlFading){0};
     if (painted && knocks && is_below(layer, above)) {
-        if (!fading_init(fading, layer, above, error))
+        if (!fade_init(&layer->fade, layer, above, error))
             return false;
-        mark_pixels(fading, layer, above);
+        mark_pixels(&layer->fade, layer, above);
     }
     if (knocks && !layer->sheer)
-        add_above(layer, above);
+        fl_cover_hide(&layer->area, layer->coverage, layer->alpha, page, above->free);
     return true;
 }
 
-/** The rows of a fading in which there is some of the layer. */
-static Lines lines_of(const FlFading *fading, const FlLayer *layer)
+/** The rows of a fade in which there is some of the layer. */
+static Lines lines_of(const FlLayer *layer)
 {
-    const int above = layer->area.box.y - fading->box.y;
-    Lines lines = {fading->box.height, 0};
+    const int above = layer->area.box.y - layer->fade.box.y;
+    Lines lines = {layer->fade.box.height, 0};
     for (int y = 0; y < layer->area.box.height; y++) {
         const FlColumns span = fl_area_row(&layer->area, y);
         if (span.first < span.last)
@@ -336,32 +266,25 @@ static Lines lines_of(const FlFading *fading, const FlLayer *layer)
     return lines;
 }
 
-bool fl_fading_apply(const FlFading *fading, FlLayer *layer, GError **error)
+bool fl_fade_find(FlLayer *layer, GError **error)
 {
+    FlFade *fade = &layer->fade;
+    const size_t n = fl_rect_pixels(fade->box);
     g_auto(Ways) ways = {0};
-    if (!fading->over)
+    if (!fade->open)
         return true;
-    if (!ways_init(&ways, fl_rect_pixels(fading->box), error))
+    const bool slivers = fade->scale == 1; // a pixel of half the size is a block of 2x2
+    if (!ways_init(&ways, n, error) ||
+        (slivers && !take_slivers(fade->keep, fade->box.width, fade->box.height, error)))
         return false;
-    const FlRect own = layer->area.box;
-    const Lines wanted = lines_of(fading, layer);
-#pragma omp parallel sections if (fl_schedule_worth_threads(fl_rect_pixels(own)))
+    const Lines wanted = lines_of(layer);
+#pragma omp parallel sections if (fl_schedule_worth_threads(n))
     {
-        find_ways_out(fading, wanted, ways.to_open);
+        find_ways(fade, fade->open, wanted, ways.to_open);
 #pragma omp section
-        find_ways_to_seen(fading, wanted, ways.to_seen);
+        find_ways(fade, fade->keep, wanted, ways.to_seen);
     }
-#pragma omp parallel if (fl_schedule_worth_threads(fl_rect_pixels(own)))
-    {
-        g_autofree uint8_t *hides = g_malloc((size_t)(fading->box.width + 2 * beside_px(fading)));
-#pragma omp for schedule(static)
-        for (int y = 0; y < own.height; y++) {
-            const FlColumns span = fl_area_row(&layer->area, y);
-            if (span.first == span.last)
-                continue;
-            find_hides(fading, own.y + y - fading->box.y, hides);
-            fade_row(fading, &ways, layer, y, hides + (own.x - fading->box.x));
-        }
-    }
-    return true;
+    for (size_t p = 0; p < n; p++)
+        fade->keep[p] = kept(fade->scale * ways.to_open[p], fade->scale * ways.to_seen[p]);
+    return open_less(fade, error);
 }

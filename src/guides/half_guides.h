@@ -4,11 +4,6 @@
 
 #include "guides/guides.h"
 
-/** A mask of width * height in the size of fl_half_side(): the mean of 2x2 coverages, those of the
- * last column and row again where there are no more. A pixel is inside where one of the four is, so
- * that nothing is lost. half may be the mask. */
-void fl_mask_halve(const uint8_t *mask, int width, int height, uint8_t *half);
-
 /** A flow in twice its size, width * height, in px of that. */
 void fl_flow_double(const float *half, int width, int height, float *full);
 

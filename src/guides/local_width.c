@@ -68,7 +68,7 @@ static bool read_seen(Discs *discs, const uint8_t *seen, size_t n, GError **erro
     discs->seen =
         seen ? fl_alloc_unset(n, sizeof *discs->seen, "local widths", error) : discs->depth;
     for (size_t p = 0; p < n && seen && discs->seen; p++)
-        discs->seen[p] = seen[p] >= 128 ? discs->depth[p] : 0;
+        discs->seen[p] = (uint16_t)(discs->depth[p] * seen[p] / 255);
     return discs->seen;
 }
 

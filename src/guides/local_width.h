@@ -26,8 +26,8 @@ static inline uint16_t fl_width_cap(float cap_px)
  * limb's width and not its body's, and is smoothed within the shape. Pixels outside have that of
  * the shape next to them up to FL_WIDTH_OUTSIDE_PX from it, then 0.
  *
- * Only discs count whose centre is seen, 128 … 255 in `seen`: a ring around what lies over the
- * shape is as narrow as it looks. NULL: all of it is seen.
+ * Discs count, and are as large, as their centre is seen, 0..255 in `seen`: a ring around what lies
+ * over the shape is as narrow as it looks. NULL: all of it is seen.
  *
  * distance, seen and half_width are width * height; distance is that of fl_distance(), and positive
  * inside. *narrow: whether any half width inside is below the cap.

@@ -133,7 +133,7 @@ void fl_plan_free(FlPlan *plan)
         fl_region_settings_clear(&plan->painted[p].settings);
     g_free(plan->painted);
     g_free(plan->painted_of);
-    g_free(plan->joins);
+    g_free(plan->edge_limits);
     g_free(plan->seen);
     g_free(plan->hold_of);
     g_free(plan->hands);
@@ -143,7 +143,6 @@ void fl_plan_free(FlPlan *plan)
     fl_store_close(plan->cache);
     fl_inputs_free(plan->inputs);
     fl_style_cache_free(plan->styles);
-    fl_mask_store_free(plan->masks);
     fl_surround_free(plan->surround);
     fl_drawing_free(plan->drawing);
     fl_config_free(plan->config);

@@ -21,10 +21,10 @@ typedef struct FlPlan {
     FlConfig *config;
     FlInputs *inputs; // all files that the render reads
     FlDrawing *drawing;
-    FlMaskStore *masks;
     FlSurround *surround;
-    FlJoin *joins; // by region
-    bool *seen;    // by region: it is not painted, or something of it shows; NULL: not known
+    const FlMaskStore *masks; // of the surround
+    FlEdge *edge_limits;      // by region
+    bool *seen; // by region: it is not painted, or something of it shows; NULL: not known
     FlStyleCache *styles;
     int n_painted;
     FlRegionPlan *painted;

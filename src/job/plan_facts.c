@@ -177,12 +177,12 @@ static void add_method(FlFacts *facts, const FlShapes *shapes, const FlRegionPla
 }
 
 /* The edges that paint crosses: a guide of depth may reach into all these shapes. */
-static void add_joins(FlFacts *facts, const FlPlan *plan)
+static void add_edges(FlFacts *facts, const FlPlan *plan)
 {
-    g_autoptr(GString) joins = g_string_new(NULL);
+    g_autoptr(GString) limits = g_string_new(NULL);
     for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
-        g_string_append_c(joins, (char)('0' + plan->joins[r]));
-    fl_facts_add(facts, "which edges are shared", joins->str);
+        g_string_append_c(limits, (char)('0' + plan->edge_limits[r]));
+    fl_facts_add(facts, "which edges are shared", limits->str);
 }
 
 FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlInputs *inputs)
@@ -204,7 +204,7 @@ void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
         fl_facts_add_number(facts, "the number of a frame", fl_drawing_number(plan->drawing, f));
     add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
     fl_facts_add_number(facts, "the hold", plan->hold);
-    add_joins(facts, plan);
+    add_edges(facts, plan);
     for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
         add_leaves(facts, fl_drawing_region(plan->drawing, r));
     if (painted->flow_files)

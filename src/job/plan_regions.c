@@ -38,15 +38,15 @@ static bool check_region_names(const FlPlan *plan, GError **error)
 }
 
 /* Paper that is left around a region would be wider where it has no rim. */
-static FlJoin join_of(const FlRenderOptions *options, const FlRegionSettings *settings,
-                      bool painted)
+static FlEdge edge_limit_of(const FlRenderOptions *options, const FlRegionSettings *settings,
+                            bool painted)
 {
     if (!painted)
-        return FL_JOIN_UNPAINTED;
+        return FL_EDGE_NONE;
     if (settings->edges == FL_EDGES_SOFT)
-        return FL_JOIN_ALONE;
+        return FL_EDGE_FREE;
     const bool apart = options->gap > 0 || settings->stacking == FL_STACKING_GLAZE;
-    return apart ? FL_JOIN_ALIKE : FL_JOIN_CLOSED;
+    return apart ? FL_EDGE_SAME_COLOUR : FL_EDGE_ADJACENT;
 }
 
 /* Whether `region` does not name a region. */
@@ -68,7 +68,7 @@ static bool plan_region(FlPlan *plan, int region, GError **error)
         return false;
     const bool painted = r->paintable && settings->passthrough != FL_PASSTHROUGH_YES;
     plan->half &= !painted || settings->params.half_size;
-    plan->joins[region] = join_of(&plan->options, settings, painted);
+    plan->edge_limits[region] = edge_limit_of(&plan->options, settings, painted);
     if (!painted)
         plan->hands[region] = (FlRegionHand){settings->line, settings->line_boil};
     plan->painted_of[region] = left_out ? FL_LEFT_OUT : FL_DRAWN_AS_IT_IS;
@@ -92,7 +92,7 @@ static bool plan_regions(FlPlan *plan, GError **error)
     const int n = fl_drawing_regions(plan->drawing);
     plan->painted = g_new0(FlRegionPlan, MAX(n, 1));
     plan->painted_of = g_new0(int, MAX(n, 1));
-    plan->joins = g_new0(FlJoin, MAX(n, 1));
+    plan->edge_limits = g_new0(FlEdge, MAX(n, 1));
     plan->hands = g_new0(FlRegionHand, MAX(n, 1));
     plan->half = true;
     for (int r = 0; r < n; r++)

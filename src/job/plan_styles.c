@@ -121,14 +121,10 @@ static bool choose_style(FlPlan *plan, FlRegionPlan *painted, GError **error)
 
 bool fl_plan_choose_styles(FlPlan *plan, GError **error)
 {
-    plan->masks =
-        fl_mask_store_new(fl_drawing_regions(plan->drawing), fl_drawing_frames(plan->drawing),
-                          fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
-    plan->surround = plan->masks ? fl_surround_new(fl_drawing_regions(plan->drawing),
-                                                   fl_drawing_frames(plan->drawing),
-                                                   fl_drawing_width(plan->drawing),
-                                                   fl_drawing_height(plan->drawing), error)
-                                 : NULL;
+    plan->surround =
+        fl_surround_new(fl_drawing_regions(plan->drawing), fl_drawing_frames(plan->drawing),
+                        fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing), error);
+    plan->masks = plan->surround ? fl_surround_masks(plan->surround) : NULL;
     for (int p = 0; plan->surround && p < plan->n_painted; p++)
         if (!choose_style(plan, &plan->painted[p], error))
             return false;

@@ -1,16 +1,15 @@
 #include "job/plan.h"
 
-#include "base/alloc.h"
 #include "base/parallel_error.h"
-#include "job/visible_regions.h"
+#include "cover/cover_map.h"
 #include <stdatomic.h>
 
 /* How the regions of a frame meet. */
-static bool note_edges(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
+static bool note_edges(FlPlan *plan, FlNeighbours *neighbours, int frame, GError **error)
 {
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
     if (draws)
-        fl_shared_edges_note(edges, draws, plan->joins);
+        fl_neighbours_note(neighbours, draws, plan->edge_limits);
     return draws;
 }
 
@@ -53,15 +52,19 @@ static bool note_visible_regions(const FlPlan *plan, const FlDrawList *draws, GE
 {
     if (all_seen(plan))
         return true;
-    FlVisibleRegions visible = {plan->joins, fl_drawing_width(plan->drawing),
-                                fl_drawing_height(plan->drawing), 1};
+    const int n_regions = fl_drawing_regions(plan->drawing);
+    g_autofree bool *sheer = g_new(bool, MAX(n_regions, 1));
+    FlHiding hiding = {.sheer = sheer, .rim_px = 1};
+    for (int r = 0; r < n_regions; r++)
+        sheer[r] = plan->edge_limits[r] != FL_EDGE_ADJACENT;
     for (int p = 0; p < plan->n_painted; p++)
-        visible.rim_px = MAX(visible.rim_px, (int)(plan->painted[p].style->border_px + 0.5f) + 1);
-    return fl_visible_regions_note(&visible, draws, plan->seen, error);
+        hiding.rim_px = MAX(hiding.rim_px, (int)(plan->painted[p].style->border_px + 0.5f) + 1);
+    return fl_cover_note_seen(draws, fl_drawing_width(plan->drawing),
+                              fl_drawing_height(plan->drawing), hiding, plan->seen, error);
 }
 
 /* Looks what a frame shows, unless something of every region was seen before. */
-static bool look(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
+static bool look(FlPlan *plan, FlNeighbours *neighbours, int frame, GError **error)
 {
     if (all_seen(plan))
         return true;
@@ -69,31 +72,20 @@ static bool look(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
     return draws && note_visible_regions(plan, draws, error);
 }
 
-/* Stores the masks of all painted regions in a frame. */
-static bool store_masks(FlPlan *plan, FlSharedEdges *edges, int frame, GError **error)
+/* Stores the masks of all painted regions in a frame, and what is around them. */
+static bool store_masks(FlPlan *plan, FlNeighbours *neighbours, int frame, GError **error)
 {
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
-    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
-    g_autofree uint8_t *mask = draws ? fl_alloc((size_t)width * height, 1, "a mask", error) : NULL;
-    if (!mask)
-        return false;
-    for (int p = 0; p < plan->n_painted; p++) {
-        const int region = plan->painted[p].region;
-        const FlRect box = fl_draw_list_put_mask(draws, region, width, height, mask);
-        if (!fl_mask_store_put_part(plan->masks, region, frame, mask, box, error))
-            return false;
-        fl_rect_clear(mask, width, box);
-    }
-    return note_visible_regions(plan, draws, error) &&
-           fl_surround_put(plan->surround, frame, draws, plan->joins, plan->painted_of, edges,
-                           error);
+    return draws && note_visible_regions(plan, draws, error) &&
+           fl_surround_put(plan->surround, frame, draws, plan->edge_limits, plan->painted_of,
+                           neighbours, error);
 }
 
 /* A pass over all frames. */
 typedef struct Pass {
     FlPlan *plan;
-    FlSharedEdges *edges;
-    bool (*work)(FlPlan *, FlSharedEdges *, int, GError **);
+    FlNeighbours *neighbours;
+    bool (*work)(FlPlan *, FlNeighbours *, int, GError **);
     double before, share; // of this stage: done in earlier passes, and this one's
     atomic_int done;      // frames
     GThread *caller;      // who tells the progress
@@ -129,8 +121,8 @@ static bool each_frame(Pass *pass, GError **error)
 #pragma omp parallel for schedule(dynamic, 1) reduction(+ : failed)
     for (int f = 0; f < n; f++) {
         GError *failure = NULL;
-        if (failed == 0 &&
-            !(pass->work(pass->plan, pass->edges, f, &failure) && tell_masks(pass, f, &failure)))
+        if (failed == 0 && !(pass->work(pass->plan, pass->neighbours, f, &failure) &&
+                             tell_masks(pass, f, &failure)))
             failed++;
         fl_parallel_error_keep(&first, failure);
     }
@@ -139,12 +131,12 @@ static bool each_frame(Pass *pass, GError **error)
 
 bool fl_plan_rasterise(FlPlan *plan, GError **error)
 {
-    g_autoptr(FlSharedEdges) edges = fl_shared_edges_new(fl_drawing_regions(plan->drawing));
+    g_autoptr(FlNeighbours) neighbours = fl_neighbours_new(fl_drawing_regions(plan->drawing));
     const bool alone = fl_drawing_regions(plan->drawing) < 2;
     begin_visible_regions(plan);
     const double share = alone ? 1 : .5;
-    Pass note = {plan, edges, note_edges, 0, share, 0, g_thread_self()};
-    Pass store = {plan, edges, store_masks, 1 - share, share, 0, g_thread_self()};
+    Pass note = {plan, neighbours, note_edges, 0, share, 0, g_thread_self()};
+    Pass store = {plan, neighbours, store_masks, 1 - share, share, 0, g_thread_self()};
     return (alone || each_frame(&note, error)) && each_frame(&store, error);
 }
 

@@ -3,10 +3,9 @@
 #define FLUIDY_JOB_REGION_PLAN_H
 
 #include "base/rect.h"
+#include "cover/surround.h"
 #include "drawing/drawing.h"
 #include "job/engine.h"
-#include "job/mask_store.h"
-#include "job/surround.h"
 
 /** How one region is painted. */
 typedef struct FlRegionPlan {

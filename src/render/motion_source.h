@@ -2,8 +2,8 @@
 #ifndef FLUIDY_RENDER_MOTION_SOURCE_H
 #define FLUIDY_RENDER_MOTION_SOURCE_H
 
+#include "cover/mask_store.h"
 #include "guides/motion.h"
-#include "job/mask_store.h"
 
 /**
  * A film's outlines: those of the frames asked for last are in memory, those read before in a

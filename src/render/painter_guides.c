@@ -171,19 +171,17 @@ static int depth_picture(FlPainter *painter, int picture)
     return picture;
 }
 
-/* No rim where others border on the shape; but it gets none that it would not have alone, since
- * what is narrow by itself stays crisp beside whatever it is. */
-static bool close_depth(const FlRimShape *alone, const uint8_t *closed, float border_px,
-                        float *depth, GError **error)
+/* The depth of a shape as far as others share its edges: weight 0..1 is how far they are there. */
+static bool add_depth(const FlRimShape *with, float border_px, float weight, bool may_fall,
+                      float *depth, GError **error)
 {
-    const size_t n = (size_t)alone->width * (size_t)alone->height;
-    g_autofree float *with_others = fl_alloc_unset(n, sizeof *with_others, "a guide", error);
-    FlRimShape shape = *alone;
-    shape.together = closed, shape.seen = NULL;
-    if (!with_others || !fl_rim_depth(&shape, border_px, with_others, error))
+    const size_t n = (size_t)with->width * (size_t)with->height;
+    g_autofree float *among = fl_alloc_unset(n, sizeof *among, "a guide", error);
+    if (!among || !fl_rim_depth(with, border_px, among, error))
         return false;
     for (size_t p = 0; p < n; p++)
-        depth[p] = MAX(depth[p], with_others[p]);
+        if (may_fall || among[p] > depth[p])
+            depth[p] += weight * (among[p] - depth[p]);
     return true;
 }
 
@@ -216,16 +214,22 @@ static bool measure_depth(const FlPainter *painter, int frame, FlGuides *guides,
         return false;
     if (halves(painter))
         halve_around(&around, place.width, place.height);
-    const FlRimShape shape = {.width = guides->width,
+    const float border = result->style->exemplar->border_px;
+    const FlRimShape alone = {.width = guides->width,
                               .height = guides->height,
                               .mask = guides->mask,
                               .distance = guides->distance,
-                              .together = around.joined ? around.together : NULL,
                               .seen = around.hidden ? around.seen : NULL,
                               .shown = around.shown};
-    const float border = result->style->exemplar->border_px;
-    return fl_rim_depth(&shape, border, guides->depth, error) &&
-           (!around.bordered || close_depth(&shape, around.closed, border, guides->depth, error));
+    FlRimShape together = alone, closed = alone;
+    together.together = around.joined > 0 ? around.together : NULL;
+    closed.together = around.closed, closed.seen = NULL;
+    const bool all = around.joined == 0 || around.joined == 1; // in nearly all frames
+    return fl_rim_depth(all ? &together : &alone, border, guides->depth, error) &&
+           (all || add_depth(&together, border, around.joined, true, guides->depth, error)) &&
+           // it gets no rim beside others that it would not have alone: what is narrow stays crisp
+           (around.bordered == 0 ||
+            add_depth(&closed, border, around.bordered, false, guides->depth, error));
 }
 
 /* The same of the whole region, of which guides take their part: among shapes that share edges a

@@ -1,6 +1,6 @@
 /* The masks of every region and frame, compressed in a temporary file. */
-#ifndef FLUIDY_JOB_MASK_STORE_H
-#define FLUIDY_JOB_MASK_STORE_H
+#ifndef FLUIDY_COVER_MASK_STORE_H
+#define FLUIDY_COVER_MASK_STORE_H
 
 #include "base/rect.h"
 #include <fluidy/error.h>
@@ -24,6 +24,11 @@ bool fl_mask_store_put_part(FlMaskStore *masks, int region, int frame, const uin
 /** Reads `part` of a mask, part.width * part.height bytes; all 0 if none was stored. */
 bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect part,
                        uint8_t *coverage, GError **error);
+
+/** A mask of width * height in the size of fl_half_side(): the mean of 2x2 coverages, those of the
+ * last column and row again where there are no more. A pixel is inside where one of the four is, so
+ * that nothing is lost. half may be the mask. */
+void fl_mask_halve(const uint8_t *mask, int width, int height, uint8_t *half);
 
 /** The same in half the size, fl_rect_halved(part), by fl_mask_halve(). */
 bool fl_mask_store_get_half(const FlMaskStore *masks, int region, int frame, FlRect part,

@@ -1,9 +1,8 @@
-#include "job/mask_store.h"
+#include "cover/mask_store.h"
 
 #include "base/alloc.h"
 #include "base/rect.h"
 #include "base/spill.h"
-#include "guides/half_guides.h"
 #include <libdeflate.h>
 #include <string.h>
 
@@ -79,6 +78,29 @@ bool fl_mask_store_get(const FlMaskStore *masks, int region, int frame, FlRect p
         return false;
     fl_rect_copy(cropped, box, coverage, part, 1);
     return true;
+}
+
+#define INSIDE 128 // coverage from which on a pixel is inside the shape, a bit
+
+/** A pixel of the half: the mean of four, but no less than inside where one of them is. */
+static uint8_t half_of(uint8_t a, uint8_t b, uint8_t c, uint8_t d)
+{
+    const int mean = (a + b + c + d + 2) / 4, inside = (a | b | c | d) & INSIDE;
+    return (uint8_t)MAX(mean, inside);
+}
+
+void fl_mask_halve(const uint8_t *mask, int width, int height, uint8_t *half)
+{
+    for (int y = 0; y < fl_half_side(height); y++) {
+        const uint8_t *upper = mask + (size_t)(2 * y) * (size_t)width;
+        const uint8_t *lower = 2 * y + 1 < height ? upper + width : upper;
+        for (int x = 0; x < width / 2; x++)
+            half[x] = half_of(upper[2 * x], upper[2 * x + 1], lower[2 * x], lower[2 * x + 1]);
+        half += width / 2;
+        if (width % 2)
+            *half++ =
+                half_of(upper[width - 1], upper[width - 1], lower[width - 1], lower[width - 1]);
+    }
 }
 
 bool fl_mask_store_get_half(const FlMaskStore *masks, int region, int frame, FlRect part,

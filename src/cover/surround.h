@@ -1,29 +1,33 @@
-/* What is seen around a region: shapes that its paint goes on into, and others. */
-#ifndef FLUIDY_JOB_SURROUND_H
-#define FLUIDY_JOB_SURROUND_H
+/* What is around a region: shapes that its paint goes on into, and others. */
+#ifndef FLUIDY_COVER_SURROUND_H
+#define FLUIDY_COVER_SURROUND_H
 
+#include "cover/mask_store.h"
+#include "cover/neighbours.h"
 #include "drawing/drawing.h"
-#include "job/mask_store.h"
-#include "job/shared_edges.h"
 
-/** Of every frame of a film. */
+/** The shapes of every frame of a film: the regions' masks, and what is around them. */
 typedef struct FlSurround FlSurround;
 
 FlSurround *fl_surround_new(int n_regions, int n_frames, int width, int height, GError **error);
 void fl_surround_free(FlSurround *surround); // NULL is fine
 
+/** The masks of the regions. Returns: borrowed. */
+FlMaskStore *fl_surround_masks(const FlSurround *surround);
+
 /**
- * Notes what a frame shows around its regions; joins: by region, edges: of the whole film. Only
- * around those that are painted, where painted_of is 0 or more; NULL: all that joins know. Any
- * thread; a frame once.
+ * Notes the regions of a frame and what it shows around them; limits: by region, neighbours: of the
+ * whole film; NULL: no region shares any. Only those that are painted, where painted_of is 0 or
+ * more; NULL: all whose limit is an edge. Any thread; a frame once.
  */
-bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlJoin *joins,
-                     const int *painted_of, const FlSharedEdges *edges, GError **error);
+bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlEdge *limits,
+                     const int *painted_of, const FlNeighbours *neighbours, GError **error);
 
 /** What is around a region, planes of a part of a frame. */
 typedef struct FlSurroundPlanes {
-    bool joined;       // whether there are shapes of its colour: see fl_shared_edges_get()
-    bool bordered;     // whether there are shapes beside it
+    float joined; // how far shapes of its colour are there: 0: there are none, 1: they are opaque;
+                  // see fl_neighbours_edge()
+    float bordered;    // how far shapes beside it are there, likewise
     bool hidden;       // whether anything lies over it and those of its colour
     uint8_t *together; // the region and those of its colour, near to where they are seen
     uint8_t *closed;   // these and the ones beside it, hidden or not; if there are any
