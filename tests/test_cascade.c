@@ -105,6 +105,13 @@ static void selectors_choose_elements(void)
 
 static void siblings_are_told_from_other_relations(void)
 {
+#define FOUR_SIBLINGS                                                                              \
+    "<g><rect class='x'/><circle class='y'/><path id='a' class='z' d='M0 0h9'/><rect/></g>"
+    assert_value("<style>.y + .z{fill:#123456}</style>" FOUR_SIBLINGS, "fill", "#123456");
+    assert_value("<style>.x + .z{fill:#123456}</style>" FOUR_SIBLINGS, "fill", "");
+    assert_value("<style>.x ~ .z{fill:#123456}</style>" FOUR_SIBLINGS, "fill", "#123456");
+    assert_value("<style>.x + .y + .z{fill:#123456}</style>" FOUR_SIBLINGS, "fill", "#123456");
+    assert_value("<style>.y + .x + .z{fill:#123456}</style>" FOUR_SIBLINGS, "fill", "");
     assert_selected("rect + path", true);
     assert_selected("rect path", false);
     assert_selected("g + path", false);

@@ -1,5 +1,7 @@
 /* Drawings that are held, and films that are repeated: how the paint lives through them. */
+#include "drawing/hold.h"
 #include "io/png.h"
+#include "render/loop.h"
 #include "scratch.h"
 #include "synth/shift.h"
 #include <fluidy/fluidy.h>
@@ -155,6 +157,94 @@ static void a_loop_ends_where_it_began(void)
     g_assert_cmpfloat(jump(&loop), <, 0.5 * jump(&once));
 }
 
+/* The last picture of a loop is the lead-in's, which the first one follows; the first of those that
+ * are blended is mostly its own. */
+static void the_last_picture_of_a_loop_is_that_before_its_first(void)
+{
+    enum { PICTURES = 12, SIDE_PX = 40, BYTES = 3 * SIDE_PX * SIDE_PX };
+    for (int with_alpha = 0; with_alpha < 2; with_alpha++) {
+        FlLoop loop;
+        g_autofree uint8_t *own = g_malloc(BYTES / 3 * 4), *lead_in = g_malloc(BYTES / 3 * 4);
+        FlPaintedRegion painted = {.rect = {3, 5, SIDE_PX, SIDE_PX}, .painted = lead_in};
+        painted.alpha = with_alpha ? lead_in + BYTES : NULL;
+        painted.reach_px = (float)with_alpha;
+        for (int k = 0; k < BYTES / 3 * 4; k++)
+            lead_in[k] = (uint8_t)(1 + k * 37 % 200);
+        g_assert_true(fl_loop_init(&loop, PICTURES, NULL));
+        g_assert_cmpint(loop.n, >, 1);
+        for (int k = 0; k < loop.n; k++)
+            g_assert_true(fl_loop_keep(&loop, k, &painted, NULL));
+        painted.painted = own, painted.alpha = with_alpha ? own + BYTES : NULL;
+        for (int index = 0; index < PICTURES; index++) {
+            memset(own, 255, BYTES / 3 * 4);
+            g_assert_true(fl_loop_blend(&loop, index, &painted, NULL));
+            int replaced = 0;
+            for (int k = 0; k < BYTES; k++)
+                replaced += own[k] == lead_in[k];
+            if (index < loop.first)
+                g_assert_cmpint(replaced, ==, 0);
+            else if (index == loop.first)
+                g_assert_cmpint(replaced, <, BYTES / 2);
+            for (int k = 0; index == PICTURES - 1 && k < BYTES; k++)
+                g_assert_cmpint(abs(own[k] - lead_in[k]), <=, 1);
+        }
+        fl_loop_clear(&loop);
+    }
+}
+
+/* A film of three shapes over each other; the middle one is there in every second frame only. */
+static FlDrawing *stack_of_three(const char *folder)
+{
+    for (int f = 0; f < 6; f++) {
+        g_autofree char *name = g_strdup_printf("s_%d.svg", f + 1);
+        g_autofree char *shapes = g_strdup_printf(
+            "<rect id='low' x='%d' width='40' height='80' fill='#aa3311'/>%s"
+            "<rect id='top' x='%d' width='40' height='80' fill='#335588'/>",
+            5 + f, f % 2 == 0 ? "<circle id='mid' cx='40' cy='40' r='25' fill='#11aa33'/>" : "",
+            30 + f);
+        g_free(scratch_svg(folder, name, shapes));
+    }
+    const char *const inputs[] = {folder};
+    const FlDrawingOptions options = {.inputs = inputs, .n_inputs = 1};
+    FlDrawing *drawing = fl_drawing_open(&options, NULL, NULL);
+    g_assert_nonnull(drawing);
+    g_assert_cmpint(fl_drawing_regions(drawing), ==, 3);
+    return drawing;
+}
+
+/* The index of a region, which is named after its id or colour. */
+static int region_with(const FlDrawing *drawing, const char *hex)
+{
+    for (int r = 0; r < 3; r++)
+        if (strstr(fl_drawing_region(drawing, r)->name, hex))
+            return r;
+    g_assert_not_reached();
+}
+
+static void regions_with_different_holds_keep_their_order(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    g_autoptr(FlDrawing) drawing = stack_of_three(folder);
+    const int order[3] = {region_with(drawing, "aa3311"), region_with(drawing, "11aa33"),
+                          region_with(drawing, "335588")};
+    static const int holds[][3] = {{1, 2, 3}, {3, 2, 1}, {2, 6, 1},
+                                   {6, 2, 3}, {1, 6, 2}, {3, 4, 2}};
+    for (size_t k = 0; k < G_N_ELEMENTS(holds); k++)
+        for (int frame = 0; frame < 6; frame++) {
+            int hold_of[3];
+            for (int r = 0; r < 3; r++)
+                hold_of[order[r]] = holds[k][r];
+            g_autoptr(FlDrawList) draws = fl_hold_draw_list(drawing, NULL, 1, hold_of, frame, NULL);
+            g_assert_nonnull(draws);
+            g_assert_cmpint(draws->n, ==, 3 - (frame - frame % holds[k][1]) % 2);
+            for (int d = 0, r = 0; d < draws->n; d++, r++) {
+                if (draws->n == 2 && r == 1)
+                    r++;
+                g_assert_cmpint(draws->draw[d].region, ==, order[r]);
+            }
+        }
+}
+
 /* Mean length of the flow that --dump wrote of a frame, px. */
 static double flow_length(const char *dump, int frame)
 {
@@ -208,6 +298,8 @@ int main(int argc, char **argv)
     TEST(on_twos_every_picture_stays_for_two_frames);
     TEST(a_region_on_twos_keeps_its_shape_in_a_film_on_ones);
     TEST(a_loop_ends_where_it_began);
+    TEST(the_last_picture_of_a_loop_is_that_before_its_first);
+    TEST(regions_with_different_holds_keep_their_order);
     TEST(the_last_frame_of_a_loop_flows_on_to_the_first);
     TEST(a_held_drawing_loops_on_twos);
     return g_test_run();

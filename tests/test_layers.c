@@ -2,6 +2,7 @@
 #include "compose/enlarge.h"
 #include "compose/ink.h"
 #include "compose/knockout.h"
+#include "compose/layer_blend.h"
 #include "compose/layers.h"
 #include "compose/visibility.h"
 
@@ -423,6 +424,31 @@ static void an_enlarged_layer_fills_the_frame(void)
     enlarged_clear(&full);
 }
 
+/* The stored level is the one of all that comes nearest to the colour over the paper. */
+static void unblending_rounds_to_the_nearest_level(void)
+{
+    for (int linear = 0; linear < 2; linear++) {
+        FlTransfer scale;
+        fl_transfer_init(&scale, linear);
+        for (int paper = 0; paper < 256; paper += 17)
+            for (int colour = 0; colour < 256; colour += 5)
+                for (int opacity = 8; opacity < 255; opacity += 41) {
+                    const uint8_t c[3] = {(uint8_t)colour, (uint8_t)colour, (uint8_t)colour};
+                    const uint8_t p[3] = {(uint8_t)paper, (uint8_t)paper, (uint8_t)paper};
+                    uint8_t rgba[4];
+                    int64_t miss[3] = {INT64_MAX / 2, 0, INT64_MAX / 2};
+                    fl_unblend(&scale, c, p, opacity, rgba);
+                    for (int k = -1; k <= 1; k++)
+                        if (rgba[0] + k >= 0 && rgba[0] + k < 256)
+                            miss[k + 1] = ABS((int64_t)scale.value[rgba[0] + k] * rgba[3] +
+                                              (int64_t)scale.value[paper] * (255 - rgba[3]) -
+                                              (int64_t)scale.value[colour] * 255);
+                    g_assert_cmpint(miss[1], <=, miss[0] + 255);
+                    g_assert_cmpint(miss[1], <=, miss[2] + 255);
+                }
+    }
+}
+
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -454,5 +480,7 @@ int main(int argc, char **argv)
     g_test_add_func("/layers/an-enlarged-layer-keeps-its-paint-up-to-the-edge",
                     an_enlarged_layer_keeps_its_paint_up_to_the_edge);
     g_test_add_func("/layers/an-enlarged-layer-fills-the-frame", an_enlarged_layer_fills_the_frame);
+    g_test_add_func("/layers/unblending-rounds-to-the-nearest-level",
+                    unblending_rounds_to_the_nearest_level);
     return g_test_run();
 }

@@ -368,6 +368,38 @@ static void motion_blur_keeps_what_rests_and_what_is_flat(void)
         g_assert_cmpint(abs(flat[k] - rgba[k]), <=, 1); // the kernel sums to 1
 }
 
+/* A white column on black, in a picture that moves by (x, y) px: how far it spreads to both sides
+ * of its place in the frame. */
+static void assert_symmetric_blur(float x, float y, bool multiplied)
+{
+    enum { WIDE = 33, MIDDLE = WIDE / 2 };
+    uint16_t rgba[4 * WIDE * WIDE] = {0};
+    float motion[2 * WIDE * WIDE];
+    for (int p = 0; p < WIDE * WIDE; p++) {
+        motion[2 * p] = x, motion[2 * p + 1] = y;
+        rgba[4 * p + 3] = 65535;
+        if ((x != 0 ? p % WIDE : p / WIDE) == MIDDLE)
+            rgba[4 * p] = 60000;
+    }
+    g_autofree uint16_t *out = fl_motion_blur(rgba, motion, WIDE, WIDE, multiplied, 1, NULL);
+    const int step = x != 0 ? 1 : WIDE;
+    const uint16_t *middle = out + 4 * (MIDDLE * WIDE + MIDDLE);
+    g_assert_cmpint(middle[4 * step], >, 5000);
+    g_assert_cmpint(middle[4 * step], <, middle[0]);
+    for (int k = 1; k <= MIDDLE; k++)
+        g_assert_cmpint(abs(middle[4 * k * step] - middle[-4 * k * step]), <=, 2);
+}
+
+static void motion_blur_spreads_to_both_sides_of_the_frame(void)
+{
+    for (int multiplied = 0; multiplied < 2; multiplied++) {
+        assert_symmetric_blur(8, 0, multiplied);
+        assert_symmetric_blur(-8, 0, multiplied);
+        assert_symmetric_blur(0, 8, multiplied);
+        assert_symmetric_blur(0, -8, multiplied);
+    }
+}
+
 /* A disc whose mask has a margin of 3 px in which the paper is bare. */
 static FlStyle *with_margin(void)
 {
@@ -414,6 +446,8 @@ int main(int argc, char **argv)
                     a_recording_goes_on_in_paint_that_rests);
     g_test_add_func("/lazy/motion-blur-keeps-what-rests-and-what-is-flat",
                     motion_blur_keeps_what_rests_and_what_is_flat);
+    g_test_add_func("/lazy/motion-blur-spreads-to-both-sides-of-the-frame",
+                    motion_blur_spreads_to_both_sides_of_the_frame);
     g_test_add_func("/lazy/the-bare-margin-of-masks-is-no-fluid",
                     the_bare_margin_of_masks_is_no_fluid);
     return g_test_run();

@@ -187,6 +187,61 @@ static void the_facts_have_what_follows_from_an_option(void)
     }
 }
 
+/* Returns: the path of the file in the copy, to be freed. */
+static char *copy_style(const char *folder, const char *name, const char *file)
+{
+    g_autofree char *from = g_build_filename(g_getenv("FLUIDY_FIXTURES"), name, NULL);
+    const char *const copy[] = {"cp", "-r", from, folder, NULL};
+    g_assert_true(g_spawn_sync(NULL, (char **)copy, NULL, G_SPAWN_SEARCH_PATH, NULL, NULL, NULL,
+                               NULL, NULL, NULL));
+    g_autofree char *base = g_path_get_basename(name);
+    return g_build_filename(folder, base, file, NULL);
+}
+
+static void append_byte(const char *path)
+{
+    FILE *file = fopen(path, "ab");
+    g_assert_nonnull(file);
+    fputc('\n', file);
+    g_assert_cmpint(fclose(file), ==, 0);
+}
+
+/* A changed file makes other facts, each kind of file in turn. */
+static void the_facts_have_every_file_that_is_read(void)
+{
+    g_autofree char *folder = scratch_make();
+    g_autofree char *linked = scratch_svg(folder, "linked.svg", "<rect width='9' height='9'/>");
+    g_autofree char *drawing = scratch_svg(folder, "w_1.svg",
+                                           "<circle cx='50' cy='50' r='30' fill='#aa3311'/>"
+                                           "<image href='linked.svg' width='9' height='9'/>");
+    g_autofree char *style = copy_style(folder, "style-small", "style.ini");
+    g_autofree char *tile = copy_style(folder, "styles/11", "style.ini");
+    g_autofree char *recording = g_build_filename(folder, "style-small", "frames", NULL);
+    g_autofree char *potential = g_build_filename(folder, "11", "transport.png", NULL);
+    g_autofree char *style_folder = g_path_get_dirname(style);
+    g_autofree char *tile_folder = g_path_get_dirname(tile);
+    g_autoptr(GDir) frames = g_dir_open(recording, 0, NULL);
+    g_autofree char *frame = g_build_filename(recording, g_dir_read_name(frames), NULL);
+    const char *const inputs[] = {drawing, NULL};
+    const FlSetting settings[] = {{.name = "style", .value = style_folder},
+                                  {.name = "tile", .value = tile_folder}};
+    const FlRenderOptions options = {.inputs = inputs, .settings = settings, .n_settings = 2};
+    const char *const files[] = {drawing, linked, style, frame, tile, potential};
+    for (size_t k = 0; k < G_N_ELEMENTS(files); k++) {
+        g_autoptr(FlFacts) before = facts_of_render(&options), again = facts_of_render(&options);
+        g_autofree char *none = fl_facts_difference(before, again);
+        g_assert_null(none);
+        append_byte(files[k]);
+        g_autoptr(FlFacts) now = facts_of_render(&options);
+        g_autofree char *difference = fl_facts_difference(before, now);
+        if (!difference)
+            g_error("the facts are the same with another %s", files[k]);
+    }
+    const char *const remove[] = {"rm", "-r", folder, NULL};
+    g_spawn_sync(NULL, (char **)remove, NULL, G_SPAWN_SEARCH_PATH, NULL, NULL, NULL, NULL, NULL,
+                 NULL);
+}
+
 static void styles_are_named_by_the_options_of_their_type(void)
 {
     g_assert_true(fl_option_names_style("style"));
@@ -206,6 +261,8 @@ int main(int argc, char **argv)
     g_test_add_func("/options/a-value-out-of-range-is-refused", a_value_out_of_range_is_refused);
     g_test_add_func("/options/a-key-of-a-project-is-what-the-option-is",
                     a_key_of_a_project_is_what_the_option_is);
+    g_test_add_func("/options/the-facts-have-every-file-that-is-read",
+                    the_facts_have_every_file_that_is_read);
     g_test_add_func("/options/the-facts-have-every-option-that-decides-bytes",
                     the_facts_have_every_option_that_decides_bytes);
     g_test_add_func("/options/the-facts-have-what-follows-from-an-option",

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/capability.h>
+#include <netinet/in.h>
 #include <sched.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -306,6 +307,37 @@ static bool look_at_the_whole_system(void)
 }
 
 /** Something that must fail. */
+static int listener, caller, idle; // sockets of the loopback interface that the worker inherits
+static struct sockaddr_in address; // of the listener
+
+static bool connect_an_inherited_socket(void)
+{
+    return connect(caller, (const struct sockaddr *)&address, sizeof address) == 0;
+}
+
+static bool bind_an_inherited_socket(void)
+{
+    const struct sockaddr_in any = {.sin_family = AF_INET};
+    return bind(idle, (const struct sockaddr *)&any, sizeof any) == 0;
+}
+
+static bool listen_on_an_inherited_socket(void)
+{
+    return listen(listener, 2) == 0;
+}
+
+static void open_sockets(void)
+{
+    socklen_t size = sizeof address;
+    address = (struct sockaddr_in){.sin_family = AF_INET};
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    listener = socket(AF_INET, SOCK_STREAM, 0), caller = socket(AF_INET, SOCK_STREAM, 0);
+    idle = socket(AF_INET, SOCK_STREAM, 0);
+    g_assert_cmpint(bind(listener, (const struct sockaddr *)&address, size), ==, 0);
+    g_assert_cmpint(getsockname(listener, (struct sockaddr *)&address, &size), ==, 0);
+    g_assert_cmpint(listen(listener, 1), ==, 0);
+}
+
 typedef struct Escape {
     const char *name;
     bool (*succeeds)(void);
@@ -347,6 +379,9 @@ static const Escape escapes[] = {
     {"other-processes/start-a-process", start_process, CALLS, true},
     {"other-processes/start-a-program", start_program, CALLS, true},
     {"network/open-an-internet-socket", open_internet_socket, CALLS, true},
+    {"network/connect-an-inherited-socket", connect_an_inherited_socket, CALLS, false},
+    {"network/bind-an-inherited-socket", bind_an_inherited_socket, CALLS, false},
+    {"network/listen-on-an-inherited-socket", listen_on_an_inherited_socket, CALLS, true},
     {"network/open-a-local-socket", open_local_socket, CALLS, true},
     {"network/open-a-socket-of-the-kernel", open_kernel_socket, CALLS, true},
     {"memory/take-more-memory", take_more_memory, MEMORY, true},
@@ -437,6 +472,7 @@ int main(int argc, char **argv)
                     *other = scratch_write(out, "file", "x");
     g_autofree char *new = g_build_filename(in, "new", NULL),
                     *link = g_build_filename(in, "l", NULL);
+    open_sockets();
     own_file = file, own_new = new, own_link = link, secret = other;
     g_test_add_func("/sandbox/can-read-its-folder-and-work", can_read_its_folder_and_work);
     for (size_t i = 0; i < G_N_ELEMENTS(escapes); i++) {
