@@ -191,8 +191,19 @@ limits_are_documented() {
 }
 
 report 'a folder includes headers of itself and the folders above it' layering
+# A source file and its header are one file here. Folders in which circles remain are listed.
+no_include_circles() {
+    local known=(compose drawing guides job render svg synth worker)
+    grep -rnoE '#include "[a-z0-9_]+/[a-z0-9_]+\.' src --include='*.[ch]' |
+        sed -nE 's@^src/(([a-z0-9_]+)/[a-z0-9_]+)\.[ch]:[0-9]+:#include "(([a-z0-9_]+)/[a-z0-9_]+)\.@\1 \3 \2@p' |
+        while read -r from to folder; do
+            [ "$from" = "$to" ] || [[ " ${known[*]} " == *" $folder "* ]] || echo "$from $to"
+        done | sort -u | tsort 2>&1 >/dev/null | sed 's/^tsort: //'
+}
+
 report 'the programs use base, params and public headers only' programs_stay_outside
 report 'every exported symbol starts with fl_' exported_symbols
+report 'no files include each other in a circle' no_include_circles
 report 'include guards are the path' header_guards
 report 'no two files or types have one name' names_are_unique
 report 'every work that is cited is in REFERENCES.md' references_are_listed

@@ -1,5 +1,5 @@
 #include "base/rng.h"
-#include "style/grain.h"
+#include "style/style_folder.h"
 
 #include <math.h>
 #include <string.h>

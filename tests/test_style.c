@@ -1,11 +1,10 @@
 #include "guides/flow_file.h"
 #include "io/png.h"
 #include "style/estimate.h"
-#include "style/find_style.h"
+#include "style/style_folder.h"
 #include "style/manifest.h"
 #include "style/paint_frames.h"
 #include "style/resample.h"
-#include "style/style_folder.h"
 
 #include <glib/gstdio.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-/* A picture in memory. */
+/* Pictures in memory. */
 #ifndef FLUIDY_BASE_PICTURE_H
 #define FLUIDY_BASE_PICTURE_H
 
@@ -12,6 +12,12 @@ typedef struct FlPicture {
     int width, height; // pixels, >= 1
     uint8_t *rgba;     // height * width * 4
 } FlPicture;
+
+/** Frames of one size, one after the other without padding: sRGB, 3 bytes a pixel. */
+typedef struct FlClip {
+    int width, height, n_frames; // each >= 1
+    const uint8_t *rgb;
+} FlClip;
 
 /** A transparent black picture. Returns: NULL with FL_ERROR_NO_MEMORY, or FL_ERROR_LIMIT. */
 FlPicture *fl_picture_new(int width, int height, GError **error);

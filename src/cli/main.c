@@ -4,7 +4,7 @@
 #include "help.h"
 #include "progress.h"
 #include "serve.h"
-#include "wait.h"
+#include "words.h"
 
 #include "base/json.h"
 #include "config.h"

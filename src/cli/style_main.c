@@ -2,7 +2,6 @@
 #include "style_commands.h"
 
 #include "base/suggest.h"
-#include "wait.h"
 #include "words.h"
 
 #include <locale.h>

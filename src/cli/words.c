@@ -3,6 +3,7 @@
 #include "base/suggest.h"
 #include <fluidy/error.h>
 #include <string.h>
+#include <unistd.h>
 
 void fl_words_unknown(const char *const *names, const char *help, GError **error)
 {
@@ -48,4 +49,17 @@ void fl_words_drop_separator(char **words)
     g_free(*words);
     for (; *words; words++)
         words[0] = words[1];
+}
+
+void fl_wait_asleep(char **argv)
+{
+#ifdef _OPENMP
+    static const char *const words[] = {"OMP_WAIT_POLICY", "GOMP_SPINCOUNT", "KMP_BLOCKTIME"};
+    for (size_t i = 0; i < G_N_ELEMENTS(words); i++)
+        if (g_getenv(words[i]))
+            return; // set by the user, or by the first start
+    g_autofree char *program = g_file_read_link("/proc/self/exe", NULL);
+    if (program && g_setenv("OMP_WAIT_POLICY", "passive", TRUE))
+        execv(program, argv);
+#endif
 }

@@ -22,4 +22,12 @@ char *fl_words_translate(const char *message, char *(*flag)(const char *name, vo
 /** GOption keeps "--" before a word that begins with a dash; it has served its purpose. */
 void fl_words_drop_separator(char **words);
 
+/**
+ * Has OpenMP's threads sleep while they wait, unless the environment says otherwise: busy waiting
+ * takes the processors from other jobs. gcc's libgomp reads the policy before main() and has no
+ * function for it, so the program executes itself again; where that fails, threads wait busily. To
+ * be called first of all.
+ */
+void fl_wait_asleep(char **argv);
+
 #endif

@@ -1,4 +1,4 @@
-#include "lazy/nearest.h"
+#include "lazy/retrieval_run.h"
 
 #include "base/alloc.h"
 #include "base/rng.h"

@@ -1,4 +1,4 @@
-#include "lazy/propose.h"
+#include "lazy/retrieval_run.h"
 
 #include "base/bits.h"
 #include "base/rng.h"

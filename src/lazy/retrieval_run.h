@@ -1,9 +1,40 @@
-/* A retrieval on its way: what its passes read and change. */
+/* A retrieval: its input and result, the state between its passes, and the passes. */
 #ifndef FLUIDY_LAZY_RETRIEVAL_RUN_H
 #define FLUIDY_LAZY_RETRIEVAL_RUN_H
 
 #include "lazy/cost_table.h"
-#include "lazy/retrieve.h"
+#include "params/params.h"
+#include "synth/fluid_texel.h"
+#include "synth/nnf.h"
+
+/** How equally the patches of the exemplar are used. */
+typedef enum FlUniform {
+    FL_UNIFORM_AUTO,  // patches, where there are not more of them than targets; else blocks
+    FL_UNIFORM_PATCH, // each one K or K + 1 times (5)
+    FL_UNIFORM_BLOCK, // the same of square blocks of patches, as many as there are targets at most
+    FL_UNIFORM_OFF,   // as they fit: nearest neighbours, as in [L15 fig. 13]
+} FlUniform;
+
+/** One segment of one level. Places are row * width + column, in ascending order. */
+typedef struct FlRetrieval {
+    FlFluidPicture source, target;
+    const uint32_t *sources, *targets; // the middles of their patches
+    size_t n_sources, n_targets;
+    bool turns; // each source patch in four orientations, which are patches of their own [L15 §4.5]
+    FlUniform uniform;
+    int sweeps;   // of PatchMatch in a pass, >= 1
+    uint64_t key; // of the random numbers
+    FlFluidDistance distance;
+} FlRetrieval;
+
+/** What a retrieval did. Use counts patches, or blocks where these are counted. */
+typedef struct FlRetrieved {
+    int passes;
+    uint64_t evaluations; // of distances
+    double energy;        // sum over targets of their distance in the paper's units
+    int least, most;      // use
+    size_t n_most;        // how many are used least + 1 times, where that is `most`
+} FlRetrieved;
 
 #define FL_RETRIEVAL_TURNS 4
 #define FL_RETRIEVAL_KEPT 4 // won targets of a source that are kept at most
@@ -72,6 +103,23 @@ static inline bool fl_retrieval_is_eligible(const FlRetrievalRun *run, uint32_t 
     const uint32_t use = run->use[run->cell[source]];
     return use < run->quota || (use == run->quota && run->extra > 0);
 }
+
+/* ---- PatchMatch from the exemplar [L15 §5], in propose.c ---- */
+
+/** One sweep: fills `target` and `cost` of every source; FL_NO_TARGET: it may not be used. */
+void fl_propose_all(FlRetrievalRun *run);
+
+/** The texels of a source patch, turned, in the order of its rows. */
+void fl_retrieval_gather(const FlRetrievalRun *run, uint32_t source, FlFluidTexel *patch);
+
+/** The first texel of the patch around a pixel. */
+const FlFluidTexel *fl_retrieval_patch(const FlFluidPicture *picture, uint32_t pixel);
+
+/* ---- nearest neighbours without regard to use, in nearest.c ---- */
+
+/** fl_retrieve() for FL_UNIFORM_OFF: the nearest source patch of each target, by PatchMatch. Only
+ * evaluations and energy are filled in. */
+bool fl_nearest(const FlRetrieval *retrieval, FlNnf *nnf, FlRetrieved *done, GError **error);
 
 G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(FlRetrievalRun, fl_retrieval_run_clear)
 

@@ -3,8 +3,7 @@
 #include "base/alloc.h"
 #include "base/bits.h"
 #include "base/rng.h"
-#include "lazy/nearest.h"
-#include "lazy/propose.h"
+#include "lazy/retrieval_run.h"
 #include <string.h>
 
 #define TABLE (1u << 18) // with as many pairs at most, all distances are known

@@ -2,15 +2,10 @@
 #ifndef FLUIDY_STYLE_ESTIMATE_H
 #define FLUIDY_STYLE_ESTIMATE_H
 
+#include "base/picture.h"
 #include <fluidy/error.h>
 #include <stdbool.h>
 #include <stdint.h>
-
-/** Frames of one size, one after the other without padding: sRGB, 3 bytes a pixel. */
-typedef struct FlClip {
-    int width, height, n_frames; // each >= 1
-    const uint8_t *rgb;
-} FlClip;
 
 /**
  * The colour of the bare paper.

@@ -1,8 +1,9 @@
-#include "style/find_style.h"
+#include "style/style_folder.h"
 
 #include "base/suggest.h"
 #include "config.h"
 #include "style/manifest.h"
+#include <fluidy/style.h>
 
 #include <string.h>
 

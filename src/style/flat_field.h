@@ -2,7 +2,7 @@
 #ifndef FLUIDY_STYLE_FLAT_FIELD_H
 #define FLUIDY_STYLE_FLAT_FIELD_H
 
-#include "style/estimate.h"
+#include "base/picture.h"
 
 /** Light that falls off smoothly: a polynomial of degree two over the frame for each channel. */
 typedef struct FlFlatField {

@@ -1,4 +1,4 @@
-#include "style/grain.h"
+#include "style/style_folder.h"
 
 #include <glib.h>
 #include <math.h>

@@ -4,9 +4,9 @@
 #include "io/ffmpeg.h"
 #include "io/pattern.h"
 #include "io/png.h"
-#include "style/find_style.h"
 #include "style/resample.h"
 #include "style/style_folder.h"
+#include <fluidy/style.h>
 
 #include <math.h>
 #include <string.h>

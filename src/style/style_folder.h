@@ -71,6 +71,17 @@ FlStyle *fl_style_load(const char *folder, GError **error);
  */
 char *fl_style_find(const char *name, GError **error);
 
+/** True if a folder has a `frames` folder in it, which is all that makes it a style. */
+bool fl_is_style(const char *folder);
+
+/**
+ * How smooth the paint is: 0 where grain would hide a seam, as in dry media, up to 1 where paint
+ * only runs from light to dark, as in a wash. Compares pixels close together that lie a border
+ * inside the masks; distances are px of the size in which the style is shown, so that a recording
+ * twice as large is as smooth. 0 without such pixels.
+ */
+float fl_style_smoothness(const FlStyle *style);
+
 void fl_style_free(FlStyle *style); // NULL is fine
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlStyle, fl_style_free)

@@ -2,7 +2,7 @@
 #include "transport/tile.h"
 
 #include "base/alloc.h"
-#include "style/find_style.h"
+#include "style/style_folder.h"
 #include <fluidy/style.h>
 #include <math.h>
 

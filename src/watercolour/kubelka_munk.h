@@ -2,8 +2,6 @@
 #ifndef FLUIDY_WATERCOLOUR_KUBELKA_MUNK_H
 #define FLUIDY_WATERCOLOUR_KUBELKA_MUNK_H
 
-#include "watercolour/recipe.h"
-
 /** Reflectance and transmittance of a layer in one channel; 0..1. */
 typedef struct FlKmLayer {
     double reflectance, transmittance;
@@ -14,8 +12,5 @@ FlKmLayer fl_km_layer(double absorption, double scattering, double thickness);
 
 /** The upper layer on the lower one. */
 FlKmLayer fl_km_over(FlKmLayer upper, FlKmLayer lower);
-
-/** The pigments of [C97 fig. 5] by name. Returns: static storage; NULL if there is none. */
-const FlPigment *fl_pigment_find(const char *name);
 
 #endif

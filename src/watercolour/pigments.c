@@ -1,5 +1,5 @@
 /* The pigments of [C97 fig. 5], checked against two public programs. */
-#include "watercolour/kubelka_munk.h"
+#include "watercolour/recipe.h"
 
 #include <glib.h>
 

@@ -4,7 +4,6 @@
 #include "params/text.h"
 #include "style/style_folder.h"
 #include "watercolour/keylines.h"
-#include "watercolour/kubelka_munk.h"
 
 #include <string.h>
 

@@ -108,6 +108,9 @@ typedef struct FlRecipe {
     FlEvent events[FL_MAX_EVENTS];
 } FlRecipe;
 
+/** The pigments of [C97 fig. 5] by name. Returns: static storage; NULL if there is none. */
+const FlPigment *fl_pigment_find(const char *name);
+
 /** Reads a recipe. Returns: NULL with FL_ERROR_INPUT, "FILE:LINE: what was wrong". */
 FlRecipe *fl_recipe_load(const char *path, GError **error);
 

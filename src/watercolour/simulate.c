@@ -4,7 +4,7 @@
 #include "base/alloc.h"
 #include "base/headroom.h"
 #include "base/limits.h"
-#include "style/grain.h"
+#include "style/style_folder.h"
 #include "style/write_style.h"
 #include "watercolour/brush.h"
 #include "watercolour/dust.h"

@@ -7,8 +7,6 @@
 #include "io/png.h"
 #include "style/border.h"
 #include "style/estimate.h"
-#include "style/find_style.h"
-#include "style/grain.h"
 #include "style/manifest.h"
 #include "style/paint_frames.h"
 
