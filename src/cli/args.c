@@ -196,7 +196,7 @@ typedef gboolean (*Reader)(const char *, const char *, gpointer, GError **);
         read_##field, FL_COMMAND_RENDER                                                            \
     }
 
-/* How each line of options.def is read; the lines of params.def follow, as settings. */
+/* GOption entries of each line of options.def; the lines of params.def follow, as settings. */
 static const struct Action {
     Reader read;
     FlCommand task; // of read_task
@@ -257,7 +257,7 @@ static bool is_joined(const char *word)
     return option && fl_option_takes_value(option);
 }
 
-/* --serve without a port means any; GOption would take the next word for it. */
+/* --serve without a port means any port; GOption would take the next word as its port. */
 static bool lacks_port(const char *word, const char *next)
 {
     return strcmp(word, "--serve") == 0 &&

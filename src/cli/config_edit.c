@@ -51,7 +51,7 @@ char *fl_config_edit_map(const char *text, FlConfigValue map, void *data)
     return g_string_free(g_steal_pointer(&made), FALSE);
 }
 
-/* A key that is looked for, and what becomes of it. */
+/* A wanted key, and its place in the text. */
 typedef struct Wanted {
     const char *section, *key;
     const char *now; // NULL: as it is; "": removed

@@ -10,7 +10,7 @@ struct FlFileWatch {
     GHashTable *folders; // char * -> Folder *
     GHashTable *added;   // files that were added, a set
     GHashTable *open;    // path of a file that is being written -> gint64 *: the last event
-    gint64 last_us;      // of the last event; 0: none
+    gint64 last_us;      // of the last event; 0: before the first
     char *last;          // the name of its file
     atomic_bool changed;
 };
@@ -76,7 +76,7 @@ static void on_event(GFileMonitor *monitor, GFile *file, GFile *other, GFileMoni
     take_event(data, file,
                event == G_FILE_MONITOR_EVENT_CREATED || event == G_FILE_MONITOR_EVENT_CHANGED);
     if (event ==
-        G_FILE_MONITOR_EVENT_RENAMED) // what is moved in or out has its other name elsewhere
+        G_FILE_MONITOR_EVENT_RENAMED) // a file moved in or out has its other name in another folder
         take_event(data, other, false);
 }
 

@@ -37,7 +37,7 @@ static void set(char **text, const char *section, const char *key, const char *v
 
 /* ---- paths ---------------------------------------------------------------------------------- */
 
-/* Whether the value of an option of a background or paper is neither a colour nor a word. */
+/* True if the value of a background or paper option is a file, neither a colour nor a word. */
 static bool names_file(const FlOption *option, const char *value)
 {
     g_autofree char *all = fl_option_words(option);
@@ -254,7 +254,7 @@ void fl_live_config_json(const FlLiveConfig *config, GString *json)
     g_free(listing.section);
 }
 
-/* What a value looks like, for the page's controls: words come from the value's own description. */
+/* The form of a value, for the page's controls: words come from the value's own description. */
 static const char *kind_of(const FlOption *option)
 {
     switch (option->type) {

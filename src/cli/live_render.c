@@ -20,12 +20,12 @@ struct FlLiveRender {
     bool drafts_only;
     FlLiveState state;
     char *progress;
-    GSubprocess *process; // NULL: nothing is being painted
+    GSubprocess *process; // NULL while idle
     GCancellable *ended;  // of its streams; set when its lines are no longer wanted
     bool painted;         // it ended well
     bool again;           // begin anew when the process has ended
     FlLiveStep first;     // to begin with
-    guint patience;       // timer after which the process is killed; 0: none
+    guint patience;       // timer after which the process is killed; or 0
     int n_pending;        // callbacks to come
 };
 
@@ -92,7 +92,8 @@ static GPtrArray *command_of(const FlLiveRender *render, FlLiveStep step)
     return words;
 }
 
-/* ---- what the process says ------------------------------------------------------------------ */
+/* ---- messages of the process ------------------------------------------------------------------
+ */
 
 /* A stream of the process, read line by line. */
 typedef struct Stream {

@@ -36,7 +36,7 @@ typedef struct Reporter {
     FlMeter meter;
     bool quiet;
     int n_warnings;
-    FlFileWatch *files; // a change stops the render; NULL: none are watched
+    FlFileWatch *files; // a change stops the render; or NULL
 } Reporter;
 
 static bool show_progress(const FlProgress *progress, void *data)
@@ -222,7 +222,7 @@ static bool paint_twice(const FlArgs *args, GError **error)
     return fl_render(&draft, error) && fl_render(&full, error);
 }
 
-/* Whether no change of a file would help. */
+/* True if the error stays until the command line changes. */
 static bool is_final(const FlArgs *args, const GError *error)
 {
     return g_error_matches(error, FL_ERROR, FL_ERROR_EXISTS) ||
@@ -254,7 +254,7 @@ static int watch_round(FlArgs *args, Reporter *reporter)
     return -1;
 }
 
-/* Whether the config, if there is one, is no pipe. */
+/* True if the config can be read again: it is not a pipe. */
 static bool can_reread_config(const FlArgs *args, const char *option, GError **error)
 {
     const char *config = args->render.config;

@@ -17,13 +17,13 @@ typedef struct Live {
     const FlArgs *args;
     const volatile sig_atomic_t *stop;
     SoupServer *server;
-    char *root;     // "/SECRET/": who does not know it gets nothing
-    char *hosts[2]; // what a browser calls this server
+    char *root;     // "/SECRET/": requests without it are refused
+    char *hosts[2]; // names of this server in a browser
     FlLiveConfig *config;
     FlLiveRender *render;
     FlFileWatch *files;
-    char *preview;  // the frame that is looked at, with its neighbours; NULL: none
-    char *problem;  // with the config file; NULL: none
+    char *preview;  // the frame on view, with its neighbours; or NULL
+    char *problem;  // with the config file; or NULL
     int generation; // counts changes of the config and the files
     GMainLoop *loop;
 } Live;

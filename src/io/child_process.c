@@ -23,7 +23,7 @@ struct FlChild {
     FlChildStream stream;
     FlPatience patience;
     GPid pid;   // 0: it has ended, with `status`
-    int status; // as waitpid() has it
+    int status; // the format of waitpid()
     int ours;   // our end of the stream, -1: closed
     int errors; // a nameless file with its standard error: a pipe that is not read could block it
 };
@@ -103,7 +103,7 @@ static bool has_ended(FlChild *child)
 {
     const pid_t ended = child->pid ? waitpid(child->pid, &child->status, WNOHANG) : 0;
     if (ended < 0 && errno == ECHILD)
-        child->status = 0; // another part of the program has reaped it
+        child->status = 0; // already reaped elsewhere in the program
     if (ended != 0)
         child->pid = 0;
     return child->pid == 0;
@@ -162,7 +162,7 @@ static bool wait_for(FlChild *child, short events, GError **error)
     }
 }
 
-/* Waits for the end of a child that failed, and quotes it. */
+/* Waits until a failed child ends, and quotes its messages. */
 static bool report_death(FlChild *child, GError **error)
 {
     if (!wait_for(child, 0, error))

@@ -75,7 +75,7 @@ static void be_silent(exr_const_context_t context, exr_result_t code, const char
 {
 }
 
-/** Keeps the first failure. Returns: whether there was none so far. */
+/** Keeps the first failure. Returns: false after the first failure. */
 static bool went(Writer *writer, exr_result_t result)
 {
     if (writer->result == EXR_ERR_SUCCESS)
@@ -204,7 +204,7 @@ static const uint8_t *pack_halves(Chunk *chunk, size_t n, size_t *n_bytes)
     return bytes;
 }
 
-/** Copies row y of the frame's pixels of a layer. Returns: false if it has none there. */
+/** Copies a layer's pixels in row y of the frame. Returns: false if the layer lies elsewhere. */
 static bool copy_row(Chunk *chunk, const Writer *writer, const Layer *layer, int y)
 {
     const int row = y - layer->y;

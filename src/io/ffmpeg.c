@@ -51,7 +51,7 @@ void fl_ffmpeg_close(FlFfmpeg *ffmpeg)
     g_free(ffmpeg);
 }
 
-/* How the child ended, whose output is over; `whole`: at the end of a picture. */
+/* Waits for the child after its last output. whole: the output ended with a picture. */
 static bool end(const FlFfmpeg *ffmpeg, bool whole, GError **error)
 {
     g_autoptr(GError) below = NULL;

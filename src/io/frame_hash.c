@@ -21,7 +21,7 @@ static bool hash_frame(FlSink *sink, const FlSinkFrame *frame, GError **error)
     const size_t bytes = (size_t)sink->params.width * (size_t)sink->params.height * 4;
     g_autofree char *sum = g_compute_checksum_for_data(G_CHECKSUM_SHA256, frame->rgba, bytes);
     fprintf(state->file.stream, "%s  %d\n", sum, frame->number);
-    return true; // what went wrong shows when the file is synced
+    return true; // fl_atomic_commit() reports write errors
 }
 
 static bool hash_finish(FlSink *sink, GError **error)

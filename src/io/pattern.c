@@ -11,13 +11,13 @@ void fl_pattern_clear(FlPattern *pattern)
     g_clear_pointer(&pattern->suffix, g_free);
 }
 
-/** Where the number is in a name. */
+/** The place of the number in a name. */
 typedef struct Place {
     size_t at, length; // length 0: nowhere
     int width;
 } Place;
 
-/** Length of the conversion "%d" or "%04d" at s, 0 if there is none; its width goes to *width. */
+/** Length of the conversion "%d" or "%04d" at s, else 0; its width goes to *width. */
 static size_t conversion(const char *s, int *width)
 {
     size_t n = 1;

@@ -26,7 +26,7 @@ static bool is_ending(const char *suffix, const char *const *endings)
     return false;
 }
 
-/* Whether a file name matches the pattern; NULL: has its number right before one of the endings. */
+/* True if a file name matches the pattern; NULL: has its number right before one of the endings. */
 static bool split_name(Name *name, const char *folder, const char *file, const FlPattern *wanted,
                        const char *const *endings)
 {

@@ -57,7 +57,7 @@ static void put_header(png_structp png, png_infop info, const FlPng *picture)
     png_write_info(png, info);
 }
 
-/** Where the bytes go: a stream, or else an array. */
+/** Destination of the bytes: a stream, or else an array. */
 typedef struct Target {
     FILE *stream;
     GByteArray *array;
@@ -259,12 +259,12 @@ FlPicture *fl_picture_read_png(const char *path, GError **error)
     return g_steal_pointer(&picture);
 }
 
-/** What is asked of the head of a file. */
+/** Facts in the head of a file, and the one that is wanted. */
 typedef struct Head {
-    FlRect place;        // where it says that it lies
-    bool placed;         // whether it says so
-    const char *keyword; // of a text; NULL: none is asked for
-    char *text;          // that is there; NULL: none
+    FlRect place;        // in the larger picture, if placed
+    bool placed;         // the file has an oFFs chunk
+    const char *keyword; // of the wanted text; or NULL
+    char *text;          // of that keyword; or NULL
 } Head;
 
 static void take_place(png_structp png, png_infop info, Head *head)
@@ -365,7 +365,7 @@ bool fl_png_write(const char *path, const uint8_t *data, int width, int height, 
     g_auto(FlAtomicFile) out = {0};
     if (!fl_atomic_open(&out, path, true, error))
         return false;
-    fwrite(file, 1, bytes, out.stream); // what goes wrong shows when the file is synced
+    fwrite(file, 1, bytes, out.stream); // fl_atomic_commit() reports write errors
     return fl_atomic_commit(&out, error);
 }
 

@@ -130,7 +130,7 @@ static bool set_project(Reader *reader, const char *key, const char *value, GErr
 
 /* ---- [region NAME] ----------------------------------------------------------------------- */
 
-/* A mistyped colour would silently match nothing. */
+/* A mistyped colour would silently match no region. */
 static bool check_paints(const char *key, char **items, GError **error)
 {
     uint8_t rgb[3];

@@ -313,7 +313,7 @@ static char *number_text(double number)
     return g_strdup(g_ascii_dtostr(text, sizeof text, number));
 }
 
-/* The n-th of words with bars between; NULL: there is none. */
+/* The n-th of words separated by bars; NULL after the last. */
 static char *word(const char *words, int n)
 {
     g_auto(GStrv) all = g_strsplit(words, "|", -1);

@@ -62,7 +62,7 @@ void fl_carried_ink_free(FlCarriedInk *ink)
 /* ---- the material ------------------------------------------------------------------------------
  */
 
-/* The rectangle of the mask; empty: there is none. */
+/* The rectangle of the mask; empty if the mask is. */
 static FlRect mask_rect(const FlGuides *guides)
 {
     int x0 = guides->width, y0 = guides->height, x1 = 0, y1 = 0;
@@ -169,7 +169,7 @@ static bool refine(FlCarriedInk *ink, const FlGuides *guides, float *velocity, G
 /* ---- the ink -----------------------------------------------------------------------------------
  */
 
-/* Rings along the contour; its taper keeps them off it. */
+/* Rings along the contour, from which the taper keeps a distance. */
 static float *rings(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect, GError **error)
 {
     float *density = fl_alloc(fl_rect_pixels(rect), sizeof *density, "a density", error);
@@ -185,7 +185,7 @@ static float *rings(const FlCarriedInk *ink, const FlGuides *guides, FlRect rect
     return density;
 }
 
-/* What the amounts of the mask are to be multiplied by so that their mean is 1. Rows are summed
+/* The factor that makes the mean amount over the mask 1. Rows are summed
  * in order. */
 static float to_mean_one(const FlGuides *guides, FlRect rect, const float *carried)
 {
@@ -256,7 +256,7 @@ static void read_density(const FlCarriedInk *ink, const FlGuides *guides, FlRect
         }
 }
 
-/* What the carried densities are to be multiplied by so that the mask has as much as before. */
+/* The factor that gives the mask as much ink as before it was carried. */
 static float to_as_much(const FlGuides *guides, FlRect rect, const float *density,
                         const float *carried)
 {
@@ -354,7 +354,7 @@ static_assert(sizeof(Header) == 20, "the header has no padding");
 
 #define MOST_PLANES 4
 
-/* What is kept, in the order of the bytes. Returns: how many. */
+/* The planes of the state, in the order of the bytes. Returns: their number. */
 static int kept_planes(FlMaterialLayers *layers, bool two, FlMaterial *kept[MOST_PLANES])
 {
     int n = 0;

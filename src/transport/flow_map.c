@@ -137,7 +137,7 @@ static inline float sample(const Cell *cell, const float *f, int channels)
     return above * (1 - cell->fy) + below * cell->fy;
 }
 
-/* How the sample changes with the place. */
+/* The derivatives of the sample by place. */
 static inline void sample_gradient(const Cell *cell, const float *f, int channels, float *dx,
                                    float *dy)
 {

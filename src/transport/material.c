@@ -103,7 +103,7 @@ static float strain_of(float f[2][2])
     return smooth_step((fmaxf(most, 1 / least) - UNSTRAINED) / (STRAINED - UNSTRAINED));
 }
 
-/* By how much a pixel is torn out of what is beside it, from the gradient's excess over that. */
+/* The tear between a pixel and its neighbours: the gradient's excess over theirs. */
 static float tear_of(float f[2][2])
 {
     float most, least;
@@ -172,7 +172,7 @@ static void find_tears(const FlMaterial *material, const FlMaterial *share, cons
         }
 }
 
-/* Whether a pixel does not lie amid others that are torn as much, which reach farther. */
+/* True at the edge of a torn area: the pixels around are not torn as much. */
 static bool is_rim(const float *tear, FlRect r, int x, int y)
 {
     const float *at = tear + (size_t)y * (size_t)r.width + (size_t)x;

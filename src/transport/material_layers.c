@@ -37,14 +37,14 @@ static bool advance(Advance *carry, FlMaterial *material, const FlGuides *guides
     return true;
 }
 
-/* Which way a pixel fades: 1 to the fresh layer. It begins where half of what is around is strained
- * and gains speed, so that no pixel stays between two layers. */
+/* The direction in which a pixel fades; 1: to the fresh layer. It begins where half of what is
+ * around is strained and gains speed, so that no pixel stays between two layers. */
 static float speed_of(float strain, float share)
 {
     return 2 * strain - 1 + 2 * share;
 }
 
-/* Whether a layer without a second one needs it. */
+/* True if a single layer is strained enough for a second one. */
 static bool is_strained(const float *strain, size_t n)
 {
     for (size_t p = 0; p < n; p++)
@@ -53,8 +53,8 @@ static bool is_strained(const float *strain, size_t n)
     return false;
 }
 
-/* How far the whole region must leave the old layer since the fresh one is strained as well: only
- * a layer that is seen nowhere can be laid anew. */
+/* The share by which the whole region leaves the old layer because the fresh one is strained as
+ * well: only a layer that is seen nowhere can be laid anew. */
 static float haste_of(const FlMaterial *fresh, const FlGuides *guides, const float *strain)
 {
     double sum = 0, n = 0;

@@ -31,7 +31,7 @@ size_t fl_potential_nodes(const FlPotential *potential, int grid)
  */
 static const float weight[4] = {-0.10546875f, 0.87890625f, 0.26171875f, -0.03515625f};
 
-/* The four nodes that a pixel of the doubled row is made of, and their weights. */
+/* The four nodes that make a pixel of the doubled row, and their weights. */
 static void taps(int x, int n, int node[4], float w[4])
 {
     const int i = x / 2, odd = x % 2;

@@ -20,7 +20,7 @@ void fl_refinement_clear(FlRefinement *refinement)
     *refinement = (FlRefinement){0};
 }
 
-/* A frame, as its plane sees it. */
+/* A frame on its region plane. */
 typedef struct Frame {
     const FlRefinementInput *input;
     const FlMaterialLayers *layers;
@@ -28,7 +28,7 @@ typedef struct Frame {
     FlRegionPlane plane;
     float *coverage, *taper, *density; // by pixel of the plane; density NULL: flat
     float *velocity;                   // 2 by pixel: without the refinement
-    float *before, *shown;             // what is carried from the last frame
+    float *before, *shown;             // carried from the last frame
 } Frame;
 
 static void frame_clear(Frame *frame)
@@ -113,7 +113,7 @@ static void cubic_weights(float f, float w[4])
     w[2] = ((-1.5f * f + 2) * f + 0.5f) * f, w[3] = (0.5f * f - 0.5f) * f * f;
 }
 
-/* Pixels beyond the plane repeat the nearest one in it. */
+/* Pixels beyond the plane repeat its nearest pixel. */
 static float cubic_sample(const float *plane, int width, int height, float x, float y)
 {
     x = fminf(fmaxf(x, 0), (float)(width - 1)), y = fminf(fmaxf(y, 0), (float)(height - 1));
@@ -150,7 +150,7 @@ static void carry(const Frame *frame, const FlRefinement *last)
         }
 }
 
-/* How much of a frame's refinement is made, 0..1: all of it where something moves, none at rest. */
+/* The share of a frame's refinement that is made, 0..1: 1 while the region moves, 0 at rest. */
 static float share_of_motion(const Frame *frame)
 {
     const float *motion = frame->layers->motion.shift;

@@ -46,7 +46,7 @@ static FlRect source_of(const FlMaterial *before, const FlMaterial *now, int x, 
 typedef struct Claims {
     const FlMaterial *before, *now;
     const FlGuides *guides;
-    float *owner, *change; // interleaved motion, and its distance; HUGE_VALF: nobody's
+    float *owner, *change; // interleaved motion, and its distance; HUGE_VALF: unclaimed
 } Claims;
 
 static const float *motion_now(const Claims *claims, int x, int y)
@@ -69,7 +69,7 @@ static void claim(const Claims *claims, int x, int y)
         }
 }
 
-/* How differently the next pixel of the same shape moves, by the side that is more alike. */
+/* The difference in motion to the next pixel of the same shape, on the more similar side. */
 static float step_of(const Claims *claims, int x, int y, int dx, int dy)
 {
     const FlRect r = claims->now->rect;
@@ -83,7 +83,7 @@ static float step_of(const Claims *claims, int x, int y, int dx, int dy)
     return least < HUGE_VALF ? least : 0;
 }
 
-/* How differently the owner of a pixel's place moves, if it is not the pixel's shape; else 0. Those
+/* The difference in motion to the owner of a pixel's place, if that is another shape; else 0. Those
  * who claim one place are at most two pixels apart, which differ as well in a shape that turns. */
 static float apart_of(const Claims *claims, int x, int y)
 {

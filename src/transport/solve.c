@@ -242,7 +242,7 @@ static bool interrupted(GError **error)
     return false;
 }
 
-/* What a run tells, and how far it is. */
+/* The report of a run, and its progress. */
 typedef struct Report {
     FlTransportProgress progress; // NULL: not called
     void *data;

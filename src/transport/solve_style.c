@@ -18,7 +18,7 @@ static float *stripes(const FlTransportStyle *style, GError **error)
     return density;
 }
 
-/* Minus its mean, which moves nothing. */
+/* The potential minus its mean, since only its gradient counts. */
 static void keep_potential(const FlPotential *potential, size_t n, float *sum)
 {
     double mean = 0;

@@ -15,7 +15,7 @@
 #define UNIT 0.015625f
 #define ZERO 32768
 #define BLUR_PX 0.45f // standard deviation in px of the drawing
-// What the solver saw of its potential: two central differences, one for the velocity and one for
+// The derivatives that the solver used: two central differences, one for the velocity and one for
 // the determinant, each with the variance of a smoothing. Waves of 2 px are free of them, and grow.
 #define LEAST_SMOOTHINGS 2
 #define MOST_SMOOTHINGS 50
@@ -130,7 +130,7 @@ float fl_ring_density(float periods, float period_px)
 /* ---- the tile ----------------------------------------------------------------------------------
  */
 
-/* What cubic B-splines make of coefficients, minus those: one smoothing, the sides meet. */
+/* The values of cubic B-splines minus their coefficients: one smoothing, the sides meet. */
 static void smooth(const float *in, int n, float *half, float *out)
 {
     for (int y = 0; y < n; y++)

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What may stand where a value is asked for. */
+/* Kinds of completion for a value. */
 typedef enum Kind { NOTHING, WORDS, STYLES, FILES, ANYTHING } Kind;
 
 /* An option, in the terms of any shell. */
