@@ -177,23 +177,41 @@ static void an_area_is_where_the_shape_is_and_no_more(void)
     }
 }
 
+enum { SQUARE = 40 };
+
+/** The knockout of a square of thin paint, a row of which is full and a pixel of which is bare, at
+ * the frame's left side. */
+static void knock_out(FlMedium medium, uint8_t knockout[SQUARE * SQUARE])
+{
+    enum { FRAME = 100, RADIUS = 16 };
+    const FlRect box = {0, 30, SQUARE, SQUARE};
+    static uint8_t coverage[SQUARE * SQUARE];
+    static int16_t amounts[SQUARE * SQUARE];
+    memset(coverage, 255, sizeof coverage);
+    for (int p = 0; p < SQUARE * SQUARE; p++)
+        amounts[p] = p / SQUARE == 18 ? FL_AMOUNT_ONE : FL_AMOUNT_ONE * 4 / 10;
+    amounts[20 * SQUARE + 1] = 0;
+    g_assert_true(fl_knockout(amounts, coverage, coverage, box, FRAME, FRAME, RADIUS, medium,
+                              knockout, NULL));
+    g_assert_cmpint(knockout[18 * SQUARE + SQUARE - 1], ==, 255); // full paint
+}
+
 static void thin_paint_hides_what_is_below_amid_its_shape_not_in_its_rim(void)
 {
-    enum { SIDE = 40, FRAME = 100, RADIUS = 16 };
-    const FlRect box = {0, 30, SIDE, SIDE}; // its left side is the frame's
-    static uint8_t coverage[SIDE * SIDE], knockout[SIDE * SIDE];
-    static int16_t amounts[SIDE * SIDE];
-    memset(coverage, 255, sizeof coverage);
-    for (int p = 0; p < SIDE * SIDE; p++)
-        amounts[p] = p / SIDE == 18 ? FL_AMOUNT_ONE : FL_AMOUNT_ONE / 5;
-    g_assert_true(
-        fl_knockout(amounts, coverage, coverage, box, FRAME, FRAME, RADIUS, knockout, NULL));
-    const uint8_t *row = knockout + 20 * SIDE;
+    static uint8_t knockout[SQUARE * SQUARE];
+    const uint8_t *row = knockout + 20 * SQUARE;
+    knock_out(FL_MEDIUM_TRANSPARENT, knockout);
     g_assert_cmpint(row[0], ==, 255);
-    g_assert_cmpint(row[SIDE - 1], ==, 84); // a third, rounded down
-    for (int x = 1; x < SIDE; x++)
+    g_assert_cmpint(row[1], ==, 0);            // a hole shows it
+    g_assert_cmpint(row[SQUARE - 1], ==, 169); // two thirds, rounded down
+    for (int x = 3; x < SQUARE; x++)
         g_assert_true(row[x] <= row[x - 1] && row[x] >= row[x - 1] - 48); // bit by bit
-    g_assert_cmpint(knockout[18 * SIDE + SIDE - 1], ==, 255);             // full paint
+    knock_out(FL_MEDIUM_BODY, knockout);
+    g_assert_cmpint(row[1], ==, 255); // cut out of its paper
+    g_assert_cmpint(row[SQUARE - 1], ==, 169);
+    knock_out(FL_MEDIUM_OPAQUE, knockout);
+    g_assert_cmpint(row[0], ==, row[SQUARE - 1]);
+    g_assert_cmpint(row[0], <, 128);
 }
 
 /** Stacks of random discs of random paint. */

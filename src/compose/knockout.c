@@ -4,12 +4,38 @@
 #include "base/windows.h"
 #include "compose/ink.h"
 
+#define PART(x) (FL_AMOUNT_ONE * (x) / 10)
+
+/** Paint hides nothing up to an amount, and all from another one on. */
+typedef struct Ramp {
+    int none, all;
+} Ramp;
+
+/** The ramps of a medium, at the contour and amid a shape. */
+typedef struct Ramps {
+    Ramp rim, amid;
+} Ramps;
+
 /*
- * Paint hides all from this amount on. Rims of a fifth already did, and where the shape lies over
- * something dark they were a light line around it: thin paint on white paper. At one, thin places
- * amid narrow shapes are mottled with what lies below.
+ * Rims of a fifth already hid all, and where the shape lay over something dark they were a light
+ * line around it: thin paint on white paper. Amid a shape thin washes lie on paper, around which
+ * the paint below went: else they would be mottled with it. A hole in them shows what lies below.
+ * Thin places of an opaque medium let it through everywhere, and what is painted as if cut out of
+ * its paper has that below it.
  */
-#define HIDES_AMOUNT (FL_AMOUNT_ONE * 3 / 5)
+static Ramps ramps_of(FlMedium medium)
+{
+    const Ramp rim = {0, PART(6)}, opaque = {PART(6), PART(9)};
+    if (medium == FL_MEDIUM_OPAQUE)
+        return (Ramps){opaque, opaque};
+    return (Ramps){rim, medium == FL_MEDIUM_BODY ? (Ramp){-1, 0} : (Ramp){0, PART(3)}};
+}
+
+/** How far an amount hides what lies below it, 0..255. */
+static int hides(const Ramp *ramp, int amount)
+{
+    return 255 * (CLAMP(amount, ramp->none, ramp->all) - ramp->none) / (ramp->all - ramp->none);
+}
 
 #define TILE_PX 128                 // a tile and what is around it fit into a processor's own cache
 #define ONE 1024                    // of shares
@@ -31,14 +57,14 @@ static uint32_t side_around(int at, int side, int radius)
 }
 
 /** share and all: of the window that is the shape's, of ONE. */
-static int hidden(int amount, uint64_t share, uint64_t all)
+static int hidden(const Ramps *ramps, int amount, uint64_t share, uint64_t all)
 {
-    const int body = CLAMP(amount, 0, HIDES_AMOUNT) * 255 / HIDES_AMOUNT;
+    const int rim = hides(&ramps->rim, amount), inner = hides(&ramps->amid, amount);
     if (share < (RIM_SHARE + 1) * all) // without a division, as nearly everywhere
-        return body;
+        return rim;
     if (share >= INNER_SHARE * all)
-        return 255;
-    return body + (255 - body) * amid((uint32_t)(share / all)) / ONE;
+        return inner;
+    return rim + (inner - rim) * amid((uint32_t)(share / all)) / ONE;
 }
 
 /** Three rows of coverage. */
@@ -106,10 +132,11 @@ static void sum_tile(Tile *tile, FlRect own, FlRect box, const uint8_t *coverage
     fl_window_sums(tile->inside, tile->around, radius_px, tile->sums);
 }
 
-/** Where rows and columns are in a frame. */
+/** Where rows and columns are in a frame, and what the paint hides. */
 typedef struct Windows {
     FlRect box;
     int width, height, radius_px; // of the frame
+    Ramps ramps;
 } Windows;
 
 static void hide_tile(const Tile *tile, const Windows *w, const int16_t *amounts, uint8_t *knockout)
@@ -121,20 +148,21 @@ static void hide_tile(const Tile *tile, const Windows *w, const int16_t *amounts
         const uint32_t down = side_around(w->box.y + y, w->height, w->radius_px);
         for (int x = own.x; x < own.x + own.width; x++) {
             const size_t p = (size_t)y * (size_t)w->box.width + (size_t)x;
-            if (amounts[p] >= HIDES_AMOUNT) { // wherever it is
+            if (amounts[p] >= w->ramps.rim.all) { // wherever it is
                 knockout[p] = 255;
                 continue;
             }
             const uint64_t all = 255ull * down * side_around(w->box.x + x, w->width, w->radius_px);
-            knockout[p] = (uint8_t)hidden(amounts[p], (uint64_t)sums[x] * ONE, all);
+            knockout[p] = (uint8_t)hidden(&w->ramps, amounts[p], (uint64_t)sums[x] * ONE, all);
         }
     }
 }
 
 bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const uint8_t *shown, FlRect box,
-                 int width, int height, int radius_px, uint8_t *knockout, GError **error)
+                 int width, int height, int radius_px, FlMedium medium, uint8_t *knockout,
+                 GError **error)
 {
-    const Windows windows = {box, width, height, radius_px};
+    const Windows windows = {box, width, height, radius_px, ramps_of(medium)};
     g_auto(Tile) tile = {0};
     if (!tile_init(&tile, radius_px, error))
         return false;

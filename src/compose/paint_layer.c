@@ -10,13 +10,20 @@
 #include <math.h>
 #include <string.h>
 
+/* What the region or its style asks for; FL_MEDIUM_AUTO: neither does. */
+static FlMedium asked_medium(const FlPaintedRegion *painted)
+{
+    const FlMedium said = painted->settings->medium;
+    return said != FL_MEDIUM_AUTO ? said : painted->style->medium;
+}
+
 /* The default: opaque where the output is not the style's paper. */
 static FlMedium medium_of(const FlComposeInput *input, const FlPaintedRegion *painted)
 {
-    const FlMedium said = painted->settings->medium, of_style = painted->style->medium;
-    if (said != FL_MEDIUM_AUTO || of_style != FL_MEDIUM_AUTO)
-        return said != FL_MEDIUM_AUTO ? said : of_style;
+    const FlMedium asked = asked_medium(painted);
     const FlBackground *background = input->background;
+    if (asked != FL_MEDIUM_AUTO)
+        return asked;
     return background->none || background->pattern || input->layers_apart ? FL_MEDIUM_OPAQUE
                                                                           : FL_MEDIUM_TRANSPARENT;
 }
@@ -140,7 +147,8 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     const FlDrawing *drawing = sources->input->drawing;
     const int border_px = (int)(painted->style->border_px + 0.5f);
     if (!fl_knockout(amounts, draw->coverage, layer->coverage, box, fl_drawing_width(drawing),
-                     fl_drawing_height(drawing), MAX(border_px, 1), knockout, error))
+                     fl_drawing_height(drawing), MAX(border_px, 1), asked_medium(painted), knockout,
+                     error))
         return false;
     take_culled(layer, amounts);
     return colour_layer(layer, sources, painted, &colouring, amounts, error);
