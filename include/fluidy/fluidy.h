@@ -4,6 +4,7 @@
 
 #include <fluidy/compare.h>
 #include <fluidy/error.h>
+#include <fluidy/film.h>
 #include <fluidy/inspect.h>
 #include <fluidy/limits.h>
 #include <fluidy/paint.h>

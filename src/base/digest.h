@@ -18,6 +18,11 @@ static inline bool fl_digest_is_known(FlDigest digest)
     return digest.a || digest.b;
 }
 
+static inline bool fl_digest_is_same(FlDigest x, FlDigest y)
+{
+    return x.a == y.a && x.b == y.b;
+}
+
 /** Adds a piece; where it begins and ends counts, as does the order of pieces. */
 void fl_digest_add(FlDigest *digest, const void *data, size_t bytes);
 

@@ -6,25 +6,57 @@
 #include "io/pattern.h"
 #include "job/paint_files.h"
 #include "keep/sealed.h"
+#include "params/options.h"
+#include <string.h>
 
 #define LARGE_PX 3000000
 #define SMALL_PX 500000 // that are painted: up to here a heap for each thread takes little
 
-static bool open_drawing(FlPlan *plan, GError **error)
+/* Options that decide paint, but not the drawing. */
+static bool is_of_paint(const FlOption *option)
+{
+    return g_str_equal(option->name, "seed") || g_str_equal(option->name, "loop");
+}
+
+/* The config's rules make regions; it is known by its text, of which each reading has its own. */
+static FlDigest digest_of_reading(const FlRenderOptions *options)
+{
+    FlDigest digest = {0};
+    for (const char *const *input = options->inputs; *input; input++)
+        fl_digest_add_text(&digest, *input);
+    fl_digest_add(&digest, &options->config, sizeof options->config);
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *option = fl_option_at(i);
+        if (option->scope != FL_SCOPE_RENDER || is_of_paint(option) ||
+            (option->bytes != FL_BYTES_VALUE && option->bytes != FL_BYTES_RESULT))
+            continue;
+        g_autofree char *value = fl_option_get(option, options);
+        fl_digest_add_text(&digest, value);
+    }
+    return digest;
+}
+
+static bool open_drawing(FlPlan *plan, const FlPlan *before, GError **error)
 {
     g_auto(FlRegionSettings) general = {0};
     if (!fl_config_region_settings(plan->config, -1, "", &plan->options, &general, error))
         return false;
     plan->hold = general.hold;
-    plan->drawing = fl_drawing_from_options(&plan->options, plan->config, error);
+    plan->reading = digest_of_reading(&plan->options);
+    const bool same = before && fl_digest_is_same(plan->reading, before->reading);
+    plan->drawing =
+        same ? before->drawing : fl_drawing_from_options(&plan->options, plan->config, error);
     return plan->drawing != NULL;
 }
 
-static void choose_size(FlPlan *plan)
+/* A drawing that is taken over has its size already. */
+static void choose_size(FlPlan *plan, const FlPlan *before)
 {
-    plan->width = fl_drawing_width(plan->drawing), plan->height = fl_drawing_height(plan->drawing);
+    const bool same = before && plan->drawing == before->drawing;
+    plan->width = same ? before->width : fl_drawing_width(plan->drawing);
+    plan->height = same ? before->height : fl_drawing_height(plan->drawing);
     plan->paper_px = plan->by_page ? fl_page_scale(plan->width, plan->height) : 1;
-    if (plan->half)
+    if (plan->half && !same)
         fl_drawing_halve(plan->drawing);
     const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
     if ((size_t)width * (size_t)height <= SMALL_PX)
@@ -65,7 +97,7 @@ static bool look_at_paint(FlPlan *plan, GError **error)
     return fl_plan_find_hidden(plan, error);
 }
 
-static bool make_plan(FlPlan *plan, GError **error)
+static bool make_plan(FlPlan *plan, const FlPlan *before, GError **error)
 {
     if (!plan->options.inputs || !plan->options.inputs[0]) {
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
@@ -76,13 +108,13 @@ static bool make_plan(FlPlan *plan, GError **error)
         return false;
     if (plan->finished == FL_FINISHED_ALL)
         return true;
-    if (!open_drawing(plan, error))
+    if (!open_drawing(plan, before, error))
         return false;
     fl_plan_part(plan, fl_drawing_frames(plan->drawing), &plan->first, &plan->end);
     fl_inputs_add_drawing(plan->inputs, plan->drawing);
     if (!fl_plan_find_regions(plan, error))
         return false;
-    choose_size(plan);
+    choose_size(plan, before);
     if (!fl_plan_choose_styles(plan, error))
         return false;
     list_inputs(plan);
@@ -98,31 +130,109 @@ static char *pattern_below(const char *folder)
     return g_build_filename(name->str, FL_EBSYNTH_OUTPUT, NULL);
 }
 
-FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
+/* What is written, by the options as they were given, before the config has completed them. */
+static void choose_written(FlPlan *plan, const FlRenderOptions *given)
 {
-    g_autoptr(FlPlan) plan = g_new0(FlPlan, 1);
-    plan->options = *options;
-    plan->start = g_get_monotonic_time();
-    plan->styles = fl_style_cache_new(&plan->options);
-    plan->inputs = fl_inputs_new(options->reads, options->data);
-    if (!fl_sealed_read_key(error))
-        return NULL;
-    // before the defaults are filled in: fl_render() keeps no paint unless it is asked to
-    plan->cache = options->dry_run || options->merge ? NULL : fl_store_open(&plan->options);
-    plan->config = fl_config_load(options->config, options, error);
-    if (!plan->config)
-        return NULL;
-    fl_config_complete(plan->config, &plan->options);
     const FlRenderOptions *o = &plan->options;
     if (o->merge && o->ebsynth && !o->paint)
         plan->options.paint = plan->painted_by_ebsynth = pattern_below(o->ebsynth);
     // paint of some regions is no frame, even if the config says where frames and layers are
-    const bool paint_alone = options->paint && options->only_region && !options->output;
-    if (paint_alone && o->no_frames && !options->layers)
+    const bool paint_alone = given->paint && given->only_region && !given->output;
+    if (paint_alone && o->no_frames && !given->layers)
         plan->options.layers = NULL;
     plan->parts_only =
         o->no_frames && (o->paint || o->layers) && !o->merge && (!o->output || paint_alone);
-    return make_plan(plan, error) ? g_steal_pointer(&plan) : NULL;
+}
+
+/* Takes config, styles and store from the plan before, or makes them. */
+static bool begin(FlPlan *plan, const FlPlan *before, const FlRenderOptions *options, size_t memory,
+                  GError **error)
+{
+    const bool same_config = before && before->options.config == options->config;
+    plan->options = *options;
+    plan->start = g_get_monotonic_time();
+    plan->any_order = before || memory > 0;
+    plan->styles = before ? before->styles : fl_style_cache_new(options);
+    plan->inputs = before ? before->inputs : fl_inputs_new(options->reads, options->data);
+    if (!before && !fl_sealed_read_key(error))
+        return false;
+    // by the options as they were given: paint is kept on request only
+    if (before)
+        plan->cache = before->cache;
+    else if (!options->dry_run && !options->merge)
+        plan->cache = fl_store_open(options, memory);
+    plan->config = same_config ? before->config : fl_config_load(options->config, options, error);
+    if (!plan->config)
+        return false;
+    fl_config_complete(plan->config, &plan->options);
+    choose_written(plan, options);
+    return true;
+}
+
+/* What two plans have in common stays with the first one. */
+static void leave_shared(FlPlan *to, FlPlan *from)
+{
+    if (from->config == to->config)
+        from->config = NULL;
+    if (from->drawing == to->drawing)
+        from->drawing = NULL;
+    if (from->styles == to->styles)
+        from->styles = NULL;
+    if (from->cache == to->cache)
+        from->cache = NULL;
+    if (from->inputs == to->inputs)
+        from->inputs = NULL;
+}
+
+/* Whether the masks of a plan with the same drawing, and what is around regions, are its own. */
+static bool has_masks_of(const FlPlan *plan, const FlPlan *before)
+{
+    const size_t n = (size_t)fl_drawing_regions(plan->drawing);
+    return before->rasterised &&
+           memcmp(plan->painted_of, before->painted_of, n * sizeof(int)) == 0 &&
+           memcmp(plan->edge_limits, before->edge_limits, n * sizeof(FlEdge)) == 0;
+}
+
+static void take_masks(FlPlan *plan, FlPlan *before)
+{
+    FlSurround *surround = plan->surround;
+    plan->masks = before->masks, plan->surround = before->surround;
+    before->masks = NULL, before->surround = surround;
+    plan->rasterised = true;
+}
+
+/* same_drawing: the drawing is taken over if the options say so. */
+static FlPlan *follow(FlPlan *before, bool same_drawing, const FlRenderOptions *options,
+                      size_t memory, GError **error)
+{
+    FlPlan *plan = g_new0(FlPlan, 1);
+    const bool made = begin(plan, before, options, memory, error) &&
+                      make_plan(plan, same_drawing ? before : NULL, error);
+    if (!before && made)
+        return plan;
+    const bool shares = before && plan->drawing && plan->drawing == before->drawing;
+    const bool other_size = made && shares && plan->half != before->half;
+    if (made && !other_size) {
+        if (shares && has_masks_of(plan, before))
+            take_masks(plan, before);
+        leave_shared(plan, before);
+        return plan;
+    }
+    if (before)
+        leave_shared(before, plan);
+    fl_plan_free(plan);
+    return other_size ? follow(before, false, options, memory, error) : NULL;
+}
+
+FlPlan *fl_plan_follow(FlPlan *before, const FlRenderOptions *options, size_t memory,
+                       GError **error)
+{
+    return follow(before, true, options, memory, error);
+}
+
+FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error)
+{
+    return follow(NULL, false, options, 0, error);
 }
 
 void fl_plan_free(FlPlan *plan)
@@ -153,8 +263,8 @@ bool fl_plan_frames_alone(const FlPlan *plan)
 {
     const FlRenderOptions *o = &plan->options;
     const bool gives_paint = !o->merge && (o->paint || o->ebsynth);
-    return !o->layers && !plan->format->takes_layers && !o->only_region && !gives_paint &&
-           !o->dump && !o->report;
+    return !plan->any_order && !o->layers && !plan->format->takes_layers && !o->only_region &&
+           !gives_paint && !o->dump && !o->report;
 }
 
 bool fl_plan_is_large(const FlPlan *plan)

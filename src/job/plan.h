@@ -42,6 +42,9 @@ typedef struct FlPlan {
     char *output;             // pattern or file; of what an interrupted run leaves if parts_only
     bool parts_only;          // layers or paint are written, but no frames
     FlStore *cache;           // NULL: no paint is kept
+    bool any_order;           // frames are asked for in any order, and options change
+    bool rasterised;          // the masks are there
+    FlDigest reading;         // of what decides the drawing
     FlDigest request;         // of what was asked for, before anything of it is read
     FlFinished finished;      // ALL: the rest of the plan is not made
     int n_finished;           // frames of what is finished
@@ -59,6 +62,17 @@ typedef struct FlPlan {
  * Returns: to be freed with fl_plan_free(); NULL with an error of FL_ERROR.
  */
 FlPlan *fl_plan_new(const FlRenderOptions *options, GError **error);
+
+/**
+ * The plan of changed options, whose frames are asked for in any order. It takes over what they do
+ * not touch: config, drawing, masks, styles, inputs and the store; `before` can then only be freed.
+ * A config that is set again is another text, and is read again.
+ *
+ * before: of the same options; NULL: the first plan, whose store has `memory` bytes for pictures.
+ * options must outlive the plan. Returns: NULL with an error; `before` is then as it was.
+ */
+FlPlan *fl_plan_follow(FlPlan *before, const FlRenderOptions *options, size_t memory,
+                       GError **error);
 
 void fl_plan_free(FlPlan *plan); // NULL is fine
 

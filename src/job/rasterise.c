@@ -137,7 +137,8 @@ bool fl_plan_rasterise(FlPlan *plan, GError **error)
     const double share = alone ? 1 : .5;
     Pass note = {plan, neighbours, note_edges, 0, share, 0, g_thread_self()};
     Pass store = {plan, neighbours, store_masks, 1 - share, share, 0, g_thread_self()};
-    return (alone || each_frame(&note, error)) && each_frame(&store, error);
+    plan->rasterised = (alone || each_frame(&note, error)) && each_frame(&store, error);
+    return plan->rasterised;
 }
 
 bool fl_plan_find_hidden(FlPlan *plan, GError **error)

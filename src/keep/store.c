@@ -15,30 +15,101 @@
 
 static const char *const suffix[] = {"picture", "film", "record", "facts"};
 
+/* A picture in memory. */
+typedef struct HeldPicture {
+    FlDigest name;
+    GBytes *bytes;
+} HeldPicture;
+
 struct FlStore {
     const FlRenderOptions *options;
-    char *folder;
-    double limit;  // bytes
-    GMutex lock;   // of what follows
+    char *folder;     // NULL: there is only memory
+    double limit;     // bytes
+    size_t memory;    // bytes that pictures may take
+    GMutex lock;      // of what follows
+    GHashTable *link; // of the pictures in `held`, by name
+    GQueue held;      // of HeldPicture; the one used last is the first
+    size_t held_bytes;
     char *problem; // to be told; NULL: none
     bool told;     // one was
     bool full;     // nothing can be written any more
     double added;  // bytes since the store was last trimmed
 };
 
-FlStore *fl_store_open(const FlRenderOptions *options)
+static guint hash_of(const void *name)
+{
+    return (guint)((const FlDigest *)name)->a;
+}
+
+static gboolean is_same(const void *a, const void *b)
+{
+    return fl_digest_is_same(*(const FlDigest *)a, *(const FlDigest *)b);
+}
+
+FlStore *fl_store_open(const FlRenderOptions *options, size_t memory)
 {
     const char *folder = options->cache;
-    if (!folder || g_str_equal(folder, "off"))
+    const bool files = folder && !g_str_equal(folder, "off");
+    if (!files && memory == 0)
         return NULL;
     FlStore *store = g_new0(FlStore, 1);
     store->options = options;
-    store->folder = g_str_equal(folder, "auto")
-                        ? g_build_filename(g_get_user_cache_dir(), "fluidy-svg", "paint", NULL)
-                        : g_strdup(folder);
+    store->memory = memory;
+    if (files)
+        store->folder = g_str_equal(folder, "auto")
+                            ? g_build_filename(g_get_user_cache_dir(), "fluidy-svg", "paint", NULL)
+                            : g_strdup(folder);
     store->limit = MIB * (options->cache_size > 0 ? options->cache_size : DEFAULT_MIB);
+    store->link = g_hash_table_new(hash_of, is_same);
     g_mutex_init(&store->lock);
     return store;
+}
+
+/* ---- memory ---------------------------------------------------------------------------------- */
+
+/* The caller has the lock. */
+static void let_go(FlStore *store, GList *link)
+{
+    HeldPicture *held = link->data;
+    g_hash_table_remove(store->link, &held->name);
+    g_queue_delete_link(&store->held, link);
+    store->held_bytes -= g_bytes_get_size(held->bytes);
+    g_bytes_unref(held->bytes);
+    g_free(held);
+}
+
+/* To be freed; NULL: it is not in memory. */
+static GBytes *held_bytes(FlStore *store, FlKept kind, FlDigest name)
+{
+    GBytes *bytes = NULL;
+    g_mutex_lock(&store->lock);
+    GList *link = kind == FL_KEPT_PICTURE ? g_hash_table_lookup(store->link, &name) : NULL;
+    if (link) {
+        g_queue_unlink(&store->held, link);
+        g_queue_push_head_link(&store->held, link);
+        bytes = g_bytes_ref(((HeldPicture *)link->data)->bytes);
+    }
+    g_mutex_unlock(&store->lock);
+    return bytes;
+}
+
+static void hold(FlStore *store, FlDigest name, const FlSpan *parts, int n)
+{
+    GByteArray *all = g_byte_array_new();
+    for (int k = 0; k < n; k++)
+        g_byte_array_append(all, parts[k].data, (guint)parts[k].bytes);
+    HeldPicture *held = g_new(HeldPicture, 1);
+    *held = (HeldPicture){name, g_byte_array_free_to_bytes(all)};
+    g_mutex_lock(&store->lock);
+    GList *before = g_hash_table_lookup(store->link, &name);
+    if (before)
+        let_go(store, before);
+    g_queue_push_head(&store->held, held);
+    g_hash_table_insert(store->link, &held->name, store->held.head);
+    store->held_bytes += g_bytes_get_size(held->bytes);
+    while (store->held_bytes > store->memory)
+        let_go(store, store->held.tail);
+    g_mutex_unlock(&store->lock);
 }
 
 /* FOLDER/ab/cdef….picture: folders stay small. To be freed. */
@@ -72,8 +143,11 @@ void fl_store_warn(FlStore *store)
 
 /* ---- files ---------------------------------------------------------------------------------- */
 
-bool fl_store_has(const FlStore *store, FlKept kind, FlDigest name)
+bool fl_store_has(FlStore *store, FlKept kind, FlDigest name)
 {
+    g_autoptr(GBytes) held = held_bytes(store, kind, name);
+    if (held || !store->folder)
+        return held != NULL;
     g_autofree char *path = path_of(store, kind, name);
     struct stat status;
     return lstat(path, &status) == 0 && S_ISREG(status.st_mode);
@@ -81,6 +155,9 @@ bool fl_store_has(const FlStore *store, FlKept kind, FlDigest name)
 
 GBytes *fl_store_get(FlStore *store, FlKept kind, FlDigest name)
 {
+    GBytes *held = held_bytes(store, kind, name);
+    if (held || !store->folder)
+        return held;
     g_autofree char *path = path_of(store, kind, name);
     bool damaged;
     GBytes *bytes = fl_sealed_read(path, &damaged);
@@ -97,6 +174,13 @@ GBytes *fl_store_get(FlStore *store, FlKept kind, FlDigest name)
 
 void fl_store_drop(FlStore *store, FlKept kind, FlDigest name)
 {
+    g_mutex_lock(&store->lock);
+    GList *link = kind == FL_KEPT_PICTURE ? g_hash_table_lookup(store->link, &name) : NULL;
+    if (link)
+        let_go(store, link);
+    g_mutex_unlock(&store->lock);
+    if (!store->folder)
+        return;
     g_autofree char *path = path_of(store, kind, name);
     g_unlink(path);
 }
@@ -124,6 +208,10 @@ static void trim(FlStore *store);
 
 void fl_store_put(FlStore *store, FlKept kind, FlDigest name, const FlSpan *parts, int n)
 {
+    if (kind == FL_KEPT_PICTURE && store->memory > 0)
+        hold(store, name, parts, n);
+    if (!store->folder)
+        return;
     g_autofree char *path = path_of(store, kind, name);
     g_mutex_lock(&store->lock);
     const bool full = store->full;
@@ -216,6 +304,9 @@ void fl_store_close(FlStore *store)
         return;
     if (store->added > 0)
         trim(store);
+    while (store->held.tail)
+        let_go(store, store->held.tail);
+    g_hash_table_unref(store->link);
     fl_store_warn(store);
     g_mutex_clear(&store->lock);
     g_free(store->folder);

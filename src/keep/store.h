@@ -1,5 +1,5 @@
 /* The store: things that a render keeps for later ones, named by the digest of all that they are
- * made from. A folder of sealed files. */
+ * made from. Pictures in memory, and a folder of sealed files. */
 #ifndef FLUIDY_KEEP_STORE_H
 #define FLUIDY_KEEP_STORE_H
 
@@ -22,14 +22,17 @@ typedef enum FlKept {
     FL_KEPT_FACTS,   // the facts that decided the paint of a region when it was painted last
 } FlKept;
 
-/** The store in the folder options->cache; options must outlive it. NULL: there is none. */
-FlStore *fl_store_open(const FlRenderOptions *options);
+/**
+ * The store in the folder options->cache, and of pictures in so many bytes of memory; options must
+ * outlive it. Returns: NULL if there is neither.
+ */
+FlStore *fl_store_open(const FlRenderOptions *options, size_t memory);
 
 /** Removes the least recently used files until the limit is met. NULL is fine. */
 void fl_store_close(FlStore *store);
 
-/** True if there is a file, which may still be damaged. */
-bool fl_store_has(const FlStore *store, FlKept kind, FlDigest name);
+/** True if it is in memory, or in a file, which may still be damaged. */
+bool fl_store_has(FlStore *store, FlKept kind, FlDigest name);
 
 /** Returns: to be freed with g_bytes_unref(); NULL: it is missing, or was damaged and is gone. */
 GBytes *fl_store_get(FlStore *store, FlKept kind, FlDigest name);

@@ -113,11 +113,12 @@ static bool paint_one(void *data, int p, int frame, GError **error)
     return fl_painted_pack(&painter->result, error);
 }
 
+/* A picture of the lead-in of a painter that is at its beginning. */
 static bool lead_in_one(void *data, int p, int k, GError **error)
 {
     FlFrames *frames = data;
     FlPainter *painter = frames->painters.painter[p];
-    const bool painted = fl_painter_lead_in(painter, k, error);
+    const bool painted = painter->next != k || fl_painter_lead_in(painter, k, error);
     fl_painter_drop_guides(painter);
     return painted;
 }
@@ -182,6 +183,36 @@ static void trim(const FlPlan *plan)
         fl_memory_trim();
 }
 
+/* Paints the regions of a frame, unless the painters show it already. */
+static bool paint(FlFrames *frames, int shown, GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    if (frames->shown == shown)
+        return true;
+    frames->shown = -1;
+    if (!fl_style_cache_seek(plan->styles, shown, fl_drawing_frames(plan->drawing),
+                             plan->options.loop, error) ||
+        !fl_painters_each(&frames->painters, shown, paint_one, frames, error))
+        return false;
+    frames->shown = shown;
+    return true;
+}
+
+static bool seek_painters(FlFrames *frames, int shown, GError **error)
+{
+    const FlPlan *plan = frames->plan;
+    int from = shown;
+    for (int p = 0; p < frames->painters.n && from > -2; p++)
+        from = MIN(from, fl_painter_seek(frames->painters.painter[p], shown, error));
+    bool good = from > -2;
+    for (int k = 0; good && from == -1 && k < FL_LOOP_LONGEST; k++)
+        good = fl_painters_each(&frames->painters, k, lead_in_one, frames, error);
+    for (int f = MAX(from, 0); good && f < shown; f++)
+        good = (fl_drawing_shown(plan->drawing, f) != f || paint(frames, f, error)) &&
+               fl_frames_tell(frames, "paint", f + 1, 0, error);
+    return good;
+}
+
 /* Where a missing frame is held, it is the one before again. Shapes are drawn beside the painting,
  * those of the next frame beside the composing. */
 bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
@@ -189,18 +220,11 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
 {
     const gint64 start = g_get_monotonic_time();
     const FlPlan *plan = frames->plan;
-    if (!fl_style_cache_seek(plan->styles, frame, fl_drawing_frames(plan->drawing),
-                             plan->options.loop, error))
-        return false;
     const int shown = fl_drawing_shown(plan->drawing, frame);
     const bool composed = !fl_plan_is_of_paint(plan);
     if (composed && frames->drawn != shown)
         start_drawing(frames, shown);
-    // a merge that starts at a held frame still has to read what is held
-    const bool held =
-        shown != frame && !(plan->options.merge && frame == MAX(frames->before, plan->first));
-    const bool painted =
-        held || fl_painters_each(&frames->painters, shown, paint_one, frames, error);
+    const bool painted = paint(frames, shown, error);
     *paint_s = seconds_since(start);
     trim(plan); // what painting has left over is of no use to composing, nor the reverse
     if (!fl_task_wait(&frames->drawing, painted ? error : NULL) || !painted)
@@ -218,6 +242,7 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
         fl_draw_list_free(draws);
         return false;
     }
+    frames->marked = shown;
     const FlComposeInput input = compose_input(frames, shown);
     const bool made =
         fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error);
@@ -237,6 +262,17 @@ static bool make_sheet(FlFrames *frames, GError **error)
                                   .relief = o->paper_relief,
                                   .seed = o->paper_seed,
                                   .boil = o->paper_boil};
+    const int size[] = {plan->width, plan->height, !o->background, choice.boil};
+    FlDigest made_of = {0};
+    fl_digest_add_text(&made_of, choice.paper);
+    fl_digest_add(&made_of, &choice.scale, sizeof choice.scale);
+    fl_digest_add(&made_of, &choice.relief, sizeof choice.relief);
+    fl_digest_add(&made_of, &choice.seed, sizeof choice.seed);
+    fl_digest_add(&made_of, size, sizeof size);
+    if (fl_digest_is_same(made_of, frames->sheet_of))
+        return true;
+    g_clear_pointer(&frames->sheet, fl_paper_sheet_free);
+    frames->sheet_of = made_of;
     if (!fl_paper_sheet_make(&choice, !o->background, plan->width, plan->height, &frames->sheet,
                              error))
         return false;
@@ -268,7 +304,9 @@ static bool wet_motion(void *data, int region, int before, int now, FlRect part,
 static bool open_wet(FlFrames *frames, GError **error)
 {
     const FlPlan *plan = frames->plan;
-    return (frames->painters.motion[0] ||
+    frames->marked = -1;
+    g_clear_pointer(&frames->wet, fl_wet_free);
+    return (frames->painters.motion[0] || frames->motion ||
             (frames->motion = fl_motion_source_new(plan->drawing, plan->masks, false, error))) &&
            (frames->wet = fl_wet_new(plan, frames->background.paper, wet_motion, frames, error));
 }
@@ -278,18 +316,65 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
     FlPainters *painters = &frames->painters;
     const bool wet = fl_wet_wanted(frames->plan);
     fl_painters_recall(painters, frames->plan);
-    return (!(wet || fl_painters_need_masks(painters)) || fl_plan_rasterise(frames->plan, error)) &&
+    g_clear_pointer(&frames->old_plan, fl_plan_free);
+    return (frames->plan->rasterised || !(wet || fl_painters_need_masks(painters)) ||
+            fl_plan_rasterise(frames->plan, error)) &&
            fl_frames_tell(frames, "guides", 0, 0, error) && fl_painters_init(painters, error) &&
            (!wet || open_wet(frames, error));
+}
+
+/* The last frame before one whose picture is not that of another; -1: none. */
+static int frame_before(const FlFrames *frames, int frame)
+{
+    do
+        frame--;
+    while (frame >= 0 && fl_drawing_shown(frames->plan->drawing, frame) != frame);
+    return frame;
+}
+
+/* Marks on wet paper follow from all frames before, as they are composed. */
+static bool seek_marks(FlFrames *frames, int shown, GError **error)
+{
+    const int before = frame_before(frames, shown);
+    if (frames->marked > before && !open_wet(frames, error))
+        return false;
+    bool good = true;
+    for (int f = frames->marked + 1; good && f <= before; f++) {
+        g_auto(FlComposite) composite = {0};
+        double paint_s;
+        good = fl_drawing_shown(frames->plan->drawing, f) != f ||
+               (seek_painters(frames, f, error) &&
+                fl_frames_make(frames, f, -1, &composite, &paint_s, error));
+    }
+    return good;
+}
+
+bool fl_frames_seek(FlFrames *frames, int frame, GError **error)
+{
+    const int shown = fl_drawing_shown(frames->plan->drawing, frame);
+    return (!frames->wet || seek_marks(frames, shown, error)) &&
+           seek_painters(frames, shown, error);
 }
 
 void fl_frames_init(FlFrames *frames, FlPlan *plan)
 {
     *frames = (FlFrames){.plan = plan,
+                         .marked = -1,
+                         .shown = -1,
                          .drawn = -1,
                          .beside = fl_schedule_threads() > 1,
                          .advice = "run again to resume",
                          .start = plan ? plan->start : 0};
+}
+
+void fl_frames_follow(FlFrames *frames, FlPlan *plan)
+{
+    (void)fl_task_wait(&frames->drawing, NULL);
+    g_clear_pointer(&frames->draws, g_bytes_unref);
+    frames->old_plan = frames->plan, frames->plan = plan;
+    frames->drawn = frames->shown = -1;
+    g_clear_pointer(&frames->wet, fl_wet_free);
+    g_clear_pointer(&frames->motion, fl_motion_source_free);
 }
 
 void fl_frames_clear(FlFrames *frames)
@@ -300,6 +385,7 @@ void fl_frames_clear(FlFrames *frames)
     fl_wet_free(frames->wet);
     fl_motion_source_free(frames->motion);
     fl_paper_sheet_free(frames->sheet);
+    fl_plan_free(frames->old_plan);
     fl_plan_free(frames->plan);
     *frames = (FlFrames){0};
 }

@@ -12,12 +12,16 @@ typedef struct FlFrames {
     FlPlan *plan;
     FlBackground background;
     FlPaperSheet *sheet; // NULL: none
+    FlDigest sheet_of;   // all that the sheet is made from
+    FlPlan *old_plan;    // until the painters follow the plan; NULL: they do
     FlPainters painters;
     FlWet *wet;                // what paint leaves on the paper; NULL: nothing
     FlMotionSource *motion;    // of that, where the painters have none
     FlReport *report;          // borrowed: looks at each picture; NULL: none
     bool beside;               // drawing and writing, which wait for the disk, run beside painting
     FlTask drawing;            // runs beside the painting
+    int marked;                // the frame that the wet paper is at; -1: none
+    int shown;                 // the frame whose pictures the painters have; -1: none
     int drawn;                 // the frame of `draws`, which `drawing` makes; -1: none
     GBytes *draws;             // its shapes, packed
     const char *advice;        // what to do after an interruption; static
@@ -29,6 +33,10 @@ typedef struct FlFrames {
 void fl_frames_init(FlFrames *frames, FlPlan *plan);
 void fl_frames_clear(FlFrames *frames);
 
+/** Goes on with a plan of fl_plan_follow(), which it takes over; call fl_frames_check() and
+ * fl_frames_prepare() then. */
+void fl_frames_follow(FlFrames *frames, FlPlan *plan);
+
 /** Makes background and paper, which could stop the render; call it first. */
 bool fl_frames_check(FlFrames *frames, GError **error);
 
@@ -37,6 +45,10 @@ bool fl_frames_prepare(FlFrames *frames, GError **error);
 
 /** Paints the last pictures of a loop before its first ones; does nothing if it is no loop. */
 bool fl_frames_lead_in(FlFrames *frames, GError **error);
+
+/** Makes it possible to make a frame out of turn: paints what it follows from and is not kept. The
+ * plan has a store. */
+bool fl_frames_seek(FlFrames *frames, int frame, GError **error);
 
 /**
  * Paints and composes a frame. Frames come in order; next is the one that follows, -1: none.

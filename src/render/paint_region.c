@@ -150,7 +150,7 @@ static bool make_painter(GivenRegion *given, GError **error)
     const bool hidden = fl_mask_store_extent(given->masks, 0).width == 0;
     if (!fl_sealed_read_key(error))
         return false;
-    given->cache = fl_store_open(&options);
+    given->cache = fl_store_open(&options, 0);
     given->shapes = (FlShapes){.n_frames = region->n_frames,
                                .width = region->width,
                                .height = region->height,
@@ -158,8 +158,10 @@ static bool make_painter(GivenRegion *given, GError **error)
                                .masks = given->masks,
                                .flow = region->flow ? flow_of : NULL,
                                .data = given};
-    fl_reuse_init(&painter->reuse, given->cache, &given->shapes, &given->plan, inputs);
-    fl_painter_init(painter, &given->shapes, &given->plan, hidden, painter->reuse);
+    FlReuse reuse = {0};
+    fl_reuse_init(&reuse, given->cache, &given->shapes, &given->plan, inputs);
+    fl_painter_init(painter, &given->shapes, &given->plan, reuse);
+    fl_painter_place(painter, hidden);
     if (painter->result.reach_px > 0)
         given->alpha = fl_alloc(fl_rect_pixels(given->page), 1, "a layer", error);
     return (given->alpha || !(painter->result.reach_px > 0)) && fl_painter_prepare(painter, error);

@@ -46,16 +46,43 @@ static FlPaintOrigin origin_of(const FlPainter *painter, bool hidden)
     return known ? FL_FROM_CACHE : FL_FROM_ENGINE;
 }
 
-void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionPlan *region,
-                     bool hidden, FlReuse reuse)
+/* Clears all but the guides for the whole film. */
+static void forget(FlPainter *painter)
 {
-    *painter = (FlPainter){.plan = region,
+    fl_painter_drop_guides(painter);
+    if (painter->paint)
+        painter->plan->engine->close(painter->paint);
+    fl_loop_clear(&painter->loop);
+    fl_reuse_clear(&painter->reuse);
+    fl_painted_clear(&painter->result);
+}
+
+void fl_painter_clear(FlPainter *painter)
+{
+    forget(painter);
+    fl_guide_sequence_free(painter->sequence);
+    *painter = (FlPainter){0};
+}
+
+void fl_painter_follow(FlPainter *painter, const FlRegionPlan *region)
+{
+    painter->own = *region;
+}
+
+void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionPlan *region,
+                     FlReuse reuse)
+{
+    forget(painter);
+    *painter = (FlPainter){.plan = &painter->own,
+                           .own = *region,
+                           .sequence = painter->sequence,
+                           .sequence_of = painter->sequence_of,
                            .shapes = shapes,
                            .picture = NONE,
                            .reuse = reuse,
                            .result = {.region = region->region,
                                       .name = region->name,
-                                      .settings = &region->settings,
+                                      .settings = &painter->own.settings,
                                       .style = region->style,
                                       .width = shapes->width,
                                       .height = shapes->height}};
@@ -65,47 +92,76 @@ void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionP
         painter->result.reach_px = region->engine->reach(region->style, &region->settings.params);
     painter->n_pictures = (shapes->n_frames - 1) / region->settings.hold + 1;
     painter->wrap = region->loops ? MIN(painter->n_pictures, WRAP) : 0;
-    painter->origin = painter->result.from = origin_of(painter, hidden);
-    if (painter->origin == FL_FROM_CACHE)
-        painter->result.rect = reuse.rect;
-    else if (painter->origin != FL_FROM_NOWHERE)
-        painter->result.rect = region->place.width > 0 ? region->place : cropped(painter);
 }
 
-bool fl_painter_prepare(FlPainter *painter, GError **error)
+void fl_painter_place(FlPainter *painter, bool hidden)
+{
+    const FlRect place = painter->plan->place;
+    painter->origin = painter->result.from = origin_of(painter, hidden);
+    if (painter->origin == FL_FROM_CACHE)
+        painter->result.rect = painter->reuse.rect;
+    else if (painter->origin != FL_FROM_NOWHERE)
+        painter->result.rect = place.width > 0 ? place : cropped(painter);
+}
+
+/* Opens the engine, at the first picture. */
+static bool open_engine(FlPainter *painter, GError **error)
 {
     const FlRegionPlan *plan = painter->plan;
-    if (painter->origin == FL_FROM_NOWHERE)
-        return true;
-    if (plan->loops && !fl_loop_init(&painter->loop, painter->n_pictures, error))
-        return false;
-    if (painter->origin != FL_FROM_ENGINE)
-        return true;
-    fl_reuse_begin(&painter->reuse, painter->result.rect);
     const FlRect rect = painter->result.rect, page = fl_painter_page(painter);
-    const FlGuideSource source = fl_painter_guide_source(painter);
-    FlGuideParams params = fl_guide_params(&plan->settings.params);
-    if (plan->settings.motion == FL_MOTION_AUTO)
-        params.contour_px = fl_contour_px(page.width, page.height);
     const FlEngineInput input = {plan->style,
                                  plan->tile,
                                  &plan->settings,
                                  {rect.width, rect.height, page.width, page.height},
                                  fl_key(painter->shapes->seed, g_str_hash(plan->name))};
-    return (painter->sequence = fl_guide_sequence_new(&source, &params, error)) &&
-           (painter->paint = plan->engine->open(&input, error));
+    if (painter->paint)
+        plan->engine->close(painter->paint);
+    painter->paint = plan->engine->open(&input, error);
+    return painter->paint != NULL;
 }
 
-void fl_painter_clear(FlPainter *painter)
+/* Makes the guides for the whole film, unless the painter has made them before. */
+static bool make_sequence(FlPainter *painter, GError **error)
 {
-    fl_painter_drop_guides(painter);
+    const FlGuideSource source = fl_painter_guide_source(painter);
+    FlGuideParams params = fl_guide_params(&painter->plan->settings.params);
+    const FlRect page = fl_painter_page(painter);
+    if (painter->plan->settings.motion == FL_MOTION_AUTO)
+        params.contour_px = fl_contour_px(page.width, page.height);
+    const int how[] = {source.width,
+                       source.height,
+                       painter->result.rect.x,
+                       painter->result.rect.y,
+                       painter->result.rect.width,
+                       painter->result.rect.height,
+                       source.n_frames,
+                       painter->wrap,
+                       painter->plan->settings.hold,
+                       source.keeps_flow,
+                       source.flow != NULL,
+                       source.motion != NULL,
+                       source.uniform != NULL};
+    FlDigest made_of = {0};
+    fl_digest_add(&made_of, how, sizeof how);
+    fl_digest_add(&made_of, &params, sizeof params);
+    if (painter->sequence && fl_digest_is_same(made_of, painter->sequence_of))
+        return true;
     fl_guide_sequence_free(painter->sequence);
-    if (painter->paint)
-        painter->plan->engine->close(painter->paint);
-    fl_loop_clear(&painter->loop);
-    fl_reuse_clear(&painter->reuse);
-    fl_painted_clear(&painter->result);
-    *painter = (FlPainter){0};
+    painter->sequence = fl_guide_sequence_new(&source, &params, error);
+    painter->sequence_of = made_of;
+    return painter->sequence != NULL;
+}
+
+bool fl_painter_prepare(FlPainter *painter, GError **error)
+{
+    if (painter->origin == FL_FROM_NOWHERE)
+        return true;
+    if (painter->plan->loops && !fl_loop_init(&painter->loop, painter->n_pictures, error))
+        return false;
+    if (painter->origin != FL_FROM_ENGINE)
+        return true;
+    fl_reuse_begin(&painter->reuse, painter->result.rect);
+    return make_sequence(painter, error) && open_engine(painter, error);
 }
 
 /* ---- a picture ------------------------------------------------------------------------------- */
@@ -154,11 +210,11 @@ static bool run_engine(FlPainter *painter, GError **error)
            keep_picture(painter, error);
 }
 
-/* Chooses where the picture after picture `last` comes from, with its guides if it needs any. */
-static bool choose_origin(FlPainter *painter, int last, GError **error)
+/* Chooses where picture k, which follows `last`, comes from, with its guides if it needs any. */
+static bool choose_origin(FlPainter *painter, int k, int last, GError **error)
 {
     FlPaintedRegion *result = &painter->result;
-    result->from = painter->origin;
+    result->from = fl_reuse_has(&painter->reuse, k) ? FL_FROM_CACHE : painter->origin;
     if (result->from == FL_FROM_ENGINE && fl_painter_rests(painter, last))
         result->from = FL_FROM_REST;
     const bool guided =
@@ -179,7 +235,7 @@ static bool take_picture(FlPainter *painter, int k, GError **error)
         return false;
     if (fl_reuse_take(reuse, result->painted, fl_painted_bytes(result)))
         result->from = FL_FROM_CACHE;
-    else if (painter->origin == FL_FROM_CACHE) {
+    else if (result->from == FL_FROM_CACHE) {
         g_set_error(error, FL_ERROR, FL_ERROR_CHANGED,
                     "region %s: its paint is gone from the cache", painter->plan->name);
         return false;
@@ -196,9 +252,12 @@ static bool paint_picture(FlPainter *painter, int k, int index, GError **error)
     painter->result.stats = (FlFrameStats){0};
     painter->result.view = (FlSynthView){0};
     fl_painter_drop_guides(painter);
-    const bool ready = choose_origin(painter, last, error) && take_picture(painter, k, error);
+    const bool ready = choose_origin(painter, k, last, error) && take_picture(painter, k, error);
     painter->follows = true;
-    return ready && (painter->result.from == FL_FROM_CACHE || run_engine(painter, error));
+    const bool painted =
+        ready && (painter->result.from == FL_FROM_CACHE || run_engine(painter, error));
+    painter->next = painted ? k + 1 : NONE;
+    return painted;
 }
 
 bool fl_painter_lead_in(FlPainter *painter, int k, GError **error)
@@ -212,6 +271,9 @@ bool fl_painter_lead_in(FlPainter *painter, int k, GError **error)
 /* Loads the paint of a frame that another run has painted. */
 static bool load_paint(FlPainter *painter, int frame, GError **error)
 {
+    if (frame < painter->next)
+        return true;
+    painter->next = frame + 1;
     g_autofree char *file = fl_paint_file_name(painter->plan->paint_files, painter->shapes->drawing,
                                                painter->plan, frame, error);
     return file && fl_paint_file_load(&painter->result, file, error);
@@ -228,14 +290,41 @@ bool fl_painter_frame(FlPainter *painter, int frame, GError **error)
         painter->result.anchor = fl_drawing_anchor(drawing, painter->plan->region, index * hold);
     if (painter->origin == FL_FROM_FILE)
         return load_paint(painter, frame, error);
-    if (frame % hold != 0)
+    const int k = painter->loop.n + index;
+    if (frame % hold != 0 || k < painter->next)
         return true;
-    if (!paint_picture(painter, painter->loop.n + index, index, error) ||
+    if (!paint_picture(painter, k, index, error) ||
         !fl_loop_blend(&painter->loop, index, &painter->result, error) ||
         !fl_painter_show_guides(painter, error))
         return false;
     painter->result.seconds = (double)(g_get_monotonic_time() - start) * 1e-6;
     return true;
+}
+
+/* Before the first picture, or that of the lead-in. */
+static bool restart(FlPainter *painter, GError **error)
+{
+    painter->next = 0, painter->picture = NONE;
+    painter->follows = false;
+    g_clear_pointer(&painter->reuse.state, g_bytes_unref);
+    return open_engine(painter, error);
+}
+
+int fl_painter_seek(FlPainter *painter, int frame, GError **error)
+{
+    const int hold = painter->plan->settings.hold, lead_in = painter->loop.n;
+    const bool files = painter->origin == FL_FROM_FILE;
+    const int k = files ? frame : lead_in + frame / hold;
+    int from = k;
+    if (painter->origin == FL_FROM_NOWHERE || painter->next == k + 1)
+        return frame;
+    while (!files && from > 0 && from != painter->next && !fl_reuse_has(&painter->reuse, from))
+        from--;
+    const bool starts = !files && from != painter->next && !fl_reuse_has(&painter->reuse, from);
+    if (starts && !restart(painter, error))
+        return -2;
+    painter->next = from;
+    return files ? frame : from < lead_in ? -1 : (from - lead_in) * hold;
 }
 
 /* ---- states ---------------------------------------------------------------------------------- */

@@ -10,7 +10,8 @@
 
 /** Paints one region, frame by frame. */
 typedef struct FlPainter {
-    const FlRegionPlan *plan; // borrowed
+    const FlRegionPlan *plan; // `own`; NULL: the painter is new
+    FlRegionPlan own;         // of which the engine has the settings; its strings are borrowed
     const FlShapes *shapes;   // borrowed
     FlMotionSource *motion;   // borrowed; NULL: the drawing's own motion is not needed
     FlPaintOrigin origin;     // of all pictures; FL_FROM_ENGINE: it is chosen for each
@@ -19,37 +20,55 @@ typedef struct FlPainter {
     int n_pictures;    // held frames counted once
     int wrap;          // pictures of a loop's other end that extend its guides, before and after
     int picture;       // the last one painted
+    int next;          // pictures of the lead-in and the film before the next one to be painted
     bool follows;      // a picture was painted before, in this render or an earlier one
     bool keeps_first;  // distances of the first picture, from where guides are made
     int asked, answer; // a picture, and the one around which its depth is measured
     double cost_s;     // of the last picture that was synthesised, by one thread; 0: none yet
     FlGuideSequence *sequence;
-    FlGuides guides; // of the picture, for the engine; empty: it was not painted
-    FlGuides shown;  // of the picture, for inspection: the whole region in px of the picture
-    void *paint;     // the state of plan->engine; NULL: all pictures are known
+    FlDigest sequence_of; // all that the sequence is made from
+    FlGuides guides;      // of the picture, for the engine; empty: it was not painted
+    FlGuides shown;       // of the picture, for inspection: the whole region in px of the picture
+    void *paint;          // the state of plan->engine; NULL: all pictures are known
     FlReuse reuse;
     bool wants_view;   // result.view is filled, which takes the memory of a frame
     bool wants_guides; // fl_painter_guides() has those of every picture
 } FlPainter;
 
-/** Sets sizes only; needs shapes->masks, unless the pictures are known. hidden: no frame shows the
- * region. The painter takes `reuse` over. */
+/** Takes `reuse` over. A painter that was used keeps its guides for the whole film. */
 void fl_painter_init(FlPainter *painter, const FlShapes *shapes, const FlRegionPlan *region,
-                     bool hidden, FlReuse reuse);
+                     FlReuse reuse);
+
+/** Finds where the region is painted; needs shapes->masks, unless the pictures are known. hidden:
+ * no frame shows the region. */
+void fl_painter_place(FlPainter *painter, bool hidden);
 void fl_painter_clear(FlPainter *painter);
+
+/** Goes on with a plan by which the region is painted as before. */
+void fl_painter_follow(FlPainter *painter, const FlRegionPlan *region);
 
 /** An estimate of the bytes that the painter keeps between frames. packed: its picture waits so. */
 double fl_painter_bytes(const FlPainter *painter, bool packed);
 
-/** Makes guides for the whole film. The random numbers depend on the seed and the region's name. */
+/** Makes guides for the whole film, unless it has them. The random numbers depend on the seed and
+ * the region's name. */
 bool fl_painter_prepare(FlPainter *painter, GError **error);
 
 /** Paints the k-th picture of the lead-in of a loop, in order; beyond painter->loop.n it does
  * nothing. After the last one comes frame 0. */
 bool fl_painter_lead_in(FlPainter *painter, int k, GError **error);
 
-/** Paints the next frame of the film, in order; a held frame keeps the last picture. */
+/** Paints the next frame of the film, in order. A held frame keeps the last picture, and one that
+ * is shown already stays. */
 bool fl_painter_frame(FlPainter *painter, int frame, GError **error);
+
+/**
+ * Goes to where painting has to begin so that a frame can be shown, in any order: to the nearest
+ * picture that is kept. The painter has a store.
+ *
+ * Returns: the frame to begin with, up to `frame`; -1: the lead-in. FL_ERROR_NO_MEMORY: -2.
+ */
+int fl_painter_seek(FlPainter *painter, int frame, GError **error);
 
 /** The guides of the last picture, if painter->wants_guides: of all of result.rect. */
 const FlGuides *fl_painter_guides(const FlPainter *painter);

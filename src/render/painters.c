@@ -32,7 +32,7 @@ static bool check_memory(const FlPainters *painters, GError **error)
 static bool make_guides_of(void *data, int p, int thread, GError **error)
 {
     FlPainters *painters = data;
-    return fl_painter_prepare(painters->painter[p], error);
+    return !painters->fresh[p] || fl_painter_prepare(painters->painter[p], error);
 }
 
 /* While it is painted, a region takes 80 bytes a pixel of its rectangle, and about as many while
@@ -140,18 +140,67 @@ static bool open_motion(FlPainters *painters, GError **error)
 
 /* ---- the whole ------------------------------------------------------------------------------- */
 
-void fl_painters_recall(FlPainters *painters, const FlPlan *plan)
+/* Whether a painter paints a region by this method already. */
+static bool paints_so(const FlPainter *painter, const FlRegionPlan *region, FlDigest method)
 {
-    painters->plan = plan, painters->n = plan->n_painted;
+    const FlRegionPlan *before = painter->plan;
+    return before && before->style == region->style && before->tile == region->tile &&
+           fl_digest_is_known(method) && fl_digest_is_same(painter->reuse.method, method);
+}
+
+static void free_painter(FlPainters *painters, FlPainter *painter)
+{
+    painters->n_painted += painter->reuse.n_painted;
+    fl_painter_clear(painter);
+    g_free(painter);
+}
+
+/* A painter for each region: that of an earlier plan with the same masks, or an empty one. */
+static void take_painters(FlPainters *painters, const FlPlan *plan)
+{
+    const FlPainters before = *painters;
+    const bool same = before.plan && before.shapes.masks == plan->masks;
+    *painters = (FlPainters){.plan = plan, .n = plan->n_painted, .n_painted = before.n_painted};
     painters->painter = g_new0(FlPainter *, MAX(plan->n_painted, 1));
     painters->painted = g_new0(const FlPaintedRegion *, MAX(plan->n_painted, 1));
+    painters->fresh = g_new0(bool, MAX(plan->n_painted, 1));
     painters->shapes = shapes_of(painters);
+    for (int p = 0; p < before.n; p++)
+        if (same) // of the same regions in the same order
+            painters->painter[p] = before.painter[p];
+        else
+            free_painter(painters, before.painter[p]);
+    for (int k = 0; k < 2; k++)
+        if (same)
+            painters->motion[k] = before.motion[k];
+        else
+            fl_motion_source_free(before.motion[k]);
+    g_free(before.painter);
+    g_free(before.painted);
+    g_free(before.fresh);
     for (int p = 0; p < plan->n_painted; p++) {
-        painters->painter[p] = g_new0(FlPainter, 1);
+        painters->painter[p] = painters->painter[p] ? painters->painter[p] : g_new0(FlPainter, 1);
         painters->painted[p] = &painters->painter[p]->result;
-        FlReuse *reuse = &painters->painter[p]->reuse;
-        fl_reuse_init(reuse, plan->cache, &painters->shapes, &plan->painted[p], plan->inputs);
-        fl_reuse_recall(reuse, plan, p);
+    }
+}
+
+void fl_painters_recall(FlPainters *painters, const FlPlan *plan)
+{
+    take_painters(painters, plan);
+    for (int p = 0; p < plan->n_painted; p++) {
+        FlPainter *painter = painters->painter[p];
+        const FlRegionPlan *region = &plan->painted[p];
+        FlReuse reuse = {0};
+        fl_reuse_init(&reuse, plan->cache, &painters->shapes, region, plan->inputs);
+        painters->fresh[p] = !paints_so(painter, region, reuse.method);
+        if (painters->fresh[p]) {
+            fl_reuse_recall(&reuse, plan, p);
+            painters->n_painted += painter->reuse.n_painted;
+            fl_painter_init(painter, &painters->shapes, region, reuse);
+        } else {
+            fl_painter_follow(painter, region);
+            fl_reuse_clear(&reuse);
+        }
     }
 }
 
@@ -159,6 +208,8 @@ bool fl_painters_need_masks(const FlPainters *painters)
 {
     const FlPlan *plan = painters->plan;
     bool needed = false;
+    if (plan->rasterised)
+        return false;
     for (int p = 0; p < painters->n && !needed; p++) {
         const FlRegionPlan *region = &plan->painted[p];
         const bool placed =
@@ -171,9 +222,17 @@ bool fl_painters_need_masks(const FlPainters *painters)
 bool fl_painters_stale(const FlPainters *painters)
 {
     bool stale = false;
-    for (int p = 0; p < painters->n && painters->painter[p]; p++)
+    for (int p = 0; p < painters->n; p++)
         stale = stale || painters->painter[p]->reuse.stale;
     return stale;
+}
+
+int fl_painters_painted(const FlPainters *painters)
+{
+    int n = painters->n_painted;
+    for (int p = 0; p < painters->n; p++)
+        n += painters->painter[p]->reuse.n_painted;
+    return n;
 }
 
 void fl_painters_finish(FlPainters *painters)
@@ -186,11 +245,9 @@ bool fl_painters_init(FlPainters *painters, GError **error)
 {
     const FlPlan *plan = painters->plan;
     const bool energies = plan->options.stats || fl_report_measures(&plan->options);
-    for (int p = 0; p < painters->n; p++) {
-        const FlRegionPlan *region = &plan->painted[p];
-        fl_painter_init(painters->painter[p], &painters->shapes, region,
-                        fl_plan_hides(plan, region->region), painters->painter[p]->reuse);
-    }
+    for (int p = 0; p < painters->n; p++)
+        if (painters->fresh[p])
+            fl_painter_place(painters->painter[p], fl_plan_hides(plan, plan->painted[p].region));
     if (!check_memory(painters, error) || !open_motion(painters, error) ||
         !make_guides(painters, error))
         return false;
@@ -202,14 +259,13 @@ bool fl_painters_init(FlPainters *painters, GError **error)
 
 void fl_painters_clear(FlPainters *painters)
 {
-    for (int p = 0; p < painters->n && painters->painter[p]; p++) {
-        fl_painter_clear(painters->painter[p]);
-        g_free(painters->painter[p]);
-    }
+    for (int p = 0; p < painters->n; p++)
+        free_painter(painters, painters->painter[p]);
     fl_motion_source_free(painters->motion[0]);
     fl_motion_source_free(painters->motion[1]);
     g_free(painters->painter);
     g_free(painters->painted);
+    g_free(painters->fresh);
     *painters = (FlPainters){0};
 }
 

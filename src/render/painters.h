@@ -8,6 +8,8 @@ typedef struct FlPainters {
     const FlPlan *plan; // borrowed
     FlShapes shapes;    // of the plan
     int n;
+    bool *fresh;                     // by painter: it is to be made
+    int n_painted;                   // pictures of painters that are gone
     FlPainter **painter;             // one for each of plan->painted
     const FlPaintedRegion **painted; // their results
     FlMotionSource *motion[2];       // for guides of half the size second; NULL: not needed
@@ -16,7 +18,11 @@ typedef struct FlPainters {
 /** Work for painter p; step is a frame, or a picture of the lead-in. */
 typedef bool (*FlPainterWork)(void *data, int p, int step, GError **error);
 
-/** Looks up which pictures of the plan's regions its cache has; call it first. */
+/**
+ * Makes the painters, and looks up which pictures of the plan's regions its cache has; call it
+ * first. From an earlier plan, of which this one has the masks, painters of regions that are
+ * painted as before stay.
+ */
 void fl_painters_recall(FlPainters *painters, const FlPlan *plan);
 
 /** True if any region's masks are needed for its guides. */
@@ -41,6 +47,9 @@ bool fl_painters_each(FlPainters *painters, int step, FlPainterWork work, void *
 
 /** The states of all painters as FL_PAINTER_PARTS bytes each, into a list of GBytes. */
 bool fl_painters_save(const FlPainters *painters, GPtrArray *states, GError **error);
+
+/** Pictures of this film's painters that an engine has made. */
+int fl_painters_painted(const FlPainters *painters);
 
 /** Restores the states; `path` is their file, for the message. FL_ERROR_CHANGED. */
 bool fl_painters_load(FlPainters *painters, const GPtrArray *states, const char *path,

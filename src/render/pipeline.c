@@ -149,8 +149,11 @@ static bool note_obstacles(Pipeline *pipeline, GError **error)
 static bool restore_state(Pipeline *pipeline, GError **error)
 {
     FlResume *resume = &pipeline->resume;
-    if (!fl_resume_start(resume, pipeline->frames.plan, error))
+    const FlPlan *plan = pipeline->frames.plan;
+    if (!fl_resume_start(resume, plan, error))
         return false;
+    if (resume->found && resume->first > plan->first)
+        pipeline->frames.shown = fl_drawing_shown(plan->drawing, resume->first - 1);
     if (resume->found)
         return fl_painters_load(&pipeline->frames.painters, resume->record->states, resume->path,
                                 error);

@@ -50,11 +50,11 @@ void fl_reuse_init(FlReuse *reuse, FlStore *cache, const FlShapes *shapes,
                    const FlRegionPlan *region, FlInputs *inputs)
 {
     *reuse = (FlReuse){.cache = cache, .takes = true};
-    reuse->made = g_array_new(FALSE, FALSE, sizeof(FlDigest));
+    reuse->made = g_array_new(FALSE, TRUE, sizeof(FlDigest));
     if (!cache)
         return;
     reuse->facts = fl_region_facts(shapes, region, inputs);
-    reuse->last = fl_facts_digest(reuse->facts);
+    reuse->last = reuse->method = fl_facts_digest(reuse->facts);
 }
 
 void fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p)
@@ -110,15 +110,30 @@ static void add_guides(FlDigest *digest, const FlGuides *guides)
     fl_digest_add(digest, guides->turn, n * sizeof *guides->turn);
 }
 
+/* The digests of pictures, as far as they are known. */
+static const GArray *digests_of(const FlReuse *reuse)
+{
+    return reuse->known ? reuse->known : reuse->made;
+}
+
+bool fl_reuse_has(const FlReuse *reuse, int k)
+{
+    const GArray *digests = digests_of(reuse);
+    return reuse->known ||
+           (reuse->cache && reuse->takes && (guint)k < digests->len &&
+            fl_store_has(reuse->cache, FL_KEPT_PICTURE, g_array_index(digests, FlDigest, k)));
+}
+
 void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window)
 {
     if (!reuse->cache)
         return;
     reuse->n_done = (guint)k + 1;
-    if (reuse->known) {
-        reuse->last = g_array_index(reuse->known, FlDigest, k);
+    if ((guint)k < digests_of(reuse)->len) {
+        reuse->last = g_array_index(digests_of(reuse), FlDigest, k);
         return;
     }
+    g_array_set_size(reuse->made, (guint)k); // those of pictures that nothing shows stay 0
     if (guides)
         add_guides(&reuse->last, guides);
     else
@@ -186,7 +201,7 @@ void fl_reuse_keep(FlReuse *reuse, const uint8_t *rgb, size_t bytes, GBytes *sta
 
 GBytes *fl_reuse_save(const FlReuse *reuse)
 {
-    const GArray *digests = reuse->known ? reuse->known : reuse->made;
+    const GArray *digests = digests_of(reuse);
     const guint n = reuse->cache ? reuse->n_done : 0;
     return g_bytes_new(n > 0 ? digests->data : NULL, n * sizeof(FlDigest));
 }

@@ -15,9 +15,10 @@
  * from last time, and neither masks nor guides are made.
  */
 typedef struct FlReuse {
-    FlStore *cache; // borrowed; NULL: nothing is taken or kept
-    bool takes;     // false while guides or statistics are inspected: then everything is painted
-    FlFacts *facts; // of method and film
+    FlStore *cache;  // borrowed; NULL: nothing is taken or kept
+    bool takes;      // false while guides or statistics are inspected: then everything is painted
+    FlFacts *facts;  // of method and film
+    FlDigest method; // of the facts that decide the paint besides the shapes
     FlDigest film, slot; // of all facts; of where those of the last render are kept
     FlDigest last;       // of the picture painted or taken last
     GArray *made;        // of FlDigest: the pictures so far, where they follow from the guides
@@ -42,8 +43,11 @@ void fl_reuse_recall(FlReuse *reuse, const FlPlan *plan, int p);
 /** Begins the chain of a region whose pictures are not known and have this place in the frame. */
 void fl_reuse_begin(FlReuse *reuse, FlRect rect);
 
-/** Advances to picture k, counted as they are painted, from 0: the next one. It is known, or that
- * of guides (NULL: the region rests in them) and of a style whose window is there. */
+/** True if picture k, counted as they are painted, from 0, can be taken: its digest is known. */
+bool fl_reuse_has(const FlReuse *reuse, int k);
+
+/** Advances to picture k. Its digest is known, or follows from its guides (NULL: the region rests
+ * in them) and a style whose window is there. */
 void fl_reuse_next(FlReuse *reuse, int k, const FlGuides *guides, int window);
 
 /** Takes the picture, colours and alpha, and the state after it. Returns: whether it was there. */

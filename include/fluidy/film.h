@@ -1,0 +1,111 @@
+/* A film as an object: open a drawing, change a setting, ask for any frame, close. */
+#ifndef FLUIDY_FILM_H
+#define FLUIDY_FILM_H
+
+#include <fluidy/render.h>
+
+G_BEGIN_DECLS
+
+/**
+ * A drawing that is painted frame by frame, in any order, while its options change.
+ *
+ * What a change does not touch is kept: after another "tint" or "paper" frames are only composed
+ * again, after another "style" of a region that region alone is painted again, and after a change
+ * of anything about paint the drawing is not read again. Painted pictures stay in memory, up to
+ * 1 GiB or a quarter of the limit ‘memory’, so that a choice that is taken back costs nothing.
+ *
+ * Threads: one film belongs to one thread at a time; several threads may have a film each. While
+ * the process has a single thread, drawings are read and drawn in child processes, which are
+ * confined; a process with more threads is not forked, and reads and draws them itself.
+ */
+typedef struct FlFilm FlFilm;
+
+/**
+ * The film of a drawing; reads nothing yet.
+ *
+ * inputs: NULL-terminated list of patterns, globs, SVG files or one folder; copied.
+ * Returns: to be freed with fl_film_close().
+ */
+FL_API FlFilm *fl_film_open(const char *const *inputs);
+
+FL_API void fl_film_close(FlFilm *film); /**< NULL is fine */
+
+/**
+ * Changes an option by its name on the command line, without the dashes: "width", "style", "tint",
+ * "paper", "w-temp", … The value is written as there. It holds from the next call on; options of
+ * files, such as "output", are for fl_film_render() alone.
+ *
+ * region: the name of the region that it is for; NULL: all of them, or the whole film. value:
+ * copied; NULL: the default again.
+ *
+ * Returns: false with FL_ERROR_USAGE, which names the option, the value and what was expected;
+ * nothing has then changed. A region that does not exist is told by the next frame.
+ */
+FL_API bool fl_film_set(FlFilm *film, const char *region, const char *name, const char *value,
+                        GError **error);
+
+/** Calls to the program. Zero it and set `size`, so that versions understand each other. */
+typedef struct FlFilmCalls {
+    size_t size; /**< sizeof(FlFilmCalls); required */
+    /** Called now and then from the calling thread; false stops with FL_ERROR_INTERRUPTED. */
+    bool (*progress)(const FlProgress *progress, void *data);
+    /** Called with one line about something odd in the input, without a line feed. */
+    void (*warning)(const char *message, void *data);
+    /** Called with one line about what was done. */
+    void (*note)(const char *message, void *data);
+    void *data; /**< handed to each of them */
+} FlFilmCalls;
+
+/** Sets the calls of a film; they hold from the next call on. NULL: none. */
+FL_API void fl_film_set_calls(FlFilm *film, const FlFilmCalls *calls);
+
+/** What is known of a drawing. Belongs to the film; later versions may add fields at the end. */
+typedef struct FlFilmInfo {
+    int n_frames;
+    int width, height; /**< of the frames, px */
+    int n_regions;     /**< that are painted */
+} FlFilmInfo;
+
+/**
+ * Reads the drawing, if it is not read or its options have changed.
+ *
+ * Returns: valid until the next call; NULL with an error of FL_ERROR.
+ */
+FL_API const FlFilmInfo *fl_film_info(FlFilm *film, GError **error);
+
+/** A frame. Belongs to the film; later versions may add fields at the end. */
+typedef struct FlFilmFrame {
+    int frame;           /**< from 0 */
+    int number;          /**< as in the name of its file */
+    int width, height;   /**< px */
+    const uint8_t *rgba; /**< width * height * 4 straight sRGBA, row-major without padding */
+} FlFilmFrame;
+
+/**
+ * Paints and composes a frame: the bytes that fl_render() writes with the same options, whatever
+ * was asked for before. Frames may come in any order; one that follows from pictures that are not
+ * kept has these painted first.
+ *
+ * frame: 0 to n_frames - 1. Returns: valid until the next call; NULL with an error of FL_ERROR,
+ * after which the film can still be used.
+ */
+FL_API const FlFilmFrame *fl_film_frame(FlFilm *film, int frame, GError **error);
+
+/** What a film has done so far. Belongs to the film; later versions may add fields at the end. */
+typedef struct FlFilmStats {
+    int n_read;     /**< how often the drawing was read */
+    int n_painted;  /**< pictures of regions that an engine has made or kept at rest */
+    int n_composed; /**< frames */
+} FlFilmStats;
+
+/** Returns: valid until the next call. */
+FL_API const FlFilmStats *fl_film_stats(FlFilm *film);
+
+/** Writes the film to files, as fl_render() with its options. */
+FL_API bool fl_film_render(FlFilm *film, GError **error);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlFilm, fl_film_close)
+
+G_END_DECLS
+
+#endif

@@ -1,0 +1,238 @@
+/* The film object: frames in any order, and what a change of options makes anew. */
+#include "io/png.h"
+#include "scratch.h"
+#include <fluidy/fluidy.h>
+#include <string.h>
+
+enum { FRAMES = 6, WIDTH = 72, HEIGHT = 56 };
+
+typedef struct Case {
+    Scratch *folder;
+    char *pattern, *style, *other_style;
+    FlFilm *film;
+} Case;
+
+/* Two blocks, one of which moves. */
+static void draw(const char *folder)
+{
+    for (int f = 0; f < FRAMES; f++) {
+        g_autofree char *name = g_strdup_printf("%s/d_%d.svg", folder, f);
+        g_autofree char *text =
+            g_strdup_printf("<svg xmlns='http://www.w3.org/2000/svg' width='%d' height='%d'>"
+                            "<rect x='6' y='8' width='30' height='34' fill='#335588'/>"
+                            "<rect x='%d' y='20' width='26' height='28' fill='#aa3311'/></svg>",
+                            WIDTH, HEIGHT, 20 + 3 * f);
+        g_assert_true(g_file_set_contents(name, text, -1, NULL));
+    }
+}
+
+static void set(FlFilm *film, const char *region, const char *name, const char *value)
+{
+    g_autoptr(GError) error = NULL;
+    fl_film_set(film, region, name, value, &error);
+    g_assert_no_error(error);
+}
+
+static Case *case_new(void)
+{
+    Case *test = g_new0(Case, 1);
+    test->folder = scratch_make();
+    draw(test->folder);
+    test->pattern = g_build_filename(test->folder, "d_%d.svg", NULL);
+    test->style = g_test_build_filename(G_TEST_DIST, "style-small", NULL);
+    test->other_style = g_test_build_filename(G_TEST_DIST, "style-flames", NULL);
+    const char *const inputs[] = {test->pattern, NULL};
+    test->film = fl_film_open(inputs);
+    set(test->film, NULL, "style", test->style);
+    return test;
+}
+
+static void case_free(Case *test)
+{
+    fl_film_close(test->film);
+    scratch_remove(test->folder);
+    g_free(test->pattern);
+    g_free(test->style);
+    g_free(test->other_style);
+    g_free(test);
+}
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(Case, case_free)
+
+/* A frame's pixels; to be freed. */
+static uint8_t *frame_of(FlFilm *film, int number)
+{
+    g_autoptr(GError) error = NULL;
+    const FlFilmFrame *frame = fl_film_frame(film, number, &error);
+    g_assert_no_error(error);
+    g_assert_cmpint(frame->frame, ==, number);
+    g_assert_cmpint(frame->width, ==, WIDTH);
+    g_assert_cmpint(frame->height, ==, HEIGHT);
+    return g_memdup2(frame->rgba, 4 * WIDTH * HEIGHT);
+}
+
+static int painted(FlFilm *film)
+{
+    return fl_film_stats(film)->n_painted;
+}
+
+/* Writes the film to files, with its options as they are. */
+static void write_film(const Case *test)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *output = g_build_filename(test->folder, "o_%d.png", NULL);
+    set(test->film, NULL, "output", output);
+    set(test->film, NULL, "overwrite", "replace");
+    fl_film_render(test->film, &error);
+    g_assert_no_error(error);
+}
+
+static void assert_as_written(const Case *test, int number)
+{
+    g_autoptr(GError) error = NULL;
+    g_autofree char *name = g_strdup_printf("o_%d.png", number);
+    g_autofree char *file = g_build_filename(test->folder, name, NULL);
+    g_autoptr(FlPicture) picture = fl_picture_read_png(file, &error);
+    g_assert_no_error(error);
+    g_autofree uint8_t *rgba = frame_of(test->film, number);
+    g_assert_cmpmem(picture->rgba, 4 * WIDTH * HEIGHT, rgba, 4 * WIDTH * HEIGHT);
+}
+
+static void frames_come_in_any_order(void)
+{
+    g_autoptr(Case) test = case_new();
+    const int order[] = {3, 0, 5, 2, 3};
+    write_film(test);
+    for (size_t k = 0; k < G_N_ELEMENTS(order); k++)
+        assert_as_written(test, order[k]);
+    g_assert_cmpint(painted(test->film), ==, 2 * FRAMES);
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
+}
+
+static void what_is_composed_only_paints_nothing(void)
+{
+    g_autoptr(Case) test = case_new();
+    g_autofree uint8_t *first = frame_of(test->film, 3);
+    const int before = painted(test->film);
+    g_assert_cmpint(before, ==, 8);
+    const char *const changes[][2] = {{"tint", "#11aa55"},
+                                      {"paper", "rough"},
+                                      {"stacking", "glaze"},
+                                      {"background", "none"},
+                                      {"medium", "body"}};
+    for (size_t k = 0; k < G_N_ELEMENTS(changes); k++) {
+        set(test->film, NULL, changes[k][0], changes[k][1]);
+        g_autofree uint8_t *now = frame_of(test->film, 3);
+        g_assert_true(memcmp(first, now, 4 * WIDTH * HEIGHT) != 0);
+        if (k != 2) // which changes how shapes meet
+            g_assert_cmpint(painted(test->film), ==, before);
+        set(test->film, NULL, changes[k][0], NULL);
+        g_autofree uint8_t *again = frame_of(test->film, 3);
+        g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, first, 4 * WIDTH * HEIGHT);
+    }
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
+    set(test->film, NULL, "tint", "#11aa55");
+    write_film(test);
+    assert_as_written(test, 3);
+}
+
+static void another_style_paints_its_region_alone(void)
+{
+    g_autoptr(Case) test = case_new();
+    g_autofree uint8_t *first = frame_of(test->film, 3);
+    const int before = painted(test->film);
+    set(test->film, "red-aa3311", "style", test->other_style);
+    g_autofree uint8_t *now = frame_of(test->film, 3);
+    g_assert_true(memcmp(first, now, 4 * WIDTH * HEIGHT) != 0);
+    g_assert_cmpint(painted(test->film), ==, before + 4);
+    write_film(test);
+    assert_as_written(test, 3);
+    set(test->film, "red-aa3311", "style", NULL);
+    g_autofree uint8_t *again = frame_of(test->film, 3);
+    g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, first, 4 * WIDTH * HEIGHT);
+    g_assert_cmpint(painted(test->film), ==, before + 4); // the choice was taken back
+    g_assert_cmpint(fl_film_stats(test->film)->n_read, ==, 1);
+}
+
+static void drafts_loops_and_holds_are_as_written(void)
+{
+    const char *const changes[][2] = {
+        {"detail", "draft"}, {"hold", "2"}, {"loop", "on"}, {"boil", "0.5"}, {"stain", "1"}};
+    g_autoptr(Case) test = case_new();
+    g_autofree uint8_t *plain = frame_of(test->film, 2);
+    for (size_t k = 0; k < G_N_ELEMENTS(changes); k++) {
+        set(test->film, NULL, changes[k][0], changes[k][1]);
+        write_film(test);
+        assert_as_written(test, 5);
+        assert_as_written(test, 1);
+        set(test->film, NULL, changes[k][0], NULL);
+    }
+    g_autofree uint8_t *again = frame_of(test->film, 2);
+    g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, plain, 4 * WIDTH * HEIGHT);
+}
+
+static void *frames_in_thread(void *data)
+{
+    Case *test = data;
+    for (int k = 0; k < FRAMES; k++)
+        g_free(frame_of(test->film, (k * 5 + 2) % FRAMES));
+    return frame_of(test->film, 4);
+}
+
+static void two_films_in_two_threads(void)
+{
+    g_autoptr(Case) one = case_new(), two = case_new();
+    set(two->film, NULL, "tint", "#11aa55");
+    set(one->film, NULL, "threads", "1");
+    GThread *thread = g_thread_new("film", frames_in_thread, two);
+    g_autofree uint8_t *first = frames_in_thread(one);
+    g_autofree uint8_t *second = g_thread_join(thread);
+    g_autofree uint8_t *alone = frame_of(one->film, 4);
+    g_assert_cmpmem(first, 4 * WIDTH * HEIGHT, alone, 4 * WIDTH * HEIGHT);
+    g_assert_true(memcmp(first, second, 4 * WIDTH * HEIGHT) != 0);
+}
+
+static void assert_refused(Case *test, const char *region, const char *name, const char *value,
+                           int code, const char *words)
+{
+    g_autoptr(GError) error = NULL;
+    if (fl_film_set(test->film, region, name, value, &error))
+        g_assert_null(fl_film_frame(test->film, 0, &error));
+    g_assert_error(error, FL_ERROR, code);
+    if (!strstr(error->message, words))
+        g_error("“%s” does not say “%s”", error->message, words);
+}
+
+static void mistakes_leave_the_film_as_it_was(void)
+{
+    g_autoptr(Case) test = case_new();
+    g_autofree uint8_t *first = frame_of(test->film, 2);
+    assert_refused(test, NULL, "tnit", "keep", FL_ERROR_USAGE, "no option “tnit”");
+    assert_refused(test, NULL, "width", "0", FL_ERROR_USAGE, "width");
+    assert_refused(test, NULL, "w-temp", "much", FL_ERROR_USAGE, "w-temp");
+    assert_refused(test, "red", "tint", "keep", FL_ERROR_USAGE, "no region “red”");
+    set(test->film, "red", "tint", NULL);
+    assert_refused(test, NULL, "style", "no-such-style", FL_ERROR_STYLE, "no-such-style");
+    set(test->film, NULL, "style", test->style);
+    const int before = painted(test->film);
+    g_autofree uint8_t *again = frame_of(test->film, 2);
+    g_assert_cmpmem(again, 4 * WIDTH * HEIGHT, first, 4 * WIDTH * HEIGHT);
+    g_assert_cmpint(painted(test->film), ==, before);
+    g_autoptr(GError) error = NULL;
+    g_assert_null(fl_film_frame(test->film, FRAMES, &error));
+    g_assert_error(error, FL_ERROR, FL_ERROR_USAGE);
+}
+
+int main(int argc, char **argv)
+{
+    g_setenv("G_TEST_SRCDIR", g_getenv("FLUIDY_FIXTURES"), true);
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name) g_test_add_func("/film_object/" #name, name)
+    TEST(frames_come_in_any_order);
+    TEST(what_is_composed_only_paints_nothing);
+    TEST(another_style_paints_its_region_alone);
+    TEST(drafts_loops_and_holds_are_as_written);
+    TEST(two_films_in_two_threads);
+    TEST(mistakes_leave_the_film_as_it_was);
+    return g_test_run();
+}
