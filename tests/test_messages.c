@@ -54,7 +54,7 @@ static void a_frame_comes_back(void)
     fl_warnings_add(warnings, "f1.svg", 1, "a", "odd");
     fl_survey_pack(&read.frame, &read.strings, warnings, packed);
     fl_strings_add(&strings, "known"); // its numbers are others
-    FlWireReader reader = fl_reader(packed->data, packed->len);
+    FlReader reader = fl_reader_over(packed->data, packed->len);
     g_assert_true(fl_survey_unpack(&reader, &frame, &strings, back));
     g_assert_cmpuint(reader.left, ==, 0);
     g_assert_cmpuint(frame.parts->len, ==, 2);
@@ -76,7 +76,7 @@ static void an_error_comes_back(void)
                       error = NULL;
     g_autoptr(GByteArray) packed = g_byte_array_new();
     fl_answer_pack_error(packed, problem);
-    FlWireReader reader = fl_reader(packed->data, packed->len);
+    FlReader reader = fl_reader_over(packed->data, packed->len);
     g_assert_false(fl_answer_begin(&reader, "f2.svg", &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_LIMIT);
     g_assert_cmpstr(error->message, ==, "f2.svg: too large");
@@ -93,7 +93,7 @@ static bool is_damaged(Read *read, FlSurveyPart part)
     *part_of(&read->frame, 0) = part;
     fl_survey_pack(&read->frame, &read->strings, none, packed);
     *part_of(&read->frame, 0) = was;
-    FlWireReader reader = fl_reader(packed->data, packed->len);
+    FlReader reader = fl_reader_over(packed->data, packed->len);
     return !fl_survey_unpack(&reader, &frame, &strings, NULL);
 }
 
@@ -135,7 +135,7 @@ static void damaged_data_ends_well(void)
             g_auto(FlSurveyFrame) frame = {0};
             const bool cut = v == G_N_ELEMENTS(values);
             packed->data[i] = cut ? was : values[v];
-            FlWireReader reader = fl_reader(packed->data, cut ? i : packed->len);
+            FlReader reader = fl_reader_over(packed->data, cut ? i : packed->len);
             const bool good = fl_survey_unpack(&reader, &frame, &strings, NULL);
             g_assert_false(cut && good);
             for (guint k = 0; good && k < frame.parts->len; k++)
@@ -171,7 +171,7 @@ static void a_request_comes_back(void)
     for (guint n = 0; n <= packed->len; n++) {
         FlHand own;
         g_auto(FlRequest) back = {0};
-        FlWireReader reader = fl_reader(packed->data, n);
+        FlReader reader = fl_reader_over(packed->data, n);
         const bool good = fl_request_unpack(&reader, &back, &own);
         g_assert_cmpint(good, ==, n == packed->len);
         if (!good)

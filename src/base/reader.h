@@ -1,5 +1,6 @@
-/* Reads bytes that need not be trusted, such as those of a file that anybody may have written: a
- * cursor that never passes their end. What it returns after a failure is NULL, 0 or empty. */
+/* Writes messages and files, and reads bytes that need not be trusted, such as those of a file that
+ * anybody may have written: a cursor that never passes their end. What it returns after a failure
+ * is NULL, 0 or empty. */
 #ifndef FLUIDY_BASE_READER_H
 #define FLUIDY_BASE_READER_H
 
@@ -10,6 +11,20 @@ typedef struct FlReader {
     size_t left; // bytes from `at` on
     bool failed; // something was out of bounds
 } FlReader;
+
+/* ---- writing --------------------------------------------------------------------------------- */
+
+void fl_put(GByteArray *out, const void *data, size_t bytes);
+void fl_put_int(GByteArray *out, int value);
+void fl_put_text(GByteArray *out, const char *text);          // NULL is ""
+void fl_put_texts(GByteArray *out, const char *const *texts); // ends in NULL; NULL: none
+
+/** Puts n >= 0 items of `size` bytes, their number first. */
+void fl_put_items(GByteArray *out, const void *items, int n, size_t size);
+
+/* ---- reading --------------------------------------------------------------------------------- */
+
+FlReader fl_reader_over(const void *data, size_t bytes);
 
 /** At the first byte; NULL has no bytes, and has failed. The bytes must outlive the reader. */
 FlReader fl_reader_of(GBytes *bytes);
@@ -25,6 +40,26 @@ size_t fl_reader_count(FlReader *reader, size_t most);
 
 /** A rectangle with at least one pixel, all of it inside `page`. */
 FlRect fl_reader_rect(FlReader *reader, FlRect page);
+
+int fl_take_int(FlReader *reader);
+
+/** A number of items, >= 0, of which at least `size` bytes each must be left; size > 0. */
+int fl_take_count(FlReader *reader, size_t size);
+
+/** A number that must be in first … last. Returns: `first` otherwise. */
+int fl_take_in(FlReader *reader, int first, int last);
+
+/** A text within the bytes. */
+const char *fl_take_text(FlReader *reader);
+
+/** Texts, to be freed with g_strfreev(); NULL: there are none. */
+char **fl_take_texts(FlReader *reader);
+
+/** Items of `size` bytes, after their number, to be freed with g_free(); NULL: there are none. */
+void *fl_take_items(FlReader *reader, size_t size, int *n);
+
+/** Notes whether what was taken is sound. Returns: whether all has been so far. */
+bool fl_take_check(FlReader *reader, bool sound);
 
 /** True if nothing has failed and no byte is left. */
 bool fl_reader_ends(const FlReader *reader);

@@ -30,7 +30,7 @@ void fl_drawing_forget(FlDrawing *drawing)
 }
 
 /** Keeps a frame, if there is room. */
-static void keep(FlDrawing *drawing, int frame, const FlWireReader *packed)
+static void keep(FlDrawing *drawing, int frame, const FlReader *packed)
 {
     GBytes **kept = &drawing->kept[drawing->frame[frame].origin];
     g_mutex_lock(&drawing->mutex);

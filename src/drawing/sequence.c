@@ -294,7 +294,7 @@ static int count_layers(const char *file, FlSandboxing sandbox, GError **error)
     if (!workers || !fl_workers_ask(workers, &request, NULL, &answer, error))
         return 0;
     const int n = fl_take_in(&answer.reader, 2, MOST_LAYERS);
-    return answer.reader.good ? n : fl_answer_set_damaged(file, error);
+    return !answer.reader.failed ? n : fl_answer_set_damaged(file, error);
 }
 
 /** The layers of the only file, in its place. */

@@ -65,19 +65,19 @@ void fl_request_pack(const FlRequest *r, GByteArray *out)
 }
 
 /** Takes n items without their number. */
-static void *take_all(FlWireReader *reader, int n, size_t size)
+static void *take_all(FlReader *reader, int n, size_t size)
 {
     if (!fl_take_check(reader, n >= 0 && (size_t)n <= reader->left / size))
         return NULL;
     void *items = g_malloc0_n((size_t)n + 1, size);
-    fl_take(reader, items, (size_t)n * size);
+    fl_reader_copy(reader, items, (size_t)n * size);
     return items;
 }
 
-static void take_hand(FlWireReader *reader, FlRequest *r, FlHand *hand)
+static void take_hand(FlReader *reader, FlRequest *r, FlHand *hand)
 {
     PlainHand plain;
-    fl_take(reader, &plain, sizeof plain);
+    fl_reader_copy(reader, &plain, sizeof plain);
     *hand = (FlHand){.seed = plain.seed, .page = plain.page};
     r->hand = hand;
     FlRegionHand *of_region = take_all(reader, r->n_regions, sizeof *of_region);
@@ -85,7 +85,7 @@ static void take_hand(FlWireReader *reader, FlRequest *r, FlHand *hand)
         fl_take_check(reader, (unsigned)of_region[i].line <= FL_LINE_BRUSH);
     hand->of_region = of_region;
     r->key = take_all(reader, r->n_regions, sizeof *r->key);
-    if (plain.tooth && reader->good && (size_t)r->width * (size_t)r->height <= INT_MAX)
+    if (plain.tooth && !reader->failed && (size_t)r->width * (size_t)r->height <= INT_MAX)
         hand->tooth = (FlTooth){take_all(reader, r->width * r->height, 1), (size_t)r->width};
 }
 
@@ -94,13 +94,13 @@ static bool is_side(int px)
     return px >= 0 && px <= FL_SURVEY_MOST_SIDE;
 }
 
-bool fl_request_unpack(FlWireReader *reader, FlRequest *r, FlHand *hand)
+bool fl_request_unpack(FlReader *reader, FlRequest *r, FlHand *hand)
 {
     PlainRequest plain;
     *r = (FlRequest){.verb = (FlVerb)fl_take_in(reader, 0, FL_N_VERBS - 1)};
     *hand = (FlHand){0};
     r->file = fl_take_text(reader);
-    fl_take(reader, &plain, sizeof plain);
+    fl_reader_copy(reader, &plain, sizeof plain);
     fl_take_check(reader, is_side(plain.width) && is_side(plain.height) && plain.n_regions >= 0 &&
                               plain.n_regions <= INT16_MAX);
     r->number = plain.number, r->frame = plain.frame;
@@ -148,11 +148,11 @@ bool fl_answer_set_damaged(const char *file, GError **error)
     return false;
 }
 
-bool fl_answer_begin(FlWireReader *reader, const char *file, GError **error)
+bool fl_answer_begin(FlReader *reader, const char *file, GError **error)
 {
     const int code = fl_take_in(reader, 0, 1 + FL_ERROR_INTERRUPTED);
     const char *text = code > 0 ? fl_take_text(reader) : "";
-    if (!reader->good)
+    if (reader->failed)
         return fl_answer_set_damaged(file, error);
     if (code > 0)
         g_set_error(error, FL_ERROR, code - 1, "%s", text);
@@ -171,11 +171,11 @@ static bool is_place(double px)
     return fabs(px) <= 1e9;
 }
 
-bool fl_measures_unpack(FlWireReader *reader, FlPageMeasures *m)
+bool fl_measures_unpack(FlReader *reader, FlPageMeasures *m)
 {
     int n = 0;
     FlPageSize page;
-    fl_take(reader, &page, sizeof page);
+    fl_reader_copy(reader, &page, sizeof page);
     *m = (FlPageMeasures){page.width, page.height, g_array_new(FALSE, FALSE, sizeof(FlShape))};
     g_autofree FlShape *shape = fl_take_items(reader, sizeof *shape, &n);
     for (int i = 0; i < n; i++)
@@ -208,14 +208,14 @@ static void put_warnings(GByteArray *out, const FlWarnings *warnings)
     }
 }
 
-static void take_warnings(FlWireReader *reader, FlWarnings *warnings)
+static void take_warnings(FlReader *reader, FlWarnings *warnings)
 {
     const int n = fl_take_count(reader, 1);
-    for (int i = 0; i < n && reader->good; i++) {
+    for (int i = 0; i < n && !reader->failed; i++) {
         FlWarning w = {.file = (char *)fl_take_text(reader),
                        .element = (char *)fl_take_text(reader),
                        .text = (char *)fl_take_text(reader)};
-        fl_take(reader, &w.frame, 3 * sizeof(int));
+        fl_reader_copy(reader, &w.frame, 3 * sizeof(int));
         if (fl_take_check(reader, w.n_frames >= 1) && warnings)
             fl_warnings_repeat(warnings, &w);
     }
@@ -261,12 +261,12 @@ static bool renumber(FlSurveyPart *part, const int *number, int n)
     return true;
 }
 
-bool fl_survey_unpack(FlWireReader *reader, FlSurveyFrame *frame, FlStrings *strings,
+bool fl_survey_unpack(FlReader *reader, FlSurveyFrame *frame, FlStrings *strings,
                       FlWarnings *warnings)
 {
     int n_parts = 0;
     *frame = (FlSurveyFrame){0};
-    fl_take(reader, &frame->page, sizeof frame->page);
+    fl_reader_copy(reader, &frame->page, sizeof frame->page);
     fl_take_check(reader, is_page(frame->page));
     frame->n_nameless = fl_take_int(reader);
     frame->whole = fl_take_texts(reader);
@@ -280,9 +280,9 @@ bool fl_survey_unpack(FlWireReader *reader, FlSurveyFrame *frame, FlStrings *str
         part[i].region = -1, part[i].nth = 0; // are set later
         fl_take_check(reader, is_sound(&part[i]) && renumber(&part[i], number, n));
     }
-    take_warnings(reader, reader->good ? warnings : NULL);
+    take_warnings(reader, !reader->failed ? warnings : NULL);
     frame->parts = g_array_sized_new(FALSE, FALSE, sizeof *part, (guint)n_parts);
-    if (reader->good && n_parts > 0)
+    if (!reader->failed && n_parts > 0)
         g_array_append_vals(frame->parts, part, (guint)n_parts);
-    return reader->good;
+    return !reader->failed;
 }

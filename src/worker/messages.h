@@ -2,8 +2,8 @@
 #ifndef FLUIDY_WORKER_MESSAGES_H
 #define FLUIDY_WORKER_MESSAGES_H
 
+#include "base/reader.h"
 #include "base/warnings.h"
-#include "base/wire.h"
 #include "worker/draw_frame.h"
 #include "worker/frame_parts.h"
 
@@ -41,14 +41,14 @@ void fl_request_pack(const FlRequest *request, GByteArray *out);
  * Reads a request; `hand` holds what it points to. The bytes must outlive it. Returns: false if
  * they are damaged; it is to be cleared either way.
  */
-bool fl_request_unpack(FlWireReader *reader, FlRequest *request, FlHand *hand);
+bool fl_request_unpack(FlReader *reader, FlRequest *request, FlHand *hand);
 void fl_request_clear(FlRequest *request);
 
 /** An answer begins with 0, or with 1 + the code of an error and its text. */
 void fl_answer_pack_error(GByteArray *out, const GError *problem);
 
 /** Returns: true if an answer follows; else false with the worker's error, or FL_ERROR_INPUT. */
-bool fl_answer_begin(FlWireReader *reader, const char *file, GError **error);
+bool fl_answer_begin(FlReader *reader, const char *file, GError **error);
 
 /** Sets FL_ERROR_INPUT: what a worker answered about a file is damaged. Returns: false. */
 bool fl_answer_set_damaged(const char *file, GError **error);
@@ -60,7 +60,7 @@ typedef struct FlPageMeasures {
 } FlPageMeasures;
 
 void fl_measures_pack(const FlPageMeasures *measures, GByteArray *out);
-bool fl_measures_unpack(FlWireReader *reader, FlPageMeasures *measures);
+bool fl_measures_unpack(FlReader *reader, FlPageMeasures *measures);
 
 /** What FL_VERB_SURVEY answers; `canvas` is left out. */
 void fl_survey_pack(const FlSurveyFrame *frame, const FlStrings *strings,
@@ -68,7 +68,7 @@ void fl_survey_pack(const FlSurveyFrame *frame, const FlStrings *strings,
 
 /** Reads a frame and adds its strings and warnings; `warnings` may be NULL. Returns: false if the
  * bytes are damaged; the frame is to be cleared either way. */
-bool fl_survey_unpack(FlWireReader *reader, FlSurveyFrame *frame, FlStrings *strings,
+bool fl_survey_unpack(FlReader *reader, FlSurveyFrame *frame, FlStrings *strings,
                       FlWarnings *warnings);
 
 /** A draw list as bytes: coverage is the same over long runs, and packs well. The list stays the

@@ -98,11 +98,11 @@ static bool make_planes(FlDraw *draw, unsigned planes, GError **error)
 }
 
 /* *draw owns what it got even on failure, which has an error if memory was the reason. */
-static bool unpack(FlWireReader *reader, const FlDrawBounds *bounds, FlDraw *draw, GError **error)
+static bool unpack(FlReader *reader, const FlDrawBounds *bounds, FlDraw *draw, GError **error)
 {
     Header header;
     FlSpan parts[N_PLANES];
-    fl_take(reader, &header, sizeof header);
+    fl_reader_copy(reader, &header, sizeof header);
     if (!fl_take_check(reader, header.bytes <= reader->left && is_of(&header.draw, bounds) &&
                                    header.planes >> N_PLANES == 0 && header.planes >> COVERAGE & 1))
         return false;
@@ -123,7 +123,7 @@ static bool unpack(FlWireReader *reader, const FlDrawBounds *bounds, FlDraw *dra
 FlDrawList *fl_draws_unpack(const void *packed, size_t bytes, const FlDrawBounds *bounds,
                             GError **error)
 {
-    FlWireReader reader = fl_reader(packed, bytes);
+    FlReader reader = fl_reader_over(packed, bytes);
     GError *problem = NULL;
     g_autoptr(GArray) list = g_array_new(FALSE, FALSE, sizeof(FlDraw));
     g_autoptr(FlDrawList) draws = g_new0(FlDrawList, 1);

@@ -74,13 +74,13 @@ static void reset_signals(void)
 }
 
 /** Gives up what reading and drawing do not need. Returns: the FlSandbox bits. */
-static unsigned obey(FlWireReader reader, bool *required)
+static unsigned obey(FlReader reader, bool *required)
 {
     Orders orders;
-    fl_take(&reader, &orders, sizeof orders);
+    fl_reader_copy(&reader, &orders, sizeof orders);
     const char *folder = fl_take_text(&reader);
     g_auto(GStrv) paths = fl_take_texts(&reader);
-    if (!reader.good || chdir(folder) != 0)
+    if (reader.failed || chdir(folder) != 0)
         _exit(1);
     fl_limits_set_all(orders.limit);
     // LLVM's OpenMP begins anew in a process that was forked, with a file in shared memory, which
@@ -110,7 +110,7 @@ static GByteArray *refuse(const char *lack)
     return out;
 }
 
-G_GNUC_NORETURN static void work(const FlProcess *process, FlWireReader told)
+G_GNUC_NORETURN static void work(const FlProcess *process, FlReader told)
 {
     FlTicket ticket;
     FlServant servant = {0};
@@ -174,7 +174,7 @@ static void start_child(const FlProcess *process, Child *child)
         if (getppid() != self)
             _exit(0);
         close(ends[0]), close(process->control);
-        work(process, fl_reader(orders, bytes));
+        work(process, fl_reader_over(orders, bytes));
     }
     close(ends[1]);
     child->alive = ends[0];

@@ -137,7 +137,7 @@ static bool answer(FlServant *servant, const FlRequest *r, GByteArray *out, GErr
 
 GByteArray *fl_serve(FlServant *servant, const void *bytes, size_t n)
 {
-    FlWireReader reader = fl_reader(bytes, n);
+    FlReader reader = fl_reader_over(bytes, n);
     g_auto(FlRequest) request = {0};
     FlHand hand;
     g_autoptr(GError) problem = NULL;

@@ -326,7 +326,7 @@ void fl_answer_clear(FlAnswer *answer)
 static bool open_answer(FlAnswer *answer, uint8_t *data, size_t bytes, const FlRequest *request,
                         GError **error)
 {
-    *answer = (FlAnswer){fl_reader(data, bytes), data};
+    *answer = (FlAnswer){fl_reader_over(data, bytes), data};
     g_autoptr(GError) problem = NULL;
     if (fl_answer_begin(&answer->reader, request->file, &problem))
         return true;

@@ -30,7 +30,7 @@ FlWorkers *fl_workers_new(const char *const *paths, FlSandboxing sandbox, bool a
 
 /** What a worker has answered; `reader` is behind what fl_answer_begin() reads. */
 typedef struct FlAnswer {
-    FlWireReader reader;
+    FlReader reader;
     uint8_t *data; // owned
 } FlAnswer;
 
