@@ -158,6 +158,46 @@ static void a_region_keeps_its_leaf_while_the_colour_changes(void)
     }
 }
 
+/* A limb changes sides and comes and goes; its colour is exported anew in every frame. */
+static void a_colour_that_jitters_is_one_region(void)
+{
+    static const char *const limb[] = {"#ff6207", "#fd650a", "#fc5f04", "#ff600c"};
+    static const char *const rest[] = {"#3a5f7b", "#3d627e", "#375c78", "#3b5e7c"};
+    for (int class = 0; class < 2; class ++) {
+        g_autoptr(Scratch) folder = scratch_make();
+        for (int t = 0; t < 4; t++) {
+            g_autofree char *name = g_strdup_printf("f%d.svg", t + 1);
+            g_autofree char *first =
+                g_strdup_printf("<rect %s x=\"%d\" width=\"9\" height=\"9\" fill=\"%s\"/>",
+                                class ? "class=\"limb\"" : "", 20 * t, limb[t]);
+            g_autofree char *body = g_strdup_printf(
+                "%s<circle cx=\"50\" cy=\"50\" r=\"20\" fill=\"%s\"/>%s"
+                "<circle cx=\"5\" cy=\"80\" r=\"%d\" fill=\"%s\"/>",
+                t % 2 ? first : "", rest[t], t % 2 ? "" : first, 4 * (t == 2), rest[t]);
+            g_free(scratch_svg(folder, name, body));
+        }
+        g_autoptr(FlDrawing) drawing = open_film(&(FlDrawingOptions){0}, folder, NULL);
+        g_assert_cmpint(fl_drawing_regions(drawing), ==, 2);
+        for (int r = 0; r < 2; r++)
+            g_assert_cmpint(fl_drawing_region(drawing, r)->n_present, ==, 4);
+        g_assert_cmpint(fl_drawing_region(drawing, 0)->n_leaves, ==, 2);
+    }
+}
+
+static void near_colours_side_by_side_are_two_regions(void)
+{
+    g_autoptr(Scratch) folder = scratch_make();
+    for (int t = 0; t < 3; t++) {
+        g_autofree char *name = g_strdup_printf("f%d.svg", t + 1);
+        g_free(scratch_svg(folder, name,
+                           t == 1 ? "<rect width=\"9\" height=\"9\" fill=\"#ff6207\"/>"
+                                  : "<rect width=\"9\" height=\"9\" fill=\"#ff6207\"/>"
+                                    "<rect x=\"40\" width=\"9\" height=\"9\" fill=\"#fc5f04\"/>"));
+    }
+    g_autoptr(FlDrawing) drawing = open_film(&(FlDrawingOptions){0}, folder, NULL);
+    assert_table(drawing, "orange-ff6207*3 orange-fc5f04*2");
+}
+
 static void depth_sorted_leaves_and_renumbered_ids_keep_their_regions(void)
 {
     g_autoptr(Scratch) folder = scratch_make();
@@ -692,6 +732,8 @@ int main(int argc, char **argv)
          masked_parts_are_regions_and_faint_ones_over_others_shading);
     TEST("a-region-keeps-its-leaf-while-the-colour-changes",
          a_region_keeps_its_leaf_while_the_colour_changes);
+    TEST("a-colour-that-jitters-is-one-region", a_colour_that_jitters_is_one_region);
+    TEST("near-colours-side-by-side-are-two-regions", near_colours_side_by_side_are_two_regions);
     TEST("depth-sorted-leaves-and-renumbered-ids-keep-their-regions",
          depth_sorted_leaves_and_renumbered_ids_keep_their_regions);
     TEST("a-group-that-fades-stays-taken-apart", a_group_that_fades_stays_taken_apart);

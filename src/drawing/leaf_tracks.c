@@ -3,17 +3,19 @@
 #include "base/colour_difference.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /*
  * Leaves of two frames are paired greedily, the most alike first. Only leaves of the same label and
- * kind are compared; the same paint counts most, then overlap, then the place in the document.
- * Exporters that keep the tree (lottie-web, SMIL) and those that sort by depth (Zdog) both
- * work: the former keep the place while the paint may change, the latter keep the paint while the
- * place changes.
+ * kind are compared, by paint, overlap, place in the document, id and class together. The more of
+ * these agree, the further the paint may have changed. Exporters that keep the tree (lottie-web,
+ * SMIL) and those that sort by depth (Zdog) both work: the former keep the place while the paint
+ * may change, the latter keep the paint while the place changes.
  */
-#define GRADUAL 30.0f // CIE76 between frames, for a leaf at the same place in the document
-#define SUBTLE 12.0f  // and for one that is only in the same place in the picture
-#define OVERLAP 0.6f  // of the boxes of such a one, intersection over union
+#define GRADUAL 30.0f // CIE76 between frames, for a leaf at the same place in document and picture
+#define SUBTLE 12.0f  // for one of the same class, or at the same place in the picture alone
+#define SLIGHT 4.0f   // for a flat one with none of these: its colour jitters
+#define OVERLAP 0.6f  // of boxes at the same place in the picture, intersection over union
 #define TOO_MANY 4000 // unpaired leaves on a side; beyond that only exact matches are followed
 
 typedef struct Pair {
@@ -30,18 +32,22 @@ static float overlap(const float a[4], const float b[4])
     return both / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - both);
 }
 
-/** How alike, 0 … 7; -1 if they cannot be the same leaf. */
+/** How alike, 0 … 8; -1 if they cannot be the same leaf. */
 static float likeness(const FlSurveyPart *a, const FlSurveyPart *b)
 {
-    const bool same_paint = a->paint == b->paint;
-    const bool same_tree = a->tree == b->tree, same_name = a->name == b->name && a->name > 0;
+    const bool same_paint = a->paint == b->paint, same_tree = a->tree == b->tree;
+    const bool same_name = a->name == b->name && a->name > 0;
+    const bool same_class = a->classes == b->classes && a->classes > 0;
+    const bool flat = a->kind == FL_PAINT_FLAT && b->kind == FL_PAINT_FLAT;
     const float difference = same_paint ? 0 : fl_colour_difference(a->rgb, b->rgb);
     const float shared = overlap(a->box, b->box);
-    if (!same_paint && same_tree && (difference > GRADUAL || (shared < 0.2f && !same_name)))
+    const float most = same_tree && (shared >= 0.2f || same_name)  ? GRADUAL
+                       : shared >= OVERLAP || (flat && same_class) ? SUBTLE
+                       : flat                                      ? SLIGHT
+                                                                   : 0;
+    if (!same_paint && (difference > most || most <= 0))
         return -1;
-    if (!same_paint && !same_tree && (difference > SUBTLE || shared < OVERLAP))
-        return -1;
-    return (float)(2 * same_paint + same_tree + same_name) + 2 * shared +
+    return (float)(2 * same_paint + same_tree + same_name + same_class) + 2 * shared +
            (1 - MIN(difference, GRADUAL) / GRADUAL);
 }
 
@@ -64,8 +70,12 @@ static void follow_on(Follow *f, int t, int i, int track, int *row)
     FlTrack *tr = &g_array_index(f->tracks, FlTrack, track);
     const FlSurveyPart *part = &g_array_index(f->survey->frame[t].parts, FlSurveyPart, i);
     const int change[2] = {t, part->paint};
-    if (tr->paints->len > 0 && tr->last.paint != part->paint)
+    if (tr->paints->len == 0)
+        memcpy(tr->rgb, part->rgb, sizeof tr->rgb);
+    if (tr->paints->len > 0 && tr->last.paint != part->paint) {
         tr->varies = true;
+        tr->drift = MAX(tr->drift, fl_colour_difference(tr->rgb, part->rgb));
+    }
     g_array_append_vals(tr->paints, change, 2);
     tr->last = *part;
     tr->last_frame = t;

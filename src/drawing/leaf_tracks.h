@@ -9,6 +9,8 @@ typedef struct FlTrack {
     FlSurveyPart last; // in the last frame that has it
     int last_frame;
     bool varies;    // its paint changed
+    uint8_t rgb[3]; // of the first frame that has it
+    float drift;    // CIE76 by which its paint was farthest from that
     GArray *paints; // int pairs: frame, paint (a string number); ascending frames
 } FlTrack;
 

@@ -9,6 +9,7 @@
 #define SHADE_COVERS 0.8 // share of an overlay that lies over other fills
 #define HAIRLINE 0.002   // width of a stroke, share of the page's longer side, that no paint fills
 #define LINE_ART 0.5     // share of the ink from which on strokes are the drawing
+#define JITTER 10.0f     // CIE76 by which a colour that is exported anew in every frame varies
 #define ROUNDING 2       // levels of a channel by which exporters miss a colour from frame to frame
 
 /** Sums over a region, which decide what it is. */
@@ -140,39 +141,6 @@ static void match_rules(Work *w)
         }
 }
 
-/** Whether two tracks have the same paint in all frames both are in, at least in one. */
-static bool change_alike(const FlTrack *a, const FlTrack *b)
-{
-    int common = 0;
-    for (guint i = 0, j = 0; i < a->paints->len && j < b->paints->len;) {
-        const int *x = &g_array_index(a->paints, int, i), *y = &g_array_index(b->paints, int, j);
-        if (x[0] == y[0] && x[1] != y[1])
-            return false;
-        common += x[0] == y[0];
-        i += x[0] <= y[0] ? 2 : 0;
-        j += y[0] <= x[0] ? 2 : 0;
-    }
-    return common > 0;
-}
-
-static void find_twins(Work *w)
-{
-    for (guint k = 0; k < w->tracks->len; k++) {
-        const FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
-        w->twin_of[k] = (int)k;
-        for (guint j = 0; j < k && track->varies; j++) {
-            const FlTrack *other = &g_array_index(w->tracks, FlTrack, j);
-            if (other->varies && w->twin_of[j] == (int)j &&
-                other->last.stroke == track->last.stroke &&
-                w->label_of[other->last.labels] == w->label_of[track->last.labels] &&
-                change_alike(other, track)) {
-                w->twin_of[k] = (int)j;
-                break;
-            }
-        }
-    }
-}
-
 static void find_hairlines(Work *w)
 {
     const FlSurvey *survey = w->survey;
@@ -195,6 +163,58 @@ static bool is_apart(const Work *w, const FlSurveyPart *s, int track)
 {
     const bool thick = s->thick && w->options->strokes != FL_STROKES_KEEP;
     return s->stroke && ((!w->paint_strokes && !thick) || w->is_hair[track]);
+}
+
+/** In how many frames both tracks are; -1: in one of them their paints differ. */
+static int common_frames(const FlTrack *a, const FlTrack *b)
+{
+    int common = 0;
+    for (guint i = 0, j = 0; i < a->paints->len && j < b->paints->len;) {
+        const int *x = &g_array_index(a->paints, int, i), *y = &g_array_index(b->paints, int, j);
+        if (x[0] == y[0] && x[1] != y[1])
+            return -1;
+        common += x[0] == y[0];
+        i += x[0] <= y[0] ? 2 : 0;
+        j += y[0] <= x[0] ? 2 : 0;
+    }
+    return common;
+}
+
+/**
+ * Whether a track belongs to another one, whose paint varies: theirs change together; or its own
+ * does not change, as it is short, and the other's jitters.
+ */
+static bool is_twin(const Work *w, int j, int k)
+{
+    const FlTrack *other = &g_array_index(w->tracks, FlTrack, j);
+    const FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
+    if (is_apart(w, &other->last, j) != is_apart(w, &track->last, k) ||
+        w->label_of[other->last.labels] != w->label_of[track->last.labels])
+        return false;
+    const int common = common_frames(other, track);
+    return track->varies ? common > 0
+                         : other->drift <= JITTER && 2 * common == (int)track->paints->len;
+}
+
+static void find_twins(Work *w)
+{
+    const int n = (int)w->tracks->len;
+    g_autofree int *varying = g_new(int, n + 1);
+    int n_varying = 0;
+    for (int k = 0; k < n; k++)
+        if (g_array_index(w->tracks, FlTrack, k).varies)
+            varying[n_varying++] = k;
+    for (int k = 0; k < n; k++) {
+        const FlTrack *track = &g_array_index(w->tracks, FlTrack, k);
+        w->twin_of[k] = k;
+        for (int v = 0; v < n_varying && w->twin_of[k] == k; v++) {
+            const int j = varying[v];
+            if ((!track->varies || (j < k && w->twin_of[j] == j)) && is_twin(w, j, k))
+                w->twin_of[k] = j;
+        }
+    }
+    for (int k = 0; k < n; k++) // a twin of one that comes later, which has its own
+        w->twin_of[k] = w->twin_of[w->twin_of[k]];
 }
 
 /** The key of a part's region; parts of equal keys are one region. */
@@ -221,7 +241,7 @@ static char *key_of(const Work *w, const FlSurveyPart *s, int track)
     default:
         break;
     }
-    if (tr->varies)
+    if (tr->varies || w->twin_of[track] != track)
         return g_strdup_printf("track %d", w->twin_of[track]);
     const int place = s->kind == FL_PAINT_MIXED || s->kind == FL_PAINT_IMAGE ? s->tree : 0;
     return g_strdup_printf("%s%d/%d/%d/%d", apart, label, s->paint, place, w->depth_of[track]);
