@@ -300,6 +300,18 @@ result $? '--list-regions prints a line per region'
 result $? 'the config that is printed gives the same regions'
 
 # The config: three edits of the printed one, every key that the manual has, and its example.
+mkdir recoloured
+for t in 1 2; do
+    echo "<svg xmlns='http://www.w3.org/2000/svg' width='90' height='60'><g id='arm'><path d='M${t} 9h20v20h-20z' fill='#474d50'/></g>
+        <g id='flake1'><circle cx='50' cy='${t}9' r='4' fill='#95c7f7'/></g><g id='flake2'><circle cx='70' cy='${t}9' r='4' fill='#95c7f7'/></g>
+        <path class='foot' d='M40 40h9v9h-9z' fill='#ff6207'/></svg>" >"recoloured/$t.svg"
+done
+"$program" recoloured --print-config >last.conf && grep -qx '\[region flake\*\]' last.conf && grep -qx 'match-class = foot' last.conf &&
+    ! grep -q '^[^#]*[0-9a-f]\{6\}' last.conf && [ "$(grep -c '^\[region' last.conf)" = 3 ] &&
+    sed -i 's/#474d50/#603020/; s/#95c7f7/#88aaee/g; s/#ff6207/#22aa44/' recoloured/*.svg &&
+    "$program" recoloured -c last.conf --list-regions >out 2>err && [ ! -s err ] &&
+    [ "$(awk 'NR > 1 && $7 != "-"' out | wc -l)" = 4 ]
+result $? 'a printed config fits the drawing after all its colours have changed'
 "$program" --print-config -f 1 "$film" >shot.conf 2>err &&
     sed -i -e '/^\[region hat-474d50\]/,/^$/ s/^# tint = fill/tint = #224488/' \
         -e '/^\[region face-ffa72b\]/,/^$/ s/^# style = 01/passthrough = on/' \

@@ -114,6 +114,7 @@ static void region_clear(void *data)
     g_free(region->name);
     g_free(region->label);
     g_free(region->paint);
+    g_free(region->class_word);
 }
 
 /** "leg_FB/Group" of "leg_FB\nGroup". */
@@ -158,6 +159,57 @@ static void describe(FlDrawing *drawing, const FlSurvey *survey, const GArray *g
             .rule = group->rule,
         };
         g_array_append_val(drawing->regions, region);
+    }
+}
+
+#define SEVERAL (-2) // regions have a class word
+
+/** The region that alone has a class word, and how many parts of it have that. */
+typedef struct Wearer {
+    int region, n;
+} Wearer;
+
+static void note_classes(const FlSurveyPart *part, const char *classes, GHashTable *wearers)
+{
+    g_auto(GStrv) words = g_strsplit(classes, "\n", -1);
+    for (int i = 0; words[i]; i++) {
+        Wearer *wearer = g_hash_table_lookup(wearers, words[i]);
+        if (!wearer) {
+            wearer = g_new(Wearer, 1);
+            *wearer = (Wearer){part->region, 0};
+            g_hash_table_insert(wearers, g_strdup(words[i]), wearer);
+        }
+        wearer->region = wearer->region == part->region ? part->region : SEVERAL;
+        wearer->n++;
+    }
+}
+
+/** Finds for each region the class word, if there is one, that all of its parts have and no others.
+ */
+static void find_class_words(FlDrawing *drawing, const FlSurvey *survey)
+{
+    g_autofree int *n_parts = g_new0(int, drawing->regions->len + 1);
+    g_autoptr(GHashTable) wearers = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, g_free);
+    for (int t = 0; t < survey->n_frames; t++)
+        for (guint i = 0; i < survey->frame[t].parts->len; i++) {
+            const FlSurveyPart *s = &g_array_index(survey->frame[t].parts, FlSurveyPart, i);
+            if (s->region >= 0)
+                n_parts[s->region]++;
+            if (s->classes)
+                note_classes(s, fl_strings_get(&survey->strings, s->classes), wearers);
+        }
+    GHashTableIter at;
+    gpointer word, found;
+    g_hash_table_iter_init(&at, wearers);
+    while (g_hash_table_iter_next(&at, &word, &found)) {
+        const Wearer *wearer = found;
+        if (wearer->region < 0 || wearer->n < n_parts[wearer->region])
+            continue;
+        char **known = &g_array_index(drawing->regions, FlRegion, wearer->region).class_word;
+        if (*known && strcmp(*known, word) < 0)
+            continue;
+        g_free(*known);
+        *known = g_strdup(word);
     }
 }
 
@@ -272,7 +324,7 @@ static void apply_names(const FlSurvey *survey, GArray *groups, const FlRegionRu
     for (guint r = 0; r < groups->len; r++) {
         FlRegionIdentity *group = &g_array_index(groups, FlRegionIdentity, r);
         for (int i = 0; i < n && group->rule < 0; i++)
-            if (rules[i].by_name && strcmp(rules[i].name, names[r]) == 0)
+            if (rules[i].by_name && g_pattern_match_simple(rules[i].name, names[r]))
                 group->rule = i;
     }
 }
@@ -302,6 +354,7 @@ static FlDrawing *make_film(const FlDrawingOptions *options, FlSequence *sequenc
     g_array_set_clear_func(drawing->regions, region_clear);
     describe(drawing, survey, groups, options->rules);
     measure(drawing, survey);
+    find_class_words(drawing, survey);
     remember(drawing, survey);
     return drawing;
 }

@@ -37,15 +37,16 @@ typedef struct FlDrawingOptions {
 
 /** A region: the leaves that are one area of paint through the whole drawing. */
 typedef struct FlRegion {
-    char *name;      // unique, made of [a-z0-9-], stable for the same input; used in file names
-    char *label;     // the layer label path without frame numbers; "" if the drawing has none
-    char *paint;     // "#rrggbb", "gradient", "image": of most of its area
-    int n_present;   // frames in which it is drawn
-    int first_frame; // index of the first of them
-    double area_px;  // mean area over those frames
-    int n_leaves;    // most leaves it had in a frame
-    bool paintable;  // false: drawn unpainted over the paint (strokes, shading overlays)
-    int rule;        // index of the rule that made it, -1: none
+    char *name;       // unique, made of [a-z0-9-], stable for the same input; used in file names
+    char *label;      // the layer label path without frame numbers; "" if the drawing has none
+    char *paint;      // "#rrggbb", "gradient", "image": of most of its area
+    int n_present;    // frames in which it is drawn
+    int first_frame;  // index of the first of them
+    double area_px;   // mean area over those frames
+    int n_leaves;     // most leaves it had in a frame
+    bool paintable;   // false: drawn unpainted over the paint (strokes, shading overlays)
+    int rule;         // index of the rule that made it, -1: none
+    char *class_word; // a class that all of its shapes have, and no others; NULL: none
 } FlRegion;
 
 /** A place that moves along with a region and turns with it, so that what is uneven in its paint

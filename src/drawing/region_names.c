@@ -49,7 +49,7 @@ static char *make_name(const FlSurvey *survey, const FlRegionIdentity *group, gu
                        const FlRegionRule *rules)
 {
     GString *name = g_string_new(NULL);
-    if (group->rule >= 0) {
+    if (group->rule >= 0 && !strpbrk(rules[group->rule].name, "*?")) {
         append_slug(name, rules[group->rule].name);
         return g_string_free(name, FALSE);
     }

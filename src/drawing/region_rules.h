@@ -25,7 +25,7 @@ typedef struct FlRegionRule {
     float tolerance;                 // of colours, CIE76; 0: 1
     const char *merge_with;          // the region that this one becomes a part of; NULL: none
     FlPassthrough passthrough;
-    bool by_name; // matches no leaf, but the region that gets this name without any rule
+    bool by_name; // matches no leaf, but regions whose names, without any rule, match this glob
 } FlRegionRule;
 
 /** What a rule is matched against; lists are joined with '\n'. */

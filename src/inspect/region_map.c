@@ -139,17 +139,88 @@ static char *initial_style(const Subject *subject)
     return g_strdup(name);
 }
 
-static void append_section(GString *text, const Subject *subject, int region)
+/* The part of a region's name that its label makes: what follows is its paint. NULL: no label. */
+static char *label_part(const FlRegion *r)
+{
+    g_autofree char *paint = g_strdup_printf("-%s", r->paint + (r->paint[0] == '#'));
+    const char *end = g_strrstr(r->name, paint);
+    if (!end && strcmp(r->paint, "image") == 0)
+        end = g_strrstr(r->name, "-group");
+    return *r->label && end ? g_strndup(r->name, (gsize)(end - r->name)) : NULL;
+}
+
+/* A glob of the names with this label, or, if `numbered`, with one that differs in its numbers. */
+static char *glob_of(const char *label, bool numbered)
+{
+    GString *glob = g_string_new(NULL);
+    for (const char *c = label; *c; c++)
+        if (!numbered || !g_ascii_isdigit(*c))
+            g_string_append_c(glob, *c);
+        else if (glob->len == 0 || glob->str[glob->len - 1] != '*')
+            g_string_append_c(glob, '*');
+    const bool ends = glob->len > 0 && glob->str[glob->len - 1] == '*';
+    return g_string_free(g_string_append(glob, ends ? "" : "-*"), FALSE);
+}
+
+/* Whether a glob matches `region`, and others only if they are alike but for numbers in labels. */
+static bool tells_apart(const Subject *subject, const char *glob, int region)
 {
     const FlRegion *r = fl_drawing_region(subject->drawing, region);
-    g_autofree char *label = fl_one_line(r->label);
-    g_string_append_printf(text, "\n[region %s]\n# %s%s%s, %d of %d frames, %.0f px\n", r->name,
-                           r->paint, *label ? " in layer " : "", label, r->n_present,
-                           fl_drawing_frames(subject->drawing), r->area_px);
-    if (r->paintable)
-        g_string_append(text, "# style = 01\n# tint = fill\n");
-    else
-        g_string_append(text, "# drawn as it is; passthrough = off paints it\n");
+    g_autofree char *label = label_part(r), *stem = glob_of(label, true);
+    g_autoptr(GHashTable) labels = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
+    for (int k = 0; k < fl_drawing_regions(subject->drawing); k++) {
+        const FlRegion *other = fl_drawing_region(subject->drawing, k);
+        g_autofree char *own = label_part(other), *own_stem = own ? glob_of(own, true) : NULL;
+        if (!g_pattern_match_simple(glob, other->name))
+            continue;
+        if (!own || strcmp(own_stem, stem) != 0 || other->paintable != r->paintable ||
+            other->rule >= 0 || !g_hash_table_add(labels, g_steal_pointer(&own)))
+            return false; // two of one label differ in their paint alone
+    }
+    return true;
+}
+
+/*
+ * A section lasts while a drawing is edited: it is for a label, or a class, and for a paint only
+ * where nothing else tells regions apart. Returns: its name; *match: another line of it, or NULL.
+ */
+static char *section_of(const Subject *subject, int region, char **match)
+{
+    const FlRegion *r = fl_drawing_region(subject->drawing, region);
+    g_autofree char *label = label_part(r);
+    for (int numbered = 1; label && numbered >= 0 && r->rule < 0; numbered--) {
+        g_autofree char *glob = glob_of(label, numbered);
+        if (tells_apart(subject, glob, region))
+            return g_steal_pointer(&glob);
+    }
+    if (!label && r->class_word && r->rule < 0 && !strpbrk(r->class_word, ",;*?[]#")) {
+        *match = g_strdup_printf("match-class = %s\n", r->class_word);
+        return g_strdup(r->class_word);
+    }
+    return g_strdup(r->name);
+}
+
+static void append_section(GString *text, const Subject *subject, int region, GHashTable *done)
+{
+    const FlRegion *r = fl_drawing_region(subject->drawing, region);
+    g_autofree char *match = NULL, *name = section_of(subject, region, &match);
+    const bool is_glob = strchr(name, '*') != NULL;
+    if (g_hash_table_contains(done, name))
+        return;
+    g_string_append_printf(text, "\n[region %s]\n", name);
+    for (int k = region; k < fl_drawing_regions(subject->drawing); k++) {
+        const FlRegion *one = fl_drawing_region(subject->drawing, k);
+        if (k != region && !(is_glob && g_pattern_match_simple(name, one->name)))
+            continue;
+        g_autofree char *label = fl_one_line(one->label);
+        g_string_append_printf(text, "# %s%s%s, %d of %d frames, %.0f px\n", one->paint,
+                               *label ? " in layer " : "", label, one->n_present,
+                               fl_drawing_frames(subject->drawing), one->area_px);
+    }
+    g_string_append(text, match ? match : "");
+    g_string_append(text, r->paintable ? "# style = 01\n# tint = fill\n"
+                                       : "# drawn as it is; passthrough = off paints it\n");
+    g_hash_table_add(done, g_steal_pointer(&name));
 }
 
 static char *config_text(const Subject *subject)
@@ -161,8 +232,9 @@ static char *config_text(const Subject *subject)
                            "[project]\nversion = 1\n# background = #ffffff\n\n"
                            "[defaults]\n%sstyle = %s\n",
                            style ? "" : "# ", style ? style : "01");
+    g_autoptr(GHashTable) done = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
     for (int r = 0; r < fl_drawing_regions(subject->drawing); r++)
-        append_section(text, subject, r);
+        append_section(text, subject, r, done);
     return g_string_free(text, FALSE);
 }
 
