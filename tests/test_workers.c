@@ -19,7 +19,7 @@
 #define SHAPES                                                                                     \
     "<path id='a' d='M2 2C9 2 9 9 30 20z' fill='#247'/>"                                           \
     "<path id='b' d='M5 25L35 5' fill='none' stroke='#a31' stroke-width='2'/>"
-#define CRASHES SVG("<style>:lang(x-cn) { }</style><g xml:lang='en'/>" SHAPES)
+#define BROKEN "<svg xmlns='http://www.w3.org/2000/svg'><g>"
 
 enum { WORKERS = 2 };
 
@@ -219,11 +219,21 @@ static void a_worker_that_is_killed_is_replaced(void)
     }
 }
 
-static int go_on(void *data)
+/** Stops the only worker; after a while it gets a signal and goes on. */
+static void stop_for_a_while(int number)
 {
+    pid_t worker[WORKERS];
+    const int n = workers_of_this(worker);
+    g_assert_cmpint(n, >, 0);
+    for (int i = 1; i < n; i++)
+        kill(worker[i], SIGKILL);
+    kill(worker[0], SIGSTOP);
+    if (fork() > 0)
+        return;
     g_usleep(1300000);
-    kill(*(pid_t *)data, SIGCONT);
-    return 0;
+    kill(worker[0], number);
+    kill(worker[0], SIGCONT);
+    _exit(0);
 }
 
 /* Its limit is a second of the processor. */
@@ -231,16 +241,9 @@ static void a_worker_that_is_stopped_has_not_run_out_of_time(void)
 {
     g_assert_true(fl_limit_set("seconds=1", NULL));
     g_auto(Film) film = open_film();
-    pid_t worker[WORKERS];
     if (!has_processes())
         return;
-    const int n = workers_of_this(worker);
-    for (int i = 1; i < n; i++)
-        kill(worker[i], SIGKILL);
-    kill(worker[0], SIGSTOP);
-    const pid_t child = fork();
-    if (child == 0)
-        _exit(go_on(&worker[0]));
+    stop_for_a_while(SIGCONT);
     assert_draws(&film);
     g_assert_true(fl_limit_set("seconds=60", NULL));
 }
@@ -259,7 +262,7 @@ static void a_crash_is_an_error_that_names_the_frame(void)
     if (!has_processes())
         return;
     g_autoptr(GError) error = NULL;
-    g_free(scratch_write(film.folder, "f2.svg", CRASHES));
+    stop_for_a_while(SIGSEGV);
     g_assert_null(fl_drawing_draw_list(film.drawing, 1, &error));
     g_assert_error(error, FL_ERROR, FL_ERROR_INPUT);
     g_assert_nonnull(strstr(error->message, "f2.svg: frame 2: the SVG library crashed while "));
@@ -276,7 +279,7 @@ static void a_plain_frame_is_drawn_once(void)
     const FlRegionHand pencil[2] = {{.line = FL_LINE_PENCIL}, {.line = FL_LINE_PENCIL}};
     const FlHand idle = {.of_region = none, .page = 1}, hand = {.of_region = pencil, .page = 1};
     g_autoptr(FlDrawList) first = fl_drawing_draw_list(film.drawing, 1, NULL);
-    g_free(scratch_write(film.folder, "f2.svg", CRASHES)); // to draw it again would fail
+    g_free(scratch_write(film.folder, "f2.svg", BROKEN)); // to draw it again would fail
     g_autoptr(FlDrawList) again = fl_drawing_draw_list(film.drawing, 1, NULL);
     g_autoptr(FlDrawList) by_none = fl_drawing_draw_by_hand(film.drawing, 1, &idle, NULL);
     assert_same(again, first);
