@@ -2,37 +2,12 @@
 #include "params/options.h"
 
 #include "job/plan_facts.h"
+#include "option_values.h"
 #include "params/config.h"
 #include "scratch.h"
 #include <string.h>
 
 static GPtrArray *strings; // of what was set
-
-/* What only some values make sense for. */
-static const char *const samples[][2] = {
-    {"canvas", "80x80+1+2"}, {"flow", "none_%d.flo"},  {"format", "png16"}, {"frames", "1-2"},
-    {"missing", "skip"},     {"paint", "p_%d.png"},    {"style", "paper"},  {"config", "tint.conf"},
-    {"layers", "l_%d.png"},  {"stats", "figures.txt"},
-};
-
-/* A value that is not the default. */
-static char *another(const FlOption *o)
-{
-    for (size_t i = 0; i < G_N_ELEMENTS(samples); i++)
-        if (strcmp(samples[i][0], o->name) == 0)
-            return g_strdup(samples[i][1]);
-    g_auto(GStrv) words = g_strsplit(o->value, "|", -1);
-    for (int i = 0; words[0] && words[1] && words[i]; i++)
-        if (g_ascii_islower(words[i][0]) && strcmp(words[i], o->default_value) != 0)
-            return g_strdup(words[i]);
-    if (o->max <= o->min)
-        return g_strdup("other");
-    char text[G_ASCII_DTOSTR_BUF_SIZE];
-    const double value = o->max < 2 ? (o->min + o->max) / 2 : o->min + 2;
-    const bool taken = value == g_ascii_strtod(o->default_value, NULL);
-    const double next = o->max < 2 ? (value + o->max) / 2 : value + 1;
-    return g_strdup(g_ascii_dtostr(text, sizeof text, taken ? next : value));
-}
 
 static void set(const FlOption *o, const char *value, FlRenderOptions *options)
 {
@@ -101,7 +76,7 @@ static void a_key_of_a_project_is_what_the_option_is(void)
         const FlOption *o = fl_option_at(i);
         if (o->section != FL_SECTION_PROJECT)
             continue;
-        g_autofree char *value = another(o);
+        g_autofree char *value = option_other_value(o);
         g_autofree char *text = g_strdup_printf("[project]\n%s = %s\n", o->name, value);
         g_autofree char *path = scratch_write(folder, "shot.conf", text);
         g_autoptr(FlConfig) config = fl_config_load(path, NULL, NULL);
@@ -122,7 +97,7 @@ static void the_facts_have_every_option_that_decides_bytes(void)
         const FlOption *o = fl_option_at(i);
         if (o->bytes != FL_BYTES_VALUE && o->bytes != FL_BYTES_FRAME)
             continue;
-        g_autofree char *value = another(o), *difference = NULL;
+        g_autofree char *value = option_other_value(o), *difference = NULL;
         FlRenderOptions options = {0};
         g_auto(FlRegionSettings) settings;
         fl_region_settings_init(&settings);
@@ -178,7 +153,7 @@ static void the_facts_have_what_follows_from_an_option(void)
         if (o->scope != FL_SCOPE_RENDER || o->bytes != FL_BYTES_RESULT)
             continue;
         FlRenderOptions options = plain;
-        g_autofree char *value = another(o);
+        g_autofree char *value = option_other_value(o);
         fl_option_set(o, value, folder, &options, strings, NULL);
         g_autoptr(FlFacts) now = facts_of_render(&options);
         g_autofree char *difference = fl_facts_difference(before, now);

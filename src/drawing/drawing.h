@@ -73,7 +73,8 @@ int fl_drawing_height(const FlDrawing *drawing);
 int fl_drawing_regions(const FlDrawing *drawing);
 const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region);
 
-/** The real paths, as keys, of pictures and drawings that the files refer to. */
+/** The paths, as keys, of all that the files refer to: pictures, drawings, style sheets, and the
+ * fonts and folders of fonts for their text. */
 GHashTable *fl_drawing_linked_files(const FlDrawing *drawing);
 
 /** How many frames are held or skipped since their files cannot be read or drawn, as a sentence; to

@@ -2,6 +2,7 @@
 
 #include "base/style_parts.h"
 #include "io/pattern.h"
+#include "io/picture_file.h"
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -142,11 +143,13 @@ void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char
 void fl_inputs_add_options(FlInputs *inputs, const FlRenderOptions *options,
                            const FlDrawing *drawing, const char *const *regions)
 {
-    const char *const patterns[] = {options->background, options->flow,
-                                    options->merge ? options->paint : NULL};
+    const char *background = options->background;
+    const char *const patterns[] = {background && fl_picture_named(background) ? background : NULL,
+                                    options->flow, options->merge ? options->paint : NULL};
     if (options->config)
         (void)list(inputs, options->config);
-    fl_inputs_add(inputs, options->paper);
+    if (options->paper && fl_picture_named(options->paper)) // no word for a paper
+        fl_inputs_add(inputs, options->paper);
     for (size_t k = 0; k < G_N_ELEMENTS(patterns); k++) {
         fl_inputs_add_frames(inputs, drawing, patterns[k], NULL);
         for (const char *const *region = regions; region && *region; region++)

@@ -3,6 +3,7 @@
 #include "svg/branch.h"
 #include "svg/cascade.h"
 #include "svg/filter_background.h"
+#include "svg/fonts.h"
 #include "svg/images.h"
 #include "svg/layer_frames.h"
 #include "svg/lint.h"
@@ -61,6 +62,7 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;
+    fl_fonts_add(svg->doc, svg->files);
     svg->n_nameless = fl_document_name_groups(svg->doc);
     if (fl_document_is_rewritten(svg->doc) || fl_document_reads_background(svg->doc))
         svg->original = fl_document_text(svg->doc, &svg->original_bytes);

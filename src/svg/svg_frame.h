@@ -49,7 +49,8 @@ bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error
 /** How many groups have no id; documents with equal numbers have comparable generated ids. */
 int fl_svg_nameless_groups(const FlSvg *svg);
 
-/** The real paths, char *, of the files that it refers to and that exist. */
+/** The real paths, char *, of the files that it refers to and that exist; of its text the fonts and
+ * all folders of fonts. */
 const GPtrArray *fl_svg_files(const FlSvg *svg);
 
 /** The leaves, bottom up; they belong to svg. */

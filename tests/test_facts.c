@@ -1,0 +1,340 @@
+/* A change of anything that a render is made from makes it start anew. */
+#include "job/outputs.h"
+#include "job/plan_facts.h"
+#include "job/resume.h"
+#include "option_values.h"
+#include "scratch.h"
+#include <string.h>
+
+/* A film of four frames that links to, and is painted with, a file of each kind. */
+typedef struct Film {
+    Scratch *folder;
+    char *inputs, *output, *cache, *style, *tile, *flow, *background, *paper, *config, *state;
+} Film;
+
+static void copy_file(const char *from, const char *to)
+{
+    g_autofree char *data = NULL;
+    gsize bytes;
+    g_assert_true(g_file_get_contents(from, &data, &bytes, NULL));
+    g_assert_true(g_file_set_contents(to, data, (gssize)bytes, NULL));
+}
+
+static void copy_folder(const char *from, const char *to)
+{
+    g_autoptr(GDir) dir = g_dir_open(from, 0, NULL);
+    g_mkdir_with_parents(to, 0777);
+    for (const char *name; (name = g_dir_read_name(dir));) {
+        g_autofree char *source = g_build_filename(from, name, NULL);
+        g_autofree char *target = g_build_filename(to, name, NULL);
+        if (g_file_test(source, G_FILE_TEST_IS_DIR))
+            copy_folder(source, target);
+        else
+            copy_file(source, target);
+    }
+}
+
+static void remove_folder(const char *path)
+{
+    g_autoptr(GDir) dir = g_dir_open(path, 0, NULL);
+    for (const char *name; dir && (name = g_dir_read_name(dir));) {
+        g_autofree char *inner = g_build_filename(path, name, NULL);
+        if (g_unlink(inner) != 0)
+            remove_folder(inner);
+    }
+    g_rmdir(path);
+}
+
+static Film film; // one for all tests, since fontconfig reads its configuration once
+
+/* Fonts of the film alone; the system's first one that is there, under another name. */
+static void make_fonts(void)
+{
+    static const char *const fonts[] = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
+                                        "/usr/share/fonts/truetype/noto/NotoSansMono-Regular.ttf"};
+    g_autofree char *folder = g_build_filename(film.folder, "fonts", NULL);
+    g_autofree char *own = g_build_filename(folder, "own.ttf", NULL);
+    g_autofree char *text = g_strdup_printf("<fontconfig><dir>%s</dir></fontconfig>", folder);
+    g_autofree char *config = scratch_write(film.folder, "fonts.conf", text);
+    for (size_t k = 0; k < G_N_ELEMENTS(fonts); k++) {
+        if (!g_file_test(fonts[k], G_FILE_TEST_EXISTS))
+            continue;
+        g_mkdir_with_parents(folder, 0777);
+        copy_file(fonts[k], own);
+        g_setenv("FONTCONFIG_FILE", config, TRUE);
+        return;
+    }
+}
+
+static void film_make(void)
+{
+    const char *fixtures = g_getenv("FLUIDY_FIXTURES");
+    film.folder = scratch_make();
+    char **const paths[] = {&film.inputs, &film.output, &film.cache,      &film.style,
+                            &film.tile,   &film.flow,   &film.background, &film.paper};
+    static const char *const names[] = {"w_%d.svg", "out_%d.png", "cache",    "style",
+                                        "tile",     "f_%d.flo",   "b_%d.png", "paper.png"};
+    for (size_t k = 0; k < G_N_ELEMENTS(names); k++)
+        *paths[k] = g_build_filename(film.folder, names[k], NULL);
+    g_autofree char *small = g_build_filename(fixtures, "style-small", NULL);
+    g_autofree char *transport = g_build_filename(fixtures, "styles", "11", NULL);
+    copy_folder(small, film.style);
+    copy_folder(transport, film.tile);
+    g_free(scratch_write(film.folder, "look.css", "circle { fill: #aa3311 }"));
+    g_free(scratch_write(film.folder, "paper.png", "a sheet"));
+    g_autofree char *png = g_build_filename(film.folder, "p.png", NULL);
+    cairo_surface_t *picture = cairo_image_surface_create(CAIRO_FORMAT_RGB24, 4, 4);
+    g_assert_cmpint(cairo_surface_write_to_png(picture, png), ==, CAIRO_STATUS_SUCCESS);
+    cairo_surface_destroy(picture);
+    for (int f = 1; f <= 4; f += f) { // one is missing
+        g_autofree char *name = g_strdup_printf("w_%d.svg", f);
+        g_autofree char *flow = g_strdup_printf("f_%d.flo", f);
+        g_autofree char *ground = g_strdup_printf("b_%d.png", f);
+        g_free(scratch_svg(film.folder, name,
+                           "<style>@import 'look.css';</style><circle cx='50' cy='50' r='30'/>"
+                           "<text x='5' y='20' font-family='DejaVu Sans'>Ab</text>"
+                           "<image href='p.png' width='9' height='9'/>"));
+        g_free(scratch_write(film.folder, flow, "a flow"));
+        g_free(scratch_write(film.folder, ground, "a ground"));
+    }
+    film.config = scratch_write(film.folder, "film.conf", "[defaults]\nw-temp = 4\n");
+    film.state = g_build_filename(film.folder, ".out_%d.png.state", NULL);
+    make_fonts();
+}
+
+static void film_clear(void)
+{
+    remove_folder(film.folder);
+    char *const paths[] = {film.inputs, film.output,     film.cache, film.style,  film.tile,
+                           film.flow,   film.background, film.paper, film.config, film.state};
+    for (size_t k = 0; k < G_N_ELEMENTS(paths); k++)
+        g_free(paths[k]);
+    g_free(film.folder);
+}
+
+static FlPlan *plan_of(const FlRenderOptions *options)
+{
+    g_autoptr(GError) error = NULL;
+    FlPlan *plan = fl_plan_new(options, &error);
+    g_assert_no_error(error);
+    return plan;
+}
+
+/* Leaves a finished render in the store, or an interrupted one in a file, without painting. */
+static void leave(const FlRenderOptions *options, bool finished)
+{
+    g_autoptr(GError) error = NULL;
+    FlRenderOptions own = *options;
+    own.cache = finished ? options->cache : NULL;
+    g_autoptr(FlPlan) plan = plan_of(&own);
+    FlResume resume;
+    if (plan->finished == FL_FINISHED_ALL)
+        return;
+    g_assert_true(fl_resume_init(&resume, plan, &error));
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) {
+        g_autoptr(GPtrArray) files = fl_frame_files(plan, f, NULL);
+        g_assert_true(fl_resume_before_files(&resume, plan, f, &error));
+        g_assert_true(g_file_set_contents(files->pdata[0], "a frame", -1, NULL));
+        g_assert_true(fl_resume_save(&resume, plan, f, &error));
+    }
+    if (finished)
+        fl_resume_finish(&resume, plan);
+    fl_resume_clear(&resume);
+    g_assert_true(g_file_test(film.state, G_FILE_TEST_EXISTS) == !finished);
+}
+
+static bool is_finished(const FlRenderOptions *options)
+{
+    g_autoptr(FlPlan) plan = fl_plan_new(options, NULL);
+    return plan && plan->finished == FL_FINISHED_ALL;
+}
+
+static bool is_resumed(const FlRenderOptions *options)
+{
+    g_autoptr(GError) error = NULL;
+    FlRenderOptions careful = *options;
+    careful.overwrite = FL_OVERWRITE_REFUSE;
+    careful.cache = NULL;
+    g_autoptr(FlPlan) plan = fl_plan_new(&careful, NULL);
+    FlResume resume = {0};
+    const bool found = plan && fl_resume_init(&resume, plan, &error) && resume.found;
+    fl_resume_clear(&resume);
+    return found;
+}
+
+/* The options of the film; settings has room for one more. */
+static FlRenderOptions options_of(const char *inputs[2], FlSetting settings[3])
+{
+    inputs[0] = film.inputs, inputs[1] = NULL;
+    settings[0] = (FlSetting){.name = "style", .value = film.style};
+    settings[1] = (FlSetting){.name = "tile", .value = film.tile};
+    return (FlRenderOptions){.inputs = inputs,
+                             .output = film.output,
+                             .cache = film.cache,
+                             .flow = film.flow,
+                             .background = film.background,
+                             .paper = film.paper,
+                             .config = film.config,
+                             .settings = settings,
+                             .n_settings = 2,
+                             .missing = FL_MISSING_HOLD,
+                             .overwrite = FL_OVERWRITE_YES};
+}
+
+/* ---- files ----------------------------------------------------------------------------------- */
+
+static void change(const char *path)
+{
+    g_autofree char *data = NULL;
+    gsize bytes;
+    g_assert_true(g_file_get_contents(path, &data, &bytes, NULL));
+    g_autoptr(GString) longer = g_string_new_len(data, (gssize)bytes);
+    g_string_append_c(longer, '\n');
+    g_assert_true(g_file_set_contents(path, longer->str, (gssize)longer->len, NULL));
+}
+
+static const char *const files[] = {
+    "w_1.svg",        "w_4.svg",        "look.css",           "p.png",
+    "f_2.flo",        "b_2.png",        "paper.png",          "style/style.ini",
+    "style/frames/*", "tile/style.ini", "tile/transport.png", "tile/masks/*",
+    "fonts/own.ttf",
+};
+
+/* The first file of a folder, where the name ends in a star. */
+static char *path_in(const char *name)
+{
+    g_autofree char *path = g_build_filename(film.folder, name, NULL);
+    if (!g_str_has_suffix(name, "/*"))
+        return g_steal_pointer(&path);
+    g_autofree char *folder = g_path_get_dirname(path);
+    g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
+    return g_build_filename(folder, g_dir_read_name(dir), NULL);
+}
+
+static void a_change_of_any_file_starts_the_render_anew(void)
+{
+    const char *inputs[2];
+    FlSetting settings[3];
+    const FlRenderOptions options = options_of(inputs, settings);
+    for (size_t k = 0; k < G_N_ELEMENTS(files); k++) {
+        g_autofree char *path = path_in(files[k]), *saved = NULL;
+        gsize bytes;
+        if (!g_file_get_contents(path, &saved, &bytes, NULL)) {
+            g_assert_cmpstr(files[k], ==, "fonts/own.ttf"); // without fonts on this machine
+            continue;
+        }
+        leave(&options, false);
+        g_assert_true(is_resumed(&options));
+        change(path);
+        if (is_resumed(&options))
+            g_error("resumes although %s has changed", files[k]);
+        g_assert_true(g_file_set_contents(path, saved, (gssize)bytes, NULL));
+        g_assert_true(is_resumed(&options));
+        g_unlink(film.state);
+        leave(&options, true);
+        g_assert_true(is_finished(&options));
+        change(path);
+        if (is_finished(&options))
+            g_error("has nothing to do although %s has changed", files[k]);
+        g_assert_true(g_file_set_contents(path, saved, (gssize)bytes, NULL));
+        g_assert_true(is_finished(&options));
+    }
+}
+
+/* A new font may come before those that text was drawn with. */
+static void a_change_beside_the_inputs_is_seen(void)
+{
+    static const char *const added[] = {"style/frames/9999.png", "fonts/new.ttf"};
+    const char *inputs[2];
+    FlSetting settings[3];
+    const FlRenderOptions options = options_of(inputs, settings);
+    for (size_t k = 0; k < G_N_ELEMENTS(added); k++) {
+        g_autofree char *path = g_build_filename(film.folder, added[k], NULL);
+        g_autofree char *folder = g_path_get_dirname(path);
+        if (!g_file_test(folder, G_FILE_TEST_IS_DIR))
+            continue;
+        leave(&options, true);
+        g_assert_true(is_finished(&options));
+        g_assert_true(g_file_set_contents(path, "new", -1, NULL));
+        g_assert_false(is_finished(&options));
+        g_unlink(path);
+    }
+}
+
+/* ---- options --------------------------------------------------------------------------------- */
+
+/* What a film alone depends on: the frames stay, and are what it would be made of. */
+static bool is_of_film(const FlOption *o)
+{
+    return strcmp(o->name, "fps") == 0 || strcmp(o->name, "format") == 0;
+}
+
+/* Sets an option of a render or, for all regions, of a region. Returns: false if the command is
+ * refused with it. */
+static bool set(const FlOption *o, const char *value, FlRenderOptions *options, FlSetting *setting,
+                GPtrArray *strings)
+{
+    g_autoptr(GError) error = NULL;
+    if (o->scope == FL_SCOPE_RENDER)
+        return fl_option_set(o, value, film.folder, options, strings, &error);
+    *setting = (FlSetting){.name = o->name, .value = value};
+    options->n_settings++;
+    return true;
+}
+
+static void check_option(const FlOption *o, GPtrArray *strings)
+{
+    const char *inputs[2];
+    FlSetting settings[3];
+    FlRenderOptions options = options_of(inputs, settings);
+    g_autofree char *value = option_other_value(o);
+    g_autoptr(GError) refused = NULL;
+    if (!set(o, value, &options, &settings[2], strings))
+        return;
+    g_autoptr(FlPlan) plan = fl_plan_new(&options, &refused);
+    if (!plan)
+        return;
+    if (!is_of_film(o) && plan->finished == FL_FINISHED_ALL)
+        g_error("has nothing to do although %s is %s", o->name, value);
+    if (plan->format->film || strcmp(o->name, "part") == 0)
+        return; // another output, which has no record
+    if (is_resumed(&options))
+        g_error("resumes although %s is %s", o->name, value);
+}
+
+static void a_change_of_any_option_starts_the_render_anew(void)
+{
+    const char *inputs[2];
+    FlSetting settings[3];
+    g_autoptr(GPtrArray) strings = g_ptr_array_new_with_free_func(g_free);
+    const FlRenderOptions options = options_of(inputs, settings);
+    int n = 0;
+    leave(&options, true);
+    leave(&options, false); // beside the record of the finished one
+    for (int i = 0; i < fl_option_count(); i++) {
+        const FlOption *o = fl_option_at(i);
+        if (o->scope == FL_SCOPE_PROGRAM || o->bytes == FL_BYTES_NEVER)
+            continue;
+        check_option(o, strings);
+        n++;
+    }
+    g_assert_cmpint(n, >, 60);
+    g_assert_true(is_finished(&options));
+    g_assert_true(is_resumed(&options));
+    g_unlink(film.state);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+    film_make();
+    g_test_add_func("/facts/a-change-of-any-file-starts-the-render-anew",
+                    a_change_of_any_file_starts_the_render_anew);
+    g_test_add_func("/facts/a-change-beside-the-inputs-is-seen",
+                    a_change_beside_the_inputs_is_seen);
+    g_test_add_func("/facts/a-change-of-any-option-starts-the-render-anew",
+                    a_change_of_any_option_starts_the_render_anew);
+    const int status = g_test_run();
+    film_clear();
+    return status;
+}
