@@ -500,7 +500,6 @@ static const size_t parents[2][4] = {{3, 0, 9, 10}, {7, 4, 5, 1}};
 static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
 {
     const FlSums sums = {{z->sum[0] + at, z->sum[1] + at, z->sum[2] + at}, z->sum[3] + at};
-    const float *const rgb[3] = {z->f[4] + at, z->f[5] + at, z->f[6] + at};
     rows->add_pair(z->f[0] + at, z->f[1] + at, z->f[2], 0.37f, n);
     rows->halve(z->f[1] + at, z->f[2], z->f[3] + at, n);
     rows->halve_weighted(z->f[4] + at, z->f[5], z->f[1], z->f[2] + at, z->f[7] + at, n);
@@ -515,11 +514,6 @@ static void run_rows(const FlRowKernels *rows, Noise *z, int n, int at)
     rows->over(z->pixel + at, &sums, n);
     rows->level_opaque(&sums, z->pixel + at, n);
     rows->look_up(z->s[0] + at, z->look, z->sum[3] + at, n);
-    float *const planes[6] = {z->f[0], z->f[1] + at, z->f[2], z->f[3], z->f[4], z->f[5] + at};
-    rows->weigh(z->area + at, z->pixel + at, planes, n);
-    rows->widen(z->f[0], z->f[2] + at, z->f[7] + at, n - 1);
-    rows->straighten(rgb, z->f[2] + at, z->f[1], z->area, z->pixel + at, n);
-    rows->share(z->f[2] + at, z->f[1], z->rgba + 2 * ROW + at, n / 2);
     const FlOcclusion layer = {z->rgba + at, z->rgba + ROW, n % 2 ? z->rgba + 3 : NULL, n,
                                n % 5 > 0};
     rows->occlude(&layer, z->sum[2] + at, z->above + at, z->area + at, n);
@@ -658,7 +652,6 @@ static void time_rows(const FlRowKernels *rows)
     static Noise z;
     make_noise(&z, 1);
     const FlSums sums = {{z.sum[0], z.sum[1], z.sum[2]}, z.sum[3]};
-    const float *const rgb[3] = {z.f[4], z.f[5], z.f[6]};
     printf("%s, rows of %d\n", rows->name, ROW);
     TIME("add_pair", rows->add_pair(z.f[0], z.f[1], z.f[2], 0.37f, ROW));
     TIME("halve", rows->halve(z.f[1], z.f[2], z.f[3], ROW));
@@ -674,15 +667,10 @@ static void time_rows(const FlRowKernels *rows)
     TIME("look_up", rows->look_up(z.s[0], z.look, z.sum[3], ROW));
     TIME("over", rows->over(z.pixel, &sums, ROW));
     TIME("level_opaque", rows->level_opaque(&sums, z.pixel, ROW));
-    TIME("share", rows->share(z.f[2], z.f[1], z.rgba, ROW));
     const FlOcclusion layer = {z.rgba, z.rgba + ROW, z.rgba + 2 * ROW, 200, true};
     TIME("occlude", rows->occlude(&layer, z.sum[2], z.above, z.area, ROW));
     TIME("keep_hidden", (void)rows->keep_hidden(z.area, z.above, z.rgba, ROW));
     TIME("multiply", rows->multiply(z.above, z.rgba, ROW));
-    float *const planes[6] = {z.f[0], z.f[1], z.f[2], z.f[3], z.f[4], z.f[5]};
-    TIME("weigh", rows->weigh(z.area, z.pixel, planes, ROW));
-    TIME("widen", rows->widen(z.f[0], z.f[1], z.f[7], ROW - 1));
-    TIME("straighten", rows->straighten(rgb, z.f[2], z.f[1], z.area, z.pixel, ROW));
 }
 
 /** A check of one version; the argument is its FlKernels. */

@@ -1,27 +1,22 @@
-/* Stacks of discs: what is culled is not seen, in the size of the frame and in half of it. */
+/* Stacks of discs: what is culled is not seen. */
 #include "base/rng.h"
 #include "compose/culling.h"
-#include "compose/enlarge.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { W = 90, H = 71, MOST = 4 * W * H, LAYERS = 9 };
+enum { W = 90, H = 71, LAYERS = 9 };
 
 typedef struct Scene {
-    bool half;
-    int width, height; // of the frame
     FlLayersAbove above;
-    FlCulling culling;
+    bool culls;
     size_t culled; // pixels
 } Scene;
 
-static void scene_init(Scene *scene, bool half, bool cull)
+static void scene_init(Scene *scene, bool culls)
 {
-    const int scale = half ? 2 : 1;
-    *scene = (Scene){.half = half, .width = scale * W - half, .height = scale * H - half};
-    g_assert_true(fl_layers_above_init(&scene->above, scene->width, scene->height, 0, NULL));
-    scene->culling = (FlCulling){cull ? &scene->above : NULL, half};
+    *scene = (Scene){.culls = culls};
+    g_assert_true(fl_layers_above_init(&scene->above, W, H, 0, NULL));
 }
 
 /* A disc with a soft edge, flat paint and some that is thin. */
@@ -64,14 +59,6 @@ static void layer_clear(FlLayer *layer)
         free((uint8_t *)layer->coverage);
 }
 
-static FlLayer enlarged(const Scene *scene, FlLayer *layer)
-{
-    FlLayer full;
-    g_assert_true(fl_layer_double(layer, scene->width, scene->height, &full, NULL));
-    layer_clear(layer);
-    return full;
-}
-
 static size_t covered(const FlLayer *layer)
 {
     size_t n = 0;
@@ -89,15 +76,13 @@ static void compose(Scene *scene, uint64_t seed, uint8_t *out)
         const uint64_t key = seed * LAYERS + (uint64_t)k;
         layers[k] = disc(key, coverage[k]);
         const size_t whole = covered(&layers[k]);
-        g_assert_true(fl_layer_cull(&layers[k], &scene->culling, NULL));
+        g_assert_true(fl_layer_cull(&layers[k], scene->culls ? &scene->above : NULL, NULL));
         scene->culled += whole - covered(&layers[k]);
         paint(&layers[k], key);
-        if (scene->half)
-            layers[k] = enlarged(scene, &layers[k]);
         fl_layer_occlude(&layers[k], &scene->above);
         g_assert_true(fl_layer_pack(&layers[k], NULL));
     }
-    fl_layers_compose(layers, LAYERS, &paper, scene->width, scene->height, false, out);
+    fl_layers_compose(layers, LAYERS, &paper, W, H, false, out);
     for (int k = 0; k < LAYERS; k++) {
         fl_pixel_runs_clear(&layers[k].runs);
         layer_clear(&layers[k]);
@@ -107,18 +92,16 @@ static void compose(Scene *scene, uint64_t seed, uint8_t *out)
 
 static void what_is_culled_is_not_seen(void)
 {
-    static uint8_t whole[4 * MOST], culled[4 * MOST];
+    static uint8_t whole[4 * W * H], culled[4 * W * H];
     size_t n = 0;
     for (uint64_t seed = 0; seed < 40; seed++) {
         Scene scene;
-        const bool half = seed % 2;
-        scene_init(&scene, half, false);
+        scene_init(&scene, false);
         compose(&scene, seed, whole);
         g_assert_cmpuint(scene.culled, ==, 0);
-        scene_init(&scene, half, true);
+        scene_init(&scene, true);
         compose(&scene, seed, culled);
-        const int bytes = 4 * scene.width * scene.height;
-        g_assert_cmpmem(culled, bytes, whole, bytes);
+        g_assert_cmpmem(culled, sizeof culled, whole, sizeof whole);
         n += scene.culled;
     }
     g_assert_cmpuint(n, >, 40 * W * H / 4); // a quarter of the page in each stack
@@ -128,13 +111,13 @@ static void a_gap_keeps_layers_whole(void)
 {
     static uint8_t coverage[2][W * H];
     Scene scene;
-    scene_init(&scene, false, true);
+    scene_init(&scene, true);
     fl_layers_above_clear(&scene.above);
     g_assert_true(fl_layers_above_init(&scene.above, W, H, 3, NULL));
     FlLayer upper = disc(3, coverage[0]), lower = disc(3, coverage[1]);
     paint(&upper, 1);
     fl_layer_occlude(&upper, &scene.above);
-    g_assert_true(fl_layer_cull(&lower, &scene.culling, NULL));
+    g_assert_true(fl_layer_cull(&lower, &scene.above, NULL));
     g_assert_true(lower.coverage == coverage[1]);
     layer_clear(&upper);
     layer_clear(&lower);

@@ -352,94 +352,44 @@ static void colour_bleeds_under_transparent_pixels(void)
     layers_clear(layers, 1);
 }
 
-enum { FULL_W = 2 * W - 1, FULL_H = 2 * H - 1, FULL_N = FULL_W * FULL_H };
-
-static FlLayer enlarged(const FlLayer *half)
+/* An odd frame of a page with a column of its own colour, and a layer in its corner. */
+static void an_enlarged_page_keeps_its_colours_up_to_the_edge(void)
 {
-    g_autoptr(GError) error = NULL;
-    FlLayer full;
-    g_assert_true(fl_layer_double(half, FULL_W, FULL_H, &full, &error));
-    g_assert_no_error(error);
-    return full;
-}
-
-static void enlarged_clear(FlLayer *layer)
-{
-    fl_area_clear(&layer->area);
-    free(layer->rgba);
-    free((uint8_t *)layer->knockout);
-    free((uint8_t *)layer->coverage);
-}
-
-static void enlarged_neighbours_leave_no_seam(void)
-{
-    for (int turn = 0; turn < 16; turn++) {
-        const double a = cos(turn * 0.41), b = sin(turn * 0.41), c = a * 24.3 + b * 19.7;
-        g_autoptr(GError) error = NULL;
-        g_autofree uint8_t *out = g_malloc(4 * FULL_N);
-        uint8_t left[N], right[N];
-        half_plane(a, b, c, left);
-        half_plane(-a, -b, -c, right);
-        FlLayer half[2] = {flat_layer(left, 100, 100, 100), flat_layer(right, 100, 100, 100)};
-        FlLayer layers[2] = {enlarged(&half[0]), enlarged(&half[1])};
-        g_assert_true(fl_layers_resolve(layers, 2, FULL_W, FULL_H, &plain, &error));
-        fl_layers_compose(layers, 2, &(FlBackdrop){.flat = {255, 255, 255, 255}}, FULL_W, FULL_H,
-                          false, out);
-        for (int i = 0; i < 4 * FULL_N; i++)
-            if (i % 4 < 3)
-                g_assert_cmpint(out[i], <=, 103);
-        layers_clear(half, 2);
-        enlarged_clear(&layers[0]);
-        enlarged_clear(&layers[1]);
+    enum { FULL_W = 2 * W - 1, FULL_H = 2 * H - 1, SIDE = 4 };
+    FlComposite page = {.n_layers = 1, .layers = g_new0(FlLayer, 1), .names = g_new0(char *, 1)};
+    FlLayer *corner = page.layers;
+    page.rgba = calloc(N, 4), page.rgba16 = calloc(N, 8);
+    for (int p = 0; p < N; p++)
+        for (int c = 0; c < 4; c++)
+            page.rgba[4 * p + c] = (uint8_t)(c == 3        ? 255
+                                             : p % W == 20 ? 250
+                                                           : 10),
+                              page.rgba16[4 * p + c] = (uint16_t)(257 * page.rgba[4 * p + c]);
+    corner->area.box = (FlRect){W - SIDE, H - SIDE, SIDE, SIDE};
+    corner->rgba = malloc(4 * SIDE * SIDE);
+    for (int p = 0; p < SIDE * SIDE; p++)
+        memcpy(corner->rgba + 4 * p, (uint8_t[]){10, 200, 30, 120}, 4);
+    g_assert_true(fl_layer_pack(corner, NULL) && fl_composite_enlarge(&page, FULL_W, FULL_H, NULL));
+    for (int p = 0; p < FULL_W * FULL_H; p++) {
+        static const int column[6] = {10, 70, 190, 190, 70, 10}; // from 38 on
+        const int x = p % FULL_W, want = x < 38 || x > 43 ? 10 : column[x - 38];
+        g_assert_cmpmem(page.rgba + 4 * p, 4,
+                        ((uint8_t[]){(uint8_t)want, (uint8_t)want, (uint8_t)want, 255}), 4);
+        g_assert_cmpint(page.rgba16[4 * p], ==, 257 * want);
     }
-}
-
-/* The box lies within the frame; what is paint has the colour, opacity and body that it had. */
-static void an_enlarged_layer_keeps_its_paint_up_to_the_edge(void)
-{
-    uint8_t shape[12 * 10] = {0}, knockout[12 * 10];
-    memset(knockout, 80, sizeof knockout);
-    FlLayer half = {
-        .area.box = {18, 15, 12, 10}, .coverage = shape, .knockout = knockout, .alpha = 200};
-    half.rgba = g_malloc0(4 * sizeof knockout);
-    for (int y = 1; y < 9; y++) // a pixel of the box is left around
-        for (int x = 1; x < 11; x++) {
-            shape[y * 12 + x] = 255;
-            memcpy(half.rgba + 4 * (y * 12 + x), (uint8_t[]){10, 200, 30, 120}, 4);
-        }
-    FlLayer full = enlarged(&half);
-    g_assert_cmpint(full.alpha, ==, 200);
-    double area = 0;
-    for (int y = 0; y < full.area.box.height; y++)
-        for (int x = 0; x < full.area.box.width; x++) {
-            const int p = y * full.area.box.width + x;
-            const uint8_t covered = full.coverage[p];
-            area += covered / 255.0;
-            if (covered) {
-                g_assert_cmpmem(full.rgba + 4 * p, 4, ((uint8_t[]){10, 200, 30, 120}), 4);
-                g_assert_cmpint(full.knockout[p], ==, 80);
-            }
-        }
-    g_assert_cmpfloat(fabs(area - 4 * 80), <, 1);
-    g_free(half.rgba);
-    enlarged_clear(&full);
-}
-
-/* No column or row of the frame is lost, and beyond its edge nothing mixes in. */
-static void an_enlarged_layer_fills_the_frame(void)
-{
-    uint8_t all[N];
-    memset(all, 255, N);
-    FlLayer half = flat_layer(all, 1, 2, 3), full = enlarged(&half);
-    g_assert_cmpint(full.area.box.width, ==, FULL_W);
-    g_assert_cmpint(full.area.box.height, ==, FULL_H);
-    for (int p = 0; p < FULL_N; p++) {
-        g_assert_cmpint(full.coverage[p], ==, 255);
-        g_assert_cmpmem(full.rgba + 4 * p, 4, ((uint8_t[]){1, 2, 3, 255}), 4);
-    }
-    g_assert_null(full.knockout);
-    layers_clear(&half, 1);
-    enlarged_clear(&full);
+    const FlRect box = corner->area.box; // with a row and a column of what mixes with it
+    g_assert_cmpint(box.x + box.width, ==, FULL_W);
+    g_assert_cmpint(box.width, ==, 2 * SIDE);
+    uint8_t row[4 * 2 * SIDE] = {0};
+    fl_pixel_runs_copy(&corner->runs, 2 * SIDE - 1, row);
+    for (int x = 0; x < 2 * SIDE; x++)
+        g_assert_cmpmem(row + 4 * x, 4,
+                        ((uint8_t[]){10, 200, 30,
+                                     x == 0   ? 30
+                                     : x == 1 ? 90
+                                              : 120}),
+                        4);
+    fl_composite_clear(&page);
 }
 
 /* The stored level is the one of all that comes nearest to the colour over the paper. */
@@ -494,11 +444,9 @@ int main(int argc, char **argv)
     g_test_add_func("/layers/linear-light-blends-brighter", linear_light_blends_brighter);
     g_test_add_func("/layers/colour-bleeds-under-transparent-pixels",
                     colour_bleeds_under_transparent_pixels);
-    g_test_add_func("/layers/enlarged-neighbours-leave-no-seam", enlarged_neighbours_leave_no_seam);
-    g_test_add_func("/layers/an-enlarged-layer-keeps-its-paint-up-to-the-edge",
-                    an_enlarged_layer_keeps_its_paint_up_to_the_edge);
-    g_test_add_func("/layers/an-enlarged-layer-fills-the-frame", an_enlarged_layer_fills_the_frame);
     g_test_add_func("/layers/unblending-rounds-to-the-nearest-level",
                     unblending_rounds_to_the_nearest_level);
+    g_test_add_func("/layers/an-enlarged-page-keeps-its-colours-up-to-the-edge",
+                    an_enlarged_page_keeps_its_colours_up_to_the_edge);
     return g_test_run();
 }

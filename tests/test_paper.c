@@ -128,7 +128,7 @@ static void a_sheet_is_a_function_of_place(void)
     g_autoptr(FlPaperSheet) small = sheet_of("laid", 7, 100, 90, 0);
     for (size_t y = 0; y < 90; y++) {
         g_assert_cmpmem(small->factor + 400 * y, 800, large->factor + 4 * SIDE * y, 800);
-        g_assert_cmpmem(small->tooth[0] + 100 * y, 100, large->tooth[0] + SIDE * y, 100);
+        g_assert_cmpmem(small->tooth + 100 * y, 100, large->tooth + SIDE * y, 100);
     }
     g_autoptr(FlPaperSheet) other = sheet_of("laid", 8, 100, 90, 0);
     g_assert_cmpint(memcmp(other->factor, small->factor, 800), !=, 0);
@@ -143,7 +143,7 @@ static void threads_do_not_matter(void)
         omp_set_num_threads(3);
         g_autoptr(FlPaperSheet) three = sheet_of(words[kind], 1, 301, 203, 0);
         g_assert_cmpmem(one->factor, 301 * 203 * 8, three->factor, 301 * 203 * 8);
-        g_assert_cmpmem(one->tooth[0], 301 * 203, three->tooth[0], 301 * 203);
+        g_assert_cmpmem(one->tooth, 301 * 203, three->tooth, 301 * 203);
     }
     omp_set_num_threads(threads);
 }
@@ -153,7 +153,7 @@ static void a_sheet_is_known(void)
 {
     g_autoptr(FlPaperSheet) sheet = sheet_of("cold", 1, 200, 200, 0);
     g_autofree char *sum =
-        g_compute_checksum_for_data(G_CHECKSUM_SHA256, (const guchar *)sheet->tooth[0], 200 * 200);
+        g_compute_checksum_for_data(G_CHECKSUM_SHA256, (const guchar *)sheet->tooth, 200 * 200);
     g_assert_cmpstr(sum, ==, "6e3643d53cdda1a56f22f412a8be4a828fd87649f378bcc217f5a34e232cb270");
 }
 
@@ -259,7 +259,7 @@ static void a_file_is_laid_side_by_side(void)
     g_autoptr(FlPaperSheet) sheet = sheet_of(path, 1, 100, 60, 0);
     for (int y = 24; y < 60; y++)
         g_assert_cmpmem(sheet->factor + 400 * y, 800, sheet->factor + 400 * (y - 24), 800);
-    g_assert_cmpmem(sheet->tooth[0], 32, sheet->tooth[0] + 32, 32);
+    g_assert_cmpmem(sheet->tooth, 32, sheet->tooth + 32, 32);
     double mean = 0;
     for (int i = 0; i < 32 * 24; i++)
         mean += sheet->factor[4 * (i / 32 * 100 + i % 32)] / (32 * 24.0 * FL_PAPER_ONE);
@@ -276,7 +276,7 @@ static double mean_granulated(const FlPaperSheet *sheet, float granulation, int 
     double sum = 0, squares = 0;
     for (int i = 0; i < SIDE * SIDE; i++)
         amounts[i] = (int16_t)(i % 9 == 0 ? -1 : amount);
-    fl_granulate(granulation, fl_paper_sheet_tooth(sheet, 0, false), &area, amounts);
+    fl_granulate(granulation, fl_paper_sheet_tooth(sheet, 0), &area, amounts);
     int n = 0;
     for (int i = 0; i < SIDE * SIDE; i++) {
         g_assert_true(amounts[i] < FL_AMOUNTS && (amounts[i] == -1) == (i % 9 == 0));
@@ -317,22 +317,6 @@ static void wet_paint_settles_and_dry_paint_catches(void)
     fl_granulate(.14f, (FlTooth){0}, &area, flat);
     fl_granulate(0, tooth, &area, flat);
     g_assert_true(flat[0] == 1024 && flat[1] == 5 && flat[2] == -1);
-}
-
-/* A draft is painted on the same sheet: its tooth is the mean of that of the frame. */
-static void drafts_have_the_same_tooth(void)
-{
-    g_autoptr(FlPaperSheet) sheet = sheet_of("cold", 1, 101, 63, 2);
-    for (int frame = 0; frame < 8; frame += 2) {
-        const FlTooth whole = fl_paper_sheet_tooth(sheet, frame, false);
-        const FlTooth half = fl_paper_sheet_tooth(sheet, frame, true);
-        for (size_t y = 0; y < 31; y++)
-            for (size_t x = 0; x < 50; x++) {
-                const int8_t *at = whole.height + 2 * y * whole.stride + 2 * x;
-                const int sum = at[0] + at[1] + at[whole.stride] + at[whole.stride + 1];
-                g_assert_cmpint(half.height[y * half.stride + x], ==, sum / 4);
-            }
-    }
 }
 
 static void load_moves_along_with_its_region(void)
@@ -429,7 +413,6 @@ int main(int argc, char **argv)
     g_test_add_func("/paper/granulation-keeps-the-tone", granulation_keeps_the_tone);
     g_test_add_func("/paper/wet-paint-settles-and-dry-paint-catches",
                     wet_paint_settles_and_dry_paint_catches);
-    g_test_add_func("/paper/drafts-have-the-same-tooth", drafts_have_the_same_tooth);
     g_test_add_func("/paper/load-moves-along-with-its-region", load_moves_along_with_its_region);
     g_test_add_func("/paper/load-is-the-same-in-a-part-of-the-area",
                     load_is_the_same_in_a_part_of_the_area);

@@ -38,7 +38,7 @@ static void fade(FlLayer *layers)
     g_autoptr(GError) error = NULL;
     g_auto(FlUnderlay) above = {0};
     g_auto(FlLayersAbove) taken = {0};
-    g_assert_true(fl_underlay_init(&above, W, H, false, &error) &&
+    g_assert_true(fl_underlay_init(&above, W, H, &error) &&
                   fl_layers_above_init(&taken, W, H, 0, &error));
     for (int k = 1; k >= 0; k--) {
         g_assert_true(fl_underlay_next(&above, &layers[k], true, &error) &&
@@ -47,33 +47,6 @@ static void fade(FlLayer *layers)
         fl_fade_clear(&layers[k].fade);
     }
     g_assert_no_error(error);
-}
-
-/** The same of layers of half the size. Returns: what is left at a pixel of that. */
-static int faded_in_half(FlLayer *layers, int x, int y)
-{
-    int left = 0;
-    g_autoptr(GError) error = NULL;
-    g_auto(FlUnderlay) above = {0};
-    g_auto(FlLayersAbove) taken = {0};
-    g_assert_true(fl_underlay_init(&above, W, H, true, &error) &&
-                  fl_layers_above_init(&taken, 2 * W, 2 * H, 0, &error));
-    for (int k = 1; k >= 0; k--) {
-        FlLayer full;
-        g_assert_true(fl_underlay_next(&above, &layers[k], true, &error) &&
-                      fl_fade_find(&layers[k], &error) &&
-                      fl_layer_double(&layers[k], 2 * W, 2 * H, &full, &error));
-        fl_layer_occlude(&full, &taken);
-        const FlRect box = full.area.box;
-        left = full.knockout[(size_t)(2 * y - box.y) * (size_t)box.width + (size_t)(2 * x - box.x)];
-        fl_area_clear(&full.area);
-        free((uint8_t *)full.coverage);
-        free(full.knockout);
-        free(full.rgba);
-        fl_fade_clear(&full.fade);
-    }
-    g_assert_no_error(error);
-    return left;
 }
 
 static void a_lower_shape_shows_through_no_rim_where_both_end_on_one_line(void)
@@ -108,20 +81,6 @@ static void a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays(void
     FlLayer line[2] = {rectangle(&lower, 5, 45, 50, 1), rectangle(&upper, 5, 5, 50, 35)};
     fade(line);
     g_assert_cmpint(lower.knockout[45 * W + 25], ==, 255);
-}
-
-/* A row of it is two of the frame; one that is about half covered by both is where both end. */
-static void in_half_the_size_a_row_is_seen_and_an_edge_is_not(void)
-{
-    static Sheet lower, upper;
-    FlLayer layers[2] = {rectangle(&lower, 10, 10, 30, 31), rectangle(&upper, 5, 5, 50, 35)};
-    bare(&upper);
-    for (int x = 10; x < 40; x++)
-        lower.coverage[40 * W + x] = 132, upper.coverage[40 * W + x] = 124;
-    g_assert_cmpint(faded_in_half(layers, 25, 39), <, 90);
-    FlLayer row[2] = {rectangle(&lower, 10, 10, 30, 31), rectangle(&upper, 5, 5, 50, 35)};
-    bare(&upper);
-    g_assert_cmpint(faded_in_half(row, 25, 39), ==, 255);
 }
 
 /* Something black fades to what is the same below it: the picture stays black at every opacity. */
@@ -191,7 +150,6 @@ int main(int argc, char **argv)
     TEST(a_lower_shape_shows_through_no_rim_where_both_end_on_one_line);
     TEST(it_shows_where_it_is_seen_beyond);
     TEST(a_sliver_beside_an_upper_shape_goes_and_a_line_of_its_own_stays);
-    TEST(in_half_the_size_a_row_is_seen_and_an_edge_is_not);
     TEST(a_shape_that_fades_over_its_like_never_pales);
     TEST(what_is_seen_through_the_rim_of_a_fading_shape_goes_little_by_little);
     TEST(a_drawing_turned_over_fades_alike);

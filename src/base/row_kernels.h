@@ -115,22 +115,6 @@ typedef struct FlRowKernels {
     /** The RGBA of opaque sums, each value 257 times a level. */
     void (*level_opaque)(const FlSums *sums, uint32_t *rgba, int n);
 
-    /** Enlarge: to[i] = sum[i] / weight[i], rounded; a weight below 1 counts as 1. */
-    void (*share)(const float *sum, const float *weight, uint8_t *to, int n);
-
-    /** Enlarge: coverage, 1, alpha, and alpha times red, green and blue of each pixel, in planes;
-     * all 0 where coverage is. */
-    void (*weigh)(const uint8_t *coverage, const uint32_t *rgba, float *const plane[6], int n);
-
-    /** Enlarge: to[2 i] and to[2 i + 1], between columns i and i + 1, of which there are n + 1,
-     * from the rows near and far, sixteenfold. All sums are whole and below 2^24. */
-    void (*widen)(const float *near, const float *far, float *to, int n);
-
-    /** Enlarge: straight RGBA from sums of colour times alpha and of alpha, and alpha's weight; 0
-     * where coverage is. */
-    void (*straighten)(const float *const rgb[3], const float *alpha, const float *weight,
-                       const uint8_t *coverage, uint32_t *rgba, int n);
-
     /** Composite, from the top down: sets the stored alpha of a layer; adds its paint and its
      * knock-out to those of the layers above it. */
     void (*occlude)(const FlOcclusion *layer, uint32_t *rgba, uint16_t *paint, uint8_t *area,

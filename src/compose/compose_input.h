@@ -27,7 +27,6 @@ typedef struct FlComposeInput {
     uint64_t seed;             // of what is uneven
     int width, height;         // of the frame, px
     float paper_px;            // of the frame per px of the sheet of paper
-    bool half;                 // the drawing has half that size: layers are enlarged
     bool layers_apart;         // layers are stored as well, to be put on something else
     bool linear;               // blend in linear light
     float gap_px;              // as in FlStackParams

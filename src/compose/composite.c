@@ -3,7 +3,6 @@
 #include "base/alloc.h"
 #include "base/parallel_error.h"
 #include "base/schedule.h"
-#include "compose/enlarge.h"
 #include "compose/exposure.h"
 #include "compose/paint_layer.h"
 #include "compose/underlay.h"
@@ -31,17 +30,6 @@ static char *layer_name(const FlComposeInput *input, const FlDrawList *draws, in
     return earlier == 0 ? g_strdup(name) : g_strdup_printf("%s-%d", name, earlier + 1);
 }
 
-/* Brings a layer into the size of the frame. */
-static bool double_layer(const Stack *stack, FlLayer *layer, GError **error)
-{
-    FlLayer half = *layer;
-    const bool done = fl_layer_double(&half, stack->sources.input->width,
-                                      stack->sources.input->height, layer, error);
-    half.fade = (FlFade){0}; // it is the full one's
-    fl_layer_clear(&half);
-    return done;
-}
-
 /* The stain, in the size of the frame; as a glaze if the ground lies below it. */
 static bool stain_layer(const Stack *stack, int k, GError **error)
 {
@@ -62,7 +50,7 @@ static bool stain_layer(const Stack *stack, int k, GError **error)
     return true;
 }
 
-/* Paints a layer, fades it below those above, and brings it into the size of the frame. */
+/* Paints a layer, and fades it below those above. */
 static bool paint_one(void *data, int k, int thread, GError **error)
 {
     const Stack *stack = data;
@@ -70,8 +58,7 @@ static bool paint_one(void *data, int k, int thread, GError **error)
     if (stack->draw[k] == NO_DRAW)
         return stain_layer(stack, k, error);
     return fl_layer_paint(layer, &stack->sources, stack->draw[k], error) &&
-           fl_fade_find(layer, error) &&
-           (!stack->sources.input->half || double_layer(stack, layer, error));
+           fl_fade_find(layer, error);
 }
 
 static size_t layer_pixels(const Stack *stack, int k)
@@ -118,8 +105,7 @@ static bool make_some(Stack *stack, int first, int end, FlUnderlay *above, GErro
 static bool init_underlay(FlUnderlay *above, const Stack *stack, GError **error)
 {
     const FlDrawing *drawing = stack->sources.input->drawing;
-    return fl_underlay_init(above, fl_drawing_width(drawing), fl_drawing_height(drawing),
-                            stack->sources.input->half, error);
+    return fl_underlay_init(above, fl_drawing_width(drawing), fl_drawing_height(drawing), error);
 }
 
 /* Whether all layers are needed at once, since some get their colours from what lies below them. */
@@ -202,7 +188,7 @@ static bool resolve_in_turn(Stack *whole, GError **error)
     if (!init_underlay(&underlay, whole, error) ||
         !fl_layers_above_init(&above, input->width, input->height, input->gap_px, error))
         return false;
-    stack.sources.culling.above = input->layers_apart ? NULL : &above;
+    stack.sources.above = input->layers_apart ? NULL : &above;
     for (int end = stack.composite->n_layers, first; end > 0; end = first) {
         first = first_of_batch(&stack, end);
         FlLayer *layers = stack.composite->layers + first;
@@ -271,7 +257,7 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     const int n_regions = fl_drawing_regions(input->drawing);
     g_autofree double *areas = g_new(double, MAX(n_regions, 1));
     fl_region_areas_find(draws, n_regions, areas);
-    Stack stack = {composite, {input, cover, exposures, areas, {NULL, input->half}}, draw};
+    Stack stack = {composite, {input, cover, exposures, areas, NULL}, draw};
     if (!(needs_all(&stack) ? resolve_all : resolve_in_turn)(&stack, error))
         return false;
     note_laid(composite, input, draw);

@@ -8,22 +8,18 @@
 
 /** A layer's rows among those of the frame. */
 typedef struct Window {
-    const FlCulling *culling;
-    FlRect box;      // of the layer in the frame, with all that its pixels reach
-    int scale;       // px of the frame per px of the layer
-    int reach;       // px of the frame that a pixel of the layer reaches beyond its own
+    const FlLayersAbove *above;
+    FlRect box;      // of the layer, with the margin
     uint8_t *hidden; // 255 or 0, of the box's columns: hidden in all rows that the layer's reaches
 } Window;
 
-static bool window_init(Window *window, const FlLayer *layer, const FlCulling *culling,
+static bool window_init(Window *window, const FlLayer *layer, const FlLayersAbove *above,
                         GError **error)
 {
     const FlRect box = layer->area.box;
-    const int scale = culling->half ? 2 : 1;
-    const int reach = culling->half + MARGIN_PX; // enlarging mixes with a pixel on either side
-    *window = (Window){.culling = culling, .scale = scale, .reach = reach};
-    window->box = (FlRect){scale * box.x - reach, scale * box.y - reach,
-                           scale * box.width + 2 * reach, scale * box.height + 2 * reach};
+    *window = (Window){.above = above};
+    window->box = (FlRect){box.x - MARGIN_PX, box.y - MARGIN_PX, box.width + 2 * MARGIN_PX,
+                           box.height + 2 * MARGIN_PX};
     window->hidden = fl_alloc_unset((size_t)window->box.width, 1, "a row of a matte", error);
     return window->hidden != NULL;
 }
@@ -32,7 +28,7 @@ static bool window_init(Window *window, const FlLayer *layer, const FlCulling *c
  * the frame nothing is seen. Returns: whether anything stays hidden. */
 static bool look_at_row(const Window *window, int y, int first, int last)
 {
-    const FlLayersAbove *above = window->culling->above;
+    const FlLayersAbove *above = window->above;
     const int from = MAX(first, -window->box.x);
     const int to = MIN(last, above->width - window->box.x);
     if (y < 0 || y >= above->height || from >= to)
@@ -45,12 +41,11 @@ static bool look_at_row(const Window *window, int y, int first, int last)
 /** Fills hidden for row y of the layer. Returns: whether anything is. */
 static bool find_hidden(const Window *window, int y, FlColumns span)
 {
-    const int reach = 2 * window->reach;
-    const int first = window->scale * span.first, last = window->scale * span.last + reach;
+    const int first = span.first, last = span.last + 2 * MARGIN_PX;
     bool any = true;
     memset(window->hidden + first, 255, (size_t)(last - first));
-    for (int k = 0; k < window->scale + reach && any; k++)
-        any = look_at_row(window, window->box.y + window->scale * y + k, first, last);
+    for (int k = 0; k <= 2 * MARGIN_PX && any; k++)
+        any = look_at_row(window, window->box.y + y + k, first, last);
     return any;
 }
 
@@ -64,12 +59,12 @@ static void keep_next(uint8_t *hidden, int n)
 /** Clears a row's pixels all whose window is hidden. Returns: the columns of what is left. */
 static FlColumns clear_hidden(const Window *window, FlColumns span, uint8_t *restrict coverage)
 {
-    const int scale = window->scale, reach = 2 * window->reach, n = span.last - span.first;
-    uint8_t *hidden = window->hidden + scale * span.first;
-    for (int left = scale * n + reach, k = 1; k < scale + reach; k++)
-        keep_next(hidden, left - k);
+    const int n = span.last - span.first;
+    uint8_t *hidden = window->hidden + span.first;
+    for (int k = 1; k <= 2 * MARGIN_PX; k++)
+        keep_next(hidden, n + 2 * MARGIN_PX - k);
     for (int x = 0; x < n; x++)
-        coverage[span.first + x] &= (uint8_t)~hidden[scale * x];
+        coverage[span.first + x] &= (uint8_t)~hidden[x];
     while (span.first < span.last && !coverage[span.first])
         span.first++;
     while (span.first < span.last && !coverage[span.last - 1])
@@ -91,13 +86,13 @@ static uint8_t *own_coverage(FlLayer *layer, GError **error)
     return coverage;
 }
 
-bool fl_layer_cull(FlLayer *layer, const FlCulling *culling, GError **error)
+bool fl_layer_cull(FlLayer *layer, const FlLayersAbove *above, GError **error)
 {
     const FlRect box = layer->area.box;
     Window window;
-    if (!culling->above || culling->above->gap_px > 0 || box.width == 0 || !layer->area.row)
+    if (!above || above->gap_px > 0 || box.width == 0 || !layer->area.row)
         return true;
-    if (!window_init(&window, layer, culling, error))
+    if (!window_init(&window, layer, above, error))
         return false;
     g_autofree uint8_t *hidden = window.hidden;
     uint8_t *coverage = NULL;

@@ -4,17 +4,11 @@
 
 #include "compose/layers.h"
 
-/** What a layer is culled by. */
-typedef struct FlCulling {
-    const FlLayersAbove *above; // NULL: layers stay whole
-    bool half;                  // the layer has half the size of the frame
-} FlCulling;
-
 /**
- * Takes those pixels out of a layer's area and coverage that those above hide, before it is painted
- * and enlarged: the frame stays, bit for bit. coverage becomes the layer's own, if any are. Not for
- * layers that are stored as well. FL_ERROR_NO_MEMORY.
+ * Takes those pixels out of a layer's area and coverage that those above hide, before it is
+ * painted: the frame stays, bit for bit. coverage becomes the layer's own, if any are. above: NULL:
+ * the layer stays whole, as one that is stored must. FL_ERROR_NO_MEMORY.
  */
-bool fl_layer_cull(FlLayer *layer, const FlCulling *culling, GError **error);
+bool fl_layer_cull(FlLayer *layer, const FlLayersAbove *above, GError **error);
 
 #endif

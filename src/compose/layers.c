@@ -68,10 +68,10 @@ static void fade_columns(const FlLayer *layer, const FlLayersAbove *above, int y
 {
     const FlFade *fade = &layer->fade;
     const FlRect own = layer->area.box, box = fade->box;
-    const size_t row = (size_t)((own.y + y) / fade->scale - box.y) * (size_t)box.width;
+    const size_t row = (size_t)(own.y + y - box.y) * (size_t)box.width;
     const uint8_t *area = above->area + (size_t)(own.y + y) * (size_t)above->width + own.x;
     for (int x = columns.first; x < columns.last; x++) {
-        const size_t at = row + (size_t)((own.x + x) / fade->scale - box.x);
+        const size_t at = row + (size_t)(own.x + x - box.x);
         const size_t p = (size_t)y * (size_t)own.width + (size_t)x;
         if (fade->keep[at] == 255)
             continue;

@@ -12,7 +12,6 @@
 /** Where a layer shows less below others, in the size in which it is painted. */
 typedef struct FlFade {
     FlRect box;    // the layer's, and some pixels around it
-    int scale;     // px of the frame per px of it
     uint8_t *keep; // what of the layer stays where no paint is above it, 0..255; NULL: all of it
     uint8_t *open; // what the shapes above and beside a pixel leave open however thick their paint
                    // is, as translucent ones do, 0..255

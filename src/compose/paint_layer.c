@@ -82,7 +82,7 @@ static FlUneven uneven_of(const FlLayerSources *sources, const FlPaintedRegion *
     return (FlUneven){.key = fl_key(input->seed, g_str_hash(painted->name)),
                       .anchor = painted->anchor,
                       .area = sources->areas[painted->region],
-                      .scale = input->paper_px * (input->half ? .5f : 1)};
+                      .scale = input->paper_px};
 }
 
 /* The grain of the paper and of the hand; not in paint that keeps the exemplar's own colours. */
@@ -228,7 +228,7 @@ bool fl_layer_paint(FlLayer *layer, const FlLayerSources *sources, int r, GError
         return false;
     const bool cut_out = painted && is_cut_out(painted);
     if ((cut_out && !reach_out(layer, sources, draw, painted, error)) ||
-        !fl_layer_cull(layer, &sources->culling, error) ||
+        !fl_layer_cull(layer, sources->above, error) ||
         !(layer->rgba = fl_alloc_scratch(4 * fl_rect_pixels(layer->area.box), 1, "a layer", error)))
         return false;
     if (painted)

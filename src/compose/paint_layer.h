@@ -10,10 +10,10 @@
 /** What the layers of a frame are made from; borrowed. */
 typedef struct FlLayerSources {
     const FlComposeInput *input;
-    const FlCover *cover; // of the frame
-    const int *exposures; // of each painted region
-    const double *areas;  // of each region, px
-    FlCulling culling;    // by the layers above
+    const FlCover *cover;       // of the frame
+    const int *exposures;       // of each painted region
+    const double *areas;        // of each region, px
+    const FlLayersAbove *above; // that cull it; NULL: it stays whole
 } FlLayerSources;
 
 /** How a region lies over others. Cut out paint hides as far as its alpha does, and so knocks

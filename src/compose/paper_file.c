@@ -75,7 +75,7 @@ static void fill(FlPaperSheet *sheet, const FlPicture *tile, const float *fine, 
             }
             factor[3] = FL_PAPER_ONE;
             const float height = fine[from] / fmaxf(deviation, .1f) * FL_TOOTH_ONE;
-            sheet->tooth[0][at] = (int8_t)lrintf(CLAMP(height, -TOOTH_END, TOOTH_END));
+            sheet->tooth[at] = (int8_t)lrintf(CLAMP(height, -TOOTH_END, TOOTH_END));
         }
 }
 

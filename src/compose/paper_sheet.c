@@ -142,33 +142,17 @@ static bool make_kind(FlPaperSheet *sheet, const FlPaperPlace *place, float reli
     for (int y = 0; y < (made ? sheet->height : 0); y++)
         for (int x = 0; x < sheet->width; x++) {
             const size_t at = (size_t)y * (size_t)sheet->width + (size_t)x;
-            fill_pixel(&surface, x, y, sheet->factor + 4 * at, sheet->tooth[0] + at);
+            fill_pixel(&surface, x, y, sheet->factor + 4 * at, sheet->tooth + at);
         }
     surface_clear(&surface);
     return made;
 }
 
-/* For drafts: the mean of four, so that they show the same sheet. */
-static void halve_tooth(FlPaperSheet *sheet)
-{
-    const int width = fl_half_side(sheet->width), height = fl_half_side(sheet->height);
-    for (int y = 0; y < height; y++)
-        for (int x = 0; x < width; x++) {
-            const int x1 = MIN(2 * x + 1, sheet->width - 1), y1 = MIN(2 * y + 1, sheet->height - 1);
-            const int8_t *upper = sheet->tooth[0] + 2 * (size_t)y * (size_t)sheet->width;
-            const int8_t *lower = sheet->tooth[0] + (size_t)y1 * (size_t)sheet->width;
-            const int sum = upper[2 * x] + upper[x1] + lower[2 * x] + lower[x1];
-            sheet->tooth[1][(size_t)y * (size_t)width + (size_t)x] = (int8_t)(sum / 4);
-        }
-}
-
 static bool sheet_alloc(FlPaperSheet *sheet, GError **error)
 {
     const size_t n = (size_t)sheet->width * (size_t)sheet->height;
-    const size_t half = (size_t)fl_half_side(sheet->width) * (size_t)fl_half_side(sheet->height);
     return (sheet->factor = fl_alloc(4 * n, sizeof *sheet->factor, "a sheet of paper", error)) &&
-           (sheet->tooth[0] = fl_alloc(n, 1, "a sheet of paper", error)) &&
-           (sheet->tooth[1] = fl_alloc(half, 1, "a sheet of paper", error));
+           (sheet->tooth = fl_alloc(n, 1, "a sheet of paper", error));
 }
 
 static bool fill_sheet(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, float scale,
@@ -192,12 +176,12 @@ static void fill_by_means(FlPaperSheet *sheet, const FlPaperSheet *large, int n)
             for (int p = 0; p < n * n; p++) {
                 const size_t from =
                     (size_t)(n * y + p / n) * (size_t)large->width + (size_t)(n * x + p % n);
-                tooth += large->tooth[0][from];
+                tooth += large->tooth[from];
                 for (int c = 0; c < 4; c++)
                     factor[c] += large->factor[4 * from + (size_t)c];
             }
             const size_t at = (size_t)y * (size_t)sheet->width + (size_t)x;
-            sheet->tooth[0][at] = (int8_t)(tooth / (n * n));
+            sheet->tooth[at] = (int8_t)(tooth / (n * n));
             for (int c = 0; c < 4; c++)
                 sheet->factor[4 * at + (size_t)c] =
                     (uint16_t)((factor[c] + (uint32_t)(n * n) / 2) / (uint32_t)(n * n));
@@ -230,11 +214,8 @@ static bool make(FlPaperSheet *sheet, const FlPaperChoice *choice, int kind, flo
                  GError **error)
 {
     const int n = finer(sheet, scale);
-    if (!(n > 1 ? fill_reduced(sheet, choice, kind, scale, n, error)
-                : fill_sheet(sheet, choice, kind, scale, error)))
-        return false;
-    halve_tooth(sheet);
-    return true;
+    return n > 1 ? fill_reduced(sheet, choice, kind, scale, n, error)
+                 : fill_sheet(sheet, choice, kind, scale, error);
 }
 
 const uint8_t *fl_paper_ground(const char *paper)
@@ -297,8 +278,7 @@ void fl_paper_sheet_free(FlPaperSheet *sheet)
         return;
     free(sheet->factor);
     fl_spill_free(sheet->bands);
-    free(sheet->tooth[0]);
-    free(sheet->tooth[1]);
+    free(sheet->tooth);
     g_free(sheet);
 }
 
@@ -417,13 +397,12 @@ bool fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int
     return true;
 }
 
-FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame, bool half)
+FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame)
 {
     int x0, y0;
     if (!sheet)
         return (FlTooth){0};
     fl_paper_sheet_origin(sheet, frame, &x0, &y0);
-    const int by = half ? 2 : 1;
-    const size_t stride = (size_t)(half ? fl_half_side(sheet->width) : sheet->width);
-    return (FlTooth){sheet->tooth[half] + (size_t)(y0 / by) * stride + (size_t)(x0 / by), stride};
+    const size_t stride = (size_t)sheet->width;
+    return (FlTooth){sheet->tooth + (size_t)y0 * stride + (size_t)x0, stride};
 }

@@ -26,7 +26,7 @@ typedef struct FlPaperSheet {
     int width, height; // the frame's, and with boil some room
     uint16_t *factor;  // width * height * 4: of R, G, B, and FL_PAPER_ONE for alpha; NULL: put away
     FlSpill *bands;    // then it is here, some rows in a block
-    int8_t *tooth[2];  // width * height: the fine part of the height; the same at half the size
+    int8_t *tooth;     // width * height: the fine part of the height
     int boil;
     uint64_t seed;
     bool lights; // the frames are multiplied by it: said, or there is no other background
@@ -76,8 +76,8 @@ bool fl_paper_sheet_light(const FlPaperSheet *sheet, int frame, int width, int h
 bool fl_paper_sheet_picture(const FlPaperSheet *sheet, int frame, int width, int height,
                             uint8_t *rgba, GError **error);
 
-/** The tooth of a frame. half: of one that is painted at half the size. sheet may be NULL. */
-FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame, bool half);
+/** The tooth of a frame. sheet may be NULL. */
+FlTooth fl_paper_sheet_tooth(const FlPaperSheet *sheet, int frame);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlPaperSheet, fl_paper_sheet_free)
 

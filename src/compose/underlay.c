@@ -23,7 +23,6 @@ static bool fade_init(FlFade *fade, const FlLayer *layer, const FlUnderlay *abov
 {
     const FlRect page = {0, 0, above->width, above->height};
     fade->box = fl_rect_grown(layer->area.box, MARGIN_PX, page);
-    fade->scale = above->half ? 2 : 1;
     const size_t n = fl_rect_pixels(fade->box);
     return (fade->open = fl_alloc_unset(n, 1, "a matte", error)) &&
            (fade->keep = fl_alloc_unset(n, 1, "a matte", error));
@@ -202,7 +201,7 @@ static void lower_by(uint8_t *value, int n, int reach)
  * belongs to its edge. */
 static bool open_less(FlFade *fade, GError **error)
 {
-    const int beside = BESIDE_PX / fade->scale, window = 2 * beside + 1;
+    enum { beside = BESIDE_PX, window = 2 * beside + 1 };
     const int width = fade->box.width, height = fade->box.height, padded = width + 2 * beside;
     g_autofree uint8_t *rows = fl_alloc(fl_rect_pixels(fade->box), 1, "a matte", error);
     g_autofree uint8_t *least_of = rows ? fl_alloc((size_t)padded, 1, "a row", error) : NULL;
@@ -224,10 +223,10 @@ static bool open_less(FlFade *fade, GError **error)
     return true;
 }
 
-bool fl_underlay_init(FlUnderlay *above, int width, int height, bool half, GError **error)
+bool fl_underlay_init(FlUnderlay *above, int width, int height, GError **error)
 {
     const size_t pixels = (size_t)width * (size_t)height;
-    *above = (FlUnderlay){.width = width, .height = height, .half = half};
+    *above = (FlUnderlay){.width = width, .height = height};
     if (!(above->free = fl_alloc_unset(pixels, 1, "a matte", error)))
         return false;
     memset(above->free, 255, pixels);
@@ -273,9 +272,8 @@ bool fl_fade_find(FlLayer *layer, GError **error)
     g_auto(Ways) ways = {0};
     if (!fade->open)
         return true;
-    const bool slivers = fade->scale == 1; // a pixel of half the size is a block of 2x2
     if (!ways_init(&ways, n, error) ||
-        (slivers && !take_slivers(fade->keep, fade->box.width, fade->box.height, error)))
+        !take_slivers(fade->keep, fade->box.width, fade->box.height, error))
         return false;
     const Lines wanted = lines_of(layer);
 #pragma omp parallel sections if (fl_schedule_worth_threads(n))
@@ -285,6 +283,6 @@ bool fl_fade_find(FlLayer *layer, GError **error)
         find_ways(fade, fade->keep, wanted, ways.to_seen);
     }
     for (size_t p = 0; p < n; p++)
-        fade->keep[p] = kept(fade->scale * ways.to_open[p], fade->scale * ways.to_seen[p]);
+        fade->keep[p] = kept(ways.to_open[p], ways.to_seen[p]);
     return open_less(fade, error);
 }

@@ -7,11 +7,10 @@
 /** What the shapes above some layers leave free. */
 typedef struct FlUnderlay {
     int width, height; // of the frame
-    bool half;     // layers will be doubled before they are looked at: lengths are those of then
-    uint8_t *free; // of each pixel, 0..255
+    uint8_t *free;     // of each pixel, 0..255
 } FlUnderlay;
 
-bool fl_underlay_init(FlUnderlay *above, int width, int height, bool half, GError **error);
+bool fl_underlay_init(FlUnderlay *above, int width, int height, GError **error);
 void fl_underlay_clear(FlUnderlay *above);
 
 /**

@@ -58,6 +58,8 @@ static void choose_size(FlPlan *plan, const FlPlan *before)
     plan->paper_px = plan->by_page ? fl_page_scale(plan->width, plan->height) : 1;
     if (plan->half && !same)
         fl_drawing_halve(plan->drawing);
+    if (plan->half)
+        plan->paper_px /= 2;
     const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
     if ((size_t)width * (size_t)height <= SMALL_PX)
         fl_memory_separate_heaps(); // before there are threads

@@ -36,8 +36,8 @@ typedef struct FlPlan {
     int part, n_parts;   // of a merge, `part` from 0
     int first, end;      // the frames of this run, up to and without `end`
     bool by_page;        // paint of some region, and so the paper, is as large as the page asks for
-    float paper_px;      // px of the frames per px of the sheet of paper
-    bool half;           // drafts: the drawing has half their size, and layers are enlarged
+    float paper_px;      // px of the page per px of the sheet of paper
+    bool half;           // drafts: the page is drawn, painted and composed at half their size
     char *painted_by_ebsynth; // pattern: options.paint where that is what is merged; or NULL
     char *output;             // pattern or file; of what an interrupted run leaves if parts_only
     bool parts_only;          // layers or paint are written, but no frames

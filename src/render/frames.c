@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include "base/page.h"
 #include "base/schedule.h"
+#include "compose/enlarge.h"
 #include "drawing/hold.h"
 #include "inspect/dump.h"
 #include "inspect/ebsynth.h"
@@ -139,11 +140,11 @@ static bool draw_shapes(void *data, GError **error)
 {
     FlFrames *frames = data;
     const FlPlan *plan = frames->plan;
-    const float page = fl_page_scale(plan->width, plan->height);
-    const FlHand hand = {.of_region = plan->hands,
-                         .seed = plan->options.seed,
-                         .page = plan->half ? page / 2 : page,
-                         .tooth = fl_paper_sheet_tooth(frames->sheet, frames->drawn, plan->half)};
+    const FlHand hand = {
+        .of_region = plan->hands,
+        .seed = plan->options.seed,
+        .page = fl_page_scale(fl_drawing_width(plan->drawing), fl_drawing_height(plan->drawing)),
+        .tooth = fl_paper_sheet_tooth(frames->sheet, frames->drawn)};
     g_autoptr(FlDrawList) draws =
         fl_hold_draw_list(plan->drawing, &hand, plan->hold, plan->hold_of, frames->drawn, error);
     return draws && (frames->draws = fl_draws_pack(draws, error));
@@ -164,12 +165,11 @@ static FlComposeInput compose_input(const FlFrames *frames, int frame)
                             .painted = frames->painters.painted,
                             .background = &frames->background,
                             .sheet = frames->sheet,
-                            .tooth = fl_paper_sheet_tooth(frames->sheet, frame, plan->half),
+                            .tooth = fl_paper_sheet_tooth(frames->sheet, frame),
                             .seed = plan->options.seed,
-                            .width = plan->width,
-                            .height = plan->height,
+                            .width = fl_drawing_width(plan->drawing),
+                            .height = fl_drawing_height(plan->drawing),
                             .paper_px = plan->paper_px,
-                            .half = plan->half,
                             .layers_apart = plan->options.layers || plan->format->takes_layers,
                             .linear = plan->options.blend == FL_BLEND_LINEAR,
                             .gap_px = (float)MAX(plan->options.gap, 0),
@@ -245,7 +245,8 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
     frames->marked = shown;
     const FlComposeInput input = compose_input(frames, shown);
     const bool made =
-        fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error);
+        fl_composite_init(composite, &input, shown, draws, plan->format->takes_16, error) &&
+        (!plan->half || fl_composite_enlarge(composite, plan->width, plan->height, error));
     trim(plan);
     return made;
 }
@@ -262,7 +263,8 @@ static bool make_sheet(FlFrames *frames, GError **error)
                                   .relief = o->paper_relief,
                                   .seed = o->paper_seed,
                                   .boil = o->paper_boil};
-    const int size[] = {plan->width, plan->height, !o->background, choice.boil};
+    const int width = fl_drawing_width(plan->drawing), height = fl_drawing_height(plan->drawing);
+    const int size[] = {width, height, !o->background, choice.boil};
     FlDigest made_of = {0};
     fl_digest_add_text(&made_of, choice.paper);
     fl_digest_add(&made_of, &choice.scale, sizeof choice.scale);
@@ -273,8 +275,7 @@ static bool make_sheet(FlFrames *frames, GError **error)
         return true;
     g_clear_pointer(&frames->sheet, fl_paper_sheet_free);
     frames->sheet_of = made_of;
-    if (!fl_paper_sheet_make(&choice, !o->background, plan->width, plan->height, &frames->sheet,
-                             error))
+    if (!fl_paper_sheet_make(&choice, !o->background, width, height, &frames->sheet, error))
         return false;
     return !frames->sheet || !fl_plan_is_large(plan) ||
            fl_paper_sheet_put_away(frames->sheet, error);

@@ -271,13 +271,12 @@ FlWet *fl_wet_new(const FlPlan *plan, const uint8_t paper[3], FlWetMotion motion
     const size_t n = (size_t)columns * (size_t)rows;
     const double fps = plan->options.fps > 0 ? plan->options.fps : 24;
     wet->sheet.page = (FlRect){0, 0, columns, rows};
-    wet->sheet.width = plan->width, wet->sheet.height = plan->height;
+    wet->sheet.width = width, wet->sheet.height = height;
     wet->sheet.px = page_px / (float)cell;
     wet->sheet.stain_time = (float)(plan->options.stain_time * fps / 24);
     wet->sheet.fibres.seed = fl_key(plan->options.paper_seed, 0x776574);
-    const float frame_px = (float)cell * (plan->half ? 2 : 1);
     if (!find_camera(plan, &wet->camera, error) || !fl_wet_sheet_init(&wet->sheet, error) ||
-        !fl_laid_init(&wet->laid, columns, rows, frame_px, error) ||
+        !fl_laid_init(&wet->laid, columns, rows, (float)cell, error) ||
         !(wet->lowest[0] = fl_alloc(n, sizeof(uint16_t), "regions", error)) ||
         !(wet->lowest[1] = fl_alloc(n, sizeof(uint16_t), "regions", error)) ||
         !make_markers(wet, error))
