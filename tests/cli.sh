@@ -201,10 +201,13 @@ refuses 'layers of several files are refused' 2 '--frames-from layers: 3 files; 
 refuses 'a file without layers is named' 1 'whole/w_0001.svg: no layers *' whole/w_0001.svg --frames-from layers $look
 echo "$drawing<circle r='9' fill='#f00'>
 <animate attributeName='cx' values='0;9' dur='1s'/></circle></svg>" >moves.svg
-refuses 'a file that moves by itself is refused with a way out' 1 \
-    'moves.svg: line 2: it moves by itself *export a file for each frame, or use --frames-from files *' moves.svg $look
+"$program" moves.svg -s 01 --fps 12 --dry-run >out 2>err && grep -q 'would paint 12 frames' err
+result $? 'a lone file that moves by itself is a film'
+"$program" moves.svg -s 01 --fps 10 --from .5 --to .8 --dry-run >out 2>err && grep -q 'would paint 3 frames' err
+result $? 'a stretch of its time is painted on request'
+refuses 'a stretch beyond its end is refused' 2 '*moves.svg: its film is 1 s long*' moves.svg --from 2 $look
 "$program" moves.svg -s 01 --frames-from files --dry-run >out 2>err && grep -q 'would paint 1 frame' err
-result $? 'its first moment is painted on request'
+result $? 'it is one frame on request'
 
 # For programs.
 film=$fixtures/animations/snowman-wave-layers

@@ -15,7 +15,8 @@ static char *numbers(const char *folder, const char *input, const char *range, F
     g_autofree char *path = g_build_filename(folder, input, NULL);
     const char *const inputs[] = {path};
     g_autoptr(GError) error = NULL;
-    g_autoptr(FlSequence) s = fl_sequence_open(inputs, 1, range, missing, 0, 0, NULL, &error);
+    g_autoptr(FlSequence) s = fl_sequence_open(
+        inputs, 1, &(FlSequenceOptions){.range = range, .missing = missing}, NULL, &error);
     if (!s)
         return g_strdup(error->message);
     GString *text = g_string_new(NULL);
@@ -85,7 +86,8 @@ static void gaps_are_listed_held_or_skipped(void)
     assert_numbers(folder, "f%d.svg", NULL, FL_MISSING_HOLD, "1 2 3 4 5 6 7 8");
     g_autofree char *path = g_build_filename(folder, "f%d.svg", NULL);
     const char *const inputs[] = {path};
-    g_autoptr(FlSequence) s = fl_sequence_open(inputs, 1, NULL, FL_MISSING_HOLD, 0, 0, NULL, NULL);
+    g_autoptr(FlSequence) s =
+        fl_sequence_open(inputs, 1, &(FlSequenceOptions){.missing = FL_MISSING_HOLD}, NULL, NULL);
     g_assert_cmpstr(s->file[3], ==, s->file[1]);
     g_assert_cmpstr(s->file[4], !=, s->file[1]);
 }
@@ -133,7 +135,8 @@ static void the_name_is_what_the_files_share(void)
     touch(folder, "walk_cycle_0001.svg");
     g_autofree char *path = g_build_filename(folder, "walk_cycle_%04d.svg", NULL);
     const char *const inputs[] = {path};
-    g_autoptr(FlSequence) s = fl_sequence_open(inputs, 1, NULL, FL_MISSING_ERROR, 0, 0, NULL, NULL);
+    g_autoptr(FlSequence) s =
+        fl_sequence_open(inputs, 1, &(FlSequenceOptions){.missing = FL_MISSING_ERROR}, NULL, NULL);
     g_assert_cmpstr(s->name, ==, "walk_cycle");
 }
 

@@ -20,10 +20,12 @@ typedef enum FlMissing {
 /** What the frames are in the files. */
 typedef enum FlFramesFrom {
     FL_FRAMES_UNSET,  /**< the config's, else FL_FRAMES_AUTO */
-    FL_FRAMES_AUTO,   /**< each file is one; a lone file that moves by itself, by SMIL or CSS, is
-                           FL_ERROR_INPUT */
-    FL_FRAMES_FILES,  /**< each file is one, also a lone one that moves: its first moment */
+    FL_FRAMES_AUTO,   /**< each file is one; of a lone file its pages are, if it has several, or
+                           moments, if it moves by SMIL or CSS */
+    FL_FRAMES_FILES,  /**< each file is one, also a lone one that moves: as it is without motion */
     FL_FRAMES_LAYERS, /**< the layers of one file are, the lowest first */
+    FL_FRAMES_PAGES,  /**< the pages of one file are, of Inkscape or FBF.SVG */
+    FL_FRAMES_TIME,   /**< moments of one file are, FlRenderOptions.fps in a second */
 } FlFramesFrom;
 
 /** What makes leaves of different frames one region. */
@@ -120,6 +122,8 @@ typedef struct FlRenderOptions {
     const char *frames; /**< "1001-1096", "1-96x2", "1,5,9"; NULL: all that are found */
     FlMissing missing;
     FlFramesFrom frames_from;
+    double from_s,
+        to_s; /**< of FL_FRAMES_TIME: the first moment and the end, seconds; to_s 0: all */
     const char *canvas; /**< "WxH" or "WxH+X+Y" in px, for SVGs without a size; NULL: theirs */
     FlRegistration registration;
     const char *flow; /**< pattern of files, one per frame, may hold {region}: the motion into it

@@ -388,9 +388,10 @@ FlDrawing *fl_drawing_open(const FlDrawingOptions *options, FlWarnings *warnings
 {
     if (!fl_rules_check(options->rules, options->n_rules, error))
         return NULL;
+    const FlSequenceOptions wanted = {options->range, options->missing, options->frames_from,
+                                      options->moments, options->sandbox};
     g_autoptr(FlSequence) sequence =
-        fl_sequence_open(options->inputs, options->n_inputs, options->range, options->missing,
-                         options->frames_from, options->sandbox, warnings, error);
+        fl_sequence_open(options->inputs, options->n_inputs, &wanted, warnings, error);
     if (!sequence)
         return NULL;
     g_auto(GStrv) paths = fl_paths_of((const char *const *)sequence->found);

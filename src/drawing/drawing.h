@@ -18,6 +18,7 @@ typedef struct FlDrawingOptions {
     const char *range; // NULL: all frames
     FlMissing missing;
     FlFramesFrom frames_from;
+    FlMoments moments;    // of FL_FRAMES_TIME
     FlCanvas canvas;      // of drawings without a size
     double dpi;           // 0: 96
     bool apart;           // read and drawn by other processes, see worker/workers.h

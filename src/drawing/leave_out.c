@@ -31,6 +31,7 @@ void fl_sequence_leave_out(FlSequence *s, FlMissing missing, GError *const *fail
         s->number[s->n] = s->number[t];
         s->stand_in[s->n] = s->stand_in[t] || from != t;
         s->layer[s->n] = s->layer[from];
+        s->seconds[s->n] = s->seconds[from];
         s->n++;
     }
 }

@@ -174,6 +174,13 @@ static bool tell_reading(void *data, const FlSequence *sequence, int done)
     return o->progress(&progress, o->data);
 }
 
+/** The moments of a drawing that plays. */
+static FlMoments moments_of(const FlRenderOptions *options)
+{
+    const double fps = options->fps > 0 ? options->fps : 24;
+    return (FlMoments){fps, MAX(options->from_s, 0), MAX(options->to_s, 0)};
+}
+
 FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfig *config,
                                    GError **error)
 {
@@ -186,6 +193,7 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
                                .range = options->frames,
                                .missing = options->missing,
                                .frames_from = options->frames_from,
+                               .moments = moments_of(options),
                                .dpi = options->dpi,
                                .apart = true,
                                .sandbox = options->sandbox,
@@ -216,7 +224,8 @@ FlDrawing *fl_drawing_from_options(const FlRenderOptions *options, const FlConfi
 
 FlSequence *fl_sequence_from_options(const FlRenderOptions *options, GError **error)
 {
-    return fl_sequence_open(options->inputs, (int)g_strv_length((char **)options->inputs),
-                            options->frames, options->missing, options->frames_from,
-                            options->sandbox, NULL, error);
+    const FlSequenceOptions wanted = {options->frames, options->missing, options->frames_from,
+                                      moments_of(options), options->sandbox};
+    return fl_sequence_open(options->inputs, (int)g_strv_length((char **)options->inputs), &wanted,
+                            NULL, error);
 }

@@ -7,8 +7,6 @@
 #include <fnmatch.h>
 #include <string.h>
 
-#define MOST_LAYERS 1000000 // of a file that are frames
-
 typedef struct Found {
     int number;
     char *path;
@@ -284,36 +282,59 @@ char **fl_paths_of(const char *const *files)
     return (char **)g_ptr_array_free(paths, FALSE);
 }
 
-/** How many layers of a file are frames. Returns: 2 or more; 0 with an error. */
-static int count_layers(const char *file, FlSandboxing sandbox, GError **error)
+/** Asks a worker for the frames in a file. Returns: false with an error. */
+static bool ask_for_frames(const char *file, const FlSequenceOptions *options,
+                           FlInnerFrames *frames, GError **error)
 {
-    const FlRequest request = {.verb = FL_VERB_COUNT, .file = file, .number = 1};
+    const FlRequest request = {.verb = FL_VERB_COUNT,
+                               .file = file,
+                               .number = 1,
+                               .svg = {.from = options->from},
+                               .moments = options->moments};
     g_auto(GStrv) paths = fl_paths_of((const char *const[]){file, NULL});
-    g_autoptr(FlWorkers) workers = fl_workers_new((const char *const *)paths, sandbox, true, error);
+    g_autoptr(FlWorkers) workers =
+        fl_workers_new((const char *const *)paths, options->sandbox, true, error);
     g_auto(FlAnswer) answer = {0};
     if (!workers || !fl_workers_ask(workers, &request, NULL, &answer, error))
-        return 0;
-    const int n = fl_take_in(&answer.reader, 2, MOST_LAYERS);
-    return !answer.reader.failed ? n : fl_answer_set_damaged(file, error);
+        return false;
+    return fl_inner_frames_unpack(&answer.reader, frames) || fl_answer_set_damaged(file, error);
 }
 
-/** The layers of the only file, in its place. */
-static bool split_layers(GArray *found, FlSandboxing sandbox, GError **error)
+static void warn_of_length(const char *file, const FlInnerFrames *frames, FlWarnings *warnings)
 {
+    if (frames->cut)
+        fl_warnings_add(warnings, file, -1, NULL,
+                        "its loops meet after more than %.0f s; the film is the longest of them, "
+                        "%.3g s",
+                        FL_LONGEST_LOOP, frames->seconds);
+}
+
+/** Puts the frames in the only file in its place, if there are several. */
+static bool split(GArray *found, const FlSequenceOptions *options, FlInnerFrames *frames,
+                  FlWarnings *warnings, GError **error)
+{
+    *frames = (FlInnerFrames){.from = FL_FRAMES_FILES, .n = 1};
+    if (options->from == FL_FRAMES_FILES || (options->from <= FL_FRAMES_AUTO && found->len != 1))
+        return true;
     if (found->len != 1) {
+        static const char *const words[] = {"", "auto", "files", "layers", "pages", "time"};
         g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
-                    "‘frames-from’ layers: %u files; expected one, whose layers are the frames",
-                    found->len);
+                    "‘frames-from’ %s: %u files; expected one that holds all frames",
+                    words[options->from], found->len);
         return false;
     }
     g_autofree char *path = g_strdup(g_array_index(found, Found, 0).path);
-    const int n = count_layers(path, sandbox, error);
+    if (!ask_for_frames(path, options, frames, error))
+        return false;
+    if (frames->from == FL_FRAMES_FILES)
+        return true;
+    warn_of_length(path, frames, warnings);
     g_array_set_size(found, 0);
-    for (int layer = 1; layer <= n; layer++) {
+    for (int layer = 1; layer <= frames->n; layer++) {
         const Found f = {layer, g_strdup(path), layer};
         g_array_append_val(found, f);
     }
-    return n > 0;
+    return true;
 }
 
 static int compare_found(const void *a, const void *b)
@@ -474,9 +495,17 @@ static FlSequence *choose(const GArray *found, const GArray *wanted, FlMissing m
     return g_steal_pointer(&s);
 }
 
-FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char *range,
-                             FlMissing missing, FlFramesFrom from, FlSandboxing sandbox,
-                             FlWarnings *warnings, GError **error)
+/** The moments of frames, in seconds. */
+static void set_moments(FlSequence *sequence, const FlInnerFrames *frames, const FlMoments *moments)
+{
+    sequence->from = frames->from;
+    sequence->seconds = g_new0(double, sequence->n + 1);
+    for (int i = 0; frames->from == FL_FRAMES_TIME && i < sequence->n; i++)
+        sequence->seconds[i] = moments->from + (sequence->layer[i] - 1) / moments->fps;
+}
+
+FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs,
+                             const FlSequenceOptions *options, FlWarnings *warnings, GError **error)
 {
     g_assert(n_inputs >= 1);
     g_autoptr(GArray) found = found_new();
@@ -489,7 +518,8 @@ FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char
                 return NULL;
         number_files(found);
     }
-    if (from == FL_FRAMES_LAYERS && !split_layers(found, sandbox, error))
+    FlInnerFrames frames;
+    if (!split(found, options, &frames, warnings, error))
         return NULL;
     g_array_sort(found, compare_found);
     if (!no_number_twice(found, error))
@@ -497,10 +527,11 @@ FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char
     const int first = g_array_index(found, Found, 0).number;
     const int last = g_array_index(found, Found, found->len - 1).number;
     g_autofree char *all = g_strdup_printf("%d-%d", first, last);
-    g_autoptr(GArray) wanted = fl_range_parse(range ? range : all, first, last, error);
-    FlSequence *sequence = wanted ? choose(found, wanted, missing, warnings, error) : NULL;
+    g_autoptr(GArray) wanted =
+        fl_range_parse(options->range ? options->range : all, first, last, error);
+    FlSequence *sequence = wanted ? choose(found, wanted, options->missing, warnings, error) : NULL;
     if (sequence)
-        sequence->alone = found->len == 1 && from <= FL_FRAMES_AUTO;
+        set_moments(sequence, &frames, &options->moments);
     return sequence;
 }
 
@@ -520,6 +551,7 @@ void fl_sequence_free(FlSequence *sequence)
     g_free(sequence->number);
     g_free(sequence->stand_in);
     g_free(sequence->layer);
+    g_free(sequence->seconds);
     g_free(sequence->name);
     g_strfreev(sequence->found);
     g_free(sequence);

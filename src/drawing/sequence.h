@@ -3,6 +3,7 @@
 #define FLUIDY_DRAWING_SEQUENCE_H
 
 #include "base/warnings.h"
+#include "svg/inner_frames.h"
 #include <fluidy/error.h>
 #include <fluidy/render.h>
 #include <stdbool.h>
@@ -11,14 +12,24 @@
 typedef struct FlSequence {
     int n;
     char **file;
-    int *number;    // as in the file's name; 1 … n where the names have no number
-    bool *stand_in; // whether the file is that of another number, which is held
-    char *name;     // what the names share, such as "walk" of walk_0001.svg; never empty
-    int *layer;     // the frame among the layers of its file, from 1; 0: the file is the frame
-    bool alone;     // there is one file, and it is not known whether it is one frame
-    int n_left_out; // frames whose files were found, but are held or skipped
-    char **found;   // all files that the inputs name, those of other frames as well; ends in NULL
+    int *number;       // as in the file's name; 1 … n where the names have no number
+    bool *stand_in;    // whether the file is that of another number, which is held
+    char *name;        // what the names share, such as "walk" of walk_0001.svg; never empty
+    FlFramesFrom from; // LAYERS, PAGES, TIME: what of one file the frames are; else FILES
+    int *layer;        // the layer, page or moment of its file, from 1; 0: the file is the frame
+    double *seconds;   // of TIME: the moment
+    int n_left_out;    // frames whose files were found, but are held or skipped
+    char **found; // all files that the inputs name, those of other frames as well; ends in NULL
 } FlSequence;
+
+/** Which frames are wanted of the inputs. */
+typedef struct FlSequenceOptions {
+    const char *range; // "1001-1096", "1-96x2", "10-", "1,5,9" and lists of these; NULL: all
+    FlMissing missing;
+    FlFramesFrom from; // AUTO looks into a lone file
+    FlMoments moments; // of FL_FRAMES_TIME
+    FlSandboxing sandbox;
+} FlSequenceOptions;
 
 /**
  * Finds the frames.
@@ -28,16 +39,13 @@ typedef struct FlSequence {
  * Files come in the order of their numbers: 2.svg before 10.svg. A number is the last run of digits
  * of a name before ".svg" or ".svgz".
  *
- * range: "1001-1096", "1-96x2", "10-", "1,5,9" and lists of these; NULL: all.
- *
- * from: FL_FRAMES_LAYERS takes the layers of one file as frames 1 … n, the lowest first; a worker
- * counts them.
+ * The layers, pages or moments of one file are frames 1 … n; a worker counts them.
  *
  * Returns: NULL with FL_ERROR_USAGE (bad range or pattern) or FL_ERROR_INPUT (nothing found, gaps).
  */
-FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs, const char *range,
-                             FlMissing missing, FlFramesFrom from, FlSandboxing sandbox,
-                             FlWarnings *warnings, GError **error);
+FlSequence *fl_sequence_open(const char *const *inputs, int n_inputs,
+                             const FlSequenceOptions *options, FlWarnings *warnings,
+                             GError **error);
 
 /** The folders of the files, and files that are links; to be freed with g_strfreev(). */
 char **fl_paths_of(const char *const *files);

@@ -50,8 +50,9 @@ static FlRequest request_of(const FlSurvey *survey, int t, FlVerb verb)
                        .svg = {.canvas = survey->frame[t].canvas,
                                .dpi = survey->options->dpi,
                                .whole = (const char *const *)survey->frame[t].whole,
+                               .from = sequence->from,
                                .layer = sequence->layer[t],
-                               .alone = sequence->alone},
+                               .seconds = sequence->seconds[t]},
                        .scale = survey->scale,
                        .width = survey->width,
                        .height = survey->height};

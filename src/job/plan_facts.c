@@ -244,6 +244,7 @@ FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence)
         fl_facts_add_number(facts, sequence->file[f], sequence->number[f]);
         fl_facts_add_number(facts, "whether it stands in", sequence->stand_in[f]);
         fl_facts_add_number(facts, "the layer", sequence->layer[f]);
+        fl_facts_add_number(facts, "the moment", sequence->seconds[f]);
     }
     return fl_facts_digest(facts);
 }

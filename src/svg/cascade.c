@@ -1,5 +1,6 @@
 #include "svg/cascade.h"
 
+#include "svg/css_animation.h"
 #include "svg/css_colour.h"
 #include "svg/css_effects.h"
 #include "svg/css_properties.h"
@@ -23,6 +24,8 @@ typedef struct Cascade {
     GHashTable *rules; // FlSelector key -> GArray of indices into the sheet's rules
     FlSelectorWork work;
     GHashTable *said; // what was warned about
+    double seconds;   // of the moment that is shown; NAN: animations are left out
+    FlFilmLength *length;
     int n_clips;
 } Cascade;
 
@@ -73,7 +76,9 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
         warn(c, name, d->value, "is not known");
         return;
     }
-    if (property && property->kind == FL_CSS_IGNORED) {
+    if (property && property->kind == FL_CSS_IGNORED)
+        return;
+    if (property && property->kind == FL_CSS_ANIMATION && isnan(c->seconds)) {
         if (strcmp(name, "animation") == 0 || strcmp(name, "animation-name") == 0)
             warn_of_animation(c, d->value);
         return;
@@ -85,8 +90,8 @@ static void declare(Cascade *c, GArray *values, const FlCssDeclaration *d)
     const Value value = {name, property, d->value, d->important};
     for (guint i = 0; i < values->len; i++)
         if (g_array_index(values, Value, i).name == name) {
-            g_array_index(values, Value, i) = value;
-            return;
+            g_array_remove_index(values, i); // its place in the order counts for shorthands
+            break;
         }
     g_array_append_val(values, value);
 }
@@ -310,6 +315,79 @@ static void set_font_size(Style *style, const char *text, bool root)
         style->units.root_font_size = style->units.font_size;
 }
 
+/* ---- animated values ------------------------------------------------------------------------- */
+
+/** What animations of an element read and write. */
+typedef struct Animated {
+    Cascade *c;
+    const xmlNode *node;
+    GArray *values;       // Value
+    GPtrArray *owned;     // the texts of animated values
+    GPtrArray *attribute; // xmlChar, of values that only attributes have
+} Animated;
+
+static Value *find_value(GArray *values, const char *name)
+{
+    for (guint i = 0; i < values->len; i++)
+        if (strcmp(g_array_index(values, Value, i).name, name) == 0)
+            return &g_array_index(values, Value, i);
+    return NULL;
+}
+
+static const char *underlying_value(const void *data, const char *name)
+{
+    const Animated *a = data;
+    const Value *value = find_value(a->values, name);
+    const FlCssProperty *property = fl_css_property(name);
+    xmlChar *attribute = value ? NULL : fl_attribute(a->node, name);
+    if (attribute)
+        g_ptr_array_add(a->attribute, attribute);
+    return value                           ? value->text
+           : attribute                     ? (const char *)attribute
+           : property && property->initial ? property->initial
+                                           : "";
+}
+
+/** An animated value is stronger than all but an important one. */
+static void take_value(void *data, const char *name, char *text)
+{
+    const Animated *a = data;
+    Value *value = find_value(a->values, name);
+    const FlCssProperty *property = fl_css_property(name);
+    g_ptr_array_add(a->owned, text);
+    if ((value && value->important) || (!property && strncmp(name, "--", 2) != 0))
+        return;
+    if (value)
+        value->text = text;
+    else {
+        const Value fresh = {name, property, text, false};
+        g_array_append_val(a->values, fresh);
+    }
+}
+
+/** Puts the values of keyframes among those of an element. */
+static void animate(Cascade *c, const xmlNode *node, GArray *values, const Style *style,
+                    GPtrArray *owned)
+{
+    g_autoptr(FlCssAnimations) animations = NULL;
+    g_autoptr(GPtrArray) attributes = g_ptr_array_new_with_free_func(xmlFree);
+    Animated animated = {c, node, values, owned, attributes};
+    for (guint i = 0; i < values->len; i++) {
+        const Value *v = &g_array_index(values, Value, i);
+        if (!v->property || v->property->kind != FL_CSS_ANIMATION)
+            continue;
+        char *text = fl_css_substitute(v->text, find_variable, style);
+        if (!animations)
+            animations = fl_css_animations_new();
+        if (text)
+            fl_css_animations_set(animations, v->name, text);
+        g_free(text);
+    }
+    if (animations)
+        fl_css_animations_apply(animations, c->sheet, c->seconds, &style->units, underlying_value,
+                                take_value, &animated, c->length);
+}
+
 /* ---- writing --------------------------------------------------------------------------------- */
 
 static void set_attribute(xmlNode *node, const char *name, const char *value)
@@ -352,6 +430,8 @@ static void apply(Cascade *c, xmlNode *node, const Value *v, const Style *style,
 {
     g_autofree char *value = compute(c, v->name, v->property, v->text, style);
     switch (v->property->kind) {
+    case FL_CSS_ANIMATION:
+        break;
     case FL_CSS_TRANSFORM:
     case FL_CSS_RESOLVED:
         fl_css_effects_set(effects, v->name, g_steal_pointer(&value));
@@ -393,10 +473,12 @@ static void visit(Cascade *c, xmlNode *node, const Style *around)
     g_autoptr(GArray) own = fl_css_declarations(written ? (const char *)written : "");
     g_autoptr(GArray) values = declared_values(c, node, own);
     g_auto(FlCssEffects) effects = {0};
+    g_autoptr(GPtrArray) owned = g_ptr_array_new_with_free_func(g_free);
     Style style = {.around = around, .units = around->units};
     set_variables(&style, values);
     if (fl_is(node, "svg"))
         enter_viewport(&style, node);
+    animate(c, node, values, &style, owned);
     g_autofree char *font_size = fl_property(node, "font-size");
     for (guint i = 0; i < values->len; i++) {
         const Value *v = &g_array_index(values, Value, i);
@@ -463,7 +545,8 @@ static FlCssUnits page_units(const xmlNode *root)
     return style.units;
 }
 
-void fl_cascade(xmlDoc *doc, const char *path, int number, GPtrArray *files, FlWarnings *warnings)
+void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFilmLength *length,
+                GPtrArray *files, FlWarnings *warnings)
 {
     xmlNode *root = xmlDocGetRootElement(doc);
     Style page = {.units = page_units(root)};
@@ -471,7 +554,7 @@ void fl_cascade(xmlDoc *doc, const char *path, int number, GPtrArray *files, FlW
     g_autoptr(FlCssSheet) sheet = fl_css_sheet_take(doc, path, number, size, files, warnings);
     g_autoptr(GHashTable) rules = index_rules(fl_css_sheet_rules(sheet));
     g_autoptr(GHashTable) said = g_hash_table_new_full(g_str_hash, g_str_equal, g_free, NULL);
-    Cascade c = {doc, path, number, warnings, sheet, rules, {0}, said, 0};
+    Cascade c = {doc, path, number, warnings, sheet, rules, {0}, said, seconds, length, 0};
     const GArray *initial = fl_css_sheet_initial(sheet);
     for (guint i = 0; i < initial->len; i++) {
         const FlCssDeclaration *d = &g_array_index(initial, FlCssDeclaration, i);

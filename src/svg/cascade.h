@@ -2,16 +2,20 @@
 #ifndef FLUIDY_SVG_CASCADE_H
 #define FLUIDY_SVG_CASCADE_H
 
-#include "svg/document.h"
+#include "svg/smil.h"
 
 /**
  * Computes the style of every element as a browser does and writes it into the document, so that
  * librsvg and all other readers see the same values: declarations in `style`, transforms,
  * geometry and path data as attributes, clip shapes as <clipPath>. No style sheet remains.
  *
+ * seconds: the moment at which CSS animations are shown; NAN: they are left out, with a warning.
+ * length: unless NULL, the ends and loops of CSS animations are added to it.
+ *
  * The real paths of imported sheets are added to `files`. Each kind of declaration that is left
  * out causes one warning.
  */
-void fl_cascade(xmlDoc *doc, const char *path, int number, GPtrArray *files, FlWarnings *warnings);
+void fl_cascade(xmlDoc *doc, const char *path, int number, double seconds, FlFilmLength *length,
+                GPtrArray *files, FlWarnings *warnings);
 
 #endif

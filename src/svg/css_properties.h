@@ -13,6 +13,7 @@ typedef enum FlCssKind {
     FL_CSS_GEOMETRY,  // a length that librsvg knows as an attribute only
     FL_CSS_TRANSFORM, // becomes the attribute `transform`
     FL_CSS_RESOLVED,  // is put into effect by the cascade in another way
+    FL_CSS_ANIMATION, // moves the element
     FL_CSS_IGNORED,   // changes no still picture of a drawing
 } FlCssKind;
 

@@ -5,11 +5,13 @@
 #include "svg/filter_background.h"
 #include "svg/fonts.h"
 #include "svg/images.h"
+#include "svg/inner_frames.h"
 #include "svg/layer_frames.h"
 #include "svg/lint.h"
 #include "svg/normalise.h"
 #include "svg/paint_probe.h"
 #include "svg/svg_data.h"
+#include <math.h>
 
 static void set_number(xmlNode *node, const char *name, double value)
 {
@@ -31,16 +33,20 @@ static void set_canvas(xmlNode *root, const FlCanvas *canvas)
     set_number(root, "height", canvas->height);
 }
 
-/** The only frame must not be one that is meant to move. */
-static bool check_still(const FlSvg *svg, GError **error)
+/** Leaves one of several frames in the document. */
+static bool select_frame(xmlDoc *doc, const FlSvgOptions *options, const char *path, GError **error)
 {
-    const int line = fl_document_moves(svg->doc);
-    if (line > 0)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: line %d: it moves by itself (SMIL or CSS), which is not played: export a "
-                    "file for each frame, or use ‘frames-from’ files to paint its first moment",
-                    svg->path, line);
-    return line == 0;
+    switch (options->from) {
+    case FL_FRAMES_LAYERS:
+        return fl_layer_frames_select(doc, options->layer, path, error);
+    case FL_FRAMES_PAGES:
+        return fl_select_page(doc, options->layer, path, error);
+    case FL_FRAMES_TIME:
+        fl_smil_apply(doc, options->seconds, NULL);
+        return true;
+    default:
+        return true;
+    }
 }
 
 FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, FlWarnings *warnings,
@@ -52,13 +58,13 @@ FlSvg *fl_svg_read(const char *path, int number, const FlSvgOptions *options, Fl
     svg->doc = fl_document_read(path, number, warnings, error);
     if (!svg->doc)
         return NULL;
-    if ((options->alone && !check_still(svg, error)) ||
-        (options->layer > 0 && !fl_layer_frames_select(svg->doc, options->layer, path, error)))
+    if (!select_frame(svg->doc, options, path, error))
         return NULL;
     if (options->canvas.width > 0)
         set_canvas(xmlDocGetRootElement(svg->doc), &options->canvas);
     svg->files = g_ptr_array_new_with_free_func(g_free);
-    fl_cascade(svg->doc, path, number, svg->files, warnings);
+    const double seconds = options->from == FL_FRAMES_TIME ? options->seconds : NAN;
+    fl_cascade(svg->doc, path, number, seconds, NULL, svg->files, warnings);
     fl_lint(svg->doc, path, number, warnings);
     if (!fl_images_check(svg->doc, path, number, svg->files, warnings, error))
         return NULL;

@@ -5,6 +5,7 @@
 #include "base/cleanup.h"
 #include "svg/leaf_paint.h"
 #include "svg/leaves.h"
+#include <fluidy/render.h>
 
 /** The page of drawings without a size, in user units. */
 typedef struct FlCanvas {
@@ -23,8 +24,9 @@ typedef struct FlSvgOptions {
     FlCanvas canvas;
     double dpi;               // of mm, cm, in, pt; 0: 96
     const char *const *whole; // ids of groups that are drawn as one leaf; NULL: none
-    int layer;                // the frame among the file's layers, from 1; 0: the file is one
-    bool alone;               // no other frames: a file that moves by itself is an error
+    FlFramesFrom from;        // LAYERS, PAGES or TIME: the frame is one of several in the file
+    int layer;                // its layer or page, from 1
+    double seconds;           // its moment, from the start of the animations
 } FlSvgOptions;
 
 /** A frame. One thread at a time may use it; different frames may be used in parallel. */

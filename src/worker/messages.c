@@ -27,8 +27,9 @@ static bool is_bool(const bool *value)
 typedef struct PlainRequest {
     FlCanvas canvas;
     FlPageSize page;
-    double dpi, scale;
-    int number, frame, layer, width, height, n_regions, alone, shapes;
+    FlMoments moments;
+    double dpi, scale, seconds;
+    int number, frame, from, layer, width, height, n_regions, shapes;
 } PlainRequest;
 
 /** What is plain in a hand. */
@@ -51,9 +52,10 @@ static void put_hand(GByteArray *out, const FlRequest *r)
 
 void fl_request_pack(const FlRequest *r, GByteArray *out)
 {
-    const PlainRequest plain = {r->svg.canvas, r->page,      r->svg.dpi,   r->scale,
-                                r->number,     r->frame,     r->svg.layer, r->width,
-                                r->height,     r->n_regions, r->svg.alone, r->shapes};
+    const PlainRequest plain = {r->svg.canvas,    r->page,        r->moments, r->svg.dpi,
+                                r->scale,         r->svg.seconds, r->number,  r->frame,
+                                (int)r->svg.from, r->svg.layer,   r->width,   r->height,
+                                r->n_regions,     r->shapes};
     fl_put_int(out, (int)r->verb);
     fl_put_text(out, r->file);
     fl_put(out, &plain, sizeof plain);
@@ -94,6 +96,11 @@ static bool is_side(int px)
     return px >= 0 && px <= FL_SURVEY_MOST_SIDE;
 }
 
+static bool is_time(double seconds)
+{
+    return seconds >= 0 && seconds <= 1e6;
+}
+
 bool fl_request_unpack(FlReader *reader, FlRequest *r, FlHand *hand)
 {
     PlainRequest plain;
@@ -104,13 +111,18 @@ bool fl_request_unpack(FlReader *reader, FlRequest *r, FlHand *hand)
     fl_take_check(reader, is_side(plain.width) && is_side(plain.height) && plain.n_regions >= 0 &&
                               plain.n_regions <= INT16_MAX);
     r->number = plain.number, r->frame = plain.frame;
-    r->page = plain.page, r->scale = plain.scale;
+    fl_take_check(reader, plain.from >= 0 && plain.from <= FL_FRAMES_TIME &&
+                              is_time(plain.seconds) && is_time(plain.moments.from) &&
+                              is_time(plain.moments.to) && plain.moments.fps >= 0 &&
+                              plain.moments.fps <= 1000);
+    r->page = plain.page, r->scale = plain.scale, r->moments = plain.moments;
     r->width = plain.width, r->height = plain.height;
     r->n_regions = plain.n_regions, r->shapes = plain.shapes != 0;
     r->svg = (FlSvgOptions){.canvas = plain.canvas,
                             .dpi = plain.dpi,
+                            .from = (FlFramesFrom)plain.from,
                             .layer = plain.layer,
-                            .alone = plain.alone != 0,
+                            .seconds = plain.seconds,
                             .whole = (const char *const *)fl_take_texts(reader)};
     r->step = fl_take_items(reader, sizeof *r->step, &r->n_steps);
     for (int i = 0; i < r->n_steps; i++)
@@ -157,6 +169,23 @@ bool fl_answer_begin(FlReader *reader, const char *file, GError **error)
     if (code > 0)
         g_set_error(error, FL_ERROR, code - 1, "%s", text);
     return code == 0;
+}
+
+void fl_inner_frames_pack(const FlInnerFrames *frames, GByteArray *out)
+{
+    fl_put_int(out, (int)frames->from);
+    fl_put_int(out, frames->n);
+    fl_put(out, &frames->seconds, sizeof frames->seconds);
+    fl_put_int(out, frames->cut);
+}
+
+bool fl_inner_frames_unpack(FlReader *reader, FlInnerFrames *frames)
+{
+    frames->from = (FlFramesFrom)fl_take_in(reader, FL_FRAMES_FILES, FL_FRAMES_TIME);
+    frames->n = fl_take_in(reader, 1, FL_MOST_INNER_FRAMES);
+    fl_reader_copy(reader, &frames->seconds, sizeof frames->seconds);
+    frames->cut = fl_take_in(reader, 0, 1) != 0;
+    return fl_take_check(reader, is_time(frames->seconds));
 }
 
 void fl_measures_pack(const FlPageMeasures *m, GByteArray *out)

@@ -4,11 +4,12 @@
 
 #include "base/reader.h"
 #include "base/warnings.h"
+#include "svg/inner_frames.h"
 #include "worker/draw_frame.h"
 #include "worker/frame_parts.h"
 
 typedef enum FlVerb {
-    FL_VERB_COUNT,    // the layers of a file that are frames
+    FL_VERB_COUNT,    // the frames in a file: layers, pages, moments
     FL_VERB_MEASURE,  // the page of a frame, and where its shapes are on it
     FL_VERB_SURVEY,   // the parts of a frame
     FL_VERB_OUTLINES, // the outlines of its leaves
@@ -24,6 +25,7 @@ typedef struct FlRequest {
     int frame;         // its index in the film
     FlSvgOptions svg;  // how it is read
     FlPageSize page;   // OUTLINES, DRAW: px of the picture
+    FlMoments moments; // COUNT: that are wanted, if svg.from is TIME
     double scale;      // SURVEY: px of the picture per px of the drawing
     int width, height; // SURVEY, DRAW: of the picture
     bool shapes;       // MEASURE: are wanted
@@ -58,6 +60,10 @@ typedef struct FlPageMeasures {
     double width, height; // px of the page
     GArray *shapes;       // FlShape; empty where they are not wanted
 } FlPageMeasures;
+
+/** What FL_VERB_COUNT answers. */
+void fl_inner_frames_pack(const FlInnerFrames *frames, GByteArray *out);
+bool fl_inner_frames_unpack(FlReader *reader, FlInnerFrames *frames);
 
 void fl_measures_pack(const FlPageMeasures *measures, GByteArray *out);
 bool fl_measures_unpack(FlReader *reader, FlPageMeasures *measures);

@@ -1,7 +1,6 @@
 #include "worker/verbs.h"
 
 #include "svg/geometry.h"
-#include "svg/layer_frames.h"
 #include "worker/survey_frame.h"
 #include <string.h>
 
@@ -23,14 +22,12 @@ void fl_servant_clear(FlServant *servant)
 
 static bool count(const FlRequest *r, GByteArray *out, GError **error)
 {
+    FlInnerFrames frames;
     g_autoptr(xmlDoc) doc = fl_document_read(r->file, 1, NULL, error);
-    const int n = doc ? fl_layer_frames_count(doc) : 0;
-    if (doc && n < 2)
-        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
-                    "%s: no layers that could be frames; expected two or more groups at its top",
-                    r->file);
-    fl_put_int(out, n);
-    return n >= 2;
+    if (!doc || !fl_inner_frames(doc, r->file, r->svg.from, &r->moments, &frames, error))
+        return false;
+    fl_inner_frames_pack(&frames, out);
+    return true;
 }
 
 /** Adds where a leaf is, if it is drawn. Returns: false with an error. */
@@ -76,7 +73,7 @@ static bool is_measured(const FlServant *servant, const FlRequest *r)
     const FlSvgOptions *a = &servant->svg, *b = &r->svg;
     return servant->file && strcmp(servant->file, r->file) == 0 && !b->whole &&
            memcmp(&a->canvas, &b->canvas, sizeof a->canvas) == 0 && a->dpi == b->dpi &&
-           a->layer == b->layer && a->alone == b->alone;
+           a->from == b->from && a->layer == b->layer && a->seconds == b->seconds;
 }
 
 /* ---- survey, outlines, draw ------------------------------------------------------------------ */

@@ -1,0 +1,36 @@
+/* Animations of CSS [CSS Animations 1]: what @keyframes make of a value at one moment. */
+#ifndef FLUIDY_SVG_CSS_ANIMATION_H
+#define FLUIDY_SVG_CSS_ANIMATION_H
+
+#include "svg/css_sheet.h"
+#include "svg/css_value.h"
+#include "svg/smil.h"
+
+/** The animations of one element, from the values of its animation properties. */
+typedef struct FlCssAnimations FlCssAnimations;
+
+FlCssAnimations *fl_css_animations_new(void);
+void fl_css_animations_free(FlCssAnimations *animations); // NULL is fine
+
+/** Sets `animation` or one of its longhands; declarations come in the order of the cascade. */
+void fl_css_animations_set(FlCssAnimations *animations, const char *property, const char *value);
+
+/** Gives the value of a property of the element without animations; "" if there is none. */
+typedef const char *FlCssUnderlying(const void *data, const char *property);
+
+/** Takes the value of a property that an animation gives; `value` is to be freed by it. */
+typedef void FlCssTake(void *data, const char *property, char *value);
+
+/**
+ * Calls `take` for each property that is animated after so many seconds, those of later animations
+ * last. Values may contain calc().
+ *
+ * length: unless NULL, the ends and loops of the animations are added to it.
+ */
+void fl_css_animations_apply(const FlCssAnimations *animations, const FlCssSheet *sheet,
+                             double seconds, const FlCssUnits *units, FlCssUnderlying *underlying,
+                             FlCssTake *take, void *data, FlFilmLength *length);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlCssAnimations, fl_css_animations_free)
+
+#endif

@@ -1,0 +1,215 @@
+#include "svg/inner_frames.h"
+
+#include "svg/cascade.h"
+#include "svg/css_value.h"
+#include "svg/layer_frames.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- pages ----------------------------------------------------------------------------------- */
+
+/** The <inkscape:page> elements of a document, in their order; to be unref'd. */
+static GPtrArray *inkscape_pages(const xmlDoc *doc)
+{
+    GPtrArray *pages = g_ptr_array_new();
+    for (const xmlNode *view = xmlDocGetRootElement(doc)->children; view; view = view->next)
+        if (view->type == XML_ELEMENT_NODE && xmlStrEqual(view->name, (const xmlChar *)"namedview"))
+            for (xmlNode *page = view->children; page; page = page->next)
+                if (page->type == XML_ELEMENT_NODE &&
+                    xmlStrEqual(page->name, (const xmlChar *)"page"))
+                    g_ptr_array_add(pages, page);
+    return pages;
+}
+
+static xmlNode *find(xmlNode *node, const char *id)
+{
+    g_autoptr(xmlChar) own = fl_attribute(node, "id");
+    if (own && strcmp((const char *)own, id) == 0)
+        return node;
+    xmlNode *found = NULL;
+    for (xmlNode *child = node->children; child && !found; child = child->next)
+        found = child->type == XML_ELEMENT_NODE ? find(child, id) : NULL;
+    return found;
+}
+
+/** The references that an FBF.SVG shows in turn, and the <use> that does; NULL: it is none. */
+static char **fbf_frames(const xmlDoc *doc, xmlNode **use)
+{
+    *use = find(xmlDocGetRootElement(doc), "PROSKENION");
+    for (const xmlNode *child = *use ? (*use)->children : NULL; child; child = child->next) {
+        g_autoptr(xmlChar) name =
+            fl_is(child, "animate") ? fl_attribute(child, "attributeName") : NULL;
+        g_autoptr(xmlChar) values = name ? fl_attribute(child, "values") : NULL;
+        if (values && g_str_has_suffix((const char *)name, "href"))
+            return g_strsplit((const char *)values, ";", -1);
+    }
+    return NULL;
+}
+
+static int count_pages(const xmlDoc *doc)
+{
+    xmlNode *use;
+    g_auto(GStrv) fbf = fbf_frames(doc, &use);
+    g_autoptr(GPtrArray) pages = inkscape_pages(doc);
+    return fbf ? (int)g_strv_length(fbf) : (int)pages->len;
+}
+
+static double number_of(const xmlNode *node, const char *name)
+{
+    g_autoptr(xmlChar) text = fl_attribute(node, name);
+    return text ? g_ascii_strtod((const char *)text, NULL) : 0;
+}
+
+/** Scales the size of the document by that of a page to the old page. */
+static void scale_size(xmlNode *root, const char *name, double factor)
+{
+    g_autoptr(xmlChar) text = fl_attribute(root, name);
+    char *unit = NULL;
+    if (!text || strchr((const char *)text, '%'))
+        return;
+    g_autofree char *number =
+        fl_css_number_text(factor * g_ascii_strtod((const char *)text, &unit));
+    g_autofree char *size = g_strconcat(number, unit, NULL);
+    xmlSetProp(root, (const xmlChar *)name, (const xmlChar *)size);
+}
+
+static void show_page(xmlNode *root, const xmlNode *page)
+{
+    static const char *const names[] = {"x", "y", "width", "height"};
+    g_autoptr(xmlChar) view = fl_attribute(root, "viewBox");
+    g_auto(GStrv) old = g_regex_split_simple("[ ,\t\r\n]+", view ? (char *)view : "", 0, 0);
+    GString *box = g_string_new(NULL);
+    for (int i = 0; i < 4; i++) {
+        const double v = number_of(page, names[i]);
+        g_autofree char *text = fl_css_number_text(v);
+        g_string_append_printf(box, "%s%s", i ? " " : "", text);
+        const double before = g_strv_length(old) == 4 ? g_ascii_strtod(old[i], NULL) : 0;
+        if (i >= 2 && before > 0 && v > 0)
+            scale_size(root, names[i], v / before);
+    }
+    xmlSetProp(root, (const xmlChar *)"viewBox", (const xmlChar *)box->str);
+    g_string_free(box, TRUE);
+}
+
+bool fl_select_page(xmlDoc *doc, int page, const char *path, GError **error)
+{
+    xmlNode *use;
+    g_auto(GStrv) fbf = fbf_frames(doc, &use);
+    g_autoptr(GPtrArray) pages = inkscape_pages(doc);
+    const int n = fbf ? (int)g_strv_length(fbf) : (int)pages->len;
+    if (page < 1 || page > n) {
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT, "%s: no page for frame %d; there are %d", path,
+                    page, n);
+        return false;
+    }
+    if (!fbf) {
+        show_page(xmlDocGetRootElement(doc), pages->pdata[page - 1]);
+        return true;
+    }
+    xmlNs *xlink = xmlSearchNsByHref(doc, use, (const xmlChar *)"http://www.w3.org/1999/xlink");
+    xmlUnsetNsProp(use, xlink, (const xmlChar *)"href");
+    xmlSetProp(use, (const xmlChar *)"href", (const xmlChar *)g_strstrip(fbf[page - 1]));
+    for (xmlNode *child = use->children, *next; child; child = next) {
+        next = child->next;
+        if (fl_is_animation(child)) {
+            xmlUnlinkNode(child);
+            xmlFreeNode(child);
+        }
+    }
+    return true;
+}
+
+/* ---- time ------------------------------------------------------------------------------------ */
+
+/** The least time that is a multiple of all periods; in steps of a millisecond. */
+static double common_period(const GArray *loops, bool *cut)
+{
+    gint64 all = 1;
+    double longest = 0;
+    for (guint i = 0; i < loops->len; i++) {
+        const double period = g_array_index(loops, double, i);
+        gint64 a = all, b = llround(period * 1000);
+        longest = fmax(longest, period);
+        if (b < 1 || b > 3600000)
+            continue;
+        const gint64 step = b;
+        while (b) {
+            const gint64 rest = a % b;
+            a = b, b = rest;
+        }
+        all = MIN(all / a * step, (gint64)1 << 50);
+    }
+    const double seconds = (double)all / 1000;
+    *cut = seconds > FL_LONGEST_LOOP;
+    return *cut ? MIN(longest, FL_LONGEST_LOOP) : seconds;
+}
+
+/** The length of what plays in a document, which this changes; 0: nothing does. */
+static double length_of(xmlDoc *doc, const char *path, bool *cut)
+{
+    g_autoptr(GArray) loops = g_array_new(FALSE, FALSE, sizeof(double));
+    g_autoptr(GPtrArray) files = g_ptr_array_new_with_free_func(g_free);
+    FlFilmLength length = {0, loops};
+    fl_smil_apply(doc, 0, &length);
+    fl_cascade(doc, path, 0, 0, &length, files, NULL);
+    *cut = false;
+    return length.end > 0 ? length.end : loops->len > 0 ? common_period(loops, cut) : 0;
+}
+
+static bool frames_in_time(xmlDoc *doc, const char *path, const FlMoments *moments,
+                           FlInnerFrames *frames, GError **error)
+{
+    g_autoptr(xmlDoc) copy = xmlCopyDoc(doc, 1);
+    frames->seconds = length_of(copy, path, &frames->cut);
+    const double end = moments->to > 0 ? moments->to : frames->seconds;
+    const double n = round((end - moments->from) * moments->fps);
+    frames->n = (int)CLAMP(n, 1, FL_MOST_INNER_FRAMES);
+    if (frames->seconds == 0 && !(moments->to > 0))
+        g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                    "%s: nothing in it moves by SMIL or CSS; what a script moves is not played: "
+                    "save a file for each frame",
+                    path);
+    else if (moments->from >= end)
+        g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                    "%s: its film is %.3g s long, and ‘from’ begins at %.3g s", path, end,
+                    moments->from);
+    else
+        return true;
+    return false;
+}
+
+bool fl_inner_frames(xmlDoc *doc, const char *path, FlFramesFrom from, const FlMoments *moments,
+                     FlInnerFrames *frames, GError **error)
+{
+    const int pages = count_pages(doc);
+    *frames = (FlInnerFrames){.from = from, .n = 1};
+    if (from <= FL_FRAMES_AUTO)
+        frames->from = pages > 1                    ? FL_FRAMES_PAGES
+                       : fl_document_moves(doc) > 0 ? FL_FRAMES_TIME
+                                                    : FL_FRAMES_FILES;
+    switch (frames->from) {
+    case FL_FRAMES_LAYERS:
+        frames->n = fl_layer_frames_count(doc);
+        if (frames->n < 2)
+            g_set_error(
+                error, FL_ERROR, FL_ERROR_INPUT,
+                "%s: no layers that could be frames; expected two or more groups at its top", path);
+        return frames->n >= 2;
+    case FL_FRAMES_PAGES:
+        frames->n = pages;
+        if (pages < 1)
+            g_set_error(error, FL_ERROR, FL_ERROR_INPUT,
+                        "%s: no pages; expected those of Inkscape or the frames of FBF.SVG", path);
+        return pages >= 1;
+    case FL_FRAMES_TIME:
+        if (frames_in_time(doc, path, moments, frames, error))
+            return true;
+        if (from > FL_FRAMES_AUTO || frames->seconds > 0)
+            return false;
+        g_clear_error(error); // it has keyframes, and no element plays them
+        frames->from = FL_FRAMES_FILES, frames->n = 1;
+        return true;
+    default:
+        return true;
+    }
+}

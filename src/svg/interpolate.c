@@ -1,0 +1,379 @@
+#include "svg/interpolate.h"
+
+#include "svg/css_colour.h"
+#include "svg/transform.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* ---- easing ---------------------------------------------------------------------------------- */
+
+static double bezier(double a, double b, double t)
+{
+    const double u = 1 - t;
+    return 3 * u * u * t * a + 3 * u * t * t * b + t * t * t;
+}
+
+double fl_ease(const double control[4], double x)
+{
+    double low = 0, high = 1;
+    for (int k = 0; k < 40; k++) { // x grows with t
+        const double middle = (low + high) / 2;
+        if (bezier(control[0], control[2], middle) < x)
+            low = middle;
+        else
+            high = middle;
+    }
+    return x <= 0 ? 0 : x >= 1 ? 1 : bezier(control[1], control[3], (low + high) / 2);
+}
+
+/** steps(n, position) [CSS Easing 1 §2.3]. */
+static double ease_in_steps(const char *arguments, double x)
+{
+    g_auto(GStrv) part = fl_css_split(arguments, ',');
+    const char *position = part[0] && part[1] ? part[1] : "end";
+    const bool none = strcmp(position, "jump-none") == 0, both = strcmp(position, "jump-both") == 0;
+    const bool start =
+        strcmp(position, "start") == 0 || strcmp(position, "jump-start") == 0 || both;
+    const int n = part[0] ? MAX((int)g_ascii_strtoll(part[0], NULL, 10), 1) : 1;
+    const int jumps = n + both - none;
+    const double step = floor(x * n + 1e-9) + start;
+    return jumps > 0 ? CLAMP(step, 0, jumps) / jumps : x;
+}
+
+/** linear(0, .5 20% 60%, 1) [CSS Easing 2 §2.1]. */
+static double ease_by_list(const char *arguments, double x)
+{
+    g_auto(GStrv) stop = fl_css_split(arguments, ',');
+    const int n = (int)g_strv_length(stop);
+    double last_x = 0, last_y = 0;
+    for (int i = 0; i < n; i++) {
+        g_auto(GStrv) word = fl_css_split(stop[i], ' ');
+        const double y = word[0] ? g_ascii_strtod(word[0], NULL) : 0;
+        double at = n > 1 ? (double)i / (n - 1) : 1;
+        for (int k = 1; word[0] && word[k]; k++)
+            at = g_ascii_strtod(word[k], NULL) / 100;
+        if (x <= at)
+            return at > last_x ? last_y + (y - last_y) * (x - last_x) / (at - last_x) : y;
+        last_x = at, last_y = y;
+    }
+    return last_y;
+}
+
+double fl_css_ease(const char *function, double x)
+{
+    static const struct {
+        const char *name;
+        double control[4];
+    } known[] = {{"ease", {.25, .1, .25, 1}},
+                 {"ease-in", {.42, 0, 1, 1}},
+                 {"ease-out", {0, 0, .58, 1}},
+                 {"ease-in-out", {.42, 0, .58, 1}},
+                 {"linear", {0, 0, 1, 1}}};
+    g_autofree char *name = NULL, *arguments = NULL;
+    double c[4];
+    for (size_t i = 0; i < G_N_ELEMENTS(known); i++)
+        if (strcmp(known[i].name, function) == 0)
+            return strcmp(function, "linear") == 0 ? x : fl_ease(known[i].control, x);
+    if (strcmp(function, "step-start") == 0 || strcmp(function, "step-end") == 0)
+        return ease_in_steps(strcmp(function, "step-start") == 0 ? "1, start" : "1", x);
+    if (!fl_css_call(function, &name, &arguments))
+        return x;
+    if (strcmp(name, "steps") == 0)
+        return ease_in_steps(arguments, x);
+    if (strcmp(name, "linear") == 0)
+        return ease_by_list(arguments, x);
+    g_auto(GStrv) part = fl_css_split(arguments, ',');
+    if (strcmp(name, "cubic-bezier") != 0 || g_strv_length(part) != 4)
+        return x;
+    for (int i = 0; i < 4; i++)
+        c[i] = g_ascii_strtod(part[i], NULL);
+    return fl_ease(c, x);
+}
+
+/* ---- texts with numbers ---------------------------------------------------------------------- */
+
+/** The length of the number that `s` begins with; 0: none. Digits inside names are none. */
+static size_t number_length(const char *s, const char *begin)
+{
+    const char *digits = s + (*s == '-' || *s == '+');
+    const size_t whole = strspn(digits, "0123456789");
+    size_t n = (size_t)(digits - s) + whole;
+    const bool in_name = s > begin + 1 && g_ascii_isalpha(s[-1]) &&
+                         (strchr("-_", s[-2]) || (g_ascii_isalpha(s[-2]) && !strchr("zZ", s[-2])));
+    if (in_name || (s > begin && s[-1] == '#')) // path data has one letter before a number, or two
+        return 0;
+    if (s[n] == '.') {
+        const size_t after = strspn(s + n + 1, "0123456789");
+        if (whole + after == 0)
+            return 0;
+        n += 1 + after;
+    } else if (whole == 0)
+        return 0;
+    if ((s[n] == 'e' || s[n] == 'E') &&
+        g_ascii_isdigit(s[n + 1 + (s[n + 1] == '-' || s[n + 1] == '+')]))
+        n += 2 + strspn(s + n + 2, "0123456789");
+    return n;
+}
+
+/** Skips separators of numbers, which may differ: "1,2" and "1 2". */
+static const char *skip_separators(const char *s)
+{
+    return s + strspn(s, FL_CSS_SPACE ",");
+}
+
+/**
+ * Walks two texts that differ in numbers. Returns: a * wa + b * wb number by number, NULL if more
+ * differs. *distance: of the numbers.
+ */
+static char *combine(const char *a, const char *b, double wa, double wb, double *distance)
+{
+    GString *out = g_string_new(NULL);
+    const char *pa = a, *pb = b;
+    double sum = 0;
+    bool same = true;
+    for (pa = skip_separators(pa), pb = skip_separators(pb); same && *pa && *pb;) {
+        const size_t na = number_length(pa, a), nb = number_length(pb, b);
+        if (na > 0 && nb > 0) {
+            const double va = g_ascii_strtod(pa, NULL), vb = g_ascii_strtod(pb, NULL);
+            g_autofree char *text = fl_css_number_text(wa * va + wb * vb);
+            g_string_append_printf(
+                out, "%s%s", out->len && g_ascii_isdigit(out->str[out->len - 1]) ? " " : "", text);
+            sum += (vb - va) * (vb - va);
+            pa += na, pb += nb;
+        } else {
+            same = na == 0 && nb == 0 && *pa == *pb;
+            g_string_append_c(out, *pa);
+            pa++, pb++;
+        }
+        const char *next_a = skip_separators(pa), *next_b = skip_separators(pb);
+        if (next_a != pa || next_b != pb)
+            g_string_append_c(out, memchr(pa, ',', (size_t)(next_a - pa)) ? ',' : ' ');
+        pa = next_a, pb = next_b;
+    }
+    *distance = sqrt(sum);
+    same = same && !*pa && !*pb;
+    return g_string_free(out, !same);
+}
+
+/** The parts of a colour that fl_css_colour() wrote; false for another paint. */
+static bool colour_parts(const char *text, double v[4])
+{
+    g_autofree char *colour = fl_css_colour(text);
+    unsigned hex[4] = {0, 0, 0, 255};
+    int rgb[3];
+    if (!colour)
+        return false;
+    if (strcmp(colour, "transparent") == 0) {
+        memset(v, 0, 4 * sizeof *v);
+        return true;
+    }
+    v[3] = 1;
+    if (sscanf(colour, "rgb(%d, %d, %d", &rgb[0], &rgb[1], &rgb[2]) != 3) {
+        const char *alpha = strrchr(colour, ',');
+        const size_t n = strlen(colour);
+        if (sscanf(colour, "rgba(%d, %d, %d", &rgb[0], &rgb[1], &rgb[2]) == 3 && alpha)
+            v[3] = g_ascii_strtod(alpha + 1, NULL);
+        else if (*colour == '#' && n >= 7 &&
+                 sscanf(colour, "#%2x%2x%2x%2x", &hex[0], &hex[1], &hex[2], &hex[3]) >= 3)
+            rgb[0] = (int)hex[0], rgb[1] = (int)hex[1], rgb[2] = (int)hex[2], v[3] = hex[3] / 255.0;
+        else if (*colour == '#' && n >= 4 &&
+                 sscanf(colour, "#%1x%1x%1x", &hex[0], &hex[1], &hex[2]) == 3)
+            rgb[0] = (int)hex[0] * 17, rgb[1] = (int)hex[1] * 17, rgb[2] = (int)hex[2] * 17;
+        else
+            return false;
+    }
+    for (int i = 0; i < 3; i++)
+        v[i] = rgb[i];
+    return true;
+}
+
+/** Between colours, weighted by their opacity. */
+static char *mix_colours(const double a[4], const double b[4], double p)
+{
+    double v[3];
+    const double alpha = CLAMP(a[3] + (b[3] - a[3]) * p, 0, 1);
+    for (int i = 0; i < 3; i++) {
+        const double sum = a[i] * a[3] * (1 - p) + b[i] * b[3] * p;
+        v[i] = CLAMP(alpha > 0 ? sum / alpha : 0, 0, 255);
+    }
+    g_autofree char *text = fl_css_number_text(alpha);
+    return g_strdup_printf("rgba(%d, %d, %d, %s)", (int)(v[0] + .5), (int)(v[1] + .5),
+                           (int)(v[2] + .5), text);
+}
+
+/** Returns: true if a text is one number with a unit, or calc() of such. */
+static bool is_length(const char *text)
+{
+    const FlCssUnits any = {1, 1, 1, 1, 1, 1};
+    double value;
+    return fl_css_number(text, &any, 1, &value);
+}
+
+char *fl_interpolate(const char *a, const char *b, double p)
+{
+    double ca[4], cb[4], distance;
+    if (colour_parts(a, ca) && colour_parts(b, cb))
+        return mix_colours(ca, cb, p);
+    char *text = combine(a, b, 1 - p, p, &distance);
+    if (text || !is_length(a) || !is_length(b))
+        return text;
+    g_autofree char *wa = fl_css_number_text(1 - p), *wb = fl_css_number_text(p);
+    return g_strdup_printf("calc((%s) * %s + (%s) * %s)", a, wa, b, wb);
+}
+
+char *fl_add_values(const char *a, const char *b, double n)
+{
+    double ca[4], cb[4], distance;
+    if (colour_parts(a, ca) && colour_parts(b, cb)) {
+        for (int i = 0; i < 3; i++)
+            ca[i] = CLAMP(ca[i] + n * cb[i], 0, 255);
+        return mix_colours(ca, ca, 0);
+    }
+    return combine(a, b, 1, n, &distance);
+}
+
+double fl_value_distance(const char *a, const char *b)
+{
+    double ca[4], cb[4], distance = 0;
+    if (colour_parts(a, ca) && colour_parts(b, cb)) {
+        for (int i = 0; i < 3; i++)
+            distance += (cb[i] - ca[i]) * (cb[i] - ca[i]);
+        return sqrt(distance);
+    }
+    g_autofree char *text = combine(a, b, 1, 0, &distance);
+    return text ? distance : 1;
+}
+
+/* ---- transforms ------------------------------------------------------------------------------ */
+
+/** A transform in the plane, taken apart: translation, turn, scale and skew. */
+typedef struct Parts {
+    double x, y, turn, sx, sy, skew;
+} Parts;
+
+static bool take_apart(FlAffine m, Parts *parts)
+{
+    const double sx = hypot(m.xx, m.yx), determinant = m.xx * m.yy - m.xy * m.yx;
+    if (!(sx > 0) || determinant == 0)
+        return false;
+    const double c = m.xx / sx, s = m.yx / sx;
+    *parts = (Parts){m.x0, m.y0, atan2(s, c), sx, determinant / sx, (c * m.xy + s * m.yy) / sx};
+    return true;
+}
+
+static FlAffine put_together(const Parts *p)
+{
+    const FlAffine turn = fl_affine_rotation(p->turn * 180 / G_PI);
+    const FlAffine shape = {p->sx, 0, p->sx * p->skew, p->sy, 0, 0};
+    FlAffine m = fl_affine_multiply(&turn, &shape);
+    m.x0 = p->x, m.y0 = p->y;
+    return m;
+}
+
+static char *matrix_text(const FlAffine *m)
+{
+    const double v[] = {m->xx, m->yx, m->xy, m->yy, m->x0, m->y0};
+    GString *text = g_string_new("matrix(");
+    for (int i = 0; i < 6; i++) {
+        g_autofree char *number = fl_css_number_text(v[i]);
+        g_string_append_printf(text, "%s%s", i ? ", " : "", number);
+    }
+    g_string_append_c(text, ')');
+    return g_string_free(text, FALSE);
+}
+
+static char *mix_matrices(const char *a, const char *b, double p, const FlCssUnits *units)
+{
+    FlAffine ma, mb;
+    Parts x, y;
+    if (!fl_affine_parse_css(a, units, &ma) || !fl_affine_parse_css(b, units, &mb))
+        return NULL;
+    if (!take_apart(ma, &x) || !take_apart(mb, &y))
+        return g_strdup(p < .5 ? a : b);
+    double turn = y.turn - x.turn; // the shorter way
+    turn -= 2 * G_PI * floor(turn / (2 * G_PI) + .5);
+    const Parts between = {x.x + (y.x - x.x) * p,    x.y + (y.y - x.y) * p,
+                           x.turn + turn * p,        x.sx + (y.sx - x.sx) * p,
+                           x.sy + (y.sy - x.sy) * p, x.skew + (y.skew - x.skew) * p};
+    const FlAffine m = put_together(&between);
+    return matrix_text(&m);
+}
+
+/** Cuts the function at *s off a list: its name, and the arguments with every part said. */
+static bool take_function(const char **s, char **name, char ***arguments)
+{
+    const char *open = *s + fl_css_identifier(*s);
+    const char *close = *open == '(' ? fl_css_find(open + 1, ")") : open;
+    if (*open != '(' || *close != ')')
+        return false;
+    g_autofree char *inside = g_strndup(open + 1, (gsize)(close - open) - 1);
+    *name = g_ascii_strdown(*s, open - *s);
+    *arguments = fl_css_split(inside, ',');
+    *s = fl_css_space(close + 1);
+    return true;
+}
+
+/** One function between two of one name; `from_none`: a is what does nothing. */
+static bool mix_function(GString *out, const char *name, char **a, char **b, double p)
+{
+    const bool scale = g_str_has_prefix(name, "scale");
+    const guint n = MAX(g_strv_length(a), g_strv_length(b));
+    g_string_append_printf(out, "%s%s(", out->len ? " " : "", name);
+    for (guint i = 0; i < n; i++) {
+        const char *rest =
+            scale ? NULL : "0px"; // translate(x) is translate(x, 0), scale(x) x twice
+        const char *va = i < g_strv_length(a) ? a[i] : rest ? rest : a[0];
+        const char *vb = i < g_strv_length(b) ? b[i] : rest ? rest : b[0];
+        g_autofree char *text = va && vb ? fl_interpolate(va, vb, p) : NULL;
+        if (!text)
+            return false;
+        g_string_append_printf(out, "%s%s", i ? ", " : "", text);
+    }
+    g_string_append_c(out, ')');
+    return true;
+}
+
+/** The functions of a list that do nothing: "translate(3px) scale(2)" gives translate(0px)
+ * scale(1). */
+static char *neutral(const char *list)
+{
+    GString *out = g_string_new(NULL);
+    for (const char *s = fl_css_space(list); *s;) {
+        g_autofree char *name = NULL;
+        g_auto(GStrv) arguments = NULL;
+        if (!take_function(&s, &name, &arguments) || g_str_has_prefix(name, "matrix")) {
+            g_string_assign(out, "matrix(1, 0, 0, 1, 0, 0)");
+            break;
+        }
+        g_string_append_printf(out, "%s%s(", out->len ? " " : "", name);
+        for (int i = 0; arguments[i]; i++)
+            g_string_append_printf(out, "%s%s", i ? ", " : "",
+                                   g_str_has_prefix(name, "scale")       ? "1"
+                                   : g_str_has_prefix(name, "translate") ? "0px"
+                                                                         : "0deg");
+        g_string_append_c(out, ')');
+    }
+    return g_string_free(out, FALSE);
+}
+
+char *fl_interpolate_transform(const char *a, const char *b, double p, const FlCssUnits *units)
+{
+    const bool none_a = !*a || strcmp(a, "none") == 0, none_b = !*b || strcmp(b, "none") == 0;
+    g_autofree char *from = none_a ? neutral(none_b ? "" : b) : g_strdup(a);
+    g_autofree char *to = none_b ? neutral(none_a ? "" : a) : g_strdup(b);
+    GString *out = g_string_new(NULL);
+    const char *s = fl_css_space(from), *t = fl_css_space(to);
+    bool matched = true;
+    while (matched && *s && *t) {
+        g_autofree char *name = NULL, *other = NULL;
+        g_auto(GStrv) x = NULL, y = NULL;
+        matched = take_function(&s, &name, &x) && take_function(&t, &other, &y) &&
+                  strcmp(name, other) == 0 && !g_str_has_prefix(name, "matrix") &&
+                  mix_function(out, name, x, y, p);
+    }
+    if (matched && !*s && !*t)
+        return g_string_free(out, FALSE);
+    g_string_free(out, TRUE);
+    return mix_matrices(from, to, p, units);
+}
