@@ -36,6 +36,7 @@ static void film_open(Film *film, int n_frames)
 {
     const FlGuideSource source = {SIDE, SIDE, n_frames, film_mask, NULL, film, film_motion};
     film->params = fl_params_new();
+    film->params->w_age = 0; // as it was laid
     film->style = small_style();
     film->exemplar = fl_exemplar_new(film->style, film->params, NULL);
     const FlGuideParams how = fl_guide_params(film->params);

@@ -27,6 +27,11 @@ static bool patch_frame(void *state, FlGuides *guides, const FlEnginePaint *pain
     return fl_synth_frame(state, guides, paint->rgb, paint->stats, paint->view, error);
 }
 
+static int patch_drying(const FlStyleInstance *style, const FlParams *params)
+{
+    return fl_synth_dries(style->exemplar, params) ? FL_DRYING_FRAMES : 0;
+}
+
 static bool patch_rest(void *state)
 {
     return fl_synth_rest(state);
@@ -159,6 +164,7 @@ static const FlEngine engines[] = {
                          .measure = patch_measure,
                          .frame = patch_frame,
                          .rest = patch_rest,
+                         .drying = patch_drying,
                          .guide_pairs = patch_guide_pairs,
                          .save = patch_save,
                          .load = patch_load},

@@ -50,6 +50,9 @@ typedef struct FlEngine {
      * its picture. Returns: false, and nothing has happened: it is to be painted. NULL: it always
      * is. */
     bool (*rest)(void *state);
+    /** For how many frames paint still changes after the drawing has come to rest; NULL: for none.
+     * So long regions and their parts do not rest. */
+    int (*drying)(const FlStyleInstance *style, const FlParams *params);
     /** The guides of the frame just painted, if that had a view and levels in its statistics; NULL:
      * it has none. FL_ERROR_NO_MEMORY. */
     bool (*guide_pairs)(const void *state, FlGuidePairs *pairs, GError **error);

@@ -478,7 +478,7 @@ static bool holds_still(const FlLazy *lazy, const FlGuides *guides)
 {
     const FlRestRule rule = rest_rule(lazy);
     return lazy->params->rest && lazy->last.valid && lazy->exemplar->level[0].window == 1 &&
-           fl_rests(guides, &rule, lazy->last.shape);
+           fl_rests(guides, &rule, lazy->last.shape, NULL);
 }
 
 static bool paint(FlLazy *lazy, FlGuides *guides, uint8_t *rgb, uint8_t *alpha, FlFrameStats *stats,

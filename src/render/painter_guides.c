@@ -262,13 +262,48 @@ static bool make_depth(FlPainter *painter, FlGuides *guides, GError **error)
                : measure_depth(painter, frame, guides, error);
 }
 
+/* The first picture whose motion paint may still dry after in the one in hand. */
+static int first_that_dries(const FlPainter *painter)
+{
+    const FlEngine *engine = painter->plan->engine;
+    const FlParams *params = &painter->plan->settings.params;
+    const int frames = engine->drying ? engine->drying(painter->plan->style, params) : 0;
+    return MAX(painter->picture - frames, 1);
+}
+
+static bool may_dry(const FlPainter *painter)
+{
+    bool moved = false;
+    for (int f = first_that_dries(painter); f < painter->picture && !moved; f++)
+        moved = !fl_guide_sequence_rests(painter->sequence, f);
+    return moved;
+}
+
+/* Squares that were stirred not long ago may dry. */
+static bool stir_what_dries(const FlPainter *painter, uint8_t *square, GError **error)
+{
+    const FlRect rect = fl_painter_guided(painter);
+    const size_t n = (size_t)fl_rest_squares(rect.width) * (size_t)fl_rest_squares(rect.height);
+    for (int f = first_that_dries(painter); f < painter->picture; f++) {
+        g_autofree uint8_t *then = NULL;
+        if (fl_guide_sequence_rests(painter->sequence, f))
+            continue;
+        if (!fl_guide_sequence_changes(painter->sequence, f, &then, error))
+            return false;
+        for (size_t s = 0; s < n; s++)
+            if (square[s] && (!then || then[s] & FL_SQUARE_CHANGES))
+                square[s] |= FL_SQUARE_CHANGES;
+    }
+    return true;
+}
+
 /* ---- what is needed ------------------------------------------------------------------------ */
 
 bool fl_painter_rests(FlPainter *painter, int last)
 {
     const int now = painter->picture;
     const bool blended = painter->loop.n > 0 && last - painter->wrap >= painter->loop.first;
-    return now == last + 1 && !blended && painter->plan->engine->rest &&
+    return now == last + 1 && !blended && painter->plan->engine->rest && !may_dry(painter) &&
            fl_guide_sequence_rests(painter->sequence, now) &&
            (!fl_knows_depth(&painter->plan->settings.params) ||
             depth_picture(painter, last) == depth_picture(painter, now));
@@ -331,7 +366,8 @@ static bool find_resting(const FlPainter *painter, FlRestingParts *resting, FlRe
     if (!fl_guide_sequence_changes(painter->sequence, painter->picture, &square, error))
         return false;
     return !square ||
-           ((!fl_knows_depth(&painter->plan->settings.params) ||
+           (stir_what_dries(painter, square, error) &&
+            (!fl_knows_depth(&painter->plan->settings.params) ||
              stir_joins(painter, square, error)) &&
             fl_resting_parts_init(resting, rect.width, rect.height, square, moving, error));
 }

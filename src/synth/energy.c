@@ -5,6 +5,7 @@ static FlParams no_weights(const FlParams *params)
 {
     FlParams none = *params;
     none.w_texture = none.w_bound = none.w_ext = none.w_temp = none.w_uni = none.w_coh = 0;
+    none.w_age = 0;
     none.rotate = false;
     return none;
 }

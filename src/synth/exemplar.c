@@ -401,6 +401,9 @@ static FlExemplar *make_exemplar(const FlStyle *style, const FlStyle *full, cons
     SegmentCounts counts = {{0}};
     exemplar->border_px = params->border > 0 ? params->border : style->border_px;
     exemplar->smoothness = style->smoothness;
+    exemplar->wets = style->medium == FL_MEDIUM_OPAQUE || style->medium == FL_MEDIUM_BODY
+                         ? 0
+                         : style->front.width;
     exemplar->cut_out = style->cut_out;
     memcpy(exemplar->paper, style->paper, sizeof exemplar->paper);
     if (!init_levels(exemplar, style, all ? style->n_frames : params->style_window, error) ||

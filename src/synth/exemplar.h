@@ -45,6 +45,7 @@ typedef struct FlExemplar {
     float bare;       // sum of channels, 0 … 3: nearer to the paper is no paint of the interior
     float ext_scale;  // 1 / the largest extent, 1/px
     float smoothness; // of the style
+    float wets;       // how much paler its fresh paint is, 0 … 1; 0: it is no wet paint
     uint8_t paper[3];
     bool cut_out; // as FlStyle's: the mask is alpha, and colours are over the paper by it
     // Level 0, n_frames * height * width:
@@ -112,6 +113,25 @@ static inline FlSegment fl_segment_of(bool inside, float distance, float border_
     if (!inside)
         return FL_SEGMENT_OUTSIDE;
     return separate && distance >= border_px ? FL_SEGMENT_INTERIOR : FL_SEGMENT_BORDER;
+}
+
+#define FL_WET 255 // of paint that is as wet as can be
+
+/** How fresh paint of some wetness is: that of the first frame that can be searched is FL_WET, that
+ * of the last 0. Most of a recording passes while paint is wettest. */
+static inline int fl_freshness(int wet)
+{
+    return wet * wet / FL_WET;
+}
+
+static inline int fl_frame_of_freshness(const FlExemplarLevel *level, int fresh)
+{
+    return level->first + ((FL_WET - fresh) * (level->window - 1) + FL_WET / 2) / FL_WET;
+}
+
+static inline int fl_freshness_of_frame(const FlExemplarLevel *level, int t)
+{
+    return FL_WET - (t - level->first) * FL_WET / MAX(level->window - 1, 1);
 }
 
 /** Whether a frame can be searched. */

@@ -27,7 +27,8 @@ static const FlTexel *centre_of(const FlSearch *search, FlMatch m)
 static uint32_t cost_of(const FlSearch *search, const FlTargetPatch *patch, size_t p, FlMatch match,
                         const FlTexel *centre, uint32_t limit)
 {
-    return fl_patch_cost(search, patch, search->target->angle[p], centre, match.theta, limit);
+    return fl_age_cost(search, p, match.frame) +
+           fl_patch_cost(search, patch, search->target->angle[p], centre, match.theta, limit);
 }
 
 uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match)

@@ -34,12 +34,22 @@ typedef struct FlSearchCounts {
 
 /**
  * Cost of a rotated exemplar patch against a gathered target patch: all but uniformity and
- * coherence; once above limit, any number above limit.
+ * coherence, and age; once above limit, any number above limit.
  */
 uint32_t fl_patch_cost(const FlSearch *search, const FlTargetPatch *patch, uint8_t target_angle,
                        const FlTexel *centre, uint8_t theta, uint32_t limit);
 
-/** Texture, guides and direction of a match: all but uniformity and coherence. */
+/** The term of what is fresher or drier in a frame of the exemplar than the pixel shall be. */
+static inline uint32_t fl_age_cost(const FlSearch *search, size_t pixel, int frame)
+{
+    const FlTargetLevel *target = search->target;
+    if (!target->fresh || search->params->w_age <= 0)
+        return 0;
+    const int apart = fl_freshness_of_frame(search->level, frame) - target->fresh[pixel];
+    return (uint32_t)MIN(search->scale->age * (float)(apart * apart), 1 << 29);
+}
+
+/** Texture, guides, age and direction of a match: all but uniformity and coherence. */
 uint32_t fl_match_cost(const FlSearch *search, int x, int y, FlMatch match);
 
 /**

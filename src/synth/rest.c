@@ -1,6 +1,7 @@
 #include "synth/rest.h"
 
 #include "base/alloc.h"
+#include "synth/drying.h"
 #include <string.h>
 
 static uint8_t shape_at(const FlGuides *guides, size_t p, float border_px)
@@ -19,10 +20,14 @@ void fl_rest_shape(const FlGuides *guides, const FlRestRule *rule, uint8_t *shap
                 shape_at(guides, p, rule->border_px);
 }
 
-/* Whether a pixel has another shape than in the last frame, or moves. */
-static bool stirs(const FlGuides *guides, size_t p, uint8_t last_shape, const FlRestRule *rule)
+/* Whether a pixel has another shape than in the last frame, dries or moves. */
+static bool stirs(const FlGuides *guides, size_t p, uint8_t last_shape, uint8_t last_wet,
+                  const FlRestRule *rule)
 {
     if (last_shape != shape_at(guides, p, rule->border_px))
+        return true;
+    if (rule->unit_px > 0 && guides->mask[p] >= FL_INSIDE &&
+        last_wet != fl_wet_at_rest(guides, p, rule->unit_px))
         return true;
     if (guides->has_motion && guides->motion[2 * p] != FL_MOTION_UNKNOWN &&
         (guides->motion[2 * p] | guides->motion[2 * p + 1]) != 0)
@@ -31,10 +36,11 @@ static bool stirs(const FlGuides *guides, size_t p, uint8_t last_shape, const Fl
     return guides->mask[p] >= FL_INSIDE && u * u + v * v > rule->still * rule->still;
 }
 
-bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape)
+bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape,
+              const uint8_t *last_wet)
 {
     for (size_t p = 0; p < (size_t)guides->width * guides->height; p++)
-        if (stirs(guides, p, last_shape[p], rule))
+        if (stirs(guides, p, last_shape[p], last_wet ? last_wet[p] : 0, rule))
             return false;
     return true;
 }
@@ -47,9 +53,10 @@ static void find_squares(const FlGuides *guides, const FlRestRule *rule, const F
 {
     for (int x = columns.first; x < columns.last; x++) {
         const size_t p = fl_guides_at(guides, x, y);
-        const uint8_t shape = last->mask[(size_t)y * (size_t)last->width + (size_t)x];
+        const size_t at = (size_t)y * (size_t)last->width + (size_t)x;
+        const uint8_t shape = last->mask[at];
         if (guides->mask[p] || shape)
-            squares[x / FL_REST_PX] |= stirs(guides, p, shape, rule)
+            squares[x / FL_REST_PX] |= stirs(guides, p, shape, last->wet[at], rule)
                                            ? FL_SQUARE_TAKEN | FL_SQUARE_CHANGES
                                            : FL_SQUARE_TAKEN;
     }
@@ -190,6 +197,7 @@ bool fl_rest_keep(const FlRestingParts *parts, const FlSynthState *last, FlRect 
     const Plane picture = {last->painted_width, last->painted_height,
                            last->painted_width > parts->width ? 2 : 1, 3};
     copy_kept(parts, last->mask, &mask, now->mask);
+    copy_kept(parts, last->wet, &mask, now->wet);
     copy_kept(parts, last->rgb, &picture, rgb);
     return true;
 }

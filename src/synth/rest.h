@@ -11,7 +11,8 @@
 /** What rest is. */
 typedef struct FlRestRule {
     float border_px;
-    float still; // the fastest flow, px a frame
+    float still;   // the fastest flow, px a frame
+    float unit_px; // that of FlDrying; 0: paint does not dry
 } FlRestRule;
 
 /**
@@ -28,11 +29,14 @@ static inline int fl_rest_depth(uint8_t shape)
 }
 
 /**
- * Whether a region rests: its shape is that of the last frame, which fl_rest_shape() filled in, and
- * no flow inside is faster than the rule has it. A motion of the drawing that is known is no rest,
- * however slow it is, since it is seen after some frames.
+ * last_wet may be NULL where paint does not dry.
+ *
+ * Whether a region rests: its shape is that of the last frame, which fl_rest_shape() filled in, its
+ * paint was as wet as at rest, and no flow inside is faster than the rule has it. A motion of the
+ * drawing that is known is no rest, however slow it is, since it is seen after some frames.
  */
-bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape);
+bool fl_rests(const FlGuides *guides, const FlRestRule *rule, const uint8_t *last_shape,
+              const uint8_t *last_wet);
 
 /**
  * Finds the parts at rest: those that guides know, and others by what fl_rests() asks of a region.

@@ -5,6 +5,7 @@
 #include "base/schedule.h"
 #include "guides/half_guides.h"
 #include "synth/carry.h"
+#include "synth/drying.h"
 #include "synth/enlargement.h"
 #include "synth/patch_pairs.h"
 #include "synth/shift.h"
@@ -47,6 +48,7 @@ static void clear_frame(FlSynth *synth)
     fl_nnf_clear(&synth->shown);
     g_clear_pointer(&synth->shown_temporal, g_free);
     g_clear_pointer(&synth->shown_weight, g_free);
+    g_clear_pointer(&synth->tone, free);
     synth->view = (FlSynthView){0};
 }
 
@@ -96,12 +98,39 @@ static bool carry_last(const FlSynth *synth, const FlGuides *guides, FlRect rect
     g_autofree uint8_t *angle = fl_alloc_unset(fl_rect_pixels(rect), 1, "a field", error);
     if (!angle || !fl_carried_init(out, rect.width, rect.height, error))
         return false;
-    const FlCarry carry = {guides,     params->carry, params->rotate, last->frame, synth->width,
-                           last->mask, NULL};
+    const FlCarry carry = {guides,       params->carry, params->rotate, last->frame,
+                           synth->width, last->mask,    last->wet};
     fl_nnf_carry(&last->nnf, last->rect, &carry, rect, &synth->exemplar->level[0], out);
     fl_rect_copy(guides->angle, fl_guides_rect(guides), angle, rect, 1);
     const FlTargetMotion motion = {out->speed, angle, params->flow_still, synth->boil};
     fl_nnf_shift(&out->nnf, synth->exemplar, &motion);
+    return true;
+}
+
+bool fl_synth_dries(const FlExemplar *exemplar, const FlParams *params)
+{
+    return params->carry >= 1 && params->w_age > 0 && exemplar->level[0].window > 1;
+}
+
+static bool dries(const FlSynth *synth)
+{
+    return fl_synth_dries(synth->exemplar, synth->params);
+}
+
+/* How wet the paint of the frame is, into *wet, and carried matches as wet as that. */
+static bool dry(FlSynth *synth, const FlGuides *guides, FlRect rect, FlCarried *carried,
+                uint8_t **wet, bool *goes_on, GError **error)
+{
+    const FlDrying drying = {guides, synth->side / 480, synth->width, synth->exemplar->wets};
+    *goes_on = false;
+    *wet = fl_alloc((size_t)synth->width * (size_t)synth->height, 1, "a mask", error);
+    if (!*wet || !dries(synth))
+        return *wet;
+    if (!(synth->tone = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error)))
+        return false;
+    *goes_on = fl_drying_step(&drying, rect, carried, *wet, synth->tone);
+    if (carried)
+        fl_drying_show(&drying, rect, *wet, synth->exemplar, carried);
     return true;
 }
 
@@ -142,7 +171,8 @@ static void fill_paper(const FlSynth *synth, uint8_t *rgb)
 
 static FlRestRule rest_rule(const FlSynth *synth)
 {
-    return (FlRestRule){synth->exemplar->border_px, synth->params->flow_still};
+    return (FlRestRule){synth->exemplar->border_px, synth->params->flow_still,
+                        dries(synth) ? synth->side / 480 : 0};
 }
 
 static bool take_shape(FlSynth *synth, const FlGuides *guides, GError **error)
@@ -165,7 +195,9 @@ static bool take_guides(FlSynth *synth, FlGuides *guides, FlRect rect, GError **
     if (guides->disposable && fl_knows_depth(synth->params))
         g_clear_pointer(&guides->distance, g_free);
     if (!fl_target_init(&synth->target, guides, synth->params, rect, synth->n_levels,
-                        synth->exemplar, error))
+                        synth->exemplar, error) ||
+        (dries(synth) &&
+         !fl_target_take_wetness(&synth->target, synth->last.wet, synth->width, error)))
         return false;
     if (guides->disposable)
         fl_guides_clear(guides);
@@ -180,7 +212,7 @@ static void forget_last(FlSynth *synth)
     else
         fl_synth_state_clear(&synth->last);
     synth->last.nnf = (FlNnf){0};
-    synth->last.mask = synth->last.rgb = NULL;
+    synth->last.mask = synth->last.wet = synth->last.rgb = NULL;
 }
 
 /* The last frame is large, and all that is needed of it is shifted: so that comes first. */
@@ -189,9 +221,13 @@ static bool prepare(FlSynth *synth, FlGuides *guides, FlRect rect, FlCarried *ca
 {
     gint64 time = g_get_monotonic_time();
     const bool continues = synth->last.valid;
-    if (continues && !carry_last(synth, guides, rect, carried, error))
+    bool goes_on;
+    g_autofree uint8_t *wet = NULL;
+    if ((continues && !carry_last(synth, guides, rect, carried, error)) ||
+        !dry(synth, guides, rect, continues ? carried : NULL, &wet, &goes_on, error))
         return false;
     forget_last(synth);
+    synth->last.wet = g_steal_pointer(&wet), synth->last.dries = goes_on;
     stats->seconds_temporal = fl_lap(&time);
     if (!take_guides(synth, guides, rect, error))
         return false;
@@ -231,7 +267,7 @@ static bool may_rest(const FlSynth *synth, int frame)
 
 bool fl_synth_rest(FlSynth *synth)
 {
-    if (!may_rest(synth, synth->last.frame + 1))
+    if (synth->last.dries || !may_rest(synth, synth->last.frame + 1))
         return false;
     synth->last.frame++;
     return true;
@@ -281,6 +317,9 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
         return false;
     fill_paper(synth, rgb); // not before: until it is written to, it takes no memory
     (synth->exemplar->enlargement ? enlarge : write_rgb)(synth, rgb);
+    if (synth->tone && synth->exemplar->wets > 0)
+        fl_tone_picture(synth->tone, rect, fl_field_px(synth->exemplar), synth->exemplar->paper,
+                        synth->last.painted_width, synth->last.painted_height, rgb);
     const FlTargetLevel *full = &synth->target.level[0];
     const bool has_temporal = synth->last.valid && fl_synth_finest_searched(synth) == 0;
     remember(synth);
@@ -293,7 +332,8 @@ static bool paint_rect(FlSynth *synth, FlGuides *guides, FlRect rect, uint8_t *r
 static bool paint_nothing(FlSynth *synth, const FlGuides *guides, uint8_t *rgb, GError **error)
 {
     forget_last(synth);
-    if (!take_shape(synth, guides, error))
+    synth->last.dries = false;
+    if (!take_shape(synth, guides, error) || !fl_synth_state_room(&synth->last, error))
         return false;
     fill_paper(synth, rgb);
     synth->last.rect = synth->target.rect = (FlRect){0};

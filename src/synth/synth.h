@@ -70,6 +70,11 @@ bool fl_synth_frame(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats
  * picture. Returns: false, and nothing has happened: it is to be painted. */
 bool fl_synth_rest(FlSynth *synth);
 
+#define FL_DRYING_FRAMES 36 // what has come to rest is dry by then
+
+/** Whether paint shows how wet it is: where it is carried whole, which tells its age. */
+bool fl_synth_dries(const FlExemplar *exemplar, const FlParams *params);
+
 /**
  * The guides of the frame just painted, which must have had a view and levels in its statistics.
  * Returns: false with FL_ERROR_NO_MEMORY set; pairs need clearing in any case.

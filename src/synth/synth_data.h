@@ -21,6 +21,7 @@ struct FlSynth {
     bool wants_energies;
     bool wants_view;                     // of the frame in hand
     double seconds_search, seconds_vote; // of the frame in hand
+    uint8_t *tone;   // of the frame in hand, of its rect: fl_drying_step(); NULL: it is 1
     FlTarget target; // of the frame in hand; kept until the next for FlSynthView
     FlNnf nnf[FL_MAX_LEVELS];
     FlRestingParts resting; // of the frame in hand

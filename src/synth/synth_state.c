@@ -7,17 +7,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The bytes start with this; the packed field, mask and picture follow. Each match is stored as
- * its difference from the one before in its row, mostly the same in a coherent field: states are a
- * quarter smaller and packed in two thirds of the time. */
+/* The bytes start with this; the packed field, mask, wetness and picture follow. Each match is
+ * stored as its difference from the one before in its row, mostly the same in a coherent field:
+ * states are a quarter smaller and packed in two thirds of the time. */
 typedef struct Header {
     int32_t frame, valid;
     int32_t x, y, width, height;
+    int32_t dries;
 } Header;
 
 static_assert(sizeof(Header) == FL_SYNTH_STATE_HEADER, "the header has no padding");
 
-enum { FIELD, MASK, PICTURE, N_PARTS };
+enum { FIELD, MASK, WETNESS, PICTURE, N_PARTS };
 
 static size_t matches_of(const FlNnf *nnf)
 {
@@ -77,12 +78,14 @@ static void parts_of(const FlSynthState *state, FlMatch *matches, FlSpan parts[N
 {
     parts[FIELD] = (FlSpan){matches, matches_of(&state->nnf) * sizeof *matches};
     parts[MASK] = (FlSpan){state->mask, mask_bytes(state)};
+    parts[WETNESS] = (FlSpan){state->wet, mask_bytes(state)};
     parts[PICTURE] = (FlSpan){state->rgb, fl_synth_state_painted(state)};
 }
 
 bool fl_synth_state_room(FlSynthState *state, GError **error)
 {
     return (state->mask || (state->mask = fl_alloc(mask_bytes(state), 1, "a mask", error))) &&
+           (state->wet || (state->wet = fl_alloc(mask_bytes(state), 1, "a mask", error))) &&
            (state->rgb ||
             (state->rgb = fl_alloc(fl_synth_state_painted(state), 1, "a picture", error)));
 }
@@ -91,13 +94,15 @@ void fl_synth_state_clear(FlSynthState *state)
 {
     fl_nnf_clear(&state->nnf);
     g_clear_pointer(&state->mask, free);
+    g_clear_pointer(&state->wet, free);
     g_clear_pointer(&state->rgb, free);
 }
 
 GBytes *fl_synth_state_pack(const FlSynthState *state, GError **error)
 {
     const FlRect rect = state->valid ? state->rect : (FlRect){0};
-    const Header header = {state->frame, state->valid, rect.x, rect.y, rect.width, rect.height};
+    const Header header = {state->frame, state->valid, rect.x,      rect.y,
+                           rect.width,   rect.height,  state->dries};
     g_autofree FlMatch *matches = state->valid ? differences(&state->nnf, error) : NULL;
     if (state->valid && !matches)
         return NULL;
@@ -152,12 +157,13 @@ bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarL
     state->nnf = (FlNnf){0};
     if (!fl_state_bytes_header(bytes, &h, sizeof h, error))
         return false;
-    if (h.frame < 0 || (h.valid != 0 && h.valid != 1))
+    if (h.frame < 0 || (h.valid != 0 && h.valid != 1) || (h.dries != 0 && h.dries != 1))
         return fl_state_bytes_damaged("it does not start as a state does", error);
     if (h.valid && !fits(&h, state))
         return fl_state_bytes_damaged("its field lies outside the frame", error);
     state->frame = h.frame;
     state->valid = h.valid;
+    state->dries = h.dries;
     state->rect = (FlRect){h.x, h.y, h.width, h.height};
     return !state->valid || unpack_frame(state, bytes, level, error);
 }

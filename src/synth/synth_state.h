@@ -4,7 +4,7 @@
 
 #include "synth/nnf.h"
 
-#define FL_SYNTH_STATE_HEADER 24 /**< bytes before those that are packed */
+#define FL_SYNTH_STATE_HEADER 28 /**< bytes before those that are packed */
 
 /** What the next frame of a region needs from those before it. */
 typedef struct FlSynthState {
@@ -15,6 +15,8 @@ typedef struct FlSynthState {
     FlRect rect;                       // its part of the frame
     FlNnf nnf;                         // its level-0 field, as large as rect
     uint8_t *mask;                     // fl_rest_shape() of the whole frame, width * height
+    uint8_t *wet;                      // fl_drying_step() of the whole frame, width * height
+    bool dries;                        // whether that goes on at rest
     uint8_t *rgb; // the picture of the whole frame, painted_width * painted_height * 3
 } FlSynthState;
 
@@ -24,10 +26,10 @@ static inline size_t fl_synth_state_painted(const FlSynthState *state)
     return 3 * (size_t)state->painted_width * (size_t)state->painted_height;
 }
 
-/** Makes room for mask and picture, unless there is. FL_ERROR_NO_MEMORY. */
+/** Makes room for mask, wetness and picture, unless there is. FL_ERROR_NO_MEMORY. */
 bool fl_synth_state_room(FlSynthState *state, GError **error);
 
-/** Frees the planes: field, mask and picture. The rest stays. */
+/** Frees the planes: field, mask, wetness and picture. The rest stays. */
 void fl_synth_state_clear(FlSynthState *state);
 
 /** Packed, in this machine's byte order. Returns: NULL with FL_ERROR_NO_MEMORY set. */
@@ -38,11 +40,11 @@ GBytes *fl_synth_state_later(GBytes *bytes, int frame);
 
 /**
  * The reverse, for an exemplar whose level 0 is `level`. The sizes are the caller's, as are
- * state->mask and state->rgb, which are filled. The bytes need not be trusted: a field that points
- * outside the exemplar is an error.
+ * state->mask, state->wet and state->rgb, which are filled. The bytes need not be trusted: a field
+ * that points outside the exemplar is an error.
  *
  * Returns: false with FL_ERROR_CHANGED or FL_ERROR_NO_MEMORY set; the field is then empty, and mask
- * and rgb hold anything. Else state->nnf is to be cleared.
+ * and rgb hold anything, as does wet. Else state->nnf is to be cleared.
  */
 bool fl_synth_state_unpack(FlSynthState *state, GBytes *bytes, const FlExemplarLevel *level,
                            GError **error);

@@ -1,6 +1,7 @@
 #include "synth/target.h"
 
 #include "base/alloc.h"
+#include <string.h>
 
 #define EXT_UNIT_SQUARED (FL_EXT_UNIT * FL_EXT_UNIT)
 #define WEIGHTS_SUM 5   // 25 pixels * 5 * FL_ONE^2 < 2^31: the other terms still fit in 32 bits
@@ -15,6 +16,7 @@ void fl_cost_scale_init(FlCostScale *scale, const FlParams *params)
     scale->w_max = MAX(MAX(w_colour, params->w_bound), w_ext);
     scale->w_max = MAX(MAX(scale->w_max, sum / WEIGHTS_SUM), 1e-6f);
     scale->unit = (double)FL_ONE * FL_ONE / scale->w_max;
+    scale->age = (float)(params->w_age * FL_PATCH_PIXELS * scale->unit / (FL_WET * FL_WET));
     for (int a = 0; a < FL_ANGLES; a++) {
         const double c = abs(fl_turns[a][0]), s = abs(fl_turns[a][1]);
         const double tangent = s < TANGENT_CAP * c ? s / c : TANGENT_CAP;
@@ -105,6 +107,42 @@ static void list_tiles(FlTargetLevel *level)
 static void find_blocks(FlTargetLevel *level)
 {
     fl_blocks_init(&level->blocks, level->segment, level->width, level->height, FL_PATCH_RADIUS);
+}
+
+/* The mean freshness of the paint in the four pixels that make one. */
+static void halve_freshness(const FlTargetLevel *fine, FlTargetLevel *coarse)
+{
+    for (int y = 0; y < coarse->height; y++)
+        for (int x = 0; x < coarse->width; x++) {
+            int sum = 0, n = 0;
+            for (int cy = 2 * y; cy < MIN(2 * y + 2, fine->height); cy++)
+                for (int cx = 2 * x; cx < MIN(2 * x + 2, fine->width); cx++) {
+                    const size_t p = (size_t)cy * (size_t)fine->width + (size_t)cx;
+                    if (fine->segment[p] != FL_SEGMENT_OUTSIDE)
+                        sum += fine->fresh[p], n++;
+                }
+            coarse->fresh[(size_t)y * (size_t)coarse->width + (size_t)x] =
+                (uint8_t)(n > 0 ? (sum + n / 2) / n : 0);
+        }
+}
+
+bool fl_target_take_wetness(FlTarget *target, const uint8_t *wet, int width, GError **error)
+{
+    const FlRect rect = target->rect;
+    for (int l = 0; l < target->n_levels; l++) {
+        FlTargetLevel *level = &target->level[l];
+        const size_t pixels = (size_t)level->width * (size_t)level->height;
+        if (!(level->fresh = fl_alloc_unset(pixels, 1, "a target", error)))
+            return false;
+        if (l > 0)
+            halve_freshness(level - 1, level);
+        for (size_t p = 0; l == 0 && p < pixels; p++) {
+            const size_t x = (size_t)rect.x + p % (size_t)rect.width;
+            const size_t y = (size_t)rect.y + p / (size_t)rect.width;
+            level->fresh[p] = (uint8_t)fl_freshness(wet[y * (size_t)width + x]);
+        }
+    }
+    return true;
 }
 
 bool fl_target_level_search(FlTargetLevel *level, bool all, GError **error)
@@ -245,6 +283,7 @@ void fl_target_level_clear(FlTargetLevel *level)
     free(level->temporal);
     free(level->temporal_weight);
     free(level->kept);
+    free(level->fresh);
     free(level->distance);
     free(level->tiles);
     fl_blocks_clear(&level->blocks);
@@ -318,7 +357,8 @@ static void blend_pixel(FlTargetLevel *level, size_t p, float w_temp, const FlCo
 void fl_target_blend(FlTargetLevel *level, const FlParams *params, const FlCostScale *scale,
                      float w_texture)
 {
-    const int16_t w_ext = quantise_weight(params->w_ext / EXT_UNIT_SQUARED, scale);
+    const int16_t w_ext =
+        level->fresh ? 0 : quantise_weight(params->w_ext / EXT_UNIT_SQUARED, scale);
     level->rest.c[FL_CH_SHAPE] = quantise_weight(params->w_bound, scale);
     level->rest.c[FL_CH_EXT_PLUS] = level->rest.c[FL_CH_EXT_MINUS] = w_ext;
 #pragma omp parallel for schedule(dynamic, 1)

@@ -23,6 +23,7 @@ typedef struct FlTargetLevel {
     FlTargetTexel rest;     // weights of the other channels, for every pixel
     float *colour;          // 3 per pixel, 0 … 1: the last vote
     float *temporal;        // 3 per pixel: T_temp; NULL: nothing was before
+    uint8_t *fresh;         // fl_freshness() of the paint; NULL: it does not matter
     uint8_t *kept;          // whose matches stay as they were carried; NULL: none does
     float *temporal_weight; // m(q), 0 … 1; 0 where T_temp is undefined; NULL likewise
     float *distance;        // px of level 0
@@ -45,6 +46,7 @@ typedef struct FlCostScale {
     float w_max;                   // the weight that is packed as 32767
     double unit;                   // cost of 1.0 in the paper's energy
     uint32_t direction[FL_ANGLES]; // w_dir n² |tan(angle)|, capped
+    float age;                     // w_age n² for a squared difference of wetness of 1
 } FlCostScale;
 
 typedef struct FlTarget {
@@ -63,6 +65,10 @@ bool fl_target_init(FlTarget *target, const FlGuides *guides, const FlParams *pa
                     int n_levels, const FlExemplar *exemplar, GError **error);
 void fl_target_clear(FlTarget *target);
 void fl_target_level_clear(FlTargetLevel *level);
+
+/** How wet paint shall be, from a plane of the frame, which is `width` wide: extents then do not
+ * count, for what is carried whole has no extent. FL_ERROR_NO_MEMORY. */
+bool fl_target_take_wetness(FlTarget *target, const uint8_t *wet, int width, GError **error);
 
 /** Takes the pixels that are kept out of what a level searches, and of what is made of it unless
  * `all` of that is needed. FL_ERROR_NO_MEMORY. */

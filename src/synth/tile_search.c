@@ -247,10 +247,12 @@ static int try_match(PixelSearch *ps, const FlTargetPatch *patch, FlMatch match,
                      const FlTexel *centre, uint32_t uniformity)
 {
     const uint32_t prior = uniformity + coherence_cost(ps, match);
-    if (prior >= ps->total || same_match(match, ps->best))
+    const uint32_t age = fl_age_cost(ps->search, ps->pixel, match.frame);
+    if (prior + age >= ps->total || same_match(match, ps->best))
         return 0;
     take(ps, match, prior,
-         fl_patch_cost(ps->search, patch, ps->angle, centre, match.theta, ps->total - prior - 1));
+         age + fl_patch_cost(ps->search, patch, ps->angle, centre, match.theta,
+                             ps->total - prior - age - 1));
     return 1;
 }
 
@@ -274,14 +276,15 @@ static int try_both(PixelSearch *ps, const FlTargetPatch *patch, const KeptCandi
     const uint32_t alone = coherence_apart(ps);
     const uint32_t prior[2] = {c->uniformity + (apart ? alone : coherence_cost(ps, c->match)),
                                c->uniformity + (apart ? alone : coherence_cost(ps, turned))};
-    const uint32_t total = ps->total, lower = MIN(prior[0], prior[1]);
+    const uint32_t age = fl_age_cost(search, ps->pixel, c->match.frame);
+    const uint32_t total = ps->total, lower = age + MIN(prior[0], prior[1]);
     if (lower >= total)
         return 0;
     uint32_t data[2];
     search->kernels->patch_pair(c->centre, search->level->offsets[c->match.theta], patch->guide,
                                 &search->target->rest, total - lower - 1, data);
-    take(ps, c->match, prior[0], data[0]);
-    take(ps, turned, prior[1], data[1]);
+    take(ps, c->match, prior[0], age + data[0]);
+    take(ps, turned, prior[1], age + data[1]);
     return (prior[0] < total) + (prior[1] < total);
 }
 

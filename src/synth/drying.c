@@ -1,0 +1,221 @@
+#include "synth/drying.h"
+
+#include <math.h>
+
+#define BAND 18.0f      // units: how deep the contour's speed is felt
+#define FULL 3.6f       // units a frame: at that speed an edge is wet by 1 - 1/e
+#define STILL 0.06f     // units a frame: slower is no motion of an edge,
+#define SURE 0.5f       // and faster surely is one
+#define MOVING 0.3f     // wetness of the inside of what moves fast
+#define FAST 4.8f       // units a frame: by 1 - 1/e
+#define DAMP 0.15f      // wetness of an edge at rest
+#define NEW 200         // of FL_WET: wetness of new paint
+#define RISE 0.487f     // share of the way in a frame: 1.5 frames
+#define FALL 0.154f     // 6 frames
+#define FALL_LEFT 0.36f // 2.25 frames: of an edge that recedes
+#define LEAST_STEP 2    // of FL_WET, so that it ends
+#define PALE 0.45f      // how much less dense fresh paint is
+#define DRY_AT 0.35f    // wetness up to which paint is as dense as it gets,
+#define FRESH_AT 0.95f  // and from which on it is fresh
+#define GATHERS 0.45f   // how much denser the rim of an edge that recedes is
+#define RIM 7.0f        // units: how wide it is
+
+static float smoothstep(float low, float high, float v)
+{
+    const float t = CLAMP((v - low) / (high - low), 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+/* What happens at a pixel. */
+typedef struct Place {
+    float band;        // 1 at the contour, 0 inside
+    float lead, trail; // how much it advances and recedes
+    float speed;       // of the paint, units
+} Place;
+
+static float band_of(const FlGuides *guides, size_t p, float unit_px)
+{
+    return CLAMP(1 - guides->distance[p] / (BAND * unit_px), 0, 1);
+}
+
+int fl_wet_at_rest(const FlGuides *guides, size_t pixel, float unit_px)
+{
+    return (int)(band_of(guides, pixel, unit_px) * DAMP * FL_WET + 0.5f);
+}
+
+static float edge_of(float units)
+{
+    return units > STILL ? (1 - expf(-units / FULL)) * smoothstep(STILL, SURE, units) : 0;
+}
+
+/* In a frame that nothing was before the flow tells of motion. */
+static Place place_of(const FlDrying *drying, size_t p, int x, int y, bool first)
+{
+    const FlGuides *guides = drying->guides;
+    const float unit = drying->unit_px;
+    float v = guides->contour_speed[p], speed = 0;
+    if (first) {
+        const float *flow = guides->flow + 2 * p;
+        float g[2];
+        fl_distance_gradient(guides->distance, guides->width, guides->height, x - guides->x,
+                             y - guides->y, g);
+        v = -(flow[0] * g[0] + flow[1] * g[1]);
+        speed = hypotf(flow[0], flow[1]);
+    } else if (guides->has_motion && guides->motion[2 * p] != FL_MOTION_UNKNOWN) {
+        speed =
+            hypotf((float)guides->motion[2 * p], (float)guides->motion[2 * p + 1]) / FL_MOTION_ONE;
+    }
+    return (Place){.band = band_of(guides, p, unit),
+                   .lead = edge_of(v / unit),
+                   .trail = edge_of(-v / unit),
+                   .speed = speed / unit};
+}
+
+/* What the wetness tends to, 0 … 1. */
+static float tends_to(const Place *place)
+{
+    const float inside = place->speed > 0 ? MOVING * (1 - expf(-place->speed / FAST)) : 0;
+    const float edge = (DAMP + (1 - DAMP) * place->lead) * (1 - place->trail);
+    return inside + place->band * (edge - inside);
+}
+
+static int next_wetness(const Place *place, int was)
+{
+    const int target = (int)(tends_to(place) * FL_WET + 0.5f);
+    const float left = place->band * place->trail;
+    const float share = target > was ? RISE : FALL + left * (FALL_LEFT - FALL);
+    const int step = MAX((int)(share * (float)abs(target - was) + 0.5f), LEAST_STEP);
+    return target > was ? MIN(was + step, target) : MAX(was - step, target);
+}
+
+/* The tone of a pixel of some wetness and depth. */
+static uint8_t tone_of(const FlDrying *drying, const Place *place, int wet, float depth)
+{
+    const float at = MAX(depth, 0) / (RIM * drying->unit_px);
+    const float pale = PALE * smoothstep(DRY_AT, FRESH_AT, (float)wet / FL_WET);
+    const float tone = 1 + drying->wets * (GATHERS * place->trail * expf(-at * at) - pale);
+    return (uint8_t)(FL_TONE_ONE * tone + 0.5f);
+}
+
+bool fl_drying_step(const FlDrying *drying, FlRect rect, const FlCarried *carried, uint8_t *wet,
+                    uint8_t *tone)
+{
+    const FlGuides *guides = drying->guides;
+    bool dries = false;
+#pragma omp parallel for schedule(static) reduction(|| : dries)
+    for (int y = rect.y; y < rect.y + rect.height; y++)
+        for (int x = rect.x; x < rect.x + rect.width; x++) {
+            const size_t p = fl_guides_at(guides, x, y);
+            const size_t q = (size_t)(y - rect.y) * (size_t)rect.width + (size_t)(x - rect.x);
+            tone[q] = FL_TONE_ONE;
+            if (guides->mask[p] < FL_INSIDE)
+                continue;
+            const Place place = place_of(drying, p, x, y, !carried);
+            const bool new = carried && carried->nnf.match[q].frame == FL_NO_MATCH;
+            const int now = !carried ? (int)(tends_to(&place) * FL_WET + 0.5f)
+                            : new    ? NEW
+                                     : next_wetness(&place, carried->wet[q]);
+            wet[(size_t)y * (size_t)drying->width + (size_t)x] = (uint8_t)now;
+            tone[q] = tone_of(drying, &place, now, guides->distance[p]);
+            dries = dries || now != fl_wet_at_rest(guides, p, drying->unit_px);
+        }
+    return dries;
+}
+
+/* ---- what it looks like ---------------------------------------------------------------------- */
+
+static bool shows(const FlExemplarLevel *level, FlMatch m, int segment)
+{
+    return m.x_16 <= 16 * (level->width - 1) && m.y_16 <= 16 * (level->height - 1) &&
+           fl_exemplar_at(level, fl_match_x(m), fl_match_y(m), m.frame)->c[FL_CH_SEGMENT] ==
+               segment;
+}
+
+static const float *distances(const FlExemplar *exemplar, int frame)
+{
+    const FlExemplarLevel *level = &exemplar->level[0];
+    return exemplar->distance + (size_t)frame * (size_t)level->height * (size_t)level->width;
+}
+
+/* The place in another frame that lies as deep, as far as it is beside the rim. */
+static FlMatch in_frame(const FlExemplar *exemplar, FlMatch m, int frame)
+{
+    const FlExemplarLevel *level = &exemplar->level[0];
+    const int x = fl_match_x(m), y = fl_match_y(m), width = level->width;
+    const size_t at = (size_t)y * (size_t)width + (size_t)x;
+    const float depth = distances(exemplar, m.frame)[at];
+    const float beside = 1 - smoothstep(exemplar->border_px, 2 * exemplar->border_px, depth);
+    m.frame = (int16_t)frame;
+    if (beside <= 0)
+        return m;
+    float g[2];
+    fl_distance_gradient(distances(exemplar, frame), width, level->height, x, y, g);
+    const float length = sqrtf(g[0] * g[0] + g[1] * g[1]);
+    const float deeper = distances(exemplar, frame)[at] - depth;
+    if (length < 0.25f)
+        return m;
+    const float out = 16 * beside * deeper / length;
+    m.x_16 = (uint16_t)CLAMP(m.x_16 - (int)lrintf(out * g[0]), 0, 16 * (width - 1));
+    m.y_16 = (uint16_t)CLAMP(m.y_16 - (int)lrintf(out * g[1]), 0, 16 * (level->height - 1));
+    return m;
+}
+
+static FlMatch shown(const FlExemplar *exemplar, FlMatch m, int was, int wet)
+{
+    const FlExemplarLevel *level = &exemplar->level[0];
+    const int segment =
+        fl_exemplar_at(level, fl_match_x(m), fl_match_y(m), m.frame)->c[FL_CH_SEGMENT];
+    const int by = fl_frame_of_freshness(level, fl_freshness(wet)) -
+                   fl_frame_of_freshness(level, fl_freshness(was));
+    const int frame = CLAMP(m.frame + by, level->first, level->first + level->window - 1);
+    const FlMatch next = frame == m.frame ? m : in_frame(exemplar, m, frame);
+    return shows(level, next, segment) ? next : m;
+}
+
+void fl_drying_show(const FlDrying *drying, FlRect rect, const uint8_t *wet,
+                    const FlExemplar *exemplar, FlCarried *carried)
+{
+#pragma omp parallel for schedule(dynamic, 8)
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
+            FlMatch *m = &carried->nnf.match[p];
+            const int now =
+                wet[(size_t)(rect.y + y) * (size_t)drying->width + (size_t)(rect.x + x)];
+            if (m->frame != FL_NO_MATCH && now != carried->wet[p])
+                *m = shown(exemplar, *m, carried->wet[p], now);
+        }
+}
+
+/* The tone between pixels, for pixel (x, y) of a picture. */
+static float tone_at(const uint8_t *tone, FlRect rect, int px, int x, int y)
+{
+    const float fx = ((float)x + 0.5f) / (float)px - 0.5f - (float)rect.x;
+    const float fy = ((float)y + 0.5f) / (float)px - 0.5f - (float)rect.y;
+    const int x0 = CLAMP((int)floorf(fx), 0, rect.width - 1), x1 = MIN(x0 + 1, rect.width - 1);
+    const int y0 = CLAMP((int)floorf(fy), 0, rect.height - 1), y1 = MIN(y0 + 1, rect.height - 1);
+    const float u = CLAMP(fx - (float)x0, 0, 1), v = CLAMP(fy - (float)y0, 0, 1);
+    const uint8_t *above = tone + (size_t)y0 * (size_t)rect.width;
+    const uint8_t *below = tone + (size_t)y1 * (size_t)rect.width;
+    return ((1 - v) * ((1 - u) * (float)above[x0] + u * (float)above[x1]) +
+            v * ((1 - u) * (float)below[x0] + u * (float)below[x1])) /
+           FL_TONE_ONE;
+}
+
+void fl_tone_picture(const uint8_t *tone, FlRect rect, int px, const uint8_t paper[3], int width,
+                     int height, uint8_t *rgb)
+{
+    float density[3][256];
+    for (int c = 0; c < 3; c++)
+        for (int v = 0; v < 256; v++)
+            density[c][v] = -logf(MAX((float)v, 0.5f) / MAX((float)paper[c], 1));
+#pragma omp parallel for schedule(dynamic, 16)
+    for (int y = px * rect.y; y < MIN(px * (rect.y + rect.height), height); y++)
+        for (int x = px * rect.x; x < MIN(px * (rect.x + rect.width), width); x++) {
+            const float t = tone_at(tone, rect, px, x, y);
+            uint8_t *pixel = rgb + 3 * ((size_t)y * (size_t)width + (size_t)x);
+            for (int c = 0; c < 3 && t != 1; c++)
+                if (pixel[c] < paper[c])
+                    pixel[c] = (uint8_t)((float)paper[c] * expf(-t * density[c][pixel[c]]) + 0.5f);
+        }
+}

@@ -1,0 +1,112 @@
+/* Paint that is wet and dries: how wet it is, how long, and what is shown of the exemplar. */
+#include "small_style.h"
+#include "synth/drying.h"
+#include "synth/synth.h"
+
+enum { SIDE = TARGET_SIDE, PIXELS = SIDE * SIDE };
+
+#define UNIT 0.4f // px
+
+static const FlRect whole = {0, 0, SIDE, SIDE};
+
+/* A frame that is all paint `depth` px below its contour, whose speed is v; the drawing's is u. */
+static void fill_guides(FlGuides *guides, float depth, float v, float u)
+{
+    g_assert_true(fl_guides_init(guides, SIDE, SIDE, NULL));
+    guides->has_motion = true;
+    for (int p = 0; p < PIXELS; p++) {
+        guides->mask[p] = 255;
+        guides->distance[p] = guides->depth[p] = depth;
+        guides->contour_speed[p] = v;
+        guides->motion[2 * p] = (int32_t)(u * FL_MOTION_ONE), guides->motion[2 * p + 1] = 0;
+    }
+}
+
+/* The wetness after a number of frames, from `wet` on; below 0: of new paint. */
+static int wet_after(float depth, float v, float u, int wet, int frames, int *tone)
+{
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlCarried) carried = {0};
+    uint8_t now[PIXELS], tones[PIXELS];
+    const FlDrying drying = {&guides, UNIT, SIDE, 1};
+    fill_guides(&guides, depth, v, u);
+    g_assert_true(fl_carried_init(&carried, SIDE, SIDE, NULL));
+    for (int f = 0; f < frames; f++) {
+        for (int p = 0; p < PIXELS; p++) {
+            carried.nnf.match[p].frame = (int16_t)(wet < 0 && f == 0 ? FL_NO_MATCH : 0);
+            carried.wet[p] = (uint8_t)MAX(wet, 0);
+        }
+        fl_drying_step(&drying, whole, &carried, now, tones);
+        wet = now[0], *tone = tones[0];
+    }
+    return wet;
+}
+
+static void an_edge_that_advances_gets_wet_and_pale_and_one_that_recedes_dry_and_dark(void)
+{
+    int pale, dark, still;
+    const int lead = wet_after(0.5f, 3, 0, 40, 5, &pale);
+    const int trail = wet_after(0.5f, -3, 0, 40, 9, &dark);
+    const int rest = wet_after(0.5f, 0, 0, 40, 9, &still);
+    g_assert_cmpint(lead, >, 200);
+    g_assert_cmpint(trail, <, 15);
+    g_assert_cmpint(rest, >, trail);
+    g_assert_cmpint(pale, <, 4 * FL_TONE_ONE / 5);
+    g_assert_cmpint(dark, >, 6 * FL_TONE_ONE / 5);
+    g_assert_cmpint(still, ==, FL_TONE_ONE);
+}
+
+static void new_paint_is_fresh_and_at_rest_is_dry_in_time(void)
+{
+    int tone;
+    const int new = wet_after(20, 0, 0, -1, 1, &tone);
+    g_assert_cmpint(tone, <, FL_TONE_ONE);
+    g_assert_cmpint(wet_after(20, 0, 0, new, 3, &tone), >, FL_WET / 4);
+    g_assert_cmpint(wet_after(20, 0, 0, FL_WET, FL_DRYING_FRAMES, &tone), ==, 0);
+    g_assert_cmpint(tone, ==, FL_TONE_ONE);
+}
+
+static void what_moves_is_damp_all_through(void)
+{
+    int tone;
+    const int slow = wet_after(20, 0, 0.5f, 0, 9, &tone), fast = wet_after(20, 0, 8, 0, 9, &tone);
+    g_assert_cmpint(slow, >, 5);
+    g_assert_cmpint(fast, >, slow + 20);
+    g_assert_cmpint(tone, ==, FL_TONE_ONE); // not paler for it
+}
+
+/* Matches go on in the recording, in their place, or at their depth beside a rim. */
+static void paint_that_dries_goes_on_in_the_recording(void)
+{
+    g_autoptr(FlParams) params = fl_params_new();
+    g_autoptr(FlStyle) style = small_style();
+    g_autoptr(FlExemplar) exemplar = fl_exemplar_new(style, params, NULL);
+    g_auto(FlGuides) guides = {0};
+    g_auto(FlCarried) carried = {0};
+    uint8_t wet[PIXELS] = {0};
+    const FlDrying drying = {&guides, UNIT, SIDE, 1};
+    const FlMatch deep = {16 * STYLE_W / 2, 16 * STYLE_H / 2};
+    const FlMatch rim = {16 * (STYLE_W / 2 + 10), 16 * STYLE_H / 2}; // 2 px below the contour
+    fill_guides(&guides, 20, 0, 0);
+    g_assert_true(fl_carried_init(&carried, SIDE, SIDE, NULL));
+    memset(carried.wet, FL_WET, PIXELS);
+    carried.nnf.match[0] = deep, carried.nnf.match[1] = rim;
+    fl_drying_show(&drying, whole, wet, exemplar, &carried);
+    const FlMatch *now = carried.nnf.match;
+    g_assert_cmpint(now[0].frame, ==, STYLE_FRAMES - 1);
+    g_assert_cmpint(now[0].x_16, ==, deep.x_16);
+    g_assert_cmpint(now[1].frame, ==, STYLE_FRAMES - 1);
+    g_assert_cmpint(ABS(now[1].x_16 - rim.x_16 - 16 * (STYLE_FRAMES - 1)), <=, 12);
+}
+
+int main(int argc, char **argv)
+{
+    g_test_init(&argc, &argv, NULL);
+#define TEST(name) g_test_add_func("/drying/" #name, name)
+    TEST(an_edge_that_advances_gets_wet_and_pale_and_one_that_recedes_dry_and_dark);
+    TEST(new_paint_is_fresh_and_at_rest_is_dry_in_time);
+    TEST(what_moves_is_damp_all_through);
+    TEST(paint_that_dries_goes_on_in_the_recording);
+#undef TEST
+    return g_test_run();
+}
