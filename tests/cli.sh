@@ -159,7 +159,7 @@ result $? 'the name of the drawing can stand in that of the output'
 refuses 'a sheet that is no PNG is refused' 2 'styles.jpg: sheets are PNG files; *' --list-styles -o styles.jpg
 refuses 'a sheet that exists stays' 1 'styles.png: already exists*' --list-styles -o styles.png
 "$program" whole -s 01 --detail draft -o 'a/w_%d.png' --layers 'a/{region}_%d.png' >out 2>err &&
-    [ "$(ls a | wc -l)" = 7 ] && [ -s a/paper_sheet_1.png ] && [ ! -s out ]
+    [ "$(ls a | wc -l)" = 9 ] && [ -s a/paper_sheet_1.png ] && [ -s a/paper_stain_2.png ] && [ ! -s out ]
 result $? 'frames and layers are painted, and the sheet of paper'
 cp -r a b
 refuses 'a frame that exists is not painted over' 1 'a/w_1.png: already exists; *' whole -s 01 -o 'a/w_%d.png'
@@ -236,8 +236,8 @@ result $? 'progress is told while frames are read and masks are drawn'
 [ -z "$(ls apart/d | grep -v -- '-[0-9a-f]*_[0-9]*.png')" ] && [ -s apart/d/hat-a42718_6.png ] &&
     [ "$(find apart -name '.*')" = '' ] && [ ! -e fluidy ]
 result $? '--paint with --no-frames writes the paint alone'
-"$program" "$film" -s 01 -W 96 --detail draft -j1 --merge --paint 'apart/d/{region}_%d.png' -o 'apart/m%d.png' -f 6 >out 2>err &&
-    "$program" "$film" -s 01 -W 96 --detail draft -j1 -o 'apart/w%d.png' -f 1-6 >out 2>err && cmp apart/m6.png apart/w6.png
+"$program" "$film" -s 01 -W 96 --detail draft -j1 --merge --paint 'apart/d/{region}_%d.png' -o 'apart/m%d.png' --front 0 --stain 0 -f 6 >out 2>err &&
+    "$program" "$film" -s 01 -W 96 --detail draft -j1 -o 'apart/w%d.png' --front 0 --stain 0 -f 1-6 >out 2>err && cmp apart/m6.png apart/w6.png
 result $? 'and it is the paint of the film'
 # Its text says where the region has moved to; whatever it says, the frame is painted.
 /usr/bin/python3 - apart/d/*_6.png <<'EOF'
@@ -249,7 +249,7 @@ for path in sys.argv[1:]:
     text = b'tEXtAnchor\0nan 1e30 -9 4'.ljust(length + 4)
     open(path, 'wb').write(data[:at] + text + zlib.crc32(text).to_bytes(4, 'big') + data[at + 8 + length:])
 EOF
-"$program" "$film" -s 01 -W 96 --detail draft -j1 --merge --paint 'apart/d/{region}_%d.png' -o 'apart/n%d.png' -f 6 >out 2>err &&
+"$program" "$film" -s 01 -W 96 --detail draft -j1 --merge --paint 'apart/d/{region}_%d.png' -o 'apart/n%d.png' --front 0 --stain 0 -f 6 >out 2>err &&
     [ -s apart/n6.png ] && ! cmp -s apart/n6.png apart/w6.png
 result $? 'a text that says nothing is left alone'
 ls whole/*1.svg whole/*2.svg | "$program" - -s 01 --detail draft -o 'listed/%d.png' >out 2>err &&

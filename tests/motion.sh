@@ -12,7 +12,7 @@ disc='--region red-aa3311'
 
 # shellcheck disable=SC2086 # $disc is two words
 paint_disc() {
-    paint "$@" $disc
+    paint "$@" $disc --front 0 --stain 0
 }
 
 paint_disc masks --motion masks

@@ -130,8 +130,11 @@ static void on_twos_every_picture_stays_for_two_frames(void)
 
 static void a_region_on_twos_keeps_its_shape_in_a_film_on_ones(void)
 {
-    const FlSetting settings[] = {style(), {"navy-335588", "hold", "2"}};
-    g_auto(Film) drawing = painted(14, settings, 2, false);
+    const FlSetting settings[] = {style(),
+                                  {"navy-335588", "hold", "2"},
+                                  {.name = "front", .value = "0"}, // the paper dries on ones
+                                  {.name = "stain", .value = "0"}};
+    g_auto(Film) drawing = painted(14, settings, 4, false);
     for (int f = 1; f < FRAMES; f++)
         if (f % 2 == 1)
             g_assert_cmpfloat(change(&drawing, f - 1, f), ==, 0);

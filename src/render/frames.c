@@ -215,8 +215,8 @@ static bool seek_painters(FlFrames *frames, int shown, GError **error)
 
 /* Where a missing frame is held, it is the one before again. Shapes are drawn beside the painting,
  * those of the next frame beside the composing. */
-bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
-                    GError **error)
+static bool make_frame(FlFrames *frames, int frame, int next, FlComposite *composite,
+                       double *paint_s, GError **error)
 {
     const gint64 start = g_get_monotonic_time();
     const FlPlan *plan = frames->plan;
@@ -249,6 +249,34 @@ bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composit
         (!plan->half || fl_composite_enlarge(composite, plan->width, plan->height, error));
     trim(plan);
     return made;
+}
+
+static bool open_wet(FlFrames *frames, GError **error);
+
+/* Marks on wet paper follow from the frames before, as they are composed; older ones are gone. */
+static bool seek_marks(FlFrames *frames, int shown, GError **error)
+{
+    const int first = MAX(shown - FL_WET_FRAMES, 0);
+    if ((frames->marked >= shown || frames->marked + 1 < first) && !open_wet(frames, error))
+        return false;
+    bool good = true;
+    for (int f = MAX(frames->marked + 1, first); good && f < shown; f++) {
+        g_auto(FlComposite) composite = {0};
+        double paint_s;
+        good = fl_drawing_shown(frames->plan->drawing, f) != f ||
+               (seek_painters(frames, f, error) &&
+                make_frame(frames, f, -1, &composite, &paint_s, error));
+    }
+    return good;
+}
+
+bool fl_frames_make(FlFrames *frames, int frame, int next, FlComposite *composite, double *paint_s,
+                    GError **error)
+{
+    // a merge that starts late has the paint of the frames before it
+    const bool late = frames->wet && frames->plan->options.merge && !fl_wet_begun(frames->wet);
+    return (!late || seek_marks(frames, fl_drawing_shown(frames->plan->drawing, frame), error)) &&
+           make_frame(frames, frame, next, composite, paint_s, error);
 }
 
 /* ---- before the first frame ------------------------------------------------------------------ */
@@ -324,37 +352,29 @@ bool fl_frames_prepare(FlFrames *frames, GError **error)
            (!wet || open_wet(frames, error));
 }
 
-/* The last frame before one whose picture is not that of another; -1: none. */
-static int frame_before(const FlFrames *frames, int frame)
-{
-    do
-        frame--;
-    while (frame >= 0 && fl_drawing_shown(frames->plan->drawing, frame) != frame);
-    return frame;
-}
-
-/* Marks on wet paper follow from all frames before, as they are composed. */
-static bool seek_marks(FlFrames *frames, int shown, GError **error)
-{
-    const int before = frame_before(frames, shown);
-    if (frames->marked > before && !open_wet(frames, error))
-        return false;
-    bool good = true;
-    for (int f = frames->marked + 1; good && f <= before; f++) {
-        g_auto(FlComposite) composite = {0};
-        double paint_s;
-        good = fl_drawing_shown(frames->plan->drawing, f) != f ||
-               (seek_painters(frames, f, error) &&
-                fl_frames_make(frames, f, -1, &composite, &paint_s, error));
-    }
-    return good;
-}
-
 bool fl_frames_seek(FlFrames *frames, int frame, GError **error)
 {
     const int shown = fl_drawing_shown(frames->plan->drawing, frame);
     return (!frames->wet || seek_marks(frames, shown, error)) &&
            seek_painters(frames, shown, error);
+}
+
+bool fl_frames_save(const FlFrames *frames, GPtrArray *states, GError **error)
+{
+    if (!fl_painters_save(&frames->painters, states, error))
+        return false;
+    GBytes *paper = frames->wet ? fl_wet_save(frames->wet, error) : g_bytes_new(NULL, 0);
+    if (paper)
+        g_ptr_array_add(states, paper);
+    return paper;
+}
+
+bool fl_frames_load(FlFrames *frames, GPtrArray *states, const char *path, GError **error)
+{
+    g_autoptr(GBytes) paper =
+        states->len > 0 ? g_ptr_array_steal_index(states, states->len - 1) : NULL;
+    return fl_painters_load(&frames->painters, states, path, error) &&
+           (!frames->wet || fl_wet_load(frames->wet, paper, error));
 }
 
 void fl_frames_init(FlFrames *frames, FlPlan *plan)

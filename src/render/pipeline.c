@@ -80,7 +80,7 @@ static bool take_state(Pipeline *pipeline, int frame, GError **error)
         !fl_frame_writer_paint(&pipeline->writer, pipeline->frames.painters.painted, frame, error))
         return false;
     if (pipeline->resume.path &&
-        !fl_painters_save(&pipeline->frames.painters, pipeline->resume.record->states, error))
+        !fl_frames_save(&pipeline->frames, pipeline->resume.record->states, error))
         return false;
     pipeline->resume.record->done = frame + 1;
     return true;
@@ -155,10 +155,8 @@ static bool restore_state(Pipeline *pipeline, GError **error)
     if (resume->found && resume->first > plan->first)
         pipeline->frames.shown = fl_drawing_shown(plan->drawing, resume->first - 1);
     if (resume->found)
-        return fl_painters_load(&pipeline->frames.painters, resume->record->states, resume->path,
-                                error);
-    return !resume->path ||
-           fl_painters_save(&pipeline->frames.painters, resume->record->states, error);
+        return fl_frames_load(&pipeline->frames, resume->record->states, resume->path, error);
+    return !resume->path || fl_frames_save(&pipeline->frames, resume->record->states, error);
 }
 
 /* Masks, guides, and the state before the first frame. */

@@ -65,7 +65,7 @@ static float density_at(const Front *front, const FlWetSheet *sheet, size_t p, i
 {
     const FlFrontStyle *style = front->dials->style;
     const FlEdgePoint *point = &front->edge->point[front->edge->nearest[p]];
-    const float px = front->shape->px, f = front->width[p], depth = front->shape->distance[p];
+    const float px = front->shape->px, f = front->width[p], depth = front->edge->distance[p];
     const float inset = MIN(2.5f * px, 0.45f * point->half_width), ahead = inset - depth;
     if (f <= 0.5f * px || depth >= 14 * px || ahead > 4.2f * f + 4 * px)
         return 0;

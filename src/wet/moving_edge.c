@@ -40,6 +40,18 @@ static bool within_page(const FlWetShape *shape, int x, int y)
     return px >= 2 && py >= 2 && px < shape->page.width - 2 && py < shape->page.height - 2;
 }
 
+/** Whether the contour crosses between a pixel and one of its four neighbours. */
+static bool is_crossed(const FlWetShape *shape, int x, int y)
+{
+    const FlRect rect = shape->rect;
+    const uint8_t *mask = shape->now + (size_t)y * (size_t)rect.width + x;
+    const bool inside = mask[0] >= FL_INSIDE;
+    return (x > 0 && (mask[-1] >= FL_INSIDE) != inside) ||
+           (x + 1 < rect.width && (mask[1] >= FL_INSIDE) != inside) ||
+           (y > 0 && (mask[-rect.width] >= FL_INSIDE) != inside) ||
+           (y + 1 < rect.height && (mask[rect.width] >= FL_INSIDE) != inside);
+}
+
 static void find_points(const FlWetShape *shape, GArray *points, int32_t *nearest)
 {
     const FlRect rect = shape->rect;
@@ -47,7 +59,7 @@ static void find_points(const FlWetShape *shape, GArray *points, int32_t *neares
         for (int x = 0; x < rect.width; x++) {
             const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
             nearest[p] = -1;
-            if (fabsf(shape->distance[p]) >= 0.8f || !within_page(shape, x, y))
+            if (!is_crossed(shape, x, y) || !within_page(shape, x, y))
                 continue;
             const FlEdgePoint point = {.x = (float)x, .y = (float)y};
             nearest[p] = (int32_t)points->len;
@@ -55,16 +67,118 @@ static void find_points(const FlWetShape *shape, GArray *points, int32_t *neares
         }
 }
 
-/** Away from the shape; a difference over some pixels, which is smooth. */
+static float coverage_at(const FlWetShape *shape, int x, int y)
+{
+    const FlRect rect = shape->rect;
+    const int column = CLAMP(x, 0, rect.width - 1), row = CLAMP(y, 0, rect.height - 1);
+    return (float)shape->now[(size_t)row * (size_t)rect.width + (size_t)column] / 255;
+}
+
+/** Away from the shape. */
 static void find_normal(const FlWetShape *shape, FlEdgePoint *point)
 {
-    const float x = point->x, y = point->y;
-    const float nx = fl_wet_plane_at(shape->distance, shape->rect, x - 2, y) -
-                     fl_wet_plane_at(shape->distance, shape->rect, x + 2, y);
-    const float ny = fl_wet_plane_at(shape->distance, shape->rect, x, y - 2) -
-                     fl_wet_plane_at(shape->distance, shape->rect, x, y + 2);
+    const int x = (int)point->x, y = (int)point->y;
+    float nx = 0, ny = 0;
+    for (int k = -2; k <= 2; k++)
+        for (int d = 1; d <= 2; d++) {
+            nx += coverage_at(shape, x - d, y + k) - coverage_at(shape, x + d, y + k);
+            ny += coverage_at(shape, x + k, y - d) - coverage_at(shape, x + k, y + d);
+        }
     const float length = sqrtf(nx * nx + ny * ny) + 1e-6f;
     point->nx = nx / length, point->ny = ny / length;
+}
+
+/** How deep the pixel of a point lies below the edge that leaves it its coverage. */
+static void find_depth(const FlWetShape *shape, FlEdgePoint *point)
+{
+    const float coverage = coverage_at(shape, (int)point->x, (int)point->y);
+    const float across = fabsf(point->nx) + fabsf(point->ny);
+    point->depth = (coverage - 0.5f) * MAX(across, 1);
+}
+
+/** Takes the point of another pixel if it is nearer. most: squared, 0: any distance. */
+static void take(const FlMovingEdge *edge, size_t p, size_t other, int x, int y, float most)
+{
+    const int32_t candidate = edge->nearest[other], own = edge->nearest[p];
+    if (candidate < 0 || candidate == own)
+        return;
+    const FlEdgePoint *a = &edge->point[candidate];
+    const float ax = (float)x - a->x, ay = (float)y - a->y, squared = ax * ax + ay * ay;
+    float best = most;
+    if (own >= 0) {
+        const FlEdgePoint *b = &edge->point[own];
+        const float bx = (float)x - b->x, by = (float)y - b->y;
+        best = bx * bx + by * by;
+    }
+    if (squared < best)
+        edge->nearest[p] = candidate;
+}
+
+/** One way over the rows: from those that came before, then along each row, both ways. */
+static void sweep(const FlMovingEdge *edge, const FlWetShape *shape, bool down)
+{
+    const FlRect rect = shape->rect;
+    const int width = rect.width;
+    const float deep = FL_WET_DEEP_PX * shape->px;
+    for (int k = 0; k < rect.height; k++) {
+        const int y = down ? k : rect.height - 1 - k;
+        const size_t row = (size_t)y * (size_t)width;
+        const size_t last = down ? row - (size_t)width : row + (size_t)width;
+        for (int x = 0; x < width; x++) {
+            const size_t p = row + (size_t)x;
+            const float most = shape->now[p] >= FL_INSIDE ? deep * deep : 1e12f;
+            for (int i = MAX(x - 1, 0); k > 0 && i <= MIN(x + 1, width - 1); i++)
+                take(edge, p, last + (size_t)i, x, y, most);
+            if (x > 0)
+                take(edge, p, p - 1, x, y, most);
+        }
+        for (int x = width - 2; x >= 0; x--) {
+            const size_t p = row + (size_t)x;
+            take(edge, p, p + 1, x, y, shape->now[p] >= FL_INSIDE ? deep * deep : 1e12f);
+        }
+    }
+}
+
+/** The distance of each pixel to where its nearest point says that the edge lies. */
+static void find_distances(const FlWetShape *shape, FlMovingEdge *edge)
+{
+    const FlRect rect = shape->rect;
+    const float deep = FL_WET_DEEP_PX * shape->px, far = (float)(rect.width + rect.height);
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t p = (size_t)y * (size_t)rect.width + (size_t)x;
+            const bool inside = shape->now[p] >= FL_INSIDE;
+            edge->distance[p] = inside ? deep : -far;
+            if (edge->nearest[p] < 0)
+                continue;
+            const FlEdgePoint *point = &edge->point[edge->nearest[p]];
+            const float dx = (float)x - point->x - point->depth * point->nx;
+            const float dy = (float)y - point->y - point->depth * point->ny;
+            const float distance = sqrtf(dx * dx + dy * dy);
+            edge->distance[p] = inside ? distance : -distance;
+        }
+}
+
+/** The contour as it is, and all distances to it. */
+static bool find_edge(FlMovingEdge *edge, const FlWetShape *shape, GError **error)
+{
+    const size_t n = fl_rect_pixels(shape->rect);
+    *edge = (FlMovingEdge){0};
+    if (!(edge->nearest = fl_alloc_unset(n, sizeof *edge->nearest, "an edge", error)) ||
+        !(edge->distance = fl_alloc_unset(n, sizeof *edge->distance, "an edge", error)))
+        return false;
+    GArray *points = g_array_new(FALSE, TRUE, sizeof(FlEdgePoint));
+    find_points(shape, points, edge->nearest);
+    edge->n = (int)points->len;
+    edge->point = (FlEdgePoint *)(void *)g_array_free(points, FALSE);
+    for (int i = 0; i < edge->n; i++) {
+        find_normal(shape, &edge->point[i]);
+        find_depth(shape, &edge->point[i]);
+    }
+    sweep(edge, shape, true);
+    sweep(edge, shape, false);
+    find_distances(shape, edge);
+    return true;
 }
 
 /** The motion of the drawing just inside the contour. Returns: false where it is unknown. */
@@ -80,34 +194,33 @@ static bool find_motion(const FlWetShape *shape, FlEdgePoint *point)
         if (shape->now[p] < FL_INSIDE || isnan(shape->motion[2 * p]))
             continue;
         point->u = shape->motion[2 * p], point->v = shape->motion[2 * p + 1];
+        point->known = true;
         return true;
     }
     return false;
 }
 
 /** The normal part of the motion, and growth that the motion does not explain. */
-static void find_speed(const FlWetShape *shape, FlEdgePoint *point, bool known)
+static void find_speed(const FlWetShape *shape, FlEdgePoint *point)
 {
     const float page = FL_WET_PAGE_PX * shape->px, most = 0.05f * page * shape->frames;
-    const float now = fl_wet_plane_at(shape->distance, shape->rect, point->x, point->y);
     const float before = fl_wet_plane_at(shape->distance_before, shape->rect, point->x - point->u,
                                          point->y - point->v);
     point->u -= shape->ground_x, point->v -= shape->ground_y;
     const float moved = point->u * point->nx + point->v * point->ny;
-    const float grown =
-        CLAMP(now - before, -most, most) * (known ? 1 : fl_ease(0.02f, 0.2f, shape->overlap));
+    const float grown = CLAMP(point->depth - before, -most, most) *
+                        (point->known ? 1 : fl_ease(0.02f, 0.2f, shape->overlap));
     const float speed = (moved + grown) / shape->frames;
     point->speed = CLAMP(speed, -0.12f * page, 0.12f * page);
 }
 
 /** The way inwards as far as the contour it began at is the nearest. */
-static void find_width(const FlWetShape *shape, FlEdgePoint *point)
+static void find_width(const FlWetShape *shape, const float *distance, FlEdgePoint *point)
 {
     const float most = 26 * shape->px;
     float depth = 1;
-    while (depth < most &&
-           fl_wet_plane_at(shape->distance, shape->rect, point->x - depth * point->nx,
-                           point->y - depth * point->ny) > 0.8f * depth - 1)
+    while (depth < most && fl_wet_plane_at(distance, shape->rect, point->x - depth * point->nx,
+                                           point->y - depth * point->ny) > 0.8f * depth - 1)
         depth++;
     point->half_width = depth;
 }
@@ -147,15 +260,17 @@ static void find_ink(const FlWetShape *shape, FlEdgePoint *point)
         point->ink[c] = weight > 0 ? sum[c] / weight : shape->fill[c];
 }
 
-static void link_points(FlRect rect, const GArray *points, const int32_t *nearest, Links *links)
+static void link_points(FlRect rect, const FlMovingEdge *edge, Links *links)
 {
-    for (guint i = 0; i < points->len; i++) {
-        const FlEdgePoint *point = &g_array_index(points, FlEdgePoint, i);
+    for (int i = 0; i < edge->n; i++) {
+        const FlEdgePoint *point = &edge->point[i];
         const int px = (int)point->x, py = (int)point->y;
         for (int y = MAX(py - 1, 0); y <= MIN(py + 1, rect.height - 1); y++)
             for (int x = MAX(px - 1, 0); x <= MIN(px + 1, rect.width - 1); x++) {
-                const int32_t other = nearest[(size_t)y * (size_t)rect.width + (size_t)x];
-                if (other >= 0 && other != (int32_t)i)
+                const int32_t other = edge->nearest[(size_t)y * (size_t)rect.width + (size_t)x];
+                const FlEdgePoint *there = other >= 0 ? &edge->point[other] : point;
+                const bool own = (int)there->x == x && (int)there->y == y; // it lies there
+                if (own && other != i)
                     links[i].to[links[i].n++] = other;
             }
     }
@@ -170,67 +285,24 @@ static float *values_of(FlEdgePoint *point)
 enum { N_VALUES = (sizeof(FlEdgePoint) - offsetof(FlEdgePoint, nx)) / sizeof(float) };
 
 /** Means with the points around, again and again: a Gaussian of about 3 px along the contour. */
-static void smooth(const FlWetShape *shape, GArray *points, const Links *links)
+static void smooth(const FlWetShape *shape, FlMovingEdge *edge, const Links *links)
 {
-    if (points->len == 0)
-        return;
     const int rounds = CLAMP((int)(14 * shape->px * shape->px), 4, 60);
-    g_autofree FlEdgePoint *next = g_memdup2(points->data, points->len * sizeof *next);
-    for (int k = 0; k < rounds; k++) {
-        FlEdgePoint *from = &g_array_index(points, FlEdgePoint, 0);
-        for (guint i = 0; i < points->len; i++) {
+    FlEdgePoint *next = g_memdup2(edge->point, (size_t)edge->n * sizeof *next);
+    for (int k = 0; k < rounds && edge->n > 0; k++) {
+        for (int i = 0; i < edge->n; i++) {
             float *to = values_of(&next[i]);
-            memcpy(to, values_of(&from[i]), N_VALUES * sizeof *to);
+            memcpy(to, values_of(&edge->point[i]), N_VALUES * sizeof *to);
             for (int l = 0; l < links[i].n; l++)
                 for (int c = 0; c < N_VALUES; c++)
-                    to[c] += values_of(&from[links[i].to[l]])[c];
+                    to[c] += values_of(&edge->point[links[i].to[l]])[c];
             for (int c = 0; c < N_VALUES; c++)
                 to[c] /= (float)(links[i].n + 1);
         }
-        memcpy(points->data, next, points->len * sizeof *next);
+        FlEdgePoint *last = edge->point;
+        edge->point = next, next = last;
     }
-}
-
-static void take(const FlEdgePoint *points, int32_t *nearest, size_t p, size_t other, int x, int y)
-{
-    const int32_t candidate = nearest[other];
-    if (candidate < 0)
-        return;
-    const FlEdgePoint *a = &points[candidate];
-    const float ax = (float)x - a->x, ay = (float)y - a->y;
-    if (nearest[p] >= 0) {
-        const FlEdgePoint *b = &points[nearest[p]];
-        const float bx = (float)x - b->x, by = (float)y - b->y;
-        if (bx * bx + by * by <= ax * ax + ay * ay)
-            return;
-    }
-    nearest[p] = candidate;
-}
-
-/** One way over the rows: from those that came before, then along each row, both ways. */
-static void sweep(const FlEdgePoint *points, const FlWetShape *shape, bool down, int32_t *nearest)
-{
-    const FlRect rect = shape->rect;
-    const int width = rect.width;
-    const float deep = FL_WET_DEEP_PX * shape->px;
-    for (int k = 0; k < rect.height; k++) {
-        const int y = down ? k : rect.height - 1 - k;
-        const size_t row = (size_t)y * (size_t)width;
-        const size_t last = down ? row - (size_t)width : row + (size_t)width;
-        for (int x = 0; x < width; x++) {
-            const size_t p = row + (size_t)x;
-            if (shape->distance[p] > deep)
-                continue;
-            for (int dx = -1; dx <= 1 && k > 0; dx++)
-                if (x + dx >= 0 && x + dx < width)
-                    take(points, nearest, p, last + (size_t)(x + dx), x, y);
-            if (x > 0)
-                take(points, nearest, p, p - 1, x, y);
-        }
-        for (int x = width - 2; x >= 0; x--)
-            if (shape->distance[row + (size_t)x] <= deep)
-                take(points, nearest, row + (size_t)x, row + (size_t)x + 1, x, y);
-    }
+    g_free(next);
 }
 
 /** Smooths the speed in time, along the motion. */
@@ -255,47 +327,47 @@ bool fl_edge_before_take(FlEdgeBefore *before, const FlWetShape *shape, const Fl
     if (!(before->distance = fl_alloc_unset(n, sizeof(float), "an edge", error)) ||
         !(before->speed = fl_alloc_unset(n, sizeof(float), "an edge", error)))
         return false;
-    memcpy(before->distance, shape->distance, n * sizeof(float));
+    memcpy(before->distance, edge->distance, n * sizeof(float));
     for (size_t p = 0; p < n; p++)
         before->speed[p] = edge->nearest[p] >= 0 ? edge->point[edge->nearest[p]].speed : 0;
     return true;
 }
 
-static void find_all(const FlWetShape *shape, GArray *points, const int32_t *nearest,
-                     const FlEdgeBefore *before)
+static void find_all(const FlWetShape *shape, FlMovingEdge *edge, const FlEdgeBefore *before)
 {
-    g_autofree Links *links = g_new0(Links, MAX(points->len, 1));
-    for (guint i = 0; i < points->len; i++) {
-        FlEdgePoint *point = &g_array_index(points, FlEdgePoint, i);
-        find_normal(shape, point);
-        find_speed(shape, point, find_motion(shape, point));
-        find_width(shape, point);
+    for (int i = 0; i < edge->n; i++) {
+        FlEdgePoint *point = &edge->point[i];
+        edge->known += find_motion(shape, point);
+        find_speed(shape, point);
+        find_width(shape, edge->distance, point);
         find_ink(shape, point);
         follow(shape, before, point);
     }
-    link_points(shape->rect, points, nearest, links);
-    smooth(shape, points, links);
 }
 
 bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlEdgeBefore *before,
                          GError **error)
 {
-    *edge = (FlMovingEdge){0};
-    edge->nearest =
-        fl_alloc_unset(fl_rect_pixels(shape->rect), sizeof *edge->nearest, "an edge", error);
-    if (!edge->nearest)
+    if (!find_edge(edge, shape, error))
         return false;
-    GArray *points = g_array_new(FALSE, TRUE, sizeof(FlEdgePoint));
-    find_points(shape, points, edge->nearest);
-    find_all(shape, points, edge->nearest, before);
-    edge->n = (int)points->len;
-    edge->point = (FlEdgePoint *)(void *)g_array_free(points, FALSE);
+    g_autofree Links *links = g_new0(Links, MAX(edge->n, 1));
+    find_all(shape, edge, before);
+    link_points(shape->rect, edge, links);
+    smooth(shape, edge, links);
     for (int i = 0; i < edge->n; i++)
         edge->fastest = MAX(edge->fastest, fabsf(edge->point[i].speed));
-    if (edge->n > 0) {
-        sweep(edge->point, shape, true, edge->nearest);
-        sweep(edge->point, shape, false, edge->nearest);
-    }
+    return true;
+}
+
+bool fl_edge_before_look(FlEdgeBefore *before, const FlWetShape *shape, GError **error)
+{
+    g_auto(FlMovingEdge) edge = {0};
+    free(before->distance);
+    before->distance = NULL;
+    before->rect = shape->rect;
+    if (!find_edge(&edge, shape, error))
+        return false;
+    before->distance = g_steal_pointer(&edge.distance);
     return true;
 }
 
@@ -303,6 +375,7 @@ void fl_moving_edge_clear(FlMovingEdge *edge)
 {
     g_free(edge->point);
     free(edge->nearest);
+    free(edge->distance);
     *edge = (FlMovingEdge){0};
 }
 

@@ -12,11 +12,10 @@
  * of the grid in which the paper is kept. */
 typedef struct FlWetShape {
     FlRect rect, page;
-    float px;              // cells per px of a page of FL_WET_PAGE_PX
-    float frames;          // since the frame before
-    const uint8_t *before; // coverage 0..255
-    const uint8_t *now;
-    const float *distance, *distance_before; // fl_distance() of both, the latter near the shape
+    float px;                     // cells per px of a page of FL_WET_PAGE_PX
+    float frames;                 // since the frame before
+    const uint8_t *now;           // coverage 0..255
+    const float *distance_before; // to the contour in the frame before, near to it
     const float *motion;      // of the drawing since the frame before, interleaved; NAN: unknown
     float ground_x, ground_y; // the motion of the paper, likewise
     float overlap;            // share of the smaller of both masks that lies in the other
@@ -28,7 +27,9 @@ typedef struct FlWetShape {
 
 /** A point of the contour; its values change slowly along it. */
 typedef struct FlEdgePoint {
-    float x, y;         // in rect, cells
+    float x, y;         // a pixel of rect, cells
+    float depth;        // how far inside the edge its middle lies
+    bool known;         // whether the motion is
     float nx, ny;       // outward normal
     float u, v;         // motion since the frame before against the paper, cells
     float speed;        // of the contour along its normal against the paper, cells a frame
@@ -38,12 +39,14 @@ typedef struct FlEdgePoint {
 } FlEdgePoint;
 
 /** Deeper inside than this no pixel has a nearest point; px of the page. */
-#define FL_WET_DEEP_PX 16
+#define FL_WET_DEEP_PX 21
 
 typedef struct FlMovingEdge {
     int n;
     FlEdgePoint *point;
     int32_t *nearest; // of rect: the point nearest to each pixel; -1: none
+    float *distance;  // of rect: to the contour, positive inside
+    int known;        // points whose motion is known
     float fastest;    // of all points, cells a frame
 } FlMovingEdge;
 
@@ -70,6 +73,9 @@ typedef struct FlEdgeBefore {
  */
 bool fl_moving_edge_init(FlMovingEdge *edge, const FlWetShape *shape, const FlEdgeBefore *before,
                          GError **error);
+
+/** The distances of a frame alone. FL_ERROR_NO_MEMORY. */
+bool fl_edge_before_look(FlEdgeBefore *before, const FlWetShape *shape, GError **error);
 
 /** Makes this frame the one before. FL_ERROR_NO_MEMORY. */
 bool fl_edge_before_take(FlEdgeBefore *before, const FlWetShape *shape, const FlMovingEdge *edge,

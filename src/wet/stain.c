@@ -8,6 +8,7 @@
 typedef struct Passing {
     const FlWetShape *shape;
     const FlEdgePoint *point; // the nearest of the contour
+    const float *distance;    // of the shape as it is now
     float inset;              // paint ends so far inside its shape, cells
     float x, y;
 } Passing;
@@ -25,7 +26,7 @@ static float depth_at(const Passing *pixel, float time)
     const FlRect rect = shape->rect;
     if (x < 0 || y < 0 || x > (float)rect.width - 1 || y > (float)rect.height - 1)
         return -1e6f;
-    return fl_wet_plane_at(before ? shape->distance_before : shape->distance, rect, x, y) -
+    return fl_wet_plane_at(before ? shape->distance_before : pixel->distance, rect, x, y) -
            pixel->inset;
 }
 
@@ -83,7 +84,7 @@ static void find_ink(const Passing *pixel, const Cover *cover, float ink[3])
     const float y = pixel->y - shape->ground_y - cover->when * point->v;
     float own[3];
     const bool known = fl_wet_ink_at(shape, x, y, own);
-    const float weight = known ? 0.8f * fl_ease(0, 5 * shape->px, cover->most) : 0;
+    const float weight = known ? 0.45f * fl_ease(2 * shape->px, 12 * shape->px, cover->most) : 0;
     for (int c = 0; c < 3; c++)
         ink[c] = point->ink[c] + weight * (own[c] - point->ink[c]);
 }
@@ -99,7 +100,7 @@ static void pass(const Passing *pixel, const FlWetDials *dials, int32_t at, floa
     if (lost <= 0.02f)
         return;
     FlStainMark mark = {.at = at, .lost = lost, .age = shape->frames * (1 - cover.last)};
-    mark.charge = dials->stain * lost * kept_of(pixel, moved, MAX(-now, 0));
+    mark.charge = dials->stain * (1 - cover_of(now)) * kept_of(pixel, moved, MAX(-now, 0));
     find_ink(pixel, &cover, mark.ink);
     g_array_append_val(marks, mark);
 }
@@ -115,12 +116,12 @@ void fl_marks_add_stain(const FlWetShape *shape, const FlMovingEdge *edge,
                 continue;
             const FlEdgePoint *point = &edge->point[edge->nearest[p]];
             const float inset = MIN(2.5f * shape->px, 0.45f * point->half_width);
-            const float now = shape->distance[p] - inset;
+            const float now = edge->distance[p] - inset;
             const float reach = fabsf(point->u) + fabsf(point->v) + 2;
             const bool far = -now > reach && shape->distance_before[p] < inset - reach;
             if (now >= 0.5f || far)
                 continue;
-            const Passing pixel = {shape, point, inset, (float)x, (float)y};
+            const Passing pixel = {shape, point, edge->distance, inset, (float)x, (float)y};
             pass(&pixel, dials, (rect.y + y) * shape->page.width + rect.x + x, now, marks);
         }
 }

@@ -2,17 +2,10 @@
 #ifndef FLUIDY_WET_WET_H
 #define FLUIDY_WET_WET_H
 
-#include "compose/compose_input.h"
-#include "job/plan.h"
+#include "wet/wet_data.h"
 
 /** Frames after which no mark is left: so many before it starts a part of a film has to know. */
 #define FL_WET_FRAMES 36
-
-typedef struct FlWet FlWet;
-
-/** Writes the drawing's motion of a region into a frame, as fl_motion_source_get() does. */
-typedef bool (*FlWetMotion)(void *data, int region, int before, int now, FlRect part, float *motion,
-                            GError **error);
 
 /** Whether any region of the plan marks the paper. */
 bool fl_wet_wanted(const FlPlan *plan);
@@ -27,6 +20,16 @@ void fl_wet_free(FlWet *wet); // NULL is fine
  * paper is known from FL_WET_FRAMES frames of masks, motion and fills.
  */
 bool fl_wet_frame(FlWet *wet, int frame, GError **error);
+
+/** Whether it has come to any frame yet. */
+bool fl_wet_begun(const FlWet *wet);
+
+/** The state after the last frame, from which another run goes on; to be freed with
+ * g_bytes_unref(). Returns: NULL with FL_ERROR_NO_MEMORY. */
+GBytes *fl_wet_save(const FlWet *wet, GError **error);
+
+/** Goes on from a state of the same plan, whose bytes need not be trusted. FL_ERROR_CHANGED. */
+bool fl_wet_load(FlWet *wet, GBytes *state, GError **error);
 
 /** The marks of the frame as a layer, and where its paint is noted for the next one. */
 const FlStainLayer *fl_wet_layer(const FlWet *wet);

@@ -4,10 +4,10 @@
 #include "wet/curves.h"
 #include <math.h>
 
-#define FRONT_FRAMES 4 // in which a front dries
-#define GONE_FRAMES 36 // after which a stain is gone
-#define STRENGTH 0.9f  // of absorbances on the paper
-#define LEAST 0.002f   // of a mark that is seen
+#define FRONT_FRAMES 2.2f // in which a front dries
+#define GONE_FRAMES 36    // after which a stain is gone
+#define STRENGTH 0.9f     // of absorbances on the paper
+#define LEAST 0.002f      // of a mark that is seen
 
 /** The grain of the paper, once for the film: the pictures have the sheet's. */
 static void find_grain(FlWetSheet *sheet)
@@ -64,10 +64,25 @@ FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t at)
     return grain_at(sheet, MIN(x, sheet->width - 1), MIN(y, sheet->height - 1));
 }
 
+static void place_paper(FlWetSheet *sheet, float x, float y)
+{
+    const float scale = (float)sheet->width / (float)sheet->page.width;
+    sheet->fibres.x = x, sheet->fibres.y = y;
+    sheet->moved_x = (int)(scale * x) % sheet->width;
+    sheet->moved_y = (int)(scale * y) % sheet->height;
+}
+
+void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, float moved_x,
+                          float moved_y)
+{
+    place_paper(sheet, moved_x, moved_y);
+    sheet->wet = wet;
+    fl_rect_copy(cells, wet, sheet->cell, sheet->page, sizeof *cells);
+}
+
 bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error)
 {
     const FlRect page = sheet->page, to = {dx, dy, page.width, page.height};
-    const float scale = (float)sheet->width / (float)page.width;
     if (dx == 0 && dy == 0)
         return true;
     FlWetCell *moved = fl_alloc(fl_rect_pixels(page), sizeof *moved, "the paper's marks", error);
@@ -76,9 +91,7 @@ bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error)
     fl_rect_copy(sheet->cell, to, moved, page, sizeof *moved);
     free(sheet->cell);
     sheet->cell = moved;
-    sheet->fibres.x += (float)dx, sheet->fibres.y += (float)dy;
-    sheet->moved_x = (int)(scale * sheet->fibres.x) % sheet->width;
-    sheet->moved_y = (int)(scale * sheet->fibres.y) % sheet->height;
+    place_paper(sheet, sheet->fibres.x + (float)dx, sheet->fibres.y + (float)dy);
     sheet->wet = fl_rect_and(
         (FlRect){sheet->wet.x + dx, sheet->wet.y + dy, sheet->wet.width, sheet->wet.height}, page);
     return true;
@@ -115,8 +128,7 @@ void fl_wet_sheet_dry(FlWetSheet *sheet, float frames)
             if (cell->front > 0)
                 cell->front *= fl_fall(frames / (FRONT_FRAMES * (0.5f + share_of(grain.hollow))));
             cell->age += frames;
-            if (cell->front < LEAST)
-                cell->front = 0;
+            cell->front = cell->front > 0.01f * frames ? cell->front - 0.01f * frames : 0;
             if (cell->age > GONE_FRAMES)
                 cell->stain = cell->film = 0;
             if (cell->front > 0 || cell->stain > 0 || cell->film > 0)
@@ -150,22 +162,20 @@ static float between(float a, float b, float weight)
     return a + (b - a) * weight;
 }
 
+/** A cell has one stain, the stronger: once that is gone, nothing is left of what was before. */
 static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const FlStainMark *mark,
                        FlWetCell *cell)
 {
     const float hollow = share_of(fl_wet_sheet_grain(sheet, mark->at).hollow);
     const float old = cell->stain * left_of(sheet, cell->age, hollow);
-    const float new = style->stain * mark->charge *left_of(sheet, mark->age, hollow);
+    const float stain = style->stain * mark->charge;
     cell->front *= 1 - mark->lost;
-    if (old + new < 1e-5f)
+    if (stain * left_of(sheet, mark->age, hollow) <= old)
         return;
-    const float weight = new / (old + new);
-    cell->age = between(cell->age, mark->age, weight);
-    cell->film = MIN((1 - weight) * cell->film + style->film * mark->charge, 1);
-    cell->stain = MIN((old + new) / MAX(left_of(sheet, cell->age, hollow), 0.05f), 1);
-    cell->granulation = between(cell->granulation, style->granulation, weight);
-    for (int c = 0; c < 3; c++)
-        cell->ink[c] = between(cell->ink[c], mark->ink[c], weight);
+    cell->stain = stain, cell->film = style->film * mark->charge;
+    cell->age = mark->age;
+    cell->granulation = style->granulation;
+    memcpy(cell->ink, mark->ink, sizeof cell->ink);
 }
 
 void fl_wet_sheet_stain(FlWetSheet *sheet, const FlFrontStyle *style, const GArray *stains)

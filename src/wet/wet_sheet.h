@@ -59,6 +59,10 @@ FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t cell);
 /** Moves all that is on the paper along with it, by whole cells. */
 bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error);
 
+/** Makes it the sheet of a state: cells are of `wet`, and the paper has moved. */
+void fl_wet_sheet_restore(FlWetSheet *sheet, FlRect wet, const FlWetCell *cells, float moved_x,
+                          float moved_y);
+
 /** The sheet after some frames in which it only dries. */
 void fl_wet_sheet_dry(FlWetSheet *sheet, float frames);
 

@@ -1,0 +1,277 @@
+/* The marks of one region in one frame. */
+#include "wet/wet_data.h"
+
+#include "base/alloc.h"
+#include "guides/guides.h"
+#include "wet/curves.h"
+#include <math.h>
+
+#define AHEAD_FRAMES 4 // a front wets paper where the figure will be so soon
+#define MARGIN_PX 11   // px of the page around the masks of these frames
+
+/** The frame whose picture a region with a hold shows. */
+int fl_wet_shown_by(const FlRegionPlan *plan, int frame)
+{
+    return frame - frame % plan->settings.hold;
+}
+
+/** The picture before that; -1: none. */
+static int before_that(const FlWet *wet, const FlRegionPlan *plan, int frame)
+{
+    const int hold = plan->settings.hold, n = fl_drawing_frames(wet->plan->drawing);
+    if (frame >= hold)
+        return frame - hold;
+    return wet->plan->options.loop ? (n - 1) / hold * hold : -1;
+}
+
+/** Frame `frame` + `ahead`; in a film that is no loop, at most the last one. */
+static int frame_ahead(const FlWet *wet, int frame, int ahead)
+{
+    const int n = fl_drawing_frames(wet->plan->drawing);
+    return wet->plan->options.loop ? (frame + ahead) % n : MIN(frame + ahead, n - 1);
+}
+
+/** Planes of a region's rectangle. */
+typedef struct Planes {
+    FlRect rect;
+    uint8_t *before, *now, *ahead, *touches;
+    float *distance_before, *beyond, *motion;
+} Planes;
+
+static void planes_clear(Planes *planes)
+{
+    free(planes->before);
+    free(planes->now);
+    free(planes->ahead);
+    free(planes->touches);
+    free(planes->distance_before);
+    free(planes->beyond);
+    free(planes->motion);
+}
+
+G_DEFINE_AUTO_CLEANUP_CLEAR_FUNC(Planes, planes_clear)
+
+static bool planes_init(Planes *planes, FlRect rect, GError **error)
+{
+    const size_t n = fl_rect_pixels(rect);
+    const char *what = "the edge of a region";
+    planes->rect = rect;
+    return (planes->before = fl_alloc_unset(n, 1, what, error)) &&
+           (planes->now = fl_alloc_unset(n, 1, what, error)) &&
+           (planes->ahead = fl_alloc_unset(n, 1, what, error)) &&
+           (planes->touches = fl_alloc_unset(n, 1, what, error)) &&
+           (planes->distance_before = fl_alloc_unset(n, sizeof(float), what, error)) &&
+           (planes->beyond = fl_alloc_unset(n, sizeof(float), what, error)) &&
+           (planes->motion = fl_alloc(2 * n, sizeof(float), what, error));
+}
+
+/** Around all masks that a region's marks depend on. */
+static FlRect marked_part(const FlWet *wet, const FlRegionPlan *plan, int before, int now)
+{
+    const FlMaskStore *masks = wet->plan->masks;
+    FlRect box = fl_rect_or(fl_mask_store_box(masks, plan->region, before),
+                            fl_mask_store_box(masks, plan->region, now));
+    for (int a = 1; a <= AHEAD_FRAMES; a++)
+        box = fl_rect_or(box, fl_mask_store_box(masks, plan->region,
+                                                fl_wet_shown_by(plan, frame_ahead(wet, now, a))));
+    const int margin = (int)ceilf(MARGIN_PX * wet->sheet.px) + 2;
+    return fl_rect_grown(fl_wet_cells_of(wet, box), margin, wet->sheet.page);
+}
+
+static bool read_ahead(const FlWet *wet, const FlRegionPlan *plan, int now, Planes *planes,
+                       GError **error)
+{
+    const size_t n = fl_rect_pixels(planes->rect);
+    int last = now;
+    memcpy(planes->ahead, planes->now, n);
+    for (int a = 1; a <= AHEAD_FRAMES; a++) {
+        const int frame = fl_wet_shown_by(plan, frame_ahead(wet, now, a));
+        if (frame == last || fl_mask_store_same(wet->plan->masks, plan->region, frame, last))
+            continue;
+        if (!fl_wet_get_mask(wet, plan->region, frame, planes->rect, planes->touches, error))
+            return false;
+        for (size_t p = 0; p < n; p++)
+            planes->ahead[p] = MAX(planes->ahead[p], planes->touches[p]);
+        last = frame;
+    }
+    return true;
+}
+
+/** Where no other paint lay between a region and the paper: bit 0 now, bit 1 before. */
+static void find_touches(const FlWet *wet, int region, Planes *planes)
+{
+    const FlRect rect = planes->rect;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const size_t cell =
+                (size_t)(rect.y + y) * (size_t)wet->sheet.page.width + (size_t)(rect.x + x);
+            planes->touches[(size_t)y * (size_t)rect.width + (size_t)x] =
+                (uint8_t)((wet->lowest[0][cell] >= region) + 2 * (wet->lowest[1][cell] >= region));
+        }
+}
+
+/** The share of the smaller of both masks that lies in the other. */
+static float overlap_of(const Planes *planes)
+{
+    const FlRect rect = planes->rect;
+    int64_t both = 0, before = 0, now = 0;
+    for (int y = 0; y < rect.height; y++) {
+        const uint8_t *a = planes->before + (size_t)y * (size_t)rect.width;
+        const uint8_t *b = planes->now + (size_t)y * (size_t)rect.width;
+        int32_t shared = 0, was = 0, is = 0; // of a row
+        for (int x = 0; x < rect.width; x++)
+            was += a[x], is += b[x], shared += MIN(a[x], b[x]);
+        both += shared, before += was, now += is;
+    }
+    return (float)both / (float)MAX(MIN(before, now), 1);
+}
+
+/** The distances in a frame that was not looked at, or only in an earlier run. */
+static bool find_first(const FlWet *wet, FlMarker *marker, int frame, GError **error)
+{
+    const int earlier = before_that(wet, marker->plan, frame);
+    const bool known = marker->before.rect.width > 0;
+    const FlRect rect = known
+                            ? marker->before.rect
+                            : marked_part(wet, marker->plan, earlier < 0 ? frame : earlier, frame);
+    g_autofree uint8_t *mask = fl_alloc_unset(fl_rect_pixels(rect), 1, "a mask", error);
+    const FlWetShape shape = {
+        .rect = rect, .page = wet->sheet.page, .px = wet->sheet.px, .frames = 1, .now = mask};
+    return mask && fl_wet_get_mask(wet, marker->plan->region, frame, rect, mask, error) &&
+           fl_edge_before_look(&marker->before, &shape, error);
+}
+
+/** Steps of the distances of find_beyond(): to a neighbour, and across. */
+#define STRAIGHT 0.96f
+#define ACROSS 1.36f
+
+/** One way over the rows: of step 1, or -1. */
+static void spread(float *distance, FlRect rect, int way)
+{
+    const int width = rect.width;
+    for (int k = 0; k < rect.height; k++) {
+        float *row = distance + (size_t)(way > 0 ? k : rect.height - 1 - k) * (size_t)width;
+        const float *last = k > 0 ? row - way * width : NULL;
+        for (int x = 0; x < width && last; x++) {
+            row[x] = MIN(row[x], last[x] + STRAIGHT);
+            row[x] = MIN(row[x], last[MAX(x - 1, 0)] + ACROSS);
+            row[x] = MIN(row[x], last[MIN(x + 1, width - 1)] + ACROSS);
+        }
+        for (int x = 1; x < width; x++)
+            row[x] = MIN(row[x], row[x - 1] + STRAIGHT);
+        for (int x = width - 2; x >= 0; x--)
+            row[x] = MIN(row[x], row[x + 1] + STRAIGHT);
+    }
+}
+
+/** How far each pixel is from the masks ahead, to a twentieth. */
+static void find_beyond(Planes *planes)
+{
+    const size_t n = fl_rect_pixels(planes->rect);
+    for (size_t p = 0; p < n; p++)
+        planes->beyond[p] = planes->ahead[p] >= FL_INSIDE ? 0 : 1e6f;
+    spread(planes->beyond, planes->rect, 1);
+    spread(planes->beyond, planes->rect, -1);
+}
+
+/** The distances in the frame before, as far as they were found then. */
+static bool find_before(const FlWet *wet, FlMarker *marker, int frame, Planes *planes,
+                        GError **error)
+{
+    const FlRect rect = planes->rect;
+    FlEdgeBefore *before = &marker->before;
+    for (size_t p = 0; p < fl_rect_pixels(rect); p++)
+        planes->distance_before[p] = -MARGIN_PX * wet->sheet.px;
+    if (!before->distance && !find_first(wet, marker, frame, error))
+        return false;
+    fl_rect_copy(before->distance, before->rect, planes->distance_before, rect, sizeof(float));
+    return true;
+}
+
+static bool read_planes(const FlWetStep *step, FlMarker *marker, int before, int now, bool moves,
+                        Planes *planes, GError **error)
+{
+    const FlWet *wet = step->wet;
+    const int region = marker->plan->region;
+    const FlRect rect = planes->rect;
+    if (!fl_wet_get_mask(wet, region, before, rect, planes->before, error) ||
+        !fl_wet_get_mask(wet, region, now, rect, planes->now, error) ||
+        !read_ahead(wet, marker->plan, now, planes, error) ||
+        !find_before(wet, marker, before, planes, error))
+        return false;
+    find_beyond(planes);
+    find_touches(wet, region, planes);
+    return !moves || !wet->motion ||
+           fl_wet_get_motion(wet, marker, before, now, rect, planes->motion, error);
+}
+
+static void forget(FlMarker *marker)
+{
+    fl_edge_before_clear(&marker->before);
+    g_array_set_size(marker->fronts, 0);
+    marker->rests = false;
+}
+
+static bool mark_moving(const FlWetStep *step, FlMarker *marker, int before, int now, bool moves,
+                        GError **error)
+{
+    const FlWet *wet = step->wet;
+    g_auto(Planes) planes = {0};
+    g_auto(FlMovingEdge) edge = {0};
+    if (!planes_init(&planes, marked_part(wet, marker->plan, before, now), error) ||
+        !read_planes(step, marker, before, now, moves, &planes, error))
+        return false;
+    FlWetShape shape = {.rect = planes.rect,
+                        .page = wet->sheet.page,
+                        .px = wet->sheet.px,
+                        .frames = step->frames,
+                        .now = planes.now,
+                        .distance_before = planes.distance_before,
+                        .motion = planes.motion,
+                        .ground_x = step->ground[0],
+                        .ground_y = step->ground[1],
+                        .overlap = overlap_of(&planes),
+                        .laid = step->laid,
+                        .region = marker->plan->region};
+    memcpy(shape.paper, wet->paper, 3);
+    memcpy(shape.fill, marker->fill, sizeof shape.fill);
+    const FlWetAround around = {planes.beyond, planes.touches};
+    if (!fl_moving_edge_init(&edge, &shape, &marker->before, error))
+        return false;
+    const float known = (float)edge.known / (float)MAX(edge.n, 1);
+    marker->partner = MAX(known, fl_ease(0.02f, 0.2f, shape.overlap));
+    g_array_set_size(marker->fronts, 0);
+    fl_marks_add_stain(&shape, &edge, &around, &marker->dials, marker->stains);
+    marker->rests = !moves && edge.fastest < 0.02f * wet->sheet.px;
+    return fl_edge_before_take(&marker->before, &shape, &edge, error) &&
+           (marker->dials.front <= 0 || fl_marks_add_front(&shape, &edge, &around, &marker->dials,
+                                                           &wet->sheet, marker->fronts, error));
+}
+
+/** The work of fl_schedule_run(). */
+bool fl_wet_mark_one(void *data, int m, int thread, GError **error)
+{
+    const FlWetStep *step = data;
+    const FlWet *wet = step->wet;
+    FlMarker *marker = &wet->marker[m];
+    const FlRegionPlan *plan = marker->plan;
+    const int now = fl_wet_shown_by(plan, step->frame), before = before_that(wet, plan, now);
+    g_array_set_size(marker->stains, 0);
+    marker->partner = 1;
+    if (!fl_mask_store_has(wet->plan->masks, plan->region, now)) {
+        forget(marker);
+        return true;
+    }
+    if (before < 0 || !fl_mask_store_has(wet->plan->masks, plan->region, before)) {
+        forget(marker);
+        marker->partner = before < 0;
+        return true;
+    }
+    if (now != step->frame) // its last picture is shown again, and wets what it wetted
+        return true;
+    const bool still = fl_mask_store_same(wet->plan->masks, plan->region, before, now) &&
+                       step->ground[0] == 0 && step->ground[1] == 0;
+    if (still && marker->rests)
+        return true;
+    return mark_moving(step, marker, before, now, !still, error);
+}

@@ -1,0 +1,154 @@
+/* Which regions mark the paper, and how far: constants of the film. */
+#include "wet/wet.h"
+
+#include "base/alloc.h"
+#include "guides/distance.h"
+#include "params/text.h"
+#include "wet/curves.h"
+
+#define GROUND_SHARE 0.4 // of the page: a larger region is ground
+
+static double share_of_page(const FlPlan *plan, int region)
+{
+    const FlRegion *r = fl_drawing_region(plan->drawing, region);
+    const double page = (double)fl_drawing_width(plan->drawing) * fl_drawing_height(plan->drawing);
+    const double px = plan->half ? r->area_px / 4 : r->area_px;
+    return px * r->n_present / MAX(fl_drawing_frames(plan->drawing), 1) / page;
+}
+
+bool fl_wet_is_ground(const FlPlan *plan, int region)
+{
+    return share_of_page(plan, region) > GROUND_SHARE;
+}
+
+static bool wants_marks(const FlPlan *plan, const FlRegionPlan *region)
+{
+    const FlFrontStyle *style = &region->style->front;
+    const bool front = region->settings.front * style->width > 0;
+    return (front || region->settings.stain * style->stain > 0) &&
+           !fl_plan_hides(plan, region->region);
+}
+
+bool fl_wet_wanted(const FlPlan *plan)
+{
+    bool wanted = false;
+    for (int p = 0; p < plan->n_painted; p++)
+        wanted = wanted || wants_marks(plan, &plan->painted[p]);
+    return wanted && !fl_plan_is_of_paint(plan);
+}
+
+/** Half the width of a region where it is widest, the mean of some frames, cells. */
+static bool mean_half_width(const FlWet *wet, int region, float *width, GError **error)
+{
+    enum { LOOKS = 6 };
+    const int n = fl_drawing_frames(wet->plan->drawing);
+    float sum = 0;
+    int found = 0;
+    for (int k = 0; k < MIN(LOOKS, n); k++) {
+        const int frame = (int)((int64_t)k * (n - 1) / MAX(MIN(LOOKS, n) - 1, 1));
+        const FlRect box = fl_mask_store_box(wet->plan->masks, region, frame);
+        const FlRect rect = fl_rect_grown(fl_wet_cells_of(wet, box), 2, wet->sheet.page);
+        const size_t pixels = fl_rect_pixels(rect);
+        if (box.width == 0)
+            continue;
+        g_autofree uint8_t *mask = fl_alloc_unset(pixels, 1, "a mask", error);
+        g_autofree float *distance =
+            mask ? fl_alloc_unset(pixels, sizeof *distance, "a distance", error) : NULL;
+        if (!distance || !fl_wet_get_mask(wet, region, frame, rect, mask, error) ||
+            !fl_distance(mask, rect.width, rect.height, distance, error))
+            return false;
+        float most = 0;
+        for (size_t p = 0; p < pixels; p++)
+            most = MAX(most, distance[p]);
+        sum += MIN(most, (float)MAX(rect.width, rect.height)), found++;
+    }
+    *width = found > 0 ? sum / (float)found : 0;
+    return true;
+}
+
+/** Parts as large as the page, and eyes and buttons, mark nothing. */
+static bool size_dials(const FlWet *wet, FlMarker *marker, GError **error)
+{
+    const FlRegionPlan *plan = marker->plan;
+    float width = 0;
+    if (!mean_half_width(wet, plan->region, &width, error))
+        return false;
+    const float page = FL_WET_PAGE_PX * wet->sheet.px;
+    const float dial = (1 - fl_ease(0.22f, 0.40f, (float)share_of_page(wet->plan, plan->region))) *
+                       fl_ease(0.008f, 0.030f, width / page);
+    const double overrun = wet->plan->options.overrun;
+    marker->dials = (FlWetDials){&plan->style->front, dial * (float)plan->settings.front,
+                                 dial * (float)plan->settings.stain, (float)overrun};
+    return true;
+}
+
+/** The mean colour of the first frame with a region, for those of gradients and pictures. */
+static bool find_mean(const FlWet *wet, int region, uint8_t rgb[3], GError **error)
+{
+    const FlDrawing *drawing = wet->plan->drawing;
+    const int first = fl_drawing_region(drawing, region)->first_frame;
+    g_autoptr(FlDrawList) draws = fl_drawing_draw_list(drawing, first, error);
+    for (int k = 0; draws && k < draws->n; k++)
+        if (draws->draw[k].region == region)
+            memcpy(rgb, draws->draw[k].rgb, 3);
+    return draws;
+}
+
+/** The absorbance of a region's colour. */
+static bool find_fill(const FlWet *wet, FlMarker *marker, GError **error)
+{
+    const FlRegionSettings *settings = &marker->plan->settings;
+    const int region = marker->plan->region;
+    const char *paint = fl_drawing_region(wet->plan->drawing, region)->paint;
+    uint8_t rgb[3] = {128, 128, 128};
+    if (settings->has_colour)
+        memcpy(rgb, settings->colour, 3);
+    else if (!fl_text_colour(paint, rgb) && !find_mean(wet, region, rgb, error))
+        return false;
+    for (int c = 0; c < 3; c++)
+        marker->fill[c] = fl_wet_absorbance(rgb[c], wet->paper[c]);
+    return true;
+}
+
+bool fl_wet_make_markers(FlWet *wet, GError **error)
+{
+    const FlPlan *plan = wet->plan;
+    wet->marker = g_new0(FlMarker, MAX(plan->n_painted, 1));
+    for (int p = 0; p < plan->n_painted; p++) {
+        FlMarker *marker = &wet->marker[wet->n_markers];
+        *marker = (FlMarker){.plan = &plan->painted[p]};
+        if (!wants_marks(plan, marker->plan))
+            continue;
+        if (!size_dials(wet, marker, error))
+            return false;
+        if (marker->dials.front <= 0.001f && marker->dials.stain <= 0.001f)
+            continue;
+        if (!find_fill(wet, marker, error))
+            return false;
+        marker->fronts = g_array_new(FALSE, FALSE, sizeof(FlFrontMark));
+        marker->stains = g_array_new(FALSE, FALSE, sizeof(FlStainMark));
+        wet->n_markers++;
+    }
+    return true;
+}
+
+/** The region that the paper moves with; auto: the largest ground. */
+bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error)
+{
+    const char *wanted = plan->options.camera ? plan->options.camera : "auto";
+    const bool none = g_str_equal(wanted, "none"), found = g_str_equal(wanted, "auto");
+    double most = GROUND_SHARE;
+    *camera = -1;
+    for (int r = 0; r < fl_drawing_regions(plan->drawing) && !none; r++) {
+        const double share = share_of_page(plan, r);
+        const bool named = g_str_equal(wanted, fl_drawing_region(plan->drawing, r)->name);
+        if (named || (found && share > most))
+            *camera = r, most = share;
+    }
+    if (*camera >= 0 || none || found)
+        return true;
+    g_set_error(error, FL_ERROR, FL_ERROR_USAGE,
+                "camera “%s”: there is no such region; expected auto, none or the name of one",
+                wanted);
+    return false;
+}

@@ -1,0 +1,61 @@
+#include "wet/wet_data.h"
+
+#include "base/alloc.h"
+
+static FlRect fl_wet_px_of(const FlWet *wet, FlRect cells)
+{
+    const FlDrawing *drawing = wet->plan->drawing;
+    const FlRect page = {0, 0, fl_drawing_width(drawing), fl_drawing_height(drawing)};
+    const int c = wet->cell;
+    return fl_rect_and((FlRect){c * cells.x, c * cells.y, c * cells.width, c * cells.height}, page);
+}
+
+FlRect fl_wet_cells_of(const FlWet *wet, FlRect px)
+{
+    const int c = wet->cell;
+    return fl_rect_between(px.x / c, px.y / c, (px.x + px.width + c - 1) / c,
+                           (px.y + px.height + c - 1) / c);
+}
+
+/** Means of the px of each cell. */
+bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8_t *mask,
+                     GError **error)
+{
+    const FlRect px = fl_wet_px_of(wet, rect);
+    const int c = wet->cell;
+    if (c == 1)
+        return fl_mask_store_get(wet->plan->masks, region, frame, rect, mask, error);
+    g_autofree uint8_t *full = fl_alloc_unset(fl_rect_pixels(px), 1, "a mask", error);
+    if (!full || !fl_mask_store_get(wet->plan->masks, region, frame, px, full, error))
+        return false;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const int right = MIN(c * x + c, px.width), lower = MIN(c * y + c, px.height);
+            int sum = 0, n = 0;
+            for (int j = c * y; j < lower; j++)
+                for (int i = c * x; i < right; i++, n++)
+                    sum += full[(size_t)j * (size_t)px.width + (size_t)i];
+            mask[(size_t)y * (size_t)rect.width + (size_t)x] = (uint8_t)(sum / MAX(n, 1));
+        }
+    return true;
+}
+
+/** The motion in the middle of each cell, in cells. */
+bool fl_wet_get_motion(const FlWet *wet, const FlMarker *marker, int before, int now, FlRect rect,
+                       float *motion, GError **error)
+{
+    const FlRect px = fl_wet_px_of(wet, rect);
+    const int c = wet->cell;
+    g_autofree float *full =
+        fl_alloc_unset(2 * fl_rect_pixels(px), sizeof *full, "a motion", error);
+    if (!full || !wet->motion(wet->motion_data, marker->plan->region, before, now, px, full, error))
+        return false;
+    for (int y = 0; y < rect.height; y++)
+        for (int x = 0; x < rect.width; x++) {
+            const int i = MIN(c * x + c / 2, px.width - 1), j = MIN(c * y + c / 2, px.height - 1);
+            const float *from = full + 2 * ((size_t)j * (size_t)px.width + (size_t)i);
+            float *to = motion + 2 * ((size_t)y * (size_t)rect.width + (size_t)x);
+            to[0] = from[0] / (float)c, to[1] = from[1] / (float)c;
+        }
+    return true;
+}

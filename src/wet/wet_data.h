@@ -1,0 +1,83 @@
+/* The data of an FlWet; private to wet/. */
+#ifndef FLUIDY_WET_WET_DATA_H
+#define FLUIDY_WET_WET_DATA_H
+
+#include "compose/compose_input.h"
+#include "job/plan.h"
+#include "wet/marks.h"
+
+typedef struct FlWet FlWet;
+
+/** Writes the drawing's motion of a region into a frame, as fl_motion_source_get() does. */
+typedef bool (*FlWetMotion)(void *data, int region, int before, int now, FlRect part, float *motion,
+                            GError **error);
+
+/** A region that marks the paper. */
+typedef struct FlMarker {
+    const FlRegionPlan *plan;
+    FlWetDials dials; // by its size in the film
+    float fill[3];    // absorbance
+    FlEdgeBefore before;
+    bool rests;
+    GArray *fronts, *stains; // of FlFrontMark and FlStainMark: those of the last frame
+    float partner;           // share of it that was there a frame before
+} FlMarker;
+
+struct FlWet {
+    const FlPlan *plan;
+    uint8_t paper[3];
+    FlWetMotion motion;
+    void *motion_data;
+    int cell; // px of the drawing
+    FlWetSheet sheet;
+    int n_markers;
+    FlMarker *marker;
+    bool *ground;             // by region
+    int camera;               // the region that the paper moves with; -1: none
+    float camera_x, camera_y; // motion of the paper that is less than a cell
+    uint16_t *lowest[2];      // of the page: the lowest region in each cell, now and before
+    int lowest_frame;         // of lowest[0]
+    FlLaid laid;
+    FlStainLayer layer;
+    int at; // the last frame; -1: none
+};
+
+/** A frame of the film as it is shown. */
+typedef struct FlWetStep {
+    FlWet *wet;
+    int frame;
+    float frames;       // since the step before
+    float ground[2];    // motion of the paper, cells
+    const FlLaid *laid; // of the step before; NULL: not known
+} FlWetStep;
+
+/** The cells that a rectangle of px touches. */
+FlRect fl_wet_cells_of(const FlWet *wet, FlRect px);
+
+/** A region's mask in cells: the means of their px. */
+bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8_t *mask,
+                     GError **error);
+
+/** The motion in the middle of each cell, in cells. */
+bool fl_wet_get_motion(const FlWet *wet, const FlMarker *marker, int before, int now, FlRect rect,
+                       float *motion, GError **error);
+
+/** Whether a region is as large as the page. */
+bool fl_wet_is_ground(const FlPlan *plan, int region);
+
+/** The region that the paper moves with. FL_ERROR_USAGE if there is none of its name. */
+bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error);
+
+/** Makes the regions that mark the paper. */
+bool fl_wet_make_markers(FlWet *wet, GError **error);
+
+/** The frame whose picture a region with a hold shows. */
+int fl_wet_shown_by(const FlRegionPlan *plan, int frame);
+
+/** Finds the marks of region m in a frame: the work of fl_schedule_run(), data is an FlWetStep. */
+bool fl_wet_mark_one(void *data, int m, int thread, GError **error);
+
+/** Makes the layer of the sheet as it is. */
+bool fl_wet_show(FlWet *wet, GError **error);
+
+#endif
