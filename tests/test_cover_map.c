@@ -136,27 +136,6 @@ static void a_region_is_seen_where_any_of_its_draws_is(void)
         fl_draw_clear(&draw[r]);
 }
 
-static void others_but_the_ground_hide_the_paper(void)
-{
-    const bool ground[4] = {true, false, false, false};
-    FlDraw draw[] = {full(0, page), full(1, left_half), full(2, middle), full(3, left_half)};
-    const FlDrawList draws = {4, draw};
-    uint8_t covered[W * H];
-    draw[3].alpha = 51;
-    fl_cover_of_others(&draws, 2, ground, FL_OTHERS_BELOW, page, covered);
-    g_assert_cmpint(covered[8 * W + 15], ==, 255);
-    g_assert_cmpint(covered[8 * W + 25], ==, 0);
-    fl_cover_of_others(&draws, 2, NULL, FL_OTHERS_BELOW, page, covered);
-    g_assert_cmpint(covered[8 * W + 25], ==, 255);
-    draw[1].alpha = 0;
-    fl_cover_of_others(&draws, 2, ground, FL_OTHERS_BELOW, page, covered);
-    g_assert_cmpint(covered[8 * W + 15], ==, 0);
-    fl_cover_of_others(&draws, 2, ground, FL_OTHERS_ALL, page, covered);
-    g_assert_cmpint(covered[8 * W + 15], ==, 51);
-    for (int r = 0; r < 4; r++)
-        fl_draw_clear(&draw[r]);
-}
-
 int main(int argc, char **argv)
 {
     g_test_init(&argc, &argv, NULL);
@@ -168,6 +147,5 @@ int main(int argc, char **argv)
     TEST(the_share_that_is_seen_falls_evenly_as_the_upper_shape_grows_opaque);
     TEST(what_is_sheer_or_blends_hides_nothing);
     TEST(a_region_is_seen_where_any_of_its_draws_is);
-    TEST(others_but_the_ground_hide_the_paper);
     return g_test_run();
 }

@@ -16,8 +16,8 @@ static char *backdrop_file(const FlBackground *background, const FlDrawing *draw
                : g_strdup(background->pattern);
 }
 
-/* Whether all pictures of the background are opaque; one that cannot be read is told when it is
- * its turn. */
+/* Returns: true if all pictures of the background are opaque; one that cannot be read is told when
+ * it is its turn. */
 static bool pictures_are_opaque(const FlBackground *background, const FlDrawing *drawing)
 {
     const int n = fl_input_is_pattern(background->pattern) ? fl_drawing_frames(drawing) : 1;

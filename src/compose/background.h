@@ -1,4 +1,4 @@
-/* What lies below the paint: a colour, a picture or one per frame, or nothing. */
+/* The background below the paint: a colour, a picture, one per frame, or transparency. */
 #ifndef FLUIDY_COMPOSE_BACKGROUND_H
 #define FLUIDY_COMPOSE_BACKGROUND_H
 

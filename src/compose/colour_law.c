@@ -70,7 +70,7 @@ static int64_t lightness16_of(const uint8_t rgb[3])
     return MAX(lightness16(luminance_of(level)), 16 * FRACTION);
 }
 
-/** How light a fill is, and how fast an amount more of its own density darkens it. */
+/** The lightness of a fill, and the speed at which more of its own density darkens it. */
 typedef struct Lightness {
     int64_t lightness16; // L* + 16
     int64_t slope;       // L* an amount
@@ -108,7 +108,7 @@ static int64_t saturation_of(const uint8_t fill[3])
     return most > 0 ? FRACTION * (most - least) / most : 0;
 }
 
-/** How far a fill is near white: light, and not saturated. */
+/** The nearness of a fill to white: light, and not saturated. */
 static int64_t whiteness_of(int64_t lightness16, int64_t saturation)
 {
     return clamp_share((lightness16 - 100 * FRACTION) / 10) *
@@ -195,7 +195,7 @@ static void curve_init(FlColourCurve *curve, const uint8_t rgb[3], const uint8_t
 }
 
 /**
- * How far a channel that is lighter than the paper has come, 0 … 2^30. It turns at an amount of
+ * The progress of a channel that is lighter than the paper, 0 … 2^30. It turns at an amount of
  * one, so that half of all paint would be well below the fill if its way were straight: a cubic is
  * there early. The median of near white moved by up to 4.2 in CIEDE2000, and moves by 2.2.
  */
@@ -229,7 +229,7 @@ static int32_t thick_level(const FlColourCurve *curve, int c, int64_t more)
     return fl_density_level((int32_t)MIN(density, FL_DENSITY_MAX));
 }
 
-/** How much more than one an amount counts: it begins to by a parabola. */
+/** The excess over one of an amount: it begins as a parabola. */
 static int64_t more_than_one(int64_t amount, int64_t knee)
 {
     const int64_t more = amount - FL_AMOUNT_ONE;
@@ -249,7 +249,8 @@ static int32_t level_at(const FlColourCurve *curve, int c, int amount)
                          : thick_level(curve, c, more_than_one(amount, curve->knee));
 }
 
-/** How far a fill counts as light paint on dark paper: by L*, since by luma magenta is dark. */
+/** The degree to which a fill counts as light paint on dark paper: by L*, since by luma magenta is
+ * dark. */
 static int32_t light_share(const uint8_t fill[3], const uint8_t paper[3])
 {
     const int64_t rise = lightness16_of(fill) - lightness16_of(paper);

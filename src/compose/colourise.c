@@ -114,7 +114,7 @@ static void turn_hue(const Fill *fill, int amount, int play, uint8_t colour[3])
     }
 }
 
-/** What an amount of paint looks like on the paper, before pigments play. */
+/** The look of an amount of paint on the paper, before pigments play. */
 typedef struct Look {
     uint8_t colour[3];
     uint8_t opacity; // alpha, at least
@@ -230,7 +230,7 @@ static void colour_flat_play(const FlInk *ink, const FlColouring *colouring,
     }
 }
 
-/** Where row y of an area's box begins in what has been painted. */
+/** The index, in the painted part, of row y of an area's box. */
 static size_t painted_at(const FlPaintedPart *painted, FlRect box, int y)
 {
     const size_t row = (size_t)(box.y + y - painted->box.y) * (size_t)painted->box.width;

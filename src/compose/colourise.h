@@ -7,7 +7,7 @@
 #include "params/region_settings.h"
 
 /**
- * How one region of one frame is coloured.
+ * The colouring of one region of one frame.
  *
  * Amounts of paint have the colours of colour_law.h for the fill, or those of the exemplar on the
  * output's paper.
@@ -17,13 +17,13 @@ typedef struct FlColouring {
     uint8_t fill[3];        // the flat colour
     const uint8_t *picture; // of the area's box, RGBA whose alpha is not read; or NULL
     uint8_t paper[3];       // the output's paper
-    FlMedium medium;        // how much of what is below the paint hides
+    FlMedium medium;        // the opacity of the paint
     const int8_t *play;     // of the box: fl_play_of_pigments(); NULL: paint of one pigment
-    float pigments;         // how far they play, 0..1
+    float pigments;         // the strength of their play, 0..1
     bool linear;            // the layers will be blended in linear light
 } FlColouring;
 
-/** What has been painted in a part of the frame that holds the area's box: 3 bytes of sRGB a pixel.
+/** The paint in a part of the frame that holds the area's box: 3 bytes of sRGB a pixel.
  */
 typedef struct FlPaintedPart {
     const uint8_t *rgb;

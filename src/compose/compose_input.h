@@ -1,4 +1,4 @@
-/* What a frame is composed of. */
+/* The input of a composite frame. */
 #ifndef FLUIDY_COMPOSE_COMPOSE_INPUT_H
 #define FLUIDY_COMPOSE_COMPOSE_INPUT_H
 

@@ -11,7 +11,7 @@
 
 #define NO_DRAW (-1)
 #define STAIN "paper_stain" // no region's name has such a line in it
-#define BLEED_PX 8 // how far colours reach into transparency, for frames that are scaled later
+#define BLEED_PX 8          // reach of colours into transparency, for frames that are scaled later
 
 /* The layers of a frame. */
 typedef struct Stack {
@@ -68,7 +68,7 @@ static size_t layer_pixels(const Stack *stack, int k)
                               : stack->composite->draws->draw[stack->draw[k]].area.box);
 }
 
-/* Whether a layer's paint is a region's. */
+/* Returns: true if a layer has the paint of a region. */
 static bool is_painted(const Stack *stack, int k)
 {
     const int region = stack->composite->draws->draw[stack->draw[k]].region;
@@ -108,7 +108,8 @@ static bool init_underlay(FlUnderlay *above, const Stack *stack, GError **error)
     return fl_underlay_init(above, fl_drawing_width(drawing), fl_drawing_height(drawing), error);
 }
 
-/* Whether all layers are needed at once, since some get their colours from what lies below them. */
+/* Returns: true if all layers are needed at once, since some take their colours from those below.
+ */
 static bool needs_all(const Stack *stack)
 {
     const FlComposeInput *input = stack->sources.input;
@@ -141,7 +142,7 @@ static bool pack_some(FlLayer *layers, int n, GError **error)
     return fl_parallel_error_propagate(error, first);
 }
 
-/* How many pixels of layers are made together: each is culled by those that came before, but too
+/* The number of pixels of layers that are made together: each is culled by those before it, but too
  * few leave threads without work. */
 static size_t pixels_at_once(const Stack *stack)
 {
@@ -264,7 +265,7 @@ static bool fill_layers(FlComposite *composite, const FlComposeInput *input, con
     return true;
 }
 
-/* Which regions hide nothing of what lies below them; n_regions values. */
+/* The regions through which one sees: n_regions values. */
 static bool *find_sheer(const FlComposeInput *input, const FlDrawList *draws)
 {
     bool *sheer = g_new0(bool, MAX(fl_drawing_regions(input->drawing), 1));

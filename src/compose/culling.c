@@ -4,7 +4,7 @@
 #include "base/row_kernels.h"
 #include <string.h>
 
-#define MARGIN_PX 1 // what is seen of an edge depends on its neighbours' coverage
+#define MARGIN_PX 1 // the visible part of an edge depends on its neighbours' coverage
 
 /** A layer's rows among those of the frame. */
 typedef struct Window {

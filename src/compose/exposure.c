@@ -5,8 +5,8 @@
 #include <string.h>
 
 /**
- * What counts of a region in its rectangle: by how much of it is seen. What is hidden counts a
- * little, so that a region of which next to nothing is seen has the exposure of its whole shape.
+ * The weight of each pixel of a region in its rectangle: its visible share. Hidden pixels have a
+ * little weight, so that a region that is nearly hidden has the exposure of its whole shape.
  */
 static uint8_t *what_counts(const FlCover *cover, const FlPaintedRegion *painted, GError **error)
 {

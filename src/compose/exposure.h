@@ -1,4 +1,5 @@
-/* How much paint every region of a frame gets, so that its median has the drawing's colour. */
+/* Exposure: the factor on a region's amounts of paint that gives its median the drawing's colour.
+ */
 #ifndef FLUIDY_COMPOSE_EXPOSURE_H
 #define FLUIDY_COMPOSE_EXPOSURE_H
 

@@ -7,8 +7,8 @@
 #define STEP 64 // amounts that are as easily moved
 #define STEPS (FL_AMOUNTS / STEP)
 
-/* What a height of 1 / FL_TOOTH_ONE does to an amount: wet paint gets that much less, as density;
- * dry paint that much more, of FL_AMOUNT_ONE * 64. */
+/* The effect of a height of 1 / FL_TOOTH_ONE on an amount: wet paint gets that much less, as
+ * density; dry paint that much more, of FL_AMOUNT_ONE * 64. */
 static void fill_strengths(float granulation, int32_t strength[STEPS])
 {
     for (int i = 0; i < STEPS; i++) {

@@ -33,7 +33,7 @@ static inline void fl_count_amount(FlAmountCounts *counts, int amount, uint32_t 
 #define FL_COUNTS_ENOUGH 64 // pixels that are trusted with an exposure
 
 /**
- * What is known of a style's paint.
+ * The properties of a style's paint.
  *
  * The density of a colour S on paper P is -log(S/P) per channel. It is reduced to one number by
  * projecting it on the median interior density v of the exemplar, (D·v) / (v·v): the least-squares

@@ -31,18 +31,18 @@ static Ramps ramps_of(FlMedium medium)
     return (Ramps){rim, medium == FL_MEDIUM_BODY ? (Ramp){-1, 0} : (Ramp){0, PART(3)}};
 }
 
-/** How far an amount hides what lies below it, 0..255. */
+/** The share of what lies below that an amount hides, 0..255. */
 static int hides(const Ramp *ramp, int amount)
 {
     return 255 * (CLAMP(amount, ramp->none, ramp->all) - ramp->none) / (ramp->all - ramp->none);
 }
 
-#define TILE_PX 128                 // a tile and what is around it fit into a processor's own cache
-#define ONE 1024                    // of shares
-#define RIM_SHARE (ONE * 7 / 10)    // up to here a pixel is at the contour; one half is on it
+#define TILE_PX 128              // a tile and what is around it fit into a processor's own cache
+#define ONE 1024                 // of shares
+#define RIM_SHARE (ONE * 7 / 10) // up to here a pixel is at the contour, which itself has one half
 #define INNER_SHARE (ONE * 19 / 20) // from here on amid the shape
 
-/** How far a pixel is amid the shape, 0 … ONE. */
+/** A pixel's depth in the shape, from its contour, 0, to its middle, ONE. */
 static int amid(uint32_t share)
 {
     const int t =
@@ -80,8 +80,8 @@ static int16_t inside_at(const Rows *rows, int x, int left, int right)
 }
 
 /**
- * How much of each pixel of a box is inside a shape, 0..255: of those at its contour, next to one
- * without coverage, what they are covered; all of those within, however faint their fill.
+ * The share of each pixel of a box that is inside a shape, 0..255: the coverage of pixels at its
+ * contour, next to one without coverage; all of those within, however faint their fill.
  */
 static void find_inside(const uint8_t *coverage, int width, int height, FlRect box, int16_t *inside)
 {
@@ -132,7 +132,7 @@ static void sum_tile(Tile *tile, FlRect own, FlRect box, const uint8_t *coverage
     fl_window_sums(tile->inside, tile->around, radius_px, tile->sums);
 }
 
-/** Where rows and columns are in a frame, and what the paint hides. */
+/** The place of a box in a frame, and what the paint hides. */
 typedef struct Windows {
     FlRect box;
     int width, height, radius_px; // of the frame

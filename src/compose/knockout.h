@@ -1,4 +1,4 @@
-/* How far a shape's paint takes the place of what lies below it. */
+/* Knockout: the share of what lies below a shape that its paint replaces. */
 #ifndef FLUIDY_COMPOSE_KNOCKOUT_H
 #define FLUIDY_COMPOSE_KNOCKOUT_H
 

@@ -55,8 +55,9 @@ static void see_columns(const FlLayer *layer, const FlLayersAbove *above, int y,
 }
 
 /**
- * How much of a layer's pixel stays, 0..255, of which the layers above leave `rest` in sight: what
- * is seen through translucent shapes does; what is seen since their paint is thin does by keep.
+ * The share of a layer's pixel that stays, 0..255, of which the layers above leave `rest` in sight:
+ * what is seen through translucent shapes does; what is seen since their paint is thin does by
+ * keep.
  */
 static int faded(int rest, int open, int keep)
 {
@@ -110,7 +111,7 @@ static void grow_area(const FlLayer *layer, FlLayersAbove *above)
 
 void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above)
 {
-    each_run(layer, above, see_columns); // which looks at rows around its own
+    each_run(layer, above, see_columns); // it looks at rows around its own
     each_run(layer, above, resolve_columns);
     if (above->spread && fl_layer_knocks_out(layer))
         grow_area(layer, above);
@@ -246,7 +247,7 @@ static void blend_pixel(const Sum *below, int drawn, const FlTransfer *scale,
 /** A row of the stack, from the paper up to the layer at hand. */
 typedef struct Row {
     FlSums sums;
-    uint8_t *drawn; // how far the shapes below cover each pixel, 0..255
+    uint8_t *drawn; // the share of each pixel that the shapes below cover, 0..255
 } Row;
 
 static void add_shape(const FlLayer *layer, FlColumns span, const uint8_t *coverage, uint8_t *drawn)

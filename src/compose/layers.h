@@ -9,12 +9,12 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/** Where a layer shows less below others, in the size in which it is painted. */
+/** A layer's fading below others, in the size in which it is painted. */
 typedef struct FlFade {
-    FlRect box;    // the layer's, and some pixels around it
-    uint8_t *keep; // what of the layer stays where no paint is above it, 0..255; NULL: all of it
-    uint8_t *open; // what the shapes above and beside a pixel leave open however thick their paint
-                   // is, as translucent ones do, 0..255
+    FlRect box;    // that of the layer, and some pixels around
+    uint8_t *keep; // the share of the layer that stays below bare paper, 0..255; NULL: it stays
+    uint8_t *open; // the share of a pixel that the shapes above and beside it leave open however
+                   // thick their paint is, as translucent ones do, 0..255
 } FlFade;
 
 void fl_fade_clear(FlFade *fade);
@@ -37,7 +37,7 @@ typedef struct FlLayer {
     FlBlendMode blend_mode;  // with what is below it
 } FlLayer;
 
-/** Whether a layer knocks out what lies below it. */
+/** Returns: true if a layer knocks out the layers below. */
 static inline bool fl_layer_knocks_out(const FlLayer *layer)
 {
     return layer->stacking == FL_STACKING_KNOCKOUT && layer->blend_mode == FL_BLEND_MODE_OVER;
@@ -63,7 +63,7 @@ typedef struct FlStackParams {
 bool fl_layers_resolve(FlLayer *layers, int n, int width, int height, const FlStackParams *params,
                        GError **error);
 
-/** What the layers above take of each pixel of a frame. */
+/** The share of each pixel of a frame that the layers above take. */
 typedef struct FlLayersAbove {
     int width, height;
     float gap_px;    // of FlStackParams
@@ -85,7 +85,7 @@ void fl_layer_occlude(FlLayer *layer, FlLayersAbove *above);
  * are hidden. */
 bool fl_layer_pack(FlLayer *layer, GError **error);
 
-/** What lies below the layers: a picture of the frame's size, or one colour; alpha 0: nothing. */
+/** The backdrop of the layers: a picture of the frame's size, or one colour of any alpha. */
 typedef struct FlBackdrop {
     const uint8_t *rgba; // width * height * 4 straight RGBA; NULL: flat
     uint8_t flat[4];

@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What the region or its style asks for; FL_MEDIUM_AUTO: neither does. */
+/* The medium that the region or its style asks for; FL_MEDIUM_AUTO: neither does. */
 static FlMedium asked_medium(const FlPaintedRegion *painted)
 {
     const FlMedium said = painted->settings->medium;
@@ -59,7 +59,7 @@ static FlPaintedPart part_of(const FlPaintedRegion *painted)
     return (FlPaintedPart){painted->painted, painted->rect, painted->alpha};
 }
 
-/* How much paint each pixel of a draw's box has; to be freed with free(). */
+/* The amount of paint of each pixel of a draw's box; to be freed with free(). */
 static int16_t *amounts_of(const FlLayerSources *sources, int r, const FlPaintedRegion *painted,
                            int exposure, GError **error)
 {
@@ -75,7 +75,7 @@ static int16_t *amounts_of(const FlLayerSources *sources, int r, const FlPainted
     return g_steal_pointer(&amounts);
 }
 
-/* What is uneven in a region is its own, whatever else is drawn. */
+/* The unevenness of a region, which does not depend on other regions. */
 static FlUneven uneven_of(const FlLayerSources *sources, const FlPaintedRegion *painted)
 {
     const FlComposeInput *input = sources->input;
@@ -118,7 +118,7 @@ static bool colour_layer(FlLayer *layer, const FlLayerSources *sources,
     return true;
 }
 
-/* Where a layer has been culled, it has no paint. */
+/* Takes the paint of culled pixels away. */
 static void take_culled(const FlLayer *layer, int16_t *amounts)
 {
     if (!layer->owns_coverage)

@@ -7,7 +7,7 @@
 #include "compose/layers.h"
 #include "cover/cover_map.h"
 
-/** What the layers of a frame are made from; borrowed. */
+/** The sources of a frame's layers; borrowed. */
 typedef struct FlLayerSources {
     const FlComposeInput *input;
     const FlCover *cover;       // of the frame
@@ -16,8 +16,7 @@ typedef struct FlLayerSources {
     const FlLayersAbove *above; // that cull it; NULL: it stays whole
 } FlLayerSources;
 
-/** How a region lies over others. Cut out paint hides as far as its alpha does, and so knocks
- * nothing out. */
+/** The stacking of a region. Cut out paint hides by its own alpha alone, and does not knock out. */
 FlStacking fl_stacking_of(const FlPaintedRegion *painted);
 
 /** The layer of a draw, before it is painted: where it is, and how it lies over others. It borrows

@@ -1,4 +1,4 @@
-/* One region as it was painted in a frame: what the stages after the synthesis know of it. */
+/* One region as it was painted in a frame, for the stages after the synthesis. */
 #ifndef FLUIDY_COMPOSE_PAINTED_REGION_H
 #define FLUIDY_COMPOSE_PAINTED_REGION_H
 
@@ -9,7 +9,7 @@
 #include "synth/synth.h"
 #include <string.h>
 
-/** What becomes of a region that is not painted, where else the index of its paint is. */
+/** The fate of a region that is not painted, in place of the index of its paint. */
 enum { FL_DRAWN_AS_IT_IS = -1, FL_LEFT_OUT = -2 };
 
 /** A style in use: its recording, packed for the search, and its ink. */
@@ -28,7 +28,7 @@ typedef struct FlStyleInstance {
     uint8_t paper[3];
 } FlStyleInstance;
 
-/** Where a picture of a region comes from. */
+/** The origin of a region's picture. */
 typedef enum FlPaintOrigin {
     FL_FROM_NOWHERE, // others lie over the region in every frame: it has no picture and no layer
     FL_FROM_FILE,    // that another run has painted
@@ -77,7 +77,7 @@ bool fl_painted_open(FlPaintedRegion *painted, GError **error);
 /** The same before all of it is written: what was there before may be gone. */
 bool fl_painted_renew(FlPaintedRegion *painted, GError **error);
 
-/** A region to read from, whether its picture is packed or not. */
+/** A region to read, its picture packed or not. */
 typedef struct FlPaintedReader {
     FlPaintedRegion region; // whose picture is open
     uint8_t *own;           // picture, if it had to be unpacked

@@ -11,7 +11,7 @@
 #define TOOTH_END 125 // of FL_TOOTH_ONE: 2.2 standard deviations
 #define RIM 12        // three sigma of the blur, so that the file's ends meet
 
-/* How light a pixel of a tile is that goes on beyond its ends; in levels. */
+/* The lightness of a pixel of a tile that goes on beyond its ends; in levels. */
 static float light_at(const FlPicture *tile, int x, int y)
 {
     const int u = (x + tile->width * RIM) % tile->width;
@@ -20,7 +20,7 @@ static float light_at(const FlPicture *tile, int x, int y)
     return (float)(2 * rgba[0] + 5 * rgba[1] + rgba[2]) / 8;
 }
 
-/* What is fine in the tile, and its standard deviation: integers, so that no order decides. */
+/* The fine part of the tile, and its standard deviation: integers, so that no order decides. */
 static float *fine_part(const FlPicture *tile, float *deviation, GError **error)
 {
     const int width = tile->width + 2 * RIM, height = tile->height + 2 * RIM;

@@ -161,7 +161,7 @@ static void octaves_at(const FlPaperPlace *place, int key, const Stretch *at, in
                          noise);
 }
 
-/* Where the felt's bumps lie, bent so that they are not round. */
+/* The place of the felt's bumps, bent so that they are not round. */
 static void bend(const FlPaperPlace *place, const Stretch *at, Stretch *bent)
 {
     const FlPaperGrain *p = place->grain;

@@ -19,7 +19,7 @@ typedef enum FlPaperKind {
 
 #define FL_PAPER_WORDS "cold|hot|rough|laid|kraft"
 
-/** What a kind of paper is made of. Lengths are px of a sheet of scale 1. */
+/** The make of a kind of paper. Lengths are px of a sheet of scale 1. */
 typedef struct FlPaperGrain {
     float grain, stretch, warp;         // of the bumps: size, how much wider than high, bend
     float crease, tooth, tooth_stretch; // weights of finer things
@@ -31,7 +31,7 @@ typedef struct FlPaperGrain {
     float fine_dev;                     // of what is finer than 4 px in it
     float relief, cloud, streak, warm;  // shares of light: of the relief, of slow clouds, of
                                         // fibres, and of blue that comes and goes
-    float flecks;                       // how dark flecks are; 0: none
+    float flecks;                       // darkness of flecks; 0: the paper has no flecks
     uint8_t colour[3];                  // sRGB; of tinted papers, see `tinted`
     bool tinted;                        // it is no white paper: its colour is the ground
 } FlPaperGrain;
@@ -58,7 +58,7 @@ void fl_paper_fibres(const FlPaperPlace *place, FlRect box, float *fibres);
 float fl_paper_cloud(const FlPaperPlace *place, float x, float y);
 float fl_paper_warmth(const FlPaperPlace *place, float x, float y);
 
-/** How much of a fleck is at a place, 0..1. */
+/** The share of a fleck at a place, 0..1. */
 float fl_paper_fleck(const FlPaperPlace *place, float x, float y);
 
 #endif

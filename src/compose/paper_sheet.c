@@ -29,7 +29,7 @@ static float clamp(float x, float low, float high)
 
 /* ---- making ---------------------------------------------------------------------------------- */
 
-/* What a sheet is made from: planes of the sheet and a margin for blur and slope. */
+/* The planes of a sheet and a margin for blur and slope. */
 typedef struct Surface {
     FlPaperPlace place;
     float relief;
@@ -331,7 +331,7 @@ static void light_row16(const uint16_t *factor, uint16_t *rgba, int n)
             (uint16_t)MIN(((uint64_t)rgba[i] * factor[i] + FL_PAPER_ONE / 2) / FL_PAPER_ONE, 65535);
 }
 
-/* What is laid on a sheet: a frame, one of the two, whose corner is at (x, y). */
+/* The thing that is laid on a sheet: a frame, one of the two, whose corner is at (x, y). */
 typedef struct Lit {
     const FlPaperSheet *sheet;
     int x, y, width, height;

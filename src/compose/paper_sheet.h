@@ -35,7 +35,8 @@ typedef struct FlPaperSheet {
 /** The word for a paper that is made and tinted, and so is the ground of a film: its colour. */
 const uint8_t *fl_paper_ground(const char *paper);
 
-/** Whether such a paper can be asked for; NULL: "auto". Does not open its file. FL_ERROR_USAGE. */
+/** Returns: true if this paper can be asked for; NULL: "auto". Does not open its file.
+ * FL_ERROR_USAGE. */
 bool fl_paper_check(const char *paper, GError **error);
 
 /**
@@ -57,7 +58,7 @@ bool fl_paper_sheet_put_away(FlPaperSheet *sheet, GError **error);
 /** The first frame that has the same part of the sheet. */
 int fl_paper_sheet_since(const FlPaperSheet *sheet, int frame);
 
-/** Where a frame begins in the sheet: even numbers. */
+/** The corner of a frame in the sheet: even numbers. */
 void fl_paper_sheet_origin(const FlPaperSheet *sheet, int frame, int *x, int *y);
 
 /**

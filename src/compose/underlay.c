@@ -30,7 +30,7 @@ static bool fade_init(FlFade *fade, const FlLayer *layer, const FlUnderlay *abov
 
 /** Distances of the pixels of a fade's box, fifths of a px. */
 typedef struct Ways {
-    int16_t *to_open; // to what nothing above covers
+    int16_t *to_open; // to a pixel that the shapes above leave open
     int16_t *to_seen; // to where the layer is seen
 } Ways;
 
@@ -97,8 +97,8 @@ static void measure(int16_t *plane, int width, int height, Lines wanted)
                    width);
 }
 
-/** How far off a pixel counts as that is open, or seen, by a share 0..255: not at all in full, and
- * ever farther as the share falls, so that what lies below a shape fades as that grows opaque. */
+/** The distance that a pixel of each share 0..255 adds: 0 if it is open, or seen, in full, and more
+ * as the share falls, so that a lower layer fades while the shape above it grows opaque. */
 static void find_costs(int16_t cost[256])
 {
     cost[0] = FAR;
@@ -106,7 +106,7 @@ static void find_costs(int16_t cost[256])
         cost[share] = (int16_t)(5 * SIDE * (255 - share) / sqrt(255.0 * share));
 }
 
-/** Whether anything lies over the layer's shape. */
+/** Returns: true if the layer lies below any shape. */
 static bool is_below(const FlLayer *layer, const FlUnderlay *above)
 {
     const FlRect own = layer->area.box;
@@ -121,7 +121,7 @@ static bool is_below(const FlLayer *layer, const FlUnderlay *above)
     return any;
 }
 
-/** Notes what is open around the layer, and in keep what is seen of it. */
+/** Fills `open` around the layer, and `keep` with the visible share of the layer. */
 static void mark_pixels(FlFade *fade, const FlLayer *layer, const FlUnderlay *above)
 {
     const FlRect own = layer->area.box, box = fade->box;
@@ -134,7 +134,8 @@ static void mark_pixels(FlFade *fade, const FlLayer *layer, const FlUnderlay *ab
         const uint8_t *open = fade->open + p;
         uint8_t *restrict seen = fade->keep + p;
         for (int x = span.first; x < span.last; x++)
-            seen[x] = (uint8_t)MAX(coverage[x] + open[x] - 255, 0); // where both end, neither
+            seen[x] = (uint8_t)MAX(coverage[x] + open[x] - 255,
+                                   0); // a pixel in which both end shows neither
     }
 }
 
@@ -182,7 +183,7 @@ static void find_ways(const FlFade *fade, const uint8_t *share, Lines wanted, in
     measure(ways, fade->box.width, fade->box.height, wanted);
 }
 
-/** How much of a layer stays, 0..255, where what lies above it is bare of paint: (2.5 out + 6 - to)
+/** The share of a layer that stays, 0..255, below a shape that is bare of paint: (2.5 out + 6 - to)
  * / (out + 4), in px of the frame. */
 static uint8_t kept(int out, int to)
 {
@@ -214,7 +215,7 @@ static bool open_less(FlFade *fade, GError **error)
         for (int ny = MAX(y - beside, 0); ny <= MIN(y + beside, height - 1); ny++)
             for (int x = 0; x < width; x++)
                 own[x] = MIN(own[x], rows[(size_t)ny * (size_t)width + (size_t)x]);
-        int size = 1; // of the windows that least_of is of
+        int size = 1; // of the windows of which least_of has the least
         for (int left = padded; 2 * size <= window; size *= 2)
             lower_by(least_of, left -= size, size);
         lower_by(least_of, width, window - size);

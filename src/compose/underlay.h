@@ -1,10 +1,11 @@
-/* What lies below a shape shows through thin paint of it only where it is seen beyond it, too. */
+/* A lower layer fades below the thin paint of an upper shape unless it goes on beyond that shape.
+ */
 #ifndef FLUIDY_COMPOSE_UNDERLAY_H
 #define FLUIDY_COMPOSE_UNDERLAY_H
 
 #include "compose/layers.h"
 
-/** What the shapes above some layers leave free. */
+/** The share of each pixel that the shapes above some layers leave free. */
 typedef struct FlUnderlay {
     int width, height; // of the frame
     uint8_t *free;     // of each pixel, 0..255

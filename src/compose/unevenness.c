@@ -67,7 +67,7 @@ typedef struct Points {
     int32_t *value;
 } Points;
 
-/* Whether some of n amounts are of a pixel with paint: others are below 0. */
+/* Returns: true if one of n amounts is that of a pixel with paint; others are below 0. */
 static bool any_paint(const int16_t *amounts, int n)
 {
     int all = -1;
@@ -82,7 +82,7 @@ static int square_px(const Points *points, const FlArea *area, int k)
     return MIN(points->step, area->box.width - k * points->step);
 }
 
-/* Which points are corners of a square with paint; of width * height, to be freed. */
+/* Marks the points that are corners of a square with paint; of width * height, to be freed. */
 static uint8_t *corners_of_paint(const Points *points, const FlArea *area, const int16_t *amounts)
 {
     const int step = points->step;

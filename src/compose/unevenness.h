@@ -5,7 +5,7 @@
 
 #include "drawing/drawing.h"
 
-/** How much of a frame each region covers, px. */
+/** The area of a frame that each region covers, px. */
 void fl_region_areas_find(const FlDrawList *draws, int n_regions, double *areas);
 
 /** A region of a frame that has something uneven. */
@@ -24,7 +24,7 @@ void fl_load_unevenly(const FlUneven *where, float load, const FlArea *area, int
 
 #define FL_PLAY_ONE 64 // twice the standard deviation of the play of two pigments
 
-/** Which of two pigments prevails in each pixel of an area: -2 to below 2, in 1 / FL_PLAY_ONE. play
+/** The balance of two pigments in each pixel of an area: -2 to below 2, in 1 / FL_PLAY_ONE. play
  * is of the box, as amounts are; where these are below 0 it means nothing. */
 void fl_play_of_pigments(const FlUneven *where, const FlArea *area, const int16_t *amounts,
                          int8_t *play);

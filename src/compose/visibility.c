@@ -50,7 +50,7 @@ static int mixed_edge(int covered, int above, int cosine256)
                          : chance + (behind - chance) * cosine256 / 256;
 }
 
-/** Whether an edge runs through a pixel. */
+/** Returns: true if an edge runs through a pixel. */
 static bool is_partial(uint8_t value)
 {
     return (uint8_t)(value - 1) < 254;

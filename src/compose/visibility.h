@@ -1,4 +1,4 @@
-/* Mattes: how much of a shape is seen past the shapes above it. */
+/* Mattes: the visible part of a shape below others. */
 #ifndef FLUIDY_COMPOSE_VISIBILITY_H
 #define FLUIDY_COMPOSE_VISIBILITY_H
 

@@ -12,7 +12,7 @@ static void hide_run(const uint8_t *coverage, int opacity, uint8_t *restrict fre
     }
 }
 
-/** Where column 0 of row y of a box is in a part of the frame that holds it. */
+/** The index, in a part of the frame, of column 0 of row y of a box. */
 static ptrdiff_t in_part(FlRect box, FlRect part, int y)
 {
     return (ptrdiff_t)(box.y + y - part.y) * part.width + (box.x - part.x);
@@ -101,7 +101,7 @@ static bool hide_below(const FlDraw *draw, FlHiding hiding, FlRect page, uint8_t
     return core;
 }
 
-/** Whether something lies over a draw. */
+/** Returns: true if a draw lies below another one. */
 static bool is_below(const FlDraw *draw, const uint8_t *free_of, FlRect page)
 {
     uint8_t any = 0;
@@ -181,21 +181,6 @@ FlRect fl_cover_of_region(const FlCover *cover, int region, FlRect part, uint8_t
         }
     }
     return around;
-}
-
-void fl_cover_of_others(const FlDrawList *draws, int region, const bool *ground, FlOthers which,
-                        FlRect part, uint8_t *hidden)
-{
-    memset(hidden, 255, fl_rect_pixels(part));
-    for (int r = 0; r < draws->n; r++) {
-        const FlDraw *draw = &draws->draw[r];
-        if (draw->region != region && !(ground && ground[draw->region]))
-            fl_cover_hide(&draw->area, draw->coverage, fl_opacity(draw), part, hidden);
-        else if (draw->region == region && which == FL_OTHERS_BELOW)
-            break;
-    }
-    for (size_t p = 0; p < fl_rect_pixels(part); p++)
-        hidden[p] = (uint8_t)(255 - hidden[p]);
 }
 
 bool fl_cover_note_seen(const FlDrawList *draws, int width, int height, FlHiding hiding, bool *seen,

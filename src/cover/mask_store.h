@@ -37,13 +37,13 @@ bool fl_mask_store_get_half(const FlMaskStore *masks, int region, int frame, FlR
 /** The rectangle around a mask; {0, 0, 0, 0} if it is blank. */
 FlRect fl_mask_store_box(const FlMaskStore *masks, int region, int frame);
 
-/** Whether a mask that is not blank was put. */
+/** Returns: true if a mask was stored that has some coverage. */
 bool fl_mask_store_has(const FlMaskStore *masks, int region, int frame);
 
-/** Whether a region's masks of two frames are alike: of one box and one CRC. */
+/** Returns: true if a region has the same mask in two frames: one box and one CRC. */
 bool fl_mask_store_same(const FlMaskStore *masks, int region, int a, int b);
 
-/** The rectangle around a region in all frames; {0, 0, 0, 0} if it is never there. */
+/** The rectangle around a region in all frames; {0, 0, 0, 0} if no frame has it. */
 FlRect fl_mask_store_extent(const FlMaskStore *masks, int region);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlMaskStore, fl_mask_store_free)

@@ -4,7 +4,7 @@
 #include "cover/cover_map.h"
 
 #define ALIKE 8.0f   // CIE76: hardly another tone
-#define SHOWN 128    // coverage from which on a shape is there
+#define SHOWN 128    // least coverage of a pixel of a shape
 #define TRAP_PX 4    // neighbours overlap by so much at most where a program traps them
 #define CONTACT_PX 4 // shapes that touch along fewer pixels do not meet
 
@@ -66,12 +66,12 @@ static void add_colour(const FlDraw *draw, int x, int y, uint64_t sum[3])
         sum[c] += draw->picture ? draw->picture[4 * p + (size_t)c] : draw->rgb[c];
 }
 
-/** A pixel at the contour of a shape, and the way out of it to a pixel beside that. */
+/** A pixel at the contour of a shape, and a step to a pixel outside. */
 typedef struct Step {
     int x, y, dx, dy;
 } Step;
 
-/** The contour of a draw; the sides of the frame are none. */
+/** The contour of a draw, without the sides of the frame. */
 static GArray *contour_of(const FlDraw *draw)
 {
     static const int way[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -90,7 +90,7 @@ static GArray *contour_of(const FlDraw *draw)
     return steps;
 }
 
-/** How two draws meet along the contour of the upper one. */
+/** The contact of two draws along the contour of the upper one. */
 typedef struct Contact {
     int length, over;
     uint64_t colour[2][3]; // sums, of both
@@ -144,7 +144,7 @@ static void note_pair(FlNeighbours *neighbours, const FlDraw *lower, const FlDra
     g_mutex_unlock(&neighbours->lock);
 }
 
-/** Whether the neighbours of a draw may be shared. */
+/** Returns: true if a draw may share its edges. */
 static bool counts(const FlDraw *draw, const FlEdge *limits)
 {
     return fl_opacity(draw) > 0 && limits[draw->region] != FL_EDGE_FREE;

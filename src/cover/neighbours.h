@@ -9,7 +9,7 @@ typedef enum FlEdge {
     FL_EDGE_NONE,        // the region has no paint
     FL_EDGE_FREE,        // paint ends with a rim
     FL_EDGE_SAME_COLOUR, // paint goes on into a shape of its colour
-    FL_EDGE_ADJACENT,    // paint goes on up to a shape beside it, without a rim
+    FL_EDGE_ADJACENT,    // paint goes on up to a shape beside the region, without a rim
 } FlEdge;
 
 /**

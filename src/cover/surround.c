@@ -16,7 +16,7 @@ typedef enum Kind {
     N_KINDS,
 } Kind;
 
-/** How far the shapes that share a region's edges are there, 0..255. */
+/** The mean opacity of the shapes that share a region's edges, 0..255. */
 typedef struct Weights {
     uint8_t together, closed;
 } Weights;
@@ -70,7 +70,7 @@ FlMaskStore *fl_surround_masks(const FlSurround *surround)
     return surround->planes;
 }
 
-/** A frame, and room for a plane of it. */
+/** A frame, and room for one plane. */
 typedef struct Frame {
     const FlDrawList *draws;
     const FlCover *cover;
@@ -87,7 +87,7 @@ typedef struct Region {
     const FlEdge *edge; // that it has with each draw
 } Region;
 
-/** Adds up how far shapes are there, by their coverage. */
+/** A mean opacity, weighed by coverage. */
 typedef struct Share {
     uint64_t there, all;
 } Share;
@@ -158,7 +158,7 @@ static bool add_alike(const FlSurround *surround, const Frame *frame, const Regi
         if (!frame->near[r] &&
             !(frame->near[r] = near_seen(frame->cover, r, reach_of(surround), error)))
             return false;
-        // where translucent shapes overlap there is an edge
+        // an edge shows as far as translucent shapes overlap
         const int opacity = (fl_opacity(draw) * region->opacity + 127) / 255;
         add_plane(draw, frame->near[r], page, page.width, opacity, frame->coverage, share);
         *around = fl_rect_or(*around, draw->area.box);
@@ -190,7 +190,7 @@ static bool put(const FlSurround *surround, const Frame *frame, Kind kind, int r
                                   frame->coverage, part, error);
 }
 
-/** What of a frame a region's rim may depend on: more than three borders around it. */
+/** The part of a frame on which a region's rim may depend: more than three borders around it. */
 static FlRect near_region(const FlSurround *surround, FlRect box)
 {
     const FlRect page = {0, 0, surround->width, surround->height};
@@ -274,7 +274,7 @@ static bool put_regions(const FlSurround *surround, const Frame *frame, const Fl
     return true;
 }
 
-/** Stores everything that hides what is below it. */
+/** Stores the share of each pixel that shapes hide. */
 static bool put_shown(const FlSurround *surround, const Frame *frame, GError **error)
 {
     const FlRect page = {0, 0, surround->width, surround->height};

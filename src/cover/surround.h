@@ -1,4 +1,4 @@
-/* What is around a region: shapes that its paint goes on into, and others. */
+/* The surroundings of a region: shapes into which its paint goes on, and others. */
 #ifndef FLUIDY_COVER_SURROUND_H
 #define FLUIDY_COVER_SURROUND_H
 
@@ -23,7 +23,7 @@ FlMaskStore *fl_surround_masks(const FlSurround *surround);
 bool fl_surround_put(FlSurround *surround, int frame, const FlDrawList *draws, const FlEdge *limits,
                      const int *painted_of, const FlNeighbours *neighbours, GError **error);
 
-/** What is around a region, planes of a part of a frame. */
+/** The surroundings of a region, planes of a part of a frame. */
 typedef struct FlSurroundPlanes {
     float joined; // how far shapes of its colour are there: 0: there are none, 1: they are opaque;
                   // see fl_neighbours_edge()
@@ -35,7 +35,7 @@ typedef struct FlSurroundPlanes {
     uint8_t *shown;    // the coverage of all shapes
 } FlSurroundPlanes;
 
-/** Whether there are any with which a region shares edges. */
+/** Returns: true if a region shares edges with any shape. */
 bool fl_surround_joins(const FlSurround *surround, int region, int frame);
 
 /** Whether the shapes with which a region shares edges are the same in two frames, near to it,
