@@ -21,8 +21,13 @@ static bool is_isolated(const xmlNode *node)
     return isolation && strcmp(isolation, "isolate") == 0;
 }
 
-bool fl_has_effects(const xmlNode *node)
+bool fl_changes_as_one(const xmlNode *node)
 {
     return fl_is_set(node, "filter") || fl_is_set(node, "mix-blend-mode") ||
-           fl_is_set(node, "mask") || is_translucent(node) || is_isolated(node);
+           fl_is_set(node, "mask") || is_translucent(node);
+}
+
+bool fl_has_effects(const xmlNode *node)
+{
+    return fl_changes_as_one(node) || is_isolated(node);
 }

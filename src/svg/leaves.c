@@ -265,7 +265,7 @@ static void walk(Walk *w, xmlNode *node)
         if (is_drawn(child) || fl_is_whole(child, w->whole)) {
             const FlLeaf leaf = make_leaf(w, child);
             g_array_append_val(w->leaves->leaf, leaf);
-        } else if (fl_is_container(child) && w->unit < 0 && fl_has_effects(child)) {
+        } else if (fl_is_container(child) && w->unit < 0 && fl_changes_as_one(child)) {
             walk_unit(w, child);
         } else if (fl_is_container(child)) {
             walk_group(w, child);

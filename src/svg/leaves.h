@@ -28,7 +28,7 @@ typedef struct FlLeaf {
 } FlLeaf;
 
 /**
- * A group with opacity, a mask, a filter, a blend mode or isolation: more than one shape in it
+ * A group with opacity, a mask, a filter or a blend mode: more than one shape in it
  * cannot be drawn one by one where they overlap.
  */
 typedef struct FlGroupUnit {
