@@ -197,7 +197,7 @@ result $? 'frames that are layers of one file are painted as if each had a file'
 sed 's|</svg>|<g><use href="#c2"/></g></svg>|; s|groupmode|mode|' film.svg >clones.svg
 "$program" clones.svg --frames-from layers -f 4 --list-regions >out 2>err && grep -q 'hat-aa3311\|red-aa3311 .* 1/1' out
 result $? 'clones of what is in another layer are drawn'
-refuses 'layers of several files are refused' 2 '--frames-from layers: 3 files; expected one, *' layered --frames-from layers $look
+refuses 'layers of several files are refused' 2 '--frames-from layers: 3 files; expected one *' layered --frames-from layers $look
 refuses 'a file without layers is named' 1 'whole/w_0001.svg: no layers *' whole/w_0001.svg --frames-from layers $look
 echo "$drawing<circle r='9' fill='#f00'>
 <animate attributeName='cx' values='0;9' dur='1s'/></circle></svg>" >moves.svg
