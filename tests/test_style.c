@@ -1,10 +1,10 @@
 #include "guides/flow_file.h"
 #include "io/png.h"
 #include "style/estimate.h"
-#include "style/style_folder.h"
 #include "style/manifest.h"
 #include "style/paint_frames.h"
 #include "style/resample.h"
+#include "style/style_folder.h"
 
 #include <glib/gstdio.h>
 #include <math.h>
@@ -117,7 +117,8 @@ static void style_ini_values_are_taken(void)
     write_text(folder, "style.ini",
                "# a comment\n[style]\nname = Ink\nauthor=A. Painter\nfps = 12.5\nborder = 9\n"
                "medium = opaque\npaper = #fed\nlicence=\nmade-by=recipe.ini\n"
-               "missing-orientations = up, down\n[recipe]\nsteps = 3\n");
+               "missing-orientations = up, down\ngranulation = -0.5\n[recipe]\nsteps = 3\n"
+               "[front]\nwidth = 0\ngranulation = 0.75\n");
     g_autoptr(FlStyle) style = fl_style_load(folder, &error);
     g_assert_no_error(error);
     g_assert_cmpstr(style->name, ==, "Ink");
@@ -129,6 +130,10 @@ static void style_ini_values_are_taken(void)
     g_assert_cmpfloat(style->border_px, ==, 9);
     g_assert_cmpint(style->medium, ==, FL_MEDIUM_OPAQUE);
     g_assert_cmpmem(style->paper, 3, "\xff\xee\xdd", 3);
+    g_assert_cmpfloat(style->granulation, ==, -0.5f);
+    g_assert_cmpfloat(style->front.width, ==, 0);
+    g_assert_cmpfloat(style->front.granulation, ==, 0.75f);
+    g_assert_cmpfloat(style->front.stain, ==, 0.42f); // not given
     g_assert_cmpuint(style->guessed, ==, FL_GUESS_MASK | FL_GUESS_FLOW);
     remove_folder(folder);
 }
@@ -146,6 +151,9 @@ static void a_mistake_in_style_ini_is_told_with_its_line(void)
         {"[style]\nfps = 3\nfps = 4\n", "style.ini:3: fps is given a second time"},
         {"[style]\nfps =\n", "style.ini:2: fps = : expected a number"},
         {"[style]\nfps\n", "style.ini:2: “fps” is neither “[section]” nor “key = value”"},
+        {"[front]\nwidth = 2\n", "style.ini:2: width = 2: expected a number from 0 to 1"},
+        {"[front]\nborder = 3\n", "style.ini:2: unknown key “border”: expected one of width"},
+        {"[frnt]\n", "style.ini:1: [frnt]: expected [front]"},
         {"fps = 3\n", "style.ini:1: “fps” stands above the first section"},
     };
     g_autofree char *folder = drop_folder();

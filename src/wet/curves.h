@@ -1,4 +1,5 @@
-/* Curves that the wet paper is made of, from + - * / alone: the same bits on every processor. */
+/* The curves of wet paper, from sums, products and quotients alone: the same bits on every
+ * processor. */
 #ifndef FLUIDY_WET_CURVES_H
 #define FLUIDY_WET_CURVES_H
 

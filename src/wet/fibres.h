@@ -13,11 +13,11 @@ typedef struct FlFibres {
 /** Lengths of the front and the stain are px of a page that is so wide. */
 #define FL_WET_PAGE_PX 480
 
-/** How far water runs at a place in a direction, a unit vector: 0..1, evenly distributed. It
- * changes fast across the direction and slowly along it. */
+/** The run of water at a place in a direction, a unit vector: 0..1, evenly distributed. It changes
+ * fast across the direction and slowly along the fibres. */
 float fl_fibres_run(const FlFibres *fibres, float x, float y, float dx, float dy);
 
-/** How deep the paper is at a place, evenly distributed in 0..1. */
+/** The depth of the paper at a place, evenly distributed in 0..1. */
 float fl_fibres_hollow(const FlFibres *fibres, float x, float y);
 
 /** The same of spots, which are a few times as large. */

@@ -10,7 +10,7 @@ typedef struct Front {
     const FlWetShape *shape;
     const FlMovingEdge *edge;
     const FlWetDials *dials;
-    bool any;        // whether there is any
+    bool any;        // of its cells are wet
     float *width;    // cells that the front reaches ahead
     float *strength; // 0..1: below 1 where a shape outruns its front
 } Front;

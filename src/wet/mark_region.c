@@ -15,7 +15,7 @@ int fl_wet_shown_by(const FlRegionPlan *plan, int frame)
     return frame - frame % plan->settings.hold;
 }
 
-/** The picture before that; -1: none. */
+/** The picture before; -1: this is the first. */
 static int before_that(const FlWet *wet, const FlRegionPlan *plan, int frame)
 {
     const int hold = plan->settings.hold, n = fl_drawing_frames(wet->plan->drawing);
@@ -97,7 +97,7 @@ static bool read_ahead(const FlWet *wet, const FlRegionPlan *plan, int now, Plan
     return true;
 }
 
-/** Where no other paint lay between a region and the paper: bit 0 now, bit 1 before. */
+/** Marks the cells in which a region lies on bare paper: bit 0 now, bit 1 before. */
 static void find_touches(const FlWet *wet, int region, Planes *planes)
 {
     const FlRect rect = planes->rect;
@@ -164,7 +164,7 @@ static void spread(float *distance, FlRect rect, int way)
     }
 }
 
-/** How far each pixel is from the masks ahead, to a twentieth. */
+/** The distance of each pixel to the masks ahead, exact to a twentieth. */
 static void find_beyond(Planes *planes)
 {
     const size_t n = fl_rect_pixels(planes->rect);

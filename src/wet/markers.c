@@ -1,4 +1,4 @@
-/* Which regions mark the paper, and how far: constants of the film. */
+/* The regions that mark the paper, and their dials: constants of the film. */
 #include "wet/wet.h"
 
 #include "base/alloc.h"
@@ -66,7 +66,8 @@ static bool mean_half_width(const FlWet *wet, int region, float *width, GError *
     return true;
 }
 
-/** Parts as large as the page, and eyes and buttons, mark nothing. */
+/** The dials of a region by its size: 0 for parts as large as the page, and for eyes and buttons.
+ */
 static bool size_dials(const FlWet *wet, FlMarker *marker, GError **error)
 {
     const FlRegionPlan *plan = marker->plan;
@@ -132,7 +133,7 @@ bool fl_wet_make_markers(FlWet *wet, GError **error)
     return true;
 }
 
-/** The region that the paper moves with; auto: the largest ground. */
+/** The camera's region; auto: the largest ground. */
 bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error)
 {
     const char *wanted = plan->options.camera ? plan->options.camera : "auto";

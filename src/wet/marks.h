@@ -7,17 +7,17 @@
 #include "wet/moving_edge.h"
 #include "wet/wet_sheet.h"
 
-/** How far a region marks the paper. */
+/** The strength of a region's marks. */
 typedef struct FlWetDials {
     const FlFrontStyle *style;
     float front, stain;
     float overrun; // px of the page
 } FlWetDials;
 
-/** What is around a region; planes of its rect. */
+/** The surroundings of a region, planes of its rect. */
 typedef struct FlWetAround {
     const float *beyond;    // distance to its masks now and in some frames to come, cells; 0 inside
-    const uint8_t *touches; // whether no other paint lies between the region and the paper: bit 0
+    const uint8_t *touches; // the region lies on bare paper: bit 0
                             // now, bit 1 in the frame before
 } FlWetAround;
 

@@ -13,7 +13,7 @@ float fl_wet_absorbance(uint8_t paint, uint8_t paper)
     return CLAMP(density * 0.693147181f, 0.0f, 4.0f);
 }
 
-/** From a point to those around it. */
+/** The neighbours of a point. */
 typedef struct Links {
     int n;
     int32_t to[8];
@@ -33,14 +33,14 @@ float fl_wet_plane_at(const float *plane, FlRect rect, float x, float y)
     return upper + (lower - upper) * ty;
 }
 
-/** Whether a place is not where the page cuts the shape. */
+/** A contour at the very edge of the page is where the page cuts the shape. */
 static bool within_page(const FlWetShape *shape, int x, int y)
 {
     const int px = shape->rect.x + x, py = shape->rect.y + y;
     return px >= 2 && py >= 2 && px < shape->page.width - 2 && py < shape->page.height - 2;
 }
 
-/** Whether the contour crosses between a pixel and one of its four neighbours. */
+/** Says if the contour crosses between a pixel and one of its four neighbours. */
 static bool is_crossed(const FlWetShape *shape, int x, int y)
 {
     const FlRect rect = shape->rect;
@@ -88,7 +88,7 @@ static void find_normal(const FlWetShape *shape, FlEdgePoint *point)
     point->nx = nx / length, point->ny = ny / length;
 }
 
-/** How deep the pixel of a point lies below the edge that leaves it its coverage. */
+/** The depth of a point's pixel below the edge, by its coverage. */
 static void find_depth(const FlWetShape *shape, FlEdgePoint *point)
 {
     const float coverage = coverage_at(shape, (int)point->x, (int)point->y);
@@ -159,7 +159,7 @@ static void find_distances(const FlWetShape *shape, FlMovingEdge *edge)
         }
 }
 
-/** The contour as it is, and all distances to it. */
+/** The contour at rest, and all distances. */
 static bool find_edge(FlMovingEdge *edge, const FlWetShape *shape, GError **error)
 {
     const size_t n = fl_rect_pixels(shape->rect);
@@ -269,7 +269,7 @@ static void link_points(FlRect rect, const FlMovingEdge *edge, Links *links)
             for (int x = MAX(px - 1, 0); x <= MIN(px + 1, rect.width - 1); x++) {
                 const int32_t other = edge->nearest[(size_t)y * (size_t)rect.width + (size_t)x];
                 const FlEdgePoint *there = other >= 0 ? &edge->point[other] : point;
-                const bool own = (int)there->x == x && (int)there->y == y; // it lies there
+                const bool own = (int)there->x == x && (int)there->y == y;
                 if (own && other != i)
                     links[i].to[links[i].n++] = other;
             }

@@ -1,4 +1,4 @@
-/* The contour of a region in a frame, and how it advances over the paper and recedes from it. */
+/* The contour of a region in a frame: its advance and retreat over the paper. */
 #ifndef FLUIDY_WET_MOVING_EDGE_H
 #define FLUIDY_WET_MOVING_EDGE_H
 
@@ -15,7 +15,7 @@ typedef struct FlWetShape {
     float px;                     // cells per px of a page of FL_WET_PAGE_PX
     float frames;                 // since the frame before
     const uint8_t *now;           // coverage 0..255
-    const float *distance_before; // to the contour in the frame before, near to it
+    const float *distance_before; // to the contour in the frame before; true near the shape
     const float *motion;      // of the drawing since the frame before, interleaved; NAN: unknown
     float ground_x, ground_y; // the motion of the paper, likewise
     float overlap;            // share of the smaller of both masks that lies in the other
@@ -25,17 +25,17 @@ typedef struct FlWetShape {
     float fill[3]; // absorbance of its paint, where that is not known
 } FlWetShape;
 
-/** A point of the contour; its values change slowly along it. */
+/** A point of the contour; neighbours have similar values. */
 typedef struct FlEdgePoint {
     float x, y;         // a pixel of rect, cells
-    float depth;        // how far inside the edge its middle lies
-    bool known;         // whether the motion is
+    float depth;        // of its middle inside the edge
+    bool known;         // u and v are the drawing's own
     float nx, ny;       // outward normal
     float u, v;         // motion since the frame before against the paper, cells
     float speed;        // of the contour along its normal against the paper, cells a frame
     float speed_before; // a frame earlier
-    float half_width;   // of the shape there, cells
-    float ink[3];       // absorbance of the paint inside it
+    float half_width;   // of the shape, cells
+    float ink[3];       // absorbance of the paint inside
 } FlEdgePoint;
 
 /** Deeper inside than this no pixel has a nearest point; px of the page. */
@@ -44,7 +44,7 @@ typedef struct FlEdgePoint {
 typedef struct FlMovingEdge {
     int n;
     FlEdgePoint *point;
-    int32_t *nearest; // of rect: the point nearest to each pixel; -1: none
+    int32_t *nearest; // of rect: the point nearest to each pixel; -1: deep inside
     float *distance;  // of rect: to the contour, positive inside
     int known;        // points whose motion is known
     float fastest;    // of all points, cells a frame
@@ -56,14 +56,14 @@ float fl_wet_plane_at(const float *plane, FlRect rect, float x, float y);
 /** The absorbance of paint that is seen on paper, of one channel. */
 float fl_wet_absorbance(uint8_t paint, uint8_t paper);
 
-/** The absorbance of the region's paint as it was laid at a place in rect in the frame before.
- * Returns: false if it was not seen there; then it is that of its fill. */
+/** The absorbance of the region's paint, laid at a place in rect in the frame before. Returns:
+ * false if it was hidden; ink is the fill's then. */
 bool fl_wet_ink_at(const FlWetShape *shape, float x, float y, float ink[3]);
 
 /** A region's contour in the frame before: planes of `rect`. */
 typedef struct FlEdgeBefore {
     FlRect rect;
-    float *distance; // NULL: it was not there
+    float *distance; // NULL: the region is new
     float *speed;    // of the contour nearest to each pixel, cells a frame; NULL: at rest
 } FlEdgeBefore;
 

@@ -34,7 +34,7 @@ static float depth_at(const Passing *pixel, float time)
 typedef struct Cover {
     float most; // its greatest depth
     float when; // of that
-    float last; // when it was uncovered
+    float last; // time at which paint left the pixel
 } Cover;
 
 static Cover cover_in_time(const Passing *pixel, float moved)
@@ -48,7 +48,7 @@ static Cover cover_in_time(const Passing *pixel, float moved)
             const float crossed = depth / MAX(depth - later, 1e-3f);
             cover.last = ((float)k + CLAMP(crossed, 0, 1)) / (float)steps;
         }
-        if (depth >= cover.most || (k == 0 && depth > 0)) // the paint that was seen there, if any
+        if (depth >= cover.most || (k == 0 && depth > 0))
             cover.most = MAX(depth, cover.most), cover.when = (float)k / (float)steps;
         later = depth;
     }
@@ -61,8 +61,8 @@ static float cover_of(float depth)
     return CLAMP(depth + 0.5f, 0, 1);
 }
 
-/** How much of its paint the paper keeps: of thin and fast strokes less, and none of what has
- * vanished without moving. */
+/** The share of its paint that the paper keeps: less of thin and fast strokes, 0 of shapes that
+ * vanish without moving. */
 static float kept_of(const Passing *pixel, float moved, float ahead)
 {
     const FlWetShape *shape = pixel->shape;

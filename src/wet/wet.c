@@ -95,7 +95,7 @@ static bool update_lowest(FlWet *wet, int before, int frame, GError **error)
     return find_lowest(wet, frame, last, error);
 }
 
-/** How the paper has moved since the frame before. */
+/** The motion of the paper since the frame before. */
 static void follow_camera(const FlWet *wet, int before, int frame, float ground[2])
 {
     ground[0] = ground[1] = 0;
@@ -157,7 +157,7 @@ static bool do_step(FlWet *wet, int before, int frame, const FlLaid *laid, GErro
     return mark_all(&step, error);
 }
 
-/** Whether the drawing changes in a frame. */
+/** Says if the drawing changes in a frame. */
 static bool is_new(const FlWet *wet, int frame)
 {
     return frame % wet->plan->hold == 0 && fl_drawing_shown(wet->plan->drawing, frame) == frame;

@@ -7,7 +7,7 @@
 /** Frames after which no mark is left: so many before it starts a part of a film has to know. */
 #define FL_WET_FRAMES 36
 
-/** Whether any region of the plan marks the paper. */
+/** Says if any region of the plan marks the paper. */
 bool fl_wet_wanted(const FlPlan *plan);
 
 /** The plan is borrowed, and its masks are rasterised. paper: on which paint is thought to lie. */
@@ -21,7 +21,7 @@ void fl_wet_free(FlWet *wet); // NULL is fine
  */
 bool fl_wet_frame(FlWet *wet, int frame, GError **error);
 
-/** Whether it has come to any frame yet. */
+/** Says if it has come to any frame yet. */
 bool fl_wet_begun(const FlWet *wet);
 
 /** The state after the last frame, from which another run goes on; to be freed with

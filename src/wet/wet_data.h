@@ -33,13 +33,13 @@ struct FlWet {
     int n_markers;
     FlMarker *marker;
     bool *ground;             // by region
-    int camera;               // the region that the paper moves with; -1: none
+    int camera;               // the region that carries the paper along; -1: the paper stays
     float camera_x, camera_y; // motion of the paper that is less than a cell
     uint16_t *lowest[2];      // of the page: the lowest region in each cell, now and before
     int lowest_frame;         // of lowest[0]
     FlLaid laid;
     FlStainLayer layer;
-    int at; // the last frame; -1: none
+    int at; // the last frame; -1: before the first
 };
 
 /** A frame of the film as it is shown. */
@@ -62,10 +62,10 @@ bool fl_wet_get_mask(const FlWet *wet, int region, int frame, FlRect rect, uint8
 bool fl_wet_get_motion(const FlWet *wet, const FlMarker *marker, int before, int now, FlRect rect,
                        float *motion, GError **error);
 
-/** Whether a region is as large as the page. */
+/** Says if a region is as large as the page. */
 bool fl_wet_is_ground(const FlPlan *plan, int region);
 
-/** The region that the paper moves with. FL_ERROR_USAGE if there is none of its name. */
+/** Finds the region that carries the paper along; FL_ERROR_USAGE for an unknown name. */
 bool fl_wet_find_camera(const FlPlan *plan, int *camera, GError **error);
 
 /** Makes the regions that mark the paper. */

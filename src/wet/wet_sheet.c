@@ -162,7 +162,7 @@ static float between(float a, float b, float weight)
     return a + (b - a) * weight;
 }
 
-/** A cell has one stain, the stronger: once that is gone, nothing is left of what was before. */
+/** A cell has one stain, the stronger: the weaker leaves no trace. */
 static void stain_cell(const FlWetSheet *sheet, const FlFrontStyle *style, const FlStainMark *mark,
                        FlWetCell *cell)
 {
@@ -202,7 +202,7 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, float frames, const GArray *fronts)
     }
 }
 
-/** The density of the stain of a cell at a place in it. */
+/** The density of a cell's stain at a place of the cell. */
 static float stain_at(const FlWetSheet *sheet, const FlWetCell *cell, float hollow, float spot)
 {
     if (cell->stain <= 0 && cell->film <= 0)

@@ -22,7 +22,7 @@ typedef struct FlStainMark {
     float ink[3];
 } FlStainMark;
 
-/** What a cell holds. Inks are absorbances. */
+/** The contents of a cell. Inks are absorbances. */
 typedef struct FlWetCell {
     float front; // density of a front, 0..1
     float front_ink[3];
@@ -56,7 +56,7 @@ void fl_wet_sheet_clear(FlWetSheet *sheet);
 
 FlPaperGrains fl_wet_sheet_grain(const FlWetSheet *sheet, int32_t cell);
 
-/** Moves all that is on the paper along with it, by whole cells. */
+/** Moves the paper with all marks, by whole cells. */
 bool fl_wet_sheet_move(FlWetSheet *sheet, int dx, int dy, GError **error);
 
 /** Makes it the sheet of a state: cells are of `wet`, and the paper has moved. */
@@ -74,7 +74,7 @@ void fl_wet_sheet_wet(FlWetSheet *sheet, float frames, const GArray *fronts);
 
 /**
  * The marks as a layer of the frame: over the paper, it multiplies that by what they let through.
- * layer->rgba is owned by the caller; NULL: there are none.
+ * layer->rgba is owned by the caller; NULL: the paper is clean.
  */
 bool fl_wet_sheet_layer(const FlWetSheet *sheet, const uint8_t paper[3], FlStainLayer *layer,
                         GError **error);

@@ -107,7 +107,7 @@ static bool lies_in(FlRect rect, FlRect page)
            rect.x <= page.width - rect.width && rect.y <= page.height - rect.height;
 }
 
-/** Whether n floats are numbers that a film can have. */
+/** Says if n floats are numbers that a film can have. */
 static bool are_sane(const float *value, size_t n)
 {
     bool sane = true;
@@ -116,7 +116,7 @@ static bool are_sane(const float *value, size_t n)
     return sane;
 }
 
-/** Whether the header fits the film. */
+/** Says if the header fits the film. */
 static bool header_fits(const State *state, const FlWet *wet)
 {
     const SheetState *sheet = state->sheet;
@@ -146,7 +146,7 @@ static bool make_room(const State *state, FlWet *wet, GError **error)
     return true;
 }
 
-/** Whether all that was read can be used as an index, or be computed with. */
+/** Says if all indices and numbers are in range. */
 static bool parts_fit(const State *state, const FlWet *wet)
 {
     const size_t page = fl_rect_pixels(wet->sheet.page);
