@@ -4,21 +4,21 @@
 
 #include "compose/painted_region.h"
 
-/** What a region is painted with; all of it outlives the region's state. */
+/** The input of a region's painting; it outlives the region's state. */
 typedef struct FlEngineInput {
     const FlStyleInstance *style;
-    const FlStyleInstance *tile; // whose tile moves the paint; NULL: none does
+    const FlStyleInstance *tile; // its tile moves the paint; may be NULL
     const FlRegionSettings *settings;
     FlSynthSize size; // of the picture, and of the frames
     uint64_t seed;    // of the render and the region
 } FlEngineInput;
 
-/** What an engine gives back for a frame. */
+/** The output of an engine for a frame. */
 typedef struct FlEnginePaint {
     uint8_t *rgb;        // width * height * 3 sRGB in the style's colours, its paper without paint
     uint8_t *alpha;      // width * height, of the colours in rgb; NULL unless it has a reach
-    FlFrameStats *stats; // zeroed; an engine may leave it
-    FlSynthView *view;   // zeroed; NULL: not needed. An engine without a field leaves it
+    FlFrameStats *stats; // zeroed; an engine may ignore it
+    FlSynthView *view;   // zeroed; NULL: not needed. Engines without a field ignore it
 } FlEnginePaint;
 
 /**
@@ -28,35 +28,34 @@ typedef struct FlEnginePaint {
  */
 typedef struct FlEngine {
     const char *name;
-    bool (*claims)(const char *style_folder); // whether it is the engine of a style; NULL: of none
+    bool (*claims)(const char *style_folder); // true for styles that want it; may be NULL
     /** The exposure of a style's paint whose amounts are meant as they are; NULL: it is measured.
      */
     int (*exposure)(const FlStyleInstance *style);
-    /** How far beyond its region paint has alpha of its own, px; 0, and NULL: it has no such alpha.
+    /** Paint has alpha of its own, up to this distance beyond its region, px. 0 or NULL: no alpha.
      */
     float (*reach)(const FlStyleInstance *style, const FlParams *params);
-    bool refines;  // by the patches of its style, if ‘refine’ asks for it
+    bool refines;  // fits patches of its style under ‘refine’
     bool enlarges; // takes an exemplar of half the size of its picture
     bool plays;    // shows the recording: whether it flows and is large enough matters
     /** Returns: the state before the first frame; NULL with an error set. */
     void *(*open)(const FlEngineInput *input, GError **error);
     void (*close)(void *state); // NULL is fine
-    /** Whether statistics hold energies; NULL: it costs nothing, or there are none. */
+    /** Switches energies in the statistics on or off; NULL: they are free, or missing. */
     void (*measure)(void *state, bool energies);
     /** The next frame, in order; clears the guides only if they are disposable. An empty mask makes
      * the next one a first frame again. Guides of a part of the frame come to engines that rest. */
     bool (*frame)(void *state, FlGuides *guides, const FlEnginePaint *paint, GError **error);
-    /** The next frame where its guides are those of the frame before and nothing moves: that keeps
-     * its picture. Returns: false, and nothing has happened: it is to be painted. NULL: it always
-     * is. */
+    /** Makes the next frame from the last one, when all guides are equal and still: it keeps the
+     * picture. Returns: false if the frame must be painted instead. NULL: always paint it. */
     bool (*rest)(void *state);
-    /** For how many frames paint still changes after the drawing has come to rest; NULL: for none.
-     * So long regions and their parts do not rest. */
+    /** The number of frames in which paint still changes after the drawing has come to rest; may be
+     * NULL. Until then regions and their parts do not rest. */
     int (*drying)(const FlStyleInstance *style, const FlParams *params);
-    /** The guides of the frame just painted, if that had a view and levels in its statistics; NULL:
-     * it has none. FL_ERROR_NO_MEMORY. */
+    /** The guides of the frame just painted, which had a view and levels in its statistics. May be
+     * NULL. FL_ERROR_NO_MEMORY. */
     bool (*guide_pairs)(const void *state, FlGuidePairs *pairs, GError **error);
-    /** What the next frame depends on, to be freed with g_bytes_unref(); NULL with an error set. */
+    /** Saves the state for the next frame, to be freed with g_bytes_unref(); NULL with an error. */
     GBytes *(*save)(void *state, GError **error);
     /** FL_ERROR_CHANGED if the bytes are damaged or do not fit; they need not be trusted. */
     bool (*load)(void *state, GBytes *bytes, GError **error);

@@ -6,9 +6,10 @@
 #include "job/style_cache.h"
 
 /**
- * The engine of a region that is painted with a style: fl_engine_choose(), or around that the one
- * that moves its paint by the tile of another style, *tile, borrowed from the cache; NULL: none.
- * texture_px: as of fl_style_cache_get().
+ * Chooses the engine of a region: fl_engine_choose(), or with settings->tile one that wraps it and
+ * moves its paint by the tile of that style.
+ *
+ * *tile: borrowed from `styles`; NULL without settings->tile. texture_px: see fl_style_cache_get().
  *
  * Returns: NULL with FL_ERROR_STYLE, FL_ERROR_USAGE or FL_ERROR_NO_MEMORY set.
  */

@@ -43,7 +43,7 @@ static bool may_write(const FlPlan *plan, char *name, GError **error)
     return fl_inputs_may_write(plan->inputs, plan->drawing, name, error);
 }
 
-/* Checks the files that are in a folder of each region, below `in`; NULL: nothing is written. */
+/* Checks the files in a folder of each region, below `in`, which may be NULL. */
 static bool may_fill_folders(const FlPlan *plan, const char *in, GError **error)
 {
     for (int p = 0; in && p < plan->n_painted; p++) {

@@ -1,4 +1,4 @@
-/* The files that a render writes, and the guard that none of them is one that it reads. */
+/* The files that a render writes, and the guard against overwriting those that it reads. */
 #ifndef FLUIDY_JOB_OUTPUTS_H
 #define FLUIDY_JOB_OUTPUTS_H
 

@@ -42,14 +42,14 @@ static char *anchor_text(const FlAnchor *anchor)
     return g_string_free(text, FALSE);
 }
 
-/* Whether the numbers are an anchor's; those of a file may be anything. */
+/* True if the numbers, which a file may hold in any size, make an anchor. */
 static bool is_anchor(const float value[4])
 {
     const bool near = fabsf(value[0]) <= FL_POSE_MOST_PX && fabsf(value[1]) <= FL_POSE_MOST_PX;
     return near && fabsf(value[2]) <= 1 && fabsf(value[3]) <= 1;
 }
 
-/* Where the file does not tell, as one that another program has written, it stays as it is. */
+/* Files of other programs have no anchor; then it stays unchanged. */
 static void load_anchor(const char *path, FlAnchor *anchor)
 {
     g_autofree char *text = fl_png_text(path, ANCHOR);

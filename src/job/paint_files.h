@@ -4,7 +4,7 @@
 
 #include "job/plan.h"
 
-/** Where ebsynth writes a region's paint, below the folder of --ebsynth. */
+/** The file of a region's paint that ebsynth writes, below the folder of --ebsynth. */
 #define FL_EBSYNTH_OUTPUT "{region}/out_%04d.png"
 
 /**
@@ -22,7 +22,7 @@ char *fl_paint_file_name(const char *pattern, const FlDrawing *drawing, const Fl
 bool fl_paint_file_save(const FlPaintedRegion *painted, FlPaintArea area, const char *path,
                         bool overwrite, GError **error);
 
-/** Sets region->place from the first frame's file of its paint, if that is there and says it. */
+/** Sets region->place if the file of its paint in the first frame exists and has a place. */
 void fl_paint_file_find_place(const FlDrawing *drawing, FlRegionPlan *region);
 
 /** Reads the part painted->rect of such a file, or one that has that part alone. FL_ERROR_INPUT. */

@@ -91,7 +91,7 @@ static void list_inputs(FlPlan *plan)
     fl_inputs_add_options(plan->inputs, &plan->options, plan->drawing, regions);
 }
 
-/* What a merge needs to know of the paint before it reads any. */
+/* Finds the places of the paint and the hidden regions before a merge reads any paint. */
 static bool look_at_paint(FlPlan *plan, GError **error)
 {
     for (int p = 0; p < plan->n_painted; p++)

@@ -9,7 +9,7 @@
 #include "keep/store.h"
 #include "params/config.h"
 
-/** How much of a render an earlier one has finished. */
+/** The part of a render that an earlier one has finished. */
 typedef enum FlFinished {
     FL_FINISHED_NOTHING,
     FL_FINISHED_FRAMES, // the film is missing
@@ -50,14 +50,14 @@ typedef struct FlPlan {
     int n_finished;           // frames of what is finished
     gint64 start;             // microseconds, as g_get_monotonic_time()
     const FlSinkFormat *format;
-    char *movie; // the film made of the frames; NULL: none
+    char *movie; // the film made of the frames; may be NULL
     const FlSinkFormat *movie_format;
     uint8_t paper[3];
 } FlPlan;
 
 /**
- * Reads config and drawing and settles how every region is painted. Paints nothing, writes nothing.
- * Where all is finished, see plan->finished, it reads no drawing.
+ * Reads config and drawing and settles how every region is painted, without painting or writing.
+ * If plan->finished is FL_FINISHED_ALL, no drawing is read and the later fields are unset.
  *
  * Returns: to be freed with fl_plan_free(); NULL with an error of FL_ERROR.
  */
@@ -76,21 +76,21 @@ FlPlan *fl_plan_follow(FlPlan *before, const FlRenderOptions *options, size_t me
 
 void fl_plan_free(FlPlan *plan); // NULL is fine
 
-/** Whether frames are all that comes of the paint, here or in a merge, so that what is hidden in
- * them needs none: layers can be moved apart. */
+/** True if paint is used for frames only, here or in a merge, so that hidden regions need no paint.
+ * Layers, which can be moved apart, show them. */
 bool fl_plan_frames_alone(const FlPlan *plan);
 
-/** Which of so many frames a part of a merge composes. */
+/** The frames, of so many, that a part of a merge composes. */
 void fl_plan_part(const FlPlan *plan, int n_frames, int *first, int *end);
 
-/** Whether memory counts: pictures wait packed then, and what stages leave over goes back to the
- * system. On small pages it would take a tenth of a draft to fault that in again. */
+/** True if frames are so large that pictures wait packed and free memory returns to the system
+ * after each stage. On small pages, faulting it in again would take a tenth of a draft. */
 bool fl_plan_is_large(const FlPlan *plan);
 
-/** Whether paint is all that is made, as in the task of a farm: nothing is composed. */
+/** True if only paint is made, as in the task of a farm; then no frame is composed. */
 bool fl_plan_is_of_paint(const FlPlan *plan);
 
-/** Whether others hide a region in every frame, and frames are all that comes of its paint; known
+/** True if other regions hide this one in every frame, and its paint is used for frames only. Known
  * after fl_plan_rasterise() or fl_plan_find_hidden(), and in a merge. */
 bool fl_plan_hides(const FlPlan *plan, int region);
 

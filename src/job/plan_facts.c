@@ -84,7 +84,7 @@ void fl_facts_add_options(FlFacts *facts, FlOptionScope scope, const void *objec
     add_values(facts, scope, object, region, true);
 }
 
-/* What an option's value leads to, and then the values. */
+/* The results of options, then their values. */
 static void add_options(FlFacts *facts, const FlPlan *plan)
 {
     fl_facts_add(facts, "the format", plan->format->name);
@@ -162,7 +162,7 @@ FlFacts *fl_plan_facts(const FlPlan *plan)
 
 /* ---- the paint of one region ---------------------------------------------------------------- */
 
-/* The build stands for the method and for all that it is made from. */
+/* The build id stands for the code of the method. */
 static void add_method(FlFacts *facts, const FlShapes *shapes, const FlRegionPlan *painted)
 {
     fl_facts_add(facts, "the build of fluidy-svg", fl_build_id());
@@ -200,7 +200,7 @@ void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
 {
     const FlRegionPlan *painted = &plan->painted[p];
     add_drawings(facts, plan);
-    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) // layers of one file differ in it
+    for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) // by which layers of one file differ
         fl_facts_add_number(facts, "the number of a frame", fl_drawing_number(plan->drawing, f));
     add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
     fl_facts_add_number(facts, "the hold", plan->hold);
@@ -211,7 +211,8 @@ void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
         add_pattern(facts, plan, painted->flow_files, painted->name);
 }
 
-/* ---- what was asked for ---------------------------------------------------------------------- */
+/* ---- the request ------------------------------------------------------------------------------
+ */
 
 /* Those that decide bytes in whatever way; not how frames become a film. */
 static void add_requested(FlFacts *facts, const FlRenderOptions *options)
@@ -234,7 +235,7 @@ static void add_requested(FlFacts *facts, const FlRenderOptions *options)
 FlDigest fl_request_digest(const FlPlan *plan, const FlSequence *sequence)
 {
     g_autoptr(FlFacts) facts = fl_facts_new();
-    g_autofree char *folder = g_get_current_dir(); // where relative names begin
+    g_autofree char *folder = g_get_current_dir(); // relative names begin here
     fl_facts_add(facts, "the build of fluidy-svg", fl_build_id());
     fl_facts_add_versions(facts);
     fl_facts_add(facts, "the working directory", folder);

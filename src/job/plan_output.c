@@ -12,7 +12,7 @@ static char *default_output(const FlPlan *plan)
     return g_strdup_printf("fluidy/{name}%s%s", plan->format->film ? "" : "_%04d", suffix);
 }
 
-/* The frames of a film are beside it: walk_0001.png, … of walk.mov. */
+/* The frames of a film lie in its folder: walk_0001.png, … beside walk.mov. */
 static char *frames_of_movie(const FlPlan *plan)
 {
     const char *suffix = plan->movie_format->suffix;
@@ -50,8 +50,7 @@ static bool name_output(FlPlan *plan, const FlSequence *sequence, GError **error
     return choose_frames(plan, error);
 }
 
-/* What stands for the regions of a run in the name of a file: they, or where they are many, a sum.
- * To be freed. */
+/* The names of a run's regions as part of a file name; a checksum if they are long. To be freed. */
 static char *short_name(const char *regions)
 {
     enum { LONGEST = 100, DIGITS = 16 };
@@ -97,7 +96,7 @@ static bool parse_part(FlPlan *plan, GError **error)
     return true;
 }
 
-/* A part of a merge makes no film, and who makes the film composes nothing. */
+/* A part of a merge makes no film, and the run that makes the film composes no frames. */
 static bool choose_part(FlPlan *plan, GError **error)
 {
     const char *part = plan->options.part;

@@ -49,7 +49,7 @@ static FlEdge edge_limit_of(const FlRenderOptions *options, const FlRegionSettin
     return apart ? FL_EDGE_SAME_COLOUR : FL_EDGE_ADJACENT;
 }
 
-/* Whether `region` does not name a region. */
+/* True unless `region` names a region. */
 static bool is_left_out(const FlPlan *plan, const char *name)
 {
     const char *only = plan->options.only_region;

@@ -7,7 +7,7 @@
 /** Names the output and looks whether it is free, before the drawing is read. */
 bool fl_plan_find_output(FlPlan *plan, GError **error);
 
-/** Which regions are painted, with which settings, once the drawing is open. */
+/** Chooses the regions that are painted and their settings; the drawing is open. */
 bool fl_plan_find_regions(FlPlan *plan, GError **error);
 
 /** The style and engine of each painted region, once the size of the picture is known. */

@@ -33,7 +33,7 @@ static bool warn(const FlPlan *plan, GError **error, const char *format, ...)
     return !plan->options.strict;
 }
 
-/* Warnings about a style, once, with the first region that uses it. */
+/* Warns about a style, once, for the first of its regions. */
 static bool warn_of_style(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
     enum { MUCH_BEYOND = 10 };  // percent
@@ -67,7 +67,7 @@ static float texture_px(const FlPlan *plan, const FlParams *params)
     return plan->half ? .5f : 1;
 }
 
-/* What goes to ebsynth are pairs of guides. */
+/* Pairs of guides are exported to ebsynth; the engine must have them. */
 static bool check_export(const FlPlan *plan, const FlRegionPlan *painted, GError **error)
 {
     if (!plan->options.ebsynth || plan->options.merge || painted->engine->guide_pairs)

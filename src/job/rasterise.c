@@ -4,7 +4,7 @@
 #include "cover/cover_map.h"
 #include <stdatomic.h>
 
-/* How the regions of a frame meet. */
+/* Notes the edges that regions of a frame share. */
 static bool note_edges(FlPlan *plan, FlNeighbours *neighbours, int frame, GError **error)
 {
     g_autoptr(FlDrawList) draws = fl_drawing_draw_list(plan->drawing, frame, error);
@@ -38,7 +38,7 @@ static void begin_visible_regions(FlPlan *plan)
         plan->seen[r] = plan->painted_of[r] < 0;
 }
 
-/* Whether something of every region has been seen, or nobody asks. */
+/* True if some of every region has been seen, or if this is not asked for. */
 static bool all_seen(const FlPlan *plan)
 {
     for (int p = 0; p < plan->n_painted && plan->seen; p++)
@@ -88,7 +88,7 @@ typedef struct Pass {
     bool (*work)(FlPlan *, FlNeighbours *, int, GError **);
     double before, share; // of this stage: done in earlier passes, and this one's
     atomic_int done;      // frames
-    GThread *caller;      // who tells the progress
+    GThread *caller;      // the thread that tells the progress
 } Pass;
 
 static bool tell_masks(Pass *pass, int frame, GError **error)

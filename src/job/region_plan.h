@@ -7,17 +7,17 @@
 #include "drawing/drawing.h"
 #include "job/engine.h"
 
-/** How one region is painted. */
+/** The plan for painting one region. */
 typedef struct FlRegionPlan {
     int region;       // index into the drawing's regions
     const char *name; // borrowed
     double area_px;   // mean, to balance the work
     FlRegionSettings settings;
     const FlStyleInstance *style; // borrowed
-    const FlStyleInstance *tile;  // borrowed: its tile moves the paint; NULL: none does
+    const FlStyleInstance *tile;  // borrowed: its tile moves the paint; may be NULL
     const FlEngine *engine;
     const char *paint_files; // borrowed: pattern of files of its paint; NULL: it is painted
-    FlRect place;            // of the paint in those files; width 0: they do not say it
+    FlRect place;            // of the paint in those files; width 0: not known
     const char *flow_files;  // borrowed: pattern of flow files; NULL: flow from the masks
     bool keeps_flow;         // for a dump
     bool loops;              // the film's end leads into its beginning
@@ -28,7 +28,7 @@ typedef struct FlShapes {
     int n_frames, width, height; // of the drawing as it is painted, px
     uint64_t seed;
     const FlMaskStore *masks;
-    const FlSurround *surround; // NULL: nothing else is in the picture
+    const FlSurround *surround; // NULL: the picture has no other shapes
     const FlDrawing *drawing;   // NULL: masks alone, which have no motion of their own
     /**
      * The flow into a frame from the one before, 2 * width * height floats, interleaved; values

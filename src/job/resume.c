@@ -32,7 +32,7 @@ static bool may_overwrite(const FlPlan *plan)
     return plan->options.overwrite == FL_OVERWRITE_YES;
 }
 
-/* Loads the record of an earlier run into resume->record, if this one resumes it. */
+/* Loads the record of an earlier run into resume->record, unless this run starts anew. */
 static bool find_record(FlResume *resume, const FlPlan *plan, const FlFacts *facts, GError **error)
 {
     if ((may_overwrite(plan) && !plan->options.resume) ||
@@ -72,7 +72,7 @@ static bool frame_is_free(const FlPlan *plan, const char *file, GError **error)
     return false;
 }
 
-/* The digest of a frame's files; none if one is missing. */
+/* The digest of a frame's files; zero if one is missing. */
 static FlDigest digest_of(const GPtrArray *files)
 {
     FlDigest digest = {0};
@@ -118,7 +118,7 @@ static bool is_finished(const FlResume *resume, const FlPlan *plan, int frame,
            refuse_frame(plan, files->pdata[0], "it has changed since", error);
 }
 
-/* The files of a finished frame must be there, those of others must not, unless they are ours. */
+/* Files of a finished frame must exist; files of other frames must not, unless they are ours. */
 static bool check_frame(const FlResume *resume, const FlPlan *plan, int frame, GError **error)
 {
     g_autoptr(GPtrArray) files = fl_frame_files(plan, frame, error);
@@ -268,8 +268,8 @@ bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GEr
 {
     if (!check_drawing(plan, frame, error))
         return false;
-    // The first record is saved before the first frame, which is not known as ours without it; no
-    // sooner, so that an error in the first frame leaves nothing behind.
+    // The first record is saved just before the first frame: it says that the frame is ours, and an
+    // error while painting the first frame leaves no file.
     if (!resume->path)
         return true;
     if (!resume->lock_path && !take_lock(resume, plan, error))
@@ -326,7 +326,7 @@ void fl_resume_clear(FlResume *resume)
     *resume = (FlResume){0};
 }
 
-/* ---- what is finished ------------------------------------------------------------------------ */
+/* ---- finished renders ------------------------------------------------------------------------ */
 
 /* The store of the plan, if its render can be known as finished. */
 static FlStore *store_for(const FlPlan *plan)
@@ -347,13 +347,13 @@ static FlDigest name_of(const FlPlan *plan)
     return name;
 }
 
-/* The one file beside the frames, or instead of them; NULL: none. */
+/* The one file beside the frames, or instead of frames; may be NULL. */
 static const char *film_of(const FlPlan *plan)
 {
     return plan->format->film ? plan->output : plan->movie;
 }
 
-/* What decides the film besides its frames is part of its name. */
+/* Path, format and speed of the film, which decide its bytes together with the frames. */
 static char *film_key(const FlPlan *plan)
 {
     char rate[G_ASCII_DTOSTR_BUF_SIZE];
@@ -389,7 +389,7 @@ static FlFacts *inputs_now(const FlFacts *before)
     return now;
 }
 
-/* Where the same styles are found now. */
+/* The folders in which the same styles are found now. */
 static FlFacts *found_now(const FlFacts *before)
 {
     FlFacts *now = fl_facts_new();

@@ -1,5 +1,5 @@
-/* What an earlier run has done: where a render resumes or that it has nothing to do; its lock, and
- * the policy for files that exist. */
+/* Resumes an interrupted render or finds that it is finished; its lock, and the policy for files
+ * that exist. */
 #ifndef FLUIDY_JOB_RESUME_H
 #define FLUIDY_JOB_RESUME_H
 
@@ -10,9 +10,9 @@ typedef struct FlResume {
     char *path;       // of the record file; NULL: a film without its frames, which cannot resume
     FlRecord *record; // the latest
     bool written;     // the file has a record
-    bool found;       // an earlier run wrote it
+    bool found;       // the record was written by an earlier run
     bool forgets;     // an interrupted run leaves no record
-    int first;        // the frame to start with
+    int first;        // the first frame that this run paints
     bool keep_files;  // existing files stay
     char *lock_path;  // beside the record; NULL: not locked
     int lock;         // its descriptor, where files can be locked
@@ -27,7 +27,7 @@ typedef struct FlResume {
 FlFinished fl_resume_look(const FlPlan *plan, const FlSequence *sequence);
 
 /**
- * Looks for the record of an interrupted run and decides where to start. Writes nothing.
+ * Looks for the record of an interrupted run and decides which frame comes first, without writing.
  *
  * Returns: false with FL_ERROR_CHANGED, which names what has changed, FL_ERROR_EXISTS if a file
  * must not be overwritten, or FL_ERROR_USAGE.
@@ -52,16 +52,16 @@ bool fl_resume_start(FlResume *resume, const FlPlan *plan, GError **error);
  */
 bool fl_resume_before_files(FlResume *resume, const FlPlan *plan, int frame, GError **error);
 
-/** Adds the frame's files, which are written, to the record and saves it. FL_ERROR_OUTPUT. */
+/** Adds the digest of the frame's written files to the record and saves that. FL_ERROR_OUTPUT. */
 bool fl_resume_save(FlResume *resume, const FlPlan *plan, int frame, GError **error);
 
-/** Whether files of a frame may be replaced: on request, or if the interrupted run was at it. */
+/** True if files of a frame may be replaced: on request, or in the interrupted frame. */
 bool fl_resume_replaces(const FlResume *resume, int frame);
 
-/** Whether a file exists and stays. */
+/** True if a file exists and stays. */
 bool fl_resume_keeps(const FlResume *resume, const char *file);
 
-/** What to do after an interruption; static. */
+/** The advice after an interruption; static. */
 const char *fl_resume_advice(const FlResume *resume);
 
 /** Removes the record file of a complete render, and keeps the record in plan->cache. */

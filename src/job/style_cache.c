@@ -62,7 +62,7 @@ static int window_of(const FlParams *params, const FlStyle *style)
     return params->style_window > 0 ? MIN(params->style_window, most) : 0;
 }
 
-/* Whether a region's field has half the size of its picture. The papers' presets and what goes to
+/* True if a region's field has half the size of its picture. The papers' presets and exports to
  * ebsynth are as they say. */
 static bool enlarges(const FlStyleCache *cache, const FlRegionSettings *settings, const char *path)
 {

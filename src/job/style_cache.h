@@ -1,4 +1,4 @@
-/* The styles of a render: each is loaded once for all regions that share it. */
+/* The styles of a render, each loaded once for all its regions. */
 #ifndef FLUIDY_JOB_STYLE_CACHE_H
 #define FLUIDY_JOB_STYLE_CACHE_H
 

@@ -14,7 +14,7 @@ enum { LARGEST = 4 };    // times the size of a recipe
 #define MOST_SECONDS 600 // of one core: no recipe of a stranger may take more
 #define WAIT_US (G_USEC_PER_SEC / 5)
 
-/* The recipe that lies beside the pictures made by it; NULL: there is none. */
+/* The recipe in a style's folder; may be NULL. */
 static char *recipe_of(const FlStyle *style)
 {
     if (!style->made_by || strchr(style->made_by, G_DIR_SEPARATOR) ||
@@ -67,7 +67,7 @@ static bool is_kept(const char *folder)
 
 /* ---- making ---------------------------------------------------------------------------------- */
 
-/* Who is told how far a style is. */
+/* The receiver of a style's progress. */
 typedef struct Teller {
     const FlRenderOptions *options;
     gint64 start;
@@ -101,7 +101,7 @@ static FlStyle *paint(const FlRecipe *recipe, const char *path, int size,
     return fl_recipe_paint(recipe, path, size, tell, &teller, error);
 }
 
-/* A lock beside the folder, as soon as no other process has it; -1: without one, or interrupted. */
+/* Waits for a lock beside the folder; -1: locks are missing here, or it was interrupted. */
 static int wait_for_lock(const char *folder, const FlRenderOptions *options)
 {
     Teller teller = {options, g_get_monotonic_time()};
@@ -127,7 +127,7 @@ static void release_lock(int lock, const char *folder)
     close(lock);
 }
 
-/* Paints it and keeps it, if that can be. */
+/* Paints the style and keeps it if possible. */
 static FlStyle *make(const FlRecipe *recipe, const char *path, int size, const char *folder,
                      const FlRenderOptions *options, GError **error)
 {

@@ -6,15 +6,15 @@
 #include <fluidy/render.h>
 
 /**
- * Reads a style whose frames are to be used `scale` times as large as its pictures are (as large as
- * it suggests: 0), times texture_px, px per px in which that is given.
+ * Reads a style for frames that are scale * texture_px times as large as its pictures; scale 0: the
+ * factor that the style suggests.
  *
- * Where that is larger than its pictures and the recipe lies beside them, the style is simulated at
- * 2 or 4 times its size, once: it is kept below the user's cache folder, under a name made of
- * recipe, size and version. Two processes make it once; where it cannot be kept, it is made anew.
- * A dry run makes nothing.
+ * For a factor above 1, a style with a recipe is simulated at 2 or 4 times its size. The result is
+ * kept in the user's cache folder, under a name made of recipe, size and version, and is made once
+ * even by two processes. A dry run does not simulate.
  *
- * *factor becomes what its frames are to be scaled by: above 1 only where there is no more of it.
+ * *factor becomes the factor by which the frames still have to be scaled; it is above 1 only if no
+ * larger pictures can be made.
  * Returns: to be freed with fl_style_free(); NULL with an error of fl_style_load(), of the recipe,
  * or FL_ERROR_INTERRUPTED set.
  */

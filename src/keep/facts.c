@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#define DIGEST "digest " // begins the value of a fact that means nothing to a reader
+#define DIGEST "digest " // begins a value that a reader cannot interpret
 
 static void clear_fact(FlFact *fact)
 {

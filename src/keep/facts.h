@@ -31,7 +31,7 @@ void fl_facts_add_versions(FlFacts *facts);
 /** The digest of all facts in their order. */
 FlDigest fl_facts_digest(const FlFacts *facts);
 
-/** The first difference, as a clause, to be freed; NULL: there is none. */
+/** The first difference, as a clause, to be freed; NULL if all facts are equal. */
 char *fl_facts_difference(const FlFacts *before, const FlFacts *now);
 
 /** GVariant's type of packed facts. */

@@ -80,7 +80,7 @@ static int by_name(const void *a, const void *b)
     return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* The names in a folder, sorted; to be freed. Without the folder there are none. */
+/* The names in a folder, sorted; empty if it is missing. To be freed. */
 static GPtrArray *names_in(const char *folder)
 {
     g_autoptr(GDir) dir = g_dir_open(folder, 0, NULL);
@@ -91,7 +91,7 @@ static GPtrArray *names_in(const char *folder)
     return names;
 }
 
-/* The folders of a style, each with its files behind it; to be freed. */
+/* The folders of a style, each before its files; to be freed. */
 static GPtrArray *files_of_style(const char *style)
 {
     static const char *const parts[] = {FL_STYLE_PARTS};

@@ -1,5 +1,5 @@
 /* The list of files that a render reads, with the digests of their contents. The guard against
- * overwriting them, the facts of a render, its record and the watch of files all ask it. */
+ * overwriting them, the facts of a render, its record and the watch of files use this list. */
 #ifndef FLUIDY_KEEP_INPUTS_H
 #define FLUIDY_KEEP_INPUTS_H
 
@@ -23,8 +23,8 @@ void fl_inputs_add_style(FlInputs *inputs, const char *folder);
 /** Adds the files of a drawing's frames and all that they refer to. */
 void fl_inputs_add_drawing(FlInputs *inputs, const FlDrawing *drawing);
 
-/** Adds the files of an option that may name one for each frame and {region}. region: NULL if there
- * is none; pattern may be NULL. */
+/** Adds the files of an option that may name one for each frame and {region}. pattern and region
+ * may be NULL. */
 void fl_inputs_add_frames(FlInputs *inputs, const FlDrawing *drawing, const char *pattern,
                           const char *region);
 

@@ -58,10 +58,11 @@ static FlSpan span_of(GBytes *bytes)
 {
     size_t size;
     const void *data = g_bytes_get_data(bytes, &size);
-    return (FlSpan){(void *)(uintptr_t)data, size}; // which is only read
+    return (FlSpan){(void *)(uintptr_t)data, size}; // it is only read
 }
 
-/* The size of what is packed, that, and the states: none is copied, for they may be large. */
+/* The size of the packed part, the packed part, and the states, which may be large and are not
+ * copied. */
 static GArray *parts_of(const FlRecord *record, GVariant *packed, const uint64_t *size)
 {
     GArray *parts = g_array_new(FALSE, FALSE, sizeof(FlSpan));

@@ -18,7 +18,7 @@ typedef struct Seal {
     uint32_t sum, keyed; // CRC-32 of the parts; 1: a keyed digest follows
 } Seal;
 
-static GBytes *key; // NULL: none; set once, before there are threads
+static GBytes *key; // may be NULL; set once, before threads start
 
 bool fl_sealed_read_key(GError **error)
 {
@@ -107,7 +107,7 @@ static size_t break_seal(const uint8_t *data, size_t bytes, bool *damaged)
         *damaged = false;
         return 0;
     }
-    const FlSpan parts = {(void *)(uintptr_t)(data + front), bytes - front}; // which is only read
+    const FlSpan parts = {(void *)(uintptr_t)(data + front), bytes - front}; // it is only read
     if (seal.sum != libdeflate_crc32(0, parts.data, parts.bytes))
         return 0;
     *damaged = false;

@@ -7,14 +7,15 @@
 #include <fluidy/error.h>
 
 /**
- * Reads the file that FLUIDY_CACHE_KEY names, once in a process. Without that variable there is no
- * key. Returns: false with FL_ERROR_USAGE if the file is not there, a pipe, empty or above 64 KiB.
+ * Reads the key from the file that FLUIDY_CACHE_KEY names, once in a process. Files are not keyed
+ * if that variable is unset. Returns: false with FL_ERROR_USAGE if the file is not there, a pipe,
+ * empty or above 64 KiB.
  */
 bool fl_sealed_read_key(GError **error);
 
 /**
- * Reads a regular file, no link, and breaks its seal. A file that was sealed with another key, or
- * with none where there is one, counts as missing: its reader is somebody else.
+ * Reads a regular file, not a link, and checks its seal. A file that was sealed with another key
+ * counts as missing, since it is meant for another reader.
  *
  * *damaged may be NULL. Returns: what was sealed, to be freed with g_bytes_unref(); NULL if the
  * file is missing, or if it is damaged or memory is short, which sets *damaged.

@@ -30,9 +30,9 @@ struct FlStore {
     GHashTable *link; // of the pictures in `held`, by name
     GQueue held;      // of HeldPicture; the one used last is the first
     size_t held_bytes;
-    char *problem; // to be told; NULL: none
+    char *problem; // to be told; may be NULL
     bool told;     // one was
-    bool full;     // nothing can be written any more
+    bool full;     // writing has failed
     double added;  // bytes since the store was last trimmed
 };
 

@@ -8,15 +8,15 @@
 #include <fluidy/render.h>
 
 /**
- * A store in use, by any thread, and by several processes with one folder: files appear whole or
- * not at all, and what another process removes is made again. Nothing of it is an error: the first
- * problem is a warning of the options, when fl_store_warn() is called.
+ * A store in use. Any thread may use it, and several processes may share a folder: files appear
+ * whole or not at all, and a file that another process removes is made again. Problems are not
+ * errors: fl_store_warn() gives the first one to the warning callback of the options.
  */
 typedef struct FlStore FlStore;
 
 /** A digest names one thing of each kind. */
 typedef enum FlKept {
-    FL_KEPT_PICTURE, // a region's paint in one frame, and the state of its engine after it
+    FL_KEPT_PICTURE, // a region's paint in one frame, and its engine's state after the frame
     FL_KEPT_FILM,    // the digests of all pictures of a region
     FL_KEPT_RECORD,  // of a finished render: FlRecord
     FL_KEPT_FACTS,   // the facts that decided the paint of a region when it was painted last
@@ -37,7 +37,7 @@ bool fl_store_has(FlStore *store, FlKept kind, FlDigest name);
 /** Returns: to be freed with g_bytes_unref(); NULL: it is missing, or was damaged and is gone. */
 GBytes *fl_store_get(FlStore *store, FlKept kind, FlDigest name);
 
-/** Keeps the parts in a row. After a failure to write, this render keeps nothing more. */
+/** Keeps the parts in a row. After the first failure to write, calls are ignored. */
 void fl_store_put(FlStore *store, FlKept kind, FlDigest name, const FlSpan *parts, int n);
 
 void fl_store_drop(FlStore *store, FlKept kind, FlDigest name);
