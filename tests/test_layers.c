@@ -191,7 +191,7 @@ static void knock_out(FlMedium medium, uint8_t knockout[SQUARE * SQUARE])
     for (int p = 0; p < SQUARE * SQUARE; p++)
         amounts[p] = p / SQUARE == 18 ? FL_AMOUNT_ONE : FL_AMOUNT_ONE * 4 / 10;
     amounts[20 * SQUARE + 1] = 0;
-    g_assert_true(fl_knockout(amounts, coverage, coverage, box, FRAME, FRAME, RADIUS, medium,
+    g_assert_true(fl_knockout(amounts, coverage, coverage, box, FRAME, FRAME, RADIUS, medium, 255,
                               knockout, NULL));
     g_assert_cmpint(knockout[18 * SQUARE + SQUARE - 1], ==, 255); // full paint
 }

@@ -15,14 +15,15 @@
  * lies below; amid the shape it is 255 from three tenths on, since there paper shows: paint below
  * went around the shape. Holes show what lies below all the same. One becomes the other within
  * radius_px (>= 1) of the contour, as the share of the shape in a square around the pixel rises.
- * Thin places of an opaque medium show it everywhere, those of FL_MEDIUM_BODY amid no shape.
+ * Thin places of an opaque medium show it everywhere, the more the darker the fill is than the
+ * paper, 0..255; those of FL_MEDIUM_BODY amid no shape.
  *
  * amounts, coverage and shown are of a box in a frame of width * height, whose sides are no
  * contour. shown: coverage, or 0 where knockout does not matter and may stay as it is.
  * FL_ERROR_NO_MEMORY.
  */
 bool fl_knockout(const int16_t *amounts, const uint8_t *coverage, const uint8_t *shown, FlRect box,
-                 int width, int height, int radius_px, FlMedium medium, uint8_t *knockout,
-                 GError **error);
+                 int width, int height, int radius_px, FlMedium medium, int darkness,
+                 uint8_t *knockout, GError **error);
 
 #endif

@@ -132,6 +132,18 @@ static void take_culled(const FlLayer *layer, int16_t *amounts)
     }
 }
 
+static int luma(const uint8_t rgb[3])
+{
+    return (2 * rgb[0] + 7 * rgb[1] + rgb[2]) / 10;
+}
+
+/* The darkness of a fill, 0..255: 0 if it is as light as the paper. */
+static int darkness_of(const FlColouring *colouring)
+{
+    const int paper = MAX(luma(colouring->paper), 1);
+    return 255 * MAX(paper - luma(colouring->fill), 0) / paper;
+}
+
 /* Knockout is of the amounts before the paper's grain, which else would punch holes into it. */
 static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
                         const FlPaintedRegion *painted, int exposure, GError **error)
@@ -147,8 +159,8 @@ static bool paint_layer(FlLayer *layer, const FlLayerSources *sources, int r,
     const FlDrawing *drawing = sources->input->drawing;
     const int border_px = (int)(painted->style->border_px + 0.5f);
     if (!fl_knockout(amounts, draw->coverage, layer->coverage, box, fl_drawing_width(drawing),
-                     fl_drawing_height(drawing), MAX(border_px, 1), asked_medium(painted), knockout,
-                     error))
+                     fl_drawing_height(drawing), MAX(border_px, 1), asked_medium(painted),
+                     darkness_of(&colouring), knockout, error))
         return false;
     take_culled(layer, amounts);
     return colour_layer(layer, sources, painted, &colouring, amounts, error);
