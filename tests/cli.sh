@@ -303,6 +303,12 @@ result $? '--list-regions prints a line per region'
 result $? 'the config that is printed gives the same regions'
 
 # The config: three edits of the printed one, every key that the manual has, and its example.
+"$program" --list-regions "$film" >out 2>err && "$program" --list-regions --sandbox off "$film" >again 2>err && cmp out again &&
+    { "$program" --list-regions --sandbox require "$film" >again 2>err && cmp out again || grep -q -e '--sandbox require: ' err; }
+result $? 'the sandbox changes no result; if it is required and a part is missing, that is an error'
+printf '[project]\nversion = 1\nsandbox = off\n' >open.conf
+! "$program" --list-regions -c open.conf "$film" >out 2>err && grep -q 'sandbox' err
+result $? 'a config cannot open the sandbox'
 mkdir recoloured
 for t in 1 2; do
     echo "<svg xmlns='http://www.w3.org/2000/svg' width='90' height='60'><g id='arm'><path d='M${t} 9h20v20h-20z' fill='#474d50'/></g>

@@ -1,4 +1,4 @@
-/* Which leaf was which a frame before, and how its outline got from there to here. */
+/* The leaves of two frames, matched, and the motion of their outlines. */
 #ifndef FLUIDY_DRAWING_CORRESPONDENCE_H
 #define FLUIDY_DRAWING_CORRESPONDENCE_H
 

@@ -32,7 +32,7 @@ static bool is_faint(uint8_t coverage)
     return (uint8_t)(coverage - 1) < HALF - 1;
 }
 
-/** A row over what is below it. Returns: whether some pixel of it is less than half covered. */
+/** A row over what is below it. Returns: true if some pixel of it is less than half covered. */
 static bool put_over(const uint8_t *from, FlColumns span, uint8_t *restrict to)
 {
     uint8_t any = 0;

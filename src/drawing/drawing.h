@@ -5,13 +5,13 @@
 #include "base/warnings.h"
 #include "drawing/region_rules.h"
 #include "drawing/sequence.h"
-#include "worker/draw_frame.h"
+#include "worker/draws.h"
 #include <fluidy/error.h>
 #include <fluidy/render.h>
 #include <stdbool.h>
 #include <stdint.h>
 
-/** How a sequence is read; zero is the default of every field. */
+/** Options of reading a sequence; zero is the default of every field. */
 typedef struct FlDrawingOptions {
     const char *const *inputs; // see fl_sequence_open()
     int n_inputs;
@@ -78,11 +78,11 @@ const FlRegion *fl_drawing_region(const FlDrawing *drawing, int region);
  * fonts and folders of fonts for their text. */
 GHashTable *fl_drawing_linked_files(const FlDrawing *drawing);
 
-/** How many frames are held or skipped since their files cannot be read or drawn, as a sentence; to
- * be freed. NULL: none. */
+/** A sentence about the frames that are held or skipped since they cannot be read or drawn; to be
+ * freed. NULL: there are none. */
 char *fl_drawing_left_out(const FlDrawing *drawing, FlMissing missing);
 
-/** What the files' names share, such as "walk"; for naming the output. */
+/** The common part of the files' names, such as "walk"; for naming the output. */
 const char *fl_drawing_name(const FlDrawing *drawing);
 
 /** The file and the frame number (as in the file's name) of a frame index; for messages. */
@@ -98,10 +98,10 @@ const char *const *fl_drawing_found_files(const FlDrawing *drawing);
  */
 int fl_drawing_shown(const FlDrawing *drawing, int frame);
 
-/** Whether any frame shows the picture of another one. */
+/** True if any frame shows the picture of another one. */
 bool fl_drawing_stands_still(const FlDrawing *drawing);
 
-/** Where a region's anchor is in a frame; it depends on no other region. */
+/** A region's anchor in a frame; it depends on no other region. */
 FlAnchor fl_drawing_anchor(const FlDrawing *drawing, int region, int frame);
 
 /**
@@ -126,7 +126,7 @@ FlDrawList *fl_drawing_draw_list(const FlDrawing *drawing, int frame, GError **e
 FlDrawList *fl_drawing_draw_by_hand(const FlDrawing *drawing, int frame, const FlHand *hand,
                                     GError **error);
 
-/** What fl_draws_pack() made of a draw list, opened. */
+/** Opens the result of fl_draws_pack(). */
 FlDrawList *fl_drawing_unpack_draws(const FlDrawing *drawing, GBytes *packed, GError **error);
 
 /**

@@ -17,7 +17,7 @@ typedef struct FlDrawingFrame {
 
 void fl_drawing_frame_clear(FlDrawingFrame *frame);
 
-/** Whether a film can go on without its frames that have an error, of n. Returns: false with the
+/** True if a film can go on without its frames that have an error, of n. Returns: false with the
  * error that ends it: one that depends on the machine, or the first if no frame is left. */
 bool fl_may_leave_out(GError *const *failed, int n, GError **error);
 

@@ -15,7 +15,7 @@ static GHashTable *single_trees(const FlSurvey *survey)
     return trees;
 }
 
-/** Whether a leaf below the group `tree` is drawn by itself in any frame. */
+/** True if a leaf below the group `tree` is drawn by itself in any frame. */
 static bool fades_only(const FlSurvey *survey, GHashTable *singles, int tree)
 {
     g_autofree char *prefix = g_strconcat(fl_strings_get(&survey->strings, tree), "/", NULL);

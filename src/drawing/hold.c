@@ -17,7 +17,7 @@ static int last_of(const GArray *draws, int region)
     return -1;
 }
 
-/** Where draw k of an earlier frame goes that has no counterpart. */
+/** The place for draw k of an earlier frame that has no counterpart. */
 static int place_of(const GArray *draws, const FlDrawList *earlier, int k)
 {
     for (int below = k; below >= 0; below--) {
@@ -37,7 +37,7 @@ static FlDraw *first_left(const FlDrawList *draws, int region)
     return NULL;
 }
 
-/** Whether a region's draws come from frame `from` when frame `now` is shown. */
+/** True if a region's draws come from frame `from` when frame `now` is shown. */
 static bool is_from(const int *hold_of, int region, int frame, int from, int now)
 {
     const int shown = frame - frame % hold_of[region];

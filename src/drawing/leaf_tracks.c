@@ -1,4 +1,4 @@
-#include "drawing/leaf_tracks.h"
+#include "drawing/region_identity.h"
 
 #include "base/colour_difference.h"
 #include <math.h>
@@ -32,7 +32,7 @@ static float overlap(const float a[4], const float b[4])
     return both / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - both);
 }
 
-/** How alike, 0 … 8; -1 if they cannot be the same leaf. */
+/** Likeness of two leaves, 0 … 8; -1 if they cannot be the same. */
 static float likeness(const FlSurveyPart *a, const FlSurveyPart *b)
 {
     const bool same_paint = a->paint == b->paint, same_tree = a->tree == b->tree;

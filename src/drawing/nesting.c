@@ -1,4 +1,4 @@
-#include "drawing/nesting.h"
+#include "drawing/region_identity.h"
 
 #define DEEPEST 15
 #define TOO_MANY 600 // leaves in a frame; the search is cubic
@@ -25,7 +25,7 @@ static bool same_kind(const FlSurveyPart *a, const FlSurveyPart *b, const int *l
            label_of[a->labels] == label_of[b->labels];
 }
 
-/** Whether something of another paint lies between leaves j < i of a frame and under all of i. */
+/** True if something of another paint lies between leaves j < i of a frame and under all of i. */
 static bool is_parted(const FlSurveyPart *part, int j, int i, const int *label_of)
 {
     for (int k = j + 1; k < i; k++)

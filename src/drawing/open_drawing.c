@@ -103,7 +103,7 @@ static void warn_of_nothing(const FlDrawing *drawing, FlWarnings *warnings)
                     fl_drawing_frames(drawing) > 1 ? ", nor in the other frames" : "");
 }
 
-/* How many warnings have each text, whatever element they are about. */
+/* Counts the warnings of each text, about any element. */
 static GHashTable *count_texts(const FlWarnings *warnings)
 {
     GHashTable *counts = g_hash_table_new(g_str_hash, g_str_equal);
@@ -153,7 +153,7 @@ static void offer_config(const FlDrawing *drawing, const FlRenderOptions *option
     options->note(line, options->data);
 }
 
-/* What tell_reading() knows. */
+/* The state of tell_reading(). */
 typedef struct Telling {
     const FlRenderOptions *options;
     gint64 start; // microseconds

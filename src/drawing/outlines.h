@@ -21,7 +21,7 @@ FlOutlines *fl_drawing_outlines(const FlDrawing *drawing, int frame, GError **er
 GArray *fl_drawing_region_leaves(const FlDrawing *drawing, int frame, int region,
                                  const FlOutlines *outlines);
 
-/** What a leaf belongs to and is painted with, by its first part. */
+/** The region and the paint of a leaf, by its first part. */
 typedef struct FlLeafFill {
     int region; // -1: it is not drawn
     bool flat;
@@ -31,7 +31,7 @@ typedef struct FlLeafFill {
 /** The fills of a frame's leaves, by index; to be freed with g_free(). */
 FlLeafFill *fl_drawing_leaf_fills(const FlDrawing *drawing, int frame, const FlOutlines *outlines);
 
-/** Whether both frames show one file. */
+/** True if both frames show one file. */
 bool fl_drawing_same_file(const FlDrawing *drawing, int a, int b);
 
 #endif

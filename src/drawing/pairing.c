@@ -65,7 +65,7 @@ static double likeness_of_shape(const FlLeafMeasure *a, const FlLeafMeasure *b)
                             (b->x1 - b->x0 + 1) * (b->y1 - b->y0 + 1));
 }
 
-/** How likely leaf i before is leaf j now; pairs need more than 0. */
+/** The likelihood that leaf i before is leaf j now; pairs need more than 0. */
 static double score(const Pairing *w, int i, int j)
 {
     const FlGeometry *a = &w->frames->before->leaf[i], *b = &w->frames->now->leaf[j];
@@ -157,7 +157,7 @@ static void pair_left_over(Pairing *w, const int *before, int n, const int *now,
     }
 }
 
-/** Whether a leaf can be the one of the same number: it has the name, or is near. */
+/** True if a leaf can be the one of the same number: it has the name, or is near. */
 static bool is_near_or_named(const Pairing *w, int i)
 {
     const FlLeafMeasure *a = &w->before[i], *b = &w->now[i];

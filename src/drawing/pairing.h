@@ -24,4 +24,9 @@ double fl_measure_diagonal(const FlLeafMeasure *m);
 int *fl_pair_leaves(const FlTwoFrames *frames, const FlLeafMeasure *before,
                     const FlLeafMeasure *now);
 
+/** Gives round leaves that rest, move or grow the turn of two or more leaves of their group that
+ * lie inside them in both frames, if these agree to half a pixel. */
+void fl_turn_round_hosts(const FlTwoFrames *frames, const FlLeafMeasure *before,
+                         const FlLeafMeasure *now, FlCorrespondence *correspondence);
+
 #endif

@@ -1,4 +1,4 @@
-#include "drawing/region_anchors.h"
+#include "drawing/survey.h"
 
 #include "svg/pose.h"
 #include <math.h>
@@ -14,13 +14,13 @@
 
 /* A leaf of a region. */
 typedef struct Leaf {
-    const FlSurveyPart *part; // where it was seen last; NULL: not yet
+    const FlSurveyPart *part; // last seen; NULL: not yet
     int frame;                // of that
-    int steps, same;          // how often it is seen again, and how often with as many nodes
+    int steps, same;          // times it is seen again; of these with as many nodes
     bool shared; // two leaves have its number, since regions were merged: it says nothing
 } Leaf;
 
-/* Where leaves are before and after a step; weights are areas. */
+/* Places of leaves before and after a step, weighted by area. */
 typedef struct Means {
     double weight;
     FlPoint from, to; // sums
@@ -42,7 +42,7 @@ typedef struct Follower {
     Leaf *leaf;
     Fit *fit;     // of each region
     Means *begin; // of each region, in the first frame that has it
-    bool *begun;  // whether that was before
+    bool *begun;  // true after that frame
 } Follower;
 
 /* The conjugate of a, times b. */
@@ -95,7 +95,7 @@ static void add_turn(Fit *fit, double weight, FlPoint from, FlPoint to)
 #define HELD_PX 0.1 // of a side of a box that stays where it is
 #define GROWN_PX 1  // of one that moves on
 
-/* Whether a leaf has grown on one side, held the other, and shrunk on none; page: its width and
+/* True if a leaf has grown on one side, held the other, and shrunk on none; page: its width and
  * height, at whose edges nothing can be told. */
 static bool has_grown(const float before[4], const float now[4], const float page[2])
 {
@@ -187,7 +187,7 @@ static Leaf *leaf_of(const Follower *f, const FlSurveyPart *part)
     return &f->leaf[f->first[part->region] + part->nth];
 }
 
-/* Whether a leaf has the same nodes in nearly all frames. If it is traced anew in each, as many
+/* True if a leaf has the same nodes in nearly all frames. If it is traced anew in each, as many
  * nodes are chance, and begin anywhere. */
 static bool keeps_nodes(const Leaf *leaf)
 {

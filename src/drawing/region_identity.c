@@ -1,7 +1,5 @@
 #include "drawing/region_identity.h"
 
-#include "drawing/leaf_tracks.h"
-#include "drawing/nesting.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -48,7 +46,7 @@ static int first_like(GArray *firsts, const FlSurveyPart *s)
     return s->paint;
 }
 
-/** Which flat paints differ by rounding only: paint -> the first like it. To be unref'd. */
+/** Maps flat paints that differ by rounding only to the first like them. To be unref'd. */
 static GHashTable *find_near_paints(const FlSurvey *survey)
 {
     g_autoptr(GArray) firsts = g_array_new(FALSE, FALSE, sizeof(FlSurveyPart));
@@ -88,7 +86,7 @@ static void join_near_paints(Work *w)
     }
 }
 
-/** Whether the drawing consists of strokes: zdog figures, line drawings. */
+/** True if the drawing consists of strokes: zdog figures, line drawings. */
 static bool is_line_art(const FlSurvey *survey)
 {
     double strokes = 0, fills = 0;

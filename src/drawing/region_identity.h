@@ -1,10 +1,11 @@
-/* Which leaves are the same region in every frame. */
+/* Which leaves are the same region in every frame: tracks of leaves, their nesting, and the names.
+ */
 #ifndef FLUIDY_DRAWING_REGION_IDENTITY_H
 #define FLUIDY_DRAWING_REGION_IDENTITY_H
 
 #include "drawing/survey.h"
 
-/** What makes up a region, before it has a name. */
+/** A region before it has a name. */
 typedef struct FlRegionIdentity {
     int label;          // label path without frame numbers, a number in FlSurvey.strings
     int rule;           // -1: none
@@ -25,5 +26,39 @@ GArray *fl_region_identities_find(FlSurvey *survey, const FlDrawingOptions *opti
  * grows.
  */
 int *fl_clean_labels(FlSurvey *survey);
+
+/** One leaf through the drawing. */
+typedef struct FlTrack {
+    FlSurveyPart last; // in the last frame that has it
+    int last_frame;
+    bool varies;    // its paint changed
+    uint8_t rgb[3]; // of the first frame that has it
+    float drift;    // CIE76 by which its paint was farthest from that
+    GArray *paints; // int pairs: frame, paint (a string number); ascending frames
+} FlTrack;
+
+/**
+ * Finds the tracks. label_of maps FlSurveyPart.labels to clean labels.
+ *
+ * Returns: an array of FlTrack; track_of[t][i] (to be freed, as its rows) is the track of part i of
+ * frame t. Two leaves with the same label and paint may swap tracks; that does not matter.
+ */
+GArray *fl_leaf_tracks_find(const FlSurvey *survey, const int *label_of, int ***track_of);
+
+/**
+ * How deep each track lies in others of its paint: 0 for one that lies on no other, or not all the
+ * time, or that is small. As one region such leaves would hide each other in the whole-shape mask.
+ *
+ * Returns: n_tracks levels, to be freed.
+ */
+int *fl_nesting(const FlSurvey *survey, int *const *track_of, const int *label_of, int n_tracks);
+
+/**
+ * A name for every group, unique, of [a-z0-9-]: that of its rule, else the innermost label and the
+ * colour, or without a label a word for the colour. What all labels share is not repeated.
+ *
+ * Returns: a NULL-terminated list of groups->len names, to be freed with g_strfreev().
+ */
+char **fl_name_groups(const FlSurvey *survey, const GArray *groups, const FlRegionRule *rules);
 
 #endif

@@ -1,4 +1,4 @@
-#include "drawing/region_names.h"
+#include "drawing/region_identity.h"
 
 #include "base/colour_difference.h"
 #include <string.h>
@@ -24,7 +24,7 @@ static void append_word(GString *name, const char *word)
     append_slug(name, word);
 }
 
-/** How many outer labels all groups share. */
+/** The number of outer labels that all groups share. */
 static guint shared_depth(const FlSurvey *survey, const GArray *groups)
 {
     g_auto(GStrv) first = NULL;

@@ -28,7 +28,7 @@ typedef struct FlRegionRule {
     bool by_name; // matches no leaf, but regions whose names, without any rule, match this glob
 } FlRegionRule;
 
-/** What a rule is matched against; lists are joined with '\n'. */
+/** The leaf that a rule is matched against; lists are joined with '\n'. */
 typedef struct FlRuleSubject {
     const char *ids, *classes, *labels, *layers;
     bool stroke;        // a stroke, else a fill

@@ -1,4 +1,4 @@
-#include "drawing/register_frames.h"
+#include "drawing/survey.h"
 
 #include <math.h>
 #include <string.h>
@@ -7,7 +7,7 @@
 #define SIZE_PX 0.35   // by how much the size of a shape may differ; files have one decimal
 #define MOVE_PX 0.6    // by how much two moves may differ to be one
 
-/** What a pair of shapes votes for. */
+/** The move that a pair of shapes votes for. */
 typedef struct Vote {
     double x, y, weight;
 } Vote;
@@ -81,7 +81,7 @@ static void widen(FlCanvas *page, const GArray *shapes, double x, double y, bool
     }
 }
 
-/** Where each frame lies, as pairs x, y; the page that they need goes to *page. */
+/** The place of each frame, as pairs x, y; the page that holds all goes to *page. */
 static double *places_of(FlSurvey *survey, FlCanvas *page, FlWarnings *warnings, GError **error)
 {
     g_autofree double *place = g_new0(double, 2 * (gsize)survey->n_frames);

@@ -1,4 +1,4 @@
-#include "drawing/round_host.h"
+#include "drawing/pairing.h"
 
 #include "base/modes.h"
 #include "drawing/samples.h"
@@ -41,7 +41,7 @@ static bool is_known(const FlLeafMotion *m)
     return m->kind == FL_MOTION_STILL || m->kind == FL_MOTION_AFFINE || m->kind == FL_MOTION_SAME;
 }
 
-/** Whether a leaf's motion leaves open how it turns. */
+/** True if a leaf's motion leaves open how it turns. */
 static bool keeps_upright(const FlLeafMotion *m)
 {
     const double off = fabs(m->back.xy) + fabs(m->back.yx) + fabs(m->back.xx - m->back.yy);

@@ -2,7 +2,7 @@
 #ifndef FLUIDY_DRAWING_SAMPLES_H
 #define FLUIDY_DRAWING_SAMPLES_H
 
-#include "drawing/correspondence.h"
+#include "svg/geometry.h"
 
 /** Points of a leaf in both frames, px, at the same parameters. */
 typedef struct FlSamples {
@@ -16,7 +16,7 @@ void fl_samples_take(FlSamples *samples, const FlOutlines *before, const FlGeome
 
 void fl_samples_clear(FlSamples *samples);
 
-/** Where, in the frame before, a point of a segment was, in px; sub and cubic are that frame's. */
+/** The place of a segment's point in the frame before, px; sub and cubic are that frame's. */
 FlPoint fl_same_point(const FlSubpath *sub, const FlCubic *cubic, const FlAffine *ctm, int shift,
                       int segment, double t);
 

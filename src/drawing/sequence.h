@@ -1,4 +1,4 @@
-/* Which files are the frames of a drawing, and in which order. */
+/* The files of a drawing's frames, in order. */
 #ifndef FLUIDY_DRAWING_SEQUENCE_H
 #define FLUIDY_DRAWING_SEQUENCE_H
 
@@ -13,8 +13,8 @@ typedef struct FlSequence {
     int n;
     char **file;
     int *number;       // as in the file's name; 1 … n where the names have no number
-    bool *stand_in;    // whether the file is that of another number, which is held
-    char *name;        // what the names share, such as "walk" of walk_0001.svg; never empty
+    bool *stand_in;    // true: the file of another number, which is held
+    char *name;        // common part of the names, such as "walk" of walk_0001.svg; never empty
     FlFramesFrom from; // LAYERS, PAGES, TIME: what of one file the frames are; else FILES
     int *layer;        // the layer, page or moment of its file, from 1; 0: the file is the frame
     double *seconds;   // of TIME: the moment

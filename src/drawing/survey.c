@@ -1,7 +1,6 @@
 #include "drawing/survey.h"
 
 #include "base/limits.h"
-#include "drawing/register_frames.h"
 #include "svg/normalise.h"
 #include "worker/survey_frame.h"
 #include <math.h>
@@ -13,7 +12,7 @@
 
 /* ---- asking ---------------------------------------------------------------------------------- */
 
-/** How far the reading is, for who waits. */
+/** Progress of the reading. */
 typedef struct Reading {
     const FlSurvey *survey;
     GThread *caller; // the only one that tells
@@ -23,7 +22,7 @@ typedef struct Reading {
     gint64 told_us;
 } Reading;
 
-/** Tells now and then how far the reading is. Returns: whether it is to stop. */
+/** Tells now and then how far the reading is. Returns: true if it is to stop. */
 static bool tell(void *data)
 {
     Reading *reading = data;
@@ -190,7 +189,7 @@ static bool read_frames(FlSurvey *survey, FlWarnings *warnings, GError **error)
     return good;
 }
 
-/** Whether a group or shape of one frame is the one of that id in another: ids made here count. */
+/** True if a group or shape of one frame is the one of that id in another: ids made here count. */
 static bool means_the_same(const FlSurveyFrame *from, const FlSurveyFrame *to, const char *group)
 {
     const bool made = g_str_has_prefix(group, FL_GROUP_ID) || g_str_has_prefix(group, FL_SHAPE_AT);

@@ -37,4 +37,23 @@ bool fl_survey_measure(FlSurvey *survey, int frame, const FlCanvas *canvas, bool
 
 void fl_survey_clear(FlSurvey *survey);
 
+/**
+ * Follows the regions of a survey, after FlSurveyPart.region and nth are set: from frame to frame
+ * an anchor makes the rigid motion that is nearest to that of the nodes of all leaves that are in
+ * both. A shape that enters the page or is hidden has it all the same.
+ *
+ * Returns: of each frame those of all regions; to be freed, as its rows.
+ */
+FlAnchor **fl_region_anchors_find(const FlSurvey *survey, int n_regions);
+
+/**
+ * Finds where each frame lies on the first one's page: by the shapes of equal paint and size in the
+ * frame before, which vote, by their size, for how far they have moved; most of the drawing is
+ * assumed to hold still. Sets the canvas of every frame, all of one size: of the canvas that the
+ * options give the first frame, else as large as all frames together.
+ *
+ * Warns about frames that have no shape in common with the one before and stay where that is.
+ */
+bool fl_register(FlSurvey *survey, FlWarnings *warnings, GError **error);
+
 #endif

@@ -1,4 +1,4 @@
-#include "worker/draw_cache.h"
+#include "worker/draws.h"
 
 #include "base/alloc.h"
 #include <string.h>

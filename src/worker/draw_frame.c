@@ -1,7 +1,6 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "svg/leaf_digest.h"
-#include "worker/draw_cache.h"
 #include "worker/hand_line.h"
 #include "worker/raster.h"
 #include "worker/verbs.h"
@@ -37,7 +36,7 @@ static bool meets(const Draw *draw, const FlRequest *frame, const FlDrawStep *st
     return false;
 }
 
-/** Whether step can join draw: translucent or blended ones only where they do not overlap. */
+/** True if step can join draw: translucent or blended ones only where they do not overlap. */
 static bool fits(const Draw *draw, const FlRequest *frame, const FlDrawStep *step)
 {
     if (draw->region != step->region || draw->flat != step->flat || draw->alpha != step->alpha ||
@@ -160,7 +159,7 @@ static bool draw_step(const Stage *stage, const FlDrawStep *step, cairo_surface_
 
 /* ---- by hand --------------------------------------------------------------------------------- */
 
-/** Whether a hand draws a step: a line, or a flat opaque shape, which is a detail if it is small.
+/** True if a hand draws a step: a line, or a flat opaque shape, which is a detail if it is small.
  */
 static bool is_by_hand(const FlDrawStep *step, const FlHand *hand)
 {
@@ -238,7 +237,7 @@ static void fill_solid(uint8_t solid[256], uint8_t alpha)
 typedef struct Target {
     FlRect box;
     uint8_t *coverage;
-    uint8_t *by_hand; // what a hand leaves of the coverage; NULL: no hand draws
+    uint8_t *by_hand; // coverage that a hand leaves; NULL: no hand draws
     uint8_t *picture; // may be NULL
 } Target;
 

@@ -10,14 +10,14 @@
 #define MITRE 4.f         // half widths that a corner reaches, at SVG's usual limit
 #define FAR 1e30f         // squared distance of what no piece is near
 #define FINEST_PX 2.4f    // of grain that is not blurred away, nor flickers as the line moves
-#define FILL_EDGE 1.6f    // how much more than a line's the edge of a shape plays
+#define FILL_EDGE 1.6f    // variation of a shape's edge, as a multiple of a line's
 #define FILL_EDGE_PX 1.5f // by how much at most, px of the page
 #define EDGE_COVERAGE 250 // a shape's edge has less than that in a pixel
 #define SMALL .1f         // side of a shape that is a detail, share of the page's longer side;
 #define LARGE .2f         // from here on it is none
 #define AMPLE 2.f         // load that no grain shows in
 
-enum { PLAY, LOAD, GRAIN, SIDE }; // what the bits of a hand's key are for
+enum { PLAY, LOAD, GRAIN, SIDE }; // uses of a hand's key
 
 /** The place on the path that is nearest to each pixel of the box, of one subpath. */
 typedef struct Nearest {
@@ -174,13 +174,13 @@ static float taper_at(const FlLineKind *kind, const FlLinePath *path, float far)
     return share;
 }
 
-/** How much of a pixel at a distance from the middle of a band lies in it. */
+/** The share of a pixel that lies in a band, by its distance from the middle. */
 static float band(float distance, float half)
 {
     return fmaxf(fminf(half, distance + .5f) - fmaxf(-half, distance - .5f), 0);
 }
 
-/** Where within a line the middle is of what it covers of a pixel. */
+/** The middle of the part of a pixel that a line covers, measured across the line. */
 static float middle_of(float aside, float half)
 {
     const float d = fminf(fabsf(aside), half + .5f);
@@ -202,7 +202,7 @@ static float width_at(const FlHandLine *hand, const FlLinePath *path, float far,
     return fminf(band(d, share * half) / band(d, half), 1);
 }
 
-/** How much colour the tool leaves on the paper: 1 where it has enough. */
+/** The share of colour that the tool leaves on the paper; 1: all of it. */
 static float deposit(const FlHandLine *hand, float load, float grain, int x, int y)
 {
     if (load >= AMPLE)
@@ -281,7 +281,7 @@ static bool draw_lines(const FlHandLine *hand, FlRect box, uint8_t *coverage, GE
 
 /* ---- flat shapes ----------------------------------------------------------------------------- */
 
-/** Whether the place on the outline next to a pixel is an edge: outlines may run inside a shape. */
+/** True if the place on the outline next to a pixel is an edge: outlines may run inside a shape. */
 static bool is_edge(const Nearest *nearest, const uint8_t *coverage, const FlLinePoint *foot)
 {
     const FlRect box = nearest->box;
@@ -308,7 +308,7 @@ static FlLinePoint point_at(const FlLinePoint *point, int n, float far)
                          point[low].y + t * (point[high].y - point[low].y), far};
 }
 
-/** How much of a small detail a shape is, 0..1: a large one is no drawing of a pen. */
+/** 1 for a small shape, falling to 0 for one too large to be drawn with a pen. */
 static float detail_of(const FlHandLine *hand)
 {
     const FlLinePoint *point = (const FlLinePoint *)(const void *)hand->paths->point->data;
@@ -320,7 +320,7 @@ static float detail_of(const FlHandLine *hand)
     return 1 - smooth(fmaxf(x1 - x0, y1 - y0) / (FL_PAGE_PX * hand->page), SMALL, LARGE);
 }
 
-/** How far the edge of a shape is drawn in at a place of its outline, px. */
+/** The px by which the edge of a shape is drawn in at a place of its outline. */
 static float inset_at(const FlHandLine *hand, const FlLinePath *path, float far)
 {
     const FlLineKind *kind = hand->kind;

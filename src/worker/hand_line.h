@@ -4,9 +4,28 @@
 
 #include "base/rect.h"
 #include "base/tooth.h"
-#include "worker/line_kind.h"
+#include "params/region_settings.h"
 #include "worker/line_path.h"
 #include <fluidy/error.h>
+
+/**
+ * How a tool draws. Lengths are widths of the line, so that a line keeps its looks in every size;
+ * grain is px of the page, see base/page.h, as the paper is.
+ */
+typedef struct FlLineKind {
+    float play, wave;        // share by which the width varies, over such a length
+    float rough, rough_wave; // share by which each side varies by itself
+    float load; // amount of paint on the tool: below 1 grain shows, above 2 it does not
+    float load_play, load_wave;    // variation of the pressure
+    float soft;                    // load that the sides have less than the middle
+    float grain, grain_px, streak; // grain that goes with the line: load, size, length over size
+    float tooth;                   // grain of the sheet of paper: load at a standard deviation
+    float taper, tip;              // length over which an end tapers; the share of width it ends in
+    float opacity;                 // 0..1
+} FlLineKind;
+
+/** The properties of a tool; NULL for FL_LINE_PLAIN. */
+const FlLineKind *fl_line_kind(FlLine line);
 
 /** One leaf, drawn by hand. */
 typedef struct FlHandLine {

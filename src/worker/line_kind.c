@@ -1,4 +1,4 @@
-#include "worker/line_kind.h"
+#include "worker/hand_line.h"
 
 #include <stddef.h>
 

@@ -68,7 +68,7 @@ static double outline_px(const FlOutlines *o, const FlGeometry *g)
     return sum;
 }
 
-/** Whether all places are such as can be reckoned with. */
+/** True if all coordinates are small enough to compute with. */
 static bool is_sane(const FlLinePaths *paths)
 {
     for (guint k = 0; k < paths->point->len; k++) {
@@ -131,7 +131,7 @@ static void add_ends(const FlLinePaths *paths, GArray *ends)
     }
 }
 
-/** How far two ends are from being one, 0..1: gradually, so that nothing jumps as they part. */
+/** 0 where two ends meet, rising to 1 as they part: continuous, so that lines do not jump. */
 static float apart(const End *a, const End *b)
 {
     const float x = a->x - b->x, y = a->y - b->y;

@@ -15,7 +15,7 @@ typedef struct FlLinePath {
     int first, n; // its points
     bool closed;
     float length;  // units
-    float bare[2]; // how free its start and its end are, 0..1; 0: another line goes on there
+    float bare[2]; // freedom of its start and its end, 0..1; 0: another line continues there
 } FlLinePath;
 
 /**

@@ -23,7 +23,7 @@ static bool is_bool(const bool *value)
 
 /* ---- requests -------------------------------------------------------------------------------- */
 
-/** What is plain in a request. */
+/** The fields of a request that hold no pointer. */
 typedef struct PlainRequest {
     FlCanvas canvas;
     FlPageSize page;
@@ -32,7 +32,7 @@ typedef struct PlainRequest {
     int number, frame, from, layer, width, height, n_regions, shapes;
 } PlainRequest;
 
-/** What is plain in a hand. */
+/** The fields of a hand that hold no pointer. */
 typedef struct PlainHand {
     uint64_t seed;
     float page;
@@ -264,7 +264,7 @@ void fl_survey_pack(const FlSurveyFrame *frame, const FlStrings *strings,
     put_warnings(out, warnings);
 }
 
-/** Whether a part is one that a survey makes: nothing of it is out of range. */
+/** True if all fields of a part are in the ranges that a survey keeps. */
 static bool is_sound(const FlSurveyPart *part)
 {
     bool sound = is_bool(&part->stroke) && is_bool(&part->has_fill) && is_bool(&part->has_stroke) &&

@@ -1,11 +1,11 @@
-/* What a worker is asked and what it answers: the one wire format between the two. */
+/* Requests to workers and their answers: the one wire format between host and worker. */
 #ifndef FLUIDY_WORKER_MESSAGES_H
 #define FLUIDY_WORKER_MESSAGES_H
 
 #include "base/reader.h"
 #include "base/warnings.h"
 #include "svg/inner_frames.h"
-#include "worker/draw_frame.h"
+#include "worker/draws.h"
 #include "worker/frame_parts.h"
 
 typedef enum FlVerb {
@@ -55,7 +55,7 @@ bool fl_answer_begin(FlReader *reader, const char *file, GError **error);
 /** Sets FL_ERROR_INPUT: what a worker answered about a file is damaged. Returns: false. */
 bool fl_answer_set_damaged(const char *file, GError **error);
 
-/** What FL_VERB_MEASURE answers. */
+/** The answer of FL_VERB_MEASURE. */
 typedef struct FlPageMeasures {
     double width, height; // px of the page
     GArray *shapes;       // FlShape; empty where they are not wanted
@@ -68,7 +68,7 @@ bool fl_inner_frames_unpack(FlReader *reader, FlInnerFrames *frames);
 void fl_measures_pack(const FlPageMeasures *measures, GByteArray *out);
 bool fl_measures_unpack(FlReader *reader, FlPageMeasures *measures);
 
-/** What FL_VERB_SURVEY answers; `canvas` is left out. */
+/** The answer of FL_VERB_SURVEY, without `canvas`. */
 void fl_survey_pack(const FlSurveyFrame *frame, const FlStrings *strings,
                     const FlWarnings *warnings, GByteArray *out);
 
@@ -81,7 +81,7 @@ bool fl_survey_unpack(FlReader *reader, FlSurveyFrame *frame, FlStrings *strings
  * caller's. Returns: NULL with FL_ERROR_NO_MEMORY set. */
 GBytes *fl_draws_pack(const FlDrawList *draws, GError **error);
 
-/** What a draw list can be about. */
+/** The limits that a draw list must keep to. */
 typedef struct FlDrawBounds {
     int width, height, n_regions;
     int most; // draws

@@ -315,7 +315,7 @@ static bool probe_leaf(FlFrameProbe *f, const FlLeaf *leaf, int index, GError **
     return good;
 }
 
-/** Whether any two of the parts from `first` on overlap. */
+/** True if any two of the parts from `first` on overlap. */
 static bool overlap(const GArray *probes, guint first)
 {
     for (guint i = first; i < probes->len; i++)
@@ -326,7 +326,7 @@ static bool overlap(const GArray *probes, guint first)
     return false;
 }
 
-/** Whether the parts from `first` on, all of a unit, can be drawn one by one: 1, 0, -1 an error. */
+/** 1 if the parts from `first` on, all of a unit, can be drawn one by one, else 0; -1: an error. */
 static int is_separable(FlFrameProbe *f, const FlGroupUnit *unit, guint first, GError **error)
 {
     if (unit->inseparable)

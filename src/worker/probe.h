@@ -12,12 +12,12 @@ typedef struct FlProbe {
     const FlLeaf *leaf;
     char *paint;
     FlRect box;      // px of the small picture
-    bool is_kept;    // what was drawn is known, and not drawn again
+    bool is_kept;    // its coverage is known and need not be drawn again
     FlRect kept_box; // of it; may be empty
     GBytes *kept;    // its coverage, of kept_box; NULL if that is empty
 } FlProbe;
 
-/** What one thread needs for one frame. */
+/** The state of probing one frame, for one thread. */
 typedef struct FlFrameProbe {
     FlSvg *svg;
     FlPageSize page; // in the small picture

@@ -40,7 +40,7 @@ uint8_t *fl_memory_file_get(int file, size_t *bytes)
 
 /* ---- orders ---------------------------------------------------------------------------------- */
 
-/** What a worker is told when it starts. */
+/** The orders with which a worker starts. */
 typedef struct Orders {
     int64_t limit[FL_N_LIMITS];
     bool confined, required;

@@ -38,7 +38,7 @@ typedef struct FlTicket {
     unsigned given_up; // of an answer: see FlSandbox
 } FlTicket;
 
-/** Whether this process has one thread, and so may fork. */
+/** True if this process has one thread, and so may fork. */
 bool fl_process_may_fork(void);
 
 /** Starts it. Returns: false if it cannot be started. */

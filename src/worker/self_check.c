@@ -147,7 +147,7 @@ int fl_looks_alike(FlSelfCheck *check, FlSvg *svg, const FlLeaf *group, const Fl
     return 1;
 }
 
-/** How many pixels differ visibly; the worst of them goes to *where. */
+/** Counts the pixels that differ visibly; the worst one goes to *where. */
 static int compare(const uint32_t *a, const uint32_t *b, size_t n, size_t *where)
 {
     int visible = 0, most = 0;
@@ -175,7 +175,7 @@ static cairo_surface_t *draw_truth(const FlSelfCheck *check, FlSvg *svg, const c
     return drawn ? g_steal_pointer(&truth) : NULL;
 }
 
-/** Whether a group looks as its leaves do. */
+/** True if a group looks as its leaves do. */
 static FlVerdict judge(const FlSelfCheck *check, FlSvg *svg, const char *group, FlPageSize page,
                        GError **error)
 {
@@ -224,7 +224,7 @@ static bool find_group(const FlSelfCheck *check, FlSvg *svg, const FlLeaf *leaf,
     return true;
 }
 
-/** Whether two pictures differ by more than 36 dB PSNR. */
+/** True if two pictures differ by more than 36 dB PSNR. */
 static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n, int most)
 {
     int64_t sum = 0;
@@ -236,7 +236,7 @@ static bool differ_much(const uint32_t *a, const uint32_t *b, size_t n, int most
     return sum > (int64_t)n * 4 * most;
 }
 
-/** Whether a leaf looks as its n parts, drawn one by one: 1 or 0; -1 with an error. */
+/** 1 if a leaf looks like its n parts drawn one by one, else 0; -1 with an error. */
 static int judge_leaf(const FlSelfCheck *check, FlSvg *svg, const FlPiece *piece, int n,
                       FlPageSize page, GError **error)
 {
@@ -252,7 +252,7 @@ static int judge_leaf(const FlSelfCheck *check, FlSvg *svg, const FlPiece *piece
                           (size_t)check->width * check->height, &where) <= MOST_VISIBLE;
 }
 
-/** How many pieces from i on are of one leaf. */
+/** Counts the pieces from i on that belong to one leaf. */
 static int parts_from(const FlSelfCheck *check, guint i)
 {
     const FlPiece *piece = (const FlPiece *)check->pieces->data;

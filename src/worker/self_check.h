@@ -39,7 +39,7 @@ FlVerdict fl_self_check_finish(FlSelfCheck *check, FlSvg *svg, FlPageSize page, 
  */
 bool fl_self_check_has_hard_masks(const FlSelfCheck *check);
 
-/** Whether they differ too much to paint the frame from its leaves. */
+/** True if the difference is too large to paint the frame from its leaves. */
 bool fl_self_check_is_gross(const FlSelfCheck *check);
 
 /** A part to be drawn by fl_looks_alike(). */

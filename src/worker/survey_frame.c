@@ -51,7 +51,7 @@ void fl_survey_frame_clear(FlSurveyFrame *frame)
 
 /* ---- one frame ------------------------------------------------------------------------------- */
 
-/** What is made of a frame, and from what. */
+/** The survey of one frame in progress. */
 typedef struct Survey {
     const FlRequest *request;
     FlFrameCache *cache;

@@ -67,7 +67,7 @@ static bool measure(FlServant *servant, const FlRequest *r, GByteArray *out, GEr
     return true;
 }
 
-/** Whether a request is about the frame that was measured. */
+/** True if a request is about the frame that was measured. */
 static bool is_measured(const FlServant *servant, const FlRequest *r)
 {
     const FlSvgOptions *a = &servant->svg, *b = &r->svg;

@@ -4,12 +4,12 @@
 
 #include "worker/messages.h"
 
-/** What a worker keeps between requests: what rests is read and drawn once. Zero: nothing. */
+/** State between requests: parts at rest are read and drawn once. Zero is the empty state. */
 typedef struct FlServant {
     FlFrameCache probes, draws;
     FlSvg *measured;     // the frame that was measured last
     char *file;          // its file
-    FlSvgOptions svg;    // how it was read; `whole` is NULL
+    FlSvgOptions svg;    // its options; `whole` is NULL
     FlWarnings *remarks; // about it
 } FlServant;
 

@@ -157,7 +157,7 @@ static void release(Worker *worker)
 
 /* ---- one request ----------------------------------------------------------------------------- */
 
-/** How a request ended. */
+/** The end of a request. */
 typedef struct Outcome {
     bool answered, late, stopped;
     int status; // of waitpid(), unless answered
@@ -253,7 +253,7 @@ static Outcome exchange(Worker *w, FlWorkers *workers, const GByteArray *request
 
 /* ---- what went wrong ------------------------------------------------------------------------- */
 
-/** Whether libraries said on standard error that memory was refused. */
+/** True if libraries said on standard error that memory was refused. */
 static bool asked_too_much(const Worker *w)
 {
     // Rust's, GLib's and OpenMP's

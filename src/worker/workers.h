@@ -28,7 +28,7 @@ typedef struct FlWorkers FlWorkers;
 FlWorkers *fl_workers_new(const char *const *paths, FlSandboxing sandbox, bool apart,
                           GError **error);
 
-/** What a worker has answered; `reader` is behind what fl_answer_begin() reads. */
+/** A worker's answer; `reader` stands after the status. */
 typedef struct FlAnswer {
     FlReader reader;
     uint8_t *data; // owned
@@ -44,10 +44,11 @@ typedef struct FlAnswer {
 bool fl_workers_ask(FlWorkers *workers, const FlRequest *request, const FlFileWait *wait,
                     FlAnswer *answer, GError **error);
 
-/** Whether an error of fl_workers_ask() depends on the machine and its load, not on the file. */
+/** True if an error of fl_workers_ask() depends on the machine and its load, not on the file. */
 bool fl_is_by_chance(const GError *error);
 
-/** What of the sandbox is missing, as a sentence; NULL: nothing is, or nothing was asked yet. */
+/** The part of the sandbox that is missing, as a sentence; NULL: all are there, or no worker has
+ * answered yet. */
 const char *fl_workers_lack(const FlWorkers *workers);
 
 void fl_answer_clear(FlAnswer *answer);

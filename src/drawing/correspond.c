@@ -1,7 +1,6 @@
 #include "drawing/correspondence.h"
 
 #include "drawing/pairing.h"
-#include "drawing/round_host.h"
 #include "drawing/samples.h"
 #include <math.h>
 #include <string.h>
@@ -72,7 +71,7 @@ static bool fit_line(const FlSamples *s, FlAffine *back)
     return true;
 }
 
-/** The affine map from now to before that fits best. Returns: whether the samples tell one. */
+/** The affine map from now to before that fits best. Returns: true if the samples tell one. */
 static bool fit(const FlSamples *s, FlAffine *back)
 {
     const FlPoint a = fl_mean_point(s->before, s->n), b = fl_mean_point(s->now, s->n);
@@ -201,7 +200,7 @@ static bool lies_on(FlPoint p, const GArray *line, double tolerance)
     return found;
 }
 
-/** Whether one of the ends of the first line is where it was. */
+/** True if one of the ends of the first line is where it was. */
 static bool is_held(const Pair *p)
 {
     const FlSubpath *s = &p->before->subpath[p->a->first_subpath];
@@ -246,7 +245,7 @@ static bool close_to(FlPoint a, FlPoint b, double tolerance)
     return fabs(a.x - b.x) <= tolerance && fabs(a.y - b.y) <= tolerance;
 }
 
-/** Whether the local coordinates are the same, so that the transforms tell all. */
+/** True if the local coordinates are the same, so that the transforms tell all. */
 static bool locally_same(const Pair *p)
 {
     double x0 = HUGE_VAL, y0 = HUGE_VAL, x1 = -HUGE_VAL, y1 = -HUGE_VAL;
@@ -297,7 +296,7 @@ static FlMotionKind motion_of_same(const Pair *p, FlAffine *back)
                                                                   : FL_MOTION_SAME;
 }
 
-/** Whether a pair moves implausibly far. */
+/** True if a pair moves implausibly far. */
 static bool jumps(const FlTwoFrames *f, const FlLeafMeasure *a, const FlLeafMeasure *b)
 {
     const double dx = (a->x0 + a->x1 - b->x0 - b->x1) / 2, dy = (a->y0 + a->y1 - b->y0 - b->y1) / 2;

@@ -1,8 +1,7 @@
 #include "base/rect.h"
 #include "drawing/drawing_data.h"
-#include "drawing/region_anchors.h"
 #include "drawing/region_identity.h"
-#include "drawing/region_names.h"
+#include "drawing/survey.h"
 #include <string.h>
 
 #define MOST_ROUNDS 8 // in which frames are left out

@@ -1,6 +1,6 @@
 /* A frame as pictures: what is drawn of each region, from the bottom up. */
-#ifndef FLUIDY_WORKER_DRAW_FRAME_H
-#define FLUIDY_WORKER_DRAW_FRAME_H
+#ifndef FLUIDY_WORKER_DRAWS_H
+#define FLUIDY_WORKER_DRAWS_H
 
 #include "base/frame_cache.h"
 #include "base/rect.h"
@@ -9,8 +9,7 @@
 #include "svg/svg_frame.h"
 #include <fluidy/error.h>
 
-/** How one part of a leaf is drawn in one frame. 36 bytes: this is what grows with the number of
- * frames. */
+/** One part of a leaf, as it is drawn in one frame. 36 bytes, once per step and frame. */
 typedef struct FlDrawStep {
     int32_t leaf;   // index of the leaf; of a unit -1 - its index
     int16_t region; // index of its region
@@ -33,9 +32,9 @@ typedef struct FlDrawStep {
  */
 typedef struct FlDraw {
     int region;        // index of its region
-    FlArea area;       // where it is in the frame
+    FlArea area;       // its place in the frame
     uint8_t *coverage; // of the area's box, 0..255: the whole shape, hidden parts included
-    uint8_t *by_hand;  // of the box: what a hand leaves of the coverage; NULL: all of it
+    uint8_t *by_hand;  // of the box: coverage that a hand leaves; NULL: all
     uint8_t *picture;  // of the box, 4 bytes a pixel, straight sRGBA as the SVG draws it; NULL:
                        // flat `rgb`. A is coverage again, colours are defined where A > 0
     uint8_t rgb[3];    // the fill; of a picture its mean
@@ -54,7 +53,7 @@ typedef struct FlRegionHand {
     int boil; // frames until it draws anew; 0: never
 } FlRegionHand;
 
-/** How what is not painted is drawn; see worker/hand_line.h. */
+/** The drawing of regions that are not painted; see worker/hand_line.h. */
 typedef struct FlHand {
     const FlRegionHand *of_region; // of each; borrowed
     uint64_t seed;
@@ -62,11 +61,30 @@ typedef struct FlHand {
     FlTooth tooth; // of the frame's paper
 } FlHand;
 
-/** Whether a hand, NULL: none, draws any of the n steps. */
+/** True if a hand, NULL: none, draws any of the n steps. */
 bool fl_steps_need_hand(const FlDrawStep *step, int n, const FlHand *hand);
 
 void fl_draw_clear(FlDraw *draw);
 void fl_draw_list_free(FlDrawList *draws); // NULL is fine
+
+/* ---- draws of a frame, for the next one: what rests is drawn once -------------------------------
+ */
+
+/** The bytes of what is drawn. */
+size_t fl_draw_bytes(const FlDraw *draw);
+
+/** Copies what no hand has drawn. FL_ERROR_NO_MEMORY; clear the copy then as well. */
+bool fl_draw_copy(const FlDraw *draw, FlDraw *copy, GError **error);
+
+/** The draw of that digest; NULL: there is none. */
+const FlDraw *fl_draw_cache_find(FlFrameCache *cache, FlDigest digest);
+
+/**
+ * Keeps a copy of a draw whose digest is known, while there is room beside the `bytes` that the
+ * frame has kept, and adds its own. FL_ERROR_NO_MEMORY.
+ */
+bool fl_draw_cache_keep(FlFrameCache *cache, FlDigest digest, const FlDraw *draw, size_t *bytes,
+                        GError **error);
 
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(FlDrawList, fl_draw_list_free)
 
