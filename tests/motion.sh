@@ -31,9 +31,9 @@ for threads in 2 5; do
     result $? "$threads threads carry it as one does"
 done
 paint_disc none --flow $slide --carry 0 && paint_disc all --flow $slide --carry 1 &&
-    ! same none carried && ! same all carried && ! same none all
+    ! same none carried && same all carried
 result $? 'the share that is carried makes a difference'
-cmp -s carried/w_0001.png masks/w_0001.png
+cmp -s none/w_0001.png masks/w_0001.png
 result $? 'but not in a first frame'
 paint_disc everything --motion masks --flow $slide && ! same everything carried &&
     ! same everything masks
@@ -89,11 +89,11 @@ for i in 3 4; do
     mv film/w_000$i.svg saved
     sed 's/<circle[^>]*>//' saved/w_000$i.svg >film/w_000$i.svg
 done
-paint_disc back && paint_disc back_carried --carry 1 && paint_disc back_masks --motion masks &&
+paint_disc back && paint_disc back_carried --carry 0.5 && paint_disc back_masks --motion masks &&
     ! cmp -s back/w_0002.png back_masks/w_0002.png &&
     ! cmp -s back/w_0006.png back_carried/w_0006.png
 result $? 'a shape that leaves and returns is carried before and after'
-cmp -s back/w_0005.png back_masks/w_0005.png && cmp -s back/w_0005.png back_carried/w_0005.png
+cmp -s back_carried/w_0005.png back_masks/w_0005.png
 result $? 'what returns is painted afresh'
 paint_disc back_loop --loop --carry 1 && paint_disc back_threads --loop --carry 1 -j 3 &&
     same back_loop back_threads

@@ -190,7 +190,7 @@ static void pieces_travel_as_fast_as_what_they_show(void)
         }
 }
 
-static void what_goes_across_is_carried_and_what_goes_along_is_left(void)
+static void a_share_is_carried_and_what_goes_along_is_left(void)
 {
     g_auto(FlGuides) guides = {0};
     for (int along = 0; along < 2; along++)
@@ -205,8 +205,8 @@ static void what_goes_across_is_carried_and_what_goes_along_is_left(void)
             carry_once(&guides, carry, 1, &before, &after);
             double place[2];
             match_of(&after.nnf, 3, 4, place);
-            assert_near(place[0], 3 - 5.25 * (along ? (double)carry : 1), 1.0 / 16);
-            assert_near(place[1], 4 - 2 * (along ? 1 : (double)carry), 1.0 / 16);
+            assert_near(place[0], 3 - 5.25 * (double)carry, 1.0 / 16);
+            assert_near(place[1], 4 - 2 * (double)carry, 1.0 / 16);
             assert_near(after.speed[CENTRE * SIDE + CENTRE], (along ? 5.25 : 2) * left, 0.001);
         }
 }
@@ -285,7 +285,7 @@ int main(int argc, char **argv)
     TEST(slow_motion_carries_as_far_in_the_end);
     TEST(a_slow_spin_carries_and_turns_as_far_in_the_end);
     TEST(pieces_travel_as_fast_as_what_they_show);
-    TEST(what_goes_across_is_carried_and_what_goes_along_is_left);
+    TEST(a_share_is_carried_and_what_goes_along_is_left);
     TEST(what_is_uncovered_has_no_match);
     TEST(how_deep_paint_was_comes_along);
     TEST(where_motion_is_unknown_nothing_is_carried);

@@ -331,9 +331,12 @@ bool fl_config_region_settings(const FlConfig *config, int rule, const char *reg
     fl_overrides_apply(&config->defaults, settings);
     if (rule >= 0)
         fl_overrides_apply(&config->rules[rule].overrides, settings);
-    if (apply_settings(options, NULL, settings, error) &&
-        apply_settings(options, region, settings, error))
-        return true;
-    fl_region_settings_clear(settings);
-    return false;
+    if (!apply_settings(options, NULL, settings, error) ||
+        !apply_settings(options, region, settings, error)) {
+        fl_region_settings_clear(settings);
+        return false;
+    }
+    if (settings->motion == FL_MOTION_MASKS)
+        settings->params.carry = 0; // by what outlines show
+    return true;
 }

@@ -17,7 +17,7 @@ typedef struct Vector {
 /* What is the same for all pixels of a frame. */
 typedef struct Plan {
     const FlCarry *input;
-    int carry;            // of the motion along the direction, CARRY_ONE is all
+    int carry;            // of the motion, CARRY_ONE is all
     int32_t x_off, y_off; // 0 … ROUND_ONE: what is added before places are rounded down
     const FlExemplarLevel *level;
 } Plan;
@@ -72,17 +72,17 @@ static FlMatch carried(const Plan *plan, FlMatch m, Vector rest, int16_t turn)
     return m;
 }
 
-/* Splits the motion of a pixel of the frame: what is carried, and in px what is left. */
+/* Splits the motion of a pixel of the frame: what is carried, and in px what is left of that along
+ * the direction. */
 static Vector split(const Plan *plan, size_t pixel, float *left_px)
 {
     const FlGuides *guides = plan->input->guides;
     const int32_t *u = guides->motion + 2 * pixel;
     const int16_t *d = fl_turns[guides->angle[pixel]];
     const int64_t along = ((int64_t)u[0] * d[0] + (int64_t)u[1] * d[1]) >> 14;
-    const int64_t left = along * (CARRY_ONE - plan->carry) / CARRY_ONE;
-    *left_px = fabsf((float)left) / FL_MOTION_ONE;
-    return (Vector){(int32_t)(u[0] - ((left * d[0] + (1 << 13)) >> 14)),
-                    (int32_t)(u[1] - ((left * d[1] + (1 << 13)) >> 14))};
+    *left_px = fabsf((float)along) / FL_MOTION_ONE * (1 - plan->input->carry);
+    return (Vector){(int32_t)((int64_t)u[0] * plan->carry / CARRY_ONE),
+                    (int32_t)((int64_t)u[1] * plan->carry / CARRY_ONE)};
 }
 
 static FlMatch match_at(const FlNnf *nnf, int x, int y)
@@ -178,7 +178,8 @@ static void arrive(const Plan *plan, const FlNnf *before, FlRect from, int x, in
     }
     FlMatch m = origin.match;
     if (m.frame != FL_NO_MATCH && inside && known) {
-        m = carried(plan, m, origin.rest, guides->turn[pixel]);
+        const int turn = guides->turn[pixel] * plan->carry / CARRY_ONE;
+        m = carried(plan, m, origin.rest, (int16_t)turn);
         m.off = off_from(plan, origin.off);
     }
     const size_t was =

@@ -6,11 +6,11 @@
 
 /** How a field gets into the next frame. */
 typedef struct FlCarry {
-    const FlGuides *guides; // of the frame; the motion is theirs
-    float carry; // how much of what spreading paint could show is carried as well, 0 … 1
-    bool rotate; // matches may turn
-    int frame;   // the frame-th painted one: decides which way places are rounded
-    int width;   // of the frame before, whose planes follow
+    const FlGuides *guides;     // of the frame; the motion is theirs
+    float carry;                // how much of the drawing's motion the paint makes, 0 … 1
+    bool rotate;                // matches may turn
+    int frame;                  // the frame-th painted one: decides which way places are rounded
+    int width;                  // of the frame before, whose planes follow
     const uint8_t *shape, *wet; // fl_rest_shape(), and how wet the paint was; wet may be NULL
 } FlCarry;
 
@@ -26,9 +26,9 @@ bool fl_carried_init(FlCarried *carried, int width, int height, GError **error);
 void fl_carried_clear(FlCarried *carried);
 
 /**
- * The matches of `before`, which lies at `from` in its frame, for the pixels of rect. The motion
- * falls into two parts: along the direction guide, which the exemplar's own time can show, and
- * across it, which it cannot. The latter is carried whole, the former by the share `carry`. A pixel
+ * The matches of `before`, which lies at `from` in its frame, for the pixels of rect. They are
+ * carried by the share `carry` of the motion; what is left along the direction guide is for the
+ * exemplar's own time to show. A pixel
  * takes the match whose
  * paint comes nearest to it: FlMatch.off says where that is to a fraction of a pixel, so that
  * pieces of the exemplar travel as fast as what they show. The match moves by what its pixel was

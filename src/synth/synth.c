@@ -419,7 +419,7 @@ static bool paint(FlSynth *synth, FlGuides *guides, uint8_t *rgb, FlFrameStats *
     }
     clear_frame(synth);
     forget_packed(synth);
-    synth->moves = guides->has_motion;
+    synth->moves = guides->has_motion && synth->params->carry > 0;
     synth->resting = resting, resting = (FlRestingParts){0};
     const FlRect box = whole_box(synth, guides), all = working_rect(synth, box);
     if (box.width == 0) {

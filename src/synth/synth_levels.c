@@ -66,10 +66,10 @@ static bool make_temporal_level(FlSynth *synth, const FlNnf *shifted, int l, GEr
     return true;
 }
 
-/* Whether paint that fits is kept: where it is carried whole, and every match is not searched. */
+/* Whether paint that fits as it has come is kept: not where every match shall be searched. */
 static bool keeps(const FlParams *params)
 {
-    return params->carry >= 1 && params->settled > 0;
+    return params->settled > 0;
 }
 
 bool fl_synth_make_temporal(FlSynth *synth, const FlCarried *carried, GError **error)
