@@ -311,4 +311,18 @@ of_page over apart.png --cache kept --layers 'layers/{region}/%d.png' && took 2 
     of_page over over.png --cache kept && took 4 0 && same bare.png over.png
 result $? 'but it is where layers are stored'
 
+mkdir time
+echo "<svg xmlns='http://www.w3.org/2000/svg' width='48' height='48'>" \
+    "<path d='M4,9h16v22h-16z' fill='#aa3311'><animateTransform attributeName='transform'" \
+    "type='translate' from='0 0' to='24 0' dur='2s' repeatCount='indefinite'/></path></svg>" >time/moving.svg
+in_time() { # in_time FOLDER ARGUMENT...: paints its first frames
+    rm -rf "$1"
+    "$program" time/moving.svg -s "$style" -f 1-4 -o "$1/%d.png" --progress none "${@:2}" >out 2>err
+}
+in_time now --fps 6 --cache kept && in_time now --fps 12 --cache kept &&
+    in_time nothing --fps 12 --cache off && same now nothing
+result $? 'a drawing that moves is painted anew at another speed'
+in_time now --fps 12 --cache kept && grep -q '4 pictures from the cache, 0 painted' err
+result $? 'and taken at the same one'
+
 echo "1..$n"

@@ -196,6 +196,12 @@ FlFacts *fl_region_facts(const FlShapes *shapes, const FlRegionPlan *region, FlI
     return facts;
 }
 
+static bool frames_share_a_file(const FlDrawing *drawing)
+{
+    return fl_drawing_frames(drawing) > 1 &&
+           g_str_equal(fl_drawing_file(drawing, 0), fl_drawing_file(drawing, 1));
+}
+
 void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
 {
     const FlRegionPlan *painted = &plan->painted[p];
@@ -203,6 +209,8 @@ void fl_region_facts_add_film(FlFacts *facts, const FlPlan *plan, int p)
     for (int f = 0; f < fl_drawing_frames(plan->drawing); f++) // by which layers of one file differ
         fl_facts_add_number(facts, "the number of a frame", fl_drawing_number(plan->drawing, f));
     add_values(facts, FL_SCOPE_RENDER, &plan->options, NULL, false);
+    if (frames_share_a_file(plan->drawing)) // they may be moments of it
+        fl_facts_add_number(facts, "fps", plan->options.fps);
     fl_facts_add_number(facts, "the hold", plan->hold);
     add_edges(facts, plan);
     for (int r = 0; r < fl_drawing_regions(plan->drawing); r++)
