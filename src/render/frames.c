@@ -6,6 +6,7 @@
 #include "base/schedule.h"
 #include "compose/enlarge.h"
 #include "drawing/hold.h"
+#include "guides/half_guides.h"
 #include "inspect/dump.h"
 #include "inspect/ebsynth.h"
 #include "render/painter_guides.h"
@@ -325,9 +326,13 @@ static bool wet_motion(void *data, int region, int before, int now, FlRect part,
 {
     const FlFrames *frames = data;
     const FlRegionStep step = {region, before, now, part, {NULL, NULL}};
-    FlMotionSource *source =
-        frames->painters.motion[0] ? frames->painters.motion[0] : frames->motion;
-    return fl_motion_source_get(source, &step, motion, NULL, error);
+    FlMotionSource *known = frames->painters.motion[1];
+    g_autofree float *half =
+        fl_alloc_unset(2 * fl_rect_pixels(fl_rect_halved(part)), sizeof *half, "a motion", error);
+    if (!half || !fl_motion_source_get(known ? known : frames->motion, &step, half, NULL, error))
+        return false;
+    fl_flow_double(half, part.width, part.height, motion);
+    return true;
 }
 
 static bool open_wet(FlFrames *frames, GError **error)
@@ -335,8 +340,8 @@ static bool open_wet(FlFrames *frames, GError **error)
     const FlPlan *plan = frames->plan;
     frames->marked = -1;
     g_clear_pointer(&frames->wet, fl_wet_free);
-    return (frames->painters.motion[0] || frames->motion ||
-            (frames->motion = fl_motion_source_new(plan->drawing, plan->masks, false, error))) &&
+    return (frames->painters.motion[1] || frames->motion ||
+            (frames->motion = fl_motion_source_new(plan->drawing, plan->masks, true, error))) &&
            (frames->wet = fl_wet_new(plan, frames->background.paper, wet_motion, frames, error));
 }
 

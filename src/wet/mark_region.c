@@ -75,7 +75,7 @@ static FlRect marked_part(const FlWet *wet, const FlRegionPlan *plan, int before
         box = fl_rect_or(box, fl_mask_store_box(masks, plan->region,
                                                 fl_wet_shown_by(plan, frame_ahead(wet, now, a))));
     const int margin = (int)ceilf(MARGIN_PX * wet->sheet.px) + 2;
-    return fl_rect_grown(fl_wet_cells_of(wet, box), margin, wet->sheet.page);
+    return fl_rect_on_grid(fl_rect_grown(fl_wet_cells_of(wet, box), margin, wet->sheet.page), 2);
 }
 
 static bool read_ahead(const FlWet *wet, const FlRegionPlan *plan, int now, Planes *planes,

@@ -8,7 +8,8 @@
 
 typedef struct FlWet FlWet;
 
-/** Writes the drawing's motion of a region into a frame, as fl_motion_source_get() does. */
+/** Writes the drawing's motion of a region into a frame, as fl_motion_source_get() does; the corner
+ * of the part is even. */
 typedef bool (*FlWetMotion)(void *data, int region, int before, int now, FlRect part, float *motion,
                             GError **error);
 
