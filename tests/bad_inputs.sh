@@ -55,7 +55,7 @@ svg broken "<path id='p' d='M1 1h9 x v9z' fill='#aa3311'/>"
 svg lost "<rect id='r' width='9' height='9' fill='url(#g)'/>$shape"
 svg circle "<g id='a'><use href='#a'/>$shape</g>"
 svg animated "<circle id='c' r='16' fill='#aa3311'><animate attributeName='r' to='9'/></circle>"
-svg media "<style>@media print { circle { fill: red } }</style>$shape"
+svg rule "<style>@container x { circle { fill: red } }</style>$shape"
 svg piped "$shape<image id='i' href='../piped/p.png' width='9' height='9'/>" && mkfifo piped/p.png
 svg sheet "<style>@import url('s.pipe');</style>$shape" && mkfifo sheet/s.pipe
 svg styled "<style>@import 'a.txt';</style>$shape" && echo '@import "b.txt";' >styled/a.txt && touch styled/b.txt
@@ -213,7 +213,7 @@ table() {
 1|lost/a_1.svg: #r: fill refers to “#g”, which is not in the file: *under --strict)|lost --strict
 1|circle/a_1.svg: <use> of “#a” shows itself and is left out *under --strict)|circle --strict
 1|animated/a_1.svg: #c: the animation in it is not played: *under --strict)|animated --strict --frames-from files
-1|media/a_1.svg: @media rules are left out *under --strict)|media --strict
+1|rule/a_1.svg: the style rule “@container x” is not known *under --strict)|rule --strict
 1|image/a_1.svg: #i: the image “gone.png” does not exist *under --strict)|image --strict
 1|prologue.svg: ignored the text before <svg>, which is not XML *under --strict)|prologue.svg --strict
 1|./still: one frame is used: its paint does not flow (a warning under --strict)|good --strict -s ./still

@@ -47,9 +47,10 @@ typedef struct Reader {
 
 static void read_rules(Reader *reader, const char *css, const Place *place);
 
-static void warn(const Reader *reader, const char *format, const char *what)
+/** Warns about a sheet or a rule, quoted on one line. */
+static void warn(const Reader *reader, const char *kind, const char *what, const char *why)
 {
-    g_autofree char *text = g_strdup_printf("the style sheet %s “%.60s”", format, what);
+    g_autofree char *text = g_strdup_printf("the style %s “%.60s” %s", kind, what, why);
     for (char *c = text; *c; c++)
         if (*c == '\n' || *c == '\t' || *c == '\r')
             *c = ' ';
@@ -174,7 +175,7 @@ static void add_rules(Reader *reader, const char *selectors, GArray *declaration
     FlCssSheet *sheet = reader->sheet;
     GPtrArray *list = fl_selectors_parse(selectors);
     if (!list) {
-        warn(reader, "has a selector that is not known and leaves out its rule:", selectors);
+        warn(reader, "rule", selectors, "has a selector that is not known and is left out");
         return;
     }
     g_ptr_array_add(sheet->selectors, list);
@@ -294,14 +295,13 @@ static void read_file(Reader *reader, const char *href, const Place *place)
     if (!file || !is_there || !fl_file_check(file, FL_ERROR_INPUT, NULL) ||
         !fl_reference_is_inside(reader->path, file) ||
         !fl_file_read(file, LARGEST_BYTES, &css, &bytes, NULL)) {
-        warn(reader,
-             !file                                        ? "is not in a file and is left out:"
-             : !is_there                                  ? "does not exist and is left out:"
-             : !fl_file_check(file, FL_ERROR_INPUT, NULL) ? "is a pipe or a device and is left out:"
+        warn(reader, "sheet", href,
+             !file                                        ? "is not in a file and is left out"
+             : !is_there                                  ? "does not exist and is left out"
+             : !fl_file_check(file, FL_ERROR_INPUT, NULL) ? "is a pipe or a device and is left out"
              : !fl_reference_is_inside(reader->path, file)
-                 ? "is outside the drawing's folder and is left out:"
-                 : "cannot be read and is left out:",
-             href);
+                 ? "is outside the drawing's folder and is left out"
+                 : "cannot be read and is left out");
         return;
     }
     g_autofree char *bare = fl_css_without_comments(css);
@@ -394,10 +394,10 @@ static void read_at_rule(Reader *reader, const char *name, const char *prelude, 
     } else if (strcmp(name, "property") == 0 && block)
         read_property(reader, prelude, block);
     else if (strcmp(name, "font-face") == 0)
-        warn(reader, "embeds a font; the system's fonts are drawn instead:", "@font-face");
+        warn(reader, "rule", "@font-face", "embeds a font; one of the system is drawn");
     else if (!g_strv_contains(ignored, name)) {
         g_autofree char *whole = g_strdup_printf("@%s %s", name, prelude);
-        warn(reader, "has a rule that is not known and is left out:", whole);
+        warn(reader, "rule", whole, "is not known and is left out");
     }
 }
 
