@@ -53,8 +53,10 @@ programs_stay_outside() {
     grep -rnE '#include "[a-z]+/' --include='*.[ch]' src/cli | grep -vE '"(base|params|cli)/'
 }
 
+# Those of the public headers and those of the programs, under their versions.
 exported_symbols() {
-    nm -D --defined-only "$build/src/libfluidy.so" | awk '{print $3}' | sed 's/@.*//' | grep -v '^fl_'
+    diff <(nm -D --defined-only "$build/src/libfluidy.so" | awk '$2 != "A" {print $3}' | sort) \
+        <(awk '/^FLUIDY/ {version = $1} /^ *fl_/ {sub(/;/, ""); print $1 "@@" version}' src/fluidy.map | sort)
 }
 
 # One meaning, one name: no two files of the sources are called alike, and no two types.
@@ -202,7 +204,7 @@ no_include_circles() {
 }
 
 report 'the programs use base, params and public headers only' programs_stay_outside
-report 'every exported symbol starts with fl_' exported_symbols
+report 'the library exports what src/fluidy.map lists' exported_symbols
 report 'no files include each other in a circle' no_include_circles
 report 'include guards are the path' header_guards
 report 'no two files or types have one name' names_are_unique

@@ -1,4 +1,9 @@
-/* Styles or methods beside each other, to choose one. */
+/** @file
+ * Styles or methods beside each other, to choose one.
+ *
+ * Threads: any thread may call these functions, several at a time with outputs of their own. They
+ * read and draw as fl_render() does, which may fork.
+ */
 #ifndef FLUIDY_COMPARE_H
 #define FLUIDY_COMPARE_H
 

@@ -1,9 +1,12 @@
-/* What can go wrong, and the export mark of the public functions. */
+/** @file
+ * Errors, and the export mark of the public functions. Threads: any thread may call them.
+ */
 #ifndef FLUIDY_ERROR_H
 #define FLUIDY_ERROR_H
 
 #include <glib.h>
 
+/** Marks what the library exports. */
 #if defined(__GNUC__)
 #define FL_API __attribute__((visibility("default")))
 #else
@@ -14,6 +17,8 @@ G_BEGIN_DECLS
 
 /** The domain of every error the library makes itself; a library below may add its own domain. */
 #define FL_ERROR fl_error_quark()
+
+/** The quark of FL_ERROR. */
 FL_API GQuark fl_error_quark(void);
 
 /**
@@ -24,7 +29,7 @@ FL_API GQuark fl_error_quark(void);
  * a program can put its own words there; nothing else stands in these marks.
  */
 typedef enum FlError {
-    FL_ERROR_USAGE,       /**< an option, a parameter or a config file is wrong: exit status 2 */
+    FL_ERROR_USAGE,       /**< an option, a parameter or a config file is wrong */
     FL_ERROR_INPUT,       /**< an SVG, mask or flow file is missing or broken */
     FL_ERROR_STYLE,       /**< a style is missing or broken */
     FL_ERROR_OUTPUT,      /**< a file cannot be written */
@@ -32,7 +37,7 @@ typedef enum FlError {
     FL_ERROR_LIMIT,       /**< a file asks for more than the limits allow */
     FL_ERROR_NO_MEMORY,   /**< out of memory */
     FL_ERROR_CHANGED,     /**< the saved state of an earlier run does not match this one */
-    FL_ERROR_INTERRUPTED, /**< stopped on request; run again to resume: exit status 75 */
+    FL_ERROR_INTERRUPTED, /**< stopped on request; a render that is run again resumes */
     FL_ERROR_TIME,        /**< a drawing takes longer than it may, on this machine */
 } FlError;
 

@@ -1,4 +1,7 @@
-/* A film as an object: open a drawing, change a setting, ask for any frame, close. */
+/** @file
+ * A film as an object: open a drawing, change a setting, ask for any frame, close. Threads and
+ * processes: see FlFilm.
+ */
 #ifndef FLUIDY_FILM_H
 #define FLUIDY_FILM_H
 
@@ -61,9 +64,10 @@ FL_API void fl_film_set_calls(FlFilm *film, const FlFilmCalls *calls);
 
 /** What is known of a drawing. Belongs to the film; later versions may add fields at the end. */
 typedef struct FlFilmInfo {
-    int n_frames;
-    int width, height; /**< of the frames, px */
-    int n_regions;     /**< that are painted */
+    int n_frames;  /**< of the drawing, without those that are left out */
+    int width;     /**< of the frames, px */
+    int height;    /**< of the frames, px */
+    int n_regions; /**< that are painted */
 } FlFilmInfo;
 
 /**
@@ -77,7 +81,8 @@ FL_API const FlFilmInfo *fl_film_info(FlFilm *film, GError **error);
 typedef struct FlFilmFrame {
     int frame;           /**< from 0 */
     int number;          /**< as in the name of its file */
-    int width, height;   /**< px */
+    int width;           /**< px */
+    int height;          /**< px */
     const uint8_t *rgba; /**< width * height * 4 straight sRGBA, row-major without padding */
 } FlFilmFrame;
 

@@ -1,4 +1,7 @@
-/* libfluidy: paints SVG frame sequences with moving paint. This header includes all others. */
+/** @file
+ * libfluidy paints SVG frame sequences with moving paint. This header includes all others. Each
+ * says which threads may call its functions.
+ */
 #ifndef FLUIDY_FLUIDY_H
 #define FLUIDY_FLUIDY_H
 
@@ -11,6 +14,7 @@
 #include <fluidy/params.h>
 #include <fluidy/render.h>
 #include <fluidy/style.h>
+#include <fluidy/version.h>
 #include <fluidy/watercolour.h>
 
 G_BEGIN_DECLS

@@ -1,4 +1,9 @@
-/* The regions of a drawing, as lists and maps; nothing is painted. */
+/** @file
+ * The regions of a drawing, as lists and maps; nothing is painted.
+ *
+ * Threads: any thread may call these functions, several at a time with outputs of their own. They
+ * read and draw as fl_render() does, which may fork.
+ */
 #ifndef FLUIDY_INSPECT_H
 #define FLUIDY_INSPECT_H
 
@@ -6,6 +11,7 @@
 
 G_BEGIN_DECLS
 
+/** How regions are listed as text. */
 typedef enum FlListing {
     FL_LISTING_TABLE,  /**< a line per region, the columns padded with spaces */
     FL_LISTING_CONFIG, /**< a config file with a section per region, to start from */
@@ -35,9 +41,10 @@ typedef struct FlRegionInfo {
 
 /** A drawing and its regions, from the bottom up. Later versions may add fields at the end. */
 typedef struct FlRegionList {
-    int width, height; /**< px */
-    int n_frames;
-    int n_regions;
+    int width;                   /**< px */
+    int height;                  /**< px */
+    int n_frames;                /**< of the drawing */
+    int n_regions;               /**< in `region` */
     FlRegionInfo *const *region; /**< of n_regions */
 } FlRegionList;
 
@@ -68,31 +75,6 @@ FL_API bool fl_map_regions(const FlRenderOptions *options, GError **error);
  * options->note is told where the pictures are. Returns: false with an error of FL_ERROR.
  */
 FL_API bool fl_flatten(const FlRenderOptions *options, GError **error);
-
-/** Which scheduler a plan is printed for. */
-typedef enum FlFarm {
-    FL_FARM_SLURM,  /**< a script for bash that calls sbatch */
-    FL_FARM_OPENJD, /**< an Open Job Description template, 2023-09 */
-    FL_FARM_JSON,   /**< commands as lists of words, for everything else */
-} FlFarm;
-
-/**
- * A render as tasks for several machines: each paints some regions into files of paint, the largest
- * first, and a merge composes them. Reads the drawing and checks the options; writes nothing.
- *
- * command: the words of the command line of the whole render, NULL-terminated.
- * Returns: to be freed with g_free(); NULL with an error of FL_ERROR.
- */
-FL_API char *fl_farm_plan(const FlRenderOptions *options, FlFarm farm, const char *const *command,
-                          GError **error);
-
-/**
- * The page of a report that is live, HTML: a list of regions, controls, and the film. It asks
- * `state`, `options` and `choice` beside its own address; see inspect/live.html.
- *
- * Returns: to be freed with g_bytes_unref().
- */
-FL_API GBytes *fl_live_page(void);
 
 G_END_DECLS
 

@@ -1,4 +1,7 @@
-/* Limits on what an input file may ask for. */
+/** @file
+ * Limits on what an input file may ask for. Threads: one thread sets them, before any other calls
+ * the library.
+ */
 #ifndef FLUIDY_LIMITS_H
 #define FLUIDY_LIMITS_H
 

@@ -1,5 +1,10 @@
-/* Pixels in, pixels out: paints one region from masks in memory, frame by frame. The only files are
- * the style's, and a temporary one without a name for what guides keep of a film. */
+/** @file
+ * Pixels in, pixels out: paints one region from masks in memory, frame by frame. The only files are
+ * the style's, those of a cache if one is wanted, and a temporary one without a name for what
+ * guides keep of a film.
+ *
+ * Threads: any thread may paint, several at a time; nothing forks.
+ */
 #ifndef FLUIDY_PAINT_H
 #define FLUIDY_PAINT_H
 
@@ -11,7 +16,8 @@ G_BEGIN_DECLS
  *  overwritten after the call. Later versions may add fields at the end. */
 typedef struct FlPaintedFrame {
     int frame;            /**< from 0 */
-    int width, height;    /**< of the masks */
+    int width;            /**< of the masks, px */
+    int height;           /**< of the masks, px */
     const uint8_t *paint; /**< width * height * 3 sRGB: the paint in the recording's own colours,
                              its paper where none is; what ‘paint’ writes */
     const uint8_t *layer; /**< width * height * 4 straight sRGBA: the paint cut out with the mask,
@@ -26,9 +32,10 @@ typedef struct FlPaintedFrame {
  * All calls come from the thread that called fl_paint_region(). Returning false stops it.
  */
 typedef struct FlRegionPaint {
-    size_t size;       /**< sizeof(FlRegionPaint); required */
-    int width, height; /**< px of every frame, 1..32767 and within the limit ‘frame’; required */
-    int n_frames;      /**< 1 or more; required */
+    size_t size;  /**< sizeof(FlRegionPaint); required */
+    int width;    /**< px of every frame, 1..32767 and within the limit ‘frame’; required */
+    int height;   /**< likewise */
+    int n_frames; /**< 1 or more; required */
     /**
      * Fills width * height bytes with the coverage of the region in a frame: 0 outside, 255 inside.
      * Called once for each frame, in order, before the first one is painted, since paint depends on
@@ -49,10 +56,10 @@ typedef struct FlRegionPaint {
     const FlSetting *settings; /**< "style" is required; "tint" is "keep" unless a "#rrggbb"; keys
                                   as in fluidy-svg.conf(5), of which those about other regions,
                                   lines or the paper do nothing */
-    size_t n_settings;
-    uint64_t seed; /**< same input, settings and seed: same bytes; 0: 1 */
-    int threads;   /**< of this call alone; 0: as many as the calling thread has. The bytes do not
-                        depend on it */
+    size_t n_settings;         /**< in `settings` */
+    uint64_t seed;             /**< same input, settings and seed: same bytes; 0: 1 */
+    int threads; /**< of this call alone; 0: as many as the calling thread has. The bytes do not
+                      depend on it */
     /** A folder in which pictures are kept and from which they are taken while all that decides
      *  them is the same, so that a painting that was stopped resumes there; "auto": the user's, as
      *  of ‘cache’; NULL: none. */

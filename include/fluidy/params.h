@@ -1,4 +1,7 @@
-/* The parameters of the synthesis: names, units, ranges and defaults, for programs and people. */
+/** @file
+ * The parameters of the synthesis: names, units, ranges and defaults, for programs and people.
+ * Threads: any thread may call these functions; one FlParams belongs to one thread at a time.
+ */
 #ifndef FLUIDY_PARAMS_H
 #define FLUIDY_PARAMS_H
 
@@ -7,6 +10,7 @@
 
 G_BEGIN_DECLS
 
+/** What a parameter's value is. */
 typedef enum FlParamType {
     FL_PARAM_INT,
     FL_PARAM_FLOAT,
@@ -27,13 +31,15 @@ typedef enum FlPreset {
 /** What is known of a parameter; all strings are static. */
 typedef struct FlParamInfo {
     const char *name; /**< with dashes, as on the command line and in config files: "w-temp" */
-    FlParamType type;
-    const char *unit;               /**< "px", "frames", …; "" for a plain number */
-    double min, max;                /**< inclusive; of each item for a list; 0 and 1 for a bool */
+    FlParamType type; /**< of its value */
+    const char *unit; /**< "px", "frames", …; "" for a plain number */
+    double min;       /**< inclusive; of each item for a list; 0 for a bool */
+    double max;       /**< likewise; 1 for a bool */
     const char *preset[FL_PRESETS]; /**< its value in each of them, as fl_params_set() reads it */
     const char *help;               /**< one line, no full stop */
 } FlParamInfo;
 
+/** Returns: how many parameters there are. */
 FL_API int fl_param_count(void);
 
 /** index is 0 … fl_param_count() - 1; the order is the documentation's. */
@@ -48,9 +54,10 @@ typedef struct FlParams FlParams;
 /** Returns: the defaults, to be freed with fl_params_free(). */
 FL_API FlParams *fl_params_new(void);
 
+/** Returns: to be freed with fl_params_free(). */
 FL_API FlParams *fl_params_copy(const FlParams *params);
 
-FL_API void fl_params_free(FlParams *params); // NULL is fine
+FL_API void fl_params_free(FlParams *params); /**< NULL is fine */
 
 /** Sets all parameters to a preset by its name. FL_ERROR_USAGE. */
 FL_API bool fl_params_preset(FlParams *params, const char *preset, GError **error);

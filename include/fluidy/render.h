@@ -1,4 +1,11 @@
-/* Paint a drawing: the whole job, from SVG frames to painted frames. */
+/** @file
+ * Paint a drawing: the whole job, from SVG frames to painted frames.
+ *
+ * Threads: any thread may render, several at a time with outputs of their own; each render uses a
+ * team of threads of its own. Processes: while the calling process has a single thread, drawings
+ * are read and drawn in child processes, which are confined; a process with more threads is not
+ * forked, and reads and draws them itself.
+ */
 #ifndef FLUIDY_RENDER_H
 #define FLUIDY_RENDER_H
 
@@ -101,7 +108,8 @@ typedef struct FlProgress {
     int region_index;   /**< from 0; -1: all of them */
     int n_regions;      /**< painted regions; 0: not known yet */
     int frame;          /**< the frame's number, as in its file name */
-    int done, total;    /**< frames of this stage and region; total 0: not known yet */
+    int done;           /**< frames of this stage and region */
+    int total;          /**< to be done; 0: not known yet */
     double share;       /**< of the whole render, 0..1; of the style in the stage “style” */
     double elapsed_s;   /**< seconds since the start */
     double frame_s;     /**< seconds that the last frame of this stage took; 0: none yet */
@@ -120,26 +128,26 @@ typedef struct FlRenderOptions {
     const char *const
         *inputs;        /**< NULL-terminated list of patterns, globs, SVG files or one folder */
     const char *frames; /**< "1001-1096", "1-96x2", "1,5,9"; NULL: all that are found */
-    FlMissing missing;
-    FlFramesFrom frames_from;
-    double from_s,
-        to_s; /**< of FL_FRAMES_TIME: the first moment and the end, seconds; to_s 0: all */
+    FlMissing missing;  /**< what a gap in the numbers becomes */
+    FlFramesFrom frames_from; /**< what the frames are */
+    double from_s;            /**< of FL_FRAMES_TIME: the first moment, seconds */
+    double to_s;              /**< its end, seconds; 0: all */
     const char *canvas; /**< "WxH" or "WxH+X+Y" in px, for SVGs without a size; NULL: theirs */
-    FlRegistration registration;
+    FlRegistration registration; /**< of frames that an exporter has shifted */
     const char *flow; /**< pattern of files, one per frame, may hold {region}: the motion into it
                          from the frame before; NULL: none */
-    FlRegionKey key;
-    FlStrokes stroke;
-    bool strict; /**< a warning is an error: FL_ERROR_INPUT, of a style FL_ERROR_STYLE */
-    FlSandboxing sandbox;
+    FlRegionKey key;  /**< what makes leaves one region */
+    FlStrokes stroke; /**< what strokes become */
+    bool strict;      /**< a warning is an error: FL_ERROR_INPUT, of a style FL_ERROR_STYLE */
+    FlSandboxing sandbox; /**< whether drawings are read in confined processes */
 
     /* How it is painted. */
     const char *config;        /**< a file as in fluidy-svg.conf(5); NULL: none */
     const FlSetting *settings; /**< override the config's; of several, the last wins */
-    size_t n_settings;
-    const char *only_region; /**< paint this one alone, or several with commas between, over
-                                nothing; NULL: all */
-    bool loop;               /**< the end leads into the beginning, for films that are repeated */
+    size_t n_settings;         /**< in `settings` */
+    const char *only_region;   /**< paint this one alone, or several with commas between, over
+                                  nothing; NULL: all */
+    bool loop;                 /**< the end leads into the beginning, for films that are repeated */
     uint64_t seed; /**< same input, options and seed: same bytes; 0: the config's, else 1 */
 
     /* What is written. */
@@ -150,7 +158,7 @@ typedef struct FlRenderOptions {
     const char *layers; /**< pattern with {region}: one RGBA file per region too; NULL: none */
     const char
         *paint; /**< the same for the paint itself, before colours and stacking; NULL: none */
-    FlPaintArea paint_area;
+    FlPaintArea paint_area; /**< how large the files of `paint` are */
     bool merge; /**< paint nothing: compose the files of `paint` that other runs have written */
     /** "K/N": merge the K-th of N parts of the frames alone, without their film; "film": make the
      *  film of the frames that such merges have composed; NULL: all */
@@ -168,13 +176,14 @@ typedef struct FlRenderOptions {
     double paper_relief; /**< ..2; 0: 1, below 0: none */
     uint64_t paper_seed; /**< 0: 1 */
     int paper_boil;      /**< frames after which another part of the sheet is taken; 0: never */
-    int width, height;   /**< px; 0: from the other, by the drawing's aspect; both 0: scale */
+    int width;           /**< px; 0: from the height, by the drawing's aspect; both 0: scale */
+    int height;          /**< likewise */
     double scale;        /**< px of output per px of the drawing; 0: 1 */
     double dpi;          /**< px per inch, for drawings sized in mm, cm, in, pt; 0: 96 */
     double gap;          /**< px of paper around a region that hides others, ..32; 0: none */
-    FlBlendSpace blend;
+    FlBlendSpace blend;  /**< in which layers are blended */
     double fps; /**< frames per second of an output that is a film; 0: the config's, else 24 */
-    FlOverwrite overwrite;
+    FlOverwrite overwrite; /**< what happens to files that exist */
     /** Resume an interrupted render even with FL_OVERWRITE_YES, which otherwise starts anew. The
      *  others always resume. */
     bool resume;

@@ -1,4 +1,8 @@
-/* Styles: the folders of moving paint; finding, importing and checking them. See fluidy-style(5).
+/** @file
+ * Styles: the folders of moving paint; finding, importing and checking them. See fluidy-style(5).
+ *
+ * Threads: any thread may call these functions, several at a time with folders of their own. Videos
+ * are read through the program ffmpeg, in a child process.
  */
 #ifndef FLUIDY_STYLE_H
 #define FLUIDY_STYLE_H
@@ -34,20 +38,24 @@ typedef struct FlStyleImport {
     const char *source; /**< a video, a still picture, a `%04d` or `####` pattern, or a folder */
     const char *masks;  /**< pattern, folder or video of masks, white where the paint is; or NULL */
     const char *folder; /**< the style to write */
-    int first, last; /**< frames to take, by the numbers of the source, a video's from 1; 0: all */
-    int step;        /**< take every step-th of them, >= 1 */
-    int crop[4];     /**< x, y, width, height in px of the source; width 0: everything */
-    double scale;    /**< 0.01 to 4; 0: as it is, or made smaller to 640 px */
-    bool flatten;    /**< remove uneven and changing light */
-    bool stabilise;  /**< remove small camera shake */
-    bool whole;      /**< the paint fills the whole frame: no paper is looked for */
-    bool overwrite;  /**< replace a style in `folder` */
-    const char *name, *author, *licence; /**< for style.ini, or NULL */
-    const char *paper;                   /**< "#rrggbb"; NULL: found in the recording */
-    double border_px;                    /**< width of the border; 0: found in the recording */
-    double fps;                          /**< frames per second; 0: the video's, else 25 */
+    int first;   /**< frame to begin with, by the source's number, a video's from 1; 0: its first */
+    int last;    /**< frame to end with; 0: its last */
+    int step;    /**< take every step-th of them, >= 1 */
+    int crop[4]; /**< x, y, width, height in px of the source; width 0: everything */
+    double scale;        /**< 0.01 to 4; 0: as it is, or made smaller to 640 px */
+    bool flatten;        /**< remove uneven and changing light */
+    bool stabilise;      /**< remove small camera shake */
+    bool whole;          /**< the paint fills the whole frame: no paper is looked for */
+    bool overwrite;      /**< replace a style in `folder` */
+    const char *name;    /**< for style.ini, or NULL */
+    const char *author;  /**< likewise */
+    const char *licence; /**< likewise */
+    const char *paper;   /**< "#rrggbb"; NULL: found in the recording */
+    double border_px;    /**< width of the border; 0: found in the recording */
+    double fps;          /**< frames per second; 0: the video's, else 25 */
 } FlStyleImport;
 
+/** To initialise an FlStyleImport. */
 #define FL_STYLE_IMPORT_DEFAULTS                                                                   \
     {                                                                                              \
         .step = 1, .flatten = true, .stabilise = true                                              \

@@ -1,4 +1,7 @@
-/* Paint from first principles: a recipe becomes a style folder. */
+/** @file
+ * Paint from first principles: a recipe becomes a style folder. Threads: any thread may simulate,
+ * several at a time into folders of their own.
+ */
 #ifndef FLUIDY_WATERCOLOUR_H
 #define FLUIDY_WATERCOLOUR_H
 

@@ -1,6 +1,5 @@
-#include <fluidy/inspect.h>
-
 #include "inspect/page_script.h"
+#include "params/program.h"
 
 static void append(GByteArray *page, GBytes *part)
 {
