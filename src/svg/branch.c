@@ -24,7 +24,8 @@ static int group_children(xmlNode *node)
     return n;
 }
 
-/** Drops the white space between elements: librsvg visits it too. Returns: the children left. */
+/** Drops the white space between elements: librsvg visits that space, like any node. Returns: the
+ * number of children that are left. */
 static int drop_spaces(xmlNode *node)
 {
     int n = 0;

@@ -5,9 +5,9 @@
 #include "svg/document.h"
 
 /**
- * Puts the children of groups that have many into nested groups of a few each. To render one shape
- * librsvg visits all siblings of it and of the groups around it: n shapes in a row took n * n
- * visits, and take n log n in a tree.
+ * Puts the children of groups that have many into nested groups of a few each. To render one shape,
+ * librsvg visits all its siblings and those of each group around. For n shapes in one row that is n
+ * * n visits, in a tree n log n.
  *
  * The picture is the same, since the document has no style sheets, which could match the groups.
  */

@@ -1,6 +1,6 @@
 #include "svg/svg_frame.h"
 
-/* A number at *text, after `sign` if that is not 0; *text moves behind it. */
+/* Reads a number at *text, after `sign` unless that is 0, and moves *text behind the number. */
 static bool part(const char **text, char sign, double *value)
 {
     if (sign && **text != sign)

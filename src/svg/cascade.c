@@ -11,7 +11,7 @@
 /** The values of an element, what its children inherit included. */
 typedef struct Style {
     const struct Style *around;
-    GHashTable *variables; // custom properties that are set here, name -> value; NULL: none
+    GHashTable *variables; // custom properties that are set here, name -> value; may be NULL
     FlCssUnits units;
 } Style;
 
@@ -206,7 +206,8 @@ static void set_variables(Style *style, const GArray *values)
     }
 }
 
-/** What stands for inherit, initial, unset and revert in SVG 1.1; NULL: it is another value. */
+/** Replaces inherit, initial, unset and revert by values of SVG 1.1. Returns: NULL for any other
+ * value. */
 static const char *resolve_keyword(const FlCssProperty *property, const char *text)
 {
     const bool undone = strcmp(text, "unset") == 0 || g_str_has_prefix(text, "revert");
@@ -265,7 +266,8 @@ static char *compute_number(const char *text, const FlCssUnits *units)
     return fl_css_number(text, units, 1, &value) ? fl_css_number_text(value) : g_strdup(text);
 }
 
-/** The value as SVG 1.1 has it, to be freed; "": the element has none, its attribute included. */
+/** Computes the value in the syntax of SVG 1.1, to be freed. Returns: "" if the element has no
+ * value; its attribute is then dropped. */
 static char *compute(Cascade *c, const char *name, const FlCssProperty *property, const char *text,
                      const Style *style)
 {

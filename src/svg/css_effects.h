@@ -6,7 +6,7 @@
 
 /** The values of such properties for one element. */
 typedef struct FlCssEffects {
-    GHashTable *value; // name, interned -> text; NULL: none are set
+    GHashTable *value; // name, interned -> text; NULL if no property is set
 } FlCssEffects;
 
 /** Sets a property to a computed value, which it takes over. */

@@ -1,4 +1,4 @@
-/* The properties that drawings are painted by: their kinds, initial values and inheritance. */
+/* The CSS properties that determine how drawings look: kinds, initial values, inheritance. */
 #ifndef FLUIDY_SVG_CSS_PROPERTIES_H
 #define FLUIDY_SVG_CSS_PROPERTIES_H
 

@@ -55,7 +55,7 @@ size_t fl_css_identifier(const char *s)
     return starts ? n : 0;
 }
 
-/** Resolves the escape after a backslash. Returns: the text behind it. */
+/** Resolves the escape after a backslash. Returns: the text behind the escape. */
 static const char *unescape_one(GString *out, const char *s, const char *end)
 {
     gunichar code = 0;

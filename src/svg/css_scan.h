@@ -14,14 +14,15 @@ const char *fl_css_space(const char *s);
  * Finds the first character of `stops` outside strings, escapes and brackets. A closing bracket
  * that was not opened ends the search as well.
  *
- * Returns: a pointer to it, or to the terminating NUL.
+ * Returns: a pointer to that character, or to the terminating NUL.
  */
 const char *fl_css_find(const char *s, const char *stops);
 
 /** Likewise, but passes closing brackets that were not opened. */
 const char *fl_css_find_past(const char *s, const char *stops);
 
-/** The length in bytes of the identifier that `s` begins with, escapes included; 0: none. */
+/** The length in bytes of the identifier at the start of `s`, escapes included; 0 if it has no
+ * identifier. */
 size_t fl_css_identifier(const char *s);
 
 /** A copy of n bytes with escapes resolved: "a\3a b" is "a:b". To be freed with g_free(). */
@@ -38,7 +39,8 @@ char **fl_css_split(const char *text, char separator);
 
 /**
  * Reads a function call that is all of `text`: "calc( 1px + 2px )" gives the name "calc", in lower
- * case, and the arguments "1px + 2px". Returns: false if it is none; both are to be freed.
+ * case, and the arguments "1px + 2px". Returns: false if `text` is not a call; both strings are to
+ * be freed.
  */
 bool fl_css_call(const char *text, char **name, char **arguments);
 

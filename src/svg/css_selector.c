@@ -10,12 +10,12 @@ typedef enum SimpleKind {
     SIMPLE_ID,
     SIMPLE_CLASS,
     SIMPLE_ATTRIBUTE,
-    SIMPLE_NTH, // :nth-child() and all that are special cases of it
+    SIMPLE_NTH, // :nth-child() and its special cases
     SIMPLE_ONLY,
     SIMPLE_ROOT,
     SIMPLE_EMPTY,
     SIMPLE_LINK,
-    SIMPLE_ANY, // :is() and :where()
+    SIMPLE_ANY, // :is(), :where()
     SIMPLE_NOT,
     SIMPLE_ALWAYS,
     SIMPLE_NEVER, // :hover and other states that a still picture does not have
@@ -27,8 +27,8 @@ typedef struct Simple {
     char comparison;        // of an attribute: '=', '~', '|', '^', '$', '*'; 0: it is set
     bool ignore_case;       // of an attribute's value
     int step, offset;       // an + b of :nth-child()
-    bool from_end, of_type; // of :nth-last-child(), :nth-of-type()
-    GPtrArray *list;        // FlSelector: inside :is(), :not(), "of S"
+    bool from_end, of_type; // :nth-last-child(), :nth-of-type()
+    GPtrArray *list;        // FlSelector: the arguments of :is() or :not(), S in "of S"
     unsigned specificity;
 } Simple;
 
@@ -80,7 +80,7 @@ const char *fl_selector_key(const FlSelector *selector)
 
 static GPtrArray *parse_list(const char *text, bool forgiving, int depth);
 
-/** Reads the name at *s; false if there is none. */
+/** Reads the name at *s. Returns: false if no name begins there. */
 static bool read_name(const char **s, char **name)
 {
     const size_t n = fl_css_identifier(*s);
@@ -315,7 +315,7 @@ static bool read_simple(const char **s, Simple *simple, int depth)
     }
 }
 
-/** Reads a combinator with the space around it; ' ' is the descendant's, 0 the end. */
+/** Reads a combinator and the surrounding space: ' ' for descendants, 0 at the end. */
 static char read_combinator(const char **s)
 {
     const char *next = fl_css_space(*s);

@@ -21,8 +21,8 @@ void fl_selector_free(FlSelector *selector); // NULL is fine
 unsigned fl_selector_specificity(const FlSelector *selector);
 
 /**
- * What an element must have to match: "#id", ".class" or the name of an element; "*": anything. It
- * belongs to the selector.
+ * A necessary condition for a match: "#id", ".class" or the name of an element; "*" for all
+ * elements. The string belongs to the selector.
  */
 const char *fl_selector_key(const FlSelector *selector);
 
@@ -33,7 +33,7 @@ typedef struct FlSelectorWork {
     int steps;              // comparisons so far
 } FlSelectorWork;
 
-/** The most comparisons for a document: about ten seconds. Nothing matches after that. */
+/** Limit of comparisons for a document, about ten seconds; after these no selector matches. */
 #define FL_SELECTOR_STEPS 200000000
 
 /** Returns: true if `node`, an element, matches. */

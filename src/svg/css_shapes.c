@@ -21,7 +21,7 @@ static void add_point(Bounds *b, FlPoint p)
     b->top = MIN(b->top, p.y), b->bottom = MAX(b->bottom, p.y);
 }
 
-/** Where one coordinate of a cubic turns; at most two places inside 0 … 1. */
+/** Finds the extrema of one coordinate of a cubic: at most two parameters inside 0 … 1. */
 static int turns(double a, double b, double c, double d, double t[2])
 {
     const double q = a - 2 * b + c, r = b - a, p = d - 3 * c + 3 * b - a;
@@ -69,7 +69,7 @@ static double attribute_length(const xmlNode *node, const char *name, const FlCs
     return text && fl_css_number(text, units, whole, &value) ? value : 0;
 }
 
-/** The element that a <use> shows; NULL: none. */
+/** The element that a <use> shows; NULL if it is missing. */
 static const xmlNode *shown_by(const xmlNode *use)
 {
     g_autoptr(xmlChar) plain = fl_attribute(use, "href");

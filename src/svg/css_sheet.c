@@ -28,10 +28,10 @@ struct FlCssSheet {
     GPtrArray *layers;     // Layer, the root first
 };
 
-/** Where a block stands. */
+/** The position of a block. */
 typedef struct Place {
-    const char *file;   // that contains it
-    const char *parent; // selectors of the rule around it; NULL: none
+    const char *file;   // the file with the block
+    const char *parent; // selectors of the rule around; NULL outside rules
     Layer *layer;
     int depth;
 } Place;
@@ -187,7 +187,8 @@ static void add_rules(Reader *reader, const char *selectors, GArray *declaration
 }
 
 /**
- * The selectors of a nested rule: & stands for those around it, and is added where it lacks.
+ * The selectors of a nested rule: & is replaced by the outer selectors, and is inserted where it is
+ * missing.
  * Returns: "" if they are too long.
  */
 static char *nest(const char *parent, const char *selectors)
@@ -208,7 +209,7 @@ static char *nest(const char *parent, const char *selectors)
     return g_string_free(out, FALSE);
 }
 
-/** Reads the block of a style rule: declarations, and rules inside it. */
+/** Reads the block of a style rule: declarations and nested rules. */
 static void read_block(Reader *reader, const char *selectors, const char *block, const Place *place)
 {
     g_autoptr(GArray) declarations = declarations_new();

@@ -47,7 +47,8 @@ void fl_css_sheet_free(FlCssSheet *sheet); // NULL is fine
 /** The rules, FlCssRule, from the weakest to the strongest layer, in each by their order. */
 const GArray *fl_css_sheet_rules(const FlCssSheet *sheet);
 
-/** The keyframes of that name, FlCssKeyframe in the order of the sheet; NULL: there are none. */
+/** The keyframes of that name, FlCssKeyframe in the order of the sheet; NULL for an unknown name.
+ */
 const GArray *fl_css_sheet_keyframes(const FlCssSheet *sheet, const char *name);
 
 /** Initial values of @property, FlCssDeclaration. */

@@ -29,7 +29,7 @@ static bool append_variable(GString *out, const char *arguments, FlCssVariable *
     return *comma && substitute(out, fl_css_space(comma + 1), variable, data, depth + 1);
 }
 
-/** The first call of var() or env() outside strings; NULL: none. */
+/** The first call of var() or env() outside strings; NULL if there is no call. */
 static const char *find_variable(const char *s)
 {
     for (; *s; s++) {

@@ -4,9 +4,9 @@
 
 #include "svg/css_scan.h"
 
-/** What relative units refer to; all in px. */
+/** The reference lengths of relative units, px. */
 typedef struct FlCssUnits {
-    double width, height; // of the viewport, in user units: what percentages are of
+    double width, height; // of the viewport, in user units: 100 %
     double font_size, root_font_size;
     double page_width, page_height; // of vw and vh
 } FlCssUnits;

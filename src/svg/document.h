@@ -11,7 +11,7 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlDoc, xmlFreeDoc)
 G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
 
 /**
- * Reads a .svg or .svgz file. Nothing is fetched and no entity is replaced.
+ * Reads a .svg or .svgz file. Does not access the network and does not replace entities.
  *
  * A prologue that is no XML (Blender 4 writes one) is dropped with a warning; undeclared namespace
  * prefixes are declared. number is the frame's, for the warnings.
@@ -21,7 +21,7 @@ G_DEFINE_AUTOPTR_CLEANUP_FUNC(xmlChar, xmlFree)
  */
 xmlDoc *fl_document_read(const char *path, int number, FlWarnings *warnings, GError **error);
 
-/** Whether a limit was raised beyond the defaults of libxml2 and librsvg. */
+/** Returns: true if a limit was raised beyond the defaults of libxml2 and librsvg. */
 bool fl_document_is_huge(void);
 
 /** The document as XML; to be freed with g_free(). */
@@ -30,13 +30,13 @@ char *fl_document_text(xmlDoc *doc, size_t *bytes);
 /** A table from id to the first xmlNode of that id; to be unref'd. */
 GHashTable *fl_document_ids(xmlDoc *doc);
 
-/** Whether node is an SVG element of that name. */
+/** Returns: true if node is an SVG element of that name. */
 bool fl_is(const xmlNode *node, const char *name);
 
-/** Whether node's name is one of a NULL-terminated list, and node an SVG element. */
+/** Returns: true if node is an SVG element whose name is in a NULL-terminated list. */
 bool fl_is_one_of(const xmlNode *node, const char *const *names);
 
-/** Whether node holds other elements: <g>, <svg> or <a>. */
+/** Returns: true if node is a container of elements: <g>, <svg> or <a>. */
 bool fl_is_container(const xmlNode *node);
 
 /** An attribute without a namespace; NULL if absent. To be freed with xmlFree(). */
@@ -45,18 +45,18 @@ xmlChar *fl_attribute(const xmlNode *node, const char *name);
 /** An attribute with any prefix, be it declared or not, trimmed; NULL if absent. g_free(). */
 char *fl_foreign_attribute(const xmlNode *node, const char *name);
 
-/** Whether node is an element of SMIL that animates another. */
+/** Returns: true if node is an element of SMIL that animates another. */
 bool fl_is_animation(const xmlNode *node);
 
 /**
- * A property from `style=""` or else from the attribute of that name, trimmed; NULL if neither sets
- * it. Style sheets are ignored. To be freed with g_free().
+ * A property from `style=""` or else from the attribute of that name, trimmed; NULL if it is in
+ * neither place. Style sheets are ignored. To be freed with g_free().
  */
 char *fl_property(const xmlNode *node, const char *name);
 
 /**
- * Adds declarations, such as "fill:none !important", to those of `style=""`. Returns: false if they
- * were its last ones already.
+ * Adds declarations, such as "fill:none !important", to those of `style=""`. Returns: false if
+ * `style=""` already ended with these declarations.
  */
 bool fl_declare(xmlNode *node, const char *declarations);
 

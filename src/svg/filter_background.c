@@ -16,7 +16,7 @@ static xmlNode *first_element(xmlNode *node)
     return node;
 }
 
-/** An attribute by which an element reads the background; NULL: none. */
+/** The attribute by which an element reads the background; NULL if it does not read it. */
 static const char *background_input(const xmlNode *node)
 {
     static const char *const inputs[] = {"in", "in2"};
@@ -69,7 +69,8 @@ static char *blend_mode(xmlNode *filter)
     return g_strdup(mode ? (const char *)mode : "normal");
 }
 
-/** Puts an empty picture in place of the background. Returns: whether the filter had it. */
+/** Puts an empty picture in place of the background. Returns: true if the filter read the
+ * background. */
 static bool empty_background(xmlNode *filter)
 {
     xmlNode *first = first_element(filter->children);

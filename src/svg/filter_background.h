@@ -5,13 +5,13 @@
 #include "svg/document.h"
 
 /**
- * Removes BackgroundImage and BackgroundAlpha from filters, since shapes are drawn one by one over
- * nothing: a filter that only blends with the backdrop becomes mix-blend-mode of its element; for
- * others the backdrop is empty, with a warning.
+ * Removes BackgroundImage and BackgroundAlpha from filters, since each shape is drawn by itself
+ * over a transparent page: a filter that only blends with the backdrop becomes mix-blend-mode of
+ * its element; for others the backdrop is empty, with a warning.
  */
 void fl_document_drop_background(xmlDoc *doc, const char *path, int number, FlWarnings *warnings);
 
-/** Whether fl_document_drop_background() has something to remove. */
+/** Returns: true if fl_document_drop_background() would change the document. */
 bool fl_document_reads_background(const xmlDoc *doc);
 
 #endif

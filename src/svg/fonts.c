@@ -5,7 +5,7 @@
 #include <fontconfig/fontconfig.h>
 #include <string.h>
 
-#define USUAL "Times New Roman" // librsvg's font of text that names none
+#define USUAL "Times New Roman" // librsvg's font for text without a font-family
 
 typedef struct Wanted {
     GString *css;       // declarations of fonts, and more
@@ -78,7 +78,7 @@ static void add_fonts(GPtrArray *files, const char *family, int weight, int slan
     FcConfigSubstitute(NULL, pattern, FcMatchPattern);
     FcDefaultSubstitute(pattern);
     FcFontSet *fonts = FcFontSort(NULL, pattern, FcTrue, NULL, &result);
-    FcCharSet *missing = FcCharSetCopy((FcCharSet *)(uintptr_t)letters); // which is only counted
+    FcCharSet *missing = FcCharSetCopy((FcCharSet *)(uintptr_t)letters); // only counted
     for (int k = 0; fonts && k < fonts->nfont && (k == 0 || FcCharSetCount(missing) > 0); k++) {
         FcCharSet *own = NULL;
         FcChar8 *path = NULL;

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/** What the children of a node inherit. */
+/** The properties that the children of a node inherit. */
 typedef struct Inherited {
     FlAffine ctm;
     double width, height; // of the viewport, for percentages
@@ -129,7 +129,7 @@ static void enter_viewport(const Reader *reader, const xmlNode *node, Inherited 
     }
 }
 
-/** The transform; the identity where librsvg rejects it. */
+/** The transform of a node; the identity if librsvg rejects the attribute. */
 static FlAffine transform_of(const xmlNode *node)
 {
     FlAffine m = FL_AFFINE_NONE;
@@ -254,7 +254,7 @@ static void name_outline(FlGeometry *g, const FlLeaf *leaf)
     g->group = hash_of(leaf->tree, slash ? (size_t)(slash - leaf->tree) : 0, true);
 }
 
-/** Whether all points are numbers, also in px; those of a wild drawing need not be. */
+/** Returns: true if all points are finite, in local units and in px; extreme drawings overflow. */
 static bool is_finite(const FlGeometry *g, const FlCubic *cubic, size_t n)
 {
     bool finite = isfinite(g->stroke);
@@ -269,7 +269,7 @@ static bool is_finite(const FlGeometry *g, const FlCubic *cubic, size_t n)
 static FlGeometry read_leaf(Reader *reader, const FlLeaf *leaf, const xmlNode *node)
 {
     FlGeometry g;
-    memset(&g, 0, sizeof g); // padding too: it is stored as bytes
+    memset(&g, 0, sizeof g); // clears the padding, since the struct is stored as bytes
     FlPen pen = {.subpath = reader->subpath, .cubic = reader->cubic};
     const Inherited s = inherited_by(reader, node);
     bool broken = s.broken;
@@ -376,13 +376,13 @@ uint8_t *fl_outlines_pack(const FlOutlines *o, size_t *bytes)
     return data;
 }
 
-/** Whether n things from the first on are among `all`. */
+/** Returns: true if the n items from the first on lie within `all` items. */
 static bool is_range(int32_t first, int32_t n, int32_t all)
 {
     return first >= 0 && n >= 0 && first <= all && n <= all - first;
 }
 
-/** Whether a leaf is what read_leaf() gives. */
+/** Returns: true if a leaf is a possible result of read_leaf(). */
 static bool is_sound(const FlOutlines *o, const FlGeometry *g)
 {
     bool sound = is_range(g->first_subpath, g->n_subpaths, o->n_subpaths) &&

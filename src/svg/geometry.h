@@ -32,10 +32,10 @@ typedef struct FlGeometry {
     uint64_t labels; // of it and its groups, without digits
     uint64_t tree;   // its position in the tree
     uint64_t group;  // the position of its parent
-    double stroke;   // width in local units; 0: none or unknown
+    double stroke;   // width in local units; 0: no stroke, or unknown
     uint8_t kind;    // FlOutlineKind
-    uint8_t usable;  // all of it could be parsed, and its points are finite
-    uint8_t clipped; // a clip, mask or filter may hide part of it
+    uint8_t usable;  // the outline was parsed completely, and its points are finite
+    uint8_t clipped; // a clip, mask or filter may hide a part
     uint8_t evenodd; // the fill rule
     uint8_t filled;
     uint8_t unused[7];
@@ -75,7 +75,7 @@ uint8_t *fl_outlines_pack(const FlOutlines *outlines, size_t *bytes);
 /** Reads what the same program serialised. Returns: NULL if it is damaged. */
 FlOutlines *fl_outlines_unpack(const uint8_t *data, size_t bytes);
 
-/** Where a cubic is at t, 0 … 1, in px. */
+/** The point of a cubic at t, 0 … 1, in px. */
 FlPoint fl_cubic_at(const FlCubic *cubic, const FlAffine *ctm, double t);
 
 /** The number of straight pieces of about step_px that a cubic is split into, 1 … 400. */

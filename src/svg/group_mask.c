@@ -1,9 +1,9 @@
 #include "svg/group_mask.h"
 
 /*
- * librsvg draws what is in a mask only if the masked group, or one around it, is the layer that it
- * renders, so that a leaf in such a group cannot be drawn masked by itself. Leaves are drawn
- * without the masks around them, and each mask once.
+ * librsvg applies a group's mask only if it renders that group or an outer one as a layer: it
+ * cannot draw a single leaf of the group with the mask. Leaves are therefore drawn without the
+ * masks of their groups, and each mask is drawn once.
  */
 
 #define FLOOD_ID "fl-flood"
@@ -20,7 +20,7 @@ static xmlNode *outwards(const xmlNode *node)
     return node->parent && node->parent->type == XML_ELEMENT_NODE ? node->parent : NULL;
 }
 
-/** Declares something on a node and those around it, up to where it has been said before. */
+/** Adds declarations to a node and its ancestors, up to the first that already has them. */
 static void declare_outwards(xmlNode *node, const char *declarations)
 {
     while (node && fl_declare(node, declarations))
@@ -59,7 +59,7 @@ void fl_group_masks_flood(xmlDoc *doc, const FlLeaves *leaves, int depth)
         if (mask->depth != depth)
             continue;
         xmlNode *node = group_of(ids, mask);
-        // what is in it is not seen, but counts for its box; librsvg knows no important filter
+        // the hidden content still determines the box; librsvg ignores !important for filters
         fl_declare(node, PLAIN "visibility:hidden !important;filter:url(#" FLOOD_ID ")");
         declare_outwards(outwards(node), PLAIN "mask:none !important;filter:none !important");
     }

@@ -8,8 +8,9 @@
 void fl_group_masks_drop(xmlDoc *doc, const FlLeaves *leaves);
 
 /**
- * Makes each group of that depth, when it is the layer that is rendered, everything that its mask
- * and the clips on it and around it let through: the group is flooded, and nothing else is left.
+ * Changes the document so that each group of that depth, rendered as a layer, shows the coverage of
+ * its mask and of the clips on the group and around: the group is flooded, all other content is
+ * removed.
  */
 void fl_group_masks_flood(xmlDoc *doc, const FlLeaves *leaves, int depth);
 

@@ -6,9 +6,9 @@
 #include <stdbool.h>
 
 /**
- * What names a group: its inkscape:label, its Flash character, the name that Affinity, Illustrator
- * or Linearity keep beside ids, else its id (which may be NULL) or, if that is generated, its
- * <title>.
+ * The label of a group: its inkscape:label, its Flash character, the name that Affinity,
+ * Illustrator or Linearity keep beside ids, else its id (which may be NULL) or, if that is
+ * generated, its <title>.
  *
  * Numbered words such as "Group 1", "path2995", "__lottie_element_4" and random ids are generated,
  * unless they are the label of a layer. Illustrator's "tree_3_" is "tree". Shapes have no label.

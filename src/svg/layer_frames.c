@@ -70,7 +70,7 @@ static void drop_names(xmlNode *layer)
     }
 }
 
-/** Whether something is shown that is defined elsewhere, as Inkscape's clones are. */
+/** Returns: true if an element shows another one by reference, as Inkscape's clones do. */
 static bool has_clones(const xmlNode *node)
 {
     bool found = fl_is(node, "use");

@@ -5,17 +5,17 @@
 #include "svg/document.h"
 
 /**
- * How many frames a document's layers are.
+ * The number of frames that a document holds as layers.
  *
- * They are the layers at the top of the document, or of the only group that is there: groups that
- * Inkscape marks as layers or Freestyle as frames, else all groups. Those called "(static)" and
- * whatever is no layer belong to every frame.
+ * The frames are the top-level layers of the document, or of its only group: groups that Inkscape
+ * marks as layers or Freestyle as frames, else all groups. Those called "(static)" and whatever is
+ * no layer belong to every frame.
  */
 int fl_layer_frames_count(const xmlDoc *doc);
 
 /**
- * Leaves one frame, counted from 1 at the bottom, in the document, shown whether it was or not. Its
- * label and id are dropped: they are the frame's, not of what is drawn in it.
+ * Keeps one frame, counted from 1 at the bottom, and makes it visible. Removes its label and id,
+ * since these name the frame and not its content.
  *
  * Returns: false with FL_ERROR_INPUT, naming `path`, if there is no such frame.
  */

@@ -3,10 +3,10 @@
 #include "svg/normalise.h"
 #include <string.h>
 
-/** What elements refer to, beside themselves. */
+/** The elements that an element refers to, beside itself. */
 typedef enum Reach {
     REACH_NONE,
-    REACH_DEFINITIONS, // what is drawn only when it is referred to, and files
+    REACH_DEFINITIONS, // elements that are drawn only by reference, and files
     REACH_ALL,         // anything in the document
 } Reach;
 
@@ -25,13 +25,13 @@ typedef struct Work {
     GHashTable *ids; // of the document, made when first needed
 } Work;
 
-/** Where the digest of an element goes. */
+/** The digests that an element is added to. */
 typedef struct Place {
     FlDigest *digest;
     const FlLeaf *leaf;
 } Place;
 
-/** Whether what has an id is drawn only when it is referred to. */
+/** Returns: true if the element with this id is drawn only by reference. */
 static bool is_definition(Work *work, const char *id)
 {
     if (!work->ids)
@@ -42,7 +42,7 @@ static bool is_definition(Work *work, const char *id)
     return node != NULL;
 }
 
-/** Whether an attribute names something elsewhere in the document. */
+/** The kind of elements that an attribute refers to. */
 static Reach reach_of(Work *work, const xmlNode *node, const xmlAttr *attribute, const char *value)
 {
     static const char *const definitions[] = {"linearGradient", "radialGradient", "pattern",
@@ -69,7 +69,8 @@ static bool is_made_id(const xmlAttr *attribute, const char *value)
     return xmlStrEqual(attribute->name, (const xmlChar *)"id") && g_str_has_prefix(value, "fl-");
 }
 
-/** Adds an element's name and attributes. Ids made for reading it depend on what is before it. */
+/** Adds an element's name and attributes. Generated ids are left out, since they depend on the
+ * elements before. */
 static Reach add_element(Work *work, const xmlNode *node, FlDigest *digest)
 {
     Reach reach = REACH_NONE;
@@ -85,7 +86,7 @@ static Reach add_element(Work *work, const xmlNode *node, FlDigest *digest)
     return reach;
 }
 
-/** Adds an element with all that is in it. */
+/** Adds an element and all its descendants. */
 static Reach add_tree(Work *work, const xmlNode *node, FlDigest *digest)
 {
     Reach reach = add_element(work, node, digest);
@@ -100,7 +101,7 @@ static Reach add_tree(Work *work, const xmlNode *node, FlDigest *digest)
     return reach;
 }
 
-/** Adds what an element may inherit from one around it. */
+/** Adds the attributes that an element may inherit from its parent. */
 static void add_inherited(Work *work, const xmlNode *around, FlDigest *digest)
 {
     for (const xmlAttr *a = around->properties; a; a = a->next) {
@@ -117,7 +118,7 @@ static void add_definition(Work *work, const xmlNode *node)
 {
     static const char *const words[] = {"title", "desc", "metadata", NULL};
     if (fl_is_one_of(node, words))
-        return; // nothing draws them
+        return; // librsvg does not draw them
     for (const xmlNode *around = node->parent; around->type == XML_ELEMENT_NODE;
          around = around->parent)
         add_inherited(work, around, &work->definitions);
@@ -156,8 +157,8 @@ static void put_leaf(Work *work, const xmlNode *node, const Place *place, FlDige
     *place->digest = digest;
 }
 
-/** around: of the elements around. A group that refers to something may do so by its box, which is
- * that of all that is in it. */
+/** around: the digest of the ancestors. A group's reference may depend on its box, which all of its
+ * content determines. */
 static void walk(Work *work, const xmlNode *node, FlDigest around, Reach reach)
 {
     for (const xmlNode *child = node->children; child; child = child->next) {

@@ -7,10 +7,11 @@
 
 /**
  * Digests all that a leaf is drawn from: its element, what the groups around it say, style sheets
- * and, where something refers to them, definitions and the paths of files. What is in a file is
- * expected to stay the same. Rather too much is digested than too little.
+ * and, where something refers to them, definitions and the paths of files. The contents of files
+ * are assumed to be unchanged. In doubt an element is included.
  *
- * leaf, unit: one for each in the lists of fl_svg_leaves(), filled; that of nothing: unknown.
+ * leaf, unit: arrays to fill, one digest for each leaf and unit of fl_svg_leaves(); a zero digest
+ * means unknown.
  */
 void fl_leaf_digests(FlSvg *svg, FlDigest *leaf, FlDigest *unit);
 

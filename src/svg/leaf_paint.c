@@ -26,7 +26,7 @@ typedef struct Op {
     double alpha; // of the groups around
     double width; // of a stroke, px; else 0
     Source source;
-    char surface[16]; // where it is drawn
+    char surface[16]; // the surface that it is drawn on
 } Op;
 
 typedef struct Context {
@@ -39,7 +39,7 @@ typedef struct Context {
 typedef struct Reader {
     GArray *ops, *contexts;
     Source next;        // pattern that is being described
-    double stop_offset; // of the last gradient stop, and what has been summed up to it
+    double stop_offset; // of the last gradient stop; the sum up to that stop
     double stop_rgba[4];
     double sum[4], weight;
     int n_stops;

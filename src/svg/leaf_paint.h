@@ -37,7 +37,7 @@ typedef struct FlSvgPaint {
 typedef struct FlPainted {
     FlPart part;
     bool stroke;            // the part consists of strokes only
-    FlBlendMode blend_mode; // of all of it; OVER if it has several
+    FlBlendMode blend_mode; // of the whole part; OVER if it has several modes
     float width;            // of its widest stroke, px of the page it was read on; 0: no stroke
     FlSvgPaint paint;
 } FlPainted;
@@ -48,8 +48,8 @@ typedef struct FlPainted {
  * Reads the drawing commands that cairo's script surface wrote for one leaf.
  *
  * whole: fill and stroke are not separated. A leaf whose fill and stroke have the same opaque paint
- * is one part, and so is one with a blend mode. Returns: the number
- * of parts, bottom up; 0 if nothing is drawn.
+ * is one part, and so is one with a blend mode. Returns: the number of parts, bottom up; 0 if the
+ * leaf is invisible.
  */
 int fl_svg_paint_parse(const char *script, bool whole, FlPainted parts[FL_MOST_PARTS]);
 

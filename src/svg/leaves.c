@@ -5,14 +5,14 @@
 #include "svg/normalise.h"
 #include <string.h>
 
-/** What a leaf inherits from the groups around it; strings grow inwards and are cut back. */
+/** The properties that a leaf inherits from its groups; strings grow inwards and are cut back. */
 typedef struct Walk {
     GString *labels, *layers, *ids, *groups, *classes, *tree;
     const char *const *whole;
     FlLeaves *leaves;
-    GHashTable *by_id; // id -> xmlNode, the first of that id
-    int unit;          // outermost unit around, -1: none
-    int mask;          // innermost group around with a mask, -1: none
+    GHashTable *by_id; // id -> xmlNode, the first with that id
+    int unit;          // outermost unit around; -1 outside units
+    int mask;          // innermost group around with a mask; -1 without masks
     bool effects;      // a group around has some
     int n_made;        // ids made
 } Walk;
@@ -105,8 +105,8 @@ static bool has_text(const xmlNode *node)
     return found;
 }
 
-/** Whether librsvg may draw a node, or something in it, on a surface of its own: what a <use> that
- * is left shows may have effects, too. */
+/** Returns: true if librsvg may draw a node, or a descendant, on a separate surface: a remaining
+ * <use> may also show an element with effects. */
 static bool has_effects(const xmlNode *node)
 {
     bool found = fl_is(node, "image") || fl_is(node, "use") || fl_has_effects(node);
@@ -127,7 +127,7 @@ char *fl_leaf_key(const FlLeaf *leaf)
                : g_strconcat(FL_SHAPE_AT, leaf->tree, NULL);
 }
 
-/** The id of the outermost group around with a mask; NULL: none. */
+/** The id of the outermost group around with a mask; NULL without masks. */
 static const char *outermost_mask(const Walk *w)
 {
     const FlGroupMask *mask = NULL;
@@ -182,13 +182,13 @@ static bool is_drawn(const xmlNode *node)
     return fl_is_one_of(node, drawn);
 }
 
-/** Whether a group is drawn as one also where its shapes do not overlap. */
+/** Returns: true if a group is drawn as one even where its shapes do not overlap. */
 static bool is_inseparable(const xmlNode *node)
 {
     return fl_is_set(node, "filter") || fl_is_set(node, "mix-blend-mode");
 }
 
-/** Whether something in a node blends with what is below it. */
+/** Returns: true if an element in a node blends with the backdrop. */
 static bool has_blend(const xmlNode *node)
 {
     bool found = false;

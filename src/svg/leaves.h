@@ -7,22 +7,23 @@
 /**
  * One thing to draw: a shape, a text, an image; or a group that is drawn as one.
  *
- * Lists are joined with '\n', outermost first, and "" if empty. Nothing is NULL.
+ * Lists are joined with '\n', outermost first, and "" if empty. All strings are set.
  */
 typedef struct FlLeaf {
     char *id;      // in the normalised document, unique
     char *layer;   // id of the outermost group around with a mask, else id
-    int mask;      // FlLeaves.mask around it, -1: none, or it is the only leaf of `layer`
+    int mask;      // index of the leaf's mask in FlLeaves.mask; -1: no mask, or the leaf is `layer`
+                   // itself
     char *name;    // the authored id, or ""
     char *labels;  // of it and its groups: layer labels, meaningful ids
-    char *layers;  // the layers among them; the outermost group if there are none
+    char *layers;  // the layers among them; without layers, the outermost group
     char *ids;     // every authored id, its own last
     char *groups;  // ids, in the document, of the groups around it and of itself if it is one
     char *classes; // every class word
     char *tree;    // child indices from the root, "0/3/1"
-    int unit;      // index of the group it may be drawn as one with, -1: none
+    int unit;      // index of the group that may be drawn as one, with this leaf; -1: no group
     bool text;     // has text, whose shape depends on the scale
-    bool effects;  // it, something in it or a group around it has some, or it may show an image
+    bool effects;  // it, a descendant or a group around has effects, or it may show an image
     bool all;      // the whole document, drawn as it was before it was normalised
     bool whole; // has markers, text or images, or is in `whole`: fill and stroke are not separated
 } FlLeaf;
@@ -34,14 +35,15 @@ typedef struct FlLeaf {
 typedef struct FlGroupUnit {
     FlLeaf leaf;
     int first, n;     // its leaves
-    bool inseparable; // a filter or blend mode, also of what is in it: even without overlap
+    bool inseparable; // the group or its content has a filter or blend mode: drawn as one even
+                      // without overlap
 } FlGroupUnit;
 
 /** A group with a mask, of two or more leaves, which are drawn without it and masked then. */
 typedef struct FlGroupMask {
     char *group; // its id
-    int around;  // index of the next one outwards, -1: none
-    int depth;   // how many there are outwards
+    int around;  // index of the next mask outwards, -1 at the outermost
+    int depth;   // number of masks outwards
 } FlGroupMask;
 
 typedef struct FlLeaves {
@@ -54,8 +56,9 @@ typedef struct FlLeaves {
 char *fl_leaf_key(const FlLeaf *leaf);
 
 /**
- * Lists the leaves and gives ids to those without. Content with display: none is left out. Elements
- * of `whole`, see fl_is_whole(), are leaves; shapes in it, by fl_leaf_key(), have one part.
+ * Lists the leaves and gives each an id if it lacks one. Content with display: none is left out.
+ * Elements of `whole`, see fl_is_whole(), are leaves; shapes in such an element, see fl_leaf_key(),
+ * have one part.
  */
 FlLeaves *fl_leaves_new(xmlDoc *doc, const char *const *whole);
 

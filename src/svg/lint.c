@@ -20,8 +20,8 @@ static void warn(const Lint *lint, const xmlNode *node, const char *text)
 }
 
 /**
- * The id that a reference names: what is behind its #, with %-escapes resolved if the document has
- * it only so. NULL: it names none; to be freed.
+ * The id that a reference names: the text behind its #, with %-escapes resolved if the document
+ * contains the id only in that form. Returns: NULL if the reference names no id; to be freed.
  */
 static char *target_of(const Lint *lint, const char *reference)
 {
@@ -119,7 +119,7 @@ static void check_path(const Lint *lint, const xmlNode *node)
     warn(lint, node, text);
 }
 
-/** The mean of the colours in a gradient's arguments; NULL: there are none. To be freed. */
+/** The mean of the colours in a gradient's arguments; NULL without colours. To be freed. */
 static char *mean_colour(const char *arguments)
 {
     g_auto(GStrv) stop = fl_css_split(arguments, ',');

@@ -88,7 +88,7 @@ static bool speaks(const char *languages)
     return false;
 }
 
-/** Whether librsvg has all features of a list; diagrams.net asks for those of foreign content. */
+/** Returns: true if librsvg has all features of a list; diagrams.net asks for foreign content. */
 static bool has_features(const char *features)
 {
     static const char *const lacking[] = {"#Extensibility", "#Animation", "#Script", "Events",
@@ -178,7 +178,7 @@ static void show_copy(xmlNode *use, xmlNode *shown, const xmlChar *width, const 
 
 static bool normalise(Work *work, xmlNode *node, const Chain *chain, GError **error);
 
-/** Moves by x and y, which may have units: a nested <svg> of the same size does just that. */
+/** Moves by x and y, which may have units, by means of a nested <svg> of the same size. */
 static xmlNode *place(xmlNode *use, const xmlChar *x, const xmlChar *y)
 {
     if ((!x || is_zero(x)) && (!y || is_zero(y)))
@@ -204,7 +204,7 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
 {
     g_autoptr(xmlChar) href = take_reference(use);
     if (href && href[0] != '#')
-        return true; // another file: librsvg draws it, as one leaf
+        return true; // another file, which librsvg draws as one leaf
     g_autoptr(xmlChar) x = take(use, "x"), y = take(use, "y");
     g_autoptr(xmlChar) width = take(use, "width"), height = take(use, "height");
     xmlNode *target = href ? g_hash_table_lookup(work->ids, href + 1) : NULL;
@@ -217,7 +217,7 @@ static bool resolve_use(Work *work, xmlNode *use, const Chain *chain, GError **e
         return true;
     }
     if (!target || is_zero(width) || is_zero(height))
-        return true; // nothing is drawn
+        return true; // it is invisible
     xmlNode *copy = xmlDocCopyNode(target, use->doc, 1);
     work->n_copied += put_ids_aside(copy);
     show_copy(place(use, x, y), copy, width, height);

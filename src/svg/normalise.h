@@ -13,26 +13,26 @@
 
 #define FL_SHAPE_AT "fl-shape-at-" // and FlLeaf.tree: in place of the id of a shape without one
 
-/** Gives an id to every drawn <g>, <svg>, <a> and <use> that has none, in document order. */
+/** Gives an id to every drawn <g>, <svg>, <a> and <use> without one, in document order. */
 int fl_document_name_groups(xmlDoc *doc);
 
-/** Whether node is drawn as one leaf: its id is in the NULL-terminated list, which may be NULL. */
+/** Returns: true if node is drawn as one leaf: its id is in the list (NULL-terminated, or NULL). */
 bool fl_is_whole(const xmlNode *node, const char *const *whole);
 
 /**
  * Makes each <switch> a <g> with its first eligible child, and each <use> a <g> with a deep copy of
- * what it shows (a <symbol> becomes a nested <svg>). A cycle of <use> draws nothing, with a
- * warning. Elements of `whole`, see fl_is_whole(), stay unchanged.
+ * what it shows (a <symbol> becomes a nested <svg>). A cycle of <use> is not drawn, with a warning.
+ * Elements of `whole`, see fl_is_whole(), stay unchanged.
  *
  * Returns: false with FL_ERROR_LIMIT if the copies are too many or too deep.
  */
 bool fl_document_normalise(xmlDoc *doc, const char *const *whole, const char *path, int number,
                            FlWarnings *warnings, GError **error);
 
-/** Whether fl_document_normalise() has something to rewrite: a <use> or <switch> that is drawn. */
+/** Returns: true if fl_document_normalise() has work: the document draws a <use> or <switch>. */
 bool fl_document_is_rewritten(const xmlDoc *doc);
 
-/** Whether children of node are drawn only when something refers to them: <defs>, <mask>, … */
+/** Returns: true if children of node are drawn only by reference: <defs>, <mask>, … */
 bool fl_is_undrawn(const xmlNode *node);
 
 #endif

@@ -16,8 +16,8 @@ static bool is_in_marker(const xmlNode *node)
     return node != NULL;
 }
 
-/** Whether a node may be why librsvg draws any leaf on a surface of its own; defined: it is part of
- * a definition. */
+/** Returns: true if a node may cause librsvg to draw any leaf on a separate surface; defined: the
+ * node is part of a definition. */
 static bool is_apart(const xmlNode *node, bool defined)
 {
     static const char *const anywhere[] = {"pattern", NULL};

@@ -7,16 +7,16 @@
 /** The rotation at which paints are read, rad; see fl_paint_probe_prepare(). */
 #define FL_PAINT_PROBE_TURN 0.3
 
-/** Whether the paints of all leaves have to be read from such a copy, not only those of leaves with
- * FlLeaf.effects: any leaf may show a pattern or another definition with effects, and a style sheet
- * may give it some. */
+/** Returns: true if the paints of all leaves must be read from a copy that fl_paint_probe_prepare()
+ * has changed, and not only the paints of leaves with FlLeaf.effects: any leaf may show a pattern
+ * or another definition with effects, or get effects from a style sheet. */
 bool fl_paint_probe_is_needed(xmlDoc *doc);
 
 /**
  * Leaves out masks, which hide paint and do not change it, but are most of what librsvg would do.
  * Makes every image one grey pixel, since cairo's script surface would store it, and rotates
- * everything: that surface fails for axis-aligned fills other than boxes, and aborts at boxes
- * farther than 9999 px left of or above it. Rotating the page alone reaches neither patterns nor
+ * everything: that surface fails for axis-aligned fills other than boxes, and aborts at boxes more
+ * than 9999 px beyond its left or upper side. Rotating the page alone reaches neither patterns nor
  * groups with opacity, which librsvg draws on axis-aligned surfaces.
  */
 void fl_paint_probe_prepare(xmlDoc *doc);

@@ -16,7 +16,8 @@ static const char *skip_comma(const char *s)
     return *s == ',' ? skip_space(s + 1) : s;
 }
 
-/** Skips a number; NULL if there is none. Written by hand: strtod would take "inf" and "0x1". */
+/** Skips a number. Returns: NULL without a number. Does not use strtod, which accepts "inf" and
+ * "0x1". */
 static const char *number(const char *s)
 {
     if (*s == '+' || *s == '-')

@@ -2,8 +2,8 @@
 #ifndef FLUIDY_SVG_PATH_DATA_H
 #define FLUIDY_SVG_PATH_DATA_H
 
-/** Receives one step: a command letter, lower case if relative, and its arguments (A: 7, Z: none).
- */
+/** Receives one step: a command letter, lower case if relative, and its arguments (A has 7, Z has
+ * 0). */
 typedef void FlPathStep(void *data, char command, const double *v);
 
 /**

@@ -37,7 +37,7 @@ static void quadratic_to(FlPen *pen, FlPoint control, FlPoint end)
     curve_to(pen, between(pen->at, control, 2.0 / 3), between(end, control, 2.0 / 3), end);
 }
 
-/** Whether a subpath ends where it began, up to the rounding of relative numbers. */
+/** Returns: true if a subpath ends at its start, up to the rounding of relative numbers. */
 static bool is_back(const FlPen *pen)
 {
     const FlSubpath *sub = &g_array_index(pen->subpath, FlSubpath, pen->subpath->len - 1);

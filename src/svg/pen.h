@@ -23,7 +23,7 @@ void fl_pen_ellipse(FlPen *pen, double cx, double cy, double rx, double ry);
 /** Eight segments; those of sharp corners have no length. */
 void fl_pen_rect(FlPen *pen, double x, double y, double w, double h, double rx, double ry);
 
-/** The points attribute of polylines and, closed, of polygons. */
+/** Adds the points attribute of a polyline or, if closed, of a polygon. */
 void fl_pen_points(FlPen *pen, const char *points, bool closed);
 
 #endif

@@ -9,7 +9,7 @@
 typedef struct Outline {
     GArray *nodes; // FlPoint
     FlPoint least, most;
-    double area;    // twice that, with a sign
+    double area;    // twice the area, with a sign
     FlPoint moment; // six times the area's
 } Outline;
 

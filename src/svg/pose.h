@@ -9,7 +9,7 @@
 
 /** Of the nodes of an outline, px of the picture, on the page or not. */
 typedef struct FlPose {
-    int32_t n;                // nodes; 0: nothing is known
+    int32_t n;                // nodes; 0: the pose is unknown
     float x, y;               // their mean
     float middle_x, middle_y; // of what the outline encloses, whatever its nodes are
     float harmonic[2][2];     // the first and the last one of the nodes about their mean, in their
@@ -19,7 +19,7 @@ typedef struct FlPose {
 /** Of leaf `leaf`, or of all leaves of unit -1 - leaf. */
 FlPose fl_outline_pose(const FlOutlines *outlines, int leaf);
 
-/** Whether it is one that these give: all of it within FL_POSE_MOST_PX. */
+/** Returns: true if all of it is within FL_POSE_MOST_PX, as in poses that these functions give. */
 bool fl_pose_is_sound(const FlPose *pose);
 
 /** Of something that is known to be at a point. */

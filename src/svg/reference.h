@@ -5,12 +5,12 @@
 #include <stdbool.h>
 
 /**
- * The real path of what `href` names in the file `from`, links followed, or where it would be.
- * *is_there: whether something is there. Returns: NULL if it names no file; to be freed.
+ * The real path, with links resolved, of the file that `href` in the file `from` names, even if it
+ * does not exist. *is_there: true if it exists. Returns: NULL if href names no file; to be freed.
  */
 char *fl_reference_file(const char *from, const char *href, bool *is_there);
 
-/** Returns: true if a real path is in the folder of the drawing or below it. */
+/** Returns: true if a real path is in the folder of the drawing or in a folder below. */
 bool fl_reference_is_inside(const char *drawing, const char *file);
 
 #endif

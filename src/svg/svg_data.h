@@ -1,17 +1,17 @@
-/* The data of an FlSvg and the handles that librsvg draws it with; private to svg/. */
+/* The data of an FlSvg and the librsvg handles that draw it; private to this folder. */
 #ifndef FLUIDY_SVG_SVG_DATA_H
 #define FLUIDY_SVG_SVG_DATA_H
 
 #include "svg/svg_frame.h"
 
-/** Whether any leaf is parked far off the page. */
+/** Tells if any leaf is parked far off the page. */
 typedef enum FlFar {
     FL_FAR_UNKNOWN,
     FL_FAR_NONE,
     FL_FAR_SOME,
 } FlFar;
 
-/** What a group's mask and those around it let through on a page of that size. */
+/** The combined coverage of a group's mask and the outer masks, on a page of that size. */
 typedef struct FlMaskCover {
     cairo_surface_t *surface; // A8; NULL: not drawn yet
     FlPageSize page;
@@ -35,11 +35,11 @@ struct FlSvg {
     GPtrArray *files;   // that it refers to
 };
 
-/** What a handle is for. */
+/** The purpose of a handle. */
 typedef enum FlPurpose {
     FL_TO_DRAW,
     FL_TO_DRAW_BARE, // without the masks of FlLeaves.mask
-    FL_TO_READ,      // so, too; see fl_paint_probe_prepare()
+    FL_TO_READ,      // without masks as well; see fl_paint_probe_prepare()
     FL_N_PURPOSES
 } FlPurpose;
 

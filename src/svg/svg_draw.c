@@ -36,7 +36,7 @@ bool fl_svg_draw_group(FlSvg *svg, const char *id, cairo_t *cr, FlPageSize page,
     return svg->before && render(svg, svg->before, id, cr, page, error);
 }
 
-/** How many pixels of a page's side there can be on a target of that many. */
+/** The number of pixels of a page's side that fit on a target of `most` pixels. */
 static int side_on(double page_px, int most)
 {
     return (int)CLAMP(ceil(page_px), 1, MAX(most, 1));
@@ -96,7 +96,7 @@ static void keep_cover(FlSvg *svg, int index, FlMaskCover cover)
     cairo_surface_reference(cover.surface);
 }
 
-/** Draws what a mask and those around it, if any, let through. */
+/** Draws the combined coverage of a mask and the outer masks, if any. */
 static bool draw_cover(FlSvg *svg, const FlGroupMask *mask, cairo_surface_t *around,
                        cairo_surface_t *surface, FlPageSize page, GError **error)
 {
@@ -112,8 +112,8 @@ static bool draw_cover(FlSvg *svg, const FlGroupMask *mask, cairo_surface_t *aro
     return drawn;
 }
 
-/** What a mask and those around it let through, on the page's pixels of a target; NULL with an
- * error. */
+/** The combined coverage of a mask and the outer masks, on the page's pixels of a target; NULL with
+ * an error. */
 static cairo_surface_t *cover_of(FlSvg *svg, int index, FlPageSize page, int columns, int rows,
                                  GError **error)
 {

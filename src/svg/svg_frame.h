@@ -15,7 +15,7 @@ typedef struct FlCanvas {
 /** Reads "WxH" or "WxH+X+Y" in px. FL_ERROR_USAGE. */
 bool fl_canvas_parse(const char *text, FlCanvas *canvas, GError **error);
 
-/** How many px a page has when it is drawn; above 0. */
+/** The size of a page when it is drawn, px; above 0. */
 typedef struct FlPageSize {
     double width, height;
 } FlPageSize;
@@ -29,7 +29,7 @@ typedef struct FlSvgOptions {
     double seconds;           // its moment, from the start of the animations
 } FlSvgOptions;
 
-/** A frame. One thread at a time may use it; different frames may be used in parallel. */
+/** A frame. One thread at a time may use a frame; different frames may be used in parallel. */
 typedef struct FlSvg FlSvg;
 
 /** Reads, normalises and parses. Returns: NULL with FL_ERROR_INPUT or FL_ERROR_LIMIT. */
@@ -48,7 +48,8 @@ void fl_svg_free(FlSvg *svg); // NULL is fine
  */
 bool fl_svg_size(const FlSvg *svg, double *width, double *height, GError **error);
 
-/** How many groups have no id; documents with equal numbers have comparable generated ids. */
+/** The number of groups without an id; documents with equal numbers have comparable generated ids.
+ */
 int fl_svg_nameless_groups(const FlSvg *svg);
 
 /** The real paths, char *, of the files that it refers to and that exist; of its text the fonts and
@@ -65,7 +66,7 @@ double fl_svg_dpi(const FlSvg *svg);
 
 /**
  * The computed paints of a leaf. FlPainted.width is a share of the page's longer side.
- * Returns: the number of parts, bottom up, 0 if nothing is drawn; -1 with FL_ERROR_INPUT.
+ * Returns: the number of parts, bottom up, 0 if the leaf is invisible; -1 with FL_ERROR_INPUT.
  */
 int fl_svg_leaf_paints(FlSvg *svg, const FlLeaf *leaf, FlPainted parts[FL_MOST_PARTS],
                        GError **error);
@@ -78,7 +79,7 @@ bool fl_svg_draw(FlSvg *svg, const FlLeaf *leaf, FlPart part, cairo_t *cr, FlPag
                  GError **error);
 
 /**
- * The box of a leaf, its strokes included and clips not, in px of the page; empty if it has none.
+ * The box of a leaf, its strokes included and clips not, in px of the page; empty if the leaf is.
  */
 RsvgRectangle fl_svg_extents(FlSvg *svg, const FlLeaf *leaf, FlPageSize page);
 

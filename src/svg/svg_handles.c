@@ -58,7 +58,7 @@ static void keep_part(xmlDoc *doc, const FlLeaves *leaves, FlPart part)
         fl_declare(g_hash_table_lookup(ids, g_array_index(leaves->leaf, FlLeaf, i).id), hide[part]);
 }
 
-/** Makes a handle and keeps it. */
+/** Makes a handle and keeps it in svg->variants. */
 static RsvgHandle *add_variant(FlSvg *svg, gpointer key, xmlDoc *doc, GError **error)
 {
     size_t bytes = 0;

@@ -46,22 +46,22 @@ static bool is_small(RsvgRectangle box)
     return box.width < SMALL_PX || box.height < SMALL_PX;
 }
 
-/** Whether a box is parked far left of the page or above it. */
+/** Returns: true if a box is parked far to the left of the page or far above. */
 static bool is_far(RsvgRectangle box)
 {
     return box.x + box.width < -FAR_PX || box.y + box.height < -FAR_PX;
 }
 
-/** Whether librsvg gave up at its limit of <use> and the like, which takes it many seconds. */
+/** Returns: true if librsvg gave up at its limit of references, which takes many seconds. */
 static bool is_endless(const GError *reason)
 {
     return reason && strstr(reason->message, "referenced elements");
 }
 
 /**
- * Finds whether a leaf may be far on the small page: only then each is measured, which takes as
- * long as drawing it, masks included. Boxes of all lie in that of the document, which is measured
- * on a page of next to no pixels. Returns: false with an error if the document is_endless().
+ * Finds whether a leaf may be far on the small page: only then each leaf is measured, which takes
+ * as long as drawing it with its masks. The document's box contains all leaves and is measured on a
+ * page of very few pixels. Returns: false with an error if the document is_endless().
  */
 static bool find_far(FlSvg *svg, GError **error)
 {

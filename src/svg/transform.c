@@ -75,7 +75,7 @@ static double unit_of(const char *s, size_t n)
     return 0;
 }
 
-/** Skips one function; NULL if there is none. */
+/** Skips one function. Returns: NULL if no function begins here. */
 static const char *read_call(const char *s, Call *call)
 {
     *call = (Call){.name = s};
